@@ -1,0 +1,10 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
+#[cfg(feature = "pattern-codec")]
+pub use pattern_codec;
+#[cfg(feature = "scara-kin")]
+pub use scara_kin;
+#[cfg(feature = "stepper-sync")]
+pub use stepper_sync;
