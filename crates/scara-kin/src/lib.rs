@@ -5,3 +5,28 @@
 
 #[cfg(any(test, feature = "std"))]
 extern crate std;
+
+mod arm;
+mod drives;
+mod follow;
+mod forward;
+mod inverse;
+mod joints;
+mod limits;
+#[cfg(feature = "serde")]
+mod serde;
+mod tangent;
+mod velocity;
+mod workspace;
+
+pub use nalgebra;
+
+pub use arm::{Arm, GeometryError};
+pub use drives::{Direction, DriveAngles, Drives};
+pub use follow::{CurvePlace, Follow, FollowError, Waypoint};
+pub use inverse::{InverseError, Solutions};
+pub use joints::{Elbow, Joint, Joints};
+pub use limits::{JointRange, Limits};
+pub use tangent::{TangentError, TangentTool, ToolTurn};
+pub use velocity::SingularPose;
+pub use workspace::Workspace;

@@ -1,0 +1,213 @@
+//! The arm: link lengths, base, limits, keep-out.
+
+use nalgebra::{Isometry2, RealField};
+
+use crate::limits::max_value;
+use crate::{Limits, Workspace};
+
+/// A two-link arm with parallel joint axes, in any unit of length, the same throughout.
+///
+/// Each `with_` method returns the changed arm, so that a machine reads as one expression:
+///
+/// ```
+/// use core::f64::consts::{FRAC_PI_2, PI};
+/// use scara_kin::{Arm, JointRange, Limits};
+/// use scara_kin::nalgebra::{Isometry2, Vector2};
+///
+/// let arm = Arm::new(132.0, 132.0)?
+///     .with_base(Isometry2::new(Vector2::new(0.0, -80.0), FRAC_PI_2))?
+///     .with_limits(Limits {
+///         shoulder: JointRange::new(-PI, PI)?,
+///         elbow: JointRange::new(-2.6, 2.6)?,
+///     })
+///     .with_keep_out(40.0)?;
+/// assert_eq!(arm.reach(), 264.0);
+/// # Ok::<(), scara_kin::GeometryError<f64>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arm<T: RealField = f64> {
+    upper: T,
+    fore: T,
+    base: Isometry2<T>,
+    limits: Limits<T>,
+    keep_out: T,
+    tolerance: T,
+}
+
+/// Why a geometry is refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum GeometryError<T = f64> {
+    /// A link length is not a number between the stated ends.
+    #[error("link length {length} is not within {min}..={max}")]
+    LinkLength {
+        /// The length given.
+        length: T,
+        /// Shortest length that is accurate in `T`.
+        min: T,
+        /// Longest length that is accurate in `T`.
+        max: T,
+    },
+    /// A joint range is empty or not finite.
+    #[error("joint range {min}..={max} rad is empty or not finite")]
+    EmptyRange {
+        /// Lower end given, in radians.
+        min: T,
+        /// Upper end given, in radians.
+        max: T,
+    },
+    /// The keep-out radius is negative, not finite, or leaves nothing within reach.
+    #[error("keep-out radius {radius} is not within 0..{reach}")]
+    KeepOut {
+        /// The radius given.
+        radius: T,
+        /// The arm's reach.
+        reach: T,
+    },
+    /// A setting is infinite or not a number.
+    #[error("{name} is {value}, not a finite number")]
+    NotFinite {
+        /// The setting.
+        name: &'static str,
+        /// Its value.
+        value: T,
+    },
+}
+
+/// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of
+/// reach and base distance: a product, a rotation and a sum for each of two
+/// links, and the base's transformation there and back.
+const ROUNDING_STEPS: f64 = 16.0;
+
+impl<T: RealField + Copy> Arm<T> {
+    /// An arm of the two link lengths, its base at the origin along X, without limits.
+    ///
+    /// The lengths may differ. With h the fourth root of the largest number of `T`,
+    /// divided by 4, they lie within 1/√h and h (f64: 6e-39..=2.8e76, f32: 3e-5..=1e9):
+    /// outside, products of four lengths would overflow or lose digits.
+    ///
+    /// # Errors
+    /// [`GeometryError::LinkLength`].
+    pub fn new(upper: T, fore: T) -> Result<Self, GeometryError<T>> {
+        let max = max_value::<T>().sqrt().sqrt() * nalgebra::convert(0.25);
+        let min = max.sqrt().recip();
+        for length in [upper, fore] {
+            // Written so that NaN is refused too.
+            if !(length >= min && length <= max) {
+                return Err(GeometryError::LinkLength { length, min, max });
+            }
+        }
+        let arm = Self {
+            upper,
+            fore,
+            base: Isometry2::identity(),
+            limits: Limits::unlimited(),
+            keep_out: T::zero(),
+            tolerance: T::zero(),
+        };
+        Ok(arm.with_tolerance())
+    }
+
+    /// The arm with its base at `base`: the position of the shoulder's axis and the
+    /// direction in which the upper arm's zero points.
+    ///
+    /// # Errors
+    /// [`GeometryError::NotFinite`].
+    pub fn with_base(mut self, base: Isometry2<T>) -> Result<Self, GeometryError<T>> {
+        for (name, value) in [
+            ("base x", base.translation.x),
+            ("base y", base.translation.y),
+            ("base rotation", base.rotation.angle()),
+        ] {
+            if !value.is_finite() {
+                return Err(GeometryError::NotFinite { name, value });
+            }
+        }
+        self.base = base;
+        Ok(self.with_tolerance())
+    }
+
+    /// The arm with joint limits.
+    #[must_use]
+    pub const fn with_limits(mut self, limits: Limits<T>) -> Self {
+        self.limits = limits;
+        self
+    }
+
+    /// The arm with a disc round the base's axis that the tool must not enter.
+    ///
+    /// # Errors
+    /// [`GeometryError::KeepOut`].
+    pub fn with_keep_out(mut self, radius: T) -> Result<Self, GeometryError<T>> {
+        let reach = self.reach();
+        if !(radius >= T::zero() && radius < reach) {
+            return Err(GeometryError::KeepOut { radius, reach });
+        }
+        self.keep_out = radius;
+        Ok(self)
+    }
+
+    fn with_tolerance(mut self) -> Self {
+        let span = self.reach() + self.base.translation.vector.norm();
+        self.tolerance = span * T::default_epsilon() * nalgebra::convert(ROUNDING_STEPS);
+        self
+    }
+
+    /// Length of the upper arm.
+    #[must_use]
+    pub const fn upper(&self) -> T {
+        self.upper
+    }
+
+    /// Length of the forearm.
+    #[must_use]
+    pub const fn fore(&self) -> T {
+        self.fore
+    }
+
+    /// Base position and rotation.
+    #[must_use]
+    pub const fn base(&self) -> &Isometry2<T> {
+        &self.base
+    }
+
+    /// Joint limits.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits<T> {
+        &self.limits
+    }
+
+    /// Radius of the disc round the base that the tool must not enter; zero for none.
+    #[must_use]
+    pub const fn keep_out(&self) -> T {
+        self.keep_out
+    }
+
+    /// Distance from base to tool of the stretched arm.
+    #[must_use]
+    pub fn reach(&self) -> T {
+        self.upper + self.fore
+    }
+
+    /// Distance from the base within which the tool cannot be: that of the folded
+    /// arm, or the keep-out radius where that is larger.
+    #[must_use]
+    pub fn inner_reach(&self) -> T {
+        (self.upper - self.fore).abs().max(self.keep_out)
+    }
+
+    /// How far past an edge of the workspace a point may lie by rounding alone, in the
+    /// unit of length: 16 machine epsilons of reach plus base distance. Such a point is
+    /// taken as being on the edge.
+    #[must_use]
+    pub const fn tolerance(&self) -> T {
+        self.tolerance
+    }
+
+    /// What the arm can reach, as data.
+    #[must_use]
+    pub const fn workspace(&self) -> Workspace<T> {
+        Workspace::new(*self)
+    }
+}

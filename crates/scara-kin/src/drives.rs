@@ -1,0 +1,152 @@
+//! From joint angles to the angles of the drives behind them, and back.
+
+use nalgebra::RealField;
+
+use crate::{GeometryError, Joints};
+
+/// The sense in which a drive turns its joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(
+    clippy::exhaustive_enums,
+    reason = "a joint turns one way or the other"
+)]
+pub enum Direction {
+    /// Counter-clockwise drive, counter-clockwise joint.
+    #[default]
+    Forward,
+    /// Counter-clockwise drive, clockwise joint.
+    Reversed,
+}
+
+/// The angles of the two drives at the joints' side of their gears, in radians.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "two links have two drives")]
+pub struct DriveAngles<T = f64> {
+    /// Drive of the upper arm, in radians.
+    pub shoulder: T,
+    /// Drive of the forearm, in radians.
+    pub elbow: T,
+}
+
+/// How the drives sit on the joints: zero offsets, senses of turning, coupling.
+///
+/// ```text
+/// d1 = ±(q1 - zero1)
+/// d2 = ±(q2 + coupling · q1 - zero2)
+/// ```
+///
+/// `coupling` is what the forearm's drive sees of the shoulder's turning: 0 where its
+/// motor rides on the upper arm, 1 where it stands on the base and turns the forearm
+/// through a parallel 1:1 belt, other values for belts of other ratios.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Drives<T = f64> {
+    zero: Joints<T>,
+    shoulder: Direction,
+    elbow: Direction,
+    coupling: T,
+}
+
+impl<T: RealField + Copy> Default for Drives<T> {
+    /// Drive angles are joint angles.
+    fn default() -> Self {
+        Self {
+            zero: Joints::new(T::zero(), T::zero()),
+            shoulder: Direction::Forward,
+            elbow: Direction::Forward,
+            coupling: T::zero(),
+        }
+    }
+}
+
+impl<T: RealField + Copy> Drives<T> {
+    /// The drives read zero when their sums above equal `zero`, in radians.
+    ///
+    /// # Errors
+    /// [`GeometryError::NotFinite`].
+    pub fn with_zero(mut self, zero: Joints<T>) -> Result<Self, GeometryError<T>> {
+        finite("shoulder zero", zero.shoulder)?;
+        finite("elbow zero", zero.elbow)?;
+        self.zero = zero;
+        Ok(self)
+    }
+
+    /// The senses of turning of shoulder and elbow.
+    #[must_use]
+    pub const fn with_directions(mut self, shoulder: Direction, elbow: Direction) -> Self {
+        self.shoulder = shoulder;
+        self.elbow = elbow;
+        self
+    }
+
+    /// The share of the shoulder's turning that the forearm's drive sees.
+    ///
+    /// # Errors
+    /// [`GeometryError::NotFinite`].
+    pub fn with_coupling(mut self, coupling: T) -> Result<Self, GeometryError<T>> {
+        finite("coupling", coupling)?;
+        self.coupling = coupling;
+        Ok(self)
+    }
+
+    /// The sums at which the drives read zero, in radians.
+    #[must_use]
+    pub const fn zero(&self) -> Joints<T> {
+        self.zero
+    }
+
+    /// The senses of turning of shoulder and elbow.
+    #[must_use]
+    pub const fn directions(&self) -> (Direction, Direction) {
+        (self.shoulder, self.elbow)
+    }
+
+    /// The share of the shoulder's turning that the forearm's drive sees.
+    #[must_use]
+    pub const fn coupling(&self) -> T {
+        self.coupling
+    }
+
+    /// Drive angles for joint angles.
+    #[must_use]
+    pub fn from_joints(&self, joints: Joints<T>) -> DriveAngles<T> {
+        DriveAngles {
+            shoulder: self.shoulder.of(joints.shoulder - self.zero.shoulder),
+            elbow: self
+                .elbow
+                .of(joints.elbow + self.coupling * joints.shoulder - self.zero.elbow),
+        }
+    }
+
+    /// Joint angles for drive angles.
+    #[must_use]
+    pub fn to_joints(&self, drives: DriveAngles<T>) -> Joints<T> {
+        let shoulder = self.shoulder.of(drives.shoulder) + self.zero.shoulder;
+        Joints {
+            shoulder,
+            elbow: self.elbow.of(drives.elbow) + self.zero.elbow - self.coupling * shoulder,
+        }
+    }
+}
+
+impl Direction {
+    fn of<T: RealField>(self, angle: T) -> T {
+        match self {
+            Self::Forward => angle,
+            Self::Reversed => -angle,
+        }
+    }
+}
+
+fn finite<T: RealField + Copy>(name: &'static str, value: T) -> Result<(), GeometryError<T>> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(GeometryError::NotFinite { name, value })
+    }
+}

@@ -1,0 +1,97 @@
+//! How far a straight joint move can leave the straight line between its ends.
+
+use nalgebra::RealField;
+
+use crate::limits::two;
+use crate::{Arm, Joints};
+
+impl<T: RealField + Copy> Arm<T> {
+    /// The most by which the tool leaves the straight line between two poses while both
+    /// joints move linearly from one to the other, in the unit of length.
+    ///
+    /// Proof. Let the shoulder move by a and the forearm, in the base's frame, by
+    /// b = a + δ2. Both links turn at constant rates over t = 0..=1, so that
+    ///
+    /// ```text
+    /// p" = -w,   w = upper a² + fore b²,   w' = ẑ × (upper a³ + fore b³)
+    /// |upper p + fore q|² = ((l1 p + l2 q) cos(q2/2))² + ((l1 p - l2 q) sin(q2/2))²
+    /// ```
+    ///
+    /// The last is monotonic in q2 from one pose straight or folded to the next, so
+    /// that M = max |w| and N = max |w'| are found at the ends of the move.
+    ///
+    /// A function departs from the straight line between its ends by at most an eighth
+    /// of its largest second derivative: M/8, point by point at the same share of the way.
+    ///
+    /// Across the line only the part of w along its normal n counts, which is at most
+    /// |n · w(½)| + N/2. Along the line the speed departs from its mean, the distance c
+    /// between the ends, by at most M/2; where M ≤ 2c the tool never turns back, each
+    /// place on the path has its foot on the line and the other way round. Hence
+    ///
+    /// ```text
+    /// bound = min(M, |n · w(½)| + N/2) / 8   where M ≤ 2c,   M/8 elsewhere
+    /// ```
+    ///
+    /// For short steps this is the true departure to first order.
+    #[must_use]
+    pub fn chord_bound(&self, from: Joints<T>, to: Joints<T>) -> T {
+        let turns = Turns::new(from, to);
+        let (a, b) = (turns.upper, turns.fore);
+        let largest = turns.longest(self, a * a, b * b);
+        let chord = self.tip(to) - self.tip(from);
+        let length = chord.norm();
+        let eighth = nalgebra::convert(0.125);
+        if length == T::zero() || largest > length * two() {
+            return largest * eighth;
+        }
+        let middle = Joints::new(
+            from.shoulder + a / two(),
+            from.elbow + (to.elbow - from.elbow) / two(),
+        );
+        let links = self.links(middle);
+        let w = links.upper * (a * a) + links.fore * (b * b);
+        let across = (chord.perp(&w) / length).abs();
+        let drift = turns.longest(self, a * a * a, b * b * b);
+        largest.min(across + drift / two()) * eighth
+    }
+}
+
+/// A joint move as each link sees it.
+struct Turns<T> {
+    /// Turn of the upper arm in the base's frame.
+    upper: T,
+    /// Turn of the forearm in the base's frame.
+    fore: T,
+    /// Half the elbow angle at the lower end of the move.
+    low: T,
+    /// Half the elbow angle at the upper end of the move.
+    high: T,
+}
+
+impl<T: RealField + Copy> Turns<T> {
+    fn new(from: Joints<T>, to: Joints<T>) -> Self {
+        let way = from.way_to(to);
+        Self {
+            upper: way.x,
+            fore: way.x + way.y,
+            low: from.elbow.min(to.elbow) / two(),
+            high: from.elbow.max(to.elbow) / two(),
+        }
+    }
+
+    /// The largest length of upper · p + fore · q during the move.
+    fn longest(&self, arm: &Arm<T>, p: T, q: T) -> T {
+        let stretched = (arm.upper() * p + arm.fore() * q).abs();
+        let folded = (arm.upper() * p - arm.fore() * q).abs();
+        let quarter = T::frac_pi_2();
+        let singular = ((self.low / quarter).floor() + T::one()) * quarter;
+        if self.low < singular && singular < self.high {
+            return stretched.max(folded);
+        }
+        let length = |half: T| {
+            let (sin, cos) = half.sin_cos();
+            (stretched * cos).hypot(folded * sin)
+        };
+        length(self.low).max(length(self.high))
+    }
+}

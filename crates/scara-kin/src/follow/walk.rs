@@ -1,0 +1,226 @@
+//! The way along a polyline, waypoint by waypoint, each step as long as the tolerance allows.
+
+use nalgebra::{Point2, RealField};
+
+use super::bisect::Bisection;
+use super::{CurvePlace, FollowError, Waypoint};
+use crate::{Arm, Elbow, InverseError, Joint, Joints};
+
+/// Yields each waypoint or the reason why there is none; ends after an error.
+#[derive(Debug, Clone)]
+pub(super) struct Walk<I, T: RealField> {
+    arm: Arm<T>,
+    points: I,
+    elbow: Elbow,
+    tolerance: T,
+    joints: Joints<T>,
+    state: State<T>,
+}
+
+#[derive(Debug, Clone)]
+enum State<T: RealField> {
+    Start,
+    /// At the point with which line number `line` begins.
+    Corner {
+        line: usize,
+        point: Point2<T>,
+    },
+    On(Line<T>),
+    End,
+}
+
+/// A line on which the walk stands.
+#[derive(Debug, Clone, Copy)]
+struct Line<T: RealField> {
+    line: usize,
+    from: Point2<T>,
+    to: Point2<T>,
+    /// Where the line is nearest to the base, if that is within the inner reach.
+    dip: Option<T>,
+    steps: Bisection,
+}
+
+impl<T: RealField + Copy> Line<T> {
+    fn place(&self, fraction: T) -> CurvePlace<T> {
+        let point = if fraction == T::one() {
+            self.to
+        } else {
+            self.from + (self.to - self.from) * fraction
+        };
+        CurvePlace {
+            line: self.line,
+            fraction,
+            point,
+        }
+    }
+
+    /// The dip, if the next step would jump over it.
+    fn dip_ahead(&self) -> Option<CurvePlace<T>> {
+        let dip = self.dip?;
+        let ahead = self.steps.position::<T>() < dip && dip < self.steps.target();
+        ahead.then(|| self.place(dip))
+    }
+}
+
+type Step<T> = Result<Waypoint<T>, FollowError<T>>;
+
+impl<I, T> Walk<I, T>
+where
+    I: Iterator<Item = Point2<T>>,
+    T: RealField + Copy,
+{
+    pub(super) fn new(
+        arm: Arm<T>,
+        points: I,
+        elbow: Elbow,
+        tolerance: T,
+        previous: Joints<T>,
+    ) -> Self {
+        Self {
+            arm,
+            points,
+            elbow,
+            tolerance,
+            joints: previous,
+            state: State::Start,
+        }
+    }
+
+    fn start(&mut self) -> Option<Step<T>> {
+        let point = self.points.next()?;
+        let place = CurvePlace {
+            line: 0,
+            fraction: T::zero(),
+            point,
+        };
+        self.state = State::Corner { line: 0, point };
+        let step = self
+            .joints_at(place)
+            .map(|joints| self.arrive(joints, place));
+        Some(step)
+    }
+
+    /// The next line that has a length.
+    fn next_line(&mut self, mut line: usize, from: Point2<T>) -> Option<Line<T>> {
+        loop {
+            let to = self.points.next()?;
+            if to != from {
+                let dip = self.dip(from, to);
+                let steps = Bisection::default();
+                return Some(Line {
+                    line,
+                    from,
+                    to,
+                    dip,
+                    steps,
+                });
+            }
+            line += 1;
+        }
+    }
+
+    /// Where a line comes nearest to the base, if that is within the inner reach:
+    /// between two waypoints it could dip in there unseen.
+    fn dip(&self, from: Point2<T>, to: Point2<T>) -> Option<T> {
+        let centre = Point2::from(self.arm.base().translation.vector);
+        let way = to - from;
+        let fraction = (centre - from).dot(&way) / way.norm_squared();
+        let distance = (from + way * fraction - centre).norm();
+        let inside = distance < self.arm.inner_reach() - self.arm.tolerance();
+        (inside && fraction > T::zero() && fraction < T::one()).then_some(fraction)
+    }
+
+    /// The longest next step on the line that keeps the tolerance and the workspace.
+    fn step(&mut self, mut line: Line<T>) -> Step<T> {
+        loop {
+            let place = line.place(line.steps.target());
+            let refused = match self.try_step(&line, place) {
+                Ok(joints) => {
+                    self.state = if line.steps.advance() {
+                        State::On(line)
+                    } else {
+                        let point = line.to;
+                        let line = line.line.saturating_add(1);
+                        State::Corner { line, point }
+                    };
+                    return Ok(self.arrive(joints, place));
+                }
+                Err(refused) => refused,
+            };
+            // Shorter steps lead up to the first place that is out of reach.
+            if !line.steps.halve() {
+                return Err(refused);
+            }
+        }
+    }
+
+    fn try_step(&self, line: &Line<T>, place: CurvePlace<T>) -> Result<Joints<T>, FollowError<T>> {
+        if let Some(place) = line.dip_ahead() {
+            let centre = Point2::from(self.arm.base().translation.vector);
+            let reason = InverseError::TooNear {
+                distance: (place.point - centre).norm(),
+                reach: self.arm.inner_reach(),
+            };
+            return Err(FollowError::Unreachable { place, reason });
+        }
+        let joints = self.joints_at(place)?;
+        if self.arm.chord_bound(self.joints, joints) <= self.tolerance {
+            return Ok(joints);
+        }
+        let way = self.joints.way_to(joints);
+        for (joint, way, angle) in [
+            (Joint::Shoulder, way.x, joints.shoulder),
+            (Joint::Elbow, way.y, joints.elbow),
+        ] {
+            // The nearer whole turn is out of range, or it would have been taken.
+            if way.abs() > T::pi() {
+                let range = self.arm.limits().range(joint);
+                let reason = InverseError::JointLimit {
+                    elbow: self.elbow,
+                    joint,
+                    angle: angle - T::two_pi().copysign(way),
+                    min: range.min(),
+                    max: range.max(),
+                };
+                return Err(FollowError::Unreachable { place, reason });
+            }
+        }
+        Err(FollowError::Jump { place })
+    }
+
+    /// Joint angles at a place, at the whole turn nearest to those before.
+    fn joints_at(&self, place: CurvePlace<T>) -> Result<Joints<T>, FollowError<T>> {
+        self.arm
+            .inverse_elbow_near(place.point, self.elbow, self.joints)
+            .map_err(|reason| FollowError::Unreachable { place, reason })
+    }
+
+    fn arrive(&mut self, joints: Joints<T>, place: CurvePlace<T>) -> Waypoint<T> {
+        self.joints = joints;
+        Waypoint { joints, place }
+    }
+}
+
+impl<I, T> Iterator for Walk<I, T>
+where
+    I: Iterator<Item = Point2<T>>,
+    T: RealField + Copy,
+{
+    type Item = Step<T>;
+
+    fn next(&mut self) -> Option<Step<T>> {
+        let step = match core::mem::replace(&mut self.state, State::End) {
+            State::Start => self.start()?,
+            State::Corner { line, point } => {
+                let line = self.next_line(line, point)?;
+                self.step(line)
+            }
+            State::On(line) => self.step(line),
+            State::End => return None,
+        };
+        if step.is_err() {
+            self.state = State::End;
+        }
+        Some(step)
+    }
+}

@@ -1,0 +1,99 @@
+//! Joint angles, and the names of an arm's two joints and two elbows.
+
+use nalgebra::{RealField, Vector2};
+
+/// The joint angles of a two-link arm, in radians.
+///
+/// ```text
+///              tool
+///              o
+///             /
+///            /  forearm           elbow:    forearm against upper arm
+///   elbow   o. . . .              shoulder: upper arm against the base's X axis
+///          /                      counter-clockwise positive;
+///         /  upper arm            both zero: stretched along X
+///   base o. . . . X
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "two links have two joints")]
+pub struct Joints<T = f64> {
+    /// Upper arm against the base's X axis, in radians.
+    pub shoulder: T,
+    /// Forearm against the upper arm, in radians.
+    pub elbow: T,
+}
+
+impl<T> Joints<T> {
+    /// Joint angles from shoulder and elbow, in radians.
+    pub const fn new(shoulder: T, elbow: T) -> Self {
+        Self { shoulder, elbow }
+    }
+}
+
+impl<T: RealField + Copy> Joints<T> {
+    /// The way from `self` to `to`, joint by joint: (shoulder, elbow) in radians.
+    #[must_use]
+    pub fn way_to(&self, to: Self) -> Vector2<T> {
+        Vector2::new(to.shoulder - self.shoulder, to.elbow - self.elbow)
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.shoulder.is_finite() && self.elbow.is_finite()
+    }
+}
+
+/// Which side of the line from base to tool the elbow lies on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "a two-link arm has two elbows")]
+pub enum Elbow {
+    /// Elbow angle in 0..=π: the elbow is right of the line from base to tool.
+    Right,
+    /// Elbow angle in -π..=0: the elbow is left of the line from base to tool.
+    Left,
+}
+
+impl Elbow {
+    /// The elbow of an arm pose: by the sign of the elbow angle's sine, so that
+    /// whole turns do not matter; a straight or folded arm counts as `Right`.
+    pub fn of<T: RealField + Copy>(joints: &Joints<T>) -> Self {
+        if joints.elbow.sin() < T::zero() {
+            Self::Left
+        } else {
+            Self::Right
+        }
+    }
+
+    /// The other elbow.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+}
+
+/// One of the arm's two joints, for errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "two links have two joints")]
+pub enum Joint {
+    /// Upper arm against base.
+    Shoulder,
+    /// Forearm against upper arm.
+    Elbow,
+}
+
+impl core::fmt::Display for Joint {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Shoulder => "shoulder",
+            Self::Elbow => "elbow",
+        })
+    }
+}

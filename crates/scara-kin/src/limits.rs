@@ -1,0 +1,144 @@
+//! Joint limits, and whole turns within them.
+
+use nalgebra::RealField;
+
+use crate::{GeometryError, Joint, Joints};
+
+/// The closed range of one joint, in radians.
+///
+/// A range may be wider than a whole turn, and need not hold zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct JointRange<T = f64> {
+    min: T,
+    max: T,
+}
+
+impl<T: RealField + Copy> JointRange<T> {
+    /// A range from `min` to `max`, in radians.
+    ///
+    /// # Errors
+    /// [`GeometryError::EmptyRange`] unless both are finite and `min < max`.
+    pub fn new(min: T, max: T) -> Result<Self, GeometryError<T>> {
+        if min.is_finite() && max.is_finite() && min < max {
+            Ok(Self { min, max })
+        } else {
+            Err(GeometryError::EmptyRange { min, max })
+        }
+    }
+
+    /// Any angle.
+    #[must_use]
+    pub fn unlimited() -> Self {
+        let huge = max_value::<T>();
+        Self {
+            min: -huge,
+            max: huge,
+        }
+    }
+
+    /// Lower end, in radians.
+    #[must_use]
+    pub fn min(&self) -> T {
+        self.min
+    }
+
+    /// Upper end, in radians.
+    #[must_use]
+    pub fn max(&self) -> T {
+        self.max
+    }
+
+    /// Whether `angle`, taken as it is, lies in the range.
+    #[must_use]
+    pub fn contains(&self, angle: T) -> bool {
+        self.min <= angle && angle <= self.max
+    }
+
+    /// The angle of the range, equal to `angle` but for whole turns, that is
+    /// nearest to `near`; an `angle` that fits at no turn is returned at the end
+    /// of the range which it misses least.
+    pub(crate) fn fit(&self, angle: T, near: T) -> T {
+        if self.contains(angle) && (angle - near).abs() <= T::pi() {
+            return angle;
+        }
+        let turn = T::two_pi();
+        let lowest = ((self.min - angle) / turn).ceil();
+        let highest = ((self.max - angle) / turn).floor();
+        if lowest <= highest {
+            let turns = ((near - angle) / turn).round();
+            let turned = angle + turns.max(lowest).min(highest) * turn;
+            // The sum is rounded.
+            return turned.max(self.min).min(self.max);
+        }
+        let below = self.min - (angle + highest * turn);
+        let above = angle + lowest * turn - self.max;
+        if below <= above { self.min } else { self.max }
+    }
+
+    /// The angle of the range's middle, zero where unlimited: where a search for a
+    /// whole turn starts when nothing came before.
+    pub(crate) fn middle(&self) -> T {
+        self.min / two() + self.max / two()
+    }
+}
+
+/// The limits of both joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "two links have two joints")]
+pub struct Limits<T = f64> {
+    /// Range of the upper arm against the base.
+    pub shoulder: JointRange<T>,
+    /// Range of the forearm against the upper arm.
+    pub elbow: JointRange<T>,
+}
+
+impl<T: RealField + Copy> Limits<T> {
+    /// Both joints turn freely.
+    #[must_use]
+    pub fn unlimited() -> Self {
+        Self {
+            shoulder: JointRange::unlimited(),
+            elbow: JointRange::unlimited(),
+        }
+    }
+
+    /// Whether both angles, taken as they are, lie in their ranges.
+    #[must_use]
+    pub fn contains(&self, joints: &Joints<T>) -> bool {
+        self.shoulder.contains(joints.shoulder) && self.elbow.contains(joints.elbow)
+    }
+
+    /// Each joint at the whole turn nearest to `near`, at the end of its range
+    /// where no turn fits.
+    pub(crate) fn fit(&self, joints: Joints<T>, near: Joints<T>) -> Joints<T> {
+        Joints {
+            shoulder: self.shoulder.fit(joints.shoulder, near.shoulder),
+            elbow: self.elbow.fit(joints.elbow, near.elbow),
+        }
+    }
+
+    pub(crate) fn middle(&self) -> Joints<T> {
+        Joints {
+            shoulder: self.shoulder.middle(),
+            elbow: self.elbow.middle(),
+        }
+    }
+
+    pub(crate) fn range(&self, joint: Joint) -> &JointRange<T> {
+        match joint {
+            Joint::Shoulder => &self.shoulder,
+            Joint::Elbow => &self.elbow,
+        }
+    }
+}
+
+/// The largest finite number; every `RealField` of machine floats has one.
+pub(crate) fn max_value<T: RealField>() -> T {
+    T::max_value().unwrap_or_else(T::one)
+}
+
+pub(crate) fn two<T: RealField>() -> T {
+    T::one() + T::one()
+}

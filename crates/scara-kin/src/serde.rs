@@ -1,0 +1,189 @@
+//! Serialised forms: plain fields, checked by the constructors when they are read.
+
+use nalgebra::{Isometry2, RealField, Vector2};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+use crate::{Arm, Direction, Drives, GeometryError, JointRange, Joints, Limits};
+
+/// Serialises `$checked` as `$plain`.
+macro_rules! serialise_as {
+    ($checked:ident, $plain:ident) => {
+        impl<T: RealField + Copy + Serialize> Serialize for $checked<T> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                $plain::from(*self).serialize(serializer)
+            }
+        }
+
+        impl<'de, T: RealField + Copy + Deserialize<'de>> Deserialize<'de> for $checked<T> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $plain::deserialize(deserializer)?
+                    .try_into()
+                    .map_err(D::Error::custom)
+            }
+        }
+    };
+}
+
+serialise_as!(JointRange, PlainRange);
+serialise_as!(Limits, PlainLimits);
+serialise_as!(Arm, PlainArm);
+serialise_as!(Drives, PlainDrives);
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlainRange<T> {
+    min: T,
+    max: T,
+}
+
+impl<T: RealField + Copy> From<JointRange<T>> for PlainRange<T> {
+    fn from(range: JointRange<T>) -> Self {
+        Self {
+            min: range.min(),
+            max: range.max(),
+        }
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<PlainRange<T>> for JointRange<T> {
+    type Error = GeometryError<T>;
+
+    fn try_from(plain: PlainRange<T>) -> Result<Self, Self::Error> {
+        Self::new(plain.min, plain.max)
+    }
+}
+
+/// An unlimited range is left out.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlainLimits<T> {
+    shoulder: Option<PlainRange<T>>,
+    elbow: Option<PlainRange<T>>,
+}
+
+fn limited<T: RealField + Copy>(range: JointRange<T>) -> Option<PlainRange<T>> {
+    (range != JointRange::unlimited()).then(|| range.into())
+}
+
+fn range<T: RealField + Copy>(
+    plain: Option<PlainRange<T>>,
+) -> Result<JointRange<T>, GeometryError<T>> {
+    plain.map_or_else(|| Ok(JointRange::unlimited()), TryInto::try_into)
+}
+
+impl<T: RealField + Copy> From<Limits<T>> for PlainLimits<T> {
+    fn from(limits: Limits<T>) -> Self {
+        Self {
+            shoulder: limited(limits.shoulder),
+            elbow: limited(limits.elbow),
+        }
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<PlainLimits<T>> for Limits<T> {
+    type Error = GeometryError<T>;
+
+    fn try_from(plain: PlainLimits<T>) -> Result<Self, Self::Error> {
+        Ok(Self {
+            shoulder: range(plain.shoulder)?,
+            elbow: range(plain.elbow)?,
+        })
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    bound(deserialize = "T: RealField + Deserialize<'de>")
+)]
+struct PlainArm<T> {
+    upper: T,
+    fore: T,
+    #[serde(default = "T::zero")]
+    base_x: T,
+    #[serde(default = "T::zero")]
+    base_y: T,
+    #[serde(default = "T::zero")]
+    base_rad: T,
+    #[serde(default = "T::zero")]
+    keep_out: T,
+    #[serde(default = "no_limits")]
+    limits: PlainLimits<T>,
+}
+
+fn no_limits<T>() -> PlainLimits<T> {
+    PlainLimits {
+        shoulder: None,
+        elbow: None,
+    }
+}
+
+impl<T: RealField + Copy> From<Arm<T>> for PlainArm<T> {
+    fn from(arm: Arm<T>) -> Self {
+        Self {
+            upper: arm.upper(),
+            fore: arm.fore(),
+            base_x: arm.base().translation.x,
+            base_y: arm.base().translation.y,
+            base_rad: arm.base().rotation.angle(),
+            keep_out: arm.keep_out(),
+            limits: (*arm.limits()).into(),
+        }
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<PlainArm<T>> for Arm<T> {
+    type Error = GeometryError<T>;
+
+    fn try_from(plain: PlainArm<T>) -> Result<Self, Self::Error> {
+        let base = Isometry2::new(Vector2::new(plain.base_x, plain.base_y), plain.base_rad);
+        let limits = plain.limits.try_into()?;
+        Self::new(plain.upper, plain.fore)?
+            .with_base(base)?
+            .with_limits(limits)
+            .with_keep_out(plain.keep_out)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    bound(deserialize = "T: RealField + Deserialize<'de>")
+)]
+struct PlainDrives<T> {
+    #[serde(default = "no_offset")]
+    zero: Joints<T>,
+    #[serde(default)]
+    shoulder: Direction,
+    #[serde(default)]
+    elbow: Direction,
+    #[serde(default = "T::zero")]
+    coupling: T,
+}
+
+fn no_offset<T: RealField>() -> Joints<T> {
+    Joints::new(T::zero(), T::zero())
+}
+
+impl<T: RealField + Copy> From<Drives<T>> for PlainDrives<T> {
+    fn from(drives: Drives<T>) -> Self {
+        let (shoulder, elbow) = drives.directions();
+        Self {
+            zero: drives.zero(),
+            shoulder,
+            elbow,
+            coupling: drives.coupling(),
+        }
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<PlainDrives<T>> for Drives<T> {
+    type Error = GeometryError<T>;
+
+    fn try_from(plain: PlainDrives<T>) -> Result<Self, Self::Error> {
+        Self::default()
+            .with_zero(plain.zero)?
+            .with_directions(plain.shoulder, plain.elbow)
+            .with_coupling(plain.coupling)
+    }
+}

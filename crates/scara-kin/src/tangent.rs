@@ -1,0 +1,145 @@
+//! The angle of a tool that must stay tangent to the curve.
+
+use nalgebra::{RealField, Vector2};
+
+use crate::{Arm, Joints};
+
+/// A disc or blade on the forearm that is turned so that it stays tangent to the curve.
+///
+/// ```text
+/// θ3 = heading - (base rotation + shoulder + elbow)
+/// ```
+///
+/// The angle is unwrapped: from one call to the next it changes by at most half a
+/// turn, so it never jumps where the heading passes ±π.
+///
+/// ```
+/// use scara_kin::nalgebra::Vector2;
+/// use scara_kin::{Arm, Joints, TangentTool};
+///
+/// let arm = Arm::new(132.0, 132.0)?;
+/// let joints = Joints::new(0.2, 0.9);
+/// let mut disc = TangentTool::new(20f64.to_radians())?;
+/// let along_x = disc.follow(&arm, joints, Vector2::x())?;
+/// let along_y = disc.follow(&arm, joints, Vector2::y())?;
+/// assert!(along_x.corner.is_none());
+/// assert!(along_y.corner.is_some()); // 90° is over the threshold: lift, turn, lower
+/// assert!((along_y.theta3 - along_x.theta3 - 90f64.to_radians()).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TangentTool<T = f64> {
+    corner: T,
+    theta3: T,
+    heading: Option<T>,
+}
+
+/// Where a tangent tool has to turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct ToolTurn<T = f64> {
+    /// Angle of the tool against the forearm, in radians, unwrapped.
+    pub theta3: T,
+    /// The change of heading in -π..=π rad where it is a corner: above the threshold,
+    /// so that the tool must be lifted and turned before it goes on.
+    pub corner: Option<T>,
+}
+
+/// Why a tangent tool cannot be set.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum TangentError<T = f64> {
+    /// The corner threshold is not an angle above zero.
+    #[error("corner threshold {corner} rad is not above zero")]
+    Corner {
+        /// The threshold given, in radians.
+        corner: T,
+    },
+    /// The direction of the curve has no length, or is not finite.
+    #[error("direction ({x}, {y}) has no heading")]
+    NoHeading {
+        /// X of the direction given.
+        x: T,
+        /// Y of the direction given.
+        y: T,
+    },
+    /// A joint angle is infinite or not a number.
+    #[error("joints ({shoulder}, {elbow}) rad are not finite")]
+    NotFinite {
+        /// The shoulder given, in radians.
+        shoulder: T,
+        /// The elbow given, in radians.
+        elbow: T,
+    },
+}
+
+impl<T: RealField + Copy> TangentTool<T> {
+    /// A tool at θ3 = 0 that counts changes of heading above `corner`, in radians, as
+    /// corners. With π or more there are none.
+    ///
+    /// # Errors
+    /// [`TangentError::Corner`] unless `corner` is above zero.
+    pub fn new(corner: T) -> Result<Self, TangentError<T>> {
+        if corner > T::zero() {
+            Ok(Self {
+                corner,
+                theta3: T::zero(),
+                heading: None,
+            })
+        } else {
+            Err(TangentError::Corner { corner })
+        }
+    }
+
+    /// The tool's angle now, in radians.
+    #[must_use]
+    pub const fn theta3(&self) -> T {
+        self.theta3
+    }
+
+    /// Begins a new stroke: the next direction is no corner, whatever it is. The angle
+    /// is kept, so that the tool takes the shorter turn to the new heading.
+    pub const fn lift(&mut self) {
+        self.heading = None;
+    }
+
+    /// Turns the tool to the curve's `direction` at the pose `joints`.
+    ///
+    /// # Errors
+    /// [`TangentError::NoHeading`], [`TangentError::NotFinite`]; the tool then stays as
+    /// it was.
+    pub fn follow(
+        &mut self,
+        arm: &Arm<T>,
+        joints: Joints<T>,
+        direction: Vector2<T>,
+    ) -> Result<ToolTurn<T>, TangentError<T>> {
+        let (x, y) = (direction.x, direction.y);
+        let length = x.hypot(y);
+        if !(length.is_finite() && length > T::zero()) {
+            return Err(TangentError::NoHeading { x, y });
+        }
+        if !joints.is_finite() {
+            let Joints { shoulder, elbow } = joints;
+            return Err(TangentError::NotFinite { shoulder, elbow });
+        }
+        let heading = y.atan2(x);
+        let change = self.heading.map(|before| half_turn(heading - before));
+        let base = arm.base().rotation.angle();
+        let wanted = heading - base - joints.shoulder - joints.elbow;
+        self.theta3 += half_turn(wanted - self.theta3);
+        self.heading = Some(heading);
+        Ok(ToolTurn {
+            theta3: self.theta3,
+            corner: change.filter(|change| change.abs() > self.corner),
+        })
+    }
+}
+
+/// The angle equal to `angle` but for whole turns in -π..=π.
+fn half_turn<T: RealField + Copy>(angle: T) -> T {
+    let turn = T::two_pi();
+    angle - (angle / turn).round() * turn
+}
