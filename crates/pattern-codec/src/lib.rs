@@ -13,4 +13,5 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+pub mod container;
 pub mod engraving;

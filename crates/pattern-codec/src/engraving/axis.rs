@@ -79,6 +79,7 @@ pub struct PerAxis<T> {
 impl<T> PerAxis<T> {
     /// The value of one axis.
     #[must_use]
+    #[inline]
     pub const fn get(&self, axis: Axis) -> &T {
         match axis {
             Axis::Theta1 => &self.theta1,
@@ -90,6 +91,7 @@ impl<T> PerAxis<T> {
 
     /// The value of one axis, to be changed.
     #[must_use]
+    #[inline]
     pub const fn get_mut(&mut self, axis: Axis) -> &mut T {
         match axis {
             Axis::Theta1 => &mut self.theta1,

@@ -281,6 +281,7 @@ impl Held {
 }
 
 /// The offset of the next record. No stream reaches 2^64 bytes.
+#[inline]
 const fn after(offset: u64) -> u64 {
     offset.wrapping_add(3)
 }
@@ -299,6 +300,7 @@ pub struct DecodeError {
 
 impl DecodeError {
     /// The same error in a record that starts at `start`.
+    #[inline]
     const fn behind(self, start: u64) -> Self {
         Self {
             offset: start.wrapping_add(self.offset),

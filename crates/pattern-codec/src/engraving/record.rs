@@ -51,33 +51,29 @@ impl Record {
 
     /// Signed pulses of every axis.
     #[must_use]
-    pub const fn pulses(self) -> PerAxis<i32> {
-        let mut pulses = PerAxis {
-            theta1: 0,
-            theta2: 0,
-            theta3: 0,
-            vertical: 0,
-        };
+    #[inline]
+    pub fn pulses(self) -> PerAxis<i32> {
         match self {
-            Self::Fast(fast) => *pulses.get_mut(fast.axis) = fast.pulses,
-            Self::Slow(slow) => {
-                let JointPulses {
-                    theta1,
-                    theta2,
-                    theta3,
-                } = slow.pulses();
-                pulses = PerAxis {
-                    theta1,
-                    theta2,
-                    theta3,
-                    ..pulses
-                };
+            Self::Fast(Fast { axis, pulses }) => {
+                let of = |this: Axis| if this == axis { pulses } else { 0 };
+                PerAxis {
+                    theta1: of(Axis::Theta1),
+                    theta2: of(Axis::Theta2),
+                    theta3: of(Axis::Theta3),
+                    vertical: of(Axis::Vertical),
+                }
             }
+            Self::Slow(slow) => PerAxis {
+                theta1: slow.theta1.into(),
+                theta2: slow.theta2.into(),
+                theta3: slow.theta3.into(),
+                vertical: 0,
+            },
         }
-        pulses
     }
 }
 
+#[inline]
 const fn sign_and_count(pulses: i8) -> u8 {
     let sign = if pulses < 0 { NEGATIVE } else { 0 };
     sign | pulses.unsigned_abs()
@@ -126,9 +122,8 @@ impl Fast {
 
     /// From the two fields of a FAST record; a negative zero becomes zero.
     #[inline]
-    pub(super) const fn from_count(axis: Axis, negative: bool, count: u16) -> Self {
-        let [high, low] = count.to_be_bytes();
-        let magnitude = i32::from_be_bytes([0, 0, high, low]);
+    pub(super) fn from_count(axis: Axis, negative: bool, count: u16) -> Self {
+        let magnitude = i32::from(count);
         let pulses = if negative {
             magnitude.wrapping_neg()
         } else {
@@ -139,12 +134,14 @@ impl Fast {
 
     /// The axis that moves.
     #[must_use]
+    #[inline]
     pub const fn axis(self) -> Axis {
         self.axis
     }
 
     /// Signed pulses.
     #[must_use]
+    #[inline]
     pub const fn pulses(self) -> i32 {
         self.pulses
     }
@@ -222,11 +219,12 @@ impl Slow {
 
     /// Signed pulses of each joint.
     #[must_use]
-    pub const fn pulses(self) -> JointPulses {
+    #[inline]
+    pub fn pulses(self) -> JointPulses {
         JointPulses {
-            theta1: widened(self.theta1),
-            theta2: widened(self.theta2),
-            theta3: widened(self.theta3),
+            theta1: self.theta1.into(),
+            theta2: self.theta2.into(),
+            theta3: self.theta3.into(),
         }
     }
 }
@@ -245,21 +243,12 @@ const fn small(axis: Axis, pulses: i32) -> Result<i8, PulsesError> {
     Ok(low.cast_signed())
 }
 
-/// `i32::from`, which is not const.
-const fn widened(pulses: i8) -> i32 {
-    let sign = if pulses < 0 { 0xFF } else { 0 };
-    i32::from_be_bytes([sign, sign, sign, pulses.cast_unsigned()])
-}
-
-/// Sign and magnitude of one SLOW byte.
+/// Sign and magnitude of one SLOW byte, without a branch: signs are hard to predict.
 #[inline]
 const fn signed(byte: u8) -> i8 {
     let count = (byte & COUNT_BITS).cast_signed();
-    if byte & NEGATIVE == 0 {
-        count
-    } else {
-        count.wrapping_neg()
-    }
+    let mask = byte.cast_signed() >> 7;
+    (count ^ mask).wrapping_sub(mask)
 }
 
 impl TryFrom<JointPulses> for Slow {

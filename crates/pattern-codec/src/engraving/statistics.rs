@@ -40,6 +40,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Counts one record.
+    #[inline]
     pub fn add(&mut self, record: Record) {
         let pulses = record.pulses();
         let [theta1, theta2, theta3, vertical] =
@@ -115,6 +116,7 @@ impl FromIterator<Record> for Statistics {
     }
 }
 
+#[inline]
 fn add_to(sum: &mut u64, value: u64) {
     *sum = sum.saturating_add(value);
 }
