@@ -20,6 +20,16 @@ pub struct AxisCodes {
 }
 
 impl AxisCodes {
+    const DEFAULT: Self = Self {
+        codes: PerAxis {
+            theta1: 0,
+            theta2: 1,
+            theta3: 2,
+            vertical: 3,
+        },
+        axes: 0b11_10_01_00,
+    };
+
     /// Checks the code of each axis.
     ///
     /// # Errors
@@ -72,15 +82,7 @@ const fn shift(place: u8) -> u8 {
 
 impl Default for AxisCodes {
     fn default() -> Self {
-        Self {
-            codes: PerAxis {
-                theta1: 0,
-                theta2: 1,
-                theta3: 2,
-                vertical: 3,
-            },
-            axes: 0b11_10_01_00,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -156,7 +158,7 @@ pub enum Mode {
 }
 
 /// Settings of the pattern bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -171,6 +173,16 @@ pub struct Format {
 }
 
 impl Format {
+    /// The default of every setting.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            axis_codes: AxisCodes::DEFAULT,
+            byte_order: ByteOrder::BigEndian,
+            mode: Mode::Strict,
+        }
+    }
+
     /// The same format with other axis codes.
     #[must_use]
     pub const fn with_axis_codes(self, axis_codes: AxisCodes) -> Self {
@@ -187,5 +199,11 @@ impl Format {
     #[must_use]
     pub const fn with_mode(self, mode: Mode) -> Self {
         Self { mode, ..self }
+    }
+}
+
+impl Default for Format {
+    fn default() -> Self {
+        Self::new()
     }
 }
