@@ -19,14 +19,16 @@
 //! that a writer need not hold or foresee the payload. The header has a check value of its own so
 //! that a damaged length is called that, and not a truncation.
 //!
-//! Writing, payload by payload:
+//! Writing in constant memory, with a first pass that counts:
 //! ```
 //! use pattern_codec::container::{Header, Writer};
-//! use pattern_codec::engraving::{Axis, Builder, Format};
+//! use pattern_codec::engraving::{Axis, Builder, Format, Statistics};
 //!
 //! let format = Format::default();
 //! let records = Builder::new().fast(Axis::Vertical, 100_000)?;
-//! let (header, mut writer) = Writer::new(Header::engraving(&format, records.len())?);
+//! let statistics: Statistics = records.clone().collect();
+//!
+//! let (header, mut writer) = Writer::new(Header::engraving(&format, statistics.records())?);
 //! let mut file = header.to_vec();
 //! for record in records {
 //!     let bytes = record.encode(&format);

@@ -12,7 +12,7 @@ mod container {
     const PAYLOAD: [u8; 9] = [0xFF, 0x01, 0x90, 0x02, 0x0F, 0x9E, 0x7F, 0x01, 0x90];
 
     fn pack(format: &Format, payload: &[u8]) -> Vec<u8> {
-        let header = Header::engraving(format, payload.len() / 3).unwrap();
+        let header = Header::engraving(format, payload.len() as u64 / 3).unwrap();
         let (bytes, mut writer) = Writer::new(header);
         let mut container = bytes.to_vec();
         for piece in payload.chunks(4) {
@@ -204,7 +204,7 @@ mod container {
 
     #[test]
     fn more_records_than_the_length_can_count_are_refused() {
-        let most = u32::MAX as usize / 3;
+        let most = u64::from(u32::MAX) / 3;
         assert_eq!(
             Header::engraving(&Format::new(), most)
                 .unwrap()

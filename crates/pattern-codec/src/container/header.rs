@@ -30,9 +30,9 @@ impl Header {
     ///
     /// # Errors
     /// [`TooLong`] when their bytes are more than 32 bits can count.
-    pub fn engraving(format: &Format, records: usize) -> Result<Self, TooLong> {
+    pub fn engraving(format: &Format, records: u64) -> Result<Self, TooLong> {
         let payload_len = records
-            .checked_mul(RECORD_LEN)
+            .checked_mul(RECORD_LEN as u64)
             .and_then(|bytes| u32::try_from(bytes).ok())
             .ok_or(TooLong { records })?;
         // The mode is the reader's own business and not stored.
@@ -172,7 +172,7 @@ impl fmt::Debug for Checksum {
 #[non_exhaustive]
 pub struct TooLong {
     /// The records asked for.
-    pub records: usize,
+    pub records: u64,
 }
 
 /// Why sixteen bytes are no header.
