@@ -60,10 +60,9 @@ impl FusedIterator for FastRecords {}
 /// each axis stands within half a pulse of the straight line between start and end, which no other
 /// whole numbers do better; and the parts sum to T exactly.
 ///
-/// Within each record theta3 moves first and alone, so a split motion turns the disc in n small
-/// turns along the way where an unsplit one would turn it before the start: the path of the tool
-/// point is that of the two arms either way, but an off-centre disc touches the glass a little
-/// differently.
+/// Splitting changes the path a little: within each record theta3 moves first and alone, so a split
+/// motion turns the disc in n small turns on the way, where one record would make the whole turn
+/// before the arms start.
 #[derive(Debug, Clone)]
 #[must_use = "the builder counts these records as sent"]
 pub struct SlowRecords {
@@ -75,19 +74,16 @@ pub struct SlowRecords {
 }
 
 impl SlowRecords {
-    pub(super) const fn new(pulses: JointPulses) -> Self {
+    pub(super) fn new(pulses: JointPulses) -> Self {
         let JointPulses {
             theta1,
             theta2,
             theta3,
         } = pulses;
-        let mut most = theta1.unsigned_abs();
-        if theta2.unsigned_abs() > most {
-            most = theta2.unsigned_abs();
-        }
-        if theta3.unsigned_abs() > most {
-            most = theta3.unsigned_abs();
-        }
+        let most = theta1
+            .unsigned_abs()
+            .max(theta2.unsigned_abs())
+            .max(theta3.unsigned_abs());
         let parts = most.div_ceil(Slow::MAX.unsigned_abs());
         Self {
             theta1: Share::new(theta1, parts),
