@@ -1,0 +1,168 @@
+use core::iter::FusedIterator;
+use thiserror::Error;
+
+use super::split::exactly;
+use super::{Axis, FastRecords, JointPulses, PerAxis, Record, SlowRecords};
+
+/// Makes the records of motions of any length and tracks where the axes are.
+///
+/// The position of an axis is the sum of its signed pulses. A call counts its whole motion at
+/// once; the records come from the returned iterator, which holds no memory of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Builder {
+    position: PerAxis<i32>,
+}
+
+impl Builder {
+    /// Starts with all axes at their home, position 0.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self::at(PerAxis {
+            theta1: 0,
+            theta2: 0,
+            theta3: 0,
+            vertical: 0,
+        })
+    }
+
+    /// Starts at a position, in pulses from home.
+    #[must_use]
+    pub const fn at(position: PerAxis<i32>) -> Self {
+        Self { position }
+    }
+
+    /// Where the axes are, in pulses from home.
+    #[must_use]
+    pub const fn position(&self) -> PerAxis<i32> {
+        self.position
+    }
+
+    /// Rapid motion of one axis: full records of 65535 pulses, then the rest. No pulses, no
+    /// records.
+    ///
+    /// # Errors
+    /// [`PositionError`] when the position would leave the range of `i32`; it stays as it was.
+    pub fn fast(&mut self, axis: Axis, pulses: i32) -> Result<FastRecords, PositionError> {
+        self.advance(axis, pulses)?;
+        Ok(FastRecords::new(axis, pulses < 0, pulses.unsigned_abs()))
+    }
+
+    /// Cutting motion: as few records as 30 pulses each allow, all with the ratio of the joints as
+    /// even as whole numbers can be; see [`SlowRecords`]. No pulses, no records.
+    ///
+    /// # Errors
+    /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
+    pub fn slow(&mut self, pulses: JointPulses) -> Result<SlowRecords, PositionError> {
+        let mut next = *self;
+        next.advance(Axis::Theta3, pulses.theta3)?;
+        next.advance(Axis::Theta1, pulses.theta1)?;
+        next.advance(Axis::Theta2, pulses.theta2)?;
+        *self = next;
+        Ok(SlowRecords::new(pulses))
+    }
+
+    /// Counts a record from elsewhere, such as a decoded one.
+    ///
+    /// # Errors
+    /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
+    pub fn track(&mut self, record: Record) -> Result<(), PositionError> {
+        match record {
+            Record::Fast(fast) => self.advance(fast.axis(), fast.pulses()),
+            Record::Slow(slow) => self.slow(slow.pulses()).map(drop),
+        }
+    }
+
+    /// Rapid motion of every axis back to position 0, one after the other: the negative sums of
+    /// all pulses so far.
+    ///
+    /// ```
+    /// use pattern_codec::engraving::{Axis, Builder, PerAxis};
+    ///
+    /// let mut builder = Builder::at(PerAxis { theta1: 70_000, theta2: -5, theta3: 0, vertical: -90 });
+    /// let lift_first = [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2];
+    /// let home: Vec<_> = builder.home(lift_first)?.map(|record| record.pulses()).collect();
+    /// assert_eq!(home[0].vertical, 90);
+    /// assert_eq!((home[1].theta1, home[2].theta1), (-65_535, -4_465));
+    /// assert_eq!(home[3].theta2, 5);
+    /// # Ok::<(), pattern_codec::engraving::RepeatedAxis>(())
+    /// ```
+    /// The order is the caller's, because where home is decides what must go first: with the
+    /// lifted tool at vertical 0, [`Axis::Vertical`].
+    ///
+    /// # Errors
+    /// [`RepeatedAxis`] when an axis stands twice in `order`, and so another one not at all.
+    pub fn home(&mut self, order: [Axis; 4]) -> Result<HomeRecords, RepeatedAxis> {
+        let mut seen = PerAxis::<bool>::default();
+        for axis in order {
+            if core::mem::replace(seen.get_mut(axis), true) {
+                return Err(RepeatedAxis { axis });
+            }
+        }
+        let runs = order.map(|axis| {
+            let position = *self.position.get(axis);
+            FastRecords::new(axis, position > 0, position.unsigned_abs())
+        });
+        *self = Self::new();
+        Ok(HomeRecords { runs })
+    }
+
+    fn advance(&mut self, axis: Axis, pulses: i32) -> Result<(), PositionError> {
+        let position = self.position.get_mut(axis);
+        *position = position.checked_add(pulses).ok_or(PositionError {
+            axis,
+            position: *position,
+            pulses,
+        })?;
+        Ok(())
+    }
+}
+
+/// FAST records that bring all axes home, made by [`Builder::home`].
+#[derive(Debug, Clone)]
+#[must_use = "the builder counts these records as sent"]
+pub struct HomeRecords {
+    runs: [FastRecords; 4],
+}
+
+impl Iterator for HomeRecords {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        self.runs.iter_mut().find_map(Iterator::next)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let records = self.runs.iter().map(FastRecords::records_left);
+        exactly(records.fold(0, u32::saturating_add))
+    }
+}
+
+impl FusedIterator for HomeRecords {}
+
+#[cfg(not(target_pointer_width = "16"))]
+impl ExactSizeIterator for HomeRecords {}
+
+/// A position that does not fit into `i32`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[error("{axis}: {pulses} pulses from position {position} leave the range of 32 bits")]
+#[non_exhaustive]
+pub struct PositionError {
+    /// The axis.
+    pub axis: Axis,
+    /// Where it is, in pulses from home.
+    pub position: i32,
+    /// The signed pulses that it was to make.
+    pub pulses: i32,
+}
+
+/// An axis that stands twice in a homing order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[error("{axis} stands twice in the homing order")]
+#[non_exhaustive]
+pub struct RepeatedAxis {
+    /// The axis.
+    pub axis: Axis,
+}

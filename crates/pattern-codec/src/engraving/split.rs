@@ -1,0 +1,169 @@
+use core::iter::FusedIterator;
+
+use super::record::NEGATIVE;
+use super::{Axis, Fast, JointPulses, Record, Slow};
+
+/// FAST records that together make one rapid motion, made by
+/// [`Builder::fast`](super::Builder::fast): full records, then the rest.
+#[derive(Debug, Clone)]
+#[must_use = "the builder counts these records as sent"]
+pub struct FastRecords {
+    axis: Axis,
+    negative: bool,
+    /// Pulses still to go.
+    remaining: u32,
+}
+
+impl FastRecords {
+    pub(super) const fn new(axis: Axis, negative: bool, magnitude: u32) -> Self {
+        Self {
+            axis,
+            negative,
+            remaining: magnitude,
+        }
+    }
+
+    /// Records still to come, at most 32769.
+    pub(super) const fn records_left(&self) -> u32 {
+        self.remaining.div_ceil(Fast::MAX.unsigned_abs())
+    }
+}
+
+impl Iterator for FastRecords {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        if self.remaining == 0 {
+            return None;
+        }
+        let count = u16::try_from(self.remaining).unwrap_or(u16::MAX);
+        self.remaining = self.remaining.saturating_sub(u32::from(count));
+        Some(Fast::from_count(self.axis, self.negative, count).into())
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        exactly(self.records_left())
+    }
+}
+
+impl FusedIterator for FastRecords {}
+
+/// SLOW records that together make one cutting motion, made by
+/// [`Builder::slow`](super::Builder::slow).
+///
+/// The motion T of each axis is cut into n equal parts, rounded on the way, not part by part:
+/// ```text
+/// n = ceil(max |T| / 30)
+/// position of the axis after part k:  sign(T) floor((k |T| + floor(n/2)) / n)
+/// ```
+/// So every part has floor or ceil of |T|/n pulses, never more than 30; at the end of every part
+/// each axis stands within half a pulse of the straight line between start and end, which no other
+/// whole numbers do better; and the parts sum to T exactly.
+///
+/// Splitting changes the path a little: within each record theta3 moves first and alone, so a split
+/// motion turns the disc in n small turns on the way, where one record would make the whole turn
+/// before the arms start.
+#[derive(Debug, Clone)]
+#[must_use = "the builder counts these records as sent"]
+pub struct SlowRecords {
+    theta1: Share,
+    theta2: Share,
+    theta3: Share,
+    parts: u32,
+    remaining: u32,
+}
+
+impl SlowRecords {
+    pub(super) fn new(pulses: JointPulses) -> Self {
+        let JointPulses {
+            theta1,
+            theta2,
+            theta3,
+        } = pulses;
+        let most = theta1
+            .unsigned_abs()
+            .max(theta2.unsigned_abs())
+            .max(theta3.unsigned_abs());
+        let parts = most.div_ceil(Slow::MAX.unsigned_abs());
+        Self {
+            theta1: Share::new(theta1, parts),
+            theta2: Share::new(theta2, parts),
+            theta3: Share::new(theta3, parts),
+            parts,
+            remaining: parts,
+        }
+    }
+}
+
+impl Iterator for SlowRecords {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        self.remaining = self.remaining.checked_sub(1)?;
+        let theta3 = self.theta3.next(self.parts);
+        let theta1 = self.theta1.next(self.parts);
+        let theta2 = self.theta2.next(self.parts);
+        Some(Slow::from_bytes([theta3, theta1, theta2]).into())
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        exactly(self.remaining)
+    }
+}
+
+impl FusedIterator for SlowRecords {}
+
+#[cfg(not(target_pointer_width = "16"))]
+impl ExactSizeIterator for FastRecords {}
+#[cfg(not(target_pointer_width = "16"))]
+impl ExactSizeIterator for SlowRecords {}
+
+/// The size hint of so many items; a 16-bit target cannot always tell.
+pub(super) fn exactly(items: u32) -> (usize, Option<usize>) {
+    let items = usize::try_from(items).ok();
+    (items.unwrap_or(usize::MAX), items)
+}
+
+/// The even distribution of one axis over the parts, without division on the way.
+#[derive(Debug, Clone, Copy)]
+struct Share {
+    sign: u8,
+    /// floor(|T|/n)
+    quotient: u32,
+    /// |T| mod n
+    remainder: u32,
+    /// (k |T| + floor(n/2)) mod n
+    carry: u32,
+}
+
+impl Share {
+    const fn new(pulses: i32, parts: u32) -> Self {
+        let magnitude = pulses.unsigned_abs();
+        let (quotient, remainder) =
+            match (magnitude.checked_div(parts), magnitude.checked_rem(parts)) {
+                (Some(quotient), Some(remainder)) => (quotient, remainder),
+                // No parts, no pulses.
+                _ => (0, 0),
+            };
+        Self {
+            sign: if pulses < 0 { NEGATIVE } else { 0 },
+            quotient,
+            remainder,
+            carry: parts >> 1,
+        }
+    }
+
+    /// The next part as a SLOW byte.
+    const fn next(&mut self, parts: u32) -> u8 {
+        // carry and remainder are below n <= ceil(2^31/30), so nothing here overflows; the part is
+        // at most ceil(|T|/n) <= 30, so its low byte is the whole of it.
+        let carry = self.carry.saturating_add(self.remainder);
+        let (carry, extra) = match carry.checked_sub(parts) {
+            Some(carry) => (carry, 1),
+            None => (carry, 0),
+        };
+        self.carry = carry;
+        let [part, ..] = self.quotient.saturating_add(extra).to_le_bytes();
+        self.sign | part
+    }
+}
