@@ -1,10 +1,7 @@
 //! Time per call of the kinematics, beside a bare loop of the same arithmetic.
 //!
 //! Ratios within one run count, not the figures: a machine's speed drifts.
-#![expect(
-    missing_docs,
-    reason = "criterion's macros make undocumented functions"
-)]
+#![expect(clippy::expect_used, reason = "a bench stops at once")]
 
 use core::hint::black_box;
 
@@ -28,13 +25,13 @@ fn points() -> Vec<Point2<f64>> {
 
 /// The same arithmetic without base, checks, limits or types: both elbows.
 fn bare(x: f64, y: f64) -> [f64; 4] {
-    let r = libm::hypot(x, y);
-    let s2 = r * r * ((2.0 * LINK - r) * (2.0 * LINK + r));
+    let r2 = x * x + y * y;
+    let r = r2.sqrt();
+    let s2 = r2 * ((2.0 * LINK - r) * (2.0 * LINK + r));
     let s = s2.max(0.0).sqrt();
-    let k1 = r * r;
     let elbow = libm::atan2(s, (r - LINK) * (r + LINK) - LINK * LINK);
-    let right = libm::atan2(k1 * y - s * x, k1 * x + s * y);
-    let left = libm::atan2(k1 * y + s * x, k1 * x - s * y);
+    let right = libm::atan2(r2 * y - s * x, r2 * x + s * y);
+    let left = libm::atan2(r2 * y + s * x, r2 * x - s * y);
     [right, elbow, left, -elbow]
 }
 

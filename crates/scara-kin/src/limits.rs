@@ -55,11 +55,17 @@ impl<T: RealField + Copy> JointRange<T> {
         self.min <= angle && angle <= self.max
     }
 
+    /// Whether `angle` lies in the range and no other turn of it is nearer to `near`.
+    #[inline]
+    pub(crate) fn holds_near(&self, angle: T, near: T) -> bool {
+        self.contains(angle) && (angle - near).abs() <= T::pi()
+    }
+
     /// The angle of the range, equal to `angle` but for whole turns, that is
     /// nearest to `near`; an `angle` that fits at no turn is returned at the end
     /// of the range which it misses least.
     pub(crate) fn fit(&self, angle: T, near: T) -> T {
-        if self.contains(angle) && (angle - near).abs() <= T::pi() {
+        if self.holds_near(angle, near) {
             return angle;
         }
         let turn = T::two_pi();
@@ -108,6 +114,12 @@ impl<T: RealField + Copy> Limits<T> {
     #[must_use]
     pub fn contains(&self, joints: &Joints<T>) -> bool {
         self.shoulder.contains(joints.shoulder) && self.elbow.contains(joints.elbow)
+    }
+
+    #[inline]
+    pub(crate) fn holds_near(&self, joints: &Joints<T>, near: &Joints<T>) -> bool {
+        self.shoulder.holds_near(joints.shoulder, near.shoulder)
+            && self.elbow.holds_near(joints.elbow, near.elbow)
     }
 
     /// Each joint at the whole turn nearest to `near`, at the end of its range

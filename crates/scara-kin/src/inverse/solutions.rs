@@ -32,6 +32,26 @@ impl<T: RealField + Copy> Solutions<T> {
     ) -> Result<Self, InverseError<T>> {
         let limits = *arm.limits();
         let near = limits.middle();
+        if limits.holds_near(&right, &near) && limits.holds_near(&left, &near) {
+            return Ok(Self {
+                right,
+                left,
+                allowed: Allowed::Both,
+                limits,
+            });
+        }
+        Self::sorted(arm, [right, left], tool)
+    }
+
+    /// The same where a joint has to be put on another turn, or leaves its range.
+    #[cold]
+    fn sorted(
+        arm: &Arm<T>,
+        [right, left]: [Joints<T>; 2],
+        tool: Vector2<T>,
+    ) -> Result<Self, InverseError<T>> {
+        let limits = *arm.limits();
+        let near = limits.middle();
         let (right, left, allowed) =
             match (arm.admit(right, near, tool), arm.admit(left, near, tool)) {
                 (Ok(right), Ok(left)) => (right, left, Allowed::Both),
