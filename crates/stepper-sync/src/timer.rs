@@ -406,4 +406,9 @@ impl Timer {
 }
 
 #[cfg(test)]
+#[expect(
+    clippy::arithmetic_side_effects,
+    clippy::integer_division_remainder_used,
+    reason = "small numbers of the tests' own"
+)]
 mod tests;

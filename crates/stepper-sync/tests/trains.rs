@@ -1,13 +1,5 @@
 //! Pulse trains against the published numbers and the reference table.
 #![cfg(test)]
-#![expect(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::arithmetic_side_effects,
-    clippy::integer_division_remainder_used,
-    reason = "test helpers"
-)]
-
 use stepper_sync::{CounterWidth, Direction, Edge, Level, Rounding, Timer, TrainError, Trains};
 
 /// Half period of [Engraver 2000], in machine cycles.
