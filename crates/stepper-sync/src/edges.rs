@@ -68,8 +68,8 @@ impl<A: Iterator<Item = u64>> Head<A> {
 /// Iterator of the edges of N axes in time order; edges of the same tick come in axis order.
 ///
 /// `A` yields the intervals of one axis in ticks, the first one counted from the start of the
-/// move: [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp). Each edge costs a
-/// comparison per axis and one interval; nothing is stored but one head per axis.
+/// move: [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp). Each edge
+/// costs a comparison per axis and one interval; nothing is stored but one head per axis.
 ///
 /// The size hint is exact while the number of edges fits `usize`; [`edges_left`](Self::edges_left)
 /// is exact on every target.

@@ -13,12 +13,14 @@
 extern crate std;
 
 mod edges;
+mod ramp;
 mod rate;
 mod single_reload;
 mod timer;
 mod trains;
 
 pub use edges::{Edge, Edges, Level};
+pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
 pub use rate::{Rate, RateError};
 pub use single_reload::{Rounding, SingleReload};
 pub use timer::{CounterWidth, Counting, ExactInterval, Periods, Timer, TimerError};
