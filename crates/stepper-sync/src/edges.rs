@@ -114,12 +114,12 @@ impl<A: ExactSizeIterator<Item = u64>, const N: usize> Iterator for Edges<A, N> 
                 axis = index;
             }
         }
-        let head = self.heads.get_mut(axis)?;
-        if head.ticks == NEVER {
+        if first == NEVER {
             return None;
         }
+        let head = self.heads.get_mut(axis)?;
         let edge = Edge {
-            ticks: head.ticks,
+            ticks: first,
             axis,
             level: head.level,
         };

@@ -70,8 +70,8 @@ pub struct AxisTrain {
     pulses: u32,
     whole_ticks: u64,
     remainder: u32,
-    // Always below `pulses`.
-    error: u32,
+    // pulses - 1 - (k remainder mod pulses): the interval is long where this goes below zero.
+    to_next_long: u32,
 }
 
 impl AxisTrain {
@@ -90,7 +90,7 @@ impl AxisTrain {
             pulses,
             whole_ticks,
             remainder: u32::try_from(remainder).unwrap_or(0),
-            error: 0,
+            to_next_long: pulses.saturating_sub(1),
         }
     }
 
@@ -130,13 +130,11 @@ impl Iterator for AxisTrain {
     #[inline]
     fn next(&mut self) -> Option<u64> {
         self.edges_left = self.edges_left.checked_sub(1)?;
-        // error, remainder < pulses < 2^31: the sum fits.
-        let error = self.error.wrapping_add(self.remainder);
-        let long = error >= self.pulses;
-        self.error = if long {
-            error.wrapping_sub(self.pulses)
+        let (to_next_long, long) = self.to_next_long.overflowing_sub(self.remainder);
+        self.to_next_long = if long {
+            to_next_long.wrapping_add(self.pulses)
         } else {
-            error
+            to_next_long
         };
         Some(self.whole_ticks.wrapping_add(u64::from(long)))
     }
