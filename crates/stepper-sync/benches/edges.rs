@@ -1,4 +1,5 @@
 //! Edges per second: two and eight synchronised trains in time order, one axis alone, a ramp.
+#![expect(clippy::expect_used, reason = "a bench with wrong input may stop")]
 
 use core::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

@@ -13,6 +13,7 @@
 extern crate std;
 
 mod edges;
+mod position;
 mod ramp;
 mod rate;
 mod single_reload;
@@ -20,6 +21,7 @@ mod timer;
 mod trains;
 
 pub use edges::{Edge, Edges, Level};
+pub use position::{Position, PositionError, ScaleError, StepCarry, StepScale};
 pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
 pub use rate::{Rate, RateError};
 pub use single_reload::{Rounding, SingleReload};
