@@ -143,8 +143,8 @@ impl Timer {
     ///
     /// # Errors
     /// Those of [`new`](Self::new) and [`half_period`](Self::half_period);
-    /// [`TimerError::NoPrescaler`] for an empty list; when even the largest prescaler is too small,
-    /// [`TimerError::IntervalTooLong`] with the ticks that it gives.
+    /// [`TimerError::NoPrescaler`] for an empty list; [`TimerError::IntervalTooLong`] with the
+    /// ticks of the nearest miss when even the largest prescaler is too small.
     pub fn choose(
         clock_hz: u32,
         prescalers: &[u32],
@@ -153,25 +153,29 @@ impl Timer {
         rate: Rate,
     ) -> Result<Self, TimerError> {
         let mut finest: Option<Self> = None;
-        let mut largest = 0;
+        let mut refusal = TimerError::NoPrescaler;
         for &prescaler in prescalers {
             let timer = Self::new(clock_hz, prescaler, width, counting)?;
-            largest = largest.max(prescaler);
-            let fits = timer.check(timer.half_period(rate)?.nearest()).is_ok();
-            let finer = finest.is_none_or(|best| timer.clocks_per_tick < best.clocks_per_tick);
-            if fits && finer {
-                finest = Some(timer);
+            let fits = timer
+                .half_period(rate)
+                .and_then(|exact| timer.check(exact.nearest()));
+            match (fits, refusal) {
+                (Ok(()), _) => {
+                    let coarser = |best: Self| best.clocks_per_tick > timer.clocks_per_tick;
+                    if finest.is_none_or(coarser) {
+                        finest = Some(timer);
+                    }
+                }
+                // The nearest miss.
+                (
+                    Err(TimerError::IntervalTooLong { ticks, .. }),
+                    TimerError::IntervalTooLong { ticks: fewer, .. },
+                ) if ticks >= fewer => {}
+                (Err(TimerError::RateTooHigh { .. }), TimerError::IntervalTooLong { .. }) => {}
+                (Err(error), _) => refusal = error,
             }
         }
-        match (finest, largest) {
-            (Some(timer), _) => Ok(timer),
-            (None, 0) => Err(TimerError::NoPrescaler),
-            (None, _) => {
-                let coarsest = Self::new(clock_hz, largest, width, counting)?;
-                coarsest.check(coarsest.half_period(rate)?.nearest())?;
-                Ok(coarsest)
-            }
-        }
+        finest.ok_or(refusal)
     }
 
     /// The same timer with a shortest interval, in ticks: what the interrupt handler needs.
