@@ -2,6 +2,28 @@
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
+// Ticks and steps are integers: each sum that could overflow, each division that could meet a
+// zero, says why it does not.
+#![warn(
+    clippy::arithmetic_side_effects,
+    clippy::integer_division_remainder_used
+)]
 
 #[cfg(any(test, feature = "std"))]
 extern crate std;
+
+mod edges;
+mod position;
+mod ramp;
+mod rate;
+mod single_reload;
+mod timer;
+mod trains;
+
+pub use edges::{Edge, Edges, Level};
+pub use position::{Position, PositionError, ScaleError, StepCarry, StepScale};
+pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
+pub use rate::{Rate, RateError};
+pub use single_reload::{Rounding, SingleReload};
+pub use timer::{CounterWidth, Counting, ExactInterval, Periods, Timer, TimerError};
+pub use trains::{AxisTrain, Direction, TrainError, Trains};

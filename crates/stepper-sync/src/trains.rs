@@ -1,0 +1,256 @@
+//! Pulse trains with different counts that end on the same tick.
+
+use crate::{Edges, Rounding, SingleReload};
+use core::iter::FusedIterator;
+use thiserror::Error;
+
+/// Sense of rotation of one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(
+    clippy::exhaustive_enums,
+    reason = "an axis turns one way or the other"
+)]
+pub enum Direction {
+    /// Steps count up.
+    Positive,
+    /// Steps count down.
+    Negative,
+}
+
+impl Direction {
+    /// Direction of a signed number of steps; `None` for zero: the direction pin keeps its level.
+    #[must_use]
+    pub const fn of(steps: i32) -> Option<Self> {
+        match steps {
+            0 => None,
+            1.. => Some(Self::Positive),
+            _ => Some(Self::Negative),
+        }
+    }
+}
+
+/// Why no trains can be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum TrainError {
+    /// A half period of no ticks.
+    #[error("the half period is 0 ticks; at least 1 is needed")]
+    ZeroHalfPeriod,
+    /// More pulses than an edge counter holds.
+    #[error("axis {axis}: {steps} steps, more than {limit} either way")]
+    TooManySteps {
+        /// Index of the axis.
+        axis: usize,
+        /// Steps asked for.
+        steps: i32,
+        /// Largest number of steps either way.
+        limit: i32,
+    },
+}
+
+/// The distributed edges of one axis: an iterator of the intervals between them, in ticks.
+///
+/// ```text
+/// edge k = floor(k D / m),  k = 1..m,  m = 2 n,  D = 2 n_max T
+/// interval = q or q + 1,    q = floor(n_max T / n)
+/// ```
+/// The remainder of the division is carried from edge to edge as an integer, so the intervals sum
+/// to exactly D and each edge is less than one tick early, never late.
+///
+/// This is the form for an interrupt handler: `next()` is a handful of integer instructions
+/// without division, multiplication or panic. When the intervals pass the width of the counter,
+/// cut each with [`Timer::periods`](crate::Timer::periods).
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use = "iterators are lazy"]
+pub struct AxisTrain {
+    edges_left: u32,
+    pulses: u32,
+    whole_ticks: u64,
+    remainder: u32,
+    // pulses - 1 - (k remainder mod pulses): the interval is long where this goes below zero.
+    to_next_long: u32,
+}
+
+impl AxisTrain {
+    /// `pulses` pulses over `half_ticks` ticks, made twice: edge k at floor(k `half_ticks` / `pulses`).
+    #[expect(
+        clippy::arithmetic_side_effects,
+        reason = "once per move; the divisor is not zero; 2 pulses <= 2 i32::MAX"
+    )]
+    fn new(pulses: u32, half_ticks: u64) -> Self {
+        let (whole_ticks, remainder) = match core::num::NonZeroU64::new(u64::from(pulses)) {
+            Some(divisor) => (half_ticks / divisor, half_ticks % divisor),
+            None => (0, 0),
+        };
+        Self {
+            edges_left: pulses * 2,
+            pulses,
+            whole_ticks,
+            remainder: u32::try_from(remainder).unwrap_or(0),
+            to_next_long: pulses.saturating_sub(1),
+        }
+    }
+
+    /// The shorter of the two intervals, floor(D / m), in ticks; 0 for an axis at rest.
+    #[must_use]
+    pub const fn shortest_ticks(&self) -> u64 {
+        self.whole_ticks
+    }
+
+    /// The longer of the two intervals, ceil(D / m), in ticks; 0 for an axis at rest.
+    #[must_use]
+    pub fn longest_ticks(&self) -> u64 {
+        self.whole_ticks.wrapping_add(u64::from(self.remainder > 0))
+    }
+
+    /// How many of all edges of the move come after the longer interval, D mod m.
+    #[must_use]
+    pub fn long_intervals(&self) -> u32 {
+        // Below 2 pulses, which fits.
+        self.remainder.wrapping_mul(2)
+    }
+
+    /// Edges still to come.
+    #[must_use]
+    pub const fn edges_left(&self) -> u32 {
+        self.edges_left
+    }
+
+    pub(crate) const fn pulses(&self) -> u32 {
+        self.pulses
+    }
+}
+
+impl Iterator for AxisTrain {
+    type Item = u64;
+
+    #[inline]
+    fn next(&mut self) -> Option<u64> {
+        self.edges_left = self.edges_left.checked_sub(1)?;
+        let (to_next_long, long) = self.to_next_long.overflowing_sub(self.remainder);
+        self.to_next_long = if long {
+            to_next_long.wrapping_add(self.pulses)
+        } else {
+            to_next_long
+        };
+        Some(self.whole_ticks.wrapping_add(u64::from(long)))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        match usize::try_from(self.edges_left) {
+            Ok(left) => (left, Some(left)),
+            Err(_) => (usize::MAX, None),
+        }
+    }
+}
+
+impl ExactSizeIterator for AxisTrain {}
+
+impl FusedIterator for AxisTrain {}
+
+/// Pulse trains of N axes with different counts that all end on the same tick.
+///
+/// The axis with the most pulses, `n_max`, runs at the fixed half period T; the others are spread
+/// over the same time:
+/// ```text
+/// D = 2 n_max T            n pulses are 2 n edges
+/// edge k = floor(k D / 2n) k = 1..2n
+/// ```
+/// Integers only: the last edge of every moving axis is at D, and no edge is a whole tick away from
+/// its ideal place. An axis with 0 steps does not start; when all are 0, nothing happens in no
+/// time. Steps go up to ±(2^31 - 1) and T up to 2^32 - 1 ticks, for which D fits 64 bits.
+/// Source: [Engraver 2000], with the rounding error distributed.
+///
+/// # Examples
+/// ```
+/// use stepper_sync::Trains;
+/// // 30 and -7 pulses with a half period of 4096 ticks.
+/// let trains = Trains::new([30, -7], 4096)?;
+/// assert_eq!(trains.end_ticks(), 2 * 30 * 4096);
+/// assert_eq!(trains.axes().map(|axis| axis.sum::<u64>()), [245_760, 245_760]);
+/// # Ok::<(), stepper_sync::TrainError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trains<const N: usize> {
+    axes: [AxisTrain; N],
+    steps: [i32; N],
+    end_ticks: u64,
+}
+
+impl<const N: usize> Trains<N> {
+    /// Trains for `steps` signed steps per axis; the leading axis has `half_period_ticks` between
+    /// its edges.
+    ///
+    /// # Errors
+    /// [`TrainError::ZeroHalfPeriod`]; [`TrainError::TooManySteps`] for `i32::MIN`.
+    #[expect(
+        clippy::arithmetic_side_effects,
+        reason = "(2^31 - 1) * (2^32 - 1) * 2 < 2^64"
+    )]
+    pub fn new(steps: [i32; N], half_period_ticks: u32) -> Result<Self, TrainError> {
+        if half_period_ticks == 0 {
+            return Err(TrainError::ZeroHalfPeriod);
+        }
+        let most = most_pulses(&steps)?;
+        let half_ticks = u64::from(most) * u64::from(half_period_ticks);
+        Ok(Self {
+            axes: steps.map(|n| AxisTrain::new(n.unsigned_abs(), half_ticks)),
+            steps,
+            end_ticks: half_ticks * 2,
+        })
+    }
+
+    /// The tick D at which every moving axis makes its last edge.
+    #[must_use]
+    pub const fn end_ticks(&self) -> u64 {
+        self.end_ticks
+    }
+
+    /// The signed steps of each axis.
+    #[must_use]
+    pub const fn steps(&self) -> [i32; N] {
+        self.steps
+    }
+
+    /// The level of each direction pin, `None` for an axis at rest.
+    #[must_use]
+    pub fn directions(&self) -> [Option<Direction>; N] {
+        self.steps.map(Direction::of)
+    }
+
+    /// One iterator of intervals per axis, each for its own timer and interrupt handler.
+    pub fn axes(&self) -> [AxisTrain; N] {
+        self.axes.clone()
+    }
+
+    /// The edges of all axes in time order, for one timer or a simulation.
+    pub fn edges(&self) -> Edges<AxisTrain, N> {
+        Edges::new(self.axes())
+    }
+
+    /// What each axis would do with one fixed reload for all its edges, as [Engraver 2000] has it.
+    pub fn single_reload(&self, rounding: Rounding) -> [SingleReload; N] {
+        self.axes
+            .each_ref()
+            .map(|axis| SingleReload::new(axis, self.end_ticks, rounding))
+    }
+}
+
+/// The largest number of pulses of any axis.
+pub(crate) fn most_pulses<const N: usize>(steps: &[i32; N]) -> Result<u32, TrainError> {
+    let mut most = 0;
+    for (axis, &n) in steps.iter().enumerate() {
+        if n == i32::MIN {
+            return Err(TrainError::TooManySteps {
+                axis,
+                steps: n,
+                limit: i32::MAX,
+            });
+        }
+        most = most.max(n.unsigned_abs());
+    }
+    Ok(most)
+}
