@@ -1,0 +1,309 @@
+//! The machine: from its file to checked settings.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, ensure};
+use kurbo::{Affine, Rect};
+use nalgebra::Point2;
+use pose2pulse::pattern_codec::engraving::{AxisCodes, ByteOrder, Format, PerAxis};
+use pose2pulse::scara_kin::{Arm, JointRange, Joints, Limits, TangentTool};
+use pose2pulse::stepper_sync::{RampLimits, Rate, StepScale, Timer};
+use serde::{Deserialize, Serialize};
+
+/// The machine file, as written.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    arm: ArmSettings,
+    theta2: JointSettings,
+    theta1: JointSettings,
+    theta3: DiscSettings,
+    vertical: VerticalSettings,
+    timer: TimerSettings,
+    rapid: RapidSettings,
+    #[serde(default)]
+    pattern: PatternSettings,
+    bed: Bed,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct ArmSettings {
+    upper_mm: f64,
+    fore_mm: f64,
+    #[serde(default)]
+    keep_out_mm: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct JointSettings {
+    step_deg: f64,
+    gear_ratio: f64,
+    home_deg: f64,
+    min_deg: f64,
+    max_deg: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct DiscSettings {
+    step_deg: f64,
+    gear_ratio: f64,
+    home_deg: f64,
+    corner_deg: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct VerticalSettings {
+    mm_per_pulse: f64,
+    lift_mm: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct TimerSettings {
+    crystal_hz: u32,
+    process_hz: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct RapidSettings {
+    start_hz: f64,
+    max_hz: f64,
+    accel_hz_per_s: f64,
+}
+
+#[derive(Debug, Clone, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+struct PatternSettings {
+    axis_codes: AxisCodes,
+    byte_order: ByteOrder,
+}
+
+/// The rectangle into which a drawing is fitted, in mm.
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Bed {
+    x_mm: f64,
+    y_mm: f64,
+    width_mm: f64,
+    height_mm: f64,
+}
+
+impl Bed {
+    /// The placement that puts `bounds`, y down, as large as may be into the middle of
+    /// the bed, y up.
+    pub(crate) fn fit(&self, bounds: Rect) -> Affine {
+        // A drawing that is a straight line has one side only.
+        let across = [self.width_mm / bounds.width(), self.height_mm / bounds.height()];
+        let scale = across.into_iter().fold(f64::INFINITY, f64::min);
+        let middle = (self.x_mm + self.width_mm / 2.0, self.y_mm + self.height_mm / 2.0);
+        Affine::translate(middle)
+            * Affine::scale_non_uniform(scale, -scale)
+            * Affine::translate(-bounds.center().to_vec2())
+    }
+}
+
+/// The two joints of the arm as the steppers see them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointScale {
+    pub(crate) rad_per_pulse: f64,
+    pub(crate) home_rad: f64,
+    scale: StepScale,
+}
+
+impl JointScale {
+    fn new(step_deg: f64, gear_ratio: f64, home_deg: f64) -> Result<Self> {
+        positive("step_deg", step_deg)?;
+        positive("gear_ratio", gear_ratio)?;
+        finite("home_deg", home_deg)?;
+        let rad_per_pulse = step_deg.to_radians() / gear_ratio;
+        Ok(Self {
+            rad_per_pulse,
+            home_rad: home_deg.to_radians(),
+            scale: StepScale::new(rad_per_pulse.recip())?,
+        })
+    }
+
+    /// The whole step nearest to an angle, counted from home.
+    pub(crate) fn to_pulses(self, angle_rad: f64) -> Result<i32> {
+        Ok(self.scale.to_steps(angle_rad - self.home_rad)?)
+    }
+
+    /// The angle at a step.
+    pub(crate) fn to_rad(self, pulses: i32) -> f64 {
+        self.home_rad + f64::from(pulses) * self.rad_per_pulse
+    }
+}
+
+/// The checked machine.
+pub(crate) struct Machine {
+    pub(crate) settings: Settings,
+    pub(crate) arm: Arm,
+    pub(crate) theta1: JointScale,
+    pub(crate) theta2: JointScale,
+    pub(crate) theta3: JointScale,
+    pub(crate) disc: TangentTool,
+    /// Pulses from home down into the glass.
+    pub(crate) lift_pulses: i32,
+    pub(crate) format: Format,
+    pub(crate) timer: Timer,
+    pub(crate) half_period_ticks: u32,
+    pub(crate) rapid: RampLimits,
+    pub(crate) bed: Bed,
+}
+
+impl Machine {
+    pub(crate) fn read(file: &Path) -> Result<Self> {
+        let place = || file.display().to_string();
+        let text = fs::read_to_string(file).with_context(place)?;
+        let settings: Settings = toml::from_str(&text)
+            .map_err(|error| one_line(&text, &error))
+            .with_context(place)?;
+        Self::check(settings).with_context(place)
+    }
+
+    fn check(settings: Settings) -> Result<Self> {
+        let Settings { arm, theta1, theta2, theta3, vertical, timer, rapid, pattern, bed } =
+            &settings;
+        let limits = Limits {
+            shoulder: range(theta2).context("[theta2]")?,
+            elbow: range(theta1).context("[theta1]")?,
+        };
+        let timing = timing(timer).context("[timer]")?;
+        Ok(Self {
+            arm: Arm::new(arm.upper_mm, arm.fore_mm)
+                .and_then(|checked| checked.with_limits(limits).with_keep_out(arm.keep_out_mm))
+                .context("[arm]")?,
+            theta1: joint(theta1).context("[theta1]")?,
+            theta2: joint(theta2).context("[theta2]")?,
+            theta3: JointScale::new(theta3.step_deg, theta3.gear_ratio, theta3.home_deg)
+                .context("[theta3]")?,
+            disc: TangentTool::new(theta3.corner_deg.to_radians()).context("[theta3] corner_deg")?,
+            lift_pulses: lift(vertical).context("[vertical]")?,
+            format: Format::new()
+                .with_axis_codes(pattern.axis_codes)
+                .with_byte_order(pattern.byte_order),
+            timer: timing.0,
+            half_period_ticks: timing.1,
+            rapid: ramp(rapid).context("[rapid]")?,
+            bed: bed.check().context("[bed]")?,
+            settings,
+        })
+    }
+
+    /// The arm's joints at a position of the steppers.
+    pub(crate) fn joints(&self, position: PerAxis<i32>) -> Joints {
+        Joints::new(
+            self.theta2.to_rad(position.theta2),
+            self.theta1.to_rad(position.theta1),
+        )
+    }
+
+    /// How far the tool can be from where rounding to whole steps has it, in mm: half a
+    /// step of each joint through the Jacobian at the tool's place, and the second order.
+    pub(crate) fn half_step_mm(&self, tool: Point2<f64>) -> f64 {
+        let (upper, fore) = (self.arm.upper(), self.arm.fore());
+        let shoulder = self.theta2.rad_per_pulse / 2.0;
+        let elbow = self.theta1.rad_per_pulse / 2.0;
+        let curved = upper * shoulder.powi(2) + fore * (shoulder + elbow).powi(2);
+        shoulder * tool.coords.norm() + elbow * fore + curved / 2.0
+    }
+}
+
+impl Bed {
+    fn check(self) -> Result<Self> {
+        finite("x_mm", self.x_mm)?;
+        finite("y_mm", self.y_mm)?;
+        positive("width_mm", self.width_mm)?;
+        positive("height_mm", self.height_mm)?;
+        Ok(self)
+    }
+}
+
+fn joint(settings: &JointSettings) -> Result<JointScale> {
+    let range = settings.min_deg..=settings.max_deg;
+    ensure!(
+        range.contains(&settings.home_deg),
+        "home_deg = {} is not within min_deg..=max_deg, {range:?}",
+        settings.home_deg
+    );
+    JointScale::new(settings.step_deg, settings.gear_ratio, settings.home_deg)
+}
+
+fn range(settings: &JointSettings) -> Result<JointRange> {
+    let (min, max) = (settings.min_deg, settings.max_deg);
+    JointRange::new(min.to_radians(), max.to_radians())
+        .with_context(|| format!("min_deg = {min}, max_deg = {max}"))
+}
+
+fn lift(settings: &VerticalSettings) -> Result<i32> {
+    positive("mm_per_pulse", settings.mm_per_pulse)?;
+    positive("lift_mm", settings.lift_mm)?;
+    let pulses = StepScale::new(settings.mm_per_pulse.recip())?.to_steps(settings.lift_mm)?;
+    ensure!(
+        pulses > 0,
+        "lift_mm = {} is less than half a pulse",
+        settings.lift_mm
+    );
+    Ok(pulses)
+}
+
+fn timing(settings: &TimerSettings) -> Result<(Timer, u32)> {
+    let timer = Timer::mcs51_mode1(settings.crystal_hz).context("crystal_hz")?;
+    let rate = Rate::from_millihertz(millihertz("process_hz", settings.process_hz)?)?;
+    let ticks = timer.half_period(rate).context("process_hz")?.nearest();
+    Ok((timer, u32::try_from(ticks).context("process_hz")?))
+}
+
+fn ramp(settings: &RapidSettings) -> Result<RampLimits> {
+    let accel = whole("accel_hz_per_s", settings.accel_hz_per_s)?;
+    Ok(RampLimits {
+        start_millihertz: millihertz("start_hz", settings.start_hz)?,
+        max_millihertz: millihertz("max_hz", settings.max_hz)?,
+        accel_steps_per_s2: accel,
+    })
+}
+
+fn millihertz(name: &str, hz: f64) -> Result<u32> {
+    whole(name, hz * 1000.0).with_context(|| format!("{name} = {hz} Hz"))
+}
+
+fn whole(name: &str, value: f64) -> Result<u32> {
+    let steps = StepScale::new(1.0)?
+        .to_steps(value)
+        .ok()
+        .and_then(|whole| u32::try_from(whole).ok())
+        .filter(|whole| *whole > 0);
+    steps.with_context(|| format!("{name} is not within 0.001..=2147483"))
+}
+
+fn positive(name: &str, value: f64) -> Result<()> {
+    ensure!(
+        value.is_finite() && value > 0.0,
+        "{name} = {value} is not above zero"
+    );
+    Ok(())
+}
+
+fn finite(name: &str, value: f64) -> Result<()> {
+    ensure!(value.is_finite(), "{name} = {value} is not finite");
+    Ok(())
+}
+
+/// The parser's message with line and column, without its drawing of the line.
+fn one_line(text: &str, error: &toml::de::Error) -> anyhow::Error {
+    let message = error.message().replace('\n', ", ");
+    let Some(span) = error.span() else {
+        return anyhow!("{message}");
+    };
+    let before = text.get(..span.start).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    let value = text.get(span).unwrap_or("").lines().next().unwrap_or("");
+    anyhow!("line {line}, column {column}: {message}: {value:?}")
+}

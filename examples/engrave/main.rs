@@ -1,0 +1,132 @@
+//! A drawing becomes pulses on the glass engraver, and the pulses a drawing.
+//!
+//! ```text
+//! SVG -> strokes -> joint waypoints -> pattern.bin
+//!        pattern.bin -> records -> pulse trains -> simulated arm -> tool path
+//! ```
+//!
+//! The second line reads nothing but the bytes of the first.
+//!
+//! `cargo run --release --example engrave -- [--svg FILE] [--machine FILE] [--tolerance MM] [--out DIR]`
+
+mod artefacts;
+mod drawing;
+mod gauge;
+mod machine;
+mod picture;
+mod plan;
+mod playback;
+mod progress;
+mod pulses;
+mod report;
+mod simulation;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, ensure};
+use clap::Parser;
+use kurbo::Affine;
+
+use artefacts::Artefacts;
+use drawing::Drawing;
+use machine::Machine;
+use simulation::Simulation;
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/engrave");
+
+/// Engraves an SVG drawing with a simulated two-link arm that gets nothing but the
+/// pattern bytes.
+#[derive(Parser, Debug)]
+#[command(version)]
+struct Args {
+    /// The drawing; text must be converted to paths.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("drawings/rosette.svg"))]
+    svg: PathBuf,
+    /// The machine, as in examples/engrave/machine.toml.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("machine.toml"))]
+    machine: PathBuf,
+    /// How far the planned path may be from the drawing, besides the motors' resolution.
+    #[arg(long, value_name = "MM", default_value_t = 0.05)]
+    tolerance: f64,
+    /// Drawing to machine, `a,b,c,d,e,f`: x' = ax + cy + e, y' = bx + dy + f, in mm.
+    /// Without it the drawing is fitted into the machine's bed.
+    #[arg(long, value_name = "MATRIX", value_parser = placement)]
+    placement: Option<Affine>,
+    /// Where the artefacts go.
+    #[arg(long, value_name = "DIR", default_value = "target/engrave")]
+    out: PathBuf,
+}
+
+fn placement(text: &str) -> Result<Affine> {
+    let numbers = text
+        .split(',')
+        .map(|number| number.trim().parse::<f64>().with_context(|| format!("{number:?}")))
+        .collect::<Result<Vec<_>>>()?;
+    let count = numbers.len();
+    let numbers: [f64; 6] = numbers
+        .try_into()
+        .map_err(|_| anyhow::anyhow!("{count} numbers, six are needed"))?;
+    let affine = Affine::new(numbers);
+    ensure!(affine.is_finite(), "a number is not finite");
+    ensure!(affine.determinant() != 0.0, "the matrix has no area");
+    Ok(affine)
+}
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => {
+            // Nothing can be done where standard error is closed.
+            let _ = error.print();
+            return ExitCode::from(u8::from(error.use_stderr()));
+        }
+    };
+    match engrave(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(2),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs the whole chain; false where the simulated tool left the drawing by more than
+/// the bound.
+fn engrave(args: &Args) -> Result<bool> {
+    ensure!(
+        args.tolerance.is_finite() && args.tolerance > 0.0,
+        "--tolerance: {} is not above 0 mm",
+        args.tolerance
+    );
+    let machine = Machine::read(&args.machine)?;
+    let drawing = Drawing::read(&args.svg)?;
+    for note in drawing.notes() {
+        eprintln!("note: {}: {note}", args.svg.display());
+    }
+    let placement = match args.placement {
+        Some(placement) => placement,
+        None => machine.bed.fit(drawing.bounds()),
+    };
+
+    let mut artefacts = Artefacts::new(&args.out)?;
+    let plan = plan::write_pattern(
+        &machine,
+        &drawing,
+        placement,
+        args.tolerance,
+        artefacts.create("pattern.bin")?,
+    )
+    .with_context(|| args.svg.display().to_string())?;
+
+    let mut simulation = Simulation::new(&machine, &drawing.placed(placement), plan.bound_mm, &mut artefacts)?;
+    playback::play(&machine, artefacts.reopen("pattern.bin")?, &mut simulation)?;
+    let outcome = simulation.finish()?;
+
+    let report = report::Report::new(&machine, &plan, &outcome, placement, args.tolerance);
+    report.write(artefacts.create("report.json")?)?;
+    artefacts.keep()?;
+    report.print_summary(&args.svg, &args.out);
+    Ok(report.is_within_bound())
+}
