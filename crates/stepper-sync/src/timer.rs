@@ -3,10 +3,12 @@
 mod error;
 mod interval;
 mod periods;
+mod reloads;
 
 pub use error::TimerError;
 pub use interval::ExactInterval;
 pub use periods::Periods;
+pub use reloads::{Reload, Reloads};
 
 use crate::Rate;
 use core::num::NonZeroU32;
