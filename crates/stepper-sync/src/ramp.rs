@@ -100,7 +100,7 @@ pub enum RampError {
 /// D = F (n/v + (v - v0)² / (v a))       for n >= 2 s_a           the whole move
 /// D = 2 F (sqrt(v0² + a n) - v0) / a    otherwise
 /// ```
-/// An axis with m steps makes its edges where the leading axis, moving smoothly, would be at
+/// Pulse i rises at s = i - 1/2 and falls at s = i. An axis with m steps makes its edges where the leading axis, moving smoothly, would be at
 /// s = k n / 2m: the same formula with v0, v and a scaled by m/n.
 ///
 /// The square roots are exact integer roots, carried from edge to edge with their remainder, so
