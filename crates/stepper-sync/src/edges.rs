@@ -68,11 +68,11 @@ impl<A: Iterator<Item = u64>> Head<A> {
 /// Iterator of the edges of N axes in time order; edges of the same tick come in axis order.
 ///
 /// `A` yields the intervals of one axis in ticks, the first one counted from the start of the
-/// move: [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp). Each edge
-/// costs a comparison per axis and one interval; nothing is stored but one head per axis.
+/// move: [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp). Each edge costs a
+/// comparison per axis and one interval; nothing is stored but one head per axis.
 ///
 /// The size hint is exact while the number of edges fits `usize`; [`edges_left`](Self::edges_left)
-/// is exact on every target.
+/// is exact wherever `usize` has 32 bits or more.
 #[derive(Clone, Debug)]
 #[must_use = "iterators are lazy"]
 pub struct Edges<A, const N: usize> {
@@ -94,7 +94,8 @@ impl<A: ExactSizeIterator<Item = u64>, const N: usize> Edges<A, N> {
     #[must_use]
     pub fn edges_left(&self) -> u64 {
         self.heads.iter().fold(0_u64, |sum, head| {
-            let behind_head = u64::try_from(head.axis.len()).unwrap_or(u64::MAX);
+            // Not `len`, which panics past `usize`.
+            let behind_head = u64::try_from(head.axis.size_hint().0).unwrap_or(u64::MAX);
             sum.saturating_add(behind_head)
                 .saturating_add(u64::from(head.ticks != NEVER))
         })

@@ -25,5 +25,7 @@ pub use position::{Position, PositionError, ScaleError, StepCarry, StepScale};
 pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
 pub use rate::{Rate, RateError};
 pub use single_reload::{Rounding, SingleReload};
-pub use timer::{CounterWidth, Counting, ExactInterval, Periods, Timer, TimerError};
+pub use timer::{
+    CounterWidth, Counting, ExactInterval, Periods, Reload, Reloads, Timer, TimerError,
+};
 pub use trains::{AxisTrain, Direction, TrainError, Trains};

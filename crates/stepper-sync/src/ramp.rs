@@ -100,13 +100,14 @@ pub enum RampError {
 /// D = F (n/v + (v - v0)² / (v a))       for n >= 2 s_a           the whole move
 /// D = 2 F (sqrt(v0² + a n) - v0) / a    otherwise
 /// ```
-/// An axis with m steps makes its edges where the leading axis, moving smoothly, would be at
-/// s = k n / 2m: the same formula with v0, v and a scaled by m/n.
+/// Pulse i rises at s = i - 1/2 and falls at s = i. An axis with m steps makes its edges where the
+/// leading axis, moving smoothly, would be at s = k n / 2m: the same formula with v0, v and a
+/// scaled by m/n.
 ///
 /// The square roots are exact integer roots, carried from edge to edge with their remainder, so
 /// that nothing adds up. They are kept in subticks: 2^p to a tick, with the largest p <= 16 for
-/// which F v / a is at most 2^31 subticks. Every edge is within half a tick and two subticks of
-/// t(s), and the end within half a tick and one subtick of D.
+/// which F v / a is at most 2^31 subticks and D less than 2^61. Every edge is within half a tick
+/// and two subticks of t(s), and the end within half a tick and one subtick of D.
 ///
 /// # Examples
 /// ```

@@ -3,10 +3,12 @@
 mod error;
 mod interval;
 mod periods;
+mod reloads;
 
 pub use error::TimerError;
 pub use interval::ExactInterval;
 pub use periods::Periods;
+pub use reloads::{Reload, Reloads};
 
 use crate::Rate;
 use core::num::NonZeroU32;
@@ -301,7 +303,9 @@ impl Timer {
     ///
     /// Where the interrupt writes the counter of a timer that runs on, the ticks since the overflow
     /// are lost and every interval is longer by that latency: the plain reload of
-    /// [Engraver 2000]. See [`compensated_reload`](Self::compensated_reload).
+    /// [Engraver 2000]. Trains of n1 and n2 pulses then end 2 · latency · (n1 - n2) ticks apart,
+    /// for a small C handler 16 ticks each time. [`compensated_reload`](Self::compensated_reload)
+    /// keeps them together.
     ///
     /// # Errors
     /// [`TimerError::IntervalTooShort`], [`TimerError::IntervalTooLong`]; longer ones are cut by

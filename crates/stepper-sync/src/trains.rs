@@ -160,8 +160,9 @@ impl FusedIterator for AxisTrain {}
 /// edge k = floor(k D / 2n) k = 1..2n
 /// ```
 /// Integers only: the last edge of every moving axis is at D, and no edge is a whole tick away from
-/// its ideal place. An axis with 0 steps does not start; when all are 0, nothing happens in no
-/// time. Steps go up to ±(2^31 - 1) and T up to 2^32 - 1 ticks, for which D fits 64 bits.
+/// its ideal place. The first edge comes an interval after tick 0, at which the direction pins are
+/// set. An axis with 0 steps does not start; when all are 0, nothing happens in no time. Steps go
+/// up to ±(2^31 - 1) and T up to 2^32 - 1 ticks, for which D fits 64 bits.
 /// Source: [Engraver 2000], with the rounding error distributed.
 ///
 /// # Examples

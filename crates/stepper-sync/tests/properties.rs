@@ -179,6 +179,31 @@ proptest! {
     }
 
     #[test]
+    fn reloads_toggle_at_the_edges_of_the_train(
+        steps in prop::array::uniform2(1..=60_i32),
+        t in 1..=100_000_u32,
+        width in widths(),
+    ) {
+        let timer = Timer::new(1_000_000, 1, width, Counting::Up).unwrap();
+        for axis in Trains::new(steps, t).unwrap().axes() {
+            let reloads = timer.reloads(axis.clone());
+            prop_assert!(reloads.size_hint().0 >= axis.len());
+            let mut interval = 0;
+            let mut edges = axis;
+            for reload in reloads {
+                let reload = reload.unwrap();
+                prop_assert_eq!(timer.ticks_of_reload(reload.value), Ok(reload.ticks));
+                interval += reload.ticks;
+                if reload.toggles {
+                    prop_assert_eq!(edges.next(), Some(interval));
+                    interval = 0;
+                }
+            }
+            prop_assert_eq!((edges.next(), interval), (None, 0));
+        }
+    }
+
+    #[test]
     fn carried_remainder_rounds_the_sum(
         steps in prop_oneof![-1000..=-1_i32, 1..=1000_i32],
         units in 1..=1_000_000_u32,

@@ -1,6 +1,9 @@
 //! Pulse trains against the published numbers and the reference table.
 #![cfg(test)]
-use stepper_sync::{CounterWidth, Direction, Edge, Level, Rounding, Timer, TrainError, Trains};
+use stepper_sync::{
+    AxisRamp, AxisTrain, CounterWidth, Direction, Edge, Edges, Level, Rounding, Timer, TrainError,
+    Trains,
+};
 
 /// Half period of [Engraver 2000], in machine cycles.
 const T: u32 = 4096;
@@ -91,6 +94,23 @@ fn sixteen_to_one_in_16_bits_loads_0_which_is_65536() {
         .single_reload(Rounding::Down);
     assert_eq!(slow.kept_by(CounterWidth::Bits16), slow);
     assert_eq!(mcs51().reload(slow.interval_ticks()), Ok(0));
+}
+
+#[test]
+fn latency_of_16_cycles_under_the_plain_reload_parts_the_ends() {
+    // Each reload comes 16 cycles late [Engraver 2000, in C]; 30 and 20 pulses.
+    let late_end = |axis: AxisTrain| axis.map(|interval| interval + 16).sum::<u64>();
+    let [a, b] = Trains::new([30, 20], T).unwrap().axes().map(late_end);
+    assert_eq!(a - b, 2 * 16 * (30 - 20));
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn memory_is_what_the_readme_says() {
+    assert_eq!(size_of::<AxisTrain>(), 24);
+    assert_eq!(size_of::<Edges<AxisTrain, 2>>(), 80);
+    assert_eq!(size_of::<AxisRamp>(), 144);
+    assert_eq!(size_of::<Edges<AxisRamp, 2>>(), 320);
 }
 
 #[test]

@@ -21,6 +21,10 @@ impl Periods {
     pub(super) const fn new(ticks: u64, width: CounterWidth) -> Self {
         Self { left: ticks, width }
     }
+
+    pub(super) const fn is_over(&self) -> bool {
+        self.left == 0
+    }
 }
 
 impl Iterator for Periods {

@@ -233,3 +233,27 @@ fn long_intervals_are_cut_into_the_fewest_legal_periods() {
         assert!(periods.clone().all(|period| timer.reload(period).is_ok()));
     }
 }
+
+#[test]
+fn reloads_refuse_a_short_interval_and_go_on() {
+    let timer = Timer::mcs51_mode1(CRYSTAL_HZ)
+        .and_then(|timer| timer.with_min_ticks(100))
+        .unwrap();
+    let mut reloads = timer.reloads([99, 100].into_iter());
+    assert_eq!(
+        reloads.next(),
+        Some(Err(TimerError::IntervalTooShort {
+            ticks: 99,
+            limit: 100
+        }))
+    );
+    assert_eq!(
+        reloads.next(),
+        Some(Ok(Reload {
+            value: 0xFF9C,
+            ticks: 100,
+            toggles: true
+        }))
+    );
+    assert_eq!(reloads.next(), None);
+}

@@ -1,0 +1,42 @@
+//! Settings from a file: what is refused by a constructor is refused there too.
+#![cfg(all(test, feature = "serde"))]
+
+use stepper_sync::{CounterWidth, Edge, RampLimits, Rate, StepScale, Trains};
+
+#[test]
+fn settings_come_back() {
+    let limits = RampLimits {
+        start_millihertz: 1,
+        max_millihertz: 2,
+        accel_steps_per_s2: 3,
+    };
+    let text = serde_json::to_string(&limits).unwrap();
+    assert_eq!(serde_json::from_str::<RampLimits>(&text).unwrap(), limits);
+
+    let rate = Rate::from_millihertz(112_800).unwrap();
+    let text = serde_json::to_string(&rate).unwrap();
+    assert_eq!(text, "[564,5]");
+    assert_eq!(serde_json::from_str::<Rate>(&text).unwrap(), rate);
+
+    let scale = StepScale::new(-17.5).unwrap();
+    let text = serde_json::to_string(&scale).unwrap();
+    assert_eq!(serde_json::from_str::<StepScale>(&text).unwrap(), scale);
+
+    let text = serde_json::to_string(&CounterWidth::Bits24).unwrap();
+    assert_eq!(
+        serde_json::from_str::<CounterWidth>(&text).unwrap(),
+        CounterWidth::Bits24
+    );
+
+    let edges: Vec<Edge> = Trains::new([2, -1], 5).unwrap().edges().collect();
+    let text = serde_json::to_string(&edges).unwrap();
+    assert_eq!(serde_json::from_str::<Vec<Edge>>(&text).unwrap(), edges);
+}
+
+#[test]
+fn wrong_settings_are_refused_with_their_reason() {
+    let error = serde_json::from_str::<Rate>("[7,0]").unwrap_err();
+    assert!(error.to_string().contains("a rate of 7/0 Hz"), "{error}");
+    let error = serde_json::from_str::<StepScale>("0.0").unwrap_err();
+    assert!(error.to_string().contains("0 steps per unit"), "{error}");
+}
