@@ -85,7 +85,7 @@ impl Drawing {
 pub(crate) fn flatten(path: &BezPath, tolerance: f64) -> Vec<Point2<f64>> {
     let mut points = Vec::new();
     let mut start = Point::ZERO;
-    path.flatten(tolerance, |element| match element {
+    kurbo::flatten(path, tolerance, |element| match element {
         PathEl::MoveTo(point) => {
             start = point;
             points.push(point);

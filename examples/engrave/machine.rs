@@ -84,6 +84,12 @@ struct PatternSettings {
     byte_order: ByteOrder,
 }
 
+impl Settings {
+    pub(crate) fn mm_per_vertical_pulse(&self) -> f64 {
+        self.vertical.mm_per_pulse
+    }
+}
+
 /// The rectangle into which a drawing is fitted, in mm.
 #[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]

@@ -120,7 +120,14 @@ fn engrave(args: &Args) -> Result<bool> {
     )
     .with_context(|| args.svg.display().to_string())?;
 
-    let mut simulation = Simulation::new(&machine, &drawing.placed(placement), plan.bound_mm, &mut artefacts)?;
+    let outlines = drawing.placed(placement);
+    let mut simulation = Simulation::new(
+        &machine,
+        &outlines,
+        plan.bound_mm,
+        plan.fast_records + plan.slow_records,
+        &mut artefacts,
+    )?;
     playback::play(&machine, artefacts.reopen("pattern.bin")?, &mut simulation)?;
     let outcome = simulation.finish()?;
 

@@ -1,0 +1,161 @@
+//! The numbers of a run, for programs and for people.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::Result;
+use kurbo::Affine;
+use pose2pulse::pattern_codec::engraving::{ByteOrder, PerAxis};
+use serde::Serialize;
+
+use crate::machine::{Machine, Settings};
+use crate::plan::Plan;
+use crate::simulation::Outcome;
+
+/// `report.json`.
+#[derive(Serialize)]
+pub(crate) struct Report<'a> {
+    /// a b c d e f, from the drawing's user units to machine mm:
+    /// x' = ax + cy + e, y' = bx + dy + f.
+    placement: [f64; 6],
+    machine: MachineReport<'a>,
+    strokes: usize,
+    length_mm: f64,
+    records: u64,
+    fast_records: u64,
+    slow_records: u64,
+    bytes: u64,
+    pulses: PerAxis<u64>,
+    end_position: PerAxis<i32>,
+    duration_s: f64,
+    tolerance_mm: f64,
+    max_deviation_mm: f64,
+    rms_deviation_mm: f64,
+    path_to_drawing_mm: f64,
+    drawing_to_path_mm: f64,
+    missing_mm: f64,
+    bound_mm: f64,
+}
+
+#[derive(Serialize)]
+struct MachineReport<'a> {
+    upper_mm: f64,
+    fore_mm: f64,
+    rad_per_pulse: Joints,
+    home_rad: Joints,
+    mm_per_vertical_pulse: f64,
+    lift_pulses: i32,
+    axis_codes: PerAxis<u8>,
+    byte_order: ByteOrder,
+    direction_bit: &'a str,
+    half_period_ticks: u32,
+    tick_ns: f64,
+    settings: &'a Settings,
+}
+
+/// theta2 the upper arm against the body, theta1 the forearm against the upper arm,
+/// theta3 the disc against the forearm.
+#[derive(Serialize)]
+struct Joints {
+    theta1: f64,
+    theta2: f64,
+    theta3: f64,
+}
+
+impl<'a> Report<'a> {
+    pub(crate) fn new(
+        machine: &'a Machine,
+        plan: &Plan,
+        outcome: &Outcome,
+        placement: Affine,
+        tolerance_mm: f64,
+    ) -> Self {
+        let deviation = &outcome.deviation;
+        Self {
+            placement: placement.as_coeffs(),
+            machine: MachineReport::new(machine),
+            strokes: plan.strokes,
+            length_mm: plan.length_mm,
+            records: outcome.records,
+            fast_records: plan.fast_records,
+            slow_records: plan.slow_records,
+            bytes: outcome.records * 3,
+            pulses: outcome.pulses,
+            end_position: outcome.end,
+            duration_s: outcome.duration_s,
+            tolerance_mm,
+            max_deviation_mm: deviation
+                .path_to_drawing_mm
+                .max(deviation.drawing_to_path_mm),
+            rms_deviation_mm: deviation.rms_mm,
+            path_to_drawing_mm: deviation.path_to_drawing_mm,
+            drawing_to_path_mm: deviation.drawing_to_path_mm,
+            missing_mm: deviation.missing_mm,
+            bound_mm: plan.bound_mm,
+        }
+    }
+
+    /// Whether path and drawing are as close as tolerance and resolution allow.
+    pub(crate) fn is_within_bound(&self) -> bool {
+        self.max_deviation_mm <= self.bound_mm
+    }
+
+    pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {
+        serde_json::to_writer_pretty(&mut out, self)?;
+        writeln!(out)?;
+        Ok(out.flush()?)
+    }
+
+    pub(crate) fn print_summary(&self, svg: &Path, folder: &Path) {
+        let name = svg.file_name().unwrap_or(svg.as_os_str()).display();
+        println!("{name}: {} strokes, {:.0} mm", self.strokes, self.length_mm);
+        println!(
+            "pattern.bin: {} records ({} fast, {} slow), {} bytes",
+            self.records, self.fast_records, self.slow_records, self.bytes
+        );
+        let pulses = &self.pulses;
+        println!(
+            "simulated from the bytes alone: {} + {} + {} + {} pulses, {:.1} s",
+            pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical, self.duration_s
+        );
+        println!(
+            "deviation: {:.3} mm at most, {:.3} mm rms; bound {:.3} mm: {}",
+            self.max_deviation_mm,
+            self.rms_deviation_mm,
+            self.bound_mm,
+            if self.is_within_bound() { "kept" } else { "NOT KEPT" }
+        );
+        println!(
+            "in {}: pattern.bin, pulses.vcd, engraved.svg, report.json",
+            folder.display()
+        );
+    }
+}
+
+impl<'a> MachineReport<'a> {
+    fn new(machine: &'a Machine) -> Self {
+        let joints = [machine.theta1, machine.theta2, machine.theta3];
+        let [theta1, theta2, theta3] = joints.map(|joint| joint.rad_per_pulse);
+        let rad_per_pulse = Joints { theta1, theta2, theta3 };
+        let [theta1, theta2, theta3] = joints.map(|joint| joint.home_rad);
+        Self {
+            upper_mm: machine.arm.upper(),
+            fore_mm: machine.arm.fore(),
+            rad_per_pulse,
+            home_rad: Joints { theta1, theta2, theta3 },
+            mm_per_vertical_pulse: machine.settings.mm_per_vertical_pulse(),
+            lift_pulses: machine.lift_pulses,
+            axis_codes: machine.format.axis_codes.codes(),
+            byte_order: machine.format.byte_order,
+            direction_bit: "set for negative pulses",
+            half_period_ticks: machine.half_period_ticks,
+            tick_ns: tick_ns(machine),
+            settings: &machine.settings,
+        }
+    }
+}
+
+fn tick_ns(machine: &Machine) -> f64 {
+    let rate = machine.timer.tick_rate();
+    1e9 * f64::from(rate.denominator()) / f64::from(rate.numerator())
+}
