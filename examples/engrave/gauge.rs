@@ -1,47 +1,69 @@
 //! How far the tool's path and the drawing are apart, both ways.
 
 use kurbo::BezPath;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 use crate::drawing::flatten;
 
 /// The drawing is measured as lines that are within this of it, in mm.
-const FINE_MM: f64 = 0.0005;
+const FINE_MM: f64 = 0.002;
 
 /// The drawing is looked at in pieces no longer than this, in mm.
 const PIECE_MM: f64 = 0.2;
 
 /// Moves that are looked up together.
-const BATCH: usize = 32;
+const BATCH: usize = 8;
 
 /// Distance of `p` from the straight line between `a` and `b`.
 pub(crate) fn distance_to_segment(p: Point2<f64>, a: Point2<f64>, b: Point2<f64>) -> f64 {
-    let way = b - a;
-    let length2 = way.norm_squared();
-    let share = if length2 > 0.0 {
-        ((p - a).dot(&way) / length2).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (a + way * share - p).norm()
+    Segment::new(a, b).distance_2(p).sqrt()
+}
+
+/// A straight line between two places, ready to be asked for distances.
+#[derive(Clone, Copy)]
+struct Segment {
+    from: Point2<f64>,
+    way: Vector2<f64>,
+    /// One over the length squared; 0 for a point.
+    per_length_2: f64,
+}
+
+impl Segment {
+    fn new(from: Point2<f64>, to: Point2<f64>) -> Self {
+        let way = to - from;
+        let length_2 = way.norm_squared();
+        Self {
+            from,
+            way,
+            per_length_2: if length_2 > 0.0 { length_2.recip() } else { 0.0 },
+        }
+    }
+
+    fn to(&self) -> Point2<f64> {
+        self.from + self.way
+    }
+
+    fn distance_2(&self, p: Point2<f64>) -> f64 {
+        let off = p - self.from;
+        let share = (off.dot(&self.way) * self.per_length_2).clamp(0.0, 1.0);
+        (off - self.way * share).norm_squared()
+    }
 }
 
 /// Deviations of a whole drawing, in mm.
 pub(crate) struct Deviation {
     pub(crate) path_to_drawing_mm: f64,
-    /// At least; a stroke that is missing altogether counts as `reach_mm`.
+    /// A place to which the path never came within the gauge's reach counts as that far.
     pub(crate) drawing_to_path_mm: f64,
     pub(crate) rms_mm: f64,
-    /// Length of the drawing to which the path never came within `reach_mm`.
+    /// Length of the drawing to which the path never came within the gauge's reach.
     pub(crate) missing_mm: f64,
-    pub(crate) reach_mm: f64,
 }
 
 /// A short straight piece of the drawing.
 struct Piece {
-    from: Point2<f64>,
-    to: Point2<f64>,
+    line: Segment,
     index: usize,
 }
 
@@ -49,13 +71,13 @@ impl RTreeObject for Piece {
     type Envelope = AABB<[f64; 2]>;
 
     fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners(self.from.into(), self.to.into())
+        AABB::from_corners(self.line.from.into(), self.line.to().into())
     }
 }
 
 impl PointDistance for Piece {
     fn distance_2(&self, point: &[f64; 2]) -> f64 {
-        distance_to_segment((*point).into(), self.from, self.to).powi(2)
+        self.line.distance_2((*point).into())
     }
 }
 
@@ -63,12 +85,12 @@ impl PointDistance for Piece {
 pub(crate) struct Gauge {
     pieces: RTree<Piece>,
     lengths: Vec<f64>,
-    /// Distance of the path from the beginning of each piece, as far as seen.
-    nearest: Vec<f64>,
+    /// Squared distance of the path from the beginning of each piece, as far as seen.
+    nearest_2: Vec<f64>,
     /// How far around the path is looked for the drawing.
     reach: f64,
-    batch: Vec<(Point2<f64>, Point2<f64>)>,
-    worst: f64,
+    batch: Vec<Segment>,
+    worst_2: f64,
     squares: f64,
     count: f64,
 }
@@ -81,12 +103,12 @@ impl Gauge {
             cut_up(&flatten(outline, FINE_MM), &mut pieces);
         }
         Self {
-            lengths: pieces.iter().map(|p| (p.to - p.from).norm()).collect(),
-            nearest: vec![f64::INFINITY; pieces.len()],
+            lengths: pieces.iter().map(|piece| piece.line.way.norm()).collect(),
+            nearest_2: vec![f64::INFINITY; pieces.len()],
             pieces: RTree::bulk_load(pieces),
             reach,
             batch: Vec::with_capacity(BATCH),
-            worst: 0.0,
+            worst_2: 0.0,
             squares: 0.0,
             count: 0.0,
         }
@@ -94,7 +116,7 @@ impl Gauge {
 
     /// The tool went straight from one place to another, engraving.
     pub(crate) fn engraved(&mut self, from: Point2<f64>, to: Point2<f64>) {
-        self.batch.push((from, to));
+        self.batch.push(Segment::new(from, to));
         if self.batch.len() == BATCH {
             self.look_up();
         }
@@ -102,55 +124,56 @@ impl Gauge {
 
     pub(crate) fn finish(mut self) -> Deviation {
         self.look_up();
-        let seen = self.nearest.iter().map(|nearest| nearest.min(self.reach));
-        let missed = self.nearest.iter().zip(&self.lengths);
+        let reach_2 = self.reach * self.reach;
+        let seen = self.nearest_2.iter().map(|nearest_2| nearest_2.min(reach_2));
+        let missed = self.nearest_2.iter().zip(&self.lengths);
         Deviation {
-            path_to_drawing_mm: self.worst,
-            drawing_to_path_mm: seen.fold(0.0, f64::max),
+            path_to_drawing_mm: self.worst_2.sqrt(),
+            drawing_to_path_mm: seen.fold(0.0, f64::max).sqrt(),
             rms_mm: (self.squares / self.count.max(1.0)).sqrt(),
             missing_mm: missed
-                .filter(|(nearest, _)| **nearest > self.reach)
+                .filter(|(nearest_2, _)| **nearest_2 > reach_2)
                 .map(|(_, length)| length)
                 .sum(),
-            reach_mm: self.reach,
         }
     }
 
     fn look_up(&mut self) {
-        let Some((first, _)) = self.batch.first() else {
+        let Some(first) = self.batch.first() else {
             return;
         };
-        let (mut low, mut high) = (*first, *first);
-        for (from, to) in &self.batch {
-            low = low.inf(from).inf(to);
-            high = high.sup(from).sup(to);
+        let (mut low, mut high) = (first.from, first.from);
+        for step in &self.batch {
+            low = low.inf(&step.to());
+            high = high.sup(&step.to());
         }
-        let around = nalgebra::Vector2::repeat(self.reach);
+        let around = Vector2::repeat(self.reach);
         let envelope = AABB::from_corners((low - around).into(), (high + around).into());
         let near: Vec<&Piece> = self.pieces.locate_in_envelope_intersecting(envelope).collect();
-        for (from, to) in &self.batch {
-            let mut off = f64::INFINITY;
+        for step in &self.batch {
+            let tool = step.to();
+            let mut off_2 = f64::INFINITY;
             for piece in &near {
-                off = off.min(distance_to_segment(*to, piece.from, piece.to));
-                if let Some(nearest) = self.nearest.get_mut(piece.index) {
-                    *nearest = nearest.min(distance_to_segment(piece.from, *from, *to));
+                off_2 = off_2.min(piece.line.distance_2(tool));
+                if let Some(nearest_2) = self.nearest_2.get_mut(piece.index) {
+                    *nearest_2 = nearest_2.min(step.distance_2(piece.line.from));
                 }
             }
-            if off > self.reach {
-                off = self.off_the_drawing(*to);
+            if off_2 > self.reach * self.reach {
+                off_2 = self.off_the_drawing(tool);
             }
-            self.worst = self.worst.max(off);
-            self.squares += off * off;
+            self.worst_2 = self.worst_2.max(off_2);
+            self.squares += off_2;
             self.count += 1.0;
         }
         self.batch.clear();
     }
 
-    /// The distance where nothing of the drawing is within reach.
+    /// The squared distance where nothing of the drawing is within reach.
     fn off_the_drawing(&self, tool: Point2<f64>) -> f64 {
         self.pieces
             .nearest_neighbor(tool.into())
-            .map_or(f64::INFINITY, |piece| distance_to_segment(tool, piece.from, piece.to))
+            .map_or(f64::INFINITY, |piece| piece.line.distance_2(tool))
     }
 }
 
@@ -158,7 +181,8 @@ impl Gauge {
 fn cut_up(points: &[Point2<f64>], pieces: &mut Vec<Piece>) {
     let mut add = |from, to| {
         let index = pieces.len();
-        pieces.push(Piece { from, to, index });
+        let line = Segment::new(from, to);
+        pieces.push(Piece { line, index });
     };
     for (a, b) in points.iter().zip(points.iter().skip(1)) {
         let parts = ((b - a).norm() / PIECE_MM).ceil().max(1.0);

@@ -267,25 +267,23 @@ fn timing(settings: &TimerSettings) -> Result<(Timer, u32)> {
 }
 
 fn ramp(settings: &RapidSettings) -> Result<RampLimits> {
-    let accel = whole("accel_hz_per_s", settings.accel_hz_per_s)?;
+    let accel = settings.accel_hz_per_s;
     Ok(RampLimits {
         start_millihertz: millihertz("start_hz", settings.start_hz)?,
         max_millihertz: millihertz("max_hz", settings.max_hz)?,
-        accel_steps_per_s2: accel,
+        accel_steps_per_s2: whole(accel)
+            .with_context(|| format!("accel_hz_per_s = {accel} is not within 1..=2147483647"))?,
     })
 }
 
 fn millihertz(name: &str, hz: f64) -> Result<u32> {
-    whole(name, hz * 1000.0).with_context(|| format!("{name} = {hz} Hz"))
+    whole(hz * 1000.0).with_context(|| format!("{name} = {hz} is not within 0.001..=2147483 Hz"))
 }
 
-fn whole(name: &str, value: f64) -> Result<u32> {
-    let steps = StepScale::new(1.0)?
-        .to_steps(value)
-        .ok()
-        .and_then(|whole| u32::try_from(whole).ok())
-        .filter(|whole| *whole > 0);
-    steps.with_context(|| format!("{name} is not within 0.001..=2147483"))
+/// A number above zero that 31 bits hold, rounded.
+fn whole(value: f64) -> Option<u32> {
+    let whole = StepScale::new(1.0).ok()?.to_steps(value).ok()?;
+    u32::try_from(whole).ok().filter(|whole| *whole > 0)
 }
 
 fn positive(name: &str, value: f64) -> Result<()> {

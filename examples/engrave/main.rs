@@ -47,11 +47,11 @@ struct Args {
     #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("machine.toml"))]
     machine: PathBuf,
     /// How far the planned path may be from the drawing, besides the motors' resolution.
-    #[arg(long, value_name = "MM", default_value_t = 0.05)]
+    #[arg(long, value_name = "MM", default_value_t = 0.05, allow_negative_numbers = true)]
     tolerance: f64,
     /// Drawing to machine, `a,b,c,d,e,f`: x' = ax + cy + e, y' = bx + dy + f, in mm.
     /// Without it the drawing is fitted into the machine's bed.
-    #[arg(long, value_name = "MATRIX", value_parser = placement)]
+    #[arg(long, value_name = "MATRIX", value_parser = placement, allow_hyphen_values = true)]
     placement: Option<Affine>,
     /// Where the artefacts go.
     #[arg(long, value_name = "DIR", default_value = "target/engrave")]

@@ -19,6 +19,7 @@ const LONGEST_PATH: usize = 1 << 16;
 pub(crate) struct Picture<W: Write> {
     xml: Writer<W>,
     path: String,
+    /// Where the path is, in the picture.
     last: Point2<f64>,
     frame: Rect,
 }
@@ -40,7 +41,7 @@ impl<W: Write> Picture<W> {
             frame,
         };
         picture.open()?;
-        picture.group("drawing", "#9fc3e8", "0.7")?;
+        picture.group("drawing", "#bcd7f0", "0.9")?;
         for outline in outlines {
             picture.write_path(&(flip * outline).to_svg())?;
         }
@@ -51,17 +52,19 @@ impl<W: Write> Picture<W> {
 
     pub(crate) fn move_to(&mut self, to: Point2<f64>) -> Result<()> {
         self.flush()?;
-        self.begin(to)
+        self.last = on_grid(to);
+        self.begin()
     }
 
     pub(crate) fn line_to(&mut self, to: Point2<f64>) -> Result<()> {
         if self.path.len() > LONGEST_PATH {
-            let last = self.last;
             self.flush()?;
-            self.begin(last)?;
+            self.begin()?;
         }
-        self.last = to;
-        Ok(write!(self.path, "L{:.3} {:.3}", to.x, -to.y)?)
+        // Steps of the picture's grid, so that rounding does not add up.
+        let from = std::mem::replace(&mut self.last, on_grid(to));
+        let way = self.last - from;
+        Ok(write!(self.path, "l{:.2} {:.2}", way.x, way.y)?)
     }
 
     pub(crate) fn finish(mut self) -> Result<()> {
@@ -73,9 +76,8 @@ impl<W: Write> Picture<W> {
         Ok(self.xml.get_mut().flush()?)
     }
 
-    fn begin(&mut self, at: Point2<f64>) -> Result<()> {
-        self.last = at;
-        Ok(write!(self.path, "M{:.3} {:.3}", at.x, -at.y)?)
+    fn begin(&mut self) -> Result<()> {
+        Ok(write!(self.path, "M{:.2} {:.2}", self.last.x, self.last.y)?)
     }
 
     fn flush(&mut self) -> Result<()> {
@@ -138,7 +140,7 @@ impl<W: Write> Picture<W> {
         let label = format!("{length} mm");
         self.text(x + length + 1.5, y + 1.0, "#333333", &label)?;
         let right = self.frame.x1 - MARGIN_MM;
-        self.text(right - 58.0, y + 1.0, "#6f9fd0", "drawing")?;
+        self.text(right - 61.0, y + 1.0, "#6f9fd0", "drawing")?;
         self.text(right - 42.0, y + 1.0, "#8c1d18", "simulated tool path")
     }
 
@@ -163,4 +165,10 @@ impl<W: Write> Picture<W> {
     fn end(&mut self, name: &str) -> Result<()> {
         Ok(self.xml.write_event(Event::End(BytesEnd::new(name)))?)
     }
+}
+
+/// A place in the picture, to a hundredth of a millimetre.
+fn on_grid(tool: Point2<f64>) -> Point2<f64> {
+    let round = |mm: f64| (mm * 100.0).round() / 100.0;
+    Point2::new(round(tool.x), round(-tool.y))
 }

@@ -125,6 +125,9 @@ impl<'a> Report<'a> {
             self.bound_mm,
             if self.is_within_bound() { "kept" } else { "NOT KEPT" }
         );
+        if self.missing_mm > 0.0 {
+            println!("not engraved: {:.1} mm of the drawing", self.missing_mm);
+        }
         println!(
             "in {}: pattern.bin, pulses.vcd, engraved.svg, report.json",
             folder.display()

@@ -58,7 +58,7 @@ impl<'a> Simulation<'a> {
             machine,
             pulse_log: PulseWriter::new(artefacts.create("pulses.vcd")?, machine.timer)?,
             picture: Picture::new(artefacts.create("engraved.svg")?, outlines)?,
-            gauge: Gauge::new(outlines, bound_mm * 4.0),
+            gauge: Gauge::new(outlines, bound_mm * 1.25),
             progress: Progress::new("engraving", records),
             now: 0,
             position: PerAxis::default(),

@@ -40,8 +40,10 @@ pub struct Arm<T: RealField = f64> {
 #[non_exhaustive]
 pub enum GeometryError<T = f64> {
     /// A link length is not a number between the stated ends.
-    #[error("link length {length} is not within {min}..={max}")]
+    #[error("length {length} of the {link} is not within {min:e}..={max:e}")]
     LinkLength {
+        /// The link: `upper arm` or `forearm`.
+        link: &'static str,
         /// The length given.
         length: T,
         /// Shortest length that is accurate in `T`.
@@ -92,10 +94,15 @@ impl<T: RealField + Copy> Arm<T> {
     pub fn new(upper: T, fore: T) -> Result<Self, GeometryError<T>> {
         let max = max_value::<T>().sqrt().sqrt() * nalgebra::convert(0.25);
         let min = max.sqrt().recip();
-        for length in [upper, fore] {
+        for (link, length) in [("upper arm", upper), ("forearm", fore)] {
             // Written so that NaN is refused too.
             if !(length >= min && length <= max) {
-                return Err(GeometryError::LinkLength { length, min, max });
+                return Err(GeometryError::LinkLength {
+                    link,
+                    length,
+                    min,
+                    max,
+                });
             }
         }
         let arm = Self {

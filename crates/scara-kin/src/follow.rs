@@ -65,7 +65,6 @@ pub enum FollowError<T: RealField = f64> {
         /// The first such place.
         place: CurvePlace<T>,
         /// Why.
-        #[source]
         reason: InverseError<T>,
     },
     /// A joint would have to turn at once by more than any number of waypoints can
