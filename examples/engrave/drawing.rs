@@ -36,7 +36,11 @@ impl Drawing {
         ensure!(
             !drawing.outlines.is_empty(),
             "there is nothing to draw{}",
-            drawing.notes.iter().map(|note| format!(": {note}")).collect::<String>()
+            drawing
+                .notes
+                .iter()
+                .map(|note| format!(": {note}"))
+                .collect::<String>()
         );
         ensure!(
             drawing.bounds().is_finite(),
@@ -133,16 +137,21 @@ fn affine(t: Transform) -> Affine {
 /// From user units of the root element to what the parser makes of them: a shape under
 /// a root element with the same frame tells.
 fn user_units(document: &roxmltree::Document<'_>) -> Result<Transform> {
-    let frame: String = ["width", "height", "viewBox", "preserveAspectRatio", "transform"]
-        .into_iter()
-        .filter_map(|name| {
-            let value = document.root_element().attribute(name)?;
-            Some(format!(" {name}=\"{}\"", escape(value)))
-        })
-        .collect();
-    let probe = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\"{frame}><path d=\"M0 0H1V1Z\"/></svg>"
-    );
+    let frame: String = [
+        "width",
+        "height",
+        "viewBox",
+        "preserveAspectRatio",
+        "transform",
+    ]
+    .into_iter()
+    .filter_map(|name| {
+        let value = document.root_element().attribute(name)?;
+        Some(format!(" {name}=\"{}\"", escape(value)))
+    })
+    .collect();
+    let probe =
+        format!("<svg xmlns=\"http://www.w3.org/2000/svg\"{frame}><path d=\"M0 0H1V1Z\"/></svg>");
     let tree = Tree::from_str(&probe, &Options::default())?;
     first_path(tree.root())
         .map(usvg::Path::abs_transform)

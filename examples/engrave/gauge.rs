@@ -6,8 +6,8 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 use crate::drawing::flatten;
 
-/// The drawing is measured as lines that are within this of it, in mm.
-const FINE_MM: f64 = 0.002;
+/// The drawing is measured as lines that are within this share of the tolerance.
+const FINE: f64 = 0.05;
 
 /// The drawing is looked at in pieces no longer than this, in mm.
 const PIECE_MM: f64 = 0.2;
@@ -36,7 +36,11 @@ impl Segment {
         Self {
             from,
             way,
-            per_length_2: if length_2 > 0.0 { length_2.recip() } else { 0.0 },
+            per_length_2: if length_2 > 0.0 {
+                length_2.recip()
+            } else {
+                0.0
+            },
         }
     }
 
@@ -96,11 +100,12 @@ pub(crate) struct Gauge {
 }
 
 impl Gauge {
-    /// A gauge for `outlines` in mm that tells distances of up to `reach` apart.
-    pub(crate) fn new(outlines: &[BezPath], reach: f64) -> Self {
+    /// A gauge for `outlines` in mm that tells distances of up to `reach` apart, to a
+    /// small part of `tolerance`.
+    pub(crate) fn new(outlines: &[BezPath], tolerance: f64, reach: f64) -> Self {
         let mut pieces = Vec::new();
         for outline in outlines {
-            cut_up(&flatten(outline, FINE_MM), &mut pieces);
+            cut_up(&flatten(outline, tolerance * FINE), &mut pieces);
         }
         Self {
             lengths: pieces.iter().map(|piece| piece.line.way.norm()).collect(),
@@ -116,16 +121,21 @@ impl Gauge {
 
     /// The tool went straight from one place to another, engraving.
     pub(crate) fn engraved(&mut self, from: Point2<f64>, to: Point2<f64>) {
-        self.batch.push(Segment::new(from, to));
-        if self.batch.len() == BATCH {
+        // A new stroke may be far away: not one box around both.
+        let goes_on = self.batch.last().is_none_or(|last| last.to() == from);
+        if !goes_on || self.batch.len() == BATCH {
             self.look_up();
         }
+        self.batch.push(Segment::new(from, to));
     }
 
     pub(crate) fn finish(mut self) -> Deviation {
         self.look_up();
         let reach_2 = self.reach * self.reach;
-        let seen = self.nearest_2.iter().map(|nearest_2| nearest_2.min(reach_2));
+        let seen = self
+            .nearest_2
+            .iter()
+            .map(|nearest_2| nearest_2.min(reach_2));
         let missed = self.nearest_2.iter().zip(&self.lengths);
         Deviation {
             path_to_drawing_mm: self.worst_2.sqrt(),
@@ -149,7 +159,10 @@ impl Gauge {
         }
         let around = Vector2::repeat(self.reach);
         let envelope = AABB::from_corners((low - around).into(), (high + around).into());
-        let near: Vec<&Piece> = self.pieces.locate_in_envelope_intersecting(envelope).collect();
+        let near: Vec<&Piece> = self
+            .pieces
+            .locate_in_envelope_intersecting(envelope)
+            .collect();
         for step in &self.batch {
             let tool = step.to();
             let mut off_2 = f64::INFINITY;

@@ -105,9 +105,15 @@ impl Bed {
     /// the bed, y up.
     pub(crate) fn fit(&self, bounds: Rect) -> Affine {
         // A drawing that is a straight line has one side only.
-        let across = [self.width_mm / bounds.width(), self.height_mm / bounds.height()];
+        let across = [
+            self.width_mm / bounds.width(),
+            self.height_mm / bounds.height(),
+        ];
         let scale = across.into_iter().fold(f64::INFINITY, f64::min);
-        let middle = (self.x_mm + self.width_mm / 2.0, self.y_mm + self.height_mm / 2.0);
+        let middle = (
+            self.x_mm + self.width_mm / 2.0,
+            self.y_mm + self.height_mm / 2.0,
+        );
         Affine::translate(middle)
             * Affine::scale_non_uniform(scale, -scale)
             * Affine::translate(-bounds.center().to_vec2())
@@ -174,8 +180,17 @@ impl Machine {
     }
 
     fn check(settings: Settings) -> Result<Self> {
-        let Settings { arm, theta1, theta2, theta3, vertical, timer, rapid, pattern, bed } =
-            &settings;
+        let Settings {
+            arm,
+            theta1,
+            theta2,
+            theta3,
+            vertical,
+            timer,
+            rapid,
+            pattern,
+            bed,
+        } = &settings;
         let limits = Limits {
             shoulder: range(theta2).context("[theta2]")?,
             elbow: range(theta1).context("[theta1]")?,
@@ -189,7 +204,8 @@ impl Machine {
             theta2: joint(theta2).context("[theta2]")?,
             theta3: JointScale::new(theta3.step_deg, theta3.gear_ratio, theta3.home_deg)
                 .context("[theta3]")?,
-            disc: TangentTool::new(theta3.corner_deg.to_radians()).context("[theta3] corner_deg")?,
+            disc: TangentTool::new(theta3.corner_deg.to_radians())
+                .context("[theta3] corner_deg")?,
             lift_pulses: lift(vertical).context("[vertical]")?,
             format: Format::new()
                 .with_axis_codes(pattern.axis_codes)

@@ -47,7 +47,12 @@ struct Args {
     #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("machine.toml"))]
     machine: PathBuf,
     /// How far the planned path may be from the drawing, besides the motors' resolution.
-    #[arg(long, value_name = "MM", default_value_t = 0.05, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 0.05,
+        allow_negative_numbers = true
+    )]
     tolerance: f64,
     /// Drawing to machine, `a,b,c,d,e,f`: x' = ax + cy + e, y' = bx + dy + f, in mm.
     /// Without it the drawing is fitted into the machine's bed.
@@ -61,7 +66,12 @@ struct Args {
 fn placement(text: &str) -> Result<Affine> {
     let numbers = text
         .split(',')
-        .map(|number| number.trim().parse::<f64>().with_context(|| format!("{number:?}")))
+        .map(|number| {
+            number
+                .trim()
+                .parse::<f64>()
+                .with_context(|| format!("{number:?}"))
+        })
         .collect::<Result<Vec<_>>>()?;
     let count = numbers.len();
     let numbers: [f64; 6] = numbers
@@ -121,17 +131,11 @@ fn engrave(args: &Args) -> Result<bool> {
     .with_context(|| args.svg.display().to_string())?;
 
     let outlines = drawing.placed(placement);
-    let mut simulation = Simulation::new(
-        &machine,
-        &outlines,
-        plan.bound_mm,
-        plan.fast_records + plan.slow_records,
-        &mut artefacts,
-    )?;
+    let mut simulation = Simulation::new(&machine, &outlines, &plan, &mut artefacts)?;
     playback::play(&machine, artefacts.reopen("pattern.bin")?, &mut simulation)?;
     let outcome = simulation.finish()?;
 
-    let report = report::Report::new(&machine, &plan, &outcome, placement, args.tolerance);
+    let report = report::Report::new(&machine, &plan, &outcome, placement);
     report.write(artefacts.create("report.json")?)?;
     artefacts.keep()?;
     report.print_summary(&args.svg, &args.out);

@@ -97,16 +97,22 @@ impl<W: Write> Picture<W> {
             ("xmlns", "http://www.w3.org/2000/svg"),
             ("width", &format!("{width:.3}mm")),
             ("height", &format!("{height:.3}mm")),
-            ("viewBox", &format!("{x0:.3} {y0:.3} {width:.3} {height:.3}")),
+            (
+                "viewBox",
+                &format!("{x0:.3} {y0:.3} {width:.3} {height:.3}"),
+            ),
         ]);
         self.xml.write_event(Event::Start(svg))?;
-        self.empty("rect", &[
-            ("x", &format!("{x0:.3}")),
-            ("y", &format!("{y0:.3}")),
-            ("width", &format!("{width:.3}")),
-            ("height", &format!("{height:.3}")),
-            ("fill", "white"),
-        ])
+        self.empty(
+            "rect",
+            &[
+                ("x", &format!("{x0:.3}")),
+                ("y", &format!("{y0:.3}")),
+                ("width", &format!("{width:.3}")),
+                ("height", &format!("{height:.3}")),
+                ("fill", "white"),
+            ],
+        )
     }
 
     fn group(&mut self, id: &str, colour: &str, width: &str) -> Result<()> {

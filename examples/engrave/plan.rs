@@ -24,6 +24,7 @@ pub(crate) struct Plan {
     pub(crate) slow_records: u64,
     /// Length of the strokes, in mm.
     pub(crate) length_mm: f64,
+    pub(crate) tolerance_mm: f64,
     /// The tolerance, and half a step of each joint where that moves the tool most.
     pub(crate) bound_mm: f64,
 }
@@ -36,14 +37,13 @@ pub(crate) fn write_pattern(
     machine: &Machine,
     drawing: &Drawing,
     placement: Affine,
-    tolerance: f64,
+    tolerance_mm: f64,
     out: impl Write,
 ) -> Result<Plan> {
     let outlines = drawing.placed(placement);
     let mut planner = Planner {
         machine,
         out,
-        tolerance,
         builder: Builder::new(),
         disc: machine.disc,
         joints: machine.joints(Builder::new().position()),
@@ -52,12 +52,13 @@ pub(crate) fn write_pattern(
             fast_records: 0,
             slow_records: 0,
             length_mm: 0.0,
+            tolerance_mm,
             bound_mm: 0.0,
         },
     };
     let progress = Progress::new("planning", u64::try_from(outlines.len())?);
     for (number, outline) in outlines.iter().enumerate() {
-        let points = flatten(outline, tolerance / 4.0);
+        let points = flatten(outline, tolerance_mm / 4.0);
         planner
             .stroke(&points)
             .with_context(|| format!("stroke {} of {}", number + 1, outlines.len()))?;
@@ -69,7 +70,6 @@ pub(crate) fn write_pattern(
 struct Planner<'a, W> {
     machine: &'a Machine,
     out: W,
-    tolerance: f64,
     builder: Builder,
     disc: TangentTool,
     /// Where the strokes so far have brought the joints, before rounding.
@@ -102,7 +102,13 @@ impl<W: Write> Planner<'_, W> {
                 self.turn(from.joints, direction)?;
                 self.vertical(-self.machine.lift_pulses)?;
             }
-            self.cut(Piece { from: *from, to: *to }, direction)?;
+            self.cut(
+                Piece {
+                    from: *from,
+                    to: *to,
+                },
+                direction,
+            )?;
             self.note_bound(to.place.point);
         }
         self.note_bound(first.place.point);
@@ -120,7 +126,7 @@ impl<W: Write> Planner<'_, W> {
             let points = points.iter().copied();
             self.machine
                 .arm
-                .follow_from(points, elbow, self.tolerance / 4.0, self.joints)
+                .follow_from(points, elbow, self.plan.tolerance_mm / 4.0, self.joints)
         };
         let waypoints: Vec<_> = follow(elbow)
             .or_else(|error| follow(elbow.other()).map_err(|_| error))?
@@ -171,7 +177,9 @@ impl<W: Write> Planner<'_, W> {
             let Record::Slow(slow) = record else { continue };
             let part = slow.pulses();
             let steps = [part.theta1, part.theta2];
-            let mut edges = Trains::new(steps, machine.half_period_ticks)?.edges().peekable();
+            let mut edges = Trains::new(steps, machine.half_period_ticks)?
+                .edges()
+                .peekable();
             while let Some(edge) = edges.next() {
                 if edge.level == Level::High {
                     match edge.axis {
@@ -185,7 +193,7 @@ impl<W: Write> Planner<'_, W> {
                 }
                 let tool = machine.arm.forward(machine.joints(position));
                 let off = distance_to_segment(tool, piece.from.place.point, piece.to.place.point);
-                if off > machine.half_step_mm(tool) + self.tolerance / 2.0 {
+                if off > machine.half_step_mm(tool) + self.plan.tolerance_mm / 2.0 {
                     return Ok(false);
                 }
             }
@@ -236,14 +244,14 @@ impl<W: Write> Planner<'_, W> {
     }
 
     fn note_bound(&mut self, tool: Point2<f64>) {
-        let bound = self.machine.half_step_mm(tool) + self.tolerance;
+        let bound = self.machine.half_step_mm(tool) + self.plan.tolerance_mm;
         self.plan.bound_mm = self.plan.bound_mm.max(bound);
     }
 
     fn finish(mut self) -> Result<Plan> {
-        let records = self
-            .builder
-            .home([Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2])?;
+        let records =
+            self.builder
+                .home([Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2])?;
         self.write(records)?;
         self.out.flush()?;
         Ok(self.plan)

@@ -17,7 +17,11 @@ pub(crate) trait Wires {
 }
 
 /// Plays a pattern, chunk by chunk, in constant memory.
-pub(crate) fn play(machine: &Machine, mut pattern: impl BufRead, wires: &mut impl Wires) -> Result<()> {
+pub(crate) fn play(
+    machine: &Machine,
+    mut pattern: impl BufRead,
+    wires: &mut impl Wires,
+) -> Result<()> {
     let mut controller = Controller {
         format: machine.format,
         timer: machine.timer,
@@ -58,7 +62,11 @@ impl Controller {
                 self.run([fast.axis()], ramp.edges(), ramp.end_ticks(), wires)?;
             }
             Record::Slow(slow) => {
-                let JointPulses { theta1, theta2, theta3 } = slow.pulses();
+                let JointPulses {
+                    theta1,
+                    theta2,
+                    theta3,
+                } = slow.pulses();
                 // The disc turns first, then both arms together.
                 self.process([Axis::Theta3], [theta3], wires)?;
                 self.process([Axis::Theta1, Axis::Theta2], [theta1, theta2], wires)?;

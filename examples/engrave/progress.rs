@@ -18,7 +18,9 @@ impl Progress {
     pub(crate) fn new(what: &'static str, total: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden())
             .with_message(what);
-        if let Ok(style) = ProgressStyle::with_template("{msg:12} {wide_bar} {percent:>3} % {eta:>4}") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{msg:12} {wide_bar} {percent:>3} % {eta:>4}")
+        {
             bar.set_style(style);
         }
         Self {

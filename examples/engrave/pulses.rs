@@ -70,7 +70,8 @@ impl<W: Write> PulseWriter<W> {
     fn stamp(&mut self, ticks: u64) -> Result<()> {
         if self.stamped_ticks != Some(ticks) {
             let ns = u64::try_from(self.timer.ticks_to_ns(ticks));
-            self.vcd.timestamp(ns.context("the pattern lasts over 500 years")?)?;
+            self.vcd
+                .timestamp(ns.context("the pattern lasts over 500 years")?)?;
             self.stamped_ticks = Some(ticks);
         }
         Ok(())

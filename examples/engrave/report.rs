@@ -68,7 +68,6 @@ impl<'a> Report<'a> {
         plan: &Plan,
         outcome: &Outcome,
         placement: Affine,
-        tolerance_mm: f64,
     ) -> Self {
         let deviation = &outcome.deviation;
         Self {
@@ -83,7 +82,7 @@ impl<'a> Report<'a> {
             pulses: outcome.pulses,
             end_position: outcome.end,
             duration_s: outcome.duration_s,
-            tolerance_mm,
+            tolerance_mm: plan.tolerance_mm,
             max_deviation_mm: deviation
                 .path_to_drawing_mm
                 .max(deviation.drawing_to_path_mm),
@@ -123,7 +122,11 @@ impl<'a> Report<'a> {
             self.max_deviation_mm,
             self.rms_deviation_mm,
             self.bound_mm,
-            if self.is_within_bound() { "kept" } else { "NOT KEPT" }
+            if self.is_within_bound() {
+                "kept"
+            } else {
+                "NOT KEPT"
+            }
         );
         if self.missing_mm > 0.0 {
             println!("not engraved: {:.1} mm of the drawing", self.missing_mm);
@@ -139,13 +142,21 @@ impl<'a> MachineReport<'a> {
     fn new(machine: &'a Machine) -> Self {
         let joints = [machine.theta1, machine.theta2, machine.theta3];
         let [theta1, theta2, theta3] = joints.map(|joint| joint.rad_per_pulse);
-        let rad_per_pulse = Joints { theta1, theta2, theta3 };
+        let rad_per_pulse = Joints {
+            theta1,
+            theta2,
+            theta3,
+        };
         let [theta1, theta2, theta3] = joints.map(|joint| joint.home_rad);
         Self {
             upper_mm: machine.arm.upper(),
             fore_mm: machine.arm.fore(),
             rad_per_pulse,
-            home_rad: Joints { theta1, theta2, theta3 },
+            home_rad: Joints {
+                theta1,
+                theta2,
+                theta3,
+            },
             mm_per_vertical_pulse: machine.settings.mm_per_vertical_pulse(),
             lift_pulses: machine.lift_pulses,
             axis_codes: machine.format.axis_codes.codes(),

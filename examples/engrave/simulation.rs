@@ -13,9 +13,13 @@ use crate::artefacts::Artefacts;
 use crate::gauge::{Deviation, Gauge};
 use crate::machine::Machine;
 use crate::picture::Picture;
+use crate::plan::Plan;
 use crate::playback::Wires;
 use crate::progress::Progress;
 use crate::pulses::PulseWriter;
+
+/// How far around the tool the drawing is looked for, in bounds.
+const REACH: f64 = 1.25;
 
 /// What the simulated machine did.
 pub(crate) struct Outcome {
@@ -47,19 +51,20 @@ pub(crate) struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
+    /// A machine at home. Of the plan it takes what scales the measuring and the
+    /// progress bar, nothing of the way.
     pub(crate) fn new(
         machine: &'a Machine,
         outlines: &[BezPath],
-        bound_mm: f64,
-        records: u64,
+        plan: &Plan,
         artefacts: &mut Artefacts,
     ) -> Result<Self> {
         Ok(Self {
             machine,
             pulse_log: PulseWriter::new(artefacts.create("pulses.vcd")?, machine.timer)?,
             picture: Picture::new(artefacts.create("engraved.svg")?, outlines)?,
-            gauge: Gauge::new(outlines, bound_mm * 1.25),
-            progress: Progress::new("engraving", records),
+            gauge: Gauge::new(outlines, plan.tolerance_mm, plan.bound_mm * REACH),
+            progress: Progress::new("engraving", plan.fast_records + plan.slow_records),
             now: 0,
             position: PerAxis::default(),
             negative: PerAxis::default(),

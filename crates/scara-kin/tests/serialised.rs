@@ -38,7 +38,10 @@ fn drives_are_read_back() {
 #[test]
 fn wrong_values_are_refused_with_their_reason() {
     for (text, reason) in [
-        (r#"{"upper": -1.0, "fore": 132.0}"#, "length -1 of the upper arm"),
+        (
+            r#"{"upper": -1.0, "fore": 132.0}"#,
+            "length -1 of the upper arm",
+        ),
         (
             r#"{"upper": 1.0, "fore": 1.0, "keep_out": 2.0}"#,
             "keep-out radius 2",
