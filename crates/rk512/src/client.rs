@@ -141,7 +141,7 @@ enum State {
 
 /// The side that sends commands: one job at a time, with data of up to `N` bytes.
 ///
-/// Memory: `N` bytes and at most 120 more.
+/// Memory: `N` bytes and at most 144 more.
 ///
 /// # Contract
 /// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),

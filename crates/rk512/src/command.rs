@@ -290,7 +290,7 @@ impl From<Command> for [u8; COMMAND_HEADER] {
     }
 }
 
-/// Header of a continuation command: FFh, 00h, then the [`Request`] of the first telegram.
+/// Header of a continuation command: `FFh`, 00h, then the [`Request`] of the first telegram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Continuation {

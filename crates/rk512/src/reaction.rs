@@ -8,7 +8,7 @@ use crate::telegram::{EncodeError, MAX_DATA, Part, SHORT_HEADER, Telegram};
 
 /// Why a partner refused: byte 4 of a reaction.
 ///
-/// The meanings are those of WinCC OA and WAGO; the last column is the event that an S7 logs when
+/// The meanings are those of `WinCC` OA and WAGO; the last column is the event that an S7 logs when
 /// it receives the number.
 ///
 /// | code | name | S7 event |
@@ -60,10 +60,10 @@ pub enum ReactionError {
     /// 36h.
     #[error("synchronisation error (36h)")]
     Synchronisation,
-    /// FEh.
+    /// `FEh`.
     #[error("FETCH is not served (FEh)")]
     FetchNotServed,
-    /// FFh.
+    /// `FFh`.
     #[error("job failed (FFh)")]
     JobFailed,
     /// A number that the sources do not name.
@@ -129,7 +129,7 @@ pub enum ReactionFault {
         /// Bytes received.
         len: usize,
     },
-    /// Byte 1 is neither 00h nor FFh.
+    /// Byte 1 is neither 00h nor `FFh`.
     #[error("byte 1: {value:02X}h, neither 00h nor FFh")]
     FirstByte {
         /// The byte.

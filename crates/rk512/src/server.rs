@@ -42,7 +42,7 @@ struct Job {
 
 /// The side that answers commands from a [`DataSource`], which every call gets anew.
 ///
-/// Memory: at most 320 bytes, whatever the length of the jobs: data go straight to the source.
+/// Memory: at most 288 bytes, whatever the length of the jobs: data go straight to the source.
 ///
 /// # Contract
 /// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),

@@ -24,7 +24,7 @@ pub const MAX_TELEGRAM: usize = COMMAND_HEADER + MAX_DATA;
 pub enum Part {
     /// 00h.
     First,
-    /// FFh.
+    /// `FFh`.
     Continuation,
 }
 
@@ -74,7 +74,7 @@ pub enum EncodeError {
 #[derive(Clone, Copy)]
 pub struct Telegram {
     bytes: [u8; MAX_TELEGRAM],
-    len: usize,
+    len: u8,
 }
 
 impl Telegram {
@@ -85,6 +85,7 @@ impl Telegram {
             *to = from;
         }
         let len = H + data_len.min(MAX_DATA);
+        let len = u8::try_from(len).unwrap_or(u8::MAX);
         Self { bytes, len }
     }
 
@@ -100,7 +101,8 @@ impl Telegram {
 
     /// What stands behind the first `header` bytes.
     pub(crate) fn after_mut(&mut self, header: usize) -> &mut [u8] {
-        self.bytes.get_mut(header..self.len).unwrap_or_default()
+        let end = usize::from(self.len);
+        self.bytes.get_mut(header..end).unwrap_or_default()
     }
 }
 
@@ -108,7 +110,7 @@ impl Deref for Telegram {
     type Target = [u8];
 
     fn deref(&self) -> &[u8] {
-        self.bytes.get(..self.len).unwrap_or_default()
+        self.bytes.get(..usize::from(self.len)).unwrap_or_default()
     }
 }
 

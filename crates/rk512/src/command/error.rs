@@ -34,7 +34,7 @@ pub enum CommandError {
         /// Bytes of the header.
         least: usize,
     },
-    /// Byte 1 is neither 00h nor FFh.
+    /// Byte 1 is neither 00h nor `FFh`.
     #[error("byte 1: {value:02X}h, neither 00h nor FFh")]
     FirstByte {
         /// The byte.
