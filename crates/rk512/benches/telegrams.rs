@@ -1,5 +1,5 @@
 //! Speed of encoding, decoding and serving.
-use std::hint::black_box;
+use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rk512::{Area, Command, Config, DataBlock, MAX_DATA, Memory, Message, Server, Telegram};
