@@ -2,9 +2,12 @@
 //! simulated clock.
 
 #[cfg(test)]
+extern crate alloc;
+
+#[cfg(test)]
 mod over_3964r {
+    use alloc::collections::VecDeque;
     use core::time::Duration;
-    use std::collections::VecDeque;
 
     use proptest::prelude::*;
     use proto3964r::{Config as LineConfig, Event, Priority, Station};
@@ -12,8 +15,7 @@ mod over_3964r {
 
     /// 11 bits (8E1) at 9600 bit/s.
     const CHARACTER: Duration = Duration::from_micros(1146);
-    /// Longer than the longest transfer of a block with its repeats, so that damage cannot meet
-    /// both a block and its repeat: 142 characters each way are 163 ms.
+    /// Bytes of the data blocks and of the longest job.
     const DATA: usize = 400;
     /// Longer than a repeat: QVZ (2 s), the transfer of a block, and the same again.
     const QUIET: Duration = Duration::from_secs(6);
