@@ -15,9 +15,6 @@ use serialport::{ClearBuffer, SerialPort, TTYPort};
 pub(crate) const BLOCK: usize = 512;
 /// QVZ of the example: a pseudo-terminal has no bit rate, so its times are short.
 pub(crate) const QVZ_MS: u16 = 100;
-/// Longer than a repeat after a lost acknowledgement takes.
-const QUIET: Duration = Duration::from_millis(4 * QVZ_MS as u64);
-
 /// Data for a DB of the partner.
 pub(crate) struct Order {
     pub(crate) area: Area,
@@ -55,9 +52,8 @@ impl Party {
         orders.reverse();
         port.set_timeout(Duration::from_millis(1))?;
         let config = Config::DEFAULT
-            .with_quiet(QUIET)
-            .with_resync(QUIET)
-            .with_reaction_time(Duration::from_secs(5));
+            .with_reaction_time(Duration::from_secs(2))
+            .with_resync(Duration::from_millis(QVZ_MS.into()));
         Ok(Self {
             port,
             start,
@@ -123,6 +119,9 @@ impl Party {
                 Event::Failed(_) => self.endpoint.handle_failed(now, memory),
                 Event::Rejected(_) => self.tally.rejected += 1,
                 _ => {}
+            }
+            if self.endpoint.wants_recall() {
+                self.station.cancel(line_now);
             }
         }
         Ok(())

@@ -27,7 +27,7 @@ struct Options {
 fn options() -> Result<Options, Box<dyn Error>> {
     let mut options = Options {
         out: PathBuf::from("target/plc"),
-        rounds: 4,
+        rounds: 40,
         spacing: 300,
         seed: 1,
     };

@@ -164,6 +164,20 @@ impl<const N: usize> Client<N> {
         )
     }
 
+    /// Whether the telegram in the hands of the transport belongs to a cancelled job. A transport
+    /// that can take it back should, and report [`handle_failed`](Self::handle_failed).
+    #[must_use]
+    pub const fn wants_recall(&self) -> bool {
+        let transfer = matches!(
+            self.state,
+            State::Running {
+                step: Step::Transfer,
+                ..
+            }
+        );
+        self.in_transfer && !transfer
+    }
+
     /// Blocks dropped because no reaction was due.
     #[must_use]
     pub const fn dropped(&self) -> u32 {

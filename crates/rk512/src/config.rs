@@ -17,8 +17,9 @@ pub struct Config {
     /// Client: pause after each reaction before the next telegram; reactions that come in it are
     /// repeats and are dropped. 0 by default: Siemens knows no such pause.
     ///
-    /// Needed only on transports that repeat a telegram after its acknowledgement was lost (3964R
-    /// does), and then longer than such a repeat takes.
+    /// For transports that repeat a telegram whose acknowledgement was lost (3964R does) to a
+    /// partner that does not [take it back](crate::Endpoint::wants_recall); then longer than such
+    /// a repeat takes. On 3964R that is three times QVZ.
     pub quiet: Duration,
     /// Client: pause after a job that ended without its reaction; a late reaction that comes in it
     /// is dropped. 2 s by default, as long as a 3964R partner waits for an answer (QVZ).

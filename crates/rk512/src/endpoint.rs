@@ -108,6 +108,17 @@ impl<const N: usize> Endpoint<N> {
         Some(telegram)
     }
 
+    /// Whether the telegram in the hands of the transport is out of date; see
+    /// [`Server::wants_recall`] and [`Client::wants_recall`].
+    #[must_use]
+    pub const fn wants_recall(&self) -> bool {
+        match self.in_transfer {
+            Some(Side::Client) => self.client.wants_recall(),
+            Some(Side::Server) => self.server.wants_recall(),
+            None => false,
+        }
+    }
+
     /// The transport delivered the telegram.
     pub fn handle_delivered(&mut self, now: Instant) {
         match self.in_transfer.take() {

@@ -55,7 +55,8 @@ struct Job {
 ///
 /// A command that comes before the reaction to the last one is delivered ends that one's job and
 /// earns [`ReactionError::Synchronisation`](crate::ReactionError::Synchronisation); a reaction that
-/// the transport has not taken yet is replaced by it. A first telegram in the middle of a job
+/// the transport has not taken yet is replaced by it, one that it has should be
+/// [taken back](Self::wants_recall). A first telegram in the middle of a job
 /// begins anew: the partner has lost a reaction and given its old job up.
 #[derive(Debug)]
 pub struct Server {
@@ -92,6 +93,15 @@ impl Server {
     #[must_use]
     pub const fn owes_reaction(&self) -> bool {
         self.reaction.is_some() || self.in_transfer
+    }
+
+    /// Whether the reaction in the hands of the transport is out of date: the partner's next
+    /// command came before its delivery was reported. A transport that can take it back should,
+    /// and report [`handle_failed`](Self::handle_failed); else a repeat of it may pass for the
+    /// reaction to that command.
+    #[must_use]
+    pub const fn wants_recall(&self) -> bool {
+        self.in_transfer && self.reaction.is_some()
     }
 
     /// The reaction for the transport, if there is one.

@@ -259,8 +259,9 @@ mod client {
     fn a_cancelled_job_leaves_its_telegram_to_the_transport() {
         let mut client = client();
         client.fetch(DB5, 1).unwrap();
-        assert!(client.poll_transmit(NOW).is_some());
+        assert!(client.poll_transmit(NOW).is_some() && !client.wants_recall());
         client.cancel(NOW);
+        assert!(client.wants_recall());
         assert_eq!(failure(&mut client), JobError::Cancelled);
         client.fetch(Area::db(6, 0), 1).unwrap();
         assert!(client.poll_transmit(NOW).is_none(), "one block at a time");

@@ -77,6 +77,8 @@ mod over_3964r {
         jobs: u8,
         failures: usize,
         salt: u8,
+        /// Takes outdated telegrams back.
+        recalls: bool,
     }
 
     impl Side {
@@ -90,6 +92,7 @@ mod over_3964r {
                 jobs,
                 failures: 0,
                 salt: 1,
+                recalls: true,
             }
         }
 
@@ -144,6 +147,9 @@ mod over_3964r {
                     Event::Failed(_) => self.endpoint.handle_failed(now, &mut plc),
                     _ => {}
                 }
+                if self.recalls && self.endpoint.wants_recall() {
+                    self.station.cancel(line_time(now));
+                }
             }
             self.work();
             if self.station.can_send()
@@ -169,7 +175,12 @@ mod over_3964r {
     }
 
     /// Runs until both have written and read back all their data; returns the failed jobs.
-    fn run(config: Config, jobs: u8, damages: [VecDeque<(usize, Damage)>; 2]) -> usize {
+    fn run(
+        config: Config,
+        recalls: bool,
+        jobs: u8,
+        damages: [VecDeque<(usize, Damage)>; 2],
+    ) -> usize {
         let mut now = Instant::ZERO;
         let [left, right] = damages.map(|damages| Wire {
             damages,
@@ -178,6 +189,7 @@ mod over_3964r {
         let mut low = Side::new(Priority::Low, config, jobs, left);
         let mut high = Side::new(Priority::High, config, jobs, right);
         high.salt = 7;
+        (low.recalls, high.recalls) = (recalls, recalls);
         for _ in 0..STEPS {
             low.step(now, &mut high.out);
             high.step(now, &mut low.out);
@@ -194,7 +206,7 @@ mod over_3964r {
 
     #[test]
     fn both_write_and_read_at_once() {
-        let failures = run(Config::DEFAULT, 40, Default::default());
+        let failures = run(Config::DEFAULT, true, 40, Default::default());
         assert_eq!(failures, 0);
     }
 
@@ -209,13 +221,19 @@ mod over_3964r {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: 32, ..ProptestConfig::default() })]
 
         /// Every job ends, and what is read back is what was written.
         #[test]
         fn a_damaging_line(low in damages(), high in damages()) {
+            run(Config::DEFAULT, true, 8, [low, high]);
+        }
+
+        /// The same with transports that take nothing back: the pause does it.
+        #[test]
+        fn a_damaging_line_without_recall(low in damages(), high in damages()) {
             let config = Config::DEFAULT.with_quiet(QUIET).with_resync(QUIET);
-            run(config, 8, [low, high]);
+            run(config, false, 8, [low, high]);
         }
     }
 }

@@ -156,10 +156,11 @@ mod server {
         server.handle_block(&block, &mut plc);
         let reaction = server.poll_transmit().unwrap();
         assert_eq!(*reaction, [0, 0, 0, 0x36]);
-        // One in the hands of the transport stays, the error follows it.
+        assert!(!server.wants_recall());
+        // One in the hands of the transport should be taken back; the error follows it.
         server.handle_block(&block, &mut plc);
-        assert!(server.poll_transmit().is_none());
-        server.handle_delivered(NOW);
+        assert!(server.wants_recall() && server.poll_transmit().is_none());
+        server.handle_failed(&mut plc);
         assert_eq!(*server.poll_transmit().unwrap(), [0, 0, 0, 0x36]);
         server.handle_delivered(NOW);
         assert!(server.poll_transmit().is_none());
