@@ -4,6 +4,10 @@
 
 #[cfg(feature = "pattern-codec")]
 pub use pattern_codec;
+#[cfg(feature = "proto3964r")]
+pub use proto3964r;
+#[cfg(feature = "rk512")]
+pub use rk512;
 #[cfg(feature = "scara-kin")]
 pub use scara_kin;
 #[cfg(feature = "stepper-sync")]

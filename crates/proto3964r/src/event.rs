@@ -1,0 +1,173 @@
+//! What a station reports.
+
+use core::fmt;
+
+use thiserror::Error;
+
+use crate::frame::FrameError;
+
+/// What [`Station::poll_event`](crate::Station::poll_event) hands out.
+///
+/// [`Received`](Self::Received) and the outcome of a job ([`Sent`](Self::Sent) or
+/// [`Failed`](Self::Failed)) are never lost. The others are diagnosis: when they are not fetched,
+/// later ones are dropped and counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Event<'a> {
+    /// A telegram came in and was acknowledged.
+    Received(&'a [u8]),
+    /// The job was acknowledged by the partner.
+    Sent {
+        /// Bytes of its payload.
+        len: usize,
+    },
+    /// The job was given up.
+    Failed(Failure),
+    /// Something came in and was answered with NAK.
+    Rejected(Rejection),
+    /// The partner's telegram was given up after one rejection or more.
+    Abandoned(Abandoned),
+    /// Both stations sent STX.
+    Collision {
+        /// Collisions in a row without a connection or a telegram in between.
+        in_a_row: u8,
+    },
+    /// Both stations seem to have the same priority: two high ones repeat STX against each other,
+    /// or two low ones both answered DLE.
+    SamePriority,
+    /// The line was held in BREAK; the station is idle.
+    Break,
+}
+
+/// Why and when a job was given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[error("job given up in {phase} after {attempts} attempts, first error: {cause}")]
+#[non_exhaustive]
+pub struct Failure {
+    /// The phase whose attempts are used up.
+    pub phase: Phase,
+    /// The first error of this job. Siemens reports the first one too: the later ones are often
+    /// its consequence.
+    pub cause: Cause,
+    /// Attempts in that phase.
+    pub attempts: u8,
+}
+
+/// The two phases of a transmission, each with its own attempt counter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "the procedure has these two")]
+pub enum Phase {
+    /// From STX to DLE.
+    Setup,
+    /// From DLE to the answer to the block.
+    Transfer,
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Setup => "setup",
+            Self::Transfer => "transfer",
+        })
+    }
+}
+
+/// What went wrong with an attempt to send.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Cause {
+    /// No answer within QVZ.
+    #[error("timeout")]
+    Timeout,
+    /// The partner answered NAK.
+    #[error("nak")]
+    Nak,
+    /// A character that is no answer, or an answer in the middle of the block.
+    #[error("unexpected {0:02X}")]
+    Unexpected(u8),
+    /// A damaged character.
+    #[error("{0}")]
+    Line(LineError),
+    /// The partner sent STX as well and nothing came of it.
+    #[error("collision")]
+    Collision,
+    /// The output did not take the next byte within QVZ.
+    #[error("stalled")]
+    Stalled,
+    /// BREAK on the line.
+    #[error("break")]
+    Break,
+    /// [`Station::cancel`](crate::Station::cancel) was called.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What a receiver circuit reports about one character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum LineError {
+    /// The parity bit is wrong.
+    #[error("parity")]
+    Parity,
+    /// The stop bit is missing.
+    #[error("framing")]
+    Framing,
+    /// Characters were lost in front of this one.
+    #[error("overrun")]
+    Overrun,
+}
+
+/// Why a reception was answered with NAK.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Rejection {
+    /// The block came to its end and is no good.
+    #[error(transparent)]
+    Frame(FrameError),
+    /// A character of the block was damaged.
+    #[error("{0} error")]
+    Line(LineError),
+    /// A gap longer than ZVZ in the block.
+    #[error("character delay exceeded")]
+    CharacterDelay,
+    /// The block, already known to be bad, did not end.
+    #[error("block without an end")]
+    Endless,
+    /// STX came, and no receive buffer became free in time.
+    #[error("no receive buffer")]
+    NoBuffer,
+    /// A character other than STX and NAK in idle, followed by silence.
+    #[error("noise {first:02X}h while idle")]
+    Noise {
+        /// The first such character.
+        first: u8,
+    },
+}
+
+/// Why the repeat of a rejected telegram is no longer awaited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Abandoned {
+    /// No STX within BWZ.
+    #[error("no repeat within the block wait time")]
+    NoRepeat,
+    /// As many rejections as transfer attempts are configured.
+    #[error("{0} rejected receptions")]
+    TooMany(u8),
+    /// The partner sent NAK: it gave up.
+    #[error("given up by the partner")]
+    ByPartner,
+}

@@ -1,0 +1,22 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+#[cfg(test)]
+extern crate alloc;
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+pub mod ascii;
+mod config;
+mod event;
+pub mod frame;
+mod station;
+mod time;
+
+pub use config::{Collision, Config, IdleNoise, Priority, SilenceInBlock};
+pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
+pub use frame::{Check, IllegalDle};
+pub use station::{SendError, Station, Transmit};
+pub use time::Instant;

@@ -1,0 +1,182 @@
+//! Client and server on one line.
+
+use crate::area::Area;
+use crate::client::{Client, Outcome, SubmitError};
+use crate::command::Command;
+use crate::config::Config;
+use crate::server::{Server, ServerEvent};
+use crate::source::DataSource;
+use crate::telegram::{SHORT_HEADER, Telegram, is_reaction};
+use crate::time::Instant;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Client,
+    Server,
+}
+
+/// Client and server on one line: the quasi-duplex case, in which the partner's command may come
+/// before the reaction to the own one.
+///
+/// It sorts what comes in (byte 3 is 0 in reactions, a letter in commands) and sends one telegram
+/// at a time, reactions first. Each side answers at most one command at a time (nesting depth 1);
+/// the reaction monitoring time of the own command runs on meanwhile.
+///
+/// Memory: that of a [`Client<N>`] and a [`Server`] and at most 8 bytes more.
+///
+/// # Contract
+/// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),
+/// [`poll_outcome`](Self::poll_outcome), [`poll_event`](Self::poll_event),
+/// [`poll_timeout`](Self::poll_timeout). A poll too many does nothing.
+/// [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only delays.
+///
+/// Each telegram that `poll_transmit` returns is one block for the transport, which answers
+/// exactly once: [`handle_delivered`](Self::handle_delivered) or
+/// [`handle_failed`](Self::handle_failed). A report comes before the blocks that were received
+/// after it.
+#[derive(Debug)]
+pub struct Endpoint<const N: usize> {
+    client: Client<N>,
+    server: Server,
+    /// Whose telegram the transport has.
+    in_transfer: Option<Side>,
+}
+
+impl<const N: usize> Endpoint<N> {
+    /// An endpoint without jobs.
+    #[must_use]
+    pub const fn new(config: Config) -> Self {
+        Self {
+            client: Client::new(config),
+            server: Server::new(config),
+            in_transfer: None,
+        }
+    }
+
+    /// The own commands.
+    #[must_use]
+    pub const fn client(&self) -> &Client<N> {
+        &self.client
+    }
+
+    /// The partner's commands.
+    #[must_use]
+    pub const fn server(&self) -> &Server {
+        &self.server
+    }
+
+    /// Starts a SEND; see [`Client::send`].
+    ///
+    /// # Errors
+    /// [`SubmitError`]; the running job goes on.
+    pub fn send(&mut self, area: Area, data: &[u8]) -> Result<Command, SubmitError> {
+        self.client.send(area, data)
+    }
+
+    /// Starts a FETCH; see [`Client::fetch`].
+    ///
+    /// # Errors
+    /// [`SubmitError`]; the running job goes on.
+    pub fn fetch(&mut self, area: Area, length: u16) -> Result<Command, SubmitError> {
+        self.client.fetch(area, length)
+    }
+
+    /// Starts any job; see [`Client::submit`].
+    ///
+    /// # Errors
+    /// [`SubmitError`]; the running job goes on.
+    pub fn submit(&mut self, command: Command, data: &[u8]) -> Result<Command, SubmitError> {
+        self.client.submit(command, data)
+    }
+
+    /// Gives the own job up; see [`Client::cancel`].
+    pub fn cancel(&mut self, now: Instant) {
+        self.client.cancel(now);
+    }
+
+    /// The next telegram for the transport, if it is time for one.
+    #[must_use]
+    pub fn poll_transmit(&mut self, now: Instant) -> Option<Telegram> {
+        if self.in_transfer.is_some() {
+            return None;
+        }
+        let (side, telegram) = match self.server.poll_transmit() {
+            Some(reaction) => (Side::Server, reaction),
+            None => (Side::Client, self.client.poll_transmit(now)?),
+        };
+        self.in_transfer = Some(side);
+        Some(telegram)
+    }
+
+    /// Whether the telegram in the hands of the transport is out of date; see
+    /// [`Server::wants_recall`] and [`Client::wants_recall`].
+    #[must_use]
+    pub const fn wants_recall(&self) -> bool {
+        match self.in_transfer {
+            Some(Side::Client) => self.client.wants_recall(),
+            Some(Side::Server) => self.server.wants_recall(),
+            None => false,
+        }
+    }
+
+    /// The transport delivered the telegram.
+    pub fn handle_delivered(&mut self, now: Instant) {
+        match self.in_transfer.take() {
+            Some(Side::Client) => self.client.handle_delivered(now),
+            Some(Side::Server) => self.server.handle_delivered(now),
+            None => {}
+        }
+    }
+
+    /// The transport gave the telegram up; it may have arrived all the same.
+    pub fn handle_failed<D: DataSource + ?Sized>(&mut self, now: Instant, source: &mut D) {
+        match self.in_transfer.take() {
+            Some(Side::Client) => self.client.handle_failed(now),
+            Some(Side::Server) => self.server.handle_failed(source),
+            None => {}
+        }
+    }
+
+    /// A block came from the partner.
+    ///
+    /// One that is too short to tell goes to the client if a reaction is due, else to the server.
+    pub fn handle_block<D: DataSource + ?Sized>(
+        &mut self,
+        now: Instant,
+        block: &[u8],
+        source: &mut D,
+    ) {
+        let too_short = block.len() < SHORT_HEADER;
+        if is_reaction(block) || (too_short && self.client.awaits_reaction()) {
+            self.client.handle_block(now, block);
+        } else {
+            self.server.handle_block(block, source);
+        }
+    }
+
+    /// Time has passed.
+    pub fn handle_timeout<D: DataSource + ?Sized>(&mut self, now: Instant, source: &mut D) {
+        self.client.handle_timeout(now);
+        self.server.handle_timeout(now, source);
+    }
+
+    /// When [`handle_timeout`](Self::handle_timeout) and then
+    /// [`poll_transmit`](Self::poll_transmit) are due next; it may lie in the past.
+    #[must_use]
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        let (client, server) = (self.client.poll_timeout(), self.server.poll_timeout());
+        client.into_iter().chain(server).min()
+    }
+
+    /// How the own job ended, once.
+    #[must_use]
+    pub fn poll_outcome(&mut self) -> Option<Outcome<'_>> {
+        self.client.poll_outcome()
+    }
+
+    /// What became of the partner's commands; see [`Server::poll_event`].
+    #[must_use]
+    pub const fn poll_event(&mut self) -> Option<ServerEvent> {
+        self.server.poll_event()
+    }
+}

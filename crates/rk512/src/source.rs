@@ -1,0 +1,68 @@
+//! What the server asks for data.
+
+use crate::command::Command;
+use crate::reaction::ReactionError;
+
+/// The memory behind a [`Server`](crate::Server): the caller's, or a ready [`Memory`](crate::Memory).
+///
+/// For each command the server calls [`size`](Self::size), then [`open`](Self::open); after an
+/// `open` that succeeded, [`read`](Self::read) or [`write`](Self::write) once for each telegram,
+/// then exactly one of [`close`](Self::close) and [`abort`](Self::abort). The reaction goes out
+/// when the call has returned: a SEND that `write` and `close` accepted is a SEND that the partner
+/// may rely on.
+///
+/// Every error becomes the reaction's error number and ends the job.
+pub trait DataSource {
+    /// Units (words or bytes, as the area counts) in the block or area that `command` addresses,
+    /// counted from unit 0. The server itself checks that the job lies within them.
+    ///
+    /// # Errors
+    /// [`ReactionError::NoSuchBlock`] for a missing DB or DX, [`ReactionError::RequestType`] for
+    /// an area that is not served.
+    fn size(&mut self, command: &Command) -> Result<usize, ReactionError>;
+
+    /// A job begins.
+    ///
+    /// # Errors
+    /// [`ReactionError::Locked`] if the command's coordination flag is set,
+    /// [`ReactionError::Stopped`], [`ReactionError::AccessDenied`].
+    fn open(&mut self, command: &Command) -> Result<(), ReactionError> {
+        let _ = command;
+        Ok(())
+    }
+
+    /// Fills `data` with what stands `offset` bytes behind the start of the job.
+    ///
+    /// # Errors
+    /// Any; the job ends.
+    fn read(
+        &mut self,
+        command: &Command,
+        offset: usize,
+        data: &mut [u8],
+    ) -> Result<(), ReactionError>;
+
+    /// Takes `data` for the place `offset` bytes behind the start of the job.
+    ///
+    /// A job of more than 128 bytes comes in several calls: a source that must not show half of it
+    /// keeps them until [`close`](Self::close).
+    ///
+    /// # Errors
+    /// Any; the job ends.
+    fn write(&mut self, command: &Command, offset: usize, data: &[u8])
+    -> Result<(), ReactionError>;
+
+    /// All data of the job have moved; here the coordination flag is set.
+    ///
+    /// # Errors
+    /// Any; it becomes the last reaction.
+    fn close(&mut self, command: &Command) -> Result<(), ReactionError> {
+        let _ = command;
+        Ok(())
+    }
+
+    /// The job ended before all data had moved.
+    fn abort(&mut self, command: &Command) {
+        let _ = command;
+    }
+}

@@ -1,0 +1,183 @@
+//! Command line, threads and report.
+
+use core::error::Error;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+use proto3964r::{Config as LineConfig, Priority};
+use rk512::Area;
+use serialport::TTYPort;
+
+use crate::line::{Noise, Tap};
+use crate::party::{BLOCK, Order, Party, QVZ_MS, Tally};
+
+/// As many as the data blocks have room for: each begins one word further on.
+const MOST_ROUNDS: u8 = 60;
+
+struct Options {
+    out: PathBuf,
+    rounds: u8,
+    spacing: u64,
+    seed: u64,
+}
+
+fn options() -> Result<Options, Box<dyn Error>> {
+    let mut options = Options {
+        out: PathBuf::from("target/plc"),
+        rounds: 40,
+        spacing: 300,
+        seed: 1,
+    };
+    let mut arguments = std::env::args().skip(1);
+    while let Some(name) = arguments.next() {
+        let value = arguments
+            .next()
+            .ok_or_else(|| format!("{name}: no value"))?;
+        let number = || {
+            value
+                .parse::<u64>()
+                .map_err(|e| format!("{name} {value}: {e}"))
+        };
+        match name.as_str() {
+            "--out" => options.out = PathBuf::from(&value),
+            "--rounds" => {
+                options.rounds = u8::try_from(number()?)
+                    .ok()
+                    .filter(|&rounds| rounds <= MOST_ROUNDS)
+                    .ok_or_else(|| format!("--rounds {value}: at most {MOST_ROUNDS}"))?;
+            }
+            "--spacing" => options.spacing = number()?,
+            "--seed" => options.seed = number()?,
+            _ => return Err(format!("{name}: not one of --out --rounds --spacing --seed").into()),
+        }
+    }
+    Ok(options)
+}
+
+/// Data full of the control characters of 3964R, for DB 1 and DX 2 in turn.
+fn orders(rounds: u8, salt: u8) -> Vec<Order> {
+    let order = |round: u8| {
+        let area = if round.is_multiple_of(2) {
+            Area::db(1, round)
+        } else {
+            Area::dx(2, round)
+        };
+        let alphabet = [0x02, 0x03, 0x10, 0x10, 0x15, salt, round, 0x00];
+        let len = 2 * (40 + usize::from(round) * 31 % 150);
+        let data = alphabet.iter().cycle().skip(round.into()).step_by(3);
+        Order {
+            area,
+            data: data.take(len).copied().collect(),
+        }
+    };
+    (0..rounds).map(order).collect()
+}
+
+/// What the partner's memory must hold in the end.
+fn expected(orders: &[Order]) -> [[u8; BLOCK]; 2] {
+    let mut blocks = [[0; BLOCK]; 2];
+    for Order { area, data } in orders {
+        let [db, dx] = &mut blocks;
+        let block = if area.number() == 1 { db } else { dx };
+        let place = block.iter_mut().skip(2 * usize::from(area.start()));
+        for (to, &from) in place.zip(data) {
+            *to = from;
+        }
+    }
+    blocks
+}
+
+pub(crate) fn run() -> Result<(), Box<dyn Error>> {
+    let options = options()?;
+    fs::create_dir_all(&options.out)?;
+    let tap = Tap::new(File::create(options.out.join("line.log"))?);
+    let line = |priority| {
+        LineConfig::siemens_3964r(priority)
+            .with_qvz_ms(QVZ_MS)
+            .with_zvz_ms(QVZ_MS / 2)
+            .with_bwz_ms(4 * QVZ_MS)
+    };
+    let side = |priority, salt| {
+        let (master, slave) = TTYPort::pair()?;
+        let orders = orders(options.rounds, salt);
+        let party = Party::new(slave, line(priority), orders, tap.start);
+        Ok::<_, Box<dyn Error>>((master, party.map_err(|e| e.to_string())?))
+    };
+    let (pc_line, mut pc) = side(Priority::High, 0xA1)?;
+    let (plc_line, mut plc) = side(Priority::Low, 0xB2)?;
+    let (from_pc, from_plc) = (pc_line.try_clone_native()?, plc_line.try_clone_native()?);
+    let noise = |salt| Noise::new(options.seed.wrapping_mul(salt), options.spacing);
+
+    let working = AtomicUsize::new(2);
+    let (mut pc_memory, mut plc_memory) = ([[0; BLOCK]; 2], [[0; BLOCK]; 2]);
+    let (tallies, lines) = thread::scope(|scope| {
+        let forth = scope.spawn(|| tap.carry(from_pc, plc_line, '>', noise(0x9E37_79B9)));
+        let back = scope.spawn(|| tap.carry(from_plc, pc_line, '<', noise(0x85EB_CA6B)));
+        let pc_work = scope.spawn(|| stopping(&working, || pc.run(&mut pc_memory, &working)));
+        let plc_work = scope.spawn(|| stopping(&working, || plc.run(&mut plc_memory, &working)));
+        let tallies = [pc_work.join(), plc_work.join()];
+        tap.closed.store(true, Ordering::Relaxed);
+        (tallies, [forth.join(), back.join()])
+    });
+    for line in lines {
+        line.map_err(|_| "the line's thread panicked")??;
+    }
+    let [pc, plc] = tallies.map(|tally| tally.map_err(|_| "a side's thread panicked"));
+    let pc = pc?.map_err(|error| error.to_string())?;
+    let plc = plc?.map_err(|error| error.to_string())?;
+    let whole = plc_memory == expected(&orders(options.rounds, 0xA1))
+        && pc_memory == expected(&orders(options.rounds, 0xB2));
+    report(&options.out, &tap, &[("pc", pc), ("plc", plc)], whole)
+}
+
+/// Ends the other side's work too when this one fails.
+fn stopping<T, E>(working: &AtomicUsize, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    work().inspect_err(|_| working.store(0, Ordering::Relaxed))
+}
+
+fn report(
+    out: &Path,
+    tap: &Tap,
+    tallies: &[(&str, Tally)],
+    whole: bool,
+) -> Result<(), Box<dyn Error>> {
+    tap.log
+        .lock()
+        .map_err(|_| "the log's owner panicked")?
+        .flush()?;
+    let seconds = tap.start.elapsed().as_secs_f64();
+    let bytes = tap.bytes.load(Ordering::Relaxed);
+    let damaged = tap.damaged.load(Ordering::Relaxed);
+    let mut json = format!(
+        "{{\n  \"seconds\": {seconds:.3},\n  \"line_bytes\": {bytes},\n  \"damaged_bytes\": {damaged},\n"
+    );
+    println!("line: {bytes} bytes, {damaged} damaged, {seconds:.1} s");
+    for (name, tally) in tallies {
+        let Tally {
+            done,
+            failed,
+            different,
+            rejected,
+            bytes,
+        } = tally;
+        println!(
+            "{name}: {done} data blocks written and read back ({bytes} bytes), {different} different, \
+             {failed} jobs repeated, {rejected} blocks rejected"
+        );
+        json += &format!(
+            "  \"{name}\": {{ \"done\": {done}, \"bytes\": {bytes}, \"different\": {different}, \
+             \"jobs_repeated\": {failed}, \"blocks_rejected\": {rejected} }},\n"
+        );
+    }
+    json += &format!("  \"memories_as_written\": {whole}\n}}\n");
+    fs::write(out.join("report.json"), json)?;
+    println!("{}", out.join("report.json").display());
+    if !whole || tallies.iter().any(|(_, tally)| tally.different > 0) {
+        return Err("data were lost".into());
+    }
+    println!("nothing was lost");
+    Ok(())
+}
