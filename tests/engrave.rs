@@ -1,0 +1,276 @@
+//! The example `engrave` from outside: its files, checked by other code than its own.
+#![cfg(all(
+    test,
+    feature = "scara-kin",
+    feature = "stepper-sync",
+    feature = "pattern-codec"
+))]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn engrave(arguments: &[&str], out: &Path) -> Output {
+    let test = std::env::current_exe().unwrap();
+    let example = test.ancestors().nth(2).unwrap().join("examples/engrave");
+    assert!(
+        example.exists(),
+        "{} is missing: `cargo test` without a filter builds it",
+        example.display()
+    );
+    Command::new(example)
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap()
+}
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples/engrave")
+        .join(name)
+}
+
+/// A finished run's files.
+struct Run {
+    folder: TempDir,
+    report: Value,
+}
+
+impl Run {
+    fn of(arguments: &[&str]) -> Self {
+        let folder = TempDir::new().unwrap();
+        let output = engrave(arguments, folder.path());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{errors}");
+        let report = fs::read(folder.path().join("report.json")).unwrap();
+        Self {
+            report: serde_json::from_slice(&report).unwrap(),
+            folder,
+        }
+    }
+
+    fn number(&self, pointer: &str) -> f64 {
+        let value = self.report.pointer(pointer);
+        value
+            .and_then(Value::as_f64)
+            .unwrap_or_else(|| panic!("{pointer}"))
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.folder.path().join(name)).unwrap()
+    }
+
+    fn angle(&self, joint: &str, pulses: i32) -> f64 {
+        self.number(&format!("/machine/home_rad/{joint}"))
+            + f64::from(pulses) * self.number(&format!("/machine/rad_per_pulse/{joint}"))
+    }
+
+    fn user_to_machine(&self, x: f64, y: f64) -> (f64, f64) {
+        let [a, b, c, d, e, f] =
+            [0, 1, 2, 3, 4, 5].map(|k| self.number(&format!("/placement/{k}")));
+        (a * x + c * y + e, b * x + d * y + f)
+    }
+}
+
+/// Positions of theta1, theta2, theta3 and the vertical axis after each record.
+fn integrate(pattern: &[u8]) -> Vec<(bool, [i32; 4])> {
+    let mut position = [0; 4];
+    pattern
+        .chunks_exact(3)
+        .map(|record| {
+            let signed = |byte: u8, count: i32| if byte & 0x80 == 0 { count } else { -count };
+            let fast = record[0] & 0x1F == 0x1F;
+            if fast {
+                let count = i32::from(record[1]) << 8 | i32::from(record[2]);
+                position[usize::from(record[0] >> 5 & 3)] += signed(record[0], count);
+            } else {
+                // In the order theta3, theta1, theta2.
+                for (axis, byte) in [2, 0, 1].into_iter().zip(record) {
+                    position[axis] += signed(*byte, i32::from(byte & 0x1F));
+                }
+            }
+            (fast, position)
+        })
+        .collect()
+}
+
+#[test]
+fn shipped_drawings_keep_their_bound() {
+    for drawing in ["rosette", "lettering", "star"] {
+        let file = shipped(&format!("drawings/{drawing}.svg"));
+        let run = Run::of(&["--svg", file.to_str().unwrap()]);
+        let (worst, bound) = (run.number("/max_deviation_mm"), run.number("/bound_mm"));
+        assert!(worst <= bound, "{drawing}: {worst} > {bound}");
+        assert!(worst > 0.0 && run.number("/rms_deviation_mm") < worst);
+        assert!(run.number("/missing_mm") == 0.0);
+        assert!(run.read("engraved.svg").ends_with(b"</svg>\n"));
+    }
+}
+
+#[test]
+fn the_bytes_alone_draw_a_circle() {
+    let folder = TempDir::new().unwrap();
+    let svg = folder.path().join("circle.svg");
+    // Root units are not pixels: the view box is scaled and moved.
+    let text = r#"<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="-20 10 40 40">
+        <g transform="translate(5 20)"><circle cx="1" cy="4" r="9"/></g></svg>"#;
+    fs::write(&svg, text).unwrap();
+    let run = Run::of(&["--svg", svg.to_str().unwrap()]);
+    let (x, y) = run.user_to_machine(6.0, 24.0);
+    let (edge, _) = run.user_to_machine(15.0, 24.0);
+    let (radius, bound) = (edge - x, run.number("/bound_mm"));
+    let (upper, fore) = (
+        run.number("/machine/upper_mm"),
+        run.number("/machine/fore_mm"),
+    );
+    assert!(radius > 60.0, "{radius}: the bed is not filled");
+
+    let positions = integrate(&run.read("pattern.bin"));
+    let mut seen = [false; 72];
+    for (fast, [theta1, theta2, theta3, vertical]) in &positions {
+        if *fast {
+            continue;
+        }
+        assert!(*vertical < 0, "engraved above the glass");
+        let shoulder = run.angle("theta2", *theta2);
+        let elbow = shoulder + run.angle("theta1", *theta1);
+        let disc = elbow + run.angle("theta3", *theta3);
+        let at_x = upper * shoulder.cos() + fore * elbow.cos() - x;
+        let at_y = upper * shoulder.sin() + fore * elbow.sin() - y;
+        assert!((at_x.hypot(at_y) - radius).abs() <= bound);
+        // The disc is tangent: square to the radius, to some steps of the arm and its own.
+        let square = (disc.cos() * at_x + disc.sin() * at_y) / radius;
+        assert!(square.abs() < 0.08, "the disc is off by {square} rad");
+        let share = (at_y.atan2(at_x) / std::f64::consts::TAU).rem_euclid(1.0) * 72.0;
+        seen[(0..72)
+            .find(|k| f64::from(*k) + 1.0 > share)
+            .map_or(0, |k| usize::try_from(k).unwrap())] = true;
+    }
+    assert!(
+        seen.iter().all(|seen| *seen),
+        "a part of the circle is missing"
+    );
+    assert_eq!(positions.last().unwrap().1, [0; 4], "not home");
+}
+
+#[test]
+fn the_dump_has_every_pulse() {
+    let run = Run::of(&["--svg", shipped("drawings/star.svg").to_str().unwrap()]);
+    let dump = String::from_utf8(run.read("pulses.vcd")).unwrap();
+    let (head, body) = dump.split_once("$enddefinitions").unwrap();
+    for axis in ["theta1", "theta2", "theta3", "vertical"] {
+        let name = format!("{axis}_step");
+        assert!(head.contains(&format!("{axis}_dir")));
+        let declared = head.lines().find(|line| line.contains(&name)).unwrap();
+        let id = declared.split_whitespace().nth(3).unwrap();
+        let rising = body
+            .lines()
+            .filter(|line| line.strip_prefix('1') == Some(id));
+        let falling = body
+            .lines()
+            .filter(|line| line.strip_prefix('0') == Some(id));
+        let pulses = run
+            .report
+            .pointer(&format!("/pulses/{axis}"))
+            .and_then(Value::as_u64);
+        let rising = u64::try_from(rising.count()).unwrap();
+        assert_eq!(Some(rising), pulses, "{axis}");
+        // One more for the level at the start.
+        assert_eq!(
+            u64::try_from(falling.count()).unwrap(),
+            rising + 1,
+            "{axis}"
+        );
+    }
+    let stamps = body
+        .lines()
+        .filter_map(|line| line.strip_prefix('#')?.parse::<u64>().ok());
+    assert!(stamps.clone().is_sorted_by(|a, b| a < b));
+    let duration_ns = run.number("/duration_s") * 1e9;
+    let last: u32 = (stamps.last().unwrap() / 1000).try_into().unwrap();
+    assert!((f64::from(last) * 1e3 - duration_ns).abs() < 1e4);
+}
+
+#[test]
+fn bad_input_is_one_line_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let machine = fs::read_to_string(shipped("machine.toml")).unwrap();
+    let write = |name: &str, text: &str| {
+        let file = folder.path().join(name);
+        fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let short = write(
+        "short.toml",
+        &machine.replace("fore_mm = 132.0", "fore_mm = -1.0"),
+    );
+    let typo = write("typo.toml", &machine.replace("lift_mm", "lift_cm"));
+    let codes = write("codes.toml", &machine.replace("theta2 = 1", "theta2 = 0"));
+    let broken = write(
+        "broken.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg'><path d=",
+    );
+    let empty = write("empty.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    let wide =
+        "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><path d='M0 0H9'/></svg>";
+    let wide = write("wide.svg", wide);
+    let cases: [(&[&str], &str); 9] = [
+        (&["--svg", "nowhere.svg"], "nowhere.svg: No such file"),
+        (&["--svg", &broken], "broken.svg: "),
+        (&["--svg", &empty], "empty.svg: there is nothing to draw"),
+        (
+            &["--svg", &wide, "--placement", "1,0,0,1,500,0"],
+            "stroke 1 of 1: line 0 at 0 (500, 0): too far",
+        ),
+        (
+            &["--machine", &short],
+            "short.toml: [arm]: length -1 of the forearm",
+        ),
+        (
+            &["--machine", &typo],
+            "line 34, column 1: unknown field `lift_cm`",
+        ),
+        (
+            &["--machine", &codes],
+            "theta1 and theta2: both have the axis code 0",
+        ),
+        (&["--tolerance", "-1"], "--tolerance: -1 is not above 0 mm"),
+        (
+            &["--tolerance", "nan"],
+            "--tolerance: NaN is not above 0 mm",
+        ),
+    ];
+    for (arguments, wanted) in cases {
+        let out = folder.path().join("out");
+        let output = engrave(arguments, &out);
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(errors.contains(wanted), "{errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+        let left = fs::read_dir(&out).map_or(0, Iterator::count);
+        assert_eq!(left, 0, "{errors}");
+    }
+}
+
+#[test]
+fn what_is_not_engraved_is_said() {
+    let folder = TempDir::new().unwrap();
+    let svg = folder.path().join("text.svg");
+    let text = "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='90'><text x='9' y='9'>lost</text><path d='M0 0H50V50'/></svg>";
+    fs::write(&svg, text).unwrap();
+    let output = engrave(
+        &["--svg", svg.to_str().unwrap()],
+        &folder.path().join("out"),
+    );
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success());
+    assert!(
+        errors.contains("1 <text>: convert text to paths"),
+        "{errors}"
+    );
+}
