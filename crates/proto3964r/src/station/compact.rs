@@ -16,7 +16,7 @@ impl Flag {
     pub(super) const DISCARD: Self = Self(1 << 1);
     /// The receive buffer holds a telegram that has not been polled.
     pub(super) const RX_FULL: Self = Self(1 << 2);
-    /// The job gave way to the partner; its STX is paid back when a telegram comes of it.
+    /// The job gave way to the partner, and no telegram has come of it yet.
     pub(super) const YIELDED: Self = Self(1 << 3);
     /// A collision was seen in this setup attempt.
     pub(super) const COLLIDED: Self = Self(1 << 4);

@@ -53,6 +53,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn asked_to_receive(&mut self, now: Instant) {
         if self.flags.has(Flag::RX_FULL) {
             self.state = State::WaitBuffer;
+            self.limit = Instant::NEVER;
             self.deadline = now.plus_ms(self.config.effective_buffer_wait_ms());
         } else {
             self.invite(now);
@@ -117,17 +118,13 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.flags.set(Flag::RX_FULL);
                 self.notes.result(Note::Received);
                 self.collisions = 0;
-                self.pay_back();
+                // The line works: a job that gave way begins its attempts anew.
+                if self.job == Job::Open {
+                    self.setup = 0;
+                }
+                self.flags.clear(Flag::YIELDED);
                 self.go_idle(now);
             }
-        }
-    }
-
-    /// A collision that ends in a telegram costs the job nothing.
-    fn pay_back(&mut self) {
-        if self.flags.has(Flag::YIELDED) {
-            self.flags.clear(Flag::YIELDED);
-            self.setup = self.setup.saturating_sub(1);
         }
     }
 
@@ -140,6 +137,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.abandon(now, Abandoned::TooMany(self.rejections));
         } else {
             self.state = State::AwaitRepeat;
+            self.limit = Instant::NEVER;
             self.deadline = now.plus_ms(self.config.bwz_ms);
         }
     }

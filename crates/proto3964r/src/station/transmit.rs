@@ -218,6 +218,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         self.flags.clear(Flag::STX);
         self.encoder = Encoder::START;
         self.state = State::Sending;
+        self.limit = Instant::NEVER;
         self.deadline = now.plus_ms(self.config.qvz_ms);
     }
 
