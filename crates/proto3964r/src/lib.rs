@@ -12,11 +12,13 @@ pub mod ascii;
 mod config;
 mod event;
 pub mod frame;
+mod monitor;
 mod station;
 mod time;
 
 pub use config::{Collision, Config, IdleNoise, Priority, SilenceInBlock};
 pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
+pub use monitor::{Monitor, Observation, Observations, Side, Verdict};
 pub use station::{SendError, Station, Transmit};
 pub use time::Instant;

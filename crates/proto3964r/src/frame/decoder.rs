@@ -185,6 +185,11 @@ impl Progress {
         self.fault.is_some()
     }
 
+    /// Whether nothing but the BCC is missing.
+    pub(crate) fn awaits_bcc(&self) -> bool {
+        self.state == State::Bcc
+    }
+
     /// Whether the block consists of a single DLE so far.
     pub(crate) fn is_lone_dle(&self) -> bool {
         self.state == State::AfterDle && self.len == 0 && self.bcc == DLE && !self.is_faulty()

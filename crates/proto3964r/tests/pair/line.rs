@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use proto3964r::{Config, Event, Failure, Instant, Station, Transmit};
+use proto3964r::{Config, Event, Failure, Instant, Monitor, Observation, Side, Station, Transmit};
 
 /// Longest block on these lines.
 pub(crate) const BLOCK: usize = 48;
@@ -142,6 +142,10 @@ impl End {
 pub(crate) struct Pair {
     pub(crate) ends: [End; 2],
     pub(crate) now: u64,
+    /// Listens at the transmitters.
+    pub(crate) monitor: Monitor<BLOCK>,
+    /// Telegrams that the monitor saw, by sender.
+    pub(crate) overheard: [Vec<Vec<u8>>; 2],
     faults: Faults,
     character_us: u64,
     random: Random,
@@ -162,6 +166,8 @@ impl Pair {
         Self {
             ends: [End::new(a, a_jobs), End::new(b, b_jobs)],
             now: 0,
+            monitor: Monitor::new(a),
+            overheard: [Vec::new(), Vec::new()],
             faults,
             character_us: u64::from(character_us),
             random: Random::new(seed),
@@ -219,6 +225,15 @@ impl Pair {
     /// Puts a character on its way, or what the line makes of it.
     fn carry(&mut self, to: usize, byte: u8) {
         let mut arrival = self.now + self.character_us;
+        let side = if to == 1 { Side::A } else { Side::B };
+        for observation in self
+            .monitor
+            .handle_byte(Instant::from_micros(arrival), side, byte)
+        {
+            if let Observation::Block { payload, .. } = observation {
+                self.overheard[1 - to].push(payload.to_vec());
+            }
+        }
         self.characters_since_fault = self.characters_since_fault.saturating_add(1);
         let gentle = self.faults.gentle_gap.is_some();
         let spared = self
