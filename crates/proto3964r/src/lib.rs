@@ -10,9 +10,18 @@ extern crate std;
 
 pub mod ascii;
 mod config;
+#[cfg(feature = "embedded-io")]
+#[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
+pub mod embedded_io;
+#[cfg(feature = "embedded-io-async")]
+#[cfg_attr(docsrs, doc(cfg(feature = "embedded-io-async")))]
+pub mod embedded_io_async;
 mod event;
 pub mod frame;
 mod monitor;
+#[cfg(feature = "serialport")]
+#[cfg_attr(docsrs, doc(cfg(feature = "serialport")))]
+pub mod serialport;
 mod station;
 mod time;
 

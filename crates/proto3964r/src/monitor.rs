@@ -108,7 +108,6 @@ impl<const N: usize> Monitor<N> {
     }
 
     /// Takes a character that `side` sent; returns what it means.
-    #[must_use]
     pub fn handle_byte(&mut self, now: Instant, side: Side, byte: u8) -> Observations<'_> {
         self.take(Heard {
             now,
@@ -119,7 +118,6 @@ impl<const N: usize> Monitor<N> {
     }
 
     /// Takes a character of `side` that came in damaged.
-    #[must_use]
     pub fn handle_damaged(
         &mut self,
         now: Instant,
@@ -138,7 +136,6 @@ impl<const N: usize> Monitor<N> {
     /// Reports a wait that has become too long by `now`.
     ///
     /// Needed on a live line only: the next character does the same.
-    #[must_use]
     pub fn handle_timeout(&mut self, now: Instant) -> Observations<'_> {
         self.marks = Marks::default();
         self.check_wait(now);
@@ -174,7 +171,7 @@ impl<const N: usize> Monitor<N> {
 
     /// Reports, once per wait, that the limit has passed.
     fn check_wait(&mut self, now: Instant) {
-        if !self.poll_timeout().is_some_and(|due| due <= now) {
+        if self.poll_timeout().is_none_or(|due| due > now) {
             return;
         }
         self.overdue = true;
@@ -222,7 +219,7 @@ impl<const N: usize> Monitor<N> {
             Phase::Requested(_) => self.answer_to_request(heard),
             Phase::Collided(_) => self.in_collision(heard),
             Phase::Block(by) if heard.side == by => self.block_character(heard),
-            Phase::Block(by) => self.into_block(heard, by),
+            Phase::Block(by) => self.interruption(heard, by),
             Phase::AwaitAck(by, good) if heard.side != by => self.answer_to_block(heard, good),
             Phase::AwaitAck(..) => self.in_idle(heard),
         }
@@ -366,7 +363,7 @@ impl<const N: usize> Monitor<N> {
     }
 
     /// The receiver speaks while the block goes on.
-    fn into_block(&mut self, heard: Heard, by: Side) {
+    fn interruption(&mut self, heard: Heard, by: Side) {
         let Heard {
             now, side, byte, ..
         } = heard;

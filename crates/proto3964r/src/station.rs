@@ -366,6 +366,12 @@ impl<const N: usize, const T: usize> Station<N, T> {
         Some(due)
     }
 
+    /// Whether [`poll_event`](Self::poll_event) has something.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        !self.notes.is_empty()
+    }
+
     /// The next event, in the order in which they happened.
     #[must_use]
     pub fn poll_event(&mut self) -> Option<Event<'_>> {

@@ -1,7 +1,10 @@
 //! Conversations as a listener hears them.
 
-use alloc::{string::ToString, vec, vec::Vec};
-use std::string::String;
+use alloc::{
+    string::{String, ToString},
+    vec,
+    vec::Vec,
+};
 
 use proptest::prelude::*;
 

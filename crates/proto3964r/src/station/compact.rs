@@ -143,6 +143,10 @@ impl Notes {
         self.push(note, FOR_DIAGNOSIS)
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.first().is_none_or(Option::is_none)
+    }
+
     pub(super) fn pop(&mut self) -> Option<Note> {
         self.0.rotate_left(1);
         self.0.last_mut()?.take()
