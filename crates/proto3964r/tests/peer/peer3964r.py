@@ -14,6 +14,9 @@ Where the manuals leave a choice, this station decides:
 * A bad answer to STX or to a block: the rest of the same read is dropped, so that one burst
   costs one attempt; only a STX in it is heeded, and only by the low priority.
 * A request that yielded in a collision spends a setup attempt; a good reception refunds it.
+* At start-up, what came in before is discarded and a NAK sent. A NAK that crosses a STX makes
+  the partner repeat the STX, and the second one counts as data: 3964R rejects that block, plain
+  3964 delivers it. For exact comparisons in plain 3964 use --no-startup-nak.
 * The cause reported with a failure is the first error of the job; BREAK fails the running job.
 
 Standard input takes one job per line in hexadecimal ("-" is the empty telegram, blank lines are
@@ -338,3 +341,145 @@ class Station:
             self._enter(State.IDLE)
         else:
             self._retry(cause, block_lost=True)
+
+
+# Byte-level vectors: configuration, stimulus, bytes expected, events expected. In the stimulus,
+# a line of bytes is one read ("!" marks a line error), +N lets time pass, "hold" blocks the
+# output line; "@N" in an expectation is the time of what follows. Default: low priority, 3964R.
+Vector = Tuple[str, Config, str, str, str]
+LOW, HIGH, PLAIN = Config(), Config(high=True), Config(with_bcc=False, qvz=550)
+RK_SEND = "00 00 41 44 05 0A 00 02 FF FF 12 34 AB CD"
+EUCHNER = "6C A5 D5 C3 C8 CE C5 D2"
+BLOCK = "41 10 03 52"
+VECTORS: List[Vector] = [
+    ("1 one byte", LOW, "02, 41 10 03 52", "10 10", "received 41"),
+    ("2 empty", LOW, "02, 10 03 13", "10 10", "received"),
+    ("3 DLE", LOW, "02, 10 10 10 03 13", "10 10", "received 10"),
+    ("4 ETX is data", LOW, "02, 03 10 03 10", "10 10", "received 03"),
+    ("5 BCC=STX", LOW, "02, 11 10 03 02", "10 10", "received 11"),
+    ("6 BCC=NAK", LOW, "02, 06 10 03 15", "10 10", "received 06"),
+    ("7 BCC=ETX", LOW, "02, 41 51 10 03 03", "10 10", "received 41 51"),
+    ("9 control characters", LOW, "02, 02 10 10 03 10 10 10 10 15 10 03 07", "10 10",
+     "received 02 10 03 10 10 15"),
+    ("10 DLE ETX is data", LOW, "02, 10 10 03 10 03 10", "10 10", "received 10 03"),
+    ("11 three DLE", LOW, "02, 10 10 10 03 13", "10 10", "received 10"),
+    ("14 send DLE", LOW, "send 01 10 02, 10, 10", "02 01 10 10 02 10 03 10", "sent 3"),
+    ("15 send final DLE", LOW, "send 41 10, 10, 10", "02 41 10 10 10 03 52", "sent 2"),
+    ("16 BCC=DLE single", LOW, "send 03, 10, 10", "02 03 10 03 10", "sent 1"),
+    ("17 send 3964", PLAIN, "send 41, 10, 10", "02 41 10 03", "sent 1"),
+    ("18 receive 3964", PLAIN, "02, 41 10 03", "10 10", "received 41"),
+    ("19 one read", LOW, "02 41 10 03 52", "10 10", "received 41"),
+    ("21 send empty", LOW, "send, 10, 10", "02 10 03 13", "sent 0"),
+    ("22 stray DLE", LOW, "send 41, 10, 10, 10, +220", f"02 {BLOCK} @220 15",
+     "sent 1 @220 error noise"),
+    ("23 wrong BCC, repeat", LOW, "02, 41 10 03 00, +100, 02, 41 10 03 52", "10 15 @100 10 10",
+     "error bcc @100 received 41"),
+    ("24 BWZ", LOW, "02, 41 10 03 00, +3999, +1", "10 15",
+     "error bcc @4000 receive-failed bwz 1"),
+    ("26 DLE illegal", LOW, "02, 10 41 10 03 42", "10 15", "error dle"),
+    ("27 line error", LOW, "02, 41 42! 10 03 10", "10 15", "error line"),
+    ("28 ZVZ in data", LOW, "02, 41 42, +219, +1", "10 @220 15", "@220 error zvz"),
+    ("29 ZVZ after DLE", LOW, "02, +220", "10 @220 15", "@220 error zvz"),
+    ("30 ZVZ before BCC", LOW, "02, 41 10 03, +220", "10 @220 15", "@220 error zvz"),
+    ("32 overlong", replace(LOW, max_block=4), "02, 41 42 43 44 45 10 03 52", "10 15",
+     "error overflow"),
+    ("34 buffer freed", LOW, "full, 02, +399, free", "@399 10", ""),
+    ("35 no buffer", LOW, "full, 02, +400", "@400 15", "@400 error nobuf"),
+    ("36 noise", LOW, "41, +219, +1, 02", "@220 15 10", "@220 error noise"),
+    ("38 NAK in idle", LOW, "15, +1000", "", ""),
+    ("39 DLE in idle", LOW, "10, +220", "@220 15", "@220 error noise"),
+    ("41 NAK to STX", LOW, "send 55, 15, 10, 10", "02 02 55 10 03 46", "sent 1"),
+    ("43 garbage to STX", LOW, "send 41, 55, 10, 10", f"02 02 {BLOCK}", "sent 1"),
+    ("44 no answer", LOW, "send 41, +12000",
+     "02 @2000 02 @4000 02 @6000 02 @8000 02 @10000 02 @12000 15", "@12000 failed setup timeout 6"),
+    ("45 no answer to block", LOW, "send 41" + ", 10, +2000" * 6,
+     f"02 {BLOCK} " + "".join(f"@{t} 02 {BLOCK} " for t in range(2000, 12000, 2000)) + "@12000 15",
+     "@12000 failed transfer timeout 6"),
+    ("46 NAK to block", LOW, "send 41" + ", 10, 15" * 6, f"02 {BLOCK} " * 6 + "15",
+     "failed transfer nak 6"),
+    ("49 QVZ of 3964", PLAIN, "send 41, +549, +1", "02 @550 02", ""),
+    ("50 collision, low", LOW, "send 41, 02, 42 10 03 51, 10, 10", f"02 10 10 02 {BLOCK}",
+     "collision 1 received 42 sent 1"),
+    ("51 collision, high", HIGH, "send 41, 02, +10, 10, 10", f"02 @10 {BLOCK}",
+     "collision 1 @10 sent 1"),
+    ("53 both high", HIGH, "send 41, 02, +2000, 02, +2000", "02 @2000 02 @4000 02",
+     "collision 1 @2000 collision 2"),
+    ("56 LED 7", LOW, "send 37, 10, 10", "02 37 10 03 24", "sent 1"),
+    ("57 text", LOW, f"send {EUCHNER}, 10, 10", f"02 {EUCHNER} 10 03 DD", "sent 8"),
+    ("58 status", LOW, "send 23, 10, 10, 02, 30 41 51 10 03 33", "02 23 10 03 30 10 10",
+     "sent 1 received 30 41 51"),
+    ("59 RK512 SEND", LOW, f"send {RK_SEND}, 10, 10, 02, 00 00 00 00 10 03 13",
+     f"02 {RK_SEND} 10 03 5B 10 10", "sent 14 received 00 00 00 00"),
+    # Rules of the text without a numbered vector
+    ("NAK within the block", LOW, "send 41, hold, 10, 15, go, 10, 10", f"02 02 {BLOCK}", "sent 1"),
+    ("character within the block", LOW, "send 41, hold, 10, 55, +219, go, +1, 10, 10",
+     f"02 @220 15 02 {BLOCK}", "@220 sent 1"),
+    ("six bad blocks", LOW, "02, 41 10 03 00, " * 6 + "+9000", "10 15 " * 6,
+     "error bcc " * 6 + "receive-failed attempts 6"),
+    ("job survives a failed reception", LOW, "send 41, 02, 42, +220, 10, 10",
+     f"02 10 @220 15 02 {BLOCK}", "collision 1 @220 error zvz sent 1"),
+    ("a burst is one attempt", LOW, "send 41, 55 56 57 58, 10, 10", f"02 02 {BLOCK}", "sent 1"),
+]
+
+
+def simulate(config: Config, stimulus: str) -> Tuple[str, str]:
+    """Run one stimulus against a simulated clock: bytes sent and events."""
+    station, now, held = Station(config), 0, False
+    logs: Tuple[List[str], List[str]] = ([], [])
+    marks = [0, 0]
+
+    def collect() -> None:
+        texts: Tuple[List[str], List[str]] = ([], list(station.events))
+        station.events.clear()
+        if not held:
+            texts[0].extend(f"{byte:02X}" for byte in station.output)
+            station.output.clear()
+            station.drained(now)
+        for which, text in enumerate(texts):
+            if text and marks[which] != now:
+                logs[which].append(f"@{now}")
+                marks[which] = now
+            logs[which].extend(text)
+
+    for step in filter(None, stimulus.split(", ")):
+        word, _, rest = step.partition(" ")
+        if word == "send":
+            station.send(bytes.fromhex(rest), now)
+        elif word in ("full", "free"):
+            station.set_buffer_free(word == "free", now)
+        elif word in ("hold", "go"):
+            held = word == "hold"
+        elif word.startswith("+"):
+            end = now + int(word)
+            while (due := station.deadline()) is not None and due <= end:
+                now = due
+                station.tick(now)
+                collect()
+            now = end
+        else:
+            station.receive((int(t[:2], 16) | LINE_ERROR * t.endswith("!") for t in step.split()),
+                            now)
+        collect()
+    return " ".join(logs[0]), " ".join(logs[1])
+
+
+def self_test() -> int:
+    failed = 0
+    for name, config, stimulus, *expected in VECTORS:
+        result = simulate(config, stimulus)
+        if result != (expected[0].strip(), expected[1].strip()):
+            failed += 1
+            print(f"{name}: expected {expected}, got {list(result)}")
+    print(f"{len(VECTORS) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="A Siemens 3964(R) station for tests")
+    parser.add_argument("--self-test", action="store_true", required=True)
+    parser.parse_args()
+    return self_test()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
