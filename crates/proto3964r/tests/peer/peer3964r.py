@@ -474,11 +474,150 @@ def self_test() -> int:
     return 1 if failed else 0
 
 
+class Port:
+    """A terminal device in raw mode; line errors arrive marked, output can be withdrawn."""
+
+    def __init__(self, path: str, baud: int, parity: str, damage: float, seed: int) -> None:
+        self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        speed = getattr(termios, f"B{baud}")
+        cflag = termios.CS8 | termios.CREAD | termios.CLOCAL
+        cflag |= {"none": 0, "even": termios.PARENB, "odd": termios.PARENB | termios.PARODD}[parity]
+        control = termios.tcgetattr(self.fd)[6]
+        control[termios.VMIN], control[termios.VTIME] = 1, 0
+        iflag = termios.INPCK | termios.PARMRK  # line errors as FF 00 x, a data FF doubled
+        mode = [iflag, 0, cflag, 0, speed, speed, control]
+        termios.tcsetattr(self.fd, termios.TCSANOW, mode)
+        self._damage, self._random = damage, random.Random(seed)
+        self._waiting = bytearray()
+        self._marked = bytearray()
+
+    def read(self) -> List[int]:
+        try:
+            data = os.read(self.fd, 4096)
+        except BlockingIOError:
+            return []
+        if not data:
+            raise OSError("the line was hung up")
+        symbols: List[int] = []
+        for byte in data:
+            self._marked.append(byte)
+            if self._marked[0] == 0xFF and self._marked[1:] in (b"", b"\0"):
+                continue  # the mark is incomplete
+            damaged = len(self._marked) == 3
+            symbols.append(BREAK if damaged and not byte else byte | LINE_ERROR * damaged)
+            self._marked.clear()
+        return symbols
+
+    def write(self, station: Station) -> bool:
+        """Hand over what the line can take; true once everything has left."""
+        if station.purge:
+            termios.tcflush(self.fd, termios.TCOFLUSH)
+            self._waiting.clear()
+            station.purge = False
+        for byte in station.output:
+            hit = self._random.random() < self._damage
+            self._waiting.append(byte ^ (1 << self._random.randrange(8) if hit else 0))
+        station.output.clear()
+        while self._waiting and self._queued() < 32:
+            try:
+                del self._waiting[: os.write(self.fd, self._waiting[:32])]
+            except BlockingIOError:
+                break
+        return not self._waiting and self._queued() == 0
+
+    def _queued(self) -> int:
+        return int(struct.unpack("i", fcntl.ioctl(self.fd, termios.TIOCOUTQ, bytes(4)))[0])
+
+
+def clock() -> int:
+    return time.monotonic_ns() // 1_000_000
+
+
+def run(options: argparse.Namespace, config: Config) -> int:
+    port = Port(options.port, options.baud, options.parity, options.damage, options.seed)
+    station = Station(config)
+    if options.startup_nak:
+        termios.tcflush(port.fd, termios.TCIFLUSH)  # a request the NAK calls off is not a request
+        station.start()
+    end = clock() + int(options.seconds * 1000) if options.seconds is not None else None
+    lines, stdin_open, bad_input = bytearray(), True, False
+    finished_at: Optional[int] = None
+    while True:
+        now = clock()
+        station.tick(now)
+        left = port.write(station)
+        if left:
+            station.drained(now)
+        for event in station.events:
+            print(event, flush=True)
+        station.events.clear()
+        met = not stdin_open and not station.jobs and station.received >= options.expect
+        if not (met and left and station.state not in RECEIVING):
+            finished_at = None
+        elif finished_at is None:
+            finished_at = now
+        over = finished_at is not None and now - finished_at >= options.linger_ms
+        if over or (end is not None and now >= end):
+            if left:
+                termios.tcdrain(port.fd)
+            return 0 if met and not station.failed and not bad_input else 1
+        finish = None if finished_at is None else finished_at + options.linger_ms
+        poll = None if left else now + 2
+        due = [t for t in (station.deadline(), end, finish, poll) if t is not None]
+        timeout = max(0, min(due) - now) / 1000 if due else None
+        sources = [port.fd, 0] if stdin_open else [port.fd]
+        ready, _, _ = select.select(sources, [], [], timeout)
+        if port.fd in ready:
+            station.receive(port.read(), clock())
+        if 0 in ready:
+            data = os.read(0, 65536)
+            stdin_open = bool(data)
+            *complete, rest = bytes(lines + (data or b"\n")).decode("latin-1").split("\n")
+            lines[:] = rest.encode("latin-1")
+            for line in filter(None, map(str.strip, complete)):
+                try:
+                    station.send(b"" if line == "-" else bytes.fromhex(line), clock())
+                except ValueError:
+                    print(f"not a hexadecimal line: {line}", file=sys.stderr)
+                    bad_input = True
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="A Siemens 3964(R) station for tests")
-    parser.add_argument("--self-test", action="store_true", required=True)
-    parser.parse_args()
-    return self_test()
+    add = parser.add_argument
+    add("--self-test", action="store_true", help="run the byte-level vectors and exit")
+    add("--port", help="path of the serial device or pseudo-terminal")
+    add("--baud", type=int, default=9600)
+    add("--parity", choices=("none", "even", "odd"), default="none")
+    add("--priority", choices=("high", "low"), default="low")
+    add("--protocol", choices=("3964r", "3964"), default="3964r")
+    add("--qvz-ms", type=int, help="acknowledgement time (3964R 2000, 3964 550)")
+    add("--zvz-ms", type=int, default=Config.zvz, help="character time")
+    add("--bwz-ms", type=int, default=Config.bwz, help="block waiting time")
+    add("--setup-attempts", type=int, default=Config.setup_attempts)
+    add("--transfer-attempts", type=int, default=Config.transfer_attempts)
+    add("--max-block", type=int, default=Config.max_block, help="longest payload accepted")
+    add("--no-startup-nak", dest="startup_nak", action="store_false")
+    add("--expect", type=int, default=0, help="stay until so many telegrams are received")
+    add("--seconds", type=float, help="stay no longer than this")
+    add("--linger-ms", type=int, default=0, help="go on answering this long when finished")
+    add("--damage", type=float, default=0.0, help="chance that an outgoing byte has a bit flipped")
+    add("--seed", type=int, default=0, help="of the damage")
+    options = parser.parse_args()
+    if options.self_test:
+        return self_test()
+    if options.port is None:
+        parser.error("--port is required")
+    with_bcc = options.protocol == "3964r"
+    qvz = options.qvz_ms or (2000 if with_bcc else 550)
+    config = Config(
+        options.priority == "high", with_bcc, qvz, options.zvz_ms, options.bwz_ms,
+        options.setup_attempts, options.transfer_attempts, options.max_block)
+    try:
+        return run(options, config)
+    except OSError as error:
+        print(f"{options.port}: {error}", file=sys.stderr)
+        return 1
 
 
 if __name__ == "__main__":
