@@ -501,7 +501,7 @@ class Port:
         symbols: List[int] = []
         for byte in data:
             self._marked.append(byte)
-            if self._marked[0] == 0xFF and self._marked[1:] in (b"", b"\0"):
+            if self._marked[0] == 0xFF and bytes(self._marked[1:]) in (b"", b"\0"):
                 continue  # the mark is incomplete
             damaged = len(self._marked) == 3
             symbols.append(BREAK if damaged and not byte else byte | LINE_ERROR * damaged)
