@@ -97,8 +97,9 @@ pub struct Config {
     /// 10 000, longer than a block of 4096 bytes at 9600 bit/s.
     pub babble_ms: u16,
     /// Time that one character takes on the line, in us. QVZ, ZVZ and BWZ then count from the end
-    /// of the transmission, however far ahead the output is queued. 0 when bytes are handed to the
-    /// line one by one.
+    /// of the transmission, however far ahead the output is queued, and what comes in less than
+    /// two characters after STX, such as a NAK that crosses it, is not taken for its answer. 0
+    /// when bytes are handed to the line one by one, or when its speed is not known.
     pub character_us: u32,
     /// Setup attempts: STX per transfer attempt. Siemens: 6.
     pub setup_attempts: u8,

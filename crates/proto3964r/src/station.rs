@@ -1,6 +1,8 @@
 //! One end of the line.
 
 mod compact;
+#[cfg(test)]
+mod explore;
 mod receive;
 #[cfg(test)]
 mod tests;

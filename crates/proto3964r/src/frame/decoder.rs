@@ -185,6 +185,12 @@ impl Progress {
         self.fault.is_some()
     }
 
+    /// Payload bytes in the buffer.
+    #[cfg(test)]
+    pub(crate) fn stored(&self) -> usize {
+        usize::from(self.len)
+    }
+
     /// Whether nothing but the BCC is missing.
     pub(crate) fn awaits_bcc(&self) -> bool {
         self.state == State::Bcc

@@ -103,7 +103,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         }
     }
 
-    /// When the characters of the block that were handed out are on the line.
+    /// When STX, or the part of the block that was handed out, is on the line.
     #[inline]
     fn end_of_output(&self) -> Instant {
         self.deadline.minus_ms(self.config.qvz_ms)
@@ -199,8 +199,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// The answer to STX.
     pub(super) fn setup_answer(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
         match (byte, error) {
-            (DLE, None) => self.start_block(now),
             (STX, None) => self.collision(now),
+            _ if now < self.earliest_answer() => {}
+            (DLE, None) => self.start_block(now),
             (NAK, None) => self.next_setup(now, Cause::Nak, Instant::ZERO),
             _ => {
                 let burst_end = now.plus_ms(self.config.zvz_ms);
@@ -211,6 +212,13 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 }
             }
         }
+    }
+
+    /// STX and the answer take a character time each: what comes before has left the partner
+    /// before it saw STX, for instance a NAK that crosses STX.
+    fn earliest_answer(&self) -> Instant {
+        self.end_of_output()
+            .plus_us(u64::from(self.config.character_us))
     }
 
     fn start_block(&mut self, now: Instant) {
