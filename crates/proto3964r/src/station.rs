@@ -58,7 +58,7 @@ pub struct Station<const N: usize, const T: usize = N> {
     /// What the state waits for; `NEVER` in idle.
     deadline: Instant,
     /// Receiving and quiet: the end of patience, whatever comes in. Waiting for DLE: the end of
-    /// the burst that spoiled the attempt before.
+    /// the burst that spoiled the attempt before. Sending: the end of the output so far.
     limit: Instant,
     config: Config,
     decoder: Progress,
@@ -95,16 +95,21 @@ enum State {
     Idle,
     /// STX came, the receive buffer is in use.
     WaitBuffer,
-    /// DLE is sent, the block comes in.
+    /// DLE is sent, the block comes in; nothing is wrong with it and the next character may be data.
     Receiving,
+    /// The same behind a DLE, in front of the BCC, or with an error noted.
+    ReceivingOther,
     /// NAK is sent, the repeat is awaited within BWZ.
     AwaitRepeat,
     /// Silence is awaited after noise in idle.
     NoiseQuiet,
     /// STX is queued or sent, DLE is awaited.
     AwaitDle,
-    /// The block goes out.
+    /// The block goes out; a data byte is next, or the end. `limit` is when the characters that
+    /// were handed out are on the line, and QVZ later the output has stalled.
     Sending,
+    /// The same with something else to send first: a reply, or the rest of DLE DLE, DLE ETX BCC.
+    SendingOther,
     /// Silence is awaited after something interrupted the block.
     ResendQuiet,
     /// The block is out, its answer is awaited.
@@ -279,7 +284,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub fn handle_break(&mut self, now: Instant) {
         self.handle_timeout(now);
         self.diagnose(Note::Break);
-        if self.state.is_sending() {
+        if self.state.is_job() {
             self.end_job(now, Cause::Break);
         } else {
             self.go_idle(now);
@@ -294,7 +299,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let mut rest = bytes;
         while !rest.is_empty() {
             self.handle_timeout(now);
-            rest = if self.state == State::Receiving {
+            rest = if self.state.is_receiving() {
                 self.receive_block(now, rest)
             } else {
                 let Some((&byte, behind)) = rest.split_first() else {
@@ -309,12 +314,21 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Takes one character from the line, as an interrupt handler has it.
     #[inline]
     pub fn handle_byte(&mut self, now: Instant, byte: u8) {
-        if self.state == State::Receiving && now < self.deadline && now < self.limit {
-            self.receive_byte(now, byte);
+        if self.state == State::Receiving
+            && now < self.deadline
+            && self.decoder.push_plain(byte, &mut self.rx)
+        {
+            self.deadline = now.plus_ms(self.config.zvz_ms);
         } else {
-            self.handle_timeout(now);
-            self.character(now, byte, None);
+            self.handle_other_byte(now, byte);
         }
+    }
+
+    /// Anything but one more data byte.
+    #[inline(never)]
+    fn handle_other_byte(&mut self, now: Instant, byte: u8) {
+        self.handle_timeout(now);
+        self.character(now, byte, None);
     }
 
     /// Takes one character that came in damaged.
@@ -329,7 +343,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Does what is due at `now`; nothing when nothing is.
     #[inline]
     pub fn handle_timeout(&mut self, now: Instant) {
-        if now >= self.deadline || self.state.is_listening() {
+        if now >= self.deadline || self.state.has_other_due() {
             self.handle_due(now);
         }
     }
@@ -340,10 +354,18 @@ impl<const N: usize, const T: usize> Station<N, T> {
         } else if self.poll_timeout().is_some_and(|due| due <= now) {
             match self.state {
                 State::Idle => {}
-                State::WaitBuffer | State::Receiving | State::AwaitRepeat | State::NoiseQuiet => {
+                State::WaitBuffer
+                | State::Receiving
+                | State::ReceivingOther
+                | State::AwaitRepeat
+                | State::NoiseQuiet => {
                     self.receive_timeout(now);
                 }
-                State::AwaitDle | State::Sending | State::ResendQuiet | State::AwaitAck => {
+                State::AwaitDle
+                | State::Sending
+                | State::SendingOther
+                | State::ResendQuiet
+                | State::AwaitAck => {
                     self.transmit_timeout(now);
                 }
             }
@@ -360,7 +382,8 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let due = match self.state {
             State::Idle => return None,
             State::WaitBuffer if !self.flags.has(Flag::RX_FULL) => Instant::ZERO,
-            State::Receiving | State::NoiseQuiet | State::ResendQuiet => {
+            State::Sending | State::SendingOther => self.limit.plus_ms(self.config.qvz_ms),
+            State::ReceivingOther | State::NoiseQuiet | State::ResendQuiet => {
                 self.deadline.min(self.limit)
             }
             _ => self.deadline,
@@ -428,7 +451,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// One character, in any state.
     fn character(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
         match self.state {
-            State::Receiving => {
+            State::Receiving | State::ReceivingOther => {
                 if error.is_some() {
                     self.line_error = self.line_error.or(error);
                 }
@@ -441,7 +464,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             }
             State::AwaitDle if self.flags.has(Flag::STX) => self.early_character(now, byte, error),
             State::AwaitDle => self.setup_answer(now, byte, error),
-            State::Sending => self.interrupted(now, byte, error),
+            State::Sending | State::SendingOther => self.interrupted(now, byte, error),
             State::AwaitAck => self.block_answer(now, byte, error),
         }
     }
@@ -459,19 +482,27 @@ impl<const N: usize, const T: usize> Station<N, T> {
 }
 
 impl State {
-    /// Whether the station has sent or is about to send STX for its job.
+    /// Whether a block comes in.
+    const fn is_receiving(self) -> bool {
+        matches!(self, Self::Receiving | Self::ReceivingOther)
+    }
+
+    /// Whether a block goes out.
     const fn is_sending(self) -> bool {
-        matches!(
-            self,
-            Self::AwaitDle | Self::Sending | Self::ResendQuiet | Self::AwaitAck
-        )
+        matches!(self, Self::Sending | Self::SendingOther)
+    }
+
+    /// Whether the station has sent or is about to send STX for its job.
+    const fn is_job(self) -> bool {
+        self.is_sending() || matches!(self, Self::AwaitDle | Self::ResendQuiet | Self::AwaitAck)
     }
 
     /// Whether something beside `deadline` may be due.
-    const fn is_listening(self) -> bool {
-        matches!(
-            self,
-            Self::WaitBuffer | Self::Receiving | Self::NoiseQuiet | Self::ResendQuiet
-        )
+    const fn has_other_due(self) -> bool {
+        self.is_sending()
+            || matches!(
+                self,
+                Self::WaitBuffer | Self::ReceivingOther | Self::NoiseQuiet | Self::ResendQuiet
+            )
     }
 }

@@ -191,6 +191,27 @@ impl Progress {
         usize::from(self.len)
     }
 
+    /// Whether the next character may be data.
+    #[inline]
+    pub(crate) fn is_in_data(&self) -> bool {
+        self.state == State::Data
+    }
+
+    /// Takes a data byte that fits; `false`, and nothing taken, for anything that needs a thought.
+    /// Only while [`is_in_data`](Self::is_in_data).
+    #[inline]
+    pub(crate) fn push_plain(&mut self, byte: u8, buffer: &mut [u8]) -> bool {
+        match buffer.get_mut(usize::from(self.len)) {
+            Some(slot) if byte != DLE && self.len < u16::MAX => {
+                *slot = byte;
+                self.len = self.len.wrapping_add(1);
+                self.bcc ^= byte;
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// Whether nothing but the BCC is missing.
     pub(crate) fn awaits_bcc(&self) -> bool {
         self.state == State::Bcc

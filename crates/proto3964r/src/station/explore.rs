@@ -208,7 +208,7 @@ impl World {
 impl Small {
     /// Clears what can no longer have any effect.
     fn forget(&mut self) {
-        let used = if self.state == State::Receiving {
+        let used = if self.state.is_receiving() {
             self.decoder.stored()
         } else {
             0
@@ -217,11 +217,11 @@ impl Small {
             *byte = 0;
         }
         self.rx_len = 0;
-        if self.state != State::Receiving {
+        if !self.state.is_receiving() {
             self.decoder = Progress::START;
             self.line_error = None;
         }
-        if self.state != State::Sending {
+        if !self.state.is_sending() {
             self.encoder = Encoder::START;
         }
         self.flags.clear(Flag::DISCARD); // a line that takes one character at a time has none

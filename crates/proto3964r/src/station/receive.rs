@@ -96,10 +96,16 @@ impl<const N: usize, const T: usize> Station<N, T> {
     #[inline]
     fn after_characters(&mut self, now: Instant, block: Option<Result<usize, FrameError>>) {
         self.deadline = now.plus_ms(self.config.zvz_ms);
+        let faulty = self.decoder.is_faulty() || self.line_error.is_some();
         if let Some(block) = block {
             self.block_ended(now, block);
-        } else if self.decoder.is_faulty() || self.line_error.is_some() {
+        } else if faulty {
+            self.state = State::ReceivingOther;
             self.limit = self.limit.min(now.plus_ms(self.config.babble_ms));
+        } else if self.decoder.is_in_data() {
+            self.state = State::Receiving;
+        } else {
+            self.state = State::ReceivingOther;
         }
     }
 

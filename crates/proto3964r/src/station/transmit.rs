@@ -31,13 +31,13 @@ impl<const N: usize, const T: usize> Station<N, T> {
             *slot = byte;
             len += 1;
         }
-        if self.state == State::Sending
+        if self.state.is_sending()
             && let Some(free) = out.get_mut(len..)
         {
             let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
             let written = self.encoder.fill(self.config.check, payload, free);
             len += written;
-            self.handed_out(now, written);
+            self.handed_out(now, u32::try_from(written).unwrap_or(u32::MAX));
         }
         out.get(..len)
             .filter(|bytes| !bytes.is_empty())
@@ -50,11 +50,23 @@ impl<const N: usize, const T: usize> Station<N, T> {
     #[must_use]
     #[inline]
     pub fn poll_transmit_byte(&mut self, now: Instant) -> Option<u8> {
+        if self.state == State::Sending
+            && let Some(byte) = self.encoder.next_plain(&self.tx, self.tx_len)
+        {
+            self.extend_output(now, 1);
+            return Some(byte);
+        }
+        self.next_other_byte(now)
+    }
+
+    /// Anything but one more data byte.
+    #[inline(never)]
+    fn next_other_byte(&mut self, now: Instant) -> Option<u8> {
         self.flags.clear(Flag::DISCARD);
         if let Some(byte) = self.next_control(now) {
             return Some(byte);
         }
-        if self.state != State::Sending {
+        if !self.state.is_sending() {
             return None;
         }
         let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
@@ -81,29 +93,48 @@ impl<const N: usize, const T: usize> Station<N, T> {
             State::AwaitDle if !self.flags.has(Flag::STX) => {
                 self.deadline = on_line.plus_ms(self.config.qvz_ms);
             }
-            State::Receiving if byte == DLE => self.deadline = on_line.plus_ms(self.config.zvz_ms),
+            State::Receiving | State::ReceivingOther if byte == DLE => {
+                self.deadline = on_line.plus_ms(self.config.zvz_ms)
+            }
             State::AwaitRepeat => self.deadline = on_line.plus_ms(self.config.bwz_ms),
             _ => {}
         }
         Some(byte)
     }
 
-    /// Moves the deadline behind `count` more characters of the block. While the block goes out
-    /// it is the end of the transmission so far plus QVZ; that much time the output may stall.
-    #[inline]
-    fn handed_out(&mut self, now: Instant, count: usize) {
+    fn handed_out(&mut self, now: Instant, count: u32) {
         if count > 0 {
-            let begin = self.end_of_output().max(now);
-            let time = u64::from(self.config.character_us)
-                .saturating_mul(u64::try_from(count).unwrap_or(u64::MAX));
-            self.deadline = begin.plus_us(time).plus_ms(self.config.qvz_ms);
+            self.extend_output(now, count);
         }
         if self.encoder.is_done() {
             self.state = State::AwaitAck;
+            self.deadline = self.limit.plus_ms(self.config.qvz_ms);
+            self.limit = Instant::NEVER;
+        } else {
+            self.state = self.sending_state();
         }
     }
 
-    /// When STX, or the part of the block that was handed out, is on the line.
+    fn sending_state(&self) -> State {
+        if self.replies.is_empty() && self.encoder.is_in_payload() {
+            State::Sending
+        } else {
+            State::SendingOther
+        }
+    }
+
+    /// Moves the end of the output behind `count` more characters.
+    ///
+    /// ```text
+    /// max(end of output, now) + count * character
+    /// ```
+    #[inline]
+    fn extend_output(&mut self, now: Instant, count: u32) {
+        let time = u64::from(self.config.character_us) * u64::from(count);
+        self.limit = self.limit.max(now).plus_us(time);
+    }
+
+    /// While an answer is awaited: when STX or the block is on the line.
     #[inline]
     fn end_of_output(&self) -> Instant {
         self.deadline.minus_ms(self.config.qvz_ms)
@@ -168,10 +199,12 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn end_job(&mut self, now: Instant, cause: Cause) {
         self.first_cause.get_or_insert(cause);
         let phase = match self.state {
-            State::Sending | State::ResendQuiet | State::AwaitAck => Phase::Transfer,
+            State::Sending | State::SendingOther | State::ResendQuiet | State::AwaitAck => {
+                Phase::Transfer
+            }
             _ => Phase::Setup,
         };
-        if self.state.is_sending() {
+        if self.state.is_job() {
             if phase == Phase::Transfer {
                 self.flags.set(Flag::DISCARD);
             }
@@ -225,9 +258,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
         self.collisions = 0;
         self.flags.clear(Flag::STX);
         self.encoder = Encoder::START;
-        self.state = State::Sending;
-        self.limit = Instant::NEVER;
-        self.deadline = now.plus_ms(self.config.qvz_ms);
+        self.state = self.sending_state();
+        self.deadline = Instant::NEVER;
+        self.limit = now;
     }
 
     fn collision(&mut self, now: Instant) {
@@ -286,7 +319,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.next_setup(now, Cause::Stalled, Instant::ZERO);
             }
             State::AwaitDle => self.next_setup(now, Cause::Timeout, Instant::ZERO),
-            State::Sending => self.next_transfer(now, Cause::Stalled, Instant::ZERO),
+            State::Sending | State::SendingOther => {
+                self.next_transfer(now, Cause::Stalled, Instant::ZERO)
+            }
             State::ResendQuiet => {
                 // `fail` sends this NAK itself, and the cause was noted when the block stopped.
                 if self.transfer < self.config.transfer_attempts {
