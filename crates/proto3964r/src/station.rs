@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use self::compact::{Flag, Flags, Note, Notes, Replies, Reply};
 use crate::{
+    ascii::DLE,
     config::Config,
     event::{Cause, Event, Failure, LineError, Phase},
     frame::{Encoder, Progress, Rules},
@@ -314,17 +315,26 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Takes one character from the line, as an interrupt handler has it.
     #[inline]
     pub fn handle_byte(&mut self, now: Instant, byte: u8) {
-        if self.state == State::Receiving
-            && now < self.deadline
-            && self.decoder.push_plain(byte, &mut self.rx)
-        {
-            self.deadline = now.plus_ms(self.config.zvz_ms);
+        // One condition at a time: the compiler makes one branch of each, and nothing else.
+        if self.state != State::Receiving {
+            return self.handle_other_byte(now, byte);
+        }
+        if now >= self.deadline {
+            return self.handle_other_byte(now, byte);
+        }
+        if byte == DLE {
+            return self.handle_other_byte(now, byte);
+        }
+        if self.decoder.push_plain(byte, &mut self.rx) {
+            let zvz_us = u64::from(self.config.zvz_ms) * 1000;
+            self.deadline = now.plus_us_unchecked_end(zvz_us);
         } else {
             self.handle_other_byte(now, byte);
         }
     }
 
     /// Anything but one more data byte.
+    #[cold]
     #[inline(never)]
     fn handle_other_byte(&mut self, now: Instant, byte: u8) {
         self.handle_timeout(now);

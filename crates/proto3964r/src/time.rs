@@ -57,6 +57,13 @@ impl Instant {
         Self(self.0.saturating_add(us))
     }
 
+    /// [`plus_us`](Self::plus_us) for the short ways: two instructions less. 64 bits of
+    /// microseconds do not come to their end.
+    #[inline]
+    pub(crate) const fn plus_us_unchecked_end(self, us: u64) -> Self {
+        Self(self.0.wrapping_add(us))
+    }
+
     pub(crate) const fn minus_ms(self, ms: u16) -> Self {
         Self(self.0.saturating_sub(ms as u64 * 1000))
     }

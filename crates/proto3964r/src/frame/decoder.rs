@@ -197,12 +197,12 @@ impl Progress {
         self.state == State::Data
     }
 
-    /// Takes a data byte that fits; `false`, and nothing taken, for anything that needs a thought.
-    /// Only while [`is_in_data`](Self::is_in_data).
+    /// Takes a data byte other than DLE; `false`, and nothing taken, when it does not fit. Only
+    /// while [`is_in_data`](Self::is_in_data).
     #[inline]
     pub(crate) fn push_plain(&mut self, byte: u8, buffer: &mut [u8]) -> bool {
         match buffer.get_mut(usize::from(self.len)) {
-            Some(slot) if byte != DLE && self.len < u16::MAX => {
+            Some(slot) if self.len < u16::MAX => {
                 *slot = byte;
                 self.len = self.len.wrapping_add(1);
                 self.bcc ^= byte;

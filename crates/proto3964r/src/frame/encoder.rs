@@ -132,11 +132,8 @@ impl Encoder {
     /// while [`is_in_payload`](Self::is_in_payload).
     #[inline]
     pub(crate) fn next_plain(&mut self, payload: &[u8], len: u16) -> Option<u8> {
-        if self.position >= len {
-            return None;
-        }
         let byte = *payload.get(usize::from(self.position))?;
-        if byte == DLE {
+        if byte == DLE || self.position >= len {
             return None;
         }
         self.position = self.position.wrapping_add(1);

@@ -53,13 +53,15 @@ impl<const N: usize, const T: usize> Station<N, T> {
         if self.state == State::Sending
             && let Some(byte) = self.encoder.next_plain(&self.tx, self.tx_len)
         {
-            self.extend_output(now, 1);
+            let time = u64::from(self.config.character_us);
+            self.limit = self.limit.max(now).plus_us_unchecked_end(time);
             return Some(byte);
         }
         self.next_other_byte(now)
     }
 
     /// Anything but one more data byte.
+    #[cold]
     #[inline(never)]
     fn next_other_byte(&mut self, now: Instant) -> Option<u8> {
         self.flags.clear(Flag::DISCARD);
@@ -102,9 +104,15 @@ impl<const N: usize, const T: usize> Station<N, T> {
         Some(byte)
     }
 
+    /// `count` more characters of the block are on their way.
+    ///
+    /// ```text
+    /// end of output = max(end of output, now) + count * character
+    /// ```
     fn handed_out(&mut self, now: Instant, count: u32) {
         if count > 0 {
-            self.extend_output(now, count);
+            let time = u64::from(self.config.character_us) * u64::from(count);
+            self.limit = self.limit.max(now).plus_us(time);
         }
         if self.encoder.is_done() {
             self.state = State::AwaitAck;
@@ -121,17 +129,6 @@ impl<const N: usize, const T: usize> Station<N, T> {
         } else {
             State::SendingOther
         }
-    }
-
-    /// Moves the end of the output behind `count` more characters.
-    ///
-    /// ```text
-    /// max(end of output, now) + count * character
-    /// ```
-    #[inline]
-    fn extend_output(&mut self, now: Instant, count: u32) {
-        let time = u64::from(self.config.character_us) * u64::from(count);
-        self.limit = self.limit.max(now).plus_us(time);
     }
 
     /// While an answer is awaited: when STX or the block is on the line.
