@@ -13,9 +13,9 @@
 #[path = "common/work.rs"]
 mod work;
 
+use core::hint::black_box;
 use std::{
     env,
-    hint::black_box,
     process::{Command, ExitCode},
 };
 

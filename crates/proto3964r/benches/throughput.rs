@@ -1,10 +1,14 @@
 //! Bytes per second through a station and through the frame codec.
-#![expect(clippy::unwrap_used, reason = "a bench fails loudly")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    reason = "a bench fails loudly"
+)]
 
 #[path = "common/work.rs"]
 mod work;
 
-use std::hint::black_box;
+use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use proto3964r::{Check, frame};

@@ -1,9 +1,9 @@
 //! A driver for the ports of a PC, on [`serialport`](https://docs.rs/serialport) 4.
 
-extern crate std;
+extern crate alloc;
 
+use alloc::boxed::Box;
 use std::{
-    boxed::Box,
     io::{self, Read as _, Write as _},
     time::Instant as Clock,
 };

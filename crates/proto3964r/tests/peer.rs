@@ -4,13 +4,15 @@
 #![expect(
     clippy::unwrap_used,
     clippy::expect_used,
+    clippy::panic,
     reason = "the helpers of tests fail loudly"
 )]
 
+use core::time::Duration;
 use std::{
-    io::{Read as _, Write as _},
+    io::{self, Read as _, Write as _},
     process::{Child, Command, Stdio},
-    time::{Duration, Instant as Clock},
+    time::Instant as Clock,
 };
 
 use proto3964r::{Config, Event, Priority, serialport::Driver};
@@ -44,35 +46,33 @@ fn hex(bytes: &[u8]) -> String {
         .join(" ")
 }
 
-/// The peer on the other end, with its jobs; `None` without Python.
+/// The peer on the other end; `None` without Python.
 fn peer(port: &str, arguments: &[&str]) -> Option<Child> {
-    if Command::new("python3").arg("--version").output().is_err() {
-        eprintln!("skipped: there is no python3 to run the independent peer");
-        return None;
-    }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peer/peer3964r.py");
-    let seconds = PATIENCE.as_secs().to_string();
-    let mut child = Command::new("python3")
-        .args([
-            script,
-            "--port",
-            port,
-            "--seconds",
-            &seconds,
-            "--linger-ms",
-            "500",
-        ])
+    let started = Command::new("python3")
+        .args([script, "--port", port, "--linger-ms", "500"])
+        .args(["--seconds", &PATIENCE.as_secs().to_string()])
         .args(["--expect", &COUNT.to_string()])
         .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+        .spawn();
+    match started {
+        Ok(child) => Some(child),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            eprintln!("skipped: there is no python3 to run the independent peer");
+            None
+        }
+        Err(error) => panic!("python3: {error}"),
+    }
+}
+
+/// Gives the peer its jobs and closes its input.
+fn submit(child: &mut Child) {
     let mut jobs = child.stdin.take().unwrap();
     for number in 0..COUNT {
         writeln!(jobs, "{}", hex(&telegram(0x80, number))).unwrap();
     }
-    Some(child)
 }
 
 /// Takes a repeat, which a lost acknowledgement makes, out of a list of telegrams.
@@ -86,6 +86,7 @@ fn exchange(config: Config, arguments: &[&str]) {
     let Some(mut child) = peer(&there.name().unwrap(), arguments) else {
         return;
     };
+    submit(&mut child);
     let mut line = Driver::<64>::new(Box::new(here), config).unwrap();
     let (mut sent, mut received) = (0, Vec::new());
     let begin = Clock::now();

@@ -2,18 +2,20 @@
 #![cfg(all(test, unix))]
 #![expect(
     clippy::unwrap_used,
-    clippy::expect_used,
     clippy::panic,
     reason = "the helpers of tests fail loudly"
 )]
 
-use std::{
+use core::{
     future::Future,
-    io::{Read as _, Write as _},
     pin::pin,
     task::{Context, Poll, Waker},
+    time::Duration,
+};
+use std::{
+    io::{Read as _, Write as _},
     thread,
-    time::{Duration, Instant as Clock},
+    time::Instant as Clock,
 };
 
 use proto3964r::{
@@ -30,8 +32,8 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Control characters, and lengths from 1 to 60.
 fn telegram(number: u8) -> Vec<u8> {
     let mut telegram = vec![number];
-    telegram
-        .extend((0..number).map(|place| [0x02, 0x03, 0x10, 0x15, 0x41][usize::from(place) % 5]));
+    let control = [0x02, 0x03, 0x10, 0x15, 0x41];
+    telegram.extend(control.iter().cycle().take(usize::from(number)));
     telegram
 }
 
@@ -160,7 +162,7 @@ impl embedded_io::Write for Port {
 
 impl embedded_io_async::Read for Port {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
-        std::future::poll_fn(|_| match embedded_io::ReadReady::read_ready(self) {
+        core::future::poll_fn(|_| match embedded_io::ReadReady::read_ready(self) {
             Ok(false) => Poll::Pending, // the executor of this test polls without being woken
             Ok(true) => Poll::Ready(embedded_io::Read::read(self, buffer)),
             Err(error) => Poll::Ready(Err(error)),
@@ -206,7 +208,7 @@ impl asynchronous::Timer for SystemTimer {
     }
 
     async fn sleep_until(&mut self, instant: Instant) {
-        std::future::poll_fn(|_| match self.now() < instant {
+        core::future::poll_fn(|_| match self.now() < instant {
             true => Poll::Pending,
             false => Poll::Ready(()),
         })
@@ -249,7 +251,7 @@ fn embedded_io_async_both_ways() {
         // The last acknowledgement: work on until the partner has been silent.
         let mut rest = pin!(line.wait());
         let end = Clock::now() + Duration::from_millis(300);
-        std::future::poll_fn(|context| match rest.as_mut().poll(context) {
+        core::future::poll_fn(|context| match rest.as_mut().poll(context) {
             Poll::Pending if Clock::now() < end => Poll::Pending,
             _ => Poll::Ready(()),
         })

@@ -1,5 +1,9 @@
 //! What the benches do: whole telegrams through a station.
-#![expect(clippy::unwrap_used, reason = "a bench fails loudly")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    reason = "a bench fails loudly"
+)]
 
 use proto3964r::{Check, Config, Event, Instant, Priority, Station, Transmit, frame};
 
@@ -48,9 +52,9 @@ pub(crate) fn receive_slice(station: &mut Station<LEN>, telegram: &[u8]) -> usiz
 
 /// One telegram as an interrupt handler takes it.
 pub(crate) fn receive_bytes(station: &mut Station<LEN>, telegram: &[u8]) -> usize {
-    let now = std::hint::black_box(Instant::ZERO);
+    let now = core::hint::black_box(Instant::ZERO);
     for &byte in telegram {
-        station.handle_byte(now, std::hint::black_box(byte));
+        station.handle_byte(now, core::hint::black_box(byte));
     }
     finish(station, now)
 }
@@ -69,10 +73,10 @@ pub(crate) fn send_slice(station: &mut Station<LEN>, payload: &[u8], out: &mut [
 /// One job as an interrupt handler sends it.
 pub(crate) fn send_bytes(station: &mut Station<LEN>, payload: &[u8]) -> usize {
     begin(station, payload);
-    let now = std::hint::black_box(Instant::ZERO);
+    let now = core::hint::black_box(Instant::ZERO);
     let mut len = 0;
     while let Some(byte) = station.poll_transmit_byte(now) {
-        std::hint::black_box(byte);
+        core::hint::black_box(byte);
         len += 1;
     }
     end(station);

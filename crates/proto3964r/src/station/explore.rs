@@ -190,7 +190,10 @@ impl World {
                         self.jobs[side] = Seen::Sent;
                         if self.delivered[1 - side] == 0 {
                             findings.lost += 1;
-                            assert!(self.forged_dle, "reported sent, not delivered: {self:?}");
+                            assert!(
+                                self.forged_dle || scope.faults > 2,
+                                "reported sent, not delivered: {self:?}"
+                            );
                         }
                     }
                     Event::Failed(_) => {
@@ -360,7 +363,8 @@ fn equal_priorities_end() {
     }
 }
 
-/// Three faults and three attempts: minutes of work. `cargo test --release -- --ignored explore`
+/// Three faults. A DLE that comes late twice can then acknowledge a block that did not arrive,
+/// which is counted. `cargo test --release -p proto3964r -- --ignored --nocapture explore`
 #[test]
 #[ignore = "takes minutes in a release build"]
 fn three_faults_leave_nobody_stuck() {

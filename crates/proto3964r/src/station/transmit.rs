@@ -96,7 +96,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.deadline = on_line.plus_ms(self.config.qvz_ms);
             }
             State::Receiving | State::ReceivingOther if byte == DLE => {
-                self.deadline = on_line.plus_ms(self.config.zvz_ms)
+                self.deadline = on_line.plus_ms(self.config.zvz_ms);
             }
             State::AwaitRepeat => self.deadline = on_line.plus_ms(self.config.bwz_ms),
             _ => {}
@@ -317,7 +317,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             }
             State::AwaitDle => self.next_setup(now, Cause::Timeout, Instant::ZERO),
             State::Sending | State::SendingOther => {
-                self.next_transfer(now, Cause::Stalled, Instant::ZERO)
+                self.next_transfer(now, Cause::Stalled, Instant::ZERO);
             }
             State::ResendQuiet => {
                 // `fail` sends this NAK itself, and the cause was noted when the block stopped.

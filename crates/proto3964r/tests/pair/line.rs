@@ -1,6 +1,8 @@
 //! Two stations in simulated time, with a line between them that does damage.
 
-use std::collections::VecDeque;
+extern crate alloc;
+
+use alloc::collections::VecDeque;
 
 use proto3964r::{Config, Event, Failure, Instant, Monitor, Observation, Side, Station, Transmit};
 
@@ -36,7 +38,7 @@ impl Random {
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
         let high = u32::try_from(self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 32).unwrap();
-        u32::try_from(u64::from(high) * u64::from(end) >> 32).unwrap()
+        u32::try_from((u64::from(high) * u64::from(end)) >> 32).unwrap()
     }
 
     fn byte(&mut self) -> u8 {
@@ -99,7 +101,7 @@ impl End {
                 None => break,
                 Some(Event::Received(payload)) => {
                     self.received.push(payload.to_vec());
-                    self.came_in.push(std::mem::take(&mut self.raw));
+                    self.came_in.push(core::mem::take(&mut self.raw));
                 }
                 Some(Event::Sent { len }) => {
                     assert_eq!(len, self.jobs[self.outcomes.len()].len());

@@ -1,10 +1,5 @@
 //! Two stations over a line that loses, flips, doubles, inserts and delays characters.
 #![cfg(test)]
-#![expect(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    reason = "the helpers of tests fail loudly"
-)]
 
 mod line;
 
