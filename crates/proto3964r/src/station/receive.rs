@@ -36,7 +36,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.noise = byte;
                 self.state = State::NoiseQuiet;
                 self.deadline = now.plus_ms(self.config.zvz_ms);
-                self.limit = now.plus_ms(self.config.babble_ms);
+                self.limit = now.plus_us(self.config.babble_us());
             }
         }
     }
@@ -101,7 +101,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.block_ended(now, block);
         } else if faulty {
             self.state = State::ReceivingOther;
-            self.limit = self.limit.min(now.plus_ms(self.config.babble_ms));
+            self.limit = self.limit.min(now.plus_us(self.config.babble_us()));
         } else if self.decoder.is_in_data() {
             self.state = State::Receiving;
         } else {

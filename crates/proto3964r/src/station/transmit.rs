@@ -230,7 +230,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn setup_answer(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
         match (byte, error) {
             (STX, None) => self.collision(now),
-            _ if now < self.earliest_answer() => {}
+            _ if self.config.ignore_early_answers && now < self.earliest_answer() => {}
             (DLE, None) => self.start_block(now),
             (NAK, None) => self.next_setup(now, Cause::Nak, Instant::ZERO),
             _ => {
@@ -290,7 +290,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.first_cause.get_or_insert(wrong_answer(byte, error));
             self.state = State::ResendQuiet;
             self.deadline = now.plus_ms(self.config.zvz_ms);
-            self.limit = now.plus_ms(self.config.babble_ms);
+            self.limit = now.plus_us(self.config.babble_us());
         }
     }
 

@@ -59,7 +59,9 @@ fn configs() -> [Config; 2] {
 fn a_clean_line_carries_everything_once() {
     for seed in 0..20 {
         let work = [jobs(seed, 40, false), jobs(seed + 100, 40, false)];
-        let mut pair = Pair::new(configs(), work.clone(), Faults::default(), 1146, seed);
+        // The start-up NAK of one crosses the first STX of the other.
+        let strict = configs().map(|config| config.with_ignore_early_answers(true));
+        let mut pair = Pair::new(strict, work.clone(), Faults::default(), 1146, seed);
         assert!(pair.run(HOUR_US).is_some());
         for side in 0..2 {
             assert_eq!(pair.ends[side].received, work[1 - side]);
@@ -161,7 +163,7 @@ fn any_config(priority: Priority) -> impl Strategy<Value = Config> {
                     .with_qvz_ms(qvz)
                     .with_zvz_ms(zvz)
                     .with_bwz_ms(bwz)
-                    .with_babble_ms(1000)
+                    .with_babble_s(1)
                     .with_setup_attempts(setup)
                     .with_transfer_attempts(transfer)
                     .with_idle_noise(noise)
