@@ -1,5 +1,6 @@
 //! What is stored comes back.
 #![cfg(all(test, feature = "serde"))]
+#![expect(clippy::unwrap_used, reason = "the helpers of tests fail loudly")]
 
 use proto3964r::{Config, Failure, Instant, Phase, Priority, Station, Verdict};
 
