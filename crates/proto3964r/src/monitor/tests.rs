@@ -124,6 +124,16 @@ fn verdicts() {
             "A pauses in its blocks for longer than ZVZ",
         ),
         (
+            "0 A 02; 2500 B 10",
+            Verdict::Late { side: Side::B },
+            "B answers later than QVZ",
+        ),
+        (
+            "0 A 02; 1 B 10; 2 A 10; 300 B 15",
+            Verdict::Gaps { sender: Side::A },
+            "A pauses in its blocks for longer than ZVZ",
+        ),
+        (
             "0 A FE 7F 00",
             Verdict::Garbage { side: Side::A },
             "A sends characters outside the procedure: another baud rate, parity, or protocol",
@@ -173,6 +183,34 @@ fn a_damaged_character_is_no_answer() {
         .map(|observation| observation.to_string())
         .collect();
     assert_eq!(seen, vec!["B parity error in 10", "B stray 10"]);
+}
+
+/// The receiver had its reason: the block was damaged although its BCC is right.
+#[test]
+fn a_damaged_block_is_rejected_with_reason() {
+    let mut monitor = monitor();
+    listen(&mut monitor, "0 A 02; 1 B 10");
+    let damaged = monitor.handle_damaged(Instant::from_millis(2), Side::A, 0x41, LineError::Parity);
+    assert_eq!(damaged.count(), 1);
+    listen(&mut monitor, "2 A 10 03 52; 3 B 15");
+    assert_eq!(monitor.verdict(), Verdict::Garbage { side: Side::A });
+}
+
+#[test]
+fn attempts_count_anew_after_a_connection() {
+    let mut monitor = monitor();
+    let seen = listen(
+        &mut monitor,
+        "0 A 02; 1 B 15; 2 A 02; 3 B 10; 4 A 41 10 03 00; 5 B 15; 6 A 02",
+    );
+    let requests: Vec<_> = seen
+        .iter()
+        .filter(|line| line.contains("STX, attempt"))
+        .collect();
+    assert_eq!(
+        requests,
+        ["A STX, attempt 1", "A STX, attempt 2", "A STX, attempt 1"]
+    );
 }
 
 proptest! {

@@ -92,7 +92,8 @@ pub enum Verdict {
     },
 }
 
-/// What goes wrong, in the order in which equal counts are judged.
+/// What goes wrong, in the order in which equal counts are judged. A late answer was missing
+/// first: it stands in front of the missing one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Trouble {
     BothHigh,
@@ -102,9 +103,9 @@ pub(super) enum Trouble {
     BadAccepted,
     BadBlock,
     GoodRejected,
+    Late,
     NoAcknowledgement,
     NoAnswer,
-    Late,
     Gap,
     Garbage,
 }
@@ -117,9 +118,9 @@ const TROUBLES: [Trouble; 12] = [
     Trouble::BadAccepted,
     Trouble::BadBlock,
     Trouble::GoodRejected,
+    Trouble::Late,
     Trouble::NoAcknowledgement,
     Trouble::NoAnswer,
-    Trouble::Late,
     Trouble::Gap,
     Trouble::Garbage,
 ];
