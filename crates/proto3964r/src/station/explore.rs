@@ -4,7 +4,7 @@
 //! users have seen, and how many faults the line may still commit. Time is relative: worlds that
 //! differ only in the time of day are one. From each world every next step is taken:
 //!
-//! - a user submits its job;
+//! - a user submits its job, or takes its events where the scope has a slow one;
 //! - a station puts the next character on the line (one in flight per direction);
 //! - the character that left first arrives, intact: both directions are equally fast, and a
 //!   station sends what it has before it takes in the next character;
@@ -48,6 +48,8 @@ struct World {
     faults_left: u8,
     /// A fault has made a DLE of another character.
     forged_dle: bool,
+    /// In this step the slow user takes its events.
+    user_1_looks: bool,
 }
 
 /// What is explored.
@@ -55,6 +57,8 @@ struct Scope {
     configs: [Config; 2],
     payloads: [u8; 2],
     faults: u8,
+    /// User 1 takes its events at any time or late, so that the receive buffer stays in use.
+    slow_user: bool,
     /// With faults: a lost, a damaged and a late character each take one.
     damaged_to: &'static [u8],
 }
@@ -84,6 +88,7 @@ impl World {
             delivered: [0; 2],
             faults_left: scope.faults,
             forged_dle: false,
+            user_1_looks: false,
         }
     }
 
@@ -117,6 +122,9 @@ impl World {
             {
                 step(&|world| world.stations[side].handle_timeout(Instant::ZERO));
             }
+        }
+        if scope.slow_user && self.stations[1].has_event() {
+            step(&|world| world.user_1_looks = true);
         }
         let first = self.in_flight.first();
         if let Some(&(_, byte)) = first.filter(|&&(to, _)| !self.can_launch(to)) {
@@ -179,6 +187,10 @@ impl World {
     /// The users take their events, and traces of the past that no longer matter go.
     fn settle(&mut self, scope: &Scope, findings: &mut Findings) {
         for side in 0..2 {
+            if side == 1 && scope.slow_user && !core::mem::take(&mut self.user_1_looks) {
+                self.stations[side].forget();
+                continue;
+            }
             while let Some(event) = self.stations[side].poll_event() {
                 match event {
                     Event::Received(telegram) => {
@@ -188,7 +200,8 @@ impl World {
                     Event::Sent { .. } => {
                         assert_eq!(self.jobs[side], Seen::Open);
                         self.jobs[side] = Seen::Sent;
-                        if self.delivered[1 - side] == 0 {
+                        let waiting = self.stations[1 - side].flags.has(Flag::RX_FULL);
+                        if self.delivered[1 - side] == 0 && !waiting {
                             findings.lost += 1;
                             assert!(
                                 self.forged_dle || scope.faults > 2,
@@ -211,7 +224,9 @@ impl World {
 impl Small {
     /// Clears what can no longer have any effect.
     fn forget(&mut self) {
-        let used = if self.state.is_receiving() {
+        let used = if self.flags.has(Flag::RX_FULL) {
+            usize::from(self.rx_len)
+        } else if self.state.is_receiving() {
             self.decoder.stored()
         } else {
             0
@@ -219,7 +234,9 @@ impl Small {
         for byte in self.rx.iter_mut().skip(used) {
             *byte = 0;
         }
-        self.rx_len = 0;
+        if !self.flags.has(Flag::RX_FULL) {
+            self.rx_len = 0;
+        }
         if !self.state.is_receiving() {
             self.decoder = Progress::START;
             self.line_error = None;
@@ -304,6 +321,7 @@ fn scope(priorities: [Priority; 2], attempts: u8, payloads: [u8; 2], faults: u8)
         configs: priorities.map(config),
         payloads,
         faults,
+        slow_user: false,
         damaged_to: &[STX, ETX, DLE, NAK, 0x41],
     }
 }
@@ -348,6 +366,20 @@ fn two_faults_leave_nobody_stuck() {
     let findings = explore(&scope(DISTINCT, 2, [DLE, 0x41], 2));
     report("two faults", &findings);
     assert!(findings.ends > 0);
+}
+
+/// A user who leaves the receive buffer in use makes the partner wait, and at worst fail.
+#[test]
+fn a_slow_user_leaves_nobody_stuck() {
+    for faults in [0, 1] {
+        let scope = Scope {
+            slow_user: true,
+            ..scope(DISTINCT, 3, [DLE, ETX], faults)
+        };
+        let findings = explore(&scope);
+        report("slow user", &findings);
+        assert_eq!(findings.forged, 0);
+    }
 }
 
 /// Equal priorities, with which the procedure cannot always succeed, still end.
