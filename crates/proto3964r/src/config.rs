@@ -180,8 +180,8 @@ impl Config {
     }
 
     /// `babble_s` in us.
-    pub(crate) const fn babble_us(&self) -> u64 {
-        self.babble_s as u64 * 1_000_000
+    pub(crate) fn babble_us(&self) -> u64 {
+        u64::from(self.babble_s) * 1_000_000
     }
 
     /// The wait for a receive buffer: `min(buffer_wait_ms, qvz_ms - 10)`.

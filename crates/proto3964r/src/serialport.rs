@@ -1,4 +1,7 @@
 //! A driver for the ports of a PC, on [`serialport`](https://docs.rs/serialport) 4.
+//!
+//! That crate does not tell which characters came in damaged: parity protects only as far as the
+//! operating system drops or replaces them, and the BCC has to see the rest.
 
 extern crate alloc;
 
