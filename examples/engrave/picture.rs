@@ -1,6 +1,6 @@
 //! The drawing, and over it the path of the simulated tool, as an SVG picture in mm.
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 use std::io::Write;
 
 use anyhow::Result;
@@ -62,7 +62,7 @@ impl<W: Write> Picture<W> {
             self.begin()?;
         }
         // Steps of the picture's grid, so that rounding does not add up.
-        let from = std::mem::replace(&mut self.last, on_grid(to));
+        let from = core::mem::replace(&mut self.last, on_grid(to));
         let way = self.last - from;
         Ok(write!(self.path, "l{:.2} {:.2}", way.x, way.y)?)
     }
@@ -81,7 +81,7 @@ impl<W: Write> Picture<W> {
     }
 
     fn flush(&mut self) -> Result<()> {
-        let path = std::mem::take(&mut self.path);
+        let path = core::mem::take(&mut self.path);
         if path.is_empty() {
             return Ok(());
         }

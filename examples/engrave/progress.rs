@@ -1,7 +1,8 @@
 //! A progress bar that appears when something takes longer than a second.
 
-use std::cell::Cell;
-use std::time::{Duration, Instant};
+use core::cell::Cell;
+use core::time::Duration;
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 

@@ -91,7 +91,7 @@ impl<'a> Simulation<'a> {
 
     /// All edges of a tick are made: the arm stands at whole steps.
     fn settle(&mut self) -> Result<()> {
-        if !std::mem::take(&mut self.moved) {
+        if !core::mem::take(&mut self.moved) {
             return Ok(());
         }
         if self.position.vertical > -self.machine.lift_pulses {
@@ -148,5 +148,5 @@ impl Wires for Simulation<'_> {
 
 fn seconds(ns: u128) -> Result<f64> {
     let whole = u64::try_from(ns).context("the pattern lasts over 500 years")?;
-    Ok(std::time::Duration::from_nanos(whole).as_secs_f64())
+    Ok(core::time::Duration::from_nanos(whole).as_secs_f64())
 }

@@ -92,14 +92,14 @@ pub struct Config {
     /// Longest wait for a free receive buffer after STX, in ms; never longer than QVZ less 10 ms.
     /// Siemens: 400.
     pub buffer_wait_ms: u16,
-    /// Longest time that a block which is already known to be bad, or noise, may go on without a
-    /// pause before NAK is sent into it, in ms: a total deadline where Siemens knows only gaps.
-    /// 10 000, longer than a block of 4096 bytes at 9600 bit/s.
-    pub babble_ms: u16,
     /// Time that one character takes on the line, in us. QVZ, ZVZ and BWZ then count from the end
-    /// of the transmission, however far ahead the output is queued. 0 when bytes are handed to the
-    /// line one by one.
+    /// of the transmission, however far ahead the output is queued. 0 when bytes are handed to
+    /// the line one by one.
     pub character_us: u32,
+    /// Longest time that a block which is already known to be bad, or noise, may go on without a
+    /// pause before NAK is sent into it, in s: a total deadline where Siemens knows only gaps.
+    /// 10, longer than a block of 4096 bytes at 9600 bit/s.
+    pub babble_s: u8,
     /// Setup attempts: STX per transfer attempt. Siemens: 6.
     pub setup_attempts: u8,
     /// Transfer attempts: blocks per job, and rejected receptions in a row. Siemens: 6.
@@ -120,6 +120,12 @@ pub struct Config {
     pub allow_empty: bool,
     /// Whether a new station begins with one NAK that puts the partner into idle. Siemens: yes.
     pub nak_at_startup: bool,
+    /// Whether what comes in sooner than two times [`character_us`](Self::character_us) after STX
+    /// is ignored, since it left the partner before STX arrived: a NAK that crosses STX otherwise
+    /// makes a second STX, which the partner takes for data, and costs a repeat. Only for a line
+    /// that is truly that slow: on a pseudo-terminal or over a network answers come sooner.
+    /// Siemens: no.
+    pub ignore_early_answers: bool,
 }
 
 /// `const fn with_field(self, value) -> Self` for each field.
@@ -141,7 +147,7 @@ setters! {
     with_zvz_ms, zvz_ms: u16;
     with_bwz_ms, bwz_ms: u16;
     with_buffer_wait_ms, buffer_wait_ms: u16;
-    with_babble_ms, babble_ms: u16;
+    with_babble_s, babble_s: u8;
     with_character_us, character_us: u32;
     with_setup_attempts, setup_attempts: u8;
     with_transfer_attempts, transfer_attempts: u8;
@@ -153,6 +159,7 @@ setters! {
     with_silence_in_block, silence_in_block: SilenceInBlock;
     with_allow_empty, allow_empty: bool;
     with_nak_at_startup, nak_at_startup: bool;
+    with_ignore_early_answers, ignore_early_answers: bool;
 }
 
 impl Config {
@@ -170,6 +177,11 @@ impl Config {
             (bits as u32 * 1_000_000).div_ceil(baud)
         };
         self.with_character_us(micros)
+    }
+
+    /// `babble_s` in us.
+    pub(crate) fn babble_us(&self) -> u64 {
+        u64::from(self.babble_s) * 1_000_000
     }
 
     /// The wait for a receive buffer: `min(buffer_wait_ms, qvz_ms - 10)`.

@@ -10,13 +10,24 @@ extern crate std;
 
 pub mod ascii;
 mod config;
+#[cfg(feature = "embedded-io")]
+#[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
+pub mod embedded_io;
+#[cfg(feature = "embedded-io-async")]
+#[cfg_attr(docsrs, doc(cfg(feature = "embedded-io-async")))]
+pub mod embedded_io_async;
 mod event;
 pub mod frame;
+mod monitor;
+#[cfg(feature = "serialport")]
+#[cfg_attr(docsrs, doc(cfg(feature = "serialport")))]
+pub mod serialport;
 mod station;
 mod time;
 
 pub use config::{Collision, Config, IdleNoise, Priority, SilenceInBlock};
 pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
+pub use monitor::{Monitor, Observation, Observations, Side, Verdict};
 pub use station::{SendError, Station, Transmit};
 pub use time::Instant;

@@ -1,6 +1,8 @@
 //! One end of the line.
 
 mod compact;
+#[cfg(test)]
+mod explore;
 mod receive;
 #[cfg(test)]
 mod tests;
@@ -10,6 +12,7 @@ use thiserror::Error;
 
 use self::compact::{Flag, Flags, Note, Notes, Replies, Reply};
 use crate::{
+    ascii::DLE,
     config::Config,
     event::{Cause, Event, Failure, LineError, Phase},
     frame::{Encoder, Progress, Rules},
@@ -56,7 +59,7 @@ pub struct Station<const N: usize, const T: usize = N> {
     /// What the state waits for; `NEVER` in idle.
     deadline: Instant,
     /// Receiving and quiet: the end of patience, whatever comes in. Waiting for DLE: the end of
-    /// the burst that spoiled the attempt before.
+    /// the burst that spoiled the attempt before. Sending: the end of the output so far.
     limit: Instant,
     config: Config,
     decoder: Progress,
@@ -93,16 +96,21 @@ enum State {
     Idle,
     /// STX came, the receive buffer is in use.
     WaitBuffer,
-    /// DLE is sent, the block comes in.
+    /// DLE is sent, the block comes in; nothing is wrong with it and the next character may be data.
     Receiving,
+    /// The same behind a DLE, in front of the BCC, or with an error noted.
+    ReceivingOther,
     /// NAK is sent, the repeat is awaited within BWZ.
     AwaitRepeat,
     /// Silence is awaited after noise in idle.
     NoiseQuiet,
     /// STX is queued or sent, DLE is awaited.
     AwaitDle,
-    /// The block goes out.
+    /// The block goes out; a data byte is next, or the end. `limit` is when the characters that
+    /// were handed out are on the line, and QVZ later the output has stalled.
     Sending,
+    /// The same with something else to send first: a reply, or the rest of DLE DLE, DLE ETX BCC.
+    SendingOther,
     /// Silence is awaited after something interrupted the block.
     ResendQuiet,
     /// The block is out, its answer is awaited.
@@ -277,7 +285,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub fn handle_break(&mut self, now: Instant) {
         self.handle_timeout(now);
         self.diagnose(Note::Break);
-        if self.state.is_sending() {
+        if self.state.is_job() {
             self.end_job(now, Cause::Break);
         } else {
             self.go_idle(now);
@@ -292,7 +300,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let mut rest = bytes;
         while !rest.is_empty() {
             self.handle_timeout(now);
-            rest = if self.state == State::Receiving {
+            rest = if self.state.is_receiving() {
                 self.receive_block(now, rest)
             } else {
                 let Some((&byte, behind)) = rest.split_first() else {
@@ -307,12 +315,30 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Takes one character from the line, as an interrupt handler has it.
     #[inline]
     pub fn handle_byte(&mut self, now: Instant, byte: u8) {
-        if self.state == State::Receiving && now < self.deadline && now < self.limit {
-            self.receive_byte(now, byte);
-        } else {
-            self.handle_timeout(now);
-            self.character(now, byte, None);
+        // One condition at a time: the compiler makes one branch of each, and nothing else.
+        if self.state != State::Receiving {
+            return self.handle_other_byte(now, byte);
         }
+        if now >= self.deadline {
+            return self.handle_other_byte(now, byte);
+        }
+        if byte == DLE {
+            return self.handle_other_byte(now, byte);
+        }
+        if self.decoder.push_plain(byte, &mut self.rx) {
+            let zvz_us = u64::from(self.config.zvz_ms) * 1000;
+            self.deadline = now.plus_us_unchecked_end(zvz_us);
+        } else {
+            self.handle_other_byte(now, byte);
+        }
+    }
+
+    /// Anything but one more data byte.
+    #[cold]
+    #[inline(never)]
+    fn handle_other_byte(&mut self, now: Instant, byte: u8) {
+        self.handle_timeout(now);
+        self.character(now, byte, None);
     }
 
     /// Takes one character that came in damaged.
@@ -327,7 +353,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Does what is due at `now`; nothing when nothing is.
     #[inline]
     pub fn handle_timeout(&mut self, now: Instant) {
-        if now >= self.deadline || self.state.is_listening() {
+        if now >= self.deadline || self.state.has_other_due() {
             self.handle_due(now);
         }
     }
@@ -338,10 +364,18 @@ impl<const N: usize, const T: usize> Station<N, T> {
         } else if self.poll_timeout().is_some_and(|due| due <= now) {
             match self.state {
                 State::Idle => {}
-                State::WaitBuffer | State::Receiving | State::AwaitRepeat | State::NoiseQuiet => {
+                State::WaitBuffer
+                | State::Receiving
+                | State::ReceivingOther
+                | State::AwaitRepeat
+                | State::NoiseQuiet => {
                     self.receive_timeout(now);
                 }
-                State::AwaitDle | State::Sending | State::ResendQuiet | State::AwaitAck => {
+                State::AwaitDle
+                | State::Sending
+                | State::SendingOther
+                | State::ResendQuiet
+                | State::AwaitAck => {
                     self.transmit_timeout(now);
                 }
             }
@@ -358,12 +392,19 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let due = match self.state {
             State::Idle => return None,
             State::WaitBuffer if !self.flags.has(Flag::RX_FULL) => Instant::ZERO,
-            State::Receiving | State::NoiseQuiet | State::ResendQuiet => {
+            State::Sending | State::SendingOther => self.limit.plus_ms(self.config.qvz_ms),
+            State::ReceivingOther | State::NoiseQuiet | State::ResendQuiet => {
                 self.deadline.min(self.limit)
             }
             _ => self.deadline,
         };
         Some(due)
+    }
+
+    /// Whether [`poll_event`](Self::poll_event) has something.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        !self.notes.is_empty()
     }
 
     /// The next event, in the order in which they happened.
@@ -420,7 +461,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// One character, in any state.
     fn character(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
         match self.state {
-            State::Receiving => {
+            State::Receiving | State::ReceivingOther => {
                 if error.is_some() {
                     self.line_error = self.line_error.or(error);
                 }
@@ -433,7 +474,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             }
             State::AwaitDle if self.flags.has(Flag::STX) => self.early_character(now, byte, error),
             State::AwaitDle => self.setup_answer(now, byte, error),
-            State::Sending => self.interrupted(now, byte, error),
+            State::Sending | State::SendingOther => self.interrupted(now, byte, error),
             State::AwaitAck => self.block_answer(now, byte, error),
         }
     }
@@ -451,19 +492,27 @@ impl<const N: usize, const T: usize> Station<N, T> {
 }
 
 impl State {
-    /// Whether the station has sent or is about to send STX for its job.
+    /// Whether a block comes in.
+    const fn is_receiving(self) -> bool {
+        matches!(self, Self::Receiving | Self::ReceivingOther)
+    }
+
+    /// Whether a block goes out.
     const fn is_sending(self) -> bool {
-        matches!(
-            self,
-            Self::AwaitDle | Self::Sending | Self::ResendQuiet | Self::AwaitAck
-        )
+        matches!(self, Self::Sending | Self::SendingOther)
+    }
+
+    /// Whether the station has sent or is about to send STX for its job.
+    const fn is_job(self) -> bool {
+        self.is_sending() || matches!(self, Self::AwaitDle | Self::ResendQuiet | Self::AwaitAck)
     }
 
     /// Whether something beside `deadline` may be due.
-    const fn is_listening(self) -> bool {
-        matches!(
-            self,
-            Self::WaitBuffer | Self::Receiving | Self::NoiseQuiet | Self::ResendQuiet
-        )
+    const fn has_other_due(self) -> bool {
+        self.is_sending()
+            || matches!(
+                self,
+                Self::WaitBuffer | Self::ReceivingOther | Self::NoiseQuiet | Self::ResendQuiet
+            )
     }
 }

@@ -49,16 +49,23 @@ impl Instant {
         Duration::from_micros(self.0.saturating_sub(earlier.0))
     }
 
-    pub(crate) const fn plus_ms(self, ms: u16) -> Self {
-        self.plus_us(ms as u64 * 1000)
+    pub(crate) fn plus_ms(self, ms: u16) -> Self {
+        self.plus_us(u64::from(ms) * 1000)
     }
 
     pub(crate) const fn plus_us(self, us: u64) -> Self {
         Self(self.0.saturating_add(us))
     }
 
-    pub(crate) const fn minus_ms(self, ms: u16) -> Self {
-        Self(self.0.saturating_sub(ms as u64 * 1000))
+    /// [`plus_us`](Self::plus_us) for the short ways: two instructions less. 64 bits of
+    /// microseconds do not come to their end.
+    #[inline]
+    pub(crate) const fn plus_us_unchecked_end(self, us: u64) -> Self {
+        Self(self.0.wrapping_add(us))
+    }
+
+    pub(crate) fn minus_ms(self, ms: u16) -> Self {
+        Self(self.0.saturating_sub(u64::from(ms) * 1000))
     }
 }
 

@@ -2,8 +2,8 @@
 #![cfg(test)]
 
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, IdleNoise, Instant, Phase, Priority, Rejection,
-    SendError, Station, Transmit, frame::FrameError,
+    Abandoned, Cause, Config, Event, Failure, IdleNoise, Instant, Monitor, Phase, Priority,
+    Rejection, SendError, Side, Station, Transmit, Verdict, frame::FrameError,
 };
 
 const STX: u8 = 0x02;
@@ -396,6 +396,31 @@ fn m16_every_state_but_idle_has_a_deadline() {
         station.handle_timeout(due);
         assert_ne!(station, before);
     }
+}
+
+#[test]
+fn m17_a_monitor_tells_why_the_link_does_not_come_up() {
+    let mut monitor = Monitor::<64>::new(Config::siemens_3964r(Priority::Low));
+    for attempt in 0..6 {
+        assert_eq!(
+            monitor.handle_byte(ms(10 * attempt), Side::A, STX).count(),
+            1
+        );
+        assert_eq!(
+            monitor
+                .handle_byte(ms(10 * attempt + 5), Side::B, NAK)
+                .count(),
+            1
+        );
+    }
+    assert_eq!(
+        monitor.verdict(),
+        Verdict::NoReceiveBuffer { refuser: Side::B }
+    );
+    assert_eq!(
+        monitor.verdict().to_string(),
+        "B answers NAK to STX: no receive buffer"
+    );
 }
 
 /// The reception of a babbling partner ends, and so does every job.

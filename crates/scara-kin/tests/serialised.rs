@@ -1,5 +1,6 @@
 //! Machine files: what is written is read back, what is wrong is refused.
-#![cfg(all(test, feature = "serde"))]
+#![cfg(test)]
+#![cfg(feature = "serde")]
 
 use scara_kin::nalgebra::{Isometry2, Vector2};
 use scara_kin::{Arm, Direction, Drives, Elbow, JointRange, Joints, Limits};

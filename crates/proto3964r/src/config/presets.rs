@@ -14,8 +14,8 @@ impl Config {
             zvz_ms: 220,
             bwz_ms: 4000,
             buffer_wait_ms: 400,
-            babble_ms: 10_000,
             character_us: 0,
+            babble_s: 10,
             setup_attempts: 6,
             transfer_attempts: 6,
             priority,
@@ -26,6 +26,7 @@ impl Config {
             silence_in_block: SilenceInBlock::Idle,
             allow_empty: true,
             nak_at_startup: true,
+            ignore_early_answers: false,
         }
     }
 

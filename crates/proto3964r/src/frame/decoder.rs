@@ -185,6 +185,38 @@ impl Progress {
         self.fault.is_some()
     }
 
+    /// Payload bytes in the buffer.
+    #[cfg(test)]
+    pub(crate) fn stored(&self) -> usize {
+        usize::from(self.len)
+    }
+
+    /// Whether the next character may be data.
+    #[inline]
+    pub(crate) fn is_in_data(&self) -> bool {
+        self.state == State::Data
+    }
+
+    /// Takes a data byte other than DLE; `false`, and nothing taken, when it does not fit. Only
+    /// while [`is_in_data`](Self::is_in_data).
+    #[inline]
+    pub(crate) fn push_plain(&mut self, byte: u8, buffer: &mut [u8]) -> bool {
+        match buffer.get_mut(usize::from(self.len)) {
+            Some(slot) if self.len < u16::MAX => {
+                *slot = byte;
+                self.len = self.len.wrapping_add(1);
+                self.bcc ^= byte;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether nothing but the BCC is missing.
+    pub(crate) fn awaits_bcc(&self) -> bool {
+        self.state == State::Bcc
+    }
+
     /// Whether the block consists of a single DLE so far.
     pub(crate) fn is_lone_dle(&self) -> bool {
         self.state == State::AfterDle && self.len == 0 && self.bcc == DLE && !self.is_faulty()

@@ -123,6 +123,24 @@ impl Encoder {
         self.next == Next::Done
     }
 
+    /// Whether payload is next, or the end behind it.
+    pub(crate) fn is_in_payload(&self) -> bool {
+        self.next == Next::Payload
+    }
+
+    /// The next of `len` payload bytes if it is no DLE; `None`, and nothing taken, else. Only
+    /// while [`is_in_payload`](Self::is_in_payload).
+    #[inline]
+    pub(crate) fn next_plain(&mut self, payload: &[u8], len: u16) -> Option<u8> {
+        let byte = *payload.get(usize::from(self.position))?;
+        if byte == DLE || self.position >= len {
+            return None;
+        }
+        self.position = self.position.wrapping_add(1);
+        self.bcc ^= byte;
+        Some(byte)
+    }
+
     /// The next character of the body, `None` behind the last one.
     #[inline]
     pub(crate) fn next_byte(&mut self, check: Check, payload: &[u8]) -> Option<u8> {

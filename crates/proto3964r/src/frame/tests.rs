@@ -152,6 +152,18 @@ fn one_bit_forgery() {
     assert!(!rest.is_empty());
 }
 
+/// The first half of a doubled DLE is damaged: the second half now pairs with the 03h behind it.
+#[test]
+fn forgery_by_half_a_doubled_dle() {
+    let payload = [0x41, 0x10, 0x03, 0xDE];
+    let mut body = encoded(&payload, Check::Bcc);
+    assert_eq!(body[1..4], [0x10, 0x10, 0x03]);
+    body[1] = 0x8C;
+    let mut buffer = [0; 8];
+    let (forged, _) = decode(&body, Check::Bcc, &mut buffer).unwrap();
+    assert_eq!(forged, [0x41, 0x8C]);
+}
+
 /// Payloads with many control characters in them.
 fn payload() -> impl Strategy<Value = Vec<u8>> {
     let byte = prop_oneof![Just(0x02), Just(0x03), Just(0x10), Just(0x15), any::<u8>()];
@@ -181,8 +193,9 @@ proptest! {
         prop_assert_eq!(bcc(&body), 0);
     }
 
-    /// Every substitution of one byte is rejected, but for a data byte that becomes a DLE in
-    /// front of a 03h behind which the right BCC happens to stand.
+    /// Every substitution of one byte is rejected, but for two that end the block early where the
+    /// right BCC happens to follow: a data byte in front of a 03h becomes a DLE, or the first half
+    /// of a doubled DLE in front of a 03h becomes something else.
     #[test]
     fn one_wrong_byte_is_seen(payload in payload(), at in any::<prop::sample::Index>(), flip in 1..=255_u8) {
         let mut body = encoded(&payload, Check::Bcc);
@@ -190,8 +203,9 @@ proptest! {
         body[at] ^= flip;
         let mut buffer = vec![0; 2 * payload.len() + 2];
         if let Ok((_, rest)) = decode(&body, Check::Bcc, &mut buffer) {
-            prop_assert_eq!((body[at], body[at + 1]), (0x10, 0x03));
-            prop_assert_eq!(body.len() - rest.len(), at + 3);
+            let end = body.len() - rest.len() - 3;
+            prop_assert_eq!((body[end], body[end + 1]), (0x10, 0x03));
+            prop_assert!(end == at || (end == at + 1 && body[at] ^ flip == 0x10));
         }
     }
 

@@ -16,7 +16,7 @@ impl Flag {
     pub(super) const DISCARD: Self = Self(1 << 1);
     /// The receive buffer holds a telegram that has not been polled.
     pub(super) const RX_FULL: Self = Self(1 << 2);
-    /// The job gave way to the partner; its STX is paid back when a telegram comes of it.
+    /// The job gave way to the partner, and no telegram has come of it yet.
     pub(super) const YIELDED: Self = Self(1 << 3);
     /// A collision was seen in this setup attempt.
     pub(super) const COLLIDED: Self = Self(1 << 4);
@@ -141,6 +141,10 @@ impl Notes {
     /// Appends anything else; `false` without room.
     pub(super) fn diagnosis(&mut self, note: Note) -> bool {
         self.push(note, FOR_DIAGNOSIS)
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.first().is_none_or(Option::is_none)
     }
 
     pub(super) fn pop(&mut self) -> Option<Note> {

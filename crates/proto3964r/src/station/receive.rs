@@ -36,7 +36,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.noise = byte;
                 self.state = State::NoiseQuiet;
                 self.deadline = now.plus_ms(self.config.zvz_ms);
-                self.limit = now.plus_ms(self.config.babble_ms);
+                self.limit = now.plus_us(self.config.babble_us());
             }
         }
     }
@@ -53,6 +53,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn asked_to_receive(&mut self, now: Instant) {
         if self.flags.has(Flag::RX_FULL) {
             self.state = State::WaitBuffer;
+            self.limit = Instant::NEVER;
             self.deadline = now.plus_ms(self.config.effective_buffer_wait_ms());
         } else {
             self.invite(now);
@@ -95,10 +96,16 @@ impl<const N: usize, const T: usize> Station<N, T> {
     #[inline]
     fn after_characters(&mut self, now: Instant, block: Option<Result<usize, FrameError>>) {
         self.deadline = now.plus_ms(self.config.zvz_ms);
+        let faulty = self.decoder.is_faulty() || self.line_error.is_some();
         if let Some(block) = block {
             self.block_ended(now, block);
-        } else if self.decoder.is_faulty() || self.line_error.is_some() {
-            self.limit = self.limit.min(now.plus_ms(self.config.babble_ms));
+        } else if faulty {
+            self.state = State::ReceivingOther;
+            self.limit = self.limit.min(now.plus_us(self.config.babble_us()));
+        } else if self.decoder.is_in_data() {
+            self.state = State::Receiving;
+        } else {
+            self.state = State::ReceivingOther;
         }
     }
 
@@ -117,17 +124,13 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.flags.set(Flag::RX_FULL);
                 self.notes.result(Note::Received);
                 self.collisions = 0;
-                self.pay_back();
+                // The line works: a job that gave way begins its attempts anew.
+                if self.job == Job::Open {
+                    self.setup = 0;
+                }
+                self.flags.clear(Flag::YIELDED);
                 self.go_idle(now);
             }
-        }
-    }
-
-    /// A collision that ends in a telegram costs the job nothing.
-    fn pay_back(&mut self) {
-        if self.flags.has(Flag::YIELDED) {
-            self.flags.clear(Flag::YIELDED);
-            self.setup = self.setup.saturating_sub(1);
         }
     }
 
@@ -140,6 +143,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.abandon(now, Abandoned::TooMany(self.rejections));
         } else {
             self.state = State::AwaitRepeat;
+            self.limit = Instant::NEVER;
             self.deadline = now.plus_ms(self.config.bwz_ms);
         }
     }

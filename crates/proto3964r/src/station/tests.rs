@@ -1,6 +1,15 @@
 //! What only the crate itself can see.
 
-use super::Station;
+use alloc::{format, string::String, vec::Vec};
+
+use proptest::prelude::*;
+
+use super::{Station, Transmit};
+use crate::{
+    config::{Config, Priority},
+    event::{Event, LineError},
+    time::Instant,
+};
 
 /// Bytes of a station beside its two buffers.
 const OVERHEAD: usize = 96;
@@ -12,4 +21,103 @@ fn size_is_bounded() {
     assert!(size_of::<Station<64>>() <= 2 * 64 + OVERHEAD);
     assert!(size_of::<Station<250, 17>>() <= 250 + 17 + OVERHEAD);
     assert!(size_of::<Station<4096, 1>>() <= 4096 + 1 + OVERHEAD);
+}
+
+/// What a station reports and sends when it is asked at the end only.
+fn outcome(station: &mut Station<24>, now: Instant) -> (Vec<String>, Vec<u8>) {
+    let events =
+        core::iter::from_fn(|| station.poll_event().map(|event| format!("{event:?}"))).collect();
+    let bytes = core::iter::from_fn(|| station.poll_transmit_byte(now)).collect();
+    (events, bytes)
+}
+
+proptest! {
+    /// The pieces in which characters arrive make no difference.
+    #[test]
+    fn any_split_gives_the_same_events(
+        characters in prop::collection::vec(
+            prop_oneof![Just(0x02), Just(0x03), Just(0x10), Just(0x15), any::<u8>()], 0..200),
+        cuts in prop::collection::vec(1..30_usize, 0..12),
+        job in any::<bool>(),
+        sent in any::<bool>(),
+    ) {
+        let now = Instant::from_millis(5);
+        let mut whole = Station::<24>::new(Config::siemens_3964r(Priority::Low));
+        if job {
+            whole.send(now, b"job").unwrap();
+        }
+        if sent {
+            while whole.poll_transmit_byte(now).is_some() {}
+        }
+        let (mut pieces, mut bytes) = (whole.clone(), whole.clone());
+        whole.handle_bytes(now, &characters);
+        for &byte in &characters {
+            bytes.handle_byte(now, byte);
+        }
+        let mut rest = &characters[..];
+        for cut in cuts.into_iter().chain([characters.len()]) {
+            let (piece, behind) = rest.split_at(cut.min(rest.len()));
+            pieces.handle_bytes(now, piece);
+            rest = behind;
+        }
+        prop_assert_eq!(&whole, &bytes);
+        prop_assert_eq!(&whole, &pieces);
+        prop_assert_eq!(outcome(&mut whole, now), outcome(&mut bytes, now));
+    }
+
+    /// Pulling byte by byte sends what pulling in pieces sends.
+    #[test]
+    fn any_piece_of_output_is_the_same(
+        payload in prop::collection::vec(prop_oneof![Just(0x10), any::<u8>()], 0..24),
+        pieces in prop::collection::vec(1..9_usize, 1..9),
+    ) {
+        let now = Instant::ZERO;
+        let mut whole = Station::<24>::new(Config::siemens_3964r(Priority::Low).with_nak_at_startup(false));
+        whole.send(now, &payload).unwrap();
+        prop_assert_eq!(whole.poll_transmit_byte(now), Some(0x02));
+        whole.handle_byte(now, 0x10);
+        let mut bytes = whole.clone();
+        let mut sent = Vec::new();
+        for len in pieces.into_iter().cycle() {
+            let mut out = [0; 9];
+            match whole.poll_transmit(now, &mut out[..len]) {
+                Some(Transmit::Bytes(piece)) => sent.extend_from_slice(piece),
+                Some(Transmit::Discard) => prop_assert!(false, "nothing was aborted"),
+                None => break,
+            }
+        }
+        let single: Vec<u8> = core::iter::from_fn(|| bytes.poll_transmit_byte(now)).collect();
+        prop_assert_eq!(sent, single);
+        prop_assert_eq!(whole, bytes);
+    }
+
+    /// Anything at any time: no panic, no endless loop, never more than one outcome per job, and
+    /// a deadline in every state but idle.
+    #[test]
+    fn anything_at_any_time(inputs in prop::collection::vec((0..8_u8, any::<u8>(), 0..3000_u64), 0..400)) {
+        let mut station = Station::<8>::new(Config::siemens_3964r(Priority::Low));
+        let (mut now, mut open) = (Instant::ZERO, 0);
+        for (kind, byte, wait) in inputs {
+            now = now.plus_us(wait * 100);
+            match kind {
+                0 => open += u8::from(station.send(now, &[byte; 5]).is_ok()),
+                1 => station.handle_damaged(now, byte, LineError::Framing),
+                2 => station.handle_break(now),
+                3 => _ = station.cancel(now),
+                4 => station.handle_timeout(now),
+                5 => while station.poll_transmit_byte(now).is_some() {},
+                6 => station.handle_byte(now, [0x02, 0x10, 0x03, 0x15][usize::from(byte) % 4]),
+                _ => station.handle_bytes(now, &[byte, 0x10, 0x03, byte]),
+            }
+            prop_assert_eq!(station.poll_timeout().is_none(), station.is_idle());
+            if byte % 3 == 0 {
+                while let Some(event) = station.poll_event() {
+                    if matches!(event, Event::Sent { .. } | Event::Failed(_)) {
+                        prop_assert_eq!(open, 1);
+                        open = 0;
+                    }
+                }
+            }
+        }
+    }
 }

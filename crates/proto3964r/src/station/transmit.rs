@@ -31,13 +31,13 @@ impl<const N: usize, const T: usize> Station<N, T> {
             *slot = byte;
             len += 1;
         }
-        if self.state == State::Sending
+        if self.state.is_sending()
             && let Some(free) = out.get_mut(len..)
         {
             let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
             let written = self.encoder.fill(self.config.check, payload, free);
             len += written;
-            self.handed_out(now, written);
+            self.handed_out(now, u32::try_from(written).unwrap_or(u32::MAX));
         }
         out.get(..len)
             .filter(|bytes| !bytes.is_empty())
@@ -50,11 +50,25 @@ impl<const N: usize, const T: usize> Station<N, T> {
     #[must_use]
     #[inline]
     pub fn poll_transmit_byte(&mut self, now: Instant) -> Option<u8> {
+        if self.state == State::Sending
+            && let Some(byte) = self.encoder.next_plain(&self.tx, self.tx_len)
+        {
+            let time = u64::from(self.config.character_us);
+            self.limit = self.limit.max(now).plus_us_unchecked_end(time);
+            return Some(byte);
+        }
+        self.next_other_byte(now)
+    }
+
+    /// Anything but one more data byte.
+    #[cold]
+    #[inline(never)]
+    fn next_other_byte(&mut self, now: Instant) -> Option<u8> {
         self.flags.clear(Flag::DISCARD);
         if let Some(byte) = self.next_control(now) {
             return Some(byte);
         }
-        if self.state != State::Sending {
+        if !self.state.is_sending() {
             return None;
         }
         let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
@@ -81,29 +95,43 @@ impl<const N: usize, const T: usize> Station<N, T> {
             State::AwaitDle if !self.flags.has(Flag::STX) => {
                 self.deadline = on_line.plus_ms(self.config.qvz_ms);
             }
-            State::Receiving if byte == DLE => self.deadline = on_line.plus_ms(self.config.zvz_ms),
+            State::Receiving | State::ReceivingOther if byte == DLE => {
+                self.deadline = on_line.plus_ms(self.config.zvz_ms);
+            }
             State::AwaitRepeat => self.deadline = on_line.plus_ms(self.config.bwz_ms),
             _ => {}
         }
         Some(byte)
     }
 
-    /// Moves the deadline behind `count` more characters of the block. While the block goes out
-    /// it is the end of the transmission so far plus QVZ; that much time the output may stall.
-    #[inline]
-    fn handed_out(&mut self, now: Instant, count: usize) {
+    /// `count` more characters of the block are on their way.
+    ///
+    /// ```text
+    /// end of output = max(end of output, now) + count * character
+    /// ```
+    fn handed_out(&mut self, now: Instant, count: u32) {
         if count > 0 {
-            let begin = self.end_of_output().max(now);
-            let time = u64::from(self.config.character_us)
-                .saturating_mul(u64::try_from(count).unwrap_or(u64::MAX));
-            self.deadline = begin.plus_us(time).plus_ms(self.config.qvz_ms);
+            let time = u64::from(self.config.character_us) * u64::from(count);
+            self.limit = self.limit.max(now).plus_us(time);
         }
         if self.encoder.is_done() {
             self.state = State::AwaitAck;
+            self.deadline = self.limit.plus_ms(self.config.qvz_ms);
+            self.limit = Instant::NEVER;
+        } else {
+            self.state = self.sending_state();
         }
     }
 
-    /// When the characters of the block that were handed out are on the line.
+    fn sending_state(&self) -> State {
+        if self.replies.is_empty() && self.encoder.is_in_payload() {
+            State::Sending
+        } else {
+            State::SendingOther
+        }
+    }
+
+    /// While an answer is awaited: when STX or the block is on the line.
     #[inline]
     fn end_of_output(&self) -> Instant {
         self.deadline.minus_ms(self.config.qvz_ms)
@@ -168,10 +196,12 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn end_job(&mut self, now: Instant, cause: Cause) {
         self.first_cause.get_or_insert(cause);
         let phase = match self.state {
-            State::Sending | State::ResendQuiet | State::AwaitAck => Phase::Transfer,
+            State::Sending | State::SendingOther | State::ResendQuiet | State::AwaitAck => {
+                Phase::Transfer
+            }
             _ => Phase::Setup,
         };
-        if self.state.is_sending() {
+        if self.state.is_job() {
             if phase == Phase::Transfer {
                 self.flags.set(Flag::DISCARD);
             }
@@ -199,8 +229,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// The answer to STX.
     pub(super) fn setup_answer(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
         match (byte, error) {
-            (DLE, None) => self.start_block(now),
             (STX, None) => self.collision(now),
+            _ if self.config.ignore_early_answers && now < self.earliest_answer() => {}
+            (DLE, None) => self.start_block(now),
             (NAK, None) => self.next_setup(now, Cause::Nak, Instant::ZERO),
             _ => {
                 let burst_end = now.plus_ms(self.config.zvz_ms);
@@ -213,12 +244,20 @@ impl<const N: usize, const T: usize> Station<N, T> {
         }
     }
 
+    /// STX and the answer take a character time each: what comes before has left the partner
+    /// before it saw STX, for instance a NAK that crosses STX.
+    fn earliest_answer(&self) -> Instant {
+        self.end_of_output()
+            .plus_us(u64::from(self.config.character_us))
+    }
+
     fn start_block(&mut self, now: Instant) {
         self.collisions = 0;
         self.flags.clear(Flag::STX);
         self.encoder = Encoder::START;
-        self.state = State::Sending;
-        self.deadline = now.plus_ms(self.config.qvz_ms);
+        self.state = self.sending_state();
+        self.deadline = Instant::NEVER;
+        self.limit = now;
     }
 
     fn collision(&mut self, now: Instant) {
@@ -251,7 +290,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.first_cause.get_or_insert(wrong_answer(byte, error));
             self.state = State::ResendQuiet;
             self.deadline = now.plus_ms(self.config.zvz_ms);
-            self.limit = now.plus_ms(self.config.babble_ms);
+            self.limit = now.plus_us(self.config.babble_us());
         }
     }
 
@@ -277,7 +316,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.next_setup(now, Cause::Stalled, Instant::ZERO);
             }
             State::AwaitDle => self.next_setup(now, Cause::Timeout, Instant::ZERO),
-            State::Sending => self.next_transfer(now, Cause::Stalled, Instant::ZERO),
+            State::Sending | State::SendingOther => {
+                self.next_transfer(now, Cause::Stalled, Instant::ZERO);
+            }
             State::ResendQuiet => {
                 // `fail` sends this NAK itself, and the cause was noted when the block stopped.
                 if self.transfer < self.config.transfer_attempts {

@@ -1,0 +1,151 @@
+//! A driver for the ports of a PC, on [`serialport`](https://docs.rs/serialport) 4.
+//!
+//! That crate does not tell which characters came in damaged: parity protects only as far as the
+//! operating system drops or replaces them, and the BCC has to see the rest.
+
+extern crate alloc;
+
+use alloc::boxed::Box;
+use std::{
+    io::{self, Read as _, Write as _},
+    time::Instant as Clock,
+};
+
+use core::time::Duration;
+
+use serialport::{ClearBuffer, SerialPort};
+
+use crate::{
+    config::Config,
+    event::Event,
+    station::{SendError, Station, Transmit},
+    time::Instant,
+};
+
+/// The longest sleep in the port: a port that reports no input would not notice a dead line.
+const LONGEST_SLEEP: Duration = Duration::from_secs(1);
+
+/// A station with its port; the clock is that of the system.
+///
+/// # Examples
+/// ```no_run
+/// use std::time::Duration;
+/// use proto3964r::{Config, Event, Priority, serialport::Driver};
+///
+/// let port = serialport::new("/dev/ttyUSB0", 9600).parity(serialport::Parity::Even).open()?;
+/// let config = Config::siemens_3964r(Priority::High).with_line(9600, 11);
+/// let mut line = Driver::<128>::new(port, config)?;
+/// line.send(b"A")?;
+/// while let Some(event) = line.wait(Duration::from_secs(20))? {
+///     match event {
+///         Event::Received(telegram) => println!("received {telegram:02X?}"),
+///         Event::Sent { .. } => break,
+///         other => println!("{other:?}"),
+///     }
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Driver<const N: usize, const T: usize = N> {
+    station: Station<N, T>,
+    port: PortBox,
+    epoch: Clock,
+}
+
+/// A port that can be printed.
+struct PortBox(Box<dyn SerialPort>);
+
+impl core::fmt::Debug for PortBox {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_tuple("SerialPort").field(&self.0.name()).finish()
+    }
+}
+
+impl<const N: usize, const T: usize> Driver<N, T> {
+    /// Puts a station on an open port and drops what the port has received so far.
+    ///
+    /// # Errors
+    /// Those of the port.
+    pub fn new(port: Box<dyn SerialPort>, config: Config) -> io::Result<Self> {
+        port.clear(ClearBuffer::Input)?;
+        Ok(Self {
+            station: Station::with_buffers(config),
+            port: PortBox(port),
+            epoch: Clock::now(),
+        })
+    }
+
+    /// The station, for what the driver does not offer.
+    pub fn station_mut(&mut self) -> &mut Station<N, T> {
+        &mut self.station
+    }
+
+    /// The time since the driver was made, as the station counts it.
+    #[must_use]
+    pub fn now(&self) -> Instant {
+        Instant::ZERO + self.epoch.elapsed()
+    }
+
+    /// Takes a job; it goes out while [`wait`](Self::wait) runs.
+    ///
+    /// # Errors
+    /// Those of [`Station::send`].
+    pub fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
+        self.station.send(self.now(), payload)
+    }
+
+    /// Works until there is an event, at most for `patience`; `None` when that has passed.
+    ///
+    /// # Errors
+    /// Those of the port.
+    pub fn wait(&mut self, patience: Duration) -> io::Result<Option<Event<'_>>> {
+        let end = self.now() + patience;
+        loop {
+            self.station.handle_timeout(self.now());
+            self.write()?;
+            if self.station.has_event() || self.now() >= end {
+                break;
+            }
+            self.read(end)?;
+        }
+        Ok(self.station.poll_event())
+    }
+
+    fn write(&mut self) -> io::Result<()> {
+        let mut out = [0; 256];
+        while let Some(transmit) = self.station.poll_transmit(self.now(), &mut out) {
+            match transmit {
+                Transmit::Discard => self.port.0.clear(ClearBuffer::Output)?,
+                Transmit::Bytes(bytes) => self.port.0.write_all(bytes)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads what comes in before something is due or `end` has come.
+    fn read(&mut self, end: Instant) -> io::Result<()> {
+        let now = self.now();
+        let due = self.station.poll_timeout().map_or(end, |due| due.min(end));
+        // Whole milliseconds, rounded up: the port does not count finer.
+        let sleep = (due - now).min(LONGEST_SLEEP) + Duration::from_millis(1);
+        self.port.0.set_timeout(sleep)?;
+        let mut input = [0; 256];
+        match self.port.0.read(&mut input) {
+            Ok(len) => {
+                let now = self.now();
+                self.station
+                    .handle_bytes(now, input.get(..len).unwrap_or_default());
+                Ok(())
+            }
+            Err(error) if is_silence(&error) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+fn is_silence(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+    )
+}

@@ -1,0 +1,148 @@
+//! Rules that the documentation states and that neither the vectors nor the mistakes touch.
+#![cfg(test)]
+
+use proto3964r::{
+    Abandoned, Cause, Config, Event, Failure, Instant, Phase, Priority, Rejection, Station,
+    Transmit,
+};
+
+const STX: u8 = 0x02;
+const DLE: u8 = 0x10;
+const NAK: u8 = 0x15;
+
+fn low() -> Config {
+    Config::siemens_3964r(Priority::Low).with_nak_at_startup(false)
+}
+
+fn ms(millis: u64) -> Instant {
+    Instant::from_millis(millis)
+}
+
+fn sent(station: &mut Station<16>, now: Instant) -> Vec<u8> {
+    core::iter::from_fn(|| station.poll_transmit_byte(now)).collect()
+}
+
+#[test]
+fn nak_at_startup_comes_before_anything_else() {
+    let mut station = Station::<16>::new(Config::siemens_3964r(Priority::Low));
+    station.send(ms(0), b"A").unwrap();
+    assert_eq!(sent(&mut station, ms(0)), [NAK, STX]);
+}
+
+/// The DLE of the attempt before comes while the next STX is still in the station.
+#[test]
+fn a_late_dle_counts_while_the_next_stx_is_not_out() {
+    let mut station = Station::<16>::new(low());
+    station.send(ms(0), b"A").unwrap();
+    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    station.handle_timeout(ms(2000));
+    station.handle_byte(ms(2000), DLE);
+    assert_eq!(sent(&mut station, ms(2000)), [0x41, 0x10, 0x03, 0x52]);
+}
+
+#[test]
+fn a_foreign_character_into_a_queued_block_waits_for_silence() {
+    let mut station = Station::<16>::new(low().with_line(9600, 11));
+    station.send(ms(0), b"ABCDEFGHIJKLMNOP").unwrap();
+    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    station.handle_byte(ms(3), DLE);
+    assert_eq!(sent(&mut station, ms(3)).len(), 19);
+    station.handle_byte(ms(10), 0x55); // 19 characters take 21.8 ms
+    assert_eq!(
+        station.poll_transmit(ms(10), &mut [0; 9]),
+        Some(Transmit::Discard)
+    );
+    assert_eq!(station.poll_transmit(ms(10), &mut [0; 9]), None);
+    station.handle_timeout(ms(230));
+    assert_eq!(sent(&mut station, ms(230)), [NAK, STX]);
+}
+
+#[test]
+fn a_series_of_rejections_ends_with_the_wait_for_its_repeat() {
+    let mut station = Station::<16>::new(low());
+    let bad = [STX, 0x41, 0x10, 0x03, 0x00];
+    for _ in 0..5 {
+        station.handle_bytes(ms(0), &bad);
+    }
+    while station.poll_event().is_some() {}
+    station.handle_timeout(ms(4000));
+    assert_eq!(
+        station.poll_event(),
+        Some(Event::Abandoned(Abandoned::NoRepeat))
+    );
+    station.handle_bytes(ms(4000), &bad);
+    assert!(matches!(
+        station.poll_event(),
+        Some(Event::Rejected(Rejection::Frame(_)))
+    ));
+    assert_eq!(station.poll_event(), None, "one rejection, not six");
+}
+
+/// The line was busy: the times run from the moment in which it takes the answer.
+#[test]
+fn times_run_from_the_hand_over() {
+    let mut station = Station::<16>::new(low());
+    station.handle_byte(ms(0), STX);
+    assert_eq!(sent(&mut station, ms(100)), [DLE]);
+    assert_eq!(station.poll_timeout(), Some(ms(320)));
+    station.handle_bytes(ms(200), &[0x41, 0x10, 0x03, 0x00]);
+    assert_eq!(sent(&mut station, ms(300)), [NAK]);
+    assert_eq!(station.poll_timeout(), Some(ms(4300)));
+    let mut station = Station::<16>::new(low());
+    station.send(ms(0), b"A").unwrap();
+    assert_eq!(sent(&mut station, ms(70)), [STX]);
+    assert_eq!(station.poll_timeout(), Some(ms(2070)));
+}
+
+#[test]
+fn nak_ends_the_wait_for_a_buffer() {
+    let mut station = Station::<16>::new(low());
+    station.handle_bytes(ms(0), &[STX, 0x41, 0x10, 0x03, 0x52]);
+    assert_eq!(sent(&mut station, ms(0)), [DLE, DLE]);
+    station.handle_bytes(ms(1), &[STX, NAK]);
+    assert!(station.is_idle());
+    // A second STX does not prolong the wait of the first.
+    station.handle_byte(ms(10), STX);
+    station.handle_byte(ms(300), STX);
+    assert_eq!(station.poll_timeout(), Some(ms(410)));
+}
+
+/// A partner that asks before our STX is out, and then never delivers, cannot hold a job for ever.
+#[test]
+fn asking_first_and_delivering_nothing_costs_attempts() {
+    let mut station = Station::<16>::new(low());
+    station.send(ms(0), b"A").unwrap();
+    let mut now = 0;
+    for _ in 0..6 {
+        station.handle_byte(ms(now), STX);
+        now += 220;
+        station.handle_timeout(ms(now));
+    }
+    let mut last = None;
+    while let Some(event) = station.poll_event() {
+        if let Event::Failed(Failure {
+            phase,
+            cause,
+            attempts,
+            ..
+        }) = event
+        {
+            last = Some((phase, cause, attempts));
+        }
+    }
+    assert_eq!(last, Some((Phase::Setup, Cause::Collision, 6)));
+}
+
+#[test]
+fn an_answer_sooner_than_the_line_allows_is_none() {
+    let config = low().with_line(9600, 11).with_ignore_early_answers(true);
+    for (byte, answer) in [(NAK, &[][..]), (0x55, &[]), (DLE, &[])] {
+        let mut station = Station::<16>::new(config);
+        station.send(ms(0), b"A").unwrap();
+        assert_eq!(sent(&mut station, ms(0)), [STX]);
+        station.handle_byte(Instant::from_micros(2 * 1146 - 1), byte);
+        assert_eq!(sent(&mut station, ms(3)), answer);
+        station.handle_byte(Instant::from_micros(2 * 1146), DLE);
+        assert_eq!(sent(&mut station, ms(3)), [0x41, 0x10, 0x03, 0x52]);
+    }
+}
