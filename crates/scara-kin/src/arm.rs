@@ -30,6 +30,8 @@ pub struct Arm<T: RealField = f64> {
     fore: T,
     base: Isometry2<T>,
     limits: Limits<T>,
+    /// The part of the limits in which an angle is at its turn.
+    window: Limits<T>,
     keep_out: T,
     tolerance: T,
 }
@@ -110,6 +112,7 @@ impl<T: RealField + Copy> Arm<T> {
             fore,
             base: Isometry2::identity(),
             limits: Limits::unlimited(),
+            window: Limits::unlimited().window(),
             keep_out: T::zero(),
             tolerance: T::zero(),
         };
@@ -137,8 +140,9 @@ impl<T: RealField + Copy> Arm<T> {
 
     /// The arm with joint limits.
     #[must_use]
-    pub const fn with_limits(mut self, limits: Limits<T>) -> Self {
+    pub fn with_limits(mut self, limits: Limits<T>) -> Self {
         self.limits = limits;
+        self.window = limits.window();
         self
     }
 
@@ -183,6 +187,10 @@ impl<T: RealField + Copy> Arm<T> {
     #[must_use]
     pub const fn limits(&self) -> &Limits<T> {
         &self.limits
+    }
+
+    pub(crate) const fn window(&self) -> &Limits<T> {
+        &self.window
     }
 
     /// Radius of the disc round the base that the tool must not enter; zero for none.

@@ -82,6 +82,14 @@ impl<T: RealField + Copy> JointRange<T> {
         if below <= above { self.min } else { self.max }
     }
 
+    /// The part of the range in which each angle is at the turn nearest to the middle.
+    pub(crate) fn window(&self) -> Self {
+        Self {
+            min: self.min.max(self.middle() - T::pi()),
+            max: self.max.min(self.middle() + T::pi()),
+        }
+    }
+
     /// The angle of the range's middle, zero where unlimited: where a search for a
     /// whole turn starts when nothing came before.
     pub(crate) fn middle(&self) -> T {
@@ -131,6 +139,26 @@ impl<T: RealField + Copy> Limits<T> {
         }
     }
 
+    pub(crate) fn window(&self) -> Self {
+        Self {
+            shoulder: self.shoulder.window(),
+            elbow: self.elbow.window(),
+        }
+    }
+
+    /// Whether both ranges hold both poses; without branches, for the fast path.
+    #[inline]
+    pub(crate) fn hold_both(&self, a: &Joints<T>, b: &Joints<T>) -> bool {
+        (self.shoulder.min <= a.shoulder)
+            & (a.shoulder <= self.shoulder.max)
+            & (self.elbow.min <= a.elbow)
+            & (a.elbow <= self.elbow.max)
+            & (self.shoulder.min <= b.shoulder)
+            & (b.shoulder <= self.shoulder.max)
+            & (self.elbow.min <= b.elbow)
+            & (b.elbow <= self.elbow.max)
+    }
+
     pub(crate) fn middle(&self) -> Joints<T> {
         Joints {
             shoulder: self.shoulder.middle(),
@@ -153,4 +181,63 @@ pub(crate) fn max_value<T: RealField>() -> T {
 
 pub(crate) fn two<T: RealField>() -> T {
     T::one() + T::one()
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{PI, TAU};
+
+    use super::*;
+
+    /// Whole turns of an angle of a few radians are exact to this.
+    const ROUNDING: f64 = 1e-14;
+
+    #[test]
+    fn angles_take_the_nearest_turn_that_fits() {
+        let range = JointRange::new(-1.5 * PI, 2.5 * PI).unwrap();
+        for (angle, near, wanted) in [
+            (1.0, 0.0, 1.0),
+            (1.0, TAU, 1.0 + TAU),
+            (1.0, -100.0, 1.0),
+            (-2.0, 9.0, -2.0 + TAU),
+            (3.0, -3.0, 3.0 - TAU),
+        ] {
+            let fitted = range.fit(angle, near);
+            assert!(
+                (fitted - wanted).abs() < ROUNDING,
+                "{angle} {near}: {fitted}"
+            );
+        }
+    }
+
+    #[test]
+    fn angles_that_fit_at_no_turn_go_to_the_nearer_end() {
+        let range = JointRange::new(-0.5, 1.0).unwrap();
+        for (angle, end) in [
+            (1.1, 1.0),
+            (-0.6, -0.5),
+            (1.1 + TAU, 1.0),
+            (3.0, 1.0),
+            (-3.0, -0.5),
+        ] {
+            assert_eq!(
+                range.fit(angle, 0.0).to_bits(),
+                f64::to_bits(end),
+                "{angle}"
+            );
+        }
+    }
+
+    #[test]
+    fn ranges_must_hold_something() {
+        for (min, max) in [
+            (1.0, 1.0),
+            (1.0, 0.0),
+            (f64::NAN, 1.0),
+            (0.0, f64::INFINITY),
+        ] {
+            assert!(JointRange::new(min, max).is_err());
+        }
+        assert!(JointRange::<f64>::unlimited().contains(1e300));
+    }
 }

@@ -64,3 +64,51 @@ fn share<T: RealField + Copy>(count: u32, depth: u32) -> T {
     let whole = f64::from(1u32 << depth);
     nalgebra::convert(f64::from(count) / whole)
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate alloc;
+    use alloc::vec::Vec;
+
+    use super::*;
+
+    fn ends(mut accepts: impl FnMut(f64, f64) -> bool) -> Vec<f64> {
+        let mut steps = Bisection::default();
+        let mut ends = Vec::new();
+        loop {
+            while !accepts(steps.position(), steps.target()) {
+                assert!(steps.halve(), "no step is short enough");
+            }
+            ends.push(steps.target());
+            if !steps.advance() {
+                return ends;
+            }
+        }
+    }
+
+    #[test]
+    fn one_step_where_it_will_do() {
+        assert_eq!(ends(|_, _| true), [1.0]);
+    }
+
+    #[test]
+    fn steps_are_as_long_as_their_place_allows() {
+        assert_eq!(ends(|_, to| to > 0.3), [0.5, 1.0]);
+        assert_eq!(ends(|from, to| to - from <= 0.3), [0.25, 0.5, 0.75, 1.0]);
+        // Short only in the first eighth.
+        let crowded = ends(|from, to| from >= 0.125 || to - from <= 0.125);
+        assert_eq!(crowded, [0.125, 0.25, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn halving_ends() {
+        let mut steps = Bisection::default();
+        let halvings = (0..100).take_while(|_| steps.halve()).count();
+        assert_eq!(halvings, 30);
+        // A power of two is exact.
+        assert_eq!(
+            (steps.target::<f64>() * 2f64.powi(30)).to_bits(),
+            1f64.to_bits()
+        );
+    }
+}

@@ -30,14 +30,12 @@ impl<T: RealField + Copy> Solutions<T> {
         [right, left]: [Joints<T>; 2],
         tool: Vector2<T>,
     ) -> Result<Self, InverseError<T>> {
-        let limits = *arm.limits();
-        let near = limits.middle();
-        if limits.holds_near(&right, &near) && limits.holds_near(&left, &near) {
+        if arm.window().hold_both(&right, &left) {
             return Ok(Self {
                 right,
                 left,
                 allowed: Allowed::Both,
-                limits,
+                limits: *arm.limits(),
             });
         }
         Self::sorted(arm, [right, left], tool)

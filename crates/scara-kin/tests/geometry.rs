@@ -1,0 +1,125 @@
+//! What a geometry refuses, and the workspace it gives.
+#![cfg(test)]
+
+use scara_kin::nalgebra::{Isometry2, Point2, Vector2};
+use scara_kin::{
+    Arm, Drives, GeometryError, InverseError, JointRange, Joints, Limits, SingularPose,
+    TangentError, TangentTool,
+};
+
+/// Roundings of a few lengths of some hundred.
+const ROUNDING: f64 = 1e-12;
+
+#[test]
+fn wrong_geometries_are_refused() {
+    for length in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e100, 1e-60] {
+        for (upper, fore) in [(length, 1.0), (1.0, length)] {
+            let error = Arm::new(upper, fore).unwrap_err();
+            assert!(matches!(error, GeometryError::LinkLength { .. }), "{error}");
+        }
+    }
+    let arm = Arm::new(132.0, 100.0).unwrap();
+    for radius in [-1.0, 232.0, f64::NAN] {
+        let error = arm.with_keep_out(radius).unwrap_err();
+        assert!(matches!(error, GeometryError::KeepOut { .. }), "{error}");
+    }
+    let nowhere = Isometry2::new(Vector2::new(0.0, f64::NAN), 0.0);
+    let error = arm.with_base(nowhere).unwrap_err();
+    assert!(error.to_string().contains("base y is NaN"), "{error}");
+    assert!(Drives::default().with_coupling(f64::INFINITY).is_err());
+}
+
+#[test]
+fn lengths_of_any_size_work() {
+    for size in [1e-37, 1e-9, 1.0, 1e9, 1e75] {
+        let arm = Arm::new(size, 0.7 * size).unwrap();
+        let tip = arm.forward(Joints::new(0.3, 1.2));
+        let (_, joints) = arm.inverse(tip).unwrap().nearest_to(Joints::new(0.3, 1.2));
+        assert!(joints.way_to(Joints::new(0.3, 1.2)).amax() < 1e-14);
+    }
+    let small = Arm::new(1e-4f32, 1e-4).unwrap();
+    assert!(small.inverse(Point2::new(1e-4, 0.0)).is_ok());
+}
+
+#[test]
+fn the_keep_out_disc_is_not_entered() {
+    let arm = Arm::new(132.0, 132.0).unwrap().with_keep_out(40.0).unwrap();
+    assert!(arm.inverse(Point2::new(40.0, 0.0)).is_ok());
+    assert_eq!(
+        arm.inverse(Point2::new(0.0, 39.0)),
+        Err(InverseError::TooNear {
+            distance: 39.0,
+            reach: 40.0
+        })
+    );
+    assert_eq!(
+        arm.inverse(Point2::origin()),
+        Err(InverseError::TooNear {
+            distance: 0.0,
+            reach: 40.0
+        })
+    );
+}
+
+#[test]
+fn the_workspace_is_an_annulus_within_limits() {
+    let base = Isometry2::new(Vector2::new(10.0, 20.0), 0.7);
+    let arm: Arm = Arm::new(132.0, 100.0).unwrap().with_base(base).unwrap();
+    let workspace = arm.workspace();
+    assert!((workspace.inner() - 32.0).abs() < ROUNDING);
+    assert!((workspace.outer() - 232.0).abs() < ROUNDING);
+    assert!((workspace.centre() - Point2::new(10.0, 20.0)).norm() < ROUNDING);
+    assert!((workspace.margin(Point2::new(110.0, 20.0)) - 68.0).abs() < ROUNDING);
+    assert!((workspace.circle_margin(Point2::new(110.0, 20.0), 90.0) + 22.0).abs() < ROUNDING);
+    let corners = (Point2::new(50.0, 0.0), Point2::new(110.0, 40.0));
+    assert!((workspace.box_margin(corners.0, corners.1) - 8.0).abs() < ROUNDING);
+
+    let limited = arm.with_limits(Limits {
+        shoulder: JointRange::new(-1.0, 1.0).unwrap(),
+        elbow: JointRange::new(0.1, 2.0).unwrap(),
+    });
+    let inside = arm.forward(Joints::new(0.5, 1.0));
+    let outside = arm.forward(Joints::new(-2.5, 1.0));
+    assert!(limited.workspace().contains(inside));
+    assert!(!limited.workspace().contains(outside) && arm.workspace().contains(outside));
+}
+
+#[test]
+fn straight_and_folded_arms_have_no_joint_rates() {
+    let arm = Arm::new(132.0, 100.0).unwrap();
+    for elbow in [0.0, core::f64::consts::PI, -core::f64::consts::PI, f64::NAN] {
+        let rates = arm.joint_rates(Joints::new(0.3, elbow), Vector2::x());
+        assert!(matches!(rates, Err(SingularPose { .. })), "{elbow}");
+    }
+    assert!(arm.singularity_distance(Joints::new(0.3, 0.0)).abs() < ROUNDING);
+}
+
+#[test]
+fn the_disc_refuses_what_has_no_heading() {
+    let arm = Arm::new(132.0, 132.0).unwrap();
+    let joints = Joints::new(0.2, 0.9);
+    let mut disc = TangentTool::new(0.3).unwrap();
+    disc.follow(&arm, joints, Vector2::y()).unwrap();
+    let before = disc;
+    for direction in [Vector2::zeros(), Vector2::new(f64::NAN, 1.0)] {
+        let error = disc.follow(&arm, joints, direction).unwrap_err();
+        assert!(matches!(error, TangentError::NoHeading { .. }));
+    }
+    let error = disc.follow(&arm, Joints::new(f64::NAN, 0.0), Vector2::x());
+    assert!(matches!(error, Err(TangentError::NotFinite { .. })));
+    assert_eq!(disc, before);
+    assert!(TangentTool::new(0.0).is_err() && TangentTool::new(f64::NAN).is_err());
+}
+
+/// Where a new stroke begins there is no corner, and the shorter turn is taken.
+#[test]
+fn a_lifted_disc_takes_the_shorter_turn() {
+    let arm = Arm::new(132.0, 132.0).unwrap();
+    let joints = Joints::new(0.0, 0.0);
+    let mut disc = TangentTool::new(0.3).unwrap();
+    let first = disc.follow(&arm, joints, Vector2::new(-1.0, 0.1)).unwrap();
+    disc.lift();
+    let second = disc.follow(&arm, joints, Vector2::new(-1.0, -0.1)).unwrap();
+    assert!(second.corner.is_none());
+    assert!(second.theta3 > first.theta3 && second.theta3 > core::f64::consts::PI);
+}
