@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn steps_are_as_long_as_their_place_allows() {
-        assert_eq!(ends(|_, to| to > 0.3), [0.5, 1.0]);
+        assert_eq!(ends(|from, to| from >= 0.5 || to <= 0.5), [0.5, 1.0]);
         assert_eq!(ends(|from, to| to - from <= 0.3), [0.25, 0.5, 0.75, 1.0]);
         // Short only in the first eighth.
         let crowded = ends(|from, to| from >= 0.125 || to - from <= 0.125);
