@@ -235,7 +235,6 @@ impl<W: Write> Planner<'_, W> {
         for record in records {
             match record {
                 Record::Fast(_) => self.plan.fast_records += 1,
-                Record::Slow(slow) if slow.pulses() == JointPulses::default() => continue,
                 Record::Slow(_) => self.plan.slow_records += 1,
             }
             self.out.write_all(&record.encode(&self.machine.format))?;
