@@ -1,0 +1,133 @@
+//! pattern-codec.
+
+use std::hint::black_box;
+
+use no_panic::no_panic;
+use pattern_codec::container::{
+    Container, ContainerError, HEADER_LEN, Header, LengthMismatch, TRAILER_LEN, Verifier, Writer,
+    open,
+};
+use pattern_codec::engraving::{
+    Axis, Builder, DecodeError, Decoder, FastRecords, Format, HomeRecords, JointPulses, Located,
+    PositionError, RECORD_LEN, Record, Records, SlowRecords,
+};
+
+#[no_panic]
+#[inline(never)]
+fn records_next(records: &mut Records<'_>) -> Option<Result<Located, DecodeError>> {
+    records.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn decode(decoder: &mut Decoder, input: &mut &[u8]) -> Option<Result<Located, DecodeError>> {
+    decoder.decode(input)
+}
+
+#[no_panic]
+#[inline(never)]
+fn decoder_finish(decoder: Decoder) -> Result<u64, DecodeError> {
+    decoder.finish()
+}
+
+#[no_panic]
+#[inline(never)]
+fn encode(record: Record, format: &Format) -> [u8; RECORD_LEN] {
+    record.encode(format)
+}
+
+#[no_panic]
+#[inline(never)]
+fn track(builder: &mut Builder, record: Record) -> Result<(), PositionError> {
+    builder.track(record)
+}
+
+#[no_panic]
+#[inline(never)]
+fn fast_next(records: &mut FastRecords) -> Option<Record> {
+    records.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn slow_next(records: &mut SlowRecords) -> Option<Record> {
+    records.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn home_next(records: &mut HomeRecords) -> Option<Record> {
+    records.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn container_open(bytes: &[u8]) -> Result<Container<'_>, ContainerError> {
+    open(bytes)
+}
+
+#[no_panic]
+#[inline(never)]
+fn verifier_update(verifier: &mut Verifier, bytes: &[u8]) -> Result<(), ContainerError> {
+    verifier.update(bytes)
+}
+
+#[no_panic]
+#[inline(never)]
+fn verifier_finish(verifier: Verifier) -> Result<Header, ContainerError> {
+    verifier.finish()
+}
+
+#[no_panic]
+#[inline(never)]
+fn writer_new(header: Header) -> ([u8; HEADER_LEN], Writer) {
+    Writer::new(header)
+}
+
+#[no_panic]
+#[inline(never)]
+fn writer_update(writer: &mut Writer, payload: &[u8]) -> Result<(), LengthMismatch> {
+    writer.update(payload)
+}
+
+#[no_panic]
+#[inline(never)]
+fn writer_finish(writer: Writer) -> Result<[u8; TRAILER_LEN], LengthMismatch> {
+    writer.finish()
+}
+
+pub fn run() {
+    let format = black_box(Format::default());
+    let bytes = black_box([0x02, 0x0F, 0x9E, 0x7F, 0x01, 0x00].as_slice());
+    let _ = black_box(records_next(&mut black_box(format.records(bytes))));
+    let mut decoder = black_box(Decoder::new(format));
+    let _ = black_box(decode(&mut decoder, &mut black_box(bytes)));
+    let _ = black_box(decoder_finish(black_box(decoder)));
+    let mut builder = black_box(Builder::new());
+    let pulses = JointPulses {
+        theta1: 45,
+        theta2: -90,
+        theta3: 6,
+    };
+    let fast = builder.fast(black_box(Axis::Vertical), black_box(-70_000));
+    if let Some(record) = fast.ok().and_then(|fast| fast_next(&mut black_box(fast))) {
+        black_box(encode(black_box(record), &format));
+        let _ = black_box(track(&mut builder, black_box(record)));
+    }
+    if let Ok(slow) = builder.slow(black_box(pulses)) {
+        black_box(slow_next(&mut black_box(slow)));
+    }
+    if let Ok(home) = builder.home(black_box(Axis::ALL)) {
+        black_box(home_next(&mut black_box(home)));
+    }
+    let _ = black_box(container_open(bytes));
+    let mut verifier = black_box(Verifier::new());
+    let _ = black_box(verifier_update(&mut verifier, bytes));
+    let _ = black_box(verifier_finish(black_box(verifier)));
+    if let Ok(header) = Header::engraving(&format, black_box(2)) {
+        let (head, mut writer) = writer_new(black_box(header));
+        black_box(head);
+        let _ = black_box(writer_update(&mut writer, bytes));
+        let _ = black_box(writer_finish(black_box(writer)));
+    }
+}
