@@ -49,6 +49,11 @@ impl<T: RealField + Copy> JointRange<T> {
         self.max
     }
 
+    /// Whether some angle is in the range at no turn.
+    pub(crate) fn is_within_a_turn(&self) -> bool {
+        self.max - self.min < T::two_pi()
+    }
+
     /// Whether `angle`, taken as it is, lies in the range.
     #[must_use]
     pub fn contains(&self, angle: T) -> bool {

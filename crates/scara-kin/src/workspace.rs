@@ -1,8 +1,11 @@
 //! What the arm can reach: an annulus round the base, cut by the joint limits.
 
+mod edge;
+
 use nalgebra::{Point2, RealField, Vector2};
 
-use crate::{Arm, Limits};
+use crate::{Arm, Elbow, Limits};
+use edge::Edge;
 
 /// What an arm can reach: the annulus `inner..=outer` round `centre`, within `limits`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,6 +73,34 @@ impl<T: RealField + Copy> Workspace<T> {
         let nearest = Vector2::zeros().sup(&low).inf(&high);
         let farthest = low.abs().sup(&high.abs());
         self.ring_margin(nearest.norm(), farthest.norm())
+    }
+
+    /// Whether the arm reaches every point of a disc with one elbow, within the annulus,
+    /// keep-out and limits: so that it can draw anything there without changing elbow.
+    ///
+    /// A disc that the arm reaches at its centre, and that meets no place where a joint
+    /// is at an end of its range, is reached everywhere.
+    #[must_use]
+    pub fn covers_circle(&self, centre: Point2<T>, radius: T, elbow: Elbow) -> bool {
+        let rounding = self.arm.tolerance();
+        self.circle_margin(centre, radius) >= -rounding
+            && self.arm.inverse_elbow(centre, elbow).is_ok()
+            && !Edge::all(&self.arm, elbow).any(|edge| edge.meets_disc(centre, radius - rounding))
+    }
+
+    /// Whether the arm reaches every point of the box between two opposite corners with
+    /// one elbow, as [`covers_circle`](Self::covers_circle) does for a disc.
+    #[must_use]
+    pub fn covers_box(&self, corner: Point2<T>, opposite: Point2<T>, elbow: Elbow) -> bool {
+        let rounding = self.arm.tolerance();
+        let inset = Vector2::repeat(rounding);
+        let (low, high) = (corner.inf(&opposite) + inset, corner.sup(&opposite) - inset);
+        self.box_margin(corner, opposite) >= -rounding
+            && self
+                .arm
+                .inverse_elbow(nalgebra::center(&low, &high), elbow)
+                .is_ok()
+            && !Edge::all(&self.arm, elbow).any(|edge| edge.meets_box(low, high))
     }
 
     /// Margin of a region whose distances from the base run from `nearest` to `farthest`.

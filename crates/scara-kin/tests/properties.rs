@@ -319,6 +319,52 @@ proptest! {
     }
 
     #[test]
+    fn what_is_covered_is_reached(
+        (low1, wide1, low2, wide2) in (-4.0..3.0f64, 0.1..7.0f64, -4.0..3.0f64, 0.1..7.0f64),
+        (share, heading) in (0.0..=1.0f64, -PI..PI),
+        (width, height) in (0.0..120.0f64, 0.0..120.0f64),
+        turn in -PI..PI,
+        right in any::<bool>(),
+    ) {
+        let elbow = if right { Elbow::Right } else { Elbow::Left };
+        let arm = Arm::new(132.0, 100.0).unwrap()
+            .with_base(Isometry2::rotation(turn)).unwrap()
+            .with_limits(Limits {
+                shoulder: JointRange::new(low1, low1 + wide1).unwrap(),
+                elbow: JointRange::new(low2, low2 + wide2).unwrap(),
+            });
+        let (centre, half) = (at(&arm, share, heading), Vector2::new(width, height) / 2.0);
+        let workspace = arm.workspace();
+        let grid = (-10..=10).flat_map(|i| (-10..=10).map(move |j| (f64::from(i), f64::from(j))));
+        let reached = |off: Vector2<f64>| arm.inverse_elbow(centre + off, elbow).is_ok();
+        let in_box = grid.clone().map(|(i, j)| half.component_mul(&Vector2::new(i, j)) / 10.0);
+        let in_disc = grid.map(|(i, j)| {
+            let angle = i * PI / 10.0;
+            Vector2::new(angle.cos(), angle.sin()) * (half.x * j / 10.0)
+        });
+        // What is not covered misses a point of a grid, or is close to missing one.
+        let close = half.norm() / 4.0 + 1.0;
+        let grown = |offs: Vec<Vector2<f64>>| {
+            offs.iter().all(|off| reached(*off))
+                && offs.iter().all(|off| reached(off + off.cap_magnitude(close)))
+        };
+        if workspace.covers_box(centre - half, centre + half, elbow) {
+            for off in in_box {
+                prop_assert!(reached(off), "{off}");
+            }
+        } else {
+            prop_assert!(!grown(in_box.collect()), "box");
+        }
+        if workspace.covers_circle(centre, half.x, elbow) {
+            for off in in_disc {
+                prop_assert!(reached(off), "{off}");
+            }
+        } else {
+            prop_assert!(!grown(in_disc.collect()), "disc");
+        }
+    }
+
+    #[test]
     fn box_margin_is_that_of_the_worst_point(
         (x, y, w, h) in (-300.0..300.0f64, -300.0..300.0f64, 0.0..300.0f64, 0.0..300.0f64),
     ) {
