@@ -48,8 +48,17 @@ fn joints() -> impl Strategy<Value = Joints> {
     (-PI..PI, -PI..PI).prop_map(|(shoulder, elbow)| Joints::new(shoulder, elbow))
 }
 
+/// At least a thousand cases; PROPTEST_CASES asks for more.
+fn config() -> ProptestConfig {
+    let given = ProptestConfig::default();
+    ProptestConfig {
+        cases: given.cases.max(1000),
+        ..given
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(config())]
 
     #[test]
     fn forward_undoes_inverse(
