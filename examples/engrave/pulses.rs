@@ -19,6 +19,7 @@ pub(crate) struct PulseWriter<W: Write> {
 impl<W: Write> PulseWriter<W> {
     pub(crate) fn new(out: W, timer: Timer) -> Result<Self> {
         let mut vcd = vcd::Writer::new(out);
+        vcd.comment("direction wires are high for negative pulses")?;
         vcd.timescale(1, TimescaleUnit::NS)?;
         vcd.add_module("engraver")?;
         let mut wires = |kind: &str| -> Result<PerAxis<IdCode>> {
