@@ -1,12 +1,27 @@
 //! Instructions per call, counted by callgrind: the same from run to run.
 //!
 //! `cargo install gungraun-runner` once, with valgrind installed.
+//!
+//! Instructions per item: what a bench reports, divided by its count below; call, setting up and
+//! return cost less than one part in a thousand.
+//!
+//! | bench | divide by | for instructions per |
+//! |---|---:|---|
+//! | `inverse_bare`, `inverse_both` | 1 | call |
+//! | `train_edges` | 59,998 | edge of `AxisTrain` in a loop |
+//! | `train_edges_by_call` | 59,998 | the same as a function of its own, its call and a sum around it included |
+//! | `merged_edges` | 119,998 | edge of two trains in time order |
+//! | `decoded_records` | 65,536 | record of three bytes |
+//!
+//! The bytes of 3964R are counted in its own crate: `cargo bench -p proto3964r --bench instructions`.
 
 use std::hint::black_box;
 
 use gungraun::{library_benchmark, library_benchmark_group, main};
+use pattern_codec::engraving::{Format, Record};
 use scara_kin::Arm;
 use scara_kin::nalgebra::Point2;
+use stepper_sync::{AxisTrain, Trains};
 
 const LINK: f64 = 132.0;
 
@@ -37,6 +52,86 @@ fn inverse_both((arm, point): (Arm, Point2<f64>)) {
     let _ = black_box(black_box(arm).inverse(point));
 }
 
-library_benchmark_group!(name = kinematics; benchmarks = inverse_bare, inverse_both);
+fn trains() -> Trains<2> {
+    Trains::new(black_box([30_000, -29_999]), black_box(4096)).expect("steps and period are good")
+}
 
-main!(library_benchmark_groups = kinematics);
+fn train() -> AxisTrain {
+    let [_, train] = trains().axes();
+    train
+}
+
+// Uneven intervals: 59,998 edges in the time of 60,000.
+#[library_benchmark(setup = train)]
+fn train_edges(train: AxisTrain) -> u64 {
+    black_box(train).sum()
+}
+
+#[inline(never)]
+fn next(train: &mut AxisTrain) -> Option<u64> {
+    train.next()
+}
+
+#[library_benchmark(setup = train)]
+fn train_edges_by_call(train: AxisTrain) -> u64 {
+    let mut train = black_box(train);
+    let mut ticks = 0;
+    while let Some(interval) = next(&mut train) {
+        ticks += interval;
+    }
+    ticks
+}
+
+// 60,000 and 59,998 edges.
+#[library_benchmark(setup = trains)]
+fn merged_edges(trains: Trains<2>) -> u64 {
+    black_box(trains)
+        .edges()
+        .fold(0, |sum, edge| sum ^ edge.ticks ^ edge.axis as u64)
+}
+
+/// Records of random counts and signs: one FAST in 32, the share of its mark.
+fn records() -> Vec<u8> {
+    const RECORDS: usize = 65_536;
+    let mut state = 0x2545_F491_u32;
+    let mut below = |end: u32| {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (u64::from(state) * u64::from(end) >> 32) as u8
+    };
+    let mut bytes = Vec::with_capacity(3 * RECORDS);
+    for _ in 0..RECORDS {
+        match below(32) {
+            31 => bytes.extend([below(8) << 5 | 31, below(256), below(256)]),
+            theta3 => {
+                bytes.extend([theta3, below(31), below(31)].map(|count| count | below(2) << 7))
+            }
+        }
+    }
+    bytes
+}
+
+#[library_benchmark(setup = records)]
+fn decoded_records(bytes: Vec<u8>) -> i32 {
+    let format = black_box(Format::default());
+    let mut sum = 0;
+    for located in format.records(&bytes) {
+        match located.expect("all are records").record {
+            Record::Fast(fast) => sum ^= fast.pulses(),
+            Record::Slow(slow) => sum ^= slow.pulses().theta1,
+        }
+    }
+    // Freeing them is no decoding.
+    std::mem::forget(bytes);
+    sum
+}
+
+library_benchmark_group!(name = kinematics; benchmarks = inverse_bare, inverse_both);
+library_benchmark_group!(
+    name = pulses;
+    benchmarks = train_edges, train_edges_by_call, merged_edges
+);
+library_benchmark_group!(name = patterns; benchmarks = decoded_records);
+
+main!(library_benchmark_groups = kinematics, pulses, patterns);
