@@ -96,7 +96,7 @@ fn replay(path: &str, config: Config) -> Result<(), Box<dyn Error>> {
             parse(line).map_err(|error| format!("{path}:{number}: {error}"))?;
         if now < before {
             return Err(
-                format!("{path}:{number}: time runs backwards, {before} was before").into(),
+                format!("{path}:{number}: time runs backwards: {now} behind {before}").into(),
             );
         }
         before = now;
