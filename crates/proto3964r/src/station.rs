@@ -255,6 +255,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
             .get_mut(..payload.len())
             .ok_or(too_long)?
             .copy_from_slice(payload);
+        if let Some(behind) = self.tx.get_mut(payload.len()) {
+            *behind = DLE; // where `Encoder::next_plain` stops
+        }
         self.handle_timeout(now);
         self.tx_len = len;
         self.job = Job::Open;
