@@ -15,13 +15,17 @@
 //! 0.009000 < 10
 //! ```
 
+#[path = "../station/arguments.rs"]
+mod arguments;
 #[path = "../station/preset.rs"]
 mod preset;
+#[path = "../station/text.rs"]
+mod text;
 
 use core::{error::Error, time::Duration};
 use std::{
     fs,
-    io::{self, IsTerminal as _, Read as _},
+    io::{self, IsTerminal as _, Read as _, Write as _},
     process::ExitCode,
     sync::mpsc::{self, RecvTimeoutError, Sender},
     thread,
@@ -50,29 +54,31 @@ struct Options {
     #[arg(long, default_value = "siemens-3964r")]
     preset: Preset,
     /// Bits per second of the ports.
-    #[arg(long, default_value_t = 9600)]
+    #[arg(long, default_value_t = 9600, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
     /// Parity bit of the ports.
     #[arg(long, default_value = "even")]
     parity: Parity,
     /// End after so many seconds; without it, ports are heard for ever.
-    #[arg(long)]
-    seconds: Option<f64>,
+    #[arg(long, requires = "port", value_parser = text::seconds, allow_hyphen_values = true)]
+    seconds: Option<Duration>,
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let config = options.preset.config(Priority::Low);
-    let result = match &options.capture {
-        Some(path) => replay(path, config),
-        None => listen(&options, config),
-    };
-    match result {
+    match arguments::read().and_then(|options| run(&options)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("monitor: {error}");
             ExitCode::FAILURE
         }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let config = options.preset.config(Priority::Low);
+    match &options.capture {
+        Some(path) => replay(path, config),
+        None => listen(options, config),
     }
 }
 
@@ -90,42 +96,32 @@ fn replay(path: &str, config: Config) -> Result<(), Box<dyn Error>> {
             parse(line).map_err(|error| format!("{path}:{number}: {error}"))?;
         if now < before {
             return Err(
-                format!("{path}:{number}: time runs backwards, {before} was before").into(),
+                format!("{path}:{number}: time runs backwards: {now} behind {before}").into(),
             );
         }
         before = now;
         for byte in bytes {
-            show(now, monitor.handle_byte(now, side, byte));
+            show(now, monitor.handle_byte(now, side, byte))?;
         }
     }
-    conclude(&monitor);
+    conclude(&monitor)?;
     Ok(())
 }
 
 fn parse(line: &str) -> Result<(Instant, Side, Vec<u8>), String> {
     let mut words = line.split_whitespace();
-    let time = words.next().unwrap_or_default();
-    let seconds = time
-        .parse()
-        .ok()
-        .and_then(|time| Duration::try_from_secs_f64(time).ok());
-    let seconds = seconds.ok_or_else(|| format!("`{time}` is not a time in seconds"))?;
+    let time = text::seconds(words.next().unwrap_or_default())?;
     let side = match words.next() {
         Some(">") => Side::A,
         Some("<") => Side::B,
-        other => {
-            return Err(format!(
-                "`{}` is neither `>` nor `<`",
-                other.unwrap_or_default()
-            ));
-        }
+        Some(other) => return Err(format!("`{other}` is neither `>` nor `<`")),
+        None => return Err("no direction behind the time".to_owned()),
     };
-    let bytes: Result<Vec<u8>, String> = words
-        .map(|word| {
-            u8::from_str_radix(word, 16).map_err(|_| format!("`{word}` is not a hexadecimal byte"))
-        })
-        .collect();
-    Ok((Instant::ZERO + seconds, side, bytes?))
+    let bytes = text::bytes(words)?;
+    if bytes.is_empty() {
+        return Err("no bytes behind the direction".to_owned());
+    }
+    Ok((Instant::ZERO + time, side, bytes))
 }
 
 /// What a port has heard.
@@ -147,33 +143,29 @@ fn listen(options: &Options, config: Config) -> Result<(), Box<dyn Error>> {
         let sender = sender.clone();
         thread::spawn(move || hear(port, side, &sender));
     }
-    let end = match options.seconds {
-        Some(seconds) => Some(begin + Duration::try_from_secs_f64(seconds)?),
-        None => None,
-    };
     let mut monitor = Tap::new(config);
     let mut verdict = monitor.verdict();
-    while end.is_none_or(|end| Clock::now() < end) {
+    while options.seconds.is_none_or(|end| begin.elapsed() < end) {
         match receiver.recv_timeout(Duration::from_millis(20)) {
             Ok(heard) => {
                 let (at, side, bytes) = heard?;
                 let now = Instant::ZERO + (at - begin);
                 for byte in bytes {
-                    show(now, monitor.handle_byte(now, side, byte));
+                    show(now, monitor.handle_byte(now, side, byte))?;
                 }
             }
             Err(RecvTimeoutError::Timeout) => {
                 let now = Instant::ZERO + begin.elapsed();
-                show(now, monitor.handle_timeout(now));
+                show(now, monitor.handle_timeout(now))?;
             }
             Err(RecvTimeoutError::Disconnected) => break,
         }
         if monitor.verdict() != verdict {
             verdict = monitor.verdict();
-            conclude(&monitor);
+            conclude(&monitor)?;
         }
     }
-    conclude(&monitor);
+    conclude(&monitor)?;
     Ok(())
 }
 
@@ -197,17 +189,15 @@ fn hear(mut port: Box<dyn serialport::SerialPort>, side: Side, sender: &Sender<H
     }
 }
 
-fn show<'a>(now: Instant, observations: impl Iterator<Item = Observation<'a>>) {
+fn show<'a>(now: Instant, observations: impl Iterator<Item = Observation<'a>>) -> io::Result<()> {
     for observation in observations {
-        println!(
-            "{}",
-            paint(&format!("{now} {observation}"), colour(&observation))
-        );
+        print(&format!("{now} {observation}"), colour(&observation))?;
     }
+    Ok(())
 }
 
-fn conclude(monitor: &Tap) {
-    println!("{}", paint(&format!("verdict: {}", monitor.verdict()), "1"));
+fn conclude(monitor: &Tap) -> io::Result<()> {
+    print(&format!("verdict: {}", monitor.verdict()), "1")
 }
 
 /// The terminal's code: green for what goes well, red for what does not, plain for the rest.
@@ -220,10 +210,12 @@ fn colour(observation: &Observation<'_>) -> &'static str {
     }
 }
 
-fn paint(text: &str, code: &str) -> String {
-    if io::stdout().is_terminal() {
-        format!("\x1b[{code}m{text}\x1b[0m")
+/// A line, in colour on a terminal.
+fn print(text: &str, code: &str) -> io::Result<()> {
+    let mut out = io::stdout();
+    if out.is_terminal() {
+        writeln!(out, "\x1b[{code}m{text}\x1b[0m")
     } else {
-        text.to_owned()
+        writeln!(out, "{text}")
     }
 }

@@ -10,18 +10,30 @@
 //! PLC, bytes) and `report.json`.
 
 #[cfg(unix)]
+#[path = "../station/arguments.rs"]
+mod arguments;
+#[cfg(unix)]
 mod line;
 #[cfg(unix)]
 mod party;
 #[cfg(unix)]
 mod run;
 
+use std::process::ExitCode;
+
 #[cfg(unix)]
-fn main() -> Result<(), Box<dyn core::error::Error>> {
-    run::run()
+fn main() -> ExitCode {
+    match arguments::read().and_then(|options| run::run(&options)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("plc: {error}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 #[cfg(not(unix))]
-fn main() {
-    eprintln!("pseudo-terminals need a Unix system");
+fn main() -> ExitCode {
+    eprintln!("plc: pseudo-terminals need a Unix system");
+    ExitCode::FAILURE
 }

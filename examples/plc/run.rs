@@ -7,6 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread;
 
+use clap::Parser;
 use proto3964r::{Config as LineConfig, Priority};
 use rk512::Area;
 use serialport::TTYPort;
@@ -15,46 +16,36 @@ use crate::line::{Noise, Tap};
 use crate::party::{BLOCK, Order, Party, QVZ_MS, Tally};
 
 /// As many as the data blocks have room for: each begins one word further on.
-const MOST_ROUNDS: u8 = 60;
+const MOST_ROUNDS: i64 = 60;
+/// Longer than any block on the line, so that none is hit twice: two errors can cancel in the BCC.
+const LEAST_SPACING: u64 = 280;
 
-struct Options {
+/// Two RK512 stations on pseudo-terminals that write and read each other's data blocks over
+/// 3964R, through a line that damages bytes.
+#[derive(Parser)]
+pub(crate) struct Options {
+    /// Folder for line.log and report.json.
+    #[arg(long, value_name = "DIR", default_value = "target/plc")]
     out: PathBuf,
+    /// Data blocks that each side writes and reads back.
+    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u8).range(1..=MOST_ROUNDS))]
     rounds: u8,
+    /// One byte of every N to 2 N is damaged; 0 for a clean line.
+    #[arg(long, default_value_t = 300, value_parser = spacing)]
     spacing: u64,
+    /// Which bytes are damaged, and how.
+    #[arg(long, default_value_t = 1)]
     seed: u64,
 }
 
-fn options() -> Result<Options, Box<dyn Error>> {
-    let mut options = Options {
-        out: PathBuf::from("target/plc"),
-        rounds: 40,
-        spacing: 300,
-        seed: 1,
-    };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(name) = arguments.next() {
-        let value = arguments
-            .next()
-            .ok_or_else(|| format!("{name}: no value"))?;
-        let number = || {
-            value
-                .parse::<u64>()
-                .map_err(|e| format!("{name} {value}: {e}"))
-        };
-        match name.as_str() {
-            "--out" => options.out = PathBuf::from(&value),
-            "--rounds" => {
-                options.rounds = u8::try_from(number()?)
-                    .ok()
-                    .filter(|&rounds| rounds <= MOST_ROUNDS)
-                    .ok_or_else(|| format!("--rounds {value}: at most {MOST_ROUNDS}"))?;
-            }
-            "--spacing" => options.spacing = number()?,
-            "--seed" => options.seed = number()?,
-            _ => return Err(format!("{name}: not one of --out --rounds --spacing --seed").into()),
-        }
+fn spacing(text: &str) -> Result<u64, String> {
+    let spacing = text.parse().map_err(|error| format!("{error}"))?;
+    if (1..LEAST_SPACING).contains(&spacing) {
+        return Err(format!(
+            "must be 0 or at least {LEAST_SPACING}, so that no block is hit twice"
+        ));
     }
-    Ok(options)
+    Ok(spacing)
 }
 
 /// Data full of the control characters of 3964R, for DB 1 and DX 2 in turn.
@@ -90,10 +81,10 @@ fn expected(orders: &[Order]) -> [[u8; BLOCK]; 2] {
     blocks
 }
 
-pub(crate) fn run() -> Result<(), Box<dyn Error>> {
-    let options = options()?;
-    fs::create_dir_all(&options.out)?;
-    let tap = Tap::new(File::create(options.out.join("line.log"))?);
+pub(crate) fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let log = options.out.join("line.log");
+    let created = fs::create_dir_all(&options.out).and_then(|()| File::create(&log));
+    let tap = Tap::new(created.map_err(|error| format!("{}: {error}", log.display()))?);
     let line = |priority| {
         LineConfig::siemens_3964r(priority)
             .with_qvz_ms(QVZ_MS)

@@ -15,14 +15,17 @@
 //! same-priority                      both sides seem to have the same priority
 //! break                              BREAK on the line
 //! ```
-//! `-` on standard input is the empty telegram. The program ends at the end of the input, after
+//! `-` on standard input is the empty telegram. A line that is no telegram is reported, and makes
+//! the exit code 1. The program ends at the end of the input, after
 //! the outcome of the last job; with `--listen` it stays that much longer.
 
+mod arguments;
 mod preset;
+mod text;
 
 use core::{error::Error, time::Duration};
 use std::{
-    io::{self, BufRead as _},
+    io::{self, BufRead as _, Write as _},
     process::ExitCode,
     sync::mpsc::{self, Receiver, TryRecvError},
     thread,
@@ -54,14 +57,14 @@ struct Options {
     #[arg(long)]
     preset: Preset,
     /// Bits per second.
-    #[arg(long, default_value_t = 9600)]
+    #[arg(long, default_value_t = 9600, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
     /// Parity bit.
     #[arg(long, default_value = "even")]
     parity: Parity,
     /// Stay so many seconds after the last outcome.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    listen: f64,
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = text::seconds, allow_hyphen_values = true)]
+    listen: Duration,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -74,7 +77,7 @@ enum PriorityName {
 type Line = (usize, Result<Vec<u8>, String>);
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
+    match arguments::read().and_then(|options| run(&options)) {
         Ok(code) => code,
         Err(error) => {
             eprintln!("station: {error}");
@@ -96,13 +99,11 @@ fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         .preset
         .config(priority)
         .with_line(options.baud, bits(options.parity));
-    let listen = Duration::try_from_secs_f64(options.listen)
-        .map_err(|error| format!("--listen {}: {error}", options.listen))?;
     let mut line = Driver::<BLOCK>::new(port, config)?;
     let input = read_input();
     let mut code = ExitCode::SUCCESS;
     let mut input_ended = false;
-    let mut end: Option<Instant> = None;
+    let mut last_outcome: Option<Instant> = None;
     loop {
         if line.station_mut().can_send() && !input_ended {
             match input.try_recv() {
@@ -118,13 +119,14 @@ fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
                 Err(TryRecvError::Disconnected) => input_ended = true,
             }
         }
-        if let Some(event) = line.wait(TICK)? {
-            print(event);
+        let event = line.wait(TICK);
+        if let Some(event) = event.map_err(|error| format!("{}: {error}", options.port))? {
+            writeln!(io::stdout(), "{}", describe(event))?;
             continue;
         }
         if input_ended && line.station_mut().can_send() && line.station_mut().is_idle() {
-            let end = *end.get_or_insert_with(|| Instant::now() + listen);
-            if Instant::now() >= end {
+            let since = last_outcome.get_or_insert_with(Instant::now);
+            if since.elapsed() >= options.listen {
                 return Ok(code);
             }
         }
@@ -144,12 +146,16 @@ fn read_input() -> Receiver<Line> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
         for (number, line) in (1..).zip(io::stdin().lock().lines()) {
+            let readable = match &line {
+                Ok(_) => true,
+                Err(error) => error.kind() == io::ErrorKind::InvalidData, // not text, but read
+            };
             let job = match line {
                 Ok(line) if line.trim().is_empty() => continue,
                 Ok(line) => parse(line.trim()),
                 Err(error) => Err(error.to_string()),
             };
-            if sender.send((number, job)).is_err() {
+            if sender.send((number, job)).is_err() || !readable {
                 return;
             }
         }
@@ -158,40 +164,34 @@ fn read_input() -> Receiver<Line> {
 }
 
 fn parse(line: &str) -> Result<Vec<u8>, String> {
-    if line == "-" {
-        return Ok(Vec::new());
+    match line {
+        "-" => Ok(Vec::new()),
+        hex => text::bytes(hex.split_whitespace()),
     }
-    line.split_whitespace()
-        .map(|word| {
-            let byte = u8::from_str_radix(word, 16);
-            byte.map_err(|_| format!("`{word}` is not a hexadecimal byte"))
-        })
-        .collect()
 }
 
-fn print(event: Event<'_>) {
+/// The line of output for an event.
+fn describe(event: Event<'_>) -> String {
     match event {
         Event::Received(telegram) => {
             let hex: String = telegram.iter().map(|byte| format!(" {byte:02X}")).collect();
-            println!("received{hex}");
+            format!("received{hex}")
         }
-        Event::Sent { len } => println!("sent {len}"),
+        Event::Sent { len } => format!("sent {len}"),
         Event::Failed(Failure {
             phase,
             cause,
             attempts,
             ..
-        }) => {
-            println!("failed {phase} {} {attempts}", cause_word(cause));
-        }
-        Event::Rejected(rejection) => println!("error {}", rejection_word(rejection)),
-        Event::Abandoned(Abandoned::NoRepeat) => println!("receive-failed bwz"),
-        Event::Abandoned(Abandoned::TooMany(_)) => println!("receive-failed attempts"),
-        Event::Abandoned(Abandoned::ByPartner) => println!("receive-failed nak"),
-        Event::Collision { in_a_row } => println!("collision {in_a_row}"),
-        Event::SamePriority => println!("same-priority"),
-        Event::Break => println!("break"),
-        other => println!("{other:?}"),
+        }) => format!("failed {phase} {} {attempts}", cause_word(cause)),
+        Event::Rejected(rejection) => format!("error {}", rejection_word(rejection)),
+        Event::Abandoned(Abandoned::NoRepeat) => "receive-failed bwz".to_owned(),
+        Event::Abandoned(Abandoned::TooMany(_)) => "receive-failed attempts".to_owned(),
+        Event::Abandoned(Abandoned::ByPartner) => "receive-failed nak".to_owned(),
+        Event::Collision { in_a_row } => format!("collision {in_a_row}"),
+        Event::SamePriority => "same-priority".to_owned(),
+        Event::Break => "break".to_owned(),
+        other => format!("{other:?}"),
     }
 }
 

@@ -4,17 +4,22 @@ mod compact;
 #[cfg(test)]
 mod explore;
 mod receive;
+mod report;
+mod state;
 #[cfg(test)]
 mod tests;
 mod transmit;
 
 use thiserror::Error;
 
-use self::compact::{Flag, Flags, Note, Notes, Replies, Reply};
+use self::{
+    compact::{Flag, Flags, Note, Notes, Replies, Reply},
+    state::{Job, State},
+};
 use crate::{
     ascii::DLE,
     config::Config,
-    event::{Cause, Event, Failure, LineError, Phase},
+    event::{Cause, LineError},
     frame::{Encoder, Progress, Rules},
     time::Instant,
 };
@@ -46,11 +51,12 @@ use crate::{
 /// # Jobs
 /// A station holds one job: from [`send`](Self::send) until its outcome has been polled. A job
 /// waits while a telegram comes in, and survives a collision and a failed reception. It ends with
-/// exactly one [`Event::Sent`] or [`Event::Failed`].
+/// exactly one [`Event::Sent`](crate::Event::Sent) or [`Event::Failed`](crate::Event::Failed).
 ///
 /// # The receive buffer
-/// It is in use from the first STX until [`Event::Received`] has been polled. A partner that
-/// sends in between is made to wait and then answered NAK, as the procedure wants it.
+/// It is in use from the first STX until [`Event::Received`](crate::Event::Received) has been
+/// polled. A partner that sends in between is made to wait and then answered NAK, as the
+/// procedure wants it.
 ///
 /// # Size
 /// At most `N + T + 96` bytes.
@@ -88,42 +94,6 @@ pub struct Station<const N: usize, const T: usize = N> {
     tx_len: u16,
     rx: [u8; N],
     tx: [u8; T],
-}
-
-/// Where the procedure stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum State {
-    Idle,
-    /// STX came, the receive buffer is in use.
-    WaitBuffer,
-    /// DLE is sent, the block comes in; nothing is wrong with it and the next character may be data.
-    Receiving,
-    /// The same behind a DLE, in front of the BCC, or with an error noted.
-    ReceivingOther,
-    /// NAK is sent, the repeat is awaited within BWZ.
-    AwaitRepeat,
-    /// Silence is awaited after noise in idle.
-    NoiseQuiet,
-    /// STX is queued or sent, DLE is awaited.
-    AwaitDle,
-    /// The block goes out; a data byte is next, or the end. `limit` is when the characters that
-    /// were handed out are on the line, and QVZ later the output has stalled.
-    Sending,
-    /// The same with something else to send first: a reply, or the rest of DLE DLE, DLE ETX BCC.
-    SendingOther,
-    /// Silence is awaited after something interrupted the block.
-    ResendQuiet,
-    /// The block is out, its answer is awaited.
-    AwaitAck,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Job {
-    None,
-    /// Waiting or under way.
-    Open,
-    /// The outcome is in the notes.
-    Closed,
 }
 
 /// What to do with the output.
@@ -227,12 +197,6 @@ impl<const N: usize, const T: usize> Station<N, T> {
         self.job == Job::None
     }
 
-    /// Diagnostic events that were dropped because nobody polled, at most 255.
-    #[must_use]
-    pub fn dropped_events(&self) -> u8 {
-        self.dropped_notes
-    }
-
     /// Takes a job. STX goes out at once when the line is idle, else after the reception.
     ///
     /// # Errors
@@ -255,6 +219,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
             .get_mut(..payload.len())
             .ok_or(too_long)?
             .copy_from_slice(payload);
+        if let Some(behind) = self.tx.get_mut(payload.len()) {
+            *behind = DLE; // where `Encoder::next_plain` stops
+        }
         self.handle_timeout(now);
         self.tx_len = len;
         self.job = Job::Open;
@@ -270,7 +237,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
 
     /// Gives the job up; `false` when there is none to give up.
     ///
-    /// Its outcome is [`Event::Failed`] with [`Cause::Cancelled`] unless an error came before.
+    /// Its outcome is [`Event::Failed`](crate::Event::Failed) with [`Cause::Cancelled`] unless an error came before.
     /// A transmission under way ends with NAK.
     pub fn cancel(&mut self, now: Instant) -> bool {
         self.handle_timeout(now);
@@ -386,7 +353,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// at once, `None` means that only a push can change anything.
     ///
     /// Changes after every push, after [`poll_transmit`](Self::poll_transmit), and after
-    /// [`Event::Received`] was polled.
+    /// [`Event::Received`](crate::Event::Received) was polled.
     #[must_use]
     pub fn poll_timeout(&self) -> Option<Instant> {
         let due = match self.state {
@@ -401,60 +368,10 @@ impl<const N: usize, const T: usize> Station<N, T> {
         Some(due)
     }
 
-    /// Whether [`poll_event`](Self::poll_event) has something.
-    #[must_use]
-    pub fn has_event(&self) -> bool {
-        !self.notes.is_empty()
-    }
-
-    /// The next event, in the order in which they happened.
-    #[must_use]
-    pub fn poll_event(&mut self) -> Option<Event<'_>> {
-        Some(match self.notes.pop()? {
-            Note::Received => {
-                self.flags.clear(Flag::RX_FULL);
-                Event::Received(self.rx.get(..usize::from(self.rx_len)).unwrap_or_default())
-            }
-            Note::Sent => {
-                self.job = Job::None;
-                Event::Sent {
-                    len: usize::from(self.tx_len),
-                }
-            }
-            Note::Failed(phase) => {
-                self.job = Job::None;
-                Event::Failed(self.failure(phase))
-            }
-            Note::Rejected(rejection) => Event::Rejected(rejection),
-            Note::Abandoned(abandoned) => Event::Abandoned(abandoned),
-            Note::Collision(in_a_row) => Event::Collision { in_a_row },
-            Note::SamePriority => Event::SamePriority,
-            Note::Break => Event::Break,
-        })
-    }
-
-    fn failure(&self, phase: Phase) -> Failure {
-        Failure {
-            phase,
-            cause: self.first_cause.unwrap_or(Cause::Timeout),
-            attempts: match phase {
-                Phase::Setup => self.setup,
-                Phase::Transfer => self.transfer,
-            },
-        }
-    }
-
     const fn rules(&self) -> Rules {
         Rules {
             check: self.config.check,
             illegal_dle: self.config.illegal_dle,
-        }
-    }
-
-    /// Reports something that may be dropped when nobody polls.
-    fn diagnose(&mut self, note: Note) {
-        if !self.notes.diagnosis(note) {
-            self.dropped_notes = self.dropped_notes.saturating_add(1);
         }
     }
 
@@ -488,31 +405,5 @@ impl<const N: usize, const T: usize> Station<N, T> {
         if self.job == Job::Open {
             self.resume(now);
         }
-    }
-}
-
-impl State {
-    /// Whether a block comes in.
-    const fn is_receiving(self) -> bool {
-        matches!(self, Self::Receiving | Self::ReceivingOther)
-    }
-
-    /// Whether a block goes out.
-    const fn is_sending(self) -> bool {
-        matches!(self, Self::Sending | Self::SendingOther)
-    }
-
-    /// Whether the station has sent or is about to send STX for its job.
-    const fn is_job(self) -> bool {
-        self.is_sending() || matches!(self, Self::AwaitDle | Self::ResendQuiet | Self::AwaitAck)
-    }
-
-    /// Whether something beside `deadline` may be due.
-    const fn has_other_due(self) -> bool {
-        self.is_sending()
-            || matches!(
-                self,
-                Self::WaitBuffer | Self::ReceivingOther | Self::NoiseQuiet | Self::ResendQuiet
-            )
     }
 }

@@ -40,6 +40,28 @@ fn a_late_dle_counts_while_the_next_stx_is_not_out() {
     assert_eq!(sent(&mut station, ms(2000)), [0x41, 0x10, 0x03, 0x52]);
 }
 
+/// Siemens' error 0706h.
+#[test]
+fn a_dle_into_the_block_waits_for_silence() {
+    let mut station = Station::<16>::new(low().with_transfer_attempts(1));
+    station.send(ms(0), b"AB").unwrap();
+    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    station.handle_byte(ms(1), DLE);
+    for character in [0x41, 0x42, DLE, 0x03] {
+        assert_eq!(station.poll_transmit_byte(ms(2)), Some(character));
+    }
+    station.handle_byte(ms(3), DLE); // the BCC is not out
+    assert_eq!(sent(&mut station, ms(3)), []);
+    station.handle_timeout(ms(222));
+    assert_eq!(station.poll_event(), None);
+    station.handle_timeout(ms(223));
+    assert_eq!(sent(&mut station, ms(223)), [NAK]);
+    let Some(Event::Failed(Failure { phase, cause, .. })) = station.poll_event() else {
+        panic!("the job has failed");
+    };
+    assert_eq!((phase, cause), (Phase::Transfer, Cause::Unexpected(DLE)));
+}
+
 #[test]
 fn a_foreign_character_into_a_queued_block_waits_for_silence() {
     let mut station = Station::<16>::new(low().with_line(9600, 11));

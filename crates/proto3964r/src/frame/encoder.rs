@@ -128,12 +128,13 @@ impl Encoder {
         self.next == Next::Payload
     }
 
-    /// The next of `len` payload bytes if it is no DLE; `None`, and nothing taken, else. Only
-    /// while [`is_in_payload`](Self::is_in_payload).
+    /// The next byte of the payload if it is no DLE; `None`, and nothing taken, else. Only while
+    /// [`is_in_payload`](Self::is_in_payload), and with a DLE behind a payload that is shorter
+    /// than `buffer`: one comparison then finds the end too.
     #[inline]
-    pub(crate) fn next_plain(&mut self, payload: &[u8], len: u16) -> Option<u8> {
-        let byte = *payload.get(usize::from(self.position))?;
-        if byte == DLE || self.position >= len {
+    pub(crate) fn next_plain(&mut self, buffer: &[u8]) -> Option<u8> {
+        let byte = *buffer.get(usize::from(self.position))?;
+        if byte == DLE {
             return None;
         }
         self.position = self.position.wrapping_add(1);

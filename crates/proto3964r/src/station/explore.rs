@@ -24,6 +24,7 @@ use super::*;
 use crate::{
     ascii::{DLE, ETX, NAK, STX},
     config::Priority,
+    event::Event,
 };
 
 type Small = Station<2, 1>;

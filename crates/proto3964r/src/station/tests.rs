@@ -31,6 +31,29 @@ fn outcome(station: &mut Station<24>, now: Instant) -> (Vec<String>, Vec<u8>) {
     (events, bytes)
 }
 
+/// Byte by byte, the end of the payload is found by what stands behind it in the buffer.
+#[test]
+fn a_short_job_behind_a_long_one() {
+    let now = Instant::ZERO;
+    let config = Config::siemens_3964r(Priority::Low).with_nak_at_startup(false);
+    let mut station = Station::<4>::new(config);
+    let jobs: [(&[u8], &[u8]); 3] = [
+        (&[1, 2, 3, 4], &[1, 2, 3, 4, 0x10, 0x03, 0x17]),
+        (&[5, 6], &[5, 6, 0x10, 0x03, 0x10]),
+        (&[], &[0x10, 0x03, 0x13]),
+    ];
+    for (payload, body) in jobs {
+        station.send(now, payload).unwrap();
+        assert_eq!(station.poll_transmit_byte(now), Some(0x02));
+        station.handle_byte(now, 0x10);
+        let sent: Vec<u8> = core::iter::from_fn(|| station.poll_transmit_byte(now)).collect();
+        assert_eq!(sent, body);
+        station.handle_byte(now, 0x10);
+        let sent = Event::Sent { len: payload.len() };
+        assert_eq!(station.poll_event(), Some(sent));
+    }
+}
+
 proptest! {
     /// The pieces in which characters arrive make no difference.
     #[test]

@@ -51,7 +51,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     #[inline]
     pub fn poll_transmit_byte(&mut self, now: Instant) -> Option<u8> {
         if self.state == State::Sending
-            && let Some(byte) = self.encoder.next_plain(&self.tx, self.tx_len)
+            && let Some(byte) = self.encoder.next_plain(&self.tx)
         {
             let time = u64::from(self.config.character_us);
             self.limit = self.limit.max(now).plus_us_unchecked_end(time);

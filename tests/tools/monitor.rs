@@ -1,0 +1,185 @@
+//! `monitor` on capture files.
+
+use std::fs;
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+
+use super::command::{assert_refused, lines, run, tool};
+
+/// A capture file that lasts as long as the folder.
+fn capture(text: &[u8]) -> (TempDir, PathBuf) {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("line.txt");
+    fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn replay(options: &[&str], text: &str) -> Vec<String> {
+    let (_folder, path) = capture(text.as_bytes());
+    let output = run(tool("monitor").args(options).arg(path), b"");
+    assert_eq!(lines(&output.stderr), [""; 0]);
+    assert!(output.status.success());
+    lines(&output.stdout)
+}
+
+#[test]
+fn good_conversation() {
+    let text = "\
+# start-up, then one telegram each way
+0.000000 > 15
+0.100000 > 02
+0.103000 < 10
+0.104200 > 41 10 10 42 10 03 10
+0.112000 < 10
+
+0.200 < 02   # the answer
+0.204 > 10
+0.205 < 10 03 13
+0.2075 > 10
+";
+    assert_eq!(
+        replay(&[], text),
+        [
+            "0.000000s A NAK without a question",
+            "0.100000s A STX, attempt 1",
+            "0.103000s B DLE, ready to receive, 3.000 ms",
+            "0.104200s A block of 3: 41 10 42",
+            "0.112000s B DLE, accepted, 7.800 ms",
+            "0.200000s B STX, attempt 1",
+            "0.204000s A DLE, ready to receive, 4.000 ms",
+            "0.205000s B block of 0: ",
+            "0.207500s A DLE, accepted, 2.500 ms",
+            "verdict: the line works",
+        ]
+    );
+}
+
+#[test]
+fn wrong_bcc_and_its_repeat() {
+    let text = "\
+1.000 > 02
+1.002 < 10
+1.003 > 41 10 03 00
+1.008 < 15
+1.009 > 02
+1.011 < 10
+1.012 > 41 10 03 52
+1.017 < 10
+";
+    assert_eq!(
+        replay(&[], text),
+        [
+            "1.000000s A STX, attempt 1",
+            "1.002000s B DLE, ready to receive, 2.000 ms",
+            "1.003000s A bad block: BCC 00h received, 52h computed",
+            "1.008000s B NAK, rejected, 5.000 ms",
+            "1.009000s A STX, attempt 1",
+            "1.011000s B DLE, ready to receive, 2.000 ms",
+            "1.012000s A block of 1: 41",
+            "1.017000s B DLE, accepted, 5.000 ms",
+            "verdict: the line works",
+        ]
+    );
+}
+
+#[test]
+fn nak_to_stx_is_the_verdict() {
+    let text = "\
+0.0 > 02
+0.4 < 15
+0.401 > 02
+0.801 < 15
+";
+    assert_eq!(
+        replay(&[], text),
+        [
+            "0.000000s A STX, attempt 1",
+            "0.400000s B NAK to STX, 400.000 ms",
+            "0.401000s A STX, attempt 2",
+            "0.801000s B NAK to STX, 400.000 ms",
+            "verdict: B answers NAK to STX: no receive buffer",
+        ]
+    );
+}
+
+#[test]
+fn the_times_are_those_of_the_preset() {
+    let text = "0 > 02\n0.6 < 10\n1.3 > 41 10 03\n";
+    assert_eq!(
+        replay(&["--preset", "siemens-3964"], text),
+        [
+            "0.000000s A STX, attempt 1",
+            "0.600000s B does not answer, QVZ exceeded: 600.000 ms",
+            "0.600000s B DLE, ready to receive, 600.000 ms",
+            "1.300000s A pauses in the block, ZVZ exceeded: 700.000 ms",
+            "1.300000s A block of 1: 41",
+            "verdict: B answers later than QVZ",
+        ]
+    );
+}
+
+#[test]
+fn wrong_lines_are_named() {
+    for (text, error) in [
+        ("0 > 02\nx < 10\n", "2: `x` is not a time in seconds"),
+        ("-1 < 10\n", "1: `-1` is not a time in seconds"),
+        ("nan < 10\n", "1: `nan` is not a time in seconds"),
+        ("0 = 10\n", "1: `=` is neither `>` nor `<`"),
+        ("\n# only a time\n0.5\n", "3: no direction behind the time"),
+        ("0 >\n", "1: no bytes behind the direction"),
+        ("0 > 02 1G\n", "1: `1G` is not made of hexadecimal bytes"),
+        ("0 > 123\n", "1: `123` is not made of hexadecimal bytes"),
+        ("0 > +2\n", "1: `+2` is not made of hexadecimal bytes"),
+        (
+            "0.5 > 02\n0.25 < 10\n",
+            "2: time runs backwards: 0.250000s behind 0.500000s",
+        ),
+    ] {
+        let (_folder, path) = capture(text.as_bytes());
+        let line = format!("monitor: {}:{error}", path.display());
+        assert_refused(tool("monitor").arg(&path), &line);
+    }
+}
+
+#[test]
+fn unreadable_captures_are_named() {
+    let (folder, binary) = capture(&[0xFF, 0x02]);
+    let name = binary.display();
+    let line = format!("monitor: {name}: stream did not contain valid UTF-8");
+    assert_refused(tool("monitor").arg(&binary), &line);
+    let missing = folder.path().join("missing");
+    let line = format!(
+        "monitor: {}: No such file or directory (os error 2)",
+        missing.display()
+    );
+    assert_refused(tool("monitor").arg(missing), &line);
+}
+
+#[test]
+fn wrong_options() {
+    for (options, error) in [
+        (
+            &[][..],
+            "the following required arguments were not provided: <CAPTURE>",
+        ),
+        (
+            &["--port", "a"],
+            "two ports are needed, one for each direction",
+        ),
+        (
+            &["--port", "/nowhere/a", "--port", "/nowhere/b"],
+            "/nowhere/a: No such file or directory",
+        ),
+        (
+            &["--port", "a", "line.txt"],
+            "the argument '--port <PORT>' cannot be used with '[CAPTURE]'",
+        ),
+        (
+            &["--port", "a", "--port", "b", "--seconds", "-1"],
+            "invalid value '-1' for '--seconds <SECONDS>': `-1` is not a time in seconds",
+        ),
+    ] {
+        assert_refused(tool("monitor").args(options), &format!("monitor: {error}"));
+    }
+}
