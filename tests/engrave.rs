@@ -107,7 +107,7 @@ fn shipped_drawings_keep_their_bound() {
         let (worst, bound) = (run.number("/max_deviation_mm"), run.number("/bound_mm"));
         assert!(worst <= bound, "{drawing}: {worst} > {bound}");
         assert!(worst > 0.0 && run.number("/rms_deviation_mm") < worst);
-        assert!(run.number("/missing_mm") == 0.0);
+        assert!(run.number("/missing_mm").to_bits() == 0);
         assert!(run.read("engraved.svg").ends_with(b"</svg>\n"));
     }
 }
@@ -210,6 +210,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         &machine.replace("fore_mm = 132.0", "fore_mm = -1.0"),
     );
     let typo = write("typo.toml", &machine.replace("lift_mm", "lift_cm"));
+    let slow = write(
+        "slow.toml",
+        &machine.replace("max_hz = 800.0", "max_hz = 9.0"),
+    );
     let codes = write("codes.toml", &machine.replace("theta2 = 1", "theta2 = 0"));
     let broken = write(
         "broken.svg",
@@ -219,7 +223,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     let wide =
         "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><path d='M0 0H9'/></svg>";
     let wide = write("wide.svg", wide);
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 13] = [
         (&["--svg", "nowhere.svg"], "nowhere.svg: No such file"),
         (&["--svg", &broken], "broken.svg: "),
         (&["--svg", &empty], "empty.svg: there is nothing to draw"),
@@ -241,6 +245,16 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         ),
         (&["--tolerance", "-1"], "--tolerance: -1 is not above 0 mm"),
         (
+            &["--tolerance", "1e-300"],
+            "--tolerance: 1e-300 is below 1e-6 mm",
+        ),
+        (
+            &["--tolerance", "x"],
+            "invalid value 'x' for '--tolerance <MM>'",
+        ),
+        (&["--placement", "1e30,0,0,1e30,0,0"], "too far"),
+        (&["--machine", &slow], "slow.toml: [rapid]: start rate"),
+        (
             &["--tolerance", "nan"],
             "--tolerance: NaN is not above 0 mm",
         ),
@@ -254,6 +268,84 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         assert_eq!(errors.lines().count(), 1, "{errors}");
         let left = fs::read_dir(&out).map_or(0, Iterator::count);
         assert_eq!(left, 0, "{errors}");
+    }
+}
+
+#[test]
+fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
+    for name in ["pattern.bin", "pulses.vcd", "engraved.svg", "report.json"] {
+        let out = TempDir::new().unwrap();
+        fs::create_dir(out.path().join(name)).unwrap();
+        let output = engrave(&[], out.path());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(
+            errors.ends_with(&format!("{name}: is a folder\n")),
+            "{errors}"
+        );
+        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 1, "{name}");
+    }
+}
+
+/// Runs an SVG body in a view box of 100 by 100.
+fn run_body(body: &str) -> Run {
+    let folder = TempDir::new().unwrap();
+    let svg = folder.path().join("body.svg");
+    let text =
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
+    fs::write(&svg, text).unwrap();
+    Run::of(&["--svg", svg.to_str().unwrap()])
+}
+
+/// How near the tool in the glass comes to a place of the drawing, in mm.
+fn nearest(run: &Run, x: f64, y: f64) -> f64 {
+    let (x, y) = run.user_to_machine(x, y);
+    let (upper, fore) = (
+        run.number("/machine/upper_mm"),
+        run.number("/machine/fore_mm"),
+    );
+    integrate(&run.read("pattern.bin"))
+        .iter()
+        .filter(|(_, position)| position[3] < 0)
+        .map(|(_, [theta1, theta2, ..])| {
+            let shoulder = run.angle("theta2", *theta2);
+            let elbow = shoulder + run.angle("theta1", *theta1);
+            let at_x = upper * shoulder.cos() + fore * elbow.cos() - x;
+            let at_y = upper * shoulder.sin() + fore * elbow.sin() - y;
+            at_x.hypot(at_y)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Curves that run along a line and turn back on it: flattening misses their tips.
+#[test]
+fn folded_curves_are_engraved_to_their_tips() {
+    for turn in [0, 17] {
+        let run = run_body(&format!(
+            "<g transform='rotate({turn})' fill='none' stroke='black'>
+             <path d='M50 60Q50 90 50 60M10 50C110 50 -10 50 90 50M20 20Q20 20 40 20'/></g>"
+        ));
+        let bound = run.number("/bound_mm");
+        assert!(run.number("/max_deviation_mm") <= bound);
+        let (sin, cos) = f64::from(turn).to_radians().sin_cos();
+        for (x, y) in [(50.0, 75.0), (50.0, 60.0), (40.0, 20.0)] {
+            let off = nearest(&run, cos * x - sin * y, sin * x + cos * y);
+            assert!(off <= bound, "{off} mm from the tip {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn dots_are_engraved() {
+    // Below one step, without length, alone in the drawing.
+    for body in [
+        "<path d='M10 10h0.01M20 20L20 20M50 50L90 60' stroke='black'/>",
+        "<path d='M20 20L20 20' stroke='black' stroke-linecap='round'/>",
+    ] {
+        let run = run_body(body);
+        let bound = run.number("/bound_mm");
+        assert!(run.number("/max_deviation_mm") <= bound);
+        assert!(nearest(&run, 20.0, 20.0) <= bound);
     }
 }
 

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use tempfile::NamedTempFile;
 
 /// Files that are written under temporary names.
@@ -24,7 +24,10 @@ impl Artefacts {
     }
 
     pub(crate) fn create(&mut self, name: &'static str) -> Result<BufWriter<File>> {
-        let place = || self.folder.join(name).display().to_string();
+        let path = self.folder.join(name);
+        let place = || path.display().to_string();
+        // What cannot be replaced at the end is refused now, with no file in place yet.
+        ensure!(!path.is_dir(), "{}: is a folder", place());
         let file = tempfile::Builder::new()
             .prefix(name)
             .tempfile_in(&self.folder)
@@ -48,7 +51,7 @@ impl Artefacts {
     pub(crate) fn keep(self) -> Result<()> {
         for (file, name) in self.files {
             let place = self.folder.join(name);
-            let file = file.persist(&place);
+            let file = file.persist(&place).map_err(|failed| failed.error);
             let kept = file.with_context(|| place.display().to_string())?;
             share(&kept)?;
         }

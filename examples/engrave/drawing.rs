@@ -4,14 +4,26 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use kurbo::{Affine, BezPath, PathEl, Point, Rect, Shape};
+use kurbo::{
+    Affine, BezPath, ParamCurve, ParamCurveExtrema, PathEl, PathSeg, Point, Rect, Shape, Vec2,
+};
 use nalgebra::Point2;
 use quick_xml::escape::escape;
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, Node, Options, Transform, Tree, roxmltree};
 
+/// A curve whose control points are this near to a line, as a share of its length, is
+/// that line, there and back: the rounding of the parser's numbers.
+const ON_A_LINE: f64 = 1e-6;
+
+/// The finest flattening, as a share of the path's size.
+const FINEST: f64 = 1e-12;
+
 /// The outlines of all visible shapes, in the order of the file, in user units of the
 /// root element (y down).
+///
+/// The parser works in single precision and hands out arcs as cubics, which are within
+/// 0.0003 of the radius of the true arc: below that the measured deviation says nothing.
 pub(crate) struct Drawing {
     outlines: Vec<BezPath>,
     notes: Vec<String>,
@@ -55,7 +67,7 @@ impl Drawing {
                 Node::Group(group) => self.collect(group, to_user),
                 Node::Path(path) if path.is_visible() => {
                     let outline = to_user * affine(path.abs_transform()) * bez_path(path.data());
-                    self.outlines.extend(subpaths(&outline));
+                    self.outlines.extend(subpaths(&unfolded(&outline)));
                 }
                 Node::Path(_) | Node::Image(_) | Node::Text(_) => {}
             }
@@ -85,8 +97,11 @@ impl Drawing {
     }
 }
 
-/// A path as lines that are within `tolerance` of it.
+/// A path as lines that are within `tolerance` of it, or within a share of its size
+/// that no machine tells apart: the number of lines is limited wherever it is placed.
 pub(crate) fn flatten(path: &BezPath, tolerance: f64) -> Vec<Point2<f64>> {
+    let bounds = path.bounding_box();
+    let tolerance = tolerance.max(bounds.width().max(bounds.height()) * FINEST);
     let mut points = Vec::new();
     let mut start = Point::ZERO;
     kurbo::flatten(path, tolerance, |element| match element {
@@ -100,6 +115,41 @@ pub(crate) fn flatten(path: &BezPath, tolerance: f64) -> Vec<Point2<f64>> {
     });
     points.dedup();
     points.into_iter().map(|p| Point2::new(p.x, p.y)).collect()
+}
+
+/// The path with every curve that runs along a line, and maybe back, as lines between
+/// its turning points: flattening as a curve would lose these.
+fn unfolded(path: &BezPath) -> BezPath {
+    let mut lines = BezPath::new();
+    for (number, element) in (0..).zip(path.elements()) {
+        match path.get_seg(number) {
+            Some(curve) if !matches!(curve, PathSeg::Line(_)) => match along(curve) {
+                Some(way) => turning_points(curve, way).for_each(|point| lines.line_to(point)),
+                None => lines.push(*element),
+            },
+            _ => lines.push(*element),
+        }
+    }
+    lines
+}
+
+/// The direction of the line that all control points of a curve lie on, if any.
+fn along(curve: PathSeg) -> Option<Vec2> {
+    let cubic = curve.to_cubic();
+    let ways = [cubic.p1, cubic.p2, cubic.p3].map(|point| point - cubic.p0);
+    let longest = ways
+        .into_iter()
+        .max_by(|a, b| a.hypot2().total_cmp(&b.hypot2()))?;
+    let allowed = ON_A_LINE * longest.hypot2();
+    ways.iter()
+        .all(|way| way.cross(longest).abs() <= allowed)
+        .then_some(longest)
+}
+
+/// Where a curve along `way` turns back, and its end.
+fn turning_points(curve: PathSeg, way: Vec2) -> impl Iterator<Item = Point> {
+    let turns = (Affine::rotate(-way.atan2()) * curve).extrema();
+    turns.into_iter().chain([1.0]).map(move |t| curve.eval(t))
 }
 
 /// One path for each stroke of the tool.

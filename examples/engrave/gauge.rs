@@ -9,8 +9,10 @@ use crate::drawing::flatten;
 /// The drawing is measured as lines that are within this share of the tolerance.
 const FINE: f64 = 0.05;
 
-/// The drawing is looked at in pieces no longer than this, in mm.
+/// The drawing is looked at in pieces no longer than this, in mm, nor than this share
+/// of the reach: a gap as wide as the bound shows on fine machines too.
 const PIECE_MM: f64 = 0.2;
+const PIECE_SHARE: f64 = 0.25;
 
 /// Moves that are looked up together.
 const BATCH: usize = 8;
@@ -103,9 +105,10 @@ impl Gauge {
     /// A gauge for `outlines` in mm that tells distances of up to `reach` apart, to a
     /// small part of `tolerance`.
     pub(crate) fn new(outlines: &[BezPath], tolerance: f64, reach: f64) -> Self {
+        let longest = PIECE_MM.min(reach * PIECE_SHARE);
         let mut pieces = Vec::new();
         for outline in outlines {
-            cut_up(&flatten(outline, tolerance * FINE), &mut pieces);
+            cut_up(&flatten(outline, tolerance * FINE), longest, &mut pieces);
         }
         Self {
             lengths: pieces.iter().map(|piece| piece.line.way.norm()).collect(),
@@ -141,10 +144,10 @@ impl Gauge {
             path_to_drawing_mm: self.worst_2.sqrt(),
             drawing_to_path_mm: seen.fold(0.0, f64::max).sqrt(),
             rms_mm: (self.squares / self.count.max(1.0)).sqrt(),
+            // An empty `sum` is -0.
             missing_mm: missed
                 .filter(|(nearest_2, _)| **nearest_2 > reach_2)
-                .map(|(_, length)| length)
-                .sum(),
+                .fold(0.0, |sum, (_, length)| sum + length),
         }
     }
 
@@ -190,15 +193,15 @@ impl Gauge {
     }
 }
 
-/// Pieces of a stroke; its end is a piece without length, so that it is looked at too.
-fn cut_up(points: &[Point2<f64>], pieces: &mut Vec<Piece>) {
+/// Pieces of a stroke, none above `longest`; its end is a piece without length, so that it is looked at too.
+fn cut_up(points: &[Point2<f64>], longest: f64, pieces: &mut Vec<Piece>) {
     let mut add = |from, to| {
         let index = pieces.len();
         let line = Segment::new(from, to);
         pieces.push(Piece { line, index });
     };
     for (a, b) in points.iter().zip(points.iter().skip(1)) {
-        let parts = ((b - a).norm() / PIECE_MM).ceil().max(1.0);
+        let parts = ((b - a).norm() / longest).ceil().max(1.0);
         let mut from = *a;
         let mut done = 1.0;
         while done <= parts {

@@ -8,7 +8,7 @@ use kurbo::{Affine, Rect};
 use nalgebra::Point2;
 use pose2pulse::pattern_codec::engraving::{AxisCodes, ByteOrder, Format, PerAxis};
 use pose2pulse::scara_kin::{Arm, JointRange, Joints, Limits, TangentTool};
-use pose2pulse::stepper_sync::{RampLimits, Rate, StepScale, Timer};
+use pose2pulse::stepper_sync::{Ramp, RampLimits, Rate, StepScale, Timer};
 use serde::{Deserialize, Serialize};
 
 /// The machine file, as written.
@@ -104,12 +104,13 @@ impl Bed {
     /// The placement that puts `bounds`, y down, as large as may be into the middle of
     /// the bed, y up.
     pub(crate) fn fit(&self, bounds: Rect) -> Affine {
-        // A drawing that is a straight line has one side only.
+        // A drawing that is a straight line has one side only, one that is a dot none.
         let across = [
             self.width_mm / bounds.width(),
             self.height_mm / bounds.height(),
         ];
         let scale = across.into_iter().fold(f64::INFINITY, f64::min);
+        let scale = if scale.is_finite() { scale } else { 1.0 };
         let middle = (
             self.x_mm + self.width_mm / 2.0,
             self.y_mm + self.height_mm / 2.0,
@@ -212,7 +213,7 @@ impl Machine {
                 .with_byte_order(pattern.byte_order),
             timer: timing.0,
             half_period_ticks: timing.1,
-            rapid: ramp(rapid).context("[rapid]")?,
+            rapid: ramp(rapid, timing.0).context("[rapid]")?,
             bed: bed.check().context("[bed]")?,
             settings,
         })
@@ -282,14 +283,17 @@ fn timing(settings: &TimerSettings) -> Result<(Timer, u32)> {
     Ok((timer, u32::try_from(ticks).context("process_hz")?))
 }
 
-fn ramp(settings: &RapidSettings) -> Result<RampLimits> {
+fn ramp(settings: &RapidSettings, timer: Timer) -> Result<RampLimits> {
     let accel = settings.accel_hz_per_s;
-    Ok(RampLimits {
+    let limits = RampLimits {
         start_millihertz: millihertz("start_hz", settings.start_hz)?,
         max_millihertz: millihertz("max_hz", settings.max_hz)?,
         accel_steps_per_s2: whole(accel)
             .with_context(|| format!("accel_hz_per_s = {accel} is not within 1..=2147483647"))?,
-    })
+    };
+    // Whether the rates fit each other and the timer, before anything is planned.
+    Ramp::new([1], &limits, timer.tick_rate())?;
+    Ok(limits)
 }
 
 fn millihertz(name: &str, hz: f64) -> Result<u32> {

@@ -35,6 +35,9 @@ use simulation::Simulation;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/engrave");
 
+/// A thousandth of what fine mechanics hold; the work grows without end below it.
+const LEAST_TOLERANCE_MM: f64 = 1e-6;
+
 /// Engraves an SVG drawing with a simulated two-link arm that gets nothing but the
 /// pattern bytes.
 #[derive(Parser, Debug)]
@@ -87,9 +90,7 @@ fn main() -> ExitCode {
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(error) => {
-            // Nothing can be done where standard error is closed.
-            let _ = error.print();
-            return ExitCode::from(u8::from(error.use_stderr()));
+            return refuse(&error);
         }
     };
     match engrave(&args) {
@@ -102,12 +103,29 @@ fn main() -> ExitCode {
     }
 }
 
+/// Help goes out whole, of an error the line that says what is wrong.
+fn refuse(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        let text = error.to_string();
+        eprintln!("{}", text.lines().next().unwrap_or_default());
+        return ExitCode::FAILURE;
+    }
+    // Nothing can be done where standard output is closed.
+    let _ = error.print();
+    ExitCode::SUCCESS
+}
+
 /// Runs the whole chain; false where the simulated tool left the drawing by more than
 /// the bound.
 fn engrave(args: &Args) -> Result<bool> {
     ensure!(
         args.tolerance.is_finite() && args.tolerance > 0.0,
         "--tolerance: {} is not above 0 mm",
+        args.tolerance
+    );
+    ensure!(
+        args.tolerance >= LEAST_TOLERANCE_MM,
+        "--tolerance: {:e} is below {LEAST_TOLERANCE_MM:e} mm",
         args.tolerance
     );
     let machine = Machine::read(&args.machine)?;
@@ -138,6 +156,8 @@ fn engrave(args: &Args) -> Result<bool> {
     let report = report::Report::new(&machine, &plan, &outcome, placement);
     report.write(artefacts.create("report.json")?)?;
     artefacts.keep()?;
-    report.print_summary(&args.svg, &args.out);
+    report
+        .write_summary(std::io::stdout().lock(), &args.svg, &args.out)
+        .context("standard output")?;
     Ok(report.is_within_bound())
 }

@@ -88,11 +88,14 @@ impl<W: Write> Planner<'_, W> {
     fn stroke(&mut self, points: &[Point2<f64>]) -> Result<()> {
         let waypoints = self.waypoints(points)?;
         let pieces = || waypoints.iter().zip(waypoints.iter().skip(1));
-        let Some((first, second)) = pieces().next() else {
+        let Some(first) = waypoints.first() else {
             return Ok(());
         };
         self.disc.lift();
-        self.turn(first.joints, heading(first, second))?;
+        // A dot has no heading: the disc stays as it is.
+        if let Some(second) = waypoints.get(1) {
+            self.turn(first.joints, heading(first, second))?;
+        }
         self.travel(first.joints)?;
         self.vertical(-self.machine.lift_pulses)?;
         for (from, to) in pieces() {

@@ -105,19 +105,32 @@ impl<'a> Report<'a> {
         Ok(out.flush()?)
     }
 
-    pub(crate) fn print_summary(&self, svg: &Path, folder: &Path) {
+    /// Writes what a person wants to know first.
+    pub(crate) fn write_summary(
+        &self,
+        mut out: impl Write,
+        svg: &Path,
+        folder: &Path,
+    ) -> Result<()> {
         let name = svg.file_name().unwrap_or(svg.as_os_str()).display();
-        println!("{name}: {} strokes, {:.0} mm", self.strokes, self.length_mm);
-        println!(
+        writeln!(
+            out,
+            "{name}: {} strokes, {:.0} mm",
+            self.strokes, self.length_mm
+        )?;
+        writeln!(
+            out,
             "pattern.bin: {} records ({} fast, {} slow), {} bytes",
             self.records, self.fast_records, self.slow_records, self.bytes
-        );
+        )?;
         let pulses = &self.pulses;
-        println!(
+        writeln!(
+            out,
             "simulated from the bytes alone: {} + {} + {} + {} pulses, {:.1} s",
             pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical, self.duration_s
-        );
-        println!(
+        )?;
+        writeln!(
+            out,
             "deviation: {:.3} mm at most, {:.3} mm rms; bound {:.3} mm: {}",
             self.max_deviation_mm,
             self.rms_deviation_mm,
@@ -127,14 +140,20 @@ impl<'a> Report<'a> {
             } else {
                 "NOT KEPT"
             }
-        );
+        )?;
         if self.missing_mm > 0.0 {
-            println!("not engraved: {:.1} mm of the drawing", self.missing_mm);
+            writeln!(
+                out,
+                "not engraved: {:.1} mm of the drawing",
+                self.missing_mm
+            )?;
         }
-        println!(
+        writeln!(
+            out,
             "in {}: pattern.bin, pulses.vcd, engraved.svg, report.json",
             folder.display()
-        );
+        )?;
+        Ok(())
     }
 }
 

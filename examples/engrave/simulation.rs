@@ -104,7 +104,11 @@ impl<'a> Simulation<'a> {
                 self.gauge.engraved(before, tool);
                 self.picture.line_to(tool)
             }
-            None => self.picture.move_to(tool),
+            None => {
+                // A dot is no way, but drawn.
+                self.gauge.engraved(tool, tool);
+                self.picture.move_to(tool)
+            }
         }
     }
 
