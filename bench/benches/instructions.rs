@@ -15,6 +15,9 @@
 //!
 //! The bytes of 3964R are counted in its own crate: `cargo bench -p proto3964r --bench instructions`.
 
+#[path = "../../crates/scara-kin/benches/common/bare.rs"]
+mod bare;
+
 use std::hint::black_box;
 
 use gungraun::{library_benchmark, library_benchmark_group, main};
@@ -33,18 +36,9 @@ fn arm() -> (Arm, Point2<f64>) {
     (Arm::new(LINK, LINK).expect("lengths are good"), point())
 }
 
-// The arithmetic of both elbows without base, checks, limits or types.
 #[library_benchmark(setup = point)]
 fn inverse_bare(point: Point2<f64>) -> [f64; 4] {
-    let (x, y) = (point.x, point.y);
-    let r2 = x * x + y * y;
-    let r = r2.sqrt();
-    let s2 = r2 * ((2.0 * LINK - r) * (2.0 * LINK + r));
-    let s = s2.max(0.0).sqrt();
-    let elbow = libm::atan2(s, (r - LINK) * (r + LINK) - LINK * LINK);
-    let right = libm::atan2(r2 * y - s * x, r2 * x + s * y);
-    let left = libm::atan2(r2 * y + s * x, r2 * x - s * y);
-    black_box([right, elbow, left, -elbow])
+    black_box(bare::bare(point.x, point.y))
 }
 
 #[library_benchmark(setup = arm)]

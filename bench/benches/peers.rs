@@ -1,25 +1,15 @@
 //! Our kinematics beside a bare loop and beside the best published crate, in one run.
 
+#[path = "../../crates/scara-kin/benches/common/points.rs"]
+mod points;
+
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use oxictl::kinematics::serial::scara::{ScaraConfig, ScaraRobot};
-use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, Elbow};
 
-const LINK: f64 = 132.0;
-const POINTS: u32 = 4096;
-
-/// Points spread evenly over the annulus, in an order that jumps about.
-fn points() -> Vec<Point2<f64>> {
-    (0..POINTS)
-        .map(|k| {
-            let golden = f64::from(k) * 2.399_963_229_728_653;
-            let r = 2.0 * LINK * (f64::from(k) + 0.5).sqrt() / f64::from(POINTS).sqrt();
-            Point2::new(r * golden.cos(), r * golden.sin())
-        })
-        .collect()
-}
+use points::{LINK, POINTS, points};
 
 fn inverse(c: &mut Criterion) {
     let points = points();

@@ -3,37 +3,19 @@
 //! Ratios within one run count, not the figures: a machine's speed drifts.
 #![expect(clippy::expect_used, reason = "a bench stops at once")]
 
+#[path = "common/bare.rs"]
+mod bare;
+#[path = "common/points.rs"]
+mod points;
+
 use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, Elbow, JointRange, Joints, Limits};
 
-const LINK: f64 = 132.0;
-const POINTS: u32 = 4096;
-
-/// Points spread evenly over the annulus, in an order that jumps about.
-fn points() -> Vec<Point2<f64>> {
-    (0..POINTS)
-        .map(|k| {
-            let golden = f64::from(k) * 2.399_963_229_728_653;
-            let r = 2.0 * LINK * (f64::from(k) + 0.5).sqrt() / f64::from(POINTS).sqrt();
-            Point2::new(r * golden.cos(), r * golden.sin())
-        })
-        .collect()
-}
-
-/// The same arithmetic without base, checks, limits or types: both elbows.
-fn bare(x: f64, y: f64) -> [f64; 4] {
-    let r2 = x * x + y * y;
-    let r = r2.sqrt();
-    let s2 = r2 * ((2.0 * LINK - r) * (2.0 * LINK + r));
-    let s = s2.max(0.0).sqrt();
-    let elbow = libm::atan2(s, (r - LINK) * (r + LINK) - LINK * LINK);
-    let right = libm::atan2(r2 * y - s * x, r2 * x + s * y);
-    let left = libm::atan2(r2 * y + s * x, r2 * x - s * y);
-    [right, elbow, left, -elbow]
-}
+use bare::bare;
+use points::{LINK, POINTS, points};
 
 fn inverse(c: &mut Criterion) {
     let points = points();
