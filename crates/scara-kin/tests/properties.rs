@@ -48,7 +48,7 @@ fn joints() -> impl Strategy<Value = Joints> {
     (-PI..PI, -PI..PI).prop_map(|(shoulder, elbow)| Joints::new(shoulder, elbow))
 }
 
-/// At least a thousand cases; PROPTEST_CASES asks for more.
+/// At least a thousand cases; `PROPTEST_CASES` asks for more.
 fn config() -> ProptestConfig {
     let given = ProptestConfig::default();
     ProptestConfig {
