@@ -1,8 +1,11 @@
-//! `monitor` on capture files.
+//! `monitor` on capture files and on two ports.
 
 use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::PathBuf;
+use std::process::Stdio;
 
+use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
 use super::command::{assert_refused, lines, run, tool};
@@ -117,6 +120,40 @@ fn the_times_are_those_of_the_preset() {
             "verdict: B answers later than QVZ",
         ]
     );
+}
+
+#[test]
+fn two_ports() {
+    let [(mut from_a, tap_a), (mut from_b, tap_b)] = [(); 2].map(|()| TTYPort::pair().unwrap());
+    let mut monitor = tool("monitor")
+        .args(["--port", &tap_a.name().unwrap()])
+        .args(["--port", &tap_b.name().unwrap()])
+        .args(["--seconds", "6"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let output = monitor.stdout.take().unwrap();
+    let mut lines = BufReader::new(output).lines().map(Result::unwrap);
+    // Each step waits for the one before; the times are those of the day.
+    let mut see = |line: &mut TTYPort, bytes: &[u8], expected: &str| {
+        line.write_all(bytes).unwrap();
+        let seen = lines.by_ref().find(|line| !line.starts_with("verdict"));
+        let seen = seen.unwrap();
+        assert!(seen.contains(expected), "{seen}");
+    };
+    see(&mut from_a, &[0x02], "s A STX, attempt 1");
+    see(&mut from_b, &[0x10], "s B DLE, ready to receive, ");
+    see(&mut from_a, &[0x41, 0x10, 0x03, 0x52], "s A block of 1: 41");
+    see(&mut from_b, &[0x10], "s B DLE, accepted, ");
+    see(&mut from_b, &[0x02], "s B STX, attempt 1");
+    // Nothing comes: the time alone makes the next line.
+    see(&mut from_a, &[], "s A does not answer, QVZ exceeded: ");
+    let verdict = lines.last().unwrap();
+    assert!(
+        verdict.starts_with("verdict: A does not answer STX"),
+        "{verdict}"
+    );
+    assert!(monitor.wait().unwrap().success());
 }
 
 #[test]
