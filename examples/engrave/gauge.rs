@@ -7,7 +7,7 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use crate::drawing::flatten;
 
 /// The drawing is measured as lines that are within this share of the tolerance.
-const FINE: f64 = 0.05;
+const FINE: f64 = 0.01;
 
 /// The drawing is looked at in pieces no longer than this, in mm, nor than this share
 /// of the reach: a gap as wide as the bound shows on fine machines too.
@@ -193,7 +193,8 @@ impl Gauge {
     }
 }
 
-/// Pieces of a stroke, none above `longest`; its end is a piece without length, so that it is looked at too.
+/// Pieces of a stroke, none above `longest`; its end is a piece without length, so that
+/// it is looked at too.
 fn cut_up(points: &[Point2<f64>], longest: f64, pieces: &mut Vec<Piece>) {
     let mut add = |from, to| {
         let index = pieces.len();

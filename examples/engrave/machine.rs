@@ -205,8 +205,7 @@ impl Machine {
             theta2: joint(theta2).context("[theta2]")?,
             theta3: JointScale::new(theta3.step_deg, theta3.gear_ratio, theta3.home_deg)
                 .context("[theta3]")?,
-            disc: TangentTool::new(theta3.corner_deg.to_radians())
-                .context("[theta3] corner_deg")?,
+            disc: disc(theta3).context("[theta3]")?,
             lift_pulses: lift(vertical).context("[vertical]")?,
             format: Format::new()
                 .with_axis_codes(pattern.axis_codes)
@@ -256,6 +255,13 @@ fn joint(settings: &JointSettings) -> Result<JointScale> {
         settings.home_deg
     );
     JointScale::new(settings.step_deg, settings.gear_ratio, settings.home_deg)
+}
+
+fn disc(settings: &DiscSettings) -> Result<TangentTool> {
+    let corner = TangentTool::new(settings.corner_deg.to_radians());
+    let disc = corner.with_context(|| format!("corner_deg = {}", settings.corner_deg))?;
+    let home = disc.starting_at(settings.home_deg.to_radians());
+    home.with_context(|| format!("home_deg = {}", settings.home_deg))
 }
 
 fn range(settings: &JointSettings) -> Result<JointRange> {

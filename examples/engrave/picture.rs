@@ -77,7 +77,11 @@ impl<W: Write> Picture<W> {
     }
 
     fn begin(&mut self) -> Result<()> {
-        Ok(write!(self.path, "M{:.2} {:.2}", self.last.x, self.last.y)?)
+        Ok(write!(
+            self.path,
+            "M{:.2} {:.2}l0 0",
+            self.last.x, self.last.y
+        )?)
     }
 
     fn flush(&mut self) -> Result<()> {

@@ -57,6 +57,12 @@ pub enum TangentError<T = f64> {
         /// The threshold given, in radians.
         corner: T,
     },
+    /// The starting angle is infinite or not a number.
+    #[error("starting angle {theta3} rad is not finite")]
+    Start {
+        /// The angle given, in radians.
+        theta3: T,
+    },
     /// The direction of the curve has no length, or is not finite.
     #[error("direction ({x}, {y}) has no heading")]
     NoHeading {
@@ -91,6 +97,18 @@ impl<T: RealField + Copy> TangentTool<T> {
         } else {
             Err(TangentError::Corner { corner })
         }
+    }
+
+    /// The tool at the angle at which it stands now, in radians, instead of 0.
+    ///
+    /// # Errors
+    /// [`TangentError::Start`] unless `theta3` is finite.
+    pub fn starting_at(mut self, theta3: T) -> Result<Self, TangentError<T>> {
+        if !theta3.is_finite() {
+            return Err(TangentError::Start { theta3 });
+        }
+        self.theta3 = theta3;
+        Ok(self)
     }
 
     /// The tool's angle now, in radians.

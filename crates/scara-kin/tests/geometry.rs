@@ -111,6 +111,18 @@ fn the_disc_refuses_what_has_no_heading() {
     assert!(TangentTool::new(0.0).is_err() && TangentTool::new(f64::NAN).is_err());
 }
 
+/// A disc that stands at nearly a whole turn goes on to it, not back to zero.
+#[test]
+fn the_disc_turns_from_where_it_stands() {
+    let arm = Arm::new(132.0, 132.0).unwrap();
+    let mut disc = TangentTool::new(0.3).unwrap().starting_at(6.0).unwrap();
+    let turn = disc
+        .follow(&arm, Joints::new(0.0, 0.0), Vector2::x())
+        .unwrap();
+    assert!((turn.theta3 - core::f64::consts::TAU).abs() < ROUNDING);
+    assert!(disc.starting_at(f64::NAN).is_err());
+}
+
 /// Where a new stroke begins there is no corner, and the shorter turn is taken.
 #[test]
 fn a_lifted_disc_takes_the_shorter_turn() {

@@ -3,7 +3,7 @@
 const LINK: f64 = 132.0;
 
 /// The same arithmetic without base, checks, limits or types: both elbows.
-pub fn bare(x: f64, y: f64) -> [f64; 4] {
+pub(crate) fn bare(x: f64, y: f64) -> [f64; 4] {
     let r2 = x * x + y * y;
     let r = r2.sqrt();
     let s2 = r2 * ((2.0 * LINK - r) * (2.0 * LINK + r));

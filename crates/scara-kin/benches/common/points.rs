@@ -2,11 +2,11 @@
 
 use scara_kin::nalgebra::Point2;
 
-pub const LINK: f64 = 132.0;
-pub const POINTS: u32 = 4096;
+pub(crate) const LINK: f64 = 132.0;
+pub(crate) const POINTS: u32 = 4096;
 
 /// Points spread evenly over the annulus, in an order that jumps about.
-pub fn points() -> Vec<Point2<f64>> {
+pub(crate) fn points() -> Vec<Point2<f64>> {
     (0..POINTS)
         .map(|k| {
             let golden = f64::from(k) * 2.399_963_229_728_653;
