@@ -85,7 +85,7 @@ pub struct Config {
     pub qvz_ms: u16,
     /// ZVZ, character delay: longest gap between two received characters, in ms. It runs from the
     /// DLE that invites the block, restarts with every character, and is also the silence that
-    /// is awaited after noise. Siemens: 220.
+    /// is awaited after noise. A station counts 0 as 1. Siemens: 220.
     pub zvz_ms: u16,
     /// BWZ, block wait: from NAK to the STX of the repeat, in ms. Siemens: 4000.
     pub bwz_ms: u16,

@@ -158,7 +158,11 @@ impl<const N: usize, const T: usize> Station<N, T> {
             limit: Instant::NEVER,
             decoder: Progress::START,
             encoder: Encoder::START,
-            config,
+            config: Config {
+                // No gap at all would end a block between two of its characters.
+                zvz_ms: config.zvz_ms.max(1),
+                ..config
+            },
             notes: Notes::default(),
             dropped_notes: 0,
             replies,

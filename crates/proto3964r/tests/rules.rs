@@ -168,3 +168,24 @@ fn an_answer_sooner_than_the_line_allows_is_none() {
         assert_eq!(sent(&mut station, ms(3)), [0x41, 0x10, 0x03, 0x52]);
     }
 }
+
+/// With no gap allowed at all, a block in one piece and its characters one by one would differ.
+#[test]
+fn a_character_delay_of_zero_counts_as_one_millisecond() {
+    let block = [0x41, 0x10, 0x03, 0x52];
+    let mut whole = Station::<16>::new(low().with_zvz_ms(0));
+    let mut single = Station::<16>::new(low().with_zvz_ms(0));
+    for station in [&mut whole, &mut single] {
+        station.handle_byte(ms(0), STX);
+        assert_eq!(sent(station, ms(0)), [DLE]);
+    }
+    whole.handle_bytes(ms(0), &block);
+    for byte in block {
+        single.handle_byte(ms(0), byte);
+    }
+    for station in [&mut whole, &mut single] {
+        assert_eq!(station.config().zvz_ms, 1);
+        assert_eq!(sent(station, ms(0)), [DLE]);
+        assert_eq!(station.poll_event(), Some(Event::Received(b"A")));
+    }
+}
