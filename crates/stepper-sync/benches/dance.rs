@@ -27,7 +27,7 @@ fn positions(accumulation: &Accumulation, frames: &[[i8; 8]]) -> [i32; 8] {
         motors.set_speeds(frame);
         for _ in 0..FRAME_TICKS {
             for (position, step) in positions.iter_mut().zip(motors.tick()) {
-                *position += i32::from(step);
+                *position += step;
             }
         }
     }

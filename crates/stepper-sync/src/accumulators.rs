@@ -26,7 +26,7 @@ const MAX_THRESHOLD: u16 = i16::MAX.unsigned_abs().wrapping_sub(MIN_THRESHOLD);
 /// let mut positions = [0_i32; 2];
 /// for _ in 0..200 {
 ///     for (position, step) in positions.iter_mut().zip(motors.tick()) {
-///         *position += i32::from(step);
+///         *position += step;
 ///     }
 /// }
 /// assert_eq!(positions, [20, -20]);
@@ -36,7 +36,10 @@ const MAX_THRESHOLD: u16 = i16::MAX.unsigned_abs().wrapping_sub(MIN_THRESHOLD);
 pub struct Accumulators<const N: usize> {
     // Below the threshold; under `CarrySigned` above its negative.
     sums: [i16; N],
-    speeds: [i16; N],
+    // What a tick adds: magnitudes; under `CarrySigned` speeds.
+    gains: [i16; N],
+    // -1, 0 or 1.
+    signs: [i16; N],
     // Within 128..=32639.
     threshold: i16,
     law: SpeedLaw,
@@ -46,7 +49,8 @@ impl<const N: usize> Accumulators<N> {
     const fn new(law: SpeedLaw, threshold: i16) -> Self {
         Self {
             sums: [0; N],
-            speeds: [0; N],
+            gains: [0; N],
+            signs: [0; N],
             threshold,
             law,
         }
@@ -54,7 +58,12 @@ impl<const N: usize> Accumulators<N> {
 
     /// Takes the speeds of a frame. The accumulators keep what they have gathered.
     pub fn set_speeds(&mut self, speeds: [i8; N]) {
-        self.speeds = speeds.map(i16::from);
+        let speeds = speeds.map(i16::from);
+        self.signs = speeds.map(i16::signum);
+        self.gains = match self.law {
+            SpeedLaw::Reset | SpeedLaw::CarryMagnitude => speeds.map(i16::wrapping_abs),
+            SpeedLaw::CarrySigned => speeds,
+        };
     }
 
     /// What each accumulator has gathered: 0 to below the threshold; with its sign under
@@ -67,22 +76,18 @@ impl<const N: usize> Accumulators<N> {
     /// One tick: the step of each motor, -1, 0 or 1.
     #[inline]
     #[must_use = "these are the steps to make"]
-    pub fn tick(&mut self) -> [i8; N] {
+    pub fn tick(&mut self) -> [i32; N] {
         let threshold = self.threshold;
-        // No sum wraps: |sum| < threshold <= 32639, |speed| <= 128.
         match self.law {
-            SpeedLaw::Reset => self.each(|sum, speed| {
-                let sum = sum.wrapping_add(speed.wrapping_abs());
+            SpeedLaw::Reset => self.each(|sum, sign| {
                 let due = mask(sum >= threshold);
-                (sum & !due, speed.signum() & due)
+                (sum & !due, sign & due)
             }),
-            SpeedLaw::CarryMagnitude => self.each(|sum, speed| {
-                let sum = sum.wrapping_add(speed.wrapping_abs());
+            SpeedLaw::CarryMagnitude => self.each(|sum, sign| {
                 let due = mask(sum >= threshold);
-                (sum.wrapping_sub(threshold & due), speed.signum() & due)
+                (sum.wrapping_sub(threshold & due), sign & due)
             }),
-            SpeedLaw::CarrySigned => self.each(|sum, speed| {
-                let sum = sum.wrapping_add(speed);
+            SpeedLaw::CarrySigned => self.each(|sum, _| {
                 let forward = mask(sum >= threshold);
                 let back = mask(sum <= threshold.wrapping_neg());
                 let taken = (threshold & forward).wrapping_sub(threshold & back);
@@ -91,23 +96,22 @@ impl<const N: usize> Accumulators<N> {
         }
     }
 
+    /// Adds to each sum, and lets the law tell sum and step from sum and sign.
     #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a step is -1, 0 or 1; a checked conversion would be a branch per motor"
-    )]
-    fn each(&mut self, tick: impl Fn(i16, i16) -> (i16, i16)) -> [i8; N] {
+    fn each(&mut self, law: impl Fn(i16, i16) -> (i16, i16)) -> [i32; N] {
         let mut steps = [0; N];
-        for ((sum, &speed), step) in self.sums.iter_mut().zip(&self.speeds).zip(&mut steps) {
-            let (left, made) = tick(*sum, speed);
+        let gains = self.gains.iter().zip(&self.signs);
+        for ((sum, (&gain, &sign)), step) in self.sums.iter_mut().zip(gains).zip(&mut steps) {
+            // |sum| < 32639 and |gain| <= 128 fit 16 bits.
+            let (left, made) = law(sum.wrapping_add(gain), sign);
             *sum = left;
-            *step = made as i8;
+            *step = i32::from(made);
         }
         steps
     }
 }
 
-/// All ones or all zeros, to choose without a branch.
+/// All ones or all zeros: chosen without a branch, so that eight motors fit one vector register.
 #[inline]
 fn mask(condition: bool) -> i16 {
     i16::from(condition).wrapping_neg()

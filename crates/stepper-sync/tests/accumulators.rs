@@ -220,7 +220,7 @@ fn mean_speeds_at_any_tick_rate() {
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn memory_is_what_the_readme_says() {
-    assert_eq!(size_of::<Accumulators<8>>(), 36);
+    assert_eq!(size_of::<Accumulators<8>>(), 52);
 }
 
 fn thresholds() -> impl Strategy<Value = u16> {
@@ -251,7 +251,7 @@ proptest! {
                             SpeedLaw::Reset => 0,
                             _ => sums[m] - sums[m].signum() * limit,
                         };
-                        speeds[m].signum()
+                        i32::from(speeds[m].signum())
                     });
                     prop_assert_eq!(motors.tick(), expected);
                     prop_assert_eq!(motors.sums().map(i64::from), sums);

@@ -2,8 +2,11 @@
 #![cfg(test)]
 #![cfg(feature = "embedded-hal")]
 
+extern crate alloc;
+
+use alloc::rc::Rc;
 use core::{cell::RefCell, convert::Infallible, fmt};
-use std::{collections::HashMap, rc::Rc};
+use std::collections::HashMap;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, OutputPin};

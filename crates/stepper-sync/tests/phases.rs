@@ -38,6 +38,11 @@ fn the_published_sequences() {
 }
 
 #[test]
+fn memory_is_what_the_readme_says() {
+    assert_eq!(size_of::<Phases>(), 11);
+}
+
+#[test]
 fn polarity_order_and_placement() {
     let low = Wiring {
         polarity: Polarity::ActiveLow,

@@ -4,8 +4,9 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use stepper_sync::{
-    AxisRamp, AxisTrain, Direction, Edge, Edges, Periods, Position, PositionError, Ramp,
-    RampLimits, Rate, Reload, Reloads, Timer, TimerError, Trains,
+    Accumulation, Accumulators, AxisRamp, AxisTrain, BusError, BusWrite, Direction, Edge, Edges,
+    LatchWrites, Latches, Periods, Phase, Phases, Position, PositionError, Ramp, RampLimits, Rate,
+    Reload, Reloads, SpeedLaw, Stepping, Timer, TimerError, Trains, Wiring,
 };
 
 #[no_panic]
@@ -77,7 +78,71 @@ fn step(
     position.step(axis, direction)
 }
 
+#[no_panic]
+#[inline(never)]
+fn set_speeds(motors: &mut Accumulators<8>, speeds: [i8; 8]) {
+    motors.set_speeds(speeds);
+}
+
+#[no_panic]
+#[inline(never)]
+fn tick(motors: &mut Accumulators<8>) -> [i32; 8] {
+    motors.tick()
+}
+
+#[no_panic]
+#[inline(never)]
+fn advance(phases: &Phases, phase: Phase, steps: i32) -> Phase {
+    phases.advance(phase, steps)
+}
+
+#[no_panic]
+#[inline(never)]
+fn phase_byte(phases: &Phases, phase: Phase) -> u8 {
+    phases.byte(phase)
+}
+
+#[no_panic]
+#[inline(never)]
+fn latch_writes_next(writes: &mut LatchWrites<8>) -> Option<BusWrite> {
+    writes.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn latches_write(latches: &mut Latches<8>, write: BusWrite) -> Result<(), BusError> {
+    latches.write(write)
+}
+
 pub fn run() {
+    motion();
+    dance();
+}
+
+fn dance() {
+    let rate = Rate::from_hz(black_box(1000));
+    let law = black_box(SpeedLaw::CarrySigned);
+    if let Some(accumulation) = rate
+        .ok()
+        .and_then(|rate| Accumulation::new(law, black_box(600), rate).ok())
+    {
+        let mut motors = black_box(accumulation.motors());
+        set_speeds(&mut motors, black_box([60, -60, 0, 127, -128, 1, 2, 3]));
+        black_box(tick(black_box(&mut motors)));
+    }
+    if let Ok(phases) = Phases::new(black_box(Stepping::Half), black_box(Wiring::UNIPOLAR)) {
+        let phases = black_box(phases);
+        let phase = advance(&phases, black_box(phases.start()), black_box(-3));
+        black_box(phase_byte(&phases, black_box(phase)));
+    }
+    let mut writes = black_box(LatchWrites::new(black_box([Some(9); 8])));
+    if let Some(write) = latch_writes_next(&mut writes) {
+        let mut latches = black_box(Latches::new());
+        let _ = black_box(latches_write(&mut latches, black_box(write)));
+    }
+}
+
+fn motion() {
     if let Ok(trains) = Trains::new(black_box([30, -7]), black_box(4096)) {
         let [mut train, _] = black_box(trains.axes());
         black_box(train_next(&mut train));

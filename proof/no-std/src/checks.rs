@@ -8,14 +8,18 @@ use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
 use scara_kin::nalgebra::{Point2, Vector2};
 use scara_kin::{Arm, Elbow, Joints};
-use stepper_sync::{Position, Ramp, RampLimits, Rate, Timer, Trains};
+use stepper_sync::{
+    Accumulation, LatchWrites, Latches, Phases, Position, Ramp, RampLimits, Rate, SpeedLaw,
+    Stepping, Timer, Trains, Wiring,
+};
 
 /// The checks; the number of each is its exit status.
-pub const ALL: [fn() -> Option<()>; 8] = [
+pub const ALL: [fn() -> Option<()>; 9] = [
     inverse,
     follow,
     trains,
     ramp,
+    dance,
     records,
     container,
     stations,
@@ -91,6 +95,31 @@ fn ramp() -> Option<()> {
     let ramp = Ramp::new([4000, -1500], &limits, Rate::from_hz(1_000_000).ok()?).ok()?;
     holds(ramp.end_ticks() == 2_200_000)?;
     holds(ramp.edges().last()?.ticks == ramp.end_ticks())
+}
+
+/// A frame for two motors through accumulators, phases and latches.
+fn dance() -> Option<()> {
+    let tick = Rate::from_hz(1000).ok()?;
+    let mut motors = Accumulation::new(SpeedLaw::CarrySigned, black_box(600), tick)
+        .ok()?
+        .motors();
+    motors.set_speeds(black_box([119, -60]));
+    let windings = Phases::new(Stepping::Half, Wiring::UNIPOLAR).ok()?;
+    let mut phases = [windings.start(); 2];
+    let mut latches = Latches::new();
+    let mut position = Position::home();
+    for _ in 0..200 {
+        let steps = motors.tick();
+        position.apply(steps).ok()?;
+        for (phase, step) in phases.iter_mut().zip(steps) {
+            *phase = windings.advance(*phase, step);
+        }
+        for write in LatchWrites::new(phases.map(|phase| Some(windings.byte(phase)))) {
+            latches.write(write).ok()?;
+        }
+    }
+    // 119 · 200 / 600 = 39.67; 39 half steps are 7 past a turn, 20 back are 4.
+    holds(position.homing() == [-39, 20] && latches.outputs() == [9, 4])
 }
 
 /// Records to bytes and back, from a slice and from chunks.
