@@ -15,7 +15,7 @@ const MAX_THRESHOLD: u16 = i16::MAX.unsigned_abs().wrapping_sub(MIN_THRESHOLD);
 ///
 /// Speeds are -128..=127, each worth `speed / threshold` steps per tick; see [`Accumulation`] for
 /// the law. `tick()` has no division, no multiplication and no branch that depends on a motor.
-/// Source: [Dancer].
+/// Source: \[Dancer\].
 ///
 /// # Examples
 /// ```

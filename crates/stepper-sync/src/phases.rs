@@ -15,7 +15,7 @@ use thiserror::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "the sequences of four windings")]
 pub enum Stepping {
-    /// One winding at a time: 1, 2, 4, 8. The full step of [Dancer].
+    /// One winding at a time: 1, 2, 4, 8. The full step of \[Dancer\].
     Wave,
     /// Two windings at a time, with more torque: 3, 6, 12, 9.
     Full,

@@ -13,7 +13,7 @@ use thiserror::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SpeedLaw {
-    /// It returns to 0, as in [Dancer]: the overshoot is lost, and with it up to 16 % of the speed
+    /// It returns to 0, as in \[Dancer\]: the overshoot is lost, and with it up to 16 % of the speed
     /// at a threshold of 600. Only some speeds are distinct.
     Reset,
     /// It keeps what it has beyond the threshold: speeds are exact. It gathers magnitudes, so what
@@ -78,7 +78,7 @@ pub struct Accumulation {
 impl Accumulation {
     /// A law, the threshold at which a motor steps, and the ticks per second.
     ///
-    /// [Dancer] has [`SpeedLaw::Reset`], 600 and 1000 Hz.
+    /// \[Dancer\] has [`SpeedLaw::Reset`], 600 and 1000 Hz.
     ///
     /// # Errors
     /// [`AccumulatorError::ThresholdTooLow`] below 128, where a speed of -128 would need more than
@@ -137,7 +137,7 @@ impl Accumulation {
     /// reset         ±1 / ⌈threshold / |speed|⌉
     /// carry         speed / threshold
     /// ```
-    /// In [Dancer] speeds are multiples of V0, 1/5 step per tick: V0 · speed / 120 is meant.
+    /// In \[Dancer\] speeds are multiples of V0, 1/5 step per tick: V0 · speed / 120 is meant.
     #[must_use]
     pub fn steps_per_tick(&self, speed: i8) -> Ratio {
         match self.law {
