@@ -13,5 +13,7 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+pub mod c_header;
 pub mod container;
+pub mod dance;
 pub mod engraving;
