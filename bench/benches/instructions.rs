@@ -11,6 +11,8 @@
 //! | `train_edges` | 59,998 | edge of `AxisTrain` in a loop |
 //! | `train_edges_by_call` | 59,998 | the same as a function of its own, its call and a sum around it included |
 //! | `merged_edges` | 119,998 | edge of two trains in time order |
+//! | `ticks_of_eight` | 10,000 | tick of eight accumulators in a loop |
+//! | `ticks_of_eight_by_call` | 10,000 | the same as a function of its own, its call and a sum around it included |
 //! | `decoded_records` | 65,536 | record of three bytes |
 //!
 //! The bytes of 3964R are counted in its own crate: `cargo bench -p proto3964r --bench instructions`.
@@ -20,11 +22,13 @@ mod bare;
 
 use std::hint::black_box;
 
-use gungraun::{library_benchmark, library_benchmark_group, main};
+use gungraun::{
+    Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
+};
 use pattern_codec::engraving::{Format, Record};
 use scara_kin::Arm;
 use scara_kin::nalgebra::Point2;
-use stepper_sync::{AxisTrain, Trains};
+use stepper_sync::{Accumulation, Accumulators, AxisTrain, Rate, SpeedLaw, Trains};
 
 const LINK: f64 = 132.0;
 
@@ -84,6 +88,45 @@ fn merged_edges(trains: Trains<2>) -> u64 {
         .fold(0, |sum, edge| sum ^ edge.ticks ^ edge.axis as u64)
 }
 
+const TICKS: u32 = 10_000;
+
+fn eight(law: SpeedLaw) -> Accumulators<8> {
+    let tick = Rate::from_hz(1000).expect("not zero");
+    let mut motors = Accumulation::new(law, black_box(600), tick)
+        .expect("threshold is good")
+        .motors();
+    motors.set_speeds(black_box([127, -127, 100, -60, 33, 7, 0, -128]));
+    motors
+}
+
+/// All eight steps in one number, so that none can be left out.
+fn fold(steps: [i8; 8]) -> u64 {
+    u64::from_le_bytes(steps.map(i8::cast_unsigned))
+}
+
+#[library_benchmark(setup = eight)]
+#[bench::reset(SpeedLaw::Reset)]
+#[bench::carry_magnitude(SpeedLaw::CarryMagnitude)]
+#[bench::carry_signed(SpeedLaw::CarrySigned)]
+fn ticks_of_eight(motors: Accumulators<8>) -> u64 {
+    let mut motors = black_box(motors);
+    (0..TICKS).fold(0, |sum, _| sum ^ fold(motors.tick()))
+}
+
+#[inline(never)]
+fn tick(motors: &mut Accumulators<8>) -> [i8; 8] {
+    motors.tick()
+}
+
+#[library_benchmark(setup = eight)]
+#[bench::reset(SpeedLaw::Reset)]
+#[bench::carry_magnitude(SpeedLaw::CarryMagnitude)]
+#[bench::carry_signed(SpeedLaw::CarrySigned)]
+fn ticks_of_eight_by_call(motors: Accumulators<8>) -> u64 {
+    let mut motors = black_box(motors);
+    (0..TICKS).fold(0, |sum, _| sum ^ fold(tick(&mut motors)))
+}
+
 /// Records of random counts and signs: one FAST in 32, the share of its mark.
 fn records() -> Vec<u8> {
     const RECORDS: usize = 65_536;
@@ -126,6 +169,19 @@ library_benchmark_group!(
     name = pulses;
     benchmarks = train_edges, train_edges_by_call, merged_edges
 );
+library_benchmark_group!(
+    name = accumulators;
+    // At most 60 instructions a tick.
+    config = LibraryBenchmarkConfig::default().tool(
+        Callgrind::default().hard_limits([(EventKind::Ir, 60 * u64::from(TICKS) + 100)])
+    );
+    benchmarks = ticks_of_eight, ticks_of_eight_by_call
+);
 library_benchmark_group!(name = patterns; benchmarks = decoded_records);
 
-main!(library_benchmark_groups = kinematics, pulses, patterns);
+main!(
+    library_benchmark_groups = kinematics,
+    pulses,
+    accumulators,
+    patterns
+);

@@ -12,18 +12,29 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+mod accumulators;
 mod edges;
+#[cfg(feature = "embedded-hal")]
+#[cfg_attr(docsrs, doc(cfg(feature = "embedded-hal")))]
+pub mod embedded_hal;
+mod latches;
+mod phases;
 mod position;
 mod ramp;
 mod rate;
+mod ratio;
 mod single_reload;
 mod timer;
 mod trains;
 
+pub use accumulators::{Accumulation, AccumulatorError, Accumulators, SpeedLaw};
 pub use edges::{Edge, Edges, Level};
+pub use latches::{BusError, BusWrite, LatchWrites, Latches};
+pub use phases::{Phase, Phases, Placement, Polarity, Stepping, Wiring, WiringError};
 pub use position::{Position, PositionError, ScaleError, StepCarry, StepScale};
 pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
 pub use rate::{Rate, RateError};
+pub use ratio::Ratio;
 pub use single_reload::{Rounding, SingleReload};
 pub use timer::{
     CounterWidth, Counting, ExactInterval, Periods, Reload, Reloads, Timer, TimerError,

@@ -1,7 +1,9 @@
 //! Settings from a file: what is refused by a constructor is refused there too.
 #![cfg(all(test, feature = "serde"))]
 
-use stepper_sync::{CounterWidth, Edge, RampLimits, Rate, StepScale, Trains};
+use stepper_sync::{
+    CounterWidth, Edge, Placement, RampLimits, Rate, SpeedLaw, StepScale, Trains, Wiring,
+};
 
 #[test]
 fn settings_come_back() {
@@ -27,6 +29,16 @@ fn settings_come_back() {
         serde_json::from_str::<CounterWidth>(&text).unwrap(),
         CounterWidth::Bits24
     );
+
+    let text = r#"{"bits":[3,2,1,0],"placement":"doubled"}"#;
+    let wiring = serde_json::from_str::<Wiring>(text).unwrap();
+    let doubled = Wiring {
+        placement: Placement::Doubled,
+        ..Wiring::UNIPOLAR.reversed()
+    };
+    assert_eq!(wiring, doubled);
+    let law = serde_json::from_str::<SpeedLaw>(r#""carry_signed""#).unwrap();
+    assert_eq!(law, SpeedLaw::CarrySigned);
 
     let edges: Vec<Edge> = Trains::new([2, -1], 5).unwrap().edges().collect();
     let text = serde_json::to_string(&edges).unwrap();

@@ -1,0 +1,173 @@
+use super::level;
+use crate::{Direction, Level, Polarity};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use thiserror::Error;
+
+/// What a driver chip asks of its step and direction inputs, in nanoseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "written as a literal from a data sheet"
+)]
+pub struct StepDirTiming {
+    /// Least time of the active level of a pulse.
+    pub pulse_ns: u32,
+    /// Least time from the end of a pulse to the next.
+    pub pause_ns: u32,
+    /// Least time from a change of direction to the next pulse.
+    pub setup_ns: u32,
+    /// Least time from the start of a pulse to a change of direction.
+    pub hold_ns: u32,
+}
+
+impl StepDirTiming {
+    /// Allegro A4988: 1 us, 1 us, 200 ns, 200 ns.
+    pub const A4988: Self = Self {
+        pulse_ns: 1000,
+        pause_ns: 1000,
+        setup_ns: 200,
+        hold_ns: 200,
+    };
+
+    /// Texas Instruments DRV8825: 1.9 us, 1.9 us, 650 ns, 650 ns.
+    pub const DRV8825: Self = Self {
+        pulse_ns: 1900,
+        pause_ns: 1900,
+        setup_ns: 650,
+        hold_ns: 650,
+    };
+}
+
+/// A pin that could not be set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "there are two pins")]
+pub enum StepDirError<S, D> {
+    /// The step pin.
+    #[error("step pin: {0:?}")]
+    Step(S),
+    /// The direction pin.
+    #[error("direction pin: {0:?}")]
+    Direction(D),
+}
+
+/// A motor behind a driver chip with a step and a direction input.
+///
+/// [`step`](Self::step) makes whole pulses, for steps that come from
+/// [`Accumulators`](crate::Accumulators); [`set_level`](Self::set_level) makes the edges of a train,
+/// whose own intervals must then be no shorter than pulse and pause. Delays only wait longer than
+/// asked, so no time is cut short.
+///
+/// # Examples
+/// ```
+/// use stepper_sync::Direction;
+/// use stepper_sync::embedded_hal::{StepDir, StepDirTiming};
+/// # fn demo<P, D>(step_pin: P, direction_pin: P, mut delay: D) -> Result<(), stepper_sync::embedded_hal::StepDirError<P::Error, P::Error>>
+/// # where P: embedded_hal::digital::OutputPin, D: embedded_hal::delay::DelayNs {
+/// let mut motor = StepDir::new(step_pin, direction_pin, StepDirTiming::A4988);
+/// for step in [1, 0, -1] {
+///     motor.step(Direction::of(step), &mut delay)?;
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct StepDir<S, D> {
+    step: S,
+    direction: D,
+    timing: StepDirTiming,
+    step_polarity: Polarity,
+    direction_polarity: Polarity,
+    set: Option<Direction>,
+}
+
+impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
+    /// A motor on two pins, both active high: a positive direction is the high level. The pins are
+    /// not touched yet.
+    pub const fn new(step: S, direction: D, timing: StepDirTiming) -> Self {
+        Self {
+            step,
+            direction,
+            timing,
+            step_polarity: Polarity::ActiveHigh,
+            direction_polarity: Polarity::ActiveHigh,
+            set: None,
+        }
+    }
+
+    /// The same with other levels.
+    #[must_use]
+    pub fn with_polarity(self, step: Polarity, direction: Polarity) -> Self {
+        Self {
+            step_polarity: step,
+            direction_polarity: direction,
+            ..self
+        }
+    }
+
+    /// Sets the direction, after the hold time of the pulse before, and waits for the setup time.
+    /// Nothing happens when it is set already.
+    ///
+    /// # Errors
+    /// [`StepDirError::Direction`]; the next call sets the pin again.
+    pub fn set_direction(
+        &mut self,
+        direction: Direction,
+        delay: &mut impl DelayNs,
+    ) -> Result<(), StepDirError<S::Error, D::Error>> {
+        if self.set == Some(direction) {
+            return Ok(());
+        }
+        if self.set.take().is_some() {
+            delay.delay_ns(self.timing.hold_ns);
+        }
+        let level = level(self.direction_polarity, direction == Direction::Positive);
+        self.direction
+            .set_state(level)
+            .map_err(StepDirError::Direction)?;
+        self.set = Some(direction);
+        delay.delay_ns(self.timing.setup_ns);
+        Ok(())
+    }
+
+    /// Makes one edge: [`Level::High`] is the active level.
+    ///
+    /// # Errors
+    /// [`StepDirError::Step`].
+    pub fn set_level(&mut self, edge: Level) -> Result<(), StepDirError<S::Error, D::Error>> {
+        let level = level(self.step_polarity, edge == Level::High);
+        self.step.set_state(level).map_err(StepDirError::Step)
+    }
+
+    /// Makes one step and waits until the next may come; nothing for `None`.
+    ///
+    /// # Errors
+    /// [`StepDirError`]; after [`StepDirError::Step`] it is not known whether the motor has stepped.
+    pub fn step(
+        &mut self,
+        direction: Option<Direction>,
+        delay: &mut impl DelayNs,
+    ) -> Result<(), StepDirError<S::Error, D::Error>> {
+        let Some(direction) = direction else {
+            return Ok(());
+        };
+        self.set_direction(direction, delay)?;
+        self.set_level(Level::High)?;
+        delay.delay_ns(self.timing.pulse_ns);
+        self.set_level(Level::Low)?;
+        delay.delay_ns(self.timing.pause_ns);
+        Ok(())
+    }
+
+    /// Gives the pins back: step, direction.
+    pub fn into_pins(self) -> (S, D) {
+        (self.step, self.direction)
+    }
+}
