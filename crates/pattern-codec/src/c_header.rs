@@ -27,10 +27,11 @@ mod error;
 mod items;
 mod scan;
 mod style;
+mod table;
 
 pub use error::{HeaderError, HeaderErrorKind, Place};
 pub use items::{Item, Items, items};
 pub use style::{Dialect, Name, NameError, WriteError};
 
-pub(crate) use items::{ArrayValues, array, define};
 pub(crate) use style::{Element, Layout};
+pub(crate) use table::{ArrayValues, BYTE, Bytes, WORD, agree, array, setting};

@@ -15,14 +15,20 @@
 //! AT89C52, where the source has 1.5 K. [`Packing`] has two forms with run lengths, [`Sizes`] and
 //! [`ProgramMemory`] say what fits.
 
+mod easing;
 mod header;
+mod motor;
 mod packing;
 mod size;
 mod timing;
+mod turn;
 mod unpacking;
 
+pub use easing::{Easing, Speeds};
 pub use header::{Data, DataHeader, Frames};
+pub use motor::{Law, Motor, ThresholdTooLow};
 pub use packing::{Encoded, Packing};
 pub use size::{Fit, ProgramMemory, Sizes};
 pub use timing::{Timing, ZeroPeriod};
+pub use turn::{Turn, TurnError};
 pub use unpacking::{DecodeError, DecodeErrorKind, Decoded};

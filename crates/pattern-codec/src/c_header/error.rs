@@ -122,7 +122,7 @@ pub enum HeaderErrorKind {
     /// Bytes that are no records; the place is that of the last value read, or the end.
     #[error(transparent)]
     Records(crate::engraving::DecodeError),
-    /// Axis codes that are no permutation of 0..=3; the place is the end of the text.
+    /// Axis codes that are no permutation of 0..=3; the place is the start of the table.
     #[error(transparent)]
     AxisCodes(crate::engraving::AxisCodeError),
 }

@@ -93,7 +93,7 @@ impl<'a> Iterator for Items<'a> {
             State::Over => None,
         };
         if !matches!(item, Some(Ok(_))) {
-            self.state = State::Over;
+            self.stop();
         }
         item
     }
@@ -102,6 +102,16 @@ impl<'a> Iterator for Items<'a> {
 impl FusedIterator for Items<'_> {}
 
 impl<'a> Items<'a> {
+    /// The place of the next token, or the end.
+    pub(super) fn place(mut self) -> Result<Place, HeaderError> {
+        Ok(self.scanner.token(Reach::Text)?.0)
+    }
+
+    /// No more items.
+    pub(super) const fn stop(&mut self) {
+        self.state = State::Over;
+    }
+
     /// Up to the next definition or array.
     fn outside(&mut self) -> Result<Option<(Place, Item<'a>)>, HeaderError> {
         let mut name = None;
@@ -194,28 +204,11 @@ impl<'a> Items<'a> {
         }
     }
 
-    /// A number that begins with a token, or the name of one that is defined further up.
+    /// A number that begins with a token, or a name that is defined further up.
     fn value(&mut self, place: Place, token: Token<'a>) -> Result<i64, HeaderError> {
-        if let Token::Word(name) = token {
-            return self
-                .defined(name)
-                .ok_or_else(|| wrong(place, token, NUMBER));
-        }
-        value(&mut self.scanner, (place, token), Reach::Text)
-    }
-
-    /// The definition of a name further up; C allows no second one.
-    fn defined(&self, wanted: &str) -> Option<i64> {
-        let mut scanner = Scanner::new(self.text);
-        while scanner.left() > self.scanner.left() {
-            if scanner.token(Reach::Text).ok()?.1 == Token::Directive
-                && let Some((name, value)) = directive(&mut scanner).ok()?
-                && name == wanted
-            {
-                return Some(value);
-            }
-        }
-        None
+        let (text, left) = (self.text, self.scanner.left());
+        let defined = |name: &str| defined(text, left, name);
+        value(&mut self.scanner, (place, token), Reach::Text, defined)
     }
 
     fn expect(&mut self, mark: char, wanted: &'static str) -> Result<(), HeaderError> {
@@ -279,7 +272,7 @@ fn directive<'a>(scanner: &mut Scanner<'a>) -> Result<Option<(&'a str, i64)>, He
     {
         let mut ahead = scanner.clone();
         if let Ok(first) = ahead.token(line)
-            && let Ok(value) = value(&mut ahead, first, line)
+            && let Ok(value) = value(&mut ahead, first, line, |_| None)
             && let Ok((_, Token::End)) = ahead.token(line)
         {
             defined = Some((name, value));
@@ -289,20 +282,39 @@ fn directive<'a>(scanner: &mut Scanner<'a>) -> Result<Option<(&'a str, i64)>, He
     Ok(defined)
 }
 
-/// A number with any signs and round brackets, from its first token on.
+/// The definition of a name before the last `left` bytes of the text; C allows no second one.
+fn defined(text: &str, left: usize, wanted: &str) -> Option<i64> {
+    let mut scanner = Scanner::new(text);
+    while scanner.left() > left {
+        if scanner.token(Reach::Text).ok()?.1 == Token::Directive
+            && let Some((name, value)) = directive(&mut scanner).ok()?
+            && name == wanted
+        {
+            return Some(value);
+        }
+    }
+    None
+}
+
+/// A number, perhaps by its name, with any signs and round brackets, from its first token on.
 fn value<'a>(
     scanner: &mut Scanner<'a>,
-    first: (Place, Token<'a>),
+    (mut place, mut token): (Place, Token<'a>),
     reach: Reach,
+    defined: impl Fn(&str) -> Option<i64>,
 ) -> Result<i64, HeaderError> {
-    let (mut place, mut token) = first;
     let (mut negative, mut depth) = (false, 0_u32);
-    let magnitude = loop {
-        match token {
-            Token::Mark('-') => negative = !negative,
-            Token::Mark('+') => {}
-            Token::Mark('(') => depth = depth.saturating_add(1),
-            Token::Number(magnitude) => break i64::from(magnitude),
+    let value = loop {
+        let value = match token {
+            Token::Number(magnitude) => Some(i64::from(magnitude)),
+            Token::Word(name) => defined(name),
+            _ => None,
+        };
+        match (value, token) {
+            (Some(value), _) => break value,
+            (None, Token::Mark('-')) => negative = !negative,
+            (None, Token::Mark('+')) => {}
+            (None, Token::Mark('(')) => depth = depth.saturating_add(1),
             _ => return Err(wrong(place, token, NUMBER)),
         }
         (place, token) = scanner.token(reach)?;
@@ -313,10 +325,11 @@ fn value<'a>(
             (place, token) => return Err(wrong(place, token, ")")),
         }
     }
+    // Within 33 bits.
     Ok(if negative {
-        magnitude.wrapping_neg()
+        value.wrapping_neg()
     } else {
-        magnitude
+        value
     })
 }
 
@@ -338,93 +351,4 @@ const fn unexpected(place: Place, found: char, wanted: &'static str) -> HeaderEr
 const fn out_of_range(place: Place, value: i64) -> HeaderError {
     let (min, max) = (0, u32::MAX as i64);
     place.error(HeaderErrorKind::Range { value, min, max })
-}
-
-/// The value of the `#define` whose name is a table's in upper case, `_` and `end`.
-pub(crate) fn define(text: &str, table: &str, end: &str) -> Option<(Place, i64)> {
-    items(text).find_map(|item| match item {
-        Ok((place, Item::Define { name, value })) if is_define(name, table, end) => {
-            Some((place, value))
-        }
-        _ => None,
-    })
-}
-
-fn is_define(name: &str, table: &str, end: &str) -> bool {
-    let behind = name
-        .strip_suffix(end)
-        .and_then(|start| start.strip_suffix('_'));
-    behind.is_some_and(|start| {
-        start
-            .chars()
-            .eq(table.chars().map(|c| c.to_ascii_uppercase()))
-    })
-}
-
-/// The values of one array: of the wanted name, or else of the only one. The whole text is read.
-///
-/// # Errors
-/// [`HeaderError`]: whatever is wrong with the text; no such array, or two of them.
-pub(crate) fn array<'a>(
-    text: &'a str,
-    wanted: Option<(&str, &str)>,
-    range: (i64, i64),
-) -> Result<(&'a str, ArrayValues<'a>), HeaderError> {
-    let mut items = items(text);
-    let mut found = None;
-    while let Some(item) = items.next() {
-        if let (place, Item::Array { name }) = item?
-            && wanted.is_none_or(|(start, end)| name.strip_suffix(end) == Some(start))
-        {
-            let values = ArrayValues {
-                items: items.clone(),
-                place,
-                range,
-                error: None,
-            };
-            if found.replace((name, values)).is_some() {
-                return Err(place.error(HeaderErrorKind::SecondArray));
-            }
-        }
-    }
-    let (end, _) = items.scanner.token(Reach::Text)?;
-    found.ok_or_else(|| end.error(HeaderErrorKind::NoArray))
-}
-
-/// The values of an array. After an error there are no more.
-#[derive(Debug, Clone)]
-pub(crate) struct ArrayValues<'a> {
-    items: Items<'a>,
-    range: (i64, i64),
-    /// Of the last value, or the end.
-    pub(crate) place: Place,
-    pub(crate) error: Option<HeaderError>,
-}
-
-impl Iterator for ArrayValues<'_> {
-    type Item = i64;
-
-    fn next(&mut self) -> Option<i64> {
-        if self.error.is_some() {
-            return None;
-        }
-        match self.items.next()? {
-            Ok((place, Item::Value(value))) => {
-                self.place = place;
-                let (min, max) = self.range;
-                if (min..=max).contains(&value) {
-                    return Some(value);
-                }
-                let kind = HeaderErrorKind::Range { value, min, max };
-                self.error = Some(place.error(kind));
-            }
-            Ok((place, _)) => {
-                self.place = place;
-                // Another array may follow.
-                self.items.state = State::Over;
-            }
-            Err(error) => self.error = Some(error),
-        }
-        None
-    }
 }

@@ -1,11 +1,10 @@
 use core::fmt::Write;
 use core::iter::FusedIterator;
-use core::ops::RangeInclusive;
 
 use super::{Decoded, Packing, Sizes, Timing};
 use crate::c_header::{
-    ArrayValues, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, array,
-    define,
+    BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
+    array, setting,
 };
 
 /// Writes frames as a C header, `data.h`.
@@ -234,23 +233,9 @@ impl<'t, const N: usize> Data<'t, N> {
             table,
         };
         data.frames = data.check()?;
-        for (end, wanted) in [
-            ("MOTORS", N as u64),
-            ("FRAMES", data.frames),
-            ("BYTES", data.bytes),
-        ] {
-            let wanted = i64::try_from(wanted).unwrap_or(i64::MAX);
-            if let Some((place, value)) = define(text, name, end)
-                && value != wanted
-            {
-                let name = end;
-                return Err(place.error(HeaderErrorKind::Define {
-                    name,
-                    value,
-                    wanted,
-                }));
-            }
-        }
+        agree(text, name, "MOTORS", N as u64)?;
+        agree(text, name, "FRAMES", data.frames)?;
+        agree(text, name, "BYTES", data.bytes)?;
         Ok(data)
     }
 
@@ -305,44 +290,19 @@ impl<'t, const N: usize> Data<'t, N> {
     }
 }
 
-/// What a byte may be written as, signed or unsigned.
-const BYTE: (i64, i64) = (-128, 255);
-
 fn settings(text: &str, name: &str) -> Result<(Timing, Packing), HeaderError> {
-    let find = |end, range: RangeInclusive<u32>, default| match define(text, name, end) {
-        None => Ok(default),
-        Some((place, value)) => u32::try_from(value)
-            .ok()
-            .filter(|value| range.contains(value))
-            .ok_or_else(|| {
-                let (min, max) = (i64::from(*range.start()), i64::from(*range.end()));
-                place.error(HeaderErrorKind::Range { value, min, max })
-            }),
-    };
+    let find = |end, range, default| setting(text, name, end, range, default);
     let default = Timing::DEFAULT;
     let tick_us = find("TICK_US", 1..=u32::MAX, default.tick_us())?;
     let frame_ticks = find("FRAME_TICKS", 1..=u32::MAX, default.frame_ticks())?;
-    // Neither is 0.
-    let timing = Timing::new(tick_us, frame_ticks).unwrap_or_default();
     let packing = match find("PACKING", 0..=2, 0)? {
         0 => Packing::Raw,
         1 => Packing::Runs,
         _ => Packing::MaskedRuns,
     };
+    // Neither is 0.
+    let timing = Timing::new(tick_us, frame_ticks).unwrap_or_default();
     Ok((timing, packing))
-}
-
-/// The values of an array as bytes.
-#[derive(Debug, Clone)]
-struct Bytes<'t>(ArrayValues<'t>);
-
-impl Iterator for Bytes<'_> {
-    type Item = u8;
-
-    fn next(&mut self) -> Option<u8> {
-        let [byte, ..] = self.0.next()?.to_le_bytes();
-        Some(byte)
-    }
 }
 
 /// The frames of a header, made by [`Data::frames`].
