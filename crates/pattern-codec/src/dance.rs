@@ -19,6 +19,8 @@ mod easing;
 mod header;
 mod motor;
 mod packing;
+#[cfg(feature = "score")]
+mod score;
 mod size;
 mod timing;
 mod turn;
@@ -28,6 +30,9 @@ pub use easing::{Easing, Speeds};
 pub use header::{Data, DataHeader, Frames};
 pub use motor::{Law, Motor, ThresholdTooLow};
 pub use packing::{Encoded, Packing};
+#[cfg(feature = "score")]
+#[cfg_attr(docsrs, doc(cfg(feature = "score")))]
+pub use score::{Choreography, Landing, Score, ScoreError, ScoreErrorKind, ScorePart};
 pub use size::{Fit, ProgramMemory, Sizes};
 pub use timing::{Timing, ZeroPeriod};
 pub use turn::{Turn, TurnError};

@@ -10,6 +10,8 @@
     )
 )]
 
+#[cfg(feature = "score")]
+extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 

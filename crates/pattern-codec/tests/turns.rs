@@ -187,7 +187,8 @@ fn what_no_motor_makes_is_refused() {
                 TurnError::TooFast {
                     frame: 1,
                     frames: 10,
-                    speed: 129
+                    speed: 129,
+                    max: 127
                 }
             ),
             "{error}"

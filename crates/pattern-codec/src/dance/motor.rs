@@ -1,5 +1,8 @@
 use thiserror::Error;
 
+/// The highest speed of a plan. -128 is not used: its negative does not fit into a byte.
+const MAX_SPEED: u8 = i8::MAX.unsigned_abs();
+
 /// What the firmware does every tick with the speed v of a motor, its accumulator a and the
 /// threshold L, 600 in [Dancer].
 ///
@@ -44,6 +47,8 @@ pub struct Motor {
     threshold: u16,
     /// At least 1.
     frame_ticks: u32,
+    /// At most 127.
+    max_speed: u8,
     pub(super) position: i64,
     /// Below the threshold; under [`Law::CarrySigned`] above its negative.
     accumulator: i64,
@@ -79,9 +84,27 @@ impl Motor {
             law,
             threshold,
             frame_ticks: timing.frame_ticks(),
+            max_speed: MAX_SPEED,
             position: 0,
             accumulator: 0,
         })
+    }
+
+    /// With a lower highest speed for turns; above 127 it stays 127.
+    #[must_use]
+    pub const fn with_max_speed(self, max_speed: u8) -> Self {
+        let max_speed = if max_speed < MAX_SPEED {
+            max_speed
+        } else {
+            MAX_SPEED
+        };
+        Self { max_speed, ..self }
+    }
+
+    /// The highest speed of a turn.
+    #[must_use]
+    pub const fn max_speed(&self) -> u8 {
+        self.max_speed
     }
 
     /// Half steps from the start.

@@ -5,9 +5,6 @@ use thiserror::Error;
 use super::motor::ticks;
 use super::{Easing, Law, Motor};
 
-/// The highest speed of a plan. -128 is not used: its negative does not fit into a byte.
-pub(super) const MAX_SPEED: u8 = i8::MAX.unsigned_abs();
-
 /// Frames at the end of a turn under [`Law::Reset`] whose speeds are searched together.
 const ENDING: usize = 3;
 
@@ -43,7 +40,7 @@ impl Motor {
     /// first from the way itself, then from up to 8 half steps ahead of it or behind.
     ///
     /// # Errors
-    /// [`TurnError::TooFast`] when a frame needs a speed above 127; [`TurnError::Unreachable`] when
+    /// [`TurnError::TooFast`] when a frame needs a speed above [`Motor::max_speed`]; [`TurnError::Unreachable`] when
     /// no speeds end within one half step.
     pub fn turn(&self, half_steps: i32, frames: u16, easing: Easing) -> Result<Turn, TurnError> {
         let mut turn = Turn::new(*self, half_steps, frames, easing);
@@ -52,18 +49,19 @@ impl Motor {
         for frame in 1..=frames {
             let after = easing.way(sum, frame, frames);
             let speed = after.saturating_sub(before);
-            if speed > u64::from(MAX_SPEED) {
+            if speed > self.max_speed().into() {
                 return Err(TurnError::TooFast {
                     frame,
                     frames,
                     speed,
+                    max: self.max_speed(),
                 });
             }
             before = after;
         }
         let mut nearest = self.end(&turn);
         for ahead in (1..=MOST_AHEAD).flat_map(|ahead| [ahead, ahead.saturating_neg()]) {
-            if nearest.abs_diff(half_steps.into()) <= 1 {
+            if nearest == i64::from(half_steps) {
                 break;
             }
             let other = Turn {
@@ -99,7 +97,7 @@ impl Motor {
 #[non_exhaustive]
 pub enum TurnError {
     /// A frame needs more than the highest speed.
-    #[error("frame {frame} of {frames} needs a speed of {speed}, {MAX_SPEED} is the most")]
+    #[error("frame {frame} of {frames} needs a speed of {speed}, {max} is the most")]
     TooFast {
         /// The frame, from 1.
         frame: u16,
@@ -107,6 +105,8 @@ pub enum TurnError {
         frames: u16,
         /// The speed that it needs.
         speed: u64,
+        /// The highest speed of the motor.
+        max: u8,
     },
     /// The distinct speeds of the law do not add up to the turn.
     #[error(
@@ -221,7 +221,7 @@ impl Turn {
     fn nearest(&self) -> u8 {
         let frame = self.made.saturating_add(1);
         let end = self.half_steps.cast_signed();
-        let fitting = distinct(self.motor.threshold())
+        let fitting = distinct(&self.motor)
             .map(|magnitude| (magnitude, self.after(&self.motor, magnitude)))
             .filter(|(_, motor)| self.way(motor) <= end);
         let nearest = fitting.min_by_key(|(_, motor)| self.off(motor, frame));
@@ -236,7 +236,7 @@ impl Turn {
             return (self.off(motor, frame), 0, [0; ENDING]);
         }
         let mut best = (u64::MAX, u64::MAX, [0; ENDING]);
-        for magnitude in distinct(motor.threshold()) {
+        for magnitude in distinct(motor) {
             let motor = self.after(motor, magnitude);
             // No speed leads back, and the next ones go further.
             let most = self.half_steps.cast_signed().saturating_add(MOST_AHEAD);
@@ -253,9 +253,10 @@ impl Turn {
 
 /// The speeds that differ under [`Law::Reset`]: of those with the same ticks between half steps the
 /// slowest, which loses least.
-fn distinct(threshold: i64) -> impl Iterator<Item = u8> {
+fn distinct(motor: &Motor) -> impl Iterator<Item = u8> + use<> {
+    let threshold = motor.threshold();
     let period = move |magnitude: u8| ticks(threshold, magnitude.into());
-    (0..=MAX_SPEED).filter(move |magnitude| {
+    (0..=motor.max_speed()).filter(move |magnitude| {
         let slower = magnitude.checked_sub(1);
         slower.is_none_or(|slower| period(slower) != period(*magnitude))
     })
@@ -285,7 +286,7 @@ impl Iterator for Turn {
                 let way = |done| self.easing.way(self.sum, done, self.frames);
                 let speed = way(self.made.saturating_add(1)).saturating_sub(way(self.made));
                 // `Motor::turn` has refused more.
-                u8::try_from(speed).unwrap_or(MAX_SPEED).min(MAX_SPEED)
+                u8::try_from(speed).unwrap_or(self.motor.max_speed())
             }
         };
         self.made = self.made.saturating_add(1);
