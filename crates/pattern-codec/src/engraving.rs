@@ -31,7 +31,9 @@ mod axis;
 mod build;
 mod decode;
 mod format;
+mod header;
 mod record;
+mod reloads;
 mod split;
 mod statistics;
 
@@ -39,7 +41,9 @@ pub use axis::{Axis, PerAxis};
 pub use build::{Builder, HomeRecords, PositionError, RepeatedAxis};
 pub use decode::{DecodeError, DecodeErrorKind, Decoder, Located, Records};
 pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Mode};
+pub use header::{PatternData, PatternHeader, PatternRecords};
 pub use record::{Fast, JointPulses, PulsesError, Record, Slow};
+pub use reloads::{ReloadData, ReloadHeader, TimerPeriod, TimerPeriods};
 pub use split::{FastRecords, SlowRecords};
 pub use statistics::{HalfPeriods, Statistics};
 

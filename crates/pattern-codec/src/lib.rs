@@ -10,8 +10,12 @@
     )
 )]
 
+#[cfg(feature = "score")]
+extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+pub mod c_header;
 pub mod container;
+pub mod dance;
 pub mod engraving;

@@ -1,0 +1,187 @@
+use core::fmt::{self, Write};
+
+use thiserror::Error;
+
+/// The compiler that a header is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Dialect {
+    /// Keil C51: `unsigned char code dance[8]`.
+    #[default]
+    C51,
+    /// SDCC: `const __code unsigned char dance[8]`.
+    Sdcc,
+}
+
+/// The name of a table: a C identifier of at most 31 characters, which every C compiler tells
+/// apart. In upper case it starts the names of the include guard and the `#define`s.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Name<'n>(&'n str);
+
+impl<'n> Name<'n> {
+    /// The most characters.
+    pub const MAX_LEN: usize = 31;
+
+    /// Checks a name.
+    ///
+    /// # Errors
+    /// [`NameError`] when it is empty, too long, or no letters, digits and `_` with a letter first.
+    pub fn new(name: &'n str) -> Result<Self, NameError> {
+        let Some(first) = name.chars().next() else {
+            return Err(NameError::Empty);
+        };
+        if !first.is_ascii_alphabetic() {
+            return Err(NameError::Character { character: first });
+        }
+        let wrong = |c: &char| !c.is_ascii_alphanumeric() && *c != '_';
+        if let Some(character) = name.chars().find(wrong) {
+            return Err(NameError::Character { character });
+        }
+        match name.len() {
+            length if length > Self::MAX_LEN => Err(NameError::TooLong { length }),
+            _ => Ok(Self(name)),
+        }
+    }
+
+    pub(crate) const fn fixed(name: &'static str) -> Self {
+        Self(name)
+    }
+
+    /// The name.
+    #[must_use]
+    pub const fn as_str(self) -> &'n str {
+        self.0
+    }
+}
+
+/// Why a table cannot have a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum NameError {
+    /// No character.
+    #[error("the name of a table is empty")]
+    Empty,
+    /// A character that C does not allow there.
+    #[error("{character:?} cannot stand in the name of a table, or not first")]
+    Character {
+        /// The first such character.
+        character: char,
+    },
+    /// Too many characters.
+    #[error(
+        "a table's name of {length} characters, {} are the most",
+        Name::MAX_LEN
+    )]
+    TooLong {
+        /// Its length.
+        length: usize,
+    },
+}
+
+/// Why a header is not written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum WriteError {
+    /// Nothing to write: C has no empty arrays.
+    #[error("a table without values")]
+    Empty,
+    /// More than the address space of code memory.
+    #[error("a table of {bytes} bytes, an 8051 addresses {limit}")]
+    TooLong {
+        /// Bytes of the table.
+        bytes: u64,
+        /// The most.
+        limit: u64,
+    },
+    /// The writer refused.
+    #[error("the header could not be written")]
+    Format,
+}
+
+impl From<fmt::Error> for WriteError {
+    fn from(_: fmt::Error) -> Self {
+        Self::Format
+    }
+}
+
+/// Code memory that an 8051 addresses, in bytes.
+const CODE_SPACE: u64 = 65_536;
+
+/// A name in upper case.
+struct Upper<'n>(&'n str);
+
+impl fmt::Display for Upper<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut upper = self.0.chars().map(|c| c.to_ascii_uppercase());
+        upper.try_for_each(|c| f.write_char(c))
+    }
+}
+
+/// Type of a table's elements.
+#[derive(Clone, Copy)]
+pub(crate) enum Element {
+    SignedChar,
+    UnsignedChar,
+    UnsignedInt,
+}
+
+/// The parts that all headers have.
+pub(crate) struct Layout<'n, 'w, W: Write> {
+    pub(crate) name: Name<'n>,
+    pub(crate) dialect: Dialect,
+    pub(crate) out: &'w mut W,
+}
+
+impl<W: Write> Layout<'_, '_, W> {
+    /// Refuses a table of so many bytes that no firmware can hold.
+    pub(crate) const fn check(bytes: u64) -> Result<(), WriteError> {
+        match bytes {
+            0 => Err(WriteError::Empty),
+            1..=CODE_SPACE => Ok(()),
+            _ => Err(WriteError::TooLong {
+                bytes,
+                limit: CODE_SPACE,
+            }),
+        }
+    }
+
+    pub(crate) fn open_guard(&mut self) -> fmt::Result {
+        let name = Upper(self.name.0);
+        write!(self.out, "#ifndef {name}_H\n#define {name}_H\n\n")
+    }
+
+    pub(crate) fn define(&mut self, name: &str, value: u64) -> fmt::Result {
+        writeln!(self.out, "#define {}_{name} {value}", Upper(self.name.0))
+    }
+
+    /// The declaration of a table, with the end of its name, up to the bracket of its values.
+    pub(crate) fn open_table(&mut self, element: Element, end: &str, length: u64) -> fmt::Result {
+        let element = match element {
+            Element::SignedChar => "signed char",
+            Element::UnsignedChar => "unsigned char",
+            Element::UnsignedInt => "unsigned int",
+        };
+        let name = self.name.0;
+        match self.dialect {
+            Dialect::C51 => writeln!(self.out, "{element} code {name}{end}[{length}] = {{"),
+            Dialect::Sdcc => writeln!(
+                self.out,
+                "const __code {element} {name}{end}[{length}] = {{"
+            ),
+        }
+    }
+
+    pub(crate) fn close_table(&mut self) -> fmt::Result {
+        self.out.write_str("\n};\n")
+    }
+
+    pub(crate) fn close_guard(&mut self) -> fmt::Result {
+        self.out.write_str("\n#endif\n")
+    }
+}

@@ -1,0 +1,343 @@
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::super::{Easing, Law, Motor, Timing};
+use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart};
+
+/// The most frames of a dance: 3.6 hours at 200 ms.
+const MOST_FRAMES: u32 = 65_535;
+
+/// How far from a whole number of frames a time in decimal digits may be by its binary rounding.
+const WHOLE: f64 = 1e-6;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScoreText {
+    #[serde(default)]
+    #[expect(dead_code, reason = "for people")]
+    title: String,
+    tick_us: Option<u32>,
+    frame_ticks: Option<u32>,
+    threshold: Option<u16>,
+    length_s: Option<f64>,
+    #[serde(default)]
+    motor: Vec<Spanned<MotorText>>,
+    #[serde(default, rename = "move")]
+    moves: Vec<Spanned<MoveText>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MotorText {
+    name: String,
+    half_step_deg: f64,
+    max_speed: Option<i64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MoveText {
+    motor: String,
+    at_s: f64,
+    for_s: f64,
+    speed: Option<i64>,
+    to_deg: Option<f64>,
+    turn_deg: Option<f64>,
+    #[serde(default)]
+    easing: Easing,
+    repeat: Option<u32>,
+    every_s: Option<f64>,
+}
+
+pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
+    let score: ScoreText = toml::from_str(text).map_err(|error| text_error(text, &error))?;
+    let head = |kind| ScoreError {
+        line: 1,
+        part: ScorePart::Head,
+        kind,
+    };
+    let default = Timing::DEFAULT;
+    let timing = Timing::new(
+        score.tick_us.unwrap_or(default.tick_us()),
+        score.frame_ticks.unwrap_or(default.frame_ticks()),
+    );
+    let timing = timing.map_err(|error| head(error.into()))?;
+    let threshold = score.threshold.unwrap_or(600);
+    Motor::new(Law::Reset, threshold, timing).map_err(|error| head(error.into()))?;
+
+    let mut motors: Vec<Performer> = Vec::new();
+    for (motor, number) in score.motor.into_iter().zip(1..) {
+        let line = line(text, motor.span().start);
+        let part = ScorePart::Motor(number);
+        let motor = motor.into_inner().check(&motors);
+        motors.push(motor.map_err(|kind| ScoreError { line, part, kind })?);
+    }
+    if motors.is_empty() {
+        return Err(head(ScoreErrorKind::NoMotor));
+    }
+
+    let clock = Clock { timing };
+    let mut moves = Vec::new();
+    for (written, number) in score.moves.into_iter().zip(1..) {
+        let line = line(text, written.span().start);
+        let part = ScorePart::Move(number);
+        let at = |kind| ScoreError { line, part, kind };
+        let written = written.into_inner();
+        let (first, every, times) = written.check(number, line, clock, &motors).map_err(at)?;
+        for time in 0..times {
+            let start = u64::from(every).saturating_mul(time.into());
+            let start = start.saturating_add(first.start.into());
+            let start = u32::try_from(start).unwrap_or(u32::MAX);
+            let again = Move {
+                start,
+                ..first.clone()
+            };
+            if again.end() > MOST_FRAMES {
+                return Err(at(clock.too_long(again.end())));
+            }
+            moves.push(again);
+        }
+    }
+    moves.sort_by_key(|one| one.start);
+    check_overlaps(&moves, &motors, clock)?;
+
+    let end = moves.iter().map(Move::end).max().unwrap_or(0);
+    let frames = match score.length_s {
+        Some(length_s) => clock.frames("length_s", length_s).map_err(head)?,
+        None => end,
+    };
+    if frames == 0 {
+        return Err(head(ScoreErrorKind::NoFrames));
+    }
+    if frames > MOST_FRAMES {
+        return Err(head(clock.too_long(frames)));
+    }
+    if frames < end {
+        let wanted = "at or after the end of the last move";
+        let value = clock.seconds(frames);
+        let key = "length_s";
+        return Err(head(ScoreErrorKind::Value { key, value, wanted }));
+    }
+    Ok(Score {
+        timing,
+        threshold,
+        motors,
+        moves,
+        frames,
+    })
+}
+
+impl MotorText {
+    fn check(self, others: &[Performer]) -> Result<Performer, ScoreErrorKind> {
+        let Self {
+            name,
+            half_step_deg,
+            max_speed,
+        } = self;
+        if let Some((_, first)) = others.iter().zip(1..).find(|(other, _)| other.name == name) {
+            return Err(ScoreErrorKind::SameName { name, first });
+        }
+        if !half_step_deg.is_finite() || half_step_deg <= 0.0 {
+            return Err(ScoreErrorKind::Value {
+                key: "half_step_deg",
+                value: half_step_deg,
+                wanted: "above 0",
+            });
+        }
+        let max_speed = max_speed.unwrap_or(i8::MAX.into());
+        let fits = i8::try_from(max_speed).ok().filter(|max| *max > 0);
+        let max_speed = fits.ok_or(ScoreErrorKind::Value {
+            key: "max_speed",
+            value: approximate(max_speed),
+            wanted: "within 1..=127",
+        })?;
+        Ok(Performer {
+            name,
+            half_step_deg,
+            max_speed: max_speed.unsigned_abs(),
+        })
+    }
+}
+
+impl MoveText {
+    /// The move, and how many frames after its start it starts again, how many times in all.
+    fn check(
+        self,
+        number: u32,
+        line: u32,
+        clock: Clock,
+        motors: &[Performer],
+    ) -> Result<(Move, u32, u32), ScoreErrorKind> {
+        let motor = motors
+            .iter()
+            .zip(0..)
+            .find(|(motor, _)| motor.name == self.motor);
+        let Some((performer, motor)) = motor else {
+            return Err(ScoreErrorKind::NoSuchMotor { name: self.motor });
+        };
+        let frames = clock.frames("for_s", self.for_s)?;
+        if frames == 0 {
+            return Err(ScoreErrorKind::Value {
+                key: "for_s",
+                value: self.for_s,
+                wanted: "above 0",
+            });
+        }
+        let frames = u16::try_from(frames).map_err(|_| clock.too_long(frames))?;
+        let (every, times) = match (self.every_s, self.repeat) {
+            (None, None) => (0, 1),
+            (Some(every_s), Some(times)) => (clock.frames("every_s", every_s)?, times),
+            _ => return Err(ScoreErrorKind::Repeat),
+        };
+        let first = Move {
+            number,
+            line,
+            motor,
+            start: clock.frames("at_s", self.at_s)?,
+            frames,
+            action: self.action(performer)?,
+            easing: self.easing,
+        };
+        Ok((first, every, times))
+    }
+
+    fn action(&self, performer: &Performer) -> Result<Action, ScoreErrorKind> {
+        let finite = |key, value: f64| {
+            let wanted = "finite";
+            let error = ScoreErrorKind::Value { key, value, wanted };
+            value.is_finite().then_some(value).ok_or(error)
+        };
+        match (self.speed, self.to_deg, self.turn_deg) {
+            (Some(speed), None, None) => {
+                let max = performer.max_speed;
+                let fits = i8::try_from(speed).ok();
+                let fits = fits.filter(|speed| speed.unsigned_abs() <= max);
+                let error = ScoreErrorKind::Speed { speed, max };
+                fits.map(Action::Speed).ok_or(error)
+            }
+            (None, Some(deg), None) => finite("to_deg", deg).map(Action::ToDeg),
+            (None, None, Some(deg)) => finite("turn_deg", deg).map(Action::TurnDeg),
+            (speed, to_deg, turn_deg) => {
+                let given = [speed.is_some(), to_deg.is_some(), turn_deg.is_some()];
+                let given = given.into_iter().filter(|given| *given).count();
+                Err(ScoreErrorKind::Action { given })
+            }
+        }
+    }
+}
+
+/// Refuses moves of one motor at once, in the order of their starts.
+fn check_overlaps(moves: &[Move], motors: &[Performer], clock: Clock) -> Result<(), ScoreError> {
+    for (motor, performer) in motors.iter().enumerate() {
+        let mut of_motor = moves.iter().filter(|one| one.motor == motor);
+        let Some(mut before) = of_motor.next() else {
+            continue;
+        };
+        for after in of_motor {
+            if after.start < before.end() {
+                return Err(ScoreError {
+                    line: after.line,
+                    part: ScorePart::Move(after.number),
+                    kind: ScoreErrorKind::Overlap {
+                        start_s: clock.seconds(after.start),
+                        motor: performer.name.clone(),
+                        other: before.number,
+                        end_s: clock.seconds(before.end()),
+                    },
+                });
+            }
+            before = after;
+        }
+    }
+    Ok(())
+}
+
+/// Seconds and frames.
+#[derive(Clone, Copy)]
+struct Clock {
+    timing: Timing,
+}
+
+impl Clock {
+    fn frame_s(self) -> f64 {
+        f64::from(self.timing.tick_us()) * f64::from(self.timing.frame_ticks()) / 1e6
+    }
+
+    fn seconds(self, frames: u32) -> f64 {
+        // To a thousandth of a microsecond, so that 0.2 times 3 is 0.6.
+        (f64::from(frames) * self.frame_s() * 1e9).round() / 1e9
+    }
+
+    fn frames(self, key: &'static str, value: f64) -> Result<u32, ScoreErrorKind> {
+        let frames = value / self.frame_s();
+        let whole = frames.round();
+        if !(0.0..=f64::from(u32::MAX)).contains(&whole) {
+            let wanted = "within 0 s and the longest dance";
+            return Err(ScoreErrorKind::Value { key, value, wanted });
+        }
+        if (frames - whole).abs() > WHOLE {
+            return Err(ScoreErrorKind::NotWhole {
+                key,
+                value,
+                frame_s: self.frame_s(),
+            });
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and within u32"
+        )]
+        Ok(whole as u32)
+    }
+
+    fn too_long(self, frames: u32) -> ScoreErrorKind {
+        ScoreErrorKind::Value {
+            key: "length_s",
+            value: self.seconds(frames),
+            wanted: "within 65535 frames",
+        }
+    }
+}
+
+/// For a message.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "large values need no last digit"
+)]
+fn approximate(value: i64) -> f64 {
+    value as f64
+}
+
+/// Line of an offset, from 1.
+fn line(text: &str, offset: usize) -> u32 {
+    let before = text.get(..offset).unwrap_or(text);
+    let ends = before.matches('\n').count();
+    u32::try_from(ends).unwrap_or(u32::MAX).saturating_add(1)
+}
+
+/// The TOML reader's message, with line and part of the score.
+fn text_error(text: &str, error: &toml::de::Error) -> ScoreError {
+    let offset = error.span().map_or(0, |span| span.start);
+    let before = text.get(..offset).unwrap_or(text);
+    let (mut motors, mut moves, mut part) = (0_u32, 0_u32, ScorePart::Head);
+    // The line of the offset itself may be the head of a part.
+    let rest = text.get(before.len()..).unwrap_or("").lines().next();
+    for line in before.lines().chain(rest) {
+        let line = line.trim_start();
+        if line.starts_with("[[motor]]") {
+            motors = motors.saturating_add(1);
+            part = ScorePart::Motor(motors);
+        } else if line.starts_with("[[move]]") {
+            moves = moves.saturating_add(1);
+            part = ScorePart::Move(moves);
+        }
+    }
+    let kind = ScoreErrorKind::Text {
+        message: error.message().replace('\n', ", "),
+    };
+    let line = line(text, offset);
+    ScoreError { line, part, kind }
+}

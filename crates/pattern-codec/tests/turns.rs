@@ -1,0 +1,206 @@
+//! Planned turns: where the firmware's accumulators, counted tick by tick, bring a motor.
+#![cfg(test)]
+
+use pattern_codec::dance::{Easing, Law, Motor, Timing, TurnError};
+use proptest::prelude::*;
+
+const LAWS: [Law; 3] = [Law::Reset, Law::CarryMagnitude, Law::CarrySigned];
+const EASINGS: [Easing; 4] = [Easing::Linear, Easing::In, Easing::Out, Easing::Smooth];
+
+/// The firmware: one addition and one comparison per tick.
+struct Firmware {
+    law: Law,
+    threshold: i64,
+    accumulator: i64,
+    position: i64,
+}
+
+impl Firmware {
+    fn new(law: Law) -> Self {
+        Self {
+            law,
+            threshold: 600,
+            accumulator: 0,
+            position: 0,
+        }
+    }
+
+    fn ticks(&mut self, speed: i8, ticks: u32) {
+        let speed = i64::from(speed);
+        for _ in 0..ticks {
+            self.accumulator += if self.law == Law::CarrySigned {
+                speed
+            } else {
+                speed.abs()
+            };
+            if self.accumulator.abs() >= self.threshold {
+                let step = if self.law == Law::CarrySigned {
+                    self.accumulator.signum()
+                } else {
+                    speed.signum()
+                };
+                self.position += step;
+                self.accumulator = match self.law {
+                    Law::Reset => 0,
+                    Law::CarryMagnitude => self.accumulator - self.threshold,
+                    _ => self.accumulator - step * self.threshold,
+                };
+            }
+        }
+    }
+}
+
+fn motor(law: Law) -> Motor {
+    Motor::new(law, 600, Timing::DEFAULT).unwrap()
+}
+
+fn laws() -> impl Strategy<Value = Law> {
+    prop::sample::select(&LAWS[..])
+}
+
+fn easings() -> impl Strategy<Value = Easing> {
+    prop::sample::select(&EASINGS[..])
+}
+
+proptest! {
+    #[test]
+    fn a_motor_is_where_the_ticks_bring_it(law in laws(), frame_ticks in 1_u32..700, threshold in 128_u16..2000, speeds in prop::collection::vec(any::<i8>(), 0..40)) {
+        let mut motor = Motor::new(law, threshold, Timing::new(1000, frame_ticks).unwrap()).unwrap();
+        let mut firmware = Firmware { threshold: threshold.into(), ..Firmware::new(law) };
+        for speed in speeds {
+            motor.run(speed);
+            firmware.ticks(speed, frame_ticks);
+            prop_assert_eq!(motor.position(), firmware.position);
+        }
+    }
+
+    #[test]
+    fn turns_end_where_they_should(law in laws(), turns in prop::collection::vec((-100_i32..=100, 1_u16..60, easings()), 1..8)) {
+        let mut planned = motor(law);
+        let mut firmware = Firmware::new(law);
+        let mut wanted = 0;
+        for (percent, frames, easing) in turns {
+            // Up to half of the highest speed, which leaves room for every easing.
+            let half_steps = percent * i32::from(frames) * 20 / 100;
+            wanted += i64::from(half_steps);
+            // The error of one turn is made up for by the next.
+            let way = i32::try_from(wanted - planned.position()).unwrap();
+            match planned.turn(way, frames, easing) {
+                Ok(turn) => {
+                    prop_assert_eq!(turn.len(), usize::from(frames));
+                    for speed in turn {
+                        prop_assert!(i32::from(speed) * way >= 0 && speed > -128);
+                        planned.run(speed);
+                        firmware.ticks(speed, 200);
+                    }
+                }
+                Err(error) => {
+                    // One frame of the reset law makes 20, 22, 25, 28, 33 or 40 half steps.
+                    let coarse = law == Law::Reset && frames < 4;
+                    prop_assert!(coarse, "{error}");
+                    wanted = planned.position();
+                }
+            }
+            prop_assert_eq!(firmware.position, planned.position());
+            let most = i64::from(law == Law::Reset);
+            prop_assert!((firmware.position - wanted).abs() <= most);
+        }
+    }
+
+    #[test]
+    fn no_turn_is_made_too_fast(half_steps: i32, frames: u16, easing in easings(), law in laws()) {
+        let mut motor = motor(law);
+        if let Ok(turn) = motor.turn(half_steps, frames.min(300), easing) {
+            turn.for_each(|speed| motor.run(speed));
+            prop_assert!(motor.position().abs_diff(half_steps.into()) <= 1);
+        }
+    }
+
+    #[test]
+    fn eased_speeds_reach_the_highest(highest: i8, frames in 1_u16..400, easing in easings()) {
+        let speeds = easing.speeds(highest, frames);
+        prop_assert_eq!(speeds.len(), usize::from(frames));
+        let magnitude = speeds.clone().map(i8::unsigned_abs).max().unwrap();
+        prop_assert!(magnitude <= highest.unsigned_abs());
+        if easing == Easing::Linear {
+            prop_assert_eq!(magnitude, highest.unsigned_abs());
+        }
+        for speed in speeds {
+            prop_assert!(speed == 0 || (speed < 0) == (highest < 0));
+        }
+    }
+}
+
+#[test]
+fn a_million_ticks_are_those_of_the_reference() {
+    let cases = include_str!("data/accum.csv");
+    let mut rows = 0;
+    for row in cases.lines().skip(1) {
+        let fields: Vec<&str> = row.split(',').collect();
+        let speed: i8 = fields[0].parse().unwrap();
+        let timing = Timing::new(1000, 1_000_000).unwrap();
+        for (law, steps) in [
+            (Law::Reset, fields[2]),
+            (Law::CarryMagnitude, fields[3]),
+            (Law::CarrySigned, fields[3]),
+        ] {
+            for (speed, sign) in [(speed, 1), (speed.wrapping_neg(), -1)] {
+                let mut motor = Motor::new(law, 600, timing).unwrap();
+                motor.run(speed);
+                let wanted: i64 = steps.parse().unwrap();
+                assert_eq!(motor.position(), sign * wanted, "{law:?} {speed}");
+            }
+        }
+        rows += 1;
+    }
+    assert!(rows > 40, "{rows}");
+}
+
+#[test]
+fn the_reset_law_has_44_speeds() {
+    let timing = Timing::new(1000, 100_000_000).unwrap();
+    let mut positions: Vec<_> = (1..=127)
+        .map(|speed| {
+            let mut motor = Motor::new(Law::Reset, 600, timing).unwrap();
+            motor.run(speed);
+            motor.position()
+        })
+        .collect();
+    positions.dedup();
+    assert_eq!(positions.len(), 44);
+}
+
+#[test]
+fn what_no_motor_makes_is_refused() {
+    let turn = |law, half_steps, frames| {
+        motor(law)
+            .turn(half_steps, frames, Easing::Linear)
+            .map(|_| ())
+    };
+    for law in LAWS {
+        assert_eq!(turn(law, 0, 0), Ok(()));
+        let frames = 10;
+        let error = turn(law, 430, frames).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                TurnError::TooFast {
+                    frame: 1,
+                    frames: 10,
+                    speed: 129,
+                    max: 127
+                }
+            ),
+            "{error}"
+        );
+        assert!(turn(law, 400, frames).is_ok());
+        assert!(turn(law, 2, 0).is_err());
+    }
+    // Nine frames of 40 and one of 33 are the next.
+    let error = turn(Law::Reset, 397, 10).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "397 half steps in 10 frames: the nearest that the law's speeds make is 400"
+    );
+    assert!(turn(Law::CarrySigned, 397, 10).is_ok());
+}
