@@ -393,7 +393,7 @@ fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
     for name in ARTEFACTS {
         let out = TempDir::new().unwrap();
         fs::create_dir(out.path().join(name)).unwrap();
-        let output = dance(&[], out.path());
+        let output = dance(&["--law", "carry"], out.path());
         let errors = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{errors}");
         assert!(
