@@ -38,7 +38,7 @@ pub struct DataHeader<'n> {
     packing: Packing,
 }
 
-/// Threshold of the accumulators in [Dancer].
+/// Threshold of the accumulators in \[Dancer\].
 const THRESHOLD: u16 = 600;
 
 impl Default for DataHeader<'_> {
