@@ -40,6 +40,7 @@ pub(crate) fn write(
     let end_s = seconds(danced.positions.len() - 1, danced.frame_s);
     let panels = score.motors().len();
     let mut picture = Picture::new(out, panels)?;
+    picture.text(8.0, HEAD / 2.0 + 4.0, "start", score.title())?;
     let (here, there) = (law.name(), law.other().name());
     picture.key(LEFT, HERE, false, &format!("as danced, law {here}"))?;
     picture.key(

@@ -70,7 +70,7 @@ impl Firmware {
             self.accumulators.set_speeds(speeds);
             for _ in 0..self.frame_ticks {
                 for (position, step) in position.iter_mut().zip(self.accumulators.tick()) {
-                    *position += i32::from(step);
+                    *position += step;
                 }
             }
             positions.push(position);

@@ -113,7 +113,7 @@ fn speeds_are_written_as_they_are() {
 #[test]
 fn other_timings_count() {
     let text = format!(
-        "tick_us = 500\nframe_ticks = 100\nthreshold = 300\nlength_s = 0.2\n{MOTORS}
+        "title = 'Gavotte'\ntick_us = 500\nframe_ticks = 100\nthreshold = 300\nlength_s = 0.2\n{MOTORS}
         [[move]]\nmotor = 'arm'\nat_s = 0.05\nfor_s = 0.1\nturn_deg = 9"
     );
     let score: Score = text.parse().unwrap();
@@ -121,6 +121,7 @@ fn other_timings_count() {
         (score.frames(), score.timing().frame_us(), score.threshold()),
         (4, 50_000, 300)
     );
+    assert_eq!(score.title(), "Gavotte");
     assert!(score.motors().eq([("arm", 0.45), ("wheel", 0.9)]));
     let dance = score.compile::<2>(Law::CarrySigned).unwrap();
     // 20 half steps in two frames of 100 ticks at a threshold of 300.

@@ -44,6 +44,7 @@ pub use error::{ScoreError, ScoreErrorKind, ScorePart};
 /// ```
 /// | key | meaning | unless given |
 /// |---|---|---|
+/// | `title` | for people | empty |
 /// | `tick_us`, `frame_ticks`, `threshold` | the firmware's | 1000, 200, 600 |
 /// | `length_s` | length of the dance | end of the last move |
 /// | `[[motor]]` | one per byte of the frame, in this order | the other bytes rest |
@@ -64,6 +65,7 @@ pub use error::{ScoreError, ScoreErrorKind, ScorePart};
 /// turn goes on from where it ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Score {
+    title: String,
     timing: Timing,
     threshold: u16,
     motors: Vec<Performer>,
@@ -108,6 +110,12 @@ impl Move {
 }
 
 impl Score {
+    /// What people call the dance; may be empty.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
     /// Tick and period of a frame.
     #[must_use]
     pub const fn timing(&self) -> Timing {

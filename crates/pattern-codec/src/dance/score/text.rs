@@ -18,7 +18,6 @@ const WHOLE: f64 = 1e-6;
 #[serde(deny_unknown_fields)]
 struct ScoreText {
     #[serde(default)]
-    #[expect(dead_code, reason = "for people")]
     title: String,
     tick_us: Option<u32>,
     frame_ticks: Option<u32>,
@@ -123,6 +122,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
         return Err(head(ScoreErrorKind::Value { key, value, wanted }));
     }
     Ok(Score {
+        title: score.title,
         timing,
         threshold,
         motors,
