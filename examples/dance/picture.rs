@@ -108,7 +108,7 @@ impl<W: Write> Picture<W> {
         // A motor that rests has a range, too.
         let high = if high - low < 1.0 { low + 1.0 } else { high };
         let y = |deg: f64| top + PANEL * (high - deg) / (high - low);
-        let step = round_step((high - low) / 4.0);
+        let step = round_step((high - low) / 5.0);
         for deg in multiples(step, low, high) {
             let line = format!("M{LEFT} {:.2}H{}", y(deg), WIDTH - RIGHT);
             self.path(&line, GRID, 0.7, false)?;
