@@ -33,5 +33,5 @@ pub use error::{HeaderError, HeaderErrorKind, Place};
 pub use items::{Item, Items, items};
 pub use style::{Dialect, Name, NameError, WriteError};
 
-pub(crate) use style::{Element, Layout};
+pub(crate) use style::{Element, Layout, check_size};
 pub(crate) use table::{ArrayValues, BYTE, Bytes, WORD, agree, array, setting};

@@ -222,6 +222,10 @@ fn wrong_headers_are_refused_with_line_and_column() {
             "line 2, column 5: 300 does not fit into -128..=255",
         ),
         (
+            "char d[] =\r\n{1,\r\n 300};",
+            "line 3, column 2: 300 does not fit into -128..=255",
+        ),
+        (
             "char d[] = {1,\n\t-129};",
             "line 2, column 2: -129 does not fit into -128..=255",
         ),

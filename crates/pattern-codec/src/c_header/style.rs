@@ -113,6 +113,18 @@ impl From<fmt::Error> for WriteError {
 /// Code memory that an 8051 addresses, in bytes.
 const CODE_SPACE: u64 = 65_536;
 
+/// Refuses a table of so many bytes that no firmware can hold.
+pub(crate) const fn check_size(bytes: u64) -> Result<(), WriteError> {
+    match bytes {
+        0 => Err(WriteError::Empty),
+        1..=CODE_SPACE => Ok(()),
+        _ => Err(WriteError::TooLong {
+            bytes,
+            limit: CODE_SPACE,
+        }),
+    }
+}
+
 /// A name in upper case.
 struct Upper<'n>(&'n str);
 
@@ -139,18 +151,6 @@ pub(crate) struct Layout<'n, 'w, W: Write> {
 }
 
 impl<W: Write> Layout<'_, '_, W> {
-    /// Refuses a table of so many bytes that no firmware can hold.
-    pub(crate) const fn check(bytes: u64) -> Result<(), WriteError> {
-        match bytes {
-            0 => Err(WriteError::Empty),
-            1..=CODE_SPACE => Ok(()),
-            _ => Err(WriteError::TooLong {
-                bytes,
-                limit: CODE_SPACE,
-            }),
-        }
-    }
-
     pub(crate) fn open_guard(&mut self) -> fmt::Result {
         let name = Upper(self.name.0);
         write!(self.out, "#ifndef {name}_H\n#define {name}_H\n\n")

@@ -4,7 +4,7 @@ use core::iter::FusedIterator;
 use super::{Decoded, Motor, Packing, Sizes, Timing};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
-    array, setting,
+    array, check_size, setting,
 };
 
 /// Writes frames as a C header, `data.h`.
@@ -104,7 +104,7 @@ impl<'n> DataHeader<'n> {
         let frames = frames.into_iter();
         let sizes = Sizes::of(frames.clone());
         let bytes = sizes.bytes(self.packing);
-        Layout::<W>::check(bytes)?;
+        check_size(bytes)?;
         self.totals::<N, W>(&sizes, out)?;
         let (name, dialect) = (self.name, self.dialect);
         let mut layout = Layout { name, dialect, out };

@@ -4,7 +4,7 @@ use core::iter::FusedIterator;
 use super::{Axis, AxisCodes, ByteOrder, Decoder, Format, PerAxis, Record, Statistics};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
-    array, setting,
+    array, check_size, setting,
 };
 
 /// Writes records as a C header.
@@ -77,7 +77,7 @@ impl<'n> PatternHeader<'n> {
         let records = records.into_iter();
         let statistics: Statistics = records.clone().collect();
         let bytes = statistics.bytes();
-        Layout::<W>::check(bytes)?;
+        check_size(bytes)?;
         let (name, dialect, codes) = (self.name, self.dialect, self.format.axis_codes);
         totals(name, &statistics, out)?;
         let mut layout = Layout { name, dialect, out };

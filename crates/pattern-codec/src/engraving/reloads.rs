@@ -3,7 +3,7 @@ use core::iter::FusedIterator;
 
 use crate::c_header::{
     ArrayValues, BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WORD,
-    WriteError, agree, array,
+    WriteError, agree, array, check_size,
 };
 
 /// One period of a 16-bit timer on the way to an edge of a pulse train.
@@ -94,7 +94,7 @@ impl<'n> ReloadHeader<'n> {
         }
         let toggle_bytes = count.div_ceil(8);
         let bytes = count.saturating_mul(2).saturating_add(toggle_bytes);
-        Layout::<W>::check(bytes)?;
+        check_size(bytes)?;
         let (name, dialect) = (self.name, self.dialect);
         writeln!(
             out,
