@@ -1,0 +1,176 @@
+/* Plays data.h on eight four-phase motors behind transparent latches on one bus.
+ *
+ *   P2.0..P2.3   data bus: the windings of one motor
+ *   P1.0..P1.7   strobe of each latch; open while high
+ *   P0.0         high while the tick's handler runs, for an oscilloscope
+ *   P3           written once, at the end
+ *
+ * 12 MHz, a machine cycle of 1 us. Settings of the build, each with -D:
+ *
+ *   THRESHOLD    at which a motor makes a half step (600)
+ *   LAW          LAW_RESET, LAW_CARRY_MAGNITUDE, LAW_CARRY_SIGNED (LAW_CARRY_SIGNED)
+ *   RESTART      RESTART_WRITE, RESTART_ADD (RESTART_ADD)
+ *   RESTART_LAST the timer is restarted at the end of the handler, not at its start
+ */
+#include <8052.h>
+
+#include "data.h"
+#include "timer.h"
+
+#define LAW_RESET 0
+#define LAW_CARRY_MAGNITUDE 1
+#define LAW_CARRY_SIGNED 2
+
+#ifndef THRESHOLD
+#define THRESHOLD 600
+#endif
+#ifndef LAW
+#define LAW LAW_CARRY_SIGNED
+#endif
+#ifndef RESTART
+#define RESTART RESTART_ADD
+#endif
+
+#define MOTORS 8
+#if DANCE_MOTORS != MOTORS
+#error "the bus has eight latches"
+#endif
+#if THRESHOLD < 128
+#error "a speed of -128 would need more than one step per tick"
+#endif
+
+#define LOAD (65536 - DANCE_TICK_US)
+
+static const __code unsigned char turn[8] = { 1, 3, 2, 6, 4, 12, 8, 9 };
+
+static __idata int sums[MOTORS];
+static __idata signed char speeds[MOTORS];
+static __idata unsigned char phases[MOTORS];
+
+/* What the restart writes or adds. */
+#if RESTART == RESTART_ADD
+static __data unsigned int reload = LOAD + TIMER_STOPPED;
+#define TIMER_RESTART() TIMER_ADD(0, reload)
+#else
+static __data unsigned int reload = LOAD;
+#define TIMER_RESTART() TIMER_WRITE(0, reload)
+#endif
+
+static const __code unsigned char *__data next = (const __code unsigned char *)dance;
+static __data unsigned int frames_left = DANCE_FRAMES;
+static __data unsigned int ticks_left = DANCE_FRAME_TICKS;
+#if DANCE_PACKING != 0
+static __data unsigned char run;
+#endif
+
+/* Puts the speeds of the next frame in force; the sums stay. */
+static inline void take_frame(void)
+{
+    unsigned char motor;
+#if DANCE_PACKING == 2
+    unsigned char mask;
+#endif
+#if DANCE_PACKING != 0
+    if (run != 0) {
+        run--;
+        return;
+    }
+    run = *next++ - 1;
+#endif
+#if DANCE_PACKING == 2
+    mask = *next++;
+    for (motor = 0; motor < MOTORS; motor++) {
+        if (mask & 1)
+            speeds[motor] = (signed char)*next++;
+        mask >>= 1;
+    }
+#else
+    for (motor = 0; motor < MOTORS; motor++)
+        speeds[motor] = (signed char)*next++;
+#endif
+}
+
+/* Data, strobe up, strobe down: the data never changes under a high strobe. */
+#define LATCH(strobe, windings) \
+    do { \
+        P2 = (windings); \
+        P1 = (strobe); \
+        P1 = 0; \
+    } while (0)
+
+void tick(void) __interrupt(1) __using(1)
+{
+    unsigned char motor;
+    unsigned char strobe = 1;
+
+    P0_0 = 1;
+#ifndef RESTART_LAST
+    TIMER_RESTART();
+#endif
+    for (motor = 0; motor < MOTORS; motor++) {
+        signed char speed = speeds[motor];
+        unsigned char phase;
+        int sum = sums[motor];
+#if LAW == LAW_CARRY_SIGNED
+        signed char step = 0;
+
+        sum += speed;
+        if (sum >= THRESHOLD) {
+            sum -= THRESHOLD;
+            step = 1;
+        } else if (sum <= -THRESHOLD) {
+            sum += THRESHOLD;
+            step = -1;
+        }
+        if (step != 0) {
+            phase = (phases[motor] + step) & 7;
+#else
+        sum += speed < 0 ? -speed : speed;
+        if (sum >= THRESHOLD) {
+#if LAW == LAW_RESET
+            sum = 0;
+#else
+            sum -= THRESHOLD;
+#endif
+            phase = (phases[motor] + (speed < 0 ? -1 : 1)) & 7;
+#endif
+            phases[motor] = phase;
+            LATCH(strobe, turn[phase]);
+        }
+        sums[motor] = sum;
+        strobe <<= 1;
+    }
+    if (--ticks_left == 0) {
+        ticks_left = DANCE_FRAME_TICKS;
+        if (--frames_left == 0)
+            ET0 = 0;
+        else
+            take_frame();
+    }
+#ifdef RESTART_LAST
+    TIMER_RESTART();
+#endif
+    P0_0 = 0;
+}
+
+void main(void)
+{
+    unsigned char motor;
+
+    P0 = 0;
+    P1 = 0;
+    for (motor = 0; motor < MOTORS; motor++)
+        LATCH(1 << motor, turn[0]);
+    take_frame();
+    TMOD = 0x01;
+    TL0 = LOAD & 0xFF;
+    TH0 = LOAD >> 8;
+    ET0 = 1;
+    EA = 1;
+    TCON |= 0x10;
+    while (ET0)
+        ;
+    P3 = 0;
+    for (;;)
+        ;
+}
