@@ -39,13 +39,23 @@
 #error "a speed of -128 would need more than one step per tick"
 #endif
 
+/* `main` needs some 600 cycles for a frame, of those that the handler leaves. */
+#if DANCE_FRAME_TICKS < 10
+#error "a frame must last 10 ticks"
+#endif
+
 #define LOAD (65536 - DANCE_TICK_US)
 
 static const __code unsigned char turn[8] = { 1, 3, 2, 6, 4, 12, 8, 9 };
 
 static __idata int sums[MOTORS];
-static __idata signed char speeds[MOTORS];
 static __idata unsigned char phases[MOTORS];
+
+/* The speeds in force, and those of the next frame, which `main` takes meanwhile: the handler only
+   changes sides, so that no tick is much longer than another. */
+static __idata signed char speeds[2 * MOTORS];
+static __data unsigned char side;
+static __bit wanted;
 
 /* What the restart writes or adds. */
 #if RESTART == RESTART_ADD
@@ -56,38 +66,44 @@ static __data unsigned int reload = LOAD;
 #define TIMER_RESTART() TIMER_WRITE(0, reload)
 #endif
 
-static const __code unsigned char *__data next = (const __code unsigned char *)dance;
 static __data unsigned int frames_left = DANCE_FRAMES;
 static __data unsigned int ticks_left = DANCE_FRAME_TICKS;
+
+static const __code unsigned char *__data next = (const __code unsigned char *)dance;
+static __idata signed char frame[MOTORS];
 #if DANCE_PACKING != 0
 static __data unsigned char run;
 #endif
 
-/* Puts the speeds of the next frame in force; the sums stay. */
-static inline void take_frame(void)
+/* Reads the next frame and puts it where the handler will look from `to` on. */
+static void take_frame(unsigned char to)
 {
     unsigned char motor;
 #if DANCE_PACKING == 2
     unsigned char mask;
 #endif
+
 #if DANCE_PACKING != 0
-    if (run != 0) {
-        run--;
-        return;
-    }
-    run = *next++ - 1;
+    if (run == 0) {
+        run = *next++;
 #endif
 #if DANCE_PACKING == 2
-    mask = *next++;
-    for (motor = 0; motor < MOTORS; motor++) {
-        if (mask & 1)
-            speeds[motor] = (signed char)*next++;
-        mask >>= 1;
-    }
+        mask = *next++;
+        for (motor = 0; motor < MOTORS; motor++) {
+            if (mask & 1)
+                frame[motor] = (signed char)*next++;
+            mask >>= 1;
+        }
 #else
-    for (motor = 0; motor < MOTORS; motor++)
-        speeds[motor] = (signed char)*next++;
+        for (motor = 0; motor < MOTORS; motor++)
+            frame[motor] = (signed char)*next++;
 #endif
+#if DANCE_PACKING != 0
+    }
+    run--;
+#endif
+    for (motor = 0; motor < MOTORS; motor++)
+        speeds[to + motor] = frame[motor];
 }
 
 /* Data, strobe up, strobe down: the data never changes under a high strobe. */
@@ -108,7 +124,7 @@ void tick(void) __interrupt(1) __using(1)
     TIMER_RESTART();
 #endif
     for (motor = 0; motor < MOTORS; motor++) {
-        signed char speed = speeds[motor];
+        signed char speed = speeds[side + motor];
         unsigned char phase;
         int sum = sums[motor];
 #if LAW == LAW_CARRY_SIGNED
@@ -144,8 +160,8 @@ void tick(void) __interrupt(1) __using(1)
         ticks_left = DANCE_FRAME_TICKS;
         if (--frames_left == 0)
             ET0 = 0;
-        else
-            take_frame();
+        side ^= MOTORS;
+        wanted = 1;
     }
 #ifdef RESTART_LAST
     TIMER_RESTART();
@@ -156,20 +172,27 @@ void tick(void) __interrupt(1) __using(1)
 void main(void)
 {
     unsigned char motor;
+    unsigned int to_take = DANCE_FRAMES;
 
     P0 = 0;
     P1 = 0;
     for (motor = 0; motor < MOTORS; motor++)
         LATCH(1 << motor, turn[0]);
-    take_frame();
+    take_frame(0);
+    wanted = 1;
     TMOD = 0x01;
     TL0 = LOAD & 0xFF;
     TH0 = LOAD >> 8;
     ET0 = 1;
     EA = 1;
     TCON |= 0x10;
-    while (ET0)
-        ;
+    while (ET0) {
+        if (wanted) {
+            wanted = 0;
+            if (--to_take != 0)
+                take_frame(side ^ MOTORS);
+        }
+    }
     P3 = 0;
     for (;;)
         ;

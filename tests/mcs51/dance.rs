@@ -192,6 +192,15 @@ fn other_thresholds_are_played_write_by_write() {
     assert_plays(&frames(), Packing::Raw, SpeedLaw::Reset, 20_000);
 }
 
+/// Half steps of a motor: openings of its latch after the one at the start.
+fn steps(trace: &[Write], motor: usize) -> usize {
+    let states = bus(trace);
+    let opened = states
+        .iter()
+        .filter(|(_, write)| write.strobe == Some(motor));
+    opened.count() - 1
+}
+
 #[test]
 fn wheels_turn_on_the_spot_for_500_ticks() {
     // [Dancer]: +60 and -60 for 25 frames, here of 20 ticks: 50 half steps each way.
@@ -199,18 +208,23 @@ fn wheels_turn_on_the_spot_for_500_ticks() {
     let Some(trace) = play(&wheels, Packing::Runs, &[]) else {
         return;
     };
-    let strobes = |motor| {
-        let rises = bus(&trace);
-        rises
-            .iter()
-            .filter(|(_, write)| write.strobe == Some(motor))
-            .count()
-            - 1
-    };
-    assert_eq!([0, 1, 2].map(strobes), [50, 50, 0]);
+    assert_eq!([0, 1, 2].map(|motor| steps(&trace, motor)), [50, 50, 0]);
     let handlers = handlers(&trace);
     let (first, last) = (handlers[0].0, handlers[499].0);
     assert!((last - first).abs_diff(499 * TICK) <= JITTER);
+}
+
+#[test]
+fn the_reset_law_makes_100_of_119_steps() {
+    let frames = [[119; 8]; 30];
+    for (law, expected) in [("LAW=LAW_RESET", 100), ("LAW=LAW_CARRY_SIGNED", 119)] {
+        let Some(trace) = play(&frames, Packing::Runs, &[law]) else {
+            return;
+        };
+        let made = steps(&trace, 0);
+        println!("dance.c, {law}: {made} half steps in 600 ticks at a speed of 119");
+        assert_eq!(made, expected);
+    }
 }
 
 /// Ticks begin as many cycles apart; handlers last as many.
