@@ -12,8 +12,8 @@ use super::simulator::{Signal, Write, simulate};
 const TICK: u64 = 1000;
 const FRAME_TICKS: u32 = 20;
 
-/// As many cycles may one latency be longer than another: the instruction at hand ends first.
-const JITTER: u64 = 3;
+/// As many cycles may one latency be longer than another: an instruction of two ends first.
+const JITTER: u64 = 1;
 
 type Frame = [i8; 8];
 

@@ -4,7 +4,7 @@ use pose2pulse::pattern_codec::c_header::Dialect;
 use pose2pulse::pattern_codec::engraving::{
     Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, PatternHeader, PerAxis, Record, Slow,
 };
-use pose2pulse::stepper_sync::{CounterWidth, Rounding, Trains};
+use pose2pulse::stepper_sync::{AxisTrain, CounterWidth, Rounding, Trains};
 
 use super::simulator::{Signal, Write, simulate};
 
@@ -15,9 +15,9 @@ const T: u32 = 4096;
 /// other timer, then the way to the port in its own.
 const HANDLER: u64 = 100;
 
-/// As many cycles may one latency be longer than another where no handler is waited for: the
-/// instruction at hand ends first.
-const JITTER: u64 = 3;
+/// As many cycles may one latency be longer than another where no handler is waited for: an
+/// instruction of two ends first.
+const JITTER: u64 = 1;
 
 /// Axes that turn at once: their index at the port, and their signed pulses.
 type Move = Vec<(usize, i32)>;
@@ -119,20 +119,49 @@ fn arms(pulses: [i32; 2], defines: &[&str]) -> Option<[Edges; 2]> {
     Some([edges1, edges2])
 }
 
-/// Edges of one axis at their places, none early, none more than `HANDLER` late: how late.
-fn lags(measured: &[u64], places: impl ExactSizeIterator<Item = u64>) -> (u64, u64) {
+/// By how many cycles the edges of one axis are behind their places: none is early, none more than
+/// `HANDLER` late.
+fn lags(measured: &[u64], places: &[u64]) -> Vec<u64> {
     assert_eq!(measured.len(), places.len());
-    let lags: Vec<u64> = measured
-        .iter()
-        .zip(places)
-        .map(|(&edge, place)| {
-            let lag = edge.checked_sub(place);
-            lag.unwrap_or_else(|| panic!("edge at {edge}, its place is {place}"))
+    let lags = measured.iter().zip(places).map(|(&edge, &place)| {
+        let lag = edge.checked_sub(place);
+        lag.unwrap_or_else(|| panic!("edge at {edge}, its place is {place}"))
+    });
+    let lags: Vec<u64> = lags.collect();
+    assert!(bounds(&lags).1 <= HANDLER, "{lags:?}");
+    lags
+}
+
+fn bounds(numbers: &[u64]) -> (u64, u64) {
+    let ends = (numbers.iter().min(), numbers.iter().max());
+    (*ends.0.unwrap(), *ends.1.unwrap())
+}
+
+/// The places of all edges of both axes of a move, by [`Trains`].
+fn places(axes: &Move, half_period: u32) -> Vec<Edges> {
+    let mut pulses = [0; 2];
+    for (place, &(_, signed)) in pulses.iter_mut().zip(axes) {
+        *place = signed;
+    }
+    let trains = Trains::new(pulses, half_period).unwrap();
+    let places_of = |train: AxisTrain| {
+        train.scan(0, |place, interval| {
+            *place += interval;
+            Some(*place)
         })
-        .collect();
-    let (least, most) = (*lags.iter().min().unwrap(), *lags.iter().max().unwrap());
-    assert!(most <= HANDLER, "{most} cycles late");
-    (least, most)
+    };
+    let axes = trains.axes().into_iter().take(axes.len());
+    axes.map(|train| places_of(train).collect()).collect()
+}
+
+/// Whether no handler of another axis runs near a place: none at its edges, nor half way between
+/// them, where an interval of two periods is cut.
+fn is_calm(place: u64, other: &Edges) -> bool {
+    let ends = core::iter::once(&0).chain(other);
+    let mut busy = ends
+        .zip(other)
+        .flat_map(|(&from, &to)| [from.midpoint(to), to]);
+    busy.all(|busy| busy.abs_diff(place) > 2 * HANDLER)
 }
 
 /// Plays records with the driver as it should be, and compares edge by edge with [`Trains`]. Edges
@@ -144,34 +173,33 @@ fn assert_plays(records: &[Record], format: Format, half_period: u32) {
     };
     let expected: Vec<Move> = records.iter().copied().flat_map(moves).collect();
     assert_eq!(measured.len(), expected.len());
-    let (mut count, mut least, mut most) = (0, u64::MAX, 0);
+    let (mut all, mut calm) = (Vec::new(), Vec::new());
     for (axes, played) in expected.iter().zip(&measured) {
-        let places = match axes[..] {
-            [(_, pulses)] => Trains::new([pulses, 0], half_period),
-            [(_, first), (_, second)] => Trains::new([first, second], half_period),
-            _ => panic!("{axes:?}"),
-        };
-        for (&(axis, pulses), train) in axes.iter().zip(places.unwrap().axes()) {
+        let places = places(axes, half_period);
+        for (index, &(axis, pulses)) in axes.iter().enumerate() {
             let negative = played.directions >> axis & 1 == 1;
             assert_eq!(negative, pulses < 0, "{axes:?}");
-            let places: Vec<u64> = train
-                .scan(0, |place, interval| {
-                    *place += interval;
-                    Some(*place)
-                })
-                .collect();
-            let (early, late) = lags(&played.edges[axis], places.into_iter());
-            (least, most) = (least.min(early), most.max(late));
-            count += played.edges[axis].len();
+            let lags = lags(&played.edges[axis], &places[index]);
+            let calm_lags = places[index].iter().zip(&lags).filter(|(place, _)| {
+                let mut others = (0..axes.len()).filter(|&other| other != index);
+                others.all(|other| is_calm(**place, &places[other]))
+            });
+            calm.extend(calm_lags.map(|(_, lag)| *lag));
+            all.extend(lags);
         }
         let moving = |axis| axes.iter().any(|&(moving, _)| moving == axis);
         assert!((0..4).all(|axis| moving(axis) || played.edges[axis].is_empty()));
     }
+    let (least, most) = bounds(&all);
+    let (least_calm, most_calm) = bounds(&calm);
     println!(
-        "engrave.c, compensated, distributed: {} moves, {count} edges, {least} to {most} cycles \
-         behind their places",
-        expected.len()
+        "engrave.c, compensated, distributed: {} moves, {} edges, {least} to {most} cycles behind \
+         their places; {} edges far from the other axis', {least_calm} to {most_calm}",
+        expected.len(),
+        all.len(),
+        calm.len(),
     );
+    assert!(most_calm - least_calm <= JITTER);
 }
 
 #[test]
@@ -248,8 +276,8 @@ fn single_reloads(pulses: [i32; 2]) -> [u64; 2] {
     single.map(|reload| reload.kept_by(CounterWidth::Bits16).interval_ticks())
 }
 
-fn multiples(interval: u64, edges: usize) -> impl ExactSizeIterator<Item = u64> {
-    (0..edges).map(move |k| (k as u64 + 1) * interval)
+fn multiples(interval: u64, edges: u64) -> Edges {
+    (1..=edges).map(|k| k * interval).collect()
 }
 
 #[test]
@@ -260,8 +288,8 @@ fn thirty_to_one_ends_at_47_percent_in_16_bits_and_together_with_two_periods() {
     // 122,880 - 65,536.
     let [lead, kept] = single_reloads([30, 1]);
     assert_eq!((lead, kept), (4096, 57_344));
-    lags(&fast, multiples(lead, 60));
-    lags(&slow, multiples(kept, 2));
+    lags(&fast, &multiples(lead, 60));
+    lags(&slow, &multiples(kept, 2));
     let percent = 100.0 * slow[1] as f64 / fast[59] as f64;
     println!("engrave.c, 30:1: the slow arm ends at {percent:.1} % in 16 bits");
     assert!((percent - 46.7).abs() < 0.05);
@@ -280,8 +308,8 @@ fn sixteen_to_one_loads_0_for_65536() {
         return;
     };
     assert_eq!(single_reloads([1, 16]), [65_536, 4096]);
-    lags(&fast, multiples(65_536, 2));
-    lags(&slow, multiples(4096, 32));
+    lags(&fast, &multiples(65_536, 2));
+    lags(&slow, &multiples(4096, 32));
 }
 
 #[test]
