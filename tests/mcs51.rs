@@ -6,6 +6,10 @@
 //! fail. `cargo test --test mcs51 -- --nocapture` prints the measured figures.
 #![cfg(test)]
 #![cfg(all(unix, feature = "pattern-codec", feature = "stepper-sync"))]
+#![expect(
+    clippy::cast_precision_loss,
+    reason = "cycles of a run are far below 2^52"
+)]
 
 mod mcs51 {
     mod dance;

@@ -47,7 +47,7 @@ fn play(frames: &[Frame], packing: Packing, defines: &[&str]) -> Option<Vec<Writ
 }
 
 /// The writes on the bus, each with its tick; tick 0 is before the timer starts.
-fn predicted(frames: &[Frame], law: SpeedLaw, threshold: u16) -> Vec<(u64, BusWrite)> {
+fn predicted(frames: &[Frame], law: SpeedLaw, threshold: u16) -> Vec<(usize, BusWrite)> {
     let rate = Rate::from_hz(1000).unwrap();
     let mut motors = Accumulation::new(law, threshold, rate).unwrap().motors();
     let windings = Phases::new(Stepping::Half, Wiring::UNIPOLAR).unwrap();
@@ -152,8 +152,8 @@ fn assert_plays(frames: &[Frame], packing: Packing, law: SpeedLaw, threshold: u1
     let (least, most) = (*lags.iter().min().unwrap(), *lags.iter().max().unwrap());
     assert!(most - least <= JITTER, "{least}..={most}");
     for (&(tick, _), &(cycle, _)) in expected.iter().zip(&measured) {
-        if let Some(index) = (tick as usize).checked_sub(1) {
-            let (begin, end) = handlers[index];
+        if let Some(before) = tick.checked_sub(1) {
+            let (begin, end) = handlers[before];
             assert!((begin..end).contains(&cycle), "tick {tick}, cycle {cycle}");
         }
     }

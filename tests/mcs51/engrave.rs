@@ -113,9 +113,9 @@ fn engrave(records: &[Record], format: Format, defines: &[&str]) -> Option<Vec<P
 /// One slow record of both arms; the edges of theta1 and theta2.
 fn arms(pulses: [i32; 2], defines: &[&str]) -> Option<[Edges; 2]> {
     let [theta1, theta2] = pulses;
-    let moves = engrave(&[slow(0, theta1, theta2)], Format::default(), defines)?;
+    let mut moves = engrave(&[slow(0, theta1, theta2)], Format::default(), defines)?;
     assert_eq!(moves.len(), 1);
-    let [edges1, edges2, ..] = moves.into_iter().next().unwrap().edges;
+    let [edges1, edges2, ..] = moves.remove(0).edges;
     Some([edges1, edges2])
 }
 
