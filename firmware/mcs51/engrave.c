@@ -25,6 +25,9 @@
 #define RESTART RESTART_ADD
 #endif
 
+#if HALF_PERIOD < 250
+#error "the handlers of both timers must fit a period"
+#endif
 /* The most pulses in a slow record are 30: 30 to 1 must fit two periods. */
 #if HALF_PERIOD * 30 > 131071
 #error "an interval would need more than two timer periods"
