@@ -1,4 +1,4 @@
-//! The frames of the dancing robot: one signed speed per motor, in force for 200 ms [Dancer].
+//! The frames of the dancing robot: one signed speed per motor, in force for 200 ms \[Dancer\].
 //!
 //! A frame is a plain `[i8; N]`: any number of motors from 1 to 255, eight in the source. The
 //! period is a setting, [`Timing`].

@@ -68,18 +68,20 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_is_read(packing in packings(), frames in frames::<8>(), sdcc: bool, tick_us in 1..=u32::MAX, frame_ticks in 1..=u32::MAX) {
+    fn what_is_written_is_read(packing in packings(), frames in frames::<8>(), sdcc: bool, tick_us in 1..=u32::MAX, frame_ticks in 1..=u32::MAX, threshold in 128..=u16::MAX) {
         let timing = Timing::new(tick_us, frame_ticks).unwrap();
         let header = DataHeader::new()
             .with_name(Name::new("Waltz_3").unwrap())
             .with_dialect(if sdcc { Dialect::Sdcc } else { Dialect::C51 })
             .with_timing(timing)
+            .with_threshold(threshold)
             .with_packing(packing);
         let mut text = String::new();
         header.write(frames.iter().copied(), &mut text).unwrap();
         for text in [loosened(&text), text] {
             let data = Data::<8>::read(&text).unwrap();
             prop_assert_eq!((data.name(), data.timing(), data.packing()), ("Waltz_3", timing, packing));
+            prop_assert_eq!(data.threshold(), threshold);
             prop_assert_eq!(data.frames().len(), frames.len());
             prop_assert!(data.frames().eq(frames.iter().copied()));
         }
@@ -113,6 +115,7 @@ fn the_turn_on_the_spot() {
 #define DANCE_FRAMES 25
 #define DANCE_FRAME_TICKS 200
 #define DANCE_TICK_US 1000
+#define DANCE_THRESHOLD 600
 #define DANCE_PACKING 2
 #define DANCE_BYTES 4
 
@@ -301,6 +304,10 @@ fn wrong_headers_are_refused_with_line_and_column() {
         (
             "#define D_FRAME_TICKS 0\nchar d[] = {1, 2};",
             "line 1, column 1: 0 does not fit into 1..=",
+        ),
+        (
+            "#define D_THRESHOLD 127\nchar d[] = {1, 2};",
+            "line 1, column 1: 127 does not fit into 128..=65535",
         ),
         (
             "#define D_PACKING 1\nchar d[] = {0,\n 1, 2};",

@@ -295,6 +295,39 @@ fn wrong_scores_are_refused_with_line_and_move() {
 }
 
 #[test]
+fn moves_in_one_line_each_are_named_too() {
+    let score = "
+motor = [{ name = 'arm', half_step_deg = 1 }]
+move = [
+    { motor = 'arm', at_s = 0, for_s = 1, turn_deg = 20 },
+    { motor = 'arm', at_s = 1, for_s = 1, turn_deg = -20 }, # back
+]";
+    assert!(score.parse::<Score>().is_ok());
+    for (from, to, wanted) in [
+        (
+            "1, for_s",
+            "1, fur_s",
+            "line 5, move 2: unknown field `fur_s`",
+        ),
+        ("at_s = 1, ", "", "line 5, move 2: missing field `at_s`"),
+        (
+            "at_s = 1",
+            "at_s = 0.8",
+            "line 5, move 2: it starts at 0.8 s",
+        ),
+        ("-20", "-", "line 5"),
+        ("half", "full", "line 2, motor 1: unknown field"),
+    ] {
+        let error = score
+            .replace(from, to)
+            .parse::<Score>()
+            .unwrap_err()
+            .to_string();
+        assert!(error.starts_with(wanted), "{error}");
+    }
+}
+
+#[test]
 fn what_the_reset_law_cannot_make_is_refused() {
     let moves = "\n[[move]]\nmotor = 'arm'\nat_s = 0\nfor_s = 0.2\nturn_deg = 13.5\n";
     let score: Score = format!("{MOTORS}{moves}").parse().unwrap();

@@ -4,6 +4,7 @@
 //! All inputs and states pass through `black_box`, so that nothing is known of them but their
 //! types. Running the program proves nothing more; it must link.
 
+mod frames;
 mod jobs;
 mod kinematics;
 mod line;
@@ -14,6 +15,7 @@ fn main() {
     kinematics::run();
     stepping::run();
     patterns::run();
+    frames::run();
     line::run();
     jobs::run();
     #[cfg(feature = "control")]

@@ -3,6 +3,7 @@
 use core::hint::black_box;
 
 use pattern_codec::container::{Header, Verifier, Writer, open};
+use pattern_codec::dance::{Data, DataHeader, Easing, Law, Motor, Packing, Timing};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
@@ -14,7 +15,7 @@ use stepper_sync::{
 };
 
 /// The checks; the number of each is its exit status.
-pub const ALL: [fn() -> Option<()>; 9] = [
+pub const ALL: [fn() -> Option<()>; 10] = [
     inverse,
     follow,
     trains,
@@ -22,6 +23,7 @@ pub const ALL: [fn() -> Option<()>; 9] = [
     dance,
     records,
     container,
+    dance_header,
     stations,
     read_data_block,
 ];
@@ -172,6 +174,40 @@ fn container() -> Option<()> {
     holds(verifier.finish() == Ok(header))?;
     *file.get_mut(17)? ^= 0x10;
     holds(open(black_box(&file)).is_err())
+}
+
+/// A turn planned, written as a C header, read back and danced.
+fn dance_header() -> Option<()> {
+    let start = Motor::new(Law::Reset, 600, Timing::DEFAULT).ok()?;
+    let turn = start.turn(black_box(500), 25, Easing::Smooth).ok()?;
+    let mut text = Text {
+        bytes: [0; 1024],
+        len: 0,
+    };
+    let header = DataHeader::new().with_packing(Packing::MaskedRuns);
+    let frames = turn.map(|speed| [speed, 0, 7]);
+    header.write(frames.clone(), &mut text).ok()?;
+    let data = Data::<3>::read(core::str::from_utf8(text.bytes.get(..text.len)?).ok()?).ok()?;
+    holds(data.frames().eq(frames))?;
+    let mut motor = start;
+    data.frames().for_each(|[speed, ..]| motor.run(speed));
+    holds(motor.position() == 500)
+}
+
+/// A writer into fixed memory.
+struct Text {
+    bytes: [u8; 1024],
+    len: usize,
+}
+
+impl core::fmt::Write for Text {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        let end = self.len + text.len();
+        let place = self.bytes.get_mut(self.len..end).ok_or(core::fmt::Error)?;
+        place.copy_from_slice(text.as_bytes());
+        self.len = end;
+        Ok(())
+    }
 }
 
 /// One telegram from station to station, and the same block without a link.

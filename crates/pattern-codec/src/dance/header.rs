@@ -1,7 +1,7 @@
 use core::fmt::Write;
 use core::iter::FusedIterator;
 
-use super::{Decoded, Packing, Sizes, Timing};
+use super::{Decoded, Motor, Packing, Sizes, Timing};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
     array, setting,
@@ -23,7 +23,7 @@ use crate::c_header::{
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 /// The `#define`s, each behind the name of the table in upper case: `MOTORS`, `FRAMES`,
-/// `FRAME_TICKS`, `TICK_US`, `PACKING` (0 raw, 1 runs, 2 masked runs) and `BYTES`.
+/// `FRAME_TICKS`, `TICK_US`, `THRESHOLD`, `PACKING` (0 raw, 1 runs, 2 masked runs) and `BYTES`.
 ///
 /// Raw frames are `signed char` in decimal numbers, eight a row for eight motors; runs are
 /// `unsigned char`: the count in decimal, masks and speeds as two's complement in hex, one run a
@@ -34,8 +34,12 @@ pub struct DataHeader<'n> {
     name: Name<'n>,
     dialect: Dialect,
     timing: Timing,
+    threshold: u16,
     packing: Packing,
 }
+
+/// Threshold of the accumulators in \[Dancer\].
+const THRESHOLD: u16 = 600;
 
 impl Default for DataHeader<'_> {
     fn default() -> Self {
@@ -44,13 +48,14 @@ impl Default for DataHeader<'_> {
 }
 
 impl<'n> DataHeader<'n> {
-    /// The table `dance` for C51, raw frames of 200 ms.
+    /// The table `dance` for C51, raw frames of 200 ms, for a threshold of 600.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             name: Name::fixed("dance"),
             dialect: Dialect::C51,
             timing: Timing::DEFAULT,
+            threshold: THRESHOLD,
             packing: Packing::Raw,
         }
     }
@@ -71,6 +76,12 @@ impl<'n> DataHeader<'n> {
     #[must_use]
     pub const fn with_timing(self, timing: Timing) -> Self {
         Self { timing, ..self }
+    }
+
+    /// For another threshold of the accumulators, [`Motor::MIN_THRESHOLD`](super::Motor) or more.
+    #[must_use]
+    pub const fn with_threshold(self, threshold: u16) -> Self {
+        Self { threshold, ..self }
     }
 
     /// With another packing.
@@ -102,6 +113,7 @@ impl<'n> DataHeader<'n> {
         layout.define("FRAMES", sizes.frames())?;
         layout.define("FRAME_TICKS", self.timing.frame_ticks().into())?;
         layout.define("TICK_US", self.timing.tick_us().into())?;
+        layout.define("THRESHOLD", self.threshold.into())?;
         layout.define("PACKING", number(self.packing))?;
         layout.define("BYTES", bytes)?;
         layout.out.write_str(match self.packing {
@@ -190,13 +202,14 @@ const fn element(packing: Packing) -> Element {
 /// assert!(data.frames().eq([[0, 0, 60, -60], [60, -60, 0, 0]]));
 /// # Ok::<(), pattern_codec::c_header::HeaderError>(())
 /// ```
-/// What its `#define`s say counts; without them frames are raw and have the period of
-/// [`Timing::default`]. `MOTORS`, `FRAMES` and `BYTES` must agree with the table. Values are
+/// What its `#define`s say counts; without them frames are raw, have the period of
+/// [`Timing::default`] and are for a threshold of 600. `MOTORS`, `FRAMES` and `BYTES` must agree with the table. Values are
 /// -128..=255: 196 and -60 are the same byte.
 #[derive(Debug, Clone)]
 pub struct Data<'t, const N: usize = 8> {
     name: &'t str,
     timing: Timing,
+    threshold: u16,
     packing: Packing,
     frames: u64,
     bytes: u64,
@@ -222,11 +235,16 @@ impl<'t, const N: usize> Data<'t, N> {
 
     fn of(text: &'t str, wanted: Option<(&str, &str)>) -> Result<Self, HeaderError> {
         let (name, values) = array(text, wanted, BYTE)?;
-        let (timing, packing) = settings(text, name)?;
+        let Settings {
+            timing,
+            threshold,
+            packing,
+        } = Settings::read(text, name)?;
         let table = Bytes(values);
         let mut data = Self {
             name,
             timing,
+            threshold,
             packing,
             frames: 0,
             bytes: table.clone().fold(0, |bytes, _| bytes.saturating_add(1)),
@@ -269,6 +287,12 @@ impl<'t, const N: usize> Data<'t, N> {
         self.timing
     }
 
+    /// Threshold of the accumulators.
+    #[must_use]
+    pub const fn threshold(&self) -> u16 {
+        self.threshold
+    }
+
     /// How the frames are stored.
     #[must_use]
     pub const fn packing(&self) -> Packing {
@@ -290,19 +314,33 @@ impl<'t, const N: usize> Data<'t, N> {
     }
 }
 
-fn settings(text: &str, name: &str) -> Result<(Timing, Packing), HeaderError> {
-    let find = |end, range, default| setting(text, name, end, range, default);
-    let default = Timing::DEFAULT;
-    let tick_us = find("TICK_US", 1..=u32::MAX, default.tick_us())?;
-    let frame_ticks = find("FRAME_TICKS", 1..=u32::MAX, default.frame_ticks())?;
-    let packing = match find("PACKING", 0..=2, 0)? {
-        0 => Packing::Raw,
-        1 => Packing::Runs,
-        _ => Packing::MaskedRuns,
-    };
-    // Neither is 0.
-    let timing = Timing::new(tick_us, frame_ticks).unwrap_or_default();
-    Ok((timing, packing))
+/// What the `#define`s of a header say.
+struct Settings {
+    timing: Timing,
+    threshold: u16,
+    packing: Packing,
+}
+
+impl Settings {
+    fn read(text: &str, name: &str) -> Result<Self, HeaderError> {
+        let find = |end, range, default| setting(text, name, end, range, default);
+        let default = Timing::DEFAULT;
+        let tick_us = find("TICK_US", 1..=u32::MAX, default.tick_us())?;
+        let frame_ticks = find("FRAME_TICKS", 1..=u32::MAX, default.frame_ticks())?;
+        let least = Motor::MIN_THRESHOLD.into();
+        let threshold = find("THRESHOLD", least..=u16::MAX.into(), THRESHOLD.into())?;
+        let packing = match find("PACKING", 0..=2, 0)? {
+            0 => Packing::Raw,
+            1 => Packing::Runs,
+            _ => Packing::MaskedRuns,
+        };
+        Ok(Self {
+            // Neither is 0.
+            timing: Timing::new(tick_us, frame_ticks).unwrap_or_default(),
+            threshold: u16::try_from(threshold).unwrap_or(THRESHOLD),
+            packing,
+        })
+    }
 }
 
 /// The frames of a header, made by [`Data::frames`].

@@ -4,7 +4,7 @@ use thiserror::Error;
 const MAX_SPEED: u8 = i8::MAX.unsigned_abs();
 
 /// What the firmware does every tick with the speed v of a motor, its accumulator a and the
-/// threshold L, 600 in [Dancer].
+/// threshold L, 600 in \[Dancer\].
 ///
 /// ```text
 /// Reset            a += |v|   a >= L:   a = 0,    one half step in the direction of v

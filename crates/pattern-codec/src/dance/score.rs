@@ -25,7 +25,7 @@ pub use error::{ScoreError, ScoreErrorKind, ScorePart};
 ///     name = "right wheel"
 ///     half_step_deg = 0.9
 ///
-///     [[move]]                # the turn on the spot of [Dancer]
+///     [[move]]                # the turn on the spot of \[Dancer\]
 ///     motor = "left wheel"
 ///     at_s = 1.0
 ///     for_s = 5.0

@@ -11,7 +11,7 @@ use super::Packing;
 /// let sizes = Sizes::of(five_minutes);
 /// assert_eq!((sizes.frames(), sizes.bytes(Packing::Raw)), (1500, 12_000));
 /// assert_eq!(sizes.bytes(Packing::Runs), 9 * 7);
-/// assert_eq!(sizes.bytes(Packing::MaskedRuns), 10 + 2 * 6);
+/// assert_eq!(sizes.bytes(Packing::MaskedRuns), 10 + 10 + 2 * 5);
 ///
 /// let memory = ProgramMemory::AT89C52;
 /// assert_eq!(

@@ -13,7 +13,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// 200 ticks of 1 ms [Dancer].
+    /// 200 ticks of 1 ms \[Dancer\].
     pub const DEFAULT: Self = match (NonZeroU32::new(1000), NonZeroU32::new(200)) {
         (Some(tick_us), Some(frame_ticks)) => Self {
             tick_us,

@@ -193,17 +193,15 @@ impl Turn {
         way.saturating_mul(self.direction.into())
     }
 
-    /// By how many half steps a motor is off the way after a number of frames.
-    fn off(&self, motor: &Motor, frame: u16) -> u64 {
+    /// Half steps of the way after a number of frames.
+    fn wanted(&self, frame: u16) -> i64 {
+        if frame == self.frames {
+            return self.half_steps.cast_signed();
+        }
         let wanted = self.easing.way(self.half_steps, frame, self.frames);
         let done = i64::from(frame).saturating_mul(self.ahead);
-        let ahead = if frame == self.frames {
-            0
-        } else {
-            done.checked_div(self.frames.into()).unwrap_or(0)
-        };
-        let wanted = wanted.cast_signed().saturating_add(ahead);
-        self.way(motor).abs_diff(wanted)
+        let ahead = done.checked_div(self.frames.into()).unwrap_or(0);
+        wanted.cast_signed().saturating_add(ahead)
     }
 
     fn speed(&self, magnitude: u8) -> i8 {
@@ -219,46 +217,65 @@ impl Turn {
 
     /// The speed that ends the next frame nearest to the way, and not beyond its end.
     fn nearest(&self) -> u8 {
-        let frame = self.made.saturating_add(1);
+        let wanted = self.wanted(self.made.saturating_add(1));
         let end = self.half_steps.cast_signed();
         let fitting = distinct(&self.motor)
             .map(|magnitude| (magnitude, self.after(&self.motor, magnitude)))
             .filter(|(_, motor)| self.way(motor) <= end);
-        let nearest = fitting.min_by_key(|(_, motor)| self.off(motor, frame));
+        let nearest = fitting.min_by_key(|(_, motor)| self.way(motor).abs_diff(wanted));
         nearest.map_or(0, |(magnitude, _)| magnitude)
     }
 
     /// The best speeds of the last frames: how far off the end they are, how far off the way
-    /// together, and they themselves.
-    fn search(&self, motor: &Motor, frame: u16) -> (u64, u64, [u8; ENDING]) {
-        let next = frame.saturating_add(1);
+    /// together, and they themselves. Speeds more than `most_off` from the end are not looked at.
+    fn search(&self, motor: &Motor, frame: u16, most_off: u64) -> (u64, u64, [u8; ENDING]) {
+        let end = self.half_steps.cast_signed();
         if frame == self.frames {
-            return (self.off(motor, frame), 0, [0; ENDING]);
+            return (self.way(motor).abs_diff(end), 0, [0; ENDING]);
         }
-        let mut best = (u64::MAX, u64::MAX, [0; ENDING]);
+        let next = frame.saturating_add(1);
+        let (wanted, reach) = (self.wanted(next), self.reach(next));
+        let mut best = (most_off, u64::MAX, [0; ENDING]);
         for magnitude in distinct(motor) {
             let motor = self.after(motor, magnitude);
+            let (way, off) = (self.way(&motor), best.0.cast_signed());
             // No speed leads back, and the next ones go further.
-            let most = self.half_steps.cast_signed().saturating_add(MOST_AHEAD);
-            if self.way(&motor) > most {
+            if way > end.saturating_add(off) {
                 break;
             }
-            let (end, way, [second, third, _]) = self.search(&motor, next);
-            let way = way.saturating_add(self.off(&motor, next));
-            best = best.min((end, way, [magnitude, second, third]));
+            // The highest speed to the end is not enough.
+            if way.saturating_add(reach) < end.saturating_sub(off) {
+                continue;
+            }
+            let (off_end, off, [second, third, _]) = self.search(&motor, next, best.0);
+            let off = off.saturating_add(way.abs_diff(wanted));
+            best = best.min((off_end, off, [magnitude, second, third]));
         }
         best
+    }
+
+    /// The most half steps from a frame to the end.
+    fn reach(&self, frame: u16) -> i64 {
+        let period = ticks(self.motor.threshold(), self.motor.max_speed().into());
+        let frames = i64::from(self.frames.saturating_sub(frame));
+        // What has been gathered may add one step.
+        let all = frames.saturating_mul(self.motor.frame_ticks());
+        let steps = period.and_then(|period| all.checked_div(period));
+        steps.unwrap_or(0).saturating_add(frames)
     }
 }
 
 /// The speeds that differ under [`Law::Reset`]: of those with the same ticks between half steps the
 /// slowest, which loses least.
 fn distinct(motor: &Motor) -> impl Iterator<Item = u8> + use<> {
-    let threshold = motor.threshold();
-    let period = move |magnitude: u8| ticks(threshold, magnitude.into());
-    (0..=motor.max_speed()).filter(move |magnitude| {
-        let slower = magnitude.checked_sub(1);
-        slower.is_none_or(|slower| period(slower) != period(*magnitude))
+    let (threshold, most) = (motor.threshold(), motor.max_speed());
+    core::iter::successors(Some(0), move |magnitude: &u8| {
+        let next = match ticks(threshold, (*magnitude).into()) {
+            None => 1,
+            // The slowest with a tick less.
+            Some(period) => ticks(threshold, period.saturating_sub(1))?,
+        };
+        u8::try_from(next).ok().filter(|next| *next <= most)
     })
 }
 
@@ -276,7 +293,7 @@ impl Iterator for Turn {
             Law::Reset => {
                 let ending = match self.ending {
                     Some(ending) => ending,
-                    None => self.search(&self.motor, self.made).2,
+                    None => self.search(&self.motor, self.made, u32::MAX.into()).2,
                 };
                 let [first, second, third] = ending;
                 self.ending = Some([second, third, 0]);

@@ -2,6 +2,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use toml::Spanned;
 
 use super::super::{Easing, Law, Motor, Timing};
@@ -321,23 +322,48 @@ fn line(text: &str, offset: usize) -> u32 {
 /// The TOML reader's message, with line and part of the score.
 fn text_error(text: &str, error: &toml::de::Error) -> ScoreError {
     let offset = error.span().map_or(0, |span| span.start);
-    let before = text.get(..offset).unwrap_or(text);
-    let (mut motors, mut moves, mut part) = (0_u32, 0_u32, ScorePart::Head);
-    // The line of the offset itself may be the head of a part.
-    let rest = text.get(before.len()..).unwrap_or("").lines().next();
-    for line in before.lines().chain(rest) {
-        let line = line.trim_start();
-        if line.starts_with("[[motor]]") {
-            motors = motors.saturating_add(1);
-            part = ScorePart::Motor(motors);
-        } else if line.starts_with("[[move]]") {
-            moves = moves.saturating_add(1);
-            part = ScorePart::Move(moves);
-        }
-    }
     let kind = ScoreErrorKind::Text {
         message: error.message().replace('\n', ", "),
     };
-    let line = line(text, offset);
-    ScoreError { line, part, kind }
+    ScoreError {
+        line: line(text, offset),
+        part: part(text, offset),
+        kind,
+    }
+}
+
+/// The places of the parts, whatever is in them.
+#[derive(Deserialize)]
+struct Outline {
+    #[serde(default)]
+    motor: Vec<Spanned<IgnoredAny>>,
+    #[serde(default, rename = "move")]
+    moves: Vec<Spanned<IgnoredAny>>,
+}
+
+/// The part that an offset is in: the last one that starts before. In a text that is no TOML only
+/// the parts under a header of their own are seen.
+fn part(text: &str, offset: usize) -> ScorePart {
+    let starts = match toml::from_str::<Outline>(text) {
+        Ok(Outline { motor, moves }) => {
+            let starts = |parts: Vec<Spanned<IgnoredAny>>| -> Vec<usize> {
+                parts.iter().map(|part| part.span().start).collect()
+            };
+            [starts(motor), starts(moves)]
+        }
+        Err(_) => ["[[motor]]", "[[move]]"].map(|header| {
+            let headers = text.match_indices(header);
+            headers.map(|(start, _)| start).collect()
+        }),
+    };
+    let [motor, last_move] = starts.map(|starts| {
+        let before = (1..).zip(starts).take_while(|(_, start)| *start <= offset);
+        before.last()
+    });
+    match (motor, last_move) {
+        (Some((_, motor)), Some((number, start))) if start > motor => ScorePart::Move(number),
+        (None, Some((number, _))) => ScorePart::Move(number),
+        (Some((number, _)), _) => ScorePart::Motor(number),
+        (None, None) => ScorePart::Head,
+    }
 }

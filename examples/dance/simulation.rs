@@ -1,0 +1,145 @@
+//! The firmware, the bus and the motors.
+
+use std::io::Write;
+
+use anyhow::{Context as _, Result, ensure};
+use pose2pulse::pattern_codec::dance::Data;
+use pose2pulse::stepper_sync::{
+    Accumulation, Accumulators, LatchWrites, Latches, Phase, Phases, Rate, SpeedLaw, Stepping,
+    Wiring,
+};
+
+use crate::MOTORS;
+use crate::waves::Waves;
+
+/// What the motors did.
+pub(crate) struct Danced {
+    /// Half steps from the start at the end of every frame, before the first one too.
+    pub(crate) positions: Vec<[i32; MOTORS]>,
+    /// Half steps made, in both directions together.
+    pub(crate) steps: [u64; MOTORS],
+    /// Period of a frame, in s.
+    pub(crate) frame_s: f64,
+}
+
+/// What runs in the microcontroller.
+pub(crate) struct Firmware {
+    accumulators: Accumulators<MOTORS>,
+    phases: Phases,
+    at: [Phase; MOTORS],
+    frame_ticks: u32,
+    frame_s: f64,
+}
+
+impl Firmware {
+    pub(crate) fn new(data: &Data<'_, MOTORS>, law: SpeedLaw) -> Result<Self> {
+        let timing = data.timing();
+        let tick = Rate::new(1_000_000, timing.tick_us())?;
+        let accumulation = Accumulation::new(law, data.threshold(), tick).context("data.h")?;
+        let phases = Phases::new(Stepping::Half, Wiring::UNIPOLAR)?;
+        Ok(Self {
+            accumulators: accumulation.motors(),
+            phases,
+            at: [phases.start(); MOTORS],
+            frame_ticks: timing.frame_ticks(),
+            frame_s: f64::from(timing.tick_us()) * f64::from(timing.frame_ticks()) / 1e6,
+        })
+    }
+
+    /// One tick: the bytes that have changed.
+    fn tick(&mut self) -> [Option<u8>; MOTORS] {
+        let mut bytes = [None; MOTORS];
+        let steps = self.accumulators.tick();
+        for ((byte, at), step) in bytes.iter_mut().zip(&mut self.at).zip(steps) {
+            if step != 0 {
+                *at = self.phases.advance(*at, step);
+                *byte = Some(self.phases.byte(*at));
+            }
+        }
+        bytes
+    }
+
+    /// The positions that the accumulators alone come to.
+    pub(crate) fn count(
+        mut self,
+        frames: impl Iterator<Item = [i8; MOTORS]>,
+    ) -> Vec<[i32; MOTORS]> {
+        let mut position = [0; MOTORS];
+        let mut positions = vec![position];
+        for speeds in frames {
+            self.accumulators.set_speeds(speeds);
+            for _ in 0..self.frame_ticks {
+                for (position, step) in position.iter_mut().zip(self.accumulators.tick()) {
+                    *position += i32::from(step);
+                }
+            }
+            positions.push(position);
+        }
+        positions
+    }
+}
+
+/// A motor at its latch: it sees currents and nothing else.
+#[derive(Clone, Copy)]
+struct Rotor {
+    half_step: u8,
+    position: i32,
+    steps: u64,
+}
+
+impl Rotor {
+    /// Follows the currents of a byte; a rotor follows to the neighbouring half step only.
+    fn follow(&mut self, phases: &Phases, byte: u8) -> Result<()> {
+        let phase = phases.phase_of(byte);
+        let phase = phase.with_context(|| format!("{byte:#06b} is no phase"))?;
+        let turn = match phase.half_step().wrapping_sub(self.half_step) & 7 {
+            0 => return Ok(()),
+            1 => 1,
+            7 => -1,
+            jump => anyhow::bail!("a jump of {jump} half steps"),
+        };
+        self.half_step = phase.half_step();
+        self.position += turn;
+        self.steps += 1;
+        Ok(())
+    }
+}
+
+/// Dances frames: every write goes over the bus into the latches, and the rotors follow those.
+pub(crate) fn simulate<W: Write>(
+    mut firmware: Firmware,
+    frames: impl Iterator<Item = [i8; MOTORS]>,
+    mut waves: Waves<W>,
+) -> Result<Danced> {
+    let phases = firmware.phases;
+    let rest = Rotor {
+        half_step: phases.start().half_step(),
+        position: 0,
+        steps: 0,
+    };
+    let mut rotors = [rest; MOTORS];
+    let mut latches = Latches::<MOTORS>::new();
+    let mut positions = vec![[0; MOTORS]];
+    // The windings carry current before the first tick.
+    let start = [Some(phases.byte(phases.start())); MOTORS];
+    waves.tick(&mut latches, LatchWrites::new(start))?;
+    for speeds in frames {
+        firmware.accumulators.set_speeds(speeds);
+        for _ in 0..firmware.frame_ticks {
+            let bytes = firmware.tick();
+            waves.tick(&mut latches, LatchWrites::new(bytes))?;
+            for (number, (rotor, byte)) in rotors.iter_mut().zip(latches.outputs()).enumerate() {
+                let followed = rotor.follow(&phases, byte);
+                followed.with_context(|| format!("motor {number}"))?;
+            }
+        }
+        positions.push(rotors.map(|rotor| rotor.position));
+    }
+    waves.finish()?;
+    ensure!(positions.len() > 1, "data.h: no frames");
+    Ok(Danced {
+        positions,
+        steps: rotors.map(|rotor| rotor.steps),
+        frame_s: firmware.frame_s,
+    })
+}

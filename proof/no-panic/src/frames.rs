@@ -1,0 +1,124 @@
+//! pattern-codec: frames of the dancer, C headers.
+
+use std::hint::black_box;
+
+use no_panic::no_panic;
+use pattern_codec::c_header::{HeaderError, Item, Items, Place, items};
+use pattern_codec::dance::{
+    Data, DecodeError, Decoded, Easing, Encoded, Frames, Law, Motor, Packing, Speeds, Timing, Turn,
+    TurnError,
+};
+use pattern_codec::engraving::{
+    Format, PatternData, PatternRecords, Record, ReloadData, TimerPeriod, TimerPeriods,
+};
+
+type Bytes<'a> = std::iter::Copied<std::slice::Iter<'a, u8>>;
+type Eight<'a> = std::iter::Copied<std::slice::Iter<'a, [i8; 8]>>;
+
+#[no_panic]
+#[inline(never)]
+fn encoded_next(encoded: &mut Encoded<Eight<'_>, 8>) -> Option<u8> {
+    encoded.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn decoded_next(decoded: &mut Decoded<Bytes<'_>, 8>) -> Option<Result<[i8; 8], DecodeError>> {
+    decoded.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn item_next<'a>(items: &mut Items<'a>) -> Option<Result<(Place, Item<'a>), HeaderError>> {
+    items.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn data_read(text: &str) -> Result<Data<'_, 8>, HeaderError> {
+    Data::read(text)
+}
+
+#[no_panic]
+#[inline(never)]
+fn frame_next(frames: &mut Frames<'_, 8>) -> Option<[i8; 8]> {
+    frames.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn pattern_read(text: &str, format: Format) -> Result<PatternData<'_>, HeaderError> {
+    PatternData::read(text, format)
+}
+
+#[no_panic]
+#[inline(never)]
+fn record_next(records: &mut PatternRecords<'_>) -> Option<Record> {
+    records.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn reloads_read<'a>(text: &'a str, name: &str) -> Result<ReloadData<'a>, HeaderError> {
+    ReloadData::read(text, name)
+}
+
+#[no_panic]
+#[inline(never)]
+fn period_next(periods: &mut TimerPeriods<'_>) -> Option<TimerPeriod> {
+    periods.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn motor_run(motor: &mut Motor, speed: i8) {
+    motor.run(speed);
+}
+
+#[no_panic]
+#[inline(never)]
+fn motor_turn(motor: &Motor, steps: i32, frames: u16, easing: Easing) -> Result<Turn, TurnError> {
+    motor.turn(steps, frames, easing)
+}
+
+#[no_panic]
+#[inline(never)]
+fn turn_next(turn: &mut Turn) -> Option<i8> {
+    turn.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn speed_next(speeds: &mut Speeds) -> Option<i8> {
+    speeds.next()
+}
+
+pub fn run() {
+    let frames = black_box([[60, -60, 0, 0, 0, 0, 0, 0]; 3].as_slice());
+    let bytes = black_box([3, 1, 60, 1, 0, 0, 0, 0, 0].as_slice());
+    let text = black_box("#define P_PACKING 1\nchar p[] = {1, 60, 0, 0, 0, 0, 0, 0, 0};");
+    for packing in black_box(Packing::ALL) {
+        let encoded = packing.encode(frames.iter().copied());
+        black_box(encoded_next(&mut black_box(encoded)));
+        let decoded = packing.decode(bytes.iter().copied());
+        let _ = black_box(decoded_next(&mut black_box(decoded)));
+    }
+    let _ = black_box(item_next(&mut black_box(items(text))));
+    if let Ok(data) = data_read(text) {
+        black_box(frame_next(&mut black_box(data.frames())));
+    }
+    if let Ok(data) = pattern_read(text, black_box(Format::new())) {
+        black_box(record_next(&mut black_box(data.records())));
+    }
+    if let Ok(data) = reloads_read(text, black_box("p")) {
+        black_box(period_next(&mut black_box(data.periods())));
+    }
+    if let Ok(mut motor) = Motor::new(black_box(Law::Reset), black_box(600), Timing::DEFAULT) {
+        motor_run(&mut motor, black_box(60));
+        let easing = black_box(Easing::Smooth);
+        if let Ok(turn) = motor_turn(&black_box(motor), black_box(500), black_box(25), easing) {
+            black_box(turn_next(&mut black_box(turn)));
+        }
+        black_box(speed_next(&mut black_box(easing.speeds(60, 25))));
+    }
+}
