@@ -7,7 +7,6 @@
  *
  * 12 MHz, a machine cycle of 1 us. Settings of the build, each with -D:
  *
- *   THRESHOLD    at which a motor makes a half step (600)
  *   LAW          LAW_RESET, LAW_CARRY_MAGNITUDE, LAW_CARRY_SIGNED (LAW_CARRY_SIGNED)
  *   RESTART      RESTART_WRITE, RESTART_ADD (RESTART_ADD)
  *   RESTART_LAST the timer is restarted at the end of the handler, not at its start
@@ -21,9 +20,6 @@
 #define LAW_CARRY_MAGNITUDE 1
 #define LAW_CARRY_SIGNED 2
 
-#ifndef THRESHOLD
-#define THRESHOLD 600
-#endif
 #ifndef LAW
 #define LAW LAW_CARRY_SIGNED
 #endif
@@ -35,8 +31,18 @@
 #if DANCE_MOTORS != MOTORS
 #error "the bus has eight latches"
 #endif
+
+/* At which a motor makes a half step. */
+#define THRESHOLD DANCE_THRESHOLD
 #if THRESHOLD < 128
 #error "a speed of -128 would need more than one step per tick"
+#endif
+#if THRESHOLD > 32639
+#error "a sum and a speed must fit 16 bits"
+#endif
+
+#if DANCE_TICK_US < 900 || DANCE_TICK_US > 65535
+#error "a tick must hold the handler and fit the timer"
 #endif
 
 /* `main` needs some 600 cycles for a frame, of those that the handler leaves. */
