@@ -47,6 +47,10 @@
 #error "the tick does not fit the timer, or a frame is too short to read the next one"
 #endif
 
+#if DANCE_FRAMES > 65535 || DANCE_FRAME_TICKS > 65535
+#error "frames and their ticks are counted in 16 bits"
+#endif
+
 #define LOAD (65536 - DANCE_TICK_US)
 
 static const __code unsigned char turn[8] = { 1, 3, 2, 6, 4, 12, 8, 9 };
