@@ -6,7 +6,7 @@ use pose2pulse::stepper_sync::{
     Accumulation, BusWrite, LatchWrites, Latches, Phases, Rate, SpeedLaw, Stepping, Wiring,
 };
 
-use super::simulator::{Signal, Write, simulate};
+use super::simulator::{Port, Write, simulate};
 
 /// Machine cycles of a tick of 1 ms.
 const TICK: u64 = 1000;
@@ -85,13 +85,13 @@ fn predicted(frames: &[Frame], law: SpeedLaw, threshold: u16) -> Vec<(usize, Bus
 fn bus(trace: &[Write]) -> Vec<(u64, BusWrite)> {
     let (mut data, mut states) = (0, Vec::new());
     for write in trace {
-        let strobe = match write.signal {
-            Signal::P1 if write.value == 0 => None,
-            Signal::P1 => {
+        let strobe = match write.port {
+            Port::P1 if write.value == 0 => None,
+            Port::P1 => {
                 assert_eq!(write.value.count_ones(), 1, "{write:?}");
                 Some(write.value.trailing_zeros() as usize)
             }
-            Signal::P2 => {
+            Port::P2 => {
                 data = write.value;
                 None
             }
@@ -106,7 +106,7 @@ fn bus(trace: &[Write]) -> Vec<(u64, BusWrite)> {
 
 /// The cycle in which the timer starts.
 fn start(trace: &[Write]) -> u64 {
-    let tcon = trace.iter().find(|write| write.signal == Signal::Tcon);
+    let tcon = trace.iter().find(|write| write.port == Port::Tcon);
     tcon.unwrap().cycle
 }
 
@@ -114,7 +114,7 @@ fn start(trace: &[Write]) -> u64 {
 fn handlers(trace: &[Write]) -> Vec<(u64, u64)> {
     let probe: Vec<&Write> = trace
         .iter()
-        .filter(|write| write.signal == Signal::Probe && write.cycle > start(trace))
+        .filter(|write| write.port == Port::P0 && write.cycle > start(trace))
         .collect();
     let (pairs, rest) = probe.as_chunks::<2>();
     assert!(rest.is_empty());

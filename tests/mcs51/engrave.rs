@@ -6,7 +6,7 @@ use pose2pulse::pattern_codec::engraving::{
 };
 use pose2pulse::stepper_sync::{AxisTrain, CounterWidth, Rounding, Trains};
 
-use super::simulator::{Signal, Write, simulate};
+use super::simulator::{Port, Write, simulate};
 
 /// Half period of [Engraver 2000], in machine cycles.
 const T: u32 = 4096;
@@ -73,16 +73,16 @@ fn played(trace: &[Write]) -> Vec<Played> {
     let mut moves: Vec<Played> = Vec::new();
     let (mut port, mut start) = (0, None);
     for write in trace {
-        match (write.signal, write.value) {
-            (Signal::Probe, 1) => {
+        match (write.port, write.value) {
+            (Port::P0, 1) => {
                 start = Some(write.cycle);
                 moves.push(Played {
                     directions: port >> 4,
                     edges: Default::default(),
                 });
             }
-            (Signal::Probe, _) => start = None,
-            (Signal::P1, value) => {
+            (Port::P0, _) => start = None,
+            (Port::P1, value) => {
                 let changed = core::mem::replace(&mut port, value) ^ value;
                 match (start, moves.last_mut()) {
                     (Some(start), Some(played)) => {

@@ -20,21 +20,21 @@ const LIMIT_S: &str = "60";
 /// A machine cycle at 12 MHz in the simulator's picoseconds.
 const CYCLE_PS: u64 = 1_000_000;
 
-/// What is traced. Byte writes show in `sfr`, bit instructions in `bits`.
-const SIGNALS: [(Signal, &str); 4] = [
-    (Signal::Tcon, "sfr[0x88]"),
-    (Signal::P1, "sfr[0x90]"),
-    (Signal::P2, "sfr[0xa0]"),
-    (Signal::Probe, "bits[0x80]"),
+/// What is traced, by its address. A byte write shows in `sfr[address]` alone, a bit instruction in
+/// `bits[address + n]` alone.
+const PORTS: [(Port, u8); 4] = [
+    (Port::P0, 0x80),
+    (Port::Tcon, 0x88),
+    (Port::P1, 0x90),
+    (Port::P2, 0xA0),
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Signal {
+pub(crate) enum Port {
+    P0,
     Tcon,
     P1,
     P2,
-    /// P0.0
-    Probe,
 }
 
 /// A write, also of the value that was there.
@@ -42,7 +42,8 @@ pub(crate) enum Signal {
 pub(crate) struct Write {
     /// Machine cycles since reset, at the start of the writing instruction.
     pub(crate) cycle: u64,
-    pub(crate) signal: Signal,
+    pub(crate) port: Port,
+    /// All eight bits after the write.
     pub(crate) value: u8,
 }
 
@@ -95,8 +96,11 @@ fn compile(folder: &Path, source: &str, defines: &[&str]) {
 
 fn run(folder: &Path) {
     let mut commands = String::from("set hardware vcd[0] output \"ports.vcd\"\n");
-    for (_, place) in SIGNALS {
-        commands += &format!("set hardware vcd[0] add {place}\n");
+    for (_, address) in PORTS {
+        commands += &format!("set hardware vcd[0] add sfr[{address:#x}]\n");
+        for bit in address..address + 8 {
+            commands += &format!("set hardware vcd[0] add bits[{bit:#x}]\n");
+        }
     }
     commands += "set hardware vcd[0] start\nbreak sfr w 0xb0\nrun\n";
     commands += "set hardware vcd[0] stop\nkill\n";
@@ -112,50 +116,54 @@ fn run(folder: &Path) {
     assert!(report.contains("Event break"), "no end: {report}");
 }
 
-fn read(mut parser: Parser<BufReader<fs::File>>) -> Vec<Write> {
+/// Codes of all traced variables, in the order of [`run`]: of each port the byte, then its bits.
+fn codes(parser: &mut Parser<BufReader<fs::File>>) -> Vec<IdCode> {
     let header = parser.parse_header().unwrap();
-    let variables: Vec<(IdCode, Signal)> = header
-        .items
-        .iter()
-        .filter_map(|item| match item {
-            vcd::ScopeItem::Scope(scope) => Some(&scope.items),
-            _ => None,
-        })
-        .flatten()
-        .filter_map(|item| match item {
-            vcd::ScopeItem::Var(variable) => Some(variable.code),
-            _ => None,
-        })
-        .zip(SIGNALS.map(|(signal, _)| signal))
-        .collect();
-    assert_eq!(variables.len(), SIGNALS.len());
+    let scopes = header.items.iter().filter_map(|item| match item {
+        vcd::ScopeItem::Scope(scope) => Some(&scope.items),
+        _ => None,
+    });
+    let codes = scopes.flatten().filter_map(|item| match item {
+        vcd::ScopeItem::Var(variable) => Some(variable.code),
+        _ => None,
+    });
+    codes.collect()
+}
+
+fn read(mut parser: Parser<BufReader<fs::File>>) -> Vec<Write> {
+    let codes = codes(&mut parser);
+    assert_eq!(codes.len(), PORTS.len() * 9);
     let mut cycle = 0;
+    let mut values = [0xFF; PORTS.len()];
     let mut writes = Vec::new();
-    let mut write = |cycle, code, value| {
-        let (_, signal) = *variables.iter().find(|(known, _)| *known == code).unwrap();
-        writes.push(Write {
-            cycle,
-            signal,
-            value,
-        });
-    };
     for command in parser {
-        match command.unwrap() {
+        let (code, value) = match command.unwrap() {
             // Stamps are off by a picosecond now and then.
-            vcd::Command::Timestamp(ps) => cycle = (ps + CYCLE_PS / 2) / CYCLE_PS,
-            vcd::Command::ChangeScalar(code, value) => {
-                write(cycle, code, u8::from(value == vcd::Value::V1));
+            vcd::Command::Timestamp(ps) => {
+                cycle = (ps + CYCLE_PS / 2) / CYCLE_PS;
+                continue;
             }
+            vcd::Command::ChangeScalar(code, value) => (code, u8::from(value == vcd::Value::V1)),
             vcd::Command::ChangeVector(code, bits) => {
-                let value = bits
-                    .iter()
-                    .fold(0, |byte, bit| byte << 1 | u8::from(bit == vcd::Value::V1));
-                write(cycle, code, value);
+                let bits = bits.iter().map(|bit| u8::from(bit == vcd::Value::V1));
+                (code, bits.fold(0, |byte, bit| byte << 1 | bit))
             }
-            _ => {}
+            _ => continue,
+        };
+        let variable = codes.iter().position(|&known| known == code).unwrap();
+        let port = &mut values[variable / 9];
+        *port = match variable % 9 {
+            0 => value,
+            bit => *port & !(1 << (bit - 1)) | value << (bit - 1),
+        };
+        // What stands at cycle 0 are levels, not writes.
+        if cycle > 0 {
+            writes.push(Write {
+                cycle,
+                port: PORTS[variable / 9].0,
+                value: *port,
+            });
         }
     }
-    // What stands at cycle 0 are levels, not writes.
-    writes.retain(|write| write.cycle > 0);
     writes
 }
