@@ -22,9 +22,9 @@ pub struct BusWrite {
 /// Iterator of the writes that bring new bytes into latches: for each, the data, the strobe up, the
 /// strobe down.
 ///
-/// A latch of the 74373 kind follows the data while its strobe is high. The data is therefore
-/// written before the strobe rises and stays until it has fallen; a first write with another byte
-/// than the one before leaves all strobes low. [`Latches`] tests just that.
+/// A latch of the 74373 kind follows the data while its strobe is high. The data therefore changes
+/// only while all strobes are low: it is written before the strobe rises and stays until it has
+/// fallen. [`Latches`] tests just that. Source: \[Dancer\].
 ///
 /// # Examples
 /// ```
