@@ -9,8 +9,15 @@ use pattern_codec::engraving::{Format, PatternData, ReloadData};
 
 #[derive(Debug, Arbitrary)]
 enum Input<'a> {
-    Packed { packing: u8, bytes: &'a [u8] },
-    Frames { packing: u8, sdcc: bool, frames: Vec<[i8; 9]> },
+    Packed {
+        packing: u8,
+        bytes: &'a [u8],
+    },
+    Frames {
+        packing: u8,
+        sdcc: bool,
+        frames: Vec<[i8; 9]>,
+    },
     Text(&'a str),
     /// As the values of an array.
     Values(&'a str),
@@ -41,13 +48,20 @@ fn packed(packing: Packing, bytes: &[u8]) {
     };
     let shortest: Vec<u8> = packing.encode(frames.iter().copied()).collect();
     assert!(shortest.len() <= bytes.len());
-    assert!(packing.decode(shortest).map(|frame| frame.unwrap()).eq(frames));
+    assert!(
+        packing
+            .decode(shortest)
+            .map(|frame| frame.unwrap())
+            .eq(frames)
+    );
 }
 
 /// What is written is read.
 fn written(packing: Packing, sdcc: bool, frames: &[[i8; 9]]) {
     let dialect = if sdcc { Dialect::Sdcc } else { Dialect::C51 };
-    let header = DataHeader::new().with_dialect(dialect).with_packing(packing);
+    let header = DataHeader::new()
+        .with_dialect(dialect)
+        .with_packing(packing);
     let mut text = String::new();
     if header.write(frames.iter().copied(), &mut text).is_err() {
         assert!(frames.is_empty() || frames.len() > 5461);

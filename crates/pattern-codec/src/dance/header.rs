@@ -220,7 +220,7 @@ impl<'t, const N: usize> Data<'t, N> {
     /// Reads a header with one array.
     ///
     /// # Errors
-    /// [`HeaderError`] names the first place that is wrong.
+    /// [`HeaderError`] names a place and what is wrong there.
     pub fn read(text: &'t str) -> Result<Self, HeaderError> {
         Self::of(text, None)
     }

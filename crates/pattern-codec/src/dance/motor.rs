@@ -11,6 +11,7 @@ const MAX_SPEED: u8 = i8::MAX.unsigned_abs();
 /// CarryMagnitude   a += |v|   a >= L:   a -= L,   the same
 /// CarrySigned      a += v     |a| >= L: a -= ±L,  one half step in the direction of a
 /// ```
+/// `stepper-sync` has the same laws tick by tick, as `SpeedLaw`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

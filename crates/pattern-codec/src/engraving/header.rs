@@ -149,7 +149,7 @@ impl<'t> PatternData<'t> {
     /// mode, are those of `format`.
     ///
     /// # Errors
-    /// [`HeaderError`] names the first place that is wrong.
+    /// [`HeaderError`] names a place and what is wrong there.
     pub fn read(text: &'t str, format: Format) -> Result<Self, HeaderError> {
         Self::of(text, None, format)
     }

@@ -169,7 +169,7 @@ impl<'t> ReloadData<'t> {
     /// Reads the array of that name, and the one of that name and `_toggles`.
     ///
     /// # Errors
-    /// [`HeaderError`] names the first place that is wrong.
+    /// [`HeaderError`] names a place and what is wrong there.
     pub fn read(text: &'t str, name: &str) -> Result<Self, HeaderError> {
         let (_, reloads) = array(text, Some((name, "")), WORD)?;
         let mut all = reloads.clone();
