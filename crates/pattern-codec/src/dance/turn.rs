@@ -9,8 +9,8 @@ use super::{Easing, Law, Motor};
 const ENDING: usize = 3;
 
 /// By how many half steps the frames before may run ahead of the way or stay behind it, so that the
-/// last ones find their end: the widest gap between the half steps that one frame makes, 33 to 40,
-/// and one more.
+/// last ones find their end: the widest gap between the half steps that one frame makes at a
+/// threshold of 600, 33 to 40, and one more.
 const MOST_AHEAD: i64 = 8;
 
 impl Motor {
@@ -40,8 +40,8 @@ impl Motor {
     /// first from the way itself, then from up to 8 half steps ahead of it or behind.
     ///
     /// # Errors
-    /// [`TurnError::TooFast`] when a frame needs a speed above [`Motor::max_speed`]; [`TurnError::Unreachable`] when
-    /// no speeds end within one half step.
+    /// [`TurnError::TooFast`] when a frame needs a speed above [`Motor::max_speed`];
+    /// [`TurnError::Unreachable`] when no plan was found that ends within one half step.
     pub fn turn(&self, half_steps: i32, frames: u16, easing: Easing) -> Result<Turn, TurnError> {
         let mut turn = Turn::new(*self, half_steps, frames, easing);
         let sum = turn.sum;
