@@ -352,6 +352,11 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "data.h: a threshold of 40000",
         ),
         (
+            format!("frame_ticks = 400000000\nlength_s = 400000\n{MOTOR}"),
+            &[],
+            "data.h: 400000000 ticks, 268435456 are the most",
+        ),
+        (
             String::new(),
             &[],
             "own.toml: line 1: there is no [[motor]]",

@@ -12,6 +12,9 @@ use pose2pulse::stepper_sync::{
 use crate::MOTORS;
 use crate::waves::Waves;
 
+/// The most ticks that are simulated: three days of 1 ms, some seconds of a PC.
+const MOST_TICKS: u64 = 1 << 28;
+
 /// What the motors did.
 pub(crate) struct Danced {
     /// Half steps from the start at the end of every frame, before the first one too.
@@ -34,6 +37,12 @@ pub(crate) struct Firmware {
 impl Firmware {
     pub(crate) fn new(data: &Data<'_, MOTORS>, law: SpeedLaw) -> Result<Self> {
         let timing = data.timing();
+        let frames = u64::try_from(data.frames().len())?;
+        let ticks = frames.saturating_mul(timing.frame_ticks().into());
+        ensure!(
+            ticks <= MOST_TICKS,
+            "data.h: {ticks} ticks, {MOST_TICKS} are the most"
+        );
         let tick = Rate::new(1_000_000, timing.tick_us())?;
         let accumulation = Accumulation::new(law, data.threshold(), tick).context("data.h")?;
         let phases = Phases::new(Stepping::Half, Wiring::UNIPOLAR)?;
@@ -136,7 +145,6 @@ pub(crate) fn simulate<W: Write>(
         positions.push(rotors.map(|rotor| rotor.position));
     }
     waves.finish()?;
-    ensure!(positions.len() > 1, "data.h: no frames");
     Ok(Danced {
         positions,
         steps: rotors.map(|rotor| rotor.steps),
