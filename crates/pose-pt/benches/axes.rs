@@ -1,0 +1,2 @@
+//! Nine axes from a pose.
+fn main() {}

@@ -1,0 +1,154 @@
+//! The frame of a locator from measured points.
+
+use nalgebra::{Matrix3, Point3, RealField, Vector3};
+
+use crate::number::{epsilons, largest};
+use crate::svd::Svd;
+
+/// A locator's frame, as measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Calibration<T: RealField = f64> {
+    /// Where the held point is when the axes are at zero.
+    pub origin: Point3<T>,
+    /// Columns: the way of the held point per unit of each axis.
+    pub axes: Matrix3<T>,
+    /// Root of the mean square of the residuals' lengths.
+    pub rms: T,
+    /// Length of the largest residual.
+    pub max_residual: T,
+}
+
+/// Why measured points give no frame.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum CalibrationError<T = f64> {
+    /// The number of axis positions and points differs.
+    #[error("{positions} axis positions for {points} points")]
+    Count {
+        /// Axis positions given.
+        positions: usize,
+        /// Points given.
+        points: usize,
+    },
+    /// Fewer than four points.
+    #[error("{count} points do not determine a frame, 4 do")]
+    TooFew {
+        /// Points given.
+        count: usize,
+    },
+    /// A number is not finite, or so large that its square overflows.
+    #[error("{value} of measurement {point} is not within ±{max:e}")]
+    Coordinate {
+        /// The measurement, from 0.
+        point: usize,
+        /// Its coordinate.
+        value: T,
+        /// Largest coordinate.
+        max: T,
+    },
+    /// The axis positions lie in a plane, on a line or in a point: some axis was not
+    /// moved by itself.
+    #[error(
+        "the axis positions span {rank} of 3 directions: {width} across, more than {needed} is needed"
+    )]
+    Rank {
+        /// Directions that they span.
+        rank: u8,
+        /// Extent across the others.
+        width: T,
+        /// Extent needed.
+        needed: T,
+    },
+}
+
+/// Least extent across against the largest, in roots of the machine epsilon.
+const WIDTH_ROOTS: f64 = 16.0;
+
+/// The frame of a locator from axis positions and where the held point was measured.
+///
+/// # Errors
+/// [`CalibrationError`].
+pub fn calibrate<T: RealField + Copy>(
+    positions: &[Vector3<T>],
+    points: &[Point3<T>],
+) -> Result<Calibration<T>, CalibrationError<T>> {
+    if positions.len() != points.len() {
+        return Err(CalibrationError::Count {
+            positions: positions.len(),
+            points: points.len(),
+        });
+    }
+    if positions.len() < 4 {
+        return Err(CalibrationError::TooFew {
+            count: positions.len(),
+        });
+    }
+    let max = largest::<T>();
+    let (mut mean_axes, mut mean_point, mut count) =
+        (Vector3::zeros(), Vector3::zeros(), T::zero());
+    for (point, (position, place)) in positions.iter().zip(points).enumerate() {
+        if let Some(value) = position
+            .iter()
+            .chain(place.iter())
+            .copied()
+            .find(|value| !(value.abs() <= max))
+        {
+            return Err(CalibrationError::Coordinate { point, value, max });
+        }
+        mean_axes += position;
+        mean_point += place.coords;
+        count += T::one();
+    }
+    mean_axes /= count;
+    mean_point /= count;
+    let arms = || {
+        positions
+            .iter()
+            .zip(points)
+            .map(|(position, point)| (position - mean_axes, point.coords - mean_point))
+    };
+    let scatter: Matrix3<T> = arms().map(|(axes, _)| axes * axes.transpose()).sum();
+    let inverse = inverse_scatter(&Svd::new(&scatter))?;
+    let mut axes = Matrix3::zeros();
+    // The second round takes back the rounding of the first.
+    for _ in 0..2 {
+        let moment: Matrix3<T> = arms()
+            .map(|(position, point)| (point - axes * position) * position.transpose())
+            .sum();
+        axes += moment * inverse;
+    }
+    let (mut sum, mut max_residual) = (T::zero(), T::zero());
+    for (position, point) in arms() {
+        let residual = (point - axes * position).norm();
+        sum += residual * residual;
+        max_residual = max_residual.max(residual);
+    }
+    Ok(Calibration {
+        origin: Point3::from(mean_point - axes * mean_axes),
+        axes,
+        rms: (sum / count).sqrt(),
+        max_residual,
+    })
+}
+
+fn inverse_scatter<T: RealField + Copy>(svd: &Svd<T>) -> Result<Matrix3<T>, CalibrationError<T>> {
+    let [s1, s2, s3] = svd.sigma.map(|sigma| sigma.abs());
+    let root = T::default_epsilon().sqrt() * nalgebra::convert::<f64, T>(WIDTH_ROOTS);
+    let needed = s1.sqrt() * root + epsilons::<T>(1.0);
+    let rank = [s1, s2, s3]
+        .iter()
+        .map(|sigma| u8::from(sigma.sqrt() > needed))
+        .sum();
+    if rank < 3 {
+        let width = if rank < 2 { s2.sqrt() } else { s3.sqrt() };
+        return Err(CalibrationError::Rank {
+            rank,
+            width,
+            needed,
+        });
+    }
+    let [u1, u2, u3] = &svd.u;
+    Ok(u1 * u1.transpose() / s1 + u2 * u2.transpose() / s2 + u3 * u3.transpose() / s3)
+}

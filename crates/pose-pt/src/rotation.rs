@@ -1,0 +1,149 @@
+//! Rotations, accurate also where they are close to each other.
+
+use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, Vector4};
+
+use crate::number::{epsilons, half, two};
+
+/// A 3 × 3 matrix that is not a rotation.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[error(
+    "matrix is no rotation: Rᵀ R departs from 1 by {departure}, allowed {allowed}, determinant {determinant}"
+)]
+#[expect(clippy::exhaustive_structs, reason = "there is one cause")]
+pub struct NotARotation<T = f64> {
+    /// Largest entry of Rᵀ R - 1; infinite where an entry is not finite.
+    pub departure: T,
+    /// What was allowed.
+    pub allowed: T,
+    /// The determinant: negative for a reflection.
+    pub determinant: T,
+}
+
+/// The two quaternions, the second with the sign that makes the arc shorter.
+fn shorter<T: RealField + Copy>(
+    a: &UnitQuaternion<T>,
+    b: &UnitQuaternion<T>,
+) -> (Vector4<T>, Vector4<T>) {
+    let (a, b) = (a.as_vector(), b.as_vector());
+    if a.dot(b) < T::zero() {
+        (*a, -b)
+    } else {
+        (*a, *b)
+    }
+}
+
+/// Half the angle between two rotations: the angle between their quaternions, 0..=π/2.
+fn half_angle<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> T {
+    two::<T>() * (a - b).norm().atan2((a + b).norm())
+}
+
+/// The angle between two rotations, in radians, 0..=π.
+#[must_use]
+pub fn angle_between<T: RealField + Copy>(a: &UnitQuaternion<T>, b: &UnitQuaternion<T>) -> T {
+    let (a, b) = shorter(a, b);
+    two::<T>() * half_angle(&a, &b)
+}
+
+/// The rotation a part `t` of the way from `a` to `b`, on the shorter arc at constant speed.
+#[must_use]
+pub fn slerp<T: RealField + Copy>(
+    a: &UnitQuaternion<T>,
+    b: &UnitQuaternion<T>,
+    t: T,
+) -> UnitQuaternion<T> {
+    let (a, b) = shorter(a, b);
+    let angle = half_angle(&a, &b);
+    let sin = angle.sin();
+    let rest = T::one() - t;
+    let (from, to) = if sin > T::zero() {
+        ((rest * angle).sin() / sin, (t * angle).sin() / sin)
+    } else {
+        (rest, t)
+    };
+    UnitQuaternion::new_unchecked(Quaternion::from(a * from + b * to))
+}
+
+/// The rotation vector: axis times angle in radians, at most π long.
+#[must_use]
+pub fn rotation_vector<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Vector3<T> {
+    log(rotation.w, rotation.vector().into_owned())
+}
+
+/// The rotation vector, in the world, that turns `a` into `b`: b = exp(v) a.
+#[must_use]
+pub fn rotation_vector_between<T: RealField + Copy>(
+    a: &UnitQuaternion<T>,
+    b: &UnitQuaternion<T>,
+) -> Vector3<T> {
+    let (a, b) = shorter(a, b);
+    // b a* = 1 + (b - a) a*: the difference of close quaternions is exact.
+    let difference = Quaternion::from(b - a) * Quaternion::from(a).conjugate();
+    log(a.dot(&b), difference.vector().into_owned())
+}
+
+fn log<T: RealField + Copy>(w: T, v: Vector3<T>) -> Vector3<T> {
+    let (w, v) = if w < T::zero() { (-w, -v) } else { (w, v) };
+    let sin = v.norm();
+    if sin > T::zero() {
+        v * (two::<T>() * sin.atan2(w) / sin)
+    } else {
+        v * two::<T>()
+    }
+}
+
+/// The rotation about `vector` by its length in radians.
+#[must_use]
+pub fn from_rotation_vector<T: RealField + Copy>(vector: &Vector3<T>) -> UnitQuaternion<T> {
+    let angle = vector.norm();
+    let (sin, cos) = (angle * half()).sin_cos();
+    let scale = if angle > T::zero() {
+        sin / angle
+    } else {
+        half()
+    };
+    UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, vector * scale))
+}
+
+/// The rotation as a matrix.
+#[must_use]
+pub fn to_matrix<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Rotation3<T> {
+    let (w, x, y, z) = (rotation.w, rotation.i, rotation.j, rotation.k);
+    // Not 2: the squares of a rounded quaternion do not add up to one.
+    let s = two::<T>() / rotation.as_vector().norm_squared();
+    let (sx, sy, sz) = (s * x, s * y, s * z);
+    let one = T::one();
+    Rotation3::from_matrix_unchecked(Matrix3::new(
+        one - (sy * y + sz * z),
+        sx * y - sz * w,
+        sx * z + sy * w,
+        sx * y + sz * w,
+        one - (sx * x + sz * z),
+        sy * z - sx * w,
+        sx * z - sy * w,
+        sy * z + sx * w,
+        one - (sx * x + sy * y),
+    ))
+}
+
+/// The quaternion of a rotation matrix.
+///
+/// # Errors
+/// [`NotARotation`].
+pub fn from_matrix<T: RealField + Copy>(
+    matrix: &Matrix3<T>,
+    allowed: T,
+) -> Result<UnitQuaternion<T>, NotARotation<T>> {
+    let departure = (matrix.tr_mul(matrix) - Matrix3::identity()).amax();
+    let determinant = matrix.determinant();
+    if !(departure <= allowed.max(epsilons(8.0)) && determinant > T::zero()) {
+        return Err(NotARotation {
+            departure,
+            allowed,
+            determinant,
+        });
+    }
+    Ok(UnitQuaternion::from_rotation_matrix(
+        &Rotation3::from_matrix_unchecked(*matrix),
+    ))
+}
