@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
+use crate::fit::{mean, rms_and_largest};
 use crate::number::{epsilons, largest};
 use crate::svd::Svd;
 
@@ -86,8 +87,6 @@ pub fn calibrate<T: RealField + Copy>(
         });
     }
     let max = largest::<T>();
-    let (mut mean_axes, mut mean_point, mut count) =
-        (Vector3::zeros(), Vector3::zeros(), T::zero());
     for (point, (position, place)) in positions.iter().zip(points).enumerate() {
         if let Some(value) = position
             .iter()
@@ -97,12 +96,9 @@ pub fn calibrate<T: RealField + Copy>(
         {
             return Err(CalibrationError::Coordinate { point, value, max });
         }
-        mean_axes += position;
-        mean_point += place.coords;
-        count += T::one();
     }
-    mean_axes /= count;
-    mean_point /= count;
+    let mean_axes = mean(positions.iter().copied());
+    let mean_point = mean(points.iter().map(|point| point.coords));
     let arms = || {
         positions
             .iter()
@@ -119,16 +115,12 @@ pub fn calibrate<T: RealField + Copy>(
             .sum();
         axes += moment * inverse;
     }
-    let (mut sum, mut max_residual) = (T::zero(), T::zero());
-    for (position, point) in arms() {
-        let residual = (point - axes * position).norm();
-        sum += residual * residual;
-        max_residual = max_residual.max(residual);
-    }
+    let (rms, max_residual) =
+        rms_and_largest(arms().map(|(position, point)| point - axes * position));
     Ok(Calibration {
         origin: Point3::from(mean_point - axes * mean_axes),
         axes,
-        rms: (sum / count).sqrt(),
+        rms,
         max_residual,
     })
 }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, Vector4};
 
 use crate::number::{epsilons, half, two};
+use crate::svd::Svd;
 
 /// A 3 × 3 matrix that is not a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -12,7 +13,7 @@ use crate::number::{epsilons, half, two};
 )]
 #[expect(clippy::exhaustive_structs, reason = "there is one cause")]
 pub struct NotARotation<T = f64> {
-    /// Largest entry of Rᵀ R - 1; infinite where an entry is not finite.
+    /// Largest entry of Rᵀ R - 1; the largest number where an entry is not finite.
     pub departure: T,
     /// What was allowed.
     pub allowed: T,
@@ -128,22 +129,69 @@ pub fn to_matrix<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Rotation3
 
 /// The quaternion of a rotation matrix.
 ///
+/// Rows that were rounded to a few decimals are accepted up to `allowed`, the largest entry
+/// of Rᵀ R - 1 (0 allows rounding alone: 8 machine epsilons); the nearest rotation is
+/// returned.
+///
 /// # Errors
-/// [`NotARotation`].
+/// [`NotARotation`] for more than that, for a reflection, and for entries that are not finite.
 pub fn from_matrix<T: RealField + Copy>(
     matrix: &Matrix3<T>,
     allowed: T,
 ) -> Result<UnitQuaternion<T>, NotARotation<T>> {
+    let allowed = allowed.max(epsilons(ROUNDING_EPSILONS));
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return Err(NotARotation {
+            departure: T::max_value().unwrap_or_else(T::one),
+            allowed,
+            determinant: T::zero(),
+        });
+    }
     let departure = (matrix.tr_mul(matrix) - Matrix3::identity()).amax();
     let determinant = matrix.determinant();
-    if !(departure <= allowed.max(epsilons(8.0)) && determinant > T::zero()) {
-        return Err(NotARotation {
+    if departure <= allowed && determinant > T::zero() {
+        Ok(quaternion(&Svd::new(matrix).rotation()))
+    } else {
+        Err(NotARotation {
             departure,
             allowed,
             determinant,
-        });
+        })
     }
-    Ok(UnitQuaternion::from_rotation_matrix(
-        &Rotation3::from_matrix_unchecked(*matrix),
-    ))
+}
+
+/// What the products of an own rotation matrix may depart from 1 by rounding.
+const ROUNDING_EPSILONS: f64 = 8.0;
+
+/// The quaternion of a matrix that is a rotation but for rounding: the largest of its four
+/// components from the diagonal, the others from sums and differences that do not cancel.
+pub(crate) fn quaternion<T: RealField + Copy>(m: &Matrix3<T>) -> UnitQuaternion<T> {
+    let one = T::one();
+    let trace = m.m11 + m.m22 + m.m33;
+    let largest = m.m11.max(m.m22).max(m.m33);
+    let q = if trace >= largest {
+        Quaternion::new(one + trace, m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
+    } else if m.m11 >= largest {
+        Quaternion::new(
+            m.m32 - m.m23,
+            one + m.m11 - m.m22 - m.m33,
+            m.m12 + m.m21,
+            m.m13 + m.m31,
+        )
+    } else if m.m22 >= largest {
+        Quaternion::new(
+            m.m13 - m.m31,
+            m.m12 + m.m21,
+            one + m.m22 - m.m11 - m.m33,
+            m.m23 + m.m32,
+        )
+    } else {
+        Quaternion::new(
+            m.m21 - m.m12,
+            m.m13 + m.m31,
+            m.m23 + m.m32,
+            one + m.m33 - m.m11 - m.m22,
+        )
+    };
+    UnitQuaternion::new_normalize(q)
 }
