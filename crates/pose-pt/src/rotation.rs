@@ -34,19 +34,39 @@ fn shorter<T: RealField + Copy>(
     }
 }
 
-/// Half the angle between two rotations: the angle between their quaternions, 0..=π/2.
-fn half_angle<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> T {
-    two::<T>() * (a - b).norm().atan2((a + b).norm())
+/// Scalar and vector part of b a*, the rotation from `a` to `b`.
+///
+/// ```text
+/// vec(b a*) = vec((b - a) a*)
+/// ```
+///
+/// The difference of close quaternions is exact; their product would round to an epsilon.
+fn way<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> (T, Vector3<T>) {
+    let way = Quaternion::from(b - a) * Quaternion::from(*a).conjugate();
+    (a.dot(b), way.vector().into_owned())
 }
 
 /// The angle between two rotations, in radians, 0..=π.
+///
+/// ```text
+/// 2 atan2(|vec(b a*)|, a·b)
+/// ```
+///
+/// Accurate for close rotations too, where an arc cosine is off by 1e-8.
 #[must_use]
 pub fn angle_between<T: RealField + Copy>(a: &UnitQuaternion<T>, b: &UnitQuaternion<T>) -> T {
-    let (a, b) = shorter(a, b);
-    two::<T>() * half_angle(&a, &b)
+    rotation_vector_between(a, b).norm()
 }
 
 /// The rotation a part `t` of the way from `a` to `b`, on the shorter arc at constant speed.
+///
+/// ```text
+/// (sin((1 - t) φ) a + sin(t φ) b) / sin φ,   φ the angle between the quaternions
+/// ```
+///
+/// `t` = 0 gives `a` and 1 gives `b` to the last bit (up to the sign of the quaternion);
+/// other values go on beyond the ends. The way from `b` to `a` at 1 - `t` is the same.
+/// Of two arcs of π, that of the quaternions as they are is taken.
 #[must_use]
 pub fn slerp<T: RealField + Copy>(
     a: &UnitQuaternion<T>,
@@ -54,7 +74,9 @@ pub fn slerp<T: RealField + Copy>(
     t: T,
 ) -> UnitQuaternion<T> {
     let (a, b) = shorter(a, b);
-    let angle = half_angle(&a, &b);
+    // The same from both ends, unlike the products of `way`; the weights of close rotations
+    // do not depend on the last digits of the angle.
+    let angle = two::<T>() * (a - b).norm().atan2((a + b).norm());
     let sin = angle.sin();
     let rest = T::one() - t;
     let (from, to) = if sin > T::zero() {
@@ -66,21 +88,26 @@ pub fn slerp<T: RealField + Copy>(
 }
 
 /// The rotation vector: axis times angle in radians, at most π long.
+///
+/// ```text
+/// 2 atan2(|v|, w) v / |v|   of the quaternion w + v with w ≥ 0
+/// ```
 #[must_use]
 pub fn rotation_vector<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Vector3<T> {
     log(rotation.w, rotation.vector().into_owned())
 }
 
-/// The rotation vector, in the world, that turns `a` into `b`: b = exp(v) a.
+/// The rotation vector, in the world, that turns `a` into `b`: b = exp(v) a, at most π long.
+///
+/// Divided by a time it is the angular velocity of [`slerp`].
 #[must_use]
 pub fn rotation_vector_between<T: RealField + Copy>(
     a: &UnitQuaternion<T>,
     b: &UnitQuaternion<T>,
 ) -> Vector3<T> {
     let (a, b) = shorter(a, b);
-    // b a* = 1 + (b - a) a*: the difference of close quaternions is exact.
-    let difference = Quaternion::from(b - a) * Quaternion::from(a).conjugate();
-    log(a.dot(&b), difference.vector().into_owned())
+    let (w, v) = way(&a, &b);
+    log(w, v)
 }
 
 fn log<T: RealField + Copy>(w: T, v: Vector3<T>) -> Vector3<T> {

@@ -98,12 +98,17 @@ impl Worst {
 
 impl Drop for Worst {
     fn drop(&mut self) {
-        println!("{}: {:.3} of what is allowed, row {}", self.0, self.1, self.2);
+        println!(
+            "{}: {:.3} of what is allowed, row {}",
+            self.0, self.1, self.2
+        );
     }
 }
 
-const CONVENTIONS: [(Convention, &str); 2] =
-    [(Convention::FixedXyz, "p"), (Convention::MovingXyz, "intr_p")];
+const CONVENTIONS: [(Convention, &str); 2] = [
+    (Convention::FixedXyz, "p"),
+    (Convention::MovingXyz, "intr_p"),
+];
 
 #[test]
 fn anchors_are_where_the_pose_puts_them() {
@@ -238,9 +243,8 @@ fn fits_of_every_row() {
         let fit = rigid_fit(&a, &b).unwrap_or_else(|e| panic!("{}: {e}", row.text("id")));
         let wanted = row.matrix("r");
         let gap = row.number("eigen_gap");
-        let far = |points: &[Point3<f64>]| {
-            points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max)
-        };
+        let far =
+            |points: &[Point3<f64>]| points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
         let far = far(&a).max(far(&b));
         // The softest turn meets points that are √(gap / 2) from its axis, each rounded
         // by its distance from the origin.
@@ -252,7 +256,11 @@ fn fits_of_every_row() {
         let miss = fit.motion.translation.vector - row.point("t").coords;
         translations.check(&row, miss.norm(), ROUNDING * lever.max(2.0) * far);
         residuals.check(&row, (fit.rms - row.number("rms")).abs(), ROUNDING * far);
-        gaps.check(&row, (fit.eigenvalue_gap - gap).abs() / gap, ROUNDING * lever.max(4.0));
+        gaps.check(
+            &row,
+            (fit.eigenvalue_gap - gap).abs() / gap,
+            ROUNDING * lever.max(4.0),
+        );
         assert!((rotation.matrix().determinant() - 1.0).abs() < 4.0 * ROUNDING);
     }
 }
