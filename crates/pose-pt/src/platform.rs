@@ -21,6 +21,8 @@ pub struct Platform<const N: usize, T: RealField = f64> {
     /// All axes are parallel to the world's: nothing needs turning.
     parallel: bool,
     largest_distance: T,
+    /// How far past its stroke each locator's axes may be by rounding alone.
+    rounding: [T; N],
 }
 
 /// The two locators whose distance departs most from that of their anchors.
@@ -69,6 +71,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
             to_axes,
             parallel: to_axes.iter().all(|m| *m == Matrix3::identity()),
             largest_distance,
+            rounding: locators.map(|locator| check::rounding(&locator)),
         })
     }
 
@@ -117,6 +120,9 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
 
     /// Axis coordinates of a pose, all within their strokes.
     ///
+    /// An axis at the end of its stroke may be past it by what the pose rounds off: 16
+    /// machine epsilons of the distances of anchor and origin and of the stroke.
+    ///
     /// # Errors
     /// [`LimitError`]; the axis that is farthest out of its stroke.
     pub fn checked_axes(&self, pose: &Isometry3<T>) -> Result<[Vector3<T>; N], LimitError<T>> {
@@ -130,7 +136,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
     /// # Errors
     /// [`LimitError`]; the axis that is farthest out of its stroke.
     pub fn check_axes(&self, axes: &[Vector3<T>; N]) -> Result<(), LimitError<T>> {
-        check::strokes(&self.locators, axes)
+        check::strokes(&self.locators, &self.rounding, axes)
     }
 
     /// Axis speeds at a pose whose reference point moves at `linear` while the body turns at
