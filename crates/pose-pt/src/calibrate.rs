@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
 use crate::fit::{mean, rms_and_largest};
-use crate::number::largest;
+use crate::number::{first_beyond, largest};
 use crate::svd::Svd;
 
 /// A locator's frame, as measured: what
@@ -120,12 +120,7 @@ pub fn calibrate<T: RealField + Copy>(
     }
     let max = largest::<T>();
     for (point, (position, place)) in positions.iter().zip(points).enumerate() {
-        if let Some(value) = position
-            .iter()
-            .chain(place.iter())
-            .copied()
-            .find(|value| !(value.abs() <= max))
-        {
+        if let Some(value) = first_beyond(position.iter().chain(place.iter()), max) {
             return Err(CalibrationError::Coordinate { point, value, max });
         }
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, RealField, UnitQuaternion, Vector3};
 
-use crate::number::{epsilons, largest};
+use crate::number::{epsilons, first_beyond, largest};
 use crate::rotation::{from_rotation_vector, quaternion, to_matrix};
 use crate::svd::Svd;
 
@@ -191,7 +191,7 @@ fn largest_coordinate<T: RealField + Copy>(
 ) -> Result<T, FitError<T>> {
     let (max, mut far) = (largest::<T>(), T::zero());
     for (point, place) in points.iter().enumerate() {
-        if let Some(value) = place.iter().copied().find(|value| !(value.abs() <= max)) {
+        if let Some(value) = first_beyond(place.iter(), max) {
             return Err(FitError::Coordinate {
                 side,
                 point,

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
 use crate::fit::{FitError, Shape, Side};
-use crate::number::{epsilons, largest};
+use crate::number::{epsilons, first_beyond, largest};
 use crate::{Axis, LimitError, Locator, PlatformError};
 
 /// Axes that one motion card drives [Alignment 2010].
@@ -38,7 +38,7 @@ pub(super) fn locator<T: RealField + Copy>(
         ("origin", locator.origin.coords.as_slice()),
         ("axis direction", locator.axes.as_slice()),
     ] {
-        if let Some(value) = values.iter().copied().find(|value| !(value.abs() <= max)) {
+        if let Some(value) = first_beyond(values, max) {
             return Err(PlatformError::Coordinate {
                 locator: number,
                 name,
