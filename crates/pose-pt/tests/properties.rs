@@ -164,6 +164,27 @@ proptest! {
     }
 
     #[test]
+    fn own_poses_at_the_ends_of_strokes_are_not_refused(
+        platform in platforms(),
+        pose in poses(),
+        upper in prop::bool::ANY,
+    ) {
+        let axes = platform.axes(&pose);
+        let mut ends = axes.iter();
+        let locators = platform.locators().map(|mut locator| {
+            for (limits, end) in locator.limits.iter_mut().zip(ends.next().unwrap()) {
+                let (min, max) = if upper { (end - 9.0, *end) } else { (*end, end + 9.0) };
+                *limits = AxisLimits::new(min, max, 50.0, 200.0);
+            }
+            locator
+        });
+        let limited = Platform::new(locators).unwrap();
+        let body = limited.pose(&axes).unwrap();
+        let refused = limited.checked_axes(&body.pose);
+        prop_assert!(refused.is_ok(), "{refused:?}");
+    }
+
+    #[test]
     fn axis_velocities_are_the_derivative(
         platform in platforms(),
         pose in poses(),
