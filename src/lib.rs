@@ -4,6 +4,8 @@
 
 #[cfg(feature = "pattern-codec")]
 pub use pattern_codec;
+#[cfg(feature = "pose-pt")]
+pub use pose_pt;
 #[cfg(feature = "proto3964r")]
 pub use proto3964r;
 #[cfg(feature = "rk512")]

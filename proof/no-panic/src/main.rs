@@ -9,10 +9,12 @@ mod jobs;
 mod kinematics;
 mod line;
 mod patterns;
+mod poses;
 mod stepping;
 
 fn main() {
     kinematics::run();
+    poses::run();
     stepping::run();
     patterns::run();
     frames::run();
