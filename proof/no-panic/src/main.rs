@@ -9,6 +9,7 @@ mod kinematics;
 mod line;
 mod patterns;
 mod stepping;
+mod unit;
 
 fn main() {
     kinematics::run();
@@ -16,6 +17,7 @@ fn main() {
     patterns::run();
     line::run();
     jobs::run();
+    unit::run();
     #[cfg(feature = "control")]
     control::run();
 }
