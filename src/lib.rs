@@ -6,6 +6,8 @@
 pub use handwheel;
 #[cfg(feature = "pattern-codec")]
 pub use pattern_codec;
+#[cfg(feature = "pose-pt")]
+pub use pose_pt;
 #[cfg(feature = "proto3964r")]
 pub use proto3964r;
 #[cfg(feature = "rk512")]

@@ -1,0 +1,30 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+mod angles;
+mod calibrate;
+mod fit;
+mod locator;
+mod number;
+mod platform;
+mod rotation;
+#[cfg(feature = "serde")]
+mod serde;
+mod svd;
+
+pub use nalgebra;
+
+pub use angles::{Convention, PoseVector, Resolved};
+pub use calibrate::{Calibration, CalibrationError, calibrate};
+pub use fit::{FitError, RigidFit, Side, rigid_fit};
+pub use locator::{Axis, AxisLimits, Locator};
+pub use platform::{BodyFit, LimitError, Platform, PlatformError, Strain};
+pub use rotation::{
+    NotARotation, angle_between, from_matrix, from_rotation_vector, rotation_vector,
+    rotation_vector_between, slerp, to_matrix,
+};
