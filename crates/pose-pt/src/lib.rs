@@ -28,3 +28,19 @@ pub use rotation::{
     NotARotation, angle_between, from_matrix, from_rotation_vector, rotation_vector,
     rotation_vector_between, slerp, to_matrix,
 };
+
+mod course;
+mod cut;
+mod path;
+mod plan_error;
+mod pt;
+mod pvt;
+mod strain;
+mod turn;
+
+pub use cut::Cut;
+pub use path::{Interpolation, Leg, Path, PathError};
+pub use plan_error::PlanError;
+pub use pt::{PtPoint, PtPoints, PtTable};
+pub use pvt::{Knot, PvtPoint, PvtPoints, PvtTable};
+pub use strain::hermite_strain;

@@ -1,0 +1,412 @@
+//! Position-velocity-time tables.
+
+mod check;
+mod leg;
+mod points;
+mod scurve;
+pub(crate) mod segment;
+
+use nalgebra::RealField;
+
+use crate::course::Course;
+use crate::cut::{Rule, within_max};
+use crate::number::epsilons;
+use crate::path::{Leg, Path};
+use crate::strain::hermite_strain;
+use crate::{Cut, PlanError, Platform};
+use check::Shares;
+pub use points::{PvtPoint, PvtPoints};
+
+/// Memory for one point of a [`PvtTable`] while it is planned and as long as it lives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knot<T = f64> {
+    /// Parameter of the leg.
+    s: T,
+    /// Speed of the parameter.
+    speed: T,
+    /// Time to the next knot.
+    segment_s: T,
+    /// Parts of the leg.
+    parts: u32,
+}
+
+impl<T: RealField> Default for Knot<T> {
+    fn default() -> Self {
+        Self {
+            s: T::zero(),
+            speed: T::zero(),
+            segment_s: T::zero(),
+            parts: 0,
+        }
+    }
+}
+
+/// A checked position-velocity-time table: every axis runs a cubic from each point to the next,
+/// with the positions and velocities of the body's own motion at the points.
+///
+/// Along each leg it is the fastest such table that keeps the limits of all axes, found by a
+/// backward and a forward pass over the points. What is checked is the cubic itself: its
+/// peak speed inside, its acceleration at both ends. The machine stops at every pose on the
+/// way, where the direction changes; a pose to be passed without a stop has no place in a path.
+///
+/// Where an axis has a limit of jerk, each leg is one S-curve along the path, which is the
+/// shortest motion on a straight way, and slower than need be where the body turns far.
+/// Between points a cubic has one jerk; at a point its acceleration steps, which counts as a
+/// jerk over the time between the middles of the segments.
+#[derive(Debug, Clone, Copy)]
+pub struct PvtTable<'a, const N: usize, T: RealField = f64> {
+    platform: &'a Platform<N, T>,
+    path: Path<'a, T>,
+    knots: &'a [Knot<T>],
+    points: usize,
+    duration_s: T,
+    /// By what all times are multiplied.
+    stretch: T,
+}
+
+/// Fewest parts of a leg: it starts and stops.
+const MIN_PARTS: u32 = 2;
+
+impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
+    /// Plans the table in memory of the caller: for each leg one knot more than parts.
+    ///
+    /// With [`Cut::strain`] each leg has a number of parts that keeps the allowed strain while
+    /// one part fewer does not, by [`hermite_strain`]; it is found by bisection, and each trial
+    /// is a plan.
+    ///
+    /// # Errors
+    /// [`PlanError`]; also where `knots` are too few.
+    pub fn plan(
+        platform: &'a Platform<N, T>,
+        path: &Path<'a, T>,
+        cut: Cut<T>,
+        knots: &'a mut [Knot<T>],
+    ) -> Result<Self, PlanError<T>> {
+        cut.check()?;
+        let planner = Planner {
+            platform,
+            cut,
+            least: least_parts(platform).max(cut.at_least),
+        };
+        planner.check_memory(path, knots.len())?;
+        let (mut used, mut points) = (0_usize, 1_usize);
+        for (number, leg) in moving(path) {
+            let free = knots.get_mut(used..).unwrap_or_default();
+            let taken = planner.plan_leg(number, &leg, used, free)?;
+            points = points.saturating_add(taken).saturating_sub(1);
+            used = used.saturating_add(taken);
+        }
+        let table = |knots, duration_s| Self {
+            platform,
+            path: *path,
+            knots,
+            points,
+            duration_s,
+            stretch: T::one(),
+        };
+        let knots = knots.get_mut(..used).unwrap_or_default();
+        stretch_legs(platform, path, knots)?;
+        let knots = &*knots;
+        let duration_s = table(knots, T::zero())
+            .points()
+            .last()
+            .map_or(T::zero(), |point| point.time_s);
+        Ok(table(knots, duration_s))
+    }
+
+    /// The same motion at a share of its speed, above 0 and at most 1: room for a feed above
+    /// 100 %.
+    ///
+    /// # Errors
+    /// [`PlanError::Pace`].
+    pub fn at_pace(self, pace: T) -> Result<Self, PlanError<T>> {
+        if pace > T::zero() && pace <= T::one() {
+            return Ok(Self {
+                stretch: self.stretch / pace,
+                duration_s: self.duration_s / pace,
+                ..self
+            });
+        }
+        Err(PlanError::Pace { pace })
+    }
+
+    /// The number of points: one more than segments.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "there is a first point")]
+    pub const fn len(&self) -> usize {
+        self.points
+    }
+
+    /// Seconds from the first point to the last.
+    #[must_use]
+    pub const fn duration_s(&self) -> T {
+        self.duration_s
+    }
+
+    /// The platform of the table.
+    #[must_use]
+    pub const fn platform(&self) -> &'a Platform<N, T> {
+        self.platform
+    }
+
+    /// The most by which the distance of two locators ever departs from that of their anchors:
+    /// the largest [`hermite_strain`] of all segments.
+    #[must_use]
+    pub fn strain_bound(&self) -> T {
+        strain_bound(self.platform, self.points())
+    }
+
+    /// The points in their order.
+    #[must_use]
+    pub fn points(&self) -> PvtPoints<'a, N, T> {
+        PvtPoints::new(self.platform, &self.path, self.knots, self.stretch, self.points)
+    }
+}
+
+/// With a limit of jerk each phase of the S-curve has a part.
+fn least_parts<const N: usize, T: RealField>(platform: &Platform<N, T>) -> u32
+where
+    T: Copy,
+{
+    let mut limits = platform.locators().iter().flat_map(|l| &l.limits);
+    if limits.any(|limits| limits.jerk.is_some()) {
+        scurve::PHASES
+    } else {
+        MIN_PARTS
+    }
+}
+
+fn strain_bound<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    mut points: PvtPoints<'_, N, T>,
+) -> T {
+    let Some(mut from) = points.next() else {
+        return T::zero();
+    };
+    points.fold(T::zero(), |worst, to| {
+        let strain = hermite_strain(platform, &from, &to);
+        from = to;
+        worst.max(strain)
+    })
+}
+
+/// Looks at what the controller will run: every stroke, and every limit, exactly. A leg whose
+/// S-curve, or rounding, passes a limit is slowed down as a whole.
+fn stretch_legs<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    path: &Path<'_, T>,
+    knots: &mut [Knot<T>],
+) -> Result<(), PlanError<T>> {
+    let zero = T::zero();
+    let Some(course) = first_course(platform, path) else {
+        return Ok(());
+    };
+    let mut last = PvtPoint::new(&course.place(zero), zero, zero, zero);
+    let failed = |leg, point| move |reason| PlanError::Limit { leg, point, reason };
+    platform.check_axes(&last.axes).map_err(failed(0, 0))?;
+    let mut rest = knots;
+    for (number, leg) in moving(path) {
+        let parts = rest.first().map_or(0, |knot| knot.parts);
+        let Some((knots, later)) = rest.split_at_mut_checked(knots_of(parts)) else {
+            break;
+        };
+        rest = later;
+        let course = Course::new(platform, &leg);
+        let mut shares = Shares::new();
+        for (index, pair) in (1..).zip(knots.windows(2)) {
+            let [before, knot] = pair else { continue };
+            let place = course.place(knot.s);
+            let point = PvtPoint::new(&place, knot.speed, zero, before.segment_s);
+            check::strokes(platform, &last, &point).map_err(failed(number, index))?;
+            shares.add(platform.locators(), &last, &point);
+            last = point;
+        }
+        shares.stop(platform.locators());
+        slow_down(knots, shares.stretch());
+    }
+    Ok(())
+}
+
+/// Multiplies the time of a leg.
+fn slow_down<T: RealField + Copy>(knots: &mut [Knot<T>], stretch: T) {
+    if stretch > T::one() {
+        let stretch = stretch * (T::one() + epsilons(STRETCH_EPSILONS));
+        for knot in knots {
+            knot.speed /= stretch;
+            knot.segment_s *= stretch;
+        }
+    }
+}
+
+/// The legs on which something moves, with their numbers.
+fn moving<'a, T: RealField + Copy>(
+    path: &Path<'a, T>,
+) -> impl Iterator<Item = (usize, Leg<T>)> + use<'a, T> {
+    let path = *path;
+    let legs = (0..path.legs()).filter_map(move |number| Some((number, path.leg(number)?)));
+    legs.filter(|(_, leg)| !leg.is_still())
+}
+
+/// The first leg on which something moves; the first of all where nothing does.
+fn first_course<'a, const N: usize, T: RealField + Copy>(
+    platform: &'a Platform<N, T>,
+    path: &Path<'_, T>,
+) -> Option<Course<'a, N, T>> {
+    let leg = moving(path).next().map(|(_, leg)| leg);
+    Some(Course::new(platform, &leg.or_else(|| path.leg(0))?))
+}
+
+/// Knots of a leg with so many parts.
+fn knots_of(parts: u32) -> usize {
+    usize::try_from(parts).map_or(usize::MAX, |parts| parts.saturating_add(1))
+}
+
+/// What a stretched leg rounds off.
+const STRETCH_EPSILONS: f64 = 64.0;
+
+/// What all legs are planned with.
+struct Planner<'a, const N: usize, T: RealField> {
+    platform: &'a Platform<N, T>,
+    cut: Cut<T>,
+    least: u32,
+}
+
+impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
+    /// Where the number of parts is known beforehand, the memory is checked before all else.
+    fn check_memory(&self, path: &Path<'_, T>, available: usize) -> Result<(), PlanError<T>> {
+        let mut needed = 0_usize;
+        for (number, leg) in moving(path) {
+            let parts = match self.cut.rule {
+                Rule::Strain(_) => self.least,
+                _ => self.cut.linear_parts(self.platform, number, &leg)?.max(self.least),
+            };
+            needed = needed.saturating_add(knots_of(within_max(Some(parts), number)?));
+        }
+        if needed <= available {
+            return Ok(());
+        }
+        Err(PlanError::TooManyPoints { needed, available })
+    }
+
+    /// Plans a leg in the first of the free knots; the number of them.
+    fn plan_leg(
+        &self,
+        number: usize,
+        leg: &Leg<T>,
+        used: usize,
+        free: &mut [Knot<T>],
+    ) -> Result<usize, PlanError<T>> {
+        let course = Course::new(self.platform, leg);
+        let parts = match self.cut.rule {
+            Rule::Strain(allowed) => self.fewest(number, &course, used, free, allowed)?,
+            _ => self.cut.linear_parts(self.platform, number, leg)?.max(self.least),
+        };
+        self.lay(&course, free, parts);
+        Ok(knots_of(parts))
+    }
+
+    /// Plans a leg with a number of parts.
+    fn lay(&self, course: &Course<'_, N, T>, free: &mut [Knot<T>], parts: u32) {
+        if let Some(knots) = free.get_mut(..knots_of(parts)) {
+            leg::plan(self.platform.locators(), course, knots, parts);
+        }
+    }
+
+    /// A number of parts that keeps the allowed strain, while one fewer does not.
+    fn fewest(
+        &self,
+        number: usize,
+        course: &Course<'_, N, T>,
+        used: usize,
+        free: &mut [Knot<T>],
+        allowed: T,
+    ) -> Result<u32, PlanError<T>> {
+        let room = u32::try_from(free.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let mut strain = |parts| {
+            self.lay(course, free, parts);
+            leg_strain(self.platform, course, free)
+        };
+        let (mut too_few, mut parts) = (self.least.saturating_sub(1), self.least);
+        if room < parts {
+            return Err(PlanError::TooManyPoints {
+                needed: used.saturating_add(knots_of(parts)),
+                available: used.saturating_add(free.len()),
+            });
+        }
+        let mut bound = strain(parts);
+        while bound > allowed {
+            if parts >= room || parts >= FINEST {
+                return Err(too_coarse(number, allowed, bound, parts, used, room));
+            }
+            too_few = parts;
+            parts = parts.saturating_mul(2).min(room).min(FINEST);
+            bound = strain(parts);
+        }
+        let mut enough = parts;
+        while enough.saturating_sub(too_few) > 1 {
+            let middle = too_few.midpoint(enough);
+            if strain(middle) <= allowed {
+                enough = middle;
+            } else {
+                too_few = middle;
+            }
+        }
+        Ok(enough)
+    }
+}
+
+/// Parts beyond which rounding is all that is left of a strain.
+const FINEST: u32 = 1 << 20;
+
+/// Why no number of parts that there is room for keeps the strain. It shrinks with the square
+/// of the number; a tenth more is enough.
+fn too_coarse<T: RealField + Copy>(
+    leg: usize,
+    allowed: T,
+    bound: T,
+    parts: u32,
+    used: usize,
+    room: u32,
+) -> PlanError<T> {
+    let more: f64 = nalgebra::try_convert((bound / allowed).sqrt()).unwrap_or(f64::MAX);
+    let estimate = f64::from(parts) * more * 1.1;
+    if parts < room || estimate > f64::from(FINEST) {
+        return PlanError::Strain {
+            leg,
+            allowed,
+            bound,
+            parts,
+        };
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked against the finest cut"
+    )]
+    let needed = (estimate as u32).saturating_add(1);
+    PlanError::TooManyPoints {
+        needed: used.saturating_add(knots_of(needed)),
+        available: used.saturating_add(knots_of(room)),
+    }
+}
+
+/// The strain bound of a leg whose knots are the first of `knots`.
+fn leg_strain<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    course: &Course<'_, N, T>,
+    knots: &[Knot<T>],
+) -> T {
+    let parts = knots.first().map_or(0, |knot| knot.parts);
+    let mut worst = T::zero();
+    let mut from: Option<PvtPoint<N, T>> = None;
+    let mut segment_s = T::zero();
+    for knot in knots.iter().take(knots_of(parts)) {
+        let to = PvtPoint::new(&course.place(knot.s), knot.speed, T::zero(), segment_s);
+        if let Some(from) = from {
+            worst = worst.max(hermite_strain(platform, &from, &to));
+        }
+        segment_s = knot.segment_s;
+        from = Some(to);
+    }
+    worst
+}
