@@ -90,7 +90,10 @@ impl<'a> Command<'a> {
                 let capacity = buffer.len();
                 let no_room = EncodeError::NoRoom { len, capacity };
                 let place = buffer.get_mut(..len).ok_or(no_room)?;
-                for (to, from) in place.iter_mut().zip([LCD].iter().chain(commands.as_bytes())) {
+                for (to, from) in place
+                    .iter_mut()
+                    .zip([LCD].iter().chain(commands.as_bytes()))
+                {
                     *to = *from;
                 }
                 Ok(place)
