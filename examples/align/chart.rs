@@ -48,7 +48,7 @@ pub(crate) fn frame<'a, 'b>(
     x: (&str, Range<f64>),
     y: (&str, Range<f64>),
 ) -> Result<Chart<'a, 'b>> {
-    let digits = decimals(&y.1);
+    let (x_digits, y_digits) = (decimals(&x.1), decimals(&y.1));
     let mut chart = ChartBuilder::on(area)
         .caption(title, (FONT, 17).into_font().color(&INK))
         .margin(12)
@@ -68,7 +68,8 @@ pub(crate) fn frame<'a, 'b>(
         .axis_style(INK)
         .x_labels(10)
         .y_labels(6)
-        .y_label_formatter(&|value| label(*value, digits))
+        .x_label_formatter(&|value| label(*value, x_digits))
+        .y_label_formatter(&|value| label(*value, y_digits))
         .draw()
         .map_err(failed)?;
     Ok(chart)

@@ -1,7 +1,7 @@
 //! The line: a pseudo-terminal, its bytes at the pace of 9600 bit/s in counted time, and a log.
 
+use alloc::collections::VecDeque;
 use core::time::Duration;
-use std::collections::VecDeque;
 use std::io::{Read, Write};
 
 use anyhow::{Context, Result, ensure};

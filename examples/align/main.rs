@@ -11,6 +11,8 @@
 //!
 //! `cargo run --release --example align -- [--platform FILE] [--from POSE] [--to POSE] [--mode pt|pvt] [--out DIR]`
 
+extern crate alloc;
+
 #[cfg(unix)]
 #[path = "../station/arguments.rs"]
 mod arguments;

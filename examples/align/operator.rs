@@ -76,12 +76,15 @@ impl Task {
 
     /// What the unit's steps leave of the target.
     pub(crate) fn rounding_note(&self) -> Option<String> {
-        (self.reached != self.to).then(|| {
-            format!(
-                "the unit sets whole um and 0.00001 deg: the body goes to {:?}",
-                self.reached
-            )
-        })
+        let mut pairs = self.reached.iter().zip(&self.to);
+        pairs
+            .any(|(reached, to)| reached.total_cmp(to).is_ne())
+            .then(|| {
+                format!(
+                    "the unit sets whole um and 0.00001 deg: the body goes to {:?}",
+                    self.reached
+                )
+            })
     }
 }
 

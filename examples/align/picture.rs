@@ -29,7 +29,7 @@ pub(crate) fn jog(jog: &Jog, settings: &Settings, mut out: impl Write) -> Result
         .iter()
         .map(|(t, n)| (t - 0.2, f64::from(*n)))
         .collect();
-    let level = settings.wheel.max() as f64 / f64::from(2 * u32::from(settings.wheel.bins()));
+    let level = f64::from(settings.wheel.max()) / f64::from(2 * u32::from(settings.wheel.bins()));
     let quantised = |n: i32| f64::from(settings.wheel.level(n)) * level;
     let binned: Vec<_> = counts
         .iter()
@@ -275,7 +275,8 @@ fn view(
     }
     for (number, place) in (1..).zip(anchors.first().map_or(Vec::new(), |it| seen(it))) {
         let style = ("sans-serif", 14).into_font().color(&INK);
-        let text = Text::new(format!("locator {number}"), place, style);
+        let name = Text::new(format!("locator {number}"), (12, 8), style);
+        let text = EmptyElement::at(place) + name;
         chart.draw_series([text]).map_err(failed)?;
     }
     legend(&mut chart, SeriesLabelPosition::UpperRight)

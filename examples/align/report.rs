@@ -21,7 +21,7 @@ pub(crate) struct Report {
     duration_s: f64,
     /// Worst change of a distance between two locators, simulated.
     max_strain_mm: f64,
-    /// What the plan promises of it.
+    /// What the plan promises of it, with the rounding of coordinates.
     strain_bound_mm: f64,
     /// Largest share of its rated speed that an axis has.
     max_speed_ratio: f64,
@@ -32,7 +32,7 @@ pub(crate) struct Report {
     line_bytes: usize,
 }
 
-/// What the sums of a simulation may round off: of a strain in mm, of a share.
+/// What a speed computed from the table may be above 1 by rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl Report {
@@ -60,8 +60,7 @@ impl Report {
 
     /// Whether the strain is within its bound, and no axis faster than it is rated.
     pub(crate) fn is_within_bounds(&self) -> bool {
-        self.max_strain_mm <= self.strain_bound_mm + ROUNDING
-            && self.max_speed_ratio <= 1.0 + ROUNDING
+        self.max_strain_mm <= self.strain_bound_mm && self.max_speed_ratio <= 1.0 + ROUNDING
     }
 
     pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {

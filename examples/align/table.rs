@@ -30,6 +30,9 @@ impl Mode {
 /// Most points that the controller has room for.
 const MOST_POINTS: usize = 1 << 18;
 
+/// What the coordinates of a table may round off, as a share of the distance of two locators.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// What every motion of the body is planned with.
 #[derive(Clone, Copy)]
 pub(crate) struct Planner<'a, const N: usize> {
@@ -89,10 +92,11 @@ impl<'a, const N: usize> Planner<'a, N> {
                 (table.len(), table.strain_bound())
             }
         };
+        let rounding_mm = ROUNDING * self.platform.largest_anchor_distance();
         ensure!(points > 1, "from and to are the same pose: nothing moves");
         Ok(Plan {
             csv,
-            strain_bound_mm,
+            strain_bound_mm: strain_bound_mm + rounding_mm,
         })
     }
 

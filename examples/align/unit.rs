@@ -1,6 +1,6 @@
 //! The simulated hand-held unit: keys, knobs, lamps and display behind an own 3964R station.
 
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
 
 use pose2pulse::handwheel::{
     COLUMNS, Command, Key, Knob, LINES, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT,
