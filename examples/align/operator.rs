@@ -15,7 +15,7 @@ const JOG_PERCENT: [i32; 24] = [
     3, 6, 12, 18, 27, 36, 44, 57, 63, 78, 85, 97, 104, 110, 93, 81, 72, 66, 48, 39, 31, 22, 14, 4,
 ];
 /// From one act to the next.
-const PAUSE_MS: u64 = 150;
+const PAUSE_MS: u64 = 163;
 /// Counts of a sample when a value is set, at most.
 const HAND_COUNTS: i64 = 100;
 /// How far a locator may be from its place after a jog there and back: what adding up rounds off.

@@ -52,7 +52,10 @@ fn pose(text: &str) -> Result<Pose> {
     let words = text.split(|c: char| c.is_whitespace() || c == ',');
     let numbers = words
         .filter(|word| !word.is_empty())
-        .map(|word| word.parse::<f64>().with_context(|| format!("{word:?}")))
+        .map(|word| {
+            let number = word.parse::<f64>();
+            number.map_err(|_| anyhow!("{word:?} is no number"))
+        })
         .collect::<Result<Vec<_>>>()?;
     ensure!(
         numbers.iter().all(|number| number.is_finite()),
