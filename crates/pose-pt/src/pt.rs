@@ -137,11 +137,9 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         (0..self.path.legs()).fold(T::zero(), |worst, number| {
             let parts = self.parts(number);
             match self.path.leg(number) {
-                Some(leg) if parts > 0 => worst.max(linear_strain(
-                    self.platform,
-                    &leg,
-                    leg.turn() / count(parts),
-                )),
+                Some(leg) if parts > 0 => {
+                    worst.max(linear_strain(self.platform, &leg, leg.turn() / count(parts)))
+                }
                 _ => worst,
             }
         })
