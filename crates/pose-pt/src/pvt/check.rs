@@ -151,12 +151,11 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
         }
     }
 
-    /// By what the time must be stretched so that all limits are kept: 1 where they are.
+    /// By what the time may be multiplied at the least so that all limits are kept.
     pub(super) fn stretch(&self) -> T {
         self.speed
             .max(self.acceleration.sqrt())
             .max(self.jerk.cbrt())
-            .max(T::one())
     }
 
     /// Takes the segment from one point to the next into account.

@@ -12,36 +12,38 @@ use crate::course::{Course, Place};
 use crate::number::{largest, two};
 use crate::turn::count;
 
-/// Fills the knots of a leg; one more than parts.
-pub(super) fn plan<const N: usize, T: RealField + Copy>(
+/// Fills the knots of a leg, one more than parts, with the fastest motion.
+pub(super) fn fastest<const N: usize, T: RealField + Copy>(
     locators: &[Locator<T>; N],
     course: &Course<'_, N, T>,
     knots: &mut [Knot<T>],
     parts: u32,
 ) {
-    let jerk = locators
-        .iter()
-        .flat_map(|locator| &locator.limits)
-        .any(|limits| limits.jerk.is_some());
-    if jerk {
-        let curve = smooth(locators, course);
-        let mut rest = knots.iter_mut();
-        curve.knots(parts, |motion, segment_s| {
-            if let Some(knot) = rest.next() {
-                *knot = Knot {
-                    s: motion.way,
-                    speed: motion.speed,
-                    segment_s,
-                    parts,
-                };
-            }
-        });
-    } else {
-        spread(knots, parts);
-        let knots = Cell::from_mut(knots).as_slice_of_cells();
-        backward(locators, course, knots);
-        forward(locators, course, knots);
-    }
+    spread(knots, parts);
+    let knots = Cell::from_mut(knots).as_slice_of_cells();
+    backward(locators, course, knots);
+    forward(locators, course, knots);
+}
+
+/// Fills the knots of a leg, one more than parts, with an S-curve.
+pub(super) fn smooth<const N: usize, T: RealField + Copy>(
+    locators: &[Locator<T>; N],
+    course: &Course<'_, N, T>,
+    knots: &mut [Knot<T>],
+    parts: u32,
+) {
+    let curve = s_curve(locators, course);
+    let mut rest = knots.iter_mut();
+    curve.knots(parts, |motion, segment_s| {
+        if let Some(knot) = rest.next() {
+            *knot = Knot {
+                s: motion.way,
+                speed: motion.speed,
+                segment_s,
+                parts,
+            };
+        }
+    });
 }
 
 /// Spreads the knots as u² (3 - 2u), dense where the leg starts and stops: there the speed
@@ -120,7 +122,7 @@ const SAMPLES: u32 = 64;
 /// The speed is taken so that q″ ṡ² uses at most half of the acceleration and q‴ ṡ³ a third
 /// of the jerk, the acceleration so that its product uses at most another third; what is
 /// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
-fn smooth<const N: usize, T: RealField + Copy>(
+fn s_curve<const N: usize, T: RealField + Copy>(
     locators: &[Locator<T>; N],
     course: &Course<'_, N, T>,
 ) -> SCurve<T> {
