@@ -103,6 +103,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     /// From the end: the highest feed at each point from which the rest can be run.
     fn look_ahead(&self, max: T, ahead: &mut [Ahead<T>]) {
         let locators = self.platform().locators();
+        let full = T::one().min(max);
         let ahead = Cell::from_mut(ahead).as_slice_of_cells();
         if let Some(last) = ahead.last() {
             last.set(Ahead {
@@ -117,8 +118,16 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             };
             let segment = Segment::new(locators, &from.0, &end, from.1);
             let (ceiling, after) = segment.begin(next.get().ceiling, max);
-            let after = after / ceiling;
-            here.set(Ahead { ceiling, after });
+            // The table itself holds.
+            here.set(if ceiling > full {
+                let after = after / ceiling;
+                Ahead { ceiling, after }
+            } else {
+                Ahead {
+                    ceiling: full,
+                    after: T::one(),
+                }
+            });
             to = Some(from);
         }
     }
@@ -181,12 +190,15 @@ impl<const N: usize, T: RealField + Copy> PvtRun<'_, N, T> {
             self.feed = self.wanted.min(here.ceiling);
         }
         let ((_, duration), (to, _)) = (self.table.node(number)?, self.table.node(next)?);
-        let segment = Segment::new(self.table.platform().locators(), &from, &to, duration);
-        let feed = segment.toward(
-            self.feed,
-            self.wanted.min(there.ceiling),
-            self.feed * here.after,
-        );
+        let wanted = self.wanted.min(there.ceiling);
+        // At a constant feed of at most 1 the table itself holds.
+        let feed = if wanted == self.feed && wanted <= T::one() {
+            wanted
+        } else {
+            let locators = self.table.platform().locators();
+            let segment = Segment::new(locators, &from, &to, duration);
+            segment.toward(self.feed, wanted, self.feed * here.after)
+        };
         let both = self.feed + feed;
         if both <= T::zero() {
             return None;
