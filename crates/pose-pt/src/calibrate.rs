@@ -2,10 +2,12 @@
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
-use crate::number::{epsilons, largest};
+use crate::fit::{mean, rms_and_largest};
+use crate::number::{first_beyond, largest};
 use crate::svd::Svd;
 
-/// A locator's frame, as measured.
+/// A locator's frame, as measured: what
+/// [`Locator::with_calibration`](crate::Locator::with_calibration) takes over.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Calibration<T: RealField = f64> {
@@ -17,6 +19,28 @@ pub struct Calibration<T: RealField = f64> {
     pub rms: T,
     /// Length of the largest residual.
     pub max_residual: T,
+}
+
+impl<T: RealField + Copy> Calibration<T> {
+    /// Travel of the held point per unit of each axis: 1 where the scale is right.
+    #[must_use]
+    pub fn scales(&self) -> Vector3<T> {
+        let [x, y, z] = self.columns();
+        Vector3::new(x.norm(), y.norm(), z.norm())
+    }
+
+    /// What the angles between the axes (Y to Z, Z to X, X to Y) have more than 90°, in
+    /// radians.
+    #[must_use]
+    pub fn squareness_errors(&self) -> Vector3<T> {
+        let [x, y, z] = self.columns();
+        let error = |a: Vector3<T>, b: Vector3<T>| -a.dot(&b).atan2(a.cross(&b).norm());
+        Vector3::new(error(y, z), error(z, x), error(x, y))
+    }
+
+    fn columns(&self) -> [Vector3<T>; 3] {
+        [0, 1, 2].map(|column| self.axes.column(column).into_owned())
+    }
 }
 
 /// Why measured points give no frame.
@@ -66,7 +90,16 @@ pub enum CalibrationError<T = f64> {
 /// Least extent across against the largest, in roots of the machine epsilon.
 const WIDTH_ROOTS: f64 = 16.0;
 
-/// The frame of a locator from axis positions and where the held point was measured.
+/// The frame of a locator from axis positions and the places in the world where its held
+/// point was measured, by least squares.
+///
+/// ```text
+/// A = Σ (pᵢ - p̄)(qᵢ - q̄)ᵀ (Σ (qᵢ - q̄)(qᵢ - q̄)ᵀ)⁻¹,   origin = p̄ - A q̄
+/// ```
+///
+/// Four measurements whose axis positions are not in a plane determine a frame; the
+/// residuals say something from the fifth on. Directions and scales are free: the frame
+/// need not be orthogonal.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -86,23 +119,13 @@ pub fn calibrate<T: RealField + Copy>(
         });
     }
     let max = largest::<T>();
-    let (mut mean_axes, mut mean_point, mut count) =
-        (Vector3::zeros(), Vector3::zeros(), T::zero());
     for (point, (position, place)) in positions.iter().zip(points).enumerate() {
-        if let Some(value) = position
-            .iter()
-            .chain(place.iter())
-            .copied()
-            .find(|value| !(value.abs() <= max))
-        {
+        if let Some(value) = first_beyond(position.iter().chain(place.iter()), max) {
             return Err(CalibrationError::Coordinate { point, value, max });
         }
-        mean_axes += position;
-        mean_point += place.coords;
-        count += T::one();
     }
-    mean_axes /= count;
-    mean_point /= count;
+    let mean_axes = mean(positions.iter().copied());
+    let mean_point = mean(points.iter().map(|point| point.coords));
     let arms = || {
         positions
             .iter()
@@ -119,16 +142,12 @@ pub fn calibrate<T: RealField + Copy>(
             .sum();
         axes += moment * inverse;
     }
-    let (mut sum, mut max_residual) = (T::zero(), T::zero());
-    for (position, point) in arms() {
-        let residual = (point - axes * position).norm();
-        sum += residual * residual;
-        max_residual = max_residual.max(residual);
-    }
+    let (rms, max_residual) =
+        rms_and_largest(arms().map(|(position, point)| point - axes * position));
     Ok(Calibration {
         origin: Point3::from(mean_point - axes * mean_axes),
         axes,
-        rms: (sum / count).sqrt(),
+        rms,
         max_residual,
     })
 }
@@ -136,7 +155,7 @@ pub fn calibrate<T: RealField + Copy>(
 fn inverse_scatter<T: RealField + Copy>(svd: &Svd<T>) -> Result<Matrix3<T>, CalibrationError<T>> {
     let [s1, s2, s3] = svd.sigma.map(|sigma| sigma.abs());
     let root = T::default_epsilon().sqrt() * nalgebra::convert::<f64, T>(WIDTH_ROOTS);
-    let needed = s1.sqrt() * root + epsilons::<T>(1.0);
+    let needed = s1.sqrt() * root;
     let rank = [s1, s2, s3]
         .iter()
         .map(|sigma| u8::from(sigma.sqrt() > needed))

@@ -13,6 +13,8 @@ mod locator;
 mod number;
 mod platform;
 mod rotation;
+#[cfg(feature = "serde")]
+mod serde;
 mod svd;
 
 pub use nalgebra;

@@ -2,9 +2,15 @@
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
+use crate::Calibration;
+
 /// One of a locator's three axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "a locator has three axes")]
 pub enum Axis {
@@ -33,7 +39,11 @@ impl core::fmt::Display for Axis {
 
 /// What one axis can do, in the unit of length and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct AxisLimits<T = f64> {
@@ -77,6 +87,17 @@ impl<T: RealField + Copy> AxisLimits<T> {
 /// world position = origin + axes · (axis coordinates)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        deny_unknown_fields,
+        bound(
+            serialize = "T: serde::Serialize",
+            deserialize = "T: serde::Deserialize<'de> + Copy"
+        )
+    )
+)]
 #[non_exhaustive]
 pub struct Locator<T: RealField = f64> {
     /// The point of the body that it holds, in the body's frame.
@@ -85,6 +106,7 @@ pub struct Locator<T: RealField = f64> {
     pub origin: Point3<T>,
     /// Columns: the way of the held point in the world per unit of each axis; unit
     /// vectors but for errors of scale, not necessarily orthogonal.
+    #[cfg_attr(feature = "serde", serde(default = "Matrix3::identity"))]
     pub axes: Matrix3<T>,
     /// Limits of the three axes.
     pub limits: [AxisLimits<T>; 3],
@@ -93,6 +115,9 @@ pub struct Locator<T: RealField = f64> {
 impl<T: RealField + Copy> Locator<T> {
     /// A locator whose axes are parallel to the world's. Checked by
     /// [`Platform::new`](crate::Platform::new).
+    ///
+    /// `anchor` is the point of the body that it holds, in the body's frame; `origin` is
+    /// where that point is in the world when the three axes are at zero.
     #[must_use]
     pub fn new(anchor: Point3<T>, origin: Point3<T>, limits: [AxisLimits<T>; 3]) -> Self {
         Self {
@@ -107,6 +132,14 @@ impl<T: RealField + Copy> Locator<T> {
     #[must_use]
     pub const fn with_axes(mut self, axes: Matrix3<T>) -> Self {
         self.axes = axes;
+        self
+    }
+
+    /// The locator with origin and axes as measured.
+    #[must_use]
+    pub const fn with_calibration(mut self, frame: &Calibration<T>) -> Self {
+        self.origin = frame.origin;
+        self.axes = frame.axes;
         self
     }
 

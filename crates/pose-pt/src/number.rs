@@ -20,3 +20,12 @@ pub(crate) fn largest<T: RealField + Copy>() -> T {
     let max = T::max_value().unwrap_or_else(T::one);
     max.sqrt().sqrt() * half::<T>()
 }
+
+/// The first of the values that is not finite or is beyond ±`max`.
+pub(crate) fn first_beyond<'a, T: RealField + Copy>(
+    values: impl IntoIterator<Item = &'a T>,
+    max: T,
+) -> Option<T> {
+    let mut values = values.into_iter().copied();
+    values.find(|value| !value.is_finite() || value.abs() > max)
+}

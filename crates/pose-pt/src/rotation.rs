@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, Vector4};
 
 use crate::number::{epsilons, half, two};
+use crate::svd::Svd;
 
 /// A 3 × 3 matrix that is not a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -12,7 +13,7 @@ use crate::number::{epsilons, half, two};
 )]
 #[expect(clippy::exhaustive_structs, reason = "there is one cause")]
 pub struct NotARotation<T = f64> {
-    /// Largest entry of Rᵀ R - 1; infinite where an entry is not finite.
+    /// Largest entry of Rᵀ R - 1; the largest number where an entry is not finite.
     pub departure: T,
     /// What was allowed.
     pub allowed: T,
@@ -33,19 +34,39 @@ fn shorter<T: RealField + Copy>(
     }
 }
 
-/// Half the angle between two rotations: the angle between their quaternions, 0..=π/2.
-fn half_angle<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> T {
-    two::<T>() * (a - b).norm().atan2((a + b).norm())
+/// Scalar and vector part of b a*, the rotation from `a` to `b`.
+///
+/// ```text
+/// vec(b a*) = vec((b - a) a*)
+/// ```
+///
+/// The difference of close quaternions is exact; their product would round to an epsilon.
+fn way<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> (T, Vector3<T>) {
+    let way = Quaternion::from(b - a) * Quaternion::from(*a).conjugate();
+    (a.dot(b), way.vector().into_owned())
 }
 
 /// The angle between two rotations, in radians, 0..=π.
+///
+/// ```text
+/// 2 atan2(|vec(b a*)|, a·b)
+/// ```
+///
+/// Accurate for close rotations too, where an arc cosine is off by 1e-8.
 #[must_use]
 pub fn angle_between<T: RealField + Copy>(a: &UnitQuaternion<T>, b: &UnitQuaternion<T>) -> T {
-    let (a, b) = shorter(a, b);
-    two::<T>() * half_angle(&a, &b)
+    rotation_vector_between(a, b).norm()
 }
 
 /// The rotation a part `t` of the way from `a` to `b`, on the shorter arc at constant speed.
+///
+/// ```text
+/// (sin((1 - t) φ) a + sin(t φ) b) / sin φ,   φ the angle between the quaternions
+/// ```
+///
+/// `t` = 0 gives `a` and 1 gives `b` to the last bit (up to the sign of the quaternion);
+/// other values go on beyond the ends. The way from `b` to `a` at 1 - `t` is the same.
+/// Of two arcs of π, that of the quaternions as they are is taken.
 #[must_use]
 pub fn slerp<T: RealField + Copy>(
     a: &UnitQuaternion<T>,
@@ -53,7 +74,9 @@ pub fn slerp<T: RealField + Copy>(
     t: T,
 ) -> UnitQuaternion<T> {
     let (a, b) = shorter(a, b);
-    let angle = half_angle(&a, &b);
+    // The same from both ends, unlike the products of `way`; the weights of close rotations
+    // do not depend on the last digits of the angle.
+    let angle = two::<T>() * (a - b).norm().atan2((a + b).norm());
     let sin = angle.sin();
     let rest = T::one() - t;
     let (from, to) = if sin > T::zero() {
@@ -65,21 +88,26 @@ pub fn slerp<T: RealField + Copy>(
 }
 
 /// The rotation vector: axis times angle in radians, at most π long.
+///
+/// ```text
+/// 2 atan2(|v|, w) v / |v|   of the quaternion w + v with w ≥ 0
+/// ```
 #[must_use]
 pub fn rotation_vector<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Vector3<T> {
     log(rotation.w, rotation.vector().into_owned())
 }
 
-/// The rotation vector, in the world, that turns `a` into `b`: b = exp(v) a.
+/// The rotation vector, in the world, that turns `a` into `b`: b = exp(v) a, at most π long.
+///
+/// Divided by a time it is the angular velocity of [`slerp`].
 #[must_use]
 pub fn rotation_vector_between<T: RealField + Copy>(
     a: &UnitQuaternion<T>,
     b: &UnitQuaternion<T>,
 ) -> Vector3<T> {
     let (a, b) = shorter(a, b);
-    // b a* = 1 + (b - a) a*: the difference of close quaternions is exact.
-    let difference = Quaternion::from(b - a) * Quaternion::from(a).conjugate();
-    log(a.dot(&b), difference.vector().into_owned())
+    let (w, v) = way(&a, &b);
+    log(w, v)
 }
 
 fn log<T: RealField + Copy>(w: T, v: Vector3<T>) -> Vector3<T> {
@@ -128,22 +156,69 @@ pub fn to_matrix<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Rotation3
 
 /// The quaternion of a rotation matrix.
 ///
+/// Rows that were rounded to a few decimals are accepted up to `allowed`, the largest entry
+/// of Rᵀ R - 1 (0 allows rounding alone: 8 machine epsilons); the nearest rotation is
+/// returned.
+///
 /// # Errors
-/// [`NotARotation`].
+/// [`NotARotation`] for more than that, for a reflection, and for entries that are not finite.
 pub fn from_matrix<T: RealField + Copy>(
     matrix: &Matrix3<T>,
     allowed: T,
 ) -> Result<UnitQuaternion<T>, NotARotation<T>> {
+    let allowed = allowed.max(epsilons(ROUNDING_EPSILONS));
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return Err(NotARotation {
+            departure: T::max_value().unwrap_or_else(T::one),
+            allowed,
+            determinant: T::zero(),
+        });
+    }
     let departure = (matrix.tr_mul(matrix) - Matrix3::identity()).amax();
     let determinant = matrix.determinant();
-    if !(departure <= allowed.max(epsilons(8.0)) && determinant > T::zero()) {
-        return Err(NotARotation {
+    if departure <= allowed && determinant > T::zero() {
+        Ok(quaternion(&Svd::new(matrix).rotation()))
+    } else {
+        Err(NotARotation {
             departure,
             allowed,
             determinant,
-        });
+        })
     }
-    Ok(UnitQuaternion::from_rotation_matrix(
-        &Rotation3::from_matrix_unchecked(*matrix),
-    ))
+}
+
+/// What the products of an own rotation matrix may depart from 1 by rounding.
+const ROUNDING_EPSILONS: f64 = 8.0;
+
+/// The quaternion of a matrix that is a rotation but for rounding: the largest of its four
+/// components from the diagonal, the others from sums and differences that do not cancel.
+pub(crate) fn quaternion<T: RealField + Copy>(m: &Matrix3<T>) -> UnitQuaternion<T> {
+    let one = T::one();
+    let trace = m.m11 + m.m22 + m.m33;
+    let largest = m.m11.max(m.m22).max(m.m33);
+    let q = if trace >= largest {
+        Quaternion::new(one + trace, m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
+    } else if m.m11 >= largest {
+        Quaternion::new(
+            m.m32 - m.m23,
+            one + m.m11 - m.m22 - m.m33,
+            m.m12 + m.m21,
+            m.m13 + m.m31,
+        )
+    } else if m.m22 >= largest {
+        Quaternion::new(
+            m.m13 - m.m31,
+            m.m12 + m.m21,
+            one + m.m22 - m.m11 - m.m33,
+            m.m23 + m.m32,
+        )
+    } else {
+        Quaternion::new(
+            m.m21 - m.m12,
+            m.m13 + m.m31,
+            m.m23 + m.m32,
+            one + m.m33 - m.m11 - m.m22,
+        )
+    };
+    UnitQuaternion::new_normalize(q)
 }

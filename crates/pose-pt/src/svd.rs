@@ -20,8 +20,8 @@ const SWEEPS: usize = 12;
 type Pair<T> = (Vector3<T>, Vector3<T>);
 
 impl<T: RealField + Copy> Svd<T> {
-    /// One-sided Jacobi: rotates the columns of H until they are orthogonal. Small
-    /// singular values keep their digits.
+    /// One-sided Jacobi: rotates the columns of H until they are orthogonal. Where H is
+    /// graded, as from narrow sets of points, small singular values keep their digits.
     pub(crate) fn new(h: &Matrix3<T>) -> Self {
         let mut a = (h.column(0).into_owned(), Vector3::x());
         let mut b = (h.column(1).into_owned(), Vector3::y());
@@ -42,12 +42,26 @@ impl<T: RealField + Copy> Svd<T> {
             .try_normalize(T::zero())
             .unwrap_or_else(|| perpendicular(&u1));
         let (u3, v3) = (u1.cross(&u2), a.1.cross(&b.1));
-        let sigma3 = u3.dot(&(h * v3));
+        // The third column of V is ±v3.
+        let sigma3 = u3.dot(&c.0) * v3.dot(&c.1);
         Self {
             u: [u1, u2, u3],
             v: [a.1, b.1, v3],
             sigma: [a.0.norm(), b.0.norm(), sigma3],
         }
+    }
+
+    /// Gap between the two largest eigenvalues of the quaternion problem of H: how firmly
+    /// the rotation nearest to H is determined.
+    pub(crate) fn gap(&self) -> T {
+        let [_, s2, s3] = self.sigma;
+        two::<T>() * (s2 + s3)
+    }
+
+    /// The second singular value.
+    pub(crate) fn second(&self) -> T {
+        let [_, s2, _] = self.sigma;
+        s2
     }
 
     /// The rotation nearest to H: U Vᵀ, never a reflection.
@@ -60,7 +74,7 @@ impl<T: RealField + Copy> Svd<T> {
 /// Turns both pairs so that their first columns are orthogonal; false if they were.
 fn orthogonalise<T: RealField + Copy>(a: &mut Pair<T>, b: &mut Pair<T>) -> bool {
     let (aa, bb, ab) = (a.0.norm_squared(), b.0.norm_squared(), a.0.dot(&b.0));
-    if ab.abs() <= T::default_epsilon() * (aa * bb).sqrt() {
+    if ab.abs() <= T::default_epsilon() * aa.sqrt() * bb.sqrt() {
         return false;
     }
     let zeta = (bb - aa) / (two::<T>() * ab);

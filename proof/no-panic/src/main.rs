@@ -8,10 +8,12 @@ mod jobs;
 mod kinematics;
 mod line;
 mod patterns;
+mod poses;
 mod stepping;
 
 fn main() {
     kinematics::run();
+    poses::run();
     stepping::run();
     patterns::run();
     line::run();

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
 use crate::fit::{FitError, Shape, Side};
-use crate::number::{epsilons, largest};
+use crate::number::{epsilons, first_beyond, largest};
 use crate::{Axis, LimitError, Locator, PlatformError};
 
 /// Axes that one motion card drives [Alignment 2010].
@@ -38,7 +38,7 @@ pub(super) fn locator<T: RealField + Copy>(
         ("origin", locator.origin.coords.as_slice()),
         ("axis direction", locator.axes.as_slice()),
     ] {
-        if let Some(value) = values.iter().copied().find(|value| !(value.abs() <= max)) {
+        if let Some(value) = first_beyond(values, max) {
             return Err(PlatformError::Coordinate {
                 locator: number,
                 name,
@@ -144,12 +144,28 @@ pub(super) fn anchors<T: RealField + Copy>(anchors: &[Point3<T>]) -> Result<T, P
     }
 }
 
+/// Rounding of axes to pose to axes, in machine epsilons of all lengths involved: a fit,
+/// a rotation, three sums and a frame.
+const ROUNDING_EPSILONS: f64 = 16.0;
+
+pub(super) fn rounding<T: RealField + Copy>(locator: &Locator<T>) -> T {
+    let stroke = locator
+        .limits
+        .iter()
+        .map(|limits| limits.min.abs().max(limits.max.abs()))
+        .fold(T::zero(), T::max);
+    let span = locator.anchor.coords.norm() + locator.origin.coords.norm() + stroke;
+    span * epsilons(ROUNDING_EPSILONS)
+}
+
 pub(super) fn strokes<T: RealField + Copy>(
     locators: &[Locator<T>],
+    rounding: &[T],
     axes: &[Vector3<T>],
 ) -> Result<(), LimitError<T>> {
     let mut worst: Option<(T, LimitError<T>)> = None;
-    for (number, (locator, coordinates)) in locators.iter().zip(axes).enumerate() {
+    let held = locators.iter().zip(rounding).zip(axes);
+    for (number, ((locator, rounding), coordinates)) in held.enumerate() {
         let each = Axis::ALL.into_iter().zip(coordinates.iter().copied());
         for ((axis, value), limits) in each.zip(&locator.limits) {
             if !value.is_finite() {
@@ -160,7 +176,7 @@ pub(super) fn strokes<T: RealField + Copy>(
                 });
             }
             let by = (limits.min - value).max(value - limits.max);
-            if by > worst.map_or(T::zero(), |(by, _)| by) {
+            if by > *rounding && worst.is_none_or(|(most, _)| by > most) {
                 let (min, max) = (limits.min, limits.max);
                 let error = LimitError::Stroke {
                     locator: number,
