@@ -136,7 +136,10 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     pub fn strain_bound(&self) -> T {
         let legs = 0..self.path.legs();
         legs.fold(T::zero(), |worst, number| {
-            let strain = self.path.leg(number).map(|leg| self.leg_strain(number, &leg));
+            let strain = self
+                .path
+                .leg(number)
+                .map(|leg| self.leg_strain(number, &leg));
             worst.max(strain.unwrap_or_else(T::zero))
         })
     }

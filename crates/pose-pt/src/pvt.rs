@@ -186,7 +186,13 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     /// The points in their order.
     #[must_use]
     pub fn points(&self) -> PvtPoints<'a, N, T> {
-        PvtPoints::new(self.platform, &self.path, self.knots, self.stretch, self.points)
+        PvtPoints::new(
+            self.platform,
+            &self.path,
+            self.knots,
+            self.stretch,
+            self.points,
+        )
     }
 }
 
@@ -298,7 +304,10 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         for (number, leg) in moving(path) {
             let parts = match self.cut.rule {
                 Rule::Strain(_) => self.least,
-                _ => self.cut.linear_parts(self.platform, number, &leg)?.max(self.least),
+                _ => self
+                    .cut
+                    .linear_parts(self.platform, number, &leg)?
+                    .max(self.least),
             };
             needed = needed.saturating_add(knots_of(within_max(Some(parts), number)?));
         }
@@ -319,7 +328,10 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         let course = Course::new(self.platform, leg);
         let parts = match self.cut.rule {
             Rule::Strain(allowed) => self.fewest(number, &course, used, free, allowed)?,
-            _ => self.cut.linear_parts(self.platform, number, leg)?.max(self.least),
+            _ => self
+                .cut
+                .linear_parts(self.platform, number, leg)?
+                .max(self.least),
         };
         self.lay(&course, free, parts);
         Ok(knots_of(parts))

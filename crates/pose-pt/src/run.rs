@@ -76,11 +76,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     /// # Errors
     /// [`PlanError::Pace`] for a `max` that is not positive and finite,
     /// [`PlanError::TooManyPoints`] for too little memory.
-    pub fn run(
-        &self,
-        max: T,
-        ahead: &'a mut [Ahead<T>],
-    ) -> Result<PvtRun<'a, N, T>, PlanError<T>> {
+    pub fn run(&self, max: T, ahead: &'a mut [Ahead<T>]) -> Result<PvtRun<'a, N, T>, PlanError<T>> {
         if !(max > T::zero() && max < largest()) {
             return Err(PlanError::Pace { pace: max });
         }

@@ -65,11 +65,13 @@ pub(crate) fn linear_strain<const N: usize, T: RealField + Copy>(
 /// |√(L² + change) - L|, without cancellation; L where the square would be negative.
 fn departure<T: RealField + Copy>(length: T, change: T) -> T {
     let square = (length * length + change).max(T::zero());
-    (change / (length + square.sqrt())).abs().min(if change < T::zero() {
-        length
-    } else {
-        change.abs()
-    })
+    (change / (length + square.sqrt()))
+        .abs()
+        .min(if change < T::zero() {
+            length
+        } else {
+            change.abs()
+        })
 }
 
 /// The most by which the distance of any two locators departs from that of their anchors
@@ -164,9 +166,9 @@ mod tests {
     fn flat() -> Platform<3> {
         let limits = AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0);
         let anchors = [[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [1800.0, 1500.0, 0.0]];
-        Platform::new(anchors.map(|anchor| {
-            Locator::new(Point3::from(anchor), Point3::origin(), [limits; 3])
-        }))
+        Platform::new(
+            anchors.map(|anchor| Locator::new(Point3::from(anchor), Point3::origin(), [limits; 3])),
+        )
         .unwrap()
     }
 
@@ -205,7 +207,10 @@ mod tests {
             for change in [-1.0, -0.3, -0.01, 0.0, 1e-3, 0.1, 0.5, 1.0] {
                 let (bound, measured) = bound_and_measured(turn, change);
                 // Coordinates of 4 m are rounded to 1e-12 mm.
-                assert!(measured <= bound + 4e-12, "{turn} {change}: {measured} {bound}");
+                assert!(
+                    measured <= bound + 4e-12,
+                    "{turn} {change}: {measured} {bound}"
+                );
                 let near = bound <= 2.0 * measured + 4e-12;
                 // Where the two orders nearly cancel, the bound does not.
                 let cancels = (0.1..5.0).contains(&(12.0 * change * change / (turn * turn)));
@@ -219,12 +224,18 @@ mod tests {
         let length = 4000.0;
         let (bound, measured) = bound_and_measured(0.05, 0.0);
         let fourth = length * 0.05_f64.powi(4) / 384.0;
-        assert!((measured / fourth - 1.0).abs() < 1e-3, "{measured} {fourth}");
+        assert!(
+            (measured / fourth - 1.0).abs() < 1e-3,
+            "{measured} {fourth}"
+        );
         assert!((bound / fourth - 1.0).abs() < 1e-2, "{bound} {fourth}");
         for change in [0.5, 1.0, -1.0] {
             let (bound, measured) = bound_and_measured(1e-3, change);
             let second = length * (change * 1e-3_f64).powi(2) / 32.0;
-            assert!((measured / second - 1.0).abs() < 1e-3, "{measured} {second}");
+            assert!(
+                (measured / second - 1.0).abs() < 1e-3,
+                "{measured} {second}"
+            );
             assert!((bound / second - 1.0).abs() < 1e-2, "{bound} {second}");
         }
     }

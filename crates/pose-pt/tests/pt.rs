@@ -1,16 +1,19 @@
 //! PT tables: points, times, strain, errors.
 #![cfg(test)]
 
+#[path = "support/strain.rs"]
+mod strain;
 #[path = "support/platform.rs"]
 mod support;
 
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, Convention, Cut, Interpolation, LimitError, Path, PathError, PlanError, Platform, PoseVector,
-    PtPoint, PtTable,
+    Axis, AxisLimits, Convention, Cut, Interpolation, LimitError, Path, PathError, PlanError,
+    Platform, PoseVector, PtPoint, PtTable,
 };
 use proptest::prelude::*;
-use support::{SPEED, panel, panel_with, pose, skewed, strain};
+use strain::strain;
+use support::{SPEED, panel, panel_with, pose, skewed};
 
 /// Rounding of coordinates of some metres.
 const ROUNDING: f64 = 1e-11;
@@ -99,7 +102,10 @@ fn points_follow_the_leg() {
 #[test]
 fn the_slowest_axis_runs_at_its_rated_speed() {
     for platform in [panel(), skewed()] {
-        let poses = [pose([0.0; 3], [0.0; 3]), pose([30.0, -12.0, 7.0], [0.0, 0.02, 0.03])];
+        let poses = [
+            pose([0.0; 3], [0.0; 3]),
+            pose([30.0, -12.0, 7.0], [0.0, 0.02, 0.03]),
+        ];
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let table = PtTable::plan(&platform, &path, Cut::parts(100)).unwrap();
         let points: Vec<_> = table.points().collect();
@@ -128,7 +134,10 @@ fn steps_are_smaller_than_the_accuracy() {
     let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 1002);
     assert!((table.duration_s() - 10.0 / SPEED).abs() < 1e-12);
-    let poses = [pose([0.0; 3], [0.0; 3]), pose([0.1, 0.0, 0.0], [0.0, 0.0, 0.05])];
+    let poses = [
+        pose([0.0; 3], [0.0; 3]),
+        pose([0.1, 0.0, 0.0], [0.0, 0.0, 0.05]),
+    ];
     let path = Path::new(&poses, Interpolation::Screw).unwrap();
     let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 502);
@@ -162,10 +171,23 @@ fn a_stroke_passed_between_the_ends_is_named() {
     ];
     let path = Path::of_vectors(&poses, Convention::FixedXyz).unwrap();
     let error = PtTable::plan(&platform, &path, Cut::parts(360)).unwrap_err();
-    let PlanError::Limit { leg: 0, point, reason } = error else {
+    let PlanError::Limit {
+        leg: 0,
+        point,
+        reason,
+    } = error
+    else {
         panic!("{error}");
     };
-    let LimitError::Stroke { locator: 1, axis: Axis::Y, value, max, by, .. } = reason else {
+    let LimitError::Stroke {
+        locator: 1,
+        axis: Axis::Y,
+        value,
+        max,
+        by,
+        ..
+    } = reason
+    else {
         panic!("{reason}");
     };
     assert!((value - max - by).abs() < ROUNDING);
@@ -198,9 +220,15 @@ fn wrong_input_is_named() {
         assert!(matches!(error, PlanError::Cut { .. }), "{error}");
     }
     let error = PtTable::plan(&platform, &path, Cut::steps(1e-12, 1.0)).unwrap_err();
-    assert!(matches!(error, PlanError::TooFine { leg: 0, .. }), "{error}");
+    assert!(
+        matches!(error, PlanError::TooFine { leg: 0, .. }),
+        "{error}"
+    );
     let table = PtTable::plan(&platform, &path, Cut::parts(512)).unwrap();
-    let error = PlanError::TooManyPoints { needed: 513, available: 512 };
+    let error = PlanError::TooManyPoints {
+        needed: 513,
+        available: 512,
+    };
     assert_eq!(table.fits(512), Err(error));
     assert_eq!(table.fits(513), Ok(()));
 }
@@ -213,7 +241,12 @@ fn a_body_that_stays_is_one_point() {
         let path = Path::new(&still, kind).unwrap();
         let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
         assert_eq!(table.points().count(), 1);
-        let moved = [still[0], still[0], pose([2.0; 3], [0.1; 3]), pose([2.0; 3], [0.1; 3])];
+        let moved = [
+            still[0],
+            still[0],
+            pose([2.0; 3], [0.1; 3]),
+            pose([2.0; 3], [0.1; 3]),
+        ];
         let path = Path::new(&moved, kind).unwrap();
         let table = PtTable::plan(&platform, &path, Cut::parts(3)).unwrap();
         assert_eq!(table.points().count(), 4);
@@ -224,7 +257,11 @@ fn a_body_that_stays_is_one_point() {
 #[test]
 fn memory_is_fixed() {
     let platform = size_of::<Platform<3>>();
-    println!("table {}, points {}, platform {platform}", size_of::<PtTable<'_, 3>>(), size_of::<pose_pt::PtPoints<'_, 3>>());
+    println!(
+        "table {}, points {}, platform {platform}",
+        size_of::<PtTable<'_, 3>>(),
+        size_of::<pose_pt::PtPoints<'_, 3>>()
+    );
 }
 
 prop_compose! {

@@ -1,18 +1,24 @@
 //! PVT tables: what the controller will run, checked from outside.
 #![cfg(test)]
 
+#[path = "support/cubic.rs"]
+mod cubic;
 #[path = "support/optimum.rs"]
 mod optimum;
+#[path = "support/strain.rs"]
+mod strain;
 #[path = "support/platform.rs"]
 mod support;
 
+use cubic::{between, cubic};
 use pose_pt::nalgebra::{Isometry3, Point3, Vector3};
 use pose_pt::{
-    AxisLimits, Convention, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform,
-    PvtPoint, PvtTable,
+    AxisLimits, Convention, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError,
+    Platform, PvtPoint, PvtTable,
 };
 use proptest::prelude::*;
-use support::{ACCELERATION, SPEED, between, panel, panel_with, pose, skewed, strain};
+use strain::strain;
+use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
 
 /// Times and positions of some metres rounded off, in limits that a reader recomputes.
 const LIMIT: f64 = 1.0 + 1e-9;
@@ -43,8 +49,7 @@ fn shares<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> [f6
         for (number, locator) in platform.locators().iter().enumerate() {
             for (axis, limits) in locator.limits.iter().enumerate() {
                 for place in 0..=16 {
-                    let [_, speeds, accelerations, _] =
-                        between(from, to, f64::from(place) / 16.0);
+                    let [_, speeds, accelerations, _] = between(from, to, f64::from(place) / 16.0);
                     shares[0] = shares[0].max(speeds[number][axis].abs() / limits.speed);
                     let acceleration = accelerations[number][axis].abs();
                     shares[1] = shares[1].max(acceleration / limits.acceleration);
@@ -123,9 +128,8 @@ fn a_straight_move_takes_the_closed_form() {
 #[test]
 fn a_straight_move_with_jerk_takes_the_closed_form() {
     let jerk = 100.0;
-    let platform = panel_with(
-        AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(jerk),
-    );
+    let platform =
+        panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(jerk));
     let rise = ACCELERATION / jerk;
     // Whole S-curve; acceleration reached but not the speed; only jerk counts.
     let short: f64 = 0.5;
@@ -158,8 +162,16 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
         ("small turn", slow, from_rest([0.0; 3], [0.0, 0.0, 0.02])),
         ("large turn", slow, from_rest([0.0; 3], [0.0, 0.0, 1.5])),
         ("free turn", fast, from_rest([0.0; 3], [0.0, 0.0, 1.5])),
-        ("adjustment", slow, from_rest([30.0, -12.0, 7.0], [0.01, -0.02, 0.03])),
-        ("turn and slide", fast, from_rest([900.0, -500.0, 70.0], [0.1, -0.2, 1.3])),
+        (
+            "adjustment",
+            slow,
+            from_rest([30.0, -12.0, 7.0], [0.01, -0.02, 0.03]),
+        ),
+        (
+            "turn and slide",
+            fast,
+            from_rest([900.0, -500.0, 70.0], [0.1, -0.2, 1.3]),
+        ),
     ] {
         let platform = panel_with(limits);
         for kind in ALL {
@@ -251,9 +263,15 @@ fn strain_from_rest_is_of_second_order() {
     let half = turn / 2.0;
     let (bound, measured) = (table.strain_bound(), measured(&platform, &points));
     let second = length * length / platform.largest_anchor_distance() * half * half / 32.0;
-    assert!((measured / second - 1.0).abs() < 1e-3, "{measured} {second}");
+    assert!(
+        (measured / second - 1.0).abs() < 1e-3,
+        "{measured} {second}"
+    );
     assert!(measured > 1e3 * length * half.powi(4) / 384.0);
-    assert!(bound >= measured && bound < 1.01 * measured, "{bound} {measured}");
+    assert!(
+        bound >= measured && bound < 1.01 * measured,
+        "{bound} {measured}"
+    );
 }
 
 #[test]
@@ -266,7 +284,10 @@ fn strain_decides_the_number_of_points() {
         let table = PvtTable::plan(&platform, &path, Cut::strain(allowed), &mut knots).unwrap();
         let (parts, bound) = (table.len() - 1, table.strain_bound());
         let points: Vec<_> = table.points().collect();
-        println!("{allowed} mm: {parts} parts, bound {bound}, {} s", table.duration_s());
+        println!(
+            "{allowed} mm: {parts} parts, bound {bound}, {} s",
+            table.duration_s()
+        );
         assert!(bound <= allowed && measured(&platform, &points) <= bound);
         let fewer = Cut::parts(u32::try_from(parts - 1).unwrap());
         let coarse = PvtTable::plan(&platform, &path, fewer, &mut knots).unwrap();
@@ -281,31 +302,59 @@ fn wrong_input_is_named() {
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 64];
     let error = PvtTable::plan(&platform, &path, Cut::parts(64), &mut knots).unwrap_err();
-    let wanted = PlanError::TooManyPoints { needed: 65, available: 64 };
+    let wanted = PlanError::TooManyPoints {
+        needed: 65,
+        available: 64,
+    };
     assert_eq!(error, wanted);
     let error = PvtTable::plan(&platform, &path, Cut::parts(2), &mut []).unwrap_err();
-    assert!(matches!(error, PlanError::TooManyPoints { needed: 3, available: 0 }));
+    assert!(matches!(
+        error,
+        PlanError::TooManyPoints {
+            needed: 3,
+            available: 0
+        }
+    ));
 
     let turning = from_rest([0.0; 3], [0.0, 0.0, 0.02]);
     let turning = Path::new(&turning, Interpolation::Straight).unwrap();
     let few = &mut knots[..9];
     let error = PvtTable::plan(&platform, &turning, Cut::strain(1e-6), few).unwrap_err();
-    let PlanError::TooManyPoints { needed, available: 9 } = error else {
+    let PlanError::TooManyPoints {
+        needed,
+        available: 9,
+    } = error
+    else {
         panic!("{error}");
     };
     let mut enough = vec![Knot::default(); needed];
     PvtTable::plan(&platform, &turning, Cut::strain(1e-6), &mut enough).unwrap();
     let error = PvtTable::plan(&platform, &turning, Cut::strain(1e-14), &mut enough).unwrap_err();
-    assert!(matches!(error, PlanError::Strain { allowed: 1e-14, .. }), "{error}");
+    assert!(
+        matches!(error, PlanError::Strain { allowed: 1e-14, .. }),
+        "{error}"
+    );
 
     let far = from_rest([0.0, 0.0, 130.0], [0.0; 3]);
     let far = Path::new(&far, Interpolation::Straight).unwrap();
     let error = PvtTable::plan(&platform, &far, Cut::parts(20), &mut knots).unwrap_err();
-    let PlanError::Limit { leg: 0, point, reason } = error else {
+    let PlanError::Limit {
+        leg: 0,
+        point,
+        reason,
+    } = error
+    else {
         panic!("{error}");
     };
     assert!((13..17).contains(&point));
-    assert!(matches!(reason, LimitError::Stroke { locator: 0, max: 100.0, .. }));
+    assert!(matches!(
+        reason,
+        LimitError::Stroke {
+            locator: 0,
+            max: 100.0,
+            ..
+        }
+    ));
 
     let table = PvtTable::plan(&platform, &path, Cut::parts(8), &mut knots).unwrap();
     for pace in [0.0, -1.0, 1.1, f64::NAN] {
@@ -327,7 +376,10 @@ fn single_precision_keeps_its_limits() {
     .unwrap();
     let poses = [
         Isometry3::identity(),
-        Isometry3::new(Vector3::new(20.0, -5.0, 3.0), Vector3::new(0.01, 0.02, 0.05)),
+        Isometry3::new(
+            Vector3::new(20.0, -5.0, 3.0),
+            Vector3::new(0.01, 0.02, 0.05),
+        ),
     ];
     let path = Path::new(&poses, Interpolation::Screw).unwrap();
     let mut knots = [Knot::default(); 41];
@@ -337,12 +389,15 @@ fn single_precision_keeps_its_limits() {
         for locator in 0..3 {
             for axis in 0..3 {
                 let end = |p: &PvtPoint<3, f32>| {
-                    (f64::from(p.axes[locator][axis]), f64::from(p.velocities[locator][axis]))
+                    (
+                        f64::from(p.axes[locator][axis]),
+                        f64::from(p.velocities[locator][axis]),
+                    )
                 };
                 for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
                     let time = f64::from(pair[1].segment_s);
                     let [_, speed, acceleration, _] =
-                        support::cubic(end(&pair[0]), end(&pair[1]), time, share);
+                        cubic(end(&pair[0]), end(&pair[1]), time, share);
                     assert!(speed.abs() < 10.0 * (1.0 + 1e-5));
                     assert!(acceleration.abs() < 25.0 * (1.0 + 1e-3));
                 }

@@ -1,16 +1,19 @@
 //! Feed override, stops on the path, and the controller's buffer.
 #![cfg(test)]
 
+#[path = "support/cubic.rs"]
+mod cubic;
 #[path = "support/platform.rs"]
 mod support;
 
+use cubic::between;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
     Ahead, AxisLimits, Cut, FeedError, Fifo, FifoError, Interpolation, Knot, Path, PlanError,
     Platform, PvtPoint, PvtTable,
 };
 use proptest::prelude::*;
-use support::{ACCELERATION, SPEED, between, panel, panel_with, pose, skewed};
+use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
 
 /// Times and positions of some metres rounded off.
 const LIMIT: f64 = 1.0 + 1e-9;
@@ -54,7 +57,12 @@ fn at_full_feed_it_is_the_table() {
         assert_eq!(run.size_hint(), (0, Some(101)));
         for (got, wanted) in run.zip(table.points()) {
             assert_eq!(got.axes, wanted.axes);
-            assert!((got.time_s - wanted.time_s).abs() < 1e-9 * (1.0 + wanted.time_s), "{} {}", got.time_s, wanted.time_s);
+            assert!(
+                (got.time_s - wanted.time_s).abs() < 1e-9 * (1.0 + wanted.time_s),
+                "{} {}",
+                got.time_s,
+                wanted.time_s
+            );
             for (got, wanted) in got.velocities.iter().zip(&wanted.velocities) {
                 assert!((got - wanted).amax() < 1e-9);
             }
@@ -92,7 +100,7 @@ fn a_stop_is_on_the_path_and_can_go_on() {
     let mut ahead = [Ahead::default(); 401];
     let mut run = table.run(1.5, &mut ahead).unwrap();
     let mut points: Vec<_> = run.by_ref().take(200).collect();
-    let from = points.last().unwrap().clone();
+    let from = *points.last().unwrap();
     run.stop();
     points.extend(run.by_ref());
     assert!(!run.is_finished() && run.next_point().is_none());
@@ -101,7 +109,10 @@ fn a_stop_is_on_the_path_and_can_go_on() {
     // 10 mm/s at 25 mm/s² stop within 2 mm, and a segment.
     let way = rest.axes[0].x - from.axes[0].x;
     let shortest = SPEED * SPEED / (2.0 * ACCELERATION);
-    assert!(way > shortest * (1.0 - 1e-9) && way < shortest + 2.0 * 100.0 / 400.0, "{way}");
+    assert!(
+        way > shortest * (1.0 - 1e-9) && way < shortest + 2.0 * 100.0 / 400.0,
+        "{way}"
+    );
     check_limits(&platform, &points);
 
     run.set_feed(1.0).unwrap();
@@ -121,11 +132,23 @@ fn wrong_feeds_and_memory_are_named() {
     let table = PvtTable::plan(&platform, &path, Cut::parts(10), &mut knots).unwrap();
     let mut ahead = [Ahead::default(); 11];
     let error = table.run(1.5, &mut ahead[..10]).unwrap_err();
-    assert_eq!(error, PlanError::TooManyPoints { needed: 11, available: 10 });
+    assert_eq!(
+        error,
+        PlanError::TooManyPoints {
+            needed: 11,
+            available: 10
+        }
+    );
     assert!(table.run(f64::NAN, &mut ahead).is_err());
     let mut run = table.run(1.5, &mut ahead).unwrap();
     let error = run.set_feed(1.6).unwrap_err();
-    assert_eq!(error, FeedError { feed: 1.6, max: 1.5 });
+    assert_eq!(
+        error,
+        FeedError {
+            feed: 1.6,
+            max: 1.5
+        }
+    );
     assert!(run.set_feed(-0.1).is_err() && run.set_feed(f64::NAN).is_err());
 }
 
@@ -176,12 +199,20 @@ fn an_underrun_is_reported_with_its_time() {
     let before = fifo.state(2.0 + last - 1e-6).unwrap();
     assert_eq!(before.filled, 1);
     let error = fifo.next(2.0 + last + 0.25, &mut points).unwrap_err();
-    let FifoError::Underrun { at_s, late_s, points: handed } = error else {
+    let FifoError::Underrun {
+        at_s,
+        late_s,
+        points: handed,
+    } = error
+    else {
         panic!("{error}");
     };
     assert!((at_s - 2.0 - last).abs() < 1e-9 && (late_s - 0.25).abs() < 1e-9);
     assert_eq!((handed, points.len()), (5, 96));
-    assert!(matches!(fifo.state(1.0), Err(FifoError::Time { now_s: 1.0, .. })));
+    assert!(matches!(
+        fifo.state(1.0),
+        Err(FifoError::Time { now_s: 1.0, .. })
+    ));
     fifo.restart();
     assert_eq!(fifo.state(9.0).unwrap().free, 512);
 }

@@ -125,7 +125,11 @@ impl<T: RealField + Copy> Turning<T> {
         Self {
             start: from.translation.vector,
             rotation: from.rotation,
-            axis: if turns { turn / angle } else { Vector3::zeros() },
+            axis: if turns {
+                turn / angle
+            } else {
+                Vector3::zeros()
+            },
             angle: if turns { angle } else { T::zero() },
             slide: to.translation.vector - from.translation.vector,
             sine: Vector3::zeros(),

@@ -112,7 +112,8 @@ pub(super) fn strokes<const N: usize, T: RealField + Copy>(
         if by > T::zero() {
             // Ends are checked with the tolerance of the platform.
             let value = if high > limits.max { high } else { low };
-            let ends = (limits.min - cubic.q0.min(cubic.q1)).max(cubic.q0.max(cubic.q1) - limits.max);
+            let ends =
+                (limits.min - cubic.q0.min(cubic.q1)).max(cubic.q0.max(cubic.q1) - limits.max);
             if by > ends {
                 return Err(LimitError::Stroke {
                     locator,

@@ -160,9 +160,7 @@ fn s_curve<const N: usize, T: RealField + Copy>(
 
 /// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a
 /// number that can be divided by.
-fn derivatives<const N: usize, T: RealField + Copy>(
-    course: &Course<'_, N, T>,
-) -> [[[T; 3]; 3]; N] {
+fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -> [[[T; 3]; 3]; N] {
     let samples = count::<T>(SAMPLES);
     let least = T::one() / largest();
     let mut most = [[[least; 3]; 3]; N];
@@ -172,7 +170,9 @@ fn derivatives<const N: usize, T: RealField + Copy>(
         let mut change = slope;
         for (locator, change) in change.iter_mut().enumerate() {
             let before: Option<&[nalgebra::Vector3<T>; N]> = last.as_ref();
-            let before = before.and_then(|last| last.get(locator)).unwrap_or(&*change);
+            let before = before
+                .and_then(|last| last.get(locator))
+                .unwrap_or(&*change);
             *change = (*change - *before) * samples;
         }
         let mut second = change;
@@ -180,7 +180,9 @@ fn derivatives<const N: usize, T: RealField + Copy>(
             let before: Option<&[nalgebra::Vector3<T>; N]> = last_change.as_ref();
             // The first change is none: there is nothing before it.
             let before = before.filter(|_| index > 1);
-            let before = before.and_then(|last| last.get(locator)).unwrap_or(&*second);
+            let before = before
+                .and_then(|last| last.get(locator))
+                .unwrap_or(&*second);
             *second = (*second - *before) * samples;
         }
         let values = slope.iter().zip(change.iter().zip(&second));

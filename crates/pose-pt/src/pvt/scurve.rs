@@ -92,7 +92,10 @@ impl<T: RealField + Copy> SCurve<T> {
     /// Calls `knot` with the state and the time to the next for `parts` parts, each within a
     /// phase, and with the end.
     pub(super) fn knots(&self, parts: u32, mut knot: impl FnMut(Motion<T>, T)) {
-        let total = self.phases.iter().fold(T::zero(), |sum, (time, _)| sum + *time);
+        let total = self
+            .phases
+            .iter()
+            .fold(T::zero(), |sum, (time, _)| sum + *time);
         let used = self.phases.iter().filter(|(time, _)| *time > T::zero());
         let mut phases_left = used.count().try_into().unwrap_or(PHASES);
         let (mut parts_left, mut time_left) = (parts, total);

@@ -88,5 +88,7 @@ pub(crate) fn seconds<const N: usize>(platform: &Platform<N>, leg: &Leg, grid: u
         squares[k] = squares[k].min((squares[k - 1] + 2.0 * high * step).max(0.0));
     }
     let pairs = squares.windows(2);
-    pairs.map(|pair| 2.0 * step / (pair[0].sqrt() + pair[1].sqrt())).sum()
+    pairs
+        .map(|pair| 2.0 * step / (pair[0].sqrt() + pair[1].sqrt()))
+        .sum()
 }

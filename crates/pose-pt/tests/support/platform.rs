@@ -1,8 +1,7 @@
 //! A platform like that of a panel line, paths on it, and what its controller would run.
-#![expect(dead_code, reason = "each test file uses a part")]
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
-use pose_pt::{AxisLimits, Locator, Platform, PvtPoint};
+use pose_pt::{AxisLimits, Locator, Platform};
 
 pub(crate) const SPEED: f64 = 10.0;
 pub(crate) const ACCELERATION: f64 = 25.0;
@@ -13,7 +12,11 @@ pub(crate) fn panel() -> Platform<3> {
 }
 
 pub(crate) fn panel_with(limits: AxisLimits) -> Platform<3> {
-    let anchors = [[0.0, 0.0, 0.0], [4000.0, 0.0, 50.0], [1800.0, 1490.0, -80.0]];
+    let anchors = [
+        [0.0, 0.0, 0.0],
+        [4000.0, 0.0, 50.0],
+        [1800.0, 1490.0, -80.0],
+    ];
     Platform::new(anchors.map(|anchor| {
         let anchor = Point3::from(anchor);
         Locator::new(anchor, anchor, [limits; 3])
@@ -28,7 +31,11 @@ pub(crate) fn skewed() -> Platform<3> {
         AxisLimits::new(-1500.0, 1500.0, 5.0 + n, 40.0 - 3.0 * n)
     });
     let mut next = || limits.next().unwrap();
-    let anchors = [[-900.0, -400.0, 10.0], [1100.0, -500.0, 0.0], [100.0, 800.0, -30.0]];
+    let anchors = [
+        [-900.0, -400.0, 10.0],
+        [1100.0, -500.0, 0.0],
+        [100.0, 800.0, -30.0],
+    ];
     let axes = Matrix3::new(1.0, 0.02, -0.01, 0.0, 0.9998, 0.015, 0.0, 0.0, 0.99983);
     Platform::new(anchors.map(|anchor| {
         let anchor = Point3::from(anchor);
@@ -42,46 +49,4 @@ pub(crate) fn pose(translation: [f64; 3], turn: [f64; 3]) -> Isometry3<f64> {
         Translation3::from(Vector3::from(translation)),
         UnitQuaternion::from_scaled_axis(Vector3::from(turn)),
     )
-}
-
-/// Speed, acceleration and jerk inside of one axis at a share of a segment's time.
-pub(crate) fn cubic(from: (f64, f64), to: (f64, f64), time: f64, share: f64) -> [f64; 4] {
-    let ((q0, v0), (q1, v1)) = (from, to);
-    let (u, rest) = (share, 1.0 - share);
-    let position = q0 * (1.0 + 2.0 * u) * rest * rest
-        + v0 * time * u * rest * rest
-        + q1 * u * u * (3.0 - 2.0 * u)
-        - v1 * time * u * u * rest;
-    let mean = (q1 - q0) / time;
-    let speed = 6.0 * mean * u * rest + v0 * rest * (1.0 - 3.0 * u) + v1 * u * (3.0 * u - 2.0);
-    let acceleration =
-        (6.0 * mean * (1.0 - 2.0 * u) + v0 * (6.0 * u - 4.0) + v1 * (6.0 * u - 2.0)) / time;
-    let jerk = (-12.0 * mean + 6.0 * (v0 + v1)) / (time * time);
-    [position, speed, acceleration, jerk]
-}
-
-/// Position, speed, acceleration and jerk of all axes at a share of a segment's time.
-pub(crate) fn between<const N: usize>(
-    from: &PvtPoint<N>,
-    to: &PvtPoint<N>,
-    share: f64,
-) -> [[Vector3<f64>; N]; 4] {
-    let mut all = [[Vector3::zeros(); N]; 4];
-    for locator in 0..N {
-        for axis in 0..3 {
-            let end = |point: &PvtPoint<N>| {
-                (point.axes[locator][axis], point.velocities[locator][axis])
-            };
-            let values = cubic(end(from), end(to), to.segment_s, share);
-            for (all, value) in all.iter_mut().zip(values) {
-                all[locator][axis] = value;
-            }
-        }
-    }
-    all
-}
-
-/// The worst change of a distance between two locators.
-pub(crate) fn strain<const N: usize>(platform: &Platform<N>, axes: &[Vector3<f64>; N]) -> f64 {
-    platform.strain(&platform.locator_positions(axes)).change.abs()
 }
