@@ -77,9 +77,7 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
     /// The start of a walk by `parts` equal parts.
     pub(crate) fn walk(&self, parts: u32) -> Walk<T> {
         match self {
-            Self::Turning(course) => {
-                Walk::Turning(Sweep::new([T::zero()], [course.angle], parts))
-            }
+            Self::Turning(course) => Walk::Turning(Sweep::new([T::zero()], [course.angle], parts)),
             Self::Vector(_, leg) => Walk::Vector(Sweep::new(
                 leg.from.angles().into(),
                 leg.angles_change().into(),
@@ -98,8 +96,7 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
             }
             (Self::Vector(platform, leg), Walk::Vector(sweep)) => {
                 let [alpha, beta, gamma] = sweep.now().map(|turn| (turn.sin, turn.cos()));
-                let rotation =
-                    PoseVector::rotation_of_sines([alpha, beta, gamma], leg.convention);
+                let rotation = PoseVector::rotation_of_sines([alpha, beta, gamma], leg.convention);
                 let position = leg.from.position() + leg.slide() * sweep.share();
                 platform.axes_at(&rotation, &position)
             }
@@ -135,8 +132,7 @@ impl<const N: usize, T: RealField + Copy> TurningCourse<N, T> {
             start: platform.axes_at(&rotation, &leg.start),
             slide: platform.in_axes([leg.slide; N]),
             sine: platform.in_axes(across.map(|across| leg.sine + across)),
-            versine: platform
-                .in_axes(across.map(|across| leg.versine + leg.axis.cross(&across))),
+            versine: platform.in_axes(across.map(|across| leg.versine + leg.axis.cross(&across))),
             angle: leg.angle,
         }
     }

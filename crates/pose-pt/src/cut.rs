@@ -26,6 +26,9 @@ pub(crate) enum Rule<T> {
     Strain(T),
 }
 
+/// Least strain against the largest distance of two anchors, in machine epsilons.
+const STRAIN_EPSILONS: f64 = 64.0;
+
 /// Most parts of a leg.
 const MAX_PARTS: u32 = 1 << 30;
 
@@ -54,7 +57,8 @@ impl<T: RealField + Copy> Cut<T> {
     }
 
     /// The fewest equal parts for which no distance between two locators ever departs from
-    /// that of their anchors by more than `allowed`, in the unit of length.
+    /// that of their anchors by more than `allowed`, in the unit of length; along pose vectors
+    /// perhaps some more.
     #[must_use]
     pub const fn strain(allowed: T) -> Self {
         Self {
@@ -72,7 +76,10 @@ impl<T: RealField + Copy> Cut<T> {
     }
 
     /// Whether the numbers make sense.
-    pub(crate) fn check(&self) -> Result<(), PlanError<T>> {
+    pub(crate) fn check<const N: usize>(
+        &self,
+        platform: &Platform<N, T>,
+    ) -> Result<(), PlanError<T>> {
         let positive = |value: T| value > T::zero() && value.is_finite();
         let bad = match self.rule {
             Rule::Parts(0) => Some(T::zero()),
@@ -85,9 +92,13 @@ impl<T: RealField + Copy> Cut<T> {
                 .find(|value| !positive(*value)),
             Rule::Strain(allowed) => (!positive(allowed)).then_some(allowed),
         };
-        match bad {
-            Some(value) => Err(PlanError::Cut { value }),
-            None => Ok(()),
+        if let Some(value) = bad {
+            return Err(PlanError::Cut { value });
+        }
+        let least = platform.largest_anchor_distance() * epsilons(STRAIN_EPSILONS);
+        match self.rule {
+            Rule::Strain(allowed) if allowed < least => Err(PlanError::Strain { allowed, least }),
+            _ => Ok(()),
         }
     }
 

@@ -39,17 +39,13 @@ pub enum PlanError<T = f64> {
         /// Points for which there is memory.
         available: usize,
     },
-    /// The allowed strain is below what the axes' positions are rounded to.
-    #[error("strain {allowed} cannot be kept on leg {leg}: {bound} is left with {parts} parts")]
+    /// The allowed strain is below what the positions are rounded to.
+    #[error("strain {allowed} is below {least}, what positions round off")]
     Strain {
-        /// The leg, from 0.
-        leg: usize,
         /// The strain allowed.
         allowed: T,
-        /// The strain bound of the finest cut that was tried.
-        bound: T,
-        /// Its parts.
-        parts: u32,
+        /// The least strain that can be asked for.
+        least: T,
     },
     /// A pace that is not above 0 and at most 1.
     #[error("a pace of {pace} is not above 0 and at most 1")]

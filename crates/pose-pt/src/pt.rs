@@ -5,9 +5,8 @@ use core::iter::FusedIterator;
 use nalgebra::{RealField, Vector3};
 
 use crate::course::{Course, Walk};
-use crate::path::Path;
+use crate::path::{Leg, Path};
 use crate::strain::linear_strain;
-use crate::turn::count;
 use crate::{Cut, Locator, PlanError, Platform};
 
 /// A line of a PT table: where every axis is at a time. Between two lines it moves linearly.
@@ -55,7 +54,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         path: &Path<'a, T>,
         cut: Cut<T>,
     ) -> Result<Self, PlanError<T>> {
-        cut.check()?;
+        cut.check(platform)?;
         let mut points = 1_usize;
         for number in 0..path.legs() {
             let parts = parts(platform, path, cut, number)?;
@@ -129,19 +128,34 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     /// strain = L - √(L² - D⊥² sin²(δ/2)) ≤ L (1 - cos(δ/2)) ≈ L δ² / 8
     /// ```
     ///
-    /// For straight and screw motion δ is the same in all parts and this is the strain
-    /// itself; fewer points cannot keep it, however they are spread. Along pose vectors δ is
-    /// at most the largest angular speed times the part, and D⊥ at most L.
+    /// For straight and screw motion δ is the same in all parts, and fewer points cannot keep the
+    /// strain, however they are spread. Along pose vectors δ and n differ: the largest of all
+    /// parts is returned, and [`Cut::strain`] takes δ from the largest angular speed and D⊥ as L,
+    /// which may be more parts than the fewest.
     #[must_use]
     pub fn strain_bound(&self) -> T {
-        (0..self.path.legs()).fold(T::zero(), |worst, number| {
-            let parts = self.parts(number);
-            match self.path.leg(number) {
-                Some(leg) if parts > 0 => {
-                    worst.max(linear_strain(self.platform, &leg, leg.turn() / count(parts)))
-                }
-                _ => worst,
-            }
+        let legs = 0..self.path.legs();
+        legs.fold(T::zero(), |worst, number| {
+            let strain = self
+                .path
+                .leg(number)
+                .map(|leg| self.leg_strain(number, &leg));
+            worst.max(strain.unwrap_or_else(T::zero))
+        })
+    }
+
+    fn leg_strain(&self, number: usize, leg: &Leg<T>) -> T {
+        let course = Course::new(self.platform, leg);
+        let parts = self.parts(number);
+        let looked_at = if leg.is_even() { parts.min(1) } else { parts };
+        let mut walk = course.walk(parts);
+        let mut from = course.axes(&walk);
+        (0..looked_at).fold(T::zero(), |worst, _| {
+            walk.advance();
+            let to = course.axes(&walk);
+            let strain = linear_strain(self.platform, &from, &to);
+            from = to;
+            worst.max(strain)
         })
     }
 

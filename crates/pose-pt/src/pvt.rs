@@ -6,9 +6,9 @@ mod points;
 mod scurve;
 pub(crate) mod segment;
 
-use nalgebra::RealField;
+use nalgebra::{RealField, Vector3};
 
-use crate::course::Course;
+use crate::course::{Course, Place};
 use crate::cut::{Rule, within_max};
 use crate::number::epsilons;
 use crate::path::{Leg, Path};
@@ -82,11 +82,17 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
         cut: Cut<T>,
         knots: &'a mut [Knot<T>],
     ) -> Result<Self, PlanError<T>> {
-        cut.check()?;
+        cut.check(platform)?;
         let planner = Planner {
             platform,
             cut,
-            least: least_parts(platform).max(cut.at_least),
+            // Each phase of an S-curve has a part.
+            least: if has_jerk(platform) {
+                scurve::PHASES
+            } else {
+                MIN_PARTS
+            }
+            .max(cut.at_least),
         };
         planner.check_memory(path, knots.len())?;
         let (mut used, mut points) = (0_usize, 1_usize);
@@ -156,24 +162,43 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
         strain_bound(self.platform, self.points())
     }
 
+    /// The place of a point, slopes by time, and the time to the next point.
+    pub(crate) fn node(&self, number: usize) -> Option<(Place<N, T>, T)> {
+        let (mut knots, mut left) = (self.knots, number);
+        for (_, leg) in moving(&self.path) {
+            let size = knots_of(knots.first()?.parts);
+            let (own, later) = knots.split_at_checked(size)?;
+            // The last knot of a leg is the first of the next, but for the last leg.
+            if left.saturating_add(1) < size || later.is_empty() {
+                let knot = own.get(left)?;
+                let mut place = Course::new(self.platform, &leg).place(knot.s);
+                let speed = knot.speed / self.stretch;
+                place.slope = place.slope.map(|slope| slope * speed);
+                return Some((place, knot.segment_s * self.stretch));
+            }
+            (knots, left) = (later, left.saturating_sub(size.saturating_sub(1)));
+        }
+        let mut place = first_course(self.platform, &self.path)?.place(T::zero());
+        place.slope = [Vector3::zeros(); N];
+        (number == 0).then_some((place, T::zero()))
+    }
+
     /// The points in their order.
     #[must_use]
     pub fn points(&self) -> PvtPoints<'a, N, T> {
-        PvtPoints::new(self.platform, &self.path, self.knots, self.stretch, self.points)
+        PvtPoints::new(
+            self.platform,
+            &self.path,
+            self.knots,
+            self.stretch,
+            self.points,
+        )
     }
 }
 
-/// With a limit of jerk each phase of the S-curve has a part.
-fn least_parts<const N: usize, T: RealField>(platform: &Platform<N, T>) -> u32
-where
-    T: Copy,
-{
+fn has_jerk<const N: usize, T: RealField + Copy>(platform: &Platform<N, T>) -> bool {
     let mut limits = platform.locators().iter().flat_map(|l| &l.limits);
-    if limits.any(|limits| limits.jerk.is_some()) {
-        scurve::PHASES
-    } else {
-        MIN_PARTS
-    }
+    limits.any(|limits| limits.jerk.is_some())
 }
 
 fn strain_bound<const N: usize, T: RealField + Copy>(
@@ -190,8 +215,8 @@ fn strain_bound<const N: usize, T: RealField + Copy>(
     })
 }
 
-/// Looks at what the controller will run: every stroke, and every limit, exactly. A leg whose
-/// S-curve, or rounding, passes a limit is slowed down as a whole.
+/// Looks at what the controller will run: every stroke, and every limit, exactly. The time of an
+/// S-curve is multiplied so that it just keeps them all.
 fn stretch_legs<const N: usize, T: RealField + Copy>(
     platform: &Platform<N, T>,
     path: &Path<'_, T>,
@@ -222,19 +247,20 @@ fn stretch_legs<const N: usize, T: RealField + Copy>(
             last = point;
         }
         shares.stop(platform.locators());
-        slow_down(knots, shares.stretch());
+        let stretch = shares.stretch();
+        // The fastest table misses its limits by rounding alone, an S-curve by its rule.
+        if stretch > T::one() || has_jerk(platform) {
+            stretch_time(knots, stretch * (T::one() + epsilons(STRETCH_EPSILONS)));
+        }
     }
     Ok(())
 }
 
 /// Multiplies the time of a leg.
-fn slow_down<T: RealField + Copy>(knots: &mut [Knot<T>], stretch: T) {
-    if stretch > T::one() {
-        let stretch = stretch * (T::one() + epsilons(STRETCH_EPSILONS));
-        for knot in knots {
-            knot.speed /= stretch;
-            knot.segment_s *= stretch;
-        }
+fn stretch_time<T: RealField + Copy>(knots: &mut [Knot<T>], stretch: T) {
+    for knot in knots {
+        knot.speed /= stretch;
+        knot.segment_s *= stretch;
     }
 }
 
@@ -278,7 +304,10 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         for (number, leg) in moving(path) {
             let parts = match self.cut.rule {
                 Rule::Strain(_) => self.least,
-                _ => self.cut.linear_parts(self.platform, number, &leg)?.max(self.least),
+                _ => self
+                    .cut
+                    .linear_parts(self.platform, number, &leg)?
+                    .max(self.least),
             };
             needed = needed.saturating_add(knots_of(within_max(Some(parts), number)?));
         }
@@ -299,7 +328,10 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         let course = Course::new(self.platform, leg);
         let parts = match self.cut.rule {
             Rule::Strain(allowed) => self.fewest(number, &course, used, free, allowed)?,
-            _ => self.cut.linear_parts(self.platform, number, leg)?.max(self.least),
+            _ => self
+                .cut
+                .linear_parts(self.platform, number, leg)?
+                .max(self.least),
         };
         self.lay(&course, free, parts);
         Ok(knots_of(parts))
@@ -308,7 +340,12 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
     /// Plans a leg with a number of parts.
     fn lay(&self, course: &Course<'_, N, T>, free: &mut [Knot<T>], parts: u32) {
         if let Some(knots) = free.get_mut(..knots_of(parts)) {
-            leg::plan(self.platform.locators(), course, knots, parts);
+            let locators = self.platform.locators();
+            if has_jerk(self.platform) {
+                leg::smooth(locators, course, knots, parts);
+            } else {
+                leg::fastest(locators, course, knots, parts);
+            }
         }
     }
 
@@ -336,7 +373,7 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         let mut bound = strain(parts);
         while bound > allowed {
             if parts >= room || parts >= FINEST {
-                return Err(too_coarse(number, allowed, bound, parts, used, room));
+                return Err(too_coarse(number, bound / allowed, parts, used, room));
             }
             too_few = parts;
             parts = parts.saturating_mul(2).min(room).min(FINEST);
@@ -362,21 +399,15 @@ const FINEST: u32 = 1 << 20;
 /// of the number; a tenth more is enough.
 fn too_coarse<T: RealField + Copy>(
     leg: usize,
-    allowed: T,
-    bound: T,
+    excess: T,
     parts: u32,
     used: usize,
     room: u32,
 ) -> PlanError<T> {
-    let more: f64 = nalgebra::try_convert((bound / allowed).sqrt()).unwrap_or(f64::MAX);
+    let more: f64 = nalgebra::try_convert(excess.sqrt()).unwrap_or(f64::MAX);
     let estimate = f64::from(parts) * more * 1.1;
     if parts < room || estimate > f64::from(FINEST) {
-        return PlanError::Strain {
-            leg,
-            allowed,
-            bound,
-            parts,
-        };
+        return PlanError::TooFine { leg, max: FINEST };
     }
     #[expect(
         clippy::cast_possible_truncation,

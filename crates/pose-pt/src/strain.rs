@@ -40,29 +40,38 @@ fn numbers<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
     (0..N).flat_map(|first| (first + 1..N).map(move |second| (first, second)))
 }
 
-/// By how much the distances shrink at most while the axes move linearly and the body would
-/// turn by `turn`: at half way both ends of the chord are as near to the axis as
-/// `across` cos(turn / 2).
+/// By how much a distance shrinks at most while the axes move linearly from one point to the
+/// next: at half way |D|² is L² less a quarter of the squared way from D₀ to D₁.
 pub(crate) fn linear_strain<const N: usize, T: RealField + Copy>(
     platform: &Platform<N, T>,
-    leg: &Leg<T>,
-    turn: T,
+    from: &[Vector3<T>; N],
+    to: &[Vector3<T>; N],
 ) -> T {
-    let sine = (turn.min(T::pi()) * crate::number::half()).sin();
-    pairs(platform, leg).fold(T::zero(), |worst, pair| {
-        let lost = (pair.across * sine).powi(2);
-        worst.max(departure(pair.length, -lost))
+    let ends = [from, to].map(|axes| platform.locator_positions(axes));
+    numbers::<N>().fold(T::zero(), |worst, (first, second)| {
+        let [from, to] = ends
+            .each_ref()
+            .map(|points| Some(points.get(first)? - points.get(second)?));
+        match (from, to) {
+            (Some(from), Some(to)) => {
+                let lost = (to - from).norm_squared() * nalgebra::convert(0.25);
+                worst.max(departure(from.norm(), -lost))
+            }
+            _ => worst,
+        }
     })
 }
 
 /// |√(L² + change) - L|, without cancellation; L where the square would be negative.
 fn departure<T: RealField + Copy>(length: T, change: T) -> T {
     let square = (length * length + change).max(T::zero());
-    (change / (length + square.sqrt())).abs().min(if change < T::zero() {
-        length
-    } else {
-        change.abs()
-    })
+    (change / (length + square.sqrt()))
+        .abs()
+        .min(if change < T::zero() {
+            length
+        } else {
+            change.abs()
+        })
 }
 
 /// The most by which the distance of any two locators departs from that of their anchors
@@ -143,4 +152,91 @@ fn pair_strain<T: RealField + Copy>(ends: &[(Vector3<T>, Vector3<T>); 2], durati
     let sixteenth = constant(1.0 / 16.0);
     let length = square.sqrt();
     departure(length, low * sixteenth).max(departure(length, high * sixteenth))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Isometry3, Point3, Vector3};
+
+    use super::*;
+    use crate::course::Course;
+    use crate::{AxisLimits, Interpolation, Locator, Path};
+
+    /// L = 4000 mm across the axis of every turn, which is Z.
+    fn flat() -> Platform<3> {
+        let limits = AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0);
+        let anchors = [[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [1800.0, 1500.0, 0.0]];
+        Platform::new(
+            anchors.map(|anchor| Locator::new(Point3::from(anchor), Point3::origin(), [limits; 3])),
+        )
+        .unwrap()
+    }
+
+    /// A turn by `turn` in which the speed changes by the share `change`, and the strain at
+    /// 1000 places of it.
+    fn bound_and_measured(turn: f64, change: f64) -> (f64, f64) {
+        let platform = flat();
+        let poses = [
+            Isometry3::identity(),
+            Isometry3::new(Vector3::zeros(), Vector3::z() * turn),
+        ];
+        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let course = Course::new(&platform, &path.leg(0).unwrap());
+        // The mean speed is 1, and so is the time.
+        let from = PvtPoint::new(&course.place(0.0), 1.0 - change, 0.0, 0.0);
+        let to = PvtPoint::new(&course.place(1.0), 1.0 + change, 1.0, 1.0);
+        let measured = (0..=1000).fold(0.0_f64, |worst, place| {
+            let u = f64::from(place) / 1000.0;
+            let v = 1.0 - u;
+            let mut axes = from.axes;
+            for (i, axes) in axes.iter_mut().enumerate() {
+                *axes = from.axes[i] * ((1.0 + 2.0 * u) * v * v)
+                    + from.velocities[i] * (u * v * v)
+                    + to.axes[i] * (u * u * (3.0 - 2.0 * u))
+                    - to.velocities[i] * (u * u * v);
+            }
+            let strain = platform.strain(&platform.locator_positions(&axes));
+            worst.max(strain.change.abs())
+        });
+        (hermite_strain(&platform, &from, &to), measured)
+    }
+
+    #[test]
+    fn the_bound_holds_and_is_near_for_every_change_of_speed() {
+        for turn in [1e-3, 0.01, 0.1, 0.5, 1.0, 2.0] {
+            for change in [-1.0, -0.3, -0.01, 0.0, 1e-3, 0.1, 0.5, 1.0] {
+                let (bound, measured) = bound_and_measured(turn, change);
+                // Coordinates of 4 m are rounded to 1e-12 mm.
+                assert!(
+                    measured <= bound + 4e-12,
+                    "{turn} {change}: {measured} {bound}"
+                );
+                let near = bound <= 2.0 * measured + 4e-12;
+                // Where the two orders nearly cancel, the bound does not.
+                let cancels = (0.1..5.0).contains(&(12.0 * change * change / (turn * turn)));
+                assert!(near || cancels, "{turn} {change}: {measured} {bound}");
+            }
+        }
+    }
+
+    #[test]
+    fn closed_forms_for_small_turns() {
+        let length = 4000.0;
+        let (bound, measured) = bound_and_measured(0.05, 0.0);
+        let fourth = length * 0.05_f64.powi(4) / 384.0;
+        assert!(
+            (measured / fourth - 1.0).abs() < 1e-3,
+            "{measured} {fourth}"
+        );
+        assert!((bound / fourth - 1.0).abs() < 1e-2, "{bound} {fourth}");
+        for change in [0.5, 1.0, -1.0] {
+            let (bound, measured) = bound_and_measured(1e-3, change);
+            let second = length * (change * 1e-3_f64).powi(2) / 32.0;
+            assert!(
+                (measured / second - 1.0).abs() < 1e-3,
+                "{measured} {second}"
+            );
+            assert!((bound / second - 1.0).abs() < 1e-2, "{bound} {second}");
+        }
+    }
 }

@@ -421,3 +421,8 @@ fn axes_that_were_not_moved_are_missed() {
         Err(CalibrationError::Coordinate { point: 0, .. })
     ));
 }
+
+#[test]
+fn memory_is_as_stated() {
+    assert_eq!(size_of::<Platform<3>>(), 1192);
+}

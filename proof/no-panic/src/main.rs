@@ -8,11 +8,13 @@ mod jobs;
 mod kinematics;
 mod line;
 mod patterns;
+mod poses;
 mod stepping;
 mod unit;
 
 fn main() {
     kinematics::run();
+    poses::run();
     stepping::run();
     patterns::run();
     line::run();

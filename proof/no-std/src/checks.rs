@@ -5,6 +5,7 @@ use core::hint::black_box;
 use handwheel::{Action, Arbiter, Driver, Input, Panel, Settings, Shown, UnitId, WheelQuantiser};
 use pattern_codec::container::{Header, Verifier, Writer, open};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
+use pose_pt::{AxisLimits, Convention, Locator, Platform, PoseVector};
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
 use scara_kin::nalgebra::{Point2, Vector2};
@@ -12,9 +13,10 @@ use scara_kin::{Arm, Elbow, Joints};
 use stepper_sync::{Position, Ramp, RampLimits, Rate, Timer, Trains};
 
 /// The checks; the number of each is its exit status.
-pub const ALL: [fn() -> Option<()>; 10] = [
+pub const ALL: [fn() -> Option<()>; 11] = [
     inverse,
     follow,
+    pose,
     trains,
     ramp,
     records,
@@ -62,6 +64,30 @@ fn follow() -> Option<()> {
         last = Some(waypoint.joints);
     }
     holds((arm.forward(last?) - line[1]).norm() < CLOSE_MM)
+}
+
+/// Pose to axes and back, with what the locators pull.
+fn pose() -> Option<()> {
+    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let anchors = [
+        [-1500.0, -1000.0, 0.0],
+        [1500.0, black_box(-1000.0), 0.0],
+        [0.0, 1000.0, 0.0],
+    ];
+    let held = anchors.map(|anchor| Locator::new(anchor.into(), anchor.into(), limits));
+    let platform: Platform<3> = Platform::new(held).ok()?;
+    let vector = PoseVector::new(black_box(10.0), -20.0, 100.0, 0.01, 0.02, -0.03);
+    let pose = vector.to_isometry(Convention::MovingXyz);
+    let mut axes = platform.checked_axes(&pose).ok()?;
+    let body = platform.pose(&axes).ok()?;
+    let back = PoseVector::from_isometry(&body.pose, Convention::MovingXyz).vector;
+    holds((back.position() - vector.position()).norm() < CLOSE_MM)?;
+    holds((back.angles() - vector.angles()).norm() < CLOSE_MM)?;
+    holds(body.strain.change.abs() < CLOSE_MM)?;
+    axes.last_mut()?.y += black_box(0.5);
+    holds(platform.pose(&axes).ok()?.strain.change > 0.4)?;
+    axes.last_mut()?.y = 301.0;
+    holds(platform.check_axes(&axes).is_err())
 }
 
 /// Trains that end together, timer reloads, positions.

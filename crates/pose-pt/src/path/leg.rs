@@ -105,6 +105,11 @@ impl<T: RealField + Copy> Leg<T> {
         }
     }
 
+    /// Whether all equal parts of the leg turn the body alike.
+    pub(crate) const fn is_even(&self) -> bool {
+        matches!(self.shape, Shape::Turning(_))
+    }
+
     /// Whether the body stays where it is.
     pub(crate) fn is_still(&self) -> bool {
         self.turn() == T::zero() && self.length() == T::zero()
@@ -120,7 +125,11 @@ impl<T: RealField + Copy> Turning<T> {
         Self {
             start: from.translation.vector,
             rotation: from.rotation,
-            axis: if turns { turn / angle } else { Vector3::zeros() },
+            axis: if turns {
+                turn / angle
+            } else {
+                Vector3::zeros()
+            },
             angle: if turns { angle } else { T::zero() },
             slide: to.translation.vector - from.translation.vector,
             sine: Vector3::zeros(),

@@ -112,7 +112,8 @@ pub(super) fn strokes<const N: usize, T: RealField + Copy>(
         if by > T::zero() {
             // Ends are checked with the tolerance of the platform.
             let value = if high > limits.max { high } else { low };
-            let ends = (limits.min - cubic.q0.min(cubic.q1)).max(cubic.q0.max(cubic.q1) - limits.max);
+            let ends =
+                (limits.min - cubic.q0.min(cubic.q1)).max(cubic.q0.max(cubic.q1) - limits.max);
             if by > ends {
                 return Err(LimitError::Stroke {
                     locator,
@@ -151,12 +152,11 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
         }
     }
 
-    /// By what the time must be stretched so that all limits are kept: 1 where they are.
+    /// By what the time may be multiplied at the least so that all limits are kept.
     pub(super) fn stretch(&self) -> T {
         self.speed
             .max(self.acceleration.sqrt())
             .max(self.jerk.cbrt())
-            .max(T::one())
     }
 
     /// Takes the segment from one point to the next into account.

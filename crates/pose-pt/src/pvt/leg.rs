@@ -12,36 +12,38 @@ use crate::course::{Course, Place};
 use crate::number::{largest, two};
 use crate::turn::count;
 
-/// Fills the knots of a leg; one more than parts.
-pub(super) fn plan<const N: usize, T: RealField + Copy>(
+/// Fills the knots of a leg, one more than parts, with the fastest motion.
+pub(super) fn fastest<const N: usize, T: RealField + Copy>(
     locators: &[Locator<T>; N],
     course: &Course<'_, N, T>,
     knots: &mut [Knot<T>],
     parts: u32,
 ) {
-    let jerk = locators
-        .iter()
-        .flat_map(|locator| &locator.limits)
-        .any(|limits| limits.jerk.is_some());
-    if jerk {
-        let curve = smooth(locators, course);
-        let mut rest = knots.iter_mut();
-        curve.knots(parts, |motion, segment_s| {
-            if let Some(knot) = rest.next() {
-                *knot = Knot {
-                    s: motion.way,
-                    speed: motion.speed,
-                    segment_s,
-                    parts,
-                };
-            }
-        });
-    } else {
-        spread(knots, parts);
-        let knots = Cell::from_mut(knots).as_slice_of_cells();
-        backward(locators, course, knots);
-        forward(locators, course, knots);
-    }
+    spread(knots, parts);
+    let knots = Cell::from_mut(knots).as_slice_of_cells();
+    backward(locators, course, knots);
+    forward(locators, course, knots);
+}
+
+/// Fills the knots of a leg, one more than parts, with an S-curve.
+pub(super) fn smooth<const N: usize, T: RealField + Copy>(
+    locators: &[Locator<T>; N],
+    course: &Course<'_, N, T>,
+    knots: &mut [Knot<T>],
+    parts: u32,
+) {
+    let curve = s_curve(locators, course);
+    let mut rest = knots.iter_mut();
+    curve.knots(parts, |motion, segment_s| {
+        if let Some(knot) = rest.next() {
+            *knot = Knot {
+                s: motion.way,
+                speed: motion.speed,
+                segment_s,
+                parts,
+            };
+        }
+    });
 }
 
 /// Spreads the knots as u² (3 - 2u), dense where the leg starts and stops: there the speed
@@ -120,7 +122,7 @@ const SAMPLES: u32 = 64;
 /// The speed is taken so that q″ ṡ² uses at most half of the acceleration and q‴ ṡ³ a third
 /// of the jerk, the acceleration so that its product uses at most another third; what is
 /// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
-fn smooth<const N: usize, T: RealField + Copy>(
+fn s_curve<const N: usize, T: RealField + Copy>(
     locators: &[Locator<T>; N],
     course: &Course<'_, N, T>,
 ) -> SCurve<T> {
@@ -158,9 +160,7 @@ fn smooth<const N: usize, T: RealField + Copy>(
 
 /// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a
 /// number that can be divided by.
-fn derivatives<const N: usize, T: RealField + Copy>(
-    course: &Course<'_, N, T>,
-) -> [[[T; 3]; 3]; N] {
+fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -> [[[T; 3]; 3]; N] {
     let samples = count::<T>(SAMPLES);
     let least = T::one() / largest();
     let mut most = [[[least; 3]; 3]; N];
@@ -170,7 +170,9 @@ fn derivatives<const N: usize, T: RealField + Copy>(
         let mut change = slope;
         for (locator, change) in change.iter_mut().enumerate() {
             let before: Option<&[nalgebra::Vector3<T>; N]> = last.as_ref();
-            let before = before.and_then(|last| last.get(locator)).unwrap_or(&*change);
+            let before = before
+                .and_then(|last| last.get(locator))
+                .unwrap_or(&*change);
             *change = (*change - *before) * samples;
         }
         let mut second = change;
@@ -178,7 +180,9 @@ fn derivatives<const N: usize, T: RealField + Copy>(
             let before: Option<&[nalgebra::Vector3<T>; N]> = last_change.as_ref();
             // The first change is none: there is nothing before it.
             let before = before.filter(|_| index > 1);
-            let before = before.and_then(|last| last.get(locator)).unwrap_or(&*second);
+            let before = before
+                .and_then(|last| last.get(locator))
+                .unwrap_or(&*second);
             *second = (*second - *before) * samples;
         }
         let values = slope.iter().zip(change.iter().zip(&second));

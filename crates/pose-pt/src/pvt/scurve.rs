@@ -20,6 +20,9 @@ pub(super) struct Motion<T> {
     acceleration: T,
 }
 
+/// Share of a ramp's time below which a phase is left out.
+const NEGLIGIBLE: f64 = 1e-3;
+
 /// Most parts that are needed for seven phases.
 pub(super) const PHASES: u32 = 7;
 
@@ -36,9 +39,13 @@ impl<T: RealField + Copy> SCurve<T> {
         };
         // Both ramps together make the way top · (2 rise + hold).
         let ramps = top * (two::<T>() * rise + hold);
-        let cruise = ((T::one() - ramps) / top).max(T::zero());
+        let cruise = (T::one() - ramps) / top;
         let zero = T::zero();
-        Self {
+        // Next to nothing would be a segment of its own.
+        let least = (two::<T>() * rise + hold) * nalgebra::convert(NEGLIGIBLE);
+        let kept = |time: T| if time > least { time } else { zero };
+        let (hold, cruise) = (kept(hold), kept(cruise));
+        let mut curve = Self {
             phases: [
                 (rise, jerk),
                 (hold, zero),
@@ -48,7 +55,19 @@ impl<T: RealField + Copy> SCurve<T> {
                 (hold, zero),
                 (rise, jerk),
             ],
+        };
+        let way = curve.end().way;
+        for (_, jerk) in &mut curve.phases {
+            *jerk /= way;
         }
+        curve
+    }
+
+    fn end(&self) -> Motion<T> {
+        let phases = self.phases.iter();
+        phases.fold(Motion::rest(), |state, (time, jerk)| {
+            state.after(*time, *jerk)
+        })
     }
 
     /// The top speed with which both ramps together make the whole way.
@@ -73,15 +92,14 @@ impl<T: RealField + Copy> SCurve<T> {
     /// Calls `knot` with the state and the time to the next for `parts` parts, each within a
     /// phase, and with the end.
     pub(super) fn knots(&self, parts: u32, mut knot: impl FnMut(Motion<T>, T)) {
-        let total = self.phases.iter().fold(T::zero(), |sum, (time, _)| sum + *time);
+        let total = self
+            .phases
+            .iter()
+            .fold(T::zero(), |sum, (time, _)| sum + *time);
         let used = self.phases.iter().filter(|(time, _)| *time > T::zero());
         let mut phases_left = used.count().try_into().unwrap_or(PHASES);
         let (mut parts_left, mut time_left) = (parts, total);
-        let mut state = Motion {
-            way: T::zero(),
-            speed: T::zero(),
-            acceleration: T::zero(),
-        };
+        let mut state = Motion::rest();
         for (time, jerk) in self.phases {
             if time <= T::zero() {
                 continue;
@@ -101,8 +119,7 @@ impl<T: RealField + Copy> SCurve<T> {
         }
         let end = Motion {
             way: T::one(),
-            speed: T::zero(),
-            acceleration: T::zero(),
+            ..Motion::rest()
         };
         knot(end, T::zero());
     }
@@ -120,6 +137,14 @@ fn share<T: RealField + Copy>(whole: u32, share: T) -> u32 {
 }
 
 impl<T: RealField + Copy> Motion<T> {
+    fn rest() -> Self {
+        Self {
+            way: T::zero(),
+            speed: T::zero(),
+            acceleration: T::zero(),
+        }
+    }
+
     fn after(self, time: T, jerk: T) -> Self {
         let third = T::one() / nalgebra::convert(3.0);
         let speeding = self.acceleration + jerk * time * half();
