@@ -127,7 +127,7 @@ fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
                 && driver.is_online()
                 && let Some(block) = shown.update(&screen, MODEL)
             {
-                driver.send_lcd(&block).unwrap();
+                driver.send_lcd(&block)?;
             }
             let now = Instant::from_micros(micros);
             for event in events(&mut station, &mut driver, now) {
