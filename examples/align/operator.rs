@@ -21,6 +21,9 @@ const HAND_COUNTS: i64 = 100;
 /// How far a locator may be from its place after a jog there and back: what adding up rounds off.
 const BACK_MM: f64 = 1e-6;
 
+/// Room for braking at the end of a jog.
+const MARGIN: f64 = 1.25;
+
 /// What the operator is to do.
 pub(crate) struct Task {
     settings: Settings,
@@ -146,7 +149,7 @@ fn multiplier_within(room: f64, counts: &[i32], settings: &Settings) -> u8 {
     let share = |counts: &i32| settings.wheel.share(*counts, settings.full_jog_um_s);
     let um_s: i64 = counts.iter().map(share).sum();
     #[expect(clippy::cast_precision_loss, reason = "mm")]
-    let way = um_s.unsigned_abs() as f64 / 1000.0 * 0.2;
+    let way = um_s.unsigned_abs() as f64 / 1000.0 * 0.2 * MARGIN;
     match room {
         room if way < room => 3,
         room if way / 10.0 < room => 2,
