@@ -102,22 +102,19 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             points = points.saturating_add(taken).saturating_sub(1);
             used = used.saturating_add(taken);
         }
-        let table = |knots, duration_s| Self {
+        let knots = knots.get_mut(..used).unwrap_or_default();
+        stretch_legs(platform, path, knots)?;
+        let knots = &*knots;
+        Ok(Self {
             platform,
             path: *path,
             knots,
             points,
-            duration_s,
+            duration_s: knots
+                .iter()
+                .fold(T::zero(), |sum, knot| sum + knot.segment_s),
             stretch: T::one(),
-        };
-        let knots = knots.get_mut(..used).unwrap_or_default();
-        stretch_legs(platform, path, knots)?;
-        let knots = &*knots;
-        let duration_s = table(knots, T::zero())
-            .points()
-            .last()
-            .map_or(T::zero(), |point| point.time_s);
-        Ok(table(knots, duration_s))
+        })
     }
 
     /// The same motion at a share of its speed, above 0 and at most 1: room for a feed above
@@ -215,8 +212,8 @@ fn strain_bound<const N: usize, T: RealField + Copy>(
     })
 }
 
-/// Looks at what the controller will run: every stroke, and every limit, exactly. The time of an
-/// S-curve is multiplied so that it just keeps them all.
+/// Looks at what the controller will run: every stroke, and of an S-curve every limit; its time
+/// is multiplied so that it just keeps them all. The fastest table keeps them by its making.
 fn stretch_legs<const N: usize, T: RealField + Copy>(
     platform: &Platform<N, T>,
     path: &Path<'_, T>,
@@ -229,7 +226,7 @@ fn stretch_legs<const N: usize, T: RealField + Copy>(
     let mut last = PvtPoint::new(&course.place(zero), zero, zero, zero);
     let failed = |leg, point| move |reason| PlanError::Limit { leg, point, reason };
     platform.check_axes(&last.axes).map_err(failed(0, 0))?;
-    let mut rest = knots;
+    let (mut rest, smooth) = (knots, has_jerk(platform));
     for (number, leg) in moving(path) {
         let parts = rest.first().map_or(0, |knot| knot.parts);
         let Some((knots, later)) = rest.split_at_mut_checked(knots_of(parts)) else {
@@ -243,14 +240,17 @@ fn stretch_legs<const N: usize, T: RealField + Copy>(
             let place = course.place(knot.s);
             let point = PvtPoint::new(&place, knot.speed, zero, before.segment_s);
             check::strokes(platform, &last, &point).map_err(failed(number, index))?;
-            shares.add(platform.locators(), &last, &point);
+            if smooth {
+                shares.add(platform.locators(), &last, &point);
+            }
             last = point;
         }
-        shares.stop(platform.locators());
-        let stretch = shares.stretch();
-        // The fastest table misses its limits by rounding alone, an S-curve by its rule.
-        if stretch > T::one() || has_jerk(platform) {
-            stretch_time(knots, stretch * (T::one() + epsilons(STRETCH_EPSILONS)));
+        if smooth {
+            shares.stop(platform.locators());
+            stretch_time(
+                knots,
+                shares.stretch() * (T::one() + epsilons(STRETCH_EPSILONS)),
+            );
         }
     }
     Ok(())

@@ -254,16 +254,6 @@ fn a_body_that_stays_is_one_point() {
     }
 }
 
-#[test]
-fn memory_is_fixed() {
-    let platform = size_of::<Platform<3>>();
-    println!(
-        "table {}, points {}, platform {platform}",
-        size_of::<PtTable<'_, 3>>(),
-        size_of::<pose_pt::PtPoints<'_, 3>>()
-    );
-}
-
 prop_compose! {
     fn poses()(translation in prop::array::uniform3(-40.0..40.0), turn in prop::array::uniform3(-0.2..0.2),
         to in prop::array::uniform3(-40.0..40.0), to_turn in prop::array::uniform3(-0.2..0.2))

@@ -14,7 +14,7 @@ use cubic::{between, cubic};
 use pose_pt::nalgebra::{Isometry3, Point3, Vector3};
 use pose_pt::{
     AxisLimits, Convention, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError,
-    Platform, PvtPoint, PvtTable,
+    Platform, PtTable, PvtPoint, PvtTable,
 };
 use proptest::prelude::*;
 use strain::strain;
@@ -289,6 +289,9 @@ fn strain_decides_the_number_of_points() {
             table.duration_s()
         );
         assert!(bound <= allowed && measured(&platform, &points) <= bound);
+        let linear = PtTable::plan(&platform, &path, Cut::strain(allowed)).unwrap();
+        println!("PT: {} parts", linear.len() - 1);
+        assert!(linear.len() > table.len());
         let fewer = Cut::parts(u32::try_from(parts - 1).unwrap());
         let coarse = PvtTable::plan(&platform, &path, fewer, &mut knots).unwrap();
         assert!(coarse.strain_bound() > allowed);

@@ -6,7 +6,7 @@ use nalgebra::RealField;
 
 use super::Knot;
 use super::scurve::SCurve;
-use super::segment::Segment;
+use super::segment::{Reciprocals, Segment};
 use crate::Locator;
 use crate::course::{Course, Place};
 use crate::number::{largest, two};
@@ -21,8 +21,9 @@ pub(super) fn fastest<const N: usize, T: RealField + Copy>(
 ) {
     spread(knots, parts);
     let knots = Cell::from_mut(knots).as_slice_of_cells();
-    backward(locators, course, knots);
-    forward(locators, course, knots);
+    let limits = Reciprocals::new(locators);
+    backward(&limits, course, knots);
+    forward(&limits, course, knots);
 }
 
 /// Fills the knots of a leg, one more than parts, with an S-curve.
@@ -65,7 +66,7 @@ fn spread<T: RealField + Copy>(knots: &mut [Knot<T>], parts: u32) {
 /// From the end: the highest speed at each knot from which the rest can be run, in `speed`, and
 /// the speed after it as a share, in `segment_s`.
 fn backward<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
+    limits: &Reciprocals<N, T>,
     course: &Course<'_, N, T>,
     knots: &[Cell<Knot<T>>],
 ) {
@@ -75,7 +76,7 @@ fn backward<const N: usize, T: RealField + Copy>(
         let (mut knot, next) = (from_knot.get(), to_knot.get());
         let from = course.place(knot.s);
         let end = to.unwrap_or_else(|| course.place(next.s));
-        let segment = Segment::new(locators, &from, &end, next.s - knot.s);
+        let segment = Segment::new(limits, &from, &end, next.s - knot.s);
         let (speed, after) = segment.begin(next.speed, largest());
         knot.speed = speed;
         knot.segment_s = after / speed;
@@ -86,7 +87,7 @@ fn backward<const N: usize, T: RealField + Copy>(
 
 /// From the start at rest: as fast as each segment and what is left allow.
 fn forward<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
+    limits: &Reciprocals<N, T>,
     course: &Course<'_, N, T>,
     knots: &[Cell<Knot<T>>],
 ) {
@@ -98,7 +99,7 @@ fn forward<const N: usize, T: RealField + Copy>(
         let start = from.unwrap_or_else(|| course.place(knot.s));
         let to = course.place(next.s);
         let way = next.s - knot.s;
-        let segment = Segment::new(locators, &start, &to, way);
+        let segment = Segment::new(limits, &start, &to, way);
         let after = segment.end(speed, next.speed, speed * knot.segment_s);
         knot.speed = speed;
         knot.segment_s = two::<T>() * way / (speed + after);
