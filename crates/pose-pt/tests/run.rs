@@ -233,7 +233,7 @@ fn memory_is_fixed() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// Any feeds at any points: limits, the path, the end.
     #[test]

@@ -155,10 +155,11 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
             let value = own * speed + others * other;
             if magnitude(value) > T::one() {
                 let highest = (T::one().copysign(value) - others * other) / own;
-                speed = if highest < speed { highest } else { speed };
+                if highest > T::zero() && highest < speed {
+                    speed = highest;
+                }
             }
         }
-        speed = speed.max(T::zero());
         for row in self.accelerations.as_flattened().as_flattened() {
             let [c, d] = *row;
             let d = if end == End::From { -d } else { d };
@@ -252,5 +253,9 @@ fn lower<T: RealField + Copy>(c: T, d: T, other: T, speed: T) -> T {
     let linear = c * other;
     let root = (linear * linear - (c + d) * rest).max(T::zero()).sqrt();
     let below = -rest / (linear + root);
-    if below < speed { below } else { speed }
+    if below > T::zero() && below < speed {
+        below
+    } else {
+        speed
+    }
 }
