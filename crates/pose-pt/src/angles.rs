@@ -3,7 +3,6 @@
 use nalgebra::{Isometry3, Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3};
 
 use crate::number::{epsilons, half};
-use crate::rotation;
 
 /// How the three angles of a pose vector make a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -62,8 +61,8 @@ pub struct Resolved<T = f64> {
     pub locked: bool,
 }
 
-/// Half the distance, in machine epsilons, from β = ±π/2 below which α and γ cannot
-/// be told apart: what the products of `to_isometry` round off.
+/// Weight of the sum or the difference of α and γ, in machine epsilons, below which it
+/// is nothing but what the products of `to_quaternion` round off.
 const LOCK_EPSILONS: f64 = 2.0;
 
 impl<T: RealField + Copy> PoseVector<T> {
@@ -92,7 +91,7 @@ impl<T: RealField + Copy> PoseVector<T> {
         Vector3::new(self.alpha, self.beta, self.gamma)
     }
 
-    /// The rotation as a quaternion.
+    /// The rotation as a quaternion; finite angles give a finite one.
     #[must_use]
     pub fn to_quaternion(&self, convention: Convention) -> UnitQuaternion<T> {
         let (sa, ca) = (self.alpha * half()).sin_cos();
@@ -151,7 +150,7 @@ impl<T: RealField + Copy> PoseVector<T> {
         Rotation3::from_matrix_unchecked(matrix)
     }
 
-    /// The pose.
+    /// The pose; a finite vector gives a finite one.
     #[must_use]
     pub fn to_isometry(&self, convention: Convention) -> Isometry3<T> {
         Isometry3::from_parts(self.position().into(), self.to_quaternion(convention))
@@ -165,7 +164,8 @@ impl<T: RealField + Copy> PoseVector<T> {
     }
 
     /// The pose vector of a pose that is nearest to `previous`: each angle at its whole
-    /// turn nearest to the previous one, at gimbal lock with the previous α.
+    /// turn nearest to the previous one, at gimbal lock with the previous α. But for whole
+    /// turns β is within -π/2..=π/2.
     #[must_use]
     pub fn from_isometry_near(
         pose: &Isometry3<T>,
@@ -182,7 +182,16 @@ impl<T: RealField + Copy> PoseVector<T> {
     }
 }
 
-/// Half sum and half difference of α and γ with their weights.
+/// Half sum and half difference of α and γ with their weights: the polar forms of two
+/// pairs of sums of the quaternion w + xi + yj + zk of Rz(γ) Ry(β) Rx(α).
+///
+/// ```text
+/// w - y + i (x + z) = √(1 - sin β) exp(i (α + γ)/2)
+/// w + y + i (x - z) = √(1 + sin β) exp(i (α - γ)/2)
+/// ```
+///
+/// At gimbal lock one weight vanishes: its angle is then free, or of few digits, and the
+/// matrix does not depend on them.
 struct Angles<T> {
     half_sum: T,
     half_difference: T,
@@ -252,12 +261,4 @@ impl<T: RealField + Copy> Angles<T> {
 fn nearest_turn<T: RealField + Copy>(angle: T, near: T) -> T {
     let turns = ((near - angle) / T::two_pi()).round();
     angle + turns * T::two_pi()
-}
-
-impl<T: RealField + Copy> Resolved<T> {
-    /// The angle between the pose's rotation and that of the vector, in radians.
-    #[must_use]
-    pub fn rotation_error(&self, pose: &Isometry3<T>, convention: Convention) -> T {
-        rotation::angle_between(&pose.rotation, &self.vector.to_quaternion(convention))
-    }
 }

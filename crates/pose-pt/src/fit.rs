@@ -1,9 +1,9 @@
 //! The rigid motion that brings points nearest to points.
 
-use nalgebra::{Isometry3, Matrix3, Point3, RealField, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, RealField, Vector3};
 
 use crate::number::{epsilons, first_beyond, largest};
-use crate::rotation::{from_rotation_vector, quaternion, to_matrix};
+use crate::rotation::{quaternion, to_matrix};
 use crate::svd::Svd;
 
 /// Which of the two sets of points.
@@ -243,7 +243,7 @@ fn longest<T: RealField + Copy>(vectors: impl Iterator<Item = Vector3<T>>) -> Ve
 ///
 /// The maximum is found by singular values with proper rotations on both sides (Kabsch,
 /// 1976; Umeyama, 1991), each set in the frame of its own farthest and widest point so
-/// that narrow sets keep their digits, and polished by Newton steps on the residuals.
+/// that narrow sets keep their digits.
 /// In f64 the rotation of exact points is right to a few 1e-16 times the largest
 /// coordinate divided by the width of the set. A reflection is never returned.
 ///
@@ -275,11 +275,7 @@ pub fn rigid_fit<T: RealField + Copy>(
             needed,
         });
     }
-    let mut local = svd.rotation();
-    for _ in 0..REFINEMENTS {
-        local = to_matrix(&correction(&local, pairs(), &svd)).into_inner() * local;
-    }
-    let rotation = quaternion(&(b.frame * local * a.frame.transpose()));
+    let rotation = quaternion(&(b.frame * svd.rotation() * a.frame.transpose()));
     let matrix = to_matrix(&rotation);
     let translation = b.mean - matrix * a.mean;
     let (rms, max_residual) = rms_and_largest(
@@ -294,27 +290,4 @@ pub fn rigid_fit<T: RealField + Copy>(
         eigenvalue_gap,
         rank: a.rank,
     })
-}
-
-/// Newton steps after the decomposition; one removes what its sweeps left, a second what
-/// the first left where the residuals are large.
-const REFINEMENTS: usize = 2;
-
-/// One Newton step: the residuals' moment divided by the stiffness of the fit.
-fn correction<T: RealField + Copy>(
-    rotation: &Matrix3<T>,
-    pairs: impl Iterator<Item = (Vector3<T>, Vector3<T>)>,
-    svd: &Svd<T>,
-) -> UnitQuaternion<T> {
-    let moment: Vector3<T> = pairs
-        .map(|(from, to)| {
-            let moved = rotation * from;
-            moved.cross(&(to - moved))
-        })
-        .sum();
-    let ([u1, u2, u3], [s1, s2, s3]) = (&svd.u, svd.sigma);
-    let turn = u1 * (u1.dot(&moment) / (s2 + s3))
-        + u2 * (u2.dot(&moment) / (s1 + s3))
-        + u3 * (u3.dot(&moment) / (s1 + s2));
-    from_rotation_vector(&turn)
 }

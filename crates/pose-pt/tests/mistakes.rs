@@ -108,10 +108,16 @@ fn narrow_sets_lose_digits_once_not_twice() {
             Point3::new(1000.0, width, 0.0),
             Point3::new(0.0, -width, 0.0),
         ];
-        let b = a.map(|point| motion * point);
-        let fit = rigid_fit(&a, &b).unwrap();
-        let turn = angle_between(&fit.motion.rotation, &motion.rotation);
-        assert!(turn <= ROUNDING * 1000.0 / width, "{width:e}: {turn:e}");
+        // Along an axis of the coordinates, and across all three.
+        for placed in [a, a.map(|point| start() * point)] {
+            let b = placed.map(|point| motion * point);
+            let fit = rigid_fit(&placed, &b).unwrap();
+            let turn = angle_between(&fit.motion.rotation, &motion.rotation);
+            assert!(
+                turn <= 2.0 * ROUNDING * 1000.0 / width,
+                "{width:e}: {turn:e}"
+            );
+        }
     }
 }
 

@@ -78,14 +78,17 @@ fn anchors<const N: usize>() -> impl Strategy<Value = [Point3<f64>; N]> {
 
 fn platforms() -> impl Strategy<Value = Platform<4>> {
     let locator = (points(2000.0), frames());
-    (anchors::<4>(), prop::array::uniform4(locator)).prop_map(|(anchors, placed)| {
-        let mut number = 0..4;
-        let locators = anchors.map(|anchor| {
-            let (origin, axes) = placed[number.next().unwrap()];
-            Locator::new(anchor, origin, limits()).with_axes(axes)
-        });
-        Platform::new(locators).unwrap()
-    })
+    (anchors::<4>(), prop::array::uniform4(locator)).prop_filter_map(
+        "refused",
+        |(anchors, placed)| {
+            let mut number = 0..4;
+            let locators = anchors.map(|anchor| {
+                let (origin, axes) = placed[number.next().unwrap()];
+                Locator::new(anchor, origin, limits()).with_axes(axes)
+            });
+            Platform::new(locators).ok()
+        },
+    )
 }
 
 proptest! {
@@ -161,6 +164,27 @@ proptest! {
         prop_assert!(way.norm() <= 5000.0 * 2.0 * lever * ROUNDING, "{:e}", way.norm());
         prop_assert!(body.rms <= 2.0 * 10_000.0 * ROUNDING, "{:e}", body.rms);
         prop_assert!(body.strain.change.abs() <= 4.0 * 10_000.0 * ROUNDING);
+    }
+
+    #[test]
+    fn own_poses_at_the_ends_of_strokes_are_not_refused(
+        platform in platforms(),
+        pose in poses(),
+        upper in prop::bool::ANY,
+    ) {
+        let axes = platform.axes(&pose);
+        let mut ends = axes.iter();
+        let locators = platform.locators().map(|mut locator| {
+            for (limits, end) in locator.limits.iter_mut().zip(ends.next().unwrap()) {
+                let (min, max) = if upper { (end - 9.0, *end) } else { (*end, end + 9.0) };
+                *limits = AxisLimits::new(min, max, 50.0, 200.0);
+            }
+            locator
+        });
+        let limited = Platform::new(locators).unwrap();
+        let body = limited.pose(&axes).unwrap();
+        let refused = limited.checked_axes(&body.pose);
+        prop_assert!(refused.is_ok(), "{refused:?}");
     }
 
     #[test]
