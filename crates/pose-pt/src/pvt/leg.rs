@@ -9,7 +9,7 @@ use super::scurve::SCurve;
 use super::segment::{Reciprocals, Segment};
 use crate::Locator;
 use crate::course::{Course, Place};
-use crate::number::{largest, two};
+use crate::number::{larger, largest, magnitude, two};
 use crate::turn::count;
 
 /// Fills the knots of a leg, one more than parts, with the fastest motion.
@@ -163,39 +163,25 @@ fn s_curve<const N: usize, T: RealField + Copy>(
 /// number that can be divided by.
 fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -> [[[T; 3]; 3]; N] {
     let samples = count::<T>(SAMPLES);
-    let least = T::one() / largest();
-    let mut most = [[[least; 3]; 3]; N];
-    let (mut last, mut last_change) = (None, None);
-    for index in 0..=SAMPLES {
-        let slope = course.place(count::<T>(index) / samples).slope;
-        let mut change = slope;
-        for (locator, change) in change.iter_mut().enumerate() {
-            let before: Option<&[nalgebra::Vector3<T>; N]> = last.as_ref();
-            let before = before
-                .and_then(|last| last.get(locator))
-                .unwrap_or(&*change);
-            *change = (*change - *before) * samples;
-        }
-        let mut second = change;
-        for (locator, second) in second.iter_mut().enumerate() {
-            let before: Option<&[nalgebra::Vector3<T>; N]> = last_change.as_ref();
-            // The first change is none: there is nothing before it.
-            let before = before.filter(|_| index > 1);
-            let before = before
-                .and_then(|last| last.get(locator))
-                .unwrap_or(&*second);
-            *second = (*second - *before) * samples;
-        }
-        let values = slope.iter().zip(change.iter().zip(&second));
-        for (most, (slope, (change, second))) in most.iter_mut().zip(values) {
-            let values = slope.iter().zip(change.iter().zip(second.iter()));
-            for (most, (slope, (change, second))) in most.iter_mut().zip(values) {
-                for (most, value) in most.iter_mut().zip([slope, change, second]) {
-                    *most = most.max(value.abs());
+    let mut most = [[[T::one() / largest(); 3]; 3]; N];
+    for index in 0..SAMPLES - 1 {
+        let slope = |next: u32| course.place(count::<T>(index + next) / samples).slope;
+        let (first, second, third) = (slope(0), slope(1), slope(2));
+        let values = first.iter().zip(second.iter().zip(&third));
+        for (most, (first, (second, third))) in most.iter_mut().zip(values) {
+            let values = first.iter().zip(second.iter().zip(third.iter()));
+            for ([p1, p2, p3], (first, (second, third))) in most.iter_mut().zip(values) {
+                let changes = [*second - *first, *third - *second].map(|change| change * samples);
+                for slope in [*first, *second, *third] {
+                    *p1 = larger(*p1, magnitude(slope));
                 }
+                for change in changes {
+                    *p2 = larger(*p2, magnitude(change));
+                }
+                let [before, after] = changes;
+                *p3 = larger(*p3, magnitude((after - before) * samples));
             }
         }
-        (last, last_change) = (Some(slope), Some(change));
     }
     most
 }
