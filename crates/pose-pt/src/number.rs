@@ -29,3 +29,15 @@ pub(crate) fn first_beyond<'a, T: RealField + Copy>(
     let mut values = values.into_iter().copied();
     values.find(|value| !value.is_finite() || value.abs() > max)
 }
+
+/// The larger of two numbers; a comparison where `RealField::max` is a call of a library.
+#[inline]
+pub(crate) fn larger<T: RealField + Copy>(a: T, b: T) -> T {
+    if a > b { a } else { b }
+}
+
+/// The absolute value, without a call of a library.
+#[inline]
+pub(crate) fn magnitude<T: RealField + Copy>(value: T) -> T {
+    larger(value, -value)
+}

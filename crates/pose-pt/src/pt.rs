@@ -5,6 +5,7 @@ use core::iter::FusedIterator;
 use nalgebra::{RealField, Vector3};
 
 use crate::course::{Course, Walk};
+use crate::number::{larger, magnitude};
 use crate::path::{Leg, Path};
 use crate::strain::linear_strain;
 use crate::{Cut, Locator, PlanError, Platform};
@@ -221,8 +222,7 @@ fn slowest<const N: usize, T: RealField + Copy>(
     let mut longest = T::zero();
     for (locator, (from, to)) in locators.iter().zip(from.iter().zip(to)) {
         for (limits, (from, to)) in locator.limits.iter().zip(from.iter().zip(to.iter())) {
-            let time = (*to - *from).abs() / limits.speed;
-            longest = if time > longest { time } else { longest };
+            longest = larger(longest, magnitude(*to - *from) / limits.speed);
         }
     }
     longest

@@ -6,7 +6,7 @@ use nalgebra::RealField;
 
 use crate::course::Place;
 use crate::number::{largest, two};
-use crate::pvt::segment::Segment;
+use crate::pvt::segment::{Reciprocals, Segment};
 use crate::{PlanError, PvtPoint, PvtTable};
 
 /// Memory for one point of a table that runs: what the points ahead still allow.
@@ -60,6 +60,7 @@ pub struct FeedError<T = f64> {
 pub struct PvtRun<'a, const N: usize, T: RealField = f64> {
     table: PvtTable<'a, N, T>,
     ahead: &'a [Ahead<T>],
+    limits: Reciprocals<N, T>,
     max: T,
     wanted: T,
     /// Feed at the last point handed out.
@@ -88,6 +89,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
         Ok(PvtRun {
             table: *self,
             ahead,
+            limits: Reciprocals::new(self.platform().locators()),
             max,
             wanted: T::one().min(max),
             feed: T::zero(),
@@ -98,7 +100,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
 
     /// From the end: the highest feed at each point from which the rest can be run.
     fn look_ahead(&self, max: T, ahead: &mut [Ahead<T>]) {
-        let locators = self.platform().locators();
+        let limits = Reciprocals::new(self.platform().locators());
         let full = T::one().min(max);
         let ahead = Cell::from_mut(ahead).as_slice_of_cells();
         if let Some(last) = ahead.last() {
@@ -112,7 +114,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             let ([here, next], Some(from), Some((end, _))) = (pair, self.node(number), to) else {
                 continue;
             };
-            let segment = Segment::new(locators, &from.0, &end, from.1);
+            let segment = Segment::new(&limits, &from.0, &end, from.1);
             let (ceiling, after) = segment.begin(next.get().ceiling, max);
             // The table itself holds.
             here.set(if ceiling > full {
@@ -191,8 +193,7 @@ impl<const N: usize, T: RealField + Copy> PvtRun<'_, N, T> {
         let feed = if wanted == self.feed && wanted <= T::one() {
             wanted
         } else {
-            let locators = self.table.platform().locators();
-            let segment = Segment::new(locators, &from, &to, duration);
+            let segment = Segment::new(&self.limits, &from, &to, duration);
             segment.toward(self.feed, wanted, self.feed * here.after)
         };
         let both = self.feed + feed;

@@ -14,7 +14,7 @@ use cubic::{between, cubic};
 use pose_pt::nalgebra::{Isometry3, Point3, Vector3};
 use pose_pt::{
     AxisLimits, Convention, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError,
-    Platform, PvtPoint, PvtTable,
+    Platform, PtTable, PvtPoint, PvtTable,
 };
 use proptest::prelude::*;
 use strain::strain;
@@ -289,6 +289,9 @@ fn strain_decides_the_number_of_points() {
             table.duration_s()
         );
         assert!(bound <= allowed && measured(&platform, &points) <= bound);
+        let linear = PtTable::plan(&platform, &path, Cut::strain(allowed)).unwrap();
+        println!("PT: {} parts", linear.len() - 1);
+        assert!(linear.len() > table.len());
         let fewer = Cut::parts(u32::try_from(parts - 1).unwrap());
         let coarse = PvtTable::plan(&platform, &path, fewer, &mut knots).unwrap();
         assert!(coarse.strain_bound() > allowed);
@@ -364,7 +367,49 @@ fn wrong_input_is_named() {
     assert!((slower.points().last().unwrap().time_s - 2.0 * table.duration_s()).abs() < 1e-12);
 }
 
-/// A bulge of the cubic between two points counts.
+/// Moves at the edge of what can be told apart, and limits far apart.
+#[test]
+fn tiny_moves_and_odd_limits_give_finite_tables() {
+    let odd = [
+        AxisLimits::new(-1500.0, 1500.0, 1e-3, 1e6),
+        AxisLimits::new(-1500.0, 1500.0, 1e6, 1e-3),
+        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e9),
+        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e-2),
+    ];
+    for limits in odd {
+        let platform = panel_with(limits);
+        for (way, turn) in [
+            (1e-6, 0.0),
+            (0.0, 1e-9),
+            (1e-13, 1e-15),
+            (100.0, 1e-12),
+            (1e-9, 0.3),
+        ] {
+            let poses = from_rest([way, 0.0, -way], [0.0, turn, turn]);
+            for kind in ALL {
+                let path = Path::new(&poses, kind).unwrap();
+                let mut knots = [Knot::default(); 33];
+                let table = PvtTable::plan(&platform, &path, Cut::parts(32), &mut knots).unwrap();
+                let mut last = 0.0;
+                for point in table.points().skip(1) {
+                    assert!(
+                        point.time_s > last && point.time_s.is_finite(),
+                        "{kind:?} {way} {turn}"
+                    );
+                    assert!(
+                        point
+                            .velocities
+                            .iter()
+                            .all(|v| v.amax() <= limits.speed * LIMIT)
+                    );
+                    last = point.time_s;
+                }
+            }
+        }
+    }
+}
+
+/// Limits of a table whose positions have seven digits.
 #[test]
 fn single_precision_keeps_its_limits() {
     let anchors = [[0.0_f32, 0.0, 0.0], [400.0, 0.0, 5.0], [180.0, 149.0, -8.0]];
@@ -415,7 +460,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(160))]
 
     #[test]
     fn limits_are_never_passed(

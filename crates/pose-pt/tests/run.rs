@@ -217,8 +217,23 @@ fn an_underrun_is_reported_with_its_time() {
     assert_eq!(fifo.state(9.0).unwrap().free, 512);
 }
 
+/// The sizes that the README states, for three locators in f64 on 64 bits.
+#[cfg(target_pointer_width = "64")]
+#[test]
+fn memory_is_fixed() {
+    use pose_pt::{PtPoints, PtTable, PvtPoints, PvtRun};
+
+    assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
+    assert_eq!(size_of::<PtPoints<'_, 3>>(), 656);
+    assert_eq!(size_of::<PvtTable<'_, 3>>(), 72);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 400);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 424);
+    assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
+    assert_eq!(size_of::<Fifo<512>>(), 512 * 8 + 72);
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// Any feeds at any points: limits, the path, the end.
     #[test]

@@ -49,6 +49,18 @@ impl<T: RealField + Copy> Cubic<T> {
         outer + three * share * rest * (b1 * rest + b2 * share)
     }
 
+    /// Whether the control points, and so the cubic, are within a stroke.
+    fn surely_within(&self, min: T, max: T) -> bool {
+        let third = self.duration * nalgebra::convert(1.0 / 3.0);
+        let points = [
+            self.q0 + self.v0 * third,
+            self.q1 - self.v1 * third,
+            self.q0,
+            self.q1,
+        ];
+        points.iter().all(|point| *point >= min && *point <= max)
+    }
+
     /// The lowest and the highest position.
     fn reach(&self) -> [T; 2] {
         let (mut low, mut high) = (self.q0.min(self.q1), self.q0.max(self.q1));
@@ -107,6 +119,9 @@ pub(super) fn strokes<const N: usize, T: RealField + Copy>(
 ) -> Result<(), LimitError<T>> {
     platform.check_axes(&to.axes)?;
     for (locator, axis, limits, cubic) in cubics(platform.locators(), from, to) {
+        if cubic.surely_within(limits.min, limits.max) {
+            continue;
+        }
         let [low, high] = cubic.reach();
         let by = (limits.min - low).max(high - limits.max);
         if by > T::zero() {

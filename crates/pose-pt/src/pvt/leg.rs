@@ -6,10 +6,10 @@ use nalgebra::RealField;
 
 use super::Knot;
 use super::scurve::SCurve;
-use super::segment::Segment;
+use super::segment::{Reciprocals, Segment};
 use crate::Locator;
 use crate::course::{Course, Place};
-use crate::number::{largest, two};
+use crate::number::{larger, largest, magnitude, two};
 use crate::turn::count;
 
 /// Fills the knots of a leg, one more than parts, with the fastest motion.
@@ -21,8 +21,9 @@ pub(super) fn fastest<const N: usize, T: RealField + Copy>(
 ) {
     spread(knots, parts);
     let knots = Cell::from_mut(knots).as_slice_of_cells();
-    backward(locators, course, knots);
-    forward(locators, course, knots);
+    let limits = Reciprocals::new(locators);
+    backward(&limits, course, knots);
+    forward(&limits, course, knots);
 }
 
 /// Fills the knots of a leg, one more than parts, with an S-curve.
@@ -65,7 +66,7 @@ fn spread<T: RealField + Copy>(knots: &mut [Knot<T>], parts: u32) {
 /// From the end: the highest speed at each knot from which the rest can be run, in `speed`, and
 /// the speed after it as a share, in `segment_s`.
 fn backward<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
+    limits: &Reciprocals<N, T>,
     course: &Course<'_, N, T>,
     knots: &[Cell<Knot<T>>],
 ) {
@@ -75,7 +76,7 @@ fn backward<const N: usize, T: RealField + Copy>(
         let (mut knot, next) = (from_knot.get(), to_knot.get());
         let from = course.place(knot.s);
         let end = to.unwrap_or_else(|| course.place(next.s));
-        let segment = Segment::new(locators, &from, &end, next.s - knot.s);
+        let segment = Segment::new(limits, &from, &end, next.s - knot.s);
         let (speed, after) = segment.begin(next.speed, largest());
         knot.speed = speed;
         knot.segment_s = after / speed;
@@ -86,7 +87,7 @@ fn backward<const N: usize, T: RealField + Copy>(
 
 /// From the start at rest: as fast as each segment and what is left allow.
 fn forward<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
+    limits: &Reciprocals<N, T>,
     course: &Course<'_, N, T>,
     knots: &[Cell<Knot<T>>],
 ) {
@@ -98,7 +99,7 @@ fn forward<const N: usize, T: RealField + Copy>(
         let start = from.unwrap_or_else(|| course.place(knot.s));
         let to = course.place(next.s);
         let way = next.s - knot.s;
-        let segment = Segment::new(locators, &start, &to, way);
+        let segment = Segment::new(limits, &start, &to, way);
         let after = segment.end(speed, next.speed, speed * knot.segment_s);
         knot.speed = speed;
         knot.segment_s = two::<T>() * way / (speed + after);
@@ -162,39 +163,25 @@ fn s_curve<const N: usize, T: RealField + Copy>(
 /// number that can be divided by.
 fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -> [[[T; 3]; 3]; N] {
     let samples = count::<T>(SAMPLES);
-    let least = T::one() / largest();
-    let mut most = [[[least; 3]; 3]; N];
-    let (mut last, mut last_change) = (None, None);
-    for index in 0..=SAMPLES {
-        let slope = course.place(count::<T>(index) / samples).slope;
-        let mut change = slope;
-        for (locator, change) in change.iter_mut().enumerate() {
-            let before: Option<&[nalgebra::Vector3<T>; N]> = last.as_ref();
-            let before = before
-                .and_then(|last| last.get(locator))
-                .unwrap_or(&*change);
-            *change = (*change - *before) * samples;
-        }
-        let mut second = change;
-        for (locator, second) in second.iter_mut().enumerate() {
-            let before: Option<&[nalgebra::Vector3<T>; N]> = last_change.as_ref();
-            // The first change is none: there is nothing before it.
-            let before = before.filter(|_| index > 1);
-            let before = before
-                .and_then(|last| last.get(locator))
-                .unwrap_or(&*second);
-            *second = (*second - *before) * samples;
-        }
-        let values = slope.iter().zip(change.iter().zip(&second));
-        for (most, (slope, (change, second))) in most.iter_mut().zip(values) {
-            let values = slope.iter().zip(change.iter().zip(second.iter()));
-            for (most, (slope, (change, second))) in most.iter_mut().zip(values) {
-                for (most, value) in most.iter_mut().zip([slope, change, second]) {
-                    *most = most.max(value.abs());
+    let mut most = [[[T::one() / largest(); 3]; 3]; N];
+    for index in 0..SAMPLES - 1 {
+        let slope = |next: u32| course.place(count::<T>(index + next) / samples).slope;
+        let (first, second, third) = (slope(0), slope(1), slope(2));
+        let values = first.iter().zip(second.iter().zip(&third));
+        for (most, (first, (second, third))) in most.iter_mut().zip(values) {
+            let values = first.iter().zip(second.iter().zip(third.iter()));
+            for ([p1, p2, p3], (first, (second, third))) in most.iter_mut().zip(values) {
+                let changes = [*second - *first, *third - *second].map(|change| change * samples);
+                for slope in [*first, *second, *third] {
+                    *p1 = larger(*p1, magnitude(slope));
                 }
+                for change in changes {
+                    *p2 = larger(*p2, magnitude(change));
+                }
+                let [before, after] = changes;
+                *p3 = larger(*p3, magnitude((after - before) * samples));
             }
         }
-        (last, last_change) = (Some(slope), Some(change));
     }
     most
 }

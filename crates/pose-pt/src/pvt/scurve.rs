@@ -104,7 +104,7 @@ impl<T: RealField + Copy> SCurve<T> {
             if time <= T::zero() {
                 continue;
             }
-            phases_left -= 1;
+            phases_left = u32::saturating_sub(phases_left, 1);
             // One part at least, and one for each phase to come.
             let free = parts_left.saturating_sub(phases_left).max(1);
             let parts = share(free, time / time_left).clamp(1, free);

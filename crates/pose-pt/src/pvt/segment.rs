@@ -4,7 +4,22 @@ use nalgebra::RealField;
 
 use crate::Locator;
 use crate::course::Place;
-use crate::number::{epsilons, half};
+use crate::number::{epsilons, half, larger, magnitude};
+
+/// One over the limits of speed and acceleration of each axis, a margin included.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reciprocals<const N: usize, T>([[[T; 2]; 3]; N]);
+
+impl<const N: usize, T: RealField + Copy> Reciprocals<N, T> {
+    pub(crate) fn new(locators: &[Locator<T>; N]) -> Self {
+        let margin = T::one() + epsilons(MARGIN_EPSILONS);
+        Self(locators.map(|locator| {
+            locator
+                .limits
+                .map(|limits| [margin / limits.speed, margin / limits.acceleration])
+        }))
+    }
+}
 
 /// The end of a segment whose speed is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,13 +64,12 @@ const HALVINGS: u32 = 48;
 
 impl<const N: usize, T: RealField + Copy> Segment<N, T> {
     pub(crate) fn new(
-        locators: &[Locator<T>; N],
+        limits: &Reciprocals<N, T>,
         from: &Place<N, T>,
         to: &Place<N, T>,
         way: T,
     ) -> Self {
         let constant = |value: f64| nalgebra::convert::<f64, T>(value);
-        let margin = T::one() + epsilons(MARGIN_EPSILONS);
         let (two, four) = (constant(2.0), constant(4.0));
         let (inverse, half_thrice) = (T::one() / way, constant(1.5));
         let zero = T::zero();
@@ -67,19 +81,19 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
         let rows = segment.accelerations.iter_mut().zip(&mut segment.middles);
         let places = from.axes.iter().zip(&to.axes);
         let slopes = from.slope.iter().zip(&to.slope);
-        for ((locator, (accelerations, middles)), ((q0, q1), (p0, p1))) in
-            locators.iter().zip(rows).zip(places.zip(slopes))
+        for ((limits, (accelerations, middles)), ((q0, q1), (p0, p1))) in
+            limits.0.iter().zip(rows).zip(places.zip(slopes))
         {
             let q = q0.iter().zip(q1.iter());
             let p = p0.iter().zip(p1.iter());
             let rows = accelerations.iter_mut().zip(middles);
-            for ((limits, (row, middle)), ((q0, q1), (p0, p1))) in
-                locator.limits.iter().zip(rows).zip(q.zip(p))
+            for (([speed, acceleration], (row, middle)), ((q0, q1), (p0, p1))) in
+                limits.iter().zip(rows).zip(q.zip(p))
             {
                 let (p0, p1) = (*p0, *p1);
                 let mean = (*q1 - *q0) * inverse;
                 let six = constant(6.0) * mean;
-                let share = margin * inverse / limits.acceleration;
+                let share = inverse * *acceleration;
                 *row = [
                     [
                         (six - four * p0 - two * p1) * share,
@@ -90,12 +104,11 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
                         (four * p1 - two * p0) * share,
                     ],
                 ];
-                let share = margin / limits.speed;
                 let high = half_thrice * mean;
-                *middle = [(high - p0) * share, (high - p1) * share];
+                *middle = [(high - p0) * *speed, (high - p1) * *speed];
                 let [from, to] = &mut segment.ends;
-                *from = from.max(p0.abs() * share);
-                *to = to.max(p1.abs() * share);
+                *from = larger(*from, magnitude(p0) * *speed);
+                *to = larger(*to, magnitude(p1) * *speed);
             }
         }
         segment
@@ -105,7 +118,6 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
     /// at most 1 where all hold, and growing with the square of both speeds.
     #[inline]
     pub(crate) fn load(&self, w0: T, w1: T) -> T {
-        let larger = |a: T, b: T| if a > b { a } else { b };
         let [from, to] = self.ends;
         let fastest = larger(from * w0, to * w1);
         let (y, z) = products(w0, w1);
@@ -113,11 +125,11 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
         let mut middle = fastest;
         for (accelerations, middles) in self.accelerations.iter().zip(&self.middles) {
             for [[c0, d0], [c1, d1]] in accelerations {
-                hardest = larger(hardest, (*c0 * y + *d0 * z).abs());
-                hardest = larger(hardest, (*c1 * y + *d1 * z).abs());
+                hardest = larger(hardest, magnitude(*c0 * y + *d0 * z));
+                hardest = larger(hardest, magnitude(*c1 * y + *d1 * z));
             }
             for [e, f] in middles {
-                middle = larger(middle, (*e * w0 + *f * w1).abs());
+                middle = larger(middle, magnitude(*e * w0 + *f * w1));
             }
         }
         larger(hardest, middle * middle)
@@ -141,12 +153,13 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
             let [e, f] = *middle;
             let (own, others) = if end == End::From { (e, f) } else { (f, e) };
             let value = own * speed + others * other;
-            if value.abs() > T::one() {
+            if magnitude(value) > T::one() {
                 let highest = (T::one().copysign(value) - others * other) / own;
-                speed = if highest < speed { highest } else { speed };
+                if highest > T::zero() && highest < speed {
+                    speed = highest;
+                }
             }
         }
-        speed = speed.max(T::zero());
         for row in self.accelerations.as_flattened().as_flattened() {
             let [c, d] = *row;
             let d = if end == End::From { -d } else { d };
@@ -240,5 +253,9 @@ fn lower<T: RealField + Copy>(c: T, d: T, other: T, speed: T) -> T {
     let linear = c * other;
     let root = (linear * linear - (c + d) * rest).max(T::zero()).sqrt();
     let below = -rest / (linear + root);
-    if below < speed { below } else { speed }
+    if below > T::zero() && below < speed {
+        below
+    } else {
+        speed
+    }
 }
