@@ -437,6 +437,12 @@ fn bad_input_is_one_line_and_no_file() {
         &["--platform", platform],
         &place("[wheel]: 0 bins for 100 counts; 1 to 100 are possible"),
     );
+    fs::create_dir_all(out.join("report.json")).unwrap();
+    let mut command = tool("align");
+    let blocked = out.join("report.json");
+    let line = format!("error: {}: is a folder", blocked.display());
+    assert_refused(command.arg("--out").arg(&out), &line);
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 1);
     let taken = folder.path().join("file");
     fs::write(&taken, "").unwrap();
     let mut command = tool("align");

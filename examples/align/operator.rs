@@ -96,7 +96,7 @@ pub(crate) fn work<const N: usize>(world: &mut World<'_, N>, task: &Task) -> Res
     world.wait_ms(500)?;
     world.unit.switch_on();
     world.wait_until("the first screen", 10, |it| {
-        it.unit.line(0).starts_with("SINGLE") && it.unit.line(N + 1).contains("ADJUST")
+        it.unit.line(0).starts_with("SINGLE") && it.unit.line(1).starts_with(">LOCATOR  1")
     })?;
     world.switches(false, false)?;
     jog(world, task)?;

@@ -108,30 +108,29 @@ fn align<const N: usize>(arguments: &Arguments, settings: &Settings) -> Result<b
         eprintln!("note: {note}");
     }
 
+    // All files, so that none is refused when the motion is over.
     let mut artefacts = Artefacts::new(&arguments.out)?;
+    let log = artefacts.create("line.log")?;
+    let mut table_file = artefacts.create(mode.file())?;
+    let [jog, align, json] = ["jog.svg", "align.svg", "report.json"].map(|it| artefacts.create(it));
+    let (jog, align, json) = (jog?, align?, json?);
+
     let mut world = World::new(&planner, panel, from)?;
     operator::work(&mut world, &task)?;
     let course = world.finish()?;
     let plan = course.plan.as_ref().context("no pose change was run")?;
 
-    course.line.write_log(artefacts.create("line.log")?)?;
-    let mut file = artefacts.create(mode.file())?;
-    file.write_all(plan.csv.as_bytes())?;
-    file.flush()?;
+    course.line.write_log(log)?;
+    table_file.write_all(plan.csv.as_bytes())?;
+    table_file.flush()?;
     let csv = std::io::read_to_string(artefacts.reopen(mode.file())?)?;
     let table = Table::read(&csv, &platform)?;
     let examination = Examination::of(&table, &platform)?;
-    picture::jog(&course.jog, &panel, artefacts.create("jog.svg")?)?;
+    picture::jog(&course.jog, &panel, jog)?;
     let body = [from, task.reached].map(|pose| settings.outline(&planner.isometry(pose)));
-    picture::align(
-        &examination,
-        &platform,
-        plan.strain_bound_mm,
-        &body,
-        artefacts.create("align.svg")?,
-    )?;
+    picture::align(&examination, &platform, plan.strain_bound_mm, &body, align)?;
     let report = Report::new(&course, plan, &table, &examination, &planner.isometry(to));
-    report.write(artefacts.create("report.json")?)?;
+    report.write(json)?;
     artefacts.keep()?;
     report
         .write_summary(std::io::stdout().lock(), mode.file(), &arguments.out)
