@@ -75,7 +75,7 @@ pub(crate) fn frame<'a, 'b>(
     Ok(chart)
 }
 
-/// A line through points, with its name in the legend.
+/// A line through points, with its name in the legend; without a name it is not there.
 pub(crate) fn curve(
     chart: &mut Chart<'_, '_>,
     name: &str,
@@ -83,11 +83,13 @@ pub(crate) fn curve(
     points: impl IntoIterator<Item = (f64, f64)>,
 ) -> Result<()> {
     let style = style.into();
-    chart
-        .draw_series(LineSeries::new(points, style))
-        .map_err(failed)?
-        .label(name)
-        .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+    let series = chart.draw_series(LineSeries::new(points, style));
+    let series = series.map_err(failed)?;
+    if !name.is_empty() {
+        series
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+    }
     Ok(())
 }
 

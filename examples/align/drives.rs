@@ -10,9 +10,12 @@ use crate::table::{AxisState, States, Table};
 /// Cycle of the drives, in microseconds.
 pub(crate) const CYCLE_US: u64 = 1000;
 const CYCLE_S: f64 = 1e-3;
-/// Places of a segment that are looked at; the middle, where the strain of a line is largest, is
-/// one of them.
-const PLACES: u32 = 16;
+/// Places of a segment that are looked at, in a short table and in a long one; the middle, where
+/// the strain of a line is largest, is one of them.
+const PLACES: u32 = 32;
+const PLACES_OF_MANY: u32 = 2;
+/// Points of a long table.
+const MANY: usize = 2000;
 
 enum Motion<const N: usize> {
     Hold,
@@ -174,9 +177,14 @@ impl<const N: usize> Examination<N> {
     pub(crate) fn of(table: &Table<N>, platform: &Platform<N>) -> Result<Self> {
         let mut moments = Vec::new();
         let (mut max_strain, mut max_speed_ratio) = (0.0_f64, 0.0_f64);
+        let places = if table.points() < MANY {
+            PLACES
+        } else {
+            PLACES_OF_MANY
+        };
         for (segment, [start, end]) in table.segments() {
-            for place in 0..=PLACES {
-                let s = f64::from(place) / f64::from(PLACES);
+            for place in 0..=places {
+                let s = f64::from(place) / f64::from(places);
                 let states = table.states(segment, s).context("no such segment")?;
                 let axes = states.map(|it| Vector3::from(it.map(|axis| axis.position)));
                 let strain = platform.strain(&platform.locator_positions(&axes)).change;

@@ -9,11 +9,13 @@ use pose2pulse::handwheel::Settings;
 use pose2pulse::pose_pt::Platform;
 
 use crate::chart::{Area, COLOURS, INK, colour, curve, failed, frame, legend, range, stairs};
-use crate::drives::Examination;
+use crate::drives::{Examination, Moment};
 use crate::world::Jog;
 
 /// Points of a curve, at most: twice the width of the picture.
 const CURVE: usize = 2000;
+/// Locators whose axes all find room in a legend.
+const NAMED: usize = 4;
 const BEFORE: RGBColor = RGBColor(150, 150, 150);
 
 /// Wheel counts, and the speeds they become.
@@ -182,12 +184,13 @@ fn axes<const N: usize>(
         // A colour for each locator, a shade for each axis.
         let shade = 1.0 - 0.3 * [0.0, 1.0, 2.0].get(axis).copied().unwrap_or_default();
         let style = colour(locator).mix(shade).stroke_width(2);
-        curve(
-            &mut chart,
-            &format!("{}{letter}", locator + 1),
-            style,
-            points,
-        )?;
+        let number = locator + 1;
+        let name = match axis {
+            _ if N <= NAMED => format!("{number}{letter}"),
+            0 => format!("{number} X Y Z"),
+            _ => String::new(),
+        };
+        curve(&mut chart, &name, style, points)?;
     }
     legend(&mut chart, SeriesLabelPosition::MiddleRight)
 }
@@ -199,10 +202,13 @@ fn strain_chart<const N: usize>(
 ) -> Result<()> {
     const UM: f64 = 1000.0;
     let moments = &examination.moments;
-    let points: Vec<_> = moments
-        .iter()
-        .map(|moment| (moment.time_s, moment.strain * UM))
-        .collect();
+    // Of many moments the worst of each group.
+    let groups = moments.chunks(moments.len().div_ceil(CURVE).max(1));
+    let worst = groups.filter_map(|group| {
+        let size = |moment: &&Moment<N>| moment.strain.abs();
+        group.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
+    });
+    let points: Vec<_> = worst.map(|it| (it.time_s, it.strain * UM)).collect();
     let end = moments.last().map_or(1.0, |moment| moment.time_s);
     let bound = bound_mm * UM;
     let values = points.iter().map(|it| it.1).chain([0.0, -bound, bound]);
@@ -214,14 +220,7 @@ fn strain_chart<const N: usize>(
     )?;
     for (name, bound) in [("bound", bound), ("", -bound)] {
         let line = [(0.0, bound), (end, bound)];
-        let style = COLOURS[1].stroke_width(1);
-        if name.is_empty() {
-            chart
-                .draw_series(LineSeries::new(line, style))
-                .map_err(failed)?;
-        } else {
-            curve(&mut chart, name, style, line)?;
-        }
+        curve(&mut chart, name, COLOURS[1].stroke_width(1), line)?;
     }
     curve(&mut chart, "strain", colour(0).stroke_width(1), points)?;
     legend(&mut chart, SeriesLabelPosition::MiddleRight)

@@ -28,7 +28,7 @@ impl Mode {
 }
 
 /// Most points that the controller has room for.
-const MOST_POINTS: usize = 1 << 18;
+const MOST_POINTS: usize = 1 << 16;
 
 /// What the coordinates of a table may round off, as a share of the distance of two locators.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;

@@ -23,7 +23,8 @@ pub struct Timing {
     /// From a status request that failed to the next.
     pub retry: Duration,
     /// From the last telegram of the unit to a status request that asks whether it is still
-    /// there; `None` for never.
+    /// there; `None` for never. A unit that was without power for less than that is not missed:
+    /// it wakes up by this request, with an empty display.
     pub keep_alive: Option<Duration>,
 }
 
