@@ -230,3 +230,32 @@ fn refusals_name_the_byte() {
     );
     assert!(read(&[0x6C, 0x2C, 0x32, 0x30, 0x31, 0x30]).contains("before it starts"));
 }
+
+/// Every telegram of up to three bytes: as many as there are keys, positions and answers mean
+/// something, and each of them is written as it was read.
+#[test]
+fn no_other_report_is_understood() {
+    let readable = |model: Model, telegram: &[u8]| {
+        let report = Report::decode(model, telegram);
+        if let Ok(report) = report {
+            let mut buffer = [0; MAX_REPORT];
+            assert_eq!(report.encode(model, &mut buffer), Ok(telegram));
+        }
+        usize::from(report.is_ok())
+    };
+    let bytes = || 0..=u8::MAX;
+    for (model, counts) in [
+        (Model::Hbls, [13 + 12 + 12, 4, 13 * 12 * 12]),
+        (Model::Hbas, [21, 21 * 6, 0]),
+    ] {
+        let (mut one, mut two, mut three) = (0, 0, 0);
+        for a in bytes() {
+            one += readable(model, &[a]);
+            for b in bytes() {
+                two += readable(model, &[a, b]);
+                three += bytes().map(|c| readable(model, &[a, b, c])).sum::<usize>();
+            }
+        }
+        assert_eq!([one, two, three], counts);
+    }
+}
