@@ -10,10 +10,12 @@ mod line;
 mod patterns;
 mod poses;
 mod stepping;
+mod tables;
 
 fn main() {
     kinematics::run();
     poses::run();
+    tables::run();
     stepping::run();
     patterns::run();
     line::run();
