@@ -10,11 +10,13 @@ mod line;
 mod patterns;
 mod poses;
 mod stepping;
+mod tables;
 mod unit;
 
 fn main() {
     kinematics::run();
     poses::run();
+    tables::run();
     stepping::run();
     patterns::run();
     line::run();

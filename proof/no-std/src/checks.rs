@@ -5,7 +5,10 @@ use core::hint::black_box;
 use handwheel::{Action, Arbiter, Driver, Input, Panel, Settings, Shown, UnitId, WheelQuantiser};
 use pattern_codec::container::{Header, Verifier, Writer, open};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
-use pose_pt::{AxisLimits, Convention, Locator, Platform, PoseVector};
+use pose_pt::{
+    AxisLimits, Convention, Cut, Interpolation, Knot, Locator, Path, Platform, PoseVector, PtTable,
+    PvtTable,
+};
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
 use scara_kin::nalgebra::{Point2, Vector2};
@@ -13,10 +16,11 @@ use scara_kin::{Arm, Elbow, Joints};
 use stepper_sync::{Position, Ramp, RampLimits, Rate, Timer, Trains};
 
 /// The checks; the number of each is its exit status.
-pub const ALL: [fn() -> Option<()>; 11] = [
+pub const ALL: [fn() -> Option<()>; 12] = [
     inverse,
     follow,
     pose,
+    tables,
     trains,
     ramp,
     records,
@@ -66,8 +70,8 @@ fn follow() -> Option<()> {
     holds((arm.forward(last?) - line[1]).norm() < CLOSE_MM)
 }
 
-/// Pose to axes and back, with what the locators pull.
-fn pose() -> Option<()> {
+/// A panel on three locators.
+fn platform() -> Option<Platform<3>> {
     let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
@@ -75,7 +79,32 @@ fn pose() -> Option<()> {
         [0.0, 1000.0, 0.0],
     ];
     let held = anchors.map(|anchor| Locator::new(anchor.into(), anchor.into(), limits));
-    let platform: Platform<3> = Platform::new(held).ok()?;
+    Platform::new(held).ok()
+}
+
+/// A way as PT and PVT tables within a strain.
+fn tables() -> Option<()> {
+    let platform = platform()?;
+    let poses = [0.0, black_box(0.02)].map(|gamma| {
+        PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::FixedXyz)
+    });
+    let path = Path::new(&poses, Interpolation::Straight).ok()?;
+    let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).ok()?;
+    holds(table.points().count() == 5 && table.strain_bound() <= 0.01)?;
+    let mut knots = [Knot::default(); 33];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(32), &mut knots).ok()?;
+    let last = table.points().last()?;
+    holds((last.time_s - table.duration_s()).abs() < CLOSE_MM)?;
+    holds(
+        last.velocities
+            .iter()
+            .all(|velocity| velocity.amax() < CLOSE_MM),
+    )
+}
+
+/// Pose to axes and back, with what the locators pull.
+fn pose() -> Option<()> {
+    let platform = platform()?;
     let vector = PoseVector::new(black_box(10.0), -20.0, 100.0, 0.01, 0.02, -0.03);
     let pose = vector.to_isometry(Convention::MovingXyz);
     let mut axes = platform.checked_axes(&pose).ok()?;

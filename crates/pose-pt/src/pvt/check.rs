@@ -2,7 +2,7 @@
 
 use nalgebra::{RealField, Vector3};
 
-use crate::number::{half, two};
+use crate::number::{cube_root, half, two};
 use crate::{Axis, LimitError, Locator, Platform, PvtPoint};
 
 /// One axis over one segment.
@@ -171,7 +171,7 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
     pub(super) fn stretch(&self) -> T {
         self.speed
             .max(self.acceleration.sqrt())
-            .max(self.jerk.cbrt())
+            .max(cube_root(self.jerk))
     }
 
     /// Takes the segment from one point to the next into account.

@@ -9,7 +9,7 @@ use super::scurve::SCurve;
 use super::segment::{Reciprocals, Segment};
 use crate::Locator;
 use crate::course::{Course, Place};
-use crate::number::{larger, largest, magnitude, two};
+use crate::number::{cube_root, larger, largest, magnitude, two};
 use crate::turn::count;
 
 /// Fills the knots of a leg, one more than parts, with the fastest motion.
@@ -139,7 +139,7 @@ fn s_curve<const N: usize, T: RealField + Copy>(
         speed
             .min(limits.speed / *p1)
             .min((limits.acceleration / (two::<T>() * *p2)).sqrt())
-            .min((jerk / (constant(3.0) * *p3)).cbrt())
+            .min(cube_root(jerk / (constant(3.0) * *p3)))
     });
     let acceleration = all().fold(most, |acceleration, (limits, [p1, p2, _])| {
         let jerk = limits.jerk.unwrap_or(most);

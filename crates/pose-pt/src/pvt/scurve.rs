@@ -2,7 +2,7 @@
 
 use nalgebra::RealField;
 
-use crate::number::{half, two};
+use crate::number::{cube_root, half, two};
 use crate::turn::count;
 
 /// Seven phases of constant jerk over a way of 1.
@@ -85,7 +85,7 @@ impl<T: RealField + Copy> SCurve<T> {
         if top * jerk >= acceleration * acceleration {
             top
         } else {
-            (jerk / four).cbrt()
+            cube_root(jerk / four)
         }
     }
 
@@ -107,7 +107,7 @@ impl<T: RealField + Copy> SCurve<T> {
             phases_left = u32::saturating_sub(phases_left, 1);
             // One part at least, and one for each phase to come.
             let free = parts_left.saturating_sub(phases_left).max(1);
-            let parts = share(free, time / time_left).clamp(1, free);
+            let parts = share(free, time / time_left).min(free).max(1);
             let parts = if phases_left == 0 { parts_left } else { parts };
             let step = time / count(parts);
             for part in 0..parts {
