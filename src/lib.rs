@@ -2,6 +2,8 @@
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+#[cfg(feature = "handwheel")]
+pub use handwheel;
 #[cfg(feature = "pattern-codec")]
 pub use pattern_codec;
 #[cfg(feature = "pose-pt")]

@@ -113,9 +113,16 @@ impl<T: RealField + Copy> PoseVector<T> {
     /// The rotation as a matrix.
     #[must_use]
     pub fn to_rotation(&self, convention: Convention) -> Rotation3<T> {
-        let (sa, ca) = self.alpha.sin_cos();
-        let (sb, cb) = self.beta.sin_cos();
-        let (sg, cg) = self.gamma.sin_cos();
+        let angles = [self.alpha, self.beta, self.gamma];
+        Self::rotation_of_sines(angles.map(T::sin_cos), convention)
+    }
+
+    /// The rotation by the sines and cosines of α, β, γ.
+    #[inline]
+    pub(crate) fn rotation_of_sines(
+        [(sa, ca), (sb, cb), (sg, cg)]: [(T, T); 3],
+        convention: Convention,
+    ) -> Rotation3<T> {
         let matrix = match convention {
             Convention::FixedXyz => Matrix3::new(
                 cg * cb,

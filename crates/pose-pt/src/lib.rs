@@ -28,3 +28,23 @@ pub use rotation::{
     NotARotation, angle_between, from_matrix, from_rotation_vector, rotation_vector,
     rotation_vector_between, slerp, to_matrix,
 };
+
+mod course;
+mod cut;
+mod fifo;
+mod path;
+mod plan_error;
+mod pt;
+mod pvt;
+mod run;
+mod strain;
+mod turn;
+
+pub use cut::Cut;
+pub use fifo::{Fifo, FifoError, FifoState, Timed};
+pub use path::{Interpolation, Leg, Path, PathError};
+pub use plan_error::PlanError;
+pub use pt::{PtPoint, PtPoints, PtTable};
+pub use pvt::{Knot, PvtPoint, PvtPoints, PvtTable};
+pub use run::{Ahead, FeedError, PvtRun};
+pub use strain::hermite_strain;

@@ -263,7 +263,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
 
     /// World vectors in the coordinates of each locator's axes.
     #[inline]
-    fn in_axes(&self, mut vectors: [Vector3<T>; N]) -> [Vector3<T>; N] {
+    pub(crate) fn in_axes(&self, mut vectors: [Vector3<T>; N]) -> [Vector3<T>; N] {
         if !self.parallel {
             for (to_axes, vector) in self.to_axes.iter().zip(&mut vectors) {
                 *vector = to_axes * *vector;

@@ -11,15 +11,19 @@ mod line;
 mod patterns;
 mod poses;
 mod stepping;
+mod tables;
+mod unit;
 
 fn main() {
     kinematics::run();
     poses::run();
+    tables::run();
     stepping::run();
     patterns::run();
     frames::run();
     line::run();
     jobs::run();
+    unit::run();
     #[cfg(feature = "control")]
     control::run();
 }

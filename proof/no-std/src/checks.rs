@@ -2,10 +2,14 @@
 
 use core::hint::black_box;
 
+use handwheel::{Action, Arbiter, Driver, Input, Panel, Settings, Shown, UnitId, WheelQuantiser};
 use pattern_codec::container::{Header, Verifier, Writer, open};
 use pattern_codec::dance::{Data, DataHeader, Easing, Law, Motor, Packing, Timing};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
-use pose_pt::{AxisLimits, Convention, Locator, Platform, PoseVector};
+use pose_pt::{
+    AxisLimits, Convention, Cut, Interpolation, Knot, Locator, Path, Platform, PoseVector, PtTable,
+    PvtTable,
+};
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
 use scara_kin::nalgebra::{Point2, Vector2};
@@ -20,6 +24,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     inverse,
     follow,
     pose,
+    tables,
     trains,
     ramp,
     dance,
@@ -28,6 +33,8 @@ pub const ALL: &[fn() -> Option<()>] = &[
     dance_header,
     stations,
     read_data_block,
+    unit_telegrams,
+    panel,
 ];
 
 /// A thousandth of a micrometre: far above the rounding of an arm of 264 mm, far below any machine.
@@ -69,8 +76,8 @@ fn follow() -> Option<()> {
     holds((arm.forward(last?) - line[1]).norm() < CLOSE_MM)
 }
 
-/// Pose to axes and back, with what the locators pull.
-fn pose() -> Option<()> {
+/// A panel on three locators.
+fn platform() -> Option<Platform<3>> {
     let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
@@ -78,7 +85,32 @@ fn pose() -> Option<()> {
         [0.0, 1000.0, 0.0],
     ];
     let held = anchors.map(|anchor| Locator::new(anchor.into(), anchor.into(), limits));
-    let platform: Platform<3> = Platform::new(held).ok()?;
+    Platform::new(held).ok()
+}
+
+/// A way as PT and PVT tables within a strain.
+fn tables() -> Option<()> {
+    let platform = platform()?;
+    let poses = [0.0, black_box(0.02)].map(|gamma| {
+        PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::FixedXyz)
+    });
+    let path = Path::new(&poses, Interpolation::Straight).ok()?;
+    let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).ok()?;
+    holds(table.points().count() == 5 && table.strain_bound() <= 0.01)?;
+    let mut knots = [Knot::default(); 33];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(32), &mut knots).ok()?;
+    let last = table.points().last()?;
+    holds((last.time_s - table.duration_s()).abs() < CLOSE_MM)?;
+    holds(
+        last.velocities
+            .iter()
+            .all(|velocity| velocity.amax() < CLOSE_MM),
+    )
+}
+
+/// Pose to axes and back, with what the locators pull.
+fn pose() -> Option<()> {
+    let platform = platform()?;
     let vector = PoseVector::new(black_box(10.0), -20.0, 100.0, 0.01, 0.02, -0.03);
     let pose = vector.to_isometry(Convention::MovingXyz);
     let mut axes = platform.checked_axes(&pose).ok()?;
@@ -289,4 +321,81 @@ fn read_data_block() -> Option<()> {
         return None;
     };
     holds(data.len() == 130 && data.starts_with(&[0x12, 0x34]))
+}
+
+/// Status request, reply, and a screen in display blocks.
+fn unit_telegrams() -> Option<()> {
+    use handwheel::{Command, Event, Instant, Model, Timing};
+    let (now, model) = (Instant::ZERO, Model::Hbls);
+    let mut driver = Driver::new(model, Timing::DEFAULT);
+    let mut buffer = [0; handwheel::MAX_COMMAND];
+    holds(driver.poll_transmit(now, &mut buffer).ok()? == Some(&[0x23]))?;
+    holds(driver.handle_delivered(now).is_none())?;
+    let event = driver.handle_block(now, black_box(&[0x30, 0x43, 0x52]))?;
+    holds(matches!(
+        event,
+        Event::Status {
+            connected: true,
+            ..
+        }
+    ))?;
+    let (mut shown, mut letters) = (Shown::UNKNOWN, 0);
+    while let Some(block) = shown.update(&handwheel::Screen::BLANK, model) {
+        driver.send_lcd(&block).ok()?;
+        let telegram = driver.poll_transmit(now, &mut buffer).ok()??;
+        let Ok(Command::Lcd(commands)) = Command::decode(model, black_box(telegram)) else {
+            return None;
+        };
+        for command in commands {
+            if let handwheel::LcdCommand::Text(text) = command.ok()? {
+                letters += text.len();
+            }
+        }
+        holds(driver.handle_delivered(now).is_none())?;
+        holds(matches!(
+            driver.handle_block(now, &[0x6C, 0x31]),
+            Some(Event::Lcd { .. })
+        ))?;
+    }
+    holds(letters == 128)
+}
+
+/// A jog that both switches allow and one stops.
+fn panel() -> Option<()> {
+    use handwheel::{Key, Position, Status};
+    let wheel = WheelQuantiser::new(black_box(100), 10).ok()?;
+    let mut platform = Arbiter::<3>::new();
+    let mut panel = Panel::new(UnitId(1), Settings::new(wheel)).ok()?;
+    let (w1, w2) = (Position::new(3).ok()?, Position::new(1).ok()?);
+    let key = Key::new(3).ok();
+    let course = [
+        Input::Status(Status::Hbls { key: None, w1, w2 }),
+        Input::Enable {
+            left: false,
+            right: false,
+        },
+        Input::Enable {
+            left: true,
+            right: true,
+        },
+        Input::Key(key),
+        Input::Wheel(black_box(-57)),
+        Input::Enable {
+            left: true,
+            right: false,
+        },
+    ];
+    let mut actions = [None; 6];
+    for (action, input) in actions.iter_mut().zip(course) {
+        *action = panel.handle(input, &mut platform);
+    }
+    let [
+        ..,
+        Some(Action::Jog { speed_um_s, .. }),
+        Some(Action::Stop(_)),
+    ] = actions
+    else {
+        return None;
+    };
+    holds(speed_um_s == -5500)
 }

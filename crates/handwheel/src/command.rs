@@ -1,0 +1,115 @@
+//! What the control says.
+
+use crate::lcd::LcdCommands;
+use crate::number::Led;
+use crate::report::{DecodeError, EncodeError, LCD, Model, put};
+
+/// Bytes of the longest telegram to any unit: a display block of the HBAS.
+pub const MAX_COMMAND: usize = Model::Hbas.max_lcd_block();
+
+pub(crate) const STATUS_REQUEST: u8 = 0x23;
+
+/// What a lamp does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[expect(clippy::exhaustive_enums, reason = "the unit knows these three")]
+pub enum Light {
+    /// 30h + number.
+    On,
+    /// 40h + number.
+    Off,
+    /// 50h + number.
+    Flashing,
+}
+
+impl Light {
+    const fn zero(self) -> u8 {
+        match self {
+            Self::On => 0x30,
+            Self::Off => 0x40,
+            Self::Flashing => 0x50,
+        }
+    }
+}
+
+/// A telegram from the control to the unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Command<'a> {
+    /// 23h: the unit replies with its status.
+    StatusRequest,
+    /// A lamp of the HBLS.
+    Led {
+        /// Which; `None` all of them, which is inferred from the printed ranges.
+        led: Option<Led>,
+        /// What it does.
+        light: Light,
+    },
+    /// 6Ch and commands for the display, which are checked as they are read.
+    Lcd(LcdCommands<'a>),
+}
+
+impl<'a> Command<'a> {
+    /// Reads one telegram, as a simulated unit does.
+    ///
+    /// # Errors
+    /// [`DecodeError`] for anything that the unit does not understand. What stands in a display
+    /// block is checked when its commands are read.
+    pub fn decode(model: Model, telegram: &'a [u8]) -> Result<Self, DecodeError> {
+        match telegram {
+            [STATUS_REQUEST] => Ok(Self::StatusRequest),
+            [LCD, commands @ ..] if telegram.len() <= model.max_lcd_block() => {
+                Ok(Self::Lcd(LcdCommands::new(model, commands)))
+            }
+            &[byte] if model == Model::Hbls => {
+                decode_led(byte).ok_or(DecodeError::Unknown { index: 0, byte })
+            }
+            &[byte] => Err(DecodeError::Unknown { index: 0, byte }),
+            other => Err(DecodeError::Length { len: other.len() }),
+        }
+    }
+
+    /// Writes the telegram into the head of `buffer`; [`MAX_COMMAND`] bytes hold every one.
+    ///
+    /// # Errors
+    /// [`EncodeError`]: the buffer is too short, or the unit has no such telegram.
+    pub fn encode(self, model: Model, buffer: &mut [u8]) -> Result<&[u8], EncodeError> {
+        match self {
+            Self::StatusRequest => put(buffer, &[STATUS_REQUEST]),
+            Self::Led { led, light } if model == Model::Hbls => {
+                let code = led.map_or(light.zero(), |led| led.code(light.zero()));
+                put(buffer, &[code])
+            }
+            Self::Led { .. } => Err(EncodeError::Model { model }),
+            Self::Lcd(commands) => {
+                let len = commands.as_bytes().len().saturating_add(1);
+                if commands.model() != model || len > model.max_lcd_block() {
+                    return Err(EncodeError::Model { model });
+                }
+                let capacity = buffer.len();
+                let no_room = EncodeError::NoRoom { len, capacity };
+                let place = buffer.get_mut(..len).ok_or(no_room)?;
+                for (to, from) in place
+                    .iter_mut()
+                    .zip([LCD].iter().chain(commands.as_bytes()))
+                {
+                    *to = *from;
+                }
+                Ok(place)
+            }
+        }
+    }
+}
+
+fn decode_led(byte: u8) -> Option<Command<'static>> {
+    [Light::On, Light::Off, Light::Flashing]
+        .into_iter()
+        .find_map(|light| {
+            let led = match byte == light.zero() {
+                true => None,
+                false => Some(Led::from_code(byte, light.zero()).ok()?),
+            };
+            Some(Command::Led { led, light })
+        })
+}

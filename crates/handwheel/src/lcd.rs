@@ -1,0 +1,211 @@
+//! The display: commands, blocks of them, and reading them back.
+
+mod block;
+mod commands;
+
+use thiserror::Error;
+
+pub use block::LcdBlock;
+pub use commands::LcdCommands;
+
+use crate::number::{AreaNumber, Column, Line, NumberError, TextNumber};
+use crate::report::Model;
+use crate::text::{MAX_TEXT, Text};
+
+/// A character cell of the display.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "a cell has these two, no more")]
+pub struct Place {
+    /// From the top.
+    pub line: Line,
+    /// From the left.
+    pub column: Column,
+}
+
+/// A rectangle of character cells, its corners included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "a rectangle has these two, no more"
+)]
+pub struct Rect {
+    /// The upper left corner.
+    pub start: Place,
+    /// The lower right corner.
+    pub end: Place,
+}
+
+/// The size of a text that the HBAS keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "the unit has two")]
+pub enum Font {
+    /// 50h: 8 lines of 16 characters. Which of the two codes is which is inferred from their order.
+    Small,
+    /// 51h: 4 lines of 8 characters.
+    Large,
+}
+
+/// A command for the display.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum LcdCommand<'a> {
+    /// Characters at the cursor.
+    Text(Text<'a>),
+    /// 21h: the cursor goes to the next cell.
+    Next,
+    /// 22h: to the previous cell.
+    Previous,
+    /// 23h: one line down.
+    Down,
+    /// 24h: one line up.
+    Up,
+    /// 25h: to line 0, column 0.
+    Home,
+    /// 26h: to column 0.
+    LineStart,
+    /// 27h: to a cell.
+    Goto(Place),
+    /// 28h: clears the cell under the cursor.
+    Delete,
+    /// 29h: clears to the end of the line.
+    DeleteToLineEnd,
+    /// 2Ah: clears to the end of the display.
+    DeleteToDisplayEnd,
+    /// 2Bh: clears the display.
+    DeleteAll,
+    /// 2Ch: clears a rectangle.
+    DeleteRect(Rect),
+    /// 40h on, 41h off: what follows is inverse.
+    Inverse(bool),
+    /// 42h on, 43h off: what follows flashes.
+    Flash(bool),
+    /// 48h: the unit keeps a text of up to [`MAX_TEXT`] characters.
+    DefineText {
+        /// Its number.
+        number: TextNumber,
+        /// Its size; on the HBAS alone, and always there.
+        font: Option<Font>,
+        /// Where it will stand.
+        place: Place,
+        /// The characters.
+        text: Text<'a>,
+    },
+    /// 49h: shows a kept text.
+    ShowText(TextNumber),
+    /// 4Ah: the unit keeps an area.
+    DefineArea {
+        /// Its number.
+        number: AreaNumber,
+        /// Its cells.
+        rect: Rect,
+    },
+    /// 4Bh to 4Fh: does something with a kept area.
+    Area(AreaNumber, AreaEffect),
+}
+
+/// What happens to an area that the unit keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "the unit knows these five")]
+pub enum AreaEffect {
+    /// 4Bh.
+    Clear,
+    /// 4Ch.
+    Inverse,
+    /// 4Dh.
+    Flash,
+    /// 4Eh.
+    InverseFlash,
+    /// 4Fh.
+    Normal,
+}
+
+impl AreaEffect {
+    const ALL: [Self; 5] = [
+        Self::Clear,
+        Self::Inverse,
+        Self::Flash,
+        Self::InverseFlash,
+        Self::Normal,
+    ];
+
+    const fn code(self) -> u8 {
+        match self {
+            Self::Clear => 0x4B,
+            Self::Inverse => 0x4C,
+            Self::Flash => 0x4D,
+            Self::InverseFlash => 0x4E,
+            Self::Normal => 0x4F,
+        }
+    }
+}
+
+/// Why a display command cannot be written or read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum LcdError {
+    /// The block has no room for it.
+    #[error("the block would have {len} bytes, the unit takes {max}")]
+    Full {
+        /// Bytes with the command.
+        len: usize,
+        /// Bytes that the unit takes.
+        max: usize,
+    },
+    /// A text that the unit does not keep.
+    #[error("the text has {len} characters, the unit keeps {MAX_TEXT}")]
+    TextTooLong {
+        /// Characters.
+        len: usize,
+    },
+    /// A font where the unit has none, or none where it must be.
+    #[error("the font must be given on the HBAS, and there alone; this is the {model:?}")]
+    Font {
+        /// The unit.
+        model: Model,
+    },
+    /// A corner lies above or left of the other.
+    #[error("the rectangle ends before it starts: {rect:?}")]
+    Corners {
+        /// The rectangle.
+        rect: Rect,
+    },
+    /// A byte that is no command.
+    #[error("byte {index} of the block: {byte:02X}h is no command")]
+    NoCommand {
+        /// Its index; the 6Ch has 0.
+        index: usize,
+        /// The byte.
+        byte: u8,
+    },
+    /// A parameter outside its range.
+    #[error("byte {index} of the block: {error}")]
+    Parameter {
+        /// Its index; the 6Ch has 0.
+        index: usize,
+        /// The range.
+        error: NumberError,
+    },
+    /// The block ends within a command.
+    #[error("the block ends after {len} bytes, within a command")]
+    Truncated {
+        /// Bytes of the block.
+        len: usize,
+    },
+}
+
+impl Rect {
+    /// Checks that no corner lies above or left of the other.
+    fn check(self) -> Result<Self, LcdError> {
+        let Self { start, end } = self;
+        if end.line < start.line || end.column < start.column {
+            return Err(LcdError::Corners { rect: self });
+        }
+        Ok(self)
+    }
+}

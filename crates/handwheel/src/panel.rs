@@ -1,0 +1,424 @@
+//! The operator's panel: what keys, knobs, wheel and enable switches of one unit do.
+
+mod input;
+mod picture;
+mod settings;
+
+pub use input::{Action, Axis, Input, PoseChange, Refusal};
+pub use settings::{KeyRole, Multiplier, Settings, SettingsError};
+
+use crate::arbiter::{Arbiter, Refused, Target, UnitId};
+use crate::command::Light;
+use crate::number::{Key, Position};
+use crate::report::{Knob, Status};
+
+/// Which of the three screens is up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum View {
+    /// SINGLE: the list of locators, and the body behind them.
+    List,
+    /// One locator, counted from 0.
+    Locator(u8),
+    /// ADJUST: the pose change.
+    Adjust,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Motion {
+    Rest,
+    Jog(u8),
+    Pose,
+    /// Told to stop, still moving.
+    Stopping,
+}
+
+/// What the bottom line says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Message {
+    None,
+    Enable,
+    Direction,
+    Multiplier,
+    NoChange,
+    Limit,
+    Busy(UnitId),
+    Refused(Refusal),
+    Stopped,
+    Done,
+    Lost,
+}
+
+/// The panel of one hand-held unit.
+///
+/// A pure state machine: [`handle`](Self::handle) takes what happened at the unit and at the
+/// machine and returns what the machine must do; [`screen`](Self::screen) says what the unit must
+/// show. Panels of several units share one [`Arbiter`].
+///
+/// # The enable switches
+/// Nothing moves unless both are down. When one comes up, or the stop button is pressed, or the
+/// link is lost, a motion stops at once, in every state. After power-on and after a lost link both
+/// must have been seen up before they count: a switch that is stuck or tied down enables nothing.
+///
+/// # What the controls do
+/// | screen | page up, down | enter | motion start | wheel |
+/// |---|---|---|---|---|
+/// | SINGLE | cursor | opens the locator or ADJUST | | |
+/// | locator | previous, next locator | back to SINGLE; stops a motion first | | jogs the axis of the direction knob (positions 1 to 3: X, Y, Z) |
+/// | ADJUST | | back to SINGLE; stops a motion first | runs the pose change | sets the value of the direction knob (positions 1 to 6: X, Y, Z, alpha, beta, gamma) |
+///
+/// The multiplier knob (positions 1, 2, 3: x1, x10, x100) scales the speed of a jog and the step
+/// of a value. Turning the direction knob stops a jog.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[expect(
+    missing_copy_implementations,
+    reason = "a copy would be a second panel of one unit"
+)]
+pub struct Panel {
+    unit: UnitId,
+    settings: Settings,
+    view: View,
+    /// Line of the list.
+    cursor: u8,
+    key: Option<Key>,
+    direction: Option<Position>,
+    multiplier: Option<Position>,
+    left: bool,
+    right: bool,
+    /// The switches have been seen up.
+    armed: bool,
+    change: PoseChange,
+    motion: Motion,
+    message: Message,
+}
+
+impl Panel {
+    /// A panel that shows SINGLE, with both switches up and the knobs not known yet.
+    ///
+    /// # Errors
+    /// [`SettingsError`] for settings that cannot work.
+    pub fn new(unit: UnitId, settings: Settings) -> Result<Self, SettingsError> {
+        Ok(Self {
+            unit,
+            settings: settings.check()?,
+            view: View::List,
+            cursor: 0,
+            key: None,
+            direction: None,
+            multiplier: None,
+            left: false,
+            right: false,
+            armed: false,
+            change: PoseChange::ZERO,
+            motion: Motion::Rest,
+            message: Message::None,
+        })
+    }
+
+    /// The unit that the panel belongs to.
+    #[must_use]
+    pub const fn unit(&self) -> UnitId {
+        self.unit
+    }
+
+    /// Whether both enable switches are down, and count.
+    #[must_use]
+    pub const fn is_enabled(&self) -> bool {
+        self.left && self.right && self.armed
+    }
+
+    /// Whether a motion of this unit has not come to rest.
+    #[must_use]
+    pub const fn is_moving(&self) -> bool {
+        !matches!(self.motion, Motion::Rest)
+    }
+
+    /// The pose change as it is set.
+    #[must_use]
+    pub const fn change(&self) -> PoseChange {
+        self.change
+    }
+
+    /// For a lamp: flashing while something moves, on while both switches enable it.
+    #[must_use]
+    pub const fn light(&self) -> Light {
+        if self.is_moving() {
+            Light::Flashing
+        } else if self.is_enabled() {
+            Light::On
+        } else {
+            Light::Off
+        }
+    }
+
+    /// Takes what happened; returns what the machine must do.
+    pub fn handle<const N: usize>(
+        &mut self,
+        input: Input,
+        arbiter: &mut Arbiter<N>,
+    ) -> Option<Action> {
+        match input {
+            Input::Key(key) => self.key(key, arbiter),
+            Input::Knob(knob, position) => self.knob(knob, position),
+            Input::Status(status) => self.status(status),
+            Input::Enable { left, right } => self.enable(left, right),
+            Input::StopButton => self.stop(Message::Stopped),
+            Input::Lost => self.lost(),
+            Input::Wheel(counts) => self.wheel(counts, arbiter),
+            Input::AtRest => {
+                self.at_rest(arbiter);
+                None
+            }
+            Input::Refused(refusal) => {
+                if self.is_moving() {
+                    self.rest(arbiter, Message::Refused(refusal));
+                }
+                None
+            }
+        }
+    }
+
+    fn key<const N: usize>(
+        &mut self,
+        key: Option<Key>,
+        arbiter: &mut Arbiter<N>,
+    ) -> Option<Action> {
+        // The same key again is a repeated telegram.
+        let pressed = key.filter(|_| key != self.key);
+        self.key = key;
+        let role = self.settings.role(pressed?)?;
+        if self.is_moving() {
+            return match role {
+                KeyRole::Enter => self.stop(Message::Stopped),
+                _ => None,
+            };
+        }
+        self.message = Message::None;
+        match role {
+            KeyRole::PageUp => self.page(-1, N),
+            KeyRole::PageDown => self.page(1, N),
+            KeyRole::Enter => self.enter(N),
+            KeyRole::Start => return self.start(arbiter),
+        }
+        None
+    }
+
+    fn page(&mut self, lines: i8, locators: usize) {
+        // The list has the body behind the locators.
+        let (place, last) = match self.view {
+            View::List => (&mut self.cursor, locators),
+            View::Locator(_) => (&mut self.cursor, locators.saturating_sub(1)),
+            View::Adjust => return,
+        };
+        let last = u8::try_from(last).unwrap_or(u8::MAX);
+        *place = place.saturating_add_signed(lines).min(last);
+        if let View::Locator(locator) = &mut self.view {
+            *locator = self.cursor;
+        }
+    }
+
+    fn enter(&mut self, locators: usize) {
+        self.view = match self.view {
+            View::List if usize::from(self.cursor) < locators => View::Locator(self.cursor),
+            View::List => View::Adjust,
+            View::Locator(_) | View::Adjust => View::List,
+        };
+    }
+
+    fn start<const N: usize>(&mut self, arbiter: &mut Arbiter<N>) -> Option<Action> {
+        if self.view != View::Adjust {
+            return None;
+        }
+        if !self.is_enabled() {
+            self.message = Message::Enable;
+            return None;
+        }
+        if self.change == PoseChange::ZERO {
+            self.message = Message::NoChange;
+            return None;
+        }
+        self.acquire(Target::Body, arbiter)?;
+        self.motion = Motion::Pose;
+        Some(Action::Move(self.change))
+    }
+
+    fn knob(&mut self, knob: Knob, position: Position) -> Option<Action> {
+        if knob == self.settings.direction_knob {
+            self.set_direction(Some(position))
+        } else {
+            self.multiplier = Some(position);
+            None
+        }
+    }
+
+    fn set_direction(&mut self, position: Option<Position>) -> Option<Action> {
+        let turned = self.direction != position;
+        self.direction = position;
+        // The wheel now means another axis.
+        if turned && matches!(self.motion, Motion::Jog(_)) {
+            return self.stop(Message::Stopped);
+        }
+        None
+    }
+
+    /// Where keys and knobs stand: a key that went down unseen does nothing.
+    fn status(&mut self, status: Status) -> Option<Action> {
+        self.key = status.key();
+        let Status::Hbls { w1, w2, .. } = status else {
+            return None;
+        };
+        let (direction, multiplier) = match self.settings.direction_knob {
+            Knob::W1 => (w1, w2),
+            Knob::W2 => (w2, w1),
+        };
+        self.multiplier = Some(multiplier);
+        if self.message == Message::Lost {
+            self.message = Message::None;
+        }
+        self.set_direction(Some(direction))
+    }
+
+    fn enable(&mut self, left: bool, right: bool) -> Option<Action> {
+        (self.left, self.right) = (left, right);
+        self.armed |= !left && !right;
+        if self.is_enabled() {
+            if self.message == Message::Enable {
+                self.message = Message::None;
+            }
+            return None;
+        }
+        self.stop(Message::Stopped)
+    }
+
+    fn lost(&mut self) -> Option<Action> {
+        self.armed = false;
+        self.key = None;
+        self.direction = None;
+        self.multiplier = None;
+        let stop = self.stop(Message::Lost);
+        self.message = Message::Lost;
+        stop
+    }
+
+    /// Stops what moves; nothing when nothing does, or stops already.
+    fn stop(&mut self, message: Message) -> Option<Action> {
+        let target = match self.motion {
+            Motion::Jog(locator) => Target::Locator(locator),
+            Motion::Pose => Target::Body,
+            Motion::Rest | Motion::Stopping => return None,
+        };
+        self.motion = Motion::Stopping;
+        self.message = message;
+        Some(Action::Stop(target))
+    }
+
+    fn at_rest<const N: usize>(&mut self, arbiter: &mut Arbiter<N>) {
+        match self.motion {
+            Motion::Rest => {}
+            Motion::Pose => self.rest(arbiter, Message::Done),
+            Motion::Jog(_) | Motion::Stopping => self.rest(arbiter, self.message),
+        }
+    }
+
+    fn rest<const N: usize>(&mut self, arbiter: &mut Arbiter<N>, message: Message) {
+        self.motion = Motion::Rest;
+        self.message = message;
+        // Where the body is now is for the machine to know; the change was from where it was.
+        if self.view == View::Adjust && !matches!(message, Message::Refused(_)) {
+            self.change = PoseChange::ZERO;
+        }
+        arbiter.release(self.unit);
+    }
+
+    fn wheel<const N: usize>(&mut self, counts: i32, arbiter: &mut Arbiter<N>) -> Option<Action> {
+        match self.view {
+            View::List => None,
+            View::Locator(locator) => self.jog(locator, counts, arbiter),
+            View::Adjust => {
+                self.adjust(counts);
+                None
+            }
+        }
+    }
+
+    fn jog<const N: usize>(
+        &mut self,
+        locator: u8,
+        counts: i32,
+        arbiter: &mut Arbiter<N>,
+    ) -> Option<Action> {
+        if self.motion == Motion::Stopping {
+            return None;
+        }
+        if counts == 0 {
+            return self.stop(Message::None);
+        }
+        if !self.is_enabled() {
+            self.message = Message::Enable;
+            return None;
+        }
+        let axis = self.direction.and_then(Axis::of_position);
+        let multiplier = self.multiplier.and_then(Multiplier::of_position);
+        let Some((axis, multiplier)) = self.knobs(axis, multiplier) else {
+            // Turned away during a jog.
+            return self.stop(self.message);
+        };
+        let speed_um_s = self.settings.jog_um_s(counts, multiplier);
+        if speed_um_s == 0 {
+            return self.stop(Message::None);
+        }
+        self.acquire(Target::Locator(locator), arbiter)?;
+        self.motion = Motion::Jog(locator);
+        self.message = Message::None;
+        Some(Action::Jog {
+            locator,
+            axis,
+            speed_um_s,
+        })
+    }
+
+    fn adjust(&mut self, counts: i32) {
+        if self.is_moving() || counts == 0 {
+            return;
+        }
+        let direction = self.direction.map(Position::get);
+        let direction = direction.filter(|&direction| direction <= PoseChange::DIRECTIONS);
+        let multiplier = self.multiplier.and_then(Multiplier::of_position);
+        let Some((direction, multiplier)) = self.knobs(direction, multiplier) else {
+            return;
+        };
+        let (step, most) = self.settings.adjustment(direction, multiplier);
+        if let Some(value) = self.change.value_mut(direction) {
+            let wanted = i64::from(*value).saturating_add(step.saturating_mul(counts.into()));
+            let held = wanted.clamp(most.saturating_neg(), most);
+            self.message = if held == wanted {
+                Message::None
+            } else {
+                Message::Limit
+            };
+            // Within `most`, which fits.
+            *value = i32::try_from(held).unwrap_or(*value);
+        }
+    }
+
+    /// Both knobs, or a message which of them means nothing where it stands.
+    fn knobs<D, M>(&mut self, direction: Option<D>, multiplier: Option<M>) -> Option<(D, M)> {
+        if direction.is_none() {
+            self.message = Message::Direction;
+        } else if multiplier.is_none() {
+            self.message = Message::Multiplier;
+        }
+        direction.zip(multiplier)
+    }
+
+    fn acquire<const N: usize>(&mut self, target: Target, arbiter: &mut Arbiter<N>) -> Option<()> {
+        match arbiter.acquire(target, self.unit) {
+            Ok(()) => Some(()),
+            Err(Refused::Owned { owner, .. }) => {
+                self.message = Message::Busy(owner);
+                None
+            }
+            // The list has no other locators.
+            Err(Refused::NoSuchLocator { .. }) => None,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The character set of the display.
+
+use core::fmt;
+
+use thiserror::Error;
+
+/// Characters of a text that the unit keeps, at most.
+pub const MAX_TEXT: usize = 30;
+
+/// Display code of a character less its ASCII code: inferred from the manual's examples, whose
+/// eleven letters all fit.
+const ABOVE_ASCII: u8 = 0x60;
+/// The space.
+const FIRST_CODE: u8 = 0x80;
+
+/// A character that the display cannot show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[error("byte {index} of the text, {byte:02X}h, is not printable ASCII")]
+#[non_exhaustive]
+pub struct CharacterError {
+    /// Its index.
+    pub index: usize,
+    /// The byte.
+    pub byte: u8,
+}
+
+/// A text for the display, or from a telegram.
+///
+/// ```text
+/// display code = ASCII code + 60h        20h..=7Eh -> 80h..=DEh
+/// ```
+/// Codes from `DFh` on are the unit's own; they come through unchanged in both directions.
+#[derive(Clone, Copy)]
+pub struct Text<'a> {
+    bytes: &'a [u8],
+    /// What makes a display code of a byte.
+    offset: u8,
+}
+
+impl<'a> Text<'a> {
+    /// From printable ASCII.
+    ///
+    /// # Errors
+    /// [`CharacterError`] for anything else.
+    pub fn new(text: &'a str) -> Result<Self, CharacterError> {
+        Self::from_ascii(text.as_bytes())
+    }
+
+    /// From the bytes of printable ASCII.
+    ///
+    /// # Errors
+    /// [`CharacterError`] for anything else.
+    pub fn from_ascii(bytes: &'a [u8]) -> Result<Self, CharacterError> {
+        let printable = |byte: u8| (b' '..=b'~').contains(&byte);
+        let offset = ABOVE_ASCII;
+        let checked = Self { bytes, offset };
+        match bytes.iter().position(|&byte| !printable(byte)) {
+            None => Ok(checked),
+            Some(index) => Err(CharacterError {
+                index,
+                byte: bytes.get(index).copied().unwrap_or_default(),
+            }),
+        }
+    }
+
+    /// As many display codes as `bytes` begin with, and the rest.
+    pub(crate) fn split_codes(bytes: &'a [u8]) -> (Self, &'a [u8]) {
+        let end = bytes.iter().position(|&byte| byte < FIRST_CODE);
+        let (bytes, rest) = bytes
+            .split_at_checked(end.unwrap_or(bytes.len()))
+            .unwrap_or((bytes, &[]));
+        (Self { bytes, offset: 0 }, rest)
+    }
+
+    /// Characters.
+    #[must_use]
+    pub const fn len(self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Whether there is no character.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// The codes for the display.
+    #[must_use]
+    pub fn codes(self) -> impl ExactSizeIterator<Item = u8> + Clone + 'a {
+        let offset = self.offset;
+        self.bytes.iter().map(move |byte| byte.wrapping_add(offset))
+    }
+
+    /// The characters; [`char::REPLACEMENT_CHARACTER`] for the unit's own.
+    #[must_use]
+    pub fn chars(self) -> impl ExactSizeIterator<Item = char> + Clone + 'a {
+        self.codes()
+            .map(|code| match code.wrapping_sub(ABOVE_ASCII) {
+                ascii @ b' '..=b'~' => char::from(ascii),
+                _ => char::REPLACEMENT_CHARACTER,
+            })
+    }
+}
+
+impl PartialEq for Text<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.codes().eq(other.codes())
+    }
+}
+
+impl Eq for Text<'_> {}
+
+impl fmt::Debug for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Text(\"{self}\")")
+    }
+}
+
+impl fmt::Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.chars()
+            .try_for_each(|character| fmt::Write::write_char(f, character))
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Text<'_> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        for character in self.chars() {
+            defmt::write!(f, "{=char}", character);
+        }
+    }
+}

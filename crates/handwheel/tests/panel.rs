@@ -1,0 +1,399 @@
+//! The panel as an operator and a machine see it.
+#![cfg(test)]
+
+use handwheel::Position;
+use handwheel::{
+    Action, Arbiter, Axis, Input, Key, Knob, Light, Panel, PoseChange, Refusal, Refused, Settings,
+    SettingsError, Status, Target, UnitId, WheelQuantiser,
+};
+use proptest::prelude::*;
+
+const UP: u8 = 1;
+const DOWN: u8 = 2;
+const ENTER: u8 = 3;
+const START: u8 = 4;
+
+/// A panel with three locators, its knobs known, both switches seen up.
+struct Desk {
+    arbiter: Arbiter<3>,
+    panels: Vec<Panel>,
+}
+
+impl Desk {
+    fn new(units: u8) -> Self {
+        let settings = Settings::new(WheelQuantiser::new(100, 10).unwrap());
+        let panel = |unit| Panel::new(UnitId(unit), settings).unwrap();
+        let mut desk = Self {
+            arbiter: Arbiter::new(),
+            panels: (0..units).map(panel).collect(),
+        };
+        for unit in 0..units.into() {
+            desk.knobs(unit, 3, 1);
+            desk.switches(unit, false, false);
+        }
+        desk
+    }
+
+    fn on(&mut self, unit: usize, input: Input) -> Option<Action> {
+        self.panels[unit].handle(input, &mut self.arbiter)
+    }
+
+    fn press(&mut self, unit: usize, key: u8) -> Option<Action> {
+        let action = self.on(unit, Input::Key(Key::new(key).ok()));
+        assert_eq!(self.on(unit, Input::Key(None)), None);
+        action
+    }
+
+    fn knobs(&mut self, unit: usize, multiplier: u8, direction: u8) {
+        let [w1, w2] = [multiplier, direction].map(|it| Position::new(it).unwrap());
+        let status = Status::Hbls { key: None, w1, w2 };
+        assert_eq!(self.on(unit, Input::Status(status)), None);
+    }
+
+    fn switches(&mut self, unit: usize, left: bool, right: bool) -> Option<Action> {
+        self.on(unit, Input::Enable { left, right })
+    }
+
+    fn screen(&self, unit: usize) -> Vec<String> {
+        let positions = [[1_234_567, -1, 0], [0; 3], [i32::MIN; 3]];
+        let screen = self.panels[unit].screen(&self.arbiter, &positions);
+        screen
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect()
+    }
+
+    fn message(&self, unit: usize) -> String {
+        self.screen(unit)[7].clone()
+    }
+}
+
+fn jog(locator: u8, axis: Axis, speed_um_s: i32) -> Option<Action> {
+    Some(Action::Jog {
+        locator,
+        axis,
+        speed_um_s,
+    })
+}
+
+#[test]
+fn the_three_screens() {
+    let mut desk = Desk::new(1);
+    let single = [
+        "SINGLE",
+        ">LOCATOR  1 IDLE",
+        " LOCATOR  2 IDLE",
+        " LOCATOR  3 IDLE",
+        " ADJUST     IDLE",
+        "",
+        "",
+        "",
+    ];
+    assert_eq!(desk.screen(0), single);
+    desk.press(0, ENTER);
+    let locator = [
+        " LOCATOR  1 IDLE",
+        "",
+        ">X  +1234.567 mm",
+        " Y     -0.001 mm",
+        " Z     +0.000 mm",
+        "",
+        " SPEED      x100",
+        "",
+    ];
+    assert_eq!(desk.screen(0), locator);
+    desk.press(0, DOWN);
+    desk.press(0, DOWN);
+    // 2147483.648 does not fit.
+    assert_eq!(desk.screen(0)[2], ">X ********** mm");
+    desk.press(0, UP);
+    assert_eq!(desk.screen(0)[0], " LOCATOR  2 IDLE");
+    desk.press(0, ENTER);
+    assert_eq!(desk.screen(0)[2], ">LOCATOR  2 IDLE");
+    desk.press(0, DOWN);
+    desk.press(0, DOWN);
+    desk.press(0, ENTER);
+    desk.on(0, Input::Wheel(-1005));
+    desk.knobs(0, 2, 6);
+    desk.on(0, Input::Wheel(12));
+    let adjust = [
+        "ADJUST x10  IDLE",
+        " dX  -100.000 mm",
+        " dY    +0.000 mm",
+        " dZ    +0.000 mm",
+        " da +0.000000deg",
+        " db +0.000000deg",
+        ">dg +0.012000deg",
+        "",
+    ];
+    assert_eq!(desk.screen(0), adjust);
+    assert!(desk.screen(0).iter().all(|line| line.len() <= 16));
+}
+
+#[test]
+fn the_list_scrolls() {
+    let settings = Settings::new(WheelQuantiser::new(100, 10).unwrap());
+    let mut panel = Panel::new(UnitId(0), settings).unwrap();
+    let mut arbiter = Arbiter::<10>::new();
+    for _ in 0..12 {
+        panel.handle(Input::Key(Key::new(DOWN).ok()), &mut arbiter);
+        panel.handle(Input::Key(None), &mut arbiter);
+    }
+    let screen = panel.screen(&arbiter, &[[0; 3]; 10]);
+    let lines: Vec<_> = screen.lines().collect();
+    assert_eq!(lines[1], " LOCATOR  6 IDLE");
+    assert_eq!(lines[6], ">ADJUST     IDLE");
+}
+
+#[test]
+fn a_jog_follows_the_wheel_and_stops() {
+    let mut desk = Desk::new(1);
+    desk.press(0, ENTER);
+    assert_eq!(desk.on(0, Input::Wheel(10)), None);
+    assert_eq!(desk.message(0), "ENABLE SWITCHES?");
+    assert_eq!(desk.switches(0, true, false), None);
+    assert_eq!(desk.on(0, Input::Wheel(10)), None);
+    assert_eq!(desk.switches(0, true, true), None);
+    assert_eq!(desk.panels[0].light(), Light::On);
+    assert_eq!(desk.on(0, Input::Wheel(10)), jog(0, Axis::X, 1500));
+    assert_eq!(desk.on(0, Input::Wheel(-100)), jog(0, Axis::X, -10_000));
+    assert_eq!(desk.panels[0].light(), Light::Flashing);
+    assert_eq!(desk.screen(0)[0], " LOCATOR  1 BUSY");
+    // The wheel stands: stop, and nothing until the axis is at rest.
+    let stop = Some(Action::Stop(Target::Locator(0)));
+    assert_eq!(desk.on(0, Input::Wheel(0)), stop);
+    assert_eq!(desk.on(0, Input::Wheel(50)), None);
+    assert_eq!(desk.message(0), "STOPPING");
+    desk.on(0, Input::AtRest);
+    assert_eq!(desk.screen(0)[0], " LOCATOR  1 IDLE");
+    // Another direction under way: stop.
+    desk.on(0, Input::Knob(Knob::W1, Position::MIN));
+    assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::X, 55));
+    let third = Position::new(3).unwrap();
+    assert_eq!(desk.on(0, Input::Knob(Knob::W2, third)), stop);
+    desk.on(0, Input::AtRest);
+    assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::Z, 55));
+    // A multiplier that is none: stop, and say why.
+    desk.on(0, Input::Knob(Knob::W1, Position::MAX));
+    assert_eq!(desk.on(0, Input::Wheel(50)), stop);
+    assert_eq!(desk.message(0), "MULTIPLIER?");
+}
+
+#[test]
+fn a_pose_change_runs() {
+    let mut desk = Desk::new(1);
+    for _ in 0..3 {
+        desk.press(0, DOWN);
+    }
+    desk.press(0, ENTER);
+    desk.switches(0, true, true);
+    assert_eq!(desk.press(0, START), None);
+    assert_eq!(desk.message(0), "NO CHANGE SET");
+    desk.on(0, Input::Wheel(25));
+    desk.knobs(0, 1, 4);
+    desk.on(0, Input::Wheel(-7));
+    desk.switches(0, false, true);
+    assert_eq!(desk.press(0, START), None);
+    assert_eq!(desk.message(0), "ENABLE SWITCHES?");
+    desk.switches(0, true, true);
+    let change = PoseChange {
+        translation_um: [2500, 0, 0],
+        rotation_udeg: [-700, 0, 0],
+    };
+    assert_eq!(desk.press(0, START), Some(Action::Move(change)));
+    assert_eq!(desk.press(0, START), None);
+    assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
+    desk.on(0, Input::AtRest);
+    assert_eq!(desk.message(0), "DONE");
+    assert_eq!(desk.panels[0].change(), PoseChange::ZERO);
+
+    desk.on(0, Input::Wheel(1));
+    assert!(desk.press(0, START).is_some());
+    desk.on(0, Input::Refused(Refusal::OutOfReach));
+    assert_eq!(desk.message(0), "OUT OF REACH");
+    // It stays, to be made smaller.
+    assert_ne!(desk.panels[0].change(), PoseChange::ZERO);
+    assert!(desk.press(0, START).is_some());
+    let stop = Some(Action::Stop(Target::Body));
+    assert_eq!(desk.on(0, Input::StopButton), stop);
+    desk.on(0, Input::AtRest);
+    assert_eq!(desk.message(0), "STOPPED");
+    assert_eq!(desk.panels[0].change(), PoseChange::ZERO);
+
+    desk.knobs(0, 3, 2);
+    desk.on(0, Input::Wheel(i32::MAX));
+    assert_eq!(desk.message(0), "LIMIT");
+    assert_eq!(desk.panels[0].change().translation_um[1], 100_000);
+}
+
+#[test]
+fn one_owner_at_a_time() {
+    let mut desk = Desk::new(2);
+    for unit in 0..2 {
+        desk.press(unit, ENTER);
+        desk.switches(unit, true, true);
+    }
+    assert!(desk.on(0, Input::Wheel(50)).is_some());
+    assert_eq!(desk.on(1, Input::Wheel(50)), None);
+    assert_eq!(desk.message(1), "BUSY: UNIT   0");
+    // Another locator is free, the body is not.
+    desk.press(1, DOWN);
+    assert!(desk.on(1, Input::Wheel(50)).is_some());
+    assert_eq!(
+        desk.on(1, Input::Wheel(0)),
+        Some(Action::Stop(Target::Locator(1)))
+    );
+    desk.on(1, Input::AtRest);
+    desk.press(1, ENTER);
+    desk.press(1, DOWN);
+    desk.press(1, DOWN);
+    desk.press(1, ENTER);
+    desk.on(1, Input::Wheel(50));
+    assert_eq!(desk.press(1, START), None);
+    assert_eq!(desk.message(1), "BUSY: UNIT   0");
+    // The link of the first is lost: it stops, and what it had is free when it is at rest.
+    assert_eq!(
+        desk.on(0, Input::Lost),
+        Some(Action::Stop(Target::Locator(0)))
+    );
+    assert_eq!(desk.press(1, START), None);
+    desk.on(0, Input::AtRest);
+    assert!(desk.press(1, START).is_some());
+    // Back again, with the switches held: nothing, until they were up.
+    desk.knobs(0, 3, 1);
+    desk.switches(0, true, true);
+    assert_eq!(desk.on(0, Input::Wheel(50)), None);
+    assert_eq!(desk.message(0), "ENABLE SWITCHES?");
+    desk.switches(0, false, false);
+    desk.switches(0, true, true);
+    assert_eq!(desk.on(0, Input::Wheel(50)), None);
+    assert_eq!(desk.message(0), "BUSY: UNIT   1");
+}
+
+#[test]
+fn arbiter_refuses_by_name() {
+    let mut arbiter = Arbiter::<2>::new();
+    let (target, owner) = (Target::Locator(1), UnitId(7));
+    arbiter.acquire(target, owner).unwrap();
+    let refused = arbiter.acquire(Target::Body, UnitId(1));
+    assert_eq!(refused, Err(Refused::Owned { target, owner }));
+    assert!(arbiter.acquire(Target::Body, owner).is_ok());
+    assert_eq!(arbiter.owner(Target::Locator(0)), Some(owner));
+    let (index, locators) = (2, 2);
+    let missing = arbiter.acquire(Target::Locator(index), owner);
+    assert_eq!(missing, Err(Refused::NoSuchLocator { index, locators }));
+    arbiter.release(owner);
+    assert_eq!(arbiter, Arbiter::new());
+}
+
+#[test]
+fn settings_are_checked() {
+    let good = Settings::new(WheelQuantiser::new(100, 10).unwrap());
+    let (name, value) = ("step_um", 0);
+    let zero = Settings { step_um: 0, ..good };
+    let refused = Panel::new(UnitId(0), zero);
+    assert_eq!(refused, Err(SettingsError::Range { name, value }));
+    let key = Key::MIN;
+    let same = Settings {
+        keys: [key, Key::MAX, key, Key::MAX],
+        ..good
+    };
+    assert_eq!(
+        Panel::new(UnitId(0), same),
+        Err(SettingsError::SameKey { key })
+    );
+}
+
+fn input() -> impl Strategy<Value = Input> {
+    let key = || prop::option::of((1u8..=5).prop_map(|key| Key::new(key).unwrap()));
+    let position = || (1u8..=7).prop_map(|position| Position::new(position).unwrap());
+    let knob = prop::sample::select(vec![Knob::W1, Knob::W2]);
+    prop_oneof![
+        6 => key().prop_map(Input::Key),
+        2 => (knob, position()).prop_map(|(knob, position)| Input::Knob(knob, position)),
+        2 => (key(), position(), position())
+            .prop_map(|(key, w1, w2)| Input::Status(Status::Hbls { key, w1, w2 })),
+        4 => (prop::bool::weighted(0.8), prop::bool::weighted(0.8))
+            .prop_map(|(left, right)| Input::Enable { left, right }),
+        1 => Just(Input::Enable { left: false, right: false }),
+        6 => (-300..300i32).prop_map(Input::Wheel),
+        1 => any::<i32>().prop_map(Input::Wheel),
+        1 => Just(Input::Wheel(0)),
+        1 => Just(Input::StopButton),
+        1 => Just(Input::Lost),
+        3 => Just(Input::AtRest),
+        1 => Just(Input::Refused(Refusal::NotReady)),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Any course of inputs at two units: nothing moves unless both switches of its unit are down
+    /// and have been up before; a stop follows at once when one comes up, or the link or the
+    /// stop button says so; nothing is moved by two; and every screen can be shown.
+    #[test]
+    fn any_course_is_safe(inputs in prop::collection::vec((0usize..2, input()), 1..150)) {
+        let mut desk = Desk::new(2);
+        let mut down = [false; 2];
+        let mut armed = [true; 2];
+        let mut moving = [None; 2];
+        for (unit, input) in inputs {
+            match input {
+                Input::Enable { left, right } => {
+                    down[unit] = left && right;
+                    armed[unit] |= !left && !right;
+                }
+                Input::Lost => armed[unit] = false,
+                Input::AtRest | Input::Refused(_) => moving[unit] = None,
+                _ => {}
+            }
+            let action = desk.on(unit, input);
+            let enabled = down[unit] && armed[unit];
+            prop_assert_eq!(desk.panels[unit].is_enabled(), enabled);
+            let target = match action {
+                Some(Action::Jog { locator, speed_um_s, .. }) => {
+                    prop_assert!(speed_um_s != 0 && speed_um_s.unsigned_abs() <= 10_000);
+                    Some(Target::Locator(locator))
+                }
+                Some(Action::Move(change)) => {
+                    prop_assert!(change != PoseChange::ZERO);
+                    Some(Target::Body)
+                }
+                Some(Action::Stop(target)) => {
+                    prop_assert_eq!(moving[unit], Some((target, true)));
+                    moving[unit] = Some((target, false));
+                    None
+                }
+                _ => None,
+            };
+            if let Some(target) = target {
+                prop_assert!(enabled);
+                prop_assert!(moving[unit].is_none_or(|it| it == (target, true)));
+                moving[unit] = Some((target, true));
+            }
+            let must_stop = !enabled || input == Input::StopButton;
+            prop_assert!(!must_stop || moving[unit].is_none_or(|(_, runs)| !runs));
+            if let [Some((a, _)), Some((b, _))] = moving {
+                prop_assert!(a != b && a != Target::Body && b != Target::Body);
+            }
+            for (unit, panel) in (0u8..).zip(&desk.panels) {
+                prop_assert_eq!(panel.is_moving(), moving[usize::from(unit)].is_some());
+                let owns = [0, 1, 2].map(Target::Locator).into_iter().chain([Target::Body])
+                    .any(|it| desk.arbiter.owner(it) == Some(UnitId(unit)));
+                prop_assert_eq!(owns, panel.is_moving());
+            }
+            prop_assert!(desk.screen(unit).iter().all(|line| line.len() <= 16));
+        }
+    }
+}
+
+#[test]
+fn sizes() {
+    use core::mem::size_of;
+    assert!(size_of::<handwheel::Driver>() <= 256);
+    assert!(size_of::<Panel>() <= 112);
+    assert_eq!(size_of::<Arbiter<10>>(), 22);
+    assert!(size_of::<handwheel::LcdBlock>() <= 144);
+    assert_eq!(size_of::<handwheel::Shown>(), 128);
+}

@@ -1,0 +1,314 @@
+//! Position-time tables.
+
+use core::iter::FusedIterator;
+
+use nalgebra::{RealField, Vector3};
+
+use crate::course::{Course, Walk};
+use crate::number::{larger, magnitude};
+use crate::path::{Leg, Path};
+use crate::strain::linear_strain;
+use crate::{Cut, Locator, PlanError, Platform};
+
+/// A line of a PT table: where every axis is at a time. Between two lines it moves linearly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct PtPoint<const N: usize, T = f64> {
+    /// Seconds since the start.
+    pub time_s: T,
+    /// Seconds since the point before; zero at the first.
+    pub segment_s: T,
+    /// Coordinates of each locator's three axes.
+    pub axes: [Vector3<T>; N],
+}
+
+/// A checked position-time table [Alignment 2010].
+///
+/// Each leg of the path is cut into equal parts; each part takes as long as its slowest axis
+/// does at its rated speed:
+///
+/// ```text
+/// segment time = max over the axes of |Δq| / rated speed
+/// ```
+///
+/// Poses on the way are passed without a stop: speeds step at every point of a PT table, and
+/// no acceleration limit is looked at. [`PvtTable`](crate::PvtTable) is for controllers that
+/// can do better.
+#[derive(Debug, Clone, Copy)]
+pub struct PtTable<'a, const N: usize, T: RealField = f64> {
+    platform: &'a Platform<N, T>,
+    path: Path<'a, T>,
+    cut: Cut<T>,
+    points: usize,
+    duration_s: T,
+}
+
+impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
+    /// Plans the table and walks it once: every point is within all strokes, and so is
+    /// every place between, where the axes move linearly.
+    ///
+    /// # Errors
+    /// [`PlanError`].
+    pub fn plan(
+        platform: &'a Platform<N, T>,
+        path: &Path<'a, T>,
+        cut: Cut<T>,
+    ) -> Result<Self, PlanError<T>> {
+        cut.check(platform)?;
+        let mut points = 1_usize;
+        for number in 0..path.legs() {
+            let parts = parts(platform, path, cut, number)?;
+            points = usize::try_from(parts)
+                .ok()
+                .and_then(|parts| points.checked_add(parts))
+                .ok_or(PlanError::TooManyPoints {
+                    needed: usize::MAX,
+                    available: usize::MAX,
+                })?;
+        }
+        let table = Self {
+            platform,
+            path: *path,
+            cut,
+            points,
+            duration_s: T::zero(),
+        };
+        let mut walk = table.points();
+        while let Some(point) = walk.next() {
+            platform
+                .check_axes(&point.axes)
+                .map_err(|reason| PlanError::Limit {
+                    leg: walk.leg,
+                    point: walk.index,
+                    reason,
+                })?;
+        }
+        Ok(Self {
+            duration_s: walk.time_s,
+            ..table
+        })
+    }
+
+    /// The number of points: one more than segments.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "there is a first point")]
+    pub const fn len(&self) -> usize {
+        self.points
+    }
+
+    /// Refuses a table of more points than the controller has memory for.
+    ///
+    /// # Errors
+    /// [`PlanError::TooManyPoints`].
+    pub const fn fits(&self, available: usize) -> Result<(), PlanError<T>> {
+        if self.points <= available {
+            return Ok(());
+        }
+        Err(PlanError::TooManyPoints {
+            needed: self.points,
+            available,
+        })
+    }
+
+    /// Seconds from the first point to the last.
+    #[must_use]
+    pub const fn duration_s(&self) -> T {
+        self.duration_s
+    }
+
+    /// The most by which two locators come closer than their anchors are, between any two
+    /// points of the table.
+    ///
+    /// Proof. Between two points the vector from one locator to the other runs along the
+    /// chord from D₀ to D₁. These differ by a turn δ about an axis n; with D⊥ the part of D
+    /// across n, the square of the distance is
+    ///
+    /// ```text
+    /// |D₀ + τ (D₁ - D₀)|² = L² - 4 τ (1-τ) D⊥² sin²(δ/2)
+    /// strain = L - √(L² - D⊥² sin²(δ/2)) ≤ L (1 - cos(δ/2)) ≈ L δ² / 8
+    /// ```
+    ///
+    /// For straight and screw motion δ is the same in all parts, and fewer points cannot keep the
+    /// strain, however they are spread. Along pose vectors δ and n differ: the largest of all
+    /// parts is returned, and [`Cut::strain`] takes δ from the largest angular speed and D⊥ as L,
+    /// which may be more parts than the fewest.
+    #[must_use]
+    pub fn strain_bound(&self) -> T {
+        let legs = 0..self.path.legs();
+        legs.fold(T::zero(), |worst, number| {
+            let strain = self
+                .path
+                .leg(number)
+                .map(|leg| self.leg_strain(number, &leg));
+            worst.max(strain.unwrap_or_else(T::zero))
+        })
+    }
+
+    fn leg_strain(&self, number: usize, leg: &Leg<T>) -> T {
+        let course = Course::new(self.platform, leg);
+        let parts = self.parts(number);
+        let looked_at = if leg.is_even() { parts.min(1) } else { parts };
+        let mut walk = course.walk(parts);
+        let mut from = course.axes(&walk);
+        (0..looked_at).fold(T::zero(), |worst, _| {
+            walk.advance();
+            let to = course.axes(&walk);
+            let strain = linear_strain(self.platform, &from, &to);
+            from = to;
+            worst.max(strain)
+        })
+    }
+
+    /// Axes of the point `number`, with the bits that the iterator gives.
+    #[must_use]
+    pub fn axes(&self, number: usize) -> Option<[Vector3<T>; N]> {
+        let mut number = number;
+        for leg in 0..self.path.legs() {
+            let parts = self.parts(leg);
+            match u32::try_from(number) {
+                Ok(index) if index <= parts => {
+                    let course = Course::new(self.platform, &self.path.leg(leg)?);
+                    let mut walk = course.walk(parts);
+                    walk.seek(index);
+                    return Some(course.axes(&walk));
+                }
+                _ => number = number.saturating_sub(usize::try_from(parts).ok()?),
+            }
+        }
+        None
+    }
+
+    /// The points in their order.
+    #[must_use]
+    pub fn points(&self) -> PtPoints<'a, N, T> {
+        PtPoints {
+            table: *self,
+            leg: 0,
+            index: 0,
+            parts: 0,
+            course: None,
+            axes: [Vector3::zeros(); N],
+            time_s: T::zero(),
+            remaining: self.points,
+        }
+    }
+
+    fn parts(&self, leg: usize) -> u32 {
+        // The plan has found no error in any leg.
+        parts(self.platform, &self.path, self.cut, leg).unwrap_or(0)
+    }
+}
+
+fn parts<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    path: &Path<'_, T>,
+    cut: Cut<T>,
+    number: usize,
+) -> Result<u32, PlanError<T>> {
+    match path.leg(number) {
+        Some(leg) => cut.linear_parts(platform, number, &leg),
+        None => Ok(0),
+    }
+}
+
+/// Seconds that the slowest axis needs at its rated speed.
+#[inline]
+fn slowest<const N: usize, T: RealField + Copy>(
+    locators: &[Locator<T>; N],
+    from: &[Vector3<T>; N],
+    to: &[Vector3<T>; N],
+) -> T {
+    let mut longest = T::zero();
+    for (locator, (from, to)) in locators.iter().zip(from.iter().zip(to)) {
+        for (limits, (from, to)) in locator.limits.iter().zip(from.iter().zip(to.iter())) {
+            longest = larger(longest, magnitude(*to - *from) / limits.speed);
+        }
+    }
+    longest
+}
+
+/// The points of a [`PtTable`].
+#[derive(Debug, Clone)]
+pub struct PtPoints<'a, const N: usize, T: RealField = f64> {
+    table: PtTable<'a, N, T>,
+    /// The leg on which the last point lies, and its number there.
+    leg: usize,
+    index: u32,
+    parts: u32,
+    course: Option<(Course<'a, N, T>, Walk<T>)>,
+    axes: [Vector3<T>; N],
+    time_s: T,
+    remaining: usize,
+}
+
+impl<'a, const N: usize, T: RealField + Copy> PtPoints<'a, N, T> {
+    /// Begins the next leg on which something moves.
+    #[cold]
+    fn begin(&mut self, mut leg: usize) -> Option<()> {
+        while self.table.parts(leg) == 0 && leg < self.table.path.legs() {
+            leg = leg.saturating_add(1);
+        }
+        self.parts = self.table.parts(leg);
+        self.leg = leg;
+        self.index = 0;
+        let course = Course::new(self.table.platform, &self.table.path.leg(leg)?);
+        let walk = course.walk(self.parts);
+        self.course = Some((course, walk));
+        Some(())
+    }
+
+    /// The first point of all.
+    #[cold]
+    fn first(&mut self) -> Option<[Vector3<T>; N]> {
+        if self.begin(0).is_none() {
+            // Nothing moves anywhere: the first pose is the whole table.
+            self.leg = 0;
+            let leg = self.table.path.leg(0)?;
+            let course = Course::new(self.table.platform, &leg);
+            self.course = Some((course, course.walk(1)));
+        }
+        let (course, walk) = self.course.as_ref()?;
+        Some(course.axes(walk))
+    }
+}
+
+impl<'a, const N: usize, T: RealField + Copy> Iterator for PtPoints<'a, N, T> {
+    type Item = PtPoint<N, T>;
+
+    #[inline]
+    fn next(&mut self) -> Option<PtPoint<N, T>> {
+        self.remaining = self.remaining.checked_sub(1)?;
+        if self.course.is_none() {
+            self.axes = self.first()?;
+            return Some(PtPoint {
+                time_s: self.time_s,
+                segment_s: T::zero(),
+                axes: self.axes,
+            });
+        }
+        if self.index == self.parts {
+            self.begin(self.leg.saturating_add(1))?;
+        }
+        let (course, walk) = self.course.as_mut()?;
+        walk.advance();
+        self.index = self.index.saturating_add(1);
+        let axes = course.axes(walk);
+        let segment_s = slowest(self.table.platform.locators(), &self.axes, &axes);
+        self.time_s += segment_s;
+        self.axes = axes;
+        Some(PtPoint {
+            time_s: self.time_s,
+            segment_s,
+            axes,
+        })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.remaining, Some(self.remaining))
+    }
+}
+
+impl<const N: usize, T: RealField + Copy> ExactSizeIterator for PtPoints<'_, N, T> {}
+
+impl<const N: usize, T: RealField + Copy> FusedIterator for PtPoints<'_, N, T> {}

@@ -1,0 +1,235 @@
+//! Position-velocity-time tables.
+
+mod check;
+mod leg;
+mod planner;
+mod points;
+mod scurve;
+pub(crate) mod segment;
+
+use nalgebra::{RealField, Vector3};
+
+use crate::course::{Course, Place};
+use crate::path::{Leg, Path};
+use crate::strain::hermite_strain;
+use crate::{Cut, PlanError, Platform};
+use planner::Planner;
+pub use points::{PvtPoint, PvtPoints};
+
+/// Memory for one point of a [`PvtTable`] while it is planned and as long as it lives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knot<T = f64> {
+    /// Parameter of the leg.
+    s: T,
+    /// Speed of the parameter.
+    speed: T,
+    /// Time to the next knot.
+    segment_s: T,
+    /// Parts of the leg.
+    parts: u32,
+}
+
+impl<T: RealField> Default for Knot<T> {
+    fn default() -> Self {
+        Self {
+            s: T::zero(),
+            speed: T::zero(),
+            segment_s: T::zero(),
+            parts: 0,
+        }
+    }
+}
+
+/// A checked position-velocity-time table: every axis runs a cubic from each point to the next,
+/// with the positions and velocities of the body's own motion at the points.
+///
+/// Along each leg it is the fastest such table that keeps the limits of all axes, found by a
+/// backward and a forward pass over the points. What is checked is the cubic itself: its
+/// peak speed inside, its acceleration at both ends. The machine stops at every pose on the
+/// way, where the direction changes; a pose to be passed without a stop has no place in a path.
+///
+/// Where an axis has a limit of jerk, each leg is one S-curve along the path, which is the
+/// shortest motion on a straight way, and slower than need be where the body turns far.
+/// Between points a cubic has one jerk; at a point its acceleration steps, which counts as a
+/// jerk over the time between the middles of the segments.
+#[derive(Debug, Clone, Copy)]
+pub struct PvtTable<'a, const N: usize, T: RealField = f64> {
+    platform: &'a Platform<N, T>,
+    path: Path<'a, T>,
+    knots: &'a [Knot<T>],
+    points: usize,
+    duration_s: T,
+    /// By what all times are multiplied.
+    stretch: T,
+}
+
+/// Fewest parts of a leg: it starts and stops.
+const MIN_PARTS: u32 = 2;
+
+impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
+    /// Plans the table in memory of the caller: for each leg one knot more than parts.
+    ///
+    /// With [`Cut::strain`] each leg has a number of parts that keeps the allowed strain while
+    /// one part fewer does not, by [`hermite_strain`]; it is found by bisection, and each trial
+    /// is a plan.
+    ///
+    /// # Errors
+    /// [`PlanError`]; also where `knots` are too few.
+    pub fn plan(
+        platform: &'a Platform<N, T>,
+        path: &Path<'a, T>,
+        cut: Cut<T>,
+        knots: &'a mut [Knot<T>],
+    ) -> Result<Self, PlanError<T>> {
+        cut.check(platform)?;
+        let planner = Planner {
+            platform,
+            cut,
+            // Each phase of an S-curve has a part.
+            least: if has_jerk(platform) {
+                scurve::PHASES
+            } else {
+                MIN_PARTS
+            }
+            .max(cut.at_least),
+        };
+        planner.check_memory(path, knots.len())?;
+        let (mut used, mut points) = (0_usize, 1_usize);
+        for (number, leg) in moving(path) {
+            let free = knots.get_mut(used..).unwrap_or_default();
+            let taken = planner.plan_leg(number, &leg, used, free)?;
+            points = points.saturating_add(taken).saturating_sub(1);
+            used = used.saturating_add(taken);
+        }
+        let knots = knots.get_mut(..used).unwrap_or_default();
+        planner::check_legs(platform, path, knots)?;
+        let knots = &*knots;
+        Ok(Self {
+            platform,
+            path: *path,
+            knots,
+            points,
+            duration_s: knots
+                .iter()
+                .fold(T::zero(), |sum, knot| sum + knot.segment_s),
+            stretch: T::one(),
+        })
+    }
+
+    /// The same motion at a share of its speed, above 0 and at most 1: room for a feed above
+    /// 100 %.
+    ///
+    /// # Errors
+    /// [`PlanError::Pace`].
+    pub fn at_pace(self, pace: T) -> Result<Self, PlanError<T>> {
+        if pace > T::zero() && pace <= T::one() {
+            return Ok(Self {
+                stretch: self.stretch / pace,
+                duration_s: self.duration_s / pace,
+                ..self
+            });
+        }
+        Err(PlanError::Pace { pace })
+    }
+
+    /// The number of points: one more than segments.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "there is a first point")]
+    pub const fn len(&self) -> usize {
+        self.points
+    }
+
+    /// Seconds from the first point to the last.
+    #[must_use]
+    pub const fn duration_s(&self) -> T {
+        self.duration_s
+    }
+
+    /// The platform of the table.
+    #[must_use]
+    pub const fn platform(&self) -> &'a Platform<N, T> {
+        self.platform
+    }
+
+    /// The most by which the distance of two locators ever departs from that of their anchors:
+    /// the largest [`hermite_strain`] of all segments.
+    #[must_use]
+    pub fn strain_bound(&self) -> T {
+        strain_bound(self.platform, self.points())
+    }
+
+    /// The place of a point, slopes by time, and the time to the next point.
+    pub(crate) fn node(&self, number: usize) -> Option<(Place<N, T>, T)> {
+        let (mut knots, mut left) = (self.knots, number);
+        for (_, leg) in moving(&self.path) {
+            let size = knots_of(knots.first()?.parts);
+            let (own, later) = knots.split_at_checked(size)?;
+            // The last knot of a leg is the first of the next, but for the last leg.
+            if left.saturating_add(1) < size || later.is_empty() {
+                let knot = own.get(left)?;
+                let mut place = Course::new(self.platform, &leg).place(knot.s);
+                let speed = knot.speed / self.stretch;
+                place.slope = place.slope.map(|slope| slope * speed);
+                return Some((place, knot.segment_s * self.stretch));
+            }
+            (knots, left) = (later, left.saturating_sub(size.saturating_sub(1)));
+        }
+        let mut place = first_course(self.platform, &self.path)?.place(T::zero());
+        place.slope = [Vector3::zeros(); N];
+        (number == 0).then_some((place, T::zero()))
+    }
+
+    /// The points in their order.
+    #[must_use]
+    pub fn points(&self) -> PvtPoints<'a, N, T> {
+        PvtPoints::new(
+            self.platform,
+            &self.path,
+            self.knots,
+            self.stretch,
+            self.points,
+        )
+    }
+}
+
+fn has_jerk<const N: usize, T: RealField + Copy>(platform: &Platform<N, T>) -> bool {
+    let mut limits = platform.locators().iter().flat_map(|l| &l.limits);
+    limits.any(|limits| limits.jerk.is_some())
+}
+
+fn strain_bound<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    mut points: PvtPoints<'_, N, T>,
+) -> T {
+    let Some(mut from) = points.next() else {
+        return T::zero();
+    };
+    points.fold(T::zero(), |worst, to| {
+        let strain = hermite_strain(platform, &from, &to);
+        from = to;
+        worst.max(strain)
+    })
+}
+
+/// The legs on which something moves, with their numbers.
+fn moving<'a, T: RealField + Copy>(
+    path: &Path<'a, T>,
+) -> impl Iterator<Item = (usize, Leg<T>)> + use<'a, T> {
+    let path = *path;
+    let legs = (0..path.legs()).filter_map(move |number| Some((number, path.leg(number)?)));
+    legs.filter(|(_, leg)| !leg.is_still())
+}
+
+/// The first leg on which something moves; the first of all where nothing does.
+fn first_course<'a, const N: usize, T: RealField + Copy>(
+    platform: &'a Platform<N, T>,
+    path: &Path<'_, T>,
+) -> Option<Course<'a, N, T>> {
+    let leg = moving(path).next().map(|(_, leg)| leg);
+    Some(Course::new(platform, &leg.or_else(|| path.leg(0))?))
+}
+
+/// Knots of a leg with so many parts.
+fn knots_of(parts: u32) -> usize {
+    usize::try_from(parts).map_or(usize::MAX, |parts| parts.saturating_add(1))
+}

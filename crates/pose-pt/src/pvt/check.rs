@@ -1,0 +1,217 @@
+//! What a table asks of the axes, found on the cubics that the controller will run.
+
+use nalgebra::{RealField, Vector3};
+
+use crate::number::{cube_root, half, two};
+use crate::{Axis, LimitError, Locator, Platform, PvtPoint};
+
+/// One axis over one segment.
+#[derive(Debug, Clone, Copy)]
+struct Cubic<T> {
+    q0: T,
+    q1: T,
+    v0: T,
+    v1: T,
+    duration: T,
+}
+
+impl<T: RealField + Copy> Cubic<T> {
+    /// Accelerations at both ends; between them the acceleration is linear.
+    fn accelerations(&self) -> [T; 2] {
+        let constant = |value: f64| nalgebra::convert::<f64, T>(value);
+        let six_means = constant(6.0) * (self.q1 - self.q0) / self.duration;
+        let (two, four) = (constant(2.0), constant(4.0));
+        [
+            (six_means - four * self.v0 - two * self.v1) / self.duration,
+            (two * self.v0 + four * self.v1 - six_means) / self.duration,
+        ]
+    }
+
+    /// The largest speed.
+    fn peak(&self) -> T {
+        let ends = self.v0.abs().max(self.v1.abs());
+        let [a0, a1] = self.accelerations();
+        if (a0 > T::zero()) == (a1 > T::zero()) || a0 == a1 {
+            return ends;
+        }
+        // Where the acceleration passes zero.
+        let time = self.duration * a0 / (a0 - a1);
+        ends.max((self.v0 + a0 * time * half()).abs())
+    }
+
+    /// Position at a share of the duration.
+    fn position(&self, share: T) -> T {
+        let rest = T::one() - share;
+        let three = two::<T>() + T::one();
+        let third = self.duration / three;
+        let (b1, b2) = (self.q0 + self.v0 * third, self.q1 - self.v1 * third);
+        let outer = self.q0 * rest * rest * rest + self.q1 * share * share * share;
+        outer + three * share * rest * (b1 * rest + b2 * share)
+    }
+
+    /// Whether the control points, and so the cubic, are within a stroke.
+    fn surely_within(&self, min: T, max: T) -> bool {
+        let third = self.duration * nalgebra::convert(1.0 / 3.0);
+        let points = [
+            self.q0 + self.v0 * third,
+            self.q1 - self.v1 * third,
+            self.q0,
+            self.q1,
+        ];
+        points.iter().all(|point| *point >= min && *point <= max)
+    }
+
+    /// The lowest and the highest position.
+    fn reach(&self) -> [T; 2] {
+        let (mut low, mut high) = (self.q0.min(self.q1), self.q0.max(self.q1));
+        let [a0, a1] = self.accelerations();
+        // v0 + a0 t + (a1 - a0) t² / 2T = 0, as shares of the duration.
+        let (a, b) = (
+            (a1 - a0) * self.duration * half(),
+            a0 * self.duration * half(),
+        );
+        let square = b * b - a * self.v0;
+        if square >= T::zero() {
+            let sum = -(b + square.sqrt().copysign(b));
+            for share in [sum / a, self.v0 / sum] {
+                if share > T::zero() && share < T::one() {
+                    let position = self.position(share);
+                    (low, high) = (low.min(position), high.max(position));
+                }
+            }
+        }
+        [low, high]
+    }
+}
+
+fn cubics<'a, const N: usize, T: RealField + Copy>(
+    locators: &'a [Locator<T>; N],
+    from: &'a PvtPoint<N, T>,
+    to: &'a PvtPoint<N, T>,
+) -> impl Iterator<Item = (usize, usize, &'a crate::AxisLimits<T>, Cubic<T>)> {
+    let ends = from.axes.iter().zip(&to.axes);
+    let speeds = from.velocities.iter().zip(&to.velocities);
+    let all = locators.iter().zip(ends.zip(speeds)).enumerate();
+    all.flat_map(move |(number, (locator, ((q0, q1), (v0, v1))))| {
+        let limits = locator.limits.iter().enumerate();
+        let q = q0.iter().zip(q1.iter());
+        let v = v0.iter().zip(v1.iter());
+        limits
+            .zip(q.zip(v))
+            .map(move |((axis, limits), ((q0, q1), (v0, v1)))| {
+                let cubic = Cubic {
+                    q0: *q0,
+                    q1: *q1,
+                    v0: *v0,
+                    v1: *v1,
+                    duration: to.segment_s,
+                };
+                (number, axis, limits, cubic)
+            })
+    })
+}
+
+/// The axis that leaves its stroke between two points, if one does.
+pub(super) fn strokes<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    from: &PvtPoint<N, T>,
+    to: &PvtPoint<N, T>,
+) -> Result<(), LimitError<T>> {
+    platform.check_axes(&to.axes)?;
+    for (locator, axis, limits, cubic) in cubics(platform.locators(), from, to) {
+        if cubic.surely_within(limits.min, limits.max) {
+            continue;
+        }
+        let [low, high] = cubic.reach();
+        let by = (limits.min - low).max(high - limits.max);
+        if by > T::zero() {
+            // Ends are checked with the tolerance of the platform.
+            let value = if high > limits.max { high } else { low };
+            let ends =
+                (limits.min - cubic.q0.min(cubic.q1)).max(cubic.q0.max(cubic.q1) - limits.max);
+            if by > ends {
+                return Err(LimitError::Stroke {
+                    locator,
+                    axis: *Axis::ALL.get(axis).unwrap_or(&Axis::X),
+                    value,
+                    min: limits.min,
+                    max: limits.max,
+                    by,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The largest shares of the limits that a run of segments asks for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shares<const N: usize, T> {
+    speed: T,
+    acceleration: T,
+    jerk: T,
+    /// Accelerations at the end of the segment before.
+    before: [Vector3<T>; N],
+    segment_s: T,
+}
+
+impl<const N: usize, T: RealField + Copy> Shares<N, T> {
+    /// At rest.
+    pub(super) fn new() -> Self {
+        Self {
+            speed: T::zero(),
+            acceleration: T::zero(),
+            jerk: T::zero(),
+            before: [Vector3::zeros(); N],
+            segment_s: T::zero(),
+        }
+    }
+
+    /// By what the time may be multiplied at the least so that all limits are kept.
+    pub(super) fn stretch(&self) -> T {
+        self.speed
+            .max(self.acceleration.sqrt())
+            .max(cube_root(self.jerk))
+    }
+
+    /// Takes the segment from one point to the next into account.
+    ///
+    /// A cubic has one jerk. At a point the acceleration steps: that counts as a jerk over the
+    /// time between the middles of the two segments.
+    pub(super) fn add(
+        &mut self,
+        locators: &[Locator<T>; N],
+        from: &PvtPoint<N, T>,
+        to: &PvtPoint<N, T>,
+    ) {
+        let mean_s = (self.segment_s + to.segment_s) * half();
+        let mut before = self.before;
+        let axes = before.iter_mut().flat_map(Vector3::iter_mut);
+        for ((_, _, limits, cubic), before) in cubics(locators, from, to).zip(axes) {
+            let [a0, a1] = cubic.accelerations();
+            let hardest = a0.abs().max(a1.abs());
+            self.speed = self.speed.max(cubic.peak() / limits.speed);
+            self.acceleration = self.acceleration.max(hardest / limits.acceleration);
+            if let Some(limit) = limits.jerk {
+                let inside = (a1 - a0).abs() / to.segment_s;
+                let step = (a0 - *before).abs() / mean_s;
+                self.jerk = self.jerk.max(inside.max(step) / limit);
+            }
+            *before = a1;
+        }
+        self.before = before;
+        self.segment_s = to.segment_s;
+    }
+
+    /// Takes the standstill after the last segment into account.
+    pub(super) fn stop(&mut self, locators: &[Locator<T>; N]) {
+        let mean_s = self.segment_s * half();
+        let limits = locators.iter().flat_map(|locator| &locator.limits);
+        let axes = self.before.iter().flat_map(Vector3::iter);
+        for (limits, before) in limits.zip(axes) {
+            if let Some(limit) = limits.jerk {
+                self.jerk = self.jerk.max(before.abs() / mean_s / limit);
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The points of a table, computed from its knots.
+
+use core::iter::FusedIterator;
+
+use nalgebra::{RealField, Vector3};
+
+use super::{Knot, first_course, moving};
+use crate::Platform;
+use crate::course::{Course, Place};
+use crate::path::Path;
+
+/// A line of a PVT table: where every axis is at a time, and how fast it moves then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct PvtPoint<const N: usize, T = f64> {
+    /// Seconds since the start.
+    pub time_s: T,
+    /// Seconds since the point before; zero at the first.
+    pub segment_s: T,
+    /// Coordinates of each locator's three axes.
+    pub axes: [Vector3<T>; N],
+    /// Speeds of each locator's three axes, per second.
+    pub velocities: [Vector3<T>; N],
+}
+
+impl<const N: usize, T: RealField + Copy> PvtPoint<N, T> {
+    /// A place that is passed at a speed of the parameter.
+    pub(crate) fn new(place: &Place<N, T>, speed: T, time_s: T, segment_s: T) -> Self {
+        Self {
+            time_s,
+            segment_s,
+            axes: place.axes,
+            velocities: place.slope.map(|slope| slope * speed),
+        }
+    }
+}
+
+/// The points of a [`PvtTable`](super::PvtTable).
+#[derive(Debug, Clone)]
+pub struct PvtPoints<'a, const N: usize, T: RealField = f64> {
+    platform: &'a Platform<N, T>,
+    path: Path<'a, T>,
+    /// Knots that are still to come.
+    knots: &'a [Knot<T>],
+    /// The next leg, and knots of the present one that are still to come.
+    leg: usize,
+    left: u32,
+    course: Option<Course<'a, N, T>>,
+    stretch: T,
+    time_s: T,
+    segment_s: T,
+    remaining: usize,
+}
+
+impl<'a, const N: usize, T: RealField + Copy> PvtPoints<'a, N, T> {
+    pub(super) fn new(
+        platform: &'a Platform<N, T>,
+        path: &Path<'a, T>,
+        knots: &'a [Knot<T>],
+        stretch: T,
+        points: usize,
+    ) -> Self {
+        Self {
+            platform,
+            path: *path,
+            knots,
+            leg: 0,
+            left: 0,
+            course: None,
+            stretch,
+            time_s: T::zero(),
+            segment_s: T::zero(),
+            remaining: points,
+        }
+    }
+
+    /// The next knot.
+    fn knot(&mut self) -> Option<Knot<T>> {
+        let (knot, rest) = self.knots.split_first()?;
+        self.knots = rest;
+        self.segment_s = knot.segment_s * self.stretch;
+        Some(*knot)
+    }
+
+    /// Begins the next leg on which something moves; its first knot.
+    fn begin(&mut self) -> Option<Knot<T>> {
+        let from = self.leg;
+        let (number, leg) = moving(&self.path).find(|(number, _)| *number >= from)?;
+        self.leg = number.saturating_add(1);
+        self.course = Some(Course::new(self.platform, &leg));
+        let knot = self.knot()?;
+        self.left = knot.parts;
+        Some(knot)
+    }
+
+    /// The first point of all; the first pose where nothing moves anywhere.
+    fn first(&mut self) -> Option<PvtPoint<N, T>> {
+        let zero = T::zero();
+        let course = first_course(self.platform, &self.path)?;
+        if self.begin().is_none() {
+            self.course = Some(course);
+        }
+        Some(PvtPoint::new(&course.place(zero), zero, zero, zero))
+    }
+}
+
+impl<const N: usize, T: RealField + Copy> Iterator for PvtPoints<'_, N, T> {
+    type Item = PvtPoint<N, T>;
+
+    fn next(&mut self) -> Option<PvtPoint<N, T>> {
+        self.remaining = self.remaining.checked_sub(1)?;
+        if self.course.is_none() {
+            return self.first();
+        }
+        if self.left == 0 {
+            // The first knot of a leg is the last of the leg before.
+            self.begin()?;
+        }
+        self.left = self.left.saturating_sub(1);
+        let segment_s = self.segment_s;
+        self.time_s += segment_s;
+        let knot = self.knot()?;
+        let place = self.course.as_ref()?.place(knot.s);
+        let speed = knot.speed / self.stretch;
+        Some(PvtPoint::new(&place, speed, self.time_s, segment_s))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.remaining, Some(self.remaining))
+    }
+}
+
+impl<const N: usize, T: RealField + Copy> ExactSizeIterator for PvtPoints<'_, N, T> {}
+
+impl<const N: usize, T: RealField + Copy> FusedIterator for PvtPoints<'_, N, T> {}

@@ -1,0 +1,242 @@
+//! How far the distances between locators depart from those of their anchors between points.
+
+use nalgebra::{RealField, Vector3};
+
+use crate::path::Leg;
+use crate::path::leg::Shape;
+use crate::{Platform, PvtPoint};
+
+/// Two locators.
+pub(crate) struct Pair<T> {
+    /// Their distance.
+    pub(crate) length: T,
+    /// Its part across the axis of the turn; all of it where the axis is not constant.
+    pub(crate) across: T,
+}
+
+/// All pairs of locators on a leg.
+pub(crate) fn pairs<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    leg: &Leg<T>,
+) -> impl Iterator<Item = Pair<T>> {
+    let anchors = *platform.anchors();
+    let turning = match leg.shape {
+        Shape::Turning(leg) => Some((leg.axis, leg.rotation)),
+        Shape::Vector(_) => None,
+    };
+    numbers::<N>().filter_map(move |(first, second)| {
+        let apart = anchors.get(first)? - anchors.get(second)?;
+        let length = apart.norm();
+        let across = match turning {
+            Some((axis, rotation)) => axis.cross(&(rotation * apart)).norm(),
+            None => length,
+        };
+        Some(Pair { length, across })
+    })
+}
+
+/// The numbers of all pairs of `N` locators.
+fn numbers<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
+    (0..N).flat_map(|first| (first + 1..N).map(move |second| (first, second)))
+}
+
+/// By how much a distance shrinks at most while the axes move linearly from one point to the
+/// next: at half way |D|² is L² less a quarter of the squared way from D₀ to D₁.
+pub(crate) fn linear_strain<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    from: &[Vector3<T>; N],
+    to: &[Vector3<T>; N],
+) -> T {
+    let ends = [from, to].map(|axes| platform.locator_positions(axes));
+    numbers::<N>().fold(T::zero(), |worst, (first, second)| {
+        let [from, to] = ends
+            .each_ref()
+            .map(|points| Some(points.get(first)? - points.get(second)?));
+        match (from, to) {
+            (Some(from), Some(to)) => {
+                let lost = (to - from).norm_squared() * nalgebra::convert(0.25);
+                worst.max(departure(from.norm(), -lost))
+            }
+            _ => worst,
+        }
+    })
+}
+
+/// |√(L² + change) - L|, without cancellation; L where the square would be negative.
+fn departure<T: RealField + Copy>(length: T, change: T) -> T {
+    let square = (length * length + change).max(T::zero());
+    (change / (length + square.sqrt()))
+        .abs()
+        .min(if change < T::zero() {
+            length
+        } else {
+            change.abs()
+        })
+}
+
+/// The most by which the distance of any two locators departs from that of their anchors
+/// while every axis runs the cubic from one point of a PVT table to the next.
+///
+/// Proof. The axes are linear in the positions, so the vector D between two locators is a
+/// cubic as well, with control points B₀ = D₀, B₁ = D₀ + T D₀'/3, B₂ = D₁ - T D₁'/3,
+/// B₃ = D₁. Both ends belong to a rigid motion: |D| = L and D·D' = 0. So |D|² - L² and
+/// its derivative are zero at both ends, and with τ = t/T it is
+///
+/// ```text
+/// |D|² - L² = τ² (1-τ)² (3 e₂ (1-τ)² + 2 · 2 e₃ τ (1-τ) + 3 e₄ τ²)
+///    e₂ = 2 B₀·B₂ + 3 B₁·B₁ - 5 L²
+///    e₃ = (B₀·B₃ + 9 B₁·B₂ - 10 L²) / 2
+///    e₄ = 2 B₁·B₃ + 3 B₂·B₂ - 5 L²
+/// ```
+///
+/// τ² (1-τ)² is at most 1/16, and the bracket a mean of 3 e₂, 2 e₃ and 3 e₄. Hence |D|² departs
+/// from L² by at most a sixteenth of the largest of them, to either side.
+///
+/// For a turn by δ about a constant axis across D while the speed changes by the share
+/// r = (w₁ - w₀)/(w₁ + w₀), that is
+///
+/// ```text
+/// L δ⁴ / 384              at constant speed, r = 0
+/// L r² δ² / 32            else, for small δ; L δ² / 32 from rest or to rest
+/// ```
+///
+/// The fourth-order figure alone does not hold where the speed changes.
+#[must_use]
+pub fn hermite_strain<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    from: &PvtPoint<N, T>,
+    to: &PvtPoint<N, T>,
+) -> T {
+    let duration = to.segment_s;
+    let ends = [from, to].map(|point| {
+        let turned = |vectors: &[Vector3<T>; N]| {
+            let mut world = *vectors;
+            for (locator, vector) in platform.locators().iter().zip(&mut world) {
+                *vector = locator.axes * *vector;
+            }
+            world
+        };
+        let positions = platform
+            .locator_positions(&point.axes)
+            .map(|position| position.coords);
+        (positions, turned(&point.velocities))
+    });
+    numbers::<N>().fold(T::zero(), |worst, (first, second)| {
+        let vectors = ends.each_ref().map(|(positions, velocities)| {
+            let apart = |all: &[Vector3<T>; N]| Some(all.get(first)? - all.get(second)?);
+            apart(positions)
+                .zip(apart(velocities))
+                .unwrap_or((Vector3::zeros(), Vector3::zeros()))
+        });
+        worst.max(pair_strain(&vectors, duration))
+    })
+}
+
+/// The bound for one pair from the vector between them and its derivative at both ends.
+fn pair_strain<T: RealField + Copy>(ends: &[(Vector3<T>, Vector3<T>); 2], duration: T) -> T {
+    let constant = |value: f64| nalgebra::convert::<f64, T>(value);
+    let [(b0, from), (b3, to)] = *ends;
+    let third = duration / constant(3.0);
+    // Differences from the ends: B₀·B₀ = L² is taken out before anything is rounded.
+    let (first, last) = (from * third, to * third);
+    let chord = b3 - b0;
+    let square = b0.norm_squared();
+    let (b1, b2) = (b0 + first, b3 - last);
+    let (two, three, nine) = (constant(2.0), constant(3.0), constant(9.0));
+    // B₀·B₂ - L² = B₀·(chord - last), and so on.
+    let e2 = two * b0.dot(&(chord - last)) + three * first.dot(&(b0 * two + first));
+    let e3 = (b0.dot(&chord) + nine * (b1.dot(&b2) - square)) / two;
+    let e4 = two * (b1.dot(&b3) - square) + three * (b2.norm_squared() - square);
+    let low = (three * e2).min(two * e3).min(three * e4).min(T::zero());
+    let high = (three * e2).max(two * e3).max(three * e4).max(T::zero());
+    let sixteenth = constant(1.0 / 16.0);
+    let length = square.sqrt();
+    departure(length, low * sixteenth).max(departure(length, high * sixteenth))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Isometry3, Point3, Vector3};
+
+    use super::*;
+    use crate::course::Course;
+    use crate::{AxisLimits, Interpolation, Locator, Path};
+
+    /// L = 4000 mm across the axis of every turn, which is Z.
+    fn flat() -> Platform<3> {
+        let limits = AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0);
+        let anchors = [[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [1800.0, 1500.0, 0.0]];
+        Platform::new(
+            anchors.map(|anchor| Locator::new(Point3::from(anchor), Point3::origin(), [limits; 3])),
+        )
+        .unwrap()
+    }
+
+    /// A turn by `turn` in which the speed changes by the share `change`, and the strain at
+    /// 1000 places of it.
+    fn bound_and_measured(turn: f64, change: f64) -> (f64, f64) {
+        let platform = flat();
+        let poses = [
+            Isometry3::identity(),
+            Isometry3::new(Vector3::zeros(), Vector3::z() * turn),
+        ];
+        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let course = Course::new(&platform, &path.leg(0).unwrap());
+        // The mean speed is 1, and so is the time.
+        let from = PvtPoint::new(&course.place(0.0), 1.0 - change, 0.0, 0.0);
+        let to = PvtPoint::new(&course.place(1.0), 1.0 + change, 1.0, 1.0);
+        let measured = (0..=1000).fold(0.0_f64, |worst, place| {
+            let u = f64::from(place) / 1000.0;
+            let v = 1.0 - u;
+            let mut axes = from.axes;
+            for (i, axes) in axes.iter_mut().enumerate() {
+                *axes = from.axes[i] * ((1.0 + 2.0 * u) * v * v)
+                    + from.velocities[i] * (u * v * v)
+                    + to.axes[i] * (u * u * (3.0 - 2.0 * u))
+                    - to.velocities[i] * (u * u * v);
+            }
+            let strain = platform.strain(&platform.locator_positions(&axes));
+            worst.max(strain.change.abs())
+        });
+        (hermite_strain(&platform, &from, &to), measured)
+    }
+
+    #[test]
+    fn the_bound_holds_and_is_near_for_every_change_of_speed() {
+        for turn in [1e-3, 0.01, 0.1, 0.5, 1.0, 2.0] {
+            for change in [-1.0, -0.3, -0.01, 0.0, 1e-3, 0.1, 0.5, 1.0] {
+                let (bound, measured) = bound_and_measured(turn, change);
+                // Coordinates of 4 m are rounded to 1e-12 mm.
+                assert!(
+                    measured <= bound + 4e-12,
+                    "{turn} {change}: {measured} {bound}"
+                );
+                let near = bound <= 2.0 * measured + 4e-12;
+                // Where the two orders nearly cancel, the bound does not.
+                let cancels = (0.1..5.0).contains(&(12.0 * change * change / (turn * turn)));
+                assert!(near || cancels, "{turn} {change}: {measured} {bound}");
+            }
+        }
+    }
+
+    #[test]
+    fn closed_forms_for_small_turns() {
+        let length = 4000.0;
+        let (bound, measured) = bound_and_measured(0.05, 0.0);
+        let fourth = length * 0.05_f64.powi(4) / 384.0;
+        assert!(
+            (measured / fourth - 1.0).abs() < 1e-3,
+            "{measured} {fourth}"
+        );
+        assert!((bound / fourth - 1.0).abs() < 1e-2, "{bound} {fourth}");
+        for change in [0.5, 1.0, -1.0] {
+            let (bound, measured) = bound_and_measured(1e-3, change);
+            let second = length * (change * 1e-3_f64).powi(2) / 32.0;
+            assert!(
+                (measured / second - 1.0).abs() < 1e-3,
+                "{measured} {second}"
+            );
+            assert!((bound / second - 1.0).abs() < 1e-2, "{bound} {second}");
+        }
+    }
+}

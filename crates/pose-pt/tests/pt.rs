@@ -1,0 +1,316 @@
+//! PT tables: points, times, strain, errors.
+#![cfg(test)]
+
+#[path = "support/strain.rs"]
+mod strain;
+#[path = "support/platform.rs"]
+mod support;
+
+use pose_pt::nalgebra::{Isometry3, Vector3};
+use pose_pt::{
+    Axis, AxisLimits, Convention, Cut, Interpolation, LimitError, Locator, Path, PathError,
+    PlanError, Platform, PoseVector, PtPoint, PtTable,
+};
+use proptest::prelude::*;
+use strain::strain;
+use support::{SPEED, panel, panel_with, pose, skewed};
+
+/// Rounding of coordinates of some metres.
+const ROUNDING: f64 = 1e-11;
+
+/// Rigid distances, relative.
+const RIGID: f64 = 1e-13;
+
+const ALL: [Interpolation; 4] = [
+    Interpolation::Straight,
+    Interpolation::Screw,
+    Interpolation::Vector(Convention::FixedXyz),
+    Interpolation::Vector(Convention::MovingXyz),
+];
+
+/// Distances between locators, against those of the anchors.
+fn rigid<const N: usize>(platform: &Platform<N>, axes: &[Vector3<f64>; N]) -> f64 {
+    strain(platform, axes) / platform.largest_anchor_distance()
+}
+
+/// The largest strain between points, at 1000 places of each segment.
+fn measured<const N: usize>(platform: &Platform<N>, points: &[PtPoint<N>]) -> f64 {
+    let mut worst = 0.0_f64;
+    for pair in points.windows(2) {
+        for place in 0..=1000 {
+            let share = f64::from(place) / 1000.0;
+            let mut axes = pair[0].axes;
+            for (axes, to) in axes.iter_mut().zip(&pair[1].axes) {
+                *axes += (to - *axes) * share;
+            }
+            worst = worst.max(strain(platform, &axes));
+        }
+    }
+    worst
+}
+
+#[test]
+fn all_kinds_meet_the_poses_and_keep_the_body_rigid() {
+    let poses = [
+        pose([0.0; 3], [0.0; 3]),
+        pose([30.0, -12.0, 7.0], [0.02, -0.05, 0.15]),
+        pose([10.0, 5.0, -9.0], [-0.1, 0.03, -0.2]),
+    ];
+    for platform in [panel(), skewed()] {
+        for kind in ALL {
+            let path = Path::new(&poses, kind).unwrap();
+            let table = PtTable::plan(&platform, &path, Cut::parts(700)).unwrap();
+            let points: Vec<_> = table.points().collect();
+            assert_eq!(points.len(), 1401);
+            assert_eq!(table.len(), 1401);
+            for (number, pose) in [(0, poses[0]), (700, poses[1]), (1400, poses[2])] {
+                let off = platform.axes(&pose);
+                for (got, wanted) in points[number].axes.iter().zip(off) {
+                    assert!((got - wanted).amax() < ROUNDING, "{kind:?} {number}");
+                }
+            }
+            for (number, point) in points.iter().enumerate() {
+                assert!(rigid(&platform, &point.axes) < RIGID, "{kind:?}");
+                assert_eq!(table.axes(number).unwrap(), point.axes);
+            }
+            assert!(table.axes(1401).is_none());
+        }
+    }
+}
+
+/// The points are those of the leg's own poses, found without recurrence.
+#[test]
+fn points_follow_the_leg() {
+    let poses = [
+        pose([1.0, 2.0, 3.0], [0.1, 0.0, 0.3]),
+        pose([130.0, -12.0, 7.0], [0.2, -0.15, 1.15]),
+    ];
+    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
+    for kind in ALL {
+        let path = Path::new(&poses, kind).unwrap();
+        let leg = path.leg(0).unwrap();
+        let table = PtTable::plan(&platform, &path, Cut::parts(333)).unwrap();
+        for (number, point) in (0..).zip(table.points()) {
+            let wanted = platform.axes(&leg.pose(f64::from(number) / 333.0));
+            for (got, wanted) in point.axes.iter().zip(wanted) {
+                assert!((got - wanted).amax() < ROUNDING, "{kind:?} {number}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_slowest_axis_runs_at_its_rated_speed() {
+    for platform in [panel(), skewed()] {
+        let poses = [
+            pose([0.0; 3], [0.0; 3]),
+            pose([30.0, -12.0, 7.0], [0.0, 0.02, 0.03]),
+        ];
+        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let table = PtTable::plan(&platform, &path, Cut::parts(100)).unwrap();
+        let points: Vec<_> = table.points().collect();
+        for pair in points.windows(2) {
+            let [from, to] = pair else { unreachable!() };
+            let mut fastest = 0.0_f64;
+            for (number, locator) in platform.locators().iter().enumerate() {
+                for (axis, limits) in locator.limits.iter().enumerate() {
+                    let way = (to.axes[number][axis] - from.axes[number][axis]).abs();
+                    fastest = fastest.max(way / to.segment_s / limits.speed);
+                }
+            }
+            assert!((fastest - 1.0).abs() < 1e-14, "{fastest}");
+            assert!((to.time_s - from.time_s - to.segment_s).abs() < 1e-12);
+        }
+        let last = points.last().unwrap().time_s;
+        assert_eq!(table.duration_s().to_bits(), last.to_bits());
+    }
+}
+
+#[test]
+fn steps_are_smaller_than_the_accuracy() {
+    let platform = panel();
+    let poses = [pose([0.0; 3], [0.0; 3]), pose([10.0, 0.0, 0.0], [0.0; 3])];
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
+    assert_eq!(table.len(), 1002);
+    assert!((table.duration_s() - 10.0 / SPEED).abs() < 1e-12);
+    let poses = [
+        pose([0.0; 3], [0.0; 3]),
+        pose([0.1, 0.0, 0.0], [0.0, 0.0, 0.05]),
+    ];
+    let path = Path::new(&poses, Interpolation::Screw).unwrap();
+    let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
+    assert_eq!(table.len(), 502);
+}
+
+/// 4.27 m, 0.01 mm: 0.248° between points.
+#[test]
+fn strain_of_the_panel() {
+    let anchors_apart = 0.248_f64.to_radians();
+    let platform = panel();
+    let turn = 4.0 * anchors_apart;
+    let poses = [pose([0.0; 3], [0.0; 3]), pose([0.0; 3], [0.0, 0.0, turn])];
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
+    let points: Vec<_> = table.points().collect();
+    let (bound, measured) = (table.strain_bound(), measured(&platform, &points));
+    assert!(bound <= 0.01 && measured <= bound * (1.0 + 1e-9));
+    assert!(measured > bound * 0.999);
+    assert_eq!(table.len(), 5);
+}
+
+#[test]
+fn a_stroke_passed_between_the_ends_is_named() {
+    // Half a turn of 100 mm about the first locator, seen as two poses: in between the
+    // others swing far out.
+    let limits = AxisLimits::new(-600.0, 600.0, 10.0, 25.0);
+    let platform = panel_with(limits);
+    let poses = [
+        PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, core::f64::consts::TAU),
+    ];
+    let path = Path::of_vectors(&poses, Convention::FixedXyz).unwrap();
+    let error = PtTable::plan(&platform, &path, Cut::parts(360)).unwrap_err();
+    let PlanError::Limit {
+        leg: 0,
+        point,
+        reason,
+    } = error
+    else {
+        panic!("{error}");
+    };
+    let LimitError::Stroke {
+        locator: 1,
+        axis: Axis::Y,
+        value,
+        max,
+        by,
+        ..
+    } = reason
+    else {
+        panic!("{reason}");
+    };
+    assert!((value - max - by).abs() < ROUNDING);
+    // sin(point°) 4000 passes 600 mm after 8.63°.
+    assert_eq!(point, 9);
+}
+
+#[test]
+fn wrong_input_is_named() {
+    let platform = panel();
+    let good = [pose([0.0; 3], [0.0; 3]), pose([1.0, 0.0, 0.0], [0.0; 3])];
+    let one = Path::new(&good[..1], Interpolation::Straight).unwrap_err();
+    assert_eq!(one, PathError::TooFew { poses: 1 });
+    let bad = [good[0], pose([f64::NAN, 0.0, 0.0], [0.0; 3])];
+    let bad = Path::new(&bad, Interpolation::Screw).unwrap_err();
+    assert_eq!(bad, PathError::NotFinite { pose: 1 });
+    let half = [good[0], pose([0.0; 3], [0.0, core::f64::consts::PI, 0.0])];
+    let half = Path::new(&half, Interpolation::Straight).unwrap_err();
+    assert!(matches!(half, PathError::HalfTurn { pose: 0, .. }));
+
+    let path = Path::new(&good, Interpolation::Straight).unwrap();
+    for cut in [
+        Cut::parts(0),
+        Cut::strain(0.0),
+        Cut::strain(f64::NAN),
+        Cut::steps(-1.0, 1.0),
+        Cut::steps(1.0, f64::INFINITY),
+    ] {
+        let error = PtTable::plan(&platform, &path, cut).unwrap_err();
+        assert!(matches!(error, PlanError::Cut { .. }), "{error}");
+    }
+    let error = PtTable::plan(&platform, &path, Cut::steps(1e-12, 1.0)).unwrap_err();
+    assert!(
+        matches!(error, PlanError::TooFine { leg: 0, .. }),
+        "{error}"
+    );
+    let table = PtTable::plan(&platform, &path, Cut::parts(512)).unwrap();
+    let error = PlanError::TooManyPoints {
+        needed: 513,
+        available: 512,
+    };
+    assert_eq!(table.fits(512), Err(error));
+    assert_eq!(table.fits(513), Ok(()));
+}
+
+#[test]
+fn a_body_that_stays_is_one_point() {
+    let still = [pose([1.0; 3], [0.1; 3]); 3];
+    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
+    for kind in ALL {
+        let path = Path::new(&still, kind).unwrap();
+        let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
+        assert_eq!(table.points().count(), 1);
+        let moved = [
+            still[0],
+            still[0],
+            pose([2.0; 3], [0.1; 3]),
+            pose([2.0; 3], [0.1; 3]),
+        ];
+        let path = Path::new(&moved, kind).unwrap();
+        let table = PtTable::plan(&platform, &path, Cut::parts(3)).unwrap();
+        assert_eq!(table.points().count(), 4);
+        assert_eq!(table.len(), 4);
+    }
+}
+
+#[test]
+fn single_precision_keeps_the_body_rigid() {
+    let anchors = [[0.0_f32, 0.0, 0.0], [400.0, 0.0, 5.0], [180.0, 149.0, -8.0]];
+    let limits = AxisLimits::new(-150.0_f32, 150.0, 10.0, 25.0);
+    let locators = anchors.map(|anchor| Locator::new(anchor.into(), anchor.into(), [limits; 3]));
+    let platform = Platform::new(locators).unwrap();
+    let poses = [
+        Isometry3::identity(),
+        Isometry3::new(
+            Vector3::new(20.0, -5.0, 3.0),
+            Vector3::new(0.01, 0.02, 0.05),
+        ),
+    ];
+    for kind in ALL {
+        let path = Path::new(&poses, kind).unwrap();
+        let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
+        assert!(table.len() > 2 && table.strain_bound() <= 0.01);
+        for point in table.points() {
+            let strain = platform
+                .strain(&platform.locator_positions(&point.axes))
+                .change;
+            // 16 roundings of coordinates of 420 mm.
+            assert!(strain.abs() < 420.0 * 16.0 * f32::EPSILON, "{strain}");
+        }
+    }
+}
+
+prop_compose! {
+    fn poses()(translation in prop::array::uniform3(-40.0..40.0), turn in prop::array::uniform3(-0.2..0.2),
+        to in prop::array::uniform3(-40.0..40.0), to_turn in prop::array::uniform3(-0.2..0.2))
+        -> [Isometry3<f64>; 2] {
+        [pose(translation, turn), pose(to, to_turn)]
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn the_strain_never_passes_the_allowed_one(
+        poses in poses(), kind in 0..4_usize, allowed in 0.001..0.5,
+    ) {
+        for platform in [panel(), skewed()] {
+            let path = Path::new(&poses, ALL[kind]).unwrap();
+            let table = PtTable::plan(&platform, &path, Cut::strain(allowed)).unwrap();
+            let points: Vec<_> = table.points().collect();
+            let bound = table.strain_bound();
+            let measured = measured(&platform, &points);
+            prop_assert!(bound <= allowed * (1.0 + 1e-12));
+            prop_assert!(measured <= bound + ROUNDING, "{} {}", measured, bound);
+            prop_assert!(bound <= 3.0 * measured + ROUNDING, "{} {}", measured, bound);
+            // One part fewer does not keep it.
+            let parts = u32::try_from(table.len() - 2).unwrap();
+            if parts > 0 && kind < 2 {
+                let coarse = PtTable::plan(&platform, &path, Cut::parts(parts)).unwrap();
+                prop_assert!(coarse.strain_bound() > allowed);
+            }
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! Feed override, stops on the path, and the controller's buffer.
+#![cfg(test)]
+
+#[path = "support/cubic.rs"]
+mod cubic;
+#[path = "support/platform.rs"]
+mod support;
+
+use cubic::between;
+use pose_pt::nalgebra::Isometry3;
+use pose_pt::{
+    Ahead, AxisLimits, Cut, FeedError, Fifo, FifoError, Interpolation, Knot, Path, PlanError,
+    Platform, PvtPoint, PvtTable,
+};
+use proptest::prelude::*;
+use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
+
+/// Times and positions of some metres rounded off.
+const LIMIT: f64 = 1.0 + 1e-9;
+
+/// Positions of some metres rounded off.
+const ROUNDING: f64 = 1e-11;
+
+fn poses() -> [Isometry3<f64>; 2] {
+    [
+        pose([0.0; 3], [0.0; 3]),
+        pose([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]),
+    ]
+}
+
+/// Speeds and accelerations of what the controller runs, as shares of the limits.
+fn check_limits<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) {
+    for pair in points.windows(2) {
+        for place in 0..=16 {
+            let share = f64::from(place) / 16.0;
+            let [_, speeds, accelerations, _] = between(&pair[0], &pair[1], share);
+            for (number, locator) in platform.locators().iter().enumerate() {
+                for (axis, limits) in locator.limits.iter().enumerate() {
+                    assert!(speeds[number][axis].abs() < limits.speed * LIMIT);
+                    let acceleration = accelerations[number][axis].abs();
+                    assert!(acceleration < limits.acceleration * LIMIT, "{acceleration}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn at_full_feed_it_is_the_table() {
+    for platform in [panel(), skewed()] {
+        let poses = poses();
+        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let mut knots = [Knot::default(); 101];
+        let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
+        let mut ahead = [Ahead::default(); 101];
+        let run = table.run(1.5, &mut ahead).unwrap();
+        assert_eq!(run.size_hint(), (0, Some(101)));
+        for (got, wanted) in run.zip(table.points()) {
+            assert_eq!(got.axes, wanted.axes);
+            assert!(
+                (got.time_s - wanted.time_s).abs() < 1e-9 * (1.0 + wanted.time_s),
+                "{} {}",
+                got.time_s,
+                wanted.time_s
+            );
+            for (got, wanted) in got.velocities.iter().zip(&wanted.velocities) {
+                assert!((got - wanted).amax() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_table_at_its_limits_cannot_go_faster_and_one_below_can() {
+    let platform = panel();
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 201];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(200), &mut knots).unwrap();
+    let slow = table.at_pace(0.5).unwrap();
+    for (table, feed, expected) in [(table, 1.5, 1.0), (slow, 1.5, 2.0 / 1.5), (slow, 0.5, 4.0)] {
+        let mut ahead = [Ahead::default(); 201];
+        let mut run = table.run(1.5, &mut ahead).unwrap();
+        run.set_feed(feed).unwrap();
+        let points: Vec<_> = run.collect();
+        check_limits(&platform, &points);
+        let share = points.last().unwrap().time_s / slow.duration_s() * 2.0;
+        println!("{feed}: {share}, {expected}");
+        assert!((share / expected - 1.0).abs() < 0.01, "{share} {expected}");
+    }
+}
+
+#[test]
+fn a_stop_is_on_the_path_and_can_go_on() {
+    let platform = panel();
+    let poses = [pose([0.0; 3], [0.0; 3]), pose([100.0, 0.0, 0.0], [0.0; 3])];
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 401];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(400), &mut knots).unwrap();
+    let mut ahead = [Ahead::default(); 401];
+    let mut run = table.run(1.5, &mut ahead).unwrap();
+    let mut points: Vec<_> = run.by_ref().take(200).collect();
+    let from = *points.last().unwrap();
+    run.stop();
+    points.extend(run.by_ref());
+    assert!(!run.is_finished() && run.next_point().is_none());
+    let rest = points.last().unwrap();
+    assert!(rest.velocities.iter().all(|v| v.amax() == 0.0));
+    // 10 mm/s at 25 mm/s² stop within 2 mm, and a segment.
+    let way = rest.axes[0].x - from.axes[0].x;
+    let shortest = SPEED * SPEED / (2.0 * ACCELERATION);
+    assert!(
+        way > shortest * (1.0 - 1e-9) && way < shortest + 2.0 * 100.0 / 400.0,
+        "{way}"
+    );
+    check_limits(&platform, &points);
+
+    run.set_feed(1.0).unwrap();
+    points.extend(run.by_ref());
+    assert!(run.is_finished());
+    check_limits(&platform, &points);
+    assert_eq!(points.len(), 401);
+    assert!((points[400].axes[2].x - 100.0).abs() < ROUNDING);
+}
+
+#[test]
+fn wrong_feeds_and_memory_are_named() {
+    let platform = panel();
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 11];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(10), &mut knots).unwrap();
+    let mut ahead = [Ahead::default(); 11];
+    let error = table.run(1.5, &mut ahead[..10]).unwrap_err();
+    assert_eq!(
+        error,
+        PlanError::TooManyPoints {
+            needed: 11,
+            available: 10
+        }
+    );
+    assert!(table.run(f64::NAN, &mut ahead).is_err());
+    let mut run = table.run(1.5, &mut ahead).unwrap();
+    let error = run.set_feed(1.6).unwrap_err();
+    assert_eq!(
+        error,
+        FeedError {
+            feed: 1.6,
+            max: 1.5
+        }
+    );
+    assert!(run.set_feed(-0.1).is_err() && run.set_feed(f64::NAN).is_err());
+}
+
+/// A sender that polls every 100 ms keeps a buffer of 16 points filled.
+#[test]
+fn the_buffer_is_kept_filled_to_the_end() {
+    let platform = panel();
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 101];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
+    let mut fifo = Fifo::<16>::new();
+    let (mut points, mut sent) = (table.points(), 0);
+    let mut now = 1000.0;
+    while !fifo.is_done() {
+        while fifo.next(now, &mut points).unwrap().is_some() {
+            sent += 1;
+        }
+        if sent == 17 {
+            fifo.start(now).unwrap();
+        }
+        let state = fifo.state(now).unwrap();
+        assert_eq!(state.filled + state.free, 16);
+        now += 0.1;
+    }
+    assert_eq!(sent, 101);
+    assert!((now - 1000.0 - table.duration_s()).abs() < 0.21);
+}
+
+#[test]
+fn an_underrun_is_reported_with_its_time() {
+    let platform = panel();
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 101];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
+    let mut points = table.points();
+    let mut fifo = Fifo::<512>::new();
+    assert_eq!(fifo.start(0.0), Err(FifoError::Empty));
+    let mut last = 0.0;
+    for _ in 0..5 {
+        last = fifo.next(0.0, &mut points).unwrap().unwrap().time_s;
+    }
+    fifo.start(2.0).unwrap();
+    let state = fifo.state(2.0).unwrap();
+    assert_eq!((state.filled, state.free), (4, 508));
+    assert!((state.until_underrun_s - last).abs() < 1e-12);
+    let before = fifo.state(2.0 + last - 1e-6).unwrap();
+    assert_eq!(before.filled, 1);
+    let error = fifo.next(2.0 + last + 0.25, &mut points).unwrap_err();
+    let FifoError::Underrun {
+        at_s,
+        late_s,
+        points: handed,
+    } = error
+    else {
+        panic!("{error}");
+    };
+    assert!((at_s - 2.0 - last).abs() < 1e-9 && (late_s - 0.25).abs() < 1e-9);
+    assert_eq!((handed, points.len()), (5, 96));
+    assert!(matches!(
+        fifo.state(1.0),
+        Err(FifoError::Time { now_s: 1.0, .. })
+    ));
+    fifo.restart();
+    assert_eq!(fifo.state(9.0).unwrap().free, 512);
+}
+
+/// The sizes that the README states, for three locators in f64 on 64 bits.
+#[cfg(target_pointer_width = "64")]
+#[test]
+fn memory_is_fixed() {
+    use pose_pt::{PtPoints, PtTable, PvtPoints, PvtRun};
+
+    assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
+    assert_eq!(size_of::<PtPoints<'_, 3>>(), 656);
+    assert_eq!(size_of::<PvtTable<'_, 3>>(), 72);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 400);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 424);
+    assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
+    assert_eq!(size_of::<Fifo<512>>(), 512 * 8 + 72);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any feeds at any points: limits, the path, the end.
+    #[test]
+    fn limits_hold_under_any_feed(
+        feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
+        parts in 10..150_u32, pace in 0.3..1.0, skew in any::<bool>(), speed in 5.0..500.0,
+    ) {
+        let platform = if skew {
+            skewed()
+        } else {
+            panel_with(AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION))
+        };
+        let poses = poses();
+        let path = Path::new(&poses, Interpolation::Screw).unwrap();
+        let mut knots = [Knot::default(); 151];
+        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
+        let table = table.at_pace(pace).unwrap();
+        let mut ahead = [Ahead::default(); 151];
+        let mut run = table.run(1.5, &mut ahead).unwrap();
+        let mut points = Vec::new();
+        for (feed, count) in feeds {
+            run.set_feed(if feed < 0.2 { 0.0 } else { feed }).unwrap();
+            points.extend(run.by_ref().take(count));
+        }
+        run.set_feed(1.0).unwrap();
+        points.extend(run.by_ref());
+        prop_assert!(run.is_finished());
+        prop_assert_eq!(points.len(), table.len());
+        check_limits(&platform, &points);
+        for (got, wanted) in points.iter().zip(table.points()) {
+            prop_assert_eq!(got.axes, wanted.axes);
+        }
+    }
+}

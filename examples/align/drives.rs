@@ -1,0 +1,215 @@
+//! The simulated locators: every axis for itself, from jogs and from tables.
+
+use anyhow::{Context, Result};
+use nalgebra::Vector3;
+use pose2pulse::handwheel::Axis;
+use pose2pulse::pose_pt::{BodyFit, Platform};
+
+use crate::table::{AxisState, States, Table};
+
+/// Cycle of the drives, in microseconds.
+pub(crate) const CYCLE_US: u64 = 1000;
+const CYCLE_S: f64 = 1e-3;
+/// Places of a segment that are looked at, in a short table and in a long one; the middle, where
+/// the strain of a line is largest, is one of them.
+const PLACES: u32 = 32;
+const PLACES_OF_MANY: u32 = 2;
+/// Points of a long table.
+const MANY: usize = 2000;
+
+enum Motion<const N: usize> {
+    Hold,
+    Jog {
+        locator: usize,
+        axis: usize,
+        /// In mm per second.
+        speed: f64,
+    },
+    Table {
+        table: Table<N>,
+        start_us: u64,
+    },
+}
+
+/// The axes of all locators.
+pub(crate) struct Drives<const N: usize> {
+    states: States<N>,
+    accelerations: [[f64; 3]; N],
+    motion: Motion<N>,
+    now_us: u64,
+}
+
+impl<const N: usize> Drives<N> {
+    pub(crate) fn new(platform: &Platform<N>, axes: &[Vector3<f64>; N]) -> Self {
+        let state = |position| AxisState {
+            position,
+            speed: 0.0,
+        };
+        Self {
+            states: axes.map(|it| [it.x, it.y, it.z].map(state)),
+            accelerations: platform
+                .locators()
+                .map(|it| it.limits.map(|limits| limits.acceleration)),
+            motion: Motion::Hold,
+            now_us: 0,
+        }
+    }
+
+    pub(crate) const fn states(&self) -> &States<N> {
+        &self.states
+    }
+
+    pub(crate) fn axes(&self) -> [Vector3<f64>; N] {
+        self.states
+            .map(|[x, y, z]| Vector3::new(x.position, y.position, z.position))
+    }
+
+    /// When the next cycle is due.
+    pub(crate) const fn due_us(&self) -> Option<u64> {
+        match self.motion {
+            Motion::Hold => None,
+            _ => Some(self.now_us + CYCLE_US),
+        }
+    }
+
+    /// Moves one axis at a speed, in mm per second; 0 stops it.
+    pub(crate) fn jog(&mut self, now_us: u64, locator: u8, axis: Axis, speed: f64) {
+        self.begin(now_us);
+        self.motion = Motion::Jog {
+            locator: locator.into(),
+            axis: axis.index(),
+            speed,
+        };
+    }
+
+    pub(crate) fn run(&mut self, now_us: u64, table: Table<N>) {
+        self.begin(now_us);
+        let start_us = self.now_us;
+        self.motion = Motion::Table { table, start_us };
+    }
+
+    /// Brakes the axis that is jogged; a table is given up where it is. True when everything is
+    /// at rest at once.
+    pub(crate) fn stop(&mut self) -> bool {
+        match &mut self.motion {
+            Motion::Jog { speed, .. } => {
+                *speed = 0.0;
+                false
+            }
+            motion => {
+                *motion = Motion::Hold;
+                true
+            }
+        }
+    }
+
+    fn begin(&mut self, now_us: u64) {
+        if matches!(self.motion, Motion::Hold) {
+            self.now_us = now_us;
+        }
+    }
+
+    /// One cycle; true when it has brought everything to rest.
+    pub(crate) fn cycle(&mut self) -> bool {
+        self.now_us += CYCLE_US;
+        match &self.motion {
+            Motion::Hold => return false,
+            Motion::Jog {
+                locator,
+                axis,
+                speed,
+            } => {
+                let acceleration = self
+                    .accelerations
+                    .get(*locator)
+                    .and_then(|it| it.get(*axis));
+                let state = self
+                    .states
+                    .get_mut(*locator)
+                    .and_then(|it| it.get_mut(*axis));
+                if let (Some(state), Some(acceleration)) = (state, acceleration) {
+                    let most = acceleration * CYCLE_S;
+                    let change = (speed - state.speed).clamp(-most, most);
+                    state.position += (state.speed + change / 2.0) * CYCLE_S;
+                    state.speed += change;
+                    if *speed != 0.0 || state.speed != 0.0 {
+                        return false;
+                    }
+                }
+            }
+            Motion::Table { table, start_us } => {
+                #[expect(clippy::cast_precision_loss, reason = "hours of microseconds")]
+                let time_s = (self.now_us - start_us) as f64 * 1e-6;
+                self.states = table.at(time_s).unwrap_or(self.states);
+                if time_s < table.duration_s() {
+                    return false;
+                }
+                for state in self.states.iter_mut().flatten() {
+                    state.speed = 0.0;
+                }
+            }
+        }
+        self.motion = Motion::Hold;
+        true
+    }
+}
+
+/// The platform at one moment of a table.
+pub(crate) struct Moment<const N: usize> {
+    pub(crate) time_s: f64,
+    pub(crate) states: States<N>,
+    /// Worst change of a distance between two locators, in mm.
+    pub(crate) strain: f64,
+}
+
+/// What a table does to axes and body.
+pub(crate) struct Examination<const N: usize> {
+    pub(crate) moments: Vec<Moment<N>>,
+    pub(crate) max_strain: f64,
+    /// Largest share of its rated speed that an axis has.
+    pub(crate) max_speed_ratio: f64,
+    /// Where the body is in the end.
+    pub(crate) end: BodyFit<N>,
+}
+
+impl<const N: usize> Examination<N> {
+    /// Runs all axes through all segments.
+    pub(crate) fn of(table: &Table<N>, platform: &Platform<N>) -> Result<Self> {
+        let mut moments = Vec::new();
+        let (mut max_strain, mut max_speed_ratio) = (0.0_f64, 0.0_f64);
+        let places = if table.points() < MANY {
+            PLACES
+        } else {
+            PLACES_OF_MANY
+        };
+        for (segment, [start, end]) in table.segments() {
+            for place in 0..=places {
+                let s = f64::from(place) / f64::from(places);
+                let states = table.states(segment, s).context("no such segment")?;
+                let axes = states.map(|it| Vector3::from(it.map(|axis| axis.position)));
+                let strain = platform.strain(&platform.locator_positions(&axes)).change;
+                max_strain = max_strain.max(strain.abs());
+                for (locator, states) in platform.locators().iter().zip(&states) {
+                    for (limits, state) in locator.limits.iter().zip(states) {
+                        max_speed_ratio = max_speed_ratio.max(state.speed.abs() / limits.speed);
+                    }
+                }
+                moments.push(Moment {
+                    time_s: start + s * (end - start),
+                    states,
+                    strain,
+                });
+            }
+        }
+        let last = moments.last().context("a table without a segment")?;
+        let axes = last
+            .states
+            .map(|it| Vector3::from(it.map(|axis| axis.position)));
+        Ok(Self {
+            max_strain,
+            max_speed_ratio,
+            end: platform.pose(&axes)?,
+            moments,
+        })
+    }
+}

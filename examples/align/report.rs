@@ -1,0 +1,115 @@
+//! The numbers of a run, for programs and for people.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::Result;
+use nalgebra::Isometry3;
+use pose2pulse::pose_pt::angle_between;
+use serde::Serialize;
+
+use crate::drives::Examination;
+use crate::line::Side;
+use crate::table::{Plan, Table};
+use crate::workstation::Telegrams;
+use crate::world::Course;
+
+/// `report.json`.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    points: usize,
+    duration_s: f64,
+    /// Worst change of a distance between two locators, simulated.
+    max_strain_mm: f64,
+    /// What the plan promises of it, with the rounding of coordinates.
+    strain_bound_mm: f64,
+    /// Largest share of its rated speed that an axis has.
+    max_speed_ratio: f64,
+    /// Of the body on the simulated locators in the end, from the pose asked for.
+    pose_error_mm: f64,
+    pose_error_rad: f64,
+    telegrams: Telegrams,
+    line_bytes: usize,
+}
+
+/// What a speed computed from the table may be above 1 by rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Report {
+    pub(crate) fn new<const N: usize>(
+        course: &Course,
+        plan: &Plan,
+        table: &Table<N>,
+        examination: &Examination<N>,
+        target: &Isometry3<f64>,
+    ) -> Self {
+        let end = &examination.end.pose;
+        let way = end.translation.vector - target.translation.vector;
+        Self {
+            points: table.points(),
+            duration_s: table.duration_s(),
+            max_strain_mm: examination.max_strain,
+            strain_bound_mm: plan.strain_bound_mm,
+            max_speed_ratio: examination.max_speed_ratio,
+            pose_error_mm: way.norm(),
+            pose_error_rad: angle_between(&end.rotation, &target.rotation),
+            telegrams: course.telegrams,
+            line_bytes: course.line.bytes(Side::Control) + course.line.bytes(Side::Unit),
+        }
+    }
+
+    /// Whether the strain is within its bound, and no axis faster than it is rated.
+    pub(crate) fn is_within_bounds(&self) -> bool {
+        self.max_strain_mm <= self.strain_bound_mm && self.max_speed_ratio <= 1.0 + ROUNDING
+    }
+
+    pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {
+        serde_json::to_writer_pretty(&mut out, self)?;
+        writeln!(out)?;
+        Ok(out.flush()?)
+    }
+
+    /// Writes what a person wants to know first.
+    pub(crate) fn write_summary(
+        &self,
+        mut out: impl Write,
+        table: &str,
+        folder: &Path,
+    ) -> Result<()> {
+        writeln!(
+            out,
+            "line: {} telegrams, {} bytes through a pseudo-terminal",
+            self.telegrams.total(),
+            self.line_bytes
+        )?;
+        writeln!(
+            out,
+            "{table}: {} points, {:.1} s, fastest axis at {:.1} % of its rated speed",
+            self.points,
+            self.duration_s,
+            100.0 * self.max_speed_ratio
+        )?;
+        writeln!(
+            out,
+            "strain, axis by axis: {:.3e} mm at most; bound {:.3e} mm: {}",
+            self.max_strain_mm,
+            self.strain_bound_mm,
+            if self.is_within_bounds() {
+                "kept"
+            } else {
+                "NOT KEPT"
+            }
+        )?;
+        writeln!(
+            out,
+            "the body is {:.1e} mm and {:.1e} rad from its pose",
+            self.pose_error_mm, self.pose_error_rad
+        )?;
+        writeln!(
+            out,
+            "in {}: line.log, {table}, jog.svg, align.svg, report.json",
+            folder.display()
+        )?;
+        Ok(())
+    }
+}

@@ -1,0 +1,321 @@
+//! Everything at one table, and the time.
+
+use anyhow::{Result, ensure};
+use nalgebra::Vector3;
+use pose2pulse::handwheel::{
+    self, Action, Input, Instant, Key, Knob, PoseChange, Position, WheelSampler,
+};
+use proto3964r::Transmit;
+
+use crate::drives::Drives;
+use crate::line::{Line, Side};
+use crate::run::Pose;
+use crate::table::{Plan, Planner, Table};
+use crate::unit::Unit;
+use crate::workstation::{Telegrams, Workstation};
+
+/// A jog under way: what the wheel says, what the axis is told, and what it does.
+#[derive(Default)]
+pub(crate) struct Jog {
+    /// End of each sample, in seconds, and its counts.
+    pub(crate) samples: Vec<(f64, i32)>,
+    /// Time, speed told, in mm per second.
+    pub(crate) told: Vec<(f64, f64)>,
+    /// Time, speed of the axis.
+    pub(crate) done: Vec<(f64, f64)>,
+    pub(crate) locator: usize,
+    pub(crate) axis: usize,
+}
+
+/// What has come of it all.
+pub(crate) struct Course {
+    pub(crate) jog: Jog,
+    /// The plan that was run.
+    pub(crate) plan: Option<Plan>,
+    pub(crate) telegrams: Telegrams,
+    pub(crate) line: Line,
+}
+
+pub(crate) struct World<'a, const N: usize> {
+    planner: &'a Planner<'a, N>,
+    now_us: u64,
+    pub(crate) unit: Unit,
+    line: Line,
+    workstation: Workstation<N>,
+    drives: Drives<N>,
+    /// Pulses of the wheel, on their own wires.
+    counter: u32,
+    sampler: WheelSampler,
+    /// Axis positions as they are shown: of the last sample.
+    positions_um: [[i32; 3]; N],
+    /// Where the body is, as it was last moved.
+    pose: Pose,
+    jog: Jog,
+    plan: Option<Plan>,
+}
+
+impl<'a, const N: usize> World<'a, N> {
+    /// The body at rest, the unit without power.
+    pub(crate) fn new(
+        planner: &'a Planner<'a, N>,
+        panel: handwheel::Settings,
+        pose: Pose,
+    ) -> Result<Self> {
+        let axes = planner.platform.axes(&planner.isometry(pose));
+        Ok(Self {
+            planner,
+            now_us: 0,
+            unit: Unit::new(),
+            line: Line::new()?,
+            workstation: Workstation::new(panel)?,
+            drives: Drives::new(planner.platform, &axes),
+            counter: 0,
+            sampler: WheelSampler::new(Instant::ZERO, 0),
+            positions_um: micrometres(&axes),
+            pose,
+            jog: Jog::default(),
+            plan: None,
+        })
+    }
+
+    /// Lets time pass.
+    pub(crate) fn wait_ms(&mut self, millis: u64) -> Result<()> {
+        self.advance_to(self.now_us + 1000 * millis)
+    }
+
+    /// Lets time pass until something holds.
+    pub(crate) fn wait_until(
+        &mut self,
+        what: &str,
+        patience_s: u64,
+        holds: impl Fn(&Self) -> bool,
+    ) -> Result<()> {
+        let end = self.now_us + 1_000_000 * patience_s;
+        while !holds(self) {
+            ensure!(self.now_us < end, "{what}: not within {patience_s} s");
+            self.wait_ms(10)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn press(&mut self, key: Key) {
+        self.unit.press(Some(key));
+    }
+
+    pub(crate) fn release(&mut self) {
+        self.unit.press(None);
+    }
+
+    pub(crate) fn turn(&mut self, knob: Knob, position: Position) {
+        self.unit.turn(knob, position);
+    }
+
+    /// The enable switches have their own wires.
+    pub(crate) fn switches(&mut self, left: bool, right: bool) -> Result<()> {
+        let action = self.workstation.input(Input::Enable { left, right });
+        self.act(action)
+    }
+
+    /// Turns the wheel by some counts, evenly over the next sample.
+    pub(crate) fn wheel(&mut self, counts: i32) -> Result<()> {
+        self.counter = self.counter.wrapping_add_signed(counts);
+        let due = self.sampler.due().as_micros();
+        self.advance_to(due)
+    }
+
+    /// Waits for the end of the sample under way.
+    pub(crate) fn wait_sample(&mut self) -> Result<()> {
+        self.wheel(0)
+    }
+
+    pub(crate) fn is_moving(&self) -> bool {
+        self.workstation.panel.is_moving()
+    }
+
+    pub(crate) fn axis_limits(&self, locator: usize, axis: usize) -> Option<(f64, f64, f64)> {
+        let limits = self.planner.platform.locators().get(locator)?.limits;
+        let limits = limits.get(axis)?;
+        let position = self.drives.states().get(locator)?.get(axis)?.position;
+        Some((limits.min, position, limits.max))
+    }
+
+    /// How far the axes are from where they hold the body in its pose, in mm.
+    pub(crate) fn pull(&self) -> f64 {
+        let pose = self.planner.isometry(self.pose);
+        let held = self.planner.platform.axes(&pose);
+        let axes = self.drives.axes();
+        let pulls = held.iter().zip(&axes).map(|(held, is)| (held - is).norm());
+        pulls.fold(0.0, f64::max)
+    }
+
+    pub(crate) fn finish(mut self) -> Result<Course> {
+        self.wait_until("quiet line", 10, |world| {
+            world.unit.is_quiet() && world.workstation.station.is_idle()
+        })?;
+        ensure!(
+            self.unit.faults == 0,
+            "{} telegrams did not reach or leave the unit",
+            self.unit.faults
+        );
+        Ok(Course {
+            jog: self.jog,
+            plan: self.plan,
+            telegrams: self.workstation.telegrams,
+            line: self.line,
+        })
+    }
+
+    fn advance_to(&mut self, end_us: u64) -> Result<()> {
+        loop {
+            self.work()?;
+            let next = self.next_due().filter(|due| *due <= end_us);
+            let Some(next) = next else {
+                self.now_us = end_us;
+                return Ok(());
+            };
+            self.now_us = next;
+        }
+    }
+
+    /// The next moment at which something happens by itself.
+    fn next_due(&self) -> Option<u64> {
+        let stations = [
+            self.workstation.station.poll_timeout(),
+            self.unit.station.poll_timeout(),
+        ];
+        let own = [
+            self.workstation.driver.poll_timeout(),
+            Some(self.sampler.due()),
+        ];
+        let stations = stations.map(|due| due.map(proto3964r::Instant::as_micros));
+        let own = own.map(|due| due.map(Instant::as_micros));
+        let others = [self.line.due_us(), self.drives.due_us()];
+        let all = stations.into_iter().chain(own).chain(others).flatten();
+        all.filter(|due| *due > self.now_us).min()
+    }
+
+    /// Does everything that is due now.
+    fn work(&mut self) -> Result<()> {
+        let line_now = proto3964r::Instant::from_micros(self.now_us);
+        while let Some(byte) = self.line.carry(Side::Control, self.now_us)? {
+            self.unit.hear(line_now, byte);
+        }
+        while let Some(byte) = self.line.carry(Side::Unit, self.now_us)? {
+            self.workstation.station.handle_byte(line_now, byte);
+        }
+        self.unit.work(line_now);
+        for action in self.workstation.work(self.now_us) {
+            self.act(Some(action))?;
+        }
+        let now = Instant::from_micros(self.now_us);
+        if let Some(counts) = self.sampler.sample(now, self.counter) {
+            self.jog.samples.push((self.now_s(), counts));
+            self.positions_um = micrometres(&self.drives.axes());
+            let action = self.workstation.input(Input::Wheel(counts));
+            self.act(action)?;
+        }
+        while self.drives.due_us().is_some_and(|due| due <= self.now_us) {
+            let at_rest = self.drives.cycle();
+            self.note_speed();
+            if at_rest {
+                self.at_rest()?;
+            }
+        }
+        self.workstation.talk(self.now_us, &self.positions_um)?;
+        self.transmit()
+    }
+
+    /// Hands what both stations send to the line.
+    fn transmit(&mut self) -> Result<()> {
+        let now = proto3964r::Instant::from_micros(self.now_us);
+        let mut bytes = [0; 64];
+        while let Some(transmit) = self.workstation.station.poll_transmit(now, &mut bytes) {
+            send(&mut self.line, Side::Control, self.now_us, transmit);
+        }
+        while let Some(transmit) = self.unit.station.poll_transmit(now, &mut bytes) {
+            send(&mut self.line, Side::Unit, self.now_us, transmit);
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, action: Option<Action>) -> Result<()> {
+        match action {
+            None => Ok(()),
+            Some(Action::Jog {
+                locator,
+                axis,
+                speed_um_s,
+            }) => {
+                let speed = f64::from(speed_um_s) / 1000.0;
+                (self.jog.locator, self.jog.axis) = (locator.into(), axis.index());
+                self.jog.told.push((self.now_s(), speed));
+                self.drives.jog(self.now_us, locator, axis, speed);
+                Ok(())
+            }
+            Some(Action::Move(change)) => {
+                let to = changed(self.pose, &change);
+                let plan = self.planner.plan(self.pose, to)?;
+                let table = Table::read(&plan.csv, self.planner.platform)?;
+                self.drives.run(self.now_us, table);
+                self.plan = Some(plan);
+                self.pose = to;
+                Ok(())
+            }
+            Some(Action::Stop(_)) => {
+                self.jog.told.push((self.now_s(), 0.0));
+                if self.drives.stop() {
+                    self.at_rest()?;
+                }
+                Ok(())
+            }
+            Some(other) => Err(anyhow::anyhow!("{other:?} is not known here")),
+        }
+    }
+
+    fn at_rest(&mut self) -> Result<()> {
+        self.positions_um = micrometres(&self.drives.axes());
+        let action = self.workstation.input(Input::AtRest);
+        self.act(action)
+    }
+
+    fn note_speed(&mut self) {
+        let states = self.drives.states().get(self.jog.locator);
+        let state = states.and_then(|states| states.get(self.jog.axis));
+        if let Some(state) = state.filter(|_| self.plan.is_none()) {
+            let time = self.now_s();
+            self.jog.done.push((time, state.speed));
+        }
+    }
+
+    fn now_s(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "hours of microseconds")]
+        let micros = self.now_us as f64;
+        micros * 1e-6
+    }
+}
+
+fn send(line: &mut Line, side: Side, now_us: u64, transmit: Transmit<'_>) {
+    match transmit {
+        Transmit::Bytes(bytes) => line.send(side, now_us, bytes),
+        Transmit::Discard => line.discard(side),
+    }
+}
+
+/// The pose vector with a change added, in mm and degrees.
+pub(crate) fn changed(pose: Pose, change: &PoseChange) -> Pose {
+    let lengths = change.translation_um.map(|um| f64::from(um) / 1e3);
+    let angles = change.rotation_udeg.map(|udeg| f64::from(udeg) / 1e6);
+    let mut changed = pose;
+    for (value, change) in changed.iter_mut().zip(lengths.into_iter().chain(angles)) {
+        *value += change;
+    }
+    changed
+}
+
+fn micrometres<const N: usize>(axes: &[Vector3<f64>; N]) -> [[i32; 3]; N] {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a stroke of kilometres would be shown wrong"
+    )]
+    axes.map(|it| [it.x, it.y, it.z].map(|mm| (mm * 1000.0).round() as i32))
+}

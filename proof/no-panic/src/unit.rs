@@ -1,0 +1,152 @@
+//! handwheel.
+
+use std::hint::black_box;
+
+use handwheel::{
+    Action, Arbiter, Command, DecodeError, Driver, EncodeError, Event, Input, Instant, LcdBlock,
+    LcdCommand, LcdError, Model, Panel, Report, Screen, Settings, Shown, Timing, UnitId,
+    WheelQuantiser, WheelSampler,
+};
+use no_panic::no_panic;
+
+#[no_panic]
+#[inline(never)]
+fn report_decode(model: Model, telegram: &[u8]) -> Result<Report, DecodeError> {
+    Report::decode(model, telegram)
+}
+
+#[no_panic]
+#[inline(never)]
+fn report_encode(report: Report, model: Model, buffer: &mut [u8]) -> Result<&[u8], EncodeError> {
+    report.encode(model, buffer)
+}
+
+#[no_panic]
+#[inline(never)]
+fn command_encode<'b>(
+    command: Command<'_>,
+    model: Model,
+    buffer: &'b mut [u8],
+) -> Result<&'b [u8], EncodeError> {
+    command.encode(model, buffer)
+}
+
+#[no_panic]
+#[inline(never)]
+fn read_commands(model: Model, telegram: &[u8]) -> usize {
+    match Command::decode(model, telegram) {
+        Ok(Command::Lcd(commands)) => commands.filter(Result::is_ok).count(),
+        _ => 0,
+    }
+}
+
+#[no_panic]
+#[inline(never)]
+fn push(block: &mut LcdBlock, command: LcdCommand<'_>) -> Result<(), LcdError> {
+    block.push(command)
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_transmit<'b>(
+    driver: &mut Driver,
+    now: Instant,
+    buffer: &'b mut [u8],
+) -> Result<Option<&'b [u8]>, EncodeError> {
+    driver.poll_transmit(now, buffer)
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_block(driver: &mut Driver, now: Instant, telegram: &[u8]) -> Option<Event> {
+    driver.handle_block(now, telegram)
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_delivered(driver: &mut Driver, now: Instant) -> Option<Event> {
+    driver.handle_delivered(now)
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_failed(driver: &mut Driver, now: Instant) -> Option<Event> {
+    driver.handle_failed(now)
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_timeout(driver: &mut Driver, now: Instant) -> Option<Event> {
+    driver.handle_timeout(now)
+}
+
+#[no_panic]
+#[inline(never)]
+fn panel_input(panel: &mut Panel, input: Input, platform: &mut Arbiter<3>) -> Option<Action> {
+    panel.handle(input, platform)
+}
+
+#[no_panic]
+#[inline(never)]
+fn panel_screen(panel: &Panel, platform: &Arbiter<3>, positions_um: &[[i32; 3]; 3]) -> Screen {
+    panel.screen(platform, positions_um)
+}
+
+#[no_panic]
+#[inline(never)]
+fn display_update(shown: &mut Shown, screen: &Screen, model: Model) -> Option<LcdBlock> {
+    shown.update(screen, model)
+}
+
+#[no_panic]
+#[inline(never)]
+fn wheel_share(wheel: &WheelQuantiser, counts: i32, full: u32) -> i64 {
+    wheel.share(counts, full)
+}
+
+#[no_panic]
+#[inline(never)]
+fn wheel_sample(sampler: &mut WheelSampler, now: Instant, counter: u32) -> Option<i32> {
+    sampler.sample(now, counter)
+}
+
+pub fn run() {
+    let (now, model) = (black_box(Instant::ZERO), black_box(Model::Hbls));
+    let telegram = black_box([0x6C, 0x27, 0x34, 0x30, 0xA5].as_slice());
+    let buffer = &mut [0; 200];
+    if let Ok(report) = report_decode(model, black_box(&[0x30, 0x41, 0x51])) {
+        let _ = black_box(report_encode(report, model, black_box(buffer)));
+    }
+    if let Ok(command) = Command::decode(model, telegram) {
+        let _ = black_box(command_encode(black_box(command), model, black_box(buffer)));
+    }
+    black_box(read_commands(model, telegram));
+    let block = &mut black_box(LcdBlock::new(model));
+    let _ = push(block, black_box(LcdCommand::Home));
+
+    let driver = &mut black_box(Driver::new(model, Timing::DEFAULT));
+    let _ = black_box(driver.send_lcd(block));
+    let _ = black_box(driver_transmit(black_box(driver), now, black_box(buffer)));
+    black_box(driver_delivered(black_box(driver), now));
+    black_box(driver_block(black_box(driver), now, telegram));
+    black_box(driver_failed(black_box(driver), now));
+    black_box(driver_timeout(black_box(driver), now));
+
+    let Ok(wheel) = WheelQuantiser::new(black_box(100), black_box(10)) else {
+        return;
+    };
+    black_box(wheel_share(&wheel, black_box(57), black_box(10_000)));
+    let sampler = &mut black_box(WheelSampler::new(now, 0));
+    black_box(wheel_sample(sampler, black_box(now), black_box(5)));
+    let Ok(panel) = Panel::new(UnitId(1), Settings::new(wheel)) else {
+        return;
+    };
+    let (panel, platform) = (&mut black_box(panel), &mut black_box(Arbiter::new()));
+    black_box(panel_input(panel, black_box(Input::Wheel(5)), platform));
+    let screen = panel_screen(black_box(panel), platform, &black_box([[7; 3]; 3]));
+    black_box(display_update(
+        &mut black_box(Shown::UNKNOWN),
+        &screen,
+        model,
+    ));
+}

@@ -1,0 +1,454 @@
+//! The example `align` from outside: its files, checked by other code than its own.
+#![cfg(test)]
+#![cfg(all(
+    unix,
+    feature = "handwheel",
+    feature = "pose-pt",
+    feature = "proto3964r"
+))]
+
+#[path = "tools/command.rs"]
+mod command;
+
+use std::fs;
+use std::path::Path;
+
+use nalgebra::{Matrix3, Vector3};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use command::{assert_refused, lines, run, tool};
+
+const PLATFORM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/align/platform.toml");
+/// Poses in mm and degrees, other than those of the platform file, in whole steps of the unit.
+const FROM: &str = "-12 30.5 1185 -0.4 0.3 1";
+const TO: [f64; 6] = [41.25, -18.006, 1231.5, 1.1, -0.70001, -2.2];
+/// What coordinates of 4 m with 16 digits are rounded to, a few times over.
+const ROUNDING_MM: f64 = 2e-11;
+
+/// A finished run's files.
+struct Run {
+    folder: TempDir,
+    report: Value,
+}
+
+impl Run {
+    fn of(mode: &str, arguments: &[&str]) -> Self {
+        let folder = TempDir::new().unwrap();
+        let mut command = tool("align");
+        command.args(["--mode", mode]).args(arguments);
+        let output = run(command.arg("--out").arg(folder.path()), b"");
+        assert_eq!(lines(&output.stderr), [""; 0]);
+        assert!(output.status.success());
+        let report = fs::read(folder.path().join("report.json")).unwrap();
+        Self {
+            report: serde_json::from_slice(&report).unwrap(),
+            folder,
+        }
+    }
+
+    fn number(&self, pointer: &str) -> f64 {
+        let value = self.report.pointer(pointer).and_then(Value::as_f64);
+        value.unwrap_or_else(|| panic!("{pointer}"))
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.folder.path().join(name)).unwrap()
+    }
+}
+
+fn from_to() -> [String; 4] {
+    let to: Vec<_> = TO.iter().map(ToString::to_string).collect();
+    ["--from", FROM, "--to", &to.join(" ")].map(str::to_owned)
+}
+
+/// A locator of the platform file.
+struct Locator {
+    anchor: Vector3<f64>,
+    origin: Vector3<f64>,
+    to_axes: Matrix3<f64>,
+    speed: Vector3<f64>,
+}
+
+fn locators() -> Vec<Locator> {
+    let text = fs::read_to_string(PLATFORM).unwrap();
+    let file: toml::Table = text.parse().unwrap();
+    let vector = |value: &toml::Value| {
+        let numbers = value.as_array().unwrap().iter();
+        Vector3::from_iterator(numbers.map(|number| number.as_float().unwrap()))
+    };
+    let locator = |table: &toml::Value| Locator {
+        anchor: vector(&table["anchor_mm"]),
+        origin: vector(&table["origin_mm"]),
+        to_axes: match table.get("axes").and_then(toml::Value::as_array) {
+            Some(axes) => {
+                let columns: Vec<_> = axes.iter().map(vector).collect();
+                Matrix3::from_columns(&columns).try_inverse().unwrap()
+            }
+            None => Matrix3::identity(),
+        },
+        speed: vector(&table["speed_mm_s"]),
+    };
+    file["locator"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(locator)
+        .collect()
+}
+
+/// A line of the table: time, places, velocities.
+struct Row {
+    time: f64,
+    places: Vec<Vector3<f64>>,
+    velocities: Vec<Vector3<f64>>,
+}
+
+fn rows(csv: &str, columns: usize) -> Vec<Row> {
+    let row = |line: &str| {
+        let fields: Vec<_> = line.split(',').collect();
+        assert_eq!(fields.len(), 1 + columns);
+        let numbers: Vec<f64> = fields.iter().map(|field| field.parse().unwrap()).collect();
+        for (field, number) in fields.iter().zip(&numbers) {
+            let digits = field.chars().filter(char::is_ascii_digit);
+            let significant = digits.skip_while(|digit| *digit == '0').count();
+            assert!(significant >= 12 || number.abs() < 1e-3, "{field}");
+        }
+        let mut vectors = numbers[1..].chunks_exact(3).map(Vector3::from_column_slice);
+        Row {
+            time: numbers[0],
+            places: vectors.by_ref().take(3).collect(),
+            velocities: vectors.collect(),
+        }
+    };
+    csv.lines().skip(1).map(row).collect()
+}
+
+/// The matrix printed in [Alignment 2010].
+fn placed(pose: [f64; 6], anchor: &Vector3<f64>) -> Vector3<f64> {
+    let [x, y, z, alpha, beta, gamma] = pose;
+    let [(sa, ca), (sb, cb), (sg, cg)] =
+        [alpha, beta, gamma].map(|degrees| degrees.to_radians().sin_cos());
+    let rotation = Matrix3::new(
+        cg * cb,
+        -sg * ca + cg * sb * sa,
+        sg * sa + cg * sb * ca,
+        sg * cb,
+        cg * ca + sg * sb * sa,
+        -cg * sa + sg * sb * ca,
+        -sb,
+        cb * sa,
+        cb * ca,
+    );
+    rotation * anchor + Vector3::new(x, y, z)
+}
+
+/// The largest change of a distance between two locators.
+fn strain(places: &[Vector3<f64>], locators: &[Locator]) -> f64 {
+    let pairs = [(0, 1), (0, 2), (1, 2)];
+    let changes = pairs.map(|(a, b)| {
+        let apart = (locators[a].anchor - locators[b].anchor).norm();
+        ((places[a] - places[b]).norm() - apart).abs()
+    });
+    changes.into_iter().fold(0.0, f64::max)
+}
+
+/// Place and speed at a part `s` of a segment of `time` seconds: a line, or Hermite's cubic.
+fn between(a: &Row, b: &Row, locator: usize, s: f64) -> (Vector3<f64>, Vector3<f64>) {
+    let (p, q, time) = (a.places[locator], b.places[locator], b.time - a.time);
+    if a.velocities.is_empty() {
+        return (p + (q - p) * s, (q - p) / time);
+    }
+    let (v, w) = (a.velocities[locator] * time, b.velocities[locator] * time);
+    let (s2, s3) = (s * s, s * s * s);
+    let place = p * (2.0 * s3 - 3.0 * s2 + 1.0)
+        + v * (s3 - 2.0 * s2 + s)
+        + q * (3.0 * s2 - 2.0 * s3)
+        + w * (s3 - s2);
+    let slope =
+        (p - q) * (6.0 * s2 - 6.0 * s) + v * (3.0 * s2 - 4.0 * s + 1.0) + w * (3.0 * s2 - 2.0 * s);
+    (place, slope / time)
+}
+
+fn check_table(mode: &str) {
+    let arguments = from_to();
+    let run = Run::of(mode, &arguments.each_ref().map(String::as_str));
+    let csv = run.read(&format!("{mode}.csv"));
+    let names = |letter: &str| {
+        let names = (1..=3).flat_map(|n| ["x", "y", "z"].map(|axis| format!(",{letter}{n}{axis}")));
+        names.collect::<String>()
+    };
+    let velocities = if mode == "pvt" {
+        names("v")
+    } else {
+        String::new()
+    };
+    let header = format!("time_s{}{velocities}", names("p"));
+    assert_eq!(csv.lines().next().unwrap(), header);
+    let rows = rows(&csv, if mode == "pvt" { 18 } else { 9 });
+    let locators = locators();
+
+    let first: Vec<f64> = FROM.split(' ').map(|word| word.parse().unwrap()).collect();
+    let ends = [
+        (&rows[0], first.try_into().unwrap()),
+        (rows.last().unwrap(), TO),
+    ];
+    for (row, pose) in ends {
+        for (place, locator) in row.places.iter().zip(&locators) {
+            assert!((place - placed(pose, &locator.anchor)).norm() < ROUNDING_MM);
+        }
+    }
+    let (bound, reported) = (run.number("/strain_bound_mm"), run.number("/max_strain_mm"));
+    let (mut worst, mut fastest) = (0.0_f64, 0.0_f64);
+    for pair in rows.windows(2) {
+        let [a, b] = pair else { unreachable!() };
+        assert!(b.time > a.time);
+        assert!(strain(&a.places, &locators) < ROUNDING_MM);
+        for step in 0..=40 {
+            let s = f64::from(step) / 40.0;
+            let states = [0, 1, 2].map(|locator| between(a, b, locator, s));
+            worst = worst.max(strain(&states.map(|it| it.0), &locators));
+            for ((_, velocity), locator) in states.iter().zip(&locators) {
+                let axes = (locator.to_axes * velocity).component_div(&locator.speed);
+                fastest = fastest.max(axes.amax());
+            }
+        }
+    }
+    assert!(worst <= bound, "{worst} > {bound}");
+    assert!(reported <= bound && (worst - reported).abs() < 0.01 * bound);
+    // The default platform file allows 0.002 mm; a bound that is far below would be a bad plan.
+    assert!(bound <= 0.002 + ROUNDING_MM && bound > 0.0005, "{bound}");
+    assert!((0.999..=1.0 + 1e-9).contains(&fastest), "{fastest}");
+    assert!((fastest - run.number("/max_speed_ratio")).abs() < 1e-6);
+    let axes = locators.iter().zip(&rows[0].places);
+    assert!(
+        axes.clone()
+            .all(|(it, place)| (it.to_axes * (place - it.origin)).amax() < 250.0)
+    );
+
+    let count = f64::from(u32::try_from(rows.len()).unwrap());
+    assert!((run.number("/points") - count).abs() < 0.5);
+    let end = rows.last().unwrap().time;
+    assert!((run.number("/duration_s") - end).abs() < 1e-12 * end);
+    assert!(run.number("/pose_error_mm") < ROUNDING_MM);
+    assert!(run.number("/pose_error_rad") < 1e-14);
+    for picture in ["align.svg", "jog.svg"] {
+        assert!(run.read(picture).trim_end().ends_with("</svg>"));
+    }
+}
+
+#[test]
+fn pt_table_is_rigid_within_the_bound() {
+    check_table("pt");
+}
+
+#[test]
+fn pvt_table_is_rigid_within_the_bound() {
+    check_table("pvt");
+}
+
+#[test]
+fn the_same_arguments_give_the_same_files() {
+    let runs = [Run::of("pt", &[]), Run::of("pt", &[])];
+    for name in ["line.log", "pt.csv", "jog.svg", "align.svg", "report.json"] {
+        let [a, b] = runs.each_ref().map(|run| run.read(name));
+        assert!(a == b, "{name}");
+    }
+}
+
+/// One direction of the line. No payload on this line begins with a control character.
+#[derive(Default)]
+struct Direction {
+    block: Vec<u8>,
+    acknowledgements: usize,
+    negative: usize,
+}
+
+impl Direction {
+    /// Takes a byte; a payload when its block ends.
+    fn take(&mut self, byte: u8) -> Option<Vec<u8>> {
+        if self.block.is_empty() {
+            match byte {
+                0x02 => return None,
+                0x10 => self.acknowledgements += 1,
+                0x15 => self.negative += 1,
+                _ => self.block.push(byte),
+            }
+            return None;
+        }
+        self.block.push(byte);
+        let [payload @ .., 0x10, 0x03, _] = self.block.as_slice() else {
+            return None;
+        };
+        assert_eq!(self.block.iter().fold(0, |bcc, byte| bcc ^ byte), 0);
+        assert!(!payload.contains(&0x10));
+        let payload = payload.to_vec();
+        self.block.clear();
+        Some(payload)
+    }
+}
+
+/// Telegrams in their order: true from the control.
+fn telegrams(log: &str) -> (Vec<(bool, Vec<u8>)>, [Direction; 2]) {
+    let (mut telegrams, mut before) = (Vec::new(), -1.0);
+    let mut directions = [Direction::default(), Direction::default()];
+    for line in log.lines() {
+        let mut words = line.split(' ');
+        let time: f64 = words.next().unwrap().parse().unwrap();
+        assert!(time >= before, "{line}");
+        before = time;
+        let from_control = match words.next() {
+            Some(">") => true,
+            Some("<") => false,
+            other => panic!("{other:?}"),
+        };
+        for word in words {
+            assert_eq!(word.len(), 2);
+            let byte = u8::from_str_radix(word, 16).unwrap();
+            let payload = directions[usize::from(!from_control)].take(byte);
+            telegrams.extend(payload.map(|payload| (from_control, payload)));
+        }
+    }
+    (telegrams, directions)
+}
+
+#[test]
+fn the_line_carries_3964r_in_order() {
+    let run = Run::of("pt", &[]);
+    let (telegrams, [control, unit]) = telegrams(&run.read("line.log"));
+    let of = |from_control: bool| telegrams.iter().filter(move |it| it.0 == from_control);
+    // One for STX and one for the block.
+    assert_eq!(unit.acknowledgements, 2 * of(true).count());
+    assert_eq!(control.acknowledgements, 2 * of(false).count());
+    // Nobody answers the first request: the unit has no power yet.
+    assert_eq!((control.negative, unit.negative), (1, 0));
+    assert_eq!(telegrams[0], (true, vec![0x23]));
+    assert_eq!(telegrams[1], (false, vec![0x30, 0x41, 0x51]));
+
+    let mut display = [[' '; 16]; 8];
+    let (mut status_due, mut answer_due) = (false, false);
+    let (mut seen_change, mut seen_busy, mut moves) = (false, false, 0);
+    for (from_control, payload) in &telegrams {
+        match (from_control, payload.as_slice()) {
+            (true, other) => {
+                assert!(!status_due && !answer_due, "{other:02X?} before a reply");
+                status_due = other == [0x23];
+                answer_due = other[0] == 0x6C;
+                if answer_due {
+                    show(&mut display, &other[1..]);
+                }
+            }
+            (false, [0x6C, answer]) => {
+                assert!(answer_due && *answer == 0x31);
+                answer_due = false;
+            }
+            (false, [_, _, _]) => status_due = false,
+            (false, [key]) => moves += usize::from(*key == 0x34),
+            (false, other) => panic!("{other:02X?}"),
+        }
+        let line = |line: usize| display[line].iter().collect::<String>();
+        // The change from the platform file's poses.
+        seen_change |= line(1).ends_with("+35.000 mm") && line(6).ends_with("+2.500000deg");
+        seen_busy |= line(0).ends_with("LOCATOR  2 BUSY");
+    }
+    assert!(seen_change && seen_busy && moves == 1);
+    let last: String = display[7].iter().collect();
+    assert_eq!(last.trim_end(), "DONE");
+
+    let total = ["status_requests", "lamps", "display_blocks"];
+    let sent: f64 = total
+        .map(|name| run.number(&format!("/telegrams/{name}")))
+        .iter()
+        .sum();
+    // One request was never delivered.
+    let count = f64::from(u32::try_from(of(true).count()).unwrap());
+    assert!((sent - run.number("/telegrams/failed") - count).abs() < 0.5);
+}
+
+/// Characters behind a place, as in `27 line column`.
+fn show(display: &mut [[char; 16]; 8], mut commands: &[u8]) {
+    let (mut line, mut column) = (0, 0);
+    while let [first, rest @ ..] = commands {
+        commands = rest;
+        match first {
+            0x27 => {
+                (line, column) = (usize::from(rest[0] - 0x30), usize::from(rest[1] - 0x30));
+                commands = &rest[2..];
+            }
+            code => {
+                display[line][column] = char::from(code - 0x60);
+                column += 1;
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_one_line_and_no_file() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let refused = |arguments: &[&str], line: &str| {
+        assert_refused(tool("align").args(arguments).arg("--out").arg(&out), line);
+        assert!(!out.exists());
+    };
+    refused(
+        &["--from", "1 2 3"],
+        "error: invalid value '1 2 3' for '--from <POSE>': 3 numbers, six are needed",
+    );
+    refused(
+        &["--to", "0 0 a 0 0 0"],
+        "error: invalid value '0 0 a 0 0 0' for '--to <POSE>': \"a\" is no number",
+    );
+    refused(
+        &["--mode", "xyz"],
+        "error: invalid value 'xyz' for '--mode <MODE>' [possible values: pt, pvt]",
+    );
+    refused(
+        &["--to", "0 0 1200 0 0 0"],
+        "error: from and to are the same pose: nothing moves",
+    );
+    refused(
+        &["--to", "0 900 1200 0 0 0"],
+        "error: --to: out of reach: locator 0, axis Y: 900 is 650 beyond the stroke -250..=250",
+    );
+    let file = folder.path().join("platform.toml");
+    let changed = |from: &str, to: &str| {
+        let text = fs::read_to_string(PLATFORM).unwrap();
+        assert!(text.contains(from));
+        fs::write(&file, text.replace(from, to)).unwrap();
+    };
+    let platform = file.to_str().unwrap();
+    let place = |error: &str| format!("error: {platform}: {error}");
+    changed(
+        "speed_mm_s = [20.0, 20.0, 10.0]",
+        "speed_mm_s = [20.0, 0.0, 10.0]",
+    );
+    refused(
+        &["--platform", platform],
+        &place("locator 0, axis Y: speed is 0, not a positive number"),
+    );
+    changed("full_jog_mm_s = 10.0", "full_jog_mm_s = 10.5");
+    refused(
+        &["--platform", platform],
+        &place("[wheel]: full_jog_mm_s = 10.5 is above the rated speed of an axis, 10"),
+    );
+    changed("bins = 10", "bins = 0");
+    refused(
+        &["--platform", platform],
+        &place("[wheel]: 0 bins for 100 counts; 1 to 100 are possible"),
+    );
+    fs::create_dir_all(out.join("report.json")).unwrap();
+    let mut command = tool("align");
+    let blocked = out.join("report.json");
+    let line = format!("error: {}: is a folder", blocked.display());
+    assert_refused(command.arg("--out").arg(&out), &line);
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 1);
+    let taken = folder.path().join("file");
+    fs::write(&taken, "").unwrap();
+    let mut command = tool("align");
+    let inside = taken.join("out");
+    command.arg("--out").arg(&inside);
+    let line = format!("error: {}: Not a directory (os error 20)", inside.display());
+    assert_refused(&mut command, &line);
+    assert!(Path::new(&taken).is_file());
+}
