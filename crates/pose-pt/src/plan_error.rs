@@ -53,4 +53,10 @@ pub enum PlanError<T = f64> {
         /// The pace given.
         pace: T,
     },
+    /// A highest feed that is not positive and finite.
+    #[error("a highest feed of {max} is not a positive finite number")]
+    Feed {
+        /// The feed given.
+        max: T,
+    },
 }

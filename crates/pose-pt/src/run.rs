@@ -75,11 +75,11 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     /// point of the table.
     ///
     /// # Errors
-    /// [`PlanError::Pace`] for a `max` that is not positive and finite,
+    /// [`PlanError::Feed`] for a `max` that is not positive and finite,
     /// [`PlanError::TooManyPoints`] for too little memory.
     pub fn run(&self, max: T, ahead: &'a mut [Ahead<T>]) -> Result<PvtRun<'a, N, T>, PlanError<T>> {
         if !(max > T::zero() && max < largest()) {
-            return Err(PlanError::Pace { pace: max });
+            return Err(PlanError::Feed { max });
         }
         let (needed, available) = (self.len(), ahead.len());
         let ahead = ahead

@@ -139,7 +139,10 @@ fn wrong_feeds_and_memory_are_named() {
             available: 10
         }
     );
-    assert!(table.run(f64::NAN, &mut ahead).is_err());
+    for max in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
+        let error = table.run(max, &mut ahead).unwrap_err();
+        assert!(matches!(error, PlanError::Feed { .. }), "{error}");
+    }
     let mut run = table.run(1.5, &mut ahead).unwrap();
     let error = run.set_feed(1.6).unwrap_err();
     assert_eq!(
