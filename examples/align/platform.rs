@@ -100,7 +100,7 @@ impl Settings {
     }
 
     pub(crate) const fn convention(&self) -> Convention {
-        Convention::FixedXyz
+        Convention::ExtrinsicXyz
     }
 
     pub(crate) const fn interpolation(&self) -> Interpolation {

@@ -37,11 +37,11 @@ fn nine_axes(c: &mut Criterion) {
     let vectors = vectors();
     let poses: Vec<(Rotation3<f64>, Vector3<f64>)> = vectors
         .iter()
-        .map(|v| (v.to_rotation(Convention::FixedXyz), v.position()))
+        .map(|v| (v.to_rotation(Convention::ExtrinsicXyz), v.position()))
         .collect();
     let isometries: Vec<Isometry3<f64>> = vectors
         .iter()
-        .map(|v| v.to_isometry(Convention::FixedXyz))
+        .map(|v| v.to_isometry(Convention::ExtrinsicXyz))
         .collect();
     let anchors = ANCHORS.map(Point3::from);
     let parallel = platform(Matrix3::identity());
@@ -106,7 +106,7 @@ fn nine_axes(c: &mut Criterion) {
     group.bench_function("a pose vector", |b| {
         b.iter(|| {
             for vector in black_box(&vectors) {
-                let rotation = vector.to_rotation(Convention::FixedXyz);
+                let rotation = vector.to_rotation(Convention::ExtrinsicXyz);
                 black_box(black_box(&parallel).axes_at(&rotation, &vector.position()));
             }
         });
@@ -132,7 +132,7 @@ fn nine_axes(c: &mut Criterion) {
 fn others(c: &mut Criterion) {
     let poses: Vec<Isometry3<f64>> = vectors()
         .iter()
-        .map(|v| v.to_isometry(Convention::FixedXyz))
+        .map(|v| v.to_isometry(Convention::ExtrinsicXyz))
         .collect();
     let platform = platform(Matrix3::identity());
     let anchors = ANCHORS.map(Point3::from);
@@ -158,7 +158,7 @@ fn others(c: &mut Criterion) {
     group.bench_function("pose vector of a pose", |b| {
         b.iter(|| {
             for pose in black_box(&poses) {
-                black_box(PoseVector::from_isometry(pose, Convention::FixedXyz));
+                black_box(PoseVector::from_isometry(pose, Convention::ExtrinsicXyz));
             }
         });
     });

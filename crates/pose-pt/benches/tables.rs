@@ -47,7 +47,10 @@ fn poses() -> [Isometry3<f64>; 2] {
 const KINDS: [(&str, Interpolation); 3] = [
     ("straight", Interpolation::Straight),
     ("screw", Interpolation::Screw),
-    ("pose vector", Interpolation::Vector(Convention::FixedXyz)),
+    (
+        "pose vector",
+        Interpolation::Vector(Convention::ExtrinsicXyz),
+    ),
 ];
 
 fn pt(c: &mut Criterion) {

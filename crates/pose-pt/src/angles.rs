@@ -17,10 +17,10 @@ pub enum Convention {
     /// About the fixed X, then the fixed Y, then the fixed Z: R = Rz(γ) Ry(β) Rx(α),
     /// the matrix printed in [Alignment 2010].
     #[default]
-    FixedXyz,
+    ExtrinsicXyz,
     /// About X, then the new Y, then the new Z: R = Rx(α) Ry(β) Rz(γ), the words
     /// beside the printed matrix.
-    MovingXyz,
+    IntrinsicXyz,
 }
 
 /// A pose as six numbers: position in any unit of length, angles in radians.
@@ -99,8 +99,8 @@ impl<T: RealField + Copy> PoseVector<T> {
         let (sc, cc) = (self.gamma * half()).sin_cos();
         // The two orders differ in the sign of every product of the second kind.
         let s = match convention {
-            Convention::FixedXyz => T::one(),
-            Convention::MovingXyz => -T::one(),
+            Convention::ExtrinsicXyz => T::one(),
+            Convention::IntrinsicXyz => -T::one(),
         };
         UnitQuaternion::new_unchecked(Quaternion::new(
             ca * cb * cc + s * (sa * sb * sc),
@@ -124,7 +124,7 @@ impl<T: RealField + Copy> PoseVector<T> {
         convention: Convention,
     ) -> Rotation3<T> {
         let matrix = match convention {
-            Convention::FixedXyz => Matrix3::new(
+            Convention::ExtrinsicXyz => Matrix3::new(
                 cg * cb,
                 cg * sb * sa - sg * ca,
                 sg * sa + cg * sb * ca,
@@ -135,7 +135,7 @@ impl<T: RealField + Copy> PoseVector<T> {
                 cb * sa,
                 cb * ca,
             ),
-            Convention::MovingXyz => Matrix3::new(
+            Convention::IntrinsicXyz => Matrix3::new(
                 cb * cg,
                 -cb * sg,
                 sb,
@@ -208,8 +208,8 @@ impl<T: RealField + Copy> Angles<T> {
         let q = rotation.quaternion();
         // Rx(α) Ry(β) Rz(γ) is the inverse of Rz(-γ) Ry(-β) Rx(-α).
         let sign = match convention {
-            Convention::FixedXyz => T::one(),
-            Convention::MovingXyz => -T::one(),
+            Convention::ExtrinsicXyz => T::one(),
+            Convention::IntrinsicXyz => -T::one(),
         };
         let (w, x, y, z) = (q.w, sign * q.i, sign * q.j, sign * q.k);
         let (a, b, c, d) = (w - y, x + z, w + y, x - z);

@@ -67,17 +67,17 @@ fn angles_near_gimbal_lock_rebuild_the_matrix() {
     for exponent in 1..17 {
         let beta = FRAC_PI_2 - 10f64.powi(-exponent);
         let vector = PoseVector::new(0.0, 0.0, 0.0, -1.3, beta, 0.9);
-        let pose = vector.to_isometry(Convention::FixedXyz);
-        let wanted = vector.to_rotation(Convention::FixedXyz);
-        let found = PoseVector::from_isometry(&pose, Convention::FixedXyz).vector;
-        let ours = found.to_rotation(Convention::FixedXyz);
+        let pose = vector.to_isometry(Convention::ExtrinsicXyz);
+        let wanted = vector.to_rotation(Convention::ExtrinsicXyz);
+        let found = PoseVector::from_isometry(&pose, Convention::ExtrinsicXyz).vector;
+        let ours = found.to_rotation(Convention::ExtrinsicXyz);
         assert!(
             (ours.matrix() - wanted.matrix()).amax() <= 2.0 * ROUNDING,
             "{exponent}"
         );
         let (alpha, beta, gamma) = wanted.euler_angles();
         let theirs = PoseVector::new(0.0, 0.0, 0.0, alpha, beta, gamma);
-        let theirs = theirs.to_rotation(Convention::FixedXyz);
+        let theirs = theirs.to_rotation(Convention::ExtrinsicXyz);
         theirs_worst = theirs_worst.max((theirs.matrix() - wanted.matrix()).amax());
     }
     assert!(theirs_worst > 1e-9, "nalgebra is right to {theirs_worst:e}");

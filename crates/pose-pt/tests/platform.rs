@@ -37,7 +37,7 @@ fn with(number: usize, change: impl Fn(&mut Locator)) -> Result<Platform<3>, Pla
 
 #[test]
 fn a_lift_moves_all_third_axes() {
-    let pose = PoseVector::new(1.0, 2.0, 3.0, 0.0, 0.0, 0.0).to_isometry(Convention::FixedXyz);
+    let pose = PoseVector::new(1.0, 2.0, 3.0, 0.0, 0.0, 0.0).to_isometry(Convention::ExtrinsicXyz);
     for axes in panel().checked_axes(&pose).unwrap() {
         assert!((axes - Vector3::new(1.0, 2.0, 3.0)).norm() < ROUNDING_MM);
     }
@@ -50,7 +50,7 @@ fn the_two_conventions_differ() {
     let angle = |degrees: [f64; 3]| {
         let [alpha, beta, gamma] = degrees.map(f64::to_radians);
         let vector = PoseVector::new(0.0, 0.0, 0.0, alpha, beta, gamma);
-        let [fixed, moving] = [Convention::FixedXyz, Convention::MovingXyz]
+        let [fixed, moving] = [Convention::ExtrinsicXyz, Convention::IntrinsicXyz]
             .map(|convention| vector.to_quaternion(convention));
         angle_between(&fixed, &moving)
     };
@@ -58,7 +58,7 @@ fn the_two_conventions_differ() {
     // A point 3 m from the axis of the difference.
     let way_mm = 3000.0 * angle([0.1, 0.1, 0.1]);
     assert!((way_mm - 0.016).abs() < 0.0005, "{way_mm}");
-    assert_eq!(Convention::default(), Convention::FixedXyz);
+    assert_eq!(Convention::default(), Convention::ExtrinsicXyz);
 }
 
 /// [Alignment 2010], row by row.
@@ -85,19 +85,19 @@ fn the_printed_matrix() {
         about(Vector3::z_axis(), gamma),
     );
     for (convention, wanted) in [
-        (Convention::FixedXyz, z * y * x),
-        (Convention::MovingXyz, x * y * z),
+        (Convention::ExtrinsicXyz, z * y * x),
+        (Convention::IntrinsicXyz, x * y * z),
     ] {
         let matrix = vector.to_rotation(convention);
         assert!((matrix.matrix() - wanted.matrix()).amax() < 1e-15);
     }
-    let matrix = vector.to_rotation(Convention::FixedXyz);
+    let matrix = vector.to_rotation(Convention::ExtrinsicXyz);
     assert!((matrix.matrix() - printed).amax() < 1e-15);
 }
 
 #[test]
 fn gimbal_lock_is_reported_and_the_free_angle_chosen() {
-    for convention in [Convention::FixedXyz, Convention::MovingXyz] {
+    for convention in [Convention::ExtrinsicXyz, Convention::IntrinsicXyz] {
         for beta in [90.0f64, -90.0].map(f64::to_radians) {
             let vector = PoseVector::new(0.0, 0.0, 0.0, 0.3, beta, 0.2);
             let pose = vector.to_isometry(convention);
@@ -110,8 +110,8 @@ fn gimbal_lock_is_reported_and_the_free_angle_chosen() {
             assert!((near.vector.angles() - vector.angles()).amax() < 1e-15);
         }
     }
-    let free = PoseVector::new(0.0, 0.0, 0.0, 0.3, 1.5, 0.2).to_isometry(Convention::FixedXyz);
-    assert!(!PoseVector::from_isometry(&free, Convention::FixedXyz).locked);
+    let free = PoseVector::new(0.0, 0.0, 0.0, 0.3, 1.5, 0.2).to_isometry(Convention::ExtrinsicXyz);
+    assert!(!PoseVector::from_isometry(&free, Convention::ExtrinsicXyz).locked);
 }
 
 #[test]
@@ -138,7 +138,8 @@ fn a_stroke_left_is_named_with_its_margin() {
     );
 
     // The worst of several: the panel tilts about X, its far edges leave their strokes.
-    let tilted = PoseVector::new(0.0, 0.0, 100.0, 0.3, 0.0, 0.0).to_isometry(Convention::FixedXyz);
+    let tilted =
+        PoseVector::new(0.0, 0.0, 100.0, 0.3, 0.0, 0.0).to_isometry(Convention::ExtrinsicXyz);
     let refused = panel().checked_axes(&tilted);
     assert!(
         matches!(

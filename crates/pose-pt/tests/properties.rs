@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-15;
 /// The same in f32.
 const ROUNDING_F32: f64 = ROUNDING / f64::EPSILON * f32::EPSILON as f64;
 
-const CONVENTIONS: [Convention; 2] = [Convention::FixedXyz, Convention::MovingXyz];
+const CONVENTIONS: [Convention; 2] = [Convention::ExtrinsicXyz, Convention::IntrinsicXyz];
 
 /// At least a thousand cases; `PROPTEST_CASES` asks for more.
 fn config() -> ProptestConfig {
@@ -354,9 +354,9 @@ proptest! {
         prop_assert!(turn <= 2.0 * lever * ROUNDING_F32, "{turn:e}");
         let way = body.pose.translation.vector.cast::<f64>() - pose.translation.vector;
         prop_assert!(way.norm() <= 5000.0 * 2.0 * lever * ROUNDING_F32, "{:e}", way.norm());
-        let vector = PoseVector::from_isometry(&pose, Convention::FixedXyz).vector;
+        let vector = PoseVector::from_isometry(&pose, Convention::ExtrinsicXyz).vector;
         let [a, b, c]: [f32; 3] = vector.angles().cast().into();
-        let turned = PoseVector::new(0.0, 0.0, 0.0, a, b, c).to_quaternion(Convention::FixedXyz);
+        let turned = PoseVector::new(0.0, 0.0, 0.0, a, b, c).to_quaternion(Convention::ExtrinsicXyz);
         let miss = angle_between(&turned.cast(), &pose.rotation);
         prop_assert!(miss <= 4.0 * ROUNDING_F32, "{miss:e}");
     }

@@ -24,8 +24,8 @@ const RIGID: f64 = 1e-13;
 const ALL: [Interpolation; 4] = [
     Interpolation::Straight,
     Interpolation::Screw,
-    Interpolation::Vector(Convention::FixedXyz),
-    Interpolation::Vector(Convention::MovingXyz),
+    Interpolation::Vector(Convention::ExtrinsicXyz),
+    Interpolation::Vector(Convention::IntrinsicXyz),
 ];
 
 /// Distances between locators, against those of the anchors.
@@ -169,7 +169,7 @@ fn a_stroke_passed_between_the_ends_is_named() {
         PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, core::f64::consts::TAU),
     ];
-    let path = Path::of_vectors(&poses, Convention::FixedXyz).unwrap();
+    let path = Path::of_vectors(&poses, Convention::ExtrinsicXyz).unwrap();
     let error = PtTable::plan(&platform, &path, Cut::parts(360)).unwrap_err();
     let PlanError::Limit {
         leg: 0,

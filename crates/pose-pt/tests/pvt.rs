@@ -29,8 +29,8 @@ const ROUNDING: f64 = 1e-11;
 const ALL: [Interpolation; 4] = [
     Interpolation::Straight,
     Interpolation::Screw,
-    Interpolation::Vector(Convention::FixedXyz),
-    Interpolation::Vector(Convention::MovingXyz),
+    Interpolation::Vector(Convention::ExtrinsicXyz),
+    Interpolation::Vector(Convention::IntrinsicXyz),
 ];
 
 fn from_rest(translation: [f64; 3], turn: [f64; 3]) -> [Isometry3<f64>; 2] {

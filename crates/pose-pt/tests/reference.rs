@@ -106,8 +106,8 @@ impl Drop for Worst {
 }
 
 const CONVENTIONS: [(Convention, &str); 2] = [
-    (Convention::FixedXyz, "p"),
-    (Convention::MovingXyz, "intr_p"),
+    (Convention::ExtrinsicXyz, "p"),
+    (Convention::IntrinsicXyz, "intr_p"),
 ];
 
 #[test]
@@ -158,7 +158,10 @@ fn matrices_and_quaternions_of_angles() {
     for row in rows(EULER) {
         let [alpha, beta, gamma] = row.numbers(["alpha", "beta", "gamma"]);
         let vector = PoseVector::new(0.0, 0.0, 0.0, alpha, beta, gamma);
-        for (convention, stem) in [(Convention::FixedXyz, "r"), (Convention::MovingXyz, "x")] {
+        for (convention, stem) in [
+            (Convention::ExtrinsicXyz, "r"),
+            (Convention::IntrinsicXyz, "x"),
+        ] {
             let wanted = row.matrix(stem);
             let matrix = vector.to_rotation(convention);
             entries.check(&row, (matrix.matrix() - wanted).amax(), ROUNDING);
@@ -168,12 +171,12 @@ fn matrices_and_quaternions_of_angles() {
             let again = from_matrix(&wanted, 0.0).unwrap();
             back.check(&row, angle_between(&again, &quaternion), 2.0 * ROUNDING);
         }
-        let quaternion = vector.to_quaternion(Convention::FixedXyz);
+        let quaternion = vector.to_quaternion(Convention::ExtrinsicXyz);
         let wanted = row.quaternion("q");
         let sign = quaternion.dot(&wanted).signum();
         let miss = quaternion.as_vector() * sign - wanted.as_vector();
         quaternions.check(&row, miss.norm(), ROUNDING);
-        let between = angle_between(&quaternion, &vector.to_quaternion(Convention::MovingXyz));
+        let between = angle_between(&quaternion, &vector.to_quaternion(Convention::IntrinsicXyz));
         assert!((between - row.number("angle_between")).abs() <= 4.0 * ROUNDING);
     }
 }
@@ -198,8 +201,8 @@ fn angles_of_rotations() {
         let exact = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
         for rotation in [rotation, exact] {
             let pose = Isometry3::from_parts(Vector3::zeros().into(), rotation);
-            let resolved = PoseVector::from_isometry(&pose, Convention::FixedXyz);
-            let again = resolved.vector.to_rotation(Convention::FixedXyz);
+            let resolved = PoseVector::from_isometry(&pose, Convention::ExtrinsicXyz);
+            let again = resolved.vector.to_rotation(Convention::ExtrinsicXyz);
             rebuilt.check(&row, (again.matrix() - matrix).amax(), 2.0 * ROUNDING);
             cosines.check(&row, (resolved.cos_beta - cos_beta).abs(), ROUNDING);
             assert_eq!(resolved.locked, row.text("class") == "lock_double");

@@ -38,8 +38,8 @@ fn poses_and_names_are_read_back() {
         r#"{"x":1.0,"y":2.0,"z":3.0,"alpha":0.1,"beta":0.2,"gamma":0.3}"#
     );
     assert_eq!(serde_json::from_str::<PoseVector>(&text).unwrap(), vector);
-    let name = serde_json::to_string(&Convention::MovingXyz).unwrap();
-    assert_eq!(name, r#""moving_xyz""#);
+    let name = serde_json::to_string(&Convention::IntrinsicXyz).unwrap();
+    assert_eq!(name, r#""intrinsic_xyz""#);
     assert_eq!(serde_json::to_string(&Axis::Z).unwrap(), r#""z""#);
 }
 

@@ -87,7 +87,7 @@ pub fn run() {
     };
     let platform = &black_box(platform);
     let vector = || black_box(PoseVector::new(1.0, 2.0, 3.0, 0.1, 0.2, 0.3));
-    let convention = || black_box(Convention::FixedXyz);
+    let convention = || black_box(Convention::ExtrinsicXyz);
     let pose = &black_box(to_isometry(&vector(), convention()));
     black_box(from_isometry_near(pose, convention(), &vector()));
     black_box(slerp_any(

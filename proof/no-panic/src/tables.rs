@@ -78,7 +78,7 @@ pub fn run() {
     let vector = PoseVector::new(1.0, 2.0, 3.0, 0.01, 0.02, 0.03);
     let poses = black_box([
         Isometry3::identity(),
-        vector.to_isometry(Convention::FixedXyz),
+        vector.to_isometry(Convention::ExtrinsicXyz),
     ]);
     let kind = black_box(Interpolation::Straight);
     let Ok(path) = Path::new(black_box(poses.as_slice()), kind) else {

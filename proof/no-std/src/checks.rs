@@ -92,7 +92,7 @@ fn platform() -> Option<Platform<3>> {
 fn tables() -> Option<()> {
     let platform = platform()?;
     let poses = [0.0, black_box(0.02)].map(|gamma| {
-        PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::FixedXyz)
+        PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::ExtrinsicXyz)
     });
     let path = Path::new(&poses, Interpolation::Straight).ok()?;
     let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).ok()?;
@@ -112,10 +112,10 @@ fn tables() -> Option<()> {
 fn pose() -> Option<()> {
     let platform = platform()?;
     let vector = PoseVector::new(black_box(10.0), -20.0, 100.0, 0.01, 0.02, -0.03);
-    let pose = vector.to_isometry(Convention::MovingXyz);
+    let pose = vector.to_isometry(Convention::IntrinsicXyz);
     let mut axes = platform.checked_axes(&pose).ok()?;
     let body = platform.pose(&axes).ok()?;
-    let back = PoseVector::from_isometry(&body.pose, Convention::MovingXyz).vector;
+    let back = PoseVector::from_isometry(&body.pose, Convention::IntrinsicXyz).vector;
     holds((back.position() - vector.position()).norm() < CLOSE_MM)?;
     holds((back.angles() - vector.angles()).norm() < CLOSE_MM)?;
     holds(body.strain.change.abs() < CLOSE_MM)?;

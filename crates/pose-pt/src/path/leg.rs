@@ -197,7 +197,7 @@ impl<T: RealField + Copy> VectorLeg<T> {
         let rate = self.angles_change();
         let (sb, cb) = angles.y.sin_cos();
         match self.convention {
-            Convention::FixedXyz => {
+            Convention::ExtrinsicXyz => {
                 let (sg, cg) = angles.z.sin_cos();
                 let across = cb * rate.x;
                 Vector3::new(
@@ -206,7 +206,7 @@ impl<T: RealField + Copy> VectorLeg<T> {
                     rate.z - sb * rate.x,
                 )
             }
-            Convention::MovingXyz => {
+            Convention::IntrinsicXyz => {
                 let (sa, ca) = angles.x.sin_cos();
                 let across = cb * rate.z;
                 Vector3::new(
@@ -225,8 +225,8 @@ impl<T: RealField + Copy> VectorLeg<T> {
         let (low, high) = sine_range(self.from.beta, self.to.beta);
         let product = two::<T>() * rate.x * rate.z;
         let product = match self.convention {
-            Convention::FixedXyz => -product,
-            Convention::MovingXyz => product,
+            Convention::ExtrinsicXyz => -product,
+            Convention::IntrinsicXyz => product,
         };
         let most = (product * low).max(product * high);
         (rate.norm_squared() + most).max(T::zero()).sqrt()
