@@ -6,6 +6,8 @@
 pub use pattern_codec;
 #[cfg(feature = "proto3964r")]
 pub use proto3964r;
+#[cfg(feature = "pulse-interp")]
+pub use pulse_interp;
 #[cfg(feature = "rk512")]
 pub use rk512;
 #[cfg(feature = "scara-kin")]

@@ -1,0 +1,371 @@
+//! Arcs of moves to any neighbour.
+
+use super::Arc;
+use super::geometry::{Place, Quadrant, Sweep, rounded_root, signed};
+use crate::feed::length_q16;
+use crate::line::size_of_rest;
+use crate::{Factor, Move, Turn};
+use core::iter::FusedIterator;
+
+/// The midpoint arc: an iterator of [`Move`]s to any of eight neighbours.
+///
+/// Two comparisons and three additions a move. In each octant one axis is in every move; the other
+/// joins where the midpoint between the two places to go to is on the wrong side of the circle:
+/// ```text
+/// b leads (a > b):  a - 1 joins where F(a - 1/2, b + 1) >= 0
+/// a leads (a <= b): b + 1 joins where F(a - 1, b + 1/2) <  0
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use = "iterators are lazy"]
+pub struct ArcMoves {
+    // Moves still to come in this octant.
+    left: u32,
+    // 2 or -2.
+    bend: i64,
+    // The diagonal move is taken from 0 on; at most 2^33 either way.
+    decision: i64,
+    // What the next straight or diagonal move adds to the decision.
+    straight_by: i64,
+    diagonal_by: i64,
+    straight: Move,
+    diagonal: Move,
+    phase: Phase,
+    ahead: Ahead,
+}
+
+/// What the moves in hand are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// a > b at its start: each is b + 1.
+    Low,
+    /// a <= b: each is a - 1.
+    High,
+    /// Off the rule, to an end near the circle.
+    Closing(Place),
+}
+
+/// What comes after the octant in hand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Ahead {
+    quadrant: Quadrant,
+    turn: Turn,
+    crossings: u8,
+    /// Where the octants meet.
+    middle: Place,
+    end: Place,
+    /// Moves after this octant.
+    moves: u64,
+    radius_q16: u64,
+}
+
+impl ArcMoves {
+    pub(super) fn new(arc: &Arc, sweep: &Sweep) -> Self {
+        let circle = Circle::new(arc.radius_squared);
+        let mut moves = Self {
+            left: 0,
+            bend: 0,
+            decision: 0,
+            straight_by: 0,
+            diagonal_by: 0,
+            straight: Move::Right,
+            diagonal: Move::Right,
+            phase: Phase::Closing(sweep.start),
+            ahead: Ahead {
+                quadrant: sweep.quadrant,
+                turn: arc.turn,
+                crossings: sweep.crossings,
+                middle: circle.middle,
+                end: sweep.end,
+                moves: circle.count(sweep),
+                radius_q16: length_q16(arc.radius_squared),
+            },
+        };
+        let Place { a, b } = sweep.start;
+        let phase = if b < a && b < circle.middle.b {
+            Phase::Low
+        } else {
+            Phase::High
+        };
+        moves.enter(phase, sweep.start, 0);
+        moves
+    }
+
+    /// Sets the moves of an octant from `from`, where F is `off`.
+    fn enter(&mut self, phase: Phase, from: Place, off: i64) {
+        let Quadrant { inward, outward } = self.ahead.quadrant;
+        let Place { a, b } = from;
+        self.diagonal = self.ahead.quadrant.of_signs(-1, 1).unwrap_or(inward);
+        // Coordinates of at most 2^30 + 1 and F of at most 2^31: nothing leaves 34 bits.
+        let twice = |steps: i64| steps.wrapping_mul(2);
+        let last = self.ahead.stop();
+        self.phase = phase;
+        if phase == Phase::Low {
+            self.bend = 2;
+            self.decision = off.wrapping_add(twice(b)).wrapping_add(1).wrapping_sub(a);
+            self.straight_by = twice(b).wrapping_add(3);
+            self.diagonal_by = self.straight_by.wrapping_add(2).wrapping_sub(twice(a));
+            self.straight = outward;
+            self.left = count(self.ahead.middle.b.min(last.b).wrapping_sub(b));
+        } else {
+            self.bend = -2;
+            // Negated, so that the diagonal is taken from 0 on here too.
+            self.decision = twice(a).wrapping_sub(2).wrapping_sub(b).wrapping_sub(off);
+            self.straight_by = twice(a).wrapping_sub(3);
+            self.diagonal_by = self.straight_by.wrapping_sub(2).wrapping_sub(twice(b));
+            self.straight = inward;
+            self.left = count(a.wrapping_sub(last.a));
+        }
+        self.ahead.moves = self.ahead.moves.wrapping_sub(u64::from(self.left));
+    }
+
+    /// Where the path stands, in its quadrant, and F there.
+    fn place(&self) -> (Place, i64) {
+        match self.phase {
+            Phase::Low => {
+                let b = self.straight_by.wrapping_sub(3) >> 1;
+                let a = self
+                    .straight_by
+                    .wrapping_add(2)
+                    .wrapping_sub(self.diagonal_by)
+                    >> 1;
+                let on_middle = self
+                    .decision
+                    .wrapping_sub(1)
+                    .wrapping_sub(b.wrapping_mul(2));
+                (Place { a, b }, on_middle.wrapping_add(a))
+            }
+            Phase::High => {
+                let a = self.straight_by.wrapping_add(3) >> 1;
+                let b = self
+                    .straight_by
+                    .wrapping_sub(2)
+                    .wrapping_sub(self.diagonal_by)
+                    >> 1;
+                let on_middle = a
+                    .wrapping_mul(2)
+                    .wrapping_sub(2)
+                    .wrapping_sub(self.decision);
+                (Place { a, b }, on_middle.wrapping_sub(b))
+            }
+            Phase::Closing(place) => (place, 0),
+        }
+    }
+
+    /// Goes on where an octant is at its end; false at the end of the arc.
+    #[cold]
+    fn advance(&mut self) -> bool {
+        let (place, off) = self.place();
+        let ahead = &mut self.ahead;
+        match self.phase {
+            Phase::Low if !ahead.stops_low() => self.enter(Phase::High, place, off),
+            Phase::High if ahead.crossings > 0 => {
+                ahead.quadrant = ahead.quadrant.next(ahead.turn);
+                ahead.crossings = ahead.crossings.wrapping_sub(1);
+                self.enter(Phase::Low, Place { a: place.b, b: 0 }, off);
+            }
+            _ => return self.close(place),
+        }
+        true
+    }
+
+    /// The next moves from `place` straight to the end; false when it is there.
+    fn close(&mut self, place: Place) -> bool {
+        let Place { a, b } = self.ahead.end;
+        let (da, db) = (a.wrapping_sub(place.a), b.wrapping_sub(place.b));
+        let diagonals = da.abs().min(db.abs());
+        let Some(step) = self.ahead.quadrant.of_signs(da, db) else {
+            return false;
+        };
+        // First what both axes have in common, then the rest of one.
+        let (len, to) = if diagonals > 0 {
+            let by = |d: i64| d.signum().wrapping_mul(diagonals);
+            let to = Place {
+                a: place.a.wrapping_add(by(da)),
+                b: place.b.wrapping_add(by(db)),
+            };
+            (diagonals, to)
+        } else {
+            (da.abs().max(db.abs()), self.ahead.end)
+        };
+        self.phase = Phase::Closing(to);
+        (self.straight, self.diagonal) = (step, step);
+        self.left = count(len);
+        self.ahead.moves = self.ahead.moves.wrapping_sub(u64::from(self.left));
+        true
+    }
+
+    /// Moves still to come.
+    #[must_use]
+    pub fn moves_left(&self) -> u64 {
+        u64::from(self.left).wrapping_add(self.ahead.moves)
+    }
+
+    /// What the interval before the next move is multiplied with so that the path is as fast as a
+    /// straight axis: from 1 to 1.4142 along a diagonal.
+    ///
+    /// ```text
+    /// R / max(|x|, |y|)
+    /// ```
+    #[must_use]
+    #[inline]
+    pub fn factor(&self) -> Factor {
+        let (place, _) = self.place();
+        Factor::of_q16(self.ahead.radius_q16, place.a.max(place.b).unsigned_abs())
+    }
+}
+
+impl Ahead {
+    /// Whether the end is here, and before the middle.
+    const fn stops_low(&self) -> bool {
+        self.crossings == 0 && self.end.b < self.end.a
+    }
+
+    /// Where the rule stops in this quadrant.
+    const fn stop(&self) -> Place {
+        const NEVER: i64 = i64::MAX;
+        if self.crossings > 0 {
+            Place { a: 0, b: NEVER }
+        } else if self.stops_low() {
+            Place {
+                a: NEVER,
+                b: self.end.b,
+            }
+        } else {
+            Place {
+                a: self.end.a,
+                b: NEVER,
+            }
+        }
+    }
+}
+
+/// Where the path about a centre goes, in closed form.
+struct Circle {
+    square: u64,
+    middle: Place,
+}
+
+impl Circle {
+    fn new(square: u64) -> Self {
+        let mut circle = Self {
+            square,
+            middle: Place { a: 0, b: 0 },
+        };
+        // The first b with a <= b is R / sqrt(2), but for rounding.
+        let mut b = signed((square >> 1).isqrt()).wrapping_sub(1).max(1);
+        while circle.beside(b) > b {
+            b = b.wrapping_add(1);
+        }
+        // One move lowers a by at most 1.
+        let before = circle.beside(b.wrapping_sub(1)).wrapping_sub(1);
+        circle.middle = Place {
+            a: circle.beside(b).max(before),
+            b,
+        };
+        circle
+    }
+
+    /// The other coordinate of the path where the leading one is `along`.
+    ///
+    /// a where b leads: the largest with (a - 1/2)² + b² < R². b where a leads: the least with
+    /// a² + (b + 1/2)² > R². Both are the least n with n (n + 1) >= R² - along².
+    fn beside(&self, along: i64) -> i64 {
+        let along = along.unsigned_abs();
+        let rest = self.square.saturating_sub(along.wrapping_mul(along));
+        rounded_root(rest)
+    }
+
+    /// b at a from the middle on: one move raises it by at most 1.
+    fn high(&self, a: i64) -> i64 {
+        let moves = self.middle.a.wrapping_sub(a);
+        let Place { b, .. } = self.middle;
+        self.beside(a).clamp(b, b.wrapping_add(moves.max(0)))
+    }
+
+    /// Moves from the axis of departure to a place on the path.
+    fn progress(&self, to: Place) -> i64 {
+        if to.b < to.a {
+            to.b.min(self.middle.b)
+        } else {
+            let beyond = self.middle.a.wrapping_sub(to.a).max(0);
+            self.middle.b.wrapping_add(beyond)
+        }
+    }
+
+    /// All moves of an arc.
+    fn count(&self, sweep: &Sweep) -> u64 {
+        let quadrant = self.middle.b.wrapping_add(self.middle.a);
+        let whole = quadrant.wrapping_mul(i64::from(sweep.crossings));
+        let ends = self
+            .progress(sweep.end)
+            .wrapping_sub(self.progress(sweep.start));
+        let by_rule = whole.wrapping_add(ends).max(0);
+        by_rule.wrapping_add(self.closing(sweep)).unsigned_abs()
+    }
+
+    /// Moves from where the rule stops to the end.
+    fn closing(&self, sweep: &Sweep) -> i64 {
+        let Place { a, b } = sweep.end;
+        let stop = if b < a {
+            let b = b.min(self.middle.b);
+            Place {
+                a: if b < self.middle.b {
+                    self.beside(b)
+                } else {
+                    self.middle.a
+                },
+                b,
+            }
+        } else {
+            let a = a.min(self.middle.a);
+            Place { a, b: self.high(a) }
+        };
+        let stands_still =
+            sweep.crossings == 0 && self.progress(stop) <= self.progress(sweep.start);
+        let from = if stands_still { sweep.start } else { stop };
+        let (da, db) = (a.wrapping_sub(from.a), b.wrapping_sub(from.b));
+        da.abs().max(db.abs())
+    }
+}
+
+/// A number of moves, 0 where it is negative; below 2^32.
+fn count(moves: i64) -> u32 {
+    u32::try_from(moves.max(0)).unwrap_or(u32::MAX)
+}
+
+impl Iterator for ArcMoves {
+    type Item = Move;
+
+    #[inline]
+    fn next(&mut self) -> Option<Move> {
+        while self.left == 0 {
+            if !self.advance() {
+                return None;
+            }
+        }
+        self.left = self.left.wrapping_sub(1);
+        let straight_by = self.straight_by;
+        self.straight_by = straight_by.wrapping_add(self.bend);
+        self.diagonal_by = self.diagonal_by.wrapping_add(self.bend);
+        if self.decision >= 0 {
+            // As it was before this move.
+            let diagonal_by = self.diagonal_by.wrapping_sub(self.bend);
+            self.decision = self.decision.wrapping_add(diagonal_by);
+            self.diagonal_by = self.diagonal_by.wrapping_add(self.bend);
+            Some(self.diagonal)
+        } else {
+            self.decision = self.decision.wrapping_add(straight_by);
+            Some(self.straight)
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        size_of_rest(self.moves_left())
+    }
+}
+
+// A circle of the largest radius has over 2^32 moves.
+#[cfg(target_pointer_width = "64")]
+impl ExactSizeIterator for ArcMoves {}
+
+impl FusedIterator for ArcMoves {}
