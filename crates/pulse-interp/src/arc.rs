@@ -8,6 +8,7 @@ pub use moves::ArcMoves;
 pub use steps::ArcSteps;
 
 use crate::{Rule, Turn};
+use core::cmp::Ordering;
 use geometry::Sweep;
 use thiserror::Error;
 
@@ -191,19 +192,16 @@ fn square(point: [i32; 2]) -> u64 {
     x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y))
 }
 
-/// sqrt(end) - sqrt(radius) in thousandths, rounded away from 0; exactly 0 only for equals.
+/// sqrt(end) - sqrt(radius) in thousandths, rounded away from 0; 0 only for equals.
 fn off_millisteps(radius_squared: u64, end_squared: u64) -> i64 {
-    const SQUARE: u128 = 1_000_000;
-    // 63 bits and 20 make 83; their roots fit 42.
-    let root = |square: u64| -> i64 {
-        let root = u128::from(square).wrapping_mul(SQUARE).isqrt();
-        i64::try_from(root).unwrap_or(i64::MAX)
-    };
-    let whole = root(end_squared).wrapping_sub(root(radius_squared));
-    // Each root was rounded down: the difference is off by less than 1.
+    // In millionths, of which each root loses less than one: 63 bits and 40 make 103.
+    const SQUARE: u128 = 1_000_000_000_000;
+    let root = |square: u64| u128::from(square).wrapping_mul(SQUARE).isqrt();
+    let (end, radius) = (root(end_squared), root(radius_squared));
+    let off = i64::try_from(end.abs_diff(radius).div_ceil(1000).max(1)).unwrap_or(i64::MAX);
     match end_squared.cmp(&radius_squared) {
-        core::cmp::Ordering::Less => whole.wrapping_sub(1),
-        core::cmp::Ordering::Equal => 0,
-        core::cmp::Ordering::Greater => whole.wrapping_add(1),
+        Ordering::Less => off.wrapping_neg(),
+        Ordering::Equal => 0,
+        Ordering::Greater => off,
     }
 }

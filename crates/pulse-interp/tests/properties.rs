@@ -42,6 +42,16 @@ fn within(at: [i64; 2], radius_squared: u64, hundredths: i128) -> bool {
     off <= 200 * radius_up * hundredths + hundredths * hundredths
 }
 
+/// Whether both ways through what is left after `begun` moves give the same.
+fn folds_as_it_steps(mut moves: impl Iterator<Item = Move> + Clone, begun: usize) -> bool {
+    moves.by_ref().take(begun).for_each(drop);
+    let mut stepped = moves.clone();
+    let one_by_one: Vec<Move> = core::iter::from_fn(|| stepped.next()).collect();
+    let mut folded = Vec::new();
+    moves.for_each(|step| folded.push(step));
+    folded == one_by_one
+}
+
 proptest! {
     #[test]
     fn lines_follow_their_rule(to in [lengths(), lengths()]) {
@@ -148,6 +158,23 @@ proptest! {
             prop_assert!(within(at, arc.radius_squared(), 121));
         }
         prop_assert_eq!((at, made), (wanted, left));
+    }
+
+    /// `fold` has a loop of its own.
+    #[test]
+    fn folding_and_stepping_are_the_same(
+        start in [-40..=40, -40..=40],
+        end in [-40..=40, -40..=40],
+        turn in turns(),
+        begun in 0..50_usize,
+    ) {
+        let Ok(arc) = Arc::near(start, end, turn, 5000) else {
+            return Ok(());
+        };
+        for rule in RULES {
+            prop_assert!(folds_as_it_steps(arc.steps(rule), begun));
+        }
+        prop_assert!(folds_as_it_steps(arc.moves(), begun));
     }
 
     /// Size hints count down, and the end is final.

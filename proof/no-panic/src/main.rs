@@ -7,12 +7,14 @@
 mod jobs;
 mod kinematics;
 mod line;
+mod paths;
 mod patterns;
 mod stepping;
 
 fn main() {
     kinematics::run();
     stepping::run();
+    paths::run();
     patterns::run();
     line::run();
     jobs::run();

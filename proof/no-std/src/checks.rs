@@ -5,17 +5,20 @@ use core::hint::black_box;
 use pattern_codec::container::{Header, Verifier, Writer, open};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
+use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Pace, Rule, ScaleRatio, Turn};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
 use scara_kin::nalgebra::{Point2, Vector2};
 use scara_kin::{Arm, Elbow, Joints};
 use stepper_sync::{Position, Ramp, RampLimits, Rate, Timer, Trains};
 
 /// The checks; the number of each is its exit status.
-pub const ALL: [fn() -> Option<()>; 8] = [
+pub const ALL: [fn() -> Option<()>; 10] = [
     inverse,
     follow,
     trains,
     ramp,
+    interpolation,
+    closed_loop,
     records,
     container,
     stations,
@@ -91,6 +94,36 @@ fn ramp() -> Option<()> {
     let ramp = Ramp::new([4000, -1500], &limits, Rate::from_hz(1_000_000).ok()?).ok()?;
     holds(ramp.end_ticks() == 2_200_000)?;
     holds(ramp.edges().last()?.ticks == ramp.end_ticks())
+}
+
+/// A line, and an arc that ends where it should, at constant speed.
+fn interpolation() -> Option<()> {
+    let line = Line::new(black_box([30, -7])).ok()?;
+    holds(line.steps(Rule::Centred).len() == 37)?;
+    let arc = Arc::new(black_box([500, 0]), [-300, 400], Turn::CounterClockwise).ok()?;
+    let (mut steps, mut pace) = (arc.steps(Rule::Centred), Pace::new(1000));
+    let (mut at, mut ticks) = ([500, 0], 0);
+    loop {
+        let factor = steps.factor();
+        let Some(step) = steps.next() else { break };
+        at = [at[0] + step.dx(), at[1] + step.dy()];
+        ticks += pace.interval(factor);
+    }
+    // 500 steps of radius by 2.2143 rad.
+    holds(at == [-300, 400] && ticks.abs_diff(1_107_149) < 5000)?;
+    holds(arc.moves().len() < arc.steps(Rule::Textbook).len())
+}
+
+/// An axis that has lost two steps.
+fn closed_loop() -> Option<()> {
+    let mut axis = AxisLoop::new(LoopSettings {
+        ratio: ScaleRatio::new(black_box(5), 1).ok()?,
+        dead_band_counts: 3,
+        alarm_counts: 100,
+    })
+    .ok()?;
+    holds(axis.correction(black_box(-10)) == Ok(2))?;
+    holds(axis.correction(black_box(-101)).is_err())
 }
 
 /// Records to bytes and back, from a slice and from chunks.
@@ -171,6 +204,7 @@ fn stations() -> Option<()> {
 
 /// A job of two telegrams each way.
 fn read_data_block() -> Option<()> {
+    use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Pace, Rule, ScaleRatio, Turn};
     use rk512::{Config, Instant};
     let now = Instant::ZERO;
     let mut db5 = [0; 200];

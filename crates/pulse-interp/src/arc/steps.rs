@@ -18,16 +18,102 @@ use core::iter::FusedIterator;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use = "iterators are lazy"]
 pub struct ArcSteps {
-    // -inward < decision < outward, so at most 2^32 either way.
+    passage: Passage,
+    ahead: Ahead,
+}
+
+/// The steps within one quadrant: small enough for registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Passage {
+    // -inward <= decision < outward, so at most 2^32 either way.
     decision: i64,
-    // What the next step inward takes from the decision, and that of the last step inward less 2.
+    // What the next step inward takes from the decision, and what it will be after the last.
     inward: i64,
     inward_end: i64,
-    // What the next step outward adds, and that of the last step outward and 2.
+    // What the next step outward adds, and what it will be after the last.
     outward: i64,
     outward_end: i64,
     quadrant: Quadrant,
-    ahead: Ahead,
+}
+
+impl Passage {
+    /// Inward by the rule; `None` where no step inward is left.
+    #[inline]
+    fn rule_inward(&mut self) -> Option<Move> {
+        if self.inward == self.inward_end {
+            return None;
+        }
+        self.decision = self.decision.wrapping_sub(self.inward);
+        self.inward = self.inward.wrapping_sub(2);
+        Some(self.quadrant.inward)
+    }
+
+    /// Outward by the rule; `None` where no step outward is left.
+    #[inline]
+    fn rule_outward(&mut self) -> Option<Move> {
+        if self.outward == self.outward_end {
+            return None;
+        }
+        self.decision = self.decision.wrapping_add(self.outward);
+        self.outward = self.outward.wrapping_add(2);
+        Some(self.quadrant.outward)
+    }
+
+    /// The step by the rule while its axis has steps left, else that of the other.
+    #[inline]
+    fn next(&mut self) -> Option<Move> {
+        let step = if self.decision >= 0 {
+            self.rule_inward()
+        } else {
+            self.rule_outward()
+        };
+        step.or_else(|| self.other_axis())
+    }
+
+    /// The step of the axis that alone has steps left.
+    fn other_axis(&mut self) -> Option<Move> {
+        if self.inward != self.inward_end {
+            self.inward = self.inward.wrapping_sub(2);
+            Some(self.quadrant.inward)
+        } else if self.outward != self.outward_end {
+            self.outward = self.outward.wrapping_add(2);
+            Some(self.quadrant.outward)
+        } else {
+            None
+        }
+    }
+
+    /// All steps. A call in each branch spares the loop a third.
+    #[inline]
+    fn fold<B>(&mut self, init: B, mut f: impl FnMut(B, Move) -> B) -> B {
+        let mut passage = *self;
+        let mut folded = init;
+        loop {
+            if passage.decision >= 0 {
+                let Some(step) = passage.rule_inward() else {
+                    break;
+                };
+                folded = f(folded, step);
+            } else {
+                let Some(step) = passage.rule_outward() else {
+                    break;
+                };
+                folded = f(folded, step);
+            }
+        }
+        while let Some(step) = passage.other_axis() {
+            folded = f(folded, step);
+        }
+        *self = passage;
+        folded
+    }
+
+    /// Steps still to come.
+    fn left(&self) -> u64 {
+        let inward = self.inward.wrapping_sub(self.inward_end);
+        let outward = self.outward_end.wrapping_sub(self.outward);
+        inward.wrapping_add(outward).unsigned_abs() >> 1
+    }
 }
 
 /// What comes after the passage in hand.
@@ -76,15 +162,17 @@ impl ArcSteps {
             Rule::Centred => rounded_root(square),
         };
         let mut steps = Self {
-            decision: match rule {
-                Rule::Textbook => 0,
-                Rule::Centred => sweep.start.b.wrapping_sub(sweep.start.a),
+            passage: Passage {
+                decision: match rule {
+                    Rule::Textbook => 0,
+                    Rule::Centred => sweep.start.b.wrapping_sub(sweep.start.a),
+                },
+                inward: 0,
+                inward_end: 0,
+                outward: 0,
+                outward_end: 0,
+                quadrant: sweep.quadrant,
             },
-            inward: 0,
-            inward_end: 0,
-            outward: 0,
-            outward_end: 0,
-            quadrant: sweep.quadrant,
             ahead: Ahead {
                 crossings: sweep.crossings,
                 turn: arc.turn,
@@ -111,10 +199,10 @@ impl ArcSteps {
         };
         // Twice what is at most 2^31.
         let twice = |steps: i64| steps.wrapping_mul(2);
-        self.inward = twice(from.a).wrapping_add(inward);
-        self.inward_end = twice(to.a.min(from.a)).wrapping_add(inward);
-        self.outward = twice(from.b).wrapping_add(outward);
-        self.outward_end = twice(to.b.max(from.b)).wrapping_add(outward);
+        self.passage.inward = twice(from.a).wrapping_add(inward);
+        self.passage.inward_end = twice(to.a.min(from.a)).wrapping_add(inward);
+        self.passage.outward = twice(from.b).wrapping_add(outward);
+        self.passage.outward_end = twice(to.b.max(from.b)).wrapping_add(outward);
     }
 
     /// Where the path stands, in its quadrant.
@@ -124,8 +212,8 @@ impl ArcSteps {
             Rule::Centred => 2,
         };
         Place {
-            a: self.inward.wrapping_add(offset) >> 1,
-            b: self.outward.wrapping_sub(offset) >> 1,
+            a: self.passage.inward.wrapping_add(offset) >> 1,
+            b: self.passage.outward.wrapping_sub(offset) >> 1,
         }
     }
 
@@ -134,15 +222,15 @@ impl ArcSteps {
     fn advance(&mut self) -> bool {
         let place = self.place();
         if self.ahead.crossings > 0 {
-            self.quadrant = self.quadrant.next(self.ahead.turn);
+            self.passage.quadrant = self.passage.quadrant.next(self.ahead.turn);
             self.ahead.crossings = self.ahead.crossings.wrapping_sub(1);
             let from = Place { a: place.b, b: 0 };
             if self.ahead.rule == Rule::Centred {
                 // F - a + b, at (0, b) before and at (b, 0) now.
-                self.decision = self.decision.wrapping_sub(place.b.wrapping_mul(2));
+                self.passage.decision = self.passage.decision.wrapping_sub(place.b.wrapping_mul(2));
             }
             self.enter(from);
-            self.ahead.steps = self.ahead.steps.wrapping_sub(self.in_passage());
+            self.ahead.steps = self.ahead.steps.wrapping_sub(self.passage.left());
             return true;
         }
         let end = self.ahead.end;
@@ -154,30 +242,23 @@ impl ArcSteps {
             a: end.a.wrapping_sub(place.a),
             b: place.b.wrapping_sub(end.b),
         };
-        self.quadrant = Quadrant {
-            inward: self.quadrant.of_signs(1, 0).unwrap_or(Move::Right),
-            outward: self.quadrant.of_signs(0, -1).unwrap_or(Move::Down),
+        self.passage.quadrant = Quadrant {
+            inward: self.passage.quadrant.of_signs(1, 0).unwrap_or(Move::Right),
+            outward: self.passage.quadrant.of_signs(0, -1).unwrap_or(Move::Down),
         };
         self.ahead.stops = false;
         self.ahead.steps = 0;
-        self.inward = back.a.wrapping_mul(2);
-        self.inward_end = 0;
-        self.outward = back.b.wrapping_mul(-2);
-        self.outward_end = 0;
+        self.passage.inward = back.a.wrapping_mul(2);
+        self.passage.inward_end = 0;
+        self.passage.outward = back.b.wrapping_mul(-2);
+        self.passage.outward_end = 0;
         true
-    }
-
-    /// Steps still to come in this passage.
-    fn in_passage(&self) -> u64 {
-        let inward = self.inward.wrapping_sub(self.inward_end);
-        let outward = self.outward_end.wrapping_sub(self.outward);
-        inward.wrapping_add(outward).unsigned_abs() >> 1
     }
 
     /// Steps still to come.
     #[must_use]
     pub fn steps_left(&self) -> u64 {
-        self.in_passage().wrapping_add(self.ahead.steps)
+        self.passage.left().wrapping_add(self.ahead.steps)
     }
 
     /// What the interval before the next step is multiplied with so that the path is as fast as a
@@ -194,7 +275,12 @@ impl ArcSteps {
             return Factor::ONE;
         }
         // inward + outward = 2 (a + b) under both rules.
-        let sum = self.inward.wrapping_add(self.outward).unsigned_abs() >> 1;
+        let sum = self
+            .passage
+            .inward
+            .wrapping_add(self.passage.outward)
+            .unsigned_abs()
+            >> 1;
         Factor::of_q16(self.ahead.radius_q16, sum)
     }
 }
@@ -244,30 +330,21 @@ impl Iterator for ArcSteps {
     #[inline]
     fn next(&mut self) -> Option<Move> {
         loop {
-            // Against the sign of the decision while the axis has steps left, else with the other.
-            if self.decision >= 0 {
-                if self.inward != self.inward_end {
-                    self.decision = self.decision.wrapping_sub(self.inward);
-                    self.inward = self.inward.wrapping_sub(2);
-                    return Some(self.quadrant.inward);
-                }
-                if self.outward != self.outward_end {
-                    self.outward = self.outward.wrapping_add(2);
-                    return Some(self.quadrant.outward);
-                }
-            } else {
-                if self.outward != self.outward_end {
-                    self.decision = self.decision.wrapping_add(self.outward);
-                    self.outward = self.outward.wrapping_add(2);
-                    return Some(self.quadrant.outward);
-                }
-                if self.inward != self.inward_end {
-                    self.inward = self.inward.wrapping_sub(2);
-                    return Some(self.quadrant.inward);
-                }
+            let step = self.passage.next();
+            if step.is_some() || !self.advance() {
+                return step;
             }
+        }
+    }
+
+    // Passage by passage: the state of one stays in registers.
+    #[inline]
+    fn fold<B, F: FnMut(B, Move) -> B>(mut self, init: B, mut f: F) -> B {
+        let mut folded = init;
+        loop {
+            folded = self.passage.fold(folded, &mut f);
             if !self.advance() {
-                return None;
+                return folded;
             }
         }
     }
