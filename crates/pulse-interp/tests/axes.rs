@@ -142,3 +142,13 @@ fn errors_name_axis_and_value() {
         Err(LineError::TooLong { axis: 1, .. })
     ));
 }
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn memory_is_what_the_readme_says() {
+    use pulse_interp::{ArcMoves, ArcSteps, LineMoves, LineSteps};
+    assert_eq!(size_of::<LineSteps>(), 20);
+    assert_eq!(size_of::<LineMoves>(), 20);
+    assert_eq!(size_of::<ArcSteps>(), 96);
+    assert_eq!(size_of::<ArcMoves>(), 128);
+}

@@ -204,7 +204,6 @@ fn stations() -> Option<()> {
 
 /// A job of two telegrams each way.
 fn read_data_block() -> Option<()> {
-    use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Pace, Rule, ScaleRatio, Turn};
     use rk512::{Config, Instant};
     let now = Instant::ZERO;
     let mut db5 = [0; 200];
