@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
 use kurbo::Point;
 use pose2pulse::pulse_interp::{
     AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, Move, Pace, ScaleRatio,
@@ -104,12 +104,13 @@ impl Controller {
     fn leave_switches(&mut self) -> Result<()> {
         while self.commanded != [0, 0] {
             self.step(Move::UpRight)?;
+            self.correct()?;
         }
         self.settle()?;
         self.corrected = 0;
         self.corrections.clear();
-        let mut uncorrected = self.stage.clone();
-        core::mem::swap(&mut self.uncorrected, &mut uncorrected);
+        self.stage.forget_lost();
+        self.uncorrected = self.stage.clone();
         self.run_closed.push(self.stage.at_mm());
         self.run_open.push(self.stage.at_mm());
         Ok(())
@@ -147,12 +148,13 @@ impl Controller {
                 self.step(step).with_context(|| target(motion))?;
                 self.log(step)?;
                 self.observe(motion);
+                self.correct().with_context(|| target(motion))?;
             }
         }
         Ok(())
     }
 
-    /// One step of the path, if no switch forbids it, and what the scales then ask for.
+    /// One step of the path, if no switch forbids it.
     fn step(&mut self, step: Move) -> Result<()> {
         let directions = [step.dx(), step.dy()].map(direction);
         // Both are asked before either moves.
@@ -173,7 +175,7 @@ impl Controller {
                 axis.command(direction);
             }
         }
-        self.correct().map(|_| ())
+        Ok(())
     }
 
     /// One look at the scales; whether anything was wrong.
@@ -240,7 +242,6 @@ impl Controller {
         let [steps_x, steps_y] = self.steps;
         #[expect(clippy::cast_precision_loss, reason = "microseconds far below 2^52")]
         let duration_s = self.ticks as f64 / TICKS_PER_S;
-        ensure!(duration_s.is_finite(), "no end");
         Ok(Run {
             report: Report {
                 rule: self.rule.name(),

@@ -1,5 +1,7 @@
 //! Programmed motions to paths of whole steps.
 
+use core::f64::consts::TAU;
+
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use kurbo::Point;
@@ -85,16 +87,19 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
         return Ok(vec![line(from, to, rule)?]);
     };
     let radius = motion.from.distance(centre);
-    let (made, left) = (sweep_rad, core::f64::consts::TAU - sweep_rad);
     let steps = |angle: f64| angle * radius * STEPS_PER_MM;
     // Ends this close may change places when they are rounded: then the short way is a line.
     const CLOSE: f64 = 4.0;
-    if steps(made) < CLOSE {
+    if steps(sweep_rad) < CLOSE {
         return Ok(vec![line(from, to, rule)?]);
     }
     let centre = to_steps(centre);
     let about = |[x, y]: [i32; 2]| [x - centre[0], y - centre[1]];
-    let end = if steps(left) < CLOSE { from } else { to };
+    let end = if steps(TAU - sweep_rad) < CLOSE {
+        from
+    } else {
+        to
+    };
     // Start, end and centre are rounded by up to 0.7071 steps each; the program's own tolerance.
     const ROUNDED_MILLISTEPS: f64 = 3.0 * 708.0;
     let tolerance = ROUNDED_MILLISTEPS + ARC_TOLERANCE_MM * STEPS_PER_MM * 1000.0;

@@ -58,9 +58,13 @@ impl Stage {
         }
     }
 
-    /// Sets all scales to 0 here, and forgets what was lost.
+    /// Sets all scales to 0 here.
     pub(crate) const fn zero(&mut self) {
         self.scale_zero = self.steps;
+    }
+
+    /// Counts lost steps from here on.
+    pub(crate) const fn forget_lost(&mut self) {
         self.lost = 0;
     }
 
