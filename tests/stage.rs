@@ -246,7 +246,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         ("G2 X3", "line 1: an arc without I, J or R"),
         (
             "G0 X30\nG3 X10 Y20.1 I-10",
-            "line 2: the end (10.000, 20.100) is 12.458 mm outside",
+            "line 2: the end (10.000, 20.100) is 12.450 mm outside",
         ),
         (
             "G0 X30\nG3 X20 Y10.021 I-10 F60",
@@ -256,7 +256,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "G0 X30\nG3 X10 R9",
             "line 2: R9.000 is too short: start and end are 20.000 mm apart",
         ),
-        ("G0 X30\nG3 R9", "an arc without"),
+        (
+            "G0 X30\nG3 R9",
+            "line 2: a full circle by R: its centre can be anywhere",
+        ),
         ("(nothing)\n", "bad.gcode: nothing moves"),
         (
             "G0 X10\nG1 X130 Y5\nX0",

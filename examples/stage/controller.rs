@@ -25,6 +25,9 @@ const LOOKS_AT_END: u32 = 1000;
 /// The step from one point of the picture to the next.
 const PICTURE_MM: f64 = 0.05;
 
+/// From one point of the chart to the next.
+const CHART_S: f64 = 0.1;
+
 const AXES: [&str; 2] = ["X", "Y"];
 
 /// What the observers saw.
@@ -34,6 +37,15 @@ pub(crate) struct Run {
     pub(crate) closed: Vec<Point>,
     pub(crate) open: Vec<Point>,
     pub(crate) corrections: Vec<Point>,
+    pub(crate) errors: Vec<Errors>,
+}
+
+/// How far the stages are from where they were commanded to, at worst since the last of these.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Errors {
+    pub(crate) t_s: f64,
+    pub(crate) closed_mm: f64,
+    pub(crate) open_mm: f64,
 }
 
 pub(crate) struct Controller {
@@ -53,6 +65,8 @@ pub(crate) struct Controller {
     run_closed: Vec<Point>,
     run_open: Vec<Point>,
     corrections: Vec<Point>,
+    errors: Vec<Errors>,
+    worst: Errors,
     programmed: Vec<Motion>,
     lose: f64,
     seed: u64,
@@ -92,6 +106,8 @@ impl Controller {
             run_closed: Vec::new(),
             run_open: Vec::new(),
             corrections: Vec::new(),
+            errors: Vec::new(),
+            worst: Errors::default(),
             programmed: Vec::new(),
             lose,
             seed,
@@ -223,12 +239,31 @@ impl Controller {
     }
 
     fn observe(&mut self, motion: &Motion) {
-        let at = self.stage.at_mm();
+        let (at, open) = (self.stage.at_mm(), self.uncorrected.at_mm());
         self.deviation_mm = self.deviation_mm.max(motion.distance_mm(at));
+        self.open_deviation_mm = self.open_deviation_mm.max(motion.distance_mm(open));
         follow(&mut self.run_closed, at);
-        let at = self.uncorrected.at_mm();
-        self.open_deviation_mm = self.open_deviation_mm.max(motion.distance_mm(at));
-        follow(&mut self.run_open, at);
+        follow(&mut self.run_open, open);
+
+        let commanded = self.commanded_mm();
+        self.worst = Errors {
+            t_s: self.seconds(),
+            closed_mm: self.worst.closed_mm.max(at.distance(commanded)),
+            open_mm: self.worst.open_mm.max(open.distance(commanded)),
+        };
+        let last_s = self
+            .errors
+            .last()
+            .map_or(f64::NEG_INFINITY, |last| last.t_s);
+        if self.worst.t_s >= last_s + CHART_S {
+            self.errors.push(core::mem::take(&mut self.worst));
+        }
+    }
+
+    fn seconds(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "microseconds far below 2^52")]
+        let ticks = self.ticks as f64;
+        ticks / TICKS_PER_S
     }
 
     /// Settles at the end of the last motion.
@@ -240,8 +275,6 @@ impl Controller {
         self.run_open.push(open);
         let end = self.programmed.last().map_or(Point::ORIGIN, |last| last.to);
         let [steps_x, steps_y] = self.steps;
-        #[expect(clippy::cast_precision_loss, reason = "microseconds far below 2^52")]
-        let duration_s = self.ticks as f64 / TICKS_PER_S;
         Ok(Run {
             report: Report {
                 rule: self.rule.name(),
@@ -252,7 +285,7 @@ impl Controller {
                 closing_error_mm: at.distance(end),
                 lost_steps: self.stage.lost(),
                 corrected_steps: self.corrected,
-                duration_s,
+                duration_s: self.seconds(),
                 open_loop: OpenLoop {
                     max_deviation_mm: self.open_deviation_mm,
                     closing_error_mm: open.distance(end),
@@ -265,6 +298,7 @@ impl Controller {
             closed: self.run_closed,
             open: self.run_open,
             corrections: self.corrections,
+            errors: self.errors,
         })
     }
 }

@@ -77,7 +77,7 @@ impl Stage {
         self.lost
     }
 
-    /// In 0..1, by SplitMix64.
+    /// In 0..1, by `SplitMix64`.
     fn random_share(&mut self) -> f64 {
         self.random = self.random.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.random;
