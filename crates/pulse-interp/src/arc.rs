@@ -1,5 +1,6 @@
 //! Arcs about a centre on the grid.
 
+mod circle;
 mod geometry;
 mod moves;
 mod steps;
@@ -55,7 +56,7 @@ pub enum ArcError {
 /// ```
 /// The radius is that of the start, up to 2^30 steps, and need not be whole. Start = end is the
 /// full circle. In each quadrant one axis leads inward, the other outward; a point on an axis
-/// belongs to the quadrant which the motion enters. Source: [Stage].
+/// belongs to the quadrant which the motion enters. Source: \[Stage\].
 ///
 /// The end is always met, and after a known number of steps. Where it is on the circle, the rule
 /// alone leads there. Where it is merely near, an axis that has reached its end coordinate stands

@@ -130,7 +130,7 @@ pub struct LostSteps {
 /// ```
 /// A state machine without a clock. Its corrections are steps of the motor, not of the path: they
 /// are not commanded. After one, let the scale settle before the next check.
-/// Source: [Stage], with a dead band of 3 counts at 5 counts per step.
+/// Source: \[Stage\], with a dead band of 3 counts at 5 counts per step.
 ///
 /// # Examples
 /// ```

@@ -32,7 +32,7 @@ pub enum LineError {
 /// F = y xe - x ye,   |F| = distance to the line * its length
 /// ```
 /// A step of x takes |ye| from F, a step of y adds |xe|, in every quadrant with absolute values.
-/// Range ±(2^31 - 1) steps per axis. Source: [Stage].
+/// Range ±(2^31 - 1) steps per axis. Source: \[Stage\].
 ///
 /// # Examples
 /// ```

@@ -111,7 +111,7 @@ impl Move {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Rule {
-    /// The step against the sign of F, as published [Stage]: up to a whole step off the curve. On
+    /// The step against the sign of F, as published \[Stage\]: up to a whole step off the curve. On
     /// a line along Y, where the published rule leaves the line, the axis at its end stands still.
     Textbook,
     /// The step after which |F| is smaller, of equals the outer one: as many steps to the same end,
