@@ -55,7 +55,10 @@ pub(crate) fn serve(port: &str, controller: &mut Controller) -> Result<()> {
                 },
                 key if line.is_empty() && b"?<>^v".contains(key) => session.key(*key),
                 byte => {
-                    line.push(*byte);
+                    // One more than is allowed, so that it is seen to be too long.
+                    if line.len() <= LONGEST_LINE {
+                        line.push(*byte);
+                    }
                     continue;
                 }
             };
@@ -78,7 +81,7 @@ impl Session<'_> {
         let number = self.lines;
         let place = || format!("at line {number}");
         let read = if line.len() > LONGEST_LINE {
-            Err(anyhow::anyhow!("{} bytes", line.len()))
+            Err(anyhow::anyhow!("more than {LONGEST_LINE} bytes"))
         } else {
             core::str::from_utf8(line)
                 .context("no text")

@@ -11,6 +11,8 @@ use crate::geometry::{Motion, Shape, angle_on};
 
 /// How far the end of an arc may be from its circle, in mm.
 pub(crate) const ARC_TOLERANCE_MM: f64 = 0.02;
+/// Start and end of a full circle, which may come from inches.
+const SAME_MM: f64 = 1e-6;
 /// G0.
 pub(crate) const RAPID_MM_S: f64 = 50.0;
 /// Before the first F.
@@ -117,14 +119,15 @@ impl Words {
                 words.push(word.letter, &word.value, text.unwrap_or_default())?;
             }
         }
-        let is_said = words.codes.is_empty() && words.values.is_empty();
-        let is_empty = program
+        let is_silent = words.codes.is_empty() && words.values.is_empty();
+        let bare = line.trim();
+        // What the parser passes over, but for comments, line numbers and the tape's mark.
+        let is_passed_over = program
             .blocks
             .iter()
-            .all(|block| block.line_number.is_some() || !block.comments.is_empty());
-        let bare = line.trim();
+            .any(|block| block.line_number.is_none() && block.comments.is_empty());
         ensure!(
-            !is_said || is_empty || bare.is_empty() || bare == "%",
+            !(is_silent && is_passed_over) || bare == "%",
             "{bare:?}: no word of this stage"
         );
         Ok(words)
@@ -297,7 +300,7 @@ fn arc(
     Ok(Shape::Arc {
         centre,
         turn,
-        sweep_rad: if from == to || sweep <= 0.0 {
+        sweep_rad: if from.distance(to) < SAME_MM {
             TAU
         } else {
             sweep

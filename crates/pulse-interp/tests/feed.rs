@@ -1,7 +1,7 @@
 //! Path speed: the variation at a fixed pulse rate, and its cure.
 #![cfg(test)]
 
-use pulse_interp::{Arc, Factor, Line, Pace, Rule, Turn};
+use pulse_interp::{Arc, Factor, Line, Move, Pace, Rule, Turn};
 
 /// How far the speed may be off, as a share.
 const STEADY: f64 = 0.01;
@@ -135,6 +135,14 @@ fn factors_at_the_ends_of_their_range() {
     assert_eq!(factor([-i32::MAX, i32::MAX]), 46_341);
     let line = Line::new([i32::MAX, i32::MAX]).unwrap();
     assert_eq!(line.move_factor().to_q16(), 92_682);
+    // Back to an end outside that the rule has passed: a straight step.
+    let arc = Arc::near([0, -10], [11, 1], Turn::CounterClockwise, 2000).unwrap();
+    let mut steps = arc.steps(Rule::Centred);
+    let _ = steps.nth(arc.steps(Rule::Centred).len() - 2);
+    assert_eq!(
+        (steps.factor(), steps.next()),
+        (Factor::ONE, Some(Move::Right))
+    );
     // The one circle whose path passes the centre.
     let circle = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
     let mut steps = circle.steps(Rule::Textbook);

@@ -39,13 +39,6 @@ impl Circle {
         rounded_root(rest)
     }
 
-    /// b at a from the middle on: one move raises it by at most 1.
-    fn high(&self, a: i64) -> i64 {
-        let moves = self.middle.a.wrapping_sub(a);
-        let Place { b, .. } = self.middle;
-        self.beside(a).clamp(b, b.wrapping_add(moves.max(0)))
-    }
-
     /// Moves from the axis of departure to a place on the path.
     fn progress(&self, to: Place) -> i64 {
         if to.b < to.a {
@@ -82,7 +75,10 @@ impl Circle {
             }
         } else {
             let a = a.min(self.middle.a);
-            Place { a, b: self.high(a) }
+            Place {
+                a,
+                b: self.beside(a),
+            }
         };
         let stands_still =
             sweep.crossings == 0 && self.progress(stop) <= self.progress(sweep.start);

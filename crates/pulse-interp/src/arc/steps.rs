@@ -271,7 +271,8 @@ impl ArcSteps {
     #[must_use]
     #[inline]
     pub fn factor(&self) -> Factor {
-        if self.ahead.is_back() {
+        let at_last = self.ahead.crossings == 0 && self.passage.left() == 0;
+        if at_last || self.ahead.is_back() {
             return Factor::ONE;
         }
         // inward + outward = 2 (a + b) under both rules.
