@@ -68,6 +68,8 @@ pub(crate) struct Controller {
     errors: Vec<Errors>,
     worst: Errors,
     programmed: Vec<Motion>,
+    /// Of the last motion, in mm.
+    end: Point,
     lose: f64,
     seed: u64,
 }
@@ -109,6 +111,7 @@ impl Controller {
             errors: Vec::new(),
             worst: Errors::default(),
             programmed: Vec::new(),
+            end: Point::ORIGIN,
             lose,
             seed,
         };
@@ -147,9 +150,18 @@ impl Controller {
         Point::new(mm(0, x), mm(1, y))
     }
 
-    /// Makes a motion's steps.
+    /// Makes a motion's steps; on an error the stage stands where it was last commanded to.
     pub(crate) fn run(&mut self, motion: &Motion) -> Result<()> {
         self.programmed.push(*motion);
+        let run = self.make(motion);
+        self.end = match run {
+            Ok(()) => motion.to,
+            Err(_) => self.commanded_mm(),
+        };
+        run
+    }
+
+    fn make(&mut self, motion: &Motion) -> Result<()> {
         // Rates are bounded by the parser: 100 to 60 million ticks.
         #[expect(
             clippy::cast_possible_truncation,
@@ -273,7 +285,6 @@ impl Controller {
         let (at, open) = (self.stage.at_mm(), self.uncorrected.at_mm());
         self.run_closed.push(at);
         self.run_open.push(open);
-        let end = self.programmed.last().map_or(Point::ORIGIN, |last| last.to);
         let [steps_x, steps_y] = self.steps;
         Ok(Run {
             report: Report {
@@ -282,13 +293,13 @@ impl Controller {
                 steps_y,
                 end_steps: self.commanded,
                 max_deviation_mm: self.deviation_mm,
-                closing_error_mm: at.distance(end),
+                closing_error_mm: at.distance(self.end),
                 lost_steps: self.stage.lost(),
                 corrected_steps: self.corrected,
                 duration_s: self.seconds(),
                 open_loop: OpenLoop {
                     max_deviation_mm: self.open_deviation_mm,
-                    closing_error_mm: open.distance(end),
+                    closing_error_mm: open.distance(self.end),
                     lost_steps: self.uncorrected.lost(),
                 },
                 lose_steps: self.lose,
