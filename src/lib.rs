@@ -10,6 +10,8 @@ pub use pattern_codec;
 pub use pose_pt;
 #[cfg(feature = "proto3964r")]
 pub use proto3964r;
+#[cfg(feature = "pulse-interp")]
+pub use pulse_interp;
 #[cfg(feature = "rk512")]
 pub use rk512;
 #[cfg(feature = "scara-kin")]

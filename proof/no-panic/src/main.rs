@@ -8,6 +8,7 @@ mod frames;
 mod jobs;
 mod kinematics;
 mod line;
+mod paths;
 mod patterns;
 mod poses;
 mod stepping;
@@ -19,6 +20,7 @@ fn main() {
     poses::run();
     tables::run();
     stepping::run();
+    paths::run();
     patterns::run();
     frames::run();
     line::run();

@@ -11,6 +11,7 @@ use pose_pt::{
     PvtTable,
 };
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
+use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Pace, Rule, ScaleRatio, Turn};
 use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
 use scara_kin::nalgebra::{Point2, Vector2};
 use scara_kin::{Arm, Elbow, Joints};
@@ -28,6 +29,8 @@ pub const ALL: &[fn() -> Option<()>] = &[
     trains,
     ramp,
     dance,
+    interpolation,
+    closed_loop,
     records,
     container,
     dance_header,
@@ -180,6 +183,34 @@ fn dance() -> Option<()> {
     }
     // 119 · 200 / 600 = 39.67; 39 half steps are 7 past a turn, 20 back are 4.
     holds(position.homing() == [-39, 20] && latches.outputs() == [9, 4])
+/// A line, and an arc that ends where it should, at constant speed.
+fn interpolation() -> Option<()> {
+    let line = Line::new(black_box([30, -7])).ok()?;
+    holds(line.steps(Rule::Centred).len() == 37)?;
+    let arc = Arc::new(black_box([500, 0]), [-300, 400], Turn::CounterClockwise).ok()?;
+    let (mut steps, mut pace) = (arc.steps(Rule::Centred), Pace::new(1000));
+    let (mut at, mut ticks) = ([500, 0], 0);
+    loop {
+        let factor = steps.factor();
+        let Some(step) = steps.next() else { break };
+        at = [at[0] + step.dx(), at[1] + step.dy()];
+        ticks += pace.interval(factor);
+    }
+    // 500 steps of radius by 2.2143 rad.
+    holds(at == [-300, 400] && ticks.abs_diff(1_107_149) < 5000)?;
+    holds(arc.moves().len() < arc.steps(Rule::Textbook).len())
+}
+
+/// An axis that has lost two steps.
+fn closed_loop() -> Option<()> {
+    let mut axis = AxisLoop::new(LoopSettings {
+        ratio: ScaleRatio::new(black_box(5), 1).ok()?,
+        dead_band_counts: 3,
+        alarm_counts: 100,
+    })
+    .ok()?;
+    holds(axis.correction(black_box(-10)) == Ok(2))?;
+    holds(axis.correction(black_box(-101)).is_err())
 }
 
 /// Records to bytes and back, from a slice and from chunks.

@@ -1,0 +1,362 @@
+//! Arcs of single steps.
+
+use super::Arc;
+use super::geometry::{Place, Quadrant, Sweep, rounded_root, signed};
+use crate::feed::length_q16;
+use crate::line::size_of_rest;
+use crate::{Factor, Move, Rule, Turn};
+use core::iter::FusedIterator;
+
+/// The single steps of an [`Arc`]: an iterator of [`Move`]s of one axis.
+///
+/// Within a quadrant two comparisons and two additions a step:
+/// ```text
+/// F >= 0: inward,  F -= 2 a - 1, a -= 1
+/// F <  0: outward, F += 2 b + 1, b += 1
+/// ```
+/// The centred rule runs the same on F - a + b with 2 a - 2 and 2 b + 2.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use = "iterators are lazy"]
+pub struct ArcSteps {
+    passage: Passage,
+    ahead: Ahead,
+}
+
+/// The steps within one quadrant: small enough for registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Passage {
+    // -inward <= decision < outward, so at most 2^32 either way.
+    decision: i64,
+    // What the next step inward takes from the decision, and what it will be after the last.
+    inward: i64,
+    inward_end: i64,
+    // What the next step outward adds, and what it will be after the last.
+    outward: i64,
+    outward_end: i64,
+    quadrant: Quadrant,
+}
+
+impl Passage {
+    /// Inward by the rule; `None` where no step inward is left.
+    #[inline]
+    fn rule_inward(&mut self) -> Option<Move> {
+        if self.inward == self.inward_end {
+            return None;
+        }
+        self.decision = self.decision.wrapping_sub(self.inward);
+        self.inward = self.inward.wrapping_sub(2);
+        Some(self.quadrant.inward)
+    }
+
+    /// Outward by the rule; `None` where no step outward is left.
+    #[inline]
+    fn rule_outward(&mut self) -> Option<Move> {
+        if self.outward == self.outward_end {
+            return None;
+        }
+        self.decision = self.decision.wrapping_add(self.outward);
+        self.outward = self.outward.wrapping_add(2);
+        Some(self.quadrant.outward)
+    }
+
+    /// The step by the rule while its axis has steps left, else that of the other.
+    #[inline]
+    fn next(&mut self) -> Option<Move> {
+        let step = if self.decision >= 0 {
+            self.rule_inward()
+        } else {
+            self.rule_outward()
+        };
+        step.or_else(|| self.other_axis())
+    }
+
+    /// The step of the axis that alone has steps left.
+    fn other_axis(&mut self) -> Option<Move> {
+        if self.inward != self.inward_end {
+            self.inward = self.inward.wrapping_sub(2);
+            Some(self.quadrant.inward)
+        } else if self.outward != self.outward_end {
+            self.outward = self.outward.wrapping_add(2);
+            Some(self.quadrant.outward)
+        } else {
+            None
+        }
+    }
+
+    /// All steps. A call in each branch spares the loop a third.
+    #[inline]
+    fn fold<B>(&mut self, init: B, mut f: impl FnMut(B, Move) -> B) -> B {
+        let mut passage = *self;
+        let mut folded = init;
+        loop {
+            if passage.decision >= 0 {
+                let Some(step) = passage.rule_inward() else {
+                    break;
+                };
+                folded = f(folded, step);
+            } else {
+                let Some(step) = passage.rule_outward() else {
+                    break;
+                };
+                folded = f(folded, step);
+            }
+        }
+        while let Some(step) = passage.other_axis() {
+            folded = f(folded, step);
+        }
+        *self = passage;
+        folded
+    }
+
+    /// Steps still to come.
+    fn left(&self) -> u64 {
+        let inward = self.inward.wrapping_sub(self.inward_end);
+        let outward = self.outward_end.wrapping_sub(self.outward);
+        inward.wrapping_add(outward).unsigned_abs() >> 1
+    }
+}
+
+/// What comes after the passage in hand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Ahead {
+    crossings: u8,
+    turn: Turn,
+    rule: Rule,
+    /// Whether the last passage stops at the end.
+    stops: bool,
+    /// Where the path crosses the axes.
+    crossing: i64,
+    /// In the quadrant of the end.
+    end: Place,
+    /// Steps of the passages ahead, those back to the end included.
+    steps: u64,
+    radius_q16: u64,
+}
+
+impl ArcSteps {
+    pub(super) fn new(arc: &Arc, sweep: &Sweep, rule: Rule) -> Self {
+        Self::from_parts(arc, sweep, rule, true)
+    }
+
+    /// Without an end, by the textbook rule.
+    pub(super) fn endless(arc: &Arc, sweep: &Sweep) -> Self {
+        let sweep = Sweep {
+            // A published walk is at most 4 crossings long, and may miss its end by one more.
+            crossings: 6,
+            ..*sweep
+        };
+        Self::from_parts(arc, &sweep, Rule::Textbook, false)
+    }
+
+    fn from_parts(arc: &Arc, sweep: &Sweep, rule: Rule, stops: bool) -> Self {
+        let square = arc.radius_squared;
+        let crossing = match rule {
+            // F >= 0 at a = 1. At R = 1 the path goes through the centre, and from there out by 1.
+            Rule::Textbook => {
+                let under = square.wrapping_sub(1);
+                let root = under.isqrt();
+                let up = root.wrapping_mul(root) < under;
+                signed(root.wrapping_add(u64::from(up))).max(1)
+            }
+            // F - a + b >= 0 at a = 1.
+            Rule::Centred => rounded_root(square),
+        };
+        let mut steps = Self {
+            passage: Passage {
+                decision: match rule {
+                    Rule::Textbook => 0,
+                    Rule::Centred => sweep.start.b.wrapping_sub(sweep.start.a),
+                },
+                inward: 0,
+                inward_end: 0,
+                outward: 0,
+                outward_end: 0,
+                quadrant: sweep.quadrant,
+            },
+            ahead: Ahead {
+                crossings: sweep.crossings,
+                turn: arc.turn,
+                rule,
+                stops,
+                crossing,
+                end: sweep.end,
+                steps: 0,
+                radius_q16: length_q16(square),
+            },
+        };
+        steps.ahead.steps = steps.ahead.count(sweep.start);
+        steps.enter(sweep.start);
+        steps
+    }
+
+    /// Sets the passage of a quadrant from `from`.
+    fn enter(&mut self, from: Place) {
+        let ahead = &self.ahead;
+        let to = ahead.target();
+        let (inward, outward) = match ahead.rule {
+            Rule::Textbook => (-1, 1),
+            Rule::Centred => (-2, 2),
+        };
+        // Twice what is at most 2^31.
+        let twice = |steps: i64| steps.wrapping_mul(2);
+        self.passage.inward = twice(from.a).wrapping_add(inward);
+        self.passage.inward_end = twice(to.a.min(from.a)).wrapping_add(inward);
+        self.passage.outward = twice(from.b).wrapping_add(outward);
+        self.passage.outward_end = twice(to.b.max(from.b)).wrapping_add(outward);
+    }
+
+    /// Where the path stands, in its quadrant.
+    fn place(&self) -> Place {
+        let offset = match self.ahead.rule {
+            Rule::Textbook => 1,
+            Rule::Centred => 2,
+        };
+        Place {
+            a: self.passage.inward.wrapping_add(offset) >> 1,
+            b: self.passage.outward.wrapping_sub(offset) >> 1,
+        }
+    }
+
+    /// Goes on where a passage is at its end; false at the end of the arc.
+    #[cold]
+    fn advance(&mut self) -> bool {
+        let place = self.place();
+        if self.ahead.crossings > 0 {
+            self.passage.quadrant = self.passage.quadrant.next(self.ahead.turn);
+            self.ahead.crossings = self.ahead.crossings.wrapping_sub(1);
+            let from = Place { a: place.b, b: 0 };
+            if self.ahead.rule == Rule::Centred {
+                // F - a + b, at (0, b) before and at (b, 0) now.
+                self.passage.decision = self.passage.decision.wrapping_sub(place.b.wrapping_mul(2));
+            }
+            self.enter(from);
+            self.ahead.steps = self.ahead.steps.wrapping_sub(self.passage.left());
+            return true;
+        }
+        let end = self.ahead.end;
+        if !self.ahead.stops || place == end {
+            return false;
+        }
+        // The rule never comes back: what is missing lies against both of its moves.
+        let back = Place {
+            a: end.a.wrapping_sub(place.a),
+            b: place.b.wrapping_sub(end.b),
+        };
+        self.passage.quadrant = Quadrant {
+            inward: self.passage.quadrant.of_signs(1, 0).unwrap_or(Move::Right),
+            outward: self.passage.quadrant.of_signs(0, -1).unwrap_or(Move::Down),
+        };
+        self.ahead.stops = false;
+        self.ahead.steps = 0;
+        self.passage.inward = back.a.wrapping_mul(2);
+        self.passage.inward_end = 0;
+        self.passage.outward = back.b.wrapping_mul(-2);
+        self.passage.outward_end = 0;
+        true
+    }
+
+    /// Steps still to come.
+    #[must_use]
+    pub fn steps_left(&self) -> u64 {
+        self.passage.left().wrapping_add(self.ahead.steps)
+    }
+
+    /// What the interval before the next step is multiplied with so that the path is as fast as a
+    /// straight axis: from 0.7071 along a diagonal to 1.
+    ///
+    /// ```text
+    /// R / (|x| + |y|)
+    /// ```
+    /// One division: the only one, and outside [`next`](Iterator::next).
+    #[must_use]
+    #[inline]
+    pub fn factor(&self) -> Factor {
+        let at_last = self.ahead.crossings == 0 && self.passage.left() == 0;
+        if at_last || self.ahead.is_back() {
+            return Factor::ONE;
+        }
+        // inward + outward = 2 (a + b) under both rules.
+        let sum = self
+            .passage
+            .inward
+            .wrapping_add(self.passage.outward)
+            .unsigned_abs()
+            >> 1;
+        Factor::of_q16(self.ahead.radius_q16, sum)
+    }
+}
+
+impl Ahead {
+    /// Where the passage in hand ends.
+    const fn target(&self) -> Place {
+        match (self.crossings, self.stops) {
+            (0, true) => self.end,
+            _ => Place {
+                a: 0,
+                b: self.crossing,
+            },
+        }
+    }
+
+    /// Whether the steps left lead back to an end that the rule has passed.
+    const fn is_back(&self) -> bool {
+        self.crossings == 0 && !self.stops
+    }
+
+    /// Steps after the passage from `from`.
+    fn count(&self, from: Place) -> u64 {
+        // A whole quadrant is at most 2^31 steps.
+        let quadrant = self.crossing.unsigned_abs().wrapping_mul(2);
+        let whole = |crossings: u8| u64::from(crossings).wrapping_mul(quadrant);
+        if !self.stops {
+            return whole(self.crossings);
+        }
+        match self.crossings.checked_sub(1) {
+            // Out, and in or back to the end.
+            Some(between) => whole(between)
+                .wrapping_add(self.crossing.abs_diff(self.end.a))
+                .wrapping_add(self.end.b.unsigned_abs()),
+            None => {
+                let back_a = self.end.a.saturating_sub(from.a).max(0);
+                let back_b = from.b.saturating_sub(self.end.b).max(0);
+                back_a.wrapping_add(back_b).unsigned_abs()
+            }
+        }
+    }
+}
+
+impl Iterator for ArcSteps {
+    type Item = Move;
+
+    #[inline]
+    fn next(&mut self) -> Option<Move> {
+        loop {
+            let step = self.passage.next();
+            if step.is_some() || !self.advance() {
+                return step;
+            }
+        }
+    }
+
+    // Passage by passage: the state of one stays in registers.
+    #[inline]
+    fn fold<B, F: FnMut(B, Move) -> B>(mut self, init: B, mut f: F) -> B {
+        let mut folded = init;
+        loop {
+            folded = self.passage.fold(folded, &mut f);
+            if !self.advance() {
+                return folded;
+            }
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        size_of_rest(self.steps_left())
+    }
+}
+
+// A circle of the largest radius has 2^33 steps.
+#[cfg(target_pointer_width = "64")]
+impl ExactSizeIterator for ArcSteps {}
+
+impl FusedIterator for ArcSteps {}

@@ -1,0 +1,277 @@
+//! What holds for lines and arcs of any size.
+#![cfg(test)]
+
+use proptest::prelude::*;
+use pulse_interp::{Arc, ArcError, Line, Move, Rule, Turn};
+
+/// Steps looked at of a path that may have billions.
+const WINDOW: usize = 3000;
+
+const RULES: [Rule; 2] = [Rule::Textbook, Rule::Centred];
+
+fn lengths() -> impl Strategy<Value = i32> {
+    prop_oneof![-70..=70, -100_000..=100_000, -i32::MAX..=i32::MAX]
+}
+
+fn turns() -> impl Strategy<Value = Turn> {
+    prop_oneof![Just(Turn::CounterClockwise), Just(Turn::Clockwise)]
+}
+
+/// Coordinates of a start, up to the largest radius.
+fn starts() -> impl Strategy<Value = [i32; 2]> {
+    const MOST: i32 = 759_250_124; // 2^30 / sqrt(2)
+    let coordinate = || prop_oneof![-70..=70, -100_000..=100_000, -MOST..=MOST];
+    let whole = prop_oneof![1..=100, 1..=1 << 30];
+    prop_oneof![
+        [coordinate(), coordinate()],
+        whole.clone().prop_map(|r| [r, 0]),
+        whole.prop_map(|r| [0, -r]),
+    ]
+    .prop_filter("the centre has no radius", |p| *p != [0, 0])
+}
+
+fn after(at: [i64; 2], step: Move) -> [i64; 2] {
+    [at[0] + i64::from(step.dx()), at[1] + i64::from(step.dy())]
+}
+
+/// |r² - R²| <= 2 R d + d² for every point within d of the circle, in hundredths of a step.
+fn within(at: [i64; 2], radius_squared: u64, hundredths: i128) -> bool {
+    let square = at.map(|c| i128::from(c).pow(2)).iter().sum::<i128>();
+    let off = 10_000 * (square - i128::from(radius_squared)).abs();
+    let radius_up = i128::from(radius_squared.isqrt()) + 1;
+    off <= 200 * radius_up * hundredths + hundredths * hundredths
+}
+
+/// Whether both ways through what is left after `begun` moves give the same.
+fn folds_as_it_steps(mut moves: impl Iterator<Item = Move> + Clone, begun: usize) -> bool {
+    moves.by_ref().take(begun).for_each(drop);
+    let mut stepped = moves.clone();
+    let one_by_one: Vec<Move> = core::iter::from_fn(|| stepped.next()).collect();
+    let mut folded = Vec::new();
+    moves.for_each(|step| folded.push(step));
+    folded == one_by_one
+}
+
+proptest! {
+    #[test]
+    fn lines_follow_their_rule(to in [lengths(), lengths()]) {
+        let line = Line::new(to).unwrap();
+        let [xe, ye] = to.map(|n| i128::from(n.abs()));
+        for rule in RULES {
+            let steps = line.steps(rule);
+            prop_assert_eq!(i128::from(steps.steps_left()), xe + ye);
+            let (mut x, mut y) = (0_i128, 0_i128);
+            for step in steps.take(WINDOW) {
+                prop_assert!(!step.is_diagonal());
+                let f = y * xe - x * ye;
+                let x_is_next = match rule {
+                    Rule::Textbook => f >= 0 && x < xe,
+                    _ => y == ye || x < xe && 2 * f >= ye - xe,
+                };
+                prop_assert_eq!(step.dx() != 0, x_is_next);
+                x += i128::from(step.dx().abs());
+                y += i128::from(step.dy().abs());
+                prop_assert!(step.dx() * to[0] >= 0 && step.dy() * to[1] >= 0);
+            }
+        }
+        let (mut at, n) = ([0, 0], xe.max(ye));
+        for (k, step) in (1..).zip(line.moves().take(WINDOW)) {
+            at = after(at, step);
+            let rounded = to.map(|len| {
+                let len = i128::from(len);
+                len.signum() * ((2 * k * len.abs() + n) / (2 * n))
+            });
+            prop_assert_eq!(at.map(i128::from), rounded);
+        }
+    }
+
+    #[test]
+    fn short_lines_end_at_their_end(to in [-5000..=5000, -5000..=5000]) {
+        let line = Line::new(to).unwrap();
+        let end = to.map(i64::from);
+        for rule in RULES {
+            prop_assert_eq!(line.steps(rule).fold([0, 0], after), end);
+        }
+        prop_assert_eq!(line.moves().fold([0, 0], after), end);
+    }
+
+    /// From anywhere on a circle of any size, and near its end.
+    #[test]
+    fn arcs_stay_at_their_circle(start in starts(), turn in turns(), skip in 0..4_usize) {
+        let arc = match Arc::new(start, start, turn) {
+            Ok(arc) => arc,
+            Err(error) => {
+                let too_large = matches!(error, ArcError::RadiusTooLarge { .. });
+                prop_assert!(too_large);
+                return Ok(());
+            }
+        };
+        for (rule, hundredths) in [(Rule::Textbook, 100), (Rule::Centred, 71)] {
+            let steps = arc.steps(rule);
+            let left = steps.steps_left();
+            prop_assert_eq!(left % 8, 0);
+            let mut at = start.map(i64::from);
+            for (k, step) in (1..).zip(steps.take(WINDOW + skip)) {
+                at = after(at, step);
+                prop_assert!(within(at, arc.radius_squared(), hundredths));
+                prop_assert!(k != left || at == start.map(i64::from));
+            }
+        }
+        let mut at = start.map(i64::from);
+        for step in arc.moves().take(WINDOW) {
+            at = after(at, step);
+            prop_assert!(within(at, arc.radius_squared(), 50));
+        }
+    }
+
+    /// Ends rounded from angles: met, in the number of steps told, within rule and end.
+    #[test]
+    fn rounded_ends_are_met(
+        start in [-900..=900, -900..=900],
+        angle in 0.0..core::f64::consts::TAU,
+        turn in turns(),
+    ) {
+        prop_assume!(start != [0, 0]);
+        let radius = f64::from(start[0]).hypot(f64::from(start[1]));
+        #[expect(clippy::cast_possible_truncation, reason = "within 1300")]
+        let end = [angle.cos(), angle.sin()].map(|share| (radius * share).round() as i32);
+        prop_assume!(end != [0, 0]);
+        let arc = Arc::near(start, end, turn, 708).unwrap();
+        let wanted = end.map(i64::from);
+        for rule in RULES {
+            let steps = arc.steps(rule);
+            let (mut at, mut made) = (start.map(i64::from), 0);
+            let left = steps.steps_left();
+            for step in steps {
+                at = after(at, step);
+                made += 1;
+                prop_assert!(within(at, arc.radius_squared(), 171));
+            }
+            prop_assert_eq!((at, made), (wanted, left));
+        }
+        let moves = arc.moves();
+        let (mut at, mut made) = (start.map(i64::from), 0);
+        let left = moves.moves_left();
+        for step in moves {
+            at = after(at, step);
+            made += 1;
+            prop_assert!(within(at, arc.radius_squared(), 121));
+        }
+        prop_assert_eq!((at, made), (wanted, left));
+    }
+
+    /// `fold` has a loop of its own.
+    #[test]
+    fn folding_and_stepping_are_the_same(
+        start in [-40..=40, -40..=40],
+        end in [-40..=40, -40..=40],
+        turn in turns(),
+        begun in 0..50_usize,
+    ) {
+        let Ok(arc) = Arc::near(start, end, turn, 5000) else {
+            return Ok(());
+        };
+        for rule in RULES {
+            prop_assert!(folds_as_it_steps(arc.steps(rule), begun));
+        }
+        prop_assert!(folds_as_it_steps(arc.moves(), begun));
+    }
+
+    /// Size hints count down, and the end is final.
+    #[test]
+    fn size_hints_are_exact(start in [-40..=40, -40..=40], end in [-40..=40, -40..=40], turn in turns()) {
+        let Ok(arc) = Arc::near(start, end, turn, 5000) else {
+            return Ok(());
+        };
+        for rule in RULES {
+            let mut steps = arc.steps(rule);
+            for left in (0..steps.len()).rev() {
+                prop_assert!(steps.next().is_some());
+                prop_assert_eq!(steps.len(), left);
+            }
+            prop_assert!(steps.next().is_none() && steps.next().is_none());
+        }
+        let mut moves = arc.moves();
+        for left in (0..moves.len()).rev() {
+            prop_assert!(moves.next().is_some());
+            prop_assert_eq!(moves.len(), left);
+        }
+        prop_assert!(moves.next().is_none() && moves.next().is_none());
+    }
+}
+
+/// The largest circle, through its octants and quadrants: at each axis and diagonal by way of an
+/// arc that begins just before it.
+#[test]
+fn the_largest_circle_crosses_axes_and_diagonals() {
+    const R: i32 = 1 << 30;
+    let circle = Arc::new([R, 0], [R, 0], Turn::CounterClockwise).unwrap();
+    assert_eq!(circle.steps(Rule::Centred).steps_left(), 8 << 30);
+    assert_eq!(circle.steps(Rule::Textbook).steps_left(), 8 << 30);
+    // 4 sqrt(2) R moves, but for rounding.
+    let moves = circle.moves().moves_left();
+    assert!(moves.abs_diff(6_074_000_999) < 8, "{moves}");
+
+    for (start, turn) in [
+        ([1200, 1_073_741_823], Turn::CounterClockwise),
+        ([-1_073_741_823, -1200], Turn::Clockwise),
+        ([759_250_500, 759_249_000], Turn::CounterClockwise),
+        ([759_249_000, -759_250_500], Turn::CounterClockwise),
+    ] {
+        let arc = Arc::new(start, start, turn).unwrap();
+        let mut at = start.map(i64::from);
+        for step in arc.steps(Rule::Textbook).take(100_000) {
+            at = after(at, step);
+            assert!(within(at, arc.radius_squared(), 100));
+        }
+        let mut at = start.map(i64::from);
+        for step in arc.moves().take(100_000) {
+            at = after(at, step);
+            assert!(within(at, arc.radius_squared(), 50));
+        }
+    }
+}
+
+#[test]
+fn errors_say_what_and_by_how_much() {
+    let ccw = Turn::CounterClockwise;
+    assert_eq!(Arc::new([0, 0], [1, 0], ccw), Err(ArcError::NoRadius));
+    assert_eq!(
+        Arc::near([1, 0], [0, 0], ccw, 9999),
+        Err(ArcError::EndAtCentre)
+    );
+    let error = Arc::new([1 << 30, 1], [1 << 30, 1], ccw).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "start (1073741824, 1): the radius is above 1073741824 steps"
+    );
+    // 5.385 against 5.
+    let error = Arc::near([5, 0], [5, 2], ccw, 300).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "end (5, 2): 386 thousandths of a step outside the circle, 300 allowed either way"
+    );
+    let error = Arc::new([5, 0], [2, 4], ccw).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            ArcError::EndOffCircle {
+                off_millisteps: -528,
+                ..
+            }
+        ),
+        "{error:?}"
+    );
+    // A square off by one, far out: less than a thousandth, but not nothing.
+    let error = Arc::new([1 << 29, 0], [1 << 29, 1], ccw).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            ArcError::EndOffCircle {
+                off_millisteps: 1,
+                ..
+            }
+        ),
+        "{error:?}"
+    );
+}

@@ -1,0 +1,120 @@
+//! G-code becomes step pulses for a two-axis stage, with the loop closed over its scales.
+//!
+//! ```text
+//! G-code -> lines and arcs in mm -> steps -> pulses -> simulated motors, which may lose some
+//!                                     ^                              |
+//!                                     +------- corrections <--- linear scales
+//! ```
+//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections.
+//!
+//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
+
+#[path = "../station/arguments.rs"]
+mod arguments;
+#[expect(dead_code, reason = "nothing is read back here")]
+#[path = "../engrave/artefacts.rs"]
+mod artefacts;
+mod console;
+mod controller;
+mod geometry;
+mod picture;
+mod plan;
+mod program;
+mod report;
+mod simulation;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, ensure};
+use clap::Parser;
+
+use artefacts::Artefacts;
+use controller::Controller;
+use plan::PathRule;
+use program::{Interpreter, Line};
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/stage");
+
+/// Moves a simulated two-axis stage along G-code.
+#[derive(Parser, Debug)]
+#[command(version)]
+struct Args {
+    /// The drawing: G0 G1 G2 G3 with I J or R, G17 G20 G21 G90 G91, F, M2 M30.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("drawings/test.gcode"))]
+    gcode: PathBuf,
+    /// Takes lines from this terminal instead, and answers each; `?` reports the position, the
+    /// keys < > v ^ jog by a millimetre, M2 ends.
+    #[arg(long, value_name = "TTY", conflicts_with = "gcode")]
+    port: Option<String>,
+    /// Which axis steps next.
+    #[arg(long, value_enum, default_value_t = PathRule::Centred)]
+    rule: PathRule,
+    /// The share of steps that the motors lose, as 0.001 or 0.1%.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = share, allow_negative_numbers = true)]
+    lose_steps: f64,
+    /// Which steps are lost.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Where the artefacts go.
+    #[arg(long, value_name = "DIR", default_value = "target/stage")]
+    out: PathBuf,
+}
+
+fn share(text: &str) -> Result<f64> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    let share = number.trim().parse::<f64>()? * unit;
+    ensure!((0.0..=1.0).contains(&share), "not a share within 0..=1");
+    Ok(share)
+}
+
+fn main() -> ExitCode {
+    let run = || -> Result<()> {
+        let args: Args = arguments::read().map_err(|error| anyhow::anyhow!("{error}"))?;
+        stage(&args)
+    };
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn stage(args: &Args) -> Result<()> {
+    let program = match args.port {
+        Some(_) => Vec::new(),
+        // All of it is checked before anything moves.
+        None => read(&args.gcode)?,
+    };
+    let mut artefacts = Artefacts::new(&args.out)?;
+    let steps = artefacts.create("steps.csv")?;
+    let mut controller = Controller::homed(args.lose_steps, args.seed, args.rule, steps)?;
+    match &args.port {
+        Some(port) => console::serve(port, &mut controller).with_context(|| port.clone())?,
+        None => {
+            for line in &program {
+                let place = || format!("{}: line {}", args.gcode.display(), line.number);
+                controller.run(&line.motion).with_context(place)?;
+            }
+        }
+    }
+    let run = controller.finish()?;
+    picture::write(artefacts.create("stage.svg")?, &run)?;
+    report::write(artefacts.create("report.json")?, &run.report)?;
+    artefacts.keep()?;
+    report::summary(std::io::stdout().lock(), &run.report, &args.out).context("standard output")
+}
+
+fn read(file: &Path) -> Result<Vec<Line>> {
+    let place = || file.display().to_string();
+    let text = fs::read_to_string(file).with_context(place)?;
+    let program = Interpreter::default().program(&text).with_context(place)?;
+    ensure!(!program.is_empty(), "{}: nothing moves", place());
+    Ok(program)
+}

@@ -1,0 +1,128 @@
+//! Programmed motions to paths of whole steps.
+
+use core::f64::consts::TAU;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use kurbo::Point;
+use pose2pulse::pulse_interp::{
+    Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule,
+};
+
+use crate::geometry::{Motion, Shape};
+use crate::program::ARC_TOLERANCE_MM;
+
+/// 4 mm pitch, 1.8 degrees a step, two microsteps.
+pub(crate) const STEPS_PER_MM: f64 = 100.0;
+
+/// The name of a rule on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PathRule {
+    /// One axis at a time, as published.
+    Textbook,
+    /// One axis at a time, with half the deviation.
+    Centred,
+    /// Both axes where due: Bresenham's line, the midpoint arc.
+    Bresenham,
+}
+
+impl PathRule {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Textbook => "textbook",
+            Self::Centred => "centred",
+            Self::Bresenham => "bresenham",
+        }
+    }
+}
+
+/// A path of steps with the factor of each interval.
+pub(crate) enum Path {
+    LineSteps(LineSteps, Factor),
+    LineMoves(LineMoves, Factor),
+    ArcSteps(ArcSteps),
+    ArcMoves(ArcMoves),
+}
+
+impl Iterator for Path {
+    type Item = (Move, Factor);
+
+    fn next(&mut self) -> Option<(Move, Factor)> {
+        // The factor is that of the step to come.
+        let (factor, step) = match self {
+            Self::LineSteps(steps, factor) => (*factor, steps.next()),
+            Self::LineMoves(moves, factor) => (*factor, moves.next()),
+            Self::ArcSteps(steps) => (steps.factor(), steps.next()),
+            Self::ArcMoves(moves) => (moves.factor(), moves.next()),
+        };
+        step.map(|step| (step, factor))
+    }
+}
+
+/// The nearest grid point, in steps.
+pub(crate) fn to_steps(at: Point) -> [i32; 2] {
+    // Coordinates are bounded by the parser, far below 2^31 steps.
+    #[expect(clippy::cast_possible_truncation, reason = "rounded, and saturates")]
+    [at.x, at.y].map(|mm| (mm * STEPS_PER_MM).round() as i32)
+}
+
+/// Where the stage is after these steps.
+pub(crate) fn to_mm([x, y]: [i32; 2]) -> Point {
+    Point::new(f64::from(x) / STEPS_PER_MM, f64::from(y) / STEPS_PER_MM)
+}
+
+/// The paths of a motion from where the stage was last commanded to.
+///
+/// Ends are rounded from absolute positions, so that rounding never adds up. Centres are rounded
+/// too: the arc is that about the nearest grid point through the grid point of its start, and its
+/// end, which is then near that circle only, is met axis by axis.
+pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<Vec<Path>> {
+    let to = to_steps(motion.to);
+    let Shape::Arc {
+        centre,
+        turn,
+        sweep_rad,
+    } = motion.shape
+    else {
+        return Ok(vec![line(from, to, rule)?]);
+    };
+    let radius = motion.from.distance(centre);
+    let steps = |angle: f64| angle * radius * STEPS_PER_MM;
+    // Ends this close may change places when they are rounded: then the short way is a line.
+    const CLOSE: f64 = 4.0;
+    if steps(sweep_rad) < CLOSE {
+        return Ok(vec![line(from, to, rule)?]);
+    }
+    let centre = to_steps(centre);
+    let about = |[x, y]: [i32; 2]| [x - centre[0], y - centre[1]];
+    let end = if steps(TAU - sweep_rad) < CLOSE {
+        from
+    } else {
+        to
+    };
+    // Start, end and centre are rounded by up to 0.7071 steps each; the program's own tolerance.
+    const ROUNDED_MILLISTEPS: f64 = 3.0 * 708.0;
+    let tolerance = ROUNDED_MILLISTEPS + ARC_TOLERANCE_MM * STEPS_PER_MM * 1000.0;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "4124"
+    )]
+    let arc = Arc::near(about(from), about(end), turn, tolerance as u32);
+    let arc = arc.with_context(|| format!("an arc of radius {radius:.4} mm"))?;
+    let path = match rule {
+        PathRule::Textbook => Path::ArcSteps(arc.steps(Rule::Textbook)),
+        PathRule::Centred => Path::ArcSteps(arc.steps(Rule::Centred)),
+        PathRule::Bresenham => Path::ArcMoves(arc.moves()),
+    };
+    Ok(vec![path, line(end, to, rule)?])
+}
+
+fn line(from: [i32; 2], to: [i32; 2], rule: PathRule) -> Result<Path> {
+    let line = Line::new([to[0] - from[0], to[1] - from[1]])?;
+    Ok(match rule {
+        PathRule::Textbook => Path::LineSteps(line.steps(Rule::Textbook), line.step_factor()),
+        PathRule::Centred => Path::LineSteps(line.steps(Rule::Centred), line.step_factor()),
+        PathRule::Bresenham => Path::LineMoves(line.moves(), line.move_factor()),
+    })
+}

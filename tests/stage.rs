@@ -1,0 +1,392 @@
+//! The example `stage` from outside: its files, checked by other code than its own.
+#![cfg(test)]
+#![cfg(feature = "pulse-interp")]
+
+#[path = "tools/command.rs"]
+#[expect(dead_code, reason = "shared with the tests of the 3964R tools")]
+mod command;
+
+use core::time::Duration;
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Output, Stdio};
+
+use command::tool;
+use serde_json::Value;
+use serialport::{SerialPort as _, TTYPort};
+use tempfile::TempDir;
+
+/// A step, in mm.
+const STEP_MM: f64 = 0.01;
+/// What decimals of report.json and f64 lose.
+const ROUNDING_MM: f64 = 1e-9;
+const DRAWINGS: [&str; 3] = ["test", "rosette", "link"];
+
+fn stage(arguments: &[&str], out: &Path) -> Output {
+    tool("stage")
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap()
+}
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples/stage/drawings")
+        .join(name)
+        .with_extension("gcode")
+}
+
+/// A finished run's files.
+struct Run {
+    folder: TempDir,
+    report: Value,
+}
+
+impl Run {
+    fn of(arguments: &[&str]) -> Self {
+        let folder = TempDir::new().unwrap();
+        let output = stage(arguments, folder.path());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{errors}");
+        Self::read(folder)
+    }
+
+    fn read(folder: TempDir) -> Self {
+        let report = fs::read(folder.path().join("report.json")).unwrap();
+        let report = serde_json::from_slice(&report).unwrap();
+        Self { folder, report }
+    }
+
+    fn of_text(gcode: &str, options: &[&str]) -> Self {
+        let folder = TempDir::new().unwrap();
+        let file = folder.path().join("some.gcode");
+        fs::write(&file, gcode).unwrap();
+        Self::of(&[&["--gcode", file.to_str().unwrap()], options].concat())
+    }
+
+    fn number(&self, pointer: &str) -> f64 {
+        let value = self.report.pointer(pointer).and_then(Value::as_f64);
+        value.unwrap_or_else(|| panic!("{pointer}"))
+    }
+
+    /// Time in s, and the place after each step, in mm.
+    fn path(&self) -> Vec<(f64, [f64; 2])> {
+        let text = fs::read_to_string(self.folder.path().join("steps.csv")).unwrap();
+        let mut lines = text.lines();
+        assert_eq!(lines.next(), Some("t_s,dx,dy"));
+        let mut at = [0_i32; 2];
+        lines
+            .map(|line| {
+                let cells: Vec<&str> = line.split(',').collect();
+                for (at, cell) in at.iter_mut().zip(&cells[1..]) {
+                    let step: i32 = cell.parse().unwrap();
+                    assert!(step.abs() <= 1, "{line}");
+                    *at += step;
+                }
+                (
+                    cells[0].parse().unwrap(),
+                    at.map(|n| f64::from(n) * STEP_MM),
+                )
+            })
+            .collect()
+    }
+}
+
+#[test]
+fn shipped_drawings_end_where_they_are_programmed_to() {
+    let ends = [[20.0, 20.0], [60.0, 50.0], [15.0, 20.0]];
+    for (drawing, end) in DRAWINGS.into_iter().zip(ends) {
+        for (rule, most_mm) in [("textbook", 0.02), ("centred", 0.015), ("bresenham", 0.015)] {
+            let file = shipped(drawing);
+            let run = Run::of(&["--gcode", file.to_str().unwrap(), "--rule", rule]);
+            let path = run.path();
+            let last = path.last().unwrap();
+            for (at, end) in last.1.iter().zip(end) {
+                assert!((at - end).abs() < ROUNDING_MM, "{drawing}: {last:?}");
+            }
+            assert!(path.is_sorted_by(|a, b| a.0 <= b.0));
+            assert!((last.0 - run.number("/duration_s")).abs() < 1e-5);
+            let worst = run.number("/max_deviation_mm");
+            assert!(worst <= most_mm, "{drawing}, {rule}: {worst}");
+            assert!(run.number("/closing_error_mm") < ROUNDING_MM);
+            assert!(run.number("/lost_steps") + run.number("/corrected_steps") < 0.5);
+            let svg = fs::read(run.folder.path().join("stage.svg")).unwrap();
+            assert!(svg.ends_with(b"</svg>\n"));
+        }
+    }
+}
+
+/// The circle of the test path by its own definition, and its speed.
+#[test]
+fn a_circle_is_a_circle_at_its_feed() {
+    let gcode = "G21 G90\nG0 X80 Y50\nG3 I-20 F600\n";
+    for (rule, most_steps) in [("textbook", 1.0), ("centred", 0.7072), ("bresenham", 0.5)] {
+        let run = Run::of_text(gcode, &["--rule", rule]);
+        let path = run.path();
+        let begin = path
+            .iter()
+            .position(|(_, [x, y])| (x - 80.0).abs() + (y - 50.0).abs() < ROUNDING_MM)
+            .unwrap();
+        let circle = &path[begin..];
+        let off = circle
+            .iter()
+            .map(|(_, [x, y])| ((x - 60.0).hypot(y - 50.0) - 20.0).abs())
+            .fold(0.0, f64::max);
+        assert!(off <= most_steps * STEP_MM + ROUNDING_MM, "{rule}: {off}");
+        assert!(
+            (off - run.number("/max_deviation_mm")).abs() < 0.004,
+            "{rule}"
+        );
+        let mut quarters = [false; 4];
+        for (_, [x, y]) in circle {
+            quarters[usize::from(*x > 60.0) + 2 * usize::from(*y > 50.0)] = true;
+        }
+        assert_eq!(quarters, [true; 4]);
+        let taken = circle.last().unwrap().0 - circle[0].0;
+        let wanted = core::f64::consts::TAU * 20.0 / 10.0;
+        assert!((taken / wanted - 1.0).abs() < 0.01, "{rule}: {taken} s");
+    }
+}
+
+#[test]
+fn steps_are_counted() {
+    let run = Run::of_text("G0 X3 Y-0.5\nG91\nX-1 Y0.25\nG20 G1 X0.1", &[]);
+    let last = run.path().last().unwrap().1;
+    assert!((last[0] - 4.54).abs() < ROUNDING_MM && (last[1] + 0.25).abs() < ROUNDING_MM);
+    assert!((run.number("/steps_x") - 654.0).abs() < ROUNDING_MM);
+    assert!((run.number("/steps_y") - 75.0).abs() < ROUNDING_MM);
+    assert!((run.number("/end_steps/0") - 454.0).abs() < ROUNDING_MM);
+}
+
+/// Arcs by R: the shorter way, the longer, both ways around.
+#[test]
+fn arcs_by_radius_go_the_right_way() {
+    // About (20, 20), radius 10, from (30, 20) to (20, 30) or its mirror about the chord.
+    for (arc, length) in [
+        ("G3 X20 Y30 R10", 0.25),
+        ("G3 X20 Y30 R-10", 0.75),
+        ("G2 X20 Y30 R10", 0.25),
+        ("G2 X20 Y30 I-10", 0.75),
+        ("G3 X20 Y30 I-10", 0.25),
+    ] {
+        let run = Run::of_text(&format!("G0 X30 Y20\n{arc} F600"), &[]);
+        let begin = Run::of_text("G0 X30 Y20", &[]).number("/duration_s");
+        let taken = run.number("/duration_s") - begin;
+        let wanted = core::f64::consts::TAU * length;
+        assert!((taken / wanted - 1.0).abs() < 0.02, "{arc}: {taken} s");
+    }
+}
+
+/// Ends that change places when they are rounded make no full circle of a dot, no dot of a circle.
+#[test]
+fn arcs_of_less_than_a_step_and_of_nearly_a_turn() {
+    let dot = Run::of_text("G0 X30 Y20\nG3 X29.99999 Y20.003 I-10 F600", &[]);
+    assert!(dot.path().len() < 6000);
+    let turn = Run::of_text("G0 X30 Y20\nG2 X29.99999 Y20.003 I-10 F600", &[]);
+    assert!(turn.path().len() > 10_000);
+    assert!(turn.number("/max_deviation_mm") < 0.02);
+    // Below a step altogether.
+    let tiny = Run::of_text("G0 X1\nG3 I0.004", &[]);
+    assert!(tiny.number("/max_deviation_mm") < 0.02);
+}
+
+#[test]
+fn lost_steps_are_corrected() {
+    for drawing in DRAWINGS {
+        for seed in ["1", "2", "77"] {
+            let file = shipped(drawing);
+            let file = file.to_str().unwrap();
+            let run = Run::of(&["--gcode", file, "--lose-steps", "0.001", "--seed", seed]);
+            let lost = run.number("/lost_steps");
+            assert!((40.0..200.0).contains(&lost), "{drawing}: {lost}");
+            assert!((lost - run.number("/corrected_steps")).abs() < 3.5);
+            assert!(run.number("/closing_error_mm") <= 0.02);
+            assert!(run.number("/max_deviation_mm") <= 0.05);
+            // Without corrections, the same losses: one of both is off for certain.
+            let open = run.number("/open_loop/max_deviation_mm");
+            assert!(open > 0.02, "{drawing}, {seed}: {open}");
+        }
+    }
+}
+
+#[test]
+fn losses_follow_their_seed() {
+    let lost = |seed: &str| {
+        let run = Run::of(&["--lose-steps", "0.1%", "--seed", seed]);
+        (
+            run.report.to_string(),
+            fs::read(run.folder.path().join("stage.svg")).unwrap(),
+        )
+    };
+    assert_eq!(lost("5"), lost("5"));
+    assert_ne!(lost("5"), lost("6"));
+}
+
+#[test]
+fn bad_input_is_one_line_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("bad.gcode");
+    let cases = [
+        ("G1 X10\nG1 X20 Y\n", "line 2: column 8: \"G1 X20 Y\""),
+        ("G1 X10\n\nhello\n", "line 3: column 1: \"hello\""),
+        ("G1 Z5", "line 1: Z5: no word of this stage"),
+        ("G1 X1 X2", "line 1: X2: a second X"),
+        ("G28", "line 1: G28: no code of this stage"),
+        ("G90.1 X3", "no code of this stage"),
+        ("G0 G1 X3", "line 1: G1: a second motion"),
+        ("X3", "line 1: no G0, G1, G2 or G3 before"),
+        ("O100\nG0 X1", "line 1: \"O100\": no word of this stage"),
+        ("G1 X3 R2", "line 1: R on a straight motion"),
+        ("G1 F0 X3", "line 1: F0: 0 mm/min, not within 0.1..=6000.0"),
+        ("G1 X1e9", "line 1: e9: no word of this stage"),
+        ("G1 X1234567890", "X1234567890: above 100000"),
+        ("G2 X3", "line 1: an arc without I, J or R"),
+        (
+            "G0 X30\nG3 X10 Y20.1 I-10",
+            "line 2: the end (10.000, 20.100) is 12.450 mm outside",
+        ),
+        (
+            "G0 X30\nG3 X20 Y10.021 I-10 F60",
+            "0.021 mm outside the circle of radius 10.000 mm",
+        ),
+        (
+            "G0 X30\nG3 X10 R9",
+            "line 2: R9.000 is too short: start and end are 20.000 mm apart",
+        ),
+        (
+            "G0 X30\nG3 R9",
+            "line 2: a full circle by R: its centre can be anywhere",
+        ),
+        ("(nothing)\n", "bad.gcode: nothing moves"),
+        (
+            "G0 X10\nG1 X130 Y5\nX0",
+            "line 2: on the way to (130.000, 5.000) mm: X: the upper limit switch is closed at 12100 steps",
+        ),
+        (
+            "G1 Y-2",
+            "line 1: on the way to (0.000, -2.000) mm: Y: the lower limit switch is closed at -100 steps",
+        ),
+    ];
+    for (text, wanted) in cases {
+        fs::write(&file, text).unwrap();
+        assert_refused(&["--gcode", file.to_str().unwrap()], wanted);
+    }
+    for (arguments, wanted) in [
+        (
+            &["--gcode", "nowhere.gcode"][..],
+            "nowhere.gcode: No such file",
+        ),
+        (&["--lose-steps", "1.5"], "not a share within 0..=1"),
+        (
+            &["--lose-steps", "1"],
+            "homing X: the switch has not closed within 15000 steps",
+        ),
+        (&["--rule", "best"], "invalid value 'best'"),
+        (&["--port", "/dev/nowhere"], "/dev/nowhere: "),
+    ] {
+        assert_refused(arguments, wanted);
+    }
+}
+
+fn assert_refused(arguments: &[&str], wanted: &str) {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let output = stage(arguments, &out);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{wanted}: {errors}");
+    assert!(errors.contains(wanted), "{wanted}: {errors}");
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+    let left = fs::read_dir(&out).map_or(0, Iterator::count);
+    assert_eq!(left, 0, "{errors}");
+}
+
+/// A process that does not outlive a test that fails.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+/// A running `stage` and the other end of its line.
+struct Dialogue {
+    line: TTYPort,
+    /// Kept open: a port that everybody has closed is an error at the other end.
+    _far_end: TTYPort,
+    child: Running,
+    folder: TempDir,
+}
+
+impl Dialogue {
+    fn new() -> Self {
+        const PATIENCE: Duration = Duration::from_secs(30);
+        let (mut line, far_end) = TTYPort::pair().unwrap();
+        line.set_timeout(PATIENCE).unwrap();
+        let folder = TempDir::new().unwrap();
+        let child = tool("stage")
+            .args(["--port", &far_end.name().unwrap(), "--out"])
+            .arg(folder.path())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        Self {
+            line,
+            _far_end: far_end,
+            child: Running(child),
+            folder,
+        }
+    }
+
+    fn expect(&mut self, sent: &str, wanted: &str) {
+        self.line.write_all(sent.as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        let mut byte = [0];
+        while byte != *b"\n" {
+            self.line.read_exact(&mut byte).unwrap();
+            answer.extend(byte);
+        }
+        assert_eq!(String::from_utf8(answer).unwrap().trim_end(), wanted);
+    }
+}
+
+#[test]
+fn the_dialogue_answers_each_line() {
+    let mut dialogue = Dialogue::new();
+    dialogue.expect("?", "pos:0.00,0.00");
+    dialogue.expect("G21 G90 F600\n", "ok");
+    dialogue.expect("G0 X20 Y10\r\n", "ok");
+    dialogue.expect("?", "pos:20.00,10.00");
+    dialogue.expect("G1 Q3\n", "error:Q3: no word of this stage at line 3");
+    dialogue.expect("G1 X500 Y10\n", "error:on the way to (500.000, 10.000) mm: X: the upper limit switch is closed at 12100 steps at line 4");
+    dialogue.expect("?", "pos:121.00,10.00");
+    // Off the switch again, by keys and by lines.
+    dialogue.expect("<", "pos:120.00,10.00");
+    dialogue.expect("^", "pos:120.00,11.00");
+    dialogue.expect("v", "pos:120.00,10.00");
+    dialogue.expect(">", "pos:121.00,10.00");
+    dialogue.expect(
+        ">",
+        "error:on the way to (122.000, 10.000) mm: X: the upper limit switch is closed at 12100 steps",
+    );
+    dialogue.expect("G91\n", "ok");
+    dialogue.expect("G3 X-20 I-10\n", "ok");
+    dialogue.expect("?", "pos:101.00,10.00");
+    // Broken off at the end: it stands, and closes, where it was stopped.
+    dialogue.expect("G90\n", "ok");
+    dialogue.expect(
+        "G1 X101 Y-7\n",
+        "error:on the way to (101.000, -7.000) mm: Y: the lower limit switch is closed at -100 steps at line 8",
+    );
+    dialogue.expect("M2\n", "ok");
+    assert!(dialogue.child.0.wait().unwrap().success());
+    let run = Run::read(dialogue.folder);
+    assert!(run.number("/closing_error_mm") < ROUNDING_MM);
+    let last = run.path().last().unwrap().1;
+    let off = (last[0] - 101.0).abs() + (last[1] + 1.0).abs();
+    assert!(off < ROUNDING_MM, "{last:?}");
+}
