@@ -2,7 +2,10 @@
 //!
 //! Ratios within one run count, not the figures: a machine's speed drifts.
 #![expect(clippy::expect_used, reason = "a bench stops at once")]
-#![expect(clippy::indexing_slicing, reason = "the bare loop is as bare as may be")]
+#![expect(
+    clippy::indexing_slicing,
+    reason = "the bare loop is as bare as may be"
+)]
 
 #[path = "common/bare.rs"]
 mod bare;
@@ -128,7 +131,10 @@ fn calibrate(c: &mut Criterion) {
 
 fn follow(c: &mut Criterion) {
     let delta = delta();
-    let line = Path::line(Point3::new(-80.0, 20.0, -280.0), Point3::new(80.0, 20.0, -280.0));
+    let line = Path::line(
+        Point3::new(-80.0, 20.0, -280.0),
+        Point3::new(80.0, 20.0, -280.0),
+    );
     let line = line.expect("points are finite");
     let pace = Pace::new(200.0, [3.0; 3]).expect("pace is good");
     let count = delta.follow(line, 0.01, pace).map_or(0, |way| way.len());
@@ -143,7 +149,11 @@ fn follow(c: &mut Criterion) {
     });
     group.finish();
     c.bench_function("largest cylinder of 60 mm height to 0.5 mm", |b| {
-        b.iter(|| delta.workspace().largest_cylinder(black_box([-290.0, -230.0]), 0.5));
+        b.iter(|| {
+            delta
+                .workspace()
+                .largest_cylinder(black_box([-290.0, -230.0]), 0.5)
+        });
     });
 }
 

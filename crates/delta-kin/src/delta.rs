@@ -122,9 +122,7 @@ impl<T: RealField + Copy> Delta<T> {
     /// # Errors
     /// As for [`from_arms`](Self::from_arms).
     pub fn new(base: T, platform: T, upper: T, lower: T) -> Result<Self, GeometryError<T>> {
-        Self::from_arms(
-            Arm::ALL.map(|arm| ArmGeometry::nominal(arm, base, platform, upper, lower)),
-        )
+        Self::from_arms(Arm::ALL.map(|arm| ArmGeometry::nominal(arm, base, platform, upper, lower)))
     }
 
     /// A machine of three arms as they are, each with its own lengths, azimuth and zero.

@@ -61,7 +61,10 @@ impl<T: RealField + Copy> Pace<T> {
     /// The time that a straight joint move along a path of `length` needs, in seconds.
     fn duration_s(&self, length: T, way: Vector3<T>) -> T {
         let rates = Vector3::from(self.max_rates);
-        way.abs().component_div(&rates).max().max(length / self.feed)
+        way.abs()
+            .component_div(&rates)
+            .max()
+            .max(length / self.feed)
     }
 }
 

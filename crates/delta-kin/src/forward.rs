@@ -8,7 +8,10 @@ use crate::{Arm, Delta};
 
 /// Where the platform can be with given angles: above or below the plane of the knees.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::exhaustive_structs, reason = "three spheres meet in two points")]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "three spheres meet in two points"
+)]
 pub struct Assemblies<T: RealField = f64> {
     /// The lower place, in which Delta robots hang.
     pub lower: Point3<T>,
@@ -73,8 +76,8 @@ impl<T: RealField + Copy> Delta<T> {
     /// [`ForwardError`].
     #[inline]
     pub fn forward_both(&self, angles: Vector3<T>) -> Result<Assemblies<T>, ForwardError<T>> {
-        let centres = zip(self.legs().each_ref(), self.thetas(angles))
-            .map(|(leg, theta)| leg.centre(theta));
+        let centres =
+            zip(self.legs().each_ref(), self.thetas(angles)).map(|(leg, theta)| leg.centre(theta));
         let [c1, c2, c3] = centres;
         let [l1, l2, l3] = self.legs().each_ref().map(|leg| leg.lower);
         let (d2, d3) = (c2 - c1, c3 - c1);

@@ -114,11 +114,12 @@ impl<T: RealField + Copy> Delta<T> {
             let triangle = leg.triangle(&local);
             let m2 = triangle.m2();
             let theta = triangle.theta(knee, m2.max(T::zero()).sqrt());
+            let angle = leg.angle(theta);
             let admitted = (m2 > T::zero())
-                & (leg.low <= theta)
-                & (theta <= leg.high)
+                & (leg.min <= angle)
+                & (angle <= leg.max)
                 & (triangle.side.abs() <= leg.max_side);
-            (leg.angle(theta), admitted)
+            (angle, admitted)
         });
         if first.1 & second.1 & third.1 {
             return Ok(Vector3::new(first.0, second.0, third.0));
@@ -184,25 +185,21 @@ impl<T: RealField + Copy> Delta<T> {
         }
     }
 
-    fn solve(
-        &self,
-        arm: Arm,
-        leg: &Leg<T>,
-        local: &Vector3<T>,
-        knee: Knee,
-    ) -> Result<T, Miss<T>> {
+    fn solve(&self, arm: Arm, leg: &Leg<T>, local: &Vector3<T>, knee: Knee) -> Result<T, Miss<T>> {
         let triangle = leg.triangle(local);
         self.reach(arm, leg, &triangle)?;
         let m = triangle.m2().max(T::zero()).sqrt();
-        let theta = self.fit(leg, local, triangle.theta(knee, m));
-        let theta = theta.map_err(|(theta, by)| Miss::limit(arm, leg, theta, by))?;
+        let angle = leg.angle(triangle.theta(knee, m));
+        let angle = self
+            .fit(leg, local, angle)
+            .map_err(|(angle, by)| Miss::limit(arm, leg, angle, by))?;
         if triangle.side.abs() > leg.max_side + self.tolerance() {
             let lean = lean(&triangle, leg.lower);
             let max = (leg.max_side / leg.lower).asin();
             let error = InverseError::BallJoint { arm, lean, max };
             return Err(Miss::new(1, lean - max, error));
         }
-        Ok(leg.angle(theta))
+        Ok(angle)
     }
 
     /// Whether the rod can be where the wrist is.
@@ -227,28 +224,30 @@ impl<T: RealField + Copy> Delta<T> {
         Ok(())
     }
 
-    /// `theta` at the whole turn within the range; on an end that it misses by rounding alone;
+    /// `angle` at the whole turn within the range; on an end that it misses by rounding alone;
     /// else by how much it misses.
-    fn fit(&self, leg: &Leg<T>, local: &Vector3<T>, theta: T) -> Result<T, (T, T)> {
-        let (low, high) = (leg.low, leg.high);
-        if low <= theta && theta <= high {
-            return Ok(theta);
+    fn fit(&self, leg: &Leg<T>, local: &Vector3<T>, angle: T) -> Result<T, (T, T)> {
+        let (min, max) = (leg.min, leg.max);
+        let holds = |angle: T| min <= angle && angle <= max;
+        if holds(angle) {
+            return Ok(angle);
         }
         let turn = T::two_pi();
-        let turns = ((middle(low, high) - theta) / turn).round();
-        let theta = theta + turns * turn;
-        if low <= theta && theta <= high {
-            return Ok(theta);
+        let turns = ((middle(min, max) - angle) / turn).round();
+        let angle = angle + turns * turn;
+        if holds(angle) {
+            return Ok(angle);
         }
-        // The other end is a whole turn nearer for a range of almost one.
-        for end in [low, high] {
-            let apart = (end - theta) / turn;
+        for end in [min, max] {
+            // The other end may be the nearer one by a whole turn.
+            let apart = (end - angle) / turn;
             let nearest = (apart - apart.round()).abs() * turn;
-            if nearest < T::frac_pi_2() && leg.stretch(local, end).abs() <= self.tolerance() {
+            let miss = leg.stretch(local, leg.theta(end)).abs();
+            if nearest < T::frac_pi_2() && miss <= self.tolerance() {
                 return Ok(end);
             }
         }
-        Err((theta, (low - theta).max(theta - high)))
+        Err((angle, (min - angle).max(angle - max)))
     }
 }
 
@@ -284,13 +283,13 @@ impl<T: RealField + Copy> Miss<T> {
         Self { class, by, error }
     }
 
-    fn limit(arm: Arm, leg: &Leg<T>, theta: T, by: T) -> Self {
-        let (a, b) = (leg.angle(leg.low), leg.angle(leg.high));
+    fn limit(arm: Arm, leg: &Leg<T>, angle: T, by: T) -> Self {
+        let (min, max) = (leg.min, leg.max);
         let error = InverseError::JointLimit {
             arm,
-            angle: leg.angle(theta),
-            min: a.min(b),
-            max: a.max(b),
+            angle,
+            min,
+            max,
         };
         Self::new(0, by, error)
     }

@@ -21,7 +21,10 @@ pub(crate) struct Leg<T> {
     zero: T,
     /// 1 where angles grow outward, else -1.
     pub(crate) turn: T,
-    /// Least and greatest theta.
+    /// Least and greatest angle as it reads.
+    pub(crate) min: T,
+    pub(crate) max: T,
+    /// The same as theta.
     pub(crate) low: T,
     pub(crate) high: T,
     /// How far the wrist may lie beside the arm's plane.
@@ -55,11 +58,8 @@ impl<T: RealField + Copy> Leg<T> {
             Positive::Outward => T::one(),
             Positive::Inward => -T::one(),
         };
-        let (low, high) = range.map_or((-huge, huge), |range| {
-            let a = arm.zero + turn * range.min();
-            let b = arm.zero + turn * range.max();
-            (a.min(b), a.max(b))
-        });
+        let (min, max) = range.map_or((-huge, huge), |range| (range.min(), range.max()));
+        let (a, b) = (arm.zero + turn * min, arm.zero + turn * max);
         Self {
             cos,
             sin,
@@ -70,8 +70,10 @@ impl<T: RealField + Copy> Leg<T> {
             scale: (arm.upper * two()).recip(),
             zero: arm.zero,
             turn,
-            low,
-            high,
+            min,
+            max,
+            low: a.min(b),
+            high: a.max(b),
             max_side: max_lean.map_or(huge, |lean| arm.lower * lean.sin()),
         }
     }

@@ -79,7 +79,10 @@ impl<T: RealField + Copy> Delta<T> {
     /// The knees, at the middle between an arm's two rods.
     #[must_use]
     pub fn knees(&self, angles: Vector3<T>) -> [Point3<T>; 3] {
-        let bent = zip(zip(self.legs().each_ref(), self.arms().each_ref()), self.thetas(angles));
+        let bent = zip(
+            zip(self.legs().each_ref(), self.arms().each_ref()),
+            self.thetas(angles),
+        );
         bent.map(|((leg, arm), theta)| {
             let knee = leg.centre(theta) + leg.in_plane(arm.platform, T::zero());
             Point3::from(self.flip(knee))
@@ -231,6 +234,11 @@ pub(crate) fn invert_rods<T: RealField + Copy>(rods: &[Vector3<T>; 3]) -> Option
     let [a, b, c] = rods;
     let volume = a.dot(&b.cross(c));
     let rounding = T::default_epsilon() * two() * two();
-    (volume.abs() > rounding)
-        .then(|| [b.cross(c) / volume, c.cross(a) / volume, a.cross(b) / volume])
+    (volume.abs() > rounding).then(|| {
+        [
+            b.cross(c) / volume,
+            c.cross(a) / volume,
+            a.cross(b) / volume,
+        ]
+    })
 }

@@ -53,7 +53,8 @@ impl<T: RealField + Copy> Workspace<T> {
 
     /// How far the platform can be moved from `point` in any direction, for reach, joint ranges
     /// and ball joints, in the unit of length: the whole ball round it is kept. Zero where
-    /// `point` itself cannot be reached.
+    /// `point` itself cannot be reached. The assembly is not part of it: how near its edge is,
+    /// [`Pose::parallel_distance`](crate::Pose::parallel_distance) says.
     ///
     /// ```text
     /// reach:   La - |P - nearest place of the knee|,  |P - farthest place of the knee| - La
@@ -108,7 +109,8 @@ impl<T: RealField + Copy> Workspace<T> {
     ///
     /// The radius is at most a few `resolution` below the true one, never above. Reach, ranges
     /// and ball joints are kept by the whole volume ([`clearance`](Self::clearance)); that the
-    /// assembly is the lower one is looked at in the middle of cells of at most 1/32 span.
+    /// assembly is the lower one is looked at in the middle of cells of at most 1/32 span, smaller
+    /// in proportion near parallel singularities.
     #[must_use]
     pub fn largest_cylinder(&self, heights: [T; 2], resolution: T) -> Option<T> {
         self.largest(heights, resolution, |radius| Solid::Cylinder { radius })
@@ -136,12 +138,7 @@ impl<T: RealField + Copy> Workspace<T> {
         cover::covers(self, Solid::Box { half_side }, heights, resolution)
     }
 
-    fn largest(
-        &self,
-        heights: [T; 2],
-        resolution: T,
-        solid: impl Fn(T) -> Solid<T>,
-    ) -> Option<T> {
+    fn largest(&self, heights: [T; 2], resolution: T, solid: impl Fn(T) -> Solid<T>) -> Option<T> {
         let resolution = resolution.max(self.delta.tolerance());
         let holds = |size| cover::covers(self, solid(size), heights, resolution);
         let (mut low, mut high) = (resolution, self.delta.span());
@@ -179,7 +176,14 @@ impl<T: RealField + Copy> Workspace<T> {
         Outline::new(*self, centre, [across, Vector3::z()], points)
     }
 
-    fn coarsest(&self) -> T {
-        self.delta.span() * nalgebra::convert(COARSEST)
+    /// How far from `point` the assembly can be taken to be the same: a share of the span, and
+    /// less where the rods nearly lie in a plane. Zero where `point` cannot be reached.
+    fn steady(&self, point: Point3<T>) -> T {
+        let coarsest = self.delta.span() * nalgebra::convert(COARSEST);
+        self.delta.pose_at(point).map_or(T::zero(), |pose| {
+            let lower = self.delta.legs().each_ref().map(|leg| leg.lower);
+            let shortest = lower.into_iter().fold(self.delta.span(), T::min);
+            coarsest.min(shortest * half() * pose.parallel_distance())
+        })
     }
 }

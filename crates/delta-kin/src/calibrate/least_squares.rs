@@ -4,6 +4,9 @@ use nalgebra::{RealField, SMatrix, SVector};
 
 use super::Problem;
 
+/// Rounding errors of a row's making and rotating, in machine epsilons.
+pub(super) const ROUNDINGS: f64 = 16.0;
+
 /// A least-squares problem `R x = q`, triangularised row by row.
 #[derive(Debug, Clone)]
 pub(super) struct LeastSquares<const N: usize, T: RealField> {
@@ -56,9 +59,16 @@ impl<const N: usize, T: RealField + Copy> LeastSquares<N, T> {
         }
     }
 
-    /// The lengths of the Jacobian's columns.
+    /// The lengths of the Jacobian's columns; zero for a parameter whose influence is rounding.
     pub(super) fn scales(&self) -> SVector<T, N> {
-        SVector::from_iterator(self.r.column_iter().map(|column| column.norm()))
+        let lengths =
+            SVector::<T, N>::from_iterator(self.r.column_iter().map(|column| column.norm()));
+        let rounding = lengths.max() * T::default_epsilon() * nalgebra::convert(ROUNDINGS);
+        lengths.map(
+            |length: T| {
+                if length > rounding { length } else { T::zero() }
+            },
+        )
     }
 
     /// The step that reduces residuals and `√damping · scales · step` together.
@@ -66,13 +76,16 @@ impl<const N: usize, T: RealField + Copy> LeastSquares<N, T> {
         let mut damped = self.clone();
         let root = damping.sqrt();
         for (place, scale) in scales.iter().enumerate() {
-            let row = core::array::from_fn(|column| {
-                if column == place {
-                    root * *scale
-                } else {
-                    T::zero()
-                }
-            });
+            // What has no influence is held.
+            let weight = if *scale > T::zero() {
+                root * *scale
+            } else {
+                scales.max()
+            };
+            let mut row = [T::zero(); N];
+            if let Some(entry) = row.get_mut(place) {
+                *entry = weight;
+            }
             damped.add(row, T::zero());
         }
         damped.back()

@@ -2,7 +2,7 @@
 
 use nalgebra::{RealField, SMatrix, SVector};
 
-use super::least_squares::LeastSquares;
+use super::least_squares::{LeastSquares, ROUNDINGS};
 
 /// The singular value decomposition of the Jacobian with its columns scaled to length 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,9 +21,6 @@ pub(super) struct Rank<const N: usize, T: RealField> {
 /// One-sided Jacobi needs about log N sweeps; what has not converged then is rounding.
 const MOST_SWEEPS: usize = 40;
 
-/// Rounding errors of a row's making and rotating, in machine epsilons.
-const ROUNDINGS: f64 = 16.0;
-
 /// A parameter counts as undetermined where its part of a null direction of length 1 is above this.
 const PART: f64 = 1e-4;
 
@@ -34,6 +31,8 @@ impl<const N: usize, T: RealField + Copy> Rank<N, T> {
         for (mut column, scale) in u.column_iter_mut().zip(&scales) {
             if *scale > T::zero() {
                 column /= *scale;
+            } else {
+                column.fill(T::zero());
             }
         }
         let mut v = SMatrix::identity();
@@ -56,7 +55,10 @@ impl<const N: usize, T: RealField + Copy> Rank<N, T> {
     }
 
     pub(super) fn rank(&self) -> usize {
-        self.sigma.iter().filter(|sigma| **sigma > self.least).count()
+        self.sigma
+            .iter()
+            .filter(|sigma| **sigma > self.least)
+            .count()
     }
 
     pub(super) fn conditioning(&self) -> T {
@@ -90,7 +92,13 @@ impl<const N: usize, T: RealField + Copy> Rank<N, T> {
         for column in self.null_columns() {
             share = share.sup(&column.abs());
         }
-        share.data.0.map(|column| column.map(|share| share > part)).into_iter().next().unwrap_or([false; N])
+        share
+            .data
+            .0
+            .map(|column| column.map(|share| share > part))
+            .into_iter()
+            .next()
+            .unwrap_or([false; N])
     }
 
     pub(super) fn deviations(&self) -> [Option<T>; N] {
@@ -107,14 +115,20 @@ impl<const N: usize, T: RealField + Copy> Rank<N, T> {
                 .iter()
                 .zip(&self.sigma)
                 .filter(|(_, sigma)| **sigma > self.least)
-                .fold(T::zero(), |sum, (v, sigma)| sum + (*v / *sigma) * (*v / *sigma));
+                .fold(T::zero(), |sum, (v, sigma)| {
+                    sum + (*v / *sigma) * (*v / *sigma)
+                });
             Some((sum * self.variance).sqrt() / scale)
         })
     }
 }
 
 fn unscaled<T: RealField + Copy>(value: T, scale: T) -> T {
-    if scale > T::zero() { value / scale } else { value }
+    if scale > T::zero() {
+        value / scale
+    } else {
+        value
+    }
 }
 
 /// Makes each pair of columns square to each other once; false where all were.

@@ -53,7 +53,11 @@ impl<T: RealField + Copy> Walk<T> {
         Ok(first)
     }
 
-    fn inverse(&self, fraction: T, point: Point3<T>) -> Result<nalgebra::Vector3<T>, FollowError<T>> {
+    fn inverse(
+        &self,
+        fraction: T,
+        point: Point3<T>,
+    ) -> Result<nalgebra::Vector3<T>, FollowError<T>> {
         self.delta
             .inverse(point)
             .map_err(|reason| FollowError::Unreachable {
@@ -88,7 +92,9 @@ impl<T: RealField + Copy> Walk<T> {
         let angles = self.inverse(fraction, point)?;
         let share = fraction - last.fraction;
         let departure = self.path.height(share).and_then(|height| {
-            let bound = self.delta.bound((last.angles, last.point), (angles, point))?;
+            let bound = self
+                .delta
+                .bound((last.angles, last.point), (angles, point))?;
             Some(height + bound)
         });
         if !departure.is_some_and(|departure| departure <= self.tolerance) {

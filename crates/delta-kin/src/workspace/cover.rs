@@ -81,7 +81,11 @@ impl Cell {
     /// The cell after this one and all its halves; none after the last.
     const fn next(self) -> Option<Self> {
         let place = self.0 >> self.0.trailing_ones();
-        if place == 0 { None } else { Some(Self(place | 1)) }
+        if place == 0 {
+            None
+        } else {
+            Some(Self(place | 1))
+        }
     }
 }
 
@@ -94,7 +98,6 @@ pub(super) fn covers<T: RealField + Copy>(
     let side = solid.half_side();
     let middle = Point3::new(T::zero(), T::zero(), (one + other) * half());
     let reach = Vector3::new(side, side, (one - other).abs() * half());
-    let coarsest = workspace.coarsest();
     let mut cell = Some(Cell::ROOT);
     while let Some(now) = cell {
         let (middle, reach) = now.extent(middle, reach);
@@ -104,7 +107,7 @@ pub(super) fn covers<T: RealField + Copy>(
             return false;
         }
         let is_covered = !solid.meets(middle, reach)
-            || (radius <= coarsest && radius <= workspace.clearance(middle));
+            || (radius <= workspace.clearance(middle) && radius <= workspace.steady(middle));
         cell = if is_covered {
             now.next()
         } else if radius <= resolution {

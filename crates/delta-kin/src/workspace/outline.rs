@@ -32,7 +32,11 @@ impl<T: RealField + Copy> Outline<T> {
         plane: [Vector3<T>; 2],
         points: u32,
     ) -> Self {
-        let points = if workspace.contains(centre) { points } else { 0 };
+        let points = if workspace.contains(centre) {
+            points
+        } else {
+            0
+        };
         Self {
             workspace,
             centre,
@@ -45,13 +49,15 @@ impl<T: RealField + Copy> Outline<T> {
     /// The last place on a ray that is known to be inside.
     fn leave(&self, direction: Vector3<T>) -> Point3<T> {
         let near = self.workspace.delta.span() * nalgebra::convert(NEAR);
-        let longest = self.workspace.coarsest();
         let mut place = self.centre;
         for _ in 0..MOST_STEPS {
-            let clearance = self.workspace.clearance(place);
-            let next = place + direction * clearance.min(longest);
-            // The assembly changes, or rounding.
-            if clearance <= near || !self.workspace.contains(next) {
+            let clear = self
+                .workspace
+                .clearance(place)
+                .min(self.workspace.steady(place));
+            let next = place + direction * clear;
+            // Rounding may leave the workspace all the same.
+            if clear <= near || !self.workspace.contains(next) {
                 break;
             }
             place = next;
