@@ -5,6 +5,7 @@ use core::iter::FusedIterator;
 use nalgebra::{Point3, RealField, Vector3};
 
 use super::Workspace;
+use crate::limits::half;
 
 /// The points at which rays from a centre first leave the workspace.
 ///
@@ -51,16 +52,16 @@ impl<T: RealField + Copy> Outline<T> {
         let near = self.workspace.delta.span() * nalgebra::convert(NEAR);
         let mut place = self.centre;
         for _ in 0..MOST_STEPS {
-            let clear = self
-                .workspace
-                .clearance(place)
-                .min(self.workspace.steady(place));
-            let next = place + direction * clear;
-            // Rounding may leave the workspace all the same.
-            if clear <= near || !self.workspace.contains(next) {
+            let workspace = &self.workspace;
+            let mut step = workspace.clearance(place).min(workspace.steady(place));
+            // The assembly may change sooner.
+            while step > near && !workspace.contains(place + direction * step) {
+                step *= half();
+            }
+            if step <= near {
                 break;
             }
-            place = next;
+            place += direction * step;
         }
         place
     }
