@@ -34,7 +34,10 @@ pub(crate) fn parse(line: &str) -> Result<Option<Command>> {
     let (x, y, z, feed_mm_s) = match *numbers {
         [x, y, z] => (x, y, z, None),
         [x, y, z, feed] => (x, y, z, Some(feed)),
-        _ => anyhow::bail!("{} numbers in {line:?}, `x y z [feed]` is needed", numbers.len()),
+        _ => anyhow::bail!(
+            "{} numbers in {line:?}, `x y z [feed]` is needed",
+            numbers.len()
+        ),
     };
     if let Some(feed) = feed_mm_s {
         ensure!(feed > 0.0, "feed {feed} mm/s is not above zero");

@@ -14,6 +14,8 @@ pub(crate) const TICKS_PER_S: u32 = 10_000_000;
 pub(crate) struct Plan {
     /// Where each piece ends: whole steps from home, and seconds since the start of the move.
     pieces: Vec<([i32; 3], f64)>,
+    /// Least time of a step.
+    least_step_s: f64,
 }
 
 impl Plan {
@@ -36,7 +38,9 @@ impl Plan {
             if waypoint.duration_s > feed_s * (1.0 + f64::EPSILON) {
                 let way = (waypoint.angles - last).abs();
                 let (fastest, way) = way.argmax();
-                let arm = Arm::ALL.get(fastest).ok_or_else(|| anyhow!("no such arm"))?;
+                let arm = Arm::ALL
+                    .get(fastest)
+                    .ok_or_else(|| anyhow!("no such arm"))?;
                 bail!(
                     "feed {feed_mm_s} mm/s: {arm} would turn at {:.1} deg/s, above {:.1}",
                     (way / feed_s).to_degrees(),
@@ -47,7 +51,10 @@ impl Plan {
             now_s += waypoint.duration_s;
             pieces.push((machine.steps(waypoint.angles)?, now_s));
         }
-        Ok(Self { pieces })
+        Ok(Self {
+            pieces,
+            least_step_s: machine.rad_per_step / machine.max_rate_rad_s,
+        })
     }
 
     /// Where the move ends, in steps from home.
@@ -75,6 +82,7 @@ impl Plan {
             }
             // From where the time has come to, so that its rounding does not add up.
             let left_s = end_s - seconds(now - start);
+            let left_s = left_s.max(f64::from(pulses) * self.least_step_s);
             let trains = Trains::new(way, half_period(left_s, pulses)?)?;
             for edge in trains.edges() {
                 if edge.level == Level::Low {
@@ -102,7 +110,10 @@ impl Plan {
 fn half_period(duration_s: f64, pulses: u32) -> Result<u32> {
     let ticks = (duration_s * f64::from(TICKS_PER_S) / (2.0 * f64::from(pulses))).ceil();
     if ticks > f64::from(u32::MAX) {
-        bail!("a step would take {:.0} s", 2.0 * ticks / f64::from(TICKS_PER_S));
+        bail!(
+            "a step would take {:.0} s",
+            2.0 * ticks / f64::from(TICKS_PER_S)
+        );
     }
     Ok(ticks.max(1.0) as u32)
 }

@@ -11,13 +11,15 @@ use serialport::SerialPort;
 /// How long one attempt to read a port lasts; it is then made again.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// A longer line than this is refused, so that a line without an end does not fill the memory.
+/// More of a line is not kept, so that a line without an end does not fill the memory.
 const LONGEST_LINE: usize = 256;
 
 /// Lines in, answers out.
 pub(crate) struct Terminal {
     reader: Box<dyn Read>,
     writer: Box<dyn Write>,
+    /// Whether the line before ended with a carriage return, to which a line feed may belong.
+    returned: bool,
 }
 
 impl Terminal {
@@ -34,6 +36,7 @@ impl Terminal {
         Ok(Self {
             reader,
             writer: Box::new(io::stdout()),
+            returned: false,
         })
     }
 
@@ -47,6 +50,7 @@ impl Terminal {
         Ok(Self {
             reader: Box::new(BufReader::new(Port(port))),
             writer: Box::new(writer),
+            returned: false,
         })
     }
 
@@ -62,16 +66,16 @@ impl Terminal {
                 Err(error) if error.kind() == ErrorKind::Interrupted => continue,
                 Err(error) => return Err(error).context("input"),
             }
+            let returned = core::mem::replace(&mut self.returned, byte == [b'\r']);
             match byte {
-                [b'\n'] => break,
-                // A terminal ends its lines with this alone.
-                [b'\r'] if !line.is_empty() => break,
-                [b'\r'] => {}
-                _ if line.len() <= LONGEST_LINE => line.extend(byte),
+                [b'\n'] if returned => {}
+                // A terminal ends its lines with the second alone.
+                [b'\n' | b'\r'] => break,
+                _ if line.len() < LONGEST_LINE => line.extend(byte),
                 _ => {}
             }
         }
-        anyhow::Ok(Some(String::from_utf8_lossy(&line).into_owned()))
+        Ok(Some(String::from_utf8_lossy(&line).into_owned()))
     }
 
     pub(crate) fn answer(&mut self, text: &str) -> Result<()> {

@@ -100,7 +100,8 @@ fn run(args: &Args) -> Result<()> {
     let outcome = simulation::run(&machine, &served.asked, steps)?;
     let ticks = drive::ticked(served.asked.iter().map(|asked| asked.answer));
     let mut tick_count = 0_u32;
-    let ticks = ticks.inspect(|_| tick_count += 1).map(Ok);
+    let ticks = ticks.inspect(|_| tick_count += 1);
+    let ticks = core::iter::once([0; 3]).chain(ticks).map(Ok);
     let ticked = simulation::run(&machine, &served.asked, ticks)?;
 
     let report = Report {
@@ -118,12 +119,7 @@ fn run(args: &Args) -> Result<()> {
             duration_s: f64::from(tick_count) * machine.tick_s,
         },
     };
-    picture::write(
-        artefacts.create("delta.svg")?,
-        &machine,
-        &outcome,
-        &ticked,
-    )?;
+    picture::write(artefacts.create("delta.svg")?, &machine, &outcome, &ticked)?;
     report.write(artefacts.create("report.json")?)?;
     artefacts.keep()?;
     let folder = args.out.display().to_string();

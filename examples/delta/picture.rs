@@ -72,7 +72,12 @@ pub(crate) fn write(
     let upright: Vec<_> = workspace.vertical_slice(0.0, centre, OUTLINE).collect();
 
     let mechanism = mechanism(machine, trains)?;
-    let everything = || flat.iter().chain(&upright).chain(&trains.way).chain(mechanism.iter().flatten());
+    let everything = || {
+        flat.iter()
+            .chain(&upright)
+            .chain(&trains.way)
+            .chain(mechanism.iter().flatten())
+    };
     let (low, high) = everything().fold((Point3::origin(), Point3::origin()), |(low, high), p| {
         (low.inf(p), high.sup(p))
     });
@@ -101,7 +106,13 @@ pub(crate) fn write(
     )?;
     for (view, outline) in [(&top, &flat), (&side, &upright)] {
         frame(&mut out, view)?;
-        stroke(&mut out, &format!("{}Z", view.path(outline)), WORKSPACE, EDGE, 0.6)?;
+        stroke(
+            &mut out,
+            &format!("{}Z", view.path(outline)),
+            WORKSPACE,
+            EDGE,
+            0.6,
+        )?;
         grid(&mut out, view)?;
         for part in &mechanism {
             stroke(&mut out, &view.path(part), "none", ARMS, 1.4)?;
@@ -110,12 +121,16 @@ pub(crate) fn write(
         stroke(&mut out, &view.path(&trains.way), "none", TRAINS, 0.9)?;
     }
     let z = format!("workspace: at z = {centre:.0} mm, and at y = 0");
-    legend(&mut out, height - 12.0, [
-        (EDGE, z.as_str()),
-        (ARMS, "mechanism at the end"),
-        (TRAINS, "path, trains"),
-        (TICKED, "path, control tick"),
-    ])?;
+    legend(
+        &mut out,
+        height - 12.0,
+        [
+            (EDGE, z.as_str()),
+            (ARMS, "mechanism at the end"),
+            (TRAINS, "path, trains"),
+            (TICKED, "path, control tick"),
+        ],
+    )?;
     writeln!(out, "</svg>")?;
     Ok(out.flush()?)
 }
@@ -172,16 +187,34 @@ fn grid(out: &mut impl Write, view: &View) -> Result<()> {
     };
     for mm in hundreds(view.low[0], view.high[0]) {
         let x = left + mm - view.low[0];
-        stroke(out, &format!("M{x:.2} {top:.2}V{bottom:.2}"), "none", "#dddddd", 0.3)?;
+        stroke(
+            out,
+            &format!("M{x:.2} {top:.2}V{bottom:.2}"),
+            "none",
+            "#dddddd",
+            0.3,
+        )?;
         text(out, x, bottom + 11.0, "middle", &format!("{mm}"))?;
     }
     for mm in hundreds(view.low[1], view.high[1]) {
         let y = top + view.high[1] - mm;
-        stroke(out, &format!("M{left:.2} {y:.2}H{right:.2}"), "none", "#dddddd", 0.3)?;
+        stroke(
+            out,
+            &format!("M{left:.2} {y:.2}H{right:.2}"),
+            "none",
+            "#dddddd",
+            0.3,
+        )?;
         text(out, left - 4.0, y + 3.0, "end", &format!("{mm}"))?;
     }
     let [across, up] = view.names.map(|name| format!("{name} (mm)"));
-    text(out, f64::midpoint(left, right), bottom + 23.0, "middle", &across)?;
+    text(
+        out,
+        f64::midpoint(left, right),
+        bottom + 23.0,
+        "middle",
+        &across,
+    )?;
     text(out, left - 4.0, top - 8.0, "end", &up)
 }
 
@@ -195,7 +228,13 @@ fn text(out: &mut impl Write, x: f64, y: f64, anchor: &str, text: &str) -> Resul
 fn legend(out: &mut impl Write, y: f64, entries: [(&str, &str); 4]) -> Result<()> {
     let mut x = GAP_MM;
     for (colour, words) in entries {
-        stroke(out, &format!("M{x:.2} {:.2}h16", y - 3.0), "none", colour, 2.0)?;
+        stroke(
+            out,
+            &format!("M{x:.2} {:.2}h16", y - 3.0),
+            "none",
+            colour,
+            2.0,
+        )?;
         text(out, x + 20.0, y, "start", words)?;
         // About half the height per letter.
         x += 36.0 + 4.9 * words.chars().fold(0.0, |count, _| count + 1.0);

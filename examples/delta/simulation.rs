@@ -42,9 +42,7 @@ pub(crate) fn run(
     for position in positions {
         let position = position?;
         let moved = position.iter().zip(outcome.end);
-        outcome.steps += moved
-            .map(|(a, b)| u64::from(a.abs_diff(b)))
-            .sum::<u64>();
+        outcome.steps += moved.map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>();
         outcome.end = position;
         let point = machine.point(position)?;
         while let Some(now) = line {
@@ -59,7 +57,11 @@ pub(crate) fn run(
                 break;
             }
         }
-        if outcome.way.last().is_none_or(|last| (point - last).norm() > SPACING_MM) {
+        if outcome
+            .way
+            .last()
+            .is_none_or(|last| (point - last).norm() > SPACING_MM)
+        {
             outcome.way.push(point);
         }
     }

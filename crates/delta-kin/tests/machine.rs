@@ -272,6 +272,12 @@ fn singular_poses_are_told() {
     assert!(pose.parallel_distance() > 0.2 && pose.parallel_distance() <= 1.0);
 }
 
+/// The figure of the README.
+#[test]
+fn memory_is_as_stated() {
+    assert_eq!(size_of::<Delta>(), 592);
+}
+
 /// Straight above the middle each arm holds a third of the weight, by hand.
 #[test]
 fn torques_by_hand() {

@@ -4,6 +4,7 @@
 //! All inputs and states pass through `black_box`, so that nothing is known of them but their
 //! types. Running the program proves nothing more; it must link.
 
+mod delta;
 mod jobs;
 mod kinematics;
 mod line;
@@ -12,6 +13,7 @@ mod stepping;
 
 fn main() {
     kinematics::run();
+    delta::run();
     stepping::run();
     patterns::run();
     line::run();

@@ -2,6 +2,8 @@
 
 use core::hint::black_box;
 
+use delta_kin::nalgebra::{Point3, Vector3};
+use delta_kin::{Delta, Measured, Pace, Parameter, Path, Quantity};
 use pattern_codec::container::{Header, Verifier, Writer, open};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
 use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
@@ -11,7 +13,7 @@ use scara_kin::{Arm, Elbow, Joints};
 use stepper_sync::{Position, Ramp, RampLimits, Rate, Timer, Trains};
 
 /// The checks; the number of each is its exit status.
-pub const ALL: [fn() -> Option<()>; 8] = [
+pub const ALL: [fn() -> Option<()>; 10] = [
     inverse,
     follow,
     trains,
@@ -20,6 +22,8 @@ pub const ALL: [fn() -> Option<()>; 8] = [
     container,
     stations,
     read_data_block,
+    delta,
+    calibration,
 ];
 
 /// A thousandth of a micrometre: far above the rounding of an arm of 264 mm, far below any machine.
@@ -198,4 +202,46 @@ fn read_data_block() -> Option<()> {
         return None;
     };
     holds(data.len() == 130 && data.starts_with(&[0x12, 0x34]))
+}
+
+fn thesis() -> Option<Delta> {
+    Delta::new(black_box(42.0), 18.0, 120.0, 243.0).ok()
+}
+
+/// Inverse and forward kinematics of a Delta, rates, a line, a cylinder.
+fn delta() -> Option<()> {
+    let delta = thesis()?;
+    let point = Point3::new(black_box(50.0), 50.0, -300.0);
+    let pose = delta.pose_at(point).ok()?;
+    holds((delta.forward(pose.angles()).ok()? - point).norm() < CLOSE_MM)?;
+    let velocity = Vector3::new(black_box(10.0), -3.0, 1.0);
+    let rates = pose.joint_rates(velocity).ok()?;
+    holds((pose.platform_velocity(rates).ok()? - velocity).norm() < CLOSE_MM)?;
+    holds(delta.inverse(Point3::new(50.0, 50.0, black_box(100.0))).is_err())?;
+    let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
+    let pace = Pace::new(200.0, [3.0; 3]).ok()?;
+    let last = delta.follow(line, 0.01, pace).ok()?.last()?;
+    holds((last.point - line.point_at(1.0)).norm() < CLOSE_MM)?;
+    let workspace = delta.workspace();
+    holds(workspace.covers_cylinder(black_box(60.0), [-290.0, -260.0], 1.0))?;
+    holds(workspace.horizontal_slice(-260.0, 8).all(|edge| workspace.contains(edge)))
+}
+
+/// A lower arm that is longer than drawn.
+fn calibration() -> Option<()> {
+    let drawn = thesis()?;
+    let mut arms = *drawn.arms();
+    arms[1].lower += black_box(0.5);
+    let real = drawn.with_arms(arms).ok()?;
+    let mut measured = [Measured {
+        angles: Vector3::zeros(),
+        point: Point3::origin(),
+    }; 5];
+    for (place, z) in measured.iter_mut().zip([-300.0, -290.0, -270.0, -260.0, -240.0]) {
+        place.point = Point3::new(z + 270.0, 20.0, z);
+        place.angles = real.inverse(place.point).ok()?;
+    }
+    let longer = Parameter::of(Quantity::Lower, delta_kin::Arm::Second);
+    let found = drawn.calibrate([longer], &measured).ok()?;
+    holds((found.changes()[0] - 0.5).abs() < CLOSE_MM && found.rank() == 1)
 }
