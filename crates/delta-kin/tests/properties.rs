@@ -81,10 +81,15 @@ fn rim(delta: &Delta, from: Point3<f64>, direction: Vector3<f64>) -> (f64, f64) 
 }
 
 fn round_trip(delta: &Delta, point: Point3<f64>, knees: [Knee; 3]) -> Result<(), TestCaseError> {
-    let pose = delta.pose_at_knees(point, knees).unwrap();
+    let failed = |error: &dyn core::error::Error| TestCaseError::fail(error.to_string());
+    let pose = delta
+        .pose_at_knees(point, knees)
+        .map_err(|error| failed(&error))?;
     // Where the rods lie in a plane no digit is left.
     prop_assume!(pose.parallel_distance() > 1e-7);
-    let both = delta.forward_both(pose.angles()).unwrap();
+    let both = delta
+        .forward_both(pose.angles())
+        .map_err(|error| failed(&error))?;
     let miss = (both.lower - point).norm().min((both.upper - point).norm()) / delta.span();
     let condition = pose.parallel_distance().recip();
     prop_assert!(

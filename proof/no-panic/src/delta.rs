@@ -75,7 +75,12 @@ pub fn run() {
     let vector = || black_box(Vector3::new(0.3, 0.4, 0.5));
     let _ = black_box(inverse(delta, point()));
     let _ = black_box(inverse_knees(delta, point(), black_box([Knee::In; 3])));
-    let _ = black_box(inverse_arm(delta, point(), black_box(Arm::Second), black_box(Knee::Out)));
+    let _ = black_box(inverse_arm(
+        delta,
+        point(),
+        black_box(Arm::Second),
+        black_box(Knee::Out),
+    ));
     let _ = black_box(forward_both(delta, vector()));
     if let Ok(pose) = delta.pose_at(point()) {
         let pose = &black_box(pose);

@@ -217,14 +217,22 @@ fn delta() -> Option<()> {
     let velocity = Vector3::new(black_box(10.0), -3.0, 1.0);
     let rates = pose.joint_rates(velocity).ok()?;
     holds((pose.platform_velocity(rates).ok()? - velocity).norm() < CLOSE_MM)?;
-    holds(delta.inverse(Point3::new(50.0, 50.0, black_box(100.0))).is_err())?;
+    holds(
+        delta
+            .inverse(Point3::new(50.0, 50.0, black_box(100.0)))
+            .is_err(),
+    )?;
     let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
     let pace = Pace::new(200.0, [3.0; 3]).ok()?;
     let last = delta.follow(line, 0.01, pace).ok()?.last()?;
     holds((last.point - line.point_at(1.0)).norm() < CLOSE_MM)?;
     let workspace = delta.workspace();
     holds(workspace.covers_cylinder(black_box(60.0), [-290.0, -260.0], 1.0))?;
-    holds(workspace.horizontal_slice(-260.0, 8).all(|edge| workspace.contains(edge)))
+    holds(
+        workspace
+            .horizontal_slice(-260.0, 8)
+            .all(|edge| workspace.contains(edge)),
+    )
 }
 
 /// A lower arm that is longer than drawn.
@@ -237,7 +245,10 @@ fn calibration() -> Option<()> {
         angles: Vector3::zeros(),
         point: Point3::origin(),
     }; 5];
-    for (place, z) in measured.iter_mut().zip([-300.0, -290.0, -270.0, -260.0, -240.0]) {
+    for (place, z) in measured
+        .iter_mut()
+        .zip([-300.0, -290.0, -270.0, -260.0, -240.0])
+    {
         place.point = Point3::new(z + 270.0, 20.0, z);
         place.angles = real.inverse(place.point).ok()?;
     }
