@@ -1,6 +1,6 @@
 //! From a line in space to the times of single steps.
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use nalgebra::Point3;
 use pose2pulse::delta_kin::{Arm, Path};
 use pose2pulse::stepper_sync::{Level, Trains};
@@ -40,7 +40,7 @@ impl Plan {
                 let (fastest, way) = way.argmax();
                 let arm = Arm::ALL
                     .get(fastest)
-                    .ok_or_else(|| anyhow!("no such arm"))?;
+                    .context("no such arm")?;
                 bail!(
                     "feed {feed_mm_s} mm/s: {arm} would turn at {:.1} deg/s, above {:.1}",
                     (way / feed_s).to_degrees(),
@@ -74,7 +74,9 @@ impl Plan {
         for (target, end_s) in &self.pieces {
             let mut way = [0; 3];
             for ((way, target), position) in way.iter_mut().zip(target).zip(position) {
-                *way = target - position;
+                *way = target
+                    .checked_sub(position)
+                    .context("more steps than a train has")?;
             }
             let pulses = way.iter().map(|way| way.unsigned_abs()).max().unwrap_or(0);
             if pulses == 0 {

@@ -113,8 +113,8 @@ impl<T: RealField + Copy> Delta<T> {
         let [first, second, third] = zip(self.legs().each_ref(), knees).map(|(leg, knee)| {
             let triangle = leg.triangle(&local);
             let m2 = triangle.m2();
-            let theta = triangle.theta(knee, m2.max(T::zero()).sqrt());
-            let angle = leg.angle(theta);
+            // Out of reach it is not a number, and so within no range.
+            let angle = leg.angle(triangle.theta(knee, m2.sqrt()));
             let admitted = (m2 > T::zero())
                 & (leg.min <= angle)
                 & (angle <= leg.max)

@@ -92,13 +92,7 @@ impl<const N: usize, T: RealField + Copy> Rank<N, T> {
         for column in self.null_columns() {
             share = share.sup(&column.abs());
         }
-        share
-            .data
-            .0
-            .map(|column| column.map(|share| share > part))
-            .into_iter()
-            .next()
-            .unwrap_or([false; N])
+        share.map(|share| share > part).into()
     }
 
     pub(super) fn deviations(&self) -> [Option<T>; N] {
