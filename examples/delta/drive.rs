@@ -38,9 +38,7 @@ impl Plan {
             if waypoint.duration_s > feed_s * (1.0 + f64::EPSILON) {
                 let way = (waypoint.angles - last).abs();
                 let (fastest, way) = way.argmax();
-                let arm = Arm::ALL
-                    .get(fastest)
-                    .context("no such arm")?;
+                let arm = Arm::ALL.get(fastest).context("no such arm")?;
                 bail!(
                     "feed {feed_mm_s} mm/s: {arm} would turn at {:.1} deg/s, above {:.1}",
                     (way / feed_s).to_degrees(),
