@@ -2,6 +2,8 @@
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+#[cfg(feature = "delta-kin")]
+pub use delta_kin;
 #[cfg(feature = "handwheel")]
 pub use handwheel;
 #[cfg(feature = "pattern-codec")]

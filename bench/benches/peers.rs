@@ -1,11 +1,15 @@
 //! Our kinematics beside a bare loop and beside the best published crate, in one run.
 
+#[path = "../../crates/delta-kin/benches/common/points.rs"]
+mod delta_points;
 #[path = "../../crates/scara-kin/benches/common/points.rs"]
 mod points;
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use delta_kin::Delta;
+use oxictl::kinematics::serial::delta::{DeltaConfig, DeltaRobot};
 use oxictl::kinematics::serial::scara::{ScaraConfig, ScaraRobot};
 use scara_kin::{Arm, Elbow};
 
@@ -46,5 +50,64 @@ fn inverse(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, inverse);
+fn delta(c: &mut Criterion) {
+    let points = delta_points::points();
+    let ours = Delta::new(42.0, 18.0, 120.0, 243.0).expect("lengths are good");
+    let mut peer = DeltaRobot::new(DeltaConfig {
+        r_f: 42.0,
+        r_e: 18.0,
+        l1: 120.0,
+        l2: 243.0,
+        theta_min: -7.0,
+        theta_max: 7.0,
+    });
+    let mut group = c.benchmark_group("delta inverse");
+    group.throughput(Throughput::Elements(u64::from(delta_points::POINTS)));
+    group.bench_function("delta-kin", |b| {
+        b.iter(|| {
+            for p in &points {
+                let _ = black_box(ours.inverse(black_box(*p)));
+            }
+        });
+    });
+    group.bench_function("oxictl", |b| {
+        b.iter(|| {
+            for p in &points {
+                let p = black_box(*p);
+                black_box(peer.inverse(p.x, p.y, p.z));
+            }
+        });
+    });
+    group.finish();
+
+    let angles: Vec<_> = points
+        .iter()
+        .map(|p| ours.inverse(*p).expect("point is reached"))
+        .collect();
+    let mut group = c.benchmark_group("delta forward");
+    group.throughput(Throughput::Elements(u64::from(delta_points::POINTS)));
+    group.bench_function("delta-kin", |b| {
+        b.iter(|| {
+            for a in &angles {
+                let _ = black_box(ours.forward(black_box(*a)));
+            }
+        });
+    });
+    let theirs: Vec<_> = points
+        .iter()
+        .filter_map(|p| peer.inverse(p.x, p.y, p.z))
+        .collect();
+    assert_eq!(theirs.len(), points.len(), "the peer refuses points");
+    group.bench_function("oxictl", |b| {
+        b.iter(|| {
+            for a in &theirs {
+                peer.theta = black_box(*a);
+                black_box(peer.forward());
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, inverse, delta);
 criterion_main!(benches);

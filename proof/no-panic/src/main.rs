@@ -4,6 +4,7 @@
 //! All inputs and states pass through `black_box`, so that nothing is known of them but their
 //! types. Running the program proves nothing more; it must link.
 
+mod delta;
 mod frames;
 mod jobs;
 mod kinematics;
@@ -17,6 +18,7 @@ mod unit;
 
 fn main() {
     kinematics::run();
+    delta::run();
     poses::run();
     tables::run();
     stepping::run();

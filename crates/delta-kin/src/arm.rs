@@ -1,0 +1,109 @@
+//! The three arms by name, their knees and their geometry.
+
+use core::fmt;
+
+use nalgebra::RealField;
+
+/// One of the three arms, counted as [Delta thesis] does: arm i stands at (4i - 3) π/6.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "a Delta has three arms")]
+pub enum Arm {
+    /// Arm 1, nominally at 30°.
+    First,
+    /// Arm 2, nominally at 150°.
+    Second,
+    /// Arm 3, nominally at 270°.
+    Third,
+}
+
+impl Arm {
+    /// All three, in order.
+    pub const ALL: [Self; 3] = [Self::First, Self::Second, Self::Third];
+
+    /// 1, 2 or 3.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::First => 1,
+            Self::Second => 2,
+            Self::Third => 3,
+        }
+    }
+}
+
+impl fmt::Display for Arm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "arm {}", self.number())
+    }
+}
+
+/// On which side of the line from hip to wrist an arm's knee lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "two circles meet in two points")]
+pub enum Knee {
+    /// Outside, as Delta robots are built.
+    Out,
+    /// Inside, towards the axis of the base.
+    In,
+}
+
+/// The geometry of one arm; lengths in one unit, the same throughout, angles in radians.
+///
+/// ```text
+///   axis of the base
+///    :<------ base ----->o hip, a motor
+///    :                    \
+///    :                     \  upper
+///    :                  θ   \
+///    :<- platform ->o---     o knee       θ from straight down, outward positive
+///                wrist  \---/
+///                        lower
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "these six determine an arm")]
+pub struct ArmGeometry<T = f64> {
+    /// Direction of the arm round the base's axis, in radians from X, counter-clockwise
+    /// seen from above.
+    pub azimuth: T,
+    /// R: from the base's axis to the hip.
+    pub base: T,
+    /// r: from the platform's centre to the wrist.
+    pub platform: T,
+    /// Lb: upper arm, from hip to knee.
+    pub upper: T,
+    /// La: lower arm, the rods from knee to wrist.
+    pub lower: T,
+    /// The θ, from straight down and outward positive, at which the arm's angle reads zero.
+    pub zero: T,
+}
+
+impl<T: RealField + Copy> ArmGeometry<T> {
+    /// An arm as designed: at its nominal azimuth, its angle zero straight down.
+    #[must_use]
+    pub fn nominal(arm: Arm, base: T, platform: T, upper: T, lower: T) -> Self {
+        let sixths = nalgebra::convert::<f64, T>(f64::from(4 * arm.number() - 3));
+        Self {
+            azimuth: sixths * T::frac_pi_6(),
+            base,
+            platform,
+            upper,
+            lower,
+            zero: T::zero(),
+        }
+    }
+}
+
+/// Pairs what belongs to the same arm.
+#[inline(always)]
+pub(crate) fn zip<A, B>([a1, a2, a3]: [A; 3], [b1, b2, b3]: [B; 3]) -> [(A, B); 3] {
+    [(a1, b1), (a2, b2), (a3, b3)]
+}

@@ -1,0 +1,322 @@
+//! The machine: three arms, frame, limits.
+
+use nalgebra::{RealField, Vector3};
+
+use crate::arm::zip;
+use crate::leg::Leg;
+use crate::limits::max_value;
+use crate::{Arm, ArmGeometry, JointRange, Workspace};
+
+/// A rotary Delta robot, in any unit of length, the same throughout.
+///
+/// The frame is that of [Delta thesis] unless set otherwise: z up from the plane of the hips,
+/// the platform hanging at z < 0; angles zero straight down, outward (upward) positive. Each
+/// `with_` method returns the changed machine:
+///
+/// ```
+/// use core::f64::consts::FRAC_PI_2;
+/// use delta_kin::{Delta, JointRange};
+///
+/// // Angles read zero with the arms horizontal, and may go 90° down and 30° up.
+/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?
+///     .with_zero(FRAC_PI_2)?
+///     .with_range(JointRange::new(-FRAC_PI_2, 0.52)?)
+///     .with_ball_joints(0.6)?;
+/// # Ok::<(), delta_kin::GeometryError<f64>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Delta<T: RealField = f64> {
+    arms: [ArmGeometry<T>; 3],
+    z: ZAxis,
+    positive: Positive,
+    ranges: [Option<JointRange<T>>; 3],
+    max_lean: Option<T>,
+    /// What follows from the above, ready for use.
+    legs: [Leg<T>; 3],
+    span: T,
+    tolerance: T,
+}
+
+/// Which way the z axis points. X, Y and the azimuths stay as they are: with z down the frame
+/// is left-handed, as on machines that count depth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "an axis has two directions")]
+pub enum ZAxis {
+    /// Up: the platform hangs at z < 0.
+    #[default]
+    Up,
+    /// Down: the platform hangs at z > 0.
+    Down,
+}
+
+/// Which way an arm turns when its angle grows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "a joint has two directions")]
+pub enum Positive {
+    /// Outward from straight down, and so up from horizontal.
+    #[default]
+    Outward,
+    /// Inward, and so down from horizontal.
+    Inward,
+}
+
+/// Why a geometry is refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum GeometryError<T = f64> {
+    /// A length is not a number between the stated ends.
+    #[error("{arm}: {name} {length} is not within {min:e}..={max:e}")]
+    Length {
+        /// The arm.
+        arm: Arm,
+        /// `base radius`, `platform radius`, `upper arm` or `lower arm`.
+        name: &'static str,
+        /// The length given.
+        length: T,
+        /// Least length allowed.
+        min: T,
+        /// Greatest length allowed.
+        max: T,
+    },
+    /// An angle is infinite or not a number.
+    #[error("{arm}: {name} {angle} is not finite")]
+    NotFinite {
+        /// The arm.
+        arm: Arm,
+        /// `azimuth` or `zero`.
+        name: &'static str,
+        /// The angle given.
+        angle: T,
+    },
+    /// A joint range is empty, not finite or wider than a turn.
+    #[error("joint range {min}..={max} rad is empty, not finite or wider than a turn")]
+    Range {
+        /// Lower end given, in radians.
+        min: T,
+        /// Upper end given, in radians.
+        max: T,
+    },
+    /// A ball joint's limit is not an angle that means something.
+    #[error("ball joints may lean by {max_lean} rad, which is not above 0 and below π/2")]
+    Lean {
+        /// The limit given, in radians.
+        max_lean: T,
+    },
+}
+
+/// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of the sum of
+/// an arm's lengths: a sine, two products and two sums for each of three spheres.
+const ROUNDING_STEPS: f64 = 16.0;
+
+impl<T: RealField + Copy> Delta<T> {
+    /// A machine of three equal arms, 120° apart, without limits: base radius R, platform
+    /// radius r, upper arm Lb, lower arm La.
+    ///
+    /// # Errors
+    /// As for [`from_arms`](Self::from_arms).
+    pub fn new(base: T, platform: T, upper: T, lower: T) -> Result<Self, GeometryError<T>> {
+        Self::from_arms(Arm::ALL.map(|arm| ArmGeometry::nominal(arm, base, platform, upper, lower)))
+    }
+
+    /// A machine of three arms as they are, each with its own lengths, azimuth and zero.
+    ///
+    /// With h the fourth root of the largest number of `T`, divided by 32, upper and lower arms
+    /// lie within 1/√h and h (f64: 2e-38..=3.6e75, f32: 9e-5..=1.3e8), the radii within
+    /// 0 and h: outside, products of four lengths would overflow or lose digits.
+    ///
+    /// # Errors
+    /// [`GeometryError::Length`], [`GeometryError::NotFinite`].
+    pub fn from_arms(arms: [ArmGeometry<T>; 3]) -> Result<Self, GeometryError<T>> {
+        let max = max_value::<T>().sqrt().sqrt() / nalgebra::convert(32.0);
+        let least = max.sqrt().recip();
+        for (arm, geometry) in zip(Arm::ALL, arms) {
+            for (name, length, min) in [
+                ("base radius", geometry.base, T::zero()),
+                ("platform radius", geometry.platform, T::zero()),
+                ("upper arm", geometry.upper, least),
+                ("lower arm", geometry.lower, least),
+            ] {
+                // Written so that NaN is refused too.
+                if !(length >= min && length <= max) {
+                    return Err(GeometryError::Length {
+                        arm,
+                        name,
+                        length,
+                        min,
+                        max,
+                    });
+                }
+            }
+            for (name, angle) in [("azimuth", geometry.azimuth), ("zero", geometry.zero)] {
+                if !angle.is_finite() {
+                    return Err(GeometryError::NotFinite { arm, name, angle });
+                }
+            }
+        }
+        let span = arms
+            .map(|arm| arm.base + arm.platform + arm.upper + arm.lower)
+            .into_iter()
+            .fold(T::zero(), T::max);
+        let delta = Self {
+            arms,
+            z: ZAxis::default(),
+            positive: Positive::default(),
+            ranges: [None; 3],
+            max_lean: None,
+            legs: arms.map(|arm| Leg::new(&arm, None, None, Positive::Outward)),
+            span,
+            tolerance: span * T::default_epsilon() * nalgebra::convert(ROUNDING_STEPS),
+        };
+        Ok(delta)
+    }
+
+    /// The machine with other arms, in the same frame and with the same limits.
+    ///
+    /// # Errors
+    /// As for [`from_arms`](Self::from_arms).
+    pub fn with_arms(self, arms: [ArmGeometry<T>; 3]) -> Result<Self, GeometryError<T>> {
+        let delta = Self {
+            z: self.z,
+            positive: self.positive,
+            ranges: self.ranges,
+            max_lean: self.max_lean,
+            ..Self::from_arms(arms)?
+        };
+        Ok(delta.prepared())
+    }
+
+    /// The machine with all angles zero at `theta`, in radians from straight down, outward
+    /// positive: π/2 for arms that are homed horizontal.
+    ///
+    /// # Errors
+    /// [`GeometryError::NotFinite`].
+    pub fn with_zero(self, theta: T) -> Result<Self, GeometryError<T>> {
+        self.with_arms(self.arms.map(|arm| ArmGeometry { zero: theta, ..arm }))
+    }
+
+    /// The machine with angles that grow the given way.
+    #[must_use]
+    pub fn with_positive(mut self, positive: Positive) -> Self {
+        self.positive = positive;
+        self.prepared()
+    }
+
+    /// The machine with the given direction of z.
+    #[must_use]
+    pub const fn with_z(mut self, z: ZAxis) -> Self {
+        self.z = z;
+        self
+    }
+
+    /// The machine with the same joint range for all arms, as their angles read.
+    #[must_use]
+    pub fn with_range(self, range: JointRange<T>) -> Self {
+        self.with_ranges([Some(range); 3])
+    }
+
+    /// The machine with a joint range for each arm, as their angles read; `None`: no limit.
+    #[must_use]
+    pub fn with_ranges(mut self, ranges: [Option<JointRange<T>>; 3]) -> Self {
+        self.ranges = ranges;
+        self.prepared()
+    }
+
+    /// The machine with ball joints that let the rods lean by `max_lean` radians.
+    ///
+    /// The studs of the balls lie along the motor's axis, at knee and wrist alike, and a rod
+    /// swings about them freely; out of the plane square to them it leans by at most this
+    /// angle: the cone that the joint's housing leaves.
+    ///
+    /// # Errors
+    /// [`GeometryError::Lean`] unless 0 < `max_lean` < π/2.
+    pub fn with_ball_joints(mut self, max_lean: T) -> Result<Self, GeometryError<T>> {
+        if !(max_lean > T::zero() && max_lean < T::frac_pi_2()) {
+            return Err(GeometryError::Lean { max_lean });
+        }
+        self.max_lean = Some(max_lean);
+        Ok(self.prepared())
+    }
+
+    fn prepared(mut self) -> Self {
+        self.legs = zip(self.arms, self.ranges)
+            .map(|(arm, range)| Leg::new(&arm, range, self.max_lean, self.positive));
+        self
+    }
+
+    /// The geometry of the arms.
+    #[must_use]
+    pub const fn arms(&self) -> &[ArmGeometry<T>; 3] {
+        &self.arms
+    }
+
+    /// Which way z points.
+    #[must_use]
+    pub const fn z(&self) -> ZAxis {
+        self.z
+    }
+
+    /// Which way an arm turns when its angle grows.
+    #[must_use]
+    pub const fn positive(&self) -> Positive {
+        self.positive
+    }
+
+    /// The joint ranges, as the angles read; `None`: no limit.
+    #[must_use]
+    pub const fn ranges(&self) -> &[Option<JointRange<T>>; 3] {
+        &self.ranges
+    }
+
+    /// By how many radians the rods may lean at their ball joints; `None`: no limit.
+    #[must_use]
+    pub const fn max_lean(&self) -> Option<T> {
+        self.max_lean
+    }
+
+    /// The sum of the lengths of an arm, of the longest: no point farther from the origin is
+    /// reached. Errors are stated in units of it.
+    #[must_use]
+    pub const fn span(&self) -> T {
+        self.span
+    }
+
+    /// How far past an edge of the workspace a point may lie by rounding alone, in the unit of
+    /// length: 16 machine epsilons of the [`span`](Self::span). Such a point is taken as being
+    /// on the edge.
+    #[must_use]
+    pub const fn tolerance(&self) -> T {
+        self.tolerance
+    }
+
+    /// What the machine can reach.
+    #[must_use]
+    pub const fn workspace(&self) -> Workspace<T> {
+        Workspace::new(*self)
+    }
+
+    pub(crate) const fn legs(&self) -> &[Leg<T>; 3] {
+        &self.legs
+    }
+
+    /// The thesis' angles, from the angles as they read.
+    #[inline]
+    pub(crate) fn thetas(&self, angles: Vector3<T>) -> [T; 3] {
+        zip(self.legs, angles.into()).map(|(leg, angle)| leg.theta(angle))
+    }
+
+    /// A point or vector in the thesis' frame, or from it: the same either way.
+    #[inline]
+    pub(crate) fn flip(&self, vector: Vector3<T>) -> Vector3<T> {
+        match self.z {
+            ZAxis::Up => vector,
+            ZAxis::Down => Vector3::new(vector.x, vector.y, -vector.z),
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Straight lines and arcs as joint waypoints within a chord tolerance, with durations.
+
+mod bisect;
+mod bound;
+mod path;
+mod walk;
+
+use core::iter::FusedIterator;
+
+use nalgebra::{Point3, RealField, Vector3};
+
+use crate::{Delta, InverseError};
+pub use path::{Path, PathError};
+use walk::Walk;
+
+/// A place on the way, and how long the way to it takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Waypoint<T: RealField = f64> {
+    /// The angles as they read, in radians.
+    pub angles: Vector3<T>,
+    /// The platform's centre, on the path.
+    pub point: Point3<T>,
+    /// Share of the path that lies behind, 0..=1.
+    pub fraction: T,
+    /// Length of the path since the waypoint before.
+    pub length: T,
+    /// Time since the waypoint before, in seconds: as the feed has it, or longer where an arm
+    /// would turn faster than it may.
+    pub duration_s: T,
+}
+
+/// How fast the platform and the arms may move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Pace<T = f64> {
+    feed: T,
+    max_rates: [T; 3],
+}
+
+impl<T: RealField + Copy> Pace<T> {
+    /// A feed of the platform in length per second, and the greatest rate of each arm in rad/s.
+    ///
+    /// # Errors
+    /// [`FollowError::Pace`] unless all are above zero and finite.
+    pub fn new(feed: T, max_rates: [T; 3]) -> Result<Self, FollowError<T>> {
+        let [first, second, third] = max_rates;
+        for (name, value) in [
+            ("feed", feed),
+            ("rate of arm 1", first),
+            ("rate of arm 2", second),
+            ("rate of arm 3", third),
+        ] {
+            if !(value > T::zero() && value.is_finite()) {
+                return Err(FollowError::Pace { name, value });
+            }
+        }
+        Ok(Self { feed, max_rates })
+    }
+
+    /// The time that a straight joint move along a path of `length` needs, in seconds.
+    fn duration_s(&self, length: T, way: Vector3<T>) -> T {
+        let rates = Vector3::from(self.max_rates);
+        way.abs()
+            .component_div(&rates)
+            .max()
+            .max(length / self.feed)
+    }
+}
+
+/// Why a path cannot be followed; nothing of it has been handed out.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FollowError<T: RealField = f64> {
+    /// The tolerance is not a length above the machine's rounding, [`Delta::tolerance`].
+    #[error("chord tolerance {tolerance} is not above the rounding {rounding}")]
+    Tolerance {
+        /// The tolerance given.
+        tolerance: T,
+        /// The least tolerance that is allowed.
+        rounding: T,
+    },
+    /// A feed or rate is not above zero.
+    #[error("{name} {value} is not above zero and finite")]
+    Pace {
+        /// `feed` or the rate of an arm.
+        name: &'static str,
+        /// The value given.
+        value: T,
+    },
+    /// The platform cannot be at a place of the path.
+    #[error("at {fraction} of the path, ({}, {}, {}): {reason}", point.x, point.y, point.z)]
+    Unreachable {
+        /// Share of the path before it.
+        fraction: T,
+        /// The first such place.
+        point: Point3<T>,
+        /// Why.
+        reason: InverseError<T>,
+    },
+    /// No step is short enough: the path leads through a singularity, or an arm would have to
+    /// jump by a whole turn.
+    #[error("at {fraction} of the path, ({}, {}, {}): singular", point.x, point.y, point.z)]
+    Singular {
+        /// Share of the path before it.
+        fraction: T,
+        /// The place.
+        point: Point3<T>,
+    },
+}
+
+impl<T: RealField + Copy> Delta<T> {
+    /// Joint waypoints along `path`, knees out, such that the straight joint move from each to the
+    /// next keeps the platform within `tolerance` of the path, in the time that `pace` allows.
+    ///
+    /// The tolerance is a guarantee: a step is taken when its
+    /// [`chord_bound`](Self::chord_bound), which is proven and not sampled, plus the height of
+    /// its arc keeps it, and is halved until it does. The place on the path and the platform are
+    /// that near at every share of the step, so this holds from the platform to the path and from
+    /// the path to the platform. Between two waypoints the arms turn at constant rates, so none
+    /// is faster than its limit; ranges are kept since they hold both ends.
+    ///
+    /// The path is walked once before anything is handed out, so that an error comes first
+    /// and the number of waypoints is known. Memory does not grow with the path.
+    ///
+    /// # Errors
+    /// [`FollowError`]; the place named is the first along the path.
+    pub fn follow(
+        &self,
+        path: Path<T>,
+        tolerance: T,
+        pace: Pace<T>,
+    ) -> Result<Follow<T>, FollowError<T>> {
+        let rounding = self.tolerance();
+        if !(tolerance.is_finite() && tolerance > rounding) {
+            return Err(FollowError::Tolerance {
+                tolerance,
+                rounding,
+            });
+        }
+        let walk = Walk::new(*self, path, tolerance, pace);
+        let mut waypoints = 0;
+        for waypoint in walk.clone() {
+            waypoint?;
+            waypoints += 1;
+        }
+        Ok(Follow { walk, waypoints })
+    }
+}
+
+/// The waypoints of a path that has been found to be reachable: see [`Delta::follow`].
+#[derive(Debug, Clone)]
+#[must_use = "iterators are lazy"]
+pub struct Follow<T: RealField = f64> {
+    walk: Walk<T>,
+    waypoints: usize,
+}
+
+impl<T: RealField + Copy> Iterator for Follow<T> {
+    type Item = Waypoint<T>;
+
+    fn next(&mut self) -> Option<Waypoint<T>> {
+        // The walk has no error: it is the one that was checked.
+        let waypoint = self.walk.next()?.ok()?;
+        self.waypoints = self.waypoints.saturating_sub(1);
+        Some(waypoint)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.waypoints, Some(self.waypoints))
+    }
+}
+
+impl<T: RealField + Copy> ExactSizeIterator for Follow<T> {}
+
+impl<T: RealField + Copy> FusedIterator for Follow<T> {}

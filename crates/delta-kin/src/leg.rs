@@ -1,0 +1,175 @@
+//! One arm with all that follows from its geometry, in the frame of [Delta thesis].
+
+use nalgebra::{RealField, Vector3};
+
+use crate::limits::{half, max_value, two};
+use crate::{ArmGeometry, JointRange, Knee, Positive};
+
+/// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Leg<T> {
+    cos: T,
+    sin: T,
+    /// R - r.
+    offset: T,
+    pub(crate) upper: T,
+    pub(crate) lower: T,
+    /// La² - Lb².
+    excess: T,
+    /// 1 / (2 Lb).
+    scale: T,
+    zero: T,
+    /// 1 where angles grow outward, else -1.
+    pub(crate) turn: T,
+    /// Least and greatest angle as it reads.
+    pub(crate) min: T,
+    pub(crate) max: T,
+    /// The same as theta.
+    pub(crate) low: T,
+    pub(crate) high: T,
+    /// How far the wrist may lie beside the arm's plane.
+    pub(crate) max_side: T,
+}
+
+/// The hip, the wrist and what lies between, as seen square to the arm's plane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Triangle<T> {
+    /// From the wrist inward to the hip.
+    pub(crate) inward: T,
+    pub(crate) z: T,
+    /// Wrist beside the arm's plane.
+    pub(crate) side: T,
+    /// Square of the distance between hip and wrist in the plane.
+    pub(crate) h2: T,
+    /// The wrist's place along the upper arm's line, from the hip.
+    k: T,
+}
+
+impl<T: RealField + Copy> Leg<T> {
+    pub(crate) fn new(
+        arm: &ArmGeometry<T>,
+        range: Option<JointRange<T>>,
+        max_lean: Option<T>,
+        positive: Positive,
+    ) -> Self {
+        let (sin, cos) = arm.azimuth.sin_cos();
+        let huge = max_value::<T>();
+        let turn = match positive {
+            Positive::Outward => T::one(),
+            Positive::Inward => -T::one(),
+        };
+        let (min, max) = range.map_or((-huge, huge), |range| (range.min(), range.max()));
+        let (a, b) = (arm.zero + turn * min, arm.zero + turn * max);
+        Self {
+            cos,
+            sin,
+            offset: arm.base - arm.platform,
+            upper: arm.upper,
+            lower: arm.lower,
+            excess: (arm.lower - arm.upper) * (arm.lower + arm.upper),
+            scale: (arm.upper * two()).recip(),
+            zero: arm.zero,
+            turn,
+            min,
+            max,
+            low: a.min(b),
+            high: a.max(b),
+            max_side: max_lean.map_or(huge, |lean| arm.lower * lean.sin()),
+        }
+    }
+
+    /// The angle that is read at `theta`.
+    #[inline]
+    pub(crate) fn angle(&self, theta: T) -> T {
+        self.turn * (theta - self.zero)
+    }
+
+    #[inline]
+    pub(crate) fn theta(&self, angle: T) -> T {
+        self.zero + self.turn * angle
+    }
+
+    #[inline(always)]
+    pub(crate) fn triangle(&self, point: &Vector3<T>) -> Triangle<T> {
+        let inward = self.offset - (point.x * self.cos + point.y * self.sin);
+        let side = point.y * self.cos - point.x * self.sin;
+        let h2 = inward * inward + point.z * point.z;
+        let k = (self.excess - (h2 + side * side)) * self.scale;
+        Triangle {
+            inward,
+            z: point.z,
+            side,
+            h2,
+            k,
+        }
+    }
+
+    /// Centre of the sphere on which the platform's centre lies: the knee, moved inward by
+    /// the platform's radius.
+    #[inline]
+    pub(crate) fn centre(&self, theta: T) -> Vector3<T> {
+        let (sin, cos) = theta.sin_cos();
+        self.in_plane(self.offset + self.upper * sin, -self.upper * cos)
+    }
+
+    /// The upper arm as a vector.
+    pub(crate) fn spoke(&self, theta: T) -> Vector3<T> {
+        let (sin, cos) = theta.sin_cos();
+        self.in_plane(self.upper * sin, -self.upper * cos)
+    }
+
+    /// How the knee moves when theta grows.
+    pub(crate) fn tangent(&self, theta: T) -> Vector3<T> {
+        let (sin, cos) = theta.sin_cos();
+        self.in_plane(self.upper * cos, self.upper * sin)
+    }
+
+    /// Square to the arm's plane.
+    pub(crate) fn sideways(&self) -> Vector3<T> {
+        Vector3::new(-self.sin, self.cos, T::zero())
+    }
+
+    /// A vector of the arm's plane, outward and up.
+    #[inline(always)]
+    pub(crate) fn in_plane(&self, outward: T, up: T) -> Vector3<T> {
+        Vector3::new(outward * self.cos, outward * self.sin, up)
+    }
+
+    /// By how much the rod would be too short if the knee were at `theta`.
+    pub(crate) fn stretch(&self, point: &Vector3<T>, theta: T) -> T {
+        (point - self.centre(theta)).norm() - self.lower
+    }
+
+    /// How far the nearest and the farthest place of the knee are from the wrist.
+    pub(crate) fn knee_distances(&self, triangle: &Triangle<T>) -> (T, T) {
+        let h = triangle.inward.hypot(triangle.z);
+        let near = (h - self.upper).hypot(triangle.side);
+        let far = (h + self.upper).hypot(triangle.side);
+        (near, far)
+    }
+}
+
+impl<T: RealField + Copy> Triangle<T> {
+    /// Square of the wrist's distance from the upper arm's line; negative: out of reach.
+    #[inline(always)]
+    pub(crate) fn m2(&self) -> T {
+        self.h2 - self.k * self.k
+    }
+
+    /// theta with the knee on the given side, at the given distance of the wrist from the
+    /// upper arm's line.
+    #[inline(always)]
+    pub(crate) fn theta(&self, knee: Knee, m: T) -> T {
+        let m = match knee {
+            Knee::Out => m,
+            Knee::In => -m,
+        };
+        let (p, q, k) = (self.inward, self.z, self.k);
+        (k * p - m * q).atan2(k * q + m * p)
+    }
+}
+
+/// The mean of two numbers that may be as large as there are.
+pub(crate) fn middle<T: RealField + Copy>(a: T, b: T) -> T {
+    a * half() + b * half()
+}

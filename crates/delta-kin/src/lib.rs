@@ -1,0 +1,32 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+mod arm;
+mod calibrate;
+mod delta;
+mod follow;
+mod forward;
+mod inverse;
+mod leg;
+mod limits;
+mod pose;
+#[cfg(feature = "serde")]
+mod serde;
+mod workspace;
+
+pub use nalgebra;
+
+pub use arm::{Arm, ArmGeometry, Knee};
+pub use calibrate::{Calibration, CalibrationError, Measured, Parameter, Quantity};
+pub use delta::{Delta, GeometryError, Positive, ZAxis};
+pub use follow::{Follow, FollowError, Pace, Path, PathError, Waypoint};
+pub use forward::{Assemblies, ForwardError};
+pub use inverse::InverseError;
+pub use limits::JointRange;
+pub use pose::{Pose, Singular};
+pub use workspace::{Outline, Workspace};

@@ -1,0 +1,108 @@
+//! Serialised forms: plain fields, checked by the constructors when they are read.
+
+use nalgebra::RealField;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+use crate::{ArmGeometry, Delta, GeometryError, JointRange, Positive, ZAxis};
+
+/// Serialises `$checked` as `$plain`.
+macro_rules! serialise_as {
+    ($checked:ident, $plain:ident) => {
+        impl<T: RealField + Copy + Serialize> Serialize for $checked<T> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                $plain::from(*self).serialize(serializer)
+            }
+        }
+
+        impl<'de, T: RealField + Copy + core::fmt::LowerExp + Deserialize<'de>> Deserialize<'de>
+            for $checked<T>
+        {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $plain::deserialize(deserializer)?
+                    .try_into()
+                    .map_err(D::Error::custom)
+            }
+        }
+    };
+}
+
+serialise_as!(JointRange, PlainRange);
+serialise_as!(Delta, PlainDelta);
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlainRange<T> {
+    min: T,
+    max: T,
+}
+
+impl<T: RealField + Copy> From<JointRange<T>> for PlainRange<T> {
+    fn from(range: JointRange<T>) -> Self {
+        Self {
+            min: range.min(),
+            max: range.max(),
+        }
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<PlainRange<T>> for JointRange<T> {
+    type Error = GeometryError<T>;
+
+    fn try_from(plain: PlainRange<T>) -> Result<Self, Self::Error> {
+        Self::new(plain.min, plain.max)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    bound(
+        serialize = "T: RealField + Copy + Serialize",
+        deserialize = "T: RealField + Copy + core::fmt::LowerExp + Deserialize<'de>"
+    )
+)]
+struct PlainDelta<T> {
+    arms: [ArmGeometry<T>; 3],
+    #[serde(default)]
+    z: ZAxis,
+    #[serde(default)]
+    positive: Positive,
+    #[serde(default = "no_ranges")]
+    ranges: [Option<JointRange<T>>; 3],
+    #[serde(default = "no_limit")]
+    max_lean: Option<T>,
+}
+
+const fn no_ranges<T: Copy>() -> [Option<JointRange<T>>; 3] {
+    [None; 3]
+}
+
+const fn no_limit<T>() -> Option<T> {
+    None
+}
+
+impl<T: RealField + Copy> From<Delta<T>> for PlainDelta<T> {
+    fn from(delta: Delta<T>) -> Self {
+        Self {
+            arms: *delta.arms(),
+            z: delta.z(),
+            positive: delta.positive(),
+            ranges: *delta.ranges(),
+            max_lean: delta.max_lean(),
+        }
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<PlainDelta<T>> for Delta<T> {
+    type Error = GeometryError<T>;
+
+    fn try_from(plain: PlainDelta<T>) -> Result<Self, Self::Error> {
+        let delta = Self::from_arms(plain.arms)?
+            .with_z(plain.z)
+            .with_positive(plain.positive)
+            .with_ranges(plain.ranges);
+        plain
+            .max_lean
+            .map_or(Ok(delta), |lean| delta.with_ball_joints(lean))
+    }
+}

@@ -1,0 +1,94 @@
+//! The outline of the workspace in a plane.
+
+use core::iter::FusedIterator;
+
+use nalgebra::{Point3, RealField, Vector3};
+
+use super::Workspace;
+use crate::limits::half;
+
+/// The points at which rays from a centre first leave the workspace.
+///
+/// Each is inside, at most 1e-6 of the machine's span from the edge.
+#[derive(Debug, Clone)]
+#[must_use = "iterators are lazy"]
+pub struct Outline<T: RealField = f64> {
+    workspace: Workspace<T>,
+    centre: Point3<T>,
+    plane: [Vector3<T>; 2],
+    points: u32,
+    next: u32,
+}
+
+/// How near to the edge a point of the outline is, as a share of the span.
+const NEAR: f64 = 1e-6;
+
+/// A ray that grazes the edge is given up here, at a place inside.
+const MOST_STEPS: u32 = 4096;
+
+impl<T: RealField + Copy> Outline<T> {
+    pub(super) fn new(
+        workspace: Workspace<T>,
+        centre: Point3<T>,
+        plane: [Vector3<T>; 2],
+        points: u32,
+    ) -> Self {
+        let points = if workspace.contains(centre) {
+            points
+        } else {
+            0
+        };
+        Self {
+            workspace,
+            centre,
+            plane,
+            points,
+            next: 0,
+        }
+    }
+
+    /// The last place on a ray that is known to be inside.
+    fn leave(&self, direction: Vector3<T>) -> Point3<T> {
+        let near = self.workspace.delta.span() * nalgebra::convert(NEAR);
+        let mut place = self.centre;
+        for _ in 0..MOST_STEPS {
+            let workspace = &self.workspace;
+            let mut step = workspace.clearance(place).min(workspace.steady(place));
+            // The assembly may change sooner.
+            while step > near && !workspace.contains(place + direction * step) {
+                step *= half();
+            }
+            if step <= near {
+                break;
+            }
+            place += direction * step;
+        }
+        place
+    }
+}
+
+impl<T: RealField + Copy> Iterator for Outline<T> {
+    type Item = Point3<T>;
+
+    fn next(&mut self) -> Option<Point3<T>> {
+        if self.next >= self.points {
+            return None;
+        }
+        let share: T = nalgebra::convert(f64::from(self.next) / f64::from(self.points));
+        self.next = self.next.saturating_add(1);
+        let (sin, cos) = (share * T::two_pi()).sin_cos();
+        let [right, up] = self.plane;
+        Some(self.leave(right * cos + up * sin))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        match usize::try_from(self.points.saturating_sub(self.next)) {
+            Ok(left) => (left, Some(left)),
+            Err(_) => (usize::MAX, None),
+        }
+    }
+}
+
+impl<T: RealField + Copy> ExactSizeIterator for Outline<T> {}
+
+impl<T: RealField + Copy> FusedIterator for Outline<T> {}

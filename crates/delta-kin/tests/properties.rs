@@ -1,0 +1,329 @@
+//! Identities of the kinematics, over the whole workspace and its rim.
+#![cfg(test)]
+
+use core::f64::consts::FRAC_PI_2;
+
+use delta_kin::nalgebra::{Point3, Vector3};
+use delta_kin::{Arm, ArmGeometry, Delta, InverseError, JointRange, Knee, Pace, Path};
+use proptest::prelude::*;
+
+/// `forward(inverse(p))` against p, in machine epsilons of the span, times the conditioning.
+const ROUND_TRIP: f64 = 16.0;
+/// The promise where no singularity is near, relative to the span.
+const PROMISE: f64 = 1e-12;
+/// Rates there and back, times the conditioning of the Jacobian.
+const RATES: f64 = 1e-13;
+
+/// Machines of all proportions, each arm a little different.
+fn machines() -> impl Strategy<Value = Delta> {
+    let arm = || {
+        (
+            0.95..1.05f64,
+            0.95..1.05f64,
+            0.95..1.05f64,
+            -0.1..0.1f64,
+            -0.5..0.5f64,
+        )
+    };
+    (
+        -1.0..3.0f64,
+        (0.05..1.5f64, 0.05..1.0f64, 1.2..3.0f64),
+        [arm(), arm(), arm()],
+    )
+        .prop_map(|(size, (base, platform, lower), off)| {
+            let size = 10f64.powf(size);
+            let mut arms = Arm::ALL.map(|arm| {
+                ArmGeometry::nominal(arm, base * size, platform * size, size, lower * size)
+            });
+            for (arm, (base, upper, lower, azimuth, zero)) in arms.iter_mut().zip(off) {
+                arm.base *= base;
+                arm.upper *= upper;
+                arm.lower *= lower;
+                arm.azimuth += azimuth;
+                arm.zero += zero;
+            }
+            Delta::from_arms(arms).unwrap()
+        })
+}
+
+fn thetas() -> impl Strategy<Value = Vector3<f64>> {
+    [-0.6..2.6f64, -0.6..2.6f64, -0.6..2.6f64].prop_map(Vector3::from)
+}
+
+/// Distances from an edge, from a tenth down to nothing.
+fn gaps() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        0.0..0.1f64,
+        (-17.0..-1.0f64).prop_map(|e| 10f64.powf(e)),
+        Just(0.0),
+    ]
+}
+
+fn directions() -> impl Strategy<Value = Vector3<f64>> {
+    [-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64]
+        .prop_map(Vector3::from)
+        .prop_filter("has a length", |v| v.norm() > 0.1)
+        .prop_map(|v| v.normalize())
+}
+
+/// The last place on a ray that is within reach, and the first one beyond.
+fn rim(delta: &Delta, from: Point3<f64>, direction: Vector3<f64>) -> (f64, f64) {
+    let (mut inside, mut outside) = (0.0, 4.0 * delta.span());
+    for _ in 0..56 {
+        let middle = f64::midpoint(inside, outside);
+        if delta.reach_margins(from + direction * middle).min() >= 0.0 {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    (inside, outside)
+}
+
+fn round_trip(delta: &Delta, point: Point3<f64>, knees: [Knee; 3]) -> Result<(), TestCaseError> {
+    let failed = |error: &dyn core::error::Error| TestCaseError::fail(error.to_string());
+    let pose = delta
+        .pose_at_knees(point, knees)
+        .map_err(|error| failed(&error))?;
+    // Where the rods lie in a plane no digit is left.
+    prop_assume!(pose.parallel_distance() > 1e-7);
+    let both = delta
+        .forward_both(pose.angles())
+        .map_err(|error| failed(&error))?;
+    let miss = (both.lower - point).norm().min((both.upper - point).norm()) / delta.span();
+    let condition = pose.parallel_distance().recip();
+    prop_assert!(
+        miss <= ROUND_TRIP * f64::EPSILON * condition,
+        "{miss:e} {condition}"
+    );
+    prop_assert!(miss <= PROMISE || condition > 100.0, "{miss:e}");
+    Ok(())
+}
+
+/// At least a thousand cases; `PROPTEST_CASES` asks for more.
+fn config() -> ProptestConfig {
+    let given = ProptestConfig::default();
+    ProptestConfig {
+        cases: given.cases.max(1000),
+        max_global_rejects: 1 << 16,
+        ..given
+    }
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn forward_undoes_inverse(delta in machines(), thetas in thetas(), knees in [0..2u8, 0..2, 0..2]) {
+        let both = delta.forward_both(thetas);
+        prop_assume!(both.is_ok());
+        let both = both.unwrap();
+        let knees = knees.map(|knee| if knee == 0 { Knee::Out } else { Knee::In });
+        for point in [both.lower, both.upper] {
+            round_trip(&delta, point, knees)?;
+        }
+    }
+
+    #[test]
+    fn inverse_undoes_forward(delta in machines(), thetas in thetas()) {
+        let pose = delta.pose_of(thetas);
+        prop_assume!(pose.is_ok());
+        let pose = pose.unwrap();
+        let knees = <[f64; 3]>::from(pose.levers())
+            .map(|lever| if lever > 0.0 { Knee::In } else { Knee::Out });
+        let back = delta.inverse_knees(pose.point(), knees).unwrap() - thetas;
+        for (way, lever) in back.iter().zip(&pose.levers()) {
+            let way = way - (way / core::f64::consts::TAU).round() * core::f64::consts::TAU;
+            let shift = (way * lever).abs() / delta.span();
+            let condition = pose.parallel_distance().recip();
+            prop_assert!(shift <= ROUND_TRIP * f64::EPSILON * condition, "{shift:e} {condition}");
+        }
+    }
+
+    #[test]
+    fn the_rim_is_sharp(
+        delta in machines(),
+        thetas in thetas(),
+        direction in directions(),
+        gap in gaps(),
+    ) {
+        let from = delta.forward(thetas);
+        prop_assume!(from.is_ok());
+        let from = from.unwrap();
+        let (inside, outside) = rim(&delta, from, direction);
+        prop_assert!(delta.inverse(from + direction * inside).is_ok());
+        let within = from + direction * (inside * (1.0 - gap));
+        if delta.reach_margins(within).min() >= 0.0 {
+            round_trip(&delta, within, [Knee::Out; 3])?;
+        }
+        let beyond = from + direction * (outside + gap * delta.span());
+        let margin = delta.reach_margins(beyond).min();
+        match delta.inverse(beyond) {
+            Ok(_) => prop_assert!(margin >= -delta.tolerance()),
+            Err(InverseError::TooFar { by, .. } | InverseError::TooNear { by, .. }) => {
+                prop_assert!(by > delta.tolerance() && (by + margin).abs() <= delta.tolerance());
+            }
+            Err(other) => prop_assert!(false, "{other:?}"),
+        }
+    }
+
+    #[test]
+    fn own_points_within_limits_are_never_refused(
+        delta in machines(),
+        (low, wide) in (-1.0..1.0f64, 0.1..3.0f64),
+        shares in (0.0..=1.0f64, gaps(), gaps()).prop_map(|(a, b, c)| [a, b, 1.0 - c]),
+    ) {
+        let range = JointRange::new(low, low + wide).unwrap();
+        let angles = Vector3::from(shares).map(|share| (low + share * wide).min(range.max()));
+        let pose = delta.pose_of(angles);
+        prop_assume!(pose.is_ok());
+        let pose = pose.unwrap();
+        prop_assume!(pose.parallel_distance() > 0.1);
+        let knees = <[f64; 3]>::from(pose.levers())
+            .map(|lever| if lever > 0.0 { Knee::In } else { Knee::Out });
+        // Stretched, an arm has both knees, and rounding chooses.
+        prop_assume!(pose.serial_distance().1 > 1e-3 * delta.span());
+        let back = delta.with_range(range).inverse_knees(pose.point(), knees);
+        prop_assert!(back.is_ok(), "{back:?}");
+        prop_assert!(back.unwrap().iter().all(|angle| range.contains(*angle)));
+    }
+
+    #[test]
+    fn jacobian_is_the_derivative(delta in machines(), thetas in thetas(), rates in directions()) {
+        let pose = delta.pose_of(thetas);
+        prop_assume!(pose.is_ok());
+        let pose = pose.unwrap();
+        prop_assume!(pose.parallel_distance() > 0.1);
+        prop_assume!(pose.serial_distance().1 > 0.01 * delta.span());
+        let velocity = pose.platform_velocity(rates).unwrap();
+        let step = 1e-6;
+        let (a, b) = (delta.forward(thetas + rates * step), delta.forward(thetas - rates * step));
+        prop_assume!(a.is_ok() && b.is_ok());
+        let slope = (a.unwrap() - b.unwrap()) / (2.0 * step);
+        prop_assert!((velocity - slope).norm() <= 1e-6 * delta.span(), "{velocity} {slope}");
+
+        let back = pose.joint_rates(velocity).unwrap();
+        prop_assert!((back - rates).norm() <= RATES * 1000.0, "{back}");
+        // Virtual work: what the torques do is what the force does.
+        let force = Vector3::new(1.0, -2.0, 3.0);
+        let torques = pose.holding_torques(force).unwrap();
+        let work = torques.dot(&rates) + force.dot(&velocity);
+        prop_assert!(work.abs() <= RATES * delta.span() * 1000.0, "{work:e}");
+        let forces = pose.rod_forces(force).unwrap();
+        let sum: Vector3<f64> = pose.rods().iter().zip(&forces).map(|(rod, f)| rod * *f).sum();
+        prop_assert!((sum + force).norm() <= RATES * 100.0);
+        let det = pose.jacobian().unwrap().determinant().abs();
+        let manipulability = pose.manipulability().unwrap();
+        prop_assert!((det - manipulability).abs() <= 1e-9 * manipulability);
+    }
+
+    #[test]
+    fn single_precision_keeps_its_digits(thetas in [0.1..1.9f32, 0.1..1.9f32, 0.1..1.9f32]) {
+        let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let exact = Delta::<f64>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let point = delta.forward(Vector3::from(thetas));
+        prop_assume!(point.is_ok());
+        let point = point.unwrap();
+        let wide = exact.forward(Vector3::from(thetas).cast()).unwrap();
+        let pose = exact.pose_at(wide).unwrap();
+        let bound = ROUND_TRIP * f64::from(f32::EPSILON) / pose.parallel_distance() * exact.span();
+        prop_assert!((point.cast::<f64>() - wide).norm() <= bound);
+        let back = delta.forward(delta.inverse(point).unwrap()).unwrap();
+        prop_assert!((back - point).cast::<f64>().norm() <= bound);
+        let angles = delta.inverse(point).unwrap().cast::<f64>();
+        let off = (angles - exact.inverse(point.cast()).unwrap()).component_mul(&pose.levers());
+        prop_assert!(off.amax() <= ROUND_TRIP * f64::from(f32::EPSILON) * exact.span());
+    }
+}
+
+/// Points of a cylinder in which the whole machine moves.
+fn places() -> impl Strategy<Value = Point3<f64>> {
+    (0.0..1.0f64, -3.2..3.2f64, -300.0..-180.0f64).prop_map(|(share, heading, z)| {
+        let radius = 120.0 * share.sqrt();
+        Point3::new(radius * heading.cos(), radius * heading.sin(), z)
+    })
+}
+
+/// The distance of a point from a path, found by halving round the nearest of many places.
+fn off_path(path: &Path, point: Point3<f64>, near: f64, reach: f64) -> f64 {
+    let distance = |share: f64| (path.point_at(share) - point).norm();
+    let (mut low, mut high) = ((near - reach).max(0.0), (near + reach).min(1.0));
+    for _ in 0..60 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if distance(a) < distance(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    distance(low)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: config().cases / 10, ..config() })]
+
+    #[test]
+    fn paths_keep_their_tolerance_and_rates(
+        (from, to) in (places(), places()),
+        tolerance in (-3.0..0.0f64).prop_map(|e| 10f64.powf(e)),
+        turn in prop_oneof![Just(0.0), -7.0..7.0f64],
+    ) {
+        let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap().with_zero(FRAC_PI_2).unwrap();
+        let path = if turn == 0.0 {
+            Path::line(from, to).unwrap()
+        } else {
+            // Round the base's axis, in a plane that tilts with the ends.
+            let centre = Point3::new(0.0, 0.0, from.z);
+            prop_assume!((from - centre).norm() > 1.0);
+            Path::arc(from, centre, Vector3::z(), turn).unwrap()
+        };
+        let pace = Pace::new(500.0, [2.0, 2.0, 1.5]).unwrap();
+        let follow = delta.follow(path, tolerance, pace);
+        prop_assume!(follow.is_ok());
+        let follow = follow.unwrap();
+        let count = follow.len();
+        let waypoints: Vec<_> = follow.collect();
+        prop_assert_eq!(waypoints.len(), count);
+        prop_assert!((waypoints[0].point - path.point_at(0.0)).norm() == 0.0);
+        prop_assert!((waypoints[count - 1].point - path.point_at(1.0)).norm() == 0.0);
+        let length: f64 = waypoints.iter().map(|w| w.length).sum();
+        prop_assert!((length - path.length()).abs() <= 1e-9 * path.length().max(1.0));
+        for pair in waypoints.windows(2) {
+            let way = pair[1].angles - pair[0].angles;
+            let rates = way.abs() / pair[1].duration_s;
+            prop_assert!(rates.x <= 2.0 + 1e-12 && rates.y <= 2.0 + 1e-12 && rates.z <= 1.5 + 1e-12);
+            prop_assert!(pair[1].length / pair[1].duration_s <= 500.0 + 1e-9);
+            for share in [0.1, 0.25, 0.5, 0.6, 0.9] {
+                let at = delta.forward(pair[0].angles + way * share).unwrap();
+                let step = pair[1].fraction - pair[0].fraction;
+                let near = pair[0].fraction + share * step;
+                let off = off_path(&path, at, near, step);
+                prop_assert!(off <= tolerance, "{off:e} > {tolerance:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_bound_is_above_the_truth_and_near_it(from in places(), way in directions(), size in 0.1..30.0f64) {
+        let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let ends = (delta.pose_at(from), delta.pose_at(from + way * size));
+        prop_assume!(ends.0.is_ok() && ends.1.is_ok());
+        let (a, b) = (ends.0.unwrap(), ends.1.unwrap());
+        let mut worst = 0f64;
+        for step in 0..=100u8 {
+            let share = f64::from(step) / 100.0;
+            let angles = a.angles() + (b.angles() - a.angles()) * share;
+            let line = a.point() + (b.point() - a.point()) * share;
+            worst = worst.max((delta.forward(angles).unwrap() - line).norm());
+        }
+        if let Some(bound) = delta.chord_bound(&a, &b) {
+            prop_assert!(worst <= bound + delta.tolerance(), "{worst} {bound}");
+            // Short steps far from the edges, where the departure is not zero by chance.
+            if size < 3.0 && a.serial_distance().1 > 60.0 {
+                prop_assert!(bound <= 20.0 * worst.max(1e-4), "{worst} {bound}");
+            }
+        } else {
+            prop_assert!(size > 3.0 || a.serial_distance().1 < 60.0);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! One line of input.
+
+use anyhow::{Result, anyhow, ensure};
+use nalgebra::Point3;
+
+/// A line that asks for something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Command {
+    /// Go there in a straight line, at a feed in mm/s if one is given.
+    Move {
+        to: Point3<f64>,
+        feed_mm_s: Option<f64>,
+    },
+    /// No more lines come.
+    End,
+}
+
+/// Reads `x y z [feed]` or `end`; nothing for an empty line or a comment.
+pub(crate) fn parse(line: &str) -> Result<Option<Command>> {
+    let line = line.split('#').next().unwrap_or("").trim();
+    if line.is_empty() {
+        return Ok(None);
+    }
+    if line.eq_ignore_ascii_case("end") {
+        return Ok(Some(Command::End));
+    }
+    let numbers = line
+        .split_whitespace()
+        .map(|word| match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(anyhow!("{word:?} is not a number")),
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let (x, y, z, feed_mm_s) = match *numbers {
+        [x, y, z] => (x, y, z, None),
+        [x, y, z, feed] => (x, y, z, Some(feed)),
+        _ => anyhow::bail!(
+            "{} numbers in {line:?}, `x y z [feed]` is needed",
+            numbers.len()
+        ),
+    };
+    if let Some(feed) = feed_mm_s {
+        ensure!(feed > 0.0, "feed {feed} mm/s is not above zero");
+    }
+    let to = Point3::new(x, y, z);
+    Ok(Some(Command::Move { to, feed_mm_s }))
+}

@@ -1,0 +1,145 @@
+//! From a line in space to the times of single steps.
+
+use anyhow::{Context, Result, bail};
+use nalgebra::Point3;
+use pose2pulse::delta_kin::{Arm, Path};
+use pose2pulse::stepper_sync::{Level, Trains};
+
+use crate::machine::Machine;
+
+/// Ticks of the timer in a second.
+pub(crate) const TICKS_PER_S: u32 = 10_000_000;
+
+/// A move that has been found to be possible.
+pub(crate) struct Plan {
+    /// Where each piece ends: whole steps from home, and seconds since the start of the move.
+    pieces: Vec<([i32; 3], f64)>,
+    /// Least time of a step.
+    least_step_s: f64,
+}
+
+impl Plan {
+    /// The straight line from where the platform is to `to`.
+    pub(crate) fn new(
+        machine: &Machine,
+        from: Point3<f64>,
+        to: Point3<f64>,
+        feed_mm_s: f64,
+    ) -> Result<Self> {
+        // The end first: a place that cannot be reached is the better reason.
+        machine.delta.inverse(to)?;
+        let line = Path::line(from, to)?;
+        let pace = machine.pace(feed_mm_s)?;
+        let mut pieces = Vec::new();
+        let mut last = machine.delta.inverse(from)?;
+        let mut now_s = 0.0;
+        for waypoint in machine.delta.follow(line, machine.tolerance_mm, pace)? {
+            let feed_s = waypoint.length / feed_mm_s;
+            if waypoint.duration_s > feed_s * (1.0 + f64::EPSILON) {
+                let way = (waypoint.angles - last).abs();
+                let (fastest, way) = way.argmax();
+                let arm = Arm::ALL.get(fastest).context("no such arm")?;
+                bail!(
+                    "feed {feed_mm_s} mm/s: {arm} would turn at {:.1} deg/s, above {:.1}",
+                    (way / feed_s).to_degrees(),
+                    machine.max_rate_rad_s.to_degrees()
+                );
+            }
+            last = waypoint.angles;
+            now_s += waypoint.duration_s;
+            pieces.push((machine.steps(waypoint.angles)?, now_s));
+        }
+        Ok(Self {
+            pieces,
+            least_step_s: machine.rad_per_step / machine.max_rate_rad_s,
+        })
+    }
+
+    /// Where the move ends, in steps from home.
+    pub(crate) fn end(&self) -> Option<[i32; 3]> {
+        self.pieces.last().map(|(steps, _)| *steps)
+    }
+
+    /// The steps as exact synchronised trains, from `position` and `start` ticks on: calls `step`
+    /// with the time and the new position, and returns the time of the end.
+    pub(crate) fn run(
+        &self,
+        mut position: [i32; 3],
+        start: u64,
+        mut step: impl FnMut(u64, [i32; 3]) -> Result<()>,
+    ) -> Result<u64> {
+        let mut now = start;
+        for (target, end_s) in &self.pieces {
+            let mut way = [0; 3];
+            for ((way, target), position) in way.iter_mut().zip(target).zip(position) {
+                *way = target
+                    .checked_sub(position)
+                    .context("more steps than a train has")?;
+            }
+            let pulses = way.iter().map(|way| way.unsigned_abs()).max().unwrap_or(0);
+            if pulses == 0 {
+                continue;
+            }
+            // From where the time has come to, so that its rounding does not add up.
+            let left_s = end_s - seconds(now - start);
+            let left_s = left_s.max(f64::from(pulses) * self.least_step_s);
+            let trains = Trains::new(way, half_period(left_s, pulses)?)?;
+            for edge in trains.edges() {
+                if edge.level == Level::Low {
+                    continue;
+                }
+                if let (Some(position), Some(way)) =
+                    (position.get_mut(edge.axis), way.get(edge.axis))
+                {
+                    *position += way.signum();
+                }
+                step(now + edge.ticks, position)?;
+            }
+            now += trains.end_ticks();
+        }
+        Ok(now)
+    }
+}
+
+/// The time between edges that spreads pulses over a time, rounded up: never faster.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked to be within 1..=u32::MAX"
+)]
+fn half_period(duration_s: f64, pulses: u32) -> Result<u32> {
+    let ticks = (duration_s * f64::from(TICKS_PER_S) / (2.0 * f64::from(pulses))).ceil();
+    if ticks > f64::from(u32::MAX) {
+        bail!(
+            "a step would take {:.0} s",
+            2.0 * ticks / f64::from(TICKS_PER_S)
+        );
+    }
+    Ok(ticks.max(1.0) as u32)
+}
+
+/// Ticks as seconds.
+#[expect(clippy::cast_precision_loss, reason = "2^53 ticks are 28 years")]
+pub(crate) fn seconds(ticks: u64) -> f64 {
+    ticks as f64 / f64::from(TICKS_PER_S)
+}
+
+/// The thesis' controller: at each tick every motor that has steps to go makes one. Yields the
+/// position after each tick.
+pub(crate) fn ticked(
+    targets: impl IntoIterator<Item = [i32; 3]>,
+) -> impl Iterator<Item = [i32; 3]> {
+    let mut position = [0; 3];
+    let mut targets = targets.into_iter();
+    let mut target = targets.next();
+    core::iter::from_fn(move || {
+        while target == Some(position) {
+            target = targets.next();
+        }
+        let target = target?;
+        for (position, target) in position.iter_mut().zip(target) {
+            *position += (target - *position).signum();
+        }
+        Some(position)
+    })
+}

@@ -1,0 +1,198 @@
+//! The machine: from its file to checked settings.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, ensure};
+use nalgebra::{Point3, Vector3};
+use pose2pulse::delta_kin::{Arm, ArmGeometry, Delta, JointRange, Pace};
+use pose2pulse::stepper_sync::StepScale;
+use serde::Deserialize;
+
+/// The geometry file, as written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    base_mm: f64,
+    platform_mm: f64,
+    upper_mm: f64,
+    lower_mm: f64,
+    max_lean_deg: Option<f64>,
+    motor: Motor,
+    path: PathSettings,
+    #[serde(default)]
+    arm: Vec<Deviation>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Motor {
+    step_deg: f64,
+    microsteps: u32,
+    gear_ratio: f64,
+    home_deg: f64,
+    min_deg: f64,
+    max_deg: f64,
+    max_rate_deg_s: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PathSettings {
+    feed_mm_s: f64,
+    tolerance_mm: f64,
+    tick_ms: f64,
+}
+
+/// What an arm differs by from the drawing.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Deviation {
+    azimuth_deg: f64,
+    base_mm: f64,
+    platform_mm: f64,
+    upper_mm: f64,
+    lower_mm: f64,
+    home_deg: f64,
+}
+
+/// The checked machine. Its angles read zero at home, as the steps do.
+pub(crate) struct Machine {
+    pub(crate) delta: Delta,
+    pub(crate) rad_per_step: f64,
+    scale: StepScale,
+    pub(crate) max_rate_rad_s: f64,
+    pub(crate) feed_mm_s: f64,
+    pub(crate) tolerance_mm: f64,
+    pub(crate) tick_s: f64,
+}
+
+impl Machine {
+    pub(crate) fn read(file: &Path) -> Result<Self> {
+        let place = || file.display().to_string();
+        let text = fs::read_to_string(file).with_context(place)?;
+        let settings = toml::from_str(&text)
+            .map_err(|error| one_line(&text, &error))
+            .with_context(place)?;
+        Self::check(&settings).with_context(place)
+    }
+
+    fn check(settings: &Settings) -> Result<Self> {
+        let Settings { motor, path, .. } = settings;
+        for (name, value) in [
+            ("step_deg", motor.step_deg),
+            ("gear_ratio", motor.gear_ratio),
+            ("max_rate_deg_s", motor.max_rate_deg_s),
+            ("feed_mm_s", path.feed_mm_s),
+            ("tolerance_mm", path.tolerance_mm),
+            ("tick_ms", path.tick_ms),
+        ] {
+            ensure!(
+                value.is_finite() && value > 0.0,
+                "{name} = {value} is not above zero"
+            );
+        }
+        ensure!(motor.microsteps > 0, "microsteps = 0 is not above zero");
+        let rad_per_step =
+            motor.step_deg.to_radians() / f64::from(motor.microsteps) / motor.gear_ratio;
+        let machine = Self {
+            delta: settings.delta()?,
+            rad_per_step,
+            scale: StepScale::new(rad_per_step.recip())?,
+            max_rate_rad_s: motor.max_rate_deg_s.to_radians(),
+            feed_mm_s: path.feed_mm_s,
+            tolerance_mm: path.tolerance_mm,
+            tick_s: path.tick_ms / 1000.0,
+        };
+        // The platform must be somewhere when the arms are at home, and the arms within their
+        // limits there.
+        let home = machine.point([0; 3]).context("home_deg")?;
+        machine.delta.inverse(home).context("home_deg")?;
+        ensure!(
+            path.tolerance_mm > machine.delta.tolerance(),
+            "tolerance_mm = {:e} is not above the rounding {:e}",
+            path.tolerance_mm,
+            machine.delta.tolerance()
+        );
+        Ok(machine)
+    }
+
+    /// The theta of each arm at home, in radians from straight down.
+    pub(crate) fn home_rad(&self) -> [f64; 3] {
+        self.delta.arms().map(|arm| arm.zero)
+    }
+
+    /// The whole steps nearest to angles.
+    pub(crate) fn steps(&self, angles: Vector3<f64>) -> Result<[i32; 3]> {
+        let [a, b, c] = angles.into();
+        Ok([
+            self.scale.to_steps(a)?,
+            self.scale.to_steps(b)?,
+            self.scale.to_steps(c)?,
+        ])
+    }
+
+    /// The angles at whole steps.
+    pub(crate) fn angles(&self, steps: [i32; 3]) -> Vector3<f64> {
+        Vector3::from(steps.map(|steps| f64::from(steps) * self.rad_per_step))
+    }
+
+    /// Where the platform is.
+    pub(crate) fn point(&self, steps: [i32; 3]) -> Result<Point3<f64>> {
+        Ok(self.delta.forward(self.angles(steps))?)
+    }
+
+    pub(crate) fn pace(&self, feed_mm_s: f64) -> Result<Pace> {
+        Ok(Pace::new(feed_mm_s, [self.max_rate_rad_s; 3])?)
+    }
+}
+
+impl Settings {
+    fn delta(&self) -> Result<Delta> {
+        ensure!(
+            matches!(self.arm.len(), 0 | 3),
+            "{} tables [[arm]], none or three are needed",
+            self.arm.len()
+        );
+        let (base, platform) = (self.base_mm, self.platform_mm);
+        let mut arms = Arm::ALL
+            .map(|arm| ArmGeometry::nominal(arm, base, platform, self.upper_mm, self.lower_mm));
+        for arm in &mut arms {
+            arm.zero = self.motor.home_deg.to_radians();
+        }
+        for (arm, off) in arms.iter_mut().zip(&self.arm) {
+            arm.azimuth += off.azimuth_deg.to_radians();
+            arm.base += off.base_mm;
+            arm.platform += off.platform_mm;
+            arm.upper += off.upper_mm;
+            arm.lower += off.lower_mm;
+            arm.zero += off.home_deg.to_radians();
+        }
+        let (min, max) = (self.motor.min_deg, self.motor.max_deg);
+        let range = |zero: f64| {
+            JointRange::new(min.to_radians() - zero, max.to_radians() - zero)
+                .with_context(|| format!("min_deg = {min}, max_deg = {max}"))
+        };
+        let [first, second, third] = arms.map(|arm| arm.zero);
+        let ranges = [range(first)?, range(second)?, range(third)?];
+        let delta = Delta::from_arms(arms)?.with_ranges(ranges.map(Some));
+        match self.max_lean_deg {
+            Some(lean) => delta
+                .with_ball_joints(lean.to_radians())
+                .with_context(|| format!("max_lean_deg = {lean}")),
+            None => Ok(delta),
+        }
+    }
+}
+
+/// The parser's message with line and column, without its drawing of the line.
+fn one_line(text: &str, error: &toml::de::Error) -> anyhow::Error {
+    let message = error.message().replace('\n', ", ");
+    let Some(span) = error.span() else {
+        return anyhow!("{message}");
+    };
+    let before = text.get(..span.start).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let value = text.get(span).unwrap_or("").lines().next().unwrap_or("");
+    anyhow!("line {line}: {message}: {value:?}")
+}

@@ -1,0 +1,98 @@
+//! delta-kin.
+
+use std::hint::black_box;
+
+use delta_kin::nalgebra::{Point3, Vector3};
+use delta_kin::{
+    Arm, Assemblies, Delta, Follow, ForwardError, InverseError, Knee, Pace, Path, Pose, Singular,
+    Waypoint,
+};
+use no_panic::no_panic;
+
+#[no_panic]
+#[inline(never)]
+fn inverse(delta: &Delta, point: Point3<f64>) -> Result<Vector3<f64>, InverseError> {
+    delta.inverse(point)
+}
+
+#[no_panic]
+#[inline(never)]
+fn inverse_knees(
+    delta: &Delta,
+    point: Point3<f64>,
+    knees: [Knee; 3],
+) -> Result<Vector3<f64>, InverseError> {
+    delta.inverse_knees(point, knees)
+}
+
+#[no_panic]
+#[inline(never)]
+fn inverse_arm(
+    delta: &Delta,
+    point: Point3<f64>,
+    arm: Arm,
+    knee: Knee,
+) -> Result<f64, InverseError> {
+    delta.inverse_arm(point, arm, knee)
+}
+
+#[no_panic]
+#[inline(never)]
+fn forward_both(delta: &Delta, angles: Vector3<f64>) -> Result<Assemblies, ForwardError> {
+    delta.forward_both(angles)
+}
+
+#[no_panic]
+#[inline(never)]
+fn joint_rates(pose: &Pose, velocity: Vector3<f64>) -> Result<Vector3<f64>, Singular> {
+    pose.joint_rates(velocity)
+}
+
+#[no_panic]
+#[inline(never)]
+fn holding_torques(pose: &Pose, force: Vector3<f64>) -> Result<Vector3<f64>, Singular> {
+    pose.holding_torques(force)
+}
+
+#[no_panic]
+#[inline(never)]
+fn chord_bound(delta: &Delta, from: &Pose, to: &Pose) -> Option<f64> {
+    delta.chord_bound(from, to)
+}
+
+#[no_panic]
+#[inline(never)]
+fn follow_next(follow: &mut Follow) -> Option<Waypoint> {
+    follow.next()
+}
+
+pub fn run() {
+    let Ok(delta) = Delta::new(black_box(42.0), 18.0, 120.0, 243.0) else {
+        return;
+    };
+    let delta = &black_box(delta);
+    let point = || black_box(Point3::new(50.0, 50.0, -300.0));
+    let vector = || black_box(Vector3::new(0.3, 0.4, 0.5));
+    let _ = black_box(inverse(delta, point()));
+    let _ = black_box(inverse_knees(delta, point(), black_box([Knee::In; 3])));
+    let _ = black_box(inverse_arm(
+        delta,
+        point(),
+        black_box(Arm::Second),
+        black_box(Knee::Out),
+    ));
+    let _ = black_box(forward_both(delta, vector()));
+    if let Ok(pose) = delta.pose_at(point()) {
+        let pose = &black_box(pose);
+        let _ = black_box(joint_rates(pose, vector()));
+        let _ = black_box(holding_torques(pose, vector()));
+        black_box(chord_bound(delta, pose, pose));
+    }
+    let line = Path::line(point(), Point3::new(-50.0, 50.0, -300.0));
+    let pace = Pace::new(black_box(200.0), [3.0; 3]);
+    if let (Ok(line), Ok(pace)) = (line, pace)
+        && let Ok(follow) = delta.follow(line, 0.01, pace)
+    {
+        black_box(follow_next(&mut black_box(follow)));
+    }
+}

@@ -1,0 +1,39 @@
+//! A two-link arm.
+
+use core::hint::black_box;
+
+use scara_kin::nalgebra::{Point2, Vector2};
+use scara_kin::{Arm, Elbow, Joints};
+
+use super::{CLOSE_MM, holds};
+/// Inverse and forward kinematics, rates.
+pub fn inverse() -> Option<()> {
+    let arm = Arm::new(black_box(132.0), 132.0).ok()?;
+    let point = Point2::new(black_box(150.0), 80.0);
+    let solutions = arm.inverse(point).ok()?;
+    for (_, joints) in solutions.iter() {
+        holds((arm.forward(joints) - point).norm() < CLOSE_MM)?;
+        let velocity = Vector2::new(black_box(10.0), -3.0);
+        let rates = arm.joint_rates(joints, velocity).ok()?;
+        holds((arm.tool_velocity(joints, rates) - velocity).norm() < CLOSE_MM)?;
+    }
+    holds(arm.inverse(Point2::new(black_box(264.5), 0.0)).is_err())
+}
+
+/// A line of 160 mm within 0.01 mm.
+pub fn follow() -> Option<()> {
+    let arm = Arm::new(black_box(132.0), 132.0).ok()?;
+    let line = [
+        Point2::new(-80.0, 100.0),
+        Point2::new(80.0, black_box(100.0)),
+    ];
+    let waypoints = arm.follow(line, Elbow::Right, 0.01).ok()?;
+    let mut last: Option<Joints> = None;
+    for waypoint in waypoints {
+        if let Some(from) = last {
+            holds(arm.chord_bound(from, waypoint.joints) <= 0.01)?;
+        }
+        last = Some(waypoint.joints);
+    }
+    holds((arm.forward(last?) - line[1]).norm() < CLOSE_MM)
+}

@@ -1,0 +1,94 @@
+//! The bytes at rest.
+
+use core::hint::black_box;
+
+use pattern_codec::container::{Header, Verifier, Writer, open};
+use pattern_codec::dance::{Data, DataHeader, Easing, Law, Motor, Packing, Timing};
+use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
+
+use super::holds;
+/// Records to bytes and back, from a slice and from chunks.
+pub fn records() -> Option<()> {
+    let format = Format::default();
+    let mut builder = Builder::new();
+    let mut bytes = [0; 15];
+    let slow = JointPulses {
+        theta1: 45,
+        theta2: -90,
+        theta3: 6,
+    };
+    let records = builder
+        .fast(Axis::Vertical, black_box(-70_000))
+        .ok()?
+        .chain(builder.slow(slow).ok()?);
+    for (place, record) in bytes.chunks_exact_mut(3).zip(records) {
+        place.copy_from_slice(&record.encode(&format));
+    }
+    let mut arm = Builder::new();
+    let (mut decoder, mut input) = (Decoder::new(format), black_box(bytes.as_slice()));
+    for located in format.records(black_box(&bytes)) {
+        let located = located.ok()?;
+        holds(decoder.decode(&mut input)?.ok()? == located)?;
+        arm.track(located.record).ok()?;
+    }
+    holds(decoder.finish() == Ok(15) && arm.position() == builder.position())
+}
+
+/// A container that opens, and does not when a bit is wrong.
+pub fn container() -> Option<()> {
+    let payload = black_box([0x02, 0x0F, 0x9E]);
+    let header = Header::engraving(&Format::default(), 1).ok()?;
+    let (head, mut writer) = Writer::new(header);
+    writer.update(&payload).ok()?;
+    let mut file = [0; 23];
+    let parts = head
+        .iter()
+        .chain(&payload)
+        .copied()
+        .chain(writer.finish().ok()?);
+    for (place, byte) in file.iter_mut().zip(parts) {
+        *place = byte;
+    }
+    holds(open(black_box(&file)).ok()?.payload() == payload)?;
+    let mut verifier = Verifier::new();
+    for chunk in file.chunks(5) {
+        verifier.update(chunk).ok()?;
+    }
+    holds(verifier.finish() == Ok(header))?;
+    *file.get_mut(17)? ^= 0x10;
+    holds(open(black_box(&file)).is_err())
+}
+
+/// A turn planned, written as a C header, read back and danced.
+pub fn dance_header() -> Option<()> {
+    let start = Motor::new(Law::Reset, 600, Timing::DEFAULT).ok()?;
+    let turn = start.turn(black_box(500), 25, Easing::Smooth).ok()?;
+    let mut text = Text {
+        bytes: [0; 1024],
+        len: 0,
+    };
+    let header = DataHeader::new().with_packing(Packing::MaskedRuns);
+    let frames = turn.map(|speed| [speed, 0, 7]);
+    header.write(frames.clone(), &mut text).ok()?;
+    let data = Data::<3>::read(core::str::from_utf8(text.bytes.get(..text.len)?).ok()?).ok()?;
+    holds(data.frames().eq(frames))?;
+    let mut motor = start;
+    data.frames().for_each(|[speed, ..]| motor.run(speed));
+    holds(motor.position() == 500)
+}
+
+/// A writer into fixed memory.
+struct Text {
+    bytes: [u8; 1024],
+    len: usize,
+}
+
+impl core::fmt::Write for Text {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        let end = self.len + text.len();
+        let place = self.bytes.get_mut(self.len..end).ok_or(core::fmt::Error)?;
+        place.copy_from_slice(text.as_bytes());
+        self.len = end;
+        Ok(())
+    }
+}

@@ -1,0 +1,60 @@
+//! A rotary Delta.
+
+use core::hint::black_box;
+
+use delta_kin::nalgebra::{Point3, Vector3};
+use delta_kin::{Delta, Measured, Pace, Parameter, Path, Quantity};
+
+use super::{CLOSE_MM, holds};
+fn thesis() -> Option<Delta> {
+    Delta::new(black_box(42.0), 18.0, 120.0, 243.0).ok()
+}
+
+/// Inverse and forward kinematics of a Delta, rates, a line, a cylinder.
+pub fn delta() -> Option<()> {
+    let delta = thesis()?;
+    let point = Point3::new(black_box(50.0), 50.0, -300.0);
+    let pose = delta.pose_at(point).ok()?;
+    holds((delta.forward(pose.angles()).ok()? - point).norm() < CLOSE_MM)?;
+    let velocity = Vector3::new(black_box(10.0), -3.0, 1.0);
+    let rates = pose.joint_rates(velocity).ok()?;
+    holds((pose.platform_velocity(rates).ok()? - velocity).norm() < CLOSE_MM)?;
+    holds(
+        delta
+            .inverse(Point3::new(50.0, 50.0, black_box(100.0)))
+            .is_err(),
+    )?;
+    let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
+    let pace = Pace::new(200.0, [3.0; 3]).ok()?;
+    let last = delta.follow(line, 0.01, pace).ok()?.last()?;
+    holds((last.point - line.point_at(1.0)).norm() < CLOSE_MM)?;
+    let workspace = delta.workspace();
+    holds(workspace.covers_cylinder(black_box(60.0), [-290.0, -260.0], 1.0))?;
+    holds(
+        workspace
+            .horizontal_slice(-260.0, 8)
+            .all(|edge| workspace.contains(edge)),
+    )
+}
+
+/// A lower arm that is longer than drawn.
+pub fn calibration() -> Option<()> {
+    let drawn = thesis()?;
+    let mut arms = *drawn.arms();
+    arms[1].lower += black_box(0.5);
+    let real = drawn.with_arms(arms).ok()?;
+    let mut measured = [Measured {
+        angles: Vector3::zeros(),
+        point: Point3::origin(),
+    }; 5];
+    for (place, z) in measured
+        .iter_mut()
+        .zip([-300.0, -290.0, -270.0, -260.0, -240.0])
+    {
+        place.point = Point3::new(z + 270.0, 20.0, z);
+        place.angles = real.inverse(place.point).ok()?;
+    }
+    let longer = Parameter::of(Quantity::Lower, delta_kin::Arm::Second);
+    let found = drawn.calibrate([longer], &measured).ok()?;
+    holds((found.changes()[0] - 0.5).abs() < CLOSE_MM && found.rank() == 1)
+}

@@ -1,0 +1,415 @@
+//! The example `delta` from outside: its files, checked by other code than its own.
+#![cfg(test)]
+#![cfg(all(feature = "delta-kin", feature = "stepper-sync"))]
+
+use core::time::Duration;
+use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use serialport::{SerialPort as _, TTYPort};
+use tempfile::TempDir;
+
+fn example() -> Command {
+    let test = std::env::current_exe().unwrap();
+    let example = test.ancestors().nth(2).unwrap().join("examples/delta");
+    assert!(
+        example.exists(),
+        "{} is missing: `cargo test` without a filter builds it",
+        example.display()
+    );
+    Command::new(example)
+}
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples/delta")
+        .join(name)
+}
+
+/// Runs the example with `input` on its standard input.
+fn delta(arguments: &[&str], out: &Path, input: &str) -> Output {
+    let mut child = example()
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // One that refuses its options does not read: the pipe is then closed.
+    drop(child.stdin.take().unwrap().write_all(input.as_bytes()));
+    child.wait_with_output().unwrap()
+}
+
+/// The arms as this test has them: azimuth, R - r, Lb, La, in degrees and mm.
+type Arms = [[f64; 4]; 3];
+
+const THESIS: Arms = [
+    [30.0, 24.0, 120.0, 243.0],
+    [150.0, 24.0, 120.0, 243.0],
+    [270.0, 24.0, 120.0, 243.0],
+];
+
+/// A finished run.
+struct Run {
+    answers: Vec<String>,
+    report: Value,
+    steps: Vec<(f64, [i32; 3])>,
+    picture: String,
+}
+
+impl Run {
+    fn read(folder: &Path, answers: Vec<String>) -> Self {
+        let text = |name| fs::read_to_string(folder.join(name)).unwrap();
+        let csv = text("steps.csv");
+        let mut lines = csv.lines();
+        assert_eq!(lines.next(), Some("t_s,s1,s2,s3"));
+        let steps = lines
+            .map(|line| {
+                let mut fields = line.split(',');
+                let time = fields.next().unwrap().parse().unwrap();
+                let steps = [(); 3].map(|()| fields.next().unwrap().parse().unwrap());
+                assert_eq!(fields.next(), None);
+                (time, steps)
+            })
+            .collect();
+        Self {
+            answers,
+            report: serde_json::from_str(&text("report.json")).unwrap(),
+            steps,
+            picture: text("delta.svg"),
+        }
+    }
+
+    fn of(arguments: &[&str], input: &str) -> Self {
+        let folder = TempDir::new().unwrap();
+        let output = delta(arguments, folder.path(), input);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{errors}");
+        let answers = String::from_utf8(output.stdout).unwrap();
+        let answers = answers
+            .lines()
+            .filter(|line| line.starts_with("ok ") || line.starts_with("error: "))
+            .map(str::to_owned)
+            .collect();
+        Self::read(folder.path(), answers)
+    }
+
+    fn number(&self, pointer: &str) -> f64 {
+        let value = self.report.pointer(pointer);
+        value
+            .and_then(Value::as_f64)
+            .unwrap_or_else(|| panic!("{pointer}"))
+    }
+
+    fn place(&self, arms: &Arms, steps: [i32; 3]) -> [f64; 3] {
+        let angle = |k: usize| {
+            self.number(&format!("/home_rad/{k}"))
+                + f64::from(steps[k]) * self.number("/rad_per_step")
+        };
+        forward(arms, [angle(0), angle(1), angle(2)])
+    }
+}
+
+/// Where the platform hangs: Newton's method on the three rods' lengths.
+fn forward(arms: &Arms, thetas: [f64; 3]) -> [f64; 3] {
+    let mut at = [0.0, 0.0, -250.0];
+    for _ in 0..12 {
+        // Rods, and by how much the square of each is off.
+        let rows = [0, 1, 2].map(|k| {
+            let [azimuth, offset, upper, lower] = arms[k];
+            let (sin, cos) = azimuth.to_radians().sin_cos();
+            let out = offset + upper * thetas[k].sin();
+            let rod = [
+                at[0] - out * cos,
+                at[1] - out * sin,
+                at[2] + upper * thetas[k].cos(),
+            ];
+            let square: f64 = rod.iter().map(|r| r * r).sum();
+            (rod, (lower * lower - square) / 2.0)
+        });
+        let determinant = |m: [[f64; 3]; 3]| {
+            m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+                - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+                + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+        };
+        let rods = rows.map(|(rod, _)| rod);
+        let whole = determinant(rods);
+        for (axis, place) in at.iter_mut().enumerate() {
+            let mut replaced = rods;
+            for (row, (_, off)) in replaced.iter_mut().zip(rows) {
+                row[axis] = off;
+            }
+            *place += determinant(replaced) / whole;
+        }
+    }
+    at
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Distance from the straight line between two places.
+fn off_line(p: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
+    let way = [0, 1, 2].map(|k| to[k] - from[k]);
+    let square: f64 = way.iter().map(|w| w * w).sum();
+    let along: f64 = (0..3).map(|k| (p[k] - from[k]) * way[k]).sum();
+    let share = (along / square).clamp(0.0, 1.0);
+    distance(p, [0, 1, 2].map(|k| from[k] + way[k] * share))
+}
+
+/// Half a step of each arm, 0.0044 mm at the knee, through the mechanism.
+const STEP_MM: f64 = 0.02;
+
+/// What a file of lines asks for, errors left out by their answers.
+fn asked(text: &str, answers: &[String]) -> Vec<([f64; 3], [i32; 3])> {
+    text.lines()
+        .filter(|line| !line.trim().is_empty() && !line.starts_with('#'))
+        .zip(answers)
+        .filter_map(|(line, answer)| {
+            let steps: Vec<i32> = answer
+                .strip_prefix("ok ")?
+                .split(' ')
+                .map(|n| n.parse().unwrap())
+                .collect();
+            let mut numbers = line.split_whitespace().map(|n| n.parse().unwrap());
+            let to = [(); 3].map(|()| numbers.next().unwrap());
+            Some((to, steps.try_into().unwrap()))
+        })
+        .collect()
+}
+
+#[test]
+fn shipped_inputs_follow_their_lines() {
+    for name in ["pick-and-place", "spiral"] {
+        let file = shipped(&format!("inputs/{name}.txt"));
+        let run = Run::of(&["--input", file.to_str().unwrap()], "");
+        let asked = asked(&fs::read_to_string(&file).unwrap(), &run.answers);
+        assert_eq!(run.report["moves"], asked.len());
+        assert_eq!(run.report["refused"], run.answers.len() - asked.len());
+        let (mut worst, mut line) = (0f64, 0);
+        let mut from = run.place(&THESIS, [0; 3]);
+        for (_, steps) in run.steps.iter().skip(1) {
+            let (to, answer) = asked[line];
+            let place = run.place(&THESIS, *steps);
+            worst = worst.max(off_line(place, from, to));
+            if *steps == answer && line + 1 < asked.len() {
+                assert!(
+                    distance(place, to) < STEP_MM,
+                    "{name}: {place:?} for {to:?}"
+                );
+                (from, line) = (to, line + 1);
+            }
+        }
+        assert_eq!(line + 1, asked.len(), "{name}: not all lines were reached");
+        assert_eq!(run.steps.last().unwrap().1, asked[line].1);
+        assert!(
+            (worst - run.number("/max_path_error_mm")).abs() < 1e-6,
+            "{worst}"
+        );
+        // The tolerance between whole steps is 0.01 mm, and one step each is on its way.
+        assert!(worst < 0.01 + 2.0 * STEP_MM, "{name}: {worst}");
+        assert!(run.number("/tick/max_path_error_mm") > 10.0 * worst);
+        assert!(run.picture.ends_with("</svg>\n"));
+    }
+}
+
+#[test]
+fn steps_come_one_by_one_and_not_too_fast() {
+    let run = Run::of(&[], "");
+    assert_eq!(run.steps[0], (0.0, [0; 3]));
+    let (mut made, mut last) = (0u64, [0f64; 3]);
+    // 240°/s, in steps.
+    let shortest = run.number("/rad_per_step") / 240f64.to_radians();
+    for pair in run.steps.windows(2) {
+        assert!(pair[1].0 >= pair[0].0);
+        let ways = [0, 1, 2].map(|k| pair[1].1[k].abs_diff(pair[0].1[k]));
+        assert_eq!(ways.iter().sum::<u32>(), 1);
+        made += 1;
+        let arm = ways.iter().position(|way| *way == 1).unwrap();
+        let interval = pair[1].0 - last[arm];
+        // Two pieces may meet between steps: half an interval each.
+        assert!(interval > shortest * 0.45, "{interval} at {}", pair[1].0);
+        last[arm] = pair[1].0;
+    }
+    assert_eq!(run.report["steps"], made);
+    assert!(run.steps.last().unwrap().0 <= run.number("/duration_s") + 1e-6);
+}
+
+/// The worked example of [Delta thesis], and the numbers of a right one.
+#[test]
+fn thesis_numbers() {
+    let run = Run::of(&["--input", "-"], "50 50 100\n50 50 -300\n");
+    assert!(run.answers[0].starts_with("error: line 1: 50 50 100: out of reach: arm 1 is 12.89"));
+    assert!(run.answers[0].ends_with("too long"), "{}", run.answers[0]);
+    assert_eq!(run.answers[1], "ok -7799 -12831 -14361");
+    assert_eq!(
+        (&run.report["moves"], &run.report["refused"]),
+        (&1.into(), &1.into())
+    );
+    assert!((run.number("/rad_per_step") - 1.8f64.to_radians() / 16.0 / 27.0).abs() < 1e-18);
+    for k in 0..3 {
+        let home = run.number(&format!("/home_rad/{k}"));
+        assert!((home - core::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn bad_lines_are_answered_and_the_next_is_served() {
+    let input = "\n# a comment\n0 0 -250\n1 2\nx y z\n1 2 3 4 5\n0 0 nan\n0 0 -240 0\n0 0 -240 -5\n\
+        400 0 -250\n100 0 -250 2000\n0 0 -1e300\n0 0 -250\nEND\n0 0 -200\n";
+    let run = Run::of(&["--input", "-"], input);
+    let wanted = [
+        "ok ",
+        "error: line 4: 2 numbers in \"1 2\"",
+        "error: line 5: \"x\" is not a number",
+        "error: line 6: 5 numbers",
+        "error: line 7: \"nan\" is not a number",
+        "error: line 8: feed 0 mm/s is not above zero",
+        "error: line 9: feed -5 mm/s is not above zero",
+        "error: line 10: 400 0 -250: out of reach: arm ",
+        "error: line 11: 100 0 -250: feed 2000 mm/s: arm ",
+        "error: line 12: 0 0 -1000",
+        "ok ",
+    ];
+    assert_eq!(run.answers.len(), wanted.len(), "{:?}", run.answers);
+    for (answer, wanted) in run.answers.iter().zip(wanted) {
+        assert!(answer.starts_with(wanted), "{answer}");
+    }
+    assert_eq!(run.answers[0], run.answers[10], "it has moved");
+    assert_eq!(
+        (&run.report["moves"], &run.report["refused"]),
+        (&2.into(), &9.into())
+    );
+    let empty = Run::of(&["--input", "-"], "");
+    assert_eq!((empty.steps.len(), &empty.report["moves"]), (1, &0.into()));
+}
+
+#[test]
+fn a_calibrated_geometry_is_used() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("calibrated.toml");
+    let text = fs::read_to_string(shipped("machine.toml")).unwrap()
+        + "[[arm]]\nazimuth_deg = 0.5\nlower_mm = 1.0\n[[arm]]\nupper_mm = -0.7\nbase_mm = 0.4\n\
+           [[arm]]\nhome_deg = 1.5\nplatform_mm = 0.3\n";
+    fs::write(&file, text).unwrap();
+    let run = Run::of(
+        &["--input", "-", "--geometry", file.to_str().unwrap()],
+        "40 -30 -280\n",
+    );
+    let arms = [
+        [30.5, 24.0, 120.0, 244.0],
+        [150.0, 24.4, 119.3, 243.0],
+        [270.0, 23.7, 120.0, 243.0],
+    ];
+    let end = run.steps.last().unwrap().1;
+    assert!(distance(run.place(&arms, end), [40.0, -30.0, -280.0]) < STEP_MM);
+    assert!(distance(run.place(&THESIS, end), [40.0, -30.0, -280.0]) > 0.5);
+    assert!((run.number("/home_rad/2") - 91.5f64.to_radians()).abs() < 1e-12);
+}
+
+/// Far above what an answer takes.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+#[test]
+fn a_terminal_is_served_line_by_line() {
+    let folder = TempDir::new().unwrap();
+    // Both ends are kept open: a port that everybody has closed is an error at the other end.
+    let (mut line, end) = TTYPort::pair().unwrap();
+    line.set_timeout(PATIENCE).unwrap();
+    let mut child = example()
+        .args(["--port", &end.name().unwrap(), "--out"])
+        .arg(folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut answers = Vec::new();
+    let mut reader = BufReader::new(line.try_clone_native().unwrap());
+    for ask in ["50 50 -300\r\n", "50 50 100\n", "0 0 -250 120\r"] {
+        line.write_all(ask.as_bytes()).unwrap();
+        let mut answer = String::new();
+        reader.read_line(&mut answer).unwrap();
+        answers.push(answer.trim_end().to_owned());
+    }
+    line.write_all(b"end\n").unwrap();
+    assert!(child.wait().unwrap().success());
+    assert_eq!(answers[0], "ok -7799 -12831 -14361");
+    assert!(answers[1].starts_with("error: line 2: 50 50 100: out of reach"));
+    assert!(answers[2].starts_with("ok "), "{answers:?}");
+    let run = Run::read(folder.path(), answers);
+    assert_eq!(
+        (&run.report["moves"], &run.report["refused"]),
+        (&2.into(), &1.into())
+    );
+}
+
+#[test]
+fn bad_files_are_one_line_and_leave_nothing() {
+    let folder = TempDir::new().unwrap();
+    let machine = fs::read_to_string(shipped("machine.toml")).unwrap();
+    let write = |name: &str, text: &str| {
+        let file = folder.path().join(name);
+        fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let with = |name, from, to| {
+        assert!(machine.contains(from), "{from}");
+        write(name, &machine.replace(from, to))
+    };
+    let short = with("short.toml", "lower_mm = 243.0", "lower_mm = -1.0");
+    let typo = with("typo.toml", "upper_mm = 120.0", "uper_mm = 120.0");
+    let home = with("home.toml", "home_deg = 90.0", "home_deg = 170.0");
+    let two = write("two.toml", &format!("{machine}[[arm]]\n[[arm]]\n"));
+    let micro = with("micro.toml", "microsteps = 16", "microsteps = 0");
+    let cases: [(&[&str], &str); 10] = [
+        (&["--input", "nowhere.txt"], "nowhere.txt: No such file"),
+        (&["--input", folder.path().to_str().unwrap()], "is a folder"),
+        (
+            &["--geometry", "nowhere.toml"],
+            "nowhere.toml: No such file",
+        ),
+        (
+            &["--geometry", &short],
+            "short.toml: arm 1: lower arm -1 is not within",
+        ),
+        (
+            &["--geometry", &typo],
+            "typo.toml: line 5: unknown field `uper_mm`",
+        ),
+        (&["--geometry", &home], "home.toml: home_deg: arm 1"),
+        (
+            &["--geometry", &two],
+            "two.toml: 2 tables [[arm]], none or three",
+        ),
+        (&["--geometry", &micro], "microsteps = 0 is not above zero"),
+        (&["--port", "/dev/nowhere"], "/dev/nowhere: No such file"),
+        (&["--port", "x", "--input", "y"], "cannot be used with"),
+    ];
+    for (arguments, wanted) in cases {
+        let out = folder.path().join("out");
+        let output = delta(arguments, &out, "");
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(errors.contains(wanted), "{errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+        let left = fs::read_dir(&out).map_or(0, Iterator::count);
+        assert_eq!(left, 0, "{errors}");
+    }
+    for name in ["steps.csv", "delta.svg", "report.json"] {
+        let out = TempDir::new().unwrap();
+        fs::create_dir(out.path().join(name)).unwrap();
+        let output = delta(&[], out.path(), "");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(
+            errors.ends_with(&format!("{name}: is a folder\n")),
+            "{errors}"
+        );
+        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 1, "{name}");
+    }
+}
