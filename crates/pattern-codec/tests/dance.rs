@@ -251,7 +251,7 @@ fn wrong_headers_are_refused_with_line_and_column() {
         ),
         (
             "char d[] = {1 2};",
-            "line 1, column 15: '0' where , or } must stand",
+            "line 1, column 15: '2' where , or } must stand",
         ),
         (
             "char d[] = {1, (2};",
