@@ -290,6 +290,17 @@ fn angles_are_where_they_were_asked() {
 }
 
 #[test]
+fn control_characters_of_a_score_do_not_spoil_the_picture() {
+    let motor = MOTOR.replace("'arm'", "\"left\\u001b<arm>\"");
+    let score = format!("title = \"a\\u0001b\"\nlength_s = 1\n{motor}");
+    let run = with_score(&score, |file| Run::of("carry", &["--score", file]));
+    assert!(run.picture.contains(">left &lt;arm&gt;<"));
+    assert!(run.picture.contains(">a b<"));
+    let spoils = |c: char| c.is_control() && c != '\n';
+    assert!(!run.picture.contains(spoils));
+}
+
+#[test]
 fn a_dance_too_long_for_the_part_says_so() {
     // A new speed in every frame.
     let moves = "[[move]]\nmotor = 'arm'\nat_s = 0\nfor_s = 600\nspeed = 1\neasing = 'in'\n\
