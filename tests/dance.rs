@@ -217,6 +217,7 @@ fn the_shipped_score_is_danced_under_every_law() {
         assert!(packed < 6000, "{packed}");
         assert_eq!(run.report["fits_at89c52"], true);
         assert_eq!(run.report["law"], *run.law);
+        assert_eq!(run.number("/code_bytes"), 589);
 
         // The turn on the spot, 25 frames at +60 and -60.
         let turn = &frames[325..350];
