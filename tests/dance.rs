@@ -217,6 +217,7 @@ fn the_shipped_score_is_danced_under_every_law() {
         assert!(packed < 6000, "{packed}");
         assert_eq!(run.report["fits_at89c52"], true);
         assert_eq!(run.report["law"], *run.law);
+        assert_eq!(run.number("/code_bytes"), 589);
 
         // The turn on the spot, 25 frames at +60 and -60.
         let turn = &frames[325..350];
@@ -287,6 +288,17 @@ fn angles_are_where_they_were_asked() {
         assert_eq!(decoded(&run.dump), own);
         assert!(own[1..].iter().all(Vec::is_empty));
     }
+}
+
+#[test]
+fn control_characters_of_a_score_do_not_spoil_the_picture() {
+    let motor = MOTOR.replace("'arm'", "\"left\\u001b<arm>\"");
+    let score = format!("title = \"a\\u0001b\"\nlength_s = 1\n{motor}");
+    let run = with_score(&score, |file| Run::of("carry", &["--score", file]));
+    assert!(run.picture.contains(">left &lt;arm&gt;<"));
+    assert!(run.picture.contains(">a b<"));
+    let spoils = |c: char| c.is_control() && c != '\n';
+    assert!(!run.picture.contains(spoils));
 }
 
 #[test]

@@ -14,5 +14,6 @@
 mod mcs51 {
     mod dance;
     mod engrave;
+    mod reloads;
     mod simulator;
 }

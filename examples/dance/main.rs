@@ -51,9 +51,9 @@ struct Args {
     /// carry it with its sign.
     #[arg(long, value_enum, default_value_t)]
     law: Law,
-    /// Bytes of the firmware's code, which share the program memory with the frames; those of
-    /// firmware/mcs51/dance.c unless given.
-    #[arg(long, value_name = "N", default_value_t = 540)]
+    /// Bytes of the firmware's code, which share the program memory with the frames; those of the
+    /// largest build of firmware/mcs51/dance.c unless given.
+    #[arg(long, value_name = "N", default_value_t = 589)]
     code_bytes: u64,
     /// Where the artefacts go.
     #[arg(long, value_name = "DIR", default_value = "target/dance")]

@@ -167,7 +167,9 @@ impl<W: Write> Picture<W> {
             ("fill", INK),
         ]);
         self.xml.write_event(Event::Start(start))?;
-        self.xml.write_event(Event::Text(BytesText::new(text)))?;
+        // XML has no place for control characters, not even escaped.
+        let text = text.replace(char::is_control, " ");
+        self.xml.write_event(Event::Text(BytesText::new(&text)))?;
         self.end("text")
     }
 

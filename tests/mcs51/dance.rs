@@ -6,7 +6,7 @@ use pose2pulse::stepper_sync::{
     Accumulation, BusWrite, LatchWrites, Latches, Phases, Rate, SpeedLaw, Stepping, Wiring,
 };
 
-use super::simulator::{Port, Write, simulate};
+use super::simulator::{Port, Write, program_bytes, simulate};
 
 /// Machine cycles of a tick of 1 ms.
 const TICK: u64 = 1000;
@@ -37,12 +37,7 @@ fn frames() -> Vec<Frame> {
     frames
 }
 
-fn play(
-    frames: &[Frame],
-    packing: Packing,
-    threshold: u16,
-    defines: &[&str],
-) -> Option<Vec<Write>> {
+fn header(frames: &[Frame], packing: Packing, threshold: u16) -> String {
     let timing = Timing::new(1000, FRAME_TICKS).unwrap();
     let mut text = String::new();
     DataHeader::new()
@@ -52,6 +47,16 @@ fn play(
         .with_threshold(threshold)
         .write(frames.iter().copied(), &mut text)
         .unwrap();
+    text
+}
+
+fn play(
+    frames: &[Frame],
+    packing: Packing,
+    threshold: u16,
+    defines: &[&str],
+) -> Option<Vec<Write>> {
+    let text = header(frames, packing, threshold);
     simulate("dance.c", ("data.h", &text), defines)
 }
 
@@ -294,4 +299,27 @@ fn a_timer_stopped_added_to_and_started_keeps_the_tick() {
         place += i64::try_from(tick).unwrap() - 1000;
         assert!(place.unsigned_abs() <= JITTER, "{place}");
     }
+}
+
+/// What the example `dance` leaves for the code unless told otherwise.
+const CODE_BYTES: usize = 589;
+
+#[test]
+fn the_code_of_every_build_has_the_room_that_the_example_leaves() {
+    let frames = frames();
+    let mut most = 0;
+    for law in ["LAW_RESET", "LAW_CARRY_MAGNITUDE", "LAW_CARRY_SIGNED"] {
+        for packing in Packing::ALL {
+            let text = header(&frames, packing, THRESHOLD);
+            let define = format!("LAW={law}");
+            let Some(bytes) = program_bytes("dance.c", ("data.h", &text), &[&define]) else {
+                return;
+            };
+            let code = bytes - packing.encode(frames.iter().copied()).count();
+            println!("dance.c, {}, {law}: {code} bytes of code", packing.name());
+            most = most.max(code);
+        }
+    }
+    // Another sdcc may need less or a little more.
+    assert!(most.abs_diff(CODE_BYTES) <= 20, "{most}");
 }

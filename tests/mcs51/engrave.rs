@@ -17,13 +17,13 @@ const HANDLER: u64 = 100;
 
 /// As many cycles may one latency be longer than another where no handler is waited for: an
 /// instruction of two ends first.
-const JITTER: u64 = 1;
+pub(super) const JITTER: u64 = 1;
 
 /// Axes that turn at once: their index at the port, and their signed pulses.
 type Move = Vec<(usize, i32)>;
 
 /// Edges of one axis: cycles since the start of the move.
-type Edges = Vec<u64>;
+pub(super) type Edges = Vec<u64>;
 
 fn slow(theta3: i32, theta1: i32, theta2: i32) -> Record {
     Record::Slow(
@@ -61,15 +61,15 @@ fn moves(record: Record) -> Vec<Move> {
 }
 
 /// One move at the port.
-struct Played {
+pub(super) struct Played {
     /// P1.4 to P1.7 when it begins.
     directions: u8,
     /// P1.0 to P1.3.
-    edges: [Edges; 4],
+    pub(super) edges: [Edges; 4],
 }
 
 /// The moves of a trace: each begins where P0.0 rises, with all step pins low.
-fn played(trace: &[Write]) -> Vec<Played> {
+pub(super) fn played(trace: &[Write]) -> Vec<Played> {
     let mut moves: Vec<Played> = Vec::new();
     let (mut port, mut start) = (0, None);
     for write in trace {
@@ -121,7 +121,7 @@ fn arms(pulses: [i32; 2], defines: &[&str]) -> Option<[Edges; 2]> {
 
 /// By how many cycles the edges of one axis are behind their places: none is early, none more than
 /// `HANDLER` late.
-fn lags(measured: &[u64], places: &[u64]) -> Vec<u64> {
+pub(super) fn lags(measured: &[u64], places: &[u64]) -> Vec<u64> {
     assert_eq!(measured.len(), places.len());
     let lags = measured.iter().zip(places).map(|(&edge, &place)| {
         let lag = edge.checked_sub(place);
@@ -132,7 +132,7 @@ fn lags(measured: &[u64], places: &[u64]) -> Vec<u64> {
     lags
 }
 
-fn bounds(numbers: &[u64]) -> (u64, u64) {
+pub(super) fn bounds(numbers: &[u64]) -> (u64, u64) {
     let ends = (numbers.iter().min(), numbers.iter().max());
     (*ends.0.unwrap(), *ends.1.unwrap())
 }

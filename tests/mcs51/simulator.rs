@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Once;
 
+use tempfile::TempDir;
 use vcd::{IdCode, Parser};
 
 /// Set to 1: a missing tool is a failure.
@@ -50,6 +51,26 @@ pub(crate) struct Write {
 /// Compiles `source` of `firmware/mcs51` with a header and `-D` settings, and runs it until it
 /// writes P3. `None`, and a line on standard error, when a tool is missing.
 pub(crate) fn simulate(source: &str, header: (&str, &str), defines: &[&str]) -> Option<Vec<Write>> {
+    let folder = build(source, header, defines)?;
+    run(folder.path());
+    let file = fs::File::open(folder.path().join("ports.vcd")).unwrap();
+    Some(read(Parser::new(BufReader::new(file))))
+}
+
+/// Bytes of program memory up to the last one that is used, the tables of the header among them.
+pub(crate) fn program_bytes(source: &str, header: (&str, &str), defines: &[&str]) -> Option<usize> {
+    let folder = build(source, header, defines)?;
+    let text = fs::read_to_string(folder.path().join("program.ihx")).unwrap();
+    // `:LLAAAATT`: length, address, type 00 for data.
+    let ends = text.lines().filter(|line| &line[7..9] == "00").map(|line| {
+        let number = |digits| usize::from_str_radix(digits, 16).unwrap();
+        number(&line[1..3]) + number(&line[3..7])
+    });
+    ends.max()
+}
+
+/// The folder with `program.ihx`.
+fn build(source: &str, header: (&str, &str), defines: &[&str]) -> Option<TempDir> {
     if let Some(missing) = missing_tool() {
         let line = format!("tests of firmware/mcs51 skipped: {missing} is not installed");
         assert!(std::env::var(REQUIRE).as_deref() != Ok("1"), "{line}");
@@ -61,9 +82,7 @@ pub(crate) fn simulate(source: &str, header: (&str, &str), defines: &[&str]) -> 
     let (name, text) = header;
     fs::write(folder.path().join(name), text).unwrap();
     compile(folder.path(), source, defines);
-    run(folder.path());
-    let file = fs::File::open(folder.path().join("ports.vcd")).unwrap();
-    Some(read(Parser::new(BufReader::new(file))))
+    Some(folder)
 }
 
 fn missing_tool() -> Option<&'static str> {

@@ -99,6 +99,19 @@ proptest! {
 }
 
 #[test]
+fn a_run_is_at_most_255_frames() {
+    let bytes = |frames| -> Vec<u8> {
+        let frames = core::iter::repeat_n([5, -5], frames);
+        Packing::Runs.encode(frames).collect()
+    };
+    assert_eq!(bytes(255), [255, 5, 0xFB]);
+    assert_eq!(bytes(256), [255, 5, 0xFB, 1, 5, 0xFB]);
+    let frames = core::iter::repeat_n([5, -5], 511);
+    let masked: Vec<u8> = Packing::MaskedRuns.encode(frames).collect();
+    assert_eq!(masked, [255, 0b11, 5, 0xFB, 255, 0, 1, 0]);
+}
+
+#[test]
 fn the_turn_on_the_spot() {
     // [Dancer]: wheels at +60 and -60 for 25 frames, 5000 ms.
     let frames = [[0, 0, 0, 0, 0, 0, 60, -60]; 25];
@@ -251,7 +264,7 @@ fn wrong_headers_are_refused_with_line_and_column() {
         ),
         (
             "char d[] = {1 2};",
-            "line 1, column 15: '0' where , or } must stand",
+            "line 1, column 15: '2' where , or } must stand",
         ),
         (
             "char d[] = {1, (2};",

@@ -180,6 +180,35 @@ fn reloads_by_hand_are_read() {
 }
 
 #[test]
+fn a_number_in_the_wrong_place_is_named() {
+    let error = items("char a[] = { 1 2 };").find_map(Result::err);
+    assert_eq!(
+        error.unwrap().to_string(),
+        "line 1, column 16: '2' where , or } must stand"
+    );
+}
+
+#[test]
+fn a_comment_goes_on_behind_a_backslash() {
+    for line_end in ["\n", "\r\n", "\r"] {
+        let text = "char a[] = { 1, // C:\\@2,\\@3,@4 };".replace('@', line_end);
+        let found: Result<Vec<_>, _> = items(&text).collect();
+        let found = found.unwrap();
+        let values: Vec<_> = found
+            .iter()
+            .map(|(place, item)| (place.line, *item))
+            .collect();
+        let wanted = [
+            (1, Item::Array { name: "a" }),
+            (1, Item::Value(1)),
+            (4, Item::Value(4)),
+            (4, Item::End),
+        ];
+        assert_eq!(values, wanted, "{line_end:?}");
+    }
+}
+
+#[test]
 fn items_have_their_places() {
     let text = "#ifndef H\n#define H\n# define WORD 0x7FFFFFFFUL // long\n#define HALF(x) 2\n\nlong a [ 2 ] = { WORD, -HALF };\n#endif";
     let error = items(text).find_map(Result::err).unwrap().to_string();

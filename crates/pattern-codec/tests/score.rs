@@ -166,7 +166,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
         (
             "at_s = 0",
             "at_s = 13107",
-            "line 11, move 1: length_s = 13108 is not within 65535 frames",
+            "line 11, move 1: it ends at 13108 s, the longest dance at 13107 s",
         ),
         (
             "at_s = 0",
@@ -217,7 +217,22 @@ fn wrong_scores_are_refused_with_line_and_move() {
         (
             "to_deg = 45",
             "to_deg = 45\nrepeat = 4000000000\nevery_s = 5",
-            "line 11, move 1: length_s = 13111 is not within 65535",
+            "line 11, move 1: it ends at 13111 s, the longest dance at 13107 s",
+        ),
+        (
+            "to_deg = 45",
+            "to_deg = 45\nrepeat = 4000000000\nevery_s = 0",
+            "line 11, move 1: it starts at 0 s, before move 1 of \"arm\" ends at 1 s",
+        ),
+        (
+            "to_deg = 45",
+            "to_deg = 45\nrepeat = 0\nevery_s = 5",
+            "line 11, move 1: repeat = 0 is not above 0",
+        ),
+        (
+            "for_s = 1",
+            "for_s = 13107.2",
+            "line 11, move 1: for_s = 13107.2 is not within 65535 frames",
         ),
         (
             "to_deg = 45",
@@ -283,6 +298,18 @@ fn wrong_scores_are_refused_with_line_and_move() {
             "line 1: a threshold of 127, 128 is the least",
         ),
         ("tempo = 3", "line 1: unknown field `tempo`"),
+        (
+            "title = 'Gavotte'\nlength_s = -1",
+            "line 2: length_s = -1 is not within 0 s",
+        ),
+        (
+            "length_s = 5\n\nthreshold = 1",
+            "line 3: a threshold of 1, 128 is the least",
+        ),
+        (
+            "tick_us = 500\nframe_ticks = 0",
+            "line 2: a frame of 0 ticks of 500 us has no length",
+        ),
     ] {
         let error = format!("{head}\n{MOTORS}\n{good}")
             .parse::<Score>()

@@ -144,7 +144,7 @@ impl<'a> Items<'a> {
                     assigned = false;
                 }
                 Token::End => return Ok(None),
-                Token::Word(_) | Token::Number(_) | Token::Mark(_) => {}
+                Token::Word(_) | Token::Number(..) | Token::Mark(_) => {}
             }
         }
     }
@@ -306,7 +306,7 @@ fn value<'a>(
     let (mut negative, mut depth) = (false, 0_u32);
     let value = loop {
         let value = match token {
-            Token::Number(magnitude) => Some(i64::from(magnitude)),
+            Token::Number(magnitude, _) => Some(i64::from(magnitude)),
             Token::Word(name) => defined(name),
             _ => None,
         };
@@ -339,7 +339,7 @@ fn wrong(place: Place, token: Token<'_>, wanted: &'static str) -> HeaderError {
         Token::Directive => '#',
         Token::Mark(mark) => mark,
         Token::Word(word) => word.chars().next().unwrap_or(' '),
-        Token::Number(_) => '0',
+        Token::Number(_, digit) => digit,
     };
     unexpected(place, found, wanted)
 }

@@ -7,7 +7,8 @@ use super::{HeaderError, HeaderErrorKind, Place};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Token<'a> {
     Word(&'a str),
-    Number(u32),
+    /// Its value and its first digit.
+    Number(u32, char),
     /// Any other character; a string or character constant is its first quote.
     Mark(char),
     /// `#` first on its line.
@@ -59,7 +60,7 @@ impl<'a> Scanner<'a> {
                 Token::Directive
             }
             Some(c) if c.is_ascii_digit() => {
-                Token::Number(number(self.word()).map_err(|kind| place.error(kind))?)
+                Token::Number(number(self.word()).map_err(|kind| place.error(kind))?, c)
             }
             Some(c) if c.is_alphabetic() || c == '_' => Token::Word(self.word()),
             Some(quote @ ('"' | '\'')) => {
@@ -130,20 +131,32 @@ impl<'a> Scanner<'a> {
                 Some(c) if c.is_whitespace() => self.bump(),
                 Some('/') if rest.starts_with("/*") => self.skip_comment()?,
                 Some('/') if rest.starts_with("//") => {
+                    // A line that goes on takes the comment along.
                     while self.peek().is_some_and(|c| c != '\n' && c != '\r') {
-                        self.bump();
+                        if !self.skip_continuation() {
+                            self.bump();
+                        }
                     }
                 }
-                Some('\\') if continues(rest) => {
-                    self.bump();
-                    if self.rest().starts_with("\r\n") {
-                        self.bump();
-                    }
-                    self.bump();
-                }
+                Some('\\') if self.skip_continuation() => {}
                 _ => return Ok(()),
             }
         }
+    }
+
+    /// Skips a backslash and the line end behind it, if they come next.
+    fn skip_continuation(&mut self) -> bool {
+        let continues = ["\\\n", "\\\r"]
+            .iter()
+            .any(|end| self.rest().starts_with(end));
+        if continues {
+            self.bump();
+            if self.rest().starts_with("\r\n") {
+                self.bump();
+            }
+            self.bump();
+        }
+        continues
     }
 
     fn skip_comment(&mut self) -> Result<(), HeaderError> {
@@ -180,11 +193,6 @@ impl<'a> Scanner<'a> {
             self.bump();
         }
     }
-}
-
-/// Whether a line ends behind the backslash that a text begins with.
-fn continues(text: &str) -> bool {
-    ["\\\n", "\\\r"].iter().any(|end| text.starts_with(end))
 }
 
 /// The value of a C integer constant.

@@ -133,6 +133,14 @@ pub enum ScoreErrorKind {
         /// Its end, in s.
         end_s: f64,
     },
+    /// A move behind the end of the longest dance.
+    #[error("it ends at {end_s} s, the longest dance at {most_s} s")]
+    TooLong {
+        /// End of the move, in s.
+        end_s: f64,
+        /// End of the longest dance, in s.
+        most_s: f64,
+    },
     /// An angle past what 31 bits of half steps hold.
     #[error("{half_steps:e} half steps are more than 31 bits hold")]
     TooFar {

@@ -11,6 +11,8 @@ use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePar
 /// The most frames of a dance: 3.6 hours at 200 ms.
 const MOST_FRAMES: u32 = 65_535;
 
+const WITHIN_MOST_FRAMES: &str = "within 65535 frames";
+
 /// How far from a whole number of frames a time in decimal digits may be by its binary rounding.
 const WHOLE: f64 = 1e-6;
 
@@ -19,10 +21,10 @@ const WHOLE: f64 = 1e-6;
 struct ScoreText {
     #[serde(default)]
     title: String,
-    tick_us: Option<u32>,
-    frame_ticks: Option<u32>,
-    threshold: Option<u16>,
-    length_s: Option<f64>,
+    tick_us: Option<Spanned<u32>>,
+    frame_ticks: Option<Spanned<u32>>,
+    threshold: Option<Spanned<u16>>,
+    length_s: Option<Spanned<f64>>,
     #[serde(default)]
     motor: Vec<Spanned<MotorText>>,
     #[serde(default, rename = "move")]
@@ -54,19 +56,20 @@ struct MoveText {
 
 pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
     let score: ScoreText = toml::from_str(text).map_err(|error| text_error(text, &error))?;
-    let head = |kind| ScoreError {
-        line: 1,
+    let head = |line, kind| ScoreError {
+        line,
         part: ScorePart::Head,
         kind,
     };
     let default = Timing::DEFAULT;
-    let timing = Timing::new(
-        score.tick_us.unwrap_or(default.tick_us()),
-        score.frame_ticks.unwrap_or(default.frame_ticks()),
-    );
-    let timing = timing.map_err(|error| head(error.into()))?;
-    let threshold = score.threshold.unwrap_or(600);
-    Motor::new(Law::Reset, threshold, timing).map_err(|error| head(error.into()))?;
+    let (tick_line, tick_us) = setting(text, score.tick_us, default.tick_us());
+    let (frame_line, frame_ticks) = setting(text, score.frame_ticks, default.frame_ticks());
+    let zero_line = if tick_us == 0 { tick_line } else { frame_line };
+    let timing = Timing::new(tick_us, frame_ticks);
+    let timing = timing.map_err(|error| head(zero_line, error.into()))?;
+    let (threshold_line, threshold) = setting(text, score.threshold, 600);
+    let motor = Motor::new(Law::Reset, threshold, timing);
+    motor.map_err(|error| head(threshold_line, error.into()))?;
 
     let mut motors: Vec<Performer> = Vec::new();
     for (motor, number) in score.motor.into_iter().zip(1..) {
@@ -76,7 +79,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
         motors.push(motor.map_err(|kind| ScoreError { line, part, kind })?);
     }
     if motors.is_empty() {
-        return Err(head(ScoreErrorKind::NoMotor));
+        return Err(head(1, ScoreErrorKind::NoMotor));
     }
 
     let clock = Clock { timing };
@@ -87,6 +90,14 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
         let at = |kind| ScoreError { line, part, kind };
         let written = written.into_inner();
         let (first, every, times) = written.check(number, line, clock, &motors).map_err(at)?;
+        if times > 1 && every < first.frames.into() {
+            let start = first.start.saturating_add(every);
+            let again = Move {
+                start,
+                ..first.clone()
+            };
+            return Err(overlap(&first, &again, &motors, clock));
+        }
         for time in 0..times {
             let start = u64::from(every).saturating_mul(time.into());
             let start = start.saturating_add(first.start.into());
@@ -96,7 +107,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
                 ..first.clone()
             };
             if again.end() > MOST_FRAMES {
-                return Err(at(clock.too_long(again.end())));
+                return Err(at(clock.too_long(&again)));
             }
             moves.push(again);
         }
@@ -106,20 +117,15 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
 
     let end = moves.iter().map(Move::end).max().unwrap_or(0);
     let frames = match score.length_s {
-        Some(length_s) => clock.frames("length_s", length_s).map_err(head)?,
+        Some(length_s) => {
+            let line = line(text, length_s.span().start);
+            let frames = clock.length(length_s.into_inner(), end);
+            frames.map_err(|kind| head(line, kind))?
+        }
         None => end,
     };
     if frames == 0 {
-        return Err(head(ScoreErrorKind::NoFrames));
-    }
-    if frames > MOST_FRAMES {
-        return Err(head(clock.too_long(frames)));
-    }
-    if frames < end {
-        let wanted = "at or after the end of the last move";
-        let value = clock.seconds(frames);
-        let key = "length_s";
-        return Err(head(ScoreErrorKind::Value { key, value, wanted }));
+        return Err(head(1, ScoreErrorKind::NoFrames));
     }
     Ok(Score {
         title: score.title,
@@ -128,6 +134,13 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
         motors,
         moves,
         frames,
+    })
+}
+
+/// A setting and its line; the default on line 1 where it is not given.
+fn setting<T>(text: &str, given: Option<Spanned<T>>, default: T) -> (u32, T) {
+    given.map_or((1, default), |given| {
+        (line(text, given.span().start), given.into_inner())
     })
 }
 
@@ -187,9 +200,20 @@ impl MoveText {
                 wanted: "above 0",
             });
         }
-        let frames = u16::try_from(frames).map_err(|_| clock.too_long(frames))?;
+        let frames = u16::try_from(frames).map_err(|_| ScoreErrorKind::Value {
+            key: "for_s",
+            value: self.for_s,
+            wanted: WITHIN_MOST_FRAMES,
+        })?;
         let (every, times) = match (self.every_s, self.repeat) {
             (None, None) => (0, 1),
+            (Some(_), Some(0)) => {
+                return Err(ScoreErrorKind::Value {
+                    key: "repeat",
+                    value: 0.0,
+                    wanted: "above 0",
+                });
+            }
             (Some(every_s), Some(times)) => (clock.frames("every_s", every_s)?, times),
             _ => return Err(ScoreErrorKind::Repeat),
         };
@@ -232,28 +256,34 @@ impl MoveText {
 
 /// Refuses moves of one motor at once, in the order of their starts.
 fn check_overlaps(moves: &[Move], motors: &[Performer], clock: Clock) -> Result<(), ScoreError> {
-    for (motor, performer) in motors.iter().enumerate() {
+    for motor in 0..motors.len() {
         let mut of_motor = moves.iter().filter(|one| one.motor == motor);
         let Some(mut before) = of_motor.next() else {
             continue;
         };
         for after in of_motor {
             if after.start < before.end() {
-                return Err(ScoreError {
-                    line: after.line,
-                    part: ScorePart::Move(after.number),
-                    kind: ScoreErrorKind::Overlap {
-                        start_s: clock.seconds(after.start),
-                        motor: performer.name.clone(),
-                        other: before.number,
-                        end_s: clock.seconds(before.end()),
-                    },
-                });
+                return Err(overlap(before, after, motors, clock));
             }
             before = after;
         }
     }
     Ok(())
+}
+
+/// A move that starts before another one of its motor has ended.
+fn overlap(before: &Move, after: &Move, motors: &[Performer], clock: Clock) -> ScoreError {
+    let performer = motors.get(after.motor);
+    ScoreError {
+        line: after.line,
+        part: ScorePart::Move(after.number),
+        kind: ScoreErrorKind::Overlap {
+            start_s: clock.seconds(after.start),
+            motor: performer.map_or_else(String::new, |motor| motor.name.clone()),
+            other: before.number,
+            end_s: clock.seconds(before.end()),
+        },
+    }
 }
 
 /// Seconds and frames.
@@ -294,11 +324,27 @@ impl Clock {
         Ok(whole as u32)
     }
 
-    fn too_long(self, frames: u32) -> ScoreErrorKind {
-        ScoreErrorKind::Value {
+    /// The frames of a dance whose last move ends at a frame.
+    fn length(self, length_s: f64, end: u32) -> Result<u32, ScoreErrorKind> {
+        let frames = self.frames("length_s", length_s)?;
+        let wanted = if frames > MOST_FRAMES {
+            WITHIN_MOST_FRAMES
+        } else if frames < end {
+            "at or after the end of the last move"
+        } else {
+            return Ok(frames);
+        };
+        Err(ScoreErrorKind::Value {
             key: "length_s",
-            value: self.seconds(frames),
-            wanted: "within 65535 frames",
+            value: length_s,
+            wanted,
+        })
+    }
+
+    fn too_long(self, one: &Move) -> ScoreErrorKind {
+        ScoreErrorKind::TooLong {
+            end_s: self.seconds(one.end()),
+            most_s: self.seconds(MOST_FRAMES),
         }
     }
 }
