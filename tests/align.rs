@@ -15,7 +15,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
-use tempfile::TempDir;
+use tempfile::{NamedTempFile, TempDir};
 
 use command::{assert_refused, lines, run, tool};
 
@@ -112,7 +112,7 @@ fn rows(csv: &str, columns: usize) -> Vec<Row> {
         for (field, number) in fields.iter().zip(&numbers) {
             let digits = field.chars().filter(char::is_ascii_digit);
             let significant = digits.skip_while(|digit| *digit == '0').count();
-            assert!(significant >= 12 || number.abs() < 1e-3, "{field}");
+            assert!(significant >= 12 || *number == 0.0, "{field}");
         }
         let mut vectors = numbers[1..].chunks_exact(3).map(Vector3::from_column_slice);
         Row {
@@ -245,6 +245,60 @@ fn pt_table_is_rigid_within_the_bound() {
 #[test]
 fn pvt_table_is_rigid_within_the_bound() {
     check_table("pvt");
+}
+
+/// The platform file with other words in it.
+fn changed(changes: &[(&str, &str)]) -> NamedTempFile {
+    let mut text = fs::read_to_string(PLATFORM).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    let file = NamedTempFile::new().unwrap();
+    fs::write(file.path(), text).unwrap();
+    file
+}
+
+#[test]
+fn a_small_move_keeps_its_digits() {
+    for (mode, columns) in [("pt", 9), ("pvt", 18)] {
+        let run = Run::of(mode, &["--to", "0.001 0 1200 0 0 0"]);
+        // The first axis is calibrated, so that its neighbours move by next to nothing.
+        let rows = rows(&run.read(&format!("{mode}.csv")), columns);
+        assert!(rows.last().unwrap().time < 0.05);
+    }
+}
+
+#[test]
+fn far_from_the_origin_the_bound_has_the_rounding_of_the_coordinates() {
+    let far = [("1200.0", "1200000.0"), ("1450.0", "1200250.0")];
+    let file = changed(&far);
+    let platform = file.path().to_str().unwrap();
+    let to = "35 -20 1200040 1.2 -0.8 2.5";
+    let run = Run::of("pt", &["--platform", platform, "--to", to]);
+    let [strain, bound] = ["/max_strain_mm", "/strain_bound_mm"].map(|it| run.number(it));
+    assert!(strain <= bound && bound < 0.002 + 1e-8, "{strain} {bound}");
+}
+
+#[test]
+fn a_wheel_that_moves_nothing_is_shown() {
+    let file = changed(&[
+        (
+            "max_mm = [250.0, 250.0, 200.0]",
+            "max_mm = [0.01, 0.01, 0.01]",
+        ),
+        (
+            "min_mm = [-250.0, -250.0, -200.0]",
+            "min_mm = [-0.01, -0.01, -0.01]",
+        ),
+        ("full_jog_mm_s = 10.0", "full_jog_mm_s = 0.005"),
+    ]);
+    let platform = file.path().to_str().unwrap();
+    let run = Run::of(
+        "pt",
+        &["--platform", platform, "--to", "0.001 0 1200 0 0 0"],
+    );
+    assert!(run.read("jog.svg").trim_end().ends_with("</svg>"));
 }
 
 #[test]
@@ -411,31 +465,70 @@ fn bad_input_is_one_line_and_no_file() {
         &["--to", "0 900 1200 0 0 0"],
         "error: --to: out of reach: locator 0, axis Y: 900 is 650 beyond the stroke -250..=250",
     );
-    let file = folder.path().join("platform.toml");
-    let changed = |from: &str, to: &str| {
-        let text = fs::read_to_string(PLATFORM).unwrap();
-        assert!(text.contains(from));
-        fs::write(&file, text.replace(from, to)).unwrap();
+    let in_file = |from: &str, to: &str, error: &str| {
+        let file = changed(&[(from, to)]);
+        let platform = file.path().to_str().unwrap();
+        let line = format!("error: {platform}: {error}");
+        refused(&["--platform", platform], &line);
     };
-    let platform = file.to_str().unwrap();
-    let place = |error: &str| format!("error: {platform}: {error}");
-    changed(
+    in_file(
         "speed_mm_s = [20.0, 20.0, 10.0]",
         "speed_mm_s = [20.0, 0.0, 10.0]",
+        "locator 0, axis Y: speed is 0, not a positive number",
     );
-    refused(
-        &["--platform", platform],
-        &place("locator 0, axis Y: speed is 0, not a positive number"),
+    in_file(
+        "full_jog_mm_s = 10.0",
+        "full_jog_mm_s = 10.5",
+        "[wheel]: full_jog_mm_s = 10.5 is above the rated speed of an axis, 10",
     );
-    changed("full_jog_mm_s = 10.0", "full_jog_mm_s = 10.5");
-    refused(
-        &["--platform", platform],
-        &place("[wheel]: full_jog_mm_s = 10.5 is above the rated speed of an axis, 10"),
+    in_file(
+        "bins = 10",
+        "bins = 0",
+        "[wheel]: 0 bins for 100 counts; 1 to 100 are possible",
     );
-    changed("bins = 10", "bins = 0");
+    in_file(
+        "full_counts = 100",
+        "full_counts = 2147483648",
+        "[wheel]: full_counts = 2147483648 is above 1000000000",
+    );
+    let anchor = "anchor_mm = [0.0, 2300.0, 250.0]";
+    in_file(
+        anchor,
+        "anchor_mm = [0.0, 2300.0, 250.0, 1.0]",
+        "line 26: 4 values, 3 are needed",
+    );
+    in_file(
+        anchor,
+        "anchor_mm = [0.0, 2300.0, inf]",
+        "line 26: inf is not a finite number",
+    );
+    in_file(
+        "axes = [",
+        "axes = [[0.0, 0.0, 1.0], ",
+        "line 11: 4 values, 3 are needed",
+    );
+    in_file(
+        "to = [35.0,",
+        "to = [0.0, 35.0,",
+        "line 43: 7 values, 6 are needed",
+    );
+    in_file(
+        "[2500.0, -1500.0, 60.0]",
+        "[nan, -1500.0, 60.0]",
+        "line 36: NaN is not a finite number",
+    );
+    let file = changed(&[("strain_mm = 0.002", "strain_mm = 0.0")]);
     refused(
-        &["--platform", platform],
-        &place("[wheel]: 0 bins for 100 counts; 1 to 100 are possible"),
+        &["--platform", file.path().to_str().unwrap()],
+        "error: [path]: strain_mm = 0: cut by 0: not a positive finite number",
+    );
+    let file = changed(&[
+        ("[20.0, 20.0, 10.0]", "[0.001, 20.0, 10.0]"),
+        ("10.0\n", "0.001\n"),
+    ]);
+    refused(
+        &["--platform", file.path().to_str().unwrap()],
+        "error: the motion would take 8.8e4 s, 10000 s are simulated at most",
     );
     fs::create_dir_all(out.join("report.json")).unwrap();
     let mut command = tool("align");

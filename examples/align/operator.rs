@@ -63,9 +63,10 @@ impl Task {
             *value = i32::try_from(whole * i64::from(step))?;
         }
         let mut reached = changed(from, &change);
-        for (reached, to) in reached.iter_mut().zip(to) {
+        for (reached, (from, to)) in reached.iter_mut().zip(from.into_iter().zip(to)) {
             // A number that is a whole number of steps but for rounding stays what it is.
-            if (*reached - to).abs() < f64::EPSILON * (1.0 + to.abs()) * 8.0 {
+            let size = 1.0 + from.abs() + to.abs();
+            if (*reached - to).abs() < f64::EPSILON * size * 8.0 {
                 *reached = to;
             }
         }

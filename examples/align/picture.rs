@@ -20,9 +20,14 @@ const BEFORE: RGBColor = RGBColor(150, 150, 150);
 
 /// Wheel counts, and the speeds they become.
 pub(crate) fn jog(jog: &Jog, settings: &Settings, mut out: impl Write) -> Result<()> {
-    let [Some((start, _)), Some((end, _))] = [jog.told.first(), jog.told.last()] else {
-        return Ok(());
-    };
+    // A wheel turned so little that no axis is told to move is shown all the same.
+    let turned = jog.samples.iter().filter(|(_, counts)| *counts != 0);
+    let mut moments: Vec<_> = jog.told.iter().map(|(t, _)| *t).collect();
+    if moments.is_empty() {
+        moments.extend(turned.map(|(t, _)| *t));
+    }
+    let start = moments.first().copied().unwrap_or_default();
+    let end = moments.last().copied().unwrap_or_default();
     let span = start - 0.4..end + 0.6;
     let inside = |t: f64| span.contains(&t);
     // Counts of a sample belong to the 200 ms before its end.

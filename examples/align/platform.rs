@@ -17,36 +17,36 @@ use crate::run::Pose;
 pub(crate) struct Settings {
     locator: Vec<LocatorSettings>,
     body: BodySettings,
-    pub(crate) path: PathSettings,
+    path: PathSettings,
     wheel: WheelSettings,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LocatorSettings {
-    anchor_mm: [f64; 3],
-    origin_mm: [f64; 3],
-    axes: Option<[[f64; 3]; 3]>,
-    min_mm: [f64; 3],
-    max_mm: [f64; 3],
-    speed_mm_s: [f64; 3],
-    acceleration_mm_s2: [f64; 3],
-    jerk_mm_s3: Option<[f64; 3]>,
+    anchor_mm: Numbers<3>,
+    origin_mm: Numbers<3>,
+    axes: Option<Exactly<Numbers<3>, 3>>,
+    min_mm: Numbers<3>,
+    max_mm: Numbers<3>,
+    speed_mm_s: Numbers<3>,
+    acceleration_mm_s2: Numbers<3>,
+    jerk_mm_s3: Option<Numbers<3>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BodySettings {
-    outline_mm: Vec<[f64; 3]>,
+    outline_mm: Vec<Numbers<3>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PathSettings {
-    pub(crate) from: Pose,
-    pub(crate) to: Pose,
+struct PathSettings {
+    from: Numbers<6>,
+    to: Numbers<6>,
     interpolation: InterpolationName,
-    pub(crate) strain_mm: f64,
+    strain_mm: Finite,
 }
 
 #[derive(Deserialize, Clone, Copy)]
@@ -62,12 +62,51 @@ enum InterpolationName {
 struct WheelSettings {
     full_counts: u32,
     bins: u16,
-    full_jog_mm_s: f64,
+    full_jog_mm_s: Finite,
+}
+
+/// A number that is one.
+#[derive(Deserialize, Clone, Copy)]
+#[serde(try_from = "f64")]
+struct Finite(f64);
+
+impl TryFrom<f64> for Finite {
+    type Error = String;
+
+    fn try_from(value: f64) -> Result<Self, String> {
+        let finite = value.is_finite().then_some(Self(value));
+        finite.ok_or_else(|| format!("{value} is not a finite number"))
+    }
+}
+
+/// So many and no more: an array of serde leaves what is behind it unread.
+#[derive(Deserialize, Clone, Copy)]
+#[serde(try_from = "Vec<T>", bound(deserialize = "T: Deserialize<'de>"))]
+struct Exactly<T, const N: usize>([T; N]);
+
+type Numbers<const N: usize> = Exactly<Finite, N>;
+
+impl<T, const N: usize> TryFrom<Vec<T>> for Exactly<T, N> {
+    type Error = String;
+
+    fn try_from(values: Vec<T>) -> Result<Self, String> {
+        let count = values.len();
+        let values = values.try_into().map(Self);
+        values.map_err(|_| format!("{count} values, {N} are needed"))
+    }
+}
+
+impl<const N: usize> Numbers<N> {
+    fn values(&self) -> [f64; N] {
+        self.0.map(|Finite(value)| value)
+    }
 }
 
 /// Largest length and angle that the unit can set: as many digits as it shows.
 const MOST_UM: u32 = 2_000_000_000;
 const MOST_UDEG: u32 = 99_999_990;
+/// Counts of full speed, at most: what the operator turns beyond them still fits a sample.
+const MOST_COUNTS: u32 = 1_000_000_000;
 /// Steps of one wheel count at x1.
 pub(crate) const STEP_UM: u32 = 1;
 pub(crate) const STEP_UDEG: u32 = 10;
@@ -84,6 +123,16 @@ impl Settings {
                 anyhow!("line {line}: {}", error.message().replace('\n', ", "))
             })
             .with_context(place)
+    }
+
+    /// Where the body is, and where it goes.
+    pub(crate) fn poses(&self) -> [Pose; 2] {
+        [self.path.from.values(), self.path.to.values()]
+    }
+
+    /// What two locators may pull or squeeze the body by.
+    pub(crate) const fn strain_mm(&self) -> f64 {
+        self.path.strain_mm.0
     }
 
     pub(crate) const fn locators(&self) -> usize {
@@ -114,25 +163,32 @@ impl Settings {
     /// The body's outline in the world.
     pub(crate) fn outline(&self, pose: &Isometry3<f64>) -> Vec<Point3<f64>> {
         let outline = self.body.outline_mm.iter();
-        outline.map(|point| pose * Point3::from(*point)).collect()
+        outline
+            .map(|point| pose * Point3::from(point.values()))
+            .collect()
     }
 
     pub(crate) fn panel(&self) -> Result<handwheel::Settings> {
-        let mut poses = self.path.from.iter().chain(&self.path.to);
-        ensure!(poses.all(|it| it.is_finite()), "[path]: not finite");
         let wheel = &self.wheel;
-        let speeds = self.locator.iter().flat_map(|locator| locator.speed_mm_s);
+        let Finite(full_jog_mm_s) = wheel.full_jog_mm_s;
+        let speeds = self
+            .locator
+            .iter()
+            .flat_map(|locator| locator.speed_mm_s.values());
         let slowest = speeds.fold(f64::INFINITY, f64::min);
         ensure!(
-            wheel.full_jog_mm_s <= slowest,
-            "[wheel]: full_jog_mm_s = {} is above the rated speed of an axis, {slowest}",
-            wheel.full_jog_mm_s
+            full_jog_mm_s <= slowest,
+            "[wheel]: full_jog_mm_s = {full_jog_mm_s} is above the rated speed of an axis, {slowest}"
         );
-        let um_s = wheel.full_jog_mm_s * 1000.0;
+        let um_s = full_jog_mm_s * 1000.0;
         ensure!(
             (1.0..=f64::from(i32::MAX)).contains(&um_s),
-            "[wheel]: full_jog_mm_s = {} is not within 0.001..=2147483.647",
-            wheel.full_jog_mm_s
+            "[wheel]: full_jog_mm_s = {full_jog_mm_s} is not within 0.001..=2147483.647"
+        );
+        ensure!(
+            wheel.full_counts <= MOST_COUNTS,
+            "[wheel]: full_counts = {} is above {MOST_COUNTS}",
+            wheel.full_counts
         );
         let quantiser = WheelQuantiser::new(wheel.full_counts, wheel.bins).context("[wheel]")?;
         #[expect(
@@ -155,7 +211,7 @@ impl Settings {
 impl LocatorSettings {
     fn locator(&self) -> Locator {
         let limits = [0, 1, 2].map(|axis: usize| {
-            let of = |values: &[f64; 3]| values.get(axis).copied().unwrap_or_default();
+            let of = |numbers: &Numbers<3>| numbers.values().get(axis).copied().unwrap_or_default();
             let limits = AxisLimits::new(
                 of(&self.min_mm),
                 of(&self.max_mm),
@@ -167,10 +223,14 @@ impl LocatorSettings {
                 None => limits,
             }
         });
-        let (anchor, origin) = (Point3::from(self.anchor_mm), Point3::from(self.origin_mm));
+        let place = |numbers: &Numbers<3>| Point3::from(numbers.values());
+        let (anchor, origin) = (place(&self.anchor_mm), place(&self.origin_mm));
         let locator = Locator::new(anchor, origin, limits);
         match self.axes {
-            Some(axes) => locator.with_axes(Matrix3::from_columns(&axes.map(Vector3::from))),
+            Some(Exactly(axes)) => {
+                let columns = axes.map(|axis| Vector3::from(axis.values()));
+                locator.with_axes(Matrix3::from_columns(&columns))
+            }
             None => locator,
         }
     }

@@ -32,8 +32,9 @@ pub(crate) struct Report {
     line_bytes: usize,
 }
 
-/// What a speed computed from the table may be above 1 by rounding.
-const ROUNDING: f64 = 1e-9;
+/// What a speed computed from the table may be above 1 by rounding: places of 30 m are rounded
+/// to 4e-12 mm, and the unit's least move is 0.001 mm.
+const ROUNDING: f64 = 1e-7;
 
 impl Report {
     pub(crate) fn new<const N: usize>(

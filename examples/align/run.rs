@@ -88,10 +88,8 @@ fn align<const N: usize>(arguments: &Arguments, settings: &Settings) -> Result<b
     let place = || arguments.platform.display().to_string();
     let platform: Platform<N> = settings.platform().with_context(place)?;
     let panel = settings.panel().with_context(place)?;
-    let (from, to) = (
-        arguments.from.unwrap_or(settings.path.from),
-        arguments.to.unwrap_or(settings.path.to),
-    );
+    let [from, to] = settings.poses();
+    let (from, to) = (arguments.from.unwrap_or(from), arguments.to.unwrap_or(to));
     let mode = match arguments.mode {
         ModeName::Pt => Mode::Pt,
         ModeName::Pvt => Mode::Pvt,

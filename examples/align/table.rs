@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
-use pose2pulse::pose_pt::{Cut, Knot, Path, PathError, Platform, PtTable, PvtTable};
+use pose2pulse::pose_pt::{Cut, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable};
 
 use crate::platform::Settings;
 use crate::run::{Pose, vector};
@@ -30,7 +30,10 @@ impl Mode {
 /// Most points that the controller has room for.
 const MOST_POINTS: usize = 1 << 16;
 
-/// What the coordinates of a table may round off, as a share of the distance of two locators.
+/// Longest motion that is run here: each second is a thousand cycles of the drives.
+const MOST_S: f64 = 10_000.0;
+
+/// What the coordinates of a table may round off, as a share of the largest length.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// What every motion of the body is planned with.
@@ -72,12 +75,18 @@ impl<'a, const N: usize> Planner<'a, N> {
             }
             other => other.into(),
         })?;
-        let cut = Cut::strain(self.settings.path.strain_mm);
+        let strain_mm = self.settings.strain_mm();
+        let cut = Cut::strain(strain_mm);
+        let placed = |error: PlanError| match error {
+            PlanError::Limit { .. } => anyhow!(error),
+            _ => anyhow!("[path]: strain_mm = {strain_mm}: {error}"),
+        };
         let mut csv = self.header();
         let (points, strain_bound_mm) = match self.mode {
             Mode::Pt => {
-                let table = PtTable::plan(self.platform, &path, cut)?;
-                table.fits(MOST_POINTS)?;
+                let table = PtTable::plan(self.platform, &path, cut).map_err(placed)?;
+                table.fits(MOST_POINTS).map_err(placed)?;
+                is_short(table.duration_s())?;
                 for point in table.points() {
                     self.row(&mut csv, point.time_s, &point.axes, None)?;
                 }
@@ -85,15 +94,24 @@ impl<'a, const N: usize> Planner<'a, N> {
             }
             Mode::Pvt => {
                 let mut knots = vec![Knot::default(); MOST_POINTS];
-                let table = PvtTable::plan(self.platform, &path, cut, &mut knots)?;
+                let table = PvtTable::plan(self.platform, &path, cut, &mut knots);
+                let table = table.map_err(placed)?;
+                is_short(table.duration_s())?;
                 for point in table.points() {
                     self.row(&mut csv, point.time_s, &point.axes, Some(&point.velocities))?;
                 }
                 (table.len(), table.strain_bound())
             }
         };
-        let rounding_mm = ROUNDING * self.platform.largest_anchor_distance();
         ensure!(points > 1, "from and to are the same pose: nothing moves");
+        let places = poses.iter().flat_map(|pose| self.platform.positions(pose));
+        let origins = self.platform.locators().iter().map(|it| it.origin);
+        let apart = self.platform.largest_anchor_distance();
+        let far = places
+            .chain(origins)
+            .map(|it| it.coords.amax())
+            .fold(apart, f64::max);
+        let rounding_mm = ROUNDING * far;
         Ok(Plan {
             csv,
             strain_bound_mm: strain_bound_mm + rounding_mm,
@@ -112,7 +130,7 @@ impl<'a, const N: usize> Planner<'a, N> {
         format!("time_s{header}\n")
     }
 
-    /// World coordinates, to more digits than a double has.
+    /// World coordinates.
     fn row(
         &self,
         csv: &mut String,
@@ -120,18 +138,41 @@ impl<'a, const N: usize> Planner<'a, N> {
         axes: &[Vector3<f64>; N],
         velocities: Option<&[Vector3<f64>; N]>,
     ) -> Result<()> {
-        write!(csv, "{time_s:.15}")?;
+        number(csv, time_s)?;
         let positions = self.platform.locator_positions(axes);
         let locators = self.platform.locators().iter();
         let speeds = locators
             .zip(velocities.into_iter().flatten())
             .map(|(locator, velocity)| locator.axes * velocity);
-        for value in positions.iter().map(|it| it.coords).chain(speeds) {
-            write!(csv, ",{:.15},{:.15},{:.15}", value.x, value.y, value.z)?;
+        for vector in positions.iter().map(|it| it.coords).chain(speeds) {
+            for value in &vector {
+                csv.push(',');
+                number(csv, *value)?;
+            }
         }
         csv.push('\n');
         Ok(())
     }
+}
+
+fn is_short(duration_s: f64) -> Result<()> {
+    ensure!(
+        duration_s <= MOST_S,
+        "the motion would take {duration_s:.1e} s, {MOST_S} s are simulated at most"
+    );
+    Ok(())
+}
+
+/// With 15 significant digits at least, however small, and 15 decimals.
+fn number(csv: &mut String, value: f64) -> core::fmt::Result {
+    let size = value.abs();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a logarithm; 0 where the size is 0 or above 1"
+    )]
+    let zeros = if size > 0.0 { -size.log10() } else { 0.0 } as usize;
+    write!(csv, "{value:.*}", 15 + zeros)
 }
 
 /// One axis of one locator between two points of the table: a cubic, or a line.
