@@ -66,7 +66,7 @@ pub fn angle_between<T: RealField + Copy>(a: &UnitQuaternion<T>, b: &UnitQuatern
 ///
 /// `t` = 0 gives `a` and 1 gives `b` to the last bit (up to the sign of the quaternion);
 /// other values go on beyond the ends. The way from `b` to `a` at 1 - `t` is the same.
-/// Of two arcs of π, that of the quaternions as they are is taken.
+/// Of two arcs of π, that of the quaternions as they are is taken. `t` must be finite.
 #[must_use]
 pub fn slerp<T: RealField + Copy>(
     a: &UnitQuaternion<T>,
