@@ -31,7 +31,7 @@ pub enum Input {
     /// The link to the unit is lost.
     Lost,
     /// What this unit moved is at rest: it stopped as told, or the pose is reached, or the axis
-    /// ended its jog by itself.
+    /// ended its jog by itself. Only when it is: a panel at rest has nothing to stop.
     AtRest,
     /// The machine does not carry out this unit's last action; nothing moves.
     Refused(Refusal),
