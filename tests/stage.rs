@@ -193,6 +193,39 @@ fn arcs_of_less_than_a_step_and_of_nearly_a_turn() {
     assert!(tiny.number("/max_deviation_mm") < 0.02);
 }
 
+/// Arcs of a few steps are arcs, and none is too small.
+#[test]
+fn arcs_of_a_few_steps() {
+    for (arc, steps, most_mm) in [
+        // About (0, -2), in steps: three quarters, one, all.
+        ("G3 X0.02 Y-0.02 J-0.02", 12, 0.0071),
+        ("G2 X0.02 Y-0.02 J-0.02", 4, 0.0071),
+        ("G3 J-0.02", 16, 0.0071),
+        // Start and centre nearest to one grid point.
+        ("G3 I0.0049 J0.0049", 8, 0.0145),
+        ("G0 X0.0049 Y0.0049\nG3 I-0.0098", 8, 0.0145),
+    ] {
+        let run = Run::of_text(arc, &["--rule", "centred"]);
+        assert_eq!(run.path().len(), steps, "{arc}");
+        let worst = run.number("/max_deviation_mm");
+        assert!(worst < most_mm, "{arc}: {worst} mm");
+    }
+}
+
+/// Start, end and centre between the points of the grid, rounded in opposite ways.
+#[test]
+fn arcs_off_the_grid_stay_as_close() {
+    for arc in [
+        "G0 X10.0149 Y10.0149\nG3 X20.0191 Y20.0191 I5.0002 J5.0002",
+        "G0 X10.0051 Y10.0051\nG3 X19.9949 Y19.9949 I4.9998 J4.9998",
+        "G0 X10.0049 Y10.0049\nG3 X20.0051 Y20.0051 I5.0001 J5.0001",
+    ] {
+        let run = Run::of_text(arc, &["--rule", "centred"]);
+        let worst = run.number("/max_deviation_mm");
+        assert!(worst < 0.0155, "{arc}: {worst} mm");
+    }
+}
+
 #[test]
 fn lost_steps_are_corrected() {
     for drawing in DRAWINGS {
@@ -239,6 +272,11 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         ("G0 G1 X3", "line 1: G1: a second motion"),
         ("X3", "line 1: no G0, G1, G2 or G3 before"),
         ("O100\nG0 X1", "line 1: \"O100\": no word of this stage"),
+        (
+            "G0 X1\nG99999999999 X3",
+            "line 2: \"G99999999999 X3\": no word of this stage",
+        ),
+        ("G1 X3 (Y2", "line 1: \"(Y2\": never closed"),
         ("G1 X3 R2", "line 1: R on a straight motion"),
         ("G1 F0 X3", "line 1: F0: 0 mm/min, not within 0.1..=6000.0"),
         ("G1 X1e9", "line 1: e9: no word of this stage"),
@@ -260,6 +298,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "G0 X30\nG3 R9",
             "line 2: a full circle by R: its centre can be anywhere",
         ),
+        (
+            "G0 X30\nG3 X10 R0",
+            "line 2: R0.000 is too short: start and end are 20.000 mm apart",
+        ),
         ("(nothing)\n", "bad.gcode: nothing moves"),
         (
             "G0 X10\nG1 X130 Y5\nX0",
@@ -274,6 +316,11 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         fs::write(&file, text).unwrap();
         assert_refused(&["--gcode", file.to_str().unwrap()], wanted);
     }
+    fs::write(&file, b"G0 X3\nG1 X\xFF\n").unwrap();
+    assert_refused(
+        &["--gcode", file.to_str().unwrap()],
+        "bad.gcode: line 2: invalid utf-8 sequence of 1 bytes from index 10",
+    );
     for (arguments, wanted) in [
         (
             &["--gcode", "nowhere.gcode"][..],

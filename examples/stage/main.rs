@@ -113,8 +113,19 @@ fn stage(args: &Args) -> Result<()> {
 
 fn read(file: &Path) -> Result<Vec<Line>> {
     let place = || file.display().to_string();
-    let text = fs::read_to_string(file).with_context(place)?;
+    let text = text(fs::read(file).with_context(place)?).with_context(place)?;
     let program = Interpreter::default().program(&text).with_context(place)?;
     ensure!(!program.is_empty(), "{}: nothing moves", place());
     Ok(program)
+}
+
+fn text(bytes: Vec<u8>) -> Result<String> {
+    String::from_utf8(bytes).map_err(|error| {
+        let before = error
+            .as_bytes()
+            .iter()
+            .take(error.utf8_error().valid_up_to());
+        let line = 1 + before.filter(|byte| **byte == b'\n').count();
+        anyhow::anyhow!("line {line}: {}", error.utf8_error())
+    })
 }

@@ -1,6 +1,6 @@
 //! Programmed motions to paths of whole steps.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
@@ -9,7 +9,7 @@ use pose2pulse::pulse_interp::{
     Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule,
 };
 
-use crate::geometry::{Motion, Shape};
+use crate::geometry::{Motion, Shape, angle_on};
 use crate::program::ARC_TOLERANCE_MM;
 
 /// 4 mm pitch, 1.8 degrees a step, two microsteps.
@@ -74,8 +74,7 @@ pub(crate) fn to_mm([x, y]: [i32; 2]) -> Point {
 /// The paths of a motion from where the stage was last commanded to.
 ///
 /// Ends are rounded from absolute positions, so that rounding never adds up. Centres are rounded
-/// too: the arc is that about the nearest grid point through the grid point of its start, and its
-/// end, which is then near that circle only, is met axis by axis.
+/// too, and the end, which is then near the circle only, is met axis by axis.
 pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<Vec<Path>> {
     let to = to_steps(motion.to);
     let Shape::Arc {
@@ -87,26 +86,32 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
         return Ok(vec![line(from, to, rule)?]);
     };
     let radius = motion.from.distance(centre);
-    let steps = |angle: f64| angle * radius * STEPS_PER_MM;
-    // Ends this close may change places when they are rounded: then the short way is a line.
-    const CLOSE: f64 = 4.0;
-    if steps(sweep_rad) < CLOSE {
+    let centre = grid_centre(centre, radius, from);
+    if centre == from || centre == to {
+        // Less than two steps across.
         return Ok(vec![line(from, to, rule)?]);
     }
-    let centre = to_steps(centre);
-    let about = |[x, y]: [i32; 2]| [x - centre[0], y - centre[1]];
-    let end = if steps(TAU - sweep_rad) < CLOSE {
+    let rounded_rad = match angle_on(to_mm(centre), to_mm(from), to_mm(to), turn) {
+        _ if from == to => TAU,
+        angle => angle,
+    };
+    // Ends that change places when they are rounded make a turn of a dot, and a dot of a turn.
+    let end = if rounded_rad - sweep_rad > PI {
+        return Ok(vec![line(from, to, rule)?]);
+    } else if sweep_rad - rounded_rad > PI {
         from
     } else {
         to
     };
-    // Start, end and centre are rounded by up to 0.7071 steps each; the program's own tolerance.
-    const ROUNDED_MILLISTEPS: f64 = 3.0 * 708.0;
+    let about = |[x, y]: [i32; 2]| [x - centre[0], y - centre[1]];
+    // Start and end are rounded by up to 0.7071 steps each, the centre counts for both, and may be
+    // another than the nearest: less than 6 in all. The program has a tolerance of its own.
+    const ROUNDED_MILLISTEPS: f64 = 6000.0;
     let tolerance = ROUNDED_MILLISTEPS + ARC_TOLERANCE_MM * STEPS_PER_MM * 1000.0;
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "4124"
+        reason = "8000"
     )]
     let arc = Arc::near(about(from), about(end), turn, tolerance as u32);
     let arc = arc.with_context(|| format!("an arc of radius {radius:.4} mm"))?;
@@ -116,6 +121,20 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
         PathRule::Bresenham => Path::ArcMoves(arc.moves()),
     };
     Ok(vec![path, line(end, to, rule)?])
+}
+
+/// The grid point about which the circle through the grid point `from` is nearest to that
+/// programmed, of those around the centre. In mm, but for `from`.
+fn grid_centre(centre: Point, radius: f64, from: [i32; 2]) -> [i32; 2] {
+    let off = |at: &[i32; 2]| {
+        let at = to_mm(*at);
+        at.distance(centre) + (at.distance(to_mm(from)) - radius).abs()
+    };
+    let [x, y] = to_steps(centre);
+    let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [x + dx, y + dy]));
+    around
+        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .unwrap_or([x, y])
 }
 
 fn line(from: [i32; 2], to: [i32; 2], rule: PathRule) -> Result<Path> {

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use gcode::{Code, Value};
+use gcode::{Block, Code, CommentKind, Value};
 use kurbo::Point;
 use pose2pulse::pulse_interp::Turn;
 
@@ -119,19 +119,37 @@ impl Words {
                 words.push(word.letter, &word.value, text.unwrap_or_default())?;
             }
         }
-        let is_silent = words.codes.is_empty() && words.values.is_empty();
-        let bare = line.trim();
-        // What the parser passes over, but for comments, line numbers and the tape's mark.
-        let is_passed_over = program
-            .blocks
-            .iter()
-            .any(|block| block.line_number.is_none() && block.comments.is_empty());
         ensure!(
-            !(is_silent && is_passed_over) || bare == "%",
-            "{bare:?}: no word of this stage"
+            words.codes.len() + words.values.len() + beside_words(&program.blocks, line)?
+                == letters(line),
+            "{:?}: no word of this stage",
+            line.trim()
         );
         Ok(words)
     }
+}
+
+/// The letters of a line's number and comments. The parser passes over some words in silence: what
+/// is neither read nor here is one of those.
+fn beside_words(blocks: &[Block], line: &str) -> Result<usize> {
+    let mut count = 0;
+    for block in blocks {
+        count += usize::from(block.line_number.is_some());
+        for comment in &block.comments {
+            let text = line.get(comment.span.start..comment.span.end());
+            let text = text.unwrap_or_default().trim_end();
+            ensure!(
+                comment.kind == CommentKind::Semicolon || text.ends_with(')'),
+                "{text:?}: never closed"
+            );
+            count += letters(text);
+        }
+    }
+    Ok(count)
+}
+
+fn letters(text: &str) -> usize {
+    text.bytes().filter(u8::is_ascii_alphabetic).count()
 }
 
 impl Interpreter {

@@ -29,12 +29,12 @@ pub struct ArcMoves {
 struct Octant {
     // The diagonal move is taken from 0 on; at most 2^33 either way.
     decision: i64,
-    // What the next straight or diagonal move adds to the decision.
+    // What the next move adds to the decision, and a diagonal one besides.
     straight_by: i64,
-    diagonal_by: i64,
+    extra_by: i64,
     // straight_by after the last move.
     straight_end: i64,
-    // What each move adds to the two, a diagonal one twice to its own: 2 or -2.
+    // What each move adds to the first, and a diagonal one to the second: 2 or -2.
     bend: i64,
     straight: Move,
     diagonal: Move,
@@ -43,10 +43,9 @@ struct Octant {
 impl Octant {
     #[inline]
     const fn take_diagonal(&mut self) -> Move {
-        self.decision = self.decision.wrapping_add(self.diagonal_by);
-        self.straight_by = self.straight_by.wrapping_add(self.bend);
-        let twice = self.bend.wrapping_mul(2);
-        self.diagonal_by = self.diagonal_by.wrapping_add(twice);
+        self.decision = self.decision.wrapping_add(self.extra_by);
+        self.extra_by = self.extra_by.wrapping_add(self.bend);
+        self.take_straight();
         self.diagonal
     }
 
@@ -54,7 +53,6 @@ impl Octant {
     const fn take_straight(&mut self) -> Move {
         self.decision = self.decision.wrapping_add(self.straight_by);
         self.straight_by = self.straight_by.wrapping_add(self.bend);
-        self.diagonal_by = self.diagonal_by.wrapping_add(self.bend);
         self.straight
     }
 
@@ -63,7 +61,7 @@ impl Octant {
     }
 
     #[inline]
-    fn next(&mut self) -> Option<Move> {
+    const fn next(&mut self) -> Option<Move> {
         if self.is_at_end() {
             None
         } else if self.decision >= 0 {
@@ -128,7 +126,7 @@ impl ArcMoves {
             octant: Octant {
                 decision: 0,
                 straight_by: 0,
-                diagonal_by: 0,
+                extra_by: 0,
                 straight_end: 0,
                 bend: 2,
                 straight: Move::Right,
@@ -168,11 +166,7 @@ impl ArcMoves {
             self.octant.bend = 2;
             self.octant.decision = off.wrapping_add(twice(b)).wrapping_add(1).wrapping_sub(a);
             self.octant.straight_by = twice(b).wrapping_add(3);
-            self.octant.diagonal_by = self
-                .octant
-                .straight_by
-                .wrapping_add(2)
-                .wrapping_sub(twice(a));
+            self.octant.extra_by = 2_i64.wrapping_sub(twice(a));
             self.octant.straight = outward;
             self.set_left(self.ahead.middle.b.min(last.b).wrapping_sub(b));
         } else {
@@ -180,11 +174,7 @@ impl ArcMoves {
             // Negated, so that the diagonal is taken from 0 on here too.
             self.octant.decision = twice(a).wrapping_sub(2).wrapping_sub(b).wrapping_sub(off);
             self.octant.straight_by = twice(a).wrapping_sub(3);
-            self.octant.diagonal_by = self
-                .octant
-                .straight_by
-                .wrapping_sub(2)
-                .wrapping_sub(twice(b));
+            self.octant.extra_by = (-2_i64).wrapping_sub(twice(b));
             self.octant.straight = inward;
             self.set_left(a.wrapping_sub(last.a));
         }
@@ -205,20 +195,20 @@ impl ArcMoves {
         let Octant {
             decision,
             straight_by,
-            diagonal_by,
+            extra_by,
             ..
         } = self.octant;
         // `enter` solved for a, b and F.
         match self.phase {
             Phase::Low => {
                 let b = straight_by.wrapping_sub(3) >> 1;
-                let a = straight_by.wrapping_add(2).wrapping_sub(diagonal_by) >> 1;
+                let a = 2_i64.wrapping_sub(extra_by) >> 1;
                 let off = decision.wrapping_sub(1).wrapping_sub(b.wrapping_mul(2));
                 (Place { a, b }, off.wrapping_add(a))
             }
             Phase::High => {
                 let a = straight_by.wrapping_add(3) >> 1;
-                let b = straight_by.wrapping_sub(2).wrapping_sub(diagonal_by) >> 1;
+                let b = (-2_i64).wrapping_sub(extra_by) >> 1;
                 let off = a.wrapping_mul(2).wrapping_sub(2).wrapping_sub(decision);
                 (Place { a, b }, off.wrapping_sub(b))
             }
@@ -267,6 +257,18 @@ impl ArcMoves {
         self.octant.bend = 2;
         self.set_left(len);
         true
+    }
+
+    /// The next move, where the octant alone does not tell it.
+    #[cold]
+    #[inline(never)]
+    fn beyond(mut self) -> (Self, Option<Move>) {
+        loop {
+            let step = self.octant.next();
+            if step.is_some() || !self.advance() {
+                return (self, step);
+            }
+        }
     }
 
     /// Moves still to come.
@@ -319,12 +321,14 @@ impl Iterator for ArcMoves {
 
     #[inline]
     fn next(&mut self) -> Option<Move> {
-        loop {
-            let step = self.octant.next();
-            if step.is_some() || !self.advance() {
-                return step;
-            }
+        let step = self.octant.next();
+        if step.is_some() {
+            return step;
         }
+        // By value: with its address given away, the state would not stay in registers.
+        let (rest, step) = self.clone().beyond();
+        *self = rest;
+        step
     }
 
     // Octant by octant: the state of one stays in registers.

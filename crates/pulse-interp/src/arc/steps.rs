@@ -37,37 +37,47 @@ struct Passage {
 }
 
 impl Passage {
-    /// Inward by the rule; `None` where no step inward is left.
+    /// Whether the axis that is due by the rule has steps left.
     #[inline]
-    fn rule_inward(&mut self) -> Option<Move> {
-        if self.inward == self.inward_end {
-            return None;
+    const fn follows_rule(&self) -> bool {
+        if self.decision >= 0 {
+            self.inward != self.inward_end
+        } else {
+            self.outward != self.outward_end
         }
+    }
+
+    #[inline]
+    const fn rule_inward(&mut self) -> Move {
         self.decision = self.decision.wrapping_sub(self.inward);
         self.inward = self.inward.wrapping_sub(2);
-        Some(self.quadrant.inward)
+        self.quadrant.inward
     }
 
-    /// Outward by the rule; `None` where no step outward is left.
     #[inline]
-    fn rule_outward(&mut self) -> Option<Move> {
-        if self.outward == self.outward_end {
-            return None;
-        }
+    const fn rule_outward(&mut self) -> Move {
         self.decision = self.decision.wrapping_add(self.outward);
         self.outward = self.outward.wrapping_add(2);
-        Some(self.quadrant.outward)
+        self.quadrant.outward
     }
 
-    /// The step by the rule while its axis has steps left, else that of the other.
+    /// The step by the rule.
     #[inline]
-    fn next(&mut self) -> Option<Move> {
-        let step = if self.decision >= 0 {
+    const fn rule_step(&mut self) -> Move {
+        if self.decision >= 0 {
             self.rule_inward()
         } else {
             self.rule_outward()
-        };
-        step.or_else(|| self.other_axis())
+        }
+    }
+
+    /// The step by the rule while its axis has steps left, else that of the other.
+    fn next(&mut self) -> Option<Move> {
+        if self.follows_rule() {
+            Some(self.rule_step())
+        } else {
+            self.other_axis()
+        }
     }
 
     /// The step of the axis that alone has steps left.
@@ -90,15 +100,15 @@ impl Passage {
         let mut folded = init;
         loop {
             if passage.decision >= 0 {
-                let Some(step) = passage.rule_inward() else {
+                if passage.inward == passage.inward_end {
                     break;
-                };
-                folded = f(folded, step);
+                }
+                folded = f(folded, passage.rule_inward());
             } else {
-                let Some(step) = passage.rule_outward() else {
+                if passage.outward == passage.outward_end {
                     break;
-                };
-                folded = f(folded, step);
+                }
+                folded = f(folded, passage.rule_outward());
             }
         }
         while let Some(step) = passage.other_axis() {
@@ -255,6 +265,18 @@ impl ArcSteps {
         true
     }
 
+    /// The next step, where the passage alone does not tell it.
+    #[cold]
+    #[inline(never)]
+    fn beyond(mut self) -> (Self, Option<Move>) {
+        loop {
+            let step = self.passage.next();
+            if step.is_some() || !self.advance() {
+                return (self, step);
+            }
+        }
+    }
+
     /// Steps still to come.
     #[must_use]
     pub fn steps_left(&self) -> u64 {
@@ -330,12 +352,13 @@ impl Iterator for ArcSteps {
 
     #[inline]
     fn next(&mut self) -> Option<Move> {
-        loop {
-            let step = self.passage.next();
-            if step.is_some() || !self.advance() {
-                return step;
-            }
+        if !self.passage.follows_rule() {
+            // By value: with its address given away, the state would not stay in registers.
+            let (rest, step) = self.clone().beyond();
+            *self = rest;
+            return step;
         }
+        Some(self.passage.rule_step())
     }
 
     // Passage by passage: the state of one stays in registers.
