@@ -9,6 +9,8 @@
 
 #[path = "tools/command.rs"]
 mod command;
+#[path = "tools/example.rs"]
+mod example;
 
 use std::fs;
 use std::path::Path;
@@ -17,7 +19,8 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use tempfile::{NamedTempFile, TempDir};
 
-use command::{assert_refused, lines, run, tool};
+use command::{assert_refused, lines, run};
+use example::example;
 
 const PLATFORM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/align/platform.toml");
 /// Poses in mm and degrees, other than those of the platform file, in whole steps of the unit.
@@ -35,7 +38,7 @@ struct Run {
 impl Run {
     fn of(mode: &str, arguments: &[&str]) -> Self {
         let folder = TempDir::new().unwrap();
-        let mut command = tool("align");
+        let mut command = example("align");
         command.args(["--mode", mode]).args(arguments);
         let output = run(command.arg("--out").arg(folder.path()), b"");
         assert_eq!(lines(&output.stderr), [""; 0]);
@@ -442,7 +445,10 @@ fn bad_input_is_one_line_and_no_file() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
     let refused = |arguments: &[&str], line: &str| {
-        assert_refused(tool("align").args(arguments).arg("--out").arg(&out), line);
+        assert_refused(
+            example("align").args(arguments).arg("--out").arg(&out),
+            line,
+        );
         assert!(!out.exists());
     };
     refused(
@@ -531,14 +537,14 @@ fn bad_input_is_one_line_and_no_file() {
         "error: the motion would take 8.8e4 s, 10000 s are simulated at most",
     );
     fs::create_dir_all(out.join("report.json")).unwrap();
-    let mut command = tool("align");
+    let mut command = example("align");
     let blocked = out.join("report.json");
     let line = format!("error: {}: is a folder", blocked.display());
     assert_refused(command.arg("--out").arg(&out), &line);
     assert_eq!(fs::read_dir(&out).unwrap().count(), 1);
     let taken = folder.path().join("file");
     fs::write(&taken, "").unwrap();
-    let mut command = tool("align");
+    let mut command = example("align");
     let inside = taken.join("out");
     command.arg("--out").arg(&inside);
     let line = format!("error: {}: Not a directory (os error 20)", inside.display());

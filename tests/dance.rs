@@ -2,26 +2,24 @@
 #![cfg(test)]
 #![cfg(all(feature = "pattern-codec", feature = "stepper-sync"))]
 
+#[path = "tools/example.rs"]
+mod example;
+
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+use example::example;
 
 const LAWS: [&str; 3] = ["reset", "carry", "signed"];
 const ARTEFACTS: [&str; 4] = ["data.h", "dance.vcd", "dance.svg", "report.json"];
 
 fn dance(arguments: &[&str], out: &Path) -> Output {
-    let test = std::env::current_exe().unwrap();
-    let example = test.ancestors().nth(2).unwrap().join("examples/dance");
-    assert!(
-        example.exists(),
-        "{} is missing: `cargo test` without a filter builds it",
-        example.display()
-    );
-    Command::new(example)
+    example("dance")
         .args(arguments)
         .arg("--out")
         .arg(out)

@@ -6,22 +6,20 @@
     feature = "pattern-codec"
 ))]
 
+#[path = "tools/example.rs"]
+mod example;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
+use example::example;
+
 fn engrave(arguments: &[&str], out: &Path) -> Output {
-    let test = std::env::current_exe().unwrap();
-    let example = test.ancestors().nth(2).unwrap().join("examples/engrave");
-    assert!(
-        example.exists(),
-        "{} is missing: `cargo test` without a filter builds it",
-        example.display()
-    );
-    Command::new(example)
+    example("engrave")
         .args(arguments)
         .arg("--out")
         .arg(out)

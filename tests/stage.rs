@@ -2,9 +2,8 @@
 #![cfg(test)]
 #![cfg(feature = "pulse-interp")]
 
-#[path = "tools/command.rs"]
-#[expect(dead_code, reason = "shared with the tests of the 3964R tools")]
-mod command;
+#[path = "tools/example.rs"]
+mod example;
 
 use core::time::Duration;
 use std::fs;
@@ -12,7 +11,7 @@ use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Output, Stdio};
 
-use command::tool;
+use example::example;
 use serde_json::Value;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
@@ -24,7 +23,7 @@ const ROUNDING_MM: f64 = 1e-9;
 const DRAWINGS: [&str; 3] = ["test", "rosette", "link"];
 
 fn stage(arguments: &[&str], out: &Path) -> Output {
-    tool("stage")
+    example("stage")
         .args(arguments)
         .arg("--out")
         .arg(out)
@@ -375,7 +374,7 @@ impl Dialogue {
         let (mut line, far_end) = TTYPort::pair().unwrap();
         line.set_timeout(PATIENCE).unwrap();
         let folder = TempDir::new().unwrap();
-        let child = tool("stage")
+        let child = example("stage")
             .args(["--port", &far_end.name().unwrap(), "--out"])
             .arg(folder.path())
             .stdout(Stdio::null())

@@ -4,6 +4,7 @@
 
 mod tools {
     pub(crate) mod command;
+    pub(crate) mod example;
     mod exchange;
     mod monitor;
     #[cfg(feature = "rk512")]

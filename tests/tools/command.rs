@@ -1,20 +1,7 @@
-//! Running a tool.
+//! Running a command.
 
 use std::io::Write as _;
-use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
-
-/// The built example, which lies beside the folder of this test.
-pub(crate) fn tool(name: &str) -> Command {
-    let test = std::env::current_exe().unwrap();
-    let example: PathBuf = test.ancestors().nth(2).unwrap().join("examples").join(name);
-    assert!(
-        example.exists(),
-        "{} is missing: `cargo test` without a filter builds it",
-        example.display()
-    );
-    Command::new(example)
-}
 
 /// Runs a command to its end with `input` on its standard input.
 pub(crate) fn run(command: &mut Command, input: &[u8]) -> Output {

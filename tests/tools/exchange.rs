@@ -9,7 +9,8 @@ use std::thread;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::command::{lines, run, tool};
+use super::command::{lines, run};
+use super::example::example;
 
 const PEER: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -99,7 +100,7 @@ fn exchange(priority: &str, peer_priority: &str) {
     peer.args([PEER, "--port", &peer_end.name().unwrap()])
         .args(["--priority", peer_priority, "--seconds", PATIENCE_S])
         .args(["--expect", &COUNT.to_string(), "--linger-ms", "500"]);
-    let mut station = tool("station");
+    let mut station = example("station");
     station
         .args(["--port", &station_end.name().unwrap()])
         .args(["--priority", priority, "--preset", "siemens-3964r"])

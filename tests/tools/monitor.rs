@@ -8,7 +8,8 @@ use std::process::Stdio;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
-use super::command::{assert_refused, lines, run, tool};
+use super::command::{assert_refused, lines, run};
+use super::example::example;
 
 /// A capture file that lasts as long as the folder.
 fn capture(text: &[u8]) -> (TempDir, PathBuf) {
@@ -20,7 +21,7 @@ fn capture(text: &[u8]) -> (TempDir, PathBuf) {
 
 fn replay(options: &[&str], text: &str) -> Vec<String> {
     let (_folder, path) = capture(text.as_bytes());
-    let output = run(tool("monitor").args(options).arg(path), b"");
+    let output = run(example("monitor").args(options).arg(path), b"");
     assert_eq!(lines(&output.stderr), [""; 0]);
     assert!(output.status.success());
     lines(&output.stdout)
@@ -125,7 +126,7 @@ fn the_times_are_those_of_the_preset() {
 #[test]
 fn two_ports() {
     let [(mut from_a, tap_a), (mut from_b, tap_b)] = [(); 2].map(|()| TTYPort::pair().unwrap());
-    let mut monitor = tool("monitor")
+    let mut monitor = example("monitor")
         .args(["--port", &tap_a.name().unwrap()])
         .args(["--port", &tap_b.name().unwrap()])
         .args(["--seconds", "6"])
@@ -175,7 +176,7 @@ fn wrong_lines_are_named() {
     ] {
         let (_folder, path) = capture(text.as_bytes());
         let line = format!("monitor: {}:{error}", path.display());
-        assert_refused(tool("monitor").arg(&path), &line);
+        assert_refused(example("monitor").arg(&path), &line);
     }
 }
 
@@ -184,13 +185,13 @@ fn unreadable_captures_are_named() {
     let (folder, binary) = capture(&[0xFF, 0x02]);
     let name = binary.display();
     let line = format!("monitor: {name}: stream did not contain valid UTF-8");
-    assert_refused(tool("monitor").arg(&binary), &line);
+    assert_refused(example("monitor").arg(&binary), &line);
     let missing = folder.path().join("missing");
     let line = format!(
         "monitor: {}: No such file or directory (os error 2)",
         missing.display()
     );
-    assert_refused(tool("monitor").arg(missing), &line);
+    assert_refused(example("monitor").arg(missing), &line);
 }
 
 #[test]
@@ -217,6 +218,9 @@ fn wrong_options() {
             "invalid value '-1' for '--seconds <SECONDS>': `-1` is not a time in seconds",
         ),
     ] {
-        assert_refused(tool("monitor").args(options), &format!("monitor: {error}"));
+        assert_refused(
+            example("monitor").args(options),
+            &format!("monitor: {error}"),
+        );
     }
 }

@@ -5,14 +5,15 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::command::{assert_refused, lines, run, tool};
+use super::command::{assert_refused, lines, run};
+use super::example::example;
 
 const ROUNDS: u64 = 6;
 
 /// A run's report.
 fn plc(options: &[&str]) -> Value {
     let folder = TempDir::new().unwrap();
-    let mut command = tool("plc");
+    let mut command = example("plc");
     command
         .args(["--rounds", &ROUNDS.to_string()])
         .args(options);
@@ -69,7 +70,7 @@ fn wrong_options() {
             "invalid value '' for '--seed <SEED>': cannot parse integer from empty string",
         ),
     ] {
-        assert_refused(tool("plc").args(options), &format!("plc: {error}"));
+        assert_refused(example("plc").args(options), &format!("plc: {error}"));
     }
 }
 
@@ -82,5 +83,5 @@ fn unwritable_folder() {
         "plc: {}/line.log: File exists (os error 17)",
         file.display()
     );
-    assert_refused(tool("plc").arg("--out").arg(file), &line);
+    assert_refused(example("plc").arg("--out").arg(file), &line);
 }

@@ -8,7 +8,8 @@ use std::time::Instant;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::command::{assert_refused, lines, tool};
+use super::command::{assert_refused, lines};
+use super::example::example;
 
 /// How long the partner waits for a byte, far above any time of the presets in use.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -27,7 +28,7 @@ impl Bench {
     fn new(preset: &str, options: &[&str]) -> Self {
         let (mut line, station_end) = TTYPort::pair().unwrap();
         line.set_timeout(PATIENCE).unwrap();
-        let mut station = tool("station")
+        let mut station = example("station")
             .args(["--port", &station_end.name().unwrap()])
             .args(["--priority", "low", "--preset", preset])
             .args(options)
@@ -243,7 +244,7 @@ fn wrong_lines_are_named_and_the_rest_is_sent() {
 fn an_input_that_cannot_be_read_ends_it() {
     let (_line, station_end) = TTYPort::pair().unwrap();
     let name = station_end.name().unwrap();
-    let mut command = tool("station");
+    let mut command = example("station");
     command
         .args(["--port", &name, "--priority", "low"])
         .args(["--preset", "siemens-3964r"])
@@ -257,7 +258,7 @@ fn an_input_that_cannot_be_read_ends_it() {
 }
 
 fn station(port: &str, priority: &str, preset: &str) -> Command {
-    let mut command = tool("station");
+    let mut command = example("station");
     command.args(["--port", port, "--priority", priority, "--preset", preset]);
     command
 }
@@ -265,7 +266,7 @@ fn station(port: &str, priority: &str, preset: &str) -> Command {
 #[test]
 fn wrong_options() {
     assert_refused(
-        &mut tool("station"),
+        &mut example("station"),
         "station: the following required arguments were not provided: --port <PORT> --priority <PRIORITY> --preset <PRESET>",
     );
     assert_refused(
