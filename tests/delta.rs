@@ -382,8 +382,9 @@ fn bad_files_are_one_line_and_leave_nothing() {
     let typo = with("typo.toml", "upper_mm = 120.0", "uper_mm = 120.0");
     let home = with("home.toml", "home_deg = 90.0", "home_deg = 170.0");
     let two = write("two.toml", &format!("{machine}[[arm]]\n[[arm]]\n"));
+    let no_home = with("no_home.toml", "home_deg = 90.0", "home_deg = nan");
     let micro = with("micro.toml", "microsteps = 16", "microsteps = 0");
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 11] = [
         (&["--input", "nowhere.txt"], "nowhere.txt: No such file"),
         (&["--input", folder.path().to_str().unwrap()], "is a folder"),
         (
@@ -399,6 +400,10 @@ fn bad_files_are_one_line_and_leave_nothing() {
             "typo.toml: line 5: unknown field `uper_mm`",
         ),
         (&["--geometry", &home], "home.toml: home_deg: arm 1"),
+        (
+            &["--geometry", &no_home],
+            "no_home.toml: arm 1: zero NaN is not finite",
+        ),
         (
             &["--geometry", &two],
             "two.toml: 2 tables [[arm]], none or three",
