@@ -6,6 +6,7 @@ mod rank;
 
 use nalgebra::{Point3, RealField, Vector3};
 
+use crate::limits::max_value;
 use crate::{Delta, ForwardError};
 use least_squares::LeastSquares;
 pub use parameter::{Parameter, Quantity};
@@ -116,7 +117,8 @@ impl<T: RealField + Copy> Delta<T> {
                 .forward(m.angles)
                 .map_err(|reason| CalibrationError::Impossible { index, reason })?;
             sum += (found - m.point).norm_squared();
-            if !sum.is_finite() {
+            // Deviations multiply the sum further.
+            if !sum.is_finite() || sum > max_value::<T>().sqrt() {
                 return Err(CalibrationError::NotFinite { index });
             }
         }
