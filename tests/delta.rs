@@ -262,7 +262,7 @@ fn thesis_numbers() {
 #[test]
 fn bad_lines_are_answered_and_the_next_is_served() {
     let input = "\n# a comment\n0 0 -250\n1 2\nx y z\n1 2 3 4 5\n0 0 nan\n0 0 -240 0\n0 0 -240 -5\n\
-        400 0 -250\n100 0 -250 2000\n0 0 -1e300\n0 0 -250\nEND\n0 0 -200\n";
+        400 0 -250\n100 0 -250 2000\n0 0 -1e300\n0 0 -251 1e-9\n0 0 -250\nEND\n0 0 -200\n";
     let run = Run::of(&["--input", "-"], input);
     let wanted = [
         "ok ",
@@ -275,19 +275,36 @@ fn bad_lines_are_answered_and_the_next_is_served() {
         "error: line 10: 400 0 -250: out of reach: arm ",
         "error: line 11: 100 0 -250: feed 2000 mm/s: arm ",
         "error: line 12: 0 0 -1000",
+        "error: line 13: 0 0 -251: feed 0.000000001 mm/s: a step would take",
         "ok ",
     ];
     assert_eq!(run.answers.len(), wanted.len(), "{:?}", run.answers);
     for (answer, wanted) in run.answers.iter().zip(wanted) {
         assert!(answer.starts_with(wanted), "{answer}");
     }
-    assert_eq!(run.answers[0], run.answers[10], "it has moved");
+    assert_eq!(run.answers[0], run.answers[11], "it has moved");
     assert_eq!(
         (&run.report["moves"], &run.report["refused"]),
-        (&2.into(), &9.into())
+        (&2.into(), &10.into())
     );
     let empty = Run::of(&["--input", "-"], "");
     assert_eq!((empty.steps.len(), &empty.report["moves"]), (1, &0.into()));
+}
+
+/// Cut anywhere, this one would be another place.
+#[test]
+fn a_line_too_long_is_refused_whole() {
+    let zeros = "0".repeat(400);
+    let comment = "#".repeat(400);
+    let input = format!(
+        "0 0 -{zeros}250\n0 0 -250 {comment}\n{}1 2 3\n",
+        " ".repeat(400)
+    );
+    let run = Run::of(&["--input", "-"], &input);
+    assert_eq!(run.answers.len(), 3, "{:?}", run.answers);
+    assert_eq!(run.answers[0], "error: line 1: longer than 256 bytes");
+    assert!(run.answers[1].starts_with("ok "), "{:?}", run.answers);
+    assert_eq!(run.answers[2], "error: line 3: longer than 256 bytes");
 }
 
 #[test]
@@ -365,8 +382,9 @@ fn bad_files_are_one_line_and_leave_nothing() {
     let typo = with("typo.toml", "upper_mm = 120.0", "uper_mm = 120.0");
     let home = with("home.toml", "home_deg = 90.0", "home_deg = 170.0");
     let two = write("two.toml", &format!("{machine}[[arm]]\n[[arm]]\n"));
+    let no_home = with("no_home.toml", "home_deg = 90.0", "home_deg = nan");
     let micro = with("micro.toml", "microsteps = 16", "microsteps = 0");
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 11] = [
         (&["--input", "nowhere.txt"], "nowhere.txt: No such file"),
         (&["--input", folder.path().to_str().unwrap()], "is a folder"),
         (
@@ -382,6 +400,10 @@ fn bad_files_are_one_line_and_leave_nothing() {
             "typo.toml: line 5: unknown field `uper_mm`",
         ),
         (&["--geometry", &home], "home.toml: home_deg: arm 1"),
+        (
+            &["--geometry", &no_home],
+            "no_home.toml: arm 1: zero NaN is not finite",
+        ),
         (
             &["--geometry", &two],
             "two.toml: 2 tables [[arm]], none or three",

@@ -10,19 +10,18 @@ use crate::machine::Machine;
 /// Ticks of the timer in a second.
 pub(crate) const TICKS_PER_S: u32 = 10_000_000;
 
-/// A move that has been found to be possible.
+/// A move that has been found to be possible: the trains of its pieces, one after the other.
 pub(crate) struct Plan {
-    /// Where each piece ends: whole steps from home, and seconds since the start of the move.
-    pieces: Vec<([i32; 3], f64)>,
-    /// Least time of a step.
-    least_step_s: f64,
+    trains: Vec<([i32; 3], Trains<3>)>,
+    /// Steps from home at the end.
+    end: [i32; 3],
 }
 
 impl Plan {
-    /// The straight line from where the platform is to `to`.
+    /// The straight line from `from`, where the motors are at `position`, to `to`.
     pub(crate) fn new(
         machine: &Machine,
-        from: Point3<f64>,
+        (from, mut position): (Point3<f64>, [i32; 3]),
         to: Point3<f64>,
         feed_mm_s: f64,
     ) -> Result<Self> {
@@ -30,9 +29,10 @@ impl Plan {
         machine.delta.inverse(to)?;
         let line = Path::line(from, to)?;
         let pace = machine.pace(feed_mm_s)?;
-        let mut pieces = Vec::new();
+        let least_step_s = machine.rad_per_step / machine.max_rate_rad_s;
+        let mut trains = Vec::new();
         let mut last = machine.delta.inverse(from)?;
-        let mut now_s = 0.0;
+        let (mut end_s, mut now) = (0.0, 0);
         for waypoint in machine.delta.follow(line, machine.tolerance_mm, pace)? {
             let feed_s = waypoint.length / feed_mm_s;
             if waypoint.duration_s > feed_s * (1.0 + f64::EPSILON) {
@@ -46,18 +46,31 @@ impl Plan {
                 );
             }
             last = waypoint.angles;
-            now_s += waypoint.duration_s;
-            pieces.push((machine.steps(waypoint.angles)?, now_s));
+            end_s += waypoint.duration_s;
+            let target = machine.steps(waypoint.angles)?;
+            let way = between(position, target).context("more steps than a train has")?;
+            let pulses = way.iter().map(|way| way.unsigned_abs()).max().unwrap_or(0);
+            if pulses == 0 {
+                continue;
+            }
+            // From where the time has come to, so that its rounding does not add up.
+            let left_s = (end_s - seconds(now)).max(f64::from(pulses) * least_step_s);
+            let half_period =
+                half_period(left_s, pulses).with_context(|| format!("feed {feed_mm_s} mm/s"))?;
+            let piece = Trains::new(way, half_period)?;
+            now += piece.end_ticks();
+            trains.push((way, piece));
+            position = target;
         }
         Ok(Self {
-            pieces,
-            least_step_s: machine.rad_per_step / machine.max_rate_rad_s,
+            trains,
+            end: position,
         })
     }
 
     /// Where the move ends, in steps from home.
-    pub(crate) fn end(&self) -> Option<[i32; 3]> {
-        self.pieces.last().map(|(steps, _)| *steps)
+    pub(crate) const fn end(&self) -> [i32; 3] {
+        self.end
     }
 
     /// The steps as exact synchronised trains, from `position` and `start` ticks on: calls `step`
@@ -69,21 +82,7 @@ impl Plan {
         mut step: impl FnMut(u64, [i32; 3]) -> Result<()>,
     ) -> Result<u64> {
         let mut now = start;
-        for (target, end_s) in &self.pieces {
-            let mut way = [0; 3];
-            for ((way, target), position) in way.iter_mut().zip(target).zip(position) {
-                *way = target
-                    .checked_sub(position)
-                    .context("more steps than a train has")?;
-            }
-            let pulses = way.iter().map(|way| way.unsigned_abs()).max().unwrap_or(0);
-            if pulses == 0 {
-                continue;
-            }
-            // From where the time has come to, so that its rounding does not add up.
-            let left_s = end_s - seconds(now - start);
-            let left_s = left_s.max(f64::from(pulses) * self.least_step_s);
-            let trains = Trains::new(way, half_period(left_s, pulses)?)?;
+        for (way, trains) in &self.trains {
             for edge in trains.edges() {
                 if edge.level == Level::Low {
                     continue;
@@ -99,6 +98,16 @@ impl Plan {
         }
         Ok(now)
     }
+}
+
+/// The steps of each motor from one place to another, if they can be counted.
+fn between(from: [i32; 3], to: [i32; 3]) -> Option<[i32; 3]> {
+    let ([a1, a2, a3], [b1, b2, b3]) = (from, to);
+    Some([
+        b1.checked_sub(a1)?,
+        b2.checked_sub(a2)?,
+        b3.checked_sub(a3)?,
+    ])
 }
 
 /// The time between edges that spreads pulses over a time, rounded up: never faster.

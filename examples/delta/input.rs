@@ -5,13 +5,13 @@ use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Write};
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use serialport::SerialPort;
 
 /// How long one attempt to read a port lasts; it is then made again.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// More of a line is not kept, so that a line without an end does not fill the memory.
+/// More of a line in bytes is not kept, so that a line without an end does not fill the memory.
 const LONGEST_LINE: usize = 256;
 
 /// Lines in, answers out.
@@ -54,9 +54,10 @@ impl Terminal {
         })
     }
 
-    /// The next line without its end, or what of it could be kept; `None` when no more come.
-    pub(crate) fn line(&mut self) -> Result<Option<String>> {
+    /// The next line without its end, or why it cannot be read; `None` when no more come.
+    pub(crate) fn line(&mut self) -> Result<Option<Result<String>>> {
         let mut line = Vec::new();
+        let mut is_cut = false;
         let mut byte = [0];
         loop {
             match self.reader.read(&mut byte) {
@@ -72,10 +73,14 @@ impl Terminal {
                 // A terminal ends its lines with the second alone.
                 [b'\n' | b'\r'] => break,
                 _ if line.len() < LONGEST_LINE => line.extend(byte),
-                _ => {}
+                // Of a comment nothing is missed.
+                _ => is_cut = !line.contains(&b'#'),
             }
         }
-        Ok(Some(String::from_utf8_lossy(&line).into_owned()))
+        if is_cut {
+            return Ok(Some(Err(anyhow!("longer than {LONGEST_LINE} bytes"))));
+        }
+        Ok(Some(Ok(String::from_utf8_lossy(&line).into_owned())))
     }
 
     pub(crate) fn answer(&mut self, text: &str) -> Result<()> {

@@ -168,6 +168,8 @@ impl Settings {
             arm.lower += off.lower_mm;
             arm.zero += off.home_deg.to_radians();
         }
+        // An angle that is none is named before the ranges that are counted from it.
+        let delta = Delta::from_arms(arms)?;
         let (min, max) = (self.motor.min_deg, self.motor.max_deg);
         let range = |zero: f64| {
             JointRange::new(min.to_radians() - zero, max.to_radians() - zero)
@@ -175,7 +177,7 @@ impl Settings {
         };
         let [first, second, third] = arms.map(|arm| arm.zero);
         let ranges = [range(first)?, range(second)?, range(third)?];
-        let delta = Delta::from_arms(arms)?.with_ranges(ranges.map(Some));
+        let delta = delta.with_ranges(ranges.map(Some));
         match self.max_lean_deg {
             Some(lean) => delta
                 .with_ball_joints(lean.to_radians())

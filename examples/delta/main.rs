@@ -148,10 +148,12 @@ fn serve(machine: &Machine, terminal: &mut Terminal, mut csv: impl Write) -> Res
     let mut number = 0_usize;
     while let Some(line) = terminal.line()? {
         number += 1;
-        let planned = match command::parse(&line) {
+        let planned = match line.and_then(|line| command::parse(&line)) {
             Ok(None) => continue,
             Ok(Some(Command::End)) => break,
-            Ok(Some(Command::Move { to, feed_mm_s })) => plan(machine, place, to, feed_mm_s),
+            Ok(Some(Command::Move { to, feed_mm_s })) => {
+                plan(machine, (place, position), to, feed_mm_s)
+            }
             Err(error) => Err(error),
         };
         let (plan, to, answer) = match planned {
@@ -182,13 +184,13 @@ fn serve(machine: &Machine, terminal: &mut Terminal, mut csv: impl Write) -> Res
 /// The move to a point, and the steps at which it ends.
 fn plan(
     machine: &Machine,
-    from: Point3<f64>,
+    from: (Point3<f64>, [i32; 3]),
     to: Point3<f64>,
     feed_mm_s: Option<f64>,
 ) -> Result<(Plan, Point3<f64>, [i32; 3])> {
     let place = || format!("{} {} {}", to.x, to.y, to.z);
     let feed = feed_mm_s.unwrap_or(machine.feed_mm_s);
     let plan = Plan::new(machine, from, to, feed).with_context(place)?;
-    let answer = plan.end().context("a move without an end")?;
+    let answer = plan.end();
     Ok((plan, to, answer))
 }

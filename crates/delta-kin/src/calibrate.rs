@@ -6,6 +6,7 @@ mod rank;
 
 use nalgebra::{Point3, RealField, Vector3};
 
+use crate::limits::max_value;
 use crate::{Delta, ForwardError};
 use least_squares::LeastSquares;
 pub use parameter::{Parameter, Quantity};
@@ -44,8 +45,8 @@ pub enum CalibrationError<T = f64> {
         /// Least number of points.
         least: usize,
     },
-    /// A measured coordinate is infinite or not a number.
-    #[error("measured point {index} is not finite")]
+    /// A measured coordinate is infinite, not a number, or too far away for squares to be summed.
+    #[error("measured point {index} is not finite, or too far away")]
     NotFinite {
         /// Place in the list, counted from 0.
         index: usize,
@@ -110,13 +111,16 @@ impl<T: RealField + Copy> Delta<T> {
                 least,
             });
         }
-        let finite = |m: &Measured<T>| m.point.coords.iter().all(T::is_finite);
-        if let Some(index) = measured.iter().position(|m| !finite(m)) {
-            return Err(CalibrationError::NotFinite { index });
-        }
+        let mut sum = T::zero();
         for (index, m) in measured.iter().enumerate() {
-            self.forward(m.angles)
+            let found = self
+                .forward(m.angles)
                 .map_err(|reason| CalibrationError::Impossible { index, reason })?;
+            sum += (found - m.point).norm_squared();
+            // Deviations multiply the sum further.
+            if !sum.is_finite() || sum > max_value::<T>().sqrt() {
+                return Err(CalibrationError::NotFinite { index });
+            }
         }
         let problem = Problem {
             start: *self,

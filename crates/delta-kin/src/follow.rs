@@ -118,7 +118,8 @@ impl<T: RealField + Copy> Delta<T> {
     /// its arc keeps it, and is halved until it does. The place on the path and the platform are
     /// that near at every share of the step, so this holds from the platform to the path and from
     /// the path to the platform. Between two waypoints the arms turn at constant rates, so none
-    /// is faster than its limit; ranges are kept since they hold both ends.
+    /// is faster than its limit; ranges are kept since they hold both ends. The platform is in
+    /// the assembly in which the path starts, which [`Workspace::contains`](crate::Workspace::contains) tells.
     ///
     /// The path is walked once before anything is handed out, so that an error comes first
     /// and the number of waypoints is known. Memory does not grow with the path.

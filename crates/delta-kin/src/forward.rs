@@ -24,8 +24,8 @@ pub struct Assemblies<T: RealField = f64> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ForwardError<T = f64> {
-    /// An angle is infinite or not a number.
-    #[error("{arm}: angle {angle} is not finite")]
+    /// An angle is infinite or not a number, or is so when it is counted from straight down.
+    #[error("{arm}: angle {angle} is not finite from straight down")]
     NotFinite {
         /// The arm.
         arm: Arm,
@@ -44,6 +44,10 @@ pub enum ForwardError<T = f64> {
     #[error("the knees, moved inward by the platform's radius, lie on a line")]
     Collinear,
 }
+
+/// Twice the area of the centres' triangle over the squares of two of its sides, below which
+/// rounding in its circumcentre is felt in the lengths: an equilateral one has 0.43.
+const THIN: f64 = 1.0 / 16.0;
 
 impl<T: RealField + Copy> Delta<T> {
     /// The position of the platform's centre, in the lower of the two assemblies.
@@ -89,6 +93,7 @@ impl<T: RealField + Copy> Delta<T> {
         let v = (d3.cross(&unit) * b2 + unit.cross(&d2) * b3) / n_length;
         let rest = l1 * l1 - v.norm_squared();
         let is_flat = n_length <= self.tolerance() * self.span();
+        let is_thin = n_length < (d2.norm_squared() + d3.norm_squared()) * nalgebra::convert(THIN);
         // Not if either is not a number.
         let meet = (rest > T::zero()) & !is_flat;
         if !meet {
@@ -97,9 +102,14 @@ impl<T: RealField + Copy> Delta<T> {
         let up = unit * rest.max(T::zero()).sqrt();
         let up = if n.z < T::zero() { -up } else { up };
         let foot = c1 + v;
+        let (mut lower, mut upper) = (foot - up, foot + up);
+        if is_thin {
+            lower = polished(lower, &centres, [l1, l2, l3]);
+            upper = polished(upper, &centres, [l1, l2, l3]);
+        }
         Ok(Assemblies {
-            lower: Point3::from(self.flip(foot - up)),
-            upper: Point3::from(self.flip(foot + up)),
+            lower: Point3::from(self.flip(lower)),
+            upper: Point3::from(self.flip(upper)),
         })
     }
 
@@ -113,8 +123,10 @@ impl<T: RealField + Copy> Delta<T> {
         rest: T,
         is_flat: bool,
     ) -> Result<(), ForwardError<T>> {
-        for (arm, angle) in zip(Arm::ALL, angles.into()) {
-            if !angle.is_finite() {
+        // With the zero added an angle may leave the numbers of `T`.
+        let read = zip(angles.into(), self.thetas(angles));
+        for (arm, (angle, theta)) in zip(Arm::ALL, read) {
+            if !theta.is_finite() {
                 return Err(ForwardError::NotFinite { arm, angle });
             }
         }
@@ -127,4 +139,35 @@ impl<T: RealField + Copy> Delta<T> {
         }
         Ok(())
     }
+}
+
+/// One step of Newton's method on the three lengths, if it brings them nearer.
+#[cold]
+fn polished<T: RealField + Copy>(
+    place: Vector3<T>,
+    centres: &[Vector3<T>; 3],
+    lowers: [T; 3],
+) -> Vector3<T> {
+    let rods = centres.map(|centre| place - centre);
+    let [m1, m2, m3] = misses(&rods, lowers);
+    let [a, b, c] = rods;
+    let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
+    let [l1, l2, l3] = lowers;
+    let step = (bc * (m1 * l1) + ca * (m2 * l2) + ab * (m3 * l3)) / a.dot(&bc);
+    let next = place + step;
+    let left = misses(&centres.map(|centre| next - centre), lowers);
+    let largest = |misses: [T; 3]| {
+        misses
+            .map(|miss| miss.abs())
+            .into_iter()
+            .fold(T::zero(), T::max)
+    };
+    // Written so that what is not a number is not nearer.
+    let is_nearer = step.norm_squared().is_finite() && largest(left) < largest([m1, m2, m3]);
+    if is_nearer { next } else { place }
+}
+
+/// By how much each rod is shorter than its lower arm.
+fn misses<T: RealField + Copy>(rods: &[Vector3<T>; 3], lowers: [T; 3]) -> [T; 3] {
+    zip(rods.each_ref(), lowers).map(|(rod, lower)| lower - rod.norm())
 }

@@ -188,6 +188,12 @@ fn bad_measurements_are_named() {
         nominal().calibrate(eleven(), &bad),
         Err(CalibrationError::NotFinite { index: 2 })
     );
+    // Its square is not a number any more.
+    bad[2].point.y = 1e200;
+    assert_eq!(
+        nominal().calibrate(eleven(), &bad),
+        Err(CalibrationError::NotFinite { index: 2 })
+    );
     let mut bad = good;
     bad[1].angles.z = f64::INFINITY;
     assert!(matches!(

@@ -171,6 +171,15 @@ fn a_range_chooses_the_turn() {
     );
 }
 
+/// Knees almost on a line: the circumcentre of their triangle alone does not hold the lengths.
+#[test]
+fn a_thin_triangle_of_knees_keeps_the_lengths() {
+    let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let point = Point3::new(198.061_14, 29.537_943, -255.231_63);
+    let made = delta.forward(delta.inverse(point).unwrap()).unwrap();
+    assert!(delta.inverse(made).is_ok(), "{made}");
+}
+
 #[test]
 fn impossible_angles_are_refused() {
     let short = Delta::new(100.0, 20.0, 120.0, 150.0).unwrap();
@@ -199,6 +208,12 @@ fn impossible_angles_are_refused() {
         ));
         assert!(narrow.inverse_arm(point, Arm::First, Knee::In).is_err());
     }
+    // Each is a number, their sum is none.
+    let wound = narrow.with_zero(f64::MAX).unwrap();
+    assert!(matches!(
+        wound.forward(Vector3::repeat(f64::MAX)),
+        Err(ForwardError::NotFinite { .. })
+    ));
     let far = narrow.inverse(Point3::new(f64::MAX, -f64::MAX, f64::MAX));
     assert!(
         matches!(far, Err(InverseError::TooFar { by, .. }) if by.is_finite()),
