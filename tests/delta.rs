@@ -2,26 +2,20 @@
 #![cfg(test)]
 #![cfg(all(feature = "delta-kin", feature = "stepper-sync"))]
 
+#[path = "tools/example.rs"]
+mod example;
+
 use core::time::Duration;
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 use serde_json::Value;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
-fn example() -> Command {
-    let test = std::env::current_exe().unwrap();
-    let example = test.ancestors().nth(2).unwrap().join("examples/delta");
-    assert!(
-        example.exists(),
-        "{} is missing: `cargo test` without a filter builds it",
-        example.display()
-    );
-    Command::new(example)
-}
+use example::example;
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -31,7 +25,7 @@ fn shipped(name: &str) -> PathBuf {
 
 /// Runs the example with `input` on its standard input.
 fn delta(arguments: &[&str], out: &Path, input: &str) -> Output {
-    let mut child = example()
+    let mut child = example("delta")
         .args(arguments)
         .arg("--out")
         .arg(out)
@@ -339,7 +333,7 @@ fn a_terminal_is_served_line_by_line() {
     // Both ends are kept open: a port that everybody has closed is an error at the other end.
     let (mut line, end) = TTYPort::pair().unwrap();
     line.set_timeout(PATIENCE).unwrap();
-    let mut child = example()
+    let mut child = example("delta")
         .args(["--port", &end.name().unwrap(), "--out"])
         .arg(folder.path())
         .stdout(Stdio::null())
