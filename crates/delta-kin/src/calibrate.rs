@@ -94,7 +94,9 @@ impl<T: RealField + Copy> Delta<T> {
     /// machine's values. The Jacobian is triangularised point by point with Givens rotations, so
     /// that digits are not lost to its square and memory (three N × N matrices) does not grow with
     /// the points. Parameters that the points do not determine stay near their values and are
-    /// reported.
+    /// reported. Noise can make a parameter look determined that the points hardly see, as the
+    /// azimuths of points on the z axis: [`Calibration::conditioning`] and the size of the changes
+    /// show it.
     ///
     /// # Errors
     /// [`CalibrationError`].
