@@ -11,6 +11,8 @@
 mod command;
 #[path = "tools/example.rs"]
 mod example;
+#[path = "tools/refusal.rs"]
+mod refusal;
 
 use std::fs;
 use std::path::Path;
@@ -19,8 +21,9 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use tempfile::{NamedTempFile, TempDir};
 
-use command::{assert_refused, lines, run};
+use command::{lines, run};
 use example::example;
+use refusal::assert_refused;
 
 const PLATFORM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/align/platform.toml");
 /// Poses in mm and degrees, other than those of the platform file, in whole steps of the unit.
@@ -501,27 +504,27 @@ fn bad_input_is_one_line_and_no_file() {
     in_file(
         anchor,
         "anchor_mm = [0.0, 2300.0, 250.0, 1.0]",
-        "line 26: 4 values, 3 are needed",
+        r#"line 26, column 13: 4 values, 3 are needed: "[0.0, 2300.0, 250.0, 1.0]""#,
     );
     in_file(
         anchor,
         "anchor_mm = [0.0, 2300.0, inf]",
-        "line 26: inf is not a finite number",
+        r#"line 26, column 13: inf is not a finite number: "[0.0, 2300.0, inf]""#,
     );
     in_file(
         "axes = [",
         "axes = [[0.0, 0.0, 1.0], ",
-        "line 11: 4 values, 3 are needed",
+        r#"line 11, column 8: 4 values, 3 are needed: "[[0.0, 0.0, 1.0], [0.9999995, 0.001, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0005, 0.999999875]]""#,
     );
     in_file(
         "to = [35.0,",
         "to = [0.0, 35.0,",
-        "line 43: 7 values, 6 are needed",
+        r#"line 43, column 6: 7 values, 6 are needed: "[0.0, 35.0, -20.0, 1240.0, 1.2, -0.8, 2.5]""#,
     );
     in_file(
         "[2500.0, -1500.0, 60.0]",
         "[nan, -1500.0, 60.0]",
-        "line 36: NaN is not a finite number",
+        r#"line 36, column 29: NaN is not a finite number: "[nan, -1500.0, 60.0]""#,
     );
     let file = changed(&[("strain_mm = 0.002", "strain_mm = 0.0")]);
     refused(

@@ -2,30 +2,21 @@
 #![cfg(test)]
 #![cfg(all(feature = "pattern-codec", feature = "stepper-sync"))]
 
+#[path = "tools/artefacts.rs"]
+mod artefacts;
 #[path = "tools/example.rs"]
 mod example;
 
 use std::collections::HashMap;
 use std::fs;
-use std::path::Path;
-use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use example::example;
+use artefacts::{assert_all_or_none, assert_refused, run_into};
 
 const LAWS: [&str; 3] = ["reset", "carry", "signed"];
 const ARTEFACTS: [&str; 4] = ["data.h", "dance.vcd", "dance.svg", "report.json"];
-
-fn dance(arguments: &[&str], out: &Path) -> Output {
-    example("dance")
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .output()
-        .unwrap()
-}
 
 /// A finished run's files.
 struct Run {
@@ -39,7 +30,11 @@ struct Run {
 impl Run {
     fn of(law: &str, arguments: &[&str]) -> Self {
         let folder = TempDir::new().unwrap();
-        let output = dance(&[&["--law", law], arguments].concat(), folder.path());
+        let output = run_into(
+            folder.path(),
+            "dance",
+            &[&["--law", law], arguments].concat(),
+        );
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{errors}");
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
@@ -388,33 +383,14 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "nowhere.toml: No such file",
         ),
     ] {
-        let folder = TempDir::new().unwrap();
-        let out = folder.path().join("out");
-        let output = with_score(&score, |file| match arguments {
-            ["--score", _] => dance(arguments, &out),
-            _ => dance(&[&["--score", file], arguments].concat(), &out),
+        with_score(&score, |file| match arguments {
+            ["--score", _] => assert_refused("dance", arguments, wanted),
+            _ => assert_refused("dance", &[&["--score", file], arguments].concat(), wanted),
         });
-        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{errors}");
-        assert!(errors.contains(wanted), "{errors}wanted: {wanted}");
-        assert_eq!(errors.lines().count(), 1, "{errors}");
-        let left = fs::read_dir(&out).map_or(0, Iterator::count);
-        assert_eq!(left, 0, "{errors}");
     }
 }
 
 #[test]
 fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
-    for name in ARTEFACTS {
-        let out = TempDir::new().unwrap();
-        fs::create_dir(out.path().join(name)).unwrap();
-        let output = dance(&["--law", "carry"], out.path());
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{errors}");
-        assert!(
-            errors.ends_with(&format!("{name}: is a folder\n")),
-            "{errors}"
-        );
-        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 1, "{name}");
-    }
+    assert_all_or_none("dance", &["--law", "carry"], &ARTEFACTS);
 }

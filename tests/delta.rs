@@ -2,6 +2,10 @@
 #![cfg(test)]
 #![cfg(all(feature = "delta-kin", feature = "stepper-sync"))]
 
+#[path = "tools/artefacts.rs"]
+mod artefacts;
+#[path = "tools/command.rs"]
+mod command;
 #[path = "tools/example.rs"]
 mod example;
 
@@ -9,34 +13,20 @@ use core::time::Duration;
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Output, Stdio};
+use std::process::Stdio;
 
 use serde_json::Value;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
+use artefacts::{assert_all_or_none, assert_refused};
+use command::{lines, run};
 use example::example;
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("examples/delta")
         .join(name)
-}
-
-/// Runs the example with `input` on its standard input.
-fn delta(arguments: &[&str], out: &Path, input: &str) -> Output {
-    let mut child = example("delta")
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // One that refuses its options does not read: the pipe is then closed.
-    drop(child.stdin.take().unwrap().write_all(input.as_bytes()));
-    child.wait_with_output().unwrap()
 }
 
 /// The arms as this test has them: azimuth, R - r, Lb, La, in degrees and mm.
@@ -81,15 +71,13 @@ impl Run {
 
     fn of(arguments: &[&str], input: &str) -> Self {
         let folder = TempDir::new().unwrap();
-        let output = delta(arguments, folder.path(), input);
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{errors}");
-        let answers = String::from_utf8(output.stdout).unwrap();
-        let answers = answers
-            .lines()
-            .filter(|line| line.starts_with("ok ") || line.starts_with("error: "))
-            .map(str::to_owned)
-            .collect();
+        let mut command = example("delta");
+        command.args(arguments).arg("--out").arg(folder.path());
+        let output = run(&mut command, input.as_bytes());
+        assert_eq!(lines(&output.stderr), [""; 0]);
+        assert!(output.status.success());
+        let mut answers = lines(&output.stdout);
+        answers.retain(|line| line.starts_with("ok ") || line.starts_with("error: "));
         Self::read(folder.path(), answers)
     }
 
@@ -391,7 +379,7 @@ fn bad_files_are_one_line_and_leave_nothing() {
         ),
         (
             &["--geometry", &typo],
-            "typo.toml: line 5: unknown field `uper_mm`",
+            "typo.toml: line 5, column 1: unknown field `uper_mm`",
         ),
         (&["--geometry", &home], "home.toml: home_deg: arm 1"),
         (
@@ -407,25 +395,7 @@ fn bad_files_are_one_line_and_leave_nothing() {
         (&["--port", "x", "--input", "y"], "cannot be used with"),
     ];
     for (arguments, wanted) in cases {
-        let out = folder.path().join("out");
-        let output = delta(arguments, &out, "");
-        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{errors}");
-        assert!(errors.contains(wanted), "{errors}");
-        assert_eq!(errors.lines().count(), 1, "{errors}");
-        let left = fs::read_dir(&out).map_or(0, Iterator::count);
-        assert_eq!(left, 0, "{errors}");
+        assert_refused("delta", arguments, wanted);
     }
-    for name in ["steps.csv", "delta.svg", "report.json"] {
-        let out = TempDir::new().unwrap();
-        fs::create_dir(out.path().join(name)).unwrap();
-        let output = delta(&[], out.path(), "");
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{errors}");
-        assert!(
-            errors.ends_with(&format!("{name}: is a folder\n")),
-            "{errors}"
-        );
-        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 1, "{name}");
-    }
+    assert_all_or_none("delta", &[], &["steps.csv", "delta.svg", "report.json"]);
 }

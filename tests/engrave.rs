@@ -6,26 +6,18 @@
     feature = "pattern-codec"
 ))]
 
+#[path = "tools/artefacts.rs"]
+mod artefacts;
 #[path = "tools/example.rs"]
 mod example;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use example::example;
-
-fn engrave(arguments: &[&str], out: &Path) -> Output {
-    example("engrave")
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .output()
-        .unwrap()
-}
+use artefacts::{assert_all_or_none, assert_refused, run_into};
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -42,7 +34,7 @@ struct Run {
 impl Run {
     fn of(arguments: &[&str]) -> Self {
         let folder = TempDir::new().unwrap();
-        let output = engrave(arguments, folder.path());
+        let output = run_into(folder.path(), "engrave", arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{errors}");
         let report = fs::read(folder.path().join("report.json")).unwrap();
@@ -258,31 +250,17 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         ),
     ];
     for (arguments, wanted) in cases {
-        let out = folder.path().join("out");
-        let output = engrave(arguments, &out);
-        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{errors}");
-        assert!(errors.contains(wanted), "{errors}");
-        assert_eq!(errors.lines().count(), 1, "{errors}");
-        let left = fs::read_dir(&out).map_or(0, Iterator::count);
-        assert_eq!(left, 0, "{errors}");
+        assert_refused("engrave", arguments, wanted);
     }
 }
 
 #[test]
 fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
-    for name in ["pattern.bin", "pulses.vcd", "engraved.svg", "report.json"] {
-        let out = TempDir::new().unwrap();
-        fs::create_dir(out.path().join(name)).unwrap();
-        let output = engrave(&[], out.path());
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{errors}");
-        assert!(
-            errors.ends_with(&format!("{name}: is a folder\n")),
-            "{errors}"
-        );
-        assert_eq!(fs::read_dir(out.path()).unwrap().count(), 1, "{name}");
-    }
+    assert_all_or_none(
+        "engrave",
+        &[],
+        &["pattern.bin", "pulses.vcd", "engraved.svg", "report.json"],
+    );
 }
 
 /// Runs an SVG body in a view box of 100 by 100.
@@ -353,9 +331,10 @@ fn what_is_not_engraved_is_said() {
     let svg = folder.path().join("text.svg");
     let text = "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='90'><text x='9' y='9'>lost</text><path d='M0 0H50V50'/></svg>";
     fs::write(&svg, text).unwrap();
-    let output = engrave(
-        &["--svg", svg.to_str().unwrap()],
+    let output = run_into(
         &folder.path().join("out"),
+        "engrave",
+        &["--svg", svg.to_str().unwrap()],
     );
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success());

@@ -2,6 +2,8 @@
 #![cfg(test)]
 #![cfg(feature = "pulse-interp")]
 
+#[path = "tools/artefacts.rs"]
+mod artefacts;
 #[path = "tools/example.rs"]
 mod example;
 
@@ -9,8 +11,9 @@ use core::time::Duration;
 use std::fs;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Output, Stdio};
+use std::process::{Child, Stdio};
 
+use artefacts::{assert_all_or_none, assert_refused, run_into};
 use example::example;
 use serde_json::Value;
 use serialport::{SerialPort as _, TTYPort};
@@ -21,15 +24,6 @@ const STEP_MM: f64 = 0.01;
 /// What decimals of report.json and f64 lose.
 const ROUNDING_MM: f64 = 1e-9;
 const DRAWINGS: [&str; 3] = ["test", "rosette", "link"];
-
-fn stage(arguments: &[&str], out: &Path) -> Output {
-    example("stage")
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .output()
-        .unwrap()
-}
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -47,7 +41,7 @@ struct Run {
 impl Run {
     fn of(arguments: &[&str]) -> Self {
         let folder = TempDir::new().unwrap();
-        let output = stage(arguments, folder.path());
+        let output = run_into(folder.path(), "stage", arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{errors}");
         Self::read(folder)
@@ -313,10 +307,11 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     ];
     for (text, wanted) in cases {
         fs::write(&file, text).unwrap();
-        assert_refused(&["--gcode", file.to_str().unwrap()], wanted);
+        assert_refused("stage", &["--gcode", file.to_str().unwrap()], wanted);
     }
     fs::write(&file, b"G0 X3\nG1 X\xFF\n").unwrap();
     assert_refused(
+        "stage",
         &["--gcode", file.to_str().unwrap()],
         "bad.gcode: line 2: invalid utf-8 sequence of 1 bytes from index 10",
     );
@@ -333,20 +328,9 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--rule", "best"], "invalid value 'best'"),
         (&["--port", "/dev/nowhere"], "/dev/nowhere: "),
     ] {
-        assert_refused(arguments, wanted);
+        assert_refused("stage", arguments, wanted);
     }
-}
-
-fn assert_refused(arguments: &[&str], wanted: &str) {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let output = stage(arguments, &out);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{wanted}: {errors}");
-    assert!(errors.contains(wanted), "{wanted}: {errors}");
-    assert_eq!(errors.lines().count(), 1, "{errors}");
-    let left = fs::read_dir(&out).map_or(0, Iterator::count);
-    assert_eq!(left, 0, "{errors}");
+    assert_all_or_none("stage", &[], &["steps.csv", "stage.svg", "report.json"]);
 }
 
 /// A process that does not outlive a test that fails.

@@ -9,5 +9,6 @@ mod tools {
     mod monitor;
     #[cfg(feature = "rk512")]
     mod plc;
+    mod refusal;
     mod station;
 }

@@ -14,10 +14,10 @@
 extern crate alloc;
 
 #[cfg(unix)]
-#[path = "../station/arguments.rs"]
+#[path = "../common/arguments.rs"]
 mod arguments;
 #[cfg(unix)]
-#[path = "../engrave/artefacts.rs"]
+#[path = "../common/artefacts.rs"]
 mod artefacts;
 #[cfg(unix)]
 mod chart;
@@ -35,6 +35,9 @@ mod platform;
 mod report;
 #[cfg(unix)]
 mod run;
+#[cfg(unix)]
+#[path = "../common/settings.rs"]
+mod settings;
 #[cfg(unix)]
 mod table;
 #[cfg(unix)]

@@ -1,6 +1,5 @@
 //! The platform: from its file to checked settings.
 
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
@@ -10,6 +9,7 @@ use pose2pulse::pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platfo
 use serde::Deserialize;
 
 use crate::run::Pose;
+use crate::settings;
 
 /// The platform file, as written.
 #[derive(Deserialize)]
@@ -113,16 +113,7 @@ pub(crate) const STEP_UDEG: u32 = 10;
 
 impl Settings {
     pub(crate) fn read(file: &Path) -> Result<Self> {
-        let place = || file.display().to_string();
-        let text = fs::read_to_string(file).with_context(place)?;
-        toml::from_str(&text)
-            .map_err(|error| {
-                let start = error.span().map_or(0, |span| span.start);
-                let before = text.get(..start).unwrap_or_default();
-                let line = before.matches('\n').count() + 1;
-                anyhow!("line {line}: {}", error.message().replace('\n', ", "))
-            })
-            .with_context(place)
+        settings::read(file)
     }
 
     /// Where the body is, and where it goes.

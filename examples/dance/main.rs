@@ -10,9 +10,9 @@
 //!
 //! `cargo run --release --example dance -- [--score FILE] [--law LAW] [--out DIR]`
 
-#[path = "../station/arguments.rs"]
+#[path = "../common/arguments.rs"]
 mod arguments;
-#[path = "../engrave/artefacts.rs"]
+#[path = "../common/artefacts.rs"]
 mod artefacts;
 mod law;
 mod picture;

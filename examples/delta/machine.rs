@@ -1,13 +1,14 @@
 //! The machine: from its file to checked settings.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, ensure};
 use nalgebra::{Point3, Vector3};
 use pose2pulse::delta_kin::{Arm, ArmGeometry, Delta, JointRange, Pace};
 use pose2pulse::stepper_sync::StepScale;
 use serde::Deserialize;
+
+use crate::settings;
 
 /// The geometry file, as written.
 #[derive(Debug, Deserialize)]
@@ -69,12 +70,7 @@ pub(crate) struct Machine {
 
 impl Machine {
     pub(crate) fn read(file: &Path) -> Result<Self> {
-        let place = || file.display().to_string();
-        let text = fs::read_to_string(file).with_context(place)?;
-        let settings = toml::from_str(&text)
-            .map_err(|error| one_line(&text, &error))
-            .with_context(place)?;
-        Self::check(&settings).with_context(place)
+        Self::check(&settings::read(file)?).with_context(|| file.display().to_string())
     }
 
     fn check(settings: &Settings) -> Result<Self> {
@@ -185,16 +181,4 @@ impl Settings {
             None => Ok(delta),
         }
     }
-}
-
-/// The parser's message with line and column, without its drawing of the line.
-fn one_line(text: &str, error: &toml::de::Error) -> anyhow::Error {
-    let message = error.message().replace('\n', ", ");
-    let Some(span) = error.span() else {
-        return anyhow!("{message}");
-    };
-    let before = text.get(..span.start).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let value = text.get(span).unwrap_or("").lines().next().unwrap_or("");
-    anyhow!("line {line}: {message}: {value:?}")
 }

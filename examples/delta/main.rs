@@ -12,7 +12,9 @@
 //!
 //! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--port PATH] [--out DIR]`
 
-#[path = "../engrave/artefacts.rs"]
+#[path = "../common/arguments.rs"]
+mod arguments;
+#[path = "../common/artefacts.rs"]
 mod artefacts;
 mod command;
 mod drive;
@@ -20,13 +22,15 @@ mod input;
 mod machine;
 mod picture;
 mod report;
+#[path = "../common/settings.rs"]
+mod settings;
 mod simulation;
 
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 use nalgebra::Point3;
 
@@ -62,29 +66,16 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let args = match Args::try_parse() {
-        Ok(args) => args,
-        Err(error) => return refuse(&error),
-    };
-    match run(&args) {
+    let served = arguments::read()
+        .map_err(|error| anyhow!("{error}"))
+        .and_then(|args| run(&args));
+    match served {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::FAILURE
         }
     }
-}
-
-/// Help goes out whole, of an error the line that says what is wrong.
-fn refuse(error: &clap::Error) -> ExitCode {
-    if error.use_stderr() {
-        let text = error.to_string();
-        eprintln!("{}", text.lines().next().unwrap_or_default());
-        return ExitCode::FAILURE;
-    }
-    // Nothing can be done where standard output is closed.
-    let _ = error.print();
-    ExitCode::SUCCESS
 }
 
 fn run(args: &Args) -> Result<()> {

@@ -1,15 +1,16 @@
 //! The machine: from its file to checked settings.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, ensure};
 use kurbo::{Affine, Rect};
 use nalgebra::Point2;
 use pose2pulse::pattern_codec::engraving::{AxisCodes, ByteOrder, Format, PerAxis};
 use pose2pulse::scara_kin::{Arm, JointRange, Joints, Limits, TangentTool};
 use pose2pulse::stepper_sync::{Ramp, RampLimits, Rate, StepScale, Timer};
 use serde::{Deserialize, Serialize};
+
+use crate::settings;
 
 /// The machine file, as written.
 #[derive(Debug, Clone, Deserialize, Serialize)]
@@ -172,12 +173,7 @@ pub(crate) struct Machine {
 
 impl Machine {
     pub(crate) fn read(file: &Path) -> Result<Self> {
-        let place = || file.display().to_string();
-        let text = fs::read_to_string(file).with_context(place)?;
-        let settings: Settings = toml::from_str(&text)
-            .map_err(|error| one_line(&text, &error))
-            .with_context(place)?;
-        Self::check(settings).with_context(place)
+        Self::check(settings::read(file)?).with_context(|| file.display().to_string())
     }
 
     fn check(settings: Settings) -> Result<Self> {
@@ -323,17 +319,4 @@ fn positive(name: &str, value: f64) -> Result<()> {
 fn finite(name: &str, value: f64) -> Result<()> {
     ensure!(value.is_finite(), "{name} = {value} is not finite");
     Ok(())
-}
-
-/// The parser's message with line and column, without its drawing of the line.
-fn one_line(text: &str, error: &toml::de::Error) -> anyhow::Error {
-    let message = error.message().replace('\n', ", ");
-    let Some(span) = error.span() else {
-        return anyhow!("{message}");
-    };
-    let before = text.get(..span.start).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    let value = text.get(span).unwrap_or("").lines().next().unwrap_or("");
-    anyhow!("line {line}, column {column}: {message}: {value:?}")
 }

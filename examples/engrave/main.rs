@@ -9,6 +9,9 @@
 //!
 //! `cargo run --release --example engrave -- [--svg FILE] [--machine FILE] [--tolerance MM] [--out DIR]`
 
+#[path = "../common/arguments.rs"]
+mod arguments;
+#[path = "../common/artefacts.rs"]
 mod artefacts;
 mod drawing;
 mod gauge;
@@ -19,12 +22,14 @@ mod playback;
 mod progress;
 mod pulses;
 mod report;
+#[path = "../common/settings.rs"]
+mod settings;
 mod simulation;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use clap::Parser;
 use kurbo::Affine;
 
@@ -79,7 +84,7 @@ fn placement(text: &str) -> Result<Affine> {
     let count = numbers.len();
     let numbers: [f64; 6] = numbers
         .try_into()
-        .map_err(|_| anyhow::anyhow!("{count} numbers, six are needed"))?;
+        .map_err(|_| anyhow!("{count} numbers, six are needed"))?;
     let affine = Affine::new(numbers);
     ensure!(affine.is_finite(), "a number is not finite");
     ensure!(affine.determinant() != 0.0, "the matrix has no area");
@@ -87,13 +92,10 @@ fn placement(text: &str) -> Result<Affine> {
 }
 
 fn main() -> ExitCode {
-    let args = match Args::try_parse() {
-        Ok(args) => args,
-        Err(error) => {
-            return refuse(&error);
-        }
-    };
-    match engrave(&args) {
+    let engraved = arguments::read()
+        .map_err(|error| anyhow!("{error}"))
+        .and_then(|args| engrave(&args));
+    match engraved {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(2),
         Err(error) => {
@@ -101,18 +103,6 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// Help goes out whole, of an error the line that says what is wrong.
-fn refuse(error: &clap::Error) -> ExitCode {
-    if error.use_stderr() {
-        let text = error.to_string();
-        eprintln!("{}", text.lines().next().unwrap_or_default());
-        return ExitCode::FAILURE;
-    }
-    // Nothing can be done where standard output is closed.
-    let _ = error.print();
-    ExitCode::SUCCESS
 }
 
 /// Runs the whole chain; false where the simulated tool left the drawing by more than

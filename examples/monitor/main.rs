@@ -15,7 +15,7 @@
 //! 0.009000 < 10
 //! ```
 
-#[path = "../station/arguments.rs"]
+#[path = "../common/arguments.rs"]
 mod arguments;
 #[path = "../station/preset.rs"]
 mod preset;

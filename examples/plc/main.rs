@@ -10,7 +10,7 @@
 //! PLC, bytes) and `report.json`.
 
 #[cfg(unix)]
-#[path = "../station/arguments.rs"]
+#[path = "../common/arguments.rs"]
 mod arguments;
 #[cfg(unix)]
 mod line;

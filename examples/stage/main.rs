@@ -9,10 +9,10 @@
 //!
 //! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
 
-#[path = "../station/arguments.rs"]
+#[path = "../common/arguments.rs"]
 mod arguments;
 #[expect(dead_code, reason = "nothing is read back here")]
-#[path = "../engrave/artefacts.rs"]
+#[path = "../common/artefacts.rs"]
 mod artefacts;
 mod console;
 mod controller;

@@ -19,6 +19,7 @@
 //! the exit code 1. The program ends at the end of the input, after
 //! the outcome of the last job; with `--listen` it stays that much longer.
 
+#[path = "../common/arguments.rs"]
 mod arguments;
 mod preset;
 mod text;

@@ -20,10 +20,3 @@ pub(crate) fn lines(text: &[u8]) -> Vec<String> {
     let text = String::from_utf8(text.to_vec()).unwrap();
     text.lines().map(str::to_owned).collect()
 }
-
-/// Exit code 1, and on standard error this line alone.
-pub(crate) fn assert_refused(command: &mut Command, line: &str) {
-    let output = run(command, b"");
-    assert_eq!(lines(&output.stderr), [line]);
-    assert_eq!(output.status.code(), Some(1), "{line}");
-}

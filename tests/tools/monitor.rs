@@ -8,8 +8,9 @@ use std::process::Stdio;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
-use super::command::{assert_refused, lines, run};
+use super::command::{lines, run};
 use super::example::example;
+use super::refusal::assert_refused;
 
 /// A capture file that lasts as long as the folder.
 fn capture(text: &[u8]) -> (TempDir, PathBuf) {

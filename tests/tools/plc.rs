@@ -5,8 +5,9 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::command::{assert_refused, lines, run};
+use super::command::{lines, run};
 use super::example::example;
+use super::refusal::assert_refused;
 
 const ROUNDS: u64 = 6;
 

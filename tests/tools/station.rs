@@ -8,8 +8,9 @@ use std::time::Instant;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::command::{assert_refused, lines};
+use super::command::lines;
 use super::example::example;
+use super::refusal::assert_refused;
 
 /// How long the partner waits for a byte, far above any time of the presets in use.
 const PATIENCE: Duration = Duration::from_secs(30);
