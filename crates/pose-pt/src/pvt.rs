@@ -6,6 +6,8 @@ mod planner;
 mod points;
 mod scurve;
 pub(crate) mod segment;
+mod smooth;
+mod window;
 
 use nalgebra::{RealField, Vector3};
 
@@ -49,7 +51,8 @@ impl<T: RealField> Default for Knot<T> {
 /// way, where the direction changes; a pose to be passed without a stop has no place in a path.
 ///
 /// Where an axis has a limit of jerk, each leg is one S-curve along the path, which is the
-/// shortest motion on a straight way, and slower than need be where the body turns far.
+/// shortest motion on a straight way, or the fastest motion without the limit averaged over a
+/// window of time, whichever takes less.
 /// Between points a cubic has one jerk; at a point its acceleration steps, which counts as a
 /// jerk over the time between the middles of the segments.
 #[derive(Debug, Clone, Copy)]
@@ -227,6 +230,24 @@ fn first_course<'a, const N: usize, T: RealField + Copy>(
 ) -> Option<Course<'a, N, T>> {
     let leg = moving(path).next().map(|(_, leg)| leg);
     Some(Course::new(platform, &leg.or_else(|| path.leg(0))?))
+}
+
+/// Both ends of each segment of the leg whose knots are the first of `knots`.
+fn segments<'a, const N: usize, T: RealField + Copy>(
+    course: &'a Course<'_, N, T>,
+    knots: &'a [Knot<T>],
+) -> impl Iterator<Item = [PvtPoint<N, T>; 2]> + use<'a, N, T> {
+    let point = move |knot: &Knot<T>, segment_s: T| {
+        PvtPoint::new(&course.place(knot.s), knot.speed, T::zero(), segment_s)
+    };
+    let parts = knots.first().map_or(0, |knot| knot.parts);
+    let knots = knots.get(..knots_of(parts)).unwrap_or_default();
+    let mut from = knots.first().map(|knot| point(knot, T::zero()));
+    knots.windows(2).filter_map(move |pair| {
+        let [before, knot] = pair else { return None };
+        let to = point(knot, before.segment_s);
+        Some([from.replace(to)?, to])
+    })
 }
 
 /// Knots of a leg with so many parts.

@@ -152,6 +152,39 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
     }
 }
 
+/// Where the body turns far, its hardest place does not slow down the whole way. What the axes
+/// need without a limit of jerk is the least that they can need with one.
+#[test]
+fn jerk_costs_a_turn_little() {
+    let limits = AxisLimits::new(-9000.0, 9000.0, 20.0, 50.0);
+    for (turn, way, jerk, most) in [
+        (0.5, 500.0, 25.0, 1.04),
+        (0.5, 500.0, 100.0, 1.01),
+        (1.0, 0.0, 100.0, 1.01),
+        (1.5, 500.0, 1000.0, 1.005),
+        (2.6, 500.0, 1000.0, 1.005),
+    ] {
+        let poses = from_rest([way, 0.0, 0.0], [0.0, 0.0, turn]);
+        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let mut knots = [Knot::default(); 513];
+        let mut plan = |platform: &Platform<3>| {
+            let table = PvtTable::plan(platform, &path, Cut::parts(512), &mut knots).unwrap();
+            let points: Vec<_> = table.points().collect();
+            let shares = shares(platform, &points);
+            assert!(shares.iter().all(|share| *share < LIMIT), "{shares:?}");
+            check_motion(platform, &points, table.duration_s());
+            table.duration_s()
+        };
+        let least = plan(&panel_with(limits));
+        let share = plan(&panel_with(limits.with_jerk(jerk))) / least;
+        println!("turn by {turn}, {way} mm, jerk {jerk}: {share}");
+        assert!(
+            (1.0..most).contains(&share),
+            "{turn}, {way}, {jerk}: {share}"
+        );
+    }
+}
+
 /// Moves whose optimum a fine phase plane gives.
 #[test]
 fn no_slower_than_the_optimum_by_a_thousandth() {

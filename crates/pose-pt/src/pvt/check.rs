@@ -2,6 +2,8 @@
 
 use nalgebra::{RealField, Vector3};
 
+use super::{Knot, segments};
+use crate::course::Course;
 use crate::number::{cube_root, half, two};
 use crate::{Axis, LimitError, Locator, Platform, PvtPoint};
 
@@ -156,8 +158,22 @@ pub(super) struct Shares<const N: usize, T> {
 }
 
 impl<const N: usize, T: RealField + Copy> Shares<N, T> {
+    /// The shares of a leg's knots, from rest to rest.
+    pub(super) fn of(
+        locators: &[Locator<T>; N],
+        course: &Course<'_, N, T>,
+        knots: &[Knot<T>],
+    ) -> Self {
+        let mut shares = Self::new();
+        for [from, to] in segments(course, knots) {
+            shares.add(locators, &from, &to);
+        }
+        shares.stop(locators);
+        shares
+    }
+
     /// At rest.
-    pub(super) fn new() -> Self {
+    fn new() -> Self {
         Self {
             speed: T::zero(),
             acceleration: T::zero(),
@@ -178,12 +194,7 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
     ///
     /// A cubic has one jerk. At a point the acceleration steps: that counts as a jerk over the
     /// time between the middles of the two segments.
-    pub(super) fn add(
-        &mut self,
-        locators: &[Locator<T>; N],
-        from: &PvtPoint<N, T>,
-        to: &PvtPoint<N, T>,
-    ) {
+    fn add(&mut self, locators: &[Locator<T>; N], from: &PvtPoint<N, T>, to: &PvtPoint<N, T>) {
         let mean_s = (self.segment_s + to.segment_s) * half();
         let mut before = self.before;
         let axes = before.iter_mut().flat_map(Vector3::iter_mut);
@@ -204,7 +215,7 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
     }
 
     /// Takes the standstill after the last segment into account.
-    pub(super) fn stop(&mut self, locators: &[Locator<T>; N]) {
+    fn stop(&mut self, locators: &[Locator<T>; N]) {
         let mean_s = self.segment_s * half();
         let limits = locators.iter().flat_map(|locator| &locator.limits);
         let axes = self.before.iter().flat_map(Vector3::iter);

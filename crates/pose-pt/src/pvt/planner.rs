@@ -3,7 +3,7 @@
 use nalgebra::RealField;
 
 use super::check::{self, Shares};
-use super::{Knot, PvtPoint, first_course, has_jerk, knots_of, leg, moving};
+use super::{Knot, first_course, has_jerk, knots_of, leg, moving, segments, smooth};
 use crate::course::Course;
 use crate::cut::{Rule, within_max};
 use crate::number::epsilons;
@@ -68,7 +68,7 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         if let Some(knots) = free.get_mut(..knots_of(parts)) {
             let locators = self.platform.locators();
             if has_jerk(self.platform) {
-                leg::smooth(locators, course, knots, parts);
+                smooth::smooth(locators, course, knots, parts);
             } else {
                 leg::fastest(locators, course, knots, parts);
             }
@@ -153,39 +153,30 @@ fn leg_strain<const N: usize, T: RealField + Copy>(
     course: &Course<'_, N, T>,
     knots: &[Knot<T>],
 ) -> T {
-    let parts = knots.first().map_or(0, |knot| knot.parts);
-    let mut worst = T::zero();
-    let mut from: Option<PvtPoint<N, T>> = None;
-    let mut segment_s = T::zero();
-    for knot in knots.iter().take(knots_of(parts)) {
-        let to = PvtPoint::new(&course.place(knot.s), knot.speed, T::zero(), segment_s);
-        if let Some(from) = from {
-            worst = worst.max(hermite_strain(platform, &from, &to));
-        }
-        segment_s = knot.segment_s;
-        from = Some(to);
-    }
-    worst
+    segments(course, knots).fold(T::zero(), |worst, [from, to]| {
+        worst.max(hermite_strain(platform, &from, &to))
+    })
 }
 
 /// What a stretched leg rounds off.
 const STRETCH_EPSILONS: f64 = 64.0;
 
-/// Looks at what the controller will run: every stroke, and of an S-curve every limit; its time
-/// is multiplied so that it just keeps them all. The fastest table keeps them by its making.
+/// Looks at what the controller will run: every stroke, and where jerk is limited every limit;
+/// the time is then multiplied so that it just keeps them all. The fastest table keeps them by
+/// its making.
 pub(super) fn check_legs<const N: usize, T: RealField + Copy>(
     platform: &Platform<N, T>,
     path: &Path<'_, T>,
     knots: &mut [Knot<T>],
 ) -> Result<(), PlanError<T>> {
-    let zero = T::zero();
     let Some(course) = first_course(platform, path) else {
         return Ok(());
     };
-    let mut last = PvtPoint::new(&course.place(zero), zero, zero, zero);
     let failed = |leg, point| move |reason| PlanError::Limit { leg, point, reason };
-    platform.check_axes(&last.axes).map_err(failed(0, 0))?;
-    let (mut rest, smooth) = (knots, has_jerk(platform));
+    platform
+        .check_axes(&course.place(T::zero()).axes)
+        .map_err(failed(0, 0))?;
+    let mut rest = knots;
     for (number, leg) in moving(path) {
         let parts = rest.first().map_or(0, |knot| knot.parts);
         let Some((knots, later)) = rest.split_at_mut_checked(knots_of(parts)) else {
@@ -193,23 +184,12 @@ pub(super) fn check_legs<const N: usize, T: RealField + Copy>(
         };
         rest = later;
         let course = Course::new(platform, &leg);
-        let mut shares = Shares::new();
-        for (index, pair) in (1..).zip(knots.windows(2)) {
-            let [before, knot] = pair else { continue };
-            let place = course.place(knot.s);
-            let point = PvtPoint::new(&place, knot.speed, zero, before.segment_s);
-            check::strokes(platform, &last, &point).map_err(failed(number, index))?;
-            if smooth {
-                shares.add(platform.locators(), &last, &point);
-            }
-            last = point;
+        for (index, [from, to]) in (1..).zip(segments(&course, knots)) {
+            check::strokes(platform, &from, &to).map_err(failed(number, index))?;
         }
-        if smooth {
-            shares.stop(platform.locators());
-            stretch_time(
-                knots,
-                shares.stretch() * (T::one() + epsilons(STRETCH_EPSILONS)),
-            );
+        if has_jerk(platform) {
+            let stretch = Shares::of(platform.locators(), &course, knots).stretch();
+            stretch_time(knots, stretch * (T::one() + epsilons(STRETCH_EPSILONS)));
         }
     }
     Ok(())

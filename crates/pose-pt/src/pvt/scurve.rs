@@ -126,7 +126,7 @@ impl<T: RealField + Copy> SCurve<T> {
 }
 
 /// The share of a count, rounded.
-fn share<T: RealField + Copy>(whole: u32, share: T) -> u32 {
+pub(super) fn share<T: RealField + Copy>(whole: u32, share: T) -> u32 {
     let value: Option<f64> = nalgebra::try_convert((count::<T>(whole) * share).round());
     #[expect(
         clippy::cast_possible_truncation,

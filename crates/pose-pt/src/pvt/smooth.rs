@@ -1,0 +1,232 @@
+//! Speeds along one leg whose jerk is limited.
+
+use nalgebra::RealField;
+
+use super::check::Shares;
+use super::scurve::{SCurve, share};
+use super::{Knot, MIN_PARTS, leg, window};
+use crate::Locator;
+use crate::course::Course;
+use crate::number::{cube_root, half, larger, largest, magnitude, two};
+use crate::turn::count;
+
+/// Fills the knots of a leg, one more than parts, with the faster of an S-curve along the path
+/// and the motion that the speeds and accelerations allow, averaged over a window of time.
+///
+/// The S-curve is the shortest motion on a straight way; where the body turns far, its one
+/// speed is that of the hardest place. The average over a time w lasts w longer than what it
+/// is taken of, and a step of the acceleration by a becomes a jerk of a / w. Whatever either
+/// asks of the axes besides is made up for by stretching its time.
+pub(super) fn smooth<const N: usize, T: RealField + Copy>(
+    locators: &[Locator<T>; N],
+    course: &Course<'_, N, T>,
+    knots: &mut [Knot<T>],
+    parts: u32,
+) {
+    let curve = Easing::Curve(s_curve(locators, course));
+    let mut trial = Trial {
+        locators,
+        course,
+        parts: parts.min(TRIAL_PARTS),
+        knots,
+    };
+    let curve_s = trial.time(&curve);
+    let (easing, time_s) = trial.best_average();
+    let easing = if time_s < curve_s * nalgebra::convert(1.0 - LEAST_GAIN) {
+        easing
+    } else {
+        curve
+    };
+    easing.lay(locators, course, trial.knots, parts);
+}
+
+/// Parts that tell a faster motion from a slower one.
+const TRIAL_PARTS: u32 = 128;
+
+/// What an average must gain: the knots of an S-curve stand where its jerk changes, while few
+/// knots see little of the jerk of an average.
+const LEAST_GAIN: f64 = 0.01;
+
+/// Windows that are tried: the whole time of the fastest motion, and halves of it.
+const WINDOWS: u32 = 11;
+
+/// Rounds in which the best window is refined, by a factor of √2 and roots of it.
+const REFINEMENTS: u32 = 3;
+
+/// A motion of limited jerk.
+#[derive(Debug, Clone, Copy)]
+enum Easing<T> {
+    Curve(SCurve<T>),
+    /// The fastest motion, of `fastest_s`, averaged over `window_s`.
+    Average {
+        fastest_s: T,
+        window_s: T,
+    },
+}
+
+impl<T: RealField + Copy> Easing<T> {
+    fn lay<const N: usize>(
+        &self,
+        locators: &[Locator<T>; N],
+        course: &Course<'_, N, T>,
+        knots: &mut [Knot<T>],
+        parts: u32,
+    ) {
+        match self {
+            Self::Curve(curve) => lay_curve(curve, knots, parts),
+            Self::Average {
+                fastest_s,
+                window_s,
+            } => {
+                let late = share(parts, *window_s / (*fastest_s + *window_s));
+                let late = late.min(parts.saturating_sub(MIN_PARTS)).max(1);
+                leg::fastest(locators, course, knots, parts.saturating_sub(late));
+                window::average(knots, parts, late, *window_s);
+            }
+        }
+    }
+}
+
+fn lay_curve<T: RealField + Copy>(curve: &SCurve<T>, knots: &mut [Knot<T>], parts: u32) {
+    let mut rest = knots.iter_mut();
+    curve.knots(parts, |motion, segment_s| {
+        if let Some(knot) = rest.next() {
+            *knot = Knot {
+                s: motion.way,
+                speed: motion.speed,
+                segment_s,
+                parts,
+            };
+        }
+    });
+}
+
+/// What motions of a leg are compared with.
+struct Trial<'a, const N: usize, T: RealField> {
+    locators: &'a [Locator<T>; N],
+    course: &'a Course<'a, N, T>,
+    parts: u32,
+    knots: &'a mut [Knot<T>],
+}
+
+impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
+    /// The time that a motion takes when it just keeps all limits.
+    fn time(&mut self, easing: &Easing<T>) -> T {
+        easing.lay(self.locators, self.course, self.knots, self.parts);
+        let shares = Shares::of(self.locators, self.course, self.knots);
+        self.duration_s() * shares.stretch()
+    }
+
+    fn duration_s(&self) -> T {
+        let parts = usize::try_from(self.parts).unwrap_or(usize::MAX);
+        let segments = self.knots.iter().take(parts);
+        segments.fold(T::zero(), |sum, knot| sum + knot.segment_s)
+    }
+
+    /// The average with the window of the shortest time, and that time.
+    fn best_average(&mut self) -> (Easing<T>, T) {
+        leg::fastest(self.locators, self.course, self.knots, self.parts);
+        let fastest_s = self.duration_s();
+        let average = |window_s| Easing::Average {
+            fastest_s,
+            window_s,
+        };
+        let (mut window_s, mut best_s) = (fastest_s, self.time(&average(fastest_s)));
+        let mut attempt = |trial: &mut Self, candidate: T| {
+            let time_s = trial.time(&average(candidate));
+            if time_s < best_s {
+                (window_s, best_s) = (candidate, time_s);
+            }
+            window_s
+        };
+        let mut candidate = fastest_s;
+        let mut best = fastest_s;
+        for _ in 1..WINDOWS {
+            candidate *= half();
+            best = attempt(self, candidate);
+        }
+        let mut factor = two::<T>().sqrt();
+        for _ in 0..REFINEMENTS {
+            let middle = best;
+            attempt(self, middle * factor);
+            best = attempt(self, middle / factor);
+            factor = factor.sqrt();
+        }
+        (average(window_s), best_s)
+    }
+}
+
+/// Places at which the slopes of a leg are looked at for its S-curve.
+const SAMPLES: u32 = 64;
+
+/// An S-curve whose limits keep those of the axes all along the leg.
+///
+/// ```text
+/// q̇ = q' ṡ   q̈ = q″ ṡ² + q' s̈   q⃛ = q‴ ṡ³ + 3 q″ ṡ s̈ + q' s⃛
+/// ```
+///
+/// The speed is taken so that q″ ṡ² uses at most half of the acceleration and q‴ ṡ³ a third
+/// of the jerk, the acceleration so that its product uses at most another third; what is
+/// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
+fn s_curve<const N: usize, T: RealField + Copy>(
+    locators: &[Locator<T>; N],
+    course: &Course<'_, N, T>,
+) -> SCurve<T> {
+    let constant = |value: f64| nalgebra::convert::<f64, T>(value);
+    let derivatives = derivatives(course);
+    let all = || {
+        let limits = locators.iter().flat_map(|locator| &locator.limits);
+        limits.zip(derivatives.iter().flatten())
+    };
+    let most = largest::<T>();
+    let speed = all().fold(most, |speed, (limits, [p1, p2, p3])| {
+        let jerk = limits.jerk.unwrap_or(most);
+        speed
+            .min(limits.speed / *p1)
+            .min((limits.acceleration / (two::<T>() * *p2)).sqrt())
+            .min(cube_root(jerk / (constant(3.0) * *p3)))
+    });
+    let acceleration = all().fold(most, |acceleration, (limits, [p1, p2, _])| {
+        let jerk = limits.jerk.unwrap_or(most);
+        acceleration
+            .min((limits.acceleration - *p2 * speed * speed) / *p1)
+            .min(jerk / (constant(9.0) * *p2 * speed))
+    });
+    // Without an axis that limits it: a thousandth of the time that the way takes.
+    let jerk = acceleration * acceleration.sqrt() * constant(1e3);
+    let jerk = all().fold(jerk, |least, (limits, [p1, p2, p3])| match limits.jerk {
+        Some(jerk) => {
+            let used = *p3 * speed * speed * speed + constant(3.0) * *p2 * speed * acceleration;
+            least.min((jerk - used) / *p1)
+        }
+        None => least,
+    });
+    SCurve::new(speed, acceleration, jerk)
+}
+
+/// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a
+/// number that can be divided by.
+fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -> [[[T; 3]; 3]; N] {
+    let samples = count::<T>(SAMPLES);
+    let mut most = [[[T::one() / largest(); 3]; 3]; N];
+    for index in 0..SAMPLES - 1 {
+        let slope = |next: u32| course.place(count::<T>(index + next) / samples).slope;
+        let (first, second, third) = (slope(0), slope(1), slope(2));
+        let values = first.iter().zip(second.iter().zip(&third));
+        for (most, (first, (second, third))) in most.iter_mut().zip(values) {
+            let values = first.iter().zip(second.iter().zip(third.iter()));
+            for ([p1, p2, p3], (first, (second, third))) in most.iter_mut().zip(values) {
+                let changes = [*second - *first, *third - *second].map(|change| change * samples);
+                for slope in [*first, *second, *third] {
+                    *p1 = larger(*p1, magnitude(slope));
+                }
+                for change in changes {
+                    *p2 = larger(*p2, magnitude(change));
+                }
+                let [before, after] = changes;
+                *p3 = larger(*p3, magnitude((after - before) * samples));
+            }
+        }
+    }
+    most
+}

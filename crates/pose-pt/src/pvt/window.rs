@@ -1,0 +1,215 @@
+//! A motion averaged over a window of time.
+
+use nalgebra::RealField;
+
+use super::Knot;
+use crate::number::half;
+use crate::turn::count;
+
+/// Replaces the motion s(t) of the first `parts - late` parts by its mean over the `window_s`
+/// before t, and lets the last `late` parts run it out.
+///
+/// ```text
+/// s̄(t) = 1/w ∫ s(u) du,  u = t - w..t      ds̄/dt = (s(t) - s(t - w)) / w
+/// ```
+///
+/// Before the motion s is 0, behind it 1. The mean at t needs nothing later than t: from the end
+/// to the start it is taken in place. The integral is kept as that of s(t) - s(u), which has the
+/// digits of near places.
+pub(super) fn average<T: RealField + Copy>(
+    knots: &mut [Knot<T>],
+    parts: u32,
+    late: u32,
+    window_s: T,
+) {
+    let place = |parts: u32| usize::try_from(parts).unwrap_or(usize::MAX);
+    let (last, end) = (place(parts.saturating_sub(late)), place(parts));
+    let Some(mut now) = knots.get(last).copied() else {
+        return;
+    };
+    let mut behind = Behind::new(last, now);
+    let mut lag = T::zero();
+    for index in (0..end).rev() {
+        let (mut before, mut gained) = (now, T::zero());
+        before.segment_s = window_s / count(late);
+        if index < last {
+            before = knots.get(index).copied().unwrap_or(now);
+            gained = lag_of_segment(&before, &now);
+        }
+        let time = before.segment_s;
+        lag -= gained + (now.s - before.s) * (window_s - time);
+        lag += behind.back(knots, time, before.s);
+        now = before;
+        if let Some(knot) = knots.get_mut(index) {
+            *knot = Knot {
+                s: now.s - lag / window_s,
+                speed: (now.s - behind.s()) / window_s,
+                segment_s: time,
+                parts,
+            };
+        }
+    }
+    let rest = |s| Knot {
+        s,
+        speed: T::zero(),
+        segment_s: T::zero(),
+        parts,
+    };
+    if let Some(knot) = knots.get_mut(end) {
+        *knot = rest(T::one());
+    }
+    if let Some(knot) = knots.first_mut() {
+        *knot = Knot {
+            segment_s: knot.segment_s,
+            ..rest(T::zero())
+        };
+    }
+}
+
+/// ∫ (s(end) - s(u)) du over a segment of even acceleration: h² (v₀ + 2 v₁) / 6.
+fn lag_of_segment<T: RealField + Copy>(from: &Knot<T>, to: &Knot<T>) -> T {
+    let sixth = nalgebra::convert::<f64, T>(1.0 / 6.0);
+    let time = from.segment_s;
+    (from.speed + to.speed + to.speed) * time * time * sixth
+}
+
+/// Where the window begins, on its way back along the motion.
+struct Behind<T> {
+    /// Knots before the segment.
+    index: usize,
+    /// The segment's first knot; at rest at 0 before the motion.
+    from: Knot<T>,
+    acceleration: T,
+    /// Time since the segment's first knot.
+    offset_s: T,
+}
+
+impl<T: RealField + Copy> Behind<T> {
+    /// At a knot.
+    fn new(index: usize, knot: Knot<T>) -> Self {
+        Self {
+            index,
+            from: knot,
+            acceleration: T::zero(),
+            offset_s: T::zero(),
+        }
+    }
+
+    fn s(&self) -> T {
+        let mean = self.from.speed + self.acceleration * self.offset_s * half();
+        self.from.s + mean * self.offset_s
+    }
+
+    /// Goes back by a time; ∫ (s - s(u)) du over it.
+    fn back(&mut self, knots: &[Knot<T>], time: T, s: T) -> T {
+        let mut left = time;
+        let mut integral = T::zero();
+        while left > self.offset_s {
+            left -= self.offset_s;
+            integral += self.within(self.offset_s, s);
+            let Some(index) = self.index.checked_sub(1) else {
+                // Nothing has moved before.
+                return integral + s * left;
+            };
+            self.enter(index, knots);
+        }
+        integral + self.within(left, s)
+    }
+
+    /// Goes back by a time within the segment.
+    fn within(&mut self, time: T, s: T) -> T {
+        let third = nalgebra::convert::<f64, T>(1.0 / 3.0);
+        self.offset_s -= time;
+        let speed = self.from.speed + self.acceleration * self.offset_s;
+        let mean = (speed + self.acceleration * time * third) * time * half();
+        (s - self.s() - mean) * time
+    }
+
+    /// Enters a segment at its end.
+    fn enter(&mut self, index: usize, knots: &[Knot<T>]) {
+        let Some(from) = knots.get(index).copied() else {
+            return;
+        };
+        *self = Self {
+            index,
+            from,
+            acceleration: (self.from.speed - from.speed) / from.segment_s,
+            offset_s: from.segment_s,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Knot, average};
+
+    const PARTS: u32 = 6;
+    const TIMES: [f64; 6] = [0.3, 0.1, 0.5, 0.2, 0.4, 0.25];
+    const SPEEDS: [f64; 7] = [0.0, 0.9, 0.6, 0.75, 0.75, 0.2, 0.0];
+    /// Of the sum that stands for an integral.
+    const SLICES: u32 = 20_000;
+    /// What the sum is off by, and a way that is 1 but for the last digits of its times.
+    const TOLERANCE: f64 = 1e-8;
+
+    /// Place and speed at a time, from the numbers above alone.
+    fn motion(time: f64, scale: f64) -> [f64; 2] {
+        let (mut s, mut left) = (0.0, time);
+        if left <= 0.0 {
+            return [0.0; 2];
+        }
+        for (duration, pair) in TIMES.iter().zip(SPEEDS.windows(2)) {
+            let rate = (pair[1] - pair[0]) / duration;
+            let within = left.min(*duration);
+            s += (pair[0] + rate * within / 2.0) * within;
+            if left <= *duration {
+                return [s * scale, (pair[0] + rate * left) * scale];
+            }
+            left -= duration;
+        }
+        [1.0, 0.0]
+    }
+
+    /// The motion's knots, with room for late ones.
+    fn knots(scale: f64) -> [Knot<f64>; 12] {
+        let mut time = 0.0;
+        let mut knots = [Knot::default(); 12];
+        let times = TIMES.iter().chain([&0.0]);
+        for ((knot, duration), speed) in knots.iter_mut().zip(times).zip(SPEEDS) {
+            *knot = Knot {
+                s: motion(time, scale)[0],
+                speed: speed * scale,
+                segment_s: *duration,
+                parts: PARTS,
+            };
+            time += duration;
+        }
+        knots
+    }
+
+    #[test]
+    fn a_window_of_any_length_takes_the_mean() {
+        let scale = 1.0 / motion(TIMES.iter().sum::<f64>() - 1e-15, 1.0)[0];
+        for (late, window) in [(1, 0.01), (2, 0.35), (3, 1.1), (5, 1.75), (4, 9.0)] {
+            let mut knots = knots(scale);
+            average(&mut knots, PARTS + late, late, window);
+            let knots = knots.iter().take(1 + (PARTS + late) as usize);
+            let mut time = 0.0;
+            for knot in knots.clone() {
+                let slice = window / f64::from(SLICES);
+                let sum: f64 = (0..SLICES)
+                    .map(|number| motion(time - (f64::from(number) + 0.5) * slice, scale)[0])
+                    .sum();
+                let mean = sum / f64::from(SLICES);
+                assert!((knot.s - mean).abs() < TOLERANCE, "{window} s at {time}");
+                let gained = motion(time, scale)[0] - motion(time - window, scale)[0];
+                assert!((knot.speed - gained / window).abs() < TOLERANCE / window);
+                assert_eq!(knot.parts, PARTS + late);
+                time += knot.segment_s;
+            }
+            assert!((time - TIMES.iter().sum::<f64>() - window).abs() < TOLERANCE);
+            let mut ends = knots.map(|knot| [knot.s, knot.speed]);
+            assert_eq!(ends.next(), Some([0.0, 0.0]));
+            assert_eq!(ends.next_back(), Some([1.0, 0.0]));
+        }
+    }
+}
