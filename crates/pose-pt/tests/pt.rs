@@ -1,11 +1,14 @@
 //! PT tables: points, times, strain, errors.
 #![cfg(test)]
 
+#[path = "support/moves.rs"]
+mod moves;
 #[path = "support/strain.rs"]
 mod strain;
 #[path = "support/platform.rs"]
 mod support;
 
+use moves::{ALL, from_rest, poses};
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{
     Axis, AxisLimits, Convention, Cut, Interpolation, LimitError, Locator, Path, PathError,
@@ -20,13 +23,6 @@ const ROUNDING: f64 = 1e-11;
 
 /// Rigid distances, relative.
 const RIGID: f64 = 1e-13;
-
-const ALL: [Interpolation; 4] = [
-    Interpolation::Straight,
-    Interpolation::Screw,
-    Interpolation::Vector(Convention::ExtrinsicXyz),
-    Interpolation::Vector(Convention::IntrinsicXyz),
-];
 
 /// Distances between locators, against those of the anchors.
 fn rigid<const N: usize>(platform: &Platform<N>, axes: &[Vector3<f64>; N]) -> f64 {
@@ -102,10 +98,7 @@ fn points_follow_the_leg() {
 #[test]
 fn the_slowest_axis_runs_at_its_rated_speed() {
     for platform in [panel(), skewed()] {
-        let poses = [
-            pose([0.0; 3], [0.0; 3]),
-            pose([30.0, -12.0, 7.0], [0.0, 0.02, 0.03]),
-        ];
+        let poses = from_rest([30.0, -12.0, 7.0], [0.0, 0.02, 0.03]);
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let table = PtTable::plan(&platform, &path, Cut::parts(100)).unwrap();
         let points: Vec<_> = table.points().collect();
@@ -129,15 +122,12 @@ fn the_slowest_axis_runs_at_its_rated_speed() {
 #[test]
 fn steps_are_smaller_than_the_accuracy() {
     let platform = panel();
-    let poses = [pose([0.0; 3], [0.0; 3]), pose([10.0, 0.0, 0.0], [0.0; 3])];
+    let poses = from_rest([10.0, 0.0, 0.0], [0.0; 3]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 1002);
     assert!((table.duration_s() - 10.0 / SPEED).abs() < 1e-12);
-    let poses = [
-        pose([0.0; 3], [0.0; 3]),
-        pose([0.1, 0.0, 0.0], [0.0, 0.0, 0.05]),
-    ];
+    let poses = from_rest([0.1, 0.0, 0.0], [0.0, 0.0, 0.05]);
     let path = Path::new(&poses, Interpolation::Screw).unwrap();
     let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 502);
@@ -149,7 +139,7 @@ fn strain_of_the_panel() {
     let anchors_apart = 0.248_f64.to_radians();
     let platform = panel();
     let turn = 4.0 * anchors_apart;
-    let poses = [pose([0.0; 3], [0.0; 3]), pose([0.0; 3], [0.0, 0.0, turn])];
+    let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
     let points: Vec<_> = table.points().collect();
@@ -198,7 +188,7 @@ fn a_stroke_passed_between_the_ends_is_named() {
 #[test]
 fn wrong_input_is_named() {
     let platform = panel();
-    let good = [pose([0.0; 3], [0.0; 3]), pose([1.0, 0.0, 0.0], [0.0; 3])];
+    let good = from_rest([1.0, 0.0, 0.0], [0.0; 3]);
     let one = Path::new(&good[..1], Interpolation::Straight).unwrap_err();
     assert_eq!(one, PathError::TooFew { poses: 1 });
     let bad = [good[0], pose([f64::NAN, 0.0, 0.0], [0.0; 3])];
@@ -278,14 +268,6 @@ fn single_precision_keeps_the_body_rigid() {
             // 16 roundings of coordinates of 420 mm.
             assert!(strain.abs() < 420.0 * 16.0 * f32::EPSILON, "{strain}");
         }
-    }
-}
-
-prop_compose! {
-    fn poses()(translation in prop::array::uniform3(-40.0..40.0), turn in prop::array::uniform3(-0.2..0.2),
-        to in prop::array::uniform3(-40.0..40.0), to_turn in prop::array::uniform3(-0.2..0.2))
-        -> [Isometry3<f64>; 2] {
-        [pose(translation, turn), pose(to, to_turn)]
     }
 }
 

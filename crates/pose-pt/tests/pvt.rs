@@ -3,21 +3,21 @@
 
 #[path = "support/cubic.rs"]
 mod cubic;
+#[path = "support/moves.rs"]
+mod moves;
 #[path = "support/optimum.rs"]
 mod optimum;
-#[path = "support/strain.rs"]
-mod strain;
 #[path = "support/platform.rs"]
 mod support;
 
 use cubic::{between, cubic};
+use moves::{ALL, from_rest, poses};
 use pose_pt::nalgebra::{Isometry3, Point3, Vector3};
 use pose_pt::{
-    AxisLimits, Convention, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError,
-    Platform, PtTable, PvtPoint, PvtTable,
+    AxisLimits, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform, PvtPoint,
+    PvtTable,
 };
 use proptest::prelude::*;
-use strain::strain;
 use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
 
 /// Times and positions of some metres rounded off, in limits that a reader recomputes.
@@ -25,17 +25,6 @@ const LIMIT: f64 = 1.0 + 1e-9;
 
 /// Positions of some metres rounded off.
 const ROUNDING: f64 = 1e-11;
-
-const ALL: [Interpolation; 4] = [
-    Interpolation::Straight,
-    Interpolation::Screw,
-    Interpolation::Vector(Convention::ExtrinsicXyz),
-    Interpolation::Vector(Convention::IntrinsicXyz),
-];
-
-fn from_rest(translation: [f64; 3], turn: [f64; 3]) -> [Isometry3<f64>; 2] {
-    [pose([0.0; 3], [0.0; 3]), pose(translation, turn)]
-}
 
 /// The largest shares of the limits of speed, acceleration and jerk.
 fn shares<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> [f64; 3] {
@@ -65,18 +54,6 @@ fn shares<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> [f6
         before_s = to.segment_s;
     }
     shares
-}
-
-/// The largest strain between points, at 1000 places of each segment.
-fn measured<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> f64 {
-    let mut worst = 0.0_f64;
-    for pair in points.windows(2) {
-        for place in 0..=1000 {
-            let [axes, ..] = between(&pair[0], &pair[1], f64::from(place) / 1000.0);
-            worst = worst.max(strain(platform, &axes));
-        }
-    }
-    worst
 }
 
 /// Rest at both ends, times that add up, and velocities that belong to a rigid motion.
@@ -282,55 +259,6 @@ fn poses_on_the_way_are_stops() {
     }
 }
 
-/// From rest the fourth-order figure for constant speed does not hold: the strain is L δ²/32.
-#[test]
-fn strain_from_rest_is_of_second_order() {
-    let platform = panel();
-    let turn = 0.01;
-    let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    let mut knots = [Knot::default(); 3];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(2), &mut knots).unwrap();
-    let points: Vec<_> = table.points().collect();
-    let length = (platform.anchors()[1] - platform.anchors()[0]).xy().norm();
-    let half = turn / 2.0;
-    let (bound, measured) = (table.strain_bound(), measured(&platform, &points));
-    let second = length * length / platform.largest_anchor_distance() * half * half / 32.0;
-    assert!(
-        (measured / second - 1.0).abs() < 1e-3,
-        "{measured} {second}"
-    );
-    assert!(measured > 1e3 * length * half.powi(4) / 384.0);
-    assert!(
-        bound >= measured && bound < 1.01 * measured,
-        "{bound} {measured}"
-    );
-}
-
-#[test]
-fn strain_decides_the_number_of_points() {
-    let platform = panel();
-    let poses = from_rest([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    for allowed in [0.1, 0.01, 0.001] {
-        let mut knots = vec![Knot::default(); 2000];
-        let table = PvtTable::plan(&platform, &path, Cut::strain(allowed), &mut knots).unwrap();
-        let (parts, bound) = (table.len() - 1, table.strain_bound());
-        let points: Vec<_> = table.points().collect();
-        println!(
-            "{allowed} mm: {parts} parts, bound {bound}, {} s",
-            table.duration_s()
-        );
-        assert!(bound <= allowed && measured(&platform, &points) <= bound);
-        let linear = PtTable::plan(&platform, &path, Cut::strain(allowed)).unwrap();
-        println!("PT: {} parts", linear.len() - 1);
-        assert!(linear.len() > table.len());
-        let fewer = Cut::parts(u32::try_from(parts - 1).unwrap());
-        let coarse = PvtTable::plan(&platform, &path, fewer, &mut knots).unwrap();
-        assert!(coarse.strain_bound() > allowed);
-    }
-}
-
 #[test]
 fn wrong_input_is_named() {
     let platform = panel_with(AxisLimits::new(-100.0, 100.0, SPEED, ACCELERATION));
@@ -484,14 +412,6 @@ fn single_precision_keeps_its_limits() {
     }
 }
 
-prop_compose! {
-    fn poses()(translation in prop::array::uniform3(-40.0..40.0), turn in prop::array::uniform3(-0.2..0.2),
-        to in prop::array::uniform3(-40.0..40.0), to_turn in prop::array::uniform3(-0.2..0.2))
-        -> [Isometry3<f64>; 2] {
-        [pose(translation, turn), pose(to, to_turn)]
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(160))]
 
@@ -513,19 +433,5 @@ proptest! {
         // Something is at its limit.
         prop_assert!(shares.iter().any(|share| *share > 0.99), "{:?}", shares);
         check_motion(&platform, &points, table.duration_s());
-    }
-
-    #[test]
-    fn the_strain_never_passes_its_bound(
-        poses in poses(), kind in 0..4_usize, parts in 2..12_u32, speed in 1.0..1000.0,
-    ) {
-        let platform = panel_with(AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION));
-        let path = Path::new(&poses, ALL[kind]).unwrap();
-        let mut knots = [Knot::default(); 13];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
-        let points: Vec<_> = table.points().collect();
-        let (bound, measured) = (table.strain_bound(), measured(&platform, &points));
-        prop_assert!(measured <= bound + ROUNDING, "{} {}", measured, bound);
-        prop_assert!(bound <= 3.0 * measured + ROUNDING, "{} {}", measured, bound);
     }
 }
