@@ -84,7 +84,7 @@ impl<'a> Command<'a> {
             Self::Led { .. } => Err(EncodeError::Model { model }),
             Self::Lcd(commands) => {
                 let len = commands.as_bytes().len().saturating_add(1);
-                if commands.model() != model || len > model.max_lcd_block() {
+                if commands.model() != model {
                     return Err(EncodeError::Model { model });
                 }
                 let capacity = buffer.len();

@@ -278,7 +278,6 @@ impl Driver {
         }
         let poll_is_due = self.poll_at.is_some_and(|due| due <= now);
         let (request, telegram) = match &self.pending {
-            _ if self.must_poll && !poll_is_due => return Ok(None),
             Some(Pending::Led(code)) if !self.must_poll => {
                 (Request::Job(Job::Led), put(buffer, &[*code])?)
             }

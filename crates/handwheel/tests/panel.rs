@@ -3,8 +3,8 @@
 
 use handwheel::Position;
 use handwheel::{
-    Action, Arbiter, Axis, Input, Key, Knob, Light, Panel, PoseChange, Refusal, Refused, Settings,
-    SettingsError, Status, Target, UnitId, WheelQuantiser,
+    Action, Arbiter, Axis, Event, Input, Key, Knob, LcdAnswer, Light, Panel, PoseChange, Refusal,
+    Refused, Settings, SettingsError, Status, Target, UnitId, WheelQuantiser,
 };
 use proptest::prelude::*;
 
@@ -57,8 +57,8 @@ impl Desk {
     fn screen(&self, unit: usize) -> Vec<String> {
         let positions = [[1_234_567, -1, 0], [0; 3], [i32::MIN; 3]];
         let screen = self.panels[unit].screen(&self.arbiter, &positions);
-        screen
-            .lines()
+        let text = screen.to_string();
+        text.lines()
             .map(|line| line.trim_end().to_owned())
             .collect()
     }
@@ -131,6 +131,50 @@ fn the_three_screens() {
 }
 
 #[test]
+fn a_key_that_went_down_unseen_does_nothing() {
+    let mut desk = Desk::new(1);
+    let key = Key::new(ENTER).ok();
+    let (w1, w2) = (Position::MIN, Position::MIN);
+    desk.on(0, Input::Status(Status::Hbls { key, w1, w2 }));
+    desk.on(0, Input::Key(key));
+    assert_eq!(desk.screen(0)[0], "SINGLE");
+    desk.on(0, Input::Key(None));
+    desk.on(0, Input::Key(key));
+    assert_eq!(desk.screen(0)[0], " LOCATOR  1 IDLE");
+}
+
+#[test]
+fn events_of_the_driver_are_inputs() {
+    let key = Key::new(5).ok();
+    let lcd = LcdAnswer::Done;
+    let status = Status::Hbas { key, lcd };
+    let (knob, position) = (Knob::W2, Position::MAX);
+    let connected = false;
+    for (event, input) in [
+        (Event::Key(key), Some(Input::Key(key))),
+        (
+            Event::Knob(knob, position),
+            Some(Input::Knob(knob, position)),
+        ),
+        (
+            Event::Status { status, connected },
+            Some(Input::Status(status)),
+        ),
+        (
+            Event::Lcd {
+                answer: lcd,
+                status: Some(status),
+            },
+            Some(Input::Status(status)),
+        ),
+        (Event::Lost, Some(Input::Lost)),
+        (Event::LedDone, None),
+    ] {
+        assert_eq!(Input::of_event(&event), input);
+    }
+}
+
+#[test]
 fn the_list_scrolls() {
     let settings = Settings::new(WheelQuantiser::new(100, 10).unwrap());
     let mut panel = Panel::new(UnitId(0), settings).unwrap();
@@ -173,6 +217,15 @@ fn a_jog_follows_the_wheel_and_stops() {
     assert_eq!(desk.on(0, Input::Knob(Knob::W2, third)), stop);
     desk.on(0, Input::AtRest);
     assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::Z, 55));
+    // The same direction once more changes nothing.
+    assert_eq!(desk.on(0, Input::Knob(Knob::W2, third)), None);
+    // Of the keys only enter stops, and the screen stays.
+    assert_eq!(desk.press(0, DOWN), None);
+    assert_eq!(desk.press(0, ENTER), stop);
+    assert_eq!(desk.screen(0)[0], " LOCATOR  1 BUSY");
+    desk.on(0, Input::AtRest);
+    assert_eq!(desk.message(0), "STOPPED");
+    assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::Z, 55));
     // A multiplier that is none: stop, and say why.
     desk.on(0, Input::Knob(Knob::W1, Position::MAX));
     assert_eq!(desk.on(0, Input::Wheel(50)), stop);
@@ -202,6 +255,9 @@ fn a_pose_change_runs() {
     };
     assert_eq!(desk.press(0, START), Some(Action::Move(change)));
     assert_eq!(desk.press(0, START), None);
+    assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
+    // The body does not follow the knobs.
+    assert_eq!(desk.on(0, Input::Knob(Knob::W2, Position::MIN)), None);
     assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
     desk.on(0, Input::AtRest);
     assert_eq!(desk.message(0), "DONE");

@@ -131,6 +131,30 @@ fn last_numbers() {
 }
 
 #[test]
+fn display_blocks_have_a_largest_length() {
+    for model in [Model::Hbls, Model::Hbas] {
+        let max = model.max_lcd_block();
+        let mut telegram = vec![0xA0; max + 1];
+        telegram[0] = 0x6C;
+        let Ok(Command::Lcd(commands)) = Command::decode(model, &telegram[..max]) else {
+            panic!("{model:?}");
+        };
+        assert_eq!(commands.size_hint(), (1, Some(max - 1)));
+        let mut buffer = [0; MAX_COMMAND];
+        let same = Command::Lcd(commands).encode(model, &mut buffer);
+        assert_eq!(same, Ok(&telegram[..max]));
+        let refused = Command::decode(model, &telegram);
+        assert_eq!(refused, Err(DecodeError::Length { len: max + 1 }));
+    }
+    let block = LcdBlock::new(Model::Hbas);
+    assert_eq!(block.commands().size_hint(), (0, Some(0)));
+    let model = Model::Hbls;
+    let mut buffer = [0; MAX_COMMAND];
+    let foreign = Command::Lcd(block.commands()).encode(model, &mut buffer);
+    assert_eq!(foreign, Err(EncodeError::Model { model }));
+}
+
+#[test]
 fn hbas() {
     let mut buffer = [0; MAX_REPORT];
     let status = Status::Hbas {
