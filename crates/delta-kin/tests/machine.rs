@@ -152,6 +152,16 @@ fn limits_are_told_by_arm_and_amount() {
     );
 }
 
+/// By radians, not by their ratio to the end of the range.
+#[test]
+fn of_two_arms_outside_the_farther_is_named() {
+    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| JointRange::new(-1.0, max).ok());
+    let delta = thesis().with_ranges([first, second, third]);
+    let refused = delta.inverse(Point3::new(50.0, 50.0, -300.0));
+    let arm = Arm::First;
+    assert!(matches!(refused, Err(InverseError::JointLimit { arm: named, .. }) if named == arm));
+}
+
 /// A range above π takes the angle at the turn that lies in it.
 #[test]
 fn a_range_chooses_the_turn() {
@@ -168,6 +178,16 @@ fn a_range_chooses_the_turn() {
         turned,
         knees_in.map(|angle| angle + 2.0 * PI).into(),
         PRINTED,
+    );
+    // Two turns on.
+    let point = Point3::new(50.0, 50.0, -300.0);
+    let wound = delta.with_range(JointRange::new(13.0, 14.0).unwrap());
+    let angles = delta.inverse(point).unwrap();
+    let turned = wound.inverse(point).unwrap();
+    same(
+        turned,
+        angles.map(|angle| angle + 4.0 * PI).into(),
+        2.0 * PRINTED,
     );
 }
 

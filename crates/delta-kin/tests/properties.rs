@@ -4,7 +4,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, ArmGeometry, Delta, InverseError, JointRange, Knee, Pace, Path};
+use delta_kin::{Arm, ArmGeometry, Delta, InverseError, JointRange, Knee, Pace, Path, ZAxis};
 use proptest::prelude::*;
 
 /// `forward(inverse(p))` against p, in machine epsilons of the span, times the conditioning.
@@ -189,6 +189,18 @@ proptest! {
     }
 
     #[test]
+    fn assemblies_are_named_by_height(
+        delta in machines(), thetas in prop::array::uniform3(-3.1..3.1f64), down in any::<bool>(),
+    ) {
+        let z = if down { ZAxis::Down } else { ZAxis::Up };
+        if let Ok(both) = delta.with_z(z).forward_both(Vector3::from(thetas)) {
+            let apart = both.upper.z - both.lower.z;
+            let apart = if down { -apart } else { apart };
+            prop_assert!(apart >= -delta.tolerance(), "{:?}", both);
+        }
+    }
+
+    #[test]
     fn jacobian_is_the_derivative(delta in machines(), thetas in thetas(), rates in directions()) {
         let pose = delta.pose_of(thetas);
         prop_assume!(pose.is_ok());
@@ -292,7 +304,11 @@ proptest! {
             let way = pair[1].angles - pair[0].angles;
             let rates = way.abs() / pair[1].duration_s;
             prop_assert!(rates.x <= 2.0 + 1e-12 && rates.y <= 2.0 + 1e-12 && rates.z <= 1.5 + 1e-12);
-            prop_assert!(pair[1].length / pair[1].duration_s <= 500.0 + 1e-9);
+            let feed = pair[1].length / pair[1].duration_s;
+            prop_assert!(feed <= 500.0 + 1e-9);
+            // And no slower than one of them asks for.
+            let shares = [feed / 500.0, rates.x / 2.0, rates.y / 2.0, rates.z / 1.5];
+            prop_assert!(shares.iter().any(|share| *share > 1.0 - 1e-12), "{:?}", shares);
             for share in [0.1, 0.25, 0.5, 0.6, 0.9] {
                 let at = delta.forward(pair[0].angles + way * share).unwrap();
                 let step = pair[1].fraction - pair[0].fraction;

@@ -29,7 +29,8 @@ fn directions() -> impl Iterator<Item = Vector3<f64>> {
 
 #[test]
 fn the_ball_of_a_clearance_is_reached() {
-    for delta in [delta(), limited()] {
+    let stiff = delta().with_ball_joints(0.3).unwrap();
+    for delta in [delta(), limited(), stiff] {
         let workspace = delta.workspace();
         let mut seen = 0;
         for k in 0..400u32 {
@@ -99,16 +100,51 @@ fn outlines_are_on_the_edge() {
         };
         let flat = workspace.horizontal_slice(-260.0, 90);
         assert_eq!(flat.len(), 90);
-        for (k, point) in flat.enumerate() {
-            assert!(workspace.contains(point) && (point.z + 260.0).abs() < 1e-9);
-            assert!(edge(point), "{k}");
-        }
-        let upright = workspace.vertical_slice(0.5, -260.0, 90);
-        for point in upright {
-            assert!((point.y - point.x * 0.5f64.tan()).abs() < 1e-9);
-            assert!(edge(point), "{point}");
+        let flat: Vec<_> = flat.collect();
+        let upright: Vec<_> = workspace.vertical_slice(0.5, -260.0, 90).collect();
+        assert_eq!((flat.len(), upright.len()), (90, 90));
+        for (k, (flat, upright)) in (0..90).zip(flat.into_iter().zip(upright)) {
+            // Where the rays of 4 degrees to one another lead.
+            let (up, along) = (f64::from(k) * 4.0).to_radians().sin_cos();
+            let off_ray = (flat - Point3::new(0.0, 0.0, -260.0))
+                .cross(&Vector3::new(along, up, 0.0))
+                .norm();
+            assert!(off_ray < 1e-9 && flat.x * along + flat.y * up > 0.0, "{k}");
+            assert!(edge(flat), "{k}");
+            let across = Vector3::new(along * 0.5f64.cos(), along * 0.5f64.sin(), up);
+            let way = upright - Point3::new(0.0, 0.0, -260.0);
+            assert!(
+                way.cross(&across).norm() < 1e-9 && way.dot(&across) > 0.0,
+                "{k}"
+            );
+            assert!(edge(upright), "{upright}");
         }
         assert_eq!(workspace.horizontal_slice(-500.0, 90).count(), 0);
+    }
+}
+
+/// Just inside the edge it is the arm that fails just outside.
+#[test]
+fn the_tightest_arm_is_the_first_to_fail() {
+    let near = 1e-6 * delta().span();
+    for delta in [delta(), limited()] {
+        let workspace = delta.workspace();
+        let outline = workspace.horizontal_slice(-260.0, 90);
+        let named = outline.filter(|point| {
+            let outside = point + point.coords.xy().normalize().to_homogeneous() * (2.0 * near);
+            let arm = match delta.inverse(outside) {
+                Err(
+                    InverseError::TooFar { arm, .. }
+                    | InverseError::TooNear { arm, .. }
+                    | InverseError::BallJoint { arm, .. }
+                    | InverseError::JointLimit { arm, .. },
+                ) => arm,
+                other => panic!("{other:?}"),
+            };
+            workspace.tightest_arm(*point) == arm
+        });
+        // Two may fail at once in the corners.
+        assert!(named.count() >= 84);
     }
 }
 
@@ -131,6 +167,24 @@ fn the_upper_assembly_is_not_in_the_workspace() {
 
 fn pace() -> Pace {
     Pace::new(100.0, [5.0; 3]).unwrap()
+}
+
+#[test]
+fn paths_are_where_they_were_asked() {
+    let (from, to) = (Point3::new(1.0, -2.0, 3.0), Point3::new(9.0, 6.0, -13.0));
+    let line = Path::line(from, to).unwrap();
+    for share in [0.0, 0.125, 0.375, 0.5, 0.625, 0.75, 1.0] {
+        assert_eq!(line.point_at(share), from + (to - from) * share);
+    }
+    assert!((line.length() - 384f64.sqrt()).abs() < 1e-14);
+    // A quarter from X over -Y: clockwise from above.
+    let arc = Path::arc(from, from - Vector3::x() * 5.0, Vector3::z() * 2.0, -1.5).unwrap();
+    for share in [0.0, 0.3, 0.8, 1.0_f64] {
+        let (sin, cos) = (-1.5 * share).sin_cos();
+        let wanted = Point3::new(-4.0 + 5.0 * cos, -2.0 + 5.0 * sin, 3.0);
+        assert!((arc.point_at(share) - wanted).norm() < 1e-14);
+    }
+    assert!((arc.length() - 7.5).abs() < 1e-14);
 }
 
 #[test]

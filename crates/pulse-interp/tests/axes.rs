@@ -113,6 +113,10 @@ fn no_axis_and_one_axis() {
 #[test]
 fn extreme_lengths_begin_as_they_should() {
     let to = [i32::MAX, -i32::MAX, 1];
+    assert_eq!(
+        (AxesLine::new(to).unwrap().to(), Dda::new(to).unwrap().to()),
+        (to, to)
+    );
     let mut steps = AxesLine::new(to).unwrap().steps();
     assert_eq!(steps.steps_left(), 2 * 0x7FFF_FFFF + 1);
     let axes: Vec<usize> = steps.by_ref().take(6).map(|step| step.axis).collect();

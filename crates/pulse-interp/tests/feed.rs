@@ -116,7 +116,7 @@ fn lines_last_as_long_as_they_are() {
         let length = f64::from(to[0]).hypot(f64::from(to[1]));
         for (count, factor) in [
             (line.steps(Rule::Textbook).len(), line.step_factor()),
-            (line.moves().len(), line.move_factor()),
+            (line.moves().moves_left() as usize, line.move_factor()),
         ] {
             let mut pace = Pace::new(UNIT_TICKS);
             let ticks: u64 = (0..count).map(|_| pace.interval(factor)).sum();
@@ -143,6 +143,13 @@ fn factors_at_the_ends_of_their_range() {
         (steps.factor(), steps.next()),
         (Factor::ONE, Some(Move::Right))
     );
+    let arc = Arc::near([0, -10], [13, 2], Turn::CounterClockwise, 4000).unwrap();
+    let mut steps = arc.steps(Rule::Centred);
+    let _ = steps.nth(arc.steps(Rule::Centred).len() - 4);
+    for left in [3, 2, 1] {
+        let seen = (steps.steps_left(), steps.factor(), steps.next());
+        assert_eq!(seen, (left, Factor::ONE, Some(Move::Right)));
+    }
     // The one circle whose path passes the centre.
     let circle = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
     let mut steps = circle.steps(Rule::Textbook);
