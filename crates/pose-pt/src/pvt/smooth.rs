@@ -11,7 +11,7 @@ use crate::number::{cube_root, half, larger, largest, magnitude, two};
 use crate::turn::count;
 
 /// Fills the knots of a leg, one more than parts, with the faster of an S-curve along the path
-/// and the motion that the speeds and accelerations allow, averaged over a window of time.
+/// and the fastest motion without a limit of jerk, averaged over a window of time.
 ///
 /// The S-curve is the shortest motion on a straight way; where the body turns far, its one
 /// speed is that of the hardest place. The average over a time w lasts w longer than what it
@@ -26,18 +26,28 @@ pub(super) fn smooth<const N: usize, T: RealField + Copy>(
     let curve = Easing::Curve(s_curve(locators, course));
     let mut trial = Trial {
         locators,
+        eased: locators.map(eased),
         course,
         parts: parts.min(TRIAL_PARTS),
         knots,
     };
-    let curve_s = trial.time(&curve);
-    let (easing, time_s) = trial.best_average();
-    let easing = if time_s < curve_s * nalgebra::convert(1.0 - LEAST_GAIN) {
-        easing
-    } else {
-        curve
-    };
-    easing.lay(locators, course, trial.knots, parts);
+    let average = trial.best_average();
+    trial.parts = parts;
+    let least_s = trial.time(&curve) * nalgebra::convert(1.0 - LEAST_GAIN);
+    if trial.time(&average) >= least_s {
+        trial.lay(&curve);
+    }
+}
+
+/// A locator whose axes accelerate no more than they need to where only speed and jerk are
+/// limited: √(v j).
+fn eased<T: RealField + Copy>(mut locator: Locator<T>) -> Locator<T> {
+    for limits in &mut locator.limits {
+        if let Some(jerk) = limits.jerk {
+            limits.acceleration = limits.acceleration.min((limits.speed * jerk).sqrt());
+        }
+    }
+    locator
 }
 
 /// Parts that tell a faster motion from a slower one.
@@ -64,29 +74,6 @@ enum Easing<T> {
     },
 }
 
-impl<T: RealField + Copy> Easing<T> {
-    fn lay<const N: usize>(
-        &self,
-        locators: &[Locator<T>; N],
-        course: &Course<'_, N, T>,
-        knots: &mut [Knot<T>],
-        parts: u32,
-    ) {
-        match self {
-            Self::Curve(curve) => lay_curve(curve, knots, parts),
-            Self::Average {
-                fastest_s,
-                window_s,
-            } => {
-                let late = share(parts, *window_s / (*fastest_s + *window_s));
-                let late = late.min(parts.saturating_sub(MIN_PARTS)).max(1);
-                leg::fastest(locators, course, knots, parts.saturating_sub(late));
-                window::average(knots, parts, late, *window_s);
-            }
-        }
-    }
-}
-
 fn lay_curve<T: RealField + Copy>(curve: &SCurve<T>, knots: &mut [Knot<T>], parts: u32) {
     let mut rest = knots.iter_mut();
     curve.knots(parts, |motion, segment_s| {
@@ -101,18 +88,35 @@ fn lay_curve<T: RealField + Copy>(curve: &SCurve<T>, knots: &mut [Knot<T>], part
     });
 }
 
-/// What motions of a leg are compared with.
+/// A leg on which motions are compared.
 struct Trial<'a, const N: usize, T: RealField> {
     locators: &'a [Locator<T>; N],
+    eased: [Locator<T>; N],
     course: &'a Course<'a, N, T>,
     parts: u32,
     knots: &'a mut [Knot<T>],
 }
 
 impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
+    fn lay(&mut self, easing: &Easing<T>) {
+        let (parts, knots) = (self.parts, &mut *self.knots);
+        match easing {
+            Easing::Curve(curve) => lay_curve(curve, knots, parts),
+            Easing::Average {
+                fastest_s,
+                window_s,
+            } => {
+                let late = share(parts, *window_s / (*fastest_s + *window_s));
+                let late = late.min(parts.saturating_sub(MIN_PARTS)).max(1);
+                leg::fastest(&self.eased, self.course, knots, parts.saturating_sub(late));
+                window::average(knots, parts, late, *window_s);
+            }
+        }
+    }
+
     /// The time that a motion takes when it just keeps all limits.
     fn time(&mut self, easing: &Easing<T>) -> T {
-        easing.lay(self.locators, self.course, self.knots, self.parts);
+        self.lay(easing);
         let shares = Shares::of(self.locators, self.course, self.knots);
         self.duration_s() * shares.stretch()
     }
@@ -123,9 +127,9 @@ impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
         segments.fold(T::zero(), |sum, knot| sum + knot.segment_s)
     }
 
-    /// The average with the window of the shortest time, and that time.
-    fn best_average(&mut self) -> (Easing<T>, T) {
-        leg::fastest(self.locators, self.course, self.knots, self.parts);
+    /// The average with the window of the shortest time.
+    fn best_average(&mut self) -> Easing<T> {
+        leg::fastest(&self.eased, self.course, self.knots, self.parts);
         let fastest_s = self.duration_s();
         let average = |window_s| Easing::Average {
             fastest_s,
@@ -152,7 +156,7 @@ impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
             best = attempt(self, middle / factor);
             factor = factor.sqrt();
         }
-        (average(window_s), best_s)
+        average(window_s)
     }
 }
 
