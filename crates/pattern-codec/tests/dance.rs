@@ -205,7 +205,7 @@ fn headers_by_hand_are_read() {
         "code char d[4]={0x3c,0XC4,00,0x0u,};",
         "static const __code int8_t\nd\n[\n2\n]\n[2]\n=\n{{+60,-(60)},{(0),0b0}};",
         "#define N 2\n#define FULL ( - 0x3C ) // speed\nchar d[][N] = {{60,FULL},{0,0}};",
-        "#ifdef X\n#include \"char d[] = {1};\"\n#endif\nchar d[] = {074,/*1,*/-60,//2,\n0,\\\n0}",
+        "#ifdef X\n#include \"char d[] = {1};\"\n#endif\n#error char d[] = {9};\nchar d[] = {074,/*1,*/-60,//2,\n0,\\\n0}",
         "int f(int (*g)(char d[4]), char d[]) { if (d[0]) { d[0] = 1; } char d[] = {9}; }\nextern char e[9];\nint n = 4, d[] = {60,-60,0,0};",
         "\u{FEFF}struct s { char e[3]; } x; char d[4] = {60, 196, 0, 0}, *p = 0;",
         "#define D_PACKING 1\r\n#define D_FRAMES 2\r\nchar d[] = {1, 60, 196,\r\n1, 0, 0};\r\n",

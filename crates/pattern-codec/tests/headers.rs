@@ -148,6 +148,29 @@ fn wrong_patterns_are_refused_with_line_and_column() {
 }
 
 #[test]
+fn reloads_stand_eight_in_a_row() {
+    let period = |reload| TimerPeriod {
+        reload,
+        toggles: true,
+    };
+    let mut text = String::new();
+    let header = ReloadHeader::new();
+    header.write((0..17).map(period), &mut text).unwrap();
+    let rows: Vec<_> = text
+        .lines()
+        .filter(|line| line.starts_with("  0x00"))
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            "  0x0000, 0x0001, 0x0002, 0x0003, 0x0004, 0x0005, 0x0006, 0x0007,",
+            "  0x0008, 0x0009, 0x000A, 0x000B, 0x000C, 0x000D, 0x000E, 0x000F,",
+            "  0x0010"
+        ]
+    );
+}
+
+#[test]
 fn reloads_by_hand_are_read() {
     let text = "unsigned int code theta2[] = { -4096, 0xF00B, 0 };\nchar other[] = { 1 };";
     let data = ReloadData::read(text, "theta2").unwrap();
@@ -164,6 +187,10 @@ fn reloads_by_hand_are_read() {
         (
             "int r[] = { 1 }; char r_toggles[] = { 1, 2 };",
             "line 1, column 44: an array of 2 values, declared are 1",
+        ),
+        (
+            "int r[] = { 1 }; char r_toggles[] = { 256 };",
+            "line 1, column 39: 256 does not fit into",
         ),
         (
             "int s[] = { 1 };",

@@ -80,6 +80,9 @@ fn an_arm_waves_as_asked() {
                 landing.error_half_steps().abs() <= 1.0,
                 "{law:?}: {landing:?}"
             );
+            let off =
+                f64::from(i32::try_from(landing.half_steps).unwrap()) - landing.asked_half_steps;
+            assert!((landing.error_half_steps() - off).abs() < 1e-12);
             let there = usize::try_from(landing.frame).unwrap();
             assert_eq!(position(&dance.frames[..there], law, 0), landing.half_steps);
         }

@@ -204,3 +204,27 @@ fn what_no_motor_makes_is_refused() {
     );
     assert!(turn(Law::CarrySigned, 397, 10).is_ok());
 }
+
+#[test]
+fn a_lower_highest_speed_is_kept() {
+    for law in LAWS {
+        assert_eq!(motor(law).with_max_speed(200).max_speed(), 127);
+        let slow = motor(law).with_max_speed(60);
+        assert_eq!(slow.max_speed(), 60);
+        // A frame at 60 makes 20 half steps.
+        let turn = slow.turn(200, 10, Easing::Linear).unwrap();
+        assert!(turn.eq([60; 10]));
+        let refused = slow.turn(210, 10, Easing::Linear).unwrap_err();
+        assert!(
+            matches!(
+                refused,
+                TurnError::TooFast {
+                    speed: 63,
+                    max: 60,
+                    ..
+                }
+            ),
+            "{refused}"
+        );
+    }
+}
