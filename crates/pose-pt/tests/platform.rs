@@ -326,6 +326,12 @@ fn points_that_determine_no_motion_are_refused() {
         |wanted| move |error| matches!(error, FitError::Collinear { side, .. } if side == wanted);
     assert!(side(Side::From)(fit(&line, &plane)));
     assert!(side(Side::To)(fit(&plane, &line)));
+    for (error, words) in [
+        (fit(&line, &plane), "the moved points are on a line: "),
+        (fit(&plane, &line), "the met points are on a line: "),
+    ] {
+        assert!(error.to_string().starts_with(words), "{error}");
+    }
     let same = [Point3::new(1.0, 2.0, 3.0); 3];
     assert!(matches!(
         fit(&same, &plane),
@@ -399,7 +405,14 @@ fn axes_that_were_not_moved_are_missed() {
         let positions = positions.map(Vector3::from);
         let points = positions.map(|axes| locator.position(&axes));
         match calibrate(&positions, &points) {
-            Err(CalibrationError::Rank { rank, .. }) => rank,
+            Err(CalibrationError::Rank {
+                rank,
+                width,
+                needed,
+            }) => {
+                assert!(width <= needed);
+                rank
+            }
             other => panic!("{other:?}"),
         }
     };
