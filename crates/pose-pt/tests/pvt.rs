@@ -112,6 +112,10 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
     let short: f64 = 0.5;
     for (way, seconds) in [
         (100.0, 100.0 / SPEED + SPEED / ACCELERATION + rise),
+        (
+            8.0 * (8.0 / ACCELERATION + rise),
+            2.0 * (8.0 / ACCELERATION + rise),
+        ),
         (short, 4.0 * (short / (2.0 * jerk)).cbrt()),
     ] {
         let poses = from_rest([0.0, way, 0.0], [0.0; 3]);

@@ -254,3 +254,32 @@ fn sine_range<T: RealField + Copy>(a: T, b: T) -> (T, T) {
     };
     (low, high)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::sine_range;
+
+    #[test]
+    fn sines_of_several_turns() {
+        // Between places of a thousandth of the way a sine passes its peak by less than this.
+        const BETWEEN: f64 = 1e-3;
+        const ROUNDING: f64 = 1e-13;
+        for number in 0..2000 {
+            let spread = |step: f64| ((f64::from(number) * step).fract() * 2.0 - 1.0) * 20.0;
+            let (a, b) = (spread(0.618_034), spread(0.414_214));
+            let places = (0..=1000).map(|place| (a + (b - a) * f64::from(place) / 1e3).sin());
+            let (least, most) = places.fold((1.0_f64, -1.0_f64), |(least, most), sine| {
+                (least.min(sine), most.max(sine))
+            });
+            let (low, high) = sine_range(a, b);
+            assert!(
+                low <= least + ROUNDING && low > least - BETWEEN,
+                "{a} {b}: {low} {least}"
+            );
+            assert!(
+                high >= most - ROUNDING && high < most + BETWEEN,
+                "{a} {b}: {high} {most}"
+            );
+        }
+    }
+}

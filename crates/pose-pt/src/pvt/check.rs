@@ -226,3 +226,86 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Cubic;
+
+    /// Places at which a cubic is looked at; between them it rises by less than `BETWEEN`.
+    const PLACES: u32 = 2000;
+    const BETWEEN: f64 = 1e-4;
+    const ROUNDING: f64 = 1e-12;
+
+    /// Numbers spread over -1..1.
+    fn spread(number: u32, step: f64) -> f64 {
+        (f64::from(number) * step).fract() * 2.0 - 1.0
+    }
+
+    fn cubics() -> impl Iterator<Item = Cubic<f64>> {
+        (1..400).map(|number| Cubic {
+            q0: spread(number, 0.618_034),
+            q1: spread(number, 0.414_214),
+            v0: 6.0 * spread(number, 0.732_051),
+            v1: 6.0 * spread(number, 0.236_068),
+            duration: 1.1 + spread(number, 0.302_776),
+        })
+    }
+
+    /// Hermite's form, by time.
+    fn position(cubic: &Cubic<f64>, share: f64) -> f64 {
+        let [a0, a1] = cubic.accelerations();
+        let time = share * cubic.duration;
+        let jerk = (a1 - a0) / cubic.duration;
+        cubic.q0 + (cubic.v0 + (a0 / 2.0 + jerk * time / 6.0) * time) * time
+    }
+
+    #[test]
+    fn a_cubic_reaches_as_far_as_its_places() {
+        for cubic in cubics() {
+            let shares = (0..=PLACES).map(|place| f64::from(place) / f64::from(PLACES));
+            let (mut least, mut most) = (f64::MAX, f64::MIN);
+            for share in shares {
+                let place = position(&cubic, share);
+                assert!((cubic.position(share) - place).abs() < ROUNDING);
+                (least, most) = (least.min(place), most.max(place));
+            }
+            assert!((position(&cubic, 1.0) - cubic.q1).abs() < ROUNDING);
+            let [low, high] = cubic.reach();
+            assert!(
+                low <= least + ROUNDING && low > least - BETWEEN,
+                "{cubic:?}"
+            );
+            assert!(
+                high >= most - ROUNDING && high < most + BETWEEN,
+                "{cubic:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_surely_within_is() {
+        let mut surely = 0;
+        for (number, cubic) in (0..).zip(cubics()) {
+            let (min, max) = (-0.9 - spread(number, 0.1), 1.1 + spread(number, 0.3));
+            let [low, high] = cubic.reach();
+            if cubic.surely_within(min, max) {
+                surely += 1;
+                assert!(low >= min - ROUNDING && high <= max + ROUNDING, "{cubic:?}");
+            }
+            // The control points are a third of the duration along the speeds.
+            let third = cubic.duration / 3.0;
+            let points = [
+                cubic.q0,
+                cubic.q0 + third * cubic.v0,
+                cubic.q1 - third * cubic.v1,
+                cubic.q1,
+            ];
+            let lowest = points.into_iter().fold(f64::MAX, f64::min);
+            let highest = points.into_iter().fold(f64::MIN, f64::max);
+            assert!(cubic.surely_within(lowest - ROUNDING, highest + ROUNDING));
+            assert!(!cubic.surely_within(lowest + ROUNDING, highest));
+            assert!(!cubic.surely_within(lowest, highest - ROUNDING));
+        }
+        assert!(surely > 10, "{surely}");
+    }
+}
