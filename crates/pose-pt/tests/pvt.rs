@@ -340,6 +340,9 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
         AxisLimits::new(-1500.0, 1500.0, 1e6, 1e-3),
         AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e9),
         AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e-2),
+        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e-30).with_jerk(1e30),
+        AxisLimits::new(-1500.0, 1500.0, 1e-30, 1e30).with_jerk(1e30),
+        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e30).with_jerk(1e-30),
     ];
     for limits in odd {
         let platform = panel_with(limits);
@@ -379,39 +382,40 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
 fn single_precision_keeps_its_limits() {
     let anchors = [[0.0_f32, 0.0, 0.0], [400.0, 0.0, 5.0], [180.0, 149.0, -8.0]];
     let limits = AxisLimits::new(-150.0_f32, 150.0, 10.0, 25.0);
-    let platform = Platform::new(anchors.map(|anchor| {
-        let anchor = Point3::from(anchor);
-        Locator::new(anchor, anchor, [limits; 3])
-    }))
-    .unwrap();
-    let poses = [
-        Isometry3::identity(),
-        Isometry3::new(
+    for (limits, turn) in [(limits, 0.05), (limits.with_jerk(100.0), 0.2)] {
+        let platform = Platform::new(anchors.map(|anchor| {
+            let anchor = Point3::from(anchor);
+            Locator::new(anchor, anchor, [limits; 3])
+        }))
+        .unwrap();
+        let (slide, turn) = (
             Vector3::new(20.0, -5.0, 3.0),
-            Vector3::new(0.01, 0.02, 0.05),
-        ),
-    ];
-    let path = Path::new(&poses, Interpolation::Screw).unwrap();
-    let mut knots = [Knot::default(); 41];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(40), &mut knots).unwrap();
-    let points: Vec<_> = table.points().collect();
-    for pair in points.windows(2) {
-        for locator in 0..3 {
-            for axis in 0..3 {
-                let end = |p: &PvtPoint<3, f32>| {
-                    (
-                        f64::from(p.axes[locator][axis]),
-                        f64::from(p.velocities[locator][axis]),
-                    )
-                };
-                for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
-                    let time = f64::from(pair[1].segment_s);
-                    let [_, speed, acceleration, _] =
-                        cubic(end(&pair[0]), end(&pair[1]), time, share);
-                    assert!(speed.abs() < 10.0 * (1.0 + 1e-5));
-                    assert!(acceleration.abs() < 25.0 * (1.0 + 1e-3));
-                }
-            }
+            Vector3::new(0.01, 0.02, turn),
+        );
+        let poses = [Isometry3::identity(), Isometry3::new(slide, turn)];
+        let path = Path::new(&poses, Interpolation::Screw).unwrap();
+        let mut knots = [Knot::default(); 41];
+        let table = PvtTable::plan(&platform, &path, Cut::parts(40), &mut knots).unwrap();
+        let points: Vec<_> = table.points().collect();
+        for pair in points.windows(2) {
+            check_segment(&pair[0], &pair[1]);
+        }
+    }
+}
+
+fn check_segment(from: &PvtPoint<3, f32>, to: &PvtPoint<3, f32>) {
+    for (locator, axis) in (0..9).map(|number| (number / 3, number % 3)) {
+        let end = |p: &PvtPoint<3, f32>| {
+            (
+                f64::from(p.axes[locator][axis]),
+                f64::from(p.velocities[locator][axis]),
+            )
+        };
+        for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            let time = f64::from(to.segment_s);
+            let [_, speed, acceleration, _] = cubic(end(from), end(to), time, share);
+            assert!(speed.abs() < 10.0 * (1.0 + 1e-5));
+            assert!(acceleration.abs() < 25.0 * (1.0 + 1e-3));
         }
     }
 }

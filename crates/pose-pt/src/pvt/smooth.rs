@@ -34,7 +34,9 @@ pub(super) fn smooth<const N: usize, T: RealField + Copy>(
     let average = trial.best_average();
     trial.parts = parts;
     let least_s = trial.time(&curve) * nalgebra::convert(1.0 - LEAST_GAIN);
-    if trial.time(&average) >= least_s {
+    // What is not a number is not faster.
+    let is_faster = trial.time(&average) < least_s;
+    if !is_faster {
         trial.lay(&curve);
     }
 }
