@@ -14,8 +14,8 @@ use cubic::{between, cubic};
 use moves::{ALL, from_rest, poses};
 use pose_pt::nalgebra::{Isometry3, Point3, Vector3};
 use pose_pt::{
-    AxisLimits, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform, PvtPoint,
-    PvtTable,
+    Axis, AxisLimits, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform,
+    PvtPoint, PvtTable,
 };
 use proptest::prelude::*;
 use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
@@ -52,6 +52,14 @@ fn shares<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> [f6
         }
         before = between(from, to, 1.0)[2];
         before_s = to.segment_s;
+    }
+    // And at the end, where all stands still.
+    for (locator, before) in platform.locators().iter().zip(&before) {
+        for (limits, before) in locator.limits.iter().zip(before.iter()) {
+            if let Some(limit) = limits.jerk {
+                shares[2] = shares[2].max(before.abs() / (before_s / 2.0) / limit);
+            }
+        }
     }
     shares
 }
@@ -261,6 +269,49 @@ fn poses_on_the_way_are_stops() {
         assert!(shares.iter().all(|share| *share < LIMIT), "{shares:?}");
         check_motion(&platform, &points, table.duration_s());
     }
+}
+
+/// A swing by ±0.3 rad carries the first two locators out to 1000 mm in its middle, where three
+/// parts have no point: 989.5 mm are the next.
+#[test]
+fn a_stroke_left_between_points_is_named() {
+    let poses = [-0.3, 0.3].map(|turn| pose([0.0; 3], [0.0, 0.0, turn]));
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let plan = |min: f64, max: f64| {
+        let limits = AxisLimits::new(min, max, SPEED, ACCELERATION);
+        let wide = AxisLimits::new(-2000.0, 2000.0, SPEED, ACCELERATION);
+        let anchors = [[1000.0, 0.0, 0.0], [-1000.0, 0.0, 0.0], [0.0, 1000.0, 0.0]];
+        let platform = Platform::new(
+            anchors
+                .map(|anchor| Locator::new(anchor.into(), Point3::origin(), [limits, wide, wide])),
+        );
+        let mut knots = [Knot::default(); 4];
+        let table = PvtTable::plan(&platform.unwrap(), &path, Cut::parts(3), &mut knots)
+            .map(|table| table.len());
+        table.map_err(|error| match error {
+            PlanError::Limit {
+                leg: 0,
+                point: 2,
+                reason:
+                    LimitError::Stroke {
+                        locator,
+                        axis: Axis::X,
+                        value,
+                        min,
+                        max,
+                        by,
+                    },
+            } => {
+                assert!((by - (min - value).max(value - max)).abs() < ROUNDING);
+                assert!((value.abs() - 1000.0).abs() < 0.1, "{value}");
+                locator
+            }
+            other => panic!("{other}"),
+        })
+    };
+    assert_eq!(plan(-2000.0, 997.0), Err(0));
+    assert_eq!(plan(-997.0, 2000.0), Err(1));
+    assert_eq!(plan(-1000.1, 1000.1), Ok(4));
 }
 
 #[test]
