@@ -9,6 +9,8 @@
 
 #[path = "common/bare.rs"]
 mod bare;
+#[path = "common/eleven.rs"]
+mod eleven;
 #[path = "common/points.rs"]
 mod points;
 
@@ -16,9 +18,10 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, Delta, JointRange, Measured, Pace, Parameter, Path, Quantity};
+use delta_kin::{Delta, JointRange, Measured, Pace, Path};
 
 use bare::{BASE, LOWER, PLATFORM, UPPER};
+use eleven::eleven;
 use points::{POINTS, points};
 
 fn delta() -> Delta {
@@ -78,24 +81,6 @@ fn forward(c: &mut Criterion) {
         });
     });
     group.finish();
-}
-
-/// Zeros and lower arms of each arm, azimuths of two, and the base, upper arm and azimuth alike.
-fn eleven() -> [Parameter; 11] {
-    let [first, second, third] = Arm::ALL;
-    [
-        Parameter::of(Quantity::Zero, first),
-        Parameter::of(Quantity::Zero, second),
-        Parameter::of(Quantity::Zero, third),
-        Parameter::of(Quantity::Lower, first),
-        Parameter::of(Quantity::Lower, second),
-        Parameter::of(Quantity::Lower, third),
-        Parameter::of(Quantity::Azimuth, second),
-        Parameter::of(Quantity::Azimuth, third),
-        Parameter::common(Quantity::Azimuth),
-        Parameter::common(Quantity::Base),
-        Parameter::common(Quantity::Upper),
-    ]
 }
 
 fn calibrate(c: &mut Criterion) {

@@ -1,29 +1,15 @@
 //! Calibration: what was changed is found again, and what cannot be found is said.
 #![cfg(test)]
 
+#[path = "../benches/common/eleven.rs"]
+mod eleven;
+
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, CalibrationError, Delta, Measured, Parameter, Quantity};
+use delta_kin::{CalibrationError, Delta, Measured, Parameter, Quantity};
+use eleven::eleven;
 
 fn nominal() -> Delta {
     Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
-}
-
-/// Zeros and lower arms of each, two azimuths, and the base, upper arm and azimuth alike.
-fn eleven() -> [Parameter; 11] {
-    let [first, second, third] = Arm::ALL;
-    [
-        Parameter::of(Quantity::Zero, first),
-        Parameter::of(Quantity::Zero, second),
-        Parameter::of(Quantity::Zero, third),
-        Parameter::of(Quantity::Lower, first),
-        Parameter::of(Quantity::Lower, second),
-        Parameter::of(Quantity::Lower, third),
-        Parameter::of(Quantity::Azimuth, second),
-        Parameter::of(Quantity::Azimuth, third),
-        Parameter::common(Quantity::Azimuth),
-        Parameter::common(Quantity::Base),
-        Parameter::common(Quantity::Upper),
-    ]
 }
 
 /// Up to a degree and a millimetre, as a machine from a workshop has them.
