@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use pose2pulse::handwheel::Axis;
 use pose2pulse::pose_pt::{BodyFit, Platform};
 
-use crate::table::{AxisState, States, Table};
+use crate::table::{AxisState, States, Table, positions};
 
 /// Cycle of the drives, in microseconds.
 pub(crate) const CYCLE_US: u64 = 1000;
@@ -60,8 +60,7 @@ impl<const N: usize> Drives<N> {
     }
 
     pub(crate) fn axes(&self) -> [Vector3<f64>; N] {
-        self.states
-            .map(|[x, y, z]| Vector3::new(x.position, y.position, z.position))
+        positions(&self.states)
     }
 
     /// When the next cycle is due.
@@ -186,8 +185,8 @@ impl<const N: usize> Examination<N> {
             for place in 0..=places {
                 let s = f64::from(place) / f64::from(places);
                 let states = table.states(segment, s).context("no such segment")?;
-                let axes = states.map(|it| Vector3::from(it.map(|axis| axis.position)));
-                let strain = platform.strain(&platform.locator_positions(&axes)).change;
+                let anchors = platform.locator_positions(&positions(&states));
+                let strain = platform.strain(&anchors).change;
                 max_strain = max_strain.max(strain.abs());
                 for (locator, states) in platform.locators().iter().zip(&states) {
                     for (limits, state) in locator.limits.iter().zip(states) {
@@ -202,13 +201,10 @@ impl<const N: usize> Examination<N> {
             }
         }
         let last = moments.last().context("a table without a segment")?;
-        let axes = last
-            .states
-            .map(|it| Vector3::from(it.map(|axis| axis.position)));
         Ok(Self {
             max_strain,
             max_speed_ratio,
-            end: platform.pose(&axes)?,
+            end: platform.pose(&positions(&last.states))?,
             moments,
         })
     }

@@ -1,7 +1,9 @@
 //! The operator: reads the display, turns, presses.
 
 use anyhow::{Context, Result, ensure};
-use pose2pulse::handwheel::{Key, Knob, Light, PoseChange, Position, Settings, WheelQuantiser};
+use pose2pulse::handwheel::{
+    Key, Knob, Light, PoseChange, Position, SAMPLE, Settings, WheelQuantiser,
+};
 
 use crate::platform::{STEP_UDEG, STEP_UM};
 use crate::run::Pose;
@@ -150,7 +152,7 @@ fn multiplier_within(room: f64, counts: &[i32], settings: &Settings) -> u8 {
     let share = |counts: &i32| settings.wheel.share(*counts, settings.full_jog_um_s);
     let um_s: i64 = counts.iter().map(share).sum();
     #[expect(clippy::cast_precision_loss, reason = "mm")]
-    let way = um_s.unsigned_abs() as f64 / 1000.0 * 0.2 * MARGIN;
+    let way = um_s.unsigned_abs() as f64 / 1000.0 * SAMPLE.as_secs_f64() * MARGIN;
     match room {
         room if way < room => 3,
         room if way / 10.0 < room => 2,

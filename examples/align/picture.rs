@@ -5,11 +5,12 @@ use std::io::Write;
 use anyhow::Result;
 use nalgebra::{Point3, Rotation3, Vector3};
 use plotters::prelude::*;
-use pose2pulse::handwheel::Settings;
+use pose2pulse::handwheel::{SAMPLE, Settings};
 use pose2pulse::pose_pt::Platform;
 
 use crate::chart::{Area, COLOURS, INK, colour, curve, failed, frame, legend, range, stairs};
 use crate::drives::{Examination, Moment};
+use crate::table::positions;
 use crate::world::Jog;
 
 /// Points of a curve, at most: twice the width of the picture.
@@ -30,19 +31,20 @@ pub(crate) fn jog(jog: &Jog, settings: &Settings, mut out: impl Write) -> Result
     let end = moments.last().copied().unwrap_or_default();
     let span = start - 0.4..end + 0.6;
     let inside = |t: f64| span.contains(&t);
-    // Counts of a sample belong to the 200 ms before its end.
+    // Counts of a sample belong to the time before its end.
+    let sample_s = SAMPLE.as_secs_f64();
     let counts: Vec<_> = jog.samples.iter().filter(|(t, _)| inside(*t)).collect();
     let turned: Vec<_> = counts
         .iter()
-        .map(|(t, n)| (t - 0.2, f64::from(*n)))
+        .map(|(t, n)| (t - sample_s, f64::from(*n)))
         .collect();
     let level = f64::from(settings.wheel.max()) / f64::from(2 * u32::from(settings.wheel.bins()));
     let quantised = |n: i32| f64::from(settings.wheel.level(n)) * level;
     let binned: Vec<_> = counts
         .iter()
-        .map(|(t, n)| (t - 0.2, quantised(*n)))
+        .map(|(t, n)| (t - sample_s, quantised(*n)))
         .collect();
-    let told: Vec<_> = jog.told.clone();
+    let told = &jog.told;
     let done: Vec<_> = jog
         .done
         .iter()
@@ -89,7 +91,7 @@ pub(crate) fn jog(jog: &Jog, settings: &Settings, mut out: impl Write) -> Result
             &mut chart,
             "told by the panel",
             colour(0).stroke_width(2),
-            stairs(&told),
+            stairs(told),
         )?;
         curve(&mut chart, "axis", colour(1).stroke_width(2), done)?;
         legend(&mut chart, SeriesLabelPosition::UpperRight)?;
@@ -238,9 +240,7 @@ fn body_anchors<const N: usize>(
 ) -> [Vec<Point3<f64>>; 2] {
     let moments = &examination.moments;
     [moments.first(), moments.last()].map(|moment| {
-        let states = moment.map(|moment| moment.states);
-        let axes =
-            states.map(|states| states.map(|it| Vector3::from(it.map(|axis| axis.position))));
+        let axes = moment.map(|moment| positions(&moment.states));
         axes.map_or(Vec::new(), |axes| {
             platform.locator_positions(&axes).to_vec()
         })

@@ -64,12 +64,6 @@ impl Report {
         self.max_strain_mm <= self.strain_bound_mm && self.max_speed_ratio <= 1.0 + ROUNDING
     }
 
-    pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {
-        serde_json::to_writer_pretty(&mut out, self)?;
-        writeln!(out)?;
-        Ok(out.flush()?)
-    }
-
     /// Writes what a person wants to know first.
     pub(crate) fn write_summary(
         &self,

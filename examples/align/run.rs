@@ -4,10 +4,10 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use pose2pulse::pose_pt::{Platform, PoseVector};
 
-use crate::artefacts::Artefacts;
+use crate::artefacts::{Artefacts, write_json};
 use crate::drives::Examination;
 use crate::operator::Task;
 use crate::platform::Settings;
@@ -32,17 +32,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "POSE", value_parser = pose, allow_hyphen_values = true)]
     to: Option<Pose>,
     /// Position-time table, or position-velocity-time.
-    #[arg(long, value_enum, default_value_t = ModeName::Pt)]
-    mode: ModeName,
+    #[arg(long, value_enum, default_value_t = Mode::Pt)]
+    mode: Mode,
     /// Where the artefacts go.
     #[arg(long, value_name = "DIR", default_value = "target/align")]
     out: PathBuf,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ModeName {
-    Pt,
-    Pvt,
 }
 
 /// mm and degrees, as written.
@@ -90,10 +84,7 @@ fn align<const N: usize>(arguments: &Arguments, settings: &Settings) -> Result<b
     let panel = settings.panel().with_context(place)?;
     let [from, to] = settings.poses();
     let (from, to) = (arguments.from.unwrap_or(from), arguments.to.unwrap_or(to));
-    let mode = match arguments.mode {
-        ModeName::Pt => Mode::Pt,
-        ModeName::Pvt => Mode::Pvt,
-    };
+    let mode = arguments.mode;
     let task = Task::new(from, to, &panel)?;
     for (name, pose) in [("--from", from), ("--to", task.reached)] {
         let axes = platform.checked_axes(&vector(pose).to_isometry(settings.convention()));
@@ -128,7 +119,7 @@ fn align<const N: usize>(arguments: &Arguments, settings: &Settings) -> Result<b
     let body = [from, task.reached].map(|pose| settings.outline(&planner.isometry(pose)));
     picture::align(&examination, &platform, plan.strain_bound_mm, &body, align)?;
     let report = Report::new(&course, plan, &table, &examination, &planner.isometry(to));
-    report.write(json)?;
+    write_json(json, &report)?;
     artefacts.keep()?;
     report
         .write_summary(std::io::stdout().lock(), mode.file(), &arguments.out)

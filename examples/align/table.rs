@@ -3,6 +3,7 @@
 use core::fmt::Write as _;
 
 use anyhow::{Context, Result, anyhow, ensure};
+use clap::ValueEnum;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose2pulse::pose_pt::{Cut, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable};
 
@@ -10,7 +11,7 @@ use crate::platform::Settings;
 use crate::run::{Pose, vector};
 
 /// What the table says of each point.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Mode {
     /// Positions: the axes move linearly between two points.
     Pt,
@@ -210,6 +211,11 @@ pub(crate) struct AxisState {
 
 /// Three axes of each locator.
 pub(crate) type States<const N: usize> = [[AxisState; 3]; N];
+
+/// The positions of all axes.
+pub(crate) fn positions<const N: usize>(states: &States<N>) -> [Vector3<f64>; N] {
+    states.map(|axes| Vector3::from(axes.map(|axis| axis.position)))
+}
 
 /// A table as the controller has read it: axis by axis.
 pub(crate) struct Table<const N: usize> {

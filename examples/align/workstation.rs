@@ -1,8 +1,8 @@
 //! The workstation's side of the unit: station, driver and panel.
 
 use pose2pulse::handwheel::{
-    Action, Arbiter, Driver, Event, Input, Instant, LcdAnswer, Led, Light, MAX_COMMAND, Model,
-    Panel, Settings, SettingsError, Shown, Timing, UnitId,
+    Action, Arbiter, Command, Driver, Event, Input, Instant, LcdAnswer, Led, Light, MAX_COMMAND,
+    Model, Panel, Settings, SettingsError, Shown, Timing, UnitId,
 };
 use proto3964r::{Config, Priority, Station};
 use serde::Serialize;
@@ -145,9 +145,9 @@ impl<const N: usize> Workstation<N> {
         let mut telegram = [0; MAX_COMMAND];
         let now = Instant::from_micros(now_us);
         if let Some(telegram) = self.driver.poll_transmit(now, &mut telegram)? {
-            let count = match telegram {
-                [0x23] => &mut self.telegrams.status_requests,
-                [0x6C, ..] => &mut self.telegrams.display_blocks,
+            let count = match Command::decode(MODEL, telegram)? {
+                Command::StatusRequest => &mut self.telegrams.status_requests,
+                Command::Lcd(_) => &mut self.telegrams.display_blocks,
                 _ => &mut self.telegrams.lamps,
             };
             *count += 1;

@@ -1,10 +1,11 @@
 //! Output files that appear together, at the end, or not at all.
 
 use std::fs::{self, File};
-use std::io::{BufReader, BufWriter};
+use std::io::{BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
+use serde::Serialize;
 use tempfile::NamedTempFile;
 
 /// Files that are written under temporary names.
@@ -57,6 +58,13 @@ impl Artefacts {
         }
         Ok(())
     }
+}
+
+/// Writes a report, for people too.
+pub(crate) fn write_json(mut out: impl Write, report: &impl Serialize) -> Result<()> {
+    serde_json::to_writer_pretty(&mut out, report)?;
+    writeln!(out)?;
+    Ok(out.flush()?)
 }
 
 /// Temporary files are private; what is kept is as readable as any new file.

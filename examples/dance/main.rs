@@ -22,14 +22,14 @@ mod waves;
 
 use std::fs;
 use std::io::{Read as _, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context as _, Result, anyhow};
 use clap::Parser;
 use pose2pulse::pattern_codec::dance::{Choreography, Data, DataHeader, Score, Sizes};
 
-use artefacts::Artefacts;
+use artefacts::{Artefacts, write_json};
 use law::Law;
 use report::Report;
 use simulation::{Firmware, simulate};
@@ -101,7 +101,7 @@ fn dance(args: &Args) -> Result<bool> {
         &danced,
         &other,
     )?;
-    report.write(artefacts.create("report.json")?)?;
+    write_json(artefacts.create("report.json")?, &report)?;
     artefacts.keep()?;
     report
         .write_summary(std::io::stdout().lock(), &args.score, &args.out)
@@ -125,9 +125,4 @@ fn write_data(
     let mut file = artefacts.create("data.h")?;
     file.write_all(text.as_bytes())?;
     Ok(file.flush()?)
-}
-
-/// The last part of a path, for people.
-fn file_name(path: &Path) -> std::path::Display<'_> {
-    Path::new(path.file_name().unwrap_or(path.as_os_str())).display()
 }

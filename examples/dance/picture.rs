@@ -37,7 +37,7 @@ pub(crate) fn write(
     danced: &Danced,
     other: &[[i32; MOTORS]],
 ) -> Result<()> {
-    let end_s = seconds(danced.positions.len() - 1, danced.frame_s);
+    let end_s = danced.duration_s();
     let panels = score.motors().len();
     let mut picture = Picture::new(out, panels)?;
     picture.text(8.0, HEAD / 2.0 + 4.0, "start", score.title())?;
@@ -61,12 +61,6 @@ pub(crate) fn write(
     }
     picture.time_axis(top - GAP, end_s)?;
     picture.finish()
-}
-
-/// Frames in seconds, without the digits that binary rounding adds.
-pub(crate) fn seconds(frames: usize, frame_s: f64) -> f64 {
-    let frames = u32::try_from(frames).map_or(f64::INFINITY, f64::from);
-    (frames * frame_s * 1e6).round() / 1e6
 }
 
 struct Picture<W: Write> {

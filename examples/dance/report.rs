@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::law::Law;
 use crate::simulation::Danced;
-use crate::{Args, MOTORS, file_name};
+use crate::{Args, MOTORS};
 
 /// `report.json`.
 #[derive(Serialize)]
@@ -70,7 +70,7 @@ impl<'a> Report<'a> {
             law: args.law,
             motors,
             frames: sizes.frames(),
-            duration_s: crate::picture::seconds(danced.positions.len() - 1, danced.frame_s),
+            duration_s: danced.duration_s(),
             bytes_raw: sizes.bytes(Packing::Raw),
             bytes_packed: data.bytes(),
             packing: data.packing(),
@@ -92,12 +92,6 @@ impl<'a> Report<'a> {
     /// Whether every turn ends within a half step of what was asked, and the dance as planned.
     pub(crate) fn is_as_asked(&self) -> bool {
         self.worst_angle_error_steps <= 1.0 && self.ends_as_planned
-    }
-
-    pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {
-        serde_json::to_writer_pretty(&mut out, self)?;
-        writeln!(out)?;
-        Ok(out.flush()?)
     }
 
     /// Writes what a person wants to know first.
@@ -151,4 +145,9 @@ impl<'a> Report<'a> {
         )?;
         Ok(())
     }
+}
+
+/// The last part of a path, for people.
+fn file_name(path: &Path) -> std::path::Display<'_> {
+    Path::new(path.file_name().unwrap_or(path.as_os_str())).display()
 }

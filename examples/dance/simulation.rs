@@ -22,7 +22,15 @@ pub(crate) struct Danced {
     /// Half steps made, in both directions together.
     pub(crate) steps: [u64; MOTORS],
     /// Period of a frame, in s.
-    pub(crate) frame_s: f64,
+    frame_s: f64,
+}
+
+impl Danced {
+    /// Length of the dance in s, without the digits that binary rounding adds.
+    pub(crate) fn duration_s(&self) -> f64 {
+        let frames = u32::try_from(self.positions.len() - 1).map_or(f64::INFINITY, f64::from);
+        (frames * self.frame_s * 1e6).round() / 1e6
+    }
 }
 
 /// What runs in the microcontroller.

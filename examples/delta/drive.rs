@@ -12,7 +12,7 @@ pub(crate) const TICKS_PER_S: u32 = 10_000_000;
 
 /// A move that has been found to be possible: the trains of its pieces, one after the other.
 pub(crate) struct Plan {
-    trains: Vec<([i32; 3], Trains<3>)>,
+    trains: Vec<Trains<3>>,
     /// Steps from home at the end.
     end: [i32; 3],
 }
@@ -59,7 +59,7 @@ impl Plan {
                 half_period(left_s, pulses).with_context(|| format!("feed {feed_mm_s} mm/s"))?;
             let piece = Trains::new(way, half_period)?;
             now += piece.end_ticks();
-            trains.push((way, piece));
+            trains.push(piece);
             position = target;
         }
         Ok(Self {
@@ -82,7 +82,8 @@ impl Plan {
         mut step: impl FnMut(u64, [i32; 3]) -> Result<()>,
     ) -> Result<u64> {
         let mut now = start;
-        for (way, trains) in &self.trains {
+        for trains in &self.trains {
+            let way = trains.steps();
             for edge in trains.edges() {
                 if edge.level == Level::Low {
                     continue;

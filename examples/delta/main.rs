@@ -34,7 +34,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 use nalgebra::Point3;
 
-use artefacts::Artefacts;
+use artefacts::{Artefacts, write_json};
 use command::Command;
 use drive::{Plan, seconds};
 use input::Terminal;
@@ -111,7 +111,7 @@ fn run(args: &Args) -> Result<()> {
         },
     };
     picture::write(artefacts.create("delta.svg")?, &machine, &outcome, &ticked)?;
-    report.write(artefacts.create("report.json")?)?;
+    write_json(artefacts.create("report.json")?, &report)?;
     artefacts.keep()?;
     let folder = args.out.display().to_string();
     report

@@ -4,7 +4,6 @@ use std::io::Write;
 
 use anyhow::Result;
 use nalgebra::{Point3, Vector3};
-use pose2pulse::delta_kin::Arm;
 
 use crate::machine::Machine;
 use crate::simulation::Outcome;
@@ -140,8 +139,8 @@ fn mechanism(machine: &Machine, outcome: &Outcome) -> Result<Vec<Vec<Point3<f64>
     let angles = machine.angles(outcome.end);
     let platform = machine.point(outcome.end)?;
     let (mut hips, mut wrists, mut arms) = (Vec::new(), Vec::new(), Vec::new());
-    let parts = machine.delta.arms().iter().zip(machine.delta.knees(angles));
-    for ((geometry, knee), _) in parts.zip(Arm::ALL) {
+    let knees = machine.delta.knees(angles);
+    for (geometry, knee) in machine.delta.arms().iter().zip(knees) {
         let (sin, cos) = geometry.azimuth.sin_cos();
         let outward = Vector3::new(cos, sin, 0.0);
         let hip = Point3::from(outward * geometry.base);

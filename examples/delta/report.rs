@@ -34,12 +34,6 @@ pub(crate) struct Tick {
 }
 
 impl Report {
-    pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {
-        serde_json::to_writer_pretty(&mut out, self)?;
-        writeln!(out)?;
-        Ok(out.flush()?)
-    }
-
     /// Writes what a person wants to know first.
     pub(crate) fn write_summary(&self, mut out: impl Write, folder: &str) -> Result<()> {
         writeln!(

@@ -33,7 +33,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 use clap::Parser;
 use kurbo::Affine;
 
-use artefacts::Artefacts;
+use artefacts::{Artefacts, write_json};
 use drawing::Drawing;
 use machine::Machine;
 use simulation::Simulation;
@@ -144,7 +144,7 @@ fn engrave(args: &Args) -> Result<bool> {
     let outcome = simulation.finish()?;
 
     let report = report::Report::new(&machine, &plan, &outcome, placement);
-    report.write(artefacts.create("report.json")?)?;
+    write_json(artefacts.create("report.json")?, &report)?;
     artefacts.keep()?;
     report
         .write_summary(std::io::stdout().lock(), &args.svg, &args.out)

@@ -99,12 +99,6 @@ impl<'a> Report<'a> {
         self.max_deviation_mm <= self.bound_mm
     }
 
-    pub(crate) fn write(&self, mut out: impl Write) -> Result<()> {
-        serde_json::to_writer_pretty(&mut out, self)?;
-        writeln!(out)?;
-        Ok(out.flush()?)
-    }
-
     /// Writes what a person wants to know first.
     pub(crate) fn write_summary(
         &self,

@@ -20,7 +20,8 @@ const PATIENCE: Duration = Duration::from_millis(200);
 ///
 /// ```text
 /// G1 X20 F600   ok
-/// G1 X500       error:X: the upper limit switch is closed at 12100 steps
+/// G1 X500       error:on the way to (500.000, 0.000) mm: X: the upper limit switch is closed
+///               at 12100 steps at line 2
 /// G1 Q          error:... at line 3
 /// ?             pos:20.00,0.00
 /// > < ^ v       jogs X up, X down, Y up, Y down by 1 mm; answers as ?

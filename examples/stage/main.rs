@@ -30,7 +30,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
 
-use artefacts::Artefacts;
+use artefacts::{Artefacts, write_json};
 use controller::Controller;
 use plan::PathRule;
 use program::{Interpreter, Line};
@@ -106,7 +106,7 @@ fn stage(args: &Args) -> Result<()> {
     }
     let run = controller.finish()?;
     picture::write(artefacts.create("stage.svg")?, &run)?;
-    report::write(artefacts.create("report.json")?, &run.report)?;
+    write_json(artefacts.create("report.json")?, &run.report)?;
     artefacts.keep()?;
     report::summary(std::io::stdout().lock(), &run.report, &args.out).context("standard output")
 }

@@ -36,12 +36,6 @@ pub(crate) struct OpenLoop {
     pub(crate) lost_steps: u64,
 }
 
-pub(crate) fn write(mut out: impl Write, report: &Report) -> Result<()> {
-    serde_json::to_writer_pretty(&mut out, report)?;
-    writeln!(out)?;
-    Ok(out.flush()?)
-}
-
 /// Writes what a person wants to know first.
 pub(crate) fn summary(mut out: impl Write, report: &Report, folder: &Path) -> Result<()> {
     writeln!(
