@@ -100,8 +100,8 @@ pub struct LoopSettings {
     pub alarm_counts: u32,
 }
 
-/// The axis is further off than its alarm allows. It stays refused until
-/// [`AxisLoop::reset`].
+/// The axis is further off than its alarm allows, or than an `i32` of steps corrects. It stays
+/// refused until [`AxisLoop::reset`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[error(
@@ -210,10 +210,14 @@ impl AxisLoop {
             .wrapping_mul(scale)
             .wrapping_sub(i128::from(self.commanded).wrapping_mul(per));
         let within = |limit: u32| error.abs() <= i128::from(limit).wrapping_mul(scale);
-        let steps = i32::try_from(nearest(error.wrapping_neg(), per));
-        self.lost |= !within(alarm_counts);
+        let steps = if within(dead_band_counts) {
+            Some(0)
+        } else {
+            i32::try_from(nearest(error.wrapping_neg(), per)).ok()
+        };
+        self.lost |= steps.is_none() || !within(alarm_counts);
         match steps {
-            Ok(steps) if !self.lost => Ok(if within(dead_band_counts) { 0 } else { steps }),
+            Some(steps) if !self.lost => Ok(steps),
             _ => Err(LostSteps {
                 error_counts: whole_counts(error, scale),
                 counts,

@@ -50,7 +50,7 @@ pub enum HomingSpeed {
 }
 
 /// Why an axis does not find home.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum HomingError {
@@ -102,6 +102,8 @@ enum Phase {
     /// With the steps since the switch opened.
     BackOff(u32),
     Home,
+    /// For good.
+    Lost(HomingError),
 }
 
 impl Homing {
@@ -132,11 +134,14 @@ impl Homing {
         };
         let (direction, speed) = match self.phase {
             Phase::Home => return Ok(HomingOrder::Home),
+            Phase::Lost(error) => return Err(error),
             Phase::Approach(speed) => (self.settings.direction, speed),
             Phase::BackOff(_) => (self.settings.direction.reversed(), HomingSpeed::Fast),
         };
         if self.made >= self.settings.most_steps {
-            return Err(self.lost());
+            let error = self.lost();
+            self.phase = Phase::Lost(error);
+            return Err(error);
         }
         self.made = self.made.saturating_add(1);
         Ok(HomingOrder::Step { direction, speed })

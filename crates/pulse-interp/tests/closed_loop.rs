@@ -72,6 +72,27 @@ fn an_alarm_says_where_and_stays_until_reset() {
     assert_eq!((axis.commanded_steps(), axis.correction(0)), (0, Ok(0)));
 }
 
+/// A count in 65,535 steps: 40,000 counts are more steps than an `i32` holds.
+#[test]
+fn what_no_steps_can_correct_is_lost_for_good() {
+    let settings = LoopSettings {
+        ratio: ScaleRatio::new(1, 65_535).unwrap(),
+        dead_band_counts: 20_000,
+        alarm_counts: 60_000,
+    };
+    let mut axis = AxisLoop::new(settings).unwrap();
+    assert_eq!(axis.correction(30_000), Ok(-1_966_050_000));
+    assert!(axis.correction(40_000).is_err());
+    assert!(axis.correction(0).is_err());
+    let dead_band_counts = 50_000;
+    let mut axis = AxisLoop::new(LoopSettings {
+        dead_band_counts,
+        ..settings
+    })
+    .unwrap();
+    assert_eq!(axis.correction(40_000), Ok(0));
+}
+
 /// 7 counts in 3 steps: no whole number of counts per step.
 #[test]
 fn ratios_are_fractions() {
@@ -199,7 +220,10 @@ fn homing_ends_where_there_is_no_switch() {
     let run = |closed: bool| {
         let mut homing = Homing::new(HOMING);
         let error = (0..5000).find_map(|_| homing.next(closed).err()).unwrap();
-        assert_eq!(homing.next(closed), Err(error));
+        // For good, whatever the switch does then.
+        for again in [closed, !closed, closed, !closed] {
+            assert_eq!(homing.next(again), Err(error));
+        }
         error
     };
     assert_eq!(run(false), HomingError::NeverClosed { steps: 1000 });
