@@ -107,3 +107,10 @@ impl<T: RealField + Copy> ArmGeometry<T> {
 pub(crate) fn zip<A, B>([a1, a2, a3]: [A; 3], [b1, b2, b3]: [B; 3]) -> [(A, B); 3] {
     [(a1, b1), (a2, b2), (a3, b3)]
 }
+
+/// The arm with the least value; of equals the first.
+pub(crate) fn least<T: RealField + Copy>(values: [T; 3]) -> (Arm, T) {
+    let [first, second, third] = zip(Arm::ALL, values);
+    let least = |a: (Arm, T), b: (Arm, T)| if b.1 < a.1 { b } else { a };
+    least(least(first, second), third)
+}

@@ -59,7 +59,8 @@ pub enum CalibrationError<T = f64> {
         /// Why.
         reason: ForwardError<T>,
     },
-    /// The residuals still shrink after the most iterations that are made.
+    /// The residuals still shrink after the most iterations that are made, or the rods of a
+    /// measured pose lie in a plane, where no change of a parameter tells how the platform moves.
     #[error("not converged after {iterations} iterations, rms {rms}")]
     NotConverged {
         /// Iterations made.
@@ -130,7 +131,7 @@ impl<T: RealField + Copy> Delta<T> {
             measured,
         };
         let fit = least_squares::minimise(&problem, MOST_ITERATIONS);
-        let delta = problem.machine(&fit.changes).unwrap_or(*self);
+        let delta = fit.delta;
         let (rms, largest) = problem.residuals(&delta);
         if !fit.is_converged {
             return Err(CalibrationError::NotConverged {

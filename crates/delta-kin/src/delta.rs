@@ -311,6 +311,12 @@ impl<T: RealField + Copy> Delta<T> {
         zip(self.legs, angles.into()).map(|(leg, angle)| leg.theta(angle))
     }
 
+    /// Centres of the three spheres on which the platform's centre lies.
+    #[inline]
+    pub(crate) fn centres(&self, angles: Vector3<T>) -> [Vector3<T>; 3] {
+        zip(self.legs.each_ref(), self.thetas(angles)).map(|(leg, theta)| leg.centre(theta))
+    }
+
     /// A point or vector in the thesis' frame, or from it: the same either way.
     #[inline]
     pub(crate) fn flip(&self, vector: Vector3<T>) -> Vector3<T> {

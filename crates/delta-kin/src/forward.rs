@@ -80,8 +80,7 @@ impl<T: RealField + Copy> Delta<T> {
     /// [`ForwardError`].
     #[inline]
     pub fn forward_both(&self, angles: Vector3<T>) -> Result<Assemblies<T>, ForwardError<T>> {
-        let centres =
-            zip(self.legs().each_ref(), self.thetas(angles)).map(|(leg, theta)| leg.centre(theta));
+        let centres = self.centres(angles);
         let [c1, c2, c3] = centres;
         let [l1, l2, l3] = self.legs().each_ref().map(|leg| leg.lower);
         let (d2, d3) = (c2 - c1, c3 - c1);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
-use crate::arm::zip;
+use crate::arm::{least, zip};
 use crate::limits::two;
 use crate::{Arm, Delta, ForwardError, InverseError, Knee};
 
@@ -134,9 +134,7 @@ impl<T: RealField + Copy> Pose<T> {
     /// radian: the distance from a serial singularity, where the bracket on the right vanishes.
     #[must_use]
     pub fn serial_distance(&self) -> (Arm, T) {
-        let [first, second, third] = zip(Arm::ALL, self.levers.map(|lever| lever.abs()));
-        let least = |a: (Arm, T), b: (Arm, T)| if b.1 < a.1 { b } else { a };
-        least(least(first, second), third)
+        least(self.levers.map(|lever| lever.abs()))
     }
 
     /// The sine of the least angle between a rod and the plane of the other two, 0..=1: the

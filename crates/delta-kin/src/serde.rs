@@ -67,18 +67,10 @@ struct PlainDelta<T> {
     z: ZAxis,
     #[serde(default)]
     positive: Positive,
-    #[serde(default = "no_ranges")]
+    #[serde(default)]
     ranges: [Option<JointRange<T>>; 3],
-    #[serde(default = "no_limit")]
+    #[serde(default)]
     max_lean: Option<T>,
-}
-
-const fn no_ranges<T: Copy>() -> [Option<JointRange<T>>; 3] {
-    [None; 3]
-}
-
-const fn no_limit<T>() -> Option<T> {
-    None
 }
 
 impl<T: RealField + Copy> From<Delta<T>> for PlainDelta<T> {

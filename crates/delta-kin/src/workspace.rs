@@ -5,7 +5,7 @@ mod outline;
 
 use nalgebra::{Point3, RealField, Vector3};
 
-use crate::arm::zip;
+use crate::arm::least;
 use crate::leg::Leg;
 use crate::limits::half;
 use crate::{Arm, Delta};
@@ -39,8 +39,7 @@ impl<T: RealField + Copy> Workspace<T> {
     fn hangs(&self, point: Point3<T>, angles: Vector3<T>) -> bool {
         let delta = &self.delta;
         let local = delta.flip(point.coords);
-        let [c1, c2, c3] = zip(delta.legs().each_ref(), delta.thetas(angles))
-            .map(|(leg, theta)| leg.centre(theta));
+        let [c1, c2, c3] = delta.centres(angles);
         let n = (c2 - c1).cross(&(c3 - c1));
         let below = (local - c1).dot(&n);
         // On the plane of the knees the two are one.
@@ -98,10 +97,7 @@ impl<T: RealField + Copy> Workspace<T> {
     pub fn tightest_arm(&self, point: Point3<T>) -> Arm {
         let local = self.delta.flip(point.coords);
         let legs = self.delta.legs().each_ref();
-        let [first, second, third] =
-            zip(Arm::ALL, legs.map(|leg| Self::leg_clearance(leg, &local)));
-        let least = |a: (Arm, T), b: (Arm, T)| if b.1 < a.1 { b } else { a };
-        least(least(first, second), third).0
+        least(legs.map(|leg| Self::leg_clearance(leg, &local))).0
     }
 
     /// Radius of the largest cylinder round the base's axis between two heights, every point of

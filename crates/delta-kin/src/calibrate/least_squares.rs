@@ -3,6 +3,7 @@
 use nalgebra::{RealField, SMatrix, SVector};
 
 use super::Problem;
+use crate::Delta;
 
 /// Rounding errors of a row's making and rotating, in machine epsilons.
 pub(super) const ROUNDINGS: f64 = 16.0;
@@ -18,6 +19,8 @@ pub(super) struct LeastSquares<const N: usize, T: RealField> {
 /// What [`minimise`] has found.
 pub(super) struct Fit<const N: usize, T: RealField> {
     pub(super) changes: [T; N],
+    /// The machine with these changes.
+    pub(super) delta: Delta<T>,
     pub(super) system: LeastSquares<N, T>,
     /// Sum of the squares that is left.
     pub(super) sum: T,
@@ -151,6 +154,7 @@ pub(super) fn minimise<const N: usize, T: RealField + Copy>(
     }
     Fit {
         changes: changes.into(),
+        delta,
         system,
         sum,
         iterations,
