@@ -6,6 +6,7 @@ use pose2pulse::stepper_sync::{
     Accumulation, BusWrite, LatchWrites, Latches, Phases, Rate, SpeedLaw, Stepping, Wiring,
 };
 
+use super::engrave::{JITTER, bounds};
 use super::simulator::{Port, Write, program_bytes, simulate};
 
 /// Machine cycles of a tick of 1 ms.
@@ -15,8 +16,8 @@ const FRAME_TICKS: u32 = 20;
 /// That of [Dancer].
 const THRESHOLD: u16 = 600;
 
-/// As many cycles may one latency be longer than another: an instruction of two ends first.
-const JITTER: u64 = 1;
+/// What `dance.c` counts on, its entry and exit included.
+const LONGEST_HANDLER: u64 = 890;
 
 type Frame = [i8; 8];
 
@@ -162,7 +163,7 @@ fn assert_plays(frames: &[Frame], packing: Packing, law: SpeedLaw, threshold: u1
     for (tick, &(begin, _)) in (1..).zip(&handlers) {
         lags.push(begin.checked_sub(start + tick * TICK).unwrap());
     }
-    let (least, most) = (*lags.iter().min().unwrap(), *lags.iter().max().unwrap());
+    let (least, most) = bounds(&lags);
     assert!(most - least <= JITTER, "{least}..={most}");
     for (&(tick, _), &(cycle, _)) in expected.iter().zip(&measured) {
         if let Some(before) = tick.checked_sub(1) {
@@ -170,13 +171,18 @@ fn assert_plays(frames: &[Frame], packing: Packing, law: SpeedLaw, threshold: u1
             assert!((begin..end).contains(&cycle), "tick {tick}, cycle {cycle}");
         }
     }
-    let longest = handlers.iter().map(|(begin, end)| end - begin).max();
+    let longest = handlers
+        .iter()
+        .map(|(begin, end)| end - begin)
+        .max()
+        .unwrap();
+    assert!(longest <= LONGEST_HANDLER, "{longest}");
     println!(
         "dance.c, {}, {law:?}: {} writes as predicted, {least} to {most} cycles after the overflow, \
          handler at most {} cycles",
         packing.name(),
         measured.len(),
-        longest.unwrap(),
+        longest,
     );
 }
 
@@ -262,11 +268,8 @@ fn a_timer_restarted_at_the_end_of_the_handler_adds_the_handler_to_the_tick() {
         .zip(&lengths)
         .map(|(t, l)| t - TICK - l)
         .collect();
-    let (least, most) = (
-        overheads.iter().min().unwrap(),
-        overheads.iter().max().unwrap(),
-    );
-    assert!(*most < 40 && most - least <= JITTER, "{least}..={most}");
+    let (least, most) = bounds(&overheads);
+    assert!(most < 40 && most - least <= JITTER, "{least}..={most}");
     let mean_tick = mean(ticks.iter().copied());
     println!(
         "dance.c, restarted at the end: a tick of {mean_tick:.1} us, handler {:.1}",

@@ -5,14 +5,3 @@ mod winding_pins;
 
 pub use step_dir::{StepDir, StepDirError, StepDirTiming};
 pub use winding_pins::WindingPins;
-
-use crate::Polarity;
-use embedded_hal::digital::PinState;
-
-/// The level of an active or inactive line.
-fn level(polarity: Polarity, active: bool) -> PinState {
-    PinState::from(match polarity {
-        Polarity::ActiveHigh => active,
-        Polarity::ActiveLow => !active,
-    })
-}

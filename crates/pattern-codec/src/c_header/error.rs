@@ -87,7 +87,7 @@ pub enum HeaderErrorKind {
     ArrayLength {
         /// Values in the array.
         values: u32,
-        /// The product of its declared dimensions.
+        /// The product of its declared dimensions; for toggles, the bytes that the reloads need.
         declared: u32,
     },
     /// No array, or none of the wanted name; the place is the end of the text.

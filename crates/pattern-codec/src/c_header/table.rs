@@ -64,7 +64,7 @@ pub(crate) fn array<'a>(
 pub(crate) struct ArrayValues<'a> {
     items: Items<'a>,
     range: (i64, i64),
-    /// Of the last value, or the end.
+    /// Of the array, then of the last value, at last of the end.
     pub(crate) place: Place,
     pub(crate) error: Option<HeaderError>,
 }

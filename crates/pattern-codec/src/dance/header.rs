@@ -1,6 +1,7 @@
 use core::fmt::Write;
 use core::iter::FusedIterator;
 
+use super::motor::THRESHOLD;
 use super::{Decoded, Motor, Packing, Sizes, Timing};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
@@ -37,9 +38,6 @@ pub struct DataHeader<'n> {
     threshold: u16,
     packing: Packing,
 }
-
-/// Threshold of the accumulators in \[Dancer\].
-const THRESHOLD: u16 = 600;
 
 impl Default for DataHeader<'_> {
     fn default() -> Self {
@@ -247,18 +245,18 @@ impl<'t, const N: usize> Data<'t, N> {
             threshold,
             packing,
             frames: 0,
-            bytes: table.clone().fold(0, |bytes, _| bytes.saturating_add(1)),
+            bytes: 0,
             table,
         };
-        data.frames = data.check()?;
+        (data.frames, data.bytes) = data.check()?;
         agree(text, name, "MOTORS", N as u64)?;
         agree(text, name, "FRAMES", data.frames)?;
         agree(text, name, "BYTES", data.bytes)?;
         Ok(data)
     }
 
-    /// Goes through all frames and counts them.
-    fn check(&self) -> Result<u64, HeaderError> {
+    /// Goes through all frames; counts them and their bytes.
+    fn check(&self) -> Result<(u64, u64), HeaderError> {
         let mut decoded = self.packing.decode::<N, _>(self.table.clone());
         let mut frames = 0_u64;
         loop {
@@ -270,7 +268,7 @@ impl<'t, const N: usize> Data<'t, N> {
                     return Err(values.place.error(HeaderErrorKind::Frames(error.kind)));
                 }
                 (Some(Ok(_)), None) => frames = frames.saturating_add(1),
-                (None, None) => return Ok(frames),
+                (None, None) => return Ok((frames, decoded.offset())),
             }
         }
     }
@@ -329,11 +327,11 @@ impl Settings {
         let frame_ticks = find("FRAME_TICKS", 1..=u32::MAX, default.frame_ticks())?;
         let least = Motor::MIN_THRESHOLD.into();
         let threshold = find("THRESHOLD", least..=u16::MAX.into(), THRESHOLD.into())?;
-        let packing = match find("PACKING", 0..=2, 0)? {
-            0 => Packing::Raw,
-            1 => Packing::Runs,
-            _ => Packing::MaskedRuns,
-        };
+        let wanted = u64::from(find("PACKING", 0..=2, 0)?);
+        let mut all = Packing::ALL.into_iter();
+        let packing = all
+            .find(|packing| number(*packing) == wanted)
+            .unwrap_or_default();
         Ok(Self {
             // Neither is 0.
             timing: Timing::new(tick_us, frame_ticks).unwrap_or_default(),

@@ -65,6 +65,9 @@ pub struct ThresholdTooLow {
     pub threshold: u16,
 }
 
+/// Threshold of the accumulators in \[Dancer\].
+pub(super) const THRESHOLD: u16 = 600;
+
 impl Motor {
     /// The least threshold: a speed of -128 then makes one half step in every tick.
     pub const MIN_THRESHOLD: u16 = 128;

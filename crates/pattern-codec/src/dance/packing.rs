@@ -143,7 +143,7 @@ impl<I: Iterator<Item = [i8; N]>, const N: usize> Iterator for Rows<I, N> {
 #[derive(Debug, Clone)]
 pub(super) struct Row<const N: usize> {
     packing: Packing,
-    pub(super) count: u8,
+    count: u8,
     frame: [i8; N],
     before: [i8; N],
     next: Part,

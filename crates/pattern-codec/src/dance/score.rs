@@ -150,3 +150,12 @@ impl FromStr for Score {
         text::read(text)
     }
 }
+
+/// A whole number to compare, and for messages.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "exact below 2^53, more than 65,535 frames make; in messages the last digit does not count"
+)]
+fn approximate(value: i64) -> f64 {
+    value as f64
+}

@@ -38,10 +38,11 @@ impl Sizes {
         I::IntoIter: Clone,
     {
         let frames = frames.into_iter();
-        let count = |packing: Packing| bytes(packing.encode(frames.clone()));
+        let count = |packing: Packing| count_items(packing.encode(frames.clone()));
+        let total = count_items(frames.clone());
         Self {
-            frames: bytes(frames.clone()),
-            raw: count(Packing::Raw),
+            frames: total,
+            raw: total.saturating_mul(N as u64),
             runs: count(Packing::Runs),
             masked_runs: count(Packing::MaskedRuns),
         }
@@ -74,7 +75,7 @@ impl Sizes {
 }
 
 /// The number of items.
-fn bytes<I: Iterator>(items: I) -> u64 {
+fn count_items<I: Iterator>(items: I) -> u64 {
     items.fold(0, |count, _| count.saturating_add(1))
 }
 

@@ -33,7 +33,8 @@ impl Motor {
     /// V = ⌈(threshold · |half steps| - accumulator) / frame ticks⌉
     /// ```
     /// the least that makes all half steps, and frame k ends at V s(k/n), rounded. The end is exact
-    /// as long as a frame has no more ticks than the threshold.
+    /// as long as a frame has no more ticks than the threshold; with more, the sum is V or V - 1,
+    /// whichever ends nearer.
     ///
     /// Under [`Law::Reset`] each frame takes the one of the distinct speeds that ends nearest to
     /// the way; the last three are searched together for the end nearest to what was asked, at
@@ -84,7 +85,7 @@ impl Motor {
     }
 
     /// Half steps that a plan makes.
-    fn end(&self, turn: &Turn) -> i64 {
+    pub(super) fn end(&self, turn: &Turn) -> i64 {
         let mut motor = *self;
         turn.clone().for_each(|speed| motor.run(speed));
         motor.position.saturating_sub(self.position)

@@ -48,6 +48,11 @@ pub struct Decoded<I, const N: usize> {
 }
 
 impl<I: Iterator<Item = u8>, const N: usize> Decoded<I, N> {
+    /// Bytes read so far.
+    pub(super) const fn offset(&self) -> u64 {
+        self.offset
+    }
+
     pub(super) const fn bytes(&self) -> &I {
         &self.bytes
     }

@@ -1,7 +1,7 @@
 use core::fmt::Write;
 use core::iter::FusedIterator;
 
-use super::{Axis, AxisCodes, ByteOrder, Decoder, Format, PerAxis, Record, Statistics};
+use super::{Axis, AxisCodes, ByteOrder, Decoder, Format, PerAxis, RECORD_LEN, Record, Statistics};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
     array, check_size, setting,
@@ -191,7 +191,12 @@ impl<'t> PatternData<'t> {
         };
         data.records = data.check()?;
         agree(text, name, "RECORDS", data.records)?;
-        agree(text, name, "BYTES", data.records.saturating_mul(3))?;
+        agree(
+            text,
+            name,
+            "BYTES",
+            data.records.saturating_mul(RECORD_LEN as u64),
+        )?;
         Ok(data)
     }
 

@@ -1,7 +1,6 @@
-use super::level;
 use crate::{Direction, Level, Polarity};
 use embedded_hal::delay::DelayNs;
-use embedded_hal::digital::OutputPin;
+use embedded_hal::digital::{OutputPin, PinState};
 use thiserror::Error;
 
 /// What a driver chip asks of its step and direction inputs, in nanoseconds.
@@ -170,4 +169,12 @@ impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
     pub fn into_pins(self) -> (S, D) {
         (self.step, self.direction)
     }
+}
+
+/// The level of an active or inactive line.
+fn level(polarity: Polarity, active: bool) -> PinState {
+    PinState::from(match polarity {
+        Polarity::ActiveHigh => active,
+        Polarity::ActiveLow => !active,
+    })
 }

@@ -2,7 +2,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::super::{Law, Motor, Turn, TurnError};
-use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart};
+use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart, approximate};
 
 /// A score as frames.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,11 +49,6 @@ impl Score {
     /// [`ScoreErrorKind::Turn`] when the motor cannot make it in its time, or not within one half
     /// step.
     pub fn compile<const N: usize>(&self, law: Law) -> Result<Choreography<N>, ScoreError> {
-        let mut dance = Choreography {
-            frames: vec![[0; N]; usize::try_from(self.frames).unwrap_or(usize::MAX)],
-            landings: Vec::new(),
-            end: [0; N],
-        };
         if self.motors.len() > N {
             return Err(ScoreError {
                 line: 1,
@@ -64,6 +59,11 @@ impl Score {
                 },
             });
         }
+        let mut dance = Choreography {
+            frames: vec![[0; N]; usize::try_from(self.frames).unwrap_or(usize::MAX)],
+            landings: Vec::new(),
+            end: [0; N],
+        };
         for (index, performer) in self.motors.iter().enumerate() {
             let moves = self.moves.iter().filter(|one| one.motor == index);
             let motor = self.perform(law, performer, moves, &mut dance)?;
@@ -83,10 +83,9 @@ impl Score {
         moves: impl Iterator<Item = &'a Move>,
         dance: &mut Choreography<N>,
     ) -> Result<Motor, ScoreError> {
-        let part = ScorePart::Head;
         let motor = Motor::new(law, self.threshold, self.timing).map_err(|error| ScoreError {
             line: 1,
-            part,
+            part: ScorePart::Head,
             kind: error.into(),
         })?;
         let mut motor = motor.with_max_speed(performer.max_speed);
@@ -153,15 +152,14 @@ fn turn(
     let way = way as i32;
     let try_way = |way: i32| {
         let turn = motor.turn(way, one.frames, one.easing)?;
-        let mut end = *motor;
-        turn.clone().for_each(|speed| end.run(speed));
-        if (approximate(end.position()) - asked).abs() <= 1.0 {
+        let nearest = motor.end(&turn);
+        if (approximate(motor.position().saturating_add(nearest)) - asked).abs() <= 1.0 {
             return Ok(turn);
         }
         Err(TurnError::Unreachable {
             half_steps: way,
             frames: one.frames,
-            nearest: end.position().saturating_sub(motor.position()),
+            nearest,
         })
     };
     // One half step beside the nearest may be more than one beside what was asked: then the whole
@@ -172,13 +170,4 @@ fn turn(
         motor: performer.name.clone(),
         error,
     })
-}
-
-/// A position as a number to compare; exact below 2^53.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "65535 frames make fewer half steps than 2^53"
-)]
-fn approximate(position: i64) -> f64 {
-    position as f64
 }

@@ -5,8 +5,9 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use toml::Spanned;
 
+use super::super::motor::THRESHOLD;
 use super::super::{Easing, Law, Motor, Timing};
-use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart};
+use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart, approximate};
 
 /// The most frames of a dance: 3.6 hours at 200 ms.
 const MOST_FRAMES: u32 = 65_535;
@@ -67,7 +68,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
     let zero_line = if tick_us == 0 { tick_line } else { frame_line };
     let timing = Timing::new(tick_us, frame_ticks);
     let timing = timing.map_err(|error| head(zero_line, error.into()))?;
-    let (threshold_line, threshold) = setting(text, score.threshold, 600);
+    let (threshold_line, threshold) = setting(text, score.threshold, THRESHOLD);
     let motor = Motor::new(Law::Reset, threshold, timing);
     motor.map_err(|error| head(threshold_line, error.into()))?;
 
@@ -90,22 +91,18 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
         let at = |kind| ScoreError { line, part, kind };
         let written = written.into_inner();
         let (first, every, times) = written.check(number, line, clock, &motors).map_err(at)?;
-        if times > 1 && every < first.frames.into() {
-            let start = first.start.saturating_add(every);
-            let again = Move {
-                start,
-                ..first.clone()
-            };
-            return Err(overlap(&first, &again, &motors, clock));
-        }
-        for time in 0..times {
+        let nth = |time: u32| {
             let start = u64::from(every).saturating_mul(time.into());
             let start = start.saturating_add(first.start.into());
-            let start = u32::try_from(start).unwrap_or(u32::MAX);
-            let again = Move {
-                start,
+            Move {
+                start: u32::try_from(start).unwrap_or(u32::MAX),
                 ..first.clone()
-            };
+            }
+        };
+        if times > 1 && every < first.frames.into() {
+            return Err(overlap(&first, &nth(1), &motors, clock));
+        }
+        for again in (0..times).map(nth) {
             if again.end() > MOST_FRAMES {
                 return Err(at(clock.too_long(&again)));
             }
@@ -347,15 +344,6 @@ impl Clock {
             most_s: self.seconds(MOST_FRAMES),
         }
     }
-}
-
-/// For a message.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "large values need no last digit"
-)]
-fn approximate(value: i64) -> f64 {
-    value as f64
 }
 
 /// Line of an offset, from 1.
