@@ -180,7 +180,7 @@ pub struct Driver {
     state: State,
     /// The job that waits or is under way.
     pending: Option<Pending>,
-    /// The HBAS has a display block whose fate its next status tells.
+    /// The HBAS has a display block whose fate its next status tells; `must_poll` is set then.
     lcd_open: bool,
     /// The next status request; `None` for never.
     poll_at: Option<Instant>,
@@ -207,7 +207,7 @@ impl Driver {
         }
     }
 
-    /// Whether the unit answered its last status request.
+    /// Whether the unit is taken to be there: from a status of it until [`Event::Lost`].
     #[must_use]
     pub const fn is_online(&self) -> bool {
         self.online
@@ -281,7 +281,7 @@ impl Driver {
             Some(Pending::Led(code)) if !self.must_poll => {
                 (Request::Job(Job::Led), put(buffer, &[*code])?)
             }
-            Some(Pending::Lcd(block)) if !self.must_poll && !self.lcd_open => {
+            Some(Pending::Lcd(block)) if !self.must_poll => {
                 (Request::Job(Job::Lcd), put(buffer, block.as_bytes())?)
             }
             _ if poll_is_due => (Request::Status, put(buffer, &[STATUS_REQUEST])?),
@@ -397,9 +397,9 @@ impl Driver {
 
     /// The telegram or its reply is lost: the unit is asked for its status before anything else.
     fn fail(&mut self, now: Instant, request: Request, failure: Failure) -> Option<Event> {
-        self.poll(now);
         match request {
             Request::Job(job) => {
+                self.poll(now);
                 self.pending = None;
                 Some(Event::Failed(job, failure))
             }

@@ -204,13 +204,13 @@ impl Panel {
 
     fn page(&mut self, lines: i8, locators: usize) {
         // The list has the body behind the locators.
-        let (place, last) = match self.view {
-            View::List => (&mut self.cursor, locators),
-            View::Locator(_) => (&mut self.cursor, locators.saturating_sub(1)),
+        let last = match self.view {
+            View::List => locators,
+            View::Locator(_) => locators.saturating_sub(1),
             View::Adjust => return,
         };
         let last = u8::try_from(last).unwrap_or(u8::MAX);
-        *place = place.saturating_add_signed(lines).min(last);
+        self.cursor = self.cursor.saturating_add_signed(lines).min(last);
         if let View::Locator(locator) = &mut self.view {
             *locator = self.cursor;
         }
@@ -248,6 +248,10 @@ impl Panel {
             self.multiplier = Some(position);
             None
         }
+    }
+
+    fn multiplier(&self) -> Option<Multiplier> {
+        self.multiplier.and_then(Multiplier::of_position)
     }
 
     fn set_direction(&mut self, position: Option<Position>) -> Option<Action> {
@@ -357,7 +361,7 @@ impl Panel {
             return None;
         }
         let axis = self.direction.and_then(Axis::of_position);
-        let multiplier = self.multiplier.and_then(Multiplier::of_position);
+        let multiplier = self.multiplier();
         let Some((axis, multiplier)) = self.knobs(axis, multiplier) else {
             // Turned away during a jog.
             return self.stop(self.message);
@@ -382,7 +386,7 @@ impl Panel {
         }
         let direction = self.direction.map(Position::get);
         let direction = direction.filter(|&direction| direction <= PoseChange::DIRECTIONS);
-        let multiplier = self.multiplier.and_then(Multiplier::of_position);
+        let multiplier = self.multiplier();
         let Some((direction, multiplier)) = self.knobs(direction, multiplier) else {
             return;
         };

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::lcd::{LcdBlock, LcdCommand, Place};
 use crate::number::{Column, Line};
 use crate::report::Model;
-use crate::text::Text;
+use crate::text::{Text, is_printable};
 
 /// Lines of the display. Printed for the HBAS (small font); the HBLS is taken to have as many.
 pub const LINES: usize = 8;
@@ -40,11 +40,7 @@ impl Screen {
     pub fn put(&mut self, line: usize, column: usize, text: &str) {
         let line = self.lines.get_mut(line).into_iter().flatten();
         for (to, byte) in line.skip(column).zip(text.bytes()) {
-            *to = if (b' '..=b'~').contains(&byte) {
-                byte
-            } else {
-                b'?'
-            };
+            *to = if is_printable(byte) { byte } else { b'?' };
         }
     }
 

@@ -52,10 +52,9 @@ impl<'a> Text<'a> {
     /// # Errors
     /// [`CharacterError`] for anything else.
     pub fn from_ascii(bytes: &'a [u8]) -> Result<Self, CharacterError> {
-        let printable = |byte: u8| (b' '..=b'~').contains(&byte);
         let offset = ABOVE_ASCII;
         let checked = Self { bytes, offset };
-        match bytes.iter().position(|&byte| !printable(byte)) {
+        match bytes.iter().position(|&byte| !is_printable(byte)) {
             None => Ok(checked),
             Some(index) => Err(CharacterError {
                 index,
@@ -131,4 +130,9 @@ impl defmt::Format for Text<'_> {
             defmt::write!(f, "{=char}", character);
         }
     }
+}
+
+/// Whether the display has the character.
+pub(crate) fn is_printable(byte: u8) -> bool {
+    (b' '..=b'~').contains(&byte)
 }

@@ -160,7 +160,7 @@ impl WheelSampler {
     #[must_use]
     pub fn sample(&mut self, now: Instant, counter: u32) -> Option<i32> {
         let elapsed = now.as_micros().saturating_sub(self.since.as_micros());
-        let period = 200_000_u32;
+        let period = SAMPLE.subsec_micros();
         if elapsed < period.into() {
             return None;
         }

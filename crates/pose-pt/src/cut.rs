@@ -2,10 +2,9 @@
 
 use nalgebra::RealField;
 
-use crate::number::{epsilons, two};
+use crate::number::{count, epsilons, two};
 use crate::path::Leg;
 use crate::strain::pairs;
-use crate::turn::count;
 use crate::{PlanError, Platform};
 
 /// How finely the way from one pose to the next is cut.

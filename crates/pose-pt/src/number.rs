@@ -1,6 +1,16 @@
-//! Constants of any float type.
+//! Numbers of any float type.
 
 use nalgebra::RealField;
+
+/// A count as a number of `T`.
+pub(crate) fn count<T: RealField>(count: u32) -> T {
+    nalgebra::convert(f64::from(count))
+}
+
+/// A constant as a number of `T`.
+pub(crate) fn constant<T: RealField>(value: f64) -> T {
+    nalgebra::convert(value)
+}
 
 pub(crate) fn two<T: RealField>() -> T {
     T::one() + T::one()

@@ -85,11 +85,12 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
         let ahead = ahead
             .get_mut(..needed)
             .ok_or(PlanError::TooManyPoints { needed, available })?;
-        self.look_ahead(max, ahead);
+        let limits = Reciprocals::new(self.platform().locators());
+        self.look_ahead(&limits, max, ahead);
         Ok(PvtRun {
             table: *self,
             ahead,
-            limits: Reciprocals::new(self.platform().locators()),
+            limits,
             max,
             wanted: T::one().min(max),
             feed: T::zero(),
@@ -99,8 +100,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     }
 
     /// From the end: the highest feed at each point from which the rest can be run.
-    fn look_ahead(&self, max: T, ahead: &mut [Ahead<T>]) {
-        let limits = Reciprocals::new(self.platform().locators());
+    fn look_ahead(&self, limits: &Reciprocals<N, T>, max: T, ahead: &mut [Ahead<T>]) {
         let full = T::one().min(max);
         let ahead = Cell::from_mut(ahead).as_slice_of_cells();
         if let Some(last) = ahead.last() {
@@ -114,7 +114,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             let ([here, next], Some(from), Some((end, _))) = (pair, self.node(number), to) else {
                 continue;
             };
-            let segment = Segment::new(&limits, &from.0, &end, from.1);
+            let segment = Segment::new(limits, &from.0, &end, from.1);
             let (ceiling, after) = segment.begin(next.get().ceiling, max);
             // The table itself holds.
             here.set(if ceiling > full {

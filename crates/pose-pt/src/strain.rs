@@ -2,6 +2,7 @@
 
 use nalgebra::{RealField, Vector3};
 
+use crate::number::constant;
 use crate::path::Leg;
 use crate::path::leg::Shape;
 use crate::{Platform, PvtPoint};
@@ -134,22 +135,21 @@ pub fn hermite_strain<const N: usize, T: RealField + Copy>(
 
 /// The bound for one pair from the vector between them and its derivative at both ends.
 fn pair_strain<T: RealField + Copy>(ends: &[(Vector3<T>, Vector3<T>); 2], duration: T) -> T {
-    let constant = |value: f64| nalgebra::convert::<f64, T>(value);
     let [(b0, from), (b3, to)] = *ends;
-    let third = duration / constant(3.0);
+    let third = duration / constant::<T>(3.0);
     // Differences from the ends: B₀·B₀ = L² is taken out before anything is rounded.
     let (first, last) = (from * third, to * third);
     let chord = b3 - b0;
     let square = b0.norm_squared();
     let (b1, b2) = (b0 + first, b3 - last);
-    let (two, three, nine) = (constant(2.0), constant(3.0), constant(9.0));
+    let (two, three, nine) = (constant::<T>(2.0), constant::<T>(3.0), constant::<T>(9.0));
     // B₀·B₂ - L² = B₀·(chord - last), and so on.
     let e2 = two * b0.dot(&(chord - last)) + three * first.dot(&(b0 * two + first));
     let e3 = (b0.dot(&chord) + nine * (b1.dot(&b2) - square)) / two;
     let e4 = two * (b1.dot(&b3) - square) + three * (b2.norm_squared() - square);
     let low = (three * e2).min(two * e3).min(three * e4).min(T::zero());
     let high = (three * e2).max(two * e3).max(three * e4).max(T::zero());
-    let sixteenth = constant(1.0 / 16.0);
+    let sixteenth = constant::<T>(1.0 / 16.0);
     let length = square.sqrt();
     departure(length, low * sixteenth).max(departure(length, high * sixteenth))
 }

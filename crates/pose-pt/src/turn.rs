@@ -2,7 +2,7 @@
 
 use nalgebra::RealField;
 
-use crate::number::{half, two};
+use crate::number::{count, half, two};
 
 /// sin θ and 1 - cos θ; the versine keeps its digits where the angle is small.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,11 +108,6 @@ impl<const K: usize, T: RealField + Copy> Sweep<K, T> {
             *now = Turn::of(from + change * share);
         }
     }
-}
-
-/// A count as a number of `T`.
-pub(crate) fn count<T: RealField>(count: u32) -> T {
-    nalgebra::convert(f64::from(count))
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub(super) const TEXT_END: u8 = 0x0A;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct LcdBlock {
     model: Model,
-    /// Below [`MAX_COMMAND`], 135.
+    /// At most [`MAX_COMMAND`], 135.
     len: u8,
     bytes: [u8; MAX_COMMAND],
 }

@@ -2,7 +2,6 @@
 
 use super::{Message, Motion, Multiplier, Panel, Refusal, View};
 use crate::arbiter::{Arbiter, Target};
-use crate::number::Position;
 use crate::panel::Axis;
 use crate::screen::{Decimal, LINES, Screen};
 
@@ -90,10 +89,7 @@ impl Panel {
     }
 
     fn multiplier_name(&self) -> &'static str {
-        let multiplier: Option<Position> = self.multiplier;
-        multiplier
-            .and_then(Multiplier::of_position)
-            .map_or("x?", Multiplier::name)
+        self.multiplier().map_or("x?", Multiplier::name)
     }
 
     fn message(&self, screen: &mut Screen) {

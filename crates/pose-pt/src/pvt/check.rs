@@ -4,7 +4,7 @@ use nalgebra::{RealField, Vector3};
 
 use super::{Knot, segments};
 use crate::course::Course;
-use crate::number::{cube_root, half, two};
+use crate::number::{constant, cube_root, half, two};
 use crate::{Axis, LimitError, Locator, Platform, PvtPoint};
 
 /// One axis over one segment.
@@ -20,9 +20,8 @@ struct Cubic<T> {
 impl<T: RealField + Copy> Cubic<T> {
     /// Accelerations at both ends; between them the acceleration is linear.
     fn accelerations(&self) -> [T; 2] {
-        let constant = |value: f64| nalgebra::convert::<f64, T>(value);
-        let six_means = constant(6.0) * (self.q1 - self.q0) / self.duration;
-        let (two, four) = (constant(2.0), constant(4.0));
+        let six_means = constant::<T>(6.0) * (self.q1 - self.q0) / self.duration;
+        let (two, four) = (constant::<T>(2.0), constant::<T>(4.0));
         [
             (six_means - four * self.v0 - two * self.v1) / self.duration,
             (two * self.v0 + four * self.v1 - six_means) / self.duration,

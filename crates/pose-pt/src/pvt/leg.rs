@@ -8,8 +8,7 @@ use super::segment::{Reciprocals, Segment};
 use super::{Knot, knots_of};
 use crate::Locator;
 use crate::course::{Course, Place};
-use crate::number::{largest, two};
-use crate::turn::count;
+use crate::number::{count, largest, two};
 
 /// Fills the first knots, one more than parts, with the fastest motion.
 pub(super) fn fastest<const N: usize, T: RealField + Copy>(

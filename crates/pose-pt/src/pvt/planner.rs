@@ -30,10 +30,7 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         for (number, leg) in moving(path) {
             let parts = match self.cut.rule {
                 Rule::Strain(_) => self.least,
-                _ => self
-                    .cut
-                    .linear_parts(self.platform, number, &leg)?
-                    .max(self.least),
+                _ => self.parts(number, &leg)?,
             };
             needed = needed.saturating_add(knots_of(within_max(Some(parts), number)?));
         }
@@ -41,6 +38,12 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
             return Ok(());
         }
         Err(PlanError::TooManyPoints { needed, available })
+    }
+
+    /// Parts of a leg where the cut alone decides them.
+    fn parts(&self, number: usize, leg: &Leg<T>) -> Result<u32, PlanError<T>> {
+        let parts = self.cut.linear_parts(self.platform, number, leg)?;
+        Ok(parts.max(self.least))
     }
 
     /// Plans a leg in the first of the free knots; the number of them.
@@ -54,10 +57,7 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
         let course = Course::new(self.platform, leg);
         let parts = match self.cut.rule {
             Rule::Strain(allowed) => self.fewest(number, &course, used, free, allowed)?,
-            _ => self
-                .cut
-                .linear_parts(self.platform, number, leg)?
-                .max(self.least),
+            _ => self.parts(number, leg)?,
         };
         self.lay(&course, free, parts);
         Ok(knots_of(parts))

@@ -2,8 +2,7 @@
 
 use nalgebra::RealField;
 
-use crate::number::{cube_root, half, two};
-use crate::turn::count;
+use crate::number::{count, cube_root, half, two};
 
 /// Seven phases of constant jerk over a way of 1.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use nalgebra::RealField;
 
 use crate::Locator;
 use crate::course::Place;
-use crate::number::{epsilons, half, larger, magnitude};
+use crate::number::{constant, epsilons, half, larger, magnitude};
 
 /// One over the limits of speed and acceleration of each axis, a margin included.
 #[derive(Debug, Clone, Copy)]
@@ -69,9 +69,8 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
         to: &Place<N, T>,
         way: T,
     ) -> Self {
-        let constant = |value: f64| nalgebra::convert::<f64, T>(value);
-        let (two, four) = (constant(2.0), constant(4.0));
-        let (inverse, half_thrice) = (T::one() / way, constant(1.5));
+        let (two, four) = (constant::<T>(2.0), constant::<T>(4.0));
+        let (inverse, half_thrice) = (T::one() / way, constant::<T>(1.5));
         let zero = T::zero();
         let mut segment = Self {
             accelerations: [[[[zero; 2]; 2]; 3]; N],
@@ -92,7 +91,7 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
             {
                 let (p0, p1) = (*p0, *p1);
                 let mean = (*q1 - *q0) * inverse;
-                let six = constant(6.0) * mean;
+                let six = constant::<T>(6.0) * mean;
                 let share = inverse * *acceleration;
                 *row = [
                     [

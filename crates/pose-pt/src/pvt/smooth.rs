@@ -7,8 +7,7 @@ use super::scurve::{SCurve, share};
 use super::{Knot, MIN_PARTS, leg, window};
 use crate::Locator;
 use crate::course::Course;
-use crate::number::{cube_root, half, larger, largest, magnitude, two};
-use crate::turn::count;
+use crate::number::{constant, count, cube_root, half, larger, largest, magnitude, two};
 
 /// Fills the knots of a leg, one more than parts, with the faster of an S-curve along the path
 /// and the fastest motion without a limit of jerk, averaged over a window of time.
@@ -178,7 +177,6 @@ fn s_curve<const N: usize, T: RealField + Copy>(
     locators: &[Locator<T>; N],
     course: &Course<'_, N, T>,
 ) -> SCurve<T> {
-    let constant = |value: f64| nalgebra::convert::<f64, T>(value);
     let derivatives = derivatives(course);
     let all = || {
         let limits = locators.iter().flat_map(|locator| &locator.limits);
@@ -190,19 +188,20 @@ fn s_curve<const N: usize, T: RealField + Copy>(
         speed
             .min(limits.speed / *p1)
             .min((limits.acceleration / (two::<T>() * *p2)).sqrt())
-            .min(cube_root(jerk / (constant(3.0) * *p3)))
+            .min(cube_root(jerk / (constant::<T>(3.0) * *p3)))
     });
     let acceleration = all().fold(most, |acceleration, (limits, [p1, p2, _])| {
         let jerk = limits.jerk.unwrap_or(most);
         acceleration
             .min((limits.acceleration - *p2 * speed * speed) / *p1)
-            .min(jerk / (constant(9.0) * *p2 * speed))
+            .min(jerk / (constant::<T>(9.0) * *p2 * speed))
     });
     // Without an axis that limits it: a thousandth of the time that the way takes.
-    let jerk = acceleration * acceleration.sqrt() * constant(1e3);
+    let jerk = acceleration * acceleration.sqrt() * constant::<T>(1e3);
     let jerk = all().fold(jerk, |least, (limits, [p1, p2, p3])| match limits.jerk {
         Some(jerk) => {
-            let used = *p3 * speed * speed * speed + constant(3.0) * *p2 * speed * acceleration;
+            let used =
+                *p3 * speed * speed * speed + constant::<T>(3.0) * *p2 * speed * acceleration;
             least.min((jerk - used) / *p1)
         }
         None => least,

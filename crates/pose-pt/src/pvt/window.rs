@@ -3,8 +3,7 @@
 use nalgebra::RealField;
 
 use super::Knot;
-use crate::number::half;
-use crate::turn::count;
+use crate::number::{count, half};
 
 /// Replaces the motion s(t) of the first `parts - late` parts by its mean over the `window_s`
 /// before t, and lets the last `late` parts run it out.
