@@ -115,9 +115,9 @@ fn between(from: [i32; 3], to: [i32; 3]) -> Option<[i32; 3]> {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "checked to be within 1..=u32::MAX"
+    reason = "checked to be within 1 and what 32 bits hold"
 )]
-fn half_period(duration_s: f64, pulses: u32) -> Result<u32> {
+fn half_period(duration_s: f64, pulses: u32) -> Result<u64> {
     let ticks = (duration_s * f64::from(TICKS_PER_S) / (2.0 * f64::from(pulses))).ceil();
     if ticks > f64::from(u32::MAX) {
         bail!(
@@ -125,7 +125,7 @@ fn half_period(duration_s: f64, pulses: u32) -> Result<u32> {
             2.0 * ticks / f64::from(TICKS_PER_S)
         );
     }
-    Ok(ticks.max(1.0) as u32)
+    Ok(ticks.max(1.0) as u64)
 }
 
 /// Ticks as seconds.

@@ -166,7 +166,7 @@ pub(crate) struct Machine {
     pub(crate) lift_pulses: i32,
     pub(crate) format: Format,
     pub(crate) timer: Timer,
-    pub(crate) half_period_ticks: u32,
+    pub(crate) half_period_ticks: u64,
     pub(crate) rapid: RampLimits,
     pub(crate) bed: Bed,
 }
@@ -278,11 +278,11 @@ fn lift(settings: &VerticalSettings) -> Result<i32> {
     Ok(pulses)
 }
 
-fn timing(settings: &TimerSettings) -> Result<(Timer, u32)> {
+fn timing(settings: &TimerSettings) -> Result<(Timer, u64)> {
     let timer = Timer::mcs51_mode1(settings.crystal_hz).context("crystal_hz")?;
     let rate = Rate::from_millihertz(millihertz("process_hz", settings.process_hz)?)?;
     let ticks = timer.half_period(rate).context("process_hz")?.nearest();
-    Ok((timer, u32::try_from(ticks).context("process_hz")?))
+    Ok((timer, ticks))
 }
 
 fn ramp(settings: &RapidSettings, timer: Timer) -> Result<RampLimits> {

@@ -48,7 +48,7 @@ pub(crate) fn play(
 struct Controller {
     format: Format,
     timer: Timer,
-    half_period_ticks: u32,
+    half_period_ticks: u64,
     rapid: RampLimits,
     now: u64,
 }

@@ -48,7 +48,7 @@ struct MachineReport<'a> {
     axis_codes: PerAxis<u8>,
     byte_order: ByteOrder,
     direction_bit: &'a str,
-    half_period_ticks: u32,
+    half_period_ticks: u64,
     tick_ns: f64,
     settings: &'a Settings,
 }

@@ -9,7 +9,7 @@ use pose2pulse::stepper_sync::{AxisTrain, CounterWidth, Rounding, Trains};
 use super::simulator::{Port, Write, simulate};
 
 /// Half period of [Engraver 2000], in machine cycles.
-const T: u32 = 4096;
+const T: u64 = 4096;
 
 /// Most cycles from an edge's place to the edge: what starts the timers, the longest handler of the
 /// other timer, then the way to the port in its own.
@@ -138,7 +138,7 @@ pub(super) fn bounds(numbers: &[u64]) -> (u64, u64) {
 }
 
 /// The places of all edges of both axes of a move, by [`Trains`].
-fn places(axes: &Move, half_period: u32) -> Vec<Edges> {
+fn places(axes: &Move, half_period: u64) -> Vec<Edges> {
     let mut pulses = [0; 2];
     for (place, &(_, signed)) in pulses.iter_mut().zip(axes) {
         *place = signed;
@@ -166,7 +166,7 @@ fn is_calm(place: u64, other: &Edges) -> bool {
 
 /// Plays records with the driver as it should be, and compares edge by edge with [`Trains`]. Edges
 /// of two axes that are more than `HANDLER` apart then have their order, too.
-fn assert_plays(records: &[Record], format: Format, half_period: u32) {
+fn assert_plays(records: &[Record], format: Format, half_period: u64) {
     let define = format!("HALF_PERIOD={half_period}");
     let Some(measured) = engrave(records, format, &[&define]) else {
         return;
@@ -252,7 +252,7 @@ fn a_fast_train_keeps_its_mean_interval_to_the_cycle() {
         let moves = engrave(&records, Format::default(), defines)?;
         let edges = &moves[0].edges[0];
         assert_eq!(edges.len(), 800);
-        Some((edges[799] - edges[0]).cast_signed() - 799 * i64::from(T))
+        Some((edges[799] - edges[0]).cast_signed() - 799 * T.cast_signed())
     };
     let Some(kept) = excess(&[]) else {
         return;

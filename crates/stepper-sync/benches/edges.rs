@@ -13,7 +13,7 @@ fn fold(sum: u64, edge: Edge) -> u64 {
 fn trains<const N: usize>(c: &mut Criterion, name: &str, steps: [i32; N]) {
     let trains = Trains::new(steps, 4096).expect("legal steps");
     let mut group = c.benchmark_group(name);
-    group.throughput(Throughput::Elements(trains.edges().edges_left()));
+    group.throughput(Throughput::Elements(trains.edges().remaining()));
     group.bench_function("time order", |b| {
         b.iter(|| black_box(&trains).edges().fold(0, fold));
     });
@@ -56,7 +56,7 @@ fn ramps(c: &mut Criterion) {
     // s_a = 9999.75 steps: all ramp, no constant speed.
     let ramp = Ramp::new([19_999, -12_345], &limits, rate).expect("legal ramp");
     let mut group = c.benchmark_group("ramp of two axes, 19999 and 12345");
-    group.throughput(Throughput::Elements(ramp.edges().edges_left()));
+    group.throughput(Throughput::Elements(ramp.edges().remaining()));
     group.bench_function("time order", |b| {
         b.iter(|| black_box(&ramp).edges().fold(0, fold));
     });

@@ -70,16 +70,13 @@ impl<A: Iterator<Item = u64>> Head<A> {
 /// `A` yields the intervals of one axis in ticks, the first one counted from the start of the
 /// move: [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp). Each edge costs a
 /// comparison per axis and one interval; nothing is stored but one head per axis.
-///
-/// The size hint is exact while the number of edges fits `usize`; [`edges_left`](Self::edges_left)
-/// is exact wherever `usize` has 32 bits or more.
 #[derive(Clone, Debug)]
 #[must_use = "iterators are lazy"]
 pub struct Edges<A, const N: usize> {
     heads: [Head<A>; N],
 }
 
-impl<A: ExactSizeIterator<Item = u64>, const N: usize> Edges<A, N> {
+impl<A: Iterator<Item = u64>, const N: usize> Edges<A, N> {
     /// Merges the interval iterators of N axes.
     ///
     /// The sum of one axis' intervals must stay below 2^64 - 1, as it does for all trains and
@@ -90,19 +87,16 @@ impl<A: ExactSizeIterator<Item = u64>, const N: usize> Edges<A, N> {
         }
     }
 
-    /// Edges still to come, over all axes.
-    #[must_use]
-    pub fn edges_left(&self) -> u64 {
+    /// The edges of the heads, and what their axes have left.
+    pub(crate) fn sum_of_rests(&self, rest: impl Fn(&A) -> u64) -> u64 {
         self.heads.iter().fold(0_u64, |sum, head| {
-            // Not `len`, which panics past `usize`.
-            let behind_head = u64::try_from(head.axis.size_hint().0).unwrap_or(u64::MAX);
-            sum.saturating_add(behind_head)
+            sum.saturating_add(rest(&head.axis))
                 .saturating_add(u64::from(head.ticks != NEVER))
         })
     }
 }
 
-impl<A: ExactSizeIterator<Item = u64>, const N: usize> Iterator for Edges<A, N> {
+impl<A: Iterator<Item = u64>, const N: usize> Iterator for Edges<A, N> {
     type Item = Edge;
 
     #[inline]
@@ -129,13 +123,25 @@ impl<A: ExactSizeIterator<Item = u64>, const N: usize> Iterator for Edges<A, N> 
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        match usize::try_from(self.edges_left()) {
-            Ok(left) => (left, Some(left)),
-            Err(_) => (usize::MAX, None),
-        }
+        let none = (0_usize, Some(0_usize));
+        self.heads.iter().fold(none, |(least, most), head| {
+            let (more_least, more_most) = head.axis.size_hint();
+            let own = usize::from(head.ticks != NEVER);
+            let most = most.zip(more_most);
+            (
+                least.saturating_add(more_least).saturating_add(own),
+                most.and_then(|(most, more)| most.checked_add(more)?.checked_add(own)),
+            )
+        })
     }
 }
 
-impl<A: ExactSizeIterator<Item = u64>, const N: usize> ExactSizeIterator for Edges<A, N> {}
+impl<A: Iterator<Item = u64>, const N: usize> FusedIterator for Edges<A, N> {}
 
-impl<A: ExactSizeIterator<Item = u64>, const N: usize> FusedIterator for Edges<A, N> {}
+/// The size hint of an iterator with `left` items: exact wherever `usize` holds it.
+pub(crate) fn size_of_rest(left: u64) -> (usize, Option<usize>) {
+    match usize::try_from(left) {
+        Ok(left) => (left, Some(left)),
+        Err(_) => (usize::MAX, None),
+    }
+}

@@ -36,7 +36,5 @@ pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
 pub use rate::{Rate, RateError};
 pub use ratio::Ratio;
 pub use single_reload::{Rounding, SingleReload};
-pub use timer::{
-    CounterWidth, Counting, ExactInterval, Periods, Reload, Reloads, Timer, TimerError,
-};
+pub use timer::{CounterWidth, ExactInterval, Periods, Reload, Reloads, Timer, TimerError};
 pub use trains::{AxisTrain, Direction, TrainError, Trains};

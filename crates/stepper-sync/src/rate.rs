@@ -108,6 +108,11 @@ impl Rate {
         self.denominator.get()
     }
 
+    /// Numerator and denominator.
+    pub(crate) const fn parts(self) -> (NonZeroU32, NonZeroU32) {
+        (self.numerator, self.denominator)
+    }
+
     /// The rate in millihertz, rounded to the nearest, halves up.
     #[must_use]
     #[expect(

@@ -27,7 +27,7 @@ pub enum Rounding {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub struct SingleReload {
-    edges: u32,
+    edges: u64,
     interval_ticks: u64,
     planned_end_ticks: u64,
 }
@@ -36,13 +36,13 @@ impl SingleReload {
     pub(crate) fn new(axis: &AxisTrain, planned_end_ticks: u64, rounding: Rounding) -> Self {
         // D mod 2n = 2 (n_max T mod n): compared with n, that is the remainder against n / 2.
         let up = match rounding {
-            Rounding::Nearest => axis.edges_left() > 0 && axis.long_intervals() >= axis.pulses(),
+            Rounding::Nearest => axis.remaining() > 0 && axis.long_intervals() >= axis.pulses(),
             Rounding::Down => false,
         };
         Self {
-            edges: axis.edges_left(),
+            edges: axis.remaining(),
             interval_ticks: axis.shortest_ticks().saturating_add(u64::from(up)),
-            planned_end_ticks: if axis.edges_left() == 0 {
+            planned_end_ticks: if axis.remaining() == 0 {
                 0
             } else {
                 planned_end_ticks
@@ -72,22 +72,19 @@ impl SingleReload {
         self.interval_ticks
     }
 
-    /// The tick of the last edge; 0 for an axis at rest.
+    /// The tick of the last edge; 0 for an axis at rest. One reload too long for all of 2^32 edges
+    /// may end past 64 bits.
     #[must_use]
-    pub fn end_ticks(&self) -> u64 {
-        u64::from(self.edges).saturating_mul(self.interval_ticks)
+    pub fn end_ticks(&self) -> u128 {
+        u128::from(self.edges).saturating_mul(u128::from(self.interval_ticks))
     }
 
     /// Last edge minus the tick D at which it should be; 0 for an axis at rest.
     #[must_use]
-    pub fn skew_ticks(&self) -> i64 {
-        let late = self.end_ticks() >= self.planned_end_ticks;
-        let size = self.end_ticks().abs_diff(self.planned_end_ticks);
-        match (i64::try_from(size), late) {
-            (Ok(skew), true) => skew,
-            (Ok(skew), false) => skew.saturating_neg(),
-            (Err(_), true) => i64::MAX,
-            (Err(_), false) => i64::MIN,
-        }
+    pub fn skew_ticks(&self) -> i128 {
+        // Below 2^97: neither the casts nor the difference wrap.
+        self.end_ticks()
+            .cast_signed()
+            .wrapping_sub(u128::from(self.planned_end_ticks).cast_signed())
     }
 }

@@ -3,83 +3,71 @@
 mod error;
 mod interval;
 mod periods;
+mod register;
 mod reloads;
+mod width;
 
 pub use error::TimerError;
 pub use interval::ExactInterval;
 pub use periods::Periods;
 pub use reloads::{Reload, Reloads};
+pub use width::CounterWidth;
 
 use crate::Rate;
-use core::num::NonZeroU32;
+use core::num::{NonZeroU32, NonZeroU64, NonZeroU128};
 use core::time::Duration;
+use register::Register;
 
-/// Number of bits of a counter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "the widths that timers have")]
-pub enum CounterWidth {
-    /// 8 bits: MCS-51 mode 2, AVR timer 0.
-    Bits8,
-    /// 16 bits: MCS-51 mode 1, AVR timer 1, most STM32 timers.
-    Bits16,
-    /// 24 bits: `SysTick` of the Cortex-M.
-    Bits24,
-    /// 32 bits: STM32 timer 2, nRF timers.
-    Bits32,
-}
+/// Edges of a pulse.
+const TWO: NonZeroU64 = NonZeroU64::MIN.saturating_add(1);
 
-impl CounterWidth {
-    /// Longest period, 2^width ticks.
-    #[must_use]
-    pub const fn max_ticks(self) -> u64 {
-        self.max_value().wrapping_add(1)
-    }
+const NS_PER_S: NonZeroU128 = NonZeroU128::MIN.saturating_add(999_999_999);
 
-    /// Largest count, 2^width - 1.
-    #[must_use]
-    pub const fn max_value(self) -> u64 {
-        match self {
-            Self::Bits8 => 0xFF,
-            Self::Bits16 => 0xFFFF,
-            Self::Bits24 => 0xFF_FFFF,
-            Self::Bits32 => 0xFFFF_FFFF,
-        }
-    }
-
-    /// log2 of [`max_ticks`](Self::max_ticks).
-    pub(crate) const fn bits(self) -> u32 {
-        match self {
-            Self::Bits8 => 8,
-            Self::Bits16 => 16,
-            Self::Bits24 => 24,
-            Self::Bits32 => 32,
-        }
-    }
-}
-
-/// How a counter is loaded for an interval of T ticks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "a counter counts up or down")]
-pub enum Counting {
-    /// Up to the overflow: the reload is (2^w - T) mod 2^w, and 0 is the full 2^w ticks.
-    Up,
-    /// Down to zero, or up to a compare value, with the zero counted: the reload is T - 1.
-    Down,
-}
-
-/// A hardware timer: its clock, the clocks per tick, its width and the way it counts.
+/// A hardware timer: its clock, the clocks per tick, its width, and what its register holds.
+///
+/// Each constructor is named after the way the counter runs, and what stands in the register for
+/// an interval of T ticks:
+///
+/// | constructor | register | shortest T |
+/// |---|---|---|
+/// | [`up_to_overflow`](Self::up_to_overflow) | (2^w - T) mod 2^w: the count that the interval starts from | 1 |
+/// | [`up_to_compare`](Self::up_to_compare) | T - 1: the last count before the counter starts anew at 0 | 2 |
+/// | [`down_to_zero`](Self::down_to_zero) | T - 1: the count that is loaded after 0 | 2 |
+///
+/// N is the prescaler:
+///
+/// | timer | register | constructor |
+/// |---|---|---|
+/// | MCS-51 timers 0 and 1, mode 1 | `THx`, `TLx` | [`mcs51_mode1(f_osc)`](Self::mcs51_mode1), the same as `up_to_overflow(f_osc, 12, Bits16)` |
+/// | MCS-51 timers 0 and 1, mode 2 | `THx` | `up_to_overflow(f_osc, 12, Bits8)` |
+/// | 8052 timer 2, auto-reload | `RCAP2H`, `RCAP2L` | `up_to_overflow(f_osc, 12, Bits16)` |
+/// | AVR, normal mode | `TCNTn` | `up_to_overflow(f_clk, N, Bits8)`, timer 1 `Bits16` |
+/// | AVR, CTC mode | `OCRnA` | `up_to_compare(f_clk, N, Bits8)`, timer 1 `Bits16` |
+/// | PIC16 timer 0, timer 1 | `TMR0`, `TMR1` | `up_to_overflow(f_osc, 4 * N, Bits8)`, timer 1 `Bits16` |
+/// | PIC16 timer 2 | `PR2` | `up_to_compare(f_osc, 4 * N, Bits8)` |
+/// | STM32, edge-aligned, counting up or down | `ARR` | `up_to_compare(f_tim, PSC + 1, Bits16)`, timers of 32 bits `Bits32` |
+/// | RP2040 PWM slice, not phase-correct | `TOP` | `up_to_compare(f_sys, DIV_INT, Bits16)` |
+/// | MSP430 `Timer_A`, up mode | `TAxCCR0` | `up_to_compare(f, N, Bits16)` |
+/// | SAM D21 TC, match frequency | `CC0` | `up_to_compare(f_gclk, N, Bits16)` |
+/// | Cortex-M `SysTick` | `SYST_RVR` | `down_to_zero(f_cpu, 1, Bits24)` |
+/// | Arm CMSDK APB timer | `RELOAD` | `down_to_zero(f_pclk, 1, Bits32)` |
+///
+/// A counter that runs free under a compare register which the interrupt moves on, as STM32 output
+/// compare and the alarms of the RP2040, needs no reload: it takes the interval itself,
+/// `compare += ticks`.
 ///
 /// # Examples
 /// ```
-/// use stepper_sync::{Rate, Timer};
-/// let timer = Timer::mcs51_mode1(11_059_200)?;
-/// let exact = timer.half_period(Rate::from_millihertz(112_800)?)?;
-/// assert_eq!(exact.nearest(), 4085);
-/// assert_eq!(timer.reload(exact.nearest())?, 0xF00B);
+/// use stepper_sync::{CounterWidth::{Bits16, Bits24}, Rate, Timer};
+/// let rate = Rate::from_hz(500)?;
+/// let mcs51 = Timer::mcs51_mode1(12_000_000)?;
+/// let stm32 = Timer::up_to_compare(72_000_000, 72, Bits16)?;
+/// let systick = Timer::down_to_zero(168_000_000, 1, Bits24)?;
+/// // 1000 us each.
+/// let reload = |timer: Timer| timer.reload(timer.half_period(rate)?.nearest());
+/// assert_eq!(reload(mcs51)?, 65_536 - 1000);
+/// assert_eq!(reload(stm32)?, 999);
+/// assert_eq!(reload(systick)?, 167_999);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -87,7 +75,7 @@ pub struct Timer {
     clock_hz: NonZeroU32,
     clocks_per_tick: NonZeroU32,
     width: CounterWidth,
-    counting: Counting,
+    register: Register,
     min_ticks: u64,
 }
 
@@ -95,17 +83,78 @@ impl Timer {
     /// Most clocks per tick, 2^20: a 16-bit prescaler behind a fixed divider of 16.
     pub const MAX_CLOCKS_PER_TICK: u32 = 1 << 20;
 
-    /// A timer that counts one tick every `clocks_per_tick` clocks of `clock_hz`.
+    /// A counter that counts up from what is written into it, or into its reload register, and
+    /// ends the interval when it overflows to 0.
     ///
-    /// `clocks_per_tick` is the prescaler times any fixed divider, 1 to 2^20.
+    /// ```text
+    /// reload = (2^w - T) mod 2^w        0 is the full 2^w ticks
+    /// ```
+    /// One tick every `clocks_per_tick` clocks of `clock_hz`: the prescaler times any fixed
+    /// divider, 1 to 2^20.
     ///
     /// # Errors
     /// [`TimerError::ZeroClock`], [`TimerError::ClocksPerTick`].
-    pub const fn new(
+    pub const fn up_to_overflow(
         clock_hz: u32,
         clocks_per_tick: u32,
         width: CounterWidth,
-        counting: Counting,
+    ) -> Result<Self, TimerError> {
+        Self::new(clock_hz, clocks_per_tick, width, Register::Overflow)
+    }
+
+    /// A counter that counts up from 0 to its auto-reload, compare or period register, and starts
+    /// anew at the tick after.
+    ///
+    /// ```text
+    /// reload = T - 1
+    /// ```
+    /// The shortest interval is 2 ticks, because an auto-reload register of 0 stops the counter of
+    /// an STM32; [`with_min_ticks`](Self::with_min_ticks) allows 1. Clock and clocks per tick as in
+    /// [`up_to_overflow`](Self::up_to_overflow).
+    ///
+    /// # Errors
+    /// [`TimerError::ZeroClock`], [`TimerError::ClocksPerTick`].
+    pub const fn up_to_compare(
+        clock_hz: u32,
+        clocks_per_tick: u32,
+        width: CounterWidth,
+    ) -> Result<Self, TimerError> {
+        Self::new(clock_hz, clocks_per_tick, width, Register::Compare)
+    }
+
+    /// A counter that counts down from its reload register to 0, and is loaded at the tick after.
+    ///
+    /// ```text
+    /// reload = T - 1
+    /// ```
+    /// The shortest interval is 2 ticks, because a reload value of 0 stops `SysTick`;
+    /// [`with_min_ticks`](Self::with_min_ticks) allows 1. Clock and clocks per tick as in
+    /// [`up_to_overflow`](Self::up_to_overflow).
+    ///
+    /// # Errors
+    /// [`TimerError::ZeroClock`], [`TimerError::ClocksPerTick`].
+    pub const fn down_to_zero(
+        clock_hz: u32,
+        clocks_per_tick: u32,
+        width: CounterWidth,
+    ) -> Result<Self, TimerError> {
+        Self::new(clock_hz, clocks_per_tick, width, Register::Down)
+    }
+
+    /// Timer 0 or 1 of an MCS-51 in mode 1: 12 clocks per machine cycle, 16 bits, up to the
+    /// overflow.
+    ///
+    /// # Errors
+    /// [`TimerError::ZeroClock`].
+    pub const fn mcs51_mode1(oscillator_hz: u32) -> Result<Self, TimerError> {
+        Self::up_to_overflow(oscillator_hz, 12, CounterWidth::Bits16)
+    }
+
+    const fn new(
+        clock_hz: u32,
+        clocks_per_tick: u32,
+        width: CounterWidth,
+        register: Register,
     ) -> Result<Self, TimerError> {
         let Some(clock_hz) = NonZeroU32::new(clock_hz) else {
             return Err(TimerError::ZeroClock);
@@ -116,8 +165,8 @@ impl Timer {
                 clock_hz,
                 clocks_per_tick,
                 width,
-                counting,
-                min_ticks: 1,
+                register,
+                min_ticks: register.min_ticks(),
             }),
             _ => Err(TimerError::ClocksPerTick {
                 value,
@@ -126,38 +175,33 @@ impl Timer {
         }
     }
 
-    /// Timer 0 or 1 of an MCS-51 in mode 1: 12 clocks per machine cycle, 16 bits, counting up.
+    /// The same timer behind the smallest of `prescalers` with which half a period of `rate` fits
+    /// one count: the finest.
     ///
-    /// ```text
-    /// reload = (65536 - T) mod 65536        T = 65536 loads 0000h
+    /// `prescalers` is the list of the data sheet in any order. Each is multiplied with the clocks
+    /// per tick that the timer has without it, such as the 4 of a PIC.
+    ///
+    /// # Errors
+    /// [`TimerError::NoPrescaler`] for an empty list; [`TimerError::ClocksPerTick`]; those of
+    /// [`half_period`](Self::half_period) and [`reload`](Self::reload) for the prescaler that comes
+    /// nearest.
+    ///
+    /// # Examples
     /// ```
-    ///
-    /// # Errors
-    /// [`TimerError::ZeroClock`].
-    pub const fn mcs51_mode1(oscillator_hz: u32) -> Result<Self, TimerError> {
-        Self::new(oscillator_hz, 12, CounterWidth::Bits16, Counting::Up)
-    }
-
-    /// The timer with the fewest clocks per tick of `prescalers` that holds half a period of
-    /// `rate` in one count: the finest that fits.
-    ///
-    /// `prescalers` is the list of the data sheet in any order, each times the fixed divider.
-    ///
-    /// # Errors
-    /// Those of [`new`](Self::new) and [`half_period`](Self::half_period);
-    /// [`TimerError::NoPrescaler`] for an empty list; [`TimerError::IntervalTooLong`] with the
-    /// ticks of the nearest miss when even the largest prescaler is too small.
-    pub fn choose(
-        clock_hz: u32,
-        prescalers: &[u32],
-        width: CounterWidth,
-        counting: Counting,
-        rate: Rate,
-    ) -> Result<Self, TimerError> {
+    /// use stepper_sync::{CounterWidth::Bits16, Rate, Timer};
+    /// let timer1 = Timer::up_to_compare(16_000_000, 1, Bits16)?;
+    /// // 70,922 clocks do not fit 16 bits; behind 8 they are 8865 ticks.
+    /// let rate = Rate::from_millihertz(112_800)?;
+    /// let timer1 = timer1.with_finest_prescaler(&[1, 8, 64, 256, 1024], rate)?;
+    /// assert_eq!(timer1.clocks_per_tick(), 8);
+    /// assert_eq!(timer1.reload(timer1.half_period(rate)?.nearest())?, 8864);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn with_finest_prescaler(self, prescalers: &[u32], rate: Rate) -> Result<Self, TimerError> {
         let mut finest: Option<Self> = None;
         let mut refusal = TimerError::NoPrescaler;
         for &prescaler in prescalers {
-            let timer = Self::new(clock_hz, prescaler, width, counting)?;
+            let timer = self.behind(prescaler)?;
             let fits = timer
                 .half_period(rate)
                 .and_then(|exact| timer.check(exact.nearest()));
@@ -180,7 +224,21 @@ impl Timer {
         finest.ok_or(refusal)
     }
 
-    /// The same timer with a shortest interval, in ticks: what the interrupt handler needs.
+    fn behind(self, prescaler: u32) -> Result<Self, TimerError> {
+        let value = self.clocks_per_tick.get().saturating_mul(prescaler);
+        match NonZeroU32::new(value) {
+            Some(clocks_per_tick) if value <= Self::MAX_CLOCKS_PER_TICK => Ok(Self {
+                clocks_per_tick,
+                ..self
+            }),
+            _ => Err(TimerError::ClocksPerTick {
+                value,
+                limit: Self::MAX_CLOCKS_PER_TICK,
+            }),
+        }
+    }
+
+    /// The same timer with another shortest interval, in ticks: what the interrupt handler needs.
     ///
     /// # Errors
     /// [`TimerError::MinTicks`] when it is 0 or more than half of the longest: a longer interval
@@ -235,13 +293,13 @@ impl Timer {
     ///
     /// # Errors
     /// [`TimerError::RateTooHigh`] when it is less than half a tick.
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "2^32 * 2^32 and 2 * 2^20 * 2^32 fit 64 bits"
-    )]
     pub fn half_period(&self, rate: Rate) -> Result<ExactInterval, TimerError> {
-        let numerator = u64::from(self.clock_hz.get()) * u64::from(rate.denominator());
-        let denominator = u64::from(self.clocks_per_tick.get()) * u64::from(rate.numerator()) * 2;
+        // 2^32 * 2^32 and 2^20 * 2^32 * 2 fit: nothing saturates.
+        let (rate_numerator, rate_denominator) = rate.parts();
+        let numerator = NonZeroU64::from(self.clock_hz).saturating_mul(rate_denominator.into());
+        let denominator = NonZeroU64::from(self.clocks_per_tick)
+            .saturating_mul(rate_numerator.into())
+            .saturating_mul(TWO);
         let exact = ExactInterval::new(numerator, denominator);
         if exact.nearest() == 0 {
             return Err(TimerError::RateTooHigh { rate });
@@ -256,15 +314,15 @@ impl Timer {
     /// # Errors
     /// [`TimerError::IntervalTooShort`] for 0 ticks.
     pub fn half_period_to_millihertz(&self, ticks: u64) -> Result<u64, TimerError> {
-        let clocks = u128::from(self.clock_hz.get()).saturating_mul(1000);
-        let divisor = u128::from(self.clocks_per_tick.get())
-            .saturating_mul(2)
-            .saturating_mul(u128::from(ticks));
-        clocks
-            .saturating_add(divisor >> 1)
-            .checked_div(divisor)
-            .and_then(|millihertz| u64::try_from(millihertz).ok())
-            .ok_or(TimerError::IntervalTooShort { ticks, limit: 1 })
+        let Some(ticks) = NonZeroU64::new(ticks) else {
+            return Err(TimerError::IntervalTooShort { ticks, limit: 1 });
+        };
+        let millihertz = u64::from(self.clock_hz.get()).saturating_mul(1000);
+        // Saturated as unsaturated, the divisor leaves less than half a millihertz.
+        let divisor = NonZeroU64::from(self.clocks_per_tick)
+            .saturating_mul(TWO)
+            .saturating_mul(ticks);
+        Ok(interval::nearest(millihertz, divisor))
     }
 
     /// Ticks in a span of time, to the nearest.
@@ -272,16 +330,13 @@ impl Timer {
     /// # Errors
     /// [`TimerError::DurationTooLong`] past 2^64 ticks.
     pub fn ticks_in(&self, duration: Duration) -> Result<u64, TimerError> {
-        // 2^94 ns * 2^32 fits 128 bits; 10^9 * 2^20 is not zero.
+        // 2^94 ns * 2^32 fits 128 bits.
         let clocks = duration
             .as_nanos()
             .saturating_mul(u128::from(self.clock_hz.get()));
-        let per_tick = u128::from(self.clocks_per_tick.get()).saturating_mul(1_000_000_000);
-        clocks
-            .saturating_add(per_tick >> 1)
-            .checked_div(per_tick)
-            .and_then(|ticks| u64::try_from(ticks).ok())
-            .ok_or(TimerError::DurationTooLong { duration })
+        let per_tick = NonZeroU128::from(self.clocks_per_tick).saturating_mul(NS_PER_S);
+        u64::try_from(rounded(clocks, per_tick))
+            .map_err(|_| TimerError::DurationTooLong { duration })
     }
 
     /// The time that `ticks` take, in nanoseconds to the nearest.
@@ -289,88 +344,9 @@ impl Timer {
     /// A tick of an MCS-51 at 11.0592 MHz is 1.085 us.
     #[must_use]
     pub fn ticks_to_ns(&self, ticks: u64) -> u128 {
-        let clock_hz = u128::from(self.clock_hz.get());
-        u128::from(ticks)
-            .saturating_mul(u128::from(self.clocks_per_tick.get()))
-            .saturating_mul(1_000_000_000)
-            .saturating_add(clock_hz >> 1)
-            .checked_div(clock_hz)
-            .unwrap_or(0)
-    }
-
-    /// The reload value of an interval, for a handler that writes it, or hardware that reloads
-    /// itself.
-    ///
-    /// Where the interrupt writes the counter of a timer that runs on, the ticks since the overflow
-    /// are lost and every interval is longer by that latency: the plain reload of
-    /// [Engraver 2000]. Trains of n1 and n2 pulses then end 2 · latency · (n1 - n2) ticks apart,
-    /// for a small C handler 16 ticks each time. [`compensated_reload`](Self::compensated_reload)
-    /// keeps them together.
-    ///
-    /// # Errors
-    /// [`TimerError::IntervalTooShort`], [`TimerError::IntervalTooLong`]; longer ones are cut by
-    /// [`periods`](Self::periods).
-    pub fn reload(&self, ticks: u64) -> Result<u32, TimerError> {
-        self.check(ticks)?;
-        let just_wrapped = match self.counting {
-            Counting::Up => 0,
-            Counting::Down => self.width.max_value(),
-        };
-        Ok(self.load(just_wrapped, ticks, 0))
-    }
-
-    /// The interval of a reload value, in ticks.
-    ///
-    /// # Errors
-    /// [`TimerError::ReloadTooLarge`] when the value does not fit the counter.
-    pub fn ticks_of_reload(&self, reload: u32) -> Result<u64, TimerError> {
-        let limit = self.width.max_value();
-        let value = u64::from(reload);
-        if value > limit {
-            return Err(TimerError::ReloadTooLarge { reload, limit });
-        }
-        Ok(match self.counting {
-            Counting::Up => self.max_ticks().wrapping_sub(value),
-            Counting::Down => value.wrapping_add(1),
-        })
-    }
-
-    /// What to write into a counter that ran on after its overflow, so that the latency of the
-    /// interrupt is not lost: stop, add, start.
-    ///
-    /// ```text
-    /// up    count' = (count - T + stopped) mod 2^w
-    /// down  count' = (count + T - stopped) mod 2^w
-    /// ```
-    /// `count` is read from the stopped counter, which wrapped and went on counting; `stopped_ticks`
-    /// are the ticks from stop to start, a constant of the program. The mean interval is then
-    /// exactly T, where [`reload`](Self::reload) gives T plus the latency.
-    ///
-    /// # Errors
-    /// Those of [`reload`](Self::reload); [`TimerError::CountTooLarge`]; [`TimerError::TooLate`]
-    /// when the interval is over already.
-    pub fn compensated_reload(
-        &self,
-        count: u32,
-        ticks: u64,
-        stopped_ticks: u32,
-    ) -> Result<u32, TimerError> {
-        self.check(ticks)?;
-        let limit = self.width.max_value();
-        let value = u64::from(count);
-        if value > limit {
-            return Err(TimerError::CountTooLarge { count, limit });
-        }
-        let since_overflow = match self.counting {
-            Counting::Up => value,
-            Counting::Down => limit.wrapping_sub(value),
-        };
-        let stopped = u64::from(stopped_ticks);
-        let elapsed = since_overflow.saturating_add(stopped);
-        if elapsed >= ticks {
-            return Err(TimerError::TooLate { elapsed, ticks });
-        }
-        Ok(self.load(value, ticks, stopped))
+        // 2^64 * 2^20 * 2^30 fits 128 bits.
+        let clocks = u128::from(ticks).saturating_mul(u128::from(self.clocks_per_tick.get()));
+        rounded(clocks.saturating_mul(NS_PER_S.get()), self.clock_hz.into())
     }
 
     /// Cuts a long interval into periods of this timer that sum exactly: as few as possible, each
@@ -384,33 +360,16 @@ impl Timer {
         }
         Ok(Periods::new(ticks, self.width))
     }
+}
 
-    /// Counter value from which `ticks` are left, less those that went by since the wrap.
-    fn load(&self, count: u64, ticks: u64, stopped: u64) -> u32 {
-        let value = match self.counting {
-            Counting::Up => count.wrapping_sub(ticks).wrapping_add(stopped),
-            Counting::Down => count.wrapping_add(ticks).wrapping_sub(stopped),
-        };
-        u32::try_from(value & self.width.max_value()).unwrap_or(u32::MAX)
-    }
-
-    const fn too_short(&self, ticks: u64) -> TimerError {
-        TimerError::IntervalTooShort {
-            ticks,
-            limit: self.min_ticks,
-        }
-    }
-
-    fn check(&self, ticks: u64) -> Result<(), TimerError> {
-        if ticks < self.min_ticks {
-            return Err(self.too_short(ticks));
-        }
-        let limit = self.max_ticks();
-        if ticks > limit {
-            return Err(TimerError::IntervalTooLong { ticks, limit });
-        }
-        Ok(())
-    }
+/// The quotient to the nearest, halves up, of a numerator below 2^127.
+#[expect(
+    clippy::arithmetic_side_effects,
+    clippy::integer_division_remainder_used,
+    reason = "the sum fits; the divisor is not zero"
+)]
+fn rounded(numerator: u128, denominator: NonZeroU128) -> u128 {
+    (numerator + denominator.get() / 2) / denominator
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Pulse trains with different counts that end on the same tick.
 
+use crate::edges::size_of_rest;
 use crate::{Edges, Rounding, SingleReload};
 use core::iter::FusedIterator;
 use thiserror::Error;
@@ -48,6 +49,16 @@ pub enum TrainError {
         steps: i32,
         /// Largest number of steps either way.
         limit: i32,
+    },
+    /// The move lasts longer than 64 bits of ticks hold.
+    #[error(
+        "{pulses} pulses with a half period of {half_period_ticks} ticks last 2^64 ticks or more"
+    )]
+    TooLong {
+        /// Pulses of the leading axis.
+        pulses: u32,
+        /// Half period asked for, in ticks.
+        half_period_ticks: u64,
     },
 }
 
@@ -115,8 +126,8 @@ impl AxisTrain {
 
     /// Edges still to come.
     #[must_use]
-    pub const fn edges_left(&self) -> u32 {
-        self.edges_left
+    pub fn remaining(&self) -> u64 {
+        self.edges_left.into()
     }
 
     pub(crate) const fn pulses(&self) -> u32 {
@@ -140,14 +151,9 @@ impl Iterator for AxisTrain {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        match usize::try_from(self.edges_left) {
-            Ok(left) => (left, Some(left)),
-            Err(_) => (usize::MAX, None),
-        }
+        size_of_rest(self.remaining())
     }
 }
-
-impl ExactSizeIterator for AxisTrain {}
 
 impl FusedIterator for AxisTrain {}
 
@@ -162,7 +168,7 @@ impl FusedIterator for AxisTrain {}
 /// Integers only: the last edge of every moving axis is at D, and no edge is a whole tick away from
 /// its ideal place. The first edge comes an interval after tick 0, at which the direction pins are
 /// set. An axis with 0 steps does not start; when all are 0, nothing happens in no time. Steps go
-/// up to ±(2^31 - 1) and T up to 2^32 - 1 ticks, for which D fits 64 bits.
+/// up to ±(2^31 - 1), and D below 2^64 ticks, which half periods below 2^32 always keep.
 /// Source: [Engraver 2000], with the rounding error distributed.
 ///
 /// # Examples
@@ -186,21 +192,33 @@ impl<const N: usize> Trains<N> {
     /// its edges.
     ///
     /// # Errors
-    /// [`TrainError::ZeroHalfPeriod`]; [`TrainError::TooManySteps`] for `i32::MIN`.
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "(2^31 - 1) * (2^32 - 1) * 2 < 2^64"
-    )]
-    pub fn new(steps: [i32; N], half_period_ticks: u32) -> Result<Self, TrainError> {
+    /// [`TrainError::ZeroHalfPeriod`]; [`TrainError::TooManySteps`] for `i32::MIN`;
+    /// [`TrainError::TooLong`] where D does not fit 64 bits.
+    ///
+    /// # Examples
+    /// ```
+    /// use stepper_sync::{Rate, Timer, Trains};
+    /// let timer = Timer::mcs51_mode1(11_059_200)?;
+    /// let half_period = timer.half_period(Rate::from_millihertz(112_800)?)?;
+    /// let trains = Trains::new([30, -7], half_period.nearest())?;
+    /// assert_eq!(trains.end_ticks(), 2 * 30 * 4085);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn new(steps: [i32; N], half_period_ticks: u64) -> Result<Self, TrainError> {
         if half_period_ticks == 0 {
             return Err(TrainError::ZeroHalfPeriod);
         }
-        let most = most_pulses(&steps)?;
-        let half_ticks = u64::from(most) * u64::from(half_period_ticks);
+        let pulses = most_pulses(&steps)?;
+        let half_ticks = u64::from(pulses).checked_mul(half_period_ticks);
+        let ends = half_ticks.and_then(|half| Some((half, half.checked_mul(2)?)));
+        let (half_ticks, end_ticks) = ends.ok_or(TrainError::TooLong {
+            pulses,
+            half_period_ticks,
+        })?;
         Ok(Self {
             axes: steps.map(|n| AxisTrain::new(n.unsigned_abs(), half_ticks)),
             steps,
-            end_ticks: half_ticks * 2,
+            end_ticks,
         })
     }
 
@@ -237,6 +255,14 @@ impl<const N: usize> Trains<N> {
         self.axes
             .each_ref()
             .map(|axis| SingleReload::new(axis, self.end_ticks, rounding))
+    }
+}
+
+impl<const N: usize> Edges<AxisTrain, N> {
+    /// Edges still to come, over all axes.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        self.sum_of_rests(AxisTrain::remaining)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use stepper_sync::{
-    CounterWidth, Counting, Edge, Level, Position, Rate, Rounding, StepCarry, Timer, Trains,
+    CounterWidth, Edge, Level, Position, Rate, Rounding, StepCarry, Timer, TimerError, Trains,
 };
 
 fn widths() -> impl Strategy<Value = CounterWidth> {
@@ -16,14 +16,19 @@ fn widths() -> impl Strategy<Value = CounterWidth> {
 }
 
 fn timers() -> impl Strategy<Value = Timer> {
-    let counting = prop_oneof![Just(Counting::Up), Just(Counting::Down)];
-    let parts = (1..=u32::MAX, 1..=1_u32 << 20, widths(), counting);
-    parts.prop_map(|(hz, clocks, width, counting)| Timer::new(hz, clocks, width, counting).unwrap())
+    (1..=u32::MAX, 1..=1_u32 << 20, widths(), 0..3_u8).prop_map(|(hz, clocks, width, register)| {
+        let timer = match register {
+            0 => Timer::up_to_overflow(hz, clocks, width),
+            1 => Timer::up_to_compare(hz, clocks, width),
+            _ => Timer::down_to_zero(hz, clocks, width),
+        };
+        timer.unwrap()
+    })
 }
 
 /// Small, large and extreme half periods.
-fn half_periods() -> impl Strategy<Value = u32> {
-    prop_oneof![1..=10_u32, 1..=70_000_u32, 1..=u32::MAX]
+fn half_periods() -> impl Strategy<Value = u64> {
+    prop_oneof![1..=10_u64, 1..=70_000_u64, 1..=u64::from(u32::MAX)]
 }
 
 proptest! {
@@ -34,11 +39,11 @@ proptest! {
     ) {
         let trains = Trains::new(steps, t).unwrap();
         let most = steps.iter().map(|n| n.unsigned_abs()).max().unwrap();
-        let end = 2 * u64::from(most) * u64::from(t);
+        let end = 2 * u64::from(most) * t;
         prop_assert_eq!(trains.end_ticks(), end);
         for (axis, n) in trains.axes().into_iter().zip(steps) {
             let edges = 2 * u64::from(n.unsigned_abs());
-            prop_assert_eq!(axis.len() as u64, edges);
+            prop_assert_eq!(axis.remaining(), edges);
             let mut ticks = 0;
             for (k, interval) in (1..=edges).zip(axis) {
                 prop_assert!(interval > 0);
@@ -85,7 +90,7 @@ proptest! {
         // Stable: edges of the same tick stay in axis order.
         expected.sort_by_key(|&(ticks, ..)| ticks);
         let edges = trains.edges();
-        prop_assert_eq!(edges.len(), expected.len());
+        prop_assert_eq!(edges.remaining(), expected.len() as u64);
         let merged: Vec<_> = edges
             .map(|Edge { ticks, axis, level, .. }| (ticks, axis, level))
             .collect();
@@ -95,16 +100,16 @@ proptest! {
     #[test]
     fn single_reload_ends_off_by_its_rounding(
         steps in prop::array::uniform2(1..=65_535_i32),
-        t in 1..=65_536_u32,
+        t in 1..=65_536_u64,
     ) {
         let trains = Trains::new(steps, t).unwrap();
         let nearest = trains.single_reload(Rounding::Nearest);
         let down = trains.single_reload(Rounding::Down);
         for ((nearest, down), n) in nearest.into_iter().zip(down).zip(steps) {
-            prop_assert!(nearest.skew_ticks().unsigned_abs() <= u64::from(n.unsigned_abs()));
-            prop_assert!((-2 * i64::from(n) + 1..=0).contains(&down.skew_ticks()));
+            prop_assert!(nearest.skew_ticks().unsigned_abs() <= u128::from(n.unsigned_abs()));
+            prop_assert!((-2 * i128::from(n) + 1..=0).contains(&down.skew_ticks()));
             prop_assert_eq!(
-                trains.end_ticks().checked_add_signed(down.skew_ticks()),
+                u128::from(trains.end_ticks()).checked_add_signed(down.skew_ticks()),
                 Some(down.end_ticks())
             );
         }
@@ -118,7 +123,7 @@ proptest! {
             clippy::cast_precision_loss,
             reason = "any tick from 1 to 2^32"
         )]
-        let ticks = ((timer.max_ticks() as f64 * part) as u64).max(1);
+        let ticks = ((timer.max_ticks() as f64 * part) as u64).max(timer.min_ticks());
         let reload = timer.reload(ticks).unwrap();
         prop_assert!(u64::from(reload) <= timer.width().max_value());
         prop_assert_eq!(timer.ticks_of_reload(reload), Ok(ticks));
@@ -129,6 +134,9 @@ proptest! {
     fn any_reload_is_an_interval_or_too_large(timer in timers(), reload: u32) {
         match timer.ticks_of_reload(reload) {
             Ok(ticks) => prop_assert_eq!(timer.reload(ticks), Ok(reload)),
+            Err(TimerError::IntervalTooShort { ticks, limit }) => {
+                prop_assert_eq!((ticks, limit), (1, timer.min_ticks()));
+            }
             Err(_) => prop_assert!(u64::from(reload) > timer.width().max_value()),
         }
     }
@@ -142,10 +150,11 @@ proptest! {
         let rate = Rate::from_millihertz(millihertz).unwrap();
         let prescalers = [8, 1, 1024, 64, 256];
         let fits = |clocks| {
-            let timer = Timer::new(clock_hz, clocks, width, Counting::Up).unwrap();
+            let timer = Timer::up_to_overflow(clock_hz, clocks, width).unwrap();
             timer.half_period(rate).and_then(|exact| timer.reload(exact.nearest()))
         };
-        match Timer::choose(clock_hz, &prescalers, width, Counting::Up, rate) {
+        let timer = Timer::up_to_overflow(clock_hz, 1, width).unwrap();
+        match timer.with_finest_prescaler(&prescalers, rate) {
             Ok(timer) => {
                 prop_assert!(fits(timer.clocks_per_tick()).is_ok());
                 for finer in prescalers.into_iter().filter(|&p| p < timer.clocks_per_tick()) {
@@ -167,8 +176,8 @@ proptest! {
         let timer = timer.with_min_ticks(max / 2).unwrap();
         match timer.periods(ticks) {
             Ok(periods) => {
-                prop_assert_eq!(periods.len() as u64, ticks.div_ceil(max));
-                prop_assert_eq!(periods.clone().count(), periods.len());
+                prop_assert_eq!(periods.remaining(), ticks.div_ceil(max));
+                prop_assert_eq!(periods.clone().count() as u64, periods.remaining());
                 prop_assert_eq!(periods.clone().sum::<u64>(), ticks);
                 for period in periods {
                     prop_assert!(timer.reload(period).is_ok());
@@ -181,13 +190,13 @@ proptest! {
     #[test]
     fn reloads_toggle_at_the_edges_of_the_train(
         steps in prop::array::uniform2(1..=60_i32),
-        t in 1..=100_000_u32,
+        t in 1..=100_000_u64,
         width in widths(),
     ) {
-        let timer = Timer::new(1_000_000, 1, width, Counting::Up).unwrap();
+        let timer = Timer::up_to_overflow(1_000_000, 1, width).unwrap();
         for axis in Trains::new(steps, t).unwrap().axes() {
             let reloads = timer.reloads(axis.clone());
-            prop_assert!(reloads.size_hint().0 >= axis.len());
+            prop_assert!(reloads.size_hint().0 as u64 >= axis.remaining());
             let mut interval = 0;
             let mut edges = axis;
             for reload in reloads {

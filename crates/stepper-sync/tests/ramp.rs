@@ -163,7 +163,7 @@ fn a_million_steps_lose_nothing() {
     for s in [SETTINGS[0], SETTINGS[7]] {
         let ramp = s.ramp([1_000_000, 1]);
         let [leader, follower] = ramp.axes();
-        assert_eq!(leader.len(), 2_000_000);
+        assert_eq!(leader.remaining(), 2_000_000);
         assert_eq!(leader.sum::<u64>(), ramp.end_ticks());
         assert_eq!(follower.sum::<u64>(), ramp.end_ticks());
     }
@@ -174,7 +174,7 @@ fn followers_keep_the_proportion() {
     for s in SETTINGS {
         let ramp = s.ramp([5000, -1234, 1, 0, 4999]);
         for (axis, m) in ramp.axes().into_iter().zip([5000, 1234, 1, 0, 4999_u32]) {
-            assert_eq!(axis.edges_left(), 2 * m);
+            assert_eq!(axis.remaining(), 2 * u64::from(m));
             let mut ticks = 0_u64;
             for (k, interval) in (1_u32..).zip(axis) {
                 ticks += interval;
@@ -195,7 +195,7 @@ fn followers_keep_the_proportion() {
 fn nothing_to_do_takes_no_time() {
     let ramp = SETTINGS[0].ramp([0, 0]);
     assert_eq!(ramp.end_ticks(), 0);
-    assert_eq!(ramp.edges().len(), 0);
+    assert_eq!(ramp.edges().remaining(), 0);
     assert!(ramp.edges().next().is_none());
 }
 

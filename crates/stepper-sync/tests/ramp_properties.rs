@@ -53,9 +53,9 @@ fn real_ramp() -> impl Strategy<Value = (RampLimits, Rate)> {
 
 /// Checks the sum and the count, and returns the intervals.
 fn intervals(axis: AxisRamp, steps: i32, end: u64) -> Result<Vec<u64>, TestCaseError> {
-    let edges = axis.edges_left();
-    prop_assert_eq!(edges, 2 * steps.unsigned_abs());
-    prop_assert_eq!(axis.len(), axis.clone().count());
+    let edges = axis.remaining();
+    prop_assert_eq!(edges, 2 * u64::from(steps.unsigned_abs()));
+    prop_assert_eq!(axis.clone().count() as u64, edges);
     let intervals: Vec<u64> = axis.collect();
     prop_assert!(intervals.iter().all(|&interval| interval > 0));
     prop_assert!(edges == 0 || intervals.iter().sum::<u64>() == end);

@@ -6,14 +6,14 @@ use stepper_sync::{
 };
 
 /// Half period of [Engraver 2000], in machine cycles.
-const T: u32 = 4096;
+const T: u64 = 4096;
 
 fn mcs51() -> Timer {
     Timer::mcs51_mode1(11_059_200).unwrap()
 }
 
 /// Difference of the ends of two single-reload trains over all pairs of 1..=30 pulses, at worst.
-fn worst_skew(rounding: Rounding) -> u64 {
+fn worst_skew(rounding: Rounding) -> u128 {
     let pairs = (1..=30).flat_map(|n1| (1..=30).map(move |n2| [n1, n2]));
     pairs
         .map(|pair| {
@@ -69,7 +69,7 @@ fn the_14_ratios_17_to_30_overflow_16_bits() {
         let [_, slow] = Trains::new([n, 1], T).unwrap().axes();
         for interval in slow {
             let periods = timer.periods(interval).unwrap();
-            assert_eq!(periods.len(), 2);
+            assert_eq!(periods.remaining(), 2);
             assert_eq!(periods.sum::<u64>(), interval);
         }
     }
@@ -82,7 +82,7 @@ fn thirty_to_one_in_16_bits_loads_57344_and_ends_at_47_percent() {
     assert_eq!(slow.interval_ticks(), 122_880);
     let kept = slow.kept_by(CounterWidth::Bits16);
     assert_eq!(kept.interval_ticks(), 57_344);
-    let per_mille = kept.end_ticks() * 1000 / trains.end_ticks();
+    let per_mille = kept.end_ticks() * 1000 / u128::from(trains.end_ticks());
     assert_eq!(per_mille, 466);
     assert_eq!(kept.skew_ticks(), 2 * (57_344 - 122_880));
 }
@@ -141,8 +141,8 @@ fn edges_come_in_time_order_and_ties_in_axis_order() {
 fn size_hint_counts_down_and_the_end_is_final() {
     let mut edges = Trains::new([3, 2], 7).unwrap().edges();
     for left in (1..=10).rev() {
-        assert_eq!(edges.len(), left);
-        assert_eq!(edges.edges_left(), left as u64);
+        assert_eq!(edges.size_hint(), (left, Some(left)));
+        assert_eq!(edges.remaining(), left as u64);
         assert!(edges.next().is_some());
     }
     assert_eq!(edges.size_hint(), (0, Some(0)));
@@ -162,17 +162,28 @@ fn zero_counts_do_not_start() {
 
 #[test]
 fn extreme_counts_stay_in_64_bits() {
-    let trains = Trains::new([i32::MAX, -i32::MAX, 1], u32::MAX).unwrap();
-    let end = 2 * u64::from(i32::MAX.unsigned_abs()) * u64::from(u32::MAX);
+    let (steps, half_period) = ([i32::MAX, -i32::MAX, 1], u64::from(u32::MAX));
+    let trains = Trains::new(steps, half_period).unwrap();
+    let end = 2 * u64::from(i32::MAX.unsigned_abs()) * half_period;
     assert_eq!(trains.end_ticks(), end);
     let [_, _, slow] = trains.axes();
     assert_eq!(slow.sum::<u64>(), end);
-    assert_eq!(trains.edges().edges_left(), 4 * 0x7FFF_FFFF + 2);
+    assert_eq!(trains.edges().remaining(), 4 * 0x7FFF_FFFF + 2);
 }
 
 #[test]
 fn errors_name_axis_and_value() {
     assert_eq!(Trains::new([1], 0), Err(TrainError::ZeroHalfPeriod));
+    // 2^63 - 1 ticks are the longest half period of one pulse.
+    let longest = u64::MAX / 2;
+    assert_eq!(
+        Trains::new([1], longest).map(|t| t.end_ticks()),
+        Ok(u64::MAX - 1)
+    );
+    assert_eq!(
+        Trains::new([1], longest + 1).unwrap_err().to_string(),
+        "1 pulses with a half period of 9223372036854775808 ticks last 2^64 ticks or more"
+    );
     let error = Trains::new([1, i32::MIN], T).unwrap_err();
     assert_eq!(
         error,
@@ -227,8 +238,12 @@ fn check_row(line: &str) {
     let nearest = trains.single_reload(Rounding::Nearest)[slow];
     assert_eq!(down.interval_ticks(), floor, "floor: {line}");
     assert_eq!(nearest.interval_ticks(), count(8), "round: {line}");
-    assert_eq!(down.skew_ticks(), number(12), "skew_floor: {line}");
-    assert_eq!(nearest.skew_ticks(), number(13), "skew_round: {line}");
+    assert_eq!(down.skew_ticks(), number(12).into(), "skew_floor: {line}");
+    assert_eq!(
+        nearest.skew_ticks(),
+        number(13).into(),
+        "skew_round: {line}"
+    );
 
     let timer = mcs51();
     let reload = timer.reload(nearest.interval_ticks());
@@ -240,9 +255,9 @@ fn check_row(line: &str) {
             assert_eq!(reload, Ok(expected), "{line}");
         }
     }
-    if axis.edges_left() > 0 {
+    if axis.remaining() > 0 {
         let periods = timer.periods(axis.longest_ticks()).unwrap();
-        assert_eq!(periods.len() as u64, count(10), "chunks: {line}");
+        assert_eq!(periods.remaining(), count(10), "chunks: {line}");
     }
 
     // Every edge at its place, for both axes.

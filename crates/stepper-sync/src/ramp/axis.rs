@@ -1,6 +1,8 @@
 //! The edges of one axis of a ramp.
 
 use super::fixed::{of_whole, whole, whole_up};
+use crate::Edges;
+use crate::edges::size_of_rest;
 use core::iter::FusedIterator;
 
 /// The edges of one axis of a [`Ramp`](crate::Ramp): an iterator of the intervals between them, in
@@ -85,11 +87,12 @@ impl AxisRamp {
 
     /// Edges still to come.
     #[must_use]
-    pub const fn edges_left(&self) -> u32 {
-        // 2n in all, which fits.
+    pub fn remaining(&self) -> u64 {
+        // 2n in all, which fits 32 bits.
         self.accel_left
             .wrapping_add(self.cruise.edges_left)
             .wrapping_add(self.decel_left)
+            .into()
     }
 
     /// Time of the next edge, in subticks.
@@ -126,16 +129,19 @@ impl Iterator for AxisRamp {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        match usize::try_from(self.edges_left()) {
-            Ok(left) => (left, Some(left)),
-            Err(_) => (usize::MAX, None),
-        }
+        size_of_rest(self.remaining())
     }
 }
 
-impl ExactSizeIterator for AxisRamp {}
-
 impl FusedIterator for AxisRamp {}
+
+impl<const N: usize> Edges<AxisRamp, N> {
+    /// Edges still to come, over all axes.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        self.sum_of_rests(AxisRamp::remaining)
+    }
+}
 
 /// x = floor(sqrt(u)) for u = c² + g k, k going up and down by one.
 ///

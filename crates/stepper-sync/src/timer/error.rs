@@ -1,3 +1,5 @@
+//! Why a timer cannot do what is asked.
+
 use crate::Rate;
 use core::time::Duration;
 use thiserror::Error;
@@ -85,4 +87,9 @@ pub enum TimerError {
         /// Interval asked for, in ticks.
         ticks: u64,
     },
+    /// The latency of a counter that starts anew by itself is not to be made up for.
+    #[error(
+        "a counter that starts anew at its compare register loses no latency: `reload` is exact"
+    )]
+    StartsAnew,
 }

@@ -1,4 +1,7 @@
+//! Long intervals as periods of one timer.
+
 use super::CounterWidth;
+use crate::edges::size_of_rest;
 use core::iter::FusedIterator;
 
 /// Periods of one timer that sum to a longer interval: an iterator of ticks.
@@ -25,6 +28,15 @@ impl Periods {
     pub(super) const fn is_over(&self) -> bool {
         self.left == 0
     }
+
+    /// Periods still to come.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        // ceil(left / 2^bits) without the sum that could overflow.
+        let full = self.left >> self.width.bits();
+        let part = u64::from(self.left & self.width.max_value() != 0);
+        full.wrapping_add(part)
+    }
 }
 
 impl Iterator for Periods {
@@ -45,16 +57,8 @@ impl Iterator for Periods {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        // ceil(left / 2^bits) without the sum that could overflow.
-        let full = self.left >> self.width.bits();
-        let part = u64::from(self.left & self.width.max_value() != 0);
-        match usize::try_from(full.saturating_add(part)) {
-            Ok(left) => (left, Some(left)),
-            Err(_) => (usize::MAX, None),
-        }
+        size_of_rest(self.remaining())
     }
 }
-
-impl ExactSizeIterator for Periods {}
 
 impl FusedIterator for Periods {}

@@ -1,3 +1,5 @@
+//! The reloads of one axis, for its interrupt handler.
+
 use super::{Periods, Timer, TimerError};
 use core::iter::FusedIterator;
 

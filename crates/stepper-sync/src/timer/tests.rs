@@ -70,11 +70,17 @@ fn reload_0000h_is_65536() {
 }
 
 #[test]
-fn every_width_and_direction_reloads_and_comes_back() {
+fn every_width_and_register_reloads_and_comes_back() {
     use CounterWidth::{Bits8, Bits16, Bits24, Bits32};
     for width in [Bits8, Bits16, Bits24, Bits32] {
-        for counting in [Counting::Up, Counting::Down] {
-            let timer = Timer::new(1_000_000, 1, width, counting).unwrap();
+        for constructor in [
+            Timer::up_to_overflow,
+            Timer::up_to_compare,
+            Timer::down_to_zero,
+        ] {
+            let timer = constructor(1_000_000, 1, width)
+                .and_then(|timer| timer.with_min_ticks(1))
+                .unwrap();
             let max = timer.max_ticks();
             assert_eq!(max, 1 << width.bits());
             for ticks in [1, 2, max / 3, max - 1, max] {
@@ -84,8 +90,6 @@ fn every_width_and_direction_reloads_and_comes_back() {
             assert!(timer.reload(max + 1).is_err());
         }
     }
-    let down = Timer::new(1_000_000, 1, Bits24, Counting::Down).unwrap();
-    assert_eq!(down.reload(1000), Ok(999));
 }
 
 #[test]
@@ -93,7 +97,8 @@ fn finest_prescaler_that_fits() {
     let avr = [1024, 256, 64, 8, 1];
     let choose = |millihertz| {
         let rate = Rate::from_millihertz(millihertz).unwrap();
-        Timer::choose(16_000_000, &avr, CounterWidth::Bits16, Counting::Down, rate)
+        let timer1 = Timer::up_to_compare(16_000_000, 1, CounterWidth::Bits16)?;
+        timer1.with_finest_prescaler(&avr, rate)
     };
     // 16 MHz / (2 * 112.8 Hz) = 70,922 ticks: too long by itself, 8865 behind the prescaler 8.
     assert_eq!(choose(112_800).map(|t| t.clocks_per_tick()), Ok(8));
@@ -110,14 +115,27 @@ fn finest_prescaler_that_fits() {
     );
     let rate = Rate::from_hz(1).unwrap();
     assert_eq!(
-        Timer::choose(1, &[], CounterWidth::Bits8, Counting::Up, rate),
+        engraver().0.with_finest_prescaler(&[], rate),
         Err(TimerError::NoPrescaler)
     );
+    // The fixed divider stays: a PIC at 20 MHz, whose ticks are 4 clocks long.
+    let pic = Timer::up_to_overflow(20_000_000, 4, CounterWidth::Bits16).unwrap();
+    let behind = pic.with_finest_prescaler(&[1, 2, 4, 8], Rate::from_hz(20).unwrap());
+    assert_eq!(behind.map(|t| t.clocks_per_tick()), Ok(8));
+    for prescaler in [0, 1 << 19, u32::MAX] {
+        assert_eq!(
+            pic.with_finest_prescaler(&[1, prescaler], rate),
+            Err(TimerError::ClocksPerTick {
+                value: prescaler.saturating_mul(4),
+                limit: Timer::MAX_CLOCKS_PER_TICK
+            })
+        );
+    }
 }
 
 #[test]
 fn wrong_settings_are_named() {
-    let new = |hz, clocks| Timer::new(hz, clocks, CounterWidth::Bits16, Counting::Up);
+    let new = |hz, clocks| Timer::up_to_overflow(hz, clocks, CounterWidth::Bits16);
     assert_eq!(new(0, 1), Err(TimerError::ZeroClock));
     let limit = Timer::MAX_CLOCKS_PER_TICK;
     for value in [0, limit + 1] {
@@ -167,9 +185,9 @@ fn mean_interval(timer: Timer, ticks: u64, latency: u32, compensated: bool) -> u
         // The counter has just wrapped; the handler runs `latency` ticks later.
         now += u64::from(latency);
         let written = if compensated {
-            let count = match timer.counting {
-                Counting::Up => latency,
-                Counting::Down => u32::try_from(timer.width.max_value()).unwrap() - latency,
+            let count = match timer.register {
+                Register::Down => u32::try_from(timer.width.max_value()).unwrap() - latency,
+                _ => latency,
             };
             now += u64::from(STOPPED);
             timer.compensated_reload(count, ticks, STOPPED).unwrap()
@@ -184,7 +202,7 @@ fn mean_interval(timer: Timer, ticks: u64, latency: u32, compensated: bool) -> u
 #[test]
 fn latency_is_lost_by_the_plain_reload_and_kept_by_the_compensated_one() {
     let (mcs51, _) = engraver();
-    let down = Timer::new(1_000_000, 1, CounterWidth::Bits16, Counting::Down).unwrap();
+    let down = Timer::down_to_zero(1_000_000, 1, CounterWidth::Bits16).unwrap();
     for timer in [mcs51, down] {
         for latency in [0, 7, 16] {
             assert_eq!(
@@ -210,6 +228,27 @@ fn latency_is_lost_by_the_plain_reload_and_kept_by_the_compensated_one() {
             limit: 0xFFFF
         })
     );
+    let stm32 = Timer::up_to_compare(1_000_000, 1, CounterWidth::Bits16).unwrap();
+    assert_eq!(
+        stm32.compensated_reload(15, 20, 5),
+        Err(TimerError::StartsAnew)
+    );
+}
+
+#[test]
+fn errors_of_extreme_intervals_are_exact() {
+    // The slowest clock that divides the slowest rate: 2^32 - 1 ticks.
+    let timer = Timer::up_to_overflow(1, 1, CounterWidth::Bits32).unwrap();
+    let slow = timer.half_period(Rate::new(1, u32::MAX).unwrap()).unwrap();
+    assert_eq!(slow.nearest(), 1 << 31);
+    assert_eq!(slow.error_ppm(0), -1_000_000);
+    // 2^64 - 1 ticks for (2^32 - 1) / 2: 2^33 - 2^-32 times as many.
+    let times = 8_589_934_594_i64;
+    assert_eq!(slow.error_ppm(u64::MAX), (times - 1) * 1_000_000);
+    let fast = Timer::up_to_overflow(u32::MAX, 1, CounterWidth::Bits32).unwrap();
+    let fast = fast.half_period(Rate::from_hz(u32::MAX).unwrap()).unwrap();
+    assert_eq!((fast.floor(), fast.nearest()), (0, 1));
+    assert_eq!(fast.error_ppm(u64::MAX), i64::MAX);
 }
 
 #[test]
@@ -227,8 +266,8 @@ fn long_intervals_are_cut_into_the_fewest_legal_periods() {
         268_431_360,
     ] {
         let periods = timer.periods(ticks).unwrap();
-        assert_eq!(periods.len() as u64, ticks.div_ceil(65_536));
-        assert_eq!(periods.clone().count(), periods.len());
+        assert_eq!(periods.remaining(), ticks.div_ceil(65_536));
+        assert_eq!(periods.clone().count() as u64, periods.remaining());
         assert_eq!(periods.clone().sum::<u64>(), ticks);
         assert!(periods.clone().all(|period| timer.reload(period).is_ok()));
     }

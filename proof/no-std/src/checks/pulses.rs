@@ -15,7 +15,7 @@ pub fn trains() -> Option<()> {
     let rate = Rate::from_millihertz(black_box(112_800)).ok()?;
     let half_period = timer.half_period(rate).ok()?.nearest();
     holds(timer.reload(half_period) == Ok(0xF00B))?;
-    let trains = Trains::new(black_box([30, -7]), u32::try_from(half_period).ok()?).ok()?;
+    let trains = Trains::new(black_box([30, -7]), half_period).ok()?;
     holds(trains.edges().last()?.ticks == trains.end_ticks())?;
     let [fast, slow] = trains.axes();
     holds(fast.sum::<u64>() == slow.clone().sum())?;
