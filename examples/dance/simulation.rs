@@ -45,7 +45,7 @@ pub(crate) struct Firmware {
 impl Firmware {
     pub(crate) fn new(data: &Data<'_, MOTORS>, law: SpeedLaw) -> Result<Self> {
         let timing = data.timing();
-        let frames = u64::try_from(data.frames().len())?;
+        let frames = data.frames().remaining();
         let ticks = frames.saturating_mul(timing.frame_ticks().into());
         ensure!(
             ticks <= MOST_TICKS,

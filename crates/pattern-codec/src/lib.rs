@@ -19,3 +19,4 @@ pub mod c_header;
 pub mod container;
 pub mod dance;
 pub mod engraving;
+mod size_hint;

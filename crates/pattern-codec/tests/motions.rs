@@ -16,7 +16,7 @@ mod motions {
     fn a_long_fast_motion_is_full_records_and_the_rest() {
         let mut builder = Builder::new();
         let records = builder.fast(Axis::Theta2, -150_000).unwrap();
-        assert_eq!(records.len(), 3);
+        assert_eq!(records.remaining(), 3);
         assert_eq!(pulses(records, Axis::Theta2), [-65_535, -65_535, -18_930]);
         assert_eq!(builder.position().theta2, -150_000);
         // From the least position to zero, the longest way home.
@@ -25,7 +25,7 @@ mod motions {
             ..PerAxis::default()
         });
         let home = builder.home(LIFT_FIRST).unwrap();
-        assert_eq!(home.len(), 32_769);
+        assert_eq!(home.remaining(), 32_769);
         let sum: i64 = pulses(home, Axis::Theta2).into_iter().map(i64::from).sum();
         assert_eq!(sum, 1 << 31);
     }
@@ -40,7 +40,7 @@ mod motions {
                 theta3: 1,
             })
             .unwrap();
-        assert_eq!(records.len(), 4);
+        assert_eq!(records.remaining(), 4);
         assert_eq!(pulses(records.clone(), Axis::Theta1), [25, 25, 25, 25]);
         assert_eq!(pulses(records.clone(), Axis::Theta2), [-13, -12, -13, -12]);
         assert_eq!(pulses(records, Axis::Theta3), [0, 1, 0, 0]);

@@ -46,12 +46,10 @@ fn sum_one_by_one(steps: impl Iterator<Item = Move>) -> u32 {
 /// Steps of one path.
 fn steps(case: &str) -> u64 {
     match case {
-        "line, bresenham" | "line, bresenham, one by one" => line().moves().moves_left().into(),
-        "arc, midpoint" | "arc, midpoint, one by one" => circle().moves().moves_left(),
-        line_case if line_case.starts_with("line") => {
-            line().steps(Rule::Textbook).steps_left().into()
-        }
-        _ => circle().steps(Rule::Textbook).steps_left(),
+        "line, bresenham" | "line, bresenham, one by one" => line().moves().remaining(),
+        "arc, midpoint" | "arc, midpoint, one by one" => circle().moves().remaining(),
+        line_case if line_case.starts_with("line") => line().steps(Rule::Textbook).remaining(),
+        _ => circle().steps(Rule::Textbook).remaining(),
     }
 }
 

@@ -56,7 +56,7 @@ fn arcs(c: &mut Criterion) {
             });
         });
     }
-    group.throughput(Throughput::Elements(circle.moves().moves_left()));
+    group.throughput(Throughput::Elements(circle.moves().remaining()));
     group.bench_function("midpoint", |b| {
         b.iter(|| black_box(&circle).moves().fold(0, fold));
     });

@@ -3,9 +3,11 @@
 mod circle;
 mod geometry;
 mod moves;
+mod published;
 mod steps;
 
 pub use moves::ArcMoves;
+pub use published::PublishedSteps;
 pub use steps::ArcSteps;
 
 use crate::{Rule, Turn};
@@ -169,10 +171,10 @@ impl Arc {
 
     /// The published walk: the same number of steps by [`Rule::Textbook`], counted, without a look
     /// at the end. It ends elsewhere in about one of six arcs whose end was rounded to whole steps.
-    pub fn published_steps(&self) -> core::iter::Take<ArcSteps> {
+    pub fn published_steps(&self) -> PublishedSteps {
         let sweep = self.sweep();
-        let (count, _) = ArcSteps::new(self, &sweep, Rule::Textbook).size_hint();
-        ArcSteps::endless(self, &sweep).take(count)
+        let count = ArcSteps::new(self, &sweep, Rule::Textbook).remaining();
+        PublishedSteps::new(ArcSteps::endless(self, &sweep), count)
     }
 
     /// The arc as moves to any of eight neighbours: the midpoint arc.

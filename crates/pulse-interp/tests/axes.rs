@@ -29,7 +29,7 @@ fn the_axis_with_the_least_share_steps() {
         let (mut at, mut worst_here) = ([0_i32; 3], 0.0_f64);
         let steps = AxesLine::new(to).unwrap().steps();
         let sum: i32 = to.iter().map(|n| n.abs()).sum();
-        assert_eq!(steps.len(), usize::try_from(sum).unwrap());
+        assert_eq!(steps.remaining(), u64::try_from(sum).unwrap());
         for step in steps {
             // (2 p + 1) / n compared across, the first of equals.
             let share = |axis: usize| (2 * at[axis].abs() + 1, to[axis].abs());
@@ -97,7 +97,7 @@ fn in_a_plane_the_fewest_ticks_are_bresenhams_line() {
     for to in (-20..=20).flat_map(|x| (-20..=20).map(move |y| [x, y])) {
         let moves = Line::new(to).unwrap().moves();
         let ticks = Dda::new(to).unwrap().ticks();
-        assert_eq!(ticks.len(), moves.len());
+        assert_eq!(ticks.remaining(), moves.remaining());
         assert!(ticks.eq(moves.map(|m| [m.dx(), m.dy()].map(|d| i8::try_from(d).unwrap()))));
     }
 }
@@ -118,7 +118,7 @@ fn extreme_lengths_begin_as_they_should() {
         (to, to)
     );
     let mut steps = AxesLine::new(to).unwrap().steps();
-    assert_eq!(steps.steps_left(), 2 * 0x7FFF_FFFF + 1);
+    assert_eq!(steps.remaining(), 2 * 0x7FFF_FFFF + 1);
     let axes: Vec<usize> = steps.by_ref().take(6).map(|step| step.axis).collect();
     assert_eq!(axes, [0, 1, 0, 1, 0, 1]);
     let ticks = Dda::new(to).unwrap().ticks();

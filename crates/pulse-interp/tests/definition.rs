@@ -73,8 +73,11 @@ fn lines_are_those_of_the_definition() {
         assert_eq!(path([0, 0], line.steps(Rule::Textbook)), paths[0], "{to:?}");
         assert_eq!(path([0, 0], line.steps(Rule::Centred)), paths[1], "{to:?}");
         assert_eq!(path([0, 0], line.moves()), paths[2], "{to:?}");
-        assert_eq!(line.steps(Rule::Centred).len(), paths[1].len() - 1);
-        assert_eq!(line.moves().len(), paths[2].len() - 1);
+        assert_eq!(
+            line.steps(Rule::Centred).remaining(),
+            paths[1].len() as u64 - 1
+        );
+        assert_eq!(line.moves().remaining(), paths[2].len() as u64 - 1);
 
         let [xe, ye] = to.map(f64::from);
         let off = |[x, y]: &[i32; 2]| {
@@ -218,7 +221,7 @@ fn check_arc(arc: &Arc, circles: &[Vec<[i32; 2]>; 3]) {
         let steps = arc.steps(rule);
         let wanted = up_to_end(circle);
         assert_eq!(
-            steps.steps_left(),
+            steps.remaining(),
             wanted.len() as u64 - 1,
             "{arc:?} {rule:?}"
         );
@@ -226,7 +229,7 @@ fn check_arc(arc: &Arc, circles: &[Vec<[i32; 2]>; 3]) {
     }
     let moves = arc.moves();
     let wanted = up_to_end(&circles[2]);
-    assert_eq!(moves.moves_left(), wanted.len() as u64 - 1, "{arc:?}");
+    assert_eq!(moves.remaining(), wanted.len() as u64 - 1, "{arc:?}");
     assert_eq!(path(start, moves), wanted, "{arc:?}");
 }
 
@@ -257,7 +260,7 @@ fn full_circles_of_whole_radius_have_8_r_steps() {
         let arc = Arc::new([0, -radius], [0, -radius], Turn::Clockwise).unwrap();
         for rule in [Rule::Textbook, Rule::Centred] {
             let steps = u64::try_from(8 * radius).unwrap();
-            assert_eq!(arc.steps(rule).steps_left(), steps);
+            assert_eq!(arc.steps(rule).remaining(), steps);
         }
     }
 }
@@ -287,9 +290,9 @@ fn check_near(arc: &Arc) {
         path(start, arc.moves()),
     ];
     let told = [
-        arc.steps(Rule::Textbook).steps_left(),
-        arc.steps(Rule::Centred).steps_left(),
-        arc.moves().moves_left(),
+        arc.steps(Rule::Textbook).remaining(),
+        arc.steps(Rule::Centred).remaining(),
+        arc.moves().remaining(),
     ];
     for ((path, told), stated) in paths.iter().zip(told).zip(ARC) {
         assert_eq!(path.last(), Some(&end), "{arc:?}");

@@ -115,8 +115,8 @@ fn lines_last_as_long_as_they_are() {
         let line = Line::new(to).unwrap();
         let length = f64::from(to[0]).hypot(f64::from(to[1]));
         for (count, factor) in [
-            (line.steps(Rule::Textbook).len(), line.step_factor()),
-            (line.moves().moves_left() as usize, line.move_factor()),
+            (line.steps(Rule::Textbook).remaining(), line.step_factor()),
+            (line.moves().remaining(), line.move_factor()),
         ] {
             let mut pace = Pace::new(UNIT_TICKS);
             let ticks: u64 = (0..count).map(|_| pace.interval(factor)).sum();
@@ -138,16 +138,22 @@ fn factors_at_the_ends_of_their_range() {
     // Back to an end outside that the rule has passed: a straight step.
     let arc = Arc::near([0, -10], [11, 1], Turn::CounterClockwise, 2000).unwrap();
     let mut steps = arc.steps(Rule::Centred);
-    let _ = steps.nth(arc.steps(Rule::Centred).len() - 2);
+    let _ = steps
+        .by_ref()
+        .take(arc.steps(Rule::Centred).count() - 1)
+        .last();
     assert_eq!(
         (steps.factor(), steps.next()),
         (Factor::ONE, Some(Move::Right))
     );
     let arc = Arc::near([0, -10], [13, 2], Turn::CounterClockwise, 4000).unwrap();
     let mut steps = arc.steps(Rule::Centred);
-    let _ = steps.nth(arc.steps(Rule::Centred).len() - 4);
+    let _ = steps
+        .by_ref()
+        .take(arc.steps(Rule::Centred).count() - 3)
+        .last();
     for left in [3, 2, 1] {
-        let seen = (steps.steps_left(), steps.factor(), steps.next());
+        let seen = (steps.remaining(), steps.factor(), steps.next());
         assert_eq!(seen, (left, Factor::ONE, Some(Move::Right)));
     }
     // The one circle whose path passes the centre.

@@ -59,7 +59,7 @@ proptest! {
         let [xe, ye] = to.map(|n| i128::from(n.abs()));
         for rule in RULES {
             let steps = line.steps(rule);
-            prop_assert_eq!(i128::from(steps.steps_left()), xe + ye);
+            prop_assert_eq!(i128::from(steps.remaining()), xe + ye);
             let (mut x, mut y) = (0_i128, 0_i128);
             for step in steps.take(WINDOW) {
                 prop_assert!(!step.is_diagonal());
@@ -108,7 +108,7 @@ proptest! {
         };
         for (rule, hundredths) in [(Rule::Textbook, 100), (Rule::Centred, 71)] {
             let steps = arc.steps(rule);
-            let left = steps.steps_left();
+            let left = steps.remaining();
             prop_assert_eq!(left % 8, 0);
             let mut at = start.map(i64::from);
             for (k, step) in (1..).zip(steps.take(WINDOW + skip)) {
@@ -141,7 +141,7 @@ proptest! {
         for rule in RULES {
             let steps = arc.steps(rule);
             let (mut at, mut made) = (start.map(i64::from), 0);
-            let left = steps.steps_left();
+            let left = steps.remaining();
             for step in steps {
                 at = after(at, step);
                 made += 1;
@@ -151,7 +151,7 @@ proptest! {
         }
         let moves = arc.moves();
         let (mut at, mut made) = (start.map(i64::from), 0);
-        let left = moves.moves_left();
+        let left = moves.remaining();
         for step in moves {
             at = after(at, step);
             made += 1;
@@ -185,16 +185,18 @@ proptest! {
         };
         for rule in RULES {
             let mut steps = arc.steps(rule);
-            for left in (0..steps.len()).rev() {
+            for left in (0..steps.size_hint().0).rev() {
                 prop_assert!(steps.next().is_some());
-                prop_assert_eq!(steps.len(), left);
+                prop_assert_eq!(steps.size_hint(), (left, Some(left)));
+                prop_assert_eq!(steps.remaining(), left as u64);
             }
             prop_assert!(steps.next().is_none() && steps.next().is_none());
         }
         let mut moves = arc.moves();
-        for left in (0..moves.len()).rev() {
+        for left in (0..moves.size_hint().0).rev() {
             prop_assert!(moves.next().is_some());
-            prop_assert_eq!(moves.len(), left);
+            prop_assert_eq!(moves.size_hint(), (left, Some(left)));
+            prop_assert_eq!(moves.remaining(), left as u64);
         }
         prop_assert!(moves.next().is_none() && moves.next().is_none());
     }
@@ -206,10 +208,13 @@ proptest! {
 fn the_largest_circle_crosses_axes_and_diagonals() {
     const R: i32 = 1 << 30;
     let circle = Arc::new([R, 0], [R, 0], Turn::CounterClockwise).unwrap();
-    assert_eq!(circle.steps(Rule::Centred).steps_left(), 8 << 30);
-    assert_eq!(circle.steps(Rule::Textbook).steps_left(), 8 << 30);
+    assert_eq!(circle.steps(Rule::Centred).remaining(), 8 << 30);
+    assert_eq!(circle.steps(Rule::Textbook).remaining(), 8 << 30);
+    // Also where 32 bits of a size do not hold the count.
+    let published = circle.published_steps();
+    assert_eq!(published.remaining(), 8 << 30);
     // 4 sqrt(2) R moves, but for rounding.
-    let moves = circle.moves().moves_left();
+    let moves = circle.moves().remaining();
     assert!(moves.abs_diff(6_074_000_999) < 8, "{moves}");
 
     for (start, turn) in [

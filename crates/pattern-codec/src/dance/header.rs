@@ -7,6 +7,7 @@ use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
     array, check_size, setting,
 };
+use crate::size_hint::size_of_rest;
 
 /// Writes frames as a C header, `data.h`.
 ///
@@ -349,6 +350,14 @@ pub struct Frames<'t, const N: usize> {
     left: u64,
 }
 
+impl<const N: usize> Frames<'_, N> {
+    /// Frames still to come.
+    #[must_use]
+    pub const fn remaining(&self) -> u64 {
+        self.left
+    }
+}
+
 impl<const N: usize> Iterator for Frames<'_, N> {
     type Item = [i8; N];
 
@@ -359,12 +368,8 @@ impl<const N: usize> Iterator for Frames<'_, N> {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = usize::try_from(self.left).ok();
-        (left.unwrap_or(usize::MAX), left)
+        size_of_rest(self.left)
     }
 }
 
 impl<const N: usize> FusedIterator for Frames<'_, N> {}
-
-#[cfg(not(target_pointer_width = "16"))]
-impl<const N: usize> ExactSizeIterator for Frames<'_, N> {}

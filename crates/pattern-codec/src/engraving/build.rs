@@ -1,8 +1,8 @@
 use core::iter::FusedIterator;
 use thiserror::Error;
 
-use super::split::exactly;
 use super::{Axis, FastRecords, JointPulses, PerAxis, Record, SlowRecords};
+use crate::size_hint::size_of_rest;
 
 /// Makes the records of motions of any length and tracks where the axes are.
 ///
@@ -125,6 +125,16 @@ pub struct HomeRecords {
     runs: [FastRecords; 4],
 }
 
+impl HomeRecords {
+    /// Records still to come.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        let records = self.runs.iter().map(FastRecords::remaining);
+        // At most 32,769 each.
+        records.fold(0, u64::wrapping_add)
+    }
+}
+
 impl Iterator for HomeRecords {
     type Item = Record;
 
@@ -133,15 +143,11 @@ impl Iterator for HomeRecords {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let records = self.runs.iter().map(FastRecords::records_left);
-        exactly(records.fold(0, u32::saturating_add))
+        size_of_rest(self.remaining())
     }
 }
 
 impl FusedIterator for HomeRecords {}
-
-#[cfg(not(target_pointer_width = "16"))]
-impl ExactSizeIterator for HomeRecords {}
 
 /// A position that does not fit into `i32`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]

@@ -6,6 +6,7 @@ use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
     array, check_size, setting,
 };
+use crate::size_hint::size_of_rest;
 
 /// Writes records as a C header.
 ///
@@ -251,6 +252,14 @@ pub struct PatternRecords<'t> {
     left: u64,
 }
 
+impl PatternRecords<'_> {
+    /// Records still to come.
+    #[must_use]
+    pub const fn remaining(&self) -> u64 {
+        self.left
+    }
+}
+
 impl Iterator for PatternRecords<'_> {
     type Item = Record;
 
@@ -266,12 +275,8 @@ impl Iterator for PatternRecords<'_> {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = usize::try_from(self.left).ok();
-        (left.unwrap_or(usize::MAX), left)
+        size_of_rest(self.left)
     }
 }
 
 impl FusedIterator for PatternRecords<'_> {}
-
-#[cfg(not(target_pointer_width = "16"))]
-impl ExactSizeIterator for PatternRecords<'_> {}

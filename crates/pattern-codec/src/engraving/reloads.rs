@@ -5,6 +5,7 @@ use crate::c_header::{
     ArrayValues, BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WORD,
     WriteError, agree, array, check_size,
 };
+use crate::size_hint::size_of_rest;
 
 /// One period of a 16-bit timer on the way to an edge of a pulse train.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -227,6 +228,12 @@ pub struct TimerPeriods<'t> {
 }
 
 impl TimerPeriods<'_> {
+    /// Periods still to come.
+    #[must_use]
+    pub const fn remaining(&self) -> u64 {
+        self.data.count
+    }
+
     fn toggles(&mut self) -> Option<bool> {
         let Some(toggles) = &mut self.data.toggles else {
             return Some(true);
@@ -255,12 +262,8 @@ impl Iterator for TimerPeriods<'_> {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = usize::try_from(self.data.count).ok();
-        (left.unwrap_or(usize::MAX), left)
+        size_of_rest(self.data.count)
     }
 }
 
 impl FusedIterator for TimerPeriods<'_> {}
-
-#[cfg(not(target_pointer_width = "16"))]
-impl ExactSizeIterator for TimerPeriods<'_> {}

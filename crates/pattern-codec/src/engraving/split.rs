@@ -2,6 +2,7 @@ use core::iter::FusedIterator;
 
 use super::record::NEGATIVE;
 use super::{Axis, Fast, JointPulses, Record, Slow};
+use crate::size_hint::size_of_rest;
 
 /// FAST records that together make one rapid motion, made by
 /// [`Builder::fast`](super::Builder::fast): full records, then the rest.
@@ -11,7 +12,7 @@ pub struct FastRecords {
     axis: Axis,
     negative: bool,
     /// Pulses still to go.
-    remaining: u32,
+    pulses: u32,
 }
 
 impl FastRecords {
@@ -19,13 +20,14 @@ impl FastRecords {
         Self {
             axis,
             negative,
-            remaining: magnitude,
+            pulses: magnitude,
         }
     }
 
-    /// Records still to come, at most 32769.
-    pub(super) const fn records_left(&self) -> u32 {
-        self.remaining.div_ceil(Fast::MAX.unsigned_abs())
+    /// Records still to come.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        self.pulses.div_ceil(Fast::MAX.unsigned_abs()).into()
     }
 }
 
@@ -33,16 +35,16 @@ impl Iterator for FastRecords {
     type Item = Record;
 
     fn next(&mut self) -> Option<Record> {
-        if self.remaining == 0 {
+        if self.pulses == 0 {
             return None;
         }
-        let count = u16::try_from(self.remaining).unwrap_or(u16::MAX);
-        self.remaining = self.remaining.saturating_sub(u32::from(count));
+        let count = u16::try_from(self.pulses).unwrap_or(u16::MAX);
+        self.pulses = self.pulses.saturating_sub(u32::from(count));
         Some(Fast::from_count(self.axis, self.negative, count).into())
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        exactly(self.records_left())
+        size_of_rest(self.remaining())
     }
 }
 
@@ -70,7 +72,7 @@ pub struct SlowRecords {
     theta2: Share,
     theta3: Share,
     parts: u32,
-    remaining: u32,
+    left: u32,
 }
 
 impl SlowRecords {
@@ -90,8 +92,16 @@ impl SlowRecords {
             theta2: Share::new(theta2, parts),
             theta3: Share::new(theta3, parts),
             parts,
-            remaining: parts,
+            left: parts,
         }
+    }
+}
+
+impl SlowRecords {
+    /// Records still to come.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        self.left.into()
     }
 }
 
@@ -99,7 +109,7 @@ impl Iterator for SlowRecords {
     type Item = Record;
 
     fn next(&mut self) -> Option<Record> {
-        self.remaining = self.remaining.checked_sub(1)?;
+        self.left = self.left.checked_sub(1)?;
         let theta3 = self.theta3.next(self.parts);
         let theta1 = self.theta1.next(self.parts);
         let theta2 = self.theta2.next(self.parts);
@@ -107,22 +117,11 @@ impl Iterator for SlowRecords {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        exactly(self.remaining)
+        size_of_rest(self.remaining())
     }
 }
 
 impl FusedIterator for SlowRecords {}
-
-#[cfg(not(target_pointer_width = "16"))]
-impl ExactSizeIterator for FastRecords {}
-#[cfg(not(target_pointer_width = "16"))]
-impl ExactSizeIterator for SlowRecords {}
-
-/// The size hint of so many items; a 16-bit target cannot always tell.
-pub(super) fn exactly(items: u32) -> (usize, Option<usize>) {
-    let items = usize::try_from(items).ok();
-    (items.unwrap_or(usize::MAX), items)
-}
 
 /// The even distribution of one axis over the parts, without division on the way.
 #[derive(Debug, Clone, Copy)]

@@ -273,7 +273,7 @@ impl ArcMoves {
 
     /// Moves still to come.
     #[must_use]
-    pub fn moves_left(&self) -> u64 {
+    pub fn remaining(&self) -> u64 {
         self.octant.left().wrapping_add(self.ahead.moves)
     }
 
@@ -344,12 +344,8 @@ impl Iterator for ArcMoves {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(self.moves_left())
+        size_of_rest(self.remaining())
     }
 }
-
-// A circle of the largest radius has over 2^32 moves.
-#[cfg(target_pointer_width = "64")]
-impl ExactSizeIterator for ArcMoves {}
 
 impl FusedIterator for ArcMoves {}

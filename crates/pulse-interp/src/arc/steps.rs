@@ -279,7 +279,7 @@ impl ArcSteps {
 
     /// Steps still to come.
     #[must_use]
-    pub fn steps_left(&self) -> u64 {
+    pub fn remaining(&self) -> u64 {
         self.passage.left().wrapping_add(self.ahead.steps)
     }
 
@@ -374,12 +374,8 @@ impl Iterator for ArcSteps {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(self.steps_left())
+        size_of_rest(self.remaining())
     }
 }
-
-// A circle of the largest radius has 2^33 steps.
-#[cfg(target_pointer_width = "64")]
-impl ExactSizeIterator for ArcSteps {}
 
 impl FusedIterator for ArcSteps {}

@@ -107,8 +107,8 @@ struct Axis {
 impl<const N: usize> DdaTicks<N> {
     /// Ticks still to come.
     #[must_use]
-    pub const fn ticks_left(&self) -> u32 {
-        self.left
+    pub fn remaining(&self) -> u64 {
+        self.left.into()
     }
 }
 
@@ -130,10 +130,8 @@ impl<const N: usize> Iterator for DdaTicks<N> {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(u64::from(self.left))
+        size_of_rest(self.remaining())
     }
 }
-
-impl<const N: usize> ExactSizeIterator for DdaTicks<N> {}
 
 impl<const N: usize> FusedIterator for DdaTicks<N> {}

@@ -45,7 +45,7 @@ impl<const N: usize> AxesSteps<N> {
 
     /// Steps still to come.
     #[must_use]
-    pub const fn steps_left(&self) -> u64 {
+    pub const fn remaining(&self) -> u64 {
         self.left
     }
 }
@@ -80,8 +80,5 @@ impl<const N: usize> Iterator for AxesSteps<N> {
         size_of_rest(self.left)
     }
 }
-
-#[cfg(target_pointer_width = "64")]
-impl<const N: usize> ExactSizeIterator for AxesSteps<N> {}
 
 impl<const N: usize> FusedIterator for AxesSteps<N> {}

@@ -35,8 +35,8 @@ impl LineMoves {
 
     /// Moves still to come.
     #[must_use]
-    pub const fn moves_left(&self) -> u32 {
-        self.left
+    pub fn remaining(&self) -> u64 {
+        self.left.into()
     }
 }
 
@@ -58,10 +58,8 @@ impl Iterator for LineMoves {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(u64::from(self.left))
+        size_of_rest(self.remaining())
     }
 }
-
-impl ExactSizeIterator for LineMoves {}
 
 impl FusedIterator for LineMoves {}

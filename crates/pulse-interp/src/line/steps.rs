@@ -47,8 +47,8 @@ impl LineSteps {
 
     /// Steps still to come.
     #[must_use]
-    pub const fn steps_left(&self) -> u32 {
-        self.left
+    pub fn remaining(&self) -> u64 {
+        self.left.into()
     }
 }
 
@@ -69,10 +69,8 @@ impl Iterator for LineSteps {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(u64::from(self.left))
+        size_of_rest(self.remaining())
     }
 }
-
-impl ExactSizeIterator for LineSteps {}
 
 impl FusedIterator for LineSteps {}

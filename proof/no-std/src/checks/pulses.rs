@@ -69,7 +69,7 @@ pub fn dance() -> Option<()> {
 /// A line, and an arc that ends where it should, at constant speed.
 pub fn interpolation() -> Option<()> {
     let line = Line::new(black_box([30, -7])).ok()?;
-    holds(line.steps(Rule::Centred).len() == 37)?;
+    holds(line.steps(Rule::Centred).remaining() == 37)?;
     let arc = Arc::new(black_box([500, 0]), [-300, 400], Turn::CounterClockwise).ok()?;
     let (mut steps, mut pace) = (arc.steps(Rule::Centred), Pace::new(1000));
     let (mut at, mut ticks) = ([500, 0], 0);
@@ -81,7 +81,7 @@ pub fn interpolation() -> Option<()> {
     }
     // 500 steps of radius by 2.2143 rad.
     holds(at == [-300, 400] && ticks.abs_diff(1_107_149) < 5000)?;
-    holds(arc.moves().len() < arc.steps(Rule::Textbook).len())
+    holds(arc.moves().remaining() < arc.steps(Rule::Textbook).remaining())
 }
 
 /// An axis that has lost two steps.
