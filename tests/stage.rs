@@ -6,6 +6,10 @@
 mod artefacts;
 #[path = "tools/example.rs"]
 mod example;
+#[path = "stage/programs.rs"]
+mod programs;
+#[path = "stage/run.rs"]
+mod run;
 
 use core::time::Duration;
 use std::fs;
@@ -13,16 +17,13 @@ use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 
-use artefacts::{assert_all_or_none, assert_refused, run_into};
+use artefacts::{assert_all_or_none, assert_refused};
 use example::example;
-use serde_json::Value;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
-/// A step, in mm.
-const STEP_MM: f64 = 0.01;
-/// What decimals of report.json and f64 lose.
-const ROUNDING_MM: f64 = 1e-9;
+use run::{ROUNDING_MM, Run, STEP_MM};
+
 const DRAWINGS: [&str; 3] = ["test", "rosette", "link"];
 
 fn shipped(name: &str) -> PathBuf {
@@ -30,62 +31,6 @@ fn shipped(name: &str) -> PathBuf {
         .join("examples/stage/drawings")
         .join(name)
         .with_extension("gcode")
-}
-
-/// A finished run's files.
-struct Run {
-    folder: TempDir,
-    report: Value,
-}
-
-impl Run {
-    fn of(arguments: &[&str]) -> Self {
-        let folder = TempDir::new().unwrap();
-        let output = run_into(folder.path(), "stage", arguments);
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{errors}");
-        Self::read(folder)
-    }
-
-    fn read(folder: TempDir) -> Self {
-        let report = fs::read(folder.path().join("report.json")).unwrap();
-        let report = serde_json::from_slice(&report).unwrap();
-        Self { folder, report }
-    }
-
-    fn of_text(gcode: &str, options: &[&str]) -> Self {
-        let folder = TempDir::new().unwrap();
-        let file = folder.path().join("some.gcode");
-        fs::write(&file, gcode).unwrap();
-        Self::of(&[&["--gcode", file.to_str().unwrap()], options].concat())
-    }
-
-    fn number(&self, pointer: &str) -> f64 {
-        let value = self.report.pointer(pointer).and_then(Value::as_f64);
-        value.unwrap_or_else(|| panic!("{pointer}"))
-    }
-
-    /// Time in s, and the place after each step, in mm.
-    fn path(&self) -> Vec<(f64, [f64; 2])> {
-        let text = fs::read_to_string(self.folder.path().join("steps.csv")).unwrap();
-        let mut lines = text.lines();
-        assert_eq!(lines.next(), Some("t_s,dx,dy"));
-        let mut at = [0_i32; 2];
-        lines
-            .map(|line| {
-                let cells: Vec<&str> = line.split(',').collect();
-                for (at, cell) in at.iter_mut().zip(&cells[1..]) {
-                    let step: i32 = cell.parse().unwrap();
-                    assert!(step.abs() <= 1, "{line}");
-                    *at += step;
-                }
-                (
-                    cells[0].parse().unwrap(),
-                    at.map(|n| f64::from(n) * STEP_MM),
-                )
-            })
-            .collect()
-    }
 }
 
 #[test]
@@ -146,7 +91,7 @@ fn a_circle_is_a_circle_at_its_feed() {
 
 #[test]
 fn steps_are_counted() {
-    let run = Run::of_text("G0 X3 Y-0.5\nG91\nX-1 Y0.25\nG20 G1 X0.1", &[]);
+    let run = Run::of_text("G0 X3 Y-0.5\nG91\nX-1 Y0.25\nG20 G1 X0.1 F20", &[]);
     let last = run.path().last().unwrap().1;
     assert!((last[0] - 4.54).abs() < ROUNDING_MM && (last[1] + 0.25).abs() < ROUNDING_MM);
     assert!((run.number("/steps_x") - 654.0).abs() < ROUNDING_MM);
@@ -182,7 +127,7 @@ fn arcs_of_less_than_a_step_and_of_nearly_a_turn() {
     assert!(turn.path().len() > 10_000);
     assert!(turn.number("/max_deviation_mm") < 0.02);
     // Below a step altogether.
-    let tiny = Run::of_text("G0 X1\nG3 I0.004", &[]);
+    let tiny = Run::of_text("G0 X1\nG3 I0.004 F600", &[]);
     assert!(tiny.number("/max_deviation_mm") < 0.02);
 }
 
@@ -191,12 +136,12 @@ fn arcs_of_less_than_a_step_and_of_nearly_a_turn() {
 fn arcs_of_a_few_steps() {
     for (arc, steps, most_mm) in [
         // About (0, -2), in steps: three quarters, one, all.
-        ("G3 X0.02 Y-0.02 J-0.02", 12, 0.0071),
-        ("G2 X0.02 Y-0.02 J-0.02", 4, 0.0071),
-        ("G3 J-0.02", 16, 0.0071),
+        ("G3 X0.02 Y-0.02 J-0.02 F600", 12, 0.0071),
+        ("G2 X0.02 Y-0.02 J-0.02 F600", 4, 0.0071),
+        ("G3 J-0.02 F600", 16, 0.0071),
         // Start and centre nearest to one grid point.
-        ("G3 I0.0049 J0.0049", 8, 0.0145),
-        ("G0 X0.0049 Y0.0049\nG3 I-0.0098", 8, 0.0145),
+        ("G3 I0.0049 J0.0049 F600", 8, 0.0145),
+        ("G0 X0.0049 Y0.0049\nG3 I-0.0098 F600", 8, 0.0145),
     ] {
         let run = Run::of_text(arc, &["--rule", "centred"]);
         assert_eq!(run.path().len(), steps, "{arc}");
@@ -209,9 +154,9 @@ fn arcs_of_a_few_steps() {
 #[test]
 fn arcs_off_the_grid_stay_as_close() {
     for arc in [
-        "G0 X10.0149 Y10.0149\nG3 X20.0191 Y20.0191 I5.0002 J5.0002",
-        "G0 X10.0051 Y10.0051\nG3 X19.9949 Y19.9949 I4.9998 J4.9998",
-        "G0 X10.0049 Y10.0049\nG3 X20.0051 Y20.0051 I5.0001 J5.0001",
+        "G0 X10.0149 Y10.0149\nG3 X20.0191 Y20.0191 I5.0002 J5.0002 F600",
+        "G0 X10.0051 Y10.0051\nG3 X19.9949 Y19.9949 I4.9998 J4.9998 F600",
+        "G0 X10.0049 Y10.0049\nG3 X20.0051 Y20.0051 I5.0001 J5.0001 F600",
     ] {
         let run = Run::of_text(arc, &["--rule", "centred"]);
         let worst = run.number("/max_deviation_mm");
@@ -256,27 +201,32 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("bad.gcode");
     let cases = [
-        ("G1 X10\nG1 X20 Y\n", "line 2: column 8: \"G1 X20 Y\""),
-        ("G1 X10\n\nhello\n", "line 3: column 1: \"hello\""),
-        ("G1 Z5", "line 1: Z5: no word of this stage"),
+        (
+            "G1 X10 F600\nG1 X20 Y\n",
+            "line 2: column 8: Y without a number",
+        ),
+        (
+            "G1 X10 F600\n\nhello\n",
+            "line 3: column 1: H without a number",
+        ),
         ("G1 X1 X2", "line 1: X2: a second X"),
-        ("G28", "line 1: G28: no code of this stage"),
-        ("G90.1 X3", "no code of this stage"),
         ("G0 G1 X3", "line 1: G1: a second motion"),
         ("X3", "line 1: no G0, G1, G2 or G3 before"),
-        ("O100\nG0 X1", "line 1: \"O100\": no word of this stage"),
         (
             "G0 X1\nG99999999999 X3",
-            "line 2: \"G99999999999 X3\": no word of this stage",
+            "line 2: G99999999999: no code of this stage",
         ),
         ("G1 X3 (Y2", "line 1: \"(Y2\": never closed"),
         ("G1 X3 R2", "line 1: R on a straight motion"),
         ("G1 F0 X3", "line 1: F0: 0 mm/min, not within 0.1..=6000.0"),
-        ("G1 X1e9", "line 1: e9: no word of this stage"),
+        (
+            "G1 X1e9",
+            "line 1: column 4: X1e9: a number has no exponent",
+        ),
         ("G1 X1234567890", "X1234567890: above 100000"),
         ("G2 X3", "line 1: an arc without I, J or R"),
         (
-            "G0 X30\nG3 X10 Y20.1 I-10",
+            "G0 X30\nG3 X10 Y20.1 I-10 F60",
             "line 2: the end (10.000, 20.100) is 12.450 mm outside",
         ),
         (
@@ -284,24 +234,24 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "0.021 mm outside the circle of radius 10.000 mm",
         ),
         (
-            "G0 X30\nG3 X10 R9",
+            "G0 X30\nG3 X10 R9 F60",
             "line 2: R9.000 is too short: start and end are 20.000 mm apart",
         ),
         (
-            "G0 X30\nG3 R9",
+            "G0 X30\nG3 R9 F60",
             "line 2: a full circle by R: its centre can be anywhere",
         ),
         (
-            "G0 X30\nG3 X10 R0",
+            "G0 X30\nG3 X10 R0 F60",
             "line 2: R0.000 is too short: start and end are 20.000 mm apart",
         ),
         ("(nothing)\n", "bad.gcode: nothing moves"),
         (
-            "G0 X10\nG1 X130 Y5\nX0",
+            "G0 X10\nG1 X130 Y5 F600\nX0",
             "line 2: on the way to (130.000, 5.000) mm: X: the upper limit switch is closed at 12100 steps",
         ),
         (
-            "G1 Y-2",
+            "G1 Y-2 F600",
             "line 1: on the way to (0.000, -2.000) mm: Y: the lower limit switch is closed at -100 steps",
         ),
     ];
@@ -313,7 +263,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     assert_refused(
         "stage",
         &["--gcode", file.to_str().unwrap()],
-        "bad.gcode: line 2: invalid utf-8 sequence of 1 bytes from index 10",
+        "bad.gcode: line 2: column 5: no UTF-8 text",
     );
     for (arguments, wanted) in [
         (
@@ -382,6 +332,35 @@ impl Dialogue {
         }
         assert_eq!(String::from_utf8(answer).unwrap().trim_end(), wanted);
     }
+}
+
+/// One message for each kind, before the answer; a feed as grbl wants it.
+#[test]
+fn the_dialogue_says_what_it_passes_over() {
+    let mut dialogue = Dialogue::new();
+    dialogue.expect(
+        "G1 X5\n",
+        "error:no F before the first G1, G2 or G3: undefined feed rate (22) at line 1",
+    );
+    dialogue.expect("?", "pos:0.00,0.00");
+    dialogue.expect(
+        "G1 X5 Z2 F600\n",
+        "[MSG:line 2: Z: passed over, the stage has no such axis (1 time)]",
+    );
+    dialogue.expect("", "ok");
+    dialogue.expect("Z3 X6\n", "ok");
+    dialogue.expect(
+        "G41 D1\n",
+        "error:G41: the tool's radius would move the path aside at line 4",
+    );
+    dialogue.expect("?", "pos:6.00,0.00");
+    dialogue.expect("M2\n", "ok");
+    assert!(dialogue.child.0.wait().unwrap().success());
+    let run = Run::read(dialogue.folder);
+    assert_eq!(
+        run.report["notes"],
+        serde_json::json!(["line 2: Z: passed over, the stage has no such axis (2 times)"])
+    );
 }
 
 #[test]

@@ -3,11 +3,12 @@
 use core::time::Duration;
 use std::io::{ErrorKind, Read as _, Write as _};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use kurbo::{Point, Vec2};
 
 use crate::controller::Controller;
-use crate::program::{Command, Interpreter};
+use crate::interpreter::{Command, Interpreter};
+use crate::notes::Notes;
 
 /// One press of a key.
 const JOG_MM: f64 = 1.0;
@@ -23,21 +24,25 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// G1 X500       error:on the way to (500.000, 0.000) mm: X: the upper limit switch is closed
 ///               at 12100 steps at line 2
 /// G1 Q          error:... at line 3
+/// G1 Z5         [MSG:line 4: Z: passed over, the stage has no such axis (1 time)]
+///               ok
 /// ?             pos:20.00,0.00
 /// > < ^ v       jogs X up, X down, Y up, Y down by 1 mm; answers as ?
 /// ```
-/// A line that fails is not executed any further; the next one is.
-pub(crate) fn serve(port: &str, controller: &mut Controller) -> Result<()> {
+/// A line that fails is not executed any further; the next one is. A message comes with the first
+/// of its kind; all of them are returned in the end.
+pub(crate) fn serve(port: &str, controller: &mut Controller) -> Result<Vec<String>> {
     let mut port = serialport::new(port, 9600).timeout(PATIENCE).open()?;
     let mut session = Session {
         controller,
         interpreter: Interpreter::default(),
+        notes: Notes::default(),
         lines: 0,
     };
     let (mut line, mut buffer) = (Vec::new(), [0; 64]);
     loop {
         let read = match port.read(&mut buffer) {
-            Ok(0) => return Ok(()),
+            Ok(0) => return Ok(session.notes.lines()),
             Ok(read) => read,
             Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
                 continue;
@@ -51,7 +56,8 @@ pub(crate) fn serve(port: &str, controller: &mut Controller) -> Result<()> {
                     Some(answer) => answer,
                     None => {
                         writeln!(port, "ok")?;
-                        return Ok(port.flush()?);
+                        port.flush()?;
+                        return Ok(session.notes.lines());
                     }
                 },
                 key if line.is_empty() && b"?<>^v".contains(key) => session.key(*key),
@@ -72,6 +78,7 @@ pub(crate) fn serve(port: &str, controller: &mut Controller) -> Result<()> {
 struct Session<'a> {
     controller: &'a mut Controller,
     interpreter: Interpreter,
+    notes: Notes,
     lines: usize,
 }
 
@@ -81,22 +88,25 @@ impl Session<'_> {
         self.lines += 1;
         let number = self.lines;
         let place = || format!("at line {number}");
+        let mut met = Notes::default();
         let read = if line.len() > LONGEST_LINE {
             Err(anyhow::anyhow!("more than {LONGEST_LINE} bytes"))
         } else {
-            core::str::from_utf8(line)
-                .context("no text")
-                .and_then(|text| self.interpreter.line(text))
+            let text = String::from_utf8_lossy(line);
+            self.interpreter.line(number, &text, &mut met)
         };
-        match read {
-            Ok(Command::End) => None,
-            Ok(Command::Nothing) => Some("ok".to_owned()),
-            Ok(Command::Move(motion)) => Some(match self.run(&motion) {
-                Ok(()) => "ok".to_owned(),
-                Err(error) => format!("error:{error:#} {}", place()),
-            }),
-            Err(error) => Some(format!("error:{error:#} {}", place())),
-        }
+        let new = self.notes.merge(met).lines();
+        let messages: String = new.iter().map(|note| format!("[MSG:{note}]\n")).collect();
+        let run = match read {
+            Ok(Command::End) => return None,
+            Ok(Command::Mark) => Ok(()),
+            Ok(Command::Moves(moves)) => moves.iter().try_for_each(|motion| self.run(motion)),
+            Err(error) => Err(error),
+        };
+        Some(match run {
+            Ok(()) => format!("{messages}ok"),
+            Err(error) => format!("{messages}error:{error:#} {}", place()),
+        })
     }
 
     fn key(&mut self, key: u8) -> String {

@@ -278,8 +278,8 @@ impl Controller {
         ticks / TICKS_PER_S
     }
 
-    /// Settles at the end of the last motion.
-    pub(crate) fn finish(mut self) -> Result<Run> {
+    /// Settles at the end of the last motion; `notes` are what the program asked for in vain.
+    pub(crate) fn finish(mut self, notes: Vec<String>) -> Result<Run> {
         self.settle()?;
         self.csv.flush()?;
         let (at, open) = (self.stage.at_mm(), self.uncorrected.at_mm());
@@ -304,6 +304,7 @@ impl Controller {
                 },
                 lose_steps: self.lose,
                 seed: self.seed,
+                notes,
             },
             programmed: self.programmed,
             closed: self.run_closed,

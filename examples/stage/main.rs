@@ -9,19 +9,26 @@
 //!
 //! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
 
+mod arc;
 #[path = "../common/arguments.rs"]
 mod arguments;
 #[expect(dead_code, reason = "nothing is read back here")]
 #[path = "../common/artefacts.rs"]
 mod artefacts;
+mod block;
+mod codes;
 mod console;
 mod controller;
 mod geometry;
+mod interpreter;
+#[path = "../common/notes.rs"]
+mod notes;
 mod picture;
 mod plan;
 mod program;
 mod report;
 mod simulation;
+mod words;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,7 +40,7 @@ use clap::Parser;
 use artefacts::{Artefacts, write_json};
 use controller::Controller;
 use plan::PathRule;
-use program::{Interpreter, Line};
+use program::Program;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/stage");
 
@@ -41,7 +48,8 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/stage");
 #[derive(Parser, Debug)]
 #[command(version)]
 struct Args {
-    /// The drawing: G0 G1 G2 G3 with I J or R, G17 G20 G21 G90 G91, F, M2 M30.
+    /// The drawing: G0 G1 G2 G3 with I J or R, G20 G21 G90 G91 G90.1 G91.1, F, M2 M30. What else
+    /// moves neither X nor Y is passed over with a note, what would is refused.
     #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("drawings/test.gcode"))]
     gcode: PathBuf,
     /// Takes lines from this terminal instead, and answers each; `?` reports the position, the
@@ -88,44 +96,44 @@ fn main() -> ExitCode {
 
 fn stage(args: &Args) -> Result<()> {
     let program = match args.port {
-        Some(_) => Vec::new(),
+        Some(_) => Program::default(),
         // All of it is checked before anything moves.
         None => read(&args.gcode)?,
     };
     let mut artefacts = Artefacts::new(&args.out)?;
     let steps = artefacts.create("steps.csv")?;
     let mut controller = Controller::homed(args.lose_steps, args.seed, args.rule, steps)?;
-    match &args.port {
+    let notes = match &args.port {
         Some(port) => console::serve(port, &mut controller).with_context(|| port.clone())?,
         None => {
-            for line in &program {
+            for line in &program.lines {
                 let place = || format!("{}: line {}", args.gcode.display(), line.number);
                 controller.run(&line.motion).with_context(place)?;
             }
+            let notes = program.notes.lines();
+            for note in &notes {
+                eprintln!("note: {}: {note}", args.gcode.display());
+            }
+            notes
         }
-    }
-    let run = controller.finish()?;
+    };
+    let run = controller.finish(notes)?;
     picture::write(artefacts.create("stage.svg")?, &run)?;
     write_json(artefacts.create("report.json")?, &run.report)?;
     artefacts.keep()?;
     report::summary(std::io::stdout().lock(), &run.report, &args.out).context("standard output")
 }
 
-fn read(file: &Path) -> Result<Vec<Line>> {
+fn read(file: &Path) -> Result<Program> {
     let place = || file.display().to_string();
-    let text = text(fs::read(file).with_context(place)?).with_context(place)?;
-    let program = Interpreter::default().program(&text).with_context(place)?;
-    ensure!(!program.is_empty(), "{}: nothing moves", place());
+    let bytes = fs::read(file).with_context(place)?;
+    // Where bytes are no text, in a comment of an old program, nothing is lost.
+    let program = program::read(&String::from_utf8_lossy(&bytes)).with_context(place)?;
+    ensure!(
+        !program.lines.is_empty(),
+        "{}: nothing moves{}",
+        place(),
+        program.notes.listed()
+    );
     Ok(program)
-}
-
-fn text(bytes: Vec<u8>) -> Result<String> {
-    String::from_utf8(bytes).map_err(|error| {
-        let before = error
-            .as_bytes()
-            .iter()
-            .take(error.utf8_error().valid_up_to());
-        let line = 1 + before.filter(|byte| **byte == b'\n').count();
-        anyhow::anyhow!("line {line}: {}", error.utf8_error())
-    })
 }

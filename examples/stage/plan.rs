@@ -9,8 +9,8 @@ use pose2pulse::pulse_interp::{
     Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule,
 };
 
+use crate::arc::ARC_TOLERANCE_MM;
 use crate::geometry::{Motion, Shape, angle_on};
-use crate::program::ARC_TOLERANCE_MM;
 
 /// 4 mm pitch, 1.8 degrees a step, two microsteps.
 pub(crate) const STEPS_PER_MM: f64 = 100.0;

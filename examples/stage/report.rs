@@ -26,6 +26,8 @@ pub(crate) struct Report {
     pub(crate) open_loop: OpenLoop,
     pub(crate) lose_steps: f64,
     pub(crate) seed: u64,
+    /// What the program asked for that was left out or done otherwise.
+    pub(crate) notes: Vec<String>,
 }
 
 /// The stage beside it, without corrections.

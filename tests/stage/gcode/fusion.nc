@@ -1,0 +1,47 @@
+%
+O01001 (BRACKET)
+(Machine)
+(  vendor: a router)
+(T1 D=3. CR=0. - ZMIN=-2. - flat end mill)
+G90 G94
+G17
+G21
+G28 G91 Z0.
+G90
+
+(2D Contour1)
+T1 M6
+S12000 M3
+G54
+M8
+G0 X20. Y11.4
+G43 Z15. H1
+Z5.
+G1 Z-1.4 F333.
+G19 G3 Y12. Z-2. J0.6 K0. F1000.
+G17 G1 X80. Y12.
+G3 X90. Y22. I0. J10.
+G1 Y60.
+G3 X80. Y70. I-10. J0.
+G1 X20.
+G3 X10. Y60. R10.
+G1 Y22.
+G3 X20. Y12. R10.
+G19 G3 Y12.6 Z-1.4 J0. K0.6
+G17 G0 Z15.
+
+(Bore1)
+X60. Y41.
+G1 Z1. F333.
+G3 X60. Y41. Z-1. I-10. F600.
+X40. I-10.
+X60. I10.
+G0 Z15.
+
+M9
+M5
+G28 G91 Z0.
+G90
+G53 G0 X0. Y0.
+M30
+%

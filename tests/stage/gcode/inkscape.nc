@@ -1,0 +1,38 @@
+%
+(A heart and a ring, from paths)
+(Header of the profile)
+M3
+(Header end.)
+G21 (all lengths in mm)
+
+
+(Path heart begins)
+(Tool: default)
+
+G00 Z5.000000
+G00 X40.000000 Y30.000000
+
+G01 Z-1.000000 F100.0(penetrate)
+G01 X60.000000 Y60.000000 Z-1.000000 F400.000000
+G03 X40.000000 Y60.000000 Z-1.000000 I-10.000000 J0.000000
+G03 X20.000000 Y60.000000 Z-1.000000 I-10.000000 J0.000000
+G01 X40.000000 Y30.000000 Z-1.000000
+G00 Z5.000000
+
+(Path heart ends)
+
+(Path ring begins)
+
+G00 X95.000000 Y40.000000
+G01 Z-1.000000 F100.0(penetrate)
+G03 X95.000000 Y40.000000 Z-2.000000 I-15.000000 J0.000000 F400.000000
+G00 Z5.000000
+
+(Path ring ends)
+
+(Footer)
+M5
+G00 X0.0000 Y0.0000
+M2
+(Footer end.)
+%
