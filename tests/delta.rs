@@ -41,6 +41,9 @@ const THESIS: Arms = [
 /// A finished run.
 struct Run {
     answers: Vec<String>,
+    /// Standard error, and the exit status.
+    errors: Vec<String>,
+    status: Option<i32>,
     report: Value,
     steps: Vec<(f64, [i32; 3])>,
     picture: String,
@@ -63,6 +66,8 @@ impl Run {
             .collect();
         Self {
             answers,
+            errors: Vec::new(),
+            status: None,
             report: serde_json::from_str(&text("report.json")).unwrap(),
             steps,
             picture: text("delta.svg"),
@@ -74,11 +79,56 @@ impl Run {
         let mut command = example("delta");
         command.args(arguments).arg("--out").arg(folder.path());
         let output = run(&mut command, input.as_bytes());
-        assert_eq!(lines(&output.stderr), [""; 0]);
-        assert!(output.status.success());
         let mut answers = lines(&output.stdout);
         answers.retain(|line| line.starts_with("ok ") || line.starts_with("error: "));
-        Self::read(folder.path(), answers)
+        let run = Self {
+            errors: lines(&output.stderr),
+            status: output.status.code(),
+            ..Self::read(folder.path(), answers)
+        };
+        run.assert_refusals_are_told();
+        run
+    }
+
+    /// Lines that were refused, and only these, are an error: in one line, and by the exit status.
+    fn assert_refusals_are_told(&self) {
+        let refused = self
+            .answers
+            .iter()
+            .filter(|line| line.starts_with("error: "));
+        let refused: Vec<_> = refused.collect();
+        let told: Vec<_> = self
+            .errors
+            .iter()
+            .filter(|line| line.starts_with("error: "))
+            .collect();
+        assert_eq!(self.report["refused"], refused.len());
+        assert_eq!(
+            self.report["refusals"].as_array().unwrap().len(),
+            refused.len()
+        );
+        assert_eq!(self.status, Some(i32::from(!refused.is_empty())));
+        let Some(first) = refused.first() else {
+            assert_eq!(told, [""; 0]);
+            return;
+        };
+        let (reason, start) = first.split_once("; the next move starts at ").unwrap();
+        let count = format!(
+            "{} of {} lines refused, the first: ",
+            refused.len(),
+            self.answers.len()
+        );
+        assert_eq!(
+            told,
+            [&reason.replacen("error: ", &format!("error: {count}"), 1)]
+        );
+        for (k, word) in start.split(' ').enumerate() {
+            let stays = self.number(&format!("/refusals/0/stays_at_mm/{k}"));
+            assert!(
+                (stays - word.parse::<f64>().unwrap()).abs() < 0.0006,
+                "{start}"
+            );
+        }
     }
 
     fn number(&self, pointer: &str) -> f64 {
@@ -174,6 +224,8 @@ fn shipped_inputs_follow_their_lines() {
         let asked = asked(&fs::read_to_string(&file).unwrap(), &run.answers);
         assert_eq!(run.report["moves"], asked.len());
         assert_eq!(run.report["refused"], run.answers.len() - asked.len());
+        // What is shipped shows no error and no note.
+        assert_eq!((run.errors.as_slice(), run.status), (&[][..], Some(0)));
         let (mut worst, mut line) = (0f64, 0);
         let mut from = run.place(&THESIS, [0; 3]);
         for (_, steps) in run.steps.iter().skip(1) {
@@ -228,7 +280,11 @@ fn steps_come_one_by_one_and_not_too_fast() {
 fn thesis_numbers() {
     let run = Run::of(&["--input", "-"], "50 50 100\n50 50 -300\n");
     assert!(run.answers[0].starts_with("error: line 1: 50 50 100: out of reach: arm 1 is 12.89"));
-    assert!(run.answers[0].ends_with("too long"), "{}", run.answers[0]);
+    assert!(
+        run.answers[0].ends_with("too long; the next move starts at 0 0 -195.737"),
+        "{}",
+        run.answers[0]
+    );
     assert_eq!(run.answers[1], "ok -7799 -12831 -14361");
     assert_eq!(
         (&run.report["moves"], &run.report["refused"]),
@@ -273,6 +329,51 @@ fn bad_lines_are_answered_and_the_next_is_served() {
     assert_eq!((empty.steps.len(), &empty.report["moves"]), (1, &0.into()));
 }
 
+/// The line after a refused one is straight from where the machine is, which is never where the
+/// refused one would have brought it.
+#[test]
+fn after_a_refusal_the_next_line_starts_where_the_machine_is() {
+    let run = Run::of(
+        &["--input", "-"],
+        "60 0 -280\n60 300 -280\nhello\n-60 0 -280\n",
+    );
+    let stays = "; the next move starts at 60 0 -280";
+    assert!(run.answers[1].ends_with(stays) && run.answers[2].ends_with(stays));
+    let first = run.answers[0].strip_prefix("ok ").unwrap();
+    let first: Vec<i32> = first.split(' ').map(|n| n.parse().unwrap()).collect();
+    let begin = run
+        .steps
+        .iter()
+        .position(|(_, steps)| steps[..] == first[..]);
+    let worst = run.steps[begin.unwrap()..].iter().map(|(_, steps)| {
+        let place = run.place(&THESIS, *steps);
+        off_line(place, [60.0, 0.0, -280.0], [-60.0, 0.0, -280.0])
+    });
+    assert!(worst.fold(0.0, f64::max) < 0.01 + 2.0 * STEP_MM);
+}
+
+#[test]
+fn what_stands_behind_the_end_is_said() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("some.txt");
+    fs::write(
+        &file,
+        "\u{FEFF}0 0 -250\nend\n# no more\n\n0 0 -240\nhello\n",
+    )
+    .unwrap();
+    let file = file.to_str().unwrap();
+    let run = Run::of(&["--input", file], "");
+    assert_eq!((run.answers.len(), run.status), (1, Some(0)));
+    let note = "line 5: \"0 0 -240\", \"hello\": behind `end`, not done (2 times)";
+    assert_eq!(run.errors, [format!("note: {file}: {note}")]);
+    assert_eq!(run.report["notes"], serde_json::json!([note]));
+    // Nobody waits for what may come behind it on a line.
+    assert_eq!(
+        Run::of(&["--input", "-"], "end\n0 0 -250\n").errors,
+        [""; 0]
+    );
+}
+
 /// Cut anywhere, this one would be another place.
 #[test]
 fn a_line_too_long_is_refused_whole() {
@@ -284,9 +385,10 @@ fn a_line_too_long_is_refused_whole() {
     );
     let run = Run::of(&["--input", "-"], &input);
     assert_eq!(run.answers.len(), 3, "{:?}", run.answers);
-    assert_eq!(run.answers[0], "error: line 1: longer than 256 bytes");
+    let refused = |line: &str| format!("error: line {line}: longer than 256 bytes; the next move");
+    assert!(run.answers[0].starts_with(&refused("1")));
     assert!(run.answers[1].starts_with("ok "), "{:?}", run.answers);
-    assert_eq!(run.answers[2], "error: line 3: longer than 256 bytes");
+    assert!(run.answers[2].starts_with(&refused("3")));
 }
 
 #[test]
@@ -336,9 +438,10 @@ fn a_terminal_is_served_line_by_line() {
         answers.push(answer.trim_end().to_owned());
     }
     line.write_all(b"end\n").unwrap();
-    assert!(child.wait().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
     assert_eq!(answers[0], "ok -7799 -12831 -14361");
     assert!(answers[1].starts_with("error: line 2: 50 50 100: out of reach"));
+    assert!(answers[1].ends_with("; the next move starts at 50 50 -300"));
     assert!(answers[2].starts_with("ok "), "{answers:?}");
     let run = Run::read(folder.path(), answers);
     assert_eq!(

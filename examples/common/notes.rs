@@ -72,9 +72,4 @@ impl Notes {
     pub(crate) fn lines(&self) -> Vec<String> {
         self.0.iter().map(ToString::to_string).collect()
     }
-
-    /// All of them behind an error's message.
-    pub(crate) fn listed(&self) -> String {
-        self.0.iter().map(|note| format!("; {note}")).collect()
-    }
 }

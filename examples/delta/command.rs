@@ -15,9 +15,20 @@ pub(crate) enum Command {
     End,
 }
 
+/// Whether a line is empty or a comment.
+pub(crate) fn is_empty(line: &str) -> bool {
+    without_comment(line).is_empty()
+}
+
+/// The words of a line, without the mark of the text's encoding before the first.
+fn without_comment(line: &str) -> &str {
+    let line = line.trim_start_matches('\u{FEFF}');
+    line.split_once('#').map_or(line, |(words, _)| words).trim()
+}
+
 /// Reads `x y z [feed]` or `end`; nothing for an empty line or a comment.
 pub(crate) fn parse(line: &str) -> Result<Option<Command>> {
-    let line = line.split('#').next().unwrap_or("").trim();
+    let line = without_comment(line);
     if line.is_empty() {
         return Ok(None);
     }

@@ -20,23 +20,26 @@ pub(crate) struct Terminal {
     writer: Box<dyn Write>,
     /// Whether the line before ended with a carriage return, to which a line feed may belong.
     returned: bool,
+    is_file: bool,
 }
 
 impl Terminal {
     /// A file, or standard input for `-`; answers go to standard output.
     pub(crate) fn file(path: &Path) -> Result<Self> {
-        let reader: Box<dyn Read> = if path.as_os_str() == "-" {
-            Box::new(BufReader::new(io::stdin()))
+        let (reader, is_file): (Box<dyn Read>, _) = if path.as_os_str() == "-" {
+            (Box::new(BufReader::new(io::stdin())), false)
         } else {
             let place = || path.display().to_string();
             let file = File::open(path).with_context(place)?;
-            anyhow::ensure!(!file.metadata()?.is_dir(), "{}: is a folder", place());
-            Box::new(BufReader::new(file))
+            let metadata = file.metadata()?;
+            anyhow::ensure!(!metadata.is_dir(), "{}: is a folder", place());
+            (Box::new(BufReader::new(file)), metadata.is_file())
         };
         Ok(Self {
             reader,
             writer: Box::new(io::stdout()),
             returned: false,
+            is_file,
         })
     }
 
@@ -51,7 +54,13 @@ impl Terminal {
             reader: Box::new(BufReader::new(Port(port))),
             writer: Box::new(writer),
             returned: false,
+            is_file: false,
         })
+    }
+
+    /// Whether all lines are there, and none is waited for.
+    pub(crate) const fn is_file(&self) -> bool {
+        self.is_file
     }
 
     /// The next line without its end, or why it cannot be read; `None` when no more come.

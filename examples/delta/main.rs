@@ -8,7 +8,8 @@
 //!
 //! The second line reads nothing but the steps of the first. Lines are in mm and mm/s; each is
 //! answered with `ok a b c`, the steps of the three motors from home, or `error: ...`, and then
-//! the machine stays where it is. `#` begins a comment, `end` ends the input.
+//! the machine stays where it is, which is said, and the exit status is 1. `#` begins a comment,
+//! `end` ends the input.
 //!
 //! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--port PATH] [--out DIR]`
 
@@ -20,8 +21,11 @@ mod command;
 mod drive;
 mod input;
 mod machine;
+#[path = "../common/notes.rs"]
+mod notes;
 mod picture;
 mod report;
+mod session;
 #[path = "../common/settings.rs"]
 mod settings;
 mod simulation;
@@ -32,15 +36,14 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, anyhow};
 use clap::Parser;
-use nalgebra::Point3;
 
 use artefacts::{Artefacts, write_json};
-use command::Command;
-use drive::{Plan, seconds};
+use drive::seconds;
 use input::Terminal;
 use machine::Machine;
+use notes::Notes;
 use report::{Report, Tick};
-use simulation::Asked;
+use session::{Outcome, Session};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/delta");
 
@@ -85,19 +88,25 @@ fn run(args: &Args) -> Result<()> {
         None => Terminal::file(&args.input)?,
     };
     let mut artefacts = Artefacts::new(&args.out)?;
-    let served = serve(&machine, &mut terminal, artefacts.create("steps.csv")?)?;
+    let mut session = Session::new(&machine)?;
+    let served = serve(&mut session, &mut terminal, artefacts.create("steps.csv")?)?;
+    let Session {
+        asked, refusals, ..
+    } = session;
 
     let steps = simulation::positions(artefacts.reopen("steps.csv")?);
-    let outcome = simulation::run(&machine, &served.asked, steps)?;
-    let ticks = drive::ticked(served.asked.iter().map(|asked| asked.answer));
+    let outcome = simulation::run(&machine, &asked, steps)?;
+    let ticks = drive::ticked(asked.iter().map(|asked| asked.answer));
     let mut tick_count = 0_u32;
     let ticks = ticks.inspect(|_| tick_count += 1);
     let ticks = core::iter::once([0; 3]).chain(ticks).map(Ok);
-    let ticked = simulation::run(&machine, &served.asked, ticks)?;
+    let ticked = simulation::run(&machine, &asked, ticks)?;
 
     let report = Report {
-        moves: served.asked.len(),
-        refused: served.refused,
+        moves: asked.len(),
+        refused: refusals.len(),
+        refusals,
+        notes: served.notes.lines(),
         max_path_error_mm: outcome.max_path_error_mm,
         duration_s: served.duration_s,
         steps: outcome.steps,
@@ -113,75 +122,61 @@ fn run(args: &Args) -> Result<()> {
     picture::write(artefacts.create("delta.svg")?, &machine, &outcome, &ticked)?;
     write_json(artefacts.create("report.json")?, &report)?;
     artefacts.keep()?;
+    for note in &report.notes {
+        eprintln!("note: {}: {note}", args.input.display());
+    }
     let folder = args.out.display().to_string();
     report
         .write_summary(std::io::stdout().lock(), &folder)
-        .context("standard output")
+        .context("standard output")?;
+    report.check()
 }
 
 /// What came of the lines.
 struct Served {
-    asked: Vec<Asked>,
-    refused: usize,
+    notes: Notes,
     duration_s: f64,
 }
 
 /// Answers line after line and writes the steps of those that can be done.
-fn serve(machine: &Machine, terminal: &mut Terminal, mut csv: impl Write) -> Result<Served> {
+fn serve(
+    session: &mut Session<'_>,
+    terminal: &mut Terminal,
+    mut csv: impl Write,
+) -> Result<Served> {
     writeln!(csv, "t_s,s1,s2,s3\n0.0000000,0,0,0")?;
-    let mut served = Served {
-        asked: Vec::new(),
-        refused: 0,
-        duration_s: 0.0,
-    };
-    let (mut position, mut now) = ([0; 3], 0);
-    let mut place = machine.point(position)?;
-    let mut number = 0_usize;
+    let (mut now, mut number) = (0, 0);
+    let mut has_ended = false;
+    let mut notes = Notes::default();
     while let Some(line) = terminal.line()? {
         number += 1;
-        let planned = match line.and_then(|line| command::parse(&line)) {
-            Ok(None) => continue,
-            Ok(Some(Command::End)) => break,
-            Ok(Some(Command::Move { to, feed_mm_s })) => {
-                plan(machine, (place, position), to, feed_mm_s)
+        if has_ended {
+            let line = line.unwrap_or_else(|error| error.to_string());
+            if !command::is_empty(&line) {
+                notes.add(number, format!("{line:?}"), "behind `end`, not done");
             }
-            Err(error) => Err(error),
-        };
-        let (plan, to, answer) = match planned {
-            Ok(planned) => planned,
-            Err(error) => {
-                served.refused += 1;
-                terminal.answer(&format!("error: line {number}: {error:#}"))?;
-                continue;
+            continue;
+        }
+        match session.line(
+            number,
+            line.as_deref().map_err(|error| anyhow!("{error:#}")),
+        ) {
+            Outcome::Nothing => {}
+            Outcome::End if terminal.is_file() => has_ended = true,
+            Outcome::End => break,
+            Outcome::Refused(answer) => terminal.answer(&answer)?,
+            Outcome::Move { from, plan } => {
+                now = plan.run(from, now, |ticks, [a, b, c]| {
+                    Ok(writeln!(csv, "{:.7},{a},{b},{c}", seconds(ticks))?)
+                })?;
+                let [a, b, c] = plan.end();
+                terminal.answer(&format!("ok {a} {b} {c}"))?;
             }
-        };
-        now = plan.run(position, now, |ticks, [a, b, c]| {
-            Ok(writeln!(csv, "{:.7},{a},{b},{c}", seconds(ticks))?)
-        })?;
-        let [a, b, c] = answer;
-        served.asked.push(Asked {
-            from: place,
-            to,
-            answer,
-        });
-        (position, place) = (answer, to);
-        terminal.answer(&format!("ok {a} {b} {c}"))?;
+        }
     }
     csv.flush()?;
-    served.duration_s = seconds(now);
-    Ok(served)
-}
-
-/// The move to a point, and the steps at which it ends.
-fn plan(
-    machine: &Machine,
-    from: (Point3<f64>, [i32; 3]),
-    to: Point3<f64>,
-    feed_mm_s: Option<f64>,
-) -> Result<(Plan, Point3<f64>, [i32; 3])> {
-    let place = || format!("{} {} {}", to.x, to.y, to.z);
-    let feed = feed_mm_s.unwrap_or(machine.feed_mm_s);
-    let plan = Plan::new(machine, from, to, feed).with_context(place)?;
-    let answer = plan.end();
-    Ok((plan, to, answer))
+    Ok(Served {
+        notes,
+        duration_s: seconds(now),
+    })
 }

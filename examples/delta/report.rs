@@ -2,8 +2,10 @@
 
 use std::io::Write;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use serde::Serialize;
+
+use crate::session::Refusal;
 
 /// `report.json`.
 #[derive(Serialize)]
@@ -12,6 +14,9 @@ pub(crate) struct Report {
     pub(crate) moves: usize,
     /// Lines answered with `error:`.
     pub(crate) refused: usize,
+    pub(crate) refusals: Vec<Refusal>,
+    /// What else was not done.
+    pub(crate) notes: Vec<String>,
     /// Farthest that the simulated platform was from the lines asked for, driven by the trains.
     pub(crate) max_path_error_mm: f64,
     pub(crate) duration_s: f64,
@@ -34,6 +39,19 @@ pub(crate) struct Tick {
 }
 
 impl Report {
+    /// An error where lines were refused.
+    pub(crate) fn check(&self) -> Result<()> {
+        let Some(first) = self.refusals.first() else {
+            return Ok(());
+        };
+        let (refused, all) = (self.refused, self.refused + self.moves);
+        bail!(
+            "{refused} of {all} lines refused, the first: line {}: {}",
+            first.line,
+            first.reason
+        )
+    }
+
     /// Writes what a person wants to know first.
     pub(crate) fn write_summary(&self, mut out: impl Write, folder: &str) -> Result<()> {
         writeln!(

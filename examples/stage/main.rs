@@ -34,7 +34,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Parser;
 
 use artefacts::{Artefacts, write_json};
@@ -129,11 +129,9 @@ fn read(file: &Path) -> Result<Program> {
     let bytes = fs::read(file).with_context(place)?;
     // Where bytes are no text, in a comment of an old program, nothing is lost.
     let program = program::read(&String::from_utf8_lossy(&bytes)).with_context(place)?;
-    ensure!(
-        !program.lines.is_empty(),
-        "{}: nothing moves{}",
-        place(),
-        program.notes.listed()
-    );
+    if program.lines.is_empty() {
+        let why: Vec<_> = [place(), "nothing moves".to_owned()].into();
+        bail!("{}", [why, program.notes.lines()].concat().join(": "));
+    }
     Ok(program)
 }

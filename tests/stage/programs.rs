@@ -383,7 +383,7 @@ fn what_would_change_the_path_is_refused() {
         ),
         (
             "G0 Z9\nG1 E5\nM104",
-            "bad.nc: nothing moves; line 1: Z: passed over",
+            "bad.nc: nothing moves: line 1: Z: passed over",
         ),
         ("%", "bad.nc: nothing moves"),
         ("G0 X5 M2", "a motion with the end of the program"),
