@@ -36,6 +36,7 @@ const ROUNDING_MM: f64 = 2e-11;
 struct Run {
     folder: TempDir,
     report: Value,
+    summary: Vec<String>,
 }
 
 impl Run {
@@ -49,6 +50,7 @@ impl Run {
         let report = fs::read(folder.path().join("report.json")).unwrap();
         Self {
             report: serde_json::from_slice(&report).unwrap(),
+            summary: lines(&output.stdout),
             folder,
         }
     }
@@ -226,6 +228,7 @@ fn check_table(mode: &str) {
     assert!(bound <= 0.002 + ROUNDING_MM && bound > 0.0005, "{bound}");
     assert!((0.999..=1.0 + 1e-9).contains(&fastest), "{fastest}");
     assert!((fastest - run.number("/max_speed_ratio")).abs() < 1e-6);
+    check_jumps(mode, &run, &rows, &locators);
     let axes = locators.iter().zip(&rows[0].places);
     assert!(
         axes.clone()
@@ -241,6 +244,45 @@ fn check_table(mode: &str) {
     for picture in ["align.svg", "jog.svg"] {
         assert!(run.read(picture).trim_end().ends_with("</svg>"));
     }
+}
+
+/// A PT table says that accelerations are not kept, and by how much a speed jumps.
+fn check_jumps(mode: &str, run: &Run, rows: &[Row], locators: &[Locator]) {
+    let says = run
+        .summary
+        .iter()
+        .find(|line| line.contains("keeps speeds, not accelerations"));
+    let jump = run.number("/max_speed_jump_mm_s");
+    if mode == "pvt" {
+        assert_eq!(says, None);
+        // The digits of a table in which segments last milliseconds.
+        assert!(jump < 1e-6, "{jump}");
+        let keeps = ["speed_mm_s", "acceleration_mm_s2", "jerk_mm_s3"];
+        assert_eq!(run.report["keeps"], serde_json::json!(keeps));
+        return;
+    }
+    assert_eq!(run.report["keeps"], serde_json::json!(["speed_mm_s"]));
+    let mut worst = 0.0_f64;
+    for (number, locator) in locators.iter().enumerate() {
+        let mut speeds = vec![Vector3::zeros()];
+        speeds.extend(rows.windows(2).map(|pair| {
+            let way = pair[1].places[number] - pair[0].places[number];
+            locator.to_axes * way / (pair[1].time - pair[0].time)
+        }));
+        speeds.push(Vector3::zeros());
+        let jumps = speeds.windows(2).map(|pair| (pair[1] - pair[0]).amax());
+        worst = jumps.fold(worst, f64::max);
+    }
+    // From rest to full speed at once.
+    assert!(
+        worst > 1.0 && (worst - jump).abs() < 1e-6 * worst,
+        "{worst} {jump}"
+    );
+    let says = says.unwrap();
+    assert!(
+        says.contains(&format!("jumps by {worst:.1} mm/s")),
+        "{says}"
+    );
 }
 
 #[test]

@@ -167,6 +167,9 @@ pub(crate) struct Examination<const N: usize> {
     pub(crate) max_strain: f64,
     /// Largest share of its rated speed that an axis has.
     pub(crate) max_speed_ratio: f64,
+    /// Largest jump of an axis' speed from one segment to the next, from rest and to it, in mm
+    /// per second: no motor can make it.
+    pub(crate) max_speed_jump: f64,
     /// Where the body is in the end.
     pub(crate) end: BodyFit<N>,
 }
@@ -176,6 +179,9 @@ impl<const N: usize> Examination<N> {
     pub(crate) fn of(table: &Table<N>, platform: &Platform<N>) -> Result<Self> {
         let mut moments = Vec::new();
         let (mut max_strain, mut max_speed_ratio) = (0.0_f64, 0.0_f64);
+        let mut max_speed_jump = 0.0_f64;
+        let rest = [[AxisState::default(); 3]; N];
+        let mut before = rest;
         let places = if table.points() < MANY {
             PLACES
         } else {
@@ -185,6 +191,10 @@ impl<const N: usize> Examination<N> {
             for place in 0..=places {
                 let s = f64::from(place) / f64::from(places);
                 let states = table.states(segment, s).context("no such segment")?;
+                if place == 0 {
+                    max_speed_jump = max_speed_jump.max(speed_jump(&before, &states));
+                }
+                before = states;
                 let anchors = platform.locator_positions(&positions(&states));
                 let strain = platform.strain(&anchors).change;
                 max_strain = max_strain.max(strain.abs());
@@ -204,8 +214,17 @@ impl<const N: usize> Examination<N> {
         Ok(Self {
             max_strain,
             max_speed_ratio,
+            max_speed_jump: max_speed_jump.max(speed_jump(&before, &rest)),
             end: platform.pose(&positions(&last.states))?,
             moments,
         })
     }
+}
+
+/// The largest change of an axis' speed, in mm per second.
+fn speed_jump<const N: usize>(before: &States<N>, after: &States<N>) -> f64 {
+    let pairs = before.iter().flatten().zip(after.iter().flatten());
+    pairs
+        .map(|(before, after)| (after.speed - before.speed).abs())
+        .fold(0.0, f64::max)
 }

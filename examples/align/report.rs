@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::drives::Examination;
 use crate::line::Side;
-use crate::table::{Plan, Table};
+use crate::table::{Mode, Plan, Table};
 use crate::workstation::Telegrams;
 use crate::world::Course;
 
@@ -25,6 +25,10 @@ pub(crate) struct Report {
     strain_bound_mm: f64,
     /// Largest share of its rated speed that an axis has.
     max_speed_ratio: f64,
+    /// Largest jump of an axis' speed between two segments, from rest or to it.
+    max_speed_jump_mm_s: f64,
+    /// The limits of the platform file that the plan keeps.
+    keeps: &'static [&'static str],
     /// Of the body on the simulated locators in the end, from the pose asked for.
     pose_error_mm: f64,
     pose_error_rad: f64,
@@ -43,6 +47,7 @@ impl Report {
         table: &Table<N>,
         examination: &Examination<N>,
         target: &Isometry3<f64>,
+        mode: Mode,
     ) -> Self {
         let end = &examination.end.pose;
         let way = end.translation.vector - target.translation.vector;
@@ -52,6 +57,8 @@ impl Report {
             max_strain_mm: examination.max_strain,
             strain_bound_mm: plan.strain_bound_mm,
             max_speed_ratio: examination.max_speed_ratio,
+            max_speed_jump_mm_s: examination.max_speed_jump,
+            keeps: mode.keeps(),
             pose_error_mm: way.norm(),
             pose_error_rad: angle_between(&end.rotation, &target.rotation),
             telegrams: course.telegrams,
@@ -68,9 +75,10 @@ impl Report {
     pub(crate) fn write_summary(
         &self,
         mut out: impl Write,
-        table: &str,
+        mode: Mode,
         folder: &Path,
     ) -> Result<()> {
+        let table = mode.file();
         writeln!(
             out,
             "line: {} telegrams, {} bytes through a pseudo-terminal",
@@ -84,6 +92,14 @@ impl Report {
             self.duration_s,
             100.0 * self.max_speed_ratio
         )?;
+        if mode == Mode::Pt {
+            writeln!(
+                out,
+                "{table} keeps speeds, not accelerations and jerks: an axis jumps by {:.1} mm/s at \
+                 once; --mode pvt keeps them",
+                self.max_speed_jump_mm_s
+            )?;
+        }
         writeln!(
             out,
             "strain, axis by axis: {:.3e} mm at most; bound {:.3e} mm: {}",

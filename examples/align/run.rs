@@ -118,11 +118,12 @@ fn align<const N: usize>(arguments: &Arguments, settings: &Settings) -> Result<b
     picture::jog(&course.jog, &panel, jog)?;
     let body = [from, task.reached].map(|pose| settings.outline(&planner.isometry(pose)));
     picture::align(&examination, &platform, plan.strain_bound_mm, &body, align)?;
-    let report = Report::new(&course, plan, &table, &examination, &planner.isometry(to));
+    let target = planner.isometry(to);
+    let report = Report::new(&course, plan, &table, &examination, &target, mode);
     write_json(json, &report)?;
     artefacts.keep()?;
     report
-        .write_summary(std::io::stdout().lock(), mode.file(), &arguments.out)
+        .write_summary(std::io::stdout().lock(), mode, &arguments.out)
         .context("standard output")?;
     Ok(report.is_within_bounds())
 }

@@ -13,9 +13,10 @@ use crate::run::{Pose, vector};
 /// What the table says of each point.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Mode {
-    /// Positions: the axes move linearly between two points.
+    /// Positions: the axes move linearly between two points. Speeds are kept, accelerations and
+    /// jerks are not.
     Pt,
-    /// Positions and velocities: the axes run cubics.
+    /// Positions and velocities: the axes run cubics within speed, acceleration and jerk.
     Pvt,
 }
 
@@ -24,6 +25,14 @@ impl Mode {
         match self {
             Self::Pt => "pt.csv",
             Self::Pvt => "pvt.csv",
+        }
+    }
+
+    /// The limits of the platform file that the plan keeps.
+    pub(crate) const fn keeps(self) -> &'static [&'static str] {
+        match self {
+            Self::Pt => &["speed_mm_s"],
+            Self::Pvt => &["speed_mm_s", "acceleration_mm_s2", "jerk_mm_s3"],
         }
     }
 }
