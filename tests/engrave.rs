@@ -10,6 +10,8 @@
 mod artefacts;
 #[path = "tools/example.rs"]
 mod example;
+#[path = "engrave/left_out.rs"]
+mod left_out;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,6 +31,9 @@ fn shipped(name: &str) -> PathBuf {
 struct Run {
     folder: TempDir,
     report: Value,
+    summary: String,
+    /// Standard error.
+    notes: Vec<String>,
 }
 
 impl Run {
@@ -40,6 +45,8 @@ impl Run {
         let report = fs::read(folder.path().join("report.json")).unwrap();
         Self {
             report: serde_json::from_slice(&report).unwrap(),
+            summary: String::from_utf8(output.stdout).unwrap(),
+            notes: errors.lines().map(str::to_owned).collect(),
             folder,
         }
     }
@@ -98,6 +105,7 @@ fn shipped_drawings_keep_their_bound() {
         assert!(worst <= bound, "{drawing}: {worst} > {bound}");
         assert!(worst > 0.0 && run.number("/rms_deviation_mm") < worst);
         assert!(run.number("/missing_mm").to_bits() == 0);
+        assert_eq!(run.notes, [""; 0], "{drawing}");
         assert!(run.read("engraved.svg").ends_with(b"</svg>\n"));
     }
 }
@@ -146,6 +154,69 @@ fn the_bytes_alone_draw_a_circle() {
         "a part of the circle is missing"
     );
     assert_eq!(positions.last().unwrap().1, [0; 4], "not home");
+}
+
+/// What the records take, by their own counts: the disc's turn, then the arms' move.
+#[test]
+fn speed_and_dwell_are_stated() {
+    let run = Run::of(&[]);
+    let pulse_s = 2e-9 * run.number("/machine/half_period_ticks") * run.number("/machine/tick_ns");
+    let (upper, fore) = (
+        run.number("/machine/upper_mm"),
+        run.number("/machine/fore_mm"),
+    );
+    let tool = |[theta1, theta2, ..]: [i32; 4]| {
+        let shoulder = run.angle("theta2", theta2);
+        let elbow = shoulder + run.angle("theta1", theta1);
+        [
+            upper * shoulder.cos() + fore * elbow.cos(),
+            upper * shoulder.sin() + fore * elbow.sin(),
+        ]
+    };
+    let (mut dwell_s, mut arms_s) = (0.0, 0.0);
+    let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
+    let mut from = [0; 4];
+    for (fast, to) in integrate(&run.read("pattern.bin")) {
+        let ways = [0, 1, 2].map(|k| f64::from(to[k].abs_diff(from[k])));
+        if !fast {
+            dwell_s += ways[2] * pulse_s;
+            let time_s = ways[0].max(ways[1]) * pulse_s;
+            arms_s += time_s;
+            let ([x0, y0], [x1, y1]) = (tool(from), tool(to));
+            if time_s > 0.0 {
+                let speed = (x1 - x0).hypot(y1 - y0) / time_s;
+                (least, greatest) = (least.min(speed), greatest.max(speed));
+            }
+        }
+        from = to;
+    }
+    let states = |pointer: &str, wanted: f64| {
+        let stated = run.number(pointer);
+        assert!(
+            (stated - wanted).abs() < 1e-9 * wanted,
+            "{pointer}: {stated}, {wanted}"
+        );
+    };
+    states("/tool_speed_mm_s/0", least);
+    states("/tool_speed_mm_s/1", greatest);
+    states("/dwell_s", dwell_s);
+    states("/in_glass_s", dwell_s + arms_s);
+    // One interval for all pulses: a factor of four in speed.
+    assert!(greatest > 4.0 * least && least > 8.0, "{least} {greatest}");
+    for line in [
+        format!(
+            "tool: {least:.1} to {greatest:.1} mm/s along the strokes: the format has one pulse interval\n"
+        ),
+        format!(
+            "disc: turns for {dwell_s:.1} of the {:.1} s in the glass, and the tool dwells there\n",
+            dwell_s + arms_s
+        ),
+    ] {
+        assert!(run.summary.contains(&line), "{}", run.summary);
+    }
+    // A dot has no speed.
+    let dot = run_body("<path d='M20 20L20 20' stroke='black' stroke-linecap='round'/>");
+    assert!(dot.report["tool_speed_mm_s"].is_null() && !dot.summary.contains("tool:"));
 }
 
 #[test]
@@ -263,14 +334,19 @@ fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
     );
 }
 
-/// Runs an SVG body in a view box of 100 by 100.
-fn run_body(body: &str) -> Run {
+/// Runs the text of an SVG file.
+fn run_text(text: &str) -> Run {
     let folder = TempDir::new().unwrap();
     let svg = folder.path().join("body.svg");
-    let text =
-        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
     fs::write(&svg, text).unwrap();
     Run::of(&["--svg", svg.to_str().unwrap()])
+}
+
+/// Runs an SVG body in a view box of 100 by 100.
+fn run_body(body: &str) -> Run {
+    run_text(&format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>"
+    ))
 }
 
 /// How near the tool in the glass comes to a place of the drawing, in mm.
@@ -323,23 +399,4 @@ fn dots_are_engraved() {
         assert!(run.number("/max_deviation_mm") <= bound);
         assert!(nearest(&run, 20.0, 20.0) <= bound);
     }
-}
-
-#[test]
-fn what_is_not_engraved_is_said() {
-    let folder = TempDir::new().unwrap();
-    let svg = folder.path().join("text.svg");
-    let text = "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='90'><text x='9' y='9'>lost</text><path d='M0 0H50V50'/></svg>";
-    fs::write(&svg, text).unwrap();
-    let output = run_into(
-        &folder.path().join("out"),
-        "engrave",
-        &["--svg", svg.to_str().unwrap()],
-    );
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success());
-    assert!(
-        errors.contains("1 <text>: convert text to paths"),
-        "{errors}"
-    );
 }

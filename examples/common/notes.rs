@@ -5,11 +5,42 @@ use core::fmt;
 /// No more names are listed in one note.
 const NAMES: usize = 8;
 
+/// Where something stands in the input, from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Place {
+    line: usize,
+    /// Where a line can be as long as the file.
+    column: Option<usize>,
+}
+
+impl From<usize> for Place {
+    fn from(line: usize) -> Self {
+        Self { line, column: None }
+    }
+}
+
+impl From<(usize, usize)> for Place {
+    fn from((line, column): (usize, usize)) -> Self {
+        let column = Some(column);
+        Self { line, column }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}", self.line)?;
+        match self.column {
+            Some(column) => write!(f, ", column {column}"),
+            None => Ok(()),
+        }
+    }
+}
+
 /// One kind of thing that was met.
 #[derive(Debug, Clone)]
 struct Note {
     what_is_done: &'static str,
-    first_line: usize,
+    first: Place,
     names: Vec<String>,
     has_more_names: bool,
     count: usize,
@@ -17,7 +48,7 @@ struct Note {
 
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}", self.first_line, self.names.join(", "))?;
+        write!(f, "{}: {}", self.first, self.names.join(", "))?;
         if self.has_more_names {
             f.write_str(" and others")?;
         }
@@ -26,16 +57,21 @@ impl fmt::Display for Note {
     }
 }
 
-/// Notes, in the order in which their kinds were first met.
+/// Notes, by their kinds.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Notes(Vec<Note>);
 
 impl Notes {
     /// Notes something by its name in the input, and what is done with it, which is its kind.
-    pub(crate) fn add(&mut self, line: usize, name: impl Into<String>, what_is_done: &'static str) {
+    pub(crate) fn add(
+        &mut self,
+        place: impl Into<Place>,
+        name: impl Into<String>,
+        what_is_done: &'static str,
+    ) {
         self.merge(Self(vec![Note {
             what_is_done,
-            first_line: line,
+            first: place.into(),
             names: vec![name.into()],
             has_more_names: false,
             count: 1,
@@ -53,6 +89,7 @@ impl Notes {
                 continue;
             };
             known.count += note.count;
+            known.first = known.first.min(note.first);
             known.has_more_names |= note.has_more_names;
             for name in note.names {
                 if known.names.contains(&name) {
@@ -68,8 +105,10 @@ impl Notes {
         new
     }
 
-    /// One line for each kind: first place, names, what is done, how often.
+    /// One line for each kind: first place, names, what is done, how often; in the input's order.
     pub(crate) fn lines(&self) -> Vec<String> {
-        self.0.iter().map(ToString::to_string).collect()
+        let mut notes: Vec<_> = self.0.iter().collect();
+        notes.sort_by_key(|note| note.first);
+        notes.into_iter().map(ToString::to_string).collect()
     }
 }

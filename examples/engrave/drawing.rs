@@ -1,16 +1,22 @@
 //! From an SVG file to outlines, in the file's own units.
 
+use core::str::FromStr as _;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use kurbo::{
     Affine, BezPath, ParamCurve, ParamCurveExtrema, PathEl, PathSeg, Point, Rect, Shape, Vec2,
 };
 use nalgebra::Point2;
 use quick_xml::escape::escape;
+use svgtypes::{Length, LengthUnit};
+use usvg::roxmltree::{Document, ParsingOptions};
 use usvg::tiny_skia_path::PathSegment;
-use usvg::{Group, Node, Options, Transform, Tree, roxmltree};
+use usvg::{Group, Node, Options, Transform, Tree};
+
+use crate::elements::Elements;
+use crate::{left_out, unreadable};
 
 /// A curve whose control points are this near to a line, as a share of its length, is
 /// that line, there and back: the rounding of the parser's numbers.
@@ -27,6 +33,8 @@ const FINEST: f64 = 1e-12;
 pub(crate) struct Drawing {
     outlines: Vec<BezPath>,
     notes: Vec<String>,
+    /// What a user unit is by the file's own size, where that is in a unit of length.
+    own_mm_per_unit: Option<f64>,
 }
 
 impl Drawing {
@@ -36,24 +44,24 @@ impl Drawing {
         Self::parse(&text).with_context(place)
     }
 
-    fn parse(text: &str) -> Result<Self> {
-        let document = roxmltree::Document::parse(text)?;
-        let tree = Tree::from_xmltree(&document, &Options::default())?;
-        let to_user = affine(user_units(&document)?).inverse();
+    /// Reads the text of an SVG file.
+    pub(crate) fn parse(text: &str) -> Result<Self> {
+        let document = parse_xml(text)?;
+        let (elements, numbered) = Elements::numbered(text, &document);
+        let tree = Tree::from_xmltree(&parse_xml(&numbered)?, &Options::default())?;
+        let user_units = user_units(&document)?;
+        let mut notes = unreadable::notes(&elements);
+        notes.merge(left_out::notes(&tree, &elements));
         let mut drawing = Self {
             outlines: Vec::new(),
-            notes: unsupported(&document),
+            notes: notes.lines(),
+            own_mm_per_unit: own_mm_per_unit(&document, user_units),
         };
-        drawing.collect(tree.root(), to_user);
-        ensure!(
-            !drawing.outlines.is_empty(),
-            "there is nothing to draw{}",
-            drawing
-                .notes
-                .iter()
-                .map(|note| format!(": {note}"))
-                .collect::<String>()
-        );
+        drawing.collect(tree.root(), affine(user_units).inverse());
+        if drawing.outlines.is_empty() {
+            let why = ["there is nothing to draw".to_owned()];
+            bail!("{}", [&why, drawing.notes()].concat().join(": "));
+        }
         ensure!(
             drawing.bounds().is_finite(),
             "a coordinate is too large to be drawn"
@@ -74,9 +82,14 @@ impl Drawing {
         }
     }
 
-    /// What the file holds that is not engraved.
+    /// What the file holds that is not engraved, or otherwise.
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// The mm of a user unit where the file says how large it is.
+    pub(crate) const fn own_mm_per_unit(&self) -> Option<f64> {
+        self.own_mm_per_unit
     }
 
     /// Bounding box in user units.
@@ -136,13 +149,25 @@ fn unfolded(path: &BezPath) -> BezPath {
 /// The direction of the line that all control points of a curve lie on, if any.
 fn along(curve: PathSeg) -> Option<Vec2> {
     let cubic = curve.to_cubic();
-    let ways = [cubic.p1, cubic.p2, cubic.p3].map(|point| point - cubic.p0);
-    let longest = ways
-        .into_iter()
-        .max_by(|a, b| a.hypot2().total_cmp(&b.hypot2()))?;
+    line_of(&[cubic.p0, cubic.p1, cubic.p2, cubic.p3])
+}
+
+/// Whether points lie on one line.
+pub(crate) fn are_on_a_line(points: &[Point]) -> bool {
+    points.is_empty() || line_of(points).is_some()
+}
+
+/// The direction of the line that all points lie on, to the farthest from the first.
+fn line_of(points: &[Point]) -> Option<Vec2> {
+    let (first, rest) = points.split_first()?;
+    let ways = rest.iter().map(|point| *point - *first);
+    let longest = ways.clone().map(|way| (way.hypot2(), way));
+    let (_, longest) = longest
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap_or_default();
     let allowed = ON_A_LINE * longest.hypot2();
-    ways.iter()
-        .all(|way| way.cross(longest).abs() <= allowed)
+    let mut ways = ways;
+    ways.all(|way| way.cross(longest).abs() <= allowed)
         .then_some(longest)
 }
 
@@ -153,7 +178,7 @@ fn turning_points(curve: PathSeg, way: Vec2) -> impl Iterator<Item = Point> {
 }
 
 /// One path for each stroke of the tool.
-fn subpaths(path: &BezPath) -> Vec<BezPath> {
+pub(crate) fn subpaths(path: &BezPath) -> Vec<BezPath> {
     let mut strokes: Vec<BezPath> = Vec::new();
     for element in path.elements() {
         match (element, strokes.last_mut()) {
@@ -167,7 +192,7 @@ fn subpaths(path: &BezPath) -> Vec<BezPath> {
     strokes
 }
 
-fn bez_path(path: &usvg::tiny_skia_path::Path) -> BezPath {
+pub(crate) fn bez_path(path: &usvg::tiny_skia_path::Path) -> BezPath {
     let at = |p: usvg::tiny_skia_path::Point| Point::new(f64::from(p.x), f64::from(p.y));
     path.segments()
         .map(|segment| match segment {
@@ -180,19 +205,43 @@ fn bez_path(path: &usvg::tiny_skia_path::Path) -> BezPath {
         .collect()
 }
 
-fn affine(t: Transform) -> Affine {
+pub(crate) fn affine(t: Transform) -> Affine {
     Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
+}
+
+/// As usual in files from drawing programs, with a document type.
+fn parse_xml(text: &str) -> Result<Document<'_>> {
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    Ok(Document::parse_with_options(text, options)?)
+}
+
+/// What a user unit is where the file's width or height is in a unit of length. The parser's own
+/// unit is a 96th of an inch.
+fn own_mm_per_unit(document: &Document<'_>, user_units: Transform) -> Option<f64> {
+    const MM: f64 = 25.4 / 96.0;
+    let root = document.root_element();
+    let has_length = ["width", "height"].into_iter().any(|name| {
+        let length = root.attribute(name).map(Length::from_str);
+        let unit = length.and_then(|length| Some(length.ok()?.unit));
+        use LengthUnit::{Cm, In, Mm, Pc, Pt};
+        matches!(unit, Some(Mm | Cm | In | Pt | Pc))
+    });
+    has_length.then(|| affine(user_units).determinant().abs().sqrt() * MM)
 }
 
 /// From user units of the root element to what the parser makes of them: a shape under
 /// a root element with the same frame tells.
-fn user_units(document: &roxmltree::Document<'_>) -> Result<Transform> {
+fn user_units(document: &Document<'_>) -> Result<Transform> {
     let frame: String = [
         "width",
         "height",
         "viewBox",
         "preserveAspectRatio",
         "transform",
+        "transform-origin",
     ]
     .into_iter()
     .filter_map(|name| {
@@ -214,22 +263,4 @@ fn first_path(group: &Group) -> Option<&usvg::Path> {
         Node::Group(group) => first_path(group),
         Node::Image(_) | Node::Text(_) => None,
     })
-}
-
-fn unsupported(document: &roxmltree::Document<'_>) -> Vec<String> {
-    [
-        ("text", "convert text to paths"),
-        ("image", "pictures cannot be engraved"),
-        ("clipPath", "shapes are not clipped"),
-        ("mask", "shapes are not masked"),
-    ]
-    .into_iter()
-    .filter_map(|(name, advice)| {
-        let count = document
-            .descendants()
-            .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", name)))
-            .count();
-        (count > 0).then(|| format!("{count} <{name}>: {advice}"))
-    })
-    .collect()
 }

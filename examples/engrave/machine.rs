@@ -214,6 +214,12 @@ impl Machine {
         })
     }
 
+    /// A tick of the timer, in seconds.
+    pub(crate) fn tick_s(&self) -> f64 {
+        let rate = self.timer.tick_rate();
+        f64::from(rate.denominator()) / f64::from(rate.numerator())
+    }
+
     /// The arm's joints at a position of the steppers.
     pub(crate) fn joints(&self, position: PerAxis<i32>) -> Joints {
         Joints::new(

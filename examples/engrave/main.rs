@@ -14,8 +14,13 @@ mod arguments;
 #[path = "../common/artefacts.rs"]
 mod artefacts;
 mod drawing;
+mod elements;
 mod gauge;
+mod left_out;
 mod machine;
+#[path = "../common/notes.rs"]
+mod notes;
+mod pace;
 mod picture;
 mod plan;
 mod playback;
@@ -25,6 +30,7 @@ mod report;
 #[path = "../common/settings.rs"]
 mod settings;
 mod simulation;
+mod unreadable;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -120,9 +126,6 @@ fn engrave(args: &Args) -> Result<bool> {
     );
     let machine = Machine::read(&args.machine)?;
     let drawing = Drawing::read(&args.svg)?;
-    for note in drawing.notes() {
-        eprintln!("note: {}: {note}", args.svg.display());
-    }
     let placement = match args.placement {
         Some(placement) => placement,
         None => machine.bed.fit(drawing.bounds()),
@@ -143,9 +146,12 @@ fn engrave(args: &Args) -> Result<bool> {
     playback::play(&machine, artefacts.reopen("pattern.bin")?, &mut simulation)?;
     let outcome = simulation.finish()?;
 
-    let report = report::Report::new(&machine, &plan, &outcome, placement);
+    let report = report::Report::new(&machine, &drawing, &plan, &outcome, placement);
     write_json(artefacts.create("report.json")?, &report)?;
     artefacts.keep()?;
+    for note in drawing.notes() {
+        eprintln!("note: {}: {note}", args.svg.display());
+    }
     report
         .write_summary(std::io::stdout().lock(), &args.svg, &args.out)
         .context("standard output")?;

@@ -8,6 +8,7 @@ use kurbo::Affine;
 use pose2pulse::pattern_codec::engraving::{ByteOrder, PerAxis};
 use serde::Serialize;
 
+use crate::drawing::Drawing;
 use crate::machine::{Machine, Settings};
 use crate::plan::Plan;
 use crate::simulation::Outcome;
@@ -18,6 +19,12 @@ pub(crate) struct Report<'a> {
     /// a b c d e f, from the drawing's user units to machine mm:
     /// x' = ax + cy + e, y' = bx + dy + f.
     placement: [f64; 6],
+    mm_per_unit: f64,
+    /// The same by the size that the drawing's file states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    own_mm_per_unit: Option<f64>,
+    /// What the drawing shows and is not engraved, or otherwise.
+    notes: &'a [String],
     machine: MachineReport<'a>,
     strokes: usize,
     length_mm: f64,
@@ -28,6 +35,12 @@ pub(crate) struct Report<'a> {
     pulses: PerAxis<u64>,
     end_position: PerAxis<i32>,
     duration_s: f64,
+    /// Of strokes, with the tool at full depth.
+    in_glass_s: f64,
+    /// Of this, the disc turns and the tool stands.
+    dwell_s: f64,
+    /// Least and greatest mean speed of the tool in a record that moves the arms.
+    tool_speed_mm_s: Option<[f64; 2]>,
     tolerance_mm: f64,
     max_deviation_mm: f64,
     rms_deviation_mm: f64,
@@ -65,6 +78,7 @@ struct Joints {
 impl<'a> Report<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
+        drawing: &'a Drawing,
         plan: &Plan,
         outcome: &Outcome,
         placement: Affine,
@@ -72,6 +86,9 @@ impl<'a> Report<'a> {
         let deviation = &outcome.deviation;
         Self {
             placement: placement.as_coeffs(),
+            mm_per_unit: placement.determinant().abs().sqrt(),
+            own_mm_per_unit: drawing.own_mm_per_unit(),
+            notes: drawing.notes(),
             machine: MachineReport::new(machine),
             strokes: plan.strokes,
             length_mm: plan.length_mm,
@@ -82,6 +99,9 @@ impl<'a> Report<'a> {
             pulses: outcome.pulses,
             end_position: outcome.end,
             duration_s: outcome.duration_s,
+            in_glass_s: outcome.pace.in_glass_s,
+            dwell_s: outcome.pace.dwell_s,
+            tool_speed_mm_s: outcome.pace.speeds_mm_s,
             tolerance_mm: plan.tolerance_mm,
             max_deviation_mm: deviation
                 .path_to_drawing_mm
@@ -112,6 +132,15 @@ impl<'a> Report<'a> {
             "{name}: {} strokes, {:.0} mm",
             self.strokes, self.length_mm
         )?;
+        write!(
+            out,
+            "placed: a unit of the drawing is {:.4} mm",
+            self.mm_per_unit
+        )?;
+        match self.own_mm_per_unit {
+            Some(own) => writeln!(out, ", {:.4} times its own size", self.mm_per_unit / own)?,
+            None => writeln!(out, "; the file states no size in mm")?,
+        }
         writeln!(
             out,
             "pattern.bin: {} records ({} fast, {} slow), {} bytes",
@@ -122,6 +151,17 @@ impl<'a> Report<'a> {
             out,
             "simulated from the bytes alone: {} + {} + {} + {} pulses, {:.1} s",
             pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical, self.duration_s
+        )?;
+        if let Some([least, greatest]) = self.tool_speed_mm_s {
+            writeln!(
+                out,
+                "tool: {least:.1} to {greatest:.1} mm/s along the strokes: the format has one pulse interval"
+            )?;
+        }
+        writeln!(
+            out,
+            "disc: turns for {:.1} of the {:.1} s in the glass, and the tool dwells there",
+            self.dwell_s, self.in_glass_s
         )?;
         writeln!(
             out,
@@ -176,13 +216,8 @@ impl<'a> MachineReport<'a> {
             byte_order: machine.format.byte_order,
             direction_bit: "set for negative pulses",
             half_period_ticks: machine.half_period_ticks,
-            tick_ns: tick_ns(machine),
+            tick_ns: 1e9 * machine.tick_s(),
             settings: &machine.settings,
         }
     }
-}
-
-fn tick_ns(machine: &Machine) -> f64 {
-    let rate = machine.timer.tick_rate();
-    1e9 * f64::from(rate.denominator()) / f64::from(rate.numerator())
 }

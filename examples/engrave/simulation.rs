@@ -12,6 +12,7 @@ use pose2pulse::stepper_sync::{Direction, Level};
 use crate::artefacts::Artefacts;
 use crate::gauge::{Deviation, Gauge};
 use crate::machine::Machine;
+use crate::pace::{self, Pace};
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::playback::Wires;
@@ -30,6 +31,7 @@ pub(crate) struct Outcome {
     pub(crate) duration_s: f64,
     /// Where the steppers ended, counted from home.
     pub(crate) end: PerAxis<i32>,
+    pub(crate) pace: pace::Outcome,
 }
 
 /// Steppers that count their step pins' rising edges, an arm that follows at once, a
@@ -39,6 +41,7 @@ pub(crate) struct Simulation<'a> {
     pulse_log: PulseWriter<BufWriter<File>>,
     picture: Picture<BufWriter<File>>,
     gauge: Gauge,
+    pace: Pace,
     progress: Progress,
     now: u64,
     position: PerAxis<i32>,
@@ -64,6 +67,7 @@ impl<'a> Simulation<'a> {
             pulse_log: PulseWriter::new(artefacts.create("pulses.vcd")?, machine.timer)?,
             picture: Picture::new(artefacts.create("engraved.svg")?, outlines)?,
             gauge: Gauge::new(outlines, plan.tolerance_mm, plan.bound_mm * REACH),
+            pace: Pace::default(),
             progress: Progress::new("engraving", plan.fast_records + plan.slow_records),
             now: 0,
             position: PerAxis::default(),
@@ -86,6 +90,7 @@ impl<'a> Simulation<'a> {
             pulses: self.pulses,
             duration_s: seconds(ns)?,
             end: self.position,
+            pace: self.pace.finish(self.machine.tick_s()),
         })
     }
 
@@ -139,11 +144,16 @@ impl Wires for Simulation<'_> {
             *self.pulses.get_mut(axis) += 1;
             self.moved = true;
         }
+        if axis == Axis::Theta3 {
+            self.pace.disc_edge(ticks);
+        }
         self.pulse_log.step(ticks, axis, level)
     }
 
     fn record(&mut self, ticks: u64) -> Result<()> {
         self.advance(ticks)?;
+        self.settle()?;
+        self.pace.record(ticks, self.engraving);
         self.records += 1;
         self.progress.advance(1);
         Ok(())
