@@ -14,8 +14,7 @@ const SVG: &str = "http://www.w3.org/2000/svg";
 pub(crate) struct Elements<'d> {
     document: &'d Document<'d>,
     by_id: HashMap<String, NodeId>,
-    /// Where each line begins.
-    lines: Vec<usize>,
+    places: HashMap<NodeId, Place>,
 }
 
 impl<'d> Elements<'d> {
@@ -49,11 +48,10 @@ impl<'d> Elements<'d> {
             done = end;
         }
         numbered.push_str(text.get(done..).unwrap_or_default());
-        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
         let elements = Self {
             document,
             by_id,
-            lines: core::iter::once(0).chain(ends).collect(),
+            places: places(text, document),
         };
         (elements, numbered)
     }
@@ -79,15 +77,34 @@ impl<'d> Elements<'d> {
         self.document
     }
 
-    /// Where a node begins, in lines and characters.
-    pub(crate) fn place(&self, node: Node<'_, '_>) -> Place {
-        let start = node.range().start;
-        let line = self.lines.partition_point(|begin| *begin <= start);
-        let begin = line.checked_sub(1).and_then(|line| self.lines.get(line));
-        let text = self.document.input_text();
-        let before = begin.and_then(|begin| text.get(*begin..start));
-        (line, 1 + before.map_or(0, |before| before.chars().count())).into()
+    /// Where a node of the document begins, in lines and characters.
+    pub(crate) fn place(&self, node: Node<'d, 'd>) -> Place {
+        // All nodes of the document are in it.
+        self.places[&node.id()]
     }
+}
+
+/// Where all nodes begin, in one way through the text: a file can be one long line.
+fn places(text: &str, document: &Document<'_>) -> HashMap<NodeId, Place> {
+    let begin = (0, 1, 1);
+    let (mut at, mut line, mut column) = begin;
+    let mut places = HashMap::new();
+    for node in document.descendants() {
+        let start = node.range().start;
+        // What comes from an entity stands before.
+        if start < at {
+            (at, line, column) = begin;
+        }
+        for c in text.get(at..start).unwrap_or_default().chars() {
+            (line, column) = match c {
+                '\n' => (line + 1, 1),
+                _ => (line, column + 1),
+            };
+        }
+        at = start;
+        places.insert(node.id(), (line, column).into());
+    }
+    places
 }
 
 fn is_svg(node: &Node<'_, '_>) -> bool {

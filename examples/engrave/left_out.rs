@@ -197,7 +197,7 @@ fn is_not_displayed(element: &Element<'_, '_>) -> bool {
 
 /// Whether a clip path is one upright rectangle around all that it clips, as around pages.
 fn shows_all(clip: &ClipPath, group: &Group) -> bool {
-    let [Node::Path(path)] = clip.root().children() else {
+    let Some(path) = only_path(clip.root()) else {
         return false;
     };
     let outline = affine(group.abs_transform())
@@ -209,6 +209,14 @@ fn shows_all(clip: &ClipPath, group: &Group) -> bool {
     let edge = EDGE * window.width().max(window.height());
     let drawn = rect(group.abs_bounding_box());
     clip.clip_path().is_none() && is_rectangle && contains(window.inflate(edge, edge), drawn)
+}
+
+fn only_path(group: &Group) -> Option<&Path> {
+    match group.children() {
+        [Node::Path(path)] => Some(path),
+        [Node::Group(child)] => only_path(child),
+        _ => None,
+    }
 }
 
 fn rect(rect: usvg::tiny_skia_path::Rect) -> Rect {

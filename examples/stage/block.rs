@@ -72,7 +72,8 @@ impl<'a> Block<'a> {
             if own.contains(word.letter) {
                 continue;
             }
-            if !takes_axes {
+            // Beside a code that takes the axes, letters are flags, but for other X and Y.
+            if !takes_axes || "UV".contains(word.letter) {
                 word.value()?;
                 if let Some(note) = passed_over(word, words)? {
                     notes.add(line, word.letter, note);

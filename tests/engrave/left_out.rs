@@ -234,6 +234,8 @@ fn nothing_is_said_of_what_is_engraved() {
         "<svg x='60' y='60' width='9' height='9'><path d='M1 1L9 3' fill='none' stroke='red'/></svg>",
         "<clipPath id='c'><rect width='100' height='100'/></clipPath>\
          <g clip-path='url(#c)'><path d='M5 5H9' stroke='red'/></g>",
+        "<clipPath id='c'><use href='#page'/></clipPath><defs><rect id='page' width='100' \
+         height='100'/></defs><g clip-path='url(#c)'><path d='M5 5H9' stroke='red'/></g>",
         "<switch><foreignObject requiredExtensions='http://other/'/><g>\
          <path d='M5 5H9' stroke='red'/></g></switch>",
         "<style>@font-face { font-family: x } path { stroke: red }</style><path d='M5 5H9'/>",

@@ -326,6 +326,7 @@ fn what_would_change_the_path_is_refused() {
         ("G76 X5", "G76: a cycle that moves the tool aside"),
         ("G81 X5 Z-1 R1 L3", "L3: a cycle that is repeated"),
         ("G91 G81 X5 Z-1 R1 K3", "K3: a cycle that is repeated"),
+        ("G28 U0 W0", "U0: X or Y to some machines"),
         (
             "G0 X1 U5",
             "U5: X or Y to some machines, an axis of its own to others",
