@@ -423,10 +423,11 @@ fn a_terminal_is_served_line_by_line() {
     // Both ends are kept open: a port that everybody has closed is an error at the other end.
     let (mut line, end) = TTYPort::pair().unwrap();
     line.set_timeout(PATIENCE).unwrap();
-    let mut child = example("delta")
+    let child = example("delta")
         .args(["--port", &end.name().unwrap(), "--out"])
         .arg(folder.path())
         .stdout(Stdio::null())
+        .stderr(Stdio::piped())
         .spawn()
         .unwrap();
     let mut answers = Vec::new();
@@ -438,7 +439,12 @@ fn a_terminal_is_served_line_by_line() {
         answers.push(answer.trim_end().to_owned());
     }
     line.write_all(b"end\n").unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(1));
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let [error] = &lines(&output.stderr)[..] else {
+        panic!("{output:?}");
+    };
+    assert!(error.starts_with("error: 1 of 3 lines refused, the first: line 2: 50 50 100: "));
     assert_eq!(answers[0], "ok -7799 -12831 -14361");
     assert!(answers[1].starts_with("error: line 2: 50 50 100: out of reach"));
     assert!(answers[1].ends_with("; the next move starts at 50 50 -300"));

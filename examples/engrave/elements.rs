@@ -78,8 +78,11 @@ impl<'d> Elements<'d> {
     }
 
     /// Where a node of the document begins, in lines and characters.
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "all nodes of the document are in it"
+    )]
     pub(crate) fn place(&self, node: Node<'d, 'd>) -> Place {
-        // All nodes of the document are in it.
         self.places[&node.id()]
     }
 }
