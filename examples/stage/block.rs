@@ -9,6 +9,9 @@ use crate::words::Word;
 /// Beyond it, no curve is the stage's.
 const LARGEST_MM: f64 = 100_000.0;
 
+/// What a code that takes the axes can have without a number, or as its own.
+const FLAGS: &str = "XYZABCEORW";
+
 /// One line of a program, with nothing left over.
 pub(crate) struct Block<'a> {
     pub(crate) line: usize,
@@ -25,44 +28,9 @@ impl<'a> Block<'a> {
             codes: Vec::new(),
             words: Vec::new(),
         };
-        let has_g = words.iter().any(|word| word.letter == 'G');
         let mut own = String::new();
         for word in words.iter().filter(|word| "GM".contains(word.letter)) {
-            let tenths = word.tenths()?;
-            let mut name = name(word.letter, tenths);
-            let code = codes::meaning(word.letter, tenths);
-            match code {
-                Code::PassedOver(passed) => {
-                    let (letters, how) = passed.unless;
-                    let moves = words.iter().any(|word| letters.contains(word.letter));
-                    ensure!(!moves, "{name}: {how}");
-                    // Beside a G-code the axis words are the motion's.
-                    if word.letter == 'G' || !has_g {
-                        own += passed.own;
-                    }
-                    notes.add(line, name.clone(), passed.note);
-                }
-                // G54.1 P1: one of many.
-                Code::WorkOffset => {
-                    if let Some(p) = words.iter().find(|word| word.letter == 'P') {
-                        own.push('P');
-                        name = format!("{name} {p}");
-                    }
-                }
-                Code::SecondReference => {
-                    let names = |letters: &str| words.iter().any(|it| letters.contains(it.letter));
-                    let is_upright = names("Z") && !names("XY");
-                    ensure!(
-                        is_upright,
-                        "{name}: the stage has no second reference point"
-                    );
-                    own += "ABCZ";
-                    notes.add(line, name.clone(), codes::AXES);
-                }
-                _ => {}
-            }
-            block.check_group(&name, code)?;
-            block.codes.push((name, code));
+            own += block.push_code(word, words, notes)?;
         }
         // The axis words are those of a code that says no motion.
         let takes_axes = block.has_code(Code::Reference) || block.has_code(Code::Position);
@@ -72,8 +40,8 @@ impl<'a> Block<'a> {
             if own.contains(word.letter) {
                 continue;
             }
-            // Beside a code that takes the axes, letters are flags, but for other X and Y.
-            if !takes_axes || "UV".contains(word.letter) {
+            // Beside a code that takes the axes, some letters are flags of it.
+            if !takes_axes || !FLAGS.contains(word.letter) {
                 word.value()?;
                 if let Some(note) = passed_over(word, words)? {
                     notes.add(line, word.letter, note);
@@ -84,6 +52,50 @@ impl<'a> Block<'a> {
             block.words.push(word);
         }
         Ok(block)
+    }
+
+    /// Takes a code; returns the letters of the line that are its own.
+    fn push_code(
+        &mut self,
+        word: &Word,
+        words: &[Word],
+        notes: &mut Notes,
+    ) -> Result<&'static str> {
+        let tenths = word.tenths()?;
+        let mut name = name(word.letter, tenths);
+        let code = codes::meaning(word.letter, tenths);
+        let names = |letters: &str| words.iter().any(|it| letters.contains(it.letter));
+        let (own, note) = match code {
+            // Beside a G-code the words are not those of an M-code.
+            Code::PassedOver(passed) if word.letter == 'M' && names("G") => ("", Some(passed.note)),
+            Code::PassedOver(passed) => {
+                let (letters, how) = passed.unless;
+                ensure!(!names(letters), "{name}: {how}");
+                (passed.own, Some(passed.note))
+            }
+            Code::Dwell => (dwell(&name, words)?, Some(codes::DWELLS)),
+            Code::SecondReference => {
+                let is_upright = names("Z") && !names("XY");
+                ensure!(
+                    is_upright,
+                    "{name}: the stage has no second reference point"
+                );
+                ("ABCZ", Some(codes::AXES))
+            }
+            // G54.1 P1: one of many.
+            Code::WorkOffset => {
+                let p = words.iter().find(|word| word.letter == 'P');
+                name.extend(p.map(|p| format!(" {p}")));
+                ("P", None)
+            }
+            _ => ("", None),
+        };
+        if let Some(note) = note {
+            notes.add(self.line, name.clone(), note);
+        }
+        self.check_group(&name, code)?;
+        self.codes.push((name, code));
+        Ok(own)
     }
 
     /// Two codes of one group contradict each other; to say a mode twice does no harm.
@@ -174,6 +186,24 @@ impl<'a> Block<'a> {
     }
 }
 
+/// The letters of a dwell: X and U to some machines where neither P nor S is there.
+fn dwell(name: &str, words: &[Word]) -> Result<&'static str> {
+    let names = |letters: &str| words.iter().any(|word| letters.contains(word.letter));
+    if names("PS") || !names("XU") {
+        return Ok("PS");
+    }
+    let moves = words.iter().any(|word| {
+        let tenths = word.tenths();
+        let code = tenths.map(|tenths| codes::meaning(word.letter, tenths));
+        word.letter == 'G' && matches!(code, Ok(Code::Motion(_)))
+    });
+    ensure!(
+        !moves,
+        "{name}: X is its time to some machines, a motion to others"
+    );
+    Ok("XU")
+}
+
 /// The name of a code, as G90.1 for 901.
 pub(crate) fn name(letter: char, tenths: u32) -> String {
     match tenths % 10 {
@@ -193,7 +223,8 @@ const fn group(code: Code) -> Option<&'static str> {
         Code::Relative(_) => Some("distance mode"),
         Code::AbsoluteCentres(_) => Some("mode of centres"),
         Code::WorkOffset => Some("work offset"),
-        Code::FeedPerMinute
+        Code::Dwell
+        | Code::FeedPerMinute
         | Code::CyclesEnd
         | Code::MachineCoordinates
         | Code::End

@@ -36,6 +36,8 @@ pub(crate) enum Code {
     Reference,
     /// G30, to another.
     SecondReference,
+    /// G4.
+    Dwell,
     MachineCoordinates,
     WorkOffset,
     /// G92 and G52.
@@ -56,7 +58,7 @@ pub(crate) struct PassedOver {
     pub(crate) unless: (&'static str, &'static str),
 }
 
-pub(crate) const ALL_LETTERS: &str = "ABCDEFHIJKLOPQRSTUVWXYZ";
+const ALL_LETTERS: &str = "ABCDEFHIJKLOPQRSTUVWXYZ";
 
 pub(crate) const AXES: &str = "passed over, the stage has no such axis";
 pub(crate) const EXTRUDER: &str = "passed over, there is no extruder";
@@ -74,7 +76,7 @@ pub(crate) const POSITION: &str = "passed over, X and Y stay as they are";
 pub(crate) const VERTICAL_ARC: &str = "an arc that is a line seen from above";
 const COOLANT: &str = "passed over, there is no coolant and no air";
 const PAUSES: &str = "passed over, nobody is waited for";
-const DWELLS: &str = "passed over, the stage does not dwell";
+pub(crate) const DWELLS: &str = "passed over, the stage does not dwell";
 const EXACT: &str = "passed over, the path is always followed exactly";
 const OFF: &str = "passed over, what it ends is never begun here";
 const FUNCTIONS: &str = "passed over, they move neither X nor Y";
@@ -142,11 +144,11 @@ const fn general(number: (u32, u32)) -> Code {
         (65 | 66, 0) => Code::Refused(SUBPROGRAM),
         (70 | 71, 0) => Code::Refused("it is no unit everywhere: use G20 or G21"),
         (76 | 87 | 88, 0) => Code::Refused("a cycle that moves the tool aside"),
-        (4, 0) => passed(DWELLS, "PSXU"),
+        (4, 0) => Code::Dwell,
         (9, 0) | (61, 0 | 1) => passed(EXACT, ""),
         (64, 0) => passed(EXACT, "PQ"),
         (5, 0 | 1) => passed_unless(EXACT, "PQIJR", "XY", "splines are not done"),
-        (10 | 11, 0) => passed_unless(EXTRUDER, ALL_LETTERS, "XYL", ZERO),
+        (10 | 11, 0) => passed_unless(EXTRUDER, "PRSZ", "XYL", ZERO),
         (29, 0) => passed_unless(FUNCTIONS, ALL_LETTERS, "XY", "it would move X and Y"),
         (38, 2..=5) => passed_unless(
             FUNCTIONS,
@@ -155,12 +157,7 @@ const fn general(number: (u32, u32)) -> Code {
             "where probing ends is not known before",
         ),
         (40 | 44 | 49, 0) | (43, 0 | 2) => passed(TOOLS, "H"),
-        (43, 1) => passed_unless(
-            TOOLS,
-            ALL_LETTERS,
-            "XY",
-            "the tool's length would move X and Y",
-        ),
+        (43, 1) => passed_unless(TOOLS, "HZABC", "XY", "the tool's length would move X and Y"),
         (50, 0) => passed_unless(OFF, "S", "XY", ZERO),
         (15 | 69, 0) | (50, 1) | (92, 1..=3) => passed(OFF, ""),
         (96 | 97, 0) => passed(SPINDLE, "SD"),
@@ -182,7 +179,33 @@ const fn miscellaneous(number: (u32, u32)) -> Code {
         (72, 0) => Code::Refused("the modes to go back to are not known"),
         (206 | 218 | 428 | 852, 0) => Code::Refused(ZERO),
         (290, 0) => passed_unless(FUNCTIONS, ALL_LETTERS, "XY", ZERO),
-        (_, 0) => passed(FUNCTIONS, ALL_LETTERS),
+        // Limits, currents and switches of each axis.
+        (
+            17
+            | 18
+            | 84
+            | 92
+            | 201
+            | 203
+            | 205
+            | 350
+            | 351
+            | 566
+            | 569
+            | 574
+            | 584
+            | 665
+            | 666
+            | 851
+            | 906..=919,
+            0,
+        ) => passed(FUNCTIONS, ALL_LETTERS),
+        (_, 0) => passed_unless(
+            FUNCTIONS,
+            ALL_LETTERS,
+            "XY",
+            "whether X and Y are its own or a motion's is not known",
+        ),
         _ => Code::Refused(UNKNOWN),
     }
 }

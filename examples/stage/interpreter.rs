@@ -13,8 +13,11 @@ use crate::words;
 
 /// G0.
 pub(crate) const RAPID_MM_S: f64 = 50.0;
-/// What the motors can follow.
+/// What the motors can follow; the note on feeds above says it too.
 const FEEDS_MM_MIN: core::ops::RangeInclusive<f64> = 0.1..=6000.0;
+
+/// A tenth of a step: what inches may be rounded by.
+const UNSEEN_MM: f64 = 0.001;
 
 /// What a line asks for.
 pub(crate) enum Command {
@@ -142,7 +145,7 @@ impl Interpreter {
             Code::PassedOver(passed) if name.starts_with('G') && passed.own.contains('Z') => {
                 self.z_mm = None;
             }
-            Code::FeedPerMinute | Code::End | Code::PassedOver(_) => {}
+            Code::Dwell | Code::FeedPerMinute | Code::End | Code::PassedOver(_) => {}
             Code::Refused(reason) => bail!("{name}: {reason}"),
         }
         Ok(())
@@ -222,7 +225,7 @@ impl Interpreter {
             let stays = if is_local { 0.0 } else { at };
             let moved = value.map(|value| value * self.mm_per_unit - stays);
             ensure!(
-                moved.is_none_or(|mm| mm.abs() < SAME_MM),
+                moved.is_none_or(|mm| mm.abs() < UNSEEN_MM),
                 "{letter} is {at:.3} mm here: its zero would move"
             );
         }

@@ -165,7 +165,10 @@ fn what_moves_neither_axis_changes_nothing() {
         ("G0 X30 Y20\nG90.1\nG91.1\nG3 X10 Y20 I-10 F600", circle),
         // X and Y of what is no motion.
         ("M201 X50 Y50\nM92 X80 Y80\nM84 X Y\nG1 X10 Y5 F600", line),
-        ("F600 G1\nG4 X2\nX10 Y5", line),
+        ("F600 G1\nG4 X2\nG4 U3\nG4\nX10 Y5", line),
+        ("F600 G1\nG4 P0.5 X10 Y5", line),
+        ("G4 S1 G1 X10 Y5 F600", line),
+        ("G20\nG0 X0.7874\nG92 X0.78741\nG21", "G0 X20"),
         ("G92 X0 Y0 Z3\nG52 X0 Y0\nG1 X10 Y5 F600", line),
         (
             "G1 X10 Y5 F600\nG92 X10 Y5 E0\nG28 Z0\nG30 G91 Z0\nG38.2 Z-5",
@@ -178,6 +181,7 @@ fn what_moves_neither_axis_changes_nothing() {
         ),
         ("G43 H1 G61 G0 Z1\nG1 X10 Y5 F600 A90 B1 C2 E.5 W3 D1", line),
         ("M3 X10 Y5 F600 G1", line),
+        ("M62 G1 X10 Y5 F600", line),
         // Checksums as the firmware's own documents have them.
         ("N3 T0*57\nN4 G92 E0*67\nN5 G28*22\nG1 X10 Y5 F600", line),
         ("/N7 g1x10y5f600 (a (b) ; c", line),
@@ -327,6 +331,14 @@ fn what_would_change_the_path_is_refused() {
         ("G81 X5 Z-1 R1 L3", "L3: a cycle that is repeated"),
         ("G91 G81 X5 Z-1 R1 K3", "K3: a cycle that is repeated"),
         ("G28 U0 W0", "U0: X or Y to some machines"),
+        (
+            "G0\nM62 P1 X5",
+            "M62: whether X and Y are its own or a motion's is not known",
+        ),
+        (
+            "G4 G1 X2 F60",
+            "G4: X is its time to some machines, a motion to others",
+        ),
         (
             "G0 X1 U5",
             "U5: X or Y to some machines, an axis of its own to others",
