@@ -78,5 +78,26 @@ fn turn(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, bytes, header, turn);
+/// Ten times as many frames, each shorter than a step, take ten times as long.
+fn short_frames(c: &mut Criterion) {
+    let mut group = c.benchmark_group("turn in frames of one tick");
+    for law in [Law::Reset, Law::CarrySigned] {
+        let motor = Motor::new(law, 600, Timing::new(1000, 1).unwrap()).unwrap();
+        for frames in [6553, 65_535] {
+            group.throughput(Throughput::Elements(frames.into()));
+            group.bench_function(format!("{law:?}, {frames} frames"), |b| {
+                let half_steps = i32::from(frames) / 13;
+                b.iter(|| {
+                    motor
+                        .turn(black_box(half_steps), frames, Easing::Smooth)
+                        .unwrap()
+                        .len()
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, bytes, header, turn, short_frames);
 criterion_main!(benches);

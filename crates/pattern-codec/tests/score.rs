@@ -364,7 +364,8 @@ fn what_the_reset_law_cannot_make_is_refused() {
     let score: Score = format!("{MOTORS}{moves}").parse().unwrap();
     assert!(score.compile::<8>(Law::CarrySigned).is_ok());
     let error = score.compile::<8>(Law::Reset).unwrap_err().to_string();
-    let wanted = "line 11, move 1: \"arm\": 30 half steps in 1 frames: the nearest that the law's speeds make is 28";
+    let wanted =
+        "line 11, move 1: \"arm\": 30 half steps in 1 frames: the nearest plan found makes 28";
     assert_eq!(error, wanted);
 }
 

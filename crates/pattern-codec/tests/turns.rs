@@ -1,6 +1,8 @@
 //! Planned turns: where the firmware's accumulators, counted tick by tick, bring a motor.
 #![cfg(test)]
 
+use std::collections::HashSet;
+
 use pattern_codec::dance::{Easing, Law, Motor, Timing, TurnError};
 use proptest::prelude::*;
 
@@ -131,6 +133,76 @@ proptest! {
     }
 }
 
+/// Every number of half steps that some speeds make in so many frames, tick by tick.
+fn makeable(threshold: u16, frame_ticks: u32, frames: u16) -> HashSet<i64> {
+    let mut reached = HashSet::from([(0, 0)]);
+    for _ in 0..frames {
+        let after = |&(position, accumulator): &(i64, i64)| {
+            (0..=127).map(move |speed| {
+                let mut firmware = Firmware {
+                    law: Law::Reset,
+                    threshold: threshold.into(),
+                    accumulator,
+                    position,
+                };
+                firmware.ticks(speed, frame_ticks);
+                (firmware.position, firmware.accumulator)
+            })
+        };
+        reached = reached.iter().flat_map(after).collect();
+    }
+    reached.into_iter().map(|(position, _)| position).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// A frame may be shorter than a step: then it is the accumulator that the speeds fill.
+    #[test]
+    fn what_short_frames_can_make_is_found(
+        threshold in 128_u16..700,
+        frame_ticks in 1_u32..=4,
+        frames in 1_u16..10,
+        negative: bool,
+    ) {
+        let timing = Timing::new(1000, frame_ticks).unwrap();
+        let motor = Motor::new(Law::Reset, threshold, timing).unwrap();
+        for half_steps in makeable(threshold, frame_ticks, frames) {
+            let way = i32::try_from(half_steps).unwrap() * if negative { -1 } else { 1 };
+            let turn = motor.turn(way, frames, Easing::Linear);
+            prop_assert!(turn.is_ok(), "{way} in {frames} frames: {turn:?}");
+            let mut firmware = Firmware { threshold: threshold.into(), ..Firmware::new(Law::Reset) };
+            turn.unwrap().for_each(|speed| firmware.ticks(speed, frame_ticks));
+            prop_assert!(firmware.position.abs_diff(way.into()) <= 1);
+        }
+    }
+}
+
+#[test]
+fn frames_shorter_than_a_step_follow_the_way() {
+    // At 127 a step of 600 takes 5 ticks.
+    for frame_ticks in [1, 2, 4] {
+        let timing = Timing::new(1000, frame_ticks).unwrap();
+        let mut motor = Motor::new(Law::Reset, 600, timing).unwrap();
+        let mut firmware = Firmware::new(Law::Reset);
+        let (mut made, mut worst) = (0.0, 0.0_f64);
+        for speed in motor.turn(-40, 1200, Easing::Linear).unwrap() {
+            motor.run(speed);
+            firmware.ticks(speed, frame_ticks);
+            assert_eq!(motor.position(), firmware.position);
+            made += 1.0;
+            let way = -40.0 * made / 1200.0;
+            worst = worst.max((f64::from(i32::try_from(motor.position()).unwrap()) - way).abs());
+        }
+        assert_eq!(motor.position(), -40);
+        // Whole steps are up to one behind.
+        assert!(
+            worst < 1.1,
+            "{worst} half steps off the way with {frame_ticks} ticks"
+        );
+    }
+}
+
 #[test]
 fn a_million_ticks_are_those_of_the_reference() {
     let cases = include_str!("data/accum.csv");
@@ -200,7 +272,7 @@ fn what_no_motor_makes_is_refused() {
     let error = turn(Law::Reset, 397, 10).unwrap_err().to_string();
     assert_eq!(
         error,
-        "397 half steps in 10 frames: the nearest that the law's speeds make is 400"
+        "397 half steps in 10 frames: the nearest plan found makes 400"
     );
     assert!(turn(Law::CarrySigned, 397, 10).is_ok());
 }

@@ -1,3 +1,5 @@
+//! A score as frames.
+
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -64,63 +66,82 @@ impl Score {
             landings: Vec::new(),
             end: [0; N],
         };
-        for (index, performer) in self.motors.iter().enumerate() {
-            let moves = self.moves.iter().filter(|one| one.motor == index);
-            let motor = self.perform(law, performer, moves, &mut dance)?;
-            if let Some(end) = dance.end.get_mut(index) {
-                *end = motor.position();
-            }
-        }
-        dance.landings.sort_by_key(|landing| landing.frame);
-        Ok(dance)
-    }
-
-    /// The moves of one motor.
-    fn perform<'a, const N: usize>(
-        &self,
-        law: Law,
-        performer: &Performer,
-        moves: impl Iterator<Item = &'a Move>,
-        dance: &mut Choreography<N>,
-    ) -> Result<Motor, ScoreError> {
         let motor = Motor::new(law, self.threshold, self.timing).map_err(|error| ScoreError {
             line: 1,
             part: ScorePart::Head,
             kind: error.into(),
         })?;
-        let mut motor = motor.with_max_speed(performer.max_speed);
-        // In half steps, before rounding.
-        let mut asked = 0.0;
-        for one in moves {
-            let start = usize::try_from(one.start).unwrap_or(usize::MAX);
-            let frames = dance.frames.iter_mut().skip(start);
-            let bytes = frames.filter_map(|frame| frame.get_mut(one.motor));
-            let at = |kind| ScoreError {
+        let motors = self.motors.iter();
+        let mut dancers: Vec<_> = motors
+            .map(|performer| Dancer::new(motor, performer))
+            .collect();
+        for one in &self.moves {
+            let Some(dancer) = dancers.get_mut(one.motor) else {
+                continue;
+            };
+            dancer.perform(one, &mut dance).map_err(|kind| ScoreError {
                 line: one.line,
                 part: ScorePart::Move(one.number),
                 kind,
-            };
-            match one.action {
-                Action::Speed(highest) => {
-                    let speeds = one.easing.speeds(highest, one.frames);
-                    play(&mut motor, speeds, bytes);
-                    asked = approximate(motor.position());
-                    continue;
-                }
-                Action::ToDeg(deg) => asked = deg / performer.half_step_deg,
-                Action::TurnDeg(deg) => asked += deg / performer.half_step_deg,
-            }
-            let turn = turn(&motor, performer, asked, one).map_err(at)?;
-            play(&mut motor, turn, bytes);
-            dance.landings.push(Landing {
-                number: one.number,
-                motor: one.motor,
-                frame: one.end(),
-                asked_half_steps: asked,
-                half_steps: motor.position(),
-            });
+            })?;
         }
-        Ok(motor)
+        for (end, dancer) in dance.end.iter_mut().zip(&dancers) {
+            *end = dancer.motor.position();
+        }
+        dance
+            .landings
+            .sort_by_key(|landing| (landing.frame, landing.motor));
+        Ok(dance)
+    }
+}
+
+/// A motor on its way through the score.
+struct Dancer<'s> {
+    performer: &'s Performer,
+    motor: Motor,
+    /// Where it is asked to be, in half steps before rounding.
+    asked: f64,
+}
+
+impl<'s> Dancer<'s> {
+    fn new(motor: Motor, performer: &'s Performer) -> Self {
+        Self {
+            performer,
+            motor: motor.with_max_speed(performer.max_speed),
+            asked: 0.0,
+        }
+    }
+
+    /// One move, the next of this motor.
+    fn perform<const N: usize>(
+        &mut self,
+        one: &Move,
+        dance: &mut Choreography<N>,
+    ) -> Result<(), ScoreErrorKind> {
+        let start = usize::try_from(one.start).unwrap_or(usize::MAX);
+        let frames = dance.frames.iter_mut().skip(start);
+        let bytes = frames.filter_map(|frame| frame.get_mut(one.motor));
+        let half_step_deg = self.performer.half_step_deg;
+        match one.action {
+            Action::Speed(highest) => {
+                let speeds = one.easing.speeds(highest, one.frames);
+                play(&mut self.motor, speeds, bytes);
+                self.asked = approximate(self.motor.position());
+                return Ok(());
+            }
+            Action::ToDeg(deg) => self.asked = deg / half_step_deg,
+            Action::TurnDeg(deg) => self.asked += deg / half_step_deg,
+        }
+        let turn = turn(&self.motor, self.performer, self.asked, one)?;
+        play(&mut self.motor, turn, bytes);
+        dance.landings.push(Landing {
+            number: one.number,
+            motor: one.motor,
+            frame: one.end(),
+            asked_half_steps: self.asked,
+            half_steps: self.motor.position(),
+        });
+        Ok(())
     }
 }
 
@@ -152,7 +173,7 @@ fn turn(
     let way = way as i32;
     let try_way = |way: i32| {
         let turn = motor.turn(way, one.frames, one.easing)?;
-        let nearest = motor.end(&turn);
+        let nearest = turn.end();
         if (approximate(motor.position().saturating_add(nearest)) - asked).abs() <= 1.0 {
             return Ok(turn);
         }

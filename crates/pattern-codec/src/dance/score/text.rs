@@ -1,4 +1,8 @@
+//! A score from its text.
+
+use alloc::collections::BTreeMap;
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 
 use serde::Deserialize;
@@ -57,27 +61,31 @@ struct MoveText {
 
 pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
     let score: ScoreText = toml::from_str(text).map_err(|error| text_error(text, &error))?;
+    let lines = Lines::of(text);
     let head = |line, kind| ScoreError {
         line,
         part: ScorePart::Head,
         kind,
     };
     let default = Timing::DEFAULT;
-    let (tick_line, tick_us) = setting(text, score.tick_us, default.tick_us());
-    let (frame_line, frame_ticks) = setting(text, score.frame_ticks, default.frame_ticks());
+    let (tick_line, tick_us) = setting(&lines, score.tick_us, default.tick_us());
+    let (frame_line, frame_ticks) = setting(&lines, score.frame_ticks, default.frame_ticks());
     let zero_line = if tick_us == 0 { tick_line } else { frame_line };
     let timing = Timing::new(tick_us, frame_ticks);
     let timing = timing.map_err(|error| head(zero_line, error.into()))?;
-    let (threshold_line, threshold) = setting(text, score.threshold, THRESHOLD);
+    let (threshold_line, threshold) = setting(&lines, score.threshold, THRESHOLD);
     let motor = Motor::new(Law::Reset, threshold, timing);
     motor.map_err(|error| head(threshold_line, error.into()))?;
 
     let mut motors: Vec<Performer> = Vec::new();
+    let mut names = BTreeMap::new();
     for (motor, number) in score.motor.into_iter().zip(1..) {
-        let line = line(text, motor.span().start);
+        let line = lines.line(motor.span().start);
         let part = ScorePart::Motor(number);
-        let motor = motor.into_inner().check(&motors);
-        motors.push(motor.map_err(|kind| ScoreError { line, part, kind })?);
+        let motor = motor.into_inner().check(&names);
+        let motor = motor.map_err(|kind| ScoreError { line, part, kind })?;
+        names.insert(motor.name.clone(), motors.len());
+        motors.push(motor);
     }
     if motors.is_empty() {
         return Err(head(1, ScoreErrorKind::NoMotor));
@@ -85,12 +93,16 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
 
     let clock = Clock { timing };
     let mut moves = Vec::new();
+    // Frames in which each motor moves.
+    let mut busy = vec![0_u64; motors.len()];
     for (written, number) in score.moves.into_iter().zip(1..) {
-        let line = line(text, written.span().start);
+        let line = lines.line(written.span().start);
         let part = ScorePart::Move(number);
         let at = |kind| ScoreError { line, part, kind };
         let written = written.into_inner();
-        let (first, every, times) = written.check(number, line, clock, &motors).map_err(at)?;
+        let (first, every, times) = written
+            .check(number, line, clock, &motors, &names)
+            .map_err(at)?;
         let nth = |time: u32| {
             let start = u64::from(every).saturating_mul(time.into());
             let start = start.saturating_add(first.start.into());
@@ -106,7 +118,14 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
             if again.end() > MOST_FRAMES {
                 return Err(at(clock.too_long(&again)));
             }
+            if let Some(busy) = busy.get_mut(again.motor) {
+                *busy = busy.saturating_add(again.frames.into());
+            }
             moves.push(again);
+        }
+        if busy.get(first.motor) > Some(&MOST_FRAMES.into()) {
+            // They overlap, which is said below; more of them need not be counted out.
+            break;
         }
     }
     moves.sort_by_key(|one| one.start);
@@ -115,7 +134,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
     let end = moves.iter().map(Move::end).max().unwrap_or(0);
     let frames = match score.length_s {
         Some(length_s) => {
-            let line = line(text, length_s.span().start);
+            let line = lines.line(length_s.span().start);
             let frames = clock.length(length_s.into_inner(), end);
             frames.map_err(|kind| head(line, kind))?
         }
@@ -135,20 +154,21 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
 }
 
 /// A setting and its line; the default on line 1 where it is not given.
-fn setting<T>(text: &str, given: Option<Spanned<T>>, default: T) -> (u32, T) {
+fn setting<T>(lines: &Lines, given: Option<Spanned<T>>, default: T) -> (u32, T) {
     given.map_or((1, default), |given| {
-        (line(text, given.span().start), given.into_inner())
+        (lines.line(given.span().start), given.into_inner())
     })
 }
 
 impl MotorText {
-    fn check(self, others: &[Performer]) -> Result<Performer, ScoreErrorKind> {
+    fn check(self, others: &BTreeMap<String, usize>) -> Result<Performer, ScoreErrorKind> {
         let Self {
             name,
             half_step_deg,
             max_speed,
         } = self;
-        if let Some((_, first)) = others.iter().zip(1..).find(|(other, _)| other.name == name) {
+        if let Some(&other) = others.get(&name) {
+            let first = u32::try_from(other).unwrap_or(u32::MAX).saturating_add(1);
             return Err(ScoreErrorKind::SameName { name, first });
         }
         if !half_step_deg.is_finite() || half_step_deg <= 0.0 {
@@ -181,12 +201,11 @@ impl MoveText {
         line: u32,
         clock: Clock,
         motors: &[Performer],
+        names: &BTreeMap<String, usize>,
     ) -> Result<(Move, u32, u32), ScoreErrorKind> {
-        let motor = motors
-            .iter()
-            .zip(0..)
-            .find(|(motor, _)| motor.name == self.motor);
-        let Some((performer, motor)) = motor else {
+        let motor = names.get(&self.motor).copied();
+        let performer = motor.and_then(|motor| Some((motor, motors.get(motor)?)));
+        let Some((motor, performer)) = performer else {
             return Err(ScoreErrorKind::NoSuchMotor { name: self.motor });
         };
         let frames = clock.frames("for_s", self.for_s)?;
@@ -253,16 +272,13 @@ impl MoveText {
 
 /// Refuses moves of one motor at once, in the order of their starts.
 fn check_overlaps(moves: &[Move], motors: &[Performer], clock: Clock) -> Result<(), ScoreError> {
-    for motor in 0..motors.len() {
-        let mut of_motor = moves.iter().filter(|one| one.motor == motor);
-        let Some(mut before) = of_motor.next() else {
-            continue;
-        };
-        for after in of_motor {
-            if after.start < before.end() {
-                return Err(overlap(before, after, motors, clock));
-            }
-            before = after;
+    let mut last: Vec<Option<&Move>> = vec![None; motors.len()];
+    for after in moves {
+        let before = last
+            .get_mut(after.motor)
+            .and_then(|last| last.replace(after));
+        if let Some(before) = before.filter(|before| after.start < before.end()) {
+            return Err(overlap(before, after, motors, clock));
         }
     }
     Ok(())
@@ -346,11 +362,24 @@ impl Clock {
     }
 }
 
-/// Line of an offset, from 1.
-fn line(text: &str, offset: usize) -> u32 {
-    let before = text.get(..offset).unwrap_or(text);
-    let ends = before.matches('\n').count();
-    u32::try_from(ends).unwrap_or(u32::MAX).saturating_add(1)
+/// Where the lines of a text end: looked for once, not again for each part.
+struct Lines {
+    ends: Vec<usize>,
+}
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        let ends = text.match_indices('\n').map(|(end, _)| end);
+        Self {
+            ends: ends.collect(),
+        }
+    }
+
+    /// Line of an offset, from 1.
+    fn line(&self, offset: usize) -> u32 {
+        let before = self.ends.partition_point(|end| *end < offset);
+        u32::try_from(before).unwrap_or(u32::MAX).saturating_add(1)
+    }
 }
 
 /// The TOML reader's message, with line and part of the score.
@@ -360,7 +389,7 @@ fn text_error(text: &str, error: &toml::de::Error) -> ScoreError {
         message: error.message().replace('\n', ", "),
     };
     ScoreError {
-        line: line(text, offset),
+        line: Lines::of(text).line(offset),
         part: part(text, offset),
         kind,
     }
