@@ -73,6 +73,7 @@ impl<'a> Block<'a> {
                 ensure!(!names(letters), "{name}: {how}");
                 (passed.own, Some(passed.note))
             }
+            Code::Refused(reason) => bail!("{name}: {reason}"),
             Code::Dwell => (dwell(&name, words)?, Some(codes::DWELLS)),
             Code::SecondReference => {
                 let is_upright = names("Z") && !names("XY");

@@ -150,7 +150,7 @@ const fn general(number: (u32, u32)) -> Code {
         (5, 0 | 1) => passed_unless(EXACT, "PQIJR", "XY", "splines are not done"),
         (10 | 11, 0) => passed_unless(EXTRUDER, "PRSZ", "XYL", ZERO),
         (29, 0) => passed_unless(FUNCTIONS, ALL_LETTERS, "XY", "it would move X and Y"),
-        (38, 2..=5) => passed_unless(
+        (31, 0) | (38, 2..=5) => passed_unless(
             FUNCTIONS,
             "ABCZ",
             "XY",

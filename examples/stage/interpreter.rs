@@ -145,8 +145,12 @@ impl Interpreter {
             Code::PassedOver(passed) if name.starts_with('G') && passed.own.contains('Z') => {
                 self.z_mm = None;
             }
-            Code::Dwell | Code::FeedPerMinute | Code::End | Code::PassedOver(_) => {}
-            Code::Refused(reason) => bail!("{name}: {reason}"),
+            // The refused ones have not come so far.
+            Code::Dwell
+            | Code::FeedPerMinute
+            | Code::End
+            | Code::PassedOver(_)
+            | Code::Refused(_) => {}
         }
         Ok(())
     }

@@ -171,7 +171,7 @@ fn what_moves_neither_axis_changes_nothing() {
         ("G20\nG0 X0.7874\nG92 X0.78741\nG21", "G0 X20"),
         ("G92 X0 Y0 Z3\nG52 X0 Y0\nG1 X10 Y5 F600", line),
         (
-            "G1 X10 Y5 F600\nG92 X10 Y5 E0\nG28 Z0\nG30 G91 Z0\nG38.2 Z-5",
+            "G1 X10 Y5 F600\nG92 X10 Y5 E0\nG28 Z0\nG30 G91 Z0\nG38.2 Z-5\nG31 Z-2 F50",
             line,
         ),
         // Modes that are never on, speeds that are exact, tools, all on one line.
@@ -282,7 +282,10 @@ fn what_would_change_the_path_is_refused() {
             "G0 X5\nG1 X9 F0.5\nG20 X0 F0",
             "line 3: F0: 0 mm/min, not within",
         ),
-        ("G41 D1", "G41: the tool's radius would move the path aside"),
+        (
+            "G0 Y G41 D",
+            "G41: the tool's radius would move the path aside",
+        ),
         (
             "G42.1 D3",
             "G42.1: the tool's radius would move the path aside",
