@@ -67,8 +67,8 @@ pub(crate) fn write(
     let lowest = trains.way.iter().fold(middle, |z, point| z.min(point.z));
     let workspace = machine.delta.workspace();
     let centre = f64::midpoint(middle, lowest);
-    let flat: Vec<_> = workspace.horizontal_slice(centre, OUTLINE).collect();
-    let upright: Vec<_> = workspace.vertical_slice(0.0, centre, OUTLINE).collect();
+    let flat: Vec<_> = workspace.horizontal_slice(centre, OUTLINE)?.collect();
+    let upright: Vec<_> = workspace.vertical_slice(0.0, centre, OUTLINE)?.collect();
 
     let mechanism = mechanism(machine, trains)?;
     let everything = || {
@@ -136,18 +136,17 @@ pub(crate) fn write(
 
 /// Base, arms and platform where the steps ended.
 fn mechanism(machine: &Machine, outcome: &Outcome) -> Result<Vec<Vec<Point3<f64>>>> {
-    let angles = machine.angles(outcome.end);
-    let platform = machine.point(outcome.end)?;
+    let pose = machine.delta.pose_of(machine.angles(outcome.end))?;
+    let platform = pose.point();
     let (mut hips, mut wrists, mut arms) = (Vec::new(), Vec::new(), Vec::new());
-    let knees = machine.delta.knees(angles);
-    for (geometry, knee) in machine.delta.arms().iter().zip(knees) {
+    for (geometry, knee) in machine.delta.arms().iter().zip(pose.knees()) {
         let (sin, cos) = geometry.azimuth.sin_cos();
         let outward = Vector3::new(cos, sin, 0.0);
         let hip = Point3::from(outward * geometry.base);
         let wrist = platform + outward * geometry.platform;
         hips.push(hip);
         wrists.push(wrist);
-        arms.push(vec![hip, knee, wrist]);
+        arms.push(vec![hip, *knee, wrist]);
     }
     for ring in [&mut hips, &mut wrists] {
         let first = ring.first().copied();

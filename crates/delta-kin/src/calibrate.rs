@@ -4,10 +4,12 @@ mod least_squares;
 mod parameter;
 mod rank;
 
-use nalgebra::{Point3, RealField, Vector3};
+use nalgebra::{Point3, RealField, SVector, Vector3};
 
-use crate::limits::max_value;
-use crate::{Delta, ForwardError};
+use crate::inverse::Across;
+use crate::rounded::Rounded;
+use crate::scale::{farthest, is_within};
+use crate::{AssemblyMode, Delta, ForwardError, ZAxis};
 use least_squares::LeastSquares;
 pub use parameter::{Parameter, Quantity};
 use rank::Rank;
@@ -34,7 +36,7 @@ pub struct Measured<T: RealField = f64> {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum CalibrationError<T = f64> {
+pub enum CalibrationError<T: RealField + Copy = f64> {
     /// There are fewer measured coordinates than parameters.
     #[error("{points} measured points are too few for {parameters} parameters: {least} at least")]
     TooFew {
@@ -45,11 +47,23 @@ pub enum CalibrationError<T = f64> {
         /// Least number of points.
         least: usize,
     },
-    /// A measured coordinate is infinite, not a number, or too far away for squares to be summed.
+    /// A measured coordinate is infinite, not a number, or beyond ±4 h, h the fourth root of the
+    /// largest number divided by 32 (f64: ±1.4e76, f32: ±5.4e8).
     #[error("measured point {index} is not finite, or too far away")]
     NotFinite {
         /// Place in the list, counted from 0.
         index: usize,
+    },
+    /// With its angles the platform is nearer to a measured point in the other assembly mode.
+    #[error("measured point {index}: {}", Across { assembly_mode: *.assembly_mode, z: *.z })]
+    OtherAssembly {
+        /// Place in the list, counted from 0.
+        index: usize,
+        /// The assembly mode in which it is nearer.
+        assembly_mode: AssemblyMode,
+        /// The direction of z that was most likely meant, where the point lies on the other side
+        /// of the base plane.
+        z: Option<ZAxis>,
     },
     /// The machine that is to be calibrated cannot have the measured angles.
     #[error("measured point {index}: {reason}")]
@@ -61,7 +75,7 @@ pub enum CalibrationError<T = f64> {
     },
     /// The residuals still shrink after the most iterations that are made, or the rods of a
     /// measured pose lie in a plane, where no change of a parameter tells how the platform moves.
-    #[error("not converged after {iterations} iterations, rms {rms}")]
+    #[error("not converged after {iterations} iterations, rms {}", Rounded(*.rms))]
     NotConverged {
         /// Iterations made.
         iterations: u32,
@@ -114,16 +128,8 @@ impl<T: RealField + Copy> Delta<T> {
                 least,
             });
         }
-        let mut sum = T::zero();
-        for (index, m) in measured.iter().enumerate() {
-            let found = self
-                .forward(m.angles)
-                .map_err(|reason| CalibrationError::Impossible { index, reason })?;
-            sum += (found - m.point).norm_squared();
-            // Deviations multiply the sum further.
-            if !sum.is_finite() || sum > max_value::<T>().sqrt() {
-                return Err(CalibrationError::NotFinite { index });
-            }
+        for (index, measured) in measured.iter().enumerate() {
+            self.check_measured(index, measured)?;
         }
         let problem = Problem {
             start: *self,
@@ -131,22 +137,50 @@ impl<T: RealField + Copy> Delta<T> {
             measured,
         };
         let fit = least_squares::minimise(&problem, MOST_ITERATIONS);
-        let delta = fit.delta;
-        let (rms, largest) = problem.residuals(&delta);
+        let (rms, largest) = problem.residuals(&fit.delta);
         if !fit.is_converged {
             return Err(CalibrationError::NotConverged {
                 iterations: fit.iterations,
                 rms,
             });
         }
+        let rows = measured.len().saturating_mul(3);
         Ok(Calibration {
-            delta,
+            delta: fit.delta,
             parameters,
-            changes: fit.changes,
+            changes: problem.with_units(&fit.changes),
             rms,
             largest,
             iterations: fit.iterations,
-            rank: Rank::new(&fit.system, fit.sum, measured.len().saturating_mul(3)),
+            rank: Rank::new(&fit.system, fit.sum, rows, &problem.units()),
+        })
+    }
+
+    /// Whether the machine can have the angles, and the point is where its assembly mode is.
+    fn check_measured(
+        &self,
+        index: usize,
+        measured: &Measured<T>,
+    ) -> Result<(), CalibrationError<T>> {
+        let point = measured.point;
+        if !point.iter().all(|value| is_within(*value, farthest())) {
+            return Err(CalibrationError::NotFinite { index });
+        }
+        let distance = |delta: &Self| {
+            let found = delta
+                .forward(measured.angles)
+                .map_err(|reason| CalibrationError::Impossible { index, reason })?;
+            Ok((found - point).norm())
+        };
+        let assembly_mode = self.assembly_mode().other();
+        if distance(self)? <= distance(&self.with_assembly_mode(assembly_mode))? {
+            return Ok(());
+        }
+        let z = self.other_z(&self.flip(point.coords));
+        Err(CalibrationError::OtherAssembly {
+            index,
+            assembly_mode,
+            z,
         })
     }
 }
@@ -224,7 +258,8 @@ impl<const N: usize, T: RealField + Copy> Calibration<N, T> {
     }
 }
 
-/// The residuals of measured points as a function of the parameters' changes.
+/// The residuals of measured points as a function of the parameters' changes. Lengths are in spans
+/// of the machine, so that they compare with radians.
 struct Problem<'a, const N: usize, T: RealField> {
     start: Delta<T>,
     parameters: [Parameter; N],
@@ -232,51 +267,74 @@ struct Problem<'a, const N: usize, T: RealField> {
 }
 
 impl<const N: usize, T: RealField + Copy> Problem<'_, N, T> {
+    /// What a change of 1 is, in the unit of length or in radians.
+    fn units(&self) -> [T; N] {
+        self.parameters
+            .map(|parameter| parameter.unit(self.start.span()))
+    }
+
+    fn with_units(&self, changes: &[T; N]) -> [T; N] {
+        let units = SVector::from(self.units());
+        SVector::from(*changes).component_mul(&units).into()
+    }
+
     fn machine(&self, changes: &[T; N]) -> Option<Delta<T>> {
         let mut arms = *self.start.arms();
-        for (parameter, change) in self.parameters.iter().zip(changes) {
-            parameter.add(&mut arms, *change);
+        for (parameter, change) in self.parameters.iter().zip(self.with_units(changes)) {
+            parameter.add(&mut arms, change);
         }
         self.start.with_arms(arms).ok()
     }
 
-    /// Sum of the squares; `None` where the machine cannot have the angles.
+    /// How far the platform is from a measured point; `None` where the machine cannot have the
+    /// angles.
+    fn missing(&self, delta: &Delta<T>, measured: &Measured<T>) -> Option<Vector3<T>> {
+        let found = delta.forward(measured.angles).ok()?;
+        Some((measured.point - found) / self.start.span())
+    }
+
+    /// Sum of the squares.
     fn sum(&self, delta: &Delta<T>) -> Option<T> {
         self.measured.iter().try_fold(T::zero(), |sum, measured| {
-            let found = delta.forward(measured.angles).ok()?;
-            Some(sum + (found - measured.point).norm_squared())
+            Some(sum + self.missing(delta, measured)?.norm_squared())
         })
     }
 
-    /// The triangularised Jacobian with the residuals.
-    fn system(&self, delta: &Delta<T>) -> Option<LeastSquares<N, T>> {
-        let mut system = LeastSquares::new();
+    /// The triangularised Jacobian with the residuals, and the sum of their squares.
+    fn system(&self, delta: &Delta<T>) -> Option<(LeastSquares<N, T>, T)> {
+        let span = self.start.span();
+        let (mut system, mut sum) = (LeastSquares::new(), T::zero());
         for measured in self.measured {
             let pose = delta.pose_of(measured.angles).ok()?;
             let inverse = pose.rod_inverse().ok()?;
-            let missing = measured.point - pose.point();
-            let columns = self
-                .parameters
-                .map(|parameter| parameter.influence(delta, &pose, &inverse));
+            let missing = (measured.point - pose.point()) / span;
+            sum += missing.norm_squared();
+            let columns = self.parameters.map(|parameter| {
+                parameter.influence(delta, &pose, &inverse) * (parameter.unit(span) / span)
+            });
             for (axis, missing) in missing.iter().enumerate() {
                 let row = columns.map(|column| column.get(axis).copied().unwrap_or(T::zero()));
                 system.add(row, *missing);
             }
         }
-        Some(system)
+        Some((system, sum))
     }
 
-    /// Root mean square and greatest distance.
+    /// Root mean square and greatest distance, in the unit of length.
     fn residuals(&self, delta: &Delta<T>) -> (T, T) {
         let (mut sum, mut largest, mut count) = (T::zero(), T::zero(), T::zero());
-        for measured in self.measured {
-            if let Ok(found) = delta.forward(measured.angles) {
-                let off = (found - measured.point).norm();
-                sum += off * off;
-                largest = largest.max(off);
-                count += T::one();
-            }
+        for missing in self
+            .measured
+            .iter()
+            .filter_map(|measured| self.missing(delta, measured))
+        {
+            let off = missing.norm();
+            sum += off * off;
+            largest = largest.max(off);
+            count += T::one();
         }
-        ((sum / count.max(T::one())).sqrt(), largest)
+        let span = self.start.span();
+        let rms = (sum / count.max(T::one())).sqrt();
+        (rms * span, largest * span)
     }
 }

@@ -3,15 +3,18 @@
 use nalgebra::{RealField, Vector3};
 
 use crate::arm::zip;
+use crate::geometry::{checked_span, order};
 use crate::leg::Leg;
-use crate::limits::max_value;
-use crate::{Arm, ArmGeometry, JointRange, Workspace};
+use crate::{Arm, ArmGeometry, AssemblyMode, GeometryError, JointRange, Knee, Workspace};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
 /// The frame is that of [Delta thesis] unless set otherwise: z up from the plane of the hips,
-/// the platform hanging at z < 0; angles zero straight down, outward (upward) positive. Each
-/// `with_` method returns the changed machine:
+/// the platform hanging at z < 0; angles zero straight down, outward (upward) positive. The
+/// machine works with its knees out and its platform below them; the other solutions are another
+/// machine's, asked for by name with [`with_working_mode`](Self::with_working_mode) and
+/// [`with_assembly_mode`](Self::with_assembly_mode). Each `with_` method returns the changed
+/// machine:
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_2;
@@ -31,10 +34,14 @@ pub struct Delta<T: RealField = f64> {
     positive: Positive,
     ranges: [Option<JointRange<T>>; 3],
     max_lean: Option<T>,
+    working_mode: [Knee; 3],
+    assembly_mode: AssemblyMode,
     /// What follows from the above, ready for use.
     legs: [Leg<T>; 3],
     span: T,
     tolerance: T,
+    /// 1 where the azimuths go round counter-clockwise, else -1.
+    order: T,
 }
 
 /// Which way the z axis points. X, Y and the azimuths stay as they are: with z down the frame
@@ -66,51 +73,6 @@ pub enum Positive {
     Inward,
 }
 
-/// Why a geometry is refused.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum GeometryError<T = f64> {
-    /// A length is not a number between the stated ends.
-    #[error("{arm}: {name} {length} is not within {min:e}..={max:e}")]
-    Length {
-        /// The arm.
-        arm: Arm,
-        /// `base radius`, `platform radius`, `upper arm` or `lower arm`.
-        name: &'static str,
-        /// The length given.
-        length: T,
-        /// Least length allowed.
-        min: T,
-        /// Greatest length allowed.
-        max: T,
-    },
-    /// An angle is infinite or not a number.
-    #[error("{arm}: {name} {angle} is not finite")]
-    NotFinite {
-        /// The arm.
-        arm: Arm,
-        /// `azimuth` or `zero`.
-        name: &'static str,
-        /// The angle given.
-        angle: T,
-    },
-    /// A joint range is empty, not finite or wider than a turn.
-    #[error("joint range {min}..={max} rad is empty, not finite or wider than a turn")]
-    Range {
-        /// Lower end given, in radians.
-        min: T,
-        /// Upper end given, in radians.
-        max: T,
-    },
-    /// A ball joint's limit is not an angle that means something.
-    #[error("ball joints may lean by {max_lean} rad, which is not above 0 and below π/2")]
-    Lean {
-        /// The limit given, in radians.
-        max_lean: T,
-    },
-}
-
 /// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of the sum of
 /// an arm's lengths: a sine, two products and two sums for each of three spheres.
 const ROUNDING_STEPS: f64 = 16.0;
@@ -127,54 +89,29 @@ impl<T: RealField + Copy> Delta<T> {
 
     /// A machine of three arms as they are, each with its own lengths, azimuth and zero.
     ///
-    /// With h the fourth root of the largest number of `T`, divided by 32, upper and lower arms
-    /// lie within 1/√h and h (f64: 2e-38..=3.6e75, f32: 9e-5..=1.3e8), the radii within
-    /// 0 and h: outside, products of four lengths would overflow or lose digits.
+    /// With h the fourth root of the largest number of `T`, divided by 32, the radii are within
+    /// 0..=h, upper and lower arms within 1/√h..=h (f64: 2e-38..=3.6e75, f32: 9e-5..=1.3e8) and
+    /// no shorter than ε^¼ of the [`span`](Self::span) (f64: 1.2e-4, f32: 0.019); angles are
+    /// within ±1/√ε (f64: 6.7e7 rad, f32: 2900 rad).
     ///
     /// # Errors
-    /// [`GeometryError::Length`], [`GeometryError::NotFinite`].
+    /// [`GeometryError::Length`], [`GeometryError::Angle`], [`GeometryError::SameAzimuth`].
     pub fn from_arms(arms: [ArmGeometry<T>; 3]) -> Result<Self, GeometryError<T>> {
-        let max = max_value::<T>().sqrt().sqrt() / nalgebra::convert(32.0);
-        let least = max.sqrt().recip();
-        for (arm, geometry) in zip(Arm::ALL, arms) {
-            for (name, length, min) in [
-                ("base radius", geometry.base, T::zero()),
-                ("platform radius", geometry.platform, T::zero()),
-                ("upper arm", geometry.upper, least),
-                ("lower arm", geometry.lower, least),
-            ] {
-                // Written so that NaN is refused too.
-                if !(length >= min && length <= max) {
-                    return Err(GeometryError::Length {
-                        arm,
-                        name,
-                        length,
-                        min,
-                        max,
-                    });
-                }
-            }
-            for (name, angle) in [("azimuth", geometry.azimuth), ("zero", geometry.zero)] {
-                if !angle.is_finite() {
-                    return Err(GeometryError::NotFinite { arm, name, angle });
-                }
-            }
-        }
-        let span = arms
-            .map(|arm| arm.base + arm.platform + arm.upper + arm.lower)
-            .into_iter()
-            .fold(T::zero(), T::max);
+        let span = checked_span(&arms)?;
         let delta = Self {
             arms,
             z: ZAxis::default(),
             positive: Positive::default(),
             ranges: [None; 3],
             max_lean: None,
+            working_mode: [Knee::Out; 3],
+            assembly_mode: AssemblyMode::Lower,
             legs: arms.map(|arm| Leg::new(&arm, None, None, Positive::Outward)),
             span,
-            tolerance: span * T::default_epsilon() * nalgebra::convert(ROUNDING_STEPS),
+            tolerance: T::zero(),
+            order: order(&arms)?,
         };
-        Ok(delta)
+        Ok(delta.prepared())
     }
 
     /// The machine with other arms, in the same frame and with the same limits.
@@ -187,6 +124,8 @@ impl<T: RealField + Copy> Delta<T> {
             positive: self.positive,
             ranges: self.ranges,
             max_lean: self.max_lean,
+            working_mode: self.working_mode,
+            assembly_mode: self.assembly_mode,
             ..Self::from_arms(arms)?
         };
         Ok(delta.prepared())
@@ -196,7 +135,7 @@ impl<T: RealField + Copy> Delta<T> {
     /// positive: π/2 for arms that are homed horizontal.
     ///
     /// # Errors
-    /// [`GeometryError::NotFinite`].
+    /// [`GeometryError::Angle`].
     pub fn with_zero(self, theta: T) -> Result<Self, GeometryError<T>> {
         self.with_arms(self.arms.map(|arm| ArmGeometry { zero: theta, ..arm }))
     }
@@ -244,9 +183,28 @@ impl<T: RealField + Copy> Delta<T> {
         Ok(self.prepared())
     }
 
+    /// The machine with each knee on the side named: the working mode in which it is built, knees
+    /// out unless set. It is left only through a serial singularity, an arm stretched or folded.
+    #[must_use]
+    pub const fn with_working_mode(mut self, working_mode: [Knee; 3]) -> Self {
+        self.working_mode = working_mode;
+        self
+    }
+
+    /// The machine in the assembly mode named, [`AssemblyMode::Lower`] unless set. It is left only
+    /// through a parallel singularity, the three rods in a plane.
+    #[must_use]
+    pub const fn with_assembly_mode(mut self, assembly_mode: AssemblyMode) -> Self {
+        self.assembly_mode = assembly_mode;
+        self
+    }
+
     fn prepared(mut self) -> Self {
         self.legs = zip(self.arms, self.ranges)
             .map(|(arm, range)| Leg::new(&arm, range, self.max_lean, self.positive));
+        let [first, second, third] = self.legs.each_ref().map(Leg::angle_rounding);
+        let steps = self.span * nalgebra::convert(ROUNDING_STEPS);
+        self.tolerance = T::default_epsilon() * (steps + first.max(second).max(third));
         self
     }
 
@@ -280,6 +238,18 @@ impl<T: RealField + Copy> Delta<T> {
         self.max_lean
     }
 
+    /// On which side of the line from hip to wrist each knee is.
+    #[must_use]
+    pub const fn working_mode(&self) -> [Knee; 3] {
+        self.working_mode
+    }
+
+    /// On which side of the knees' plane the platform is.
+    #[must_use]
+    pub const fn assembly_mode(&self) -> AssemblyMode {
+        self.assembly_mode
+    }
+
     /// The sum of the lengths of an arm, of the longest: no point farther from the origin is
     /// reached. Errors are stated in units of it.
     #[must_use]
@@ -288,8 +258,9 @@ impl<T: RealField + Copy> Delta<T> {
     }
 
     /// How far past an edge of the workspace a point may lie by rounding alone, in the unit of
-    /// length: 16 machine epsilons of the [`span`](Self::span). Such a point is taken as being
-    /// on the edge.
+    /// length: 16 machine epsilons of the [`span`](Self::span), and where angles read far from
+    /// zero their own rounding, ε (|zero| + the farther end of the range) times the upper arm.
+    /// Such a point is taken as being on the edge.
     #[must_use]
     pub const fn tolerance(&self) -> T {
         self.tolerance
@@ -299,6 +270,16 @@ impl<T: RealField + Copy> Delta<T> {
     #[must_use]
     pub const fn workspace(&self) -> Workspace<T> {
         Workspace::new(*self)
+    }
+
+    /// Sign of (P - c1) · (c2 - c1) × (c3 - c1) for a platform P in the machine's assembly mode, c
+    /// the centres of the spheres.
+    #[inline]
+    pub(crate) fn side(&self) -> T {
+        match self.assembly_mode {
+            AssemblyMode::Lower => -self.order,
+            AssemblyMode::Upper => self.order,
+        }
     }
 
     pub(crate) const fn legs(&self) -> &[Leg<T>; 3] {
@@ -313,8 +294,8 @@ impl<T: RealField + Copy> Delta<T> {
 
     /// Centres of the three spheres on which the platform's centre lies.
     #[inline]
-    pub(crate) fn centres(&self, angles: Vector3<T>) -> [Vector3<T>; 3] {
-        zip(self.legs.each_ref(), self.thetas(angles)).map(|(leg, theta)| leg.centre(theta))
+    pub(crate) fn centres_at(&self, thetas: [T; 3]) -> [Vector3<T>; 3] {
+        zip(self.legs.each_ref(), thetas).map(|(leg, theta)| leg.centre(theta))
     }
 
     /// A point or vector in the thesis' frame, or from it: the same either way.

@@ -5,11 +5,14 @@ mod bound;
 mod path;
 mod walk;
 
+use core::fmt;
 use core::iter::FusedIterator;
 
 use nalgebra::{Point3, RealField, Vector3};
 
-use crate::{Delta, InverseError};
+use crate::rounded::Rounded;
+use crate::scale::fastest;
+use crate::{Arm, Delta, InverseError};
 pub use path::{Path, PathError};
 use walk::Walk;
 
@@ -42,7 +45,8 @@ impl<T: RealField + Copy> Pace<T> {
     /// A feed of the platform in length per second, and the greatest rate of each arm in rad/s.
     ///
     /// # Errors
-    /// [`FollowError::Pace`] unless all are above zero and finite.
+    /// [`FollowError::Pace`] unless all are within 1/h²..=h², h the fourth root of the largest
+    /// number divided by 32 (f64: 8e-152..=1e151, f32: 6e-17..=1.8e16).
     pub fn new(feed: T, max_rates: [T; 3]) -> Result<Self, FollowError<T>> {
         let [first, second, third] = max_rates;
         for (name, value) in [
@@ -51,8 +55,16 @@ impl<T: RealField + Copy> Pace<T> {
             ("rate of arm 2", second),
             ("rate of arm 3", third),
         ] {
-            if !(value > T::zero() && value.is_finite()) {
-                return Err(FollowError::Pace { name, value });
+            let max = fastest::<T>();
+            let min = max.recip();
+            // Written so that NaN is refused too.
+            if !(value >= min && value <= max) {
+                return Err(FollowError::Pace {
+                    name,
+                    value,
+                    min,
+                    max,
+                });
             }
         }
         Ok(Self { feed, max_rates })
@@ -71,25 +83,29 @@ impl<T: RealField + Copy> Pace<T> {
 /// Why a path cannot be followed; nothing of it has been handed out.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum FollowError<T: RealField = f64> {
-    /// The tolerance is not a length above the machine's rounding, [`Delta::tolerance`].
-    #[error("chord tolerance {tolerance} is not above the rounding {rounding}")]
+pub enum FollowError<T: RealField + Copy = f64> {
+    /// The tolerance is not a length well above the machine's rounding.
+    #[error("chord tolerance {} is not above the rounding {}", Rounded(*.tolerance), Rounded(*.rounding))]
     Tolerance {
         /// The tolerance given.
         tolerance: T,
-        /// The least tolerance that is allowed.
+        /// What it has to be above: 64 times [`Delta::tolerance`].
         rounding: T,
     },
-    /// A feed or rate is not above zero.
-    #[error("{name} {value} is not above zero and finite")]
+    /// A feed or rate is not a number between the stated ends.
+    #[error("{name} {} is not within {}..={}", Rounded(*.value), Rounded(*.min), Rounded(*.max))]
     Pace {
         /// `feed` or the rate of an arm.
         name: &'static str,
         /// The value given.
         value: T,
+        /// The least allowed.
+        min: T,
+        /// The greatest allowed.
+        max: T,
     },
     /// The platform cannot be at a place of the path.
-    #[error("at {fraction} of the path, ({}, {}, {}): {reason}", point.x, point.y, point.z)]
+    #[error("{}: {reason}", At(*.fraction, *.point))]
     Unreachable {
         /// Share of the path before it.
         fraction: T,
@@ -98,28 +114,54 @@ pub enum FollowError<T: RealField = f64> {
         /// Why.
         reason: InverseError<T>,
     },
-    /// No step is short enough: the path leads through a singularity, or an arm would have to
-    /// jump by a whole turn.
-    #[error("at {fraction} of the path, ({}, {}, {}): singular", point.x, point.y, point.z)]
+    /// No step is short enough: the path leads through a singularity.
+    #[error("{}: singular", At(*.fraction, *.point))]
     Singular {
         /// Share of the path before it.
         fraction: T,
         /// The place.
         point: Point3<T>,
     },
+    /// An arm would have to jump by a whole turn: at π from straight down, or from one end of a
+    /// range of a whole turn to the other. A [`JointRange`](crate::JointRange) that holds the
+    /// path avoids it.
+    #[error("{}: {arm} would have to jump by a whole turn", At(*.fraction, *.point))]
+    Turn {
+        /// Share of the path before it.
+        fraction: T,
+        /// The place.
+        point: Point3<T>,
+        /// The arm.
+        arm: Arm,
+    },
 }
 
+/// A place of a path.
+struct At<T: RealField>(T, Point3<T>);
+
+impl<T: RealField + Copy> fmt::Display for At<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.1.coords.into();
+        let [share, x, y, z] = [self.0, x, y, z].map(Rounded);
+        write!(f, "at {share} of the path, ({x}, {y}, {z})")
+    }
+}
+
+/// The least tolerance, in those of the machine: the rounding of three rods, times conditioning.
+const LEAST_TOLERANCE: f64 = 64.0;
+
 impl<T: RealField + Copy> Delta<T> {
-    /// Joint waypoints along `path`, knees out, such that the straight joint move from each to the
-    /// next keeps the platform within `tolerance` of the path, in the time that `pace` allows.
+    /// Joint waypoints along `path`, in the machine's modes, such that the straight joint move from
+    /// each to the next keeps the platform within `tolerance` of the path, in the time that
+    /// `pace` allows.
     ///
     /// The tolerance is a guarantee: a step is taken when its
     /// [`chord_bound`](Self::chord_bound), which is proven and not sampled, plus the height of
     /// its arc keeps it, and is halved until it does. The place on the path and the platform are
     /// that near at every share of the step, so this holds from the platform to the path and from
     /// the path to the platform. Between two waypoints the arms turn at constant rates, so none
-    /// is faster than its limit; ranges are kept since they hold both ends. The platform is in
-    /// the assembly in which the path starts, which [`Workspace::contains`](crate::Workspace::contains) tells.
+    /// is faster than its limit; ranges are kept since they hold both ends, ball joints but for
+    /// the tolerance. The working mode is kept at each waypoint, the assembly mode all the way.
     ///
     /// The path is walked once before anything is handed out, so that an error comes first
     /// and the number of waypoints is known. Memory does not grow with the path.
@@ -132,7 +174,7 @@ impl<T: RealField + Copy> Delta<T> {
         tolerance: T,
         pace: Pace<T>,
     ) -> Result<Follow<T>, FollowError<T>> {
-        let rounding = self.tolerance();
+        let rounding = self.tolerance() * nalgebra::convert(LEAST_TOLERANCE);
         if !(tolerance.is_finite() && tolerance > rounding) {
             return Err(FollowError::Tolerance {
                 tolerance,

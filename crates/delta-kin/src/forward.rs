@@ -1,42 +1,34 @@
 //! From the three angles to the position: where three spheres meet.
 
-use nalgebra::{Point3, RealField, Vector3};
+use nalgebra::{Matrix2, Point3, RealField, Vector2, Vector3};
 
-use crate::arm::zip;
-use crate::limits::half;
+use crate::arm::{least, zip};
+use crate::rounded::Rounded;
+use crate::scale::{half, is_within, widest};
 use crate::{Arm, Delta};
-
-/// Where the platform can be with given angles: above or below the plane of the knees.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(
-    clippy::exhaustive_structs,
-    reason = "three spheres meet in two points"
-)]
-pub struct Assemblies<T: RealField = f64> {
-    /// The lower place, in which Delta robots hang.
-    pub lower: Point3<T>,
-    /// The upper place, its mirror image in the plane of the knees.
-    pub upper: Point3<T>,
-}
 
 /// Why no platform position belongs to the angles.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum ForwardError<T = f64> {
-    /// An angle is infinite or not a number, or is so when it is counted from straight down.
-    #[error("{arm}: angle {angle} is not finite from straight down")]
-    NotFinite {
+pub enum ForwardError<T: RealField + Copy = f64> {
+    /// An angle is not a number of the stated size, or is not when counted from straight down.
+    #[error("{arm}: angle {} rad is not within ±{} rad", Rounded(*.angle), Rounded(*.max))]
+    Angle {
         /// The arm.
         arm: Arm,
         /// The angle given.
         angle: T,
+        /// The greatest angle from straight down, either way: 1/√ε.
+        max: T,
     },
     /// The knees are so far apart that the lower arms cannot meet.
-    #[error("the lower arms do not meet: that of arm 1 ends {by} before the others' line")]
+    #[error("the lower arms do not meet: that of {arm} ends {} before the others' line", Rounded(*.by))]
     Apart {
-        /// How far the sphere of arm 1 is from the line on which the other two, and it, could
-        /// meet; with equal lower arms, by how much each is too short.
+        /// The arm with the shortest lower arm.
+        arm: Arm,
+        /// How far its sphere is from the line on which the other two, and it, could meet; with
+        /// equal lower arms, by how much each is too short.
         by: T,
     },
     /// The knees, each moved inward by the platform's radius, lie on a line: the platform could
@@ -45,128 +37,155 @@ pub enum ForwardError<T = f64> {
     Collinear,
 }
 
-/// Twice the area of the centres' triangle over the squares of two of its sides, below which
-/// rounding in its circumcentre is felt in the lengths: an equilateral one has 0.43.
-const THIN: f64 = 1.0 / 16.0;
+/// Where three spheres could meet, in the plane of their centres and seen from the first.
+struct Foot<T> {
+    /// To the second centre; across it, to the third; square to both.
+    axes: [Vector3<T>; 3],
+    x: T,
+    y: T,
+    /// Square of the height above the plane.
+    squared: T,
+    /// The second centre along the first axis, the third along both.
+    second: T,
+    third: [T; 2],
+}
+
+impl<T: RealField + Copy> Foot<T> {
+    fn new([c1, c2, c3]: [Vector3<T>; 3], [l1, l2, l3]: [T; 3]) -> Self {
+        let (d2, d3) = (c2 - c1, c3 - c1);
+        let second = d2.norm();
+        let along = d2 / second;
+        // Twice, so that the axes are square to each other also where the triangle is thin.
+        let rest = d3 - along * along.dot(&d3);
+        let rest = rest - along * along.dot(&rest);
+        let across = rest / rest.norm();
+        let third = [along.dot(&d3), across.dot(&d3)];
+        let b2 = (d2.norm_squared() + (l1 - l2) * (l1 + l2)) * half();
+        let b3 = (d3.norm_squared() + (l1 - l3) * (l1 + l3)) * half();
+        let x = b2 / second;
+        let y = (b3 - third[0] * x) / third[1];
+        Self {
+            axes: [along, across, along.cross(&across)],
+            x,
+            y,
+            squared: l1 * l1 - (x * x + y * y),
+            second,
+            third,
+        }
+    }
+
+    /// Height of the centres' triangle, about the least; not a number where two are one.
+    fn height(&self) -> T {
+        let [along, across] = self.third;
+        self.second * across / self.second.max(along.abs()).max(across)
+    }
+
+    /// The point of the first sphere's circle in the plane at which the other two lengths are met
+    /// best, and by how much the worse is not.
+    ///
+    /// With v0 = (x, y) outside the circle and a change of v changing the lengths by A v, to first
+    /// order,
+    ///
+    /// ```text
+    /// |A (v - v0)|² → min, |v| = La1:   v = v0 - μ (Aᵀ A + μ)⁻¹ v0
+    /// ```
+    ///
+    /// with μ > 0 by Newton's method on 1/|v|, which is nearly linear in it.
+    fn touching(&self, [l1, l2, l3]: [T; 3]) -> (Vector2<T>, T) {
+        let start = Vector2::new(self.x, self.y);
+        let [along, across] = self.third;
+        let a = Matrix2::new(self.second / l2, T::zero(), along / l3, across / l3);
+        let m = a.tr_mul(&a);
+        let area = self.second / l2 * (across / l3);
+        let solve = |mu: T, w: Vector2<T>| {
+            let det = area * area + mu * (m.m11 + m.m22 + mu);
+            let x = (m.m22 + mu) * w.x - m.m12 * w.y;
+            let y = (m.m11 + mu) * w.y - m.m12 * w.x;
+            Vector2::new(x, y) / det
+        };
+        let (mut mu, mut v) = (T::zero(), start);
+        for _ in 0..NEWTON_STEPS {
+            let slope = v.dot(&solve(mu, v));
+            mu += v.norm_squared() / slope * (v.norm() / l1 - T::one());
+            v = start - solve(mu, start) * mu;
+        }
+        v *= l1 / v.norm();
+        (v, (a * (v - start)).amax())
+    }
+}
+
+/// The error is squared with each step: this is enough from any start.
+const NEWTON_STEPS: u32 = 12;
 
 impl<T: RealField + Copy> Delta<T> {
-    /// The position of the platform's centre, in the lower of the two assemblies.
+    /// The position of the platform's centre, in the machine's assembly mode.
     ///
-    /// See [`forward_both`](Self::forward_both).
+    /// It lies on three spheres round the knees, moved inward by the platform's radius, each
+    /// with its own lower arm as radius. With c their centres, the first that of the shortest
+    /// lower arm, and e1, e2 the directions from it to the second and across to the third:
+    ///
+    /// ```text
+    /// d2 = c2 - c1,   d3 = c3 - c1
+    /// x = (|d2|² + La1² - La2²) / (2 |d2|)
+    /// y = ((|d3|² + La1² - La3²) / 2 - x d3 · e1) / (d3 · e2)
+    /// P = c1 + x e1 + y e2 ± √(La1² - x² - y²) e1 × e2
+    /// ```
+    ///
+    /// The position is as exact as the three lengths that it meets times the conditioning, which
+    /// is 1 over [`Pose::parallel_distance`](crate::Pose::parallel_distance). Limits are not
+    /// looked at.
     ///
     /// # Errors
     /// [`ForwardError`].
     #[inline]
     pub fn forward(&self, angles: Vector3<T>) -> Result<Point3<T>, ForwardError<T>> {
-        Ok(self.forward_both(angles)?.lower)
-    }
-
-    /// The position of the platform's centre in both assemblies.
-    ///
-    /// It lies on three spheres round the knees, moved inward by the platform's radius, each
-    /// with its own lower arm as radius. With c their centres:
-    ///
-    /// ```text
-    /// d2 = c2 - c1,   d3 = c3 - c1,   n = d2 × d3,   n̂ = n/|n|
-    /// b2 = (|d2|² + La1² - La2²)/2,   b3 = (|d3|² + La1² - La3²)/2
-    /// v = (b2 d3 × n̂ + b3 n̂ × d2)/|n|,   P = c1 + v ± n̂ √(La1² - |v|²)
-    /// ```
-    ///
-    /// All three lengths are met within 8 machine epsilons of the [`span`](Self::span); the
-    /// position is as exact times the conditioning, which is 1 over
-    /// [`Pose::parallel_distance`](crate::Pose::parallel_distance). Limits are not looked at.
-    ///
-    /// # Errors
-    /// [`ForwardError`].
-    #[inline]
-    pub fn forward_both(&self, angles: Vector3<T>) -> Result<Assemblies<T>, ForwardError<T>> {
-        let centres = self.centres(angles);
-        let [c1, c2, c3] = centres;
-        let [l1, l2, l3] = self.legs().each_ref().map(|leg| leg.lower);
-        let (d2, d3) = (c2 - c1, c3 - c1);
-        let n = d2.cross(&d3);
-        let n_length = n.norm();
-        let unit = n / n_length;
-        let b2 = (d2.norm_squared() + (l1 - l2) * (l1 + l2)) * half();
-        let b3 = (d3.norm_squared() + (l1 - l3) * (l1 + l3)) * half();
-        let v = (d3.cross(&unit) * b2 + unit.cross(&d2) * b3) / n_length;
-        let rest = l1 * l1 - v.norm_squared();
-        let is_flat = n_length <= self.tolerance() * self.span();
-        let is_thin = n_length < (d2.norm_squared() + d3.norm_squared()) * nalgebra::convert(THIN);
-        // Not if either is not a number.
-        let meet = (rest > T::zero()) & !is_flat;
-        if !meet {
-            self.check(angles, &v, l1, rest, is_flat)?;
-        }
-        let up = unit * rest.max(T::zero()).sqrt();
-        let up = if n.z < T::zero() { -up } else { up };
-        let foot = c1 + v;
-        let (mut lower, mut upper) = (foot - up, foot + up);
-        if is_thin {
-            lower = polished(lower, &centres, [l1, l2, l3]);
-            upper = polished(upper, &centres, [l1, l2, l3]);
-        }
-        Ok(Assemblies {
-            lower: Point3::from(self.flip(lower)),
-            upper: Point3::from(self.flip(upper)),
-        })
-    }
-
-    /// Whether the spheres only just touch, or why they do not meet.
-    #[cold]
-    fn check(
-        &self,
-        angles: Vector3<T>,
-        v: &Vector3<T>,
-        lower: T,
-        rest: T,
-        is_flat: bool,
-    ) -> Result<(), ForwardError<T>> {
-        // With the zero added an angle may leave the numbers of `T`.
-        let read = zip(angles.into(), self.thetas(angles));
-        for (arm, (angle, theta)) in zip(Arm::ALL, read) {
-            if !theta.is_finite() {
-                return Err(ForwardError::NotFinite { arm, angle });
+        let thetas = self.thetas(angles);
+        let lowers = self.legs().each_ref().map(|leg| leg.lower);
+        let (shortest, _) = least(lowers);
+        let centres = turned(self.centres_at(thetas), shortest);
+        let lowers = turned(lowers, shortest);
+        let foot = Foot::new(centres, lowers);
+        let are_angles = thetas.iter().all(|theta| is_within(*theta, widest()));
+        // Not if it is not a number.
+        let is_plane = foot.height() > self.tolerance();
+        let [x, y, up] = if are_angles & is_plane & (foot.squared > T::zero()) {
+            [foot.x, foot.y, foot.squared.sqrt()]
+        } else {
+            self.check_angles(angles, thetas)?;
+            if !is_plane {
+                return Err(ForwardError::Collinear);
             }
-        }
-        if is_flat {
-            return Err(ForwardError::Collinear);
-        }
-        if rest < -lower * self.tolerance() {
-            let by = v.norm() - lower;
-            return Err(ForwardError::Apart { by });
+            let (v, miss) = foot.touching(lowers);
+            // Half is left for `inverse`.
+            let is_met = miss <= self.tolerance() * half();
+            if !is_met {
+                let by = foot.x.hypot(foot.y) - lowers[0];
+                return Err(ForwardError::Apart { arm: shortest, by });
+            }
+            [v.x, v.y, T::zero()]
+        };
+        let [along, across, normal] = foot.axes;
+        let place = centres[0] + along * x + across * y + normal * (up * self.side());
+        Ok(Point3::from(self.flip(place)))
+    }
+
+    #[cold]
+    fn check_angles(&self, angles: Vector3<T>, thetas: [T; 3]) -> Result<(), ForwardError<T>> {
+        let max = widest();
+        for (arm, (angle, theta)) in zip(Arm::ALL, zip(angles.into(), thetas)) {
+            if !is_within(theta, max) {
+                return Err(ForwardError::Angle { arm, angle, max });
+            }
         }
         Ok(())
     }
 }
 
-/// One step of Newton's method on the three lengths, if it brings them nearer.
-#[cold]
-fn polished<T: RealField + Copy>(
-    place: Vector3<T>,
-    centres: &[Vector3<T>; 3],
-    lowers: [T; 3],
-) -> Vector3<T> {
-    let rods = centres.map(|centre| place - centre);
-    let [m1, m2, m3] = misses(&rods, lowers);
-    let [a, b, c] = rods;
-    let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
-    let [l1, l2, l3] = lowers;
-    let step = (bc * (m1 * l1) + ca * (m2 * l2) + ab * (m3 * l3)) / a.dot(&bc);
-    let next = place + step;
-    let left = misses(&centres.map(|centre| next - centre), lowers);
-    let largest = |misses: [T; 3]| {
-        misses
-            .map(|miss| miss.abs())
-            .into_iter()
-            .fold(T::zero(), T::max)
-    };
-    // Written so that what is not a number is not nearer.
-    let is_nearer = step.norm_squared().is_finite() && largest(left) < largest([m1, m2, m3]);
-    if is_nearer { next } else { place }
-}
-
-/// By how much each rod is shorter than its lower arm.
-fn misses<T: RealField + Copy>(rods: &[Vector3<T>; 3], lowers: [T; 3]) -> [T; 3] {
-    zip(rods.each_ref(), lowers).map(|(rod, lower)| lower - rod.norm())
+/// What belongs to the arms, in their order but from the one named.
+fn turned<A>([first, second, third]: [A; 3], from: Arm) -> [A; 3] {
+    match from {
+        Arm::First => [first, second, third],
+        Arm::Second => [second, third, first],
+        Arm::Third => [third, first, second],
+    }
 }

@@ -1,22 +1,25 @@
-//! From a position to the three angles, knees out or in, within the limits, with reasons.
+//! From a position to the three angles, in the machine's modes and within its limits, with reasons.
+
+use core::fmt;
 
 use nalgebra::{Point3, RealField, Vector3};
 
 use crate::arm::zip;
 use crate::leg::{Leg, Triangle, middle};
-use crate::limits::max_value;
-use crate::{Arm, Delta, Knee};
+use crate::rounded::Rounded;
+use crate::scale::max_value;
+use crate::{Arm, AssemblyMode, Delta, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
-/// Where more than one arm fails, the reach comes before the limits, and of several arms the
-/// one that misses by most is named.
+/// Where more than one thing is wrong the first of this list is told, and of several arms the one
+/// that misses by most.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum InverseError<T = f64> {
+pub enum InverseError<T: RealField + Copy = f64> {
     /// A coordinate is infinite or not a number.
-    #[error("point ({x}, {y}, {z}) is not finite")]
+    #[error("point ({}, {}, {}) is not finite", Rounded(*.x), Rounded(*.y), Rounded(*.z))]
     NotFinite {
         /// X as given.
         x: T,
@@ -26,7 +29,7 @@ pub enum InverseError<T = f64> {
         z: T,
     },
     /// Wherever the arm turns, its lower arm ends before the platform.
-    #[error("out of reach: {arm} is {by} too short")]
+    #[error("out of reach: {arm} is {} too short", Rounded(*.by))]
     TooFar {
         /// The arm.
         arm: Arm,
@@ -34,7 +37,7 @@ pub enum InverseError<T = f64> {
         by: T,
     },
     /// Wherever the arm turns, its lower arm ends behind the platform.
-    #[error("out of reach: {arm} is {by} too long")]
+    #[error("out of reach: {arm} is {} too long", Rounded(*.by))]
     TooNear {
         /// The arm.
         arm: Arm,
@@ -47,8 +50,28 @@ pub enum InverseError<T = f64> {
         /// The arm.
         arm: Arm,
     },
+    /// The knees would lie on a line, each moved inward by the platform's radius: the arms do not
+    /// hold the platform, it could turn about that line.
+    #[error(
+        "the knees, moved inward by the platform's radius, lie on a line: nothing holds the platform"
+    )]
+    Collinear,
+    /// The arms reach the point, but only in the other assembly mode: with these angles
+    /// [`forward`](Delta::forward) is elsewhere.
+    #[error("{}", Across { assembly_mode: *.assembly_mode, z: *.z })]
+    OtherAssembly {
+        /// The assembly mode in which it is reached.
+        assembly_mode: AssemblyMode,
+        /// The direction of z with which the machine would reach it, where it lies on the far side
+        /// of the base plane: most likely the one that was meant. `None`: it lies beyond the
+        /// singular surface.
+        z: Option<ZAxis>,
+    },
     /// The point is within reach, but a rod would lean too far for its ball joints.
-    #[error("{arm} would lean by {lean} rad at its ball joints, more than {max} rad")]
+    #[error(
+        "{arm} would lean by {} rad at its ball joints, more than {} rad",
+        Rounded(*.lean), Rounded(*.max)
+    )]
     BallJoint {
         /// The arm.
         arm: Arm,
@@ -58,7 +81,10 @@ pub enum InverseError<T = f64> {
         max: T,
     },
     /// The point is within reach, but an arm would leave its range.
-    #[error("{arm} at {angle} rad is outside its range {min}..={max} rad")]
+    #[error(
+        "{arm} at {} rad is outside its range {}..={} rad",
+        Rounded(*.angle), Rounded(*.min), Rounded(*.max)
+    )]
     JointLimit {
         /// The arm.
         arm: Arm,
@@ -71,21 +97,47 @@ pub enum InverseError<T = f64> {
     },
 }
 
+/// Why the other assembly mode, and what was probably meant.
+pub(crate) struct Across {
+    pub(crate) assembly_mode: AssemblyMode,
+    pub(crate) z: Option<ZAxis>,
+}
+
+impl fmt::Display for Across {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mode = self.assembly_mode;
+        let side = match mode {
+            AssemblyMode::Upper => "above",
+            AssemblyMode::Lower => "below",
+        };
+        match self.z {
+            None => f.write_str("the point lies beyond the singular surface")?,
+            Some(_) => write!(f, "the point lies {side} the base plane")?,
+        }
+        write!(f, ", where only the {mode} assembly mode reaches it")?;
+        match self.z {
+            None => Ok(()),
+            Some(z) => write!(f, "; ZAxis::{z:?} would put it where the machine works"),
+        }
+    }
+}
+
 impl<T: RealField + Copy> Delta<T> {
-    /// The angles that bring the platform's centre to `point`, knees out.
+    /// The angles that bring the platform's centre to `point`, in the machine's working and
+    /// assembly modes: `forward` of them is the point.
     ///
     /// For each arm, with u the point along its azimuth, w beside it, D = R - r:
     ///
     /// ```text
-    /// p = D - u,   h² = p² + z²,   k = (La² - Lb² - h² - w²) / (2 Lb),   m = √(h² - k²)
+    /// p = D - u,   h² = p² + z²
+    /// k = (La² - w² - (h - Lb)²) - ((h + Lb)² - La² + w²)
+    /// m = 2 √(La² - w² - (h - Lb)²) √((h + Lb)² - La² + w²)
     /// knee out: θ = atan2(k p - m z, k z + m p)
     /// knee in:  θ = atan2(k p + m z, k z - m p)
     /// ```
     ///
-    /// Nothing is divided by what can vanish, and the two solutions never change places. m is
-    /// the distance of the wrist from the upper arm's line; m² < 0 is out of reach. The angle is
-    /// such that the lower arm's length is met within 4 machine epsilons of the
-    /// [`span`](Self::span), also on the edges of the workspace. What [`forward`](Self::forward) made is
+    /// Nothing is divided by what can vanish, and the two solutions never change places. Where a
+    /// bracket is negative the point is out of reach. What [`forward`](Self::forward) made in the same modes is
     /// never refused: up to [`tolerance`](Self::tolerance) past an edge counts as on it, for
     /// limits too.
     ///
@@ -96,68 +148,23 @@ impl<T: RealField + Copy> Delta<T> {
     /// [`InverseError`].
     #[inline]
     pub fn inverse(&self, point: Point3<T>) -> Result<Vector3<T>, InverseError<T>> {
-        self.inverse_knees(point, [Knee::Out; 3])
-    }
-
-    /// As [`inverse`](Self::inverse), with the knee of each arm as named.
-    ///
-    /// # Errors
-    /// [`InverseError`].
-    #[inline]
-    pub fn inverse_knees(
-        &self,
-        point: Point3<T>,
-        knees: [Knee; 3],
-    ) -> Result<Vector3<T>, InverseError<T>> {
         let local = self.flip(point.coords);
-        let [first, second, third] = zip(self.legs().each_ref(), knees).map(|(leg, knee)| {
+        let solved = zip(self.legs().each_ref(), self.working_mode()).map(|(leg, knee)| {
             let triangle = leg.triangle(&local);
-            let m2 = triangle.m2();
-            // Out of reach it is not a number, and so within no range.
-            let angle = leg.angle(triangle.theta(knee, m2.sqrt()));
-            let admitted = (m2 > T::zero())
+            let heading = triangle.heading(knee);
+            let angle = leg.angle(heading.theta());
+            let admitted = triangle.is_within_reach()
                 & (leg.min <= angle)
                 & (angle <= leg.max)
                 & (triangle.side.abs() <= leg.max_side);
-            (angle, admitted)
+            (angle, admitted, leg.rod(&triangle, &heading))
         });
-        if first.1 & second.1 & third.1 {
+        let [first, second, third] = solved;
+        let is_admitted = first.1 & second.1 & third.1;
+        if is_admitted & self.is_assembled(solved.map(|(_, _, rod)| rod)) {
             return Ok(Vector3::new(first.0, second.0, third.0));
         }
-        self.inverse_at_limits(point, local, knees)
-    }
-
-    /// The angle of one arm alone, whatever the others can do.
-    ///
-    /// # Errors
-    /// [`InverseError`].
-    pub fn inverse_arm(
-        &self,
-        point: Point3<T>,
-        arm: Arm,
-        knee: Knee,
-    ) -> Result<T, InverseError<T>> {
-        let [first, second, third] = self.legs();
-        let leg = match arm {
-            Arm::First => first,
-            Arm::Second => second,
-            Arm::Third => third,
-        };
-        if !point.coords.iter().all(T::is_finite) {
-            return Err(not_finite(point));
-        }
-        self.solve(arm, leg, &self.flip(point.coords), knee)
-            .map_err(|miss| miss.error)
-    }
-
-    /// By how much each arm can reach `point` without its limits, in the unit of length: no
-    /// point nearer than this is out of the arm's reach. Negative: by how much the lower arm
-    /// is too short or too long.
-    #[must_use]
-    pub fn reach_margins(&self, point: Point3<T>) -> Vector3<T> {
-        let local = self.flip(point.coords);
-        let margins = self.legs().each_ref().map(|leg| leg.reach_margin(&local));
-        Vector3::from(margins)
+        self.inverse_at_limits(point, local)
     }
 
     /// The same where an arm is on an edge or beyond.
@@ -166,77 +173,81 @@ impl<T: RealField + Copy> Delta<T> {
         &self,
         point: Point3<T>,
         local: Vector3<T>,
-        knees: [Knee; 3],
     ) -> Result<Vector3<T>, InverseError<T>> {
         if !point.coords.iter().all(T::is_finite) {
-            return Err(not_finite(point));
+            let (x, y, z) = (point.x, point.y, point.z);
+            return Err(InverseError::NotFinite { x, y, z });
         }
-        let solved = zip(zip(Arm::ALL, self.legs().each_ref()), knees)
-            .map(|((arm, leg), knee)| self.solve(arm, leg, &local, knee));
-        let worst = solved
-            .iter()
-            .filter_map(|arm| arm.err())
-            .reduce(|a, b| if b.is_worse_than(&a) { b } else { a });
-        match (solved, worst) {
-            ([Ok(first), Ok(second), Ok(third)], _) => Ok(Vector3::new(first, second, third)),
-            (_, Some(miss)) => Err(miss.error),
-            // Not all are solved, so there is a miss.
-            (_, None) => Err(not_finite(point)),
+        let arms = zip(Arm::ALL, self.legs().each_ref())
+            .map(|(arm, leg)| (arm, leg, leg.triangle(&local)));
+        worst(arms.map(|(arm, leg, triangle)| self.out_of_reach(arm, leg, &triangle)))?;
+        for (arm, _, triangle) in arms {
+            if triangle.h <= self.tolerance() {
+                return Err(InverseError::AnyAngle { arm });
+            }
         }
+        let thetas = zip(arms, self.working_mode())
+            .map(|((_, _, triangle), knee)| triangle.at_edge().heading(knee).theta());
+        self.check_assembly(&local, thetas)?;
+        worst(arms.map(|(arm, leg, triangle)| self.leaning(arm, leg, &triangle)))?;
+        let fitted = zip(arms, thetas)
+            .map(|((arm, leg, _), theta)| (arm, leg, self.fit(leg, &local, leg.angle(theta))));
+        worst(fitted.map(|(arm, leg, (angle, by))| {
+            let (min, max) = (leg.min, leg.max);
+            let error = InverseError::JointLimit {
+                arm,
+                angle,
+                min,
+                max,
+            };
+            (by > T::zero()).then_some((by, error))
+        }))?;
+        Ok(Vector3::from(fitted.map(|(_, _, (angle, _))| angle)))
     }
 
-    fn solve(&self, arm: Arm, leg: &Leg<T>, local: &Vector3<T>, knee: Knee) -> Result<T, Miss<T>> {
-        let triangle = leg.triangle(local);
-        self.reach(arm, leg, &triangle)?;
-        let m = triangle.m2().max(T::zero()).sqrt();
-        let angle = leg.angle(triangle.theta(knee, m));
-        let angle = self
-            .fit(leg, local, angle)
-            .map_err(|(angle, by)| Miss::limit(arm, leg, angle, by))?;
-        if triangle.side.abs() > leg.max_side + self.tolerance() {
-            let lean = lean(&triangle, leg.lower);
-            let max = (leg.max_side / leg.lower).asin();
-            let error = InverseError::BallJoint { arm, lean, max };
-            return Err(Miss::new(1, lean - max, error));
-        }
-        Ok(angle)
-    }
-
-    /// Whether the rod can be where the wrist is.
-    fn reach(&self, arm: Arm, leg: &Leg<T>, triangle: &Triangle<T>) -> Result<(), Miss<T>> {
+    /// By how much the rod cannot be where the wrist is.
+    fn out_of_reach(
+        &self,
+        arm: Arm,
+        leg: &Leg<T>,
+        triangle: &Triangle<T>,
+    ) -> Option<(T, InverseError<T>)> {
         let (near, far) = leg.knee_distances(triangle);
-        let tolerance = self.tolerance();
         // Near the largest number a distance overflows.
         let short = (near - leg.lower).min(max_value());
         let long = leg.lower - far;
-        if short > tolerance {
-            let error = InverseError::TooFar { arm, by: short };
-            return Err(Miss::new(3, short, error));
+        if short > self.tolerance() {
+            return Some((short, InverseError::TooFar { arm, by: short }));
         }
-        if long > tolerance {
-            let error = InverseError::TooNear { arm, by: long };
-            return Err(Miss::new(3, long, error));
-        }
-        if triangle.h2.sqrt() <= tolerance {
-            let error = InverseError::AnyAngle { arm };
-            return Err(Miss::new(2, T::zero(), error));
-        }
-        Ok(())
+        (long > self.tolerance()).then_some((long, InverseError::TooNear { arm, by: long }))
     }
 
-    /// `angle` at the whole turn within the range; on an end that it misses by rounding alone;
-    /// else by how much it misses.
-    fn fit(&self, leg: &Leg<T>, local: &Vector3<T>, angle: T) -> Result<T, (T, T)> {
+    /// By how much the rods lean too far.
+    fn leaning(
+        &self,
+        arm: Arm,
+        leg: &Leg<T>,
+        triangle: &Triangle<T>,
+    ) -> Option<(T, InverseError<T>)> {
+        let asin = |side: T| (side / leg.lower).min(T::one()).asin();
+        let (lean, max) = (asin(triangle.side.abs()), asin(leg.max_side));
+        let error = InverseError::BallJoint { arm, lean, max };
+        (triangle.side.abs() > leg.max_side + self.tolerance()).then_some((lean - max, error))
+    }
+
+    /// `angle` at the whole turn within the range, or on an end that it misses by rounding alone;
+    /// and by how much it misses the range.
+    fn fit(&self, leg: &Leg<T>, local: &Vector3<T>, angle: T) -> (T, T) {
         let (min, max) = (leg.min, leg.max);
         let holds = |angle: T| min <= angle && angle <= max;
         if holds(angle) {
-            return Ok(angle);
+            return (angle, T::zero());
         }
         let turn = T::two_pi();
         let turns = ((middle(min, max) - angle) / turn).round();
         let angle = angle + turns * turn;
         if holds(angle) {
-            return Ok(angle);
+            return (angle, T::zero());
         }
         for end in [min, max] {
             // The other end may be the nearer one by a whole turn.
@@ -244,10 +255,10 @@ impl<T: RealField + Copy> Delta<T> {
             let nearest = (apart - apart.round()).abs() * turn;
             let miss = leg.stretch(local, leg.theta(end)).abs();
             if nearest < T::frac_pi_2() && miss <= self.tolerance() {
-                return Ok(end);
+                return (end, T::zero());
             }
         }
-        Err((angle, (min - angle).max(angle - max)))
+        (angle, (min - angle).max(angle - max))
     }
 }
 
@@ -259,42 +270,13 @@ impl<T: RealField + Copy> Leg<T> {
     }
 }
 
-/// How far the rods lean out of the arm's plane.
-fn lean<T: RealField + Copy>(triangle: &Triangle<T>, lower: T) -> T {
-    (triangle.side.abs() / lower).min(T::one()).asin()
-}
-
-#[cold]
-fn not_finite<T: RealField + Copy>(point: Point3<T>) -> InverseError<T> {
-    let (x, y, z) = (point.x, point.y, point.z);
-    InverseError::NotFinite { x, y, z }
-}
-
-/// What an arm cannot do.
-#[derive(Debug, Clone, Copy)]
-struct Miss<T> {
-    class: u8,
-    by: T,
-    error: InverseError<T>,
-}
-
-impl<T: RealField + Copy> Miss<T> {
-    const fn new(class: u8, by: T, error: InverseError<T>) -> Self {
-        Self { class, by, error }
-    }
-
-    fn limit(arm: Arm, leg: &Leg<T>, angle: T, by: T) -> Self {
-        let (min, max) = (leg.min, leg.max);
-        let error = InverseError::JointLimit {
-            arm,
-            angle,
-            min,
-            max,
-        };
-        Self::new(0, by, error)
-    }
-
-    fn is_worse_than(&self, other: &Self) -> bool {
-        self.class > other.class || (self.class == other.class && self.by > other.by)
-    }
+/// The error of the arm that misses by most.
+fn worst<T: RealField + Copy>(
+    misses: [Option<(T, InverseError<T>)>; 3],
+) -> Result<(), InverseError<T>> {
+    let worst = misses
+        .into_iter()
+        .flatten()
+        .reduce(|a, b| if b.0 > a.0 { b } else { a });
+    worst.map_or(Ok(()), |(_, error)| Err(error))
 }

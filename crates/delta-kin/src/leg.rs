@@ -2,7 +2,7 @@
 
 use nalgebra::{RealField, Vector3};
 
-use crate::limits::{half, max_value, two};
+use crate::scale::{half, max_value, two};
 use crate::{ArmGeometry, JointRange, Knee, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
@@ -14,10 +14,6 @@ pub(crate) struct Leg<T> {
     offset: T,
     pub(crate) upper: T,
     pub(crate) lower: T,
-    /// La² - Lb².
-    excess: T,
-    /// 1 / (2 Lb).
-    scale: T,
     zero: T,
     /// 1 where angles grow outward, else -1.
     pub(crate) turn: T,
@@ -39,10 +35,20 @@ pub(crate) struct Triangle<T> {
     pub(crate) z: T,
     /// Wrist beside the arm's plane.
     pub(crate) side: T,
-    /// Square of the distance between hip and wrist in the plane.
-    pub(crate) h2: T,
-    /// The wrist's place along the upper arm's line, from the hip.
-    k: T,
+    /// Distance between hip and wrist in the plane, and its square.
+    pub(crate) h: T,
+    h2: T,
+    /// La² less the square of the wrist's distance from the nearest place of the knee.
+    past_near: T,
+    /// Square of the wrist's distance from the farthest place of the knee, less La².
+    short_of_far: T,
+}
+
+/// An upper arm's direction, sin θ and cos θ times 4 Lb h².
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Heading<T> {
+    sin: T,
+    cos: T,
 }
 
 impl<T: RealField + Copy> Leg<T> {
@@ -66,8 +72,6 @@ impl<T: RealField + Copy> Leg<T> {
             offset: arm.base - arm.platform,
             upper: arm.upper,
             lower: arm.lower,
-            excess: (arm.lower - arm.upper) * (arm.lower + arm.upper),
-            scale: (arm.upper * two()).recip(),
             zero: arm.zero,
             turn,
             min,
@@ -89,19 +93,52 @@ impl<T: RealField + Copy> Leg<T> {
         self.zero + self.turn * angle
     }
 
+    /// The part of [`Delta::tolerance`](crate::Delta::tolerance) that the size of the angles asks
+    /// for, in machine epsilons.
+    pub(crate) fn angle_rounding(&self) -> T {
+        let reading = if self.has_range() {
+            self.min.abs().max(self.max.abs())
+        } else {
+            T::zero()
+        };
+        self.upper * (self.zero.abs() + reading)
+    }
+
+    pub(crate) fn has_range(&self) -> bool {
+        self.max < max_value()
+    }
+
     #[inline(always)]
     pub(crate) fn triangle(&self, point: &Vector3<T>) -> Triangle<T> {
         let inward = self.offset - (point.x * self.cos + point.y * self.sin);
         let side = point.y * self.cos - point.x * self.sin;
         let h2 = inward * inward + point.z * point.z;
-        let k = (self.excess - (h2 + side * side)) * self.scale;
+        let h = h2.sqrt();
+        // La² - w², differences before products: short lower arms keep their digits.
+        let in_plane = (self.lower - side) * (self.lower + side);
+        let (near, far) = (h - self.upper, h + self.upper);
         Triangle {
             inward,
             z: point.z,
             side,
+            h,
             h2,
-            k,
+            past_near: in_plane - near * near,
+            short_of_far: far * far - in_plane,
         }
+    }
+
+    /// The rod, from the knee to the wrist.
+    #[inline(always)]
+    pub(crate) fn rod(&self, triangle: &Triangle<T>, heading: &Heading<T>) -> Vector3<T> {
+        let scale = (triangle.h2 * two() * two()).recip();
+        let outward = -triangle.inward - heading.sin * scale;
+        let up = triangle.z + heading.cos * scale;
+        Vector3::new(
+            outward * self.cos - triangle.side * self.sin,
+            outward * self.sin + triangle.side * self.cos,
+            up,
+        )
     }
 
     /// Centre of the sphere on which the platform's centre lies: the knee, moved inward by
@@ -150,22 +187,41 @@ impl<T: RealField + Copy> Leg<T> {
 }
 
 impl<T: RealField + Copy> Triangle<T> {
-    /// Square of the wrist's distance from the upper arm's line; negative: out of reach.
+    /// Whether the wrist is within reach, and not on its edge.
     #[inline(always)]
-    pub(crate) fn m2(&self) -> T {
-        self.h2 - self.k * self.k
+    pub(crate) fn is_within_reach(&self) -> bool {
+        (self.past_near > T::zero()) & (self.short_of_far > T::zero())
     }
 
-    /// theta with the knee on the given side, at the given distance of the wrist from the
-    /// upper arm's line.
+    /// The same on the edge, from what may be a little beyond.
+    pub(crate) fn at_edge(self) -> Self {
+        Self {
+            past_near: self.past_near.max(T::zero()),
+            short_of_far: self.short_of_far.max(T::zero()),
+            ..self
+        }
+    }
+
+    /// The upper arm with the knee on the given side; not a number out of reach.
     #[inline(always)]
-    pub(crate) fn theta(&self, knee: Knee, m: T) -> T {
-        let m = match knee {
-            Knee::Out => m,
-            Knee::In => -m,
+    pub(crate) fn heading(&self, knee: Knee) -> Heading<T> {
+        let along = self.past_near - self.short_of_far;
+        let across = (self.past_near * self.short_of_far).sqrt() * two();
+        let across = match knee {
+            Knee::Out => across,
+            Knee::In => -across,
         };
-        let (p, q, k) = (self.inward, self.z, self.k);
-        (k * p - m * q).atan2(k * q + m * p)
+        Heading {
+            sin: along * self.inward - across * self.z,
+            cos: along * self.z + across * self.inward,
+        }
+    }
+}
+
+impl<T: RealField + Copy> Heading<T> {
+    #[inline(always)]
+    pub(crate) fn theta(&self) -> T {
+        self.sin.atan2(self.cos)
     }
 }
 

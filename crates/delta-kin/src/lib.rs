@@ -7,14 +7,18 @@
 extern crate std;
 
 mod arm;
+mod assembly;
 mod calibrate;
 mod delta;
 mod follow;
 mod forward;
+mod geometry;
 mod inverse;
 mod leg;
 mod limits;
 mod pose;
+mod rounded;
+mod scale;
 #[cfg(feature = "serde")]
 mod serde;
 mod workspace;
@@ -22,11 +26,13 @@ mod workspace;
 pub use nalgebra;
 
 pub use arm::{Arm, ArmGeometry, Knee};
+pub use assembly::AssemblyMode;
 pub use calibrate::{Calibration, CalibrationError, Measured, Parameter, Quantity};
-pub use delta::{Delta, GeometryError, Positive, ZAxis};
+pub use delta::{Delta, Positive, ZAxis};
 pub use follow::{Follow, FollowError, Pace, Path, PathError, Waypoint};
-pub use forward::{Assemblies, ForwardError};
+pub use forward::ForwardError;
+pub use geometry::GeometryError;
 pub use inverse::InverseError;
 pub use limits::JointRange;
-pub use pose::{Pose, Singular};
-pub use workspace::{Outline, Workspace};
+pub use pose::{Pose, PoseError};
+pub use workspace::{Outline, Workspace, WorkspaceError};

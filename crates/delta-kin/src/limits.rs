@@ -1,8 +1,9 @@
-//! Joint limits, and a few numbers that every type has.
+//! The range of an arm's angle.
 
 use nalgebra::RealField;
 
 use crate::GeometryError;
+use crate::scale::{is_within, widest};
 
 /// The closed range of one arm's angle, in radians, at most a whole turn wide.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,9 +17,10 @@ impl<T: RealField + Copy> JointRange<T> {
     /// A range from `min` to `max`, in radians.
     ///
     /// # Errors
-    /// [`GeometryError::Range`] unless both are finite and `min < max <= min + 2π`.
+    /// [`GeometryError::Range`] unless both are within ±1/√ε and `min < max <= min + 2π`.
     pub fn new(min: T, max: T) -> Result<Self, GeometryError<T>> {
-        if min.is_finite() && max.is_finite() && min < max && max - min <= T::two_pi() {
+        let are_angles = is_within(min, widest()) && is_within(max, widest());
+        if are_angles && min < max && max - min <= T::two_pi() {
             Ok(Self { min, max })
         } else {
             Err(GeometryError::Range { min, max })
@@ -42,17 +44,4 @@ impl<T: RealField + Copy> JointRange<T> {
     pub fn contains(&self, angle: T) -> bool {
         self.min <= angle && angle <= self.max
     }
-}
-
-/// The largest finite number; every `RealField` of machine floats has one.
-pub(crate) fn max_value<T: RealField>() -> T {
-    T::max_value().unwrap_or_else(T::one)
-}
-
-pub(crate) fn two<T: RealField>() -> T {
-    T::one() + T::one()
-}
-
-pub(crate) fn half<T: RealField>() -> T {
-    nalgebra::convert(0.5)
 }

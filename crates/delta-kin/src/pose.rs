@@ -3,17 +3,29 @@
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
 use crate::arm::{least, zip};
-use crate::limits::two;
-use crate::{Arm, Delta, ForwardError, InverseError, Knee};
+use crate::rounded::Rounded;
+use crate::{Arm, Delta, ForwardError, InverseError};
 
-/// A pose in which speeds or forces do not follow from each other.
+/// Why speeds or forces do not follow from each other.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Singular<T = f64> {
+pub enum PoseError<T: RealField + Copy = f64> {
+    /// A speed or force given, or what follows from it, is infinite or not a number.
+    #[error("{name} ({}, {}, {}) is not finite", Rounded(*.x), Rounded(*.y), Rounded(*.z))]
+    NotFinite {
+        /// `velocity`, `rates`, `force`, `torques` or `rod forces`.
+        name: &'static str,
+        /// Its first component.
+        x: T,
+        /// Its second component.
+        y: T,
+        /// Its third component.
+        z: T,
+    },
     /// An arm is stretched or folded, its upper arm in line with the rods as seen square to its
     /// plane: turning it does not move the platform along the rods.
-    #[error("{arm} is stretched or folded: its lever is {lever}")]
+    #[error("{arm} is stretched or folded: its lever is {}", Rounded(*.lever))]
     Serial {
         /// The arm.
         arm: Arm,
@@ -21,9 +33,10 @@ pub enum Singular<T = f64> {
         lever: T,
     },
     /// The three rods lie in a plane: the platform can move although no arm does.
-    #[error("the three lower arms lie in a plane within {sine}")]
+    #[error("the three lower arms lie in a plane: the sine between them is {}", Rounded(*.sine))]
     Parallel {
-        /// The sine of the least angle between a rod and the plane of the others.
+        /// The sine of the least angle between a rod and the plane of the others, within rounding
+        /// of zero.
         sine: T,
     },
 }
@@ -42,67 +55,52 @@ pub enum Singular<T = f64> {
 pub struct Pose<T: RealField = f64> {
     angles: Vector3<T>,
     point: Point3<T>,
+    knees: [Point3<T>; 3],
     rods: [Vector3<T>; 3],
     levers: [T; 3],
     tolerance: T,
+    /// What rounding does to the direction of a rod.
+    rounding: T,
 }
 
 impl<T: RealField + Copy> Delta<T> {
-    /// The pose with the platform's centre at `point`, knees out.
+    /// The pose with the platform's centre at `point`, in the machine's modes.
     ///
     /// # Errors
     /// [`InverseError`].
     pub fn pose_at(&self, point: Point3<T>) -> Result<Pose<T>, InverseError<T>> {
-        self.pose_at_knees(point, [Knee::Out; 3])
+        Ok(Pose::new(self, self.inverse(point)?, point))
     }
 
-    /// The pose with the platform's centre at `point` and the knee of each arm as named.
-    ///
-    /// # Errors
-    /// [`InverseError`].
-    pub fn pose_at_knees(
-        &self,
-        point: Point3<T>,
-        knees: [Knee; 3],
-    ) -> Result<Pose<T>, InverseError<T>> {
-        Ok(Pose::new(self, self.inverse_knees(point, knees)?, point))
-    }
-
-    /// The pose with the given angles, in the lower assembly.
+    /// The pose with the given angles, in the machine's assembly mode.
     ///
     /// # Errors
     /// [`ForwardError`].
     pub fn pose_of(&self, angles: Vector3<T>) -> Result<Pose<T>, ForwardError<T>> {
         Ok(Pose::new(self, angles, self.forward(angles)?))
     }
-
-    /// The knees, at the middle between an arm's two rods.
-    #[must_use]
-    pub fn knees(&self, angles: Vector3<T>) -> [Point3<T>; 3] {
-        let bent = zip(
-            zip(self.legs().each_ref(), self.arms().each_ref()),
-            self.thetas(angles),
-        );
-        bent.map(|((leg, arm), theta)| {
-            let knee = leg.centre(theta) + leg.in_plane(arm.platform, T::zero());
-            Point3::from(self.flip(knee))
-        })
-    }
 }
 
 impl<T: RealField + Copy> Pose<T> {
     pub(crate) fn new(delta: &Delta<T>, angles: Vector3<T>, point: Point3<T>) -> Self {
         let local = delta.flip(point.coords);
-        let arms = zip(delta.legs().each_ref(), delta.thetas(angles)).map(|(leg, theta)| {
-            let rod = (local - leg.centre(theta)) / leg.lower;
-            (delta.flip(rod), rod.dot(&leg.tangent(theta)) * leg.turn)
+        let legs = zip(delta.legs().each_ref(), delta.arms().each_ref());
+        let arms = zip(legs, delta.thetas(angles)).map(|((leg, arm), theta)| {
+            let centre = leg.centre(theta);
+            let rod = (local - centre) / leg.lower;
+            let lever = rod.dot(&leg.tangent(theta)) * leg.turn;
+            let knee = centre + leg.in_plane(arm.platform, T::zero());
+            (Point3::from(delta.flip(knee)), delta.flip(rod), lever)
         });
+        let [first, second, third] = delta.legs().each_ref().map(|leg| leg.lower);
         Self {
             angles,
             point,
-            rods: arms.map(|(rod, _)| rod),
-            levers: arms.map(|(_, lever)| lever),
+            knees: arms.map(|(knee, _, _)| knee),
+            rods: arms.map(|(_, rod, _)| rod),
+            levers: arms.map(|(_, _, lever)| lever),
             tolerance: delta.tolerance(),
+            rounding: delta.tolerance() / first.min(second).min(third),
         }
     }
 
@@ -116,6 +114,12 @@ impl<T: RealField + Copy> Pose<T> {
     #[must_use]
     pub const fn point(&self) -> Point3<T> {
         self.point
+    }
+
+    /// The knees, at the middle between an arm's two rods.
+    #[must_use]
+    pub const fn knees(&self) -> &[Point3<T>; 3] {
+        &self.knees
     }
 
     /// Unit vectors along the rods, from the knees to the platform.
@@ -141,23 +145,14 @@ impl<T: RealField + Copy> Pose<T> {
     /// distance from a parallel singularity, where the three rods lie in a plane.
     #[must_use]
     pub fn parallel_distance(&self) -> T {
-        let [a, b, c] = self.rods;
-        let volume = a.dot(&b.cross(&c)).abs();
-        let widest = b.cross(&c).norm().max(c.cross(&a).norm());
-        let widest = widest.max(a.cross(&b).norm());
-        // Three rods along one line span no plane at all.
-        if widest > T::zero() {
-            volume / widest
-        } else {
-            T::zero()
-        }
+        least_sine(&self.rods)
     }
 
     /// The platform's speed per rate of each arm: columns arm 1, 2, 3, in length per radian.
     ///
     /// # Errors
-    /// [`Singular::Parallel`].
-    pub fn jacobian(&self) -> Result<Matrix3<T>, Singular<T>> {
+    /// [`PoseError::Parallel`].
+    pub fn jacobian(&self) -> Result<Matrix3<T>, PoseError<T>> {
         let columns = zip(self.rod_inverse()?, self.levers).map(|(column, lever)| column * lever);
         Ok(Matrix3::from_columns(&columns))
     }
@@ -165,30 +160,32 @@ impl<T: RealField + Copy> Pose<T> {
     /// The platform's velocity from the rates of the arms in rad/s.
     ///
     /// # Errors
-    /// [`Singular::Parallel`].
-    pub fn platform_velocity(&self, rates: Vector3<T>) -> Result<Vector3<T>, Singular<T>> {
-        Ok(self.jacobian()? * rates)
+    /// [`PoseError::Parallel`], [`PoseError::NotFinite`].
+    pub fn platform_velocity(&self, rates: Vector3<T>) -> Result<Vector3<T>, PoseError<T>> {
+        finite("rates", rates)?;
+        finite("velocity", self.jacobian()? * rates)
     }
 
     /// The rates of the arms in rad/s that give the platform a velocity.
     ///
     /// # Errors
-    /// [`Singular::Serial`] where a lever is within rounding of zero.
-    pub fn joint_rates(&self, velocity: Vector3<T>) -> Result<Vector3<T>, Singular<T>> {
+    /// [`PoseError::Serial`] where a lever is within rounding of zero, [`PoseError::NotFinite`].
+    pub fn joint_rates(&self, velocity: Vector3<T>) -> Result<Vector3<T>, PoseError<T>> {
+        finite("velocity", velocity)?;
         let (arm, lever) = self.serial_distance();
         if lever <= self.tolerance {
-            return Err(Singular::Serial { arm, lever });
+            return Err(PoseError::Serial { arm, lever });
         }
         let rates = zip(self.rods, self.levers).map(|(rod, lever)| rod.dot(&velocity) / lever);
-        Ok(Vector3::from(rates))
+        finite("rates", Vector3::from(rates))
     }
 
     /// Yoshikawa's manipulability |det J|, in length³ per radian³: zero in serial, without
     /// bound near parallel singularities.
     ///
     /// # Errors
-    /// [`Singular::Parallel`].
-    pub fn manipulability(&self) -> Result<T, Singular<T>> {
+    /// [`PoseError::Parallel`].
+    pub fn manipulability(&self) -> Result<T, PoseError<T>> {
         let [a, b, c] = self.rods;
         let [l1, l2, l3] = self.levers;
         self.rod_inverse()?;
@@ -203,40 +200,65 @@ impl<T: RealField + Copy> Pose<T> {
     /// ```
     ///
     /// # Errors
-    /// [`Singular::Parallel`]: no torque holds a force square to the rods' plane.
-    pub fn holding_torques(&self, force: Vector3<T>) -> Result<Vector3<T>, Singular<T>> {
-        Ok(-self.jacobian()?.tr_mul(&force))
+    /// [`PoseError::Parallel`]: no torque holds a force square to the rods' plane.
+    /// [`PoseError::NotFinite`].
+    pub fn holding_torques(&self, force: Vector3<T>) -> Result<Vector3<T>, PoseError<T>> {
+        finite("force", force)?;
+        finite("torques", -self.jacobian()?.tr_mul(&force))
     }
 
     /// The forces along the lower arms (both rods of each) that hold the platform against a force
     /// on its centre; positive in compression.
     ///
     /// # Errors
-    /// [`Singular::Parallel`].
-    pub fn rod_forces(&self, force: Vector3<T>) -> Result<Vector3<T>, Singular<T>> {
+    /// [`PoseError::Parallel`], [`PoseError::NotFinite`].
+    pub fn rod_forces(&self, force: Vector3<T>) -> Result<Vector3<T>, PoseError<T>> {
+        finite("force", force)?;
         let forces = self.rod_inverse()?.map(|column| -column.dot(&force));
-        Ok(Vector3::from(forces))
+        finite("rod forces", Vector3::from(forces))
     }
 
     /// Columns of the inverse of the matrix whose rows are the rods.
-    pub(crate) fn rod_inverse(&self) -> Result<[Vector3<T>; 3], Singular<T>> {
-        invert_rods(&self.rods).ok_or_else(|| Singular::Parallel {
-            sine: self.parallel_distance(),
-        })
+    pub(crate) fn rod_inverse(&self) -> Result<[Vector3<T>; 3], PoseError<T>> {
+        let sine = self.parallel_distance();
+        if sine <= self.rounding {
+            return Err(PoseError::Parallel { sine });
+        }
+        Ok(invert_rods(&self.rods))
     }
 }
 
-/// Columns of the inverse of the matrix whose rows are three unit vectors; `None` where they
-/// lie in a plane within rounding.
-pub(crate) fn invert_rods<T: RealField + Copy>(rods: &[Vector3<T>; 3]) -> Option<[Vector3<T>; 3]> {
-    let [a, b, c] = rods;
+/// Columns of the inverse of the matrix whose rows are three vectors.
+pub(crate) fn invert_rods<T: RealField + Copy>([a, b, c]: &[Vector3<T>; 3]) -> [Vector3<T>; 3] {
     let volume = a.dot(&b.cross(c));
-    let rounding = T::default_epsilon() * two() * two();
-    (volume.abs() > rounding).then(|| {
-        [
-            b.cross(c) / volume,
-            c.cross(a) / volume,
-            a.cross(b) / volume,
-        ]
-    })
+    [
+        b.cross(c) / volume,
+        c.cross(a) / volume,
+        a.cross(b) / volume,
+    ]
+}
+
+/// The sine of the least angle between one of three unit vectors and the plane of the other two.
+pub(crate) fn least_sine<T: RealField + Copy>([a, b, c]: &[Vector3<T>; 3]) -> T {
+    let volume = a.dot(&b.cross(c)).abs();
+    let widest = b.cross(c).norm().max(c.cross(a).norm());
+    let widest = widest.max(a.cross(b).norm());
+    // Three rods along one line span no plane at all.
+    if widest > T::zero() {
+        volume / widest
+    } else {
+        T::zero()
+    }
+}
+
+/// `vector`, if it is one.
+fn finite<T: RealField + Copy>(
+    name: &'static str,
+    vector: Vector3<T>,
+) -> Result<Vector3<T>, PoseError<T>> {
+    if vector.iter().all(T::is_finite) {
+        return Ok(vector);
+    }
+    let (x, y, z) = (vector.x, vector.y, vector.z);
+    Err(PoseError::NotFinite { name, x, y, z })
 }

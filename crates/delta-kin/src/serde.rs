@@ -3,7 +3,7 @@
 use nalgebra::RealField;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-use crate::{ArmGeometry, Delta, GeometryError, JointRange, Positive, ZAxis};
+use crate::{ArmGeometry, AssemblyMode, Delta, GeometryError, JointRange, Knee, Positive, ZAxis};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
@@ -14,9 +14,7 @@ macro_rules! serialise_as {
             }
         }
 
-        impl<'de, T: RealField + Copy + core::fmt::LowerExp + Deserialize<'de>> Deserialize<'de>
-            for $checked<T>
-        {
+        impl<'de, T: RealField + Copy + Deserialize<'de>> Deserialize<'de> for $checked<T> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 $plain::deserialize(deserializer)?
                     .try_into()
@@ -58,7 +56,7 @@ impl<T: RealField + Copy> TryFrom<PlainRange<T>> for JointRange<T> {
     deny_unknown_fields,
     bound(
         serialize = "T: RealField + Copy + Serialize",
-        deserialize = "T: RealField + Copy + core::fmt::LowerExp + Deserialize<'de>"
+        deserialize = "T: RealField + Copy + Deserialize<'de>"
     )
 )]
 struct PlainDelta<T> {
@@ -71,6 +69,14 @@ struct PlainDelta<T> {
     ranges: [Option<JointRange<T>>; 3],
     #[serde(default)]
     max_lean: Option<T>,
+    #[serde(default = "knees_out")]
+    working_mode: [Knee; 3],
+    #[serde(default)]
+    assembly_mode: AssemblyMode,
+}
+
+const fn knees_out() -> [Knee; 3] {
+    [Knee::Out; 3]
 }
 
 impl<T: RealField + Copy> From<Delta<T>> for PlainDelta<T> {
@@ -81,6 +87,8 @@ impl<T: RealField + Copy> From<Delta<T>> for PlainDelta<T> {
             positive: delta.positive(),
             ranges: *delta.ranges(),
             max_lean: delta.max_lean(),
+            working_mode: delta.working_mode(),
+            assembly_mode: delta.assembly_mode(),
         }
     }
 }
@@ -92,7 +100,9 @@ impl<T: RealField + Copy> TryFrom<PlainDelta<T>> for Delta<T> {
         let delta = Self::from_arms(plain.arms)?
             .with_z(plain.z)
             .with_positive(plain.positive)
-            .with_ranges(plain.ranges);
+            .with_ranges(plain.ranges)
+            .with_working_mode(plain.working_mode)
+            .with_assembly_mode(plain.assembly_mode);
         plain
             .max_lean
             .map_or(Ok(delta), |lean| delta.with_ball_joints(lean))

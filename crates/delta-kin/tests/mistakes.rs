@@ -4,17 +4,28 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, InverseError, Knee};
+use delta_kin::{AssemblyMode, Delta, InverseError, Knee, Pose};
 
 /// Angles away from singular poses, in radians.
 const ANGLE_ERROR: f64 = 1e-13;
+
+/// The pose with the knees in, in the one assembly mode that has it there.
+fn bent_in(delta: &Delta, point: Point3<f64>) -> Pose {
+    let bent = delta.with_working_mode([Knee::In; 3]);
+    let lower = bent.pose_at(point);
+    let upper = bent.with_assembly_mode(AssemblyMode::Upper).pose_at(point);
+    assert!(lower.is_ok() != upper.is_ok(), "{lower:?} {upper:?}");
+    lower.or(upper).unwrap()
+}
 
 /// Some divide by z: off by 0.02° at z = -1e-12, not a number at 0, which the listing that goes
 /// round in forums then hands on.
 #[test]
 fn the_plane_of_the_hips_is_no_exception() {
-    // Rods short enough for the platform to come up between the hips.
-    let delta: Delta = Delta::new(60.0, 20.0, 120.0, 130.0).unwrap();
+    // Rods short enough for the platform to come up between the hips, above its knees.
+    let delta: Delta = Delta::new(60.0, 20.0, 120.0, 130.0)
+        .unwrap()
+        .with_assembly_mode(AssemblyMode::Upper);
     let level = delta.inverse(Point3::new(3.0, -2.0, 0.0)).unwrap();
     assert!(level.iter().all(|angle| angle.is_finite()));
     for z in [1e-12, -1e-12, 1e-300, -0.0] {
@@ -44,7 +55,8 @@ fn every_arm_has_its_own_length() {
     ] {
         let angles = delta.inverse(point).unwrap();
         assert!((delta.forward(angles).unwrap() - point).norm() <= delta.tolerance());
-        for ((knee, arm), angle) in delta.knees(angles).into_iter().zip(arms).zip(&angles) {
+        let pose = delta.pose_at(point).unwrap();
+        for ((knee, arm), angle) in pose.knees().iter().zip(arms).zip(&angles) {
             let wrist =
                 point + Vector3::new(arm.azimuth.cos(), arm.azimuth.sin(), 0.0) * arm.platform;
             assert!(((wrist - knee).norm() - arm.lower).abs() <= delta.tolerance());
@@ -80,7 +92,7 @@ fn straight_up_is_an_angle_like_others() {
             (back - angles - turns * 2.0 * PI).amax() < ANGLE_ERROR,
             "{off}: {back}"
         );
-        let other = delta.inverse_knees(point, [Knee::In; 3]).unwrap();
+        let other = bent_in(&delta, point).angles();
         assert!(other.iter().all(|angle| angle.is_finite()));
         assert!((other - back).amin() > 0.1);
     }
@@ -92,38 +104,56 @@ fn knees_keep_their_names() {
     let delta: Delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
     for z in -340..-130 {
         let point = Point3::new(20.0, -10.0, f64::from(z));
-        let out = delta.inverse(point).unwrap();
-        let inside = delta.inverse_knees(point, [Knee::In; 3]).unwrap();
-        for (out, inside) in delta.knees(out).iter().zip(delta.knees(inside)) {
+        let out = delta.pose_at(point).unwrap();
+        let inside = bent_in(&delta, point);
+        for (out, inside) in out.knees().iter().zip(inside.knees()) {
             let radial = out.coords.normalize();
             assert!(radial.dot(&(out - inside)) > 0.0 || out.z > inside.z, "{z}");
         }
-        let levers = delta.pose_at(point).unwrap().levers();
+        let levers = out.levers();
         assert!(levers.max() < 0.0, "{z}: {levers}");
-        let levers = delta.pose_at_knees(point, [Knee::In; 3]).unwrap().levers();
+        let levers = inside.levers();
         assert!(levers.min() > 0.0, "{z}: {levers}");
     }
 }
 
-/// What `forward` made is never refused, stretched and folded arms among it.
+/// What `forward` made is never refused in the same modes, stretched and folded arms among it.
 #[test]
 fn own_stretched_and_folded_poses_are_reached() {
     let delta: Delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
     for step in 0..20_000 {
         let turn = f64::from(step) * 0.618;
         let angles = Vector3::new(turn, turn * 1.7, turn * 2.9).map(|a| a % (2.0 * PI) - PI);
-        let Ok(both) = delta.forward_both(angles) else {
-            continue;
-        };
-        for point in [both.lower, both.upper] {
-            let reached = delta.inverse(point);
+        for assembly_mode in [AssemblyMode::Lower, AssemblyMode::Upper] {
+            let delta = delta.with_assembly_mode(assembly_mode);
+            let Ok(pose) = delta.pose_of(angles) else {
+                continue;
+            };
+            let knees = <[f64; 3]>::from(pose.levers())
+                .map(|lever| if lever > 0.0 { Knee::In } else { Knee::Out });
+            let reached = delta.with_working_mode(knees).inverse(pose.point());
             assert!(reached.is_ok(), "{angles}: {reached:?}");
         }
     }
-    // All arms stretched in their planes, where knee out and knee in are one.
+    // All arms stretched or folded in their planes, where knee out and knee in are one.
+    let plain: Delta = Delta::new(50.0, 40.0, 100.0, 200.0).unwrap();
+    for theta in [-10f64.atan2(300.0), 10f64.atan2(100.0)] {
+        for knee in [Knee::Out, Knee::In] {
+            let machine = plain.with_working_mode([knee; 3]);
+            let made = machine.forward(Vector3::repeat(theta)).unwrap();
+            let back = machine.inverse(made).unwrap();
+            assert!((machine.forward(back).unwrap() - made).norm() < 1e-12);
+        }
+    }
+}
+
+/// Some answer where all knees meet on the axis: three rods beside each other hold nothing.
+#[test]
+fn knees_on_one_place_hold_no_platform() {
     let plain: Delta = Delta::new(50.0, 50.0, 100.0, 200.0).unwrap();
     for z in [-300.0, -100.0, 100.0, 300.0] {
-        assert!(plain.inverse(Point3::new(0.0, 0.0, z)).is_ok(), "{z}");
+        let refused = plain.inverse(Point3::new(0.0, 0.0, z));
+        assert_eq!(refused, Err(InverseError::Collinear), "{z}");
     }
 }
 

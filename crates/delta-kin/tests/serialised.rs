@@ -2,7 +2,9 @@
 #![cfg(test)]
 #![cfg(feature = "serde")]
 
-use delta_kin::{Arm, Delta, JointRange, Measured, Parameter, Positive, Quantity, ZAxis};
+use delta_kin::{
+    Arm, AssemblyMode, Delta, JointRange, Knee, Measured, Parameter, Positive, Quantity, ZAxis,
+};
 
 #[test]
 fn a_machine_is_read_back() {
@@ -14,7 +16,9 @@ fn a_machine_is_read_back() {
         .with_positive(Positive::Inward)
         .with_ranges([None, Some(JointRange::new(-1.0, 2.0).unwrap()), None])
         .with_ball_joints(0.6)
-        .unwrap();
+        .unwrap()
+        .with_working_mode([Knee::Out, Knee::In, Knee::Out])
+        .with_assembly_mode(AssemblyMode::Upper);
     let text = serde_json::to_string(&delta).unwrap();
     assert_eq!(serde_json::from_str::<Delta>(&text).unwrap(), delta);
     let parameter = Parameter::of(Quantity::Zero, Arm::Second);
@@ -27,8 +31,13 @@ fn a_machine_is_read_back() {
 
 #[test]
 fn wrong_values_are_refused_with_their_reason() {
-    let arm = r#"{"azimuth":0,"base":42,"platform":18,"upper":120,"lower":243,"zero":0}"#;
-    let text = |last: &str, more: &str| format!(r#"{{"arms":[{arm},{arm},{last}]{more}}}"#);
+    let at = |azimuth: u8| {
+        format!(
+            r#"{{"azimuth":{azimuth},"base":42,"platform":18,"upper":120,"lower":243,"zero":0}}"#
+        )
+    };
+    let (one, two, arm) = (&at(0), &at(2), &at(4));
+    let text = |last: &str, more: &str| format!(r#"{{"arms":[{one},{two},{last}]{more}}}"#);
     assert!(serde_json::from_str::<Delta>(&text(arm, "")).is_ok());
     for (text, reason) in [
         (
@@ -44,6 +53,11 @@ fn wrong_values_are_refused_with_their_reason() {
             "joint range 1..=1 rad",
         ),
         (text(arm, r#","reach":2.0"#), "unknown field `reach`"),
+        (text(two, ""), "arm 2 and arm 3 stand at the same azimuth"),
+        (
+            text(arm, r#","assembly_mode":"middle""#),
+            "unknown variant `middle`",
+        ),
     ] {
         let error = serde_json::from_str::<Delta>(&text)
             .unwrap_err()

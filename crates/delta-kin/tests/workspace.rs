@@ -3,7 +3,7 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, FollowError, InverseError, JointRange, Pace, Path, PathError, Workspace, ZAxis,
+    Delta, FollowError, InverseError, JointRange, Pace, Path, PathError, WorkspaceError,
 };
 
 fn delta() -> Delta {
@@ -48,10 +48,7 @@ fn the_ball_of_a_clearance_is_reached() {
             seen += u32::from(clearance > 1.0);
             for direction in directions() {
                 let inside = point + direction * (clearance * 0.999);
-                assert!(
-                    clearance == 0.0 || delta.inverse(inside).is_ok(),
-                    "{inside}"
-                );
+                assert!(clearance == 0.0 || workspace.contains(inside), "{inside}");
             }
         }
         assert!(seen > 50, "{seen}");
@@ -64,8 +61,6 @@ fn solids_are_as_large_as_may_be() {
     for workspace in [delta().workspace(), limited().workspace()] {
         let resolution = 0.25;
         let radius = workspace.largest_cylinder(heights, resolution).unwrap();
-        let half_side = workspace.largest_box(heights, resolution).unwrap();
-        assert!(half_side < radius && half_side * 2f64.sqrt() > radius * 0.9);
         let leaves = |radius: f64| {
             (0..720).any(|k| {
                 let (sin, cos) = (f64::from(k) * 0.5f64.to_radians()).sin_cos();
@@ -76,15 +71,24 @@ fn solids_are_as_large_as_may_be() {
         };
         assert!(!leaves(radius));
         assert!(leaves(radius + 4.0 * resolution), "{radius}");
-        assert!(workspace.covers_cylinder(radius, heights, resolution));
-        assert!(workspace.covers_box(half_side, heights, resolution));
-        assert!(!workspace.covers_box(radius, heights, resolution));
     }
-    assert_eq!(delta().workspace().largest_box([-400.0, -380.0], 1.0), None);
+    let workspace = delta().workspace();
     assert_eq!(
-        delta().workspace().largest_box([f64::NAN, -380.0], 1.0),
-        None
+        workspace.largest_cylinder([-400.0, -380.0], 1.0),
+        Err(WorkspaceError::NoCylinder { resolution: 1.0 })
     );
+    for z in [f64::NAN, f64::NEG_INFINITY, -500.0] {
+        assert!(matches!(
+            workspace.largest_cylinder([z, -380.0], 1.0),
+            Err(WorkspaceError::Height { .. })
+        ));
+    }
+    for resolution in [f64::NAN, 0.0, -1.0, 0.1, 500.0] {
+        assert!(matches!(
+            workspace.largest_cylinder([-290.0, -230.0], resolution),
+            Err(WorkspaceError::Resolution { .. })
+        ));
+    }
 }
 
 #[test]
@@ -98,10 +102,10 @@ fn outlines_are_on_the_edge() {
             workspace.contains(point)
                 && (is_near || !workspace.contains(point + out * (3.0 * near)))
         };
-        let flat = workspace.horizontal_slice(-260.0, 90);
+        let flat = workspace.horizontal_slice(-260.0, 90).unwrap();
         assert_eq!(flat.len(), 90);
         let flat: Vec<_> = flat.collect();
-        let upright: Vec<_> = workspace.vertical_slice(0.5, -260.0, 90).collect();
+        let upright: Vec<_> = workspace.vertical_slice(0.5, -260.0, 90).unwrap().collect();
         assert_eq!((flat.len(), upright.len()), (90, 90));
         for (k, (flat, upright)) in (0..90).zip(flat.into_iter().zip(upright)) {
             // Where the rays of 4 degrees to one another lead.
@@ -119,50 +123,15 @@ fn outlines_are_on_the_edge() {
             );
             assert!(edge(upright), "{upright}");
         }
-        assert_eq!(workspace.horizontal_slice(-500.0, 90).count(), 0);
+        assert!(matches!(
+            workspace.horizontal_slice(-500.0, 90),
+            Err(WorkspaceError::Outside { .. })
+        ));
+        assert!(matches!(
+            workspace.vertical_slice(f64::NAN, -260.0, 90),
+            Err(WorkspaceError::Azimuth { .. })
+        ));
     }
-}
-
-/// Just inside the edge it is the arm that fails just outside.
-#[test]
-fn the_tightest_arm_is_the_first_to_fail() {
-    let near = 1e-6 * delta().span();
-    for delta in [delta(), limited()] {
-        let workspace = delta.workspace();
-        let outline = workspace.horizontal_slice(-260.0, 90);
-        let named = outline.filter(|point| {
-            let outside = point + point.coords.xy().normalize().to_homogeneous() * (2.0 * near);
-            let arm = match delta.inverse(outside) {
-                Err(
-                    InverseError::TooFar { arm, .. }
-                    | InverseError::TooNear { arm, .. }
-                    | InverseError::BallJoint { arm, .. }
-                    | InverseError::JointLimit { arm, .. },
-                ) => arm,
-                other => panic!("{other:?}"),
-            };
-            workspace.tightest_arm(*point) == arm
-        });
-        // Two may fail at once in the corners.
-        assert!(named.count() >= 84);
-    }
-}
-
-/// Above the knees there are angles, but not in the assembly in which the machine hangs.
-#[test]
-fn the_upper_assembly_is_not_in_the_workspace() {
-    let above = Point3::new(0.0, 0.0, 250.0);
-    assert!(delta().inverse(above).is_ok());
-    assert!(!delta().workspace().contains(above));
-    let down = delta().with_z(ZAxis::Down).workspace();
-    assert!(down.contains(above));
-    let same = |a: Workspace, b: Workspace| {
-        let point = Point3::new(40.0, -30.0, 280.0);
-        let mirrored = Point3::new(40.0, -30.0, -280.0);
-        assert!((a.clearance(point) - b.clearance(mirrored)).abs() < 1e-9);
-        assert_eq!(a.tightest_arm(point), b.tightest_arm(mirrored));
-    };
-    same(down, delta().workspace());
 }
 
 fn pace() -> Pace {
@@ -174,7 +143,7 @@ fn paths_are_where_they_were_asked() {
     let (from, to) = (Point3::new(1.0, -2.0, 3.0), Point3::new(9.0, 6.0, -13.0));
     let line = Path::line(from, to).unwrap();
     for share in [0.0, 0.125, 0.375, 0.5, 0.625, 0.75, 1.0] {
-        assert_eq!(line.point_at(share), from + (to - from) * share);
+        assert_eq!(line.point_at(share).unwrap(), from + (to - from) * share);
     }
     assert!((line.length() - 384f64.sqrt()).abs() < 1e-14);
     // A quarter from X over -Y: clockwise from above.
@@ -182,9 +151,12 @@ fn paths_are_where_they_were_asked() {
     for share in [0.0, 0.3, 0.8, 1.0_f64] {
         let (sin, cos) = (-1.5 * share).sin_cos();
         let wanted = Point3::new(-4.0 + 5.0 * cos, -2.0 + 5.0 * sin, 3.0);
-        assert!((arc.point_at(share) - wanted).norm() < 1e-14);
+        assert!((arc.point_at(share).unwrap() - wanted).norm() < 1e-14);
     }
     assert!((arc.length() - 7.5).abs() < 1e-14);
+    for outside in [f64::NAN, -1e-300, 1.0 + f64::EPSILON, f64::INFINITY] {
+        assert_eq!(line.point_at(outside), None);
+    }
 }
 
 #[test]
@@ -224,17 +196,35 @@ fn paths_and_paces_are_checked() {
         Point3::new(0.0, 0.0, -250.0),
     );
     let nan = Point3::new(f64::NAN, 0.0, 0.0);
-    assert_eq!(Path::line(a, nan), Err(PathError::NotFinite));
+    let out_of_range = |path: Result<Path, PathError>, name: &str| {
+        assert!(matches!(path, Err(PathError::OutOfRange { name: given, .. }) if given == name));
+    };
+    out_of_range(Path::line(a, nan), "coordinate");
+    out_of_range(Path::line(a, Point3::new(1e80, 0.0, 0.0)), "coordinate");
+    out_of_range(Path::arc(a, nan, Vector3::z(), 1.0), "coordinate");
+    out_of_range(Path::arc(a, b, nan.coords, 1.0), "axis component");
+    out_of_range(Path::arc(a, b, Vector3::z(), f64::NAN), "angle");
+    out_of_range(Path::arc(a, b, Vector3::z(), 1e9), "angle");
     assert_eq!(Path::arc(a, a, Vector3::z(), 1.0), Err(PathError::NoRadius));
     assert_eq!(
         Path::arc(a, b, Vector3::zeros(), 1.0),
-        Err(PathError::NoRadius)
+        Err(PathError::NoAxis)
     );
-    assert_eq!(Path::arc(a, b, Vector3::x(), 1.0), Err(PathError::Helix));
-    assert_eq!(
-        Path::arc(a, b, Vector3::z(), f64::NAN),
-        Err(PathError::NotFinite)
+    assert!(matches!(
+        Path::arc(a, b, Vector3::x(), 1.0),
+        Err(PathError::Helix { .. })
+    ));
+    // Squares that are below the least number.
+    let tiny = Path::arc(a * 1e-200, Point3::origin(), Vector3::x() * 1e-200, 1.0);
+    assert!(matches!(tiny, Err(PathError::Helix { .. })));
+    let tiny = Path::arc(
+        Point3::new(1e-200, 0.0, 0.0),
+        Point3::origin(),
+        Vector3::z() * 1e-200,
+        2.0,
     );
+    let length: f64 = tiny.unwrap().length();
+    assert!((length - 2e-200).abs() < 1e-214);
     for (feed, rate) in [
         (0.0, 1.0),
         (1.0, -1.0),
@@ -247,7 +237,7 @@ fn paths_and_paces_are_checked() {
         ));
     }
     let line = Path::line(a, b).unwrap();
-    for tolerance in [0.0, -1.0, f64::NAN, delta().tolerance()] {
+    for tolerance in [0.0, -1.0, f64::NAN, 64.0 * delta().tolerance()] {
         assert!(matches!(
             delta().follow(line, tolerance, pace()),
             Err(FollowError::Tolerance { .. })

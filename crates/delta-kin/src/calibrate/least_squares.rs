@@ -121,17 +121,17 @@ pub(super) fn minimise<const N: usize, T: RealField + Copy>(
     let ten: T = nalgebra::convert(10.0);
     let mut changes = SVector::<T, N>::zeros();
     let mut delta = problem.start;
-    let mut sum = problem.sum(&delta).unwrap_or(T::zero());
     let mut scales = SVector::<T, N>::zeros();
     let mut damping: T = nalgebra::convert(FIRST_DAMPING);
     let mut system = LeastSquares::new();
     let mut is_converged = false;
     let mut iterations = 0;
+    let mut sum = T::zero();
     while iterations < most && !is_converged {
         let Some(now) = problem.system(&delta) else {
             break;
         };
-        system = now;
+        (system, sum) = now;
         iterations += 1;
         scales = scales.sup(&system.scales());
         // No step that reduces the sum: rounding is all that is left.

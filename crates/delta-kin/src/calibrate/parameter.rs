@@ -63,6 +63,14 @@ impl Parameter {
         self.arm.is_none_or(|own| own == arm)
     }
 
+    /// What a change of 1 is in a calibration: the machine's span, or a radian.
+    pub(super) fn unit<T: RealField + Copy>(self, span: T) -> T {
+        match self.quantity {
+            Quantity::Azimuth | Quantity::Zero => T::one(),
+            Quantity::Base | Quantity::Platform | Quantity::Upper | Quantity::Lower => span,
+        }
+    }
+
     pub(super) fn add<T: RealField + Copy>(self, arms: &mut [ArmGeometry<T>; 3], change: T) {
         for (arm, geometry) in zip(Arm::ALL, arms.each_mut()) {
             if self.is_of(arm) {

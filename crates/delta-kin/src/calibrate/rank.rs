@@ -10,7 +10,7 @@ pub(super) struct Rank<const N: usize, T: RealField> {
     /// Right singular vectors.
     v: SMatrix<T, N, N>,
     sigma: SVector<T, N>,
-    /// Column lengths: parameters times these are of one unit.
+    /// Column lengths over the parameters' units: parameters times these are pure numbers.
     scales: SVector<T, N>,
     /// Singular values up to this are rounding.
     least: T,
@@ -25,7 +25,7 @@ const MOST_SWEEPS: usize = 40;
 const PART: f64 = 1e-4;
 
 impl<const N: usize, T: RealField + Copy> Rank<N, T> {
-    pub(super) fn new(system: &LeastSquares<N, T>, sum: T, rows: usize) -> Self {
+    pub(super) fn new(system: &LeastSquares<N, T>, sum: T, rows: usize, units: &[T; N]) -> Self {
         let scales = system.scales();
         let mut u = system.r;
         for (mut column, scale) in u.column_iter_mut().zip(&scales) {
@@ -48,7 +48,7 @@ impl<const N: usize, T: RealField + Copy> Rank<N, T> {
         Self {
             v,
             sigma,
-            scales,
+            scales: scales.component_div(&SVector::from(*units)),
             least: sigma.max() * rows_ * T::default_epsilon() * nalgebra::convert(ROUNDINGS),
             variance,
         }

@@ -4,8 +4,8 @@ use nalgebra::{Point3, RealField, Vector3};
 
 use crate::arm::zip;
 use crate::leg::Leg;
-use crate::limits::{half, two};
-use crate::pose::invert_rods;
+use crate::pose::{invert_rods, least_sine};
+use crate::scale::{half, two};
 use crate::{Delta, Pose};
 
 /// One arm during a move of unit time.
@@ -19,9 +19,10 @@ struct Swing<T> {
 }
 
 impl<T: RealField + Copy> Delta<T> {
-    /// The most by which the platform leaves the straight line between two poses while all
-    /// arms turn linearly from one to the other, in the unit of length; `None` where the move is
-    /// too long to tell.
+    /// The most by which the platform leaves the straight line between two poses of this machine
+    /// while all arms turn linearly from one to the other, in the unit of length; `None` where
+    /// the move is too long to tell, or a pose is another machine's. The platform stays in its
+    /// assembly mode on the way.
     ///
     /// Proof. Let the platform be on the line, P(s) = P0 + s V over s = 0..=1, and the knees where
     /// the arms have them, C(s), so that |C'| = Lb |ω|, |C"| = Lb ω², |C‴| = Lb |ω|³. The square
@@ -34,7 +35,8 @@ impl<T: RealField + Copy> Delta<T> {
     ///                                   l = |P - C|(½) + a/2 ≥ |P - C|
     /// ```
     ///
-    /// so that the rod misses its length by at most ε = G / (8 La). The platform itself is where
+    /// so that the rod misses its length by at most ε = G / (8 La), and by the
+    /// [`tolerance`](Self::tolerance) that is left for rounding. The platform itself is where
     /// all three rods have their lengths. Let A be the matrix of the rods' unit vectors, κ the
     /// Frobenius norm of its inverse halfway, η that of the change of A from there, so that
     /// |A⁻¹| ≤ κ' = κ / (1 - κ η) all along the line. Within δ ≤ La/2 - ε of P(s) the lengths
@@ -46,9 +48,22 @@ impl<T: RealField + Copy> Delta<T> {
     ///
     /// into itself and contracts there if x ≤ 1: it holds one place where all rods have
     /// their lengths. That place moves continuously from one pose to the other, so it is the
-    /// platform, and δ is the bound. For short steps it is the true departure times at most κ.
+    /// platform, and δ is the bound. A is invertible in the whole ball, so its determinant keeps
+    /// its sign, which is the assembly mode. For short steps δ is the true departure times at
+    /// most κ.
     #[must_use]
     pub fn chord_bound(&self, from: &Pose<T>, to: &Pose<T>) -> Option<T> {
+        for pose in [from, to] {
+            let local = self.flip(pose.point().coords);
+            let legs = zip(self.legs().each_ref(), self.thetas(pose.angles()));
+            for (leg, theta) in legs {
+                // Written so that NaN is refused too.
+                let is_met = leg.stretch(&local, theta).abs() <= self.tolerance();
+                if !is_met {
+                    return None;
+                }
+            }
+        }
         self.bound((from.angles(), from.point()), (to.angles(), to.point()))
     }
 
@@ -64,10 +79,16 @@ impl<T: RealField + Copy> Delta<T> {
         let halfway = start + velocity * half::<T>();
         let thetas = zip(self.thetas(from.0), self.thetas(to.0));
         let [first, second, third] = zip(self.legs().each_ref(), thetas);
-        let swing = |(leg, thetas)| Swing::new(leg, thetas, &halfway, &velocity);
+        let rounding = self.tolerance();
+        let swing = |(leg, thetas)| Swing::new(leg, thetas, &halfway, &velocity, rounding);
         let swings = [swing(first)?, swing(second)?, swing(third)?];
 
-        let [a, b, c] = invert_rods(&swings.each_ref().map(|swing| swing.rod))?;
+        let rods = swings.each_ref().map(|swing| swing.rod);
+        // Nearer to a parallel singularity half the digits of κ would be lost.
+        if least_sine(&rods) <= T::default_epsilon().sqrt() {
+            return None;
+        }
+        let [a, b, c] = invert_rods(&rods);
         let kappa = (a.norm_squared() + b.norm_squared() + c.norm_squared()).sqrt();
         let eta = Vector3::from(swings.each_ref().map(|swing| swing.turn)).norm();
         let misses = Vector3::from(swings.each_ref().map(|swing| swing.miss));
@@ -95,6 +116,7 @@ impl<T: RealField + Copy> Swing<T> {
         (from, to): (T, T),
         halfway: &Vector3<T>,
         velocity: &Vector3<T>,
+        rounding: T,
     ) -> Option<Self> {
         let rate = to - from;
         let theta = from + rate * half();
@@ -114,7 +136,7 @@ impl<T: RealField + Copy> Swing<T> {
         let least = length + (length - way);
         (least > T::zero()).then(|| Self {
             rod: rod / length,
-            miss: largest / (leg.lower * nalgebra::convert(8.0)),
+            miss: largest / (leg.lower * nalgebra::convert(8.0)) + rounding,
             turn: two::<T>() * way / least,
         })
     }

@@ -2,7 +2,8 @@
 
 use nalgebra::{Point3, RealField, Vector3};
 
-use crate::limits::{max_value, two};
+use crate::rounded::Rounded;
+use crate::scale::{farthest, is_within, two, widest};
 
 /// A way of the platform's centre in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,19 +28,32 @@ enum Shape<T: RealField> {
 }
 
 /// Why a path is refused.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PathError {
-    /// A coordinate or angle is infinite, not a number, or too large to reckon with.
-    #[error("a coordinate or angle of the path is not finite")]
-    NotFinite,
-    /// The arc starts at its centre, or its axis has no direction.
-    #[error("the arc has no radius, or its axis no direction")]
+pub enum PathError<T: RealField + Copy = f64> {
+    /// A number of the path is not one of the stated size.
+    #[error("{name} {} of the path is not within ±{}", Rounded(*.value), Rounded(*.max))]
+    OutOfRange {
+        /// `coordinate`, `axis component` or `angle`.
+        name: &'static str,
+        /// The value given, in the unit of length or in radians.
+        value: T,
+        /// The greatest allowed, either way.
+        max: T,
+    },
+    /// The arc starts at its centre.
+    #[error("the arc starts at its centre")]
     NoRadius,
+    /// The axis has no direction.
+    #[error("the arc's axis has no direction")]
+    NoAxis,
     /// The start does not lie in the plane through the centre square to the axis.
-    #[error("the arc's start is not in the plane of its centre")]
-    Helix,
+    #[error("the arc's start is {} out of the plane of its centre", Rounded(*.by))]
+    Helix {
+        /// How far it is from that plane, in the unit of length.
+        by: T,
+    },
 }
 
 /// How far out of its plane an arc's start may be, in units of its radius: 1e-9 for points typed
@@ -47,21 +61,22 @@ pub enum PathError {
 const OUT_OF_PLANE: f64 = 1e-9;
 
 impl<T: RealField + Copy> Path<T> {
-    /// A straight line.
+    /// A straight line. Coordinates are within ±4 h, h the fourth root of the largest number
+    /// divided by 32 (f64: ±1.4e76, f32: ±5.4e8).
     ///
     /// # Errors
-    /// [`PathError::NotFinite`].
-    pub fn line(from: Point3<T>, to: Point3<T>) -> Result<Self, PathError> {
-        if !(to - from).norm_squared().is_finite() {
-            return Err(PathError::NotFinite);
-        }
+    /// [`PathError::OutOfRange`].
+    pub fn line(from: Point3<T>, to: Point3<T>) -> Result<Self, PathError<T>> {
+        within("coordinate", from.coords, farthest())?;
+        within("coordinate", to.coords, farthest())?;
         Ok(Self {
             shape: Shape::Line { from, to },
         })
     }
 
     /// An arc of `angle` radians from `start`, round the axis through `centre`, counter-clockwise
-    /// seen against the axis; negative: clockwise. 2π and more go round.
+    /// seen against the axis; negative: clockwise. 2π and more go round. Coordinates as for
+    /// [`line`](Self::line), the angle within ±1/√ε (f64: 6.7e7, f32: 2900).
     ///
     /// # Errors
     /// [`PathError`].
@@ -70,20 +85,31 @@ impl<T: RealField + Copy> Path<T> {
         centre: Point3<T>,
         axis: Vector3<T>,
         angle: T,
-    ) -> Result<Self, PathError> {
-        let out = start - centre;
-        let (radius, length) = (out.norm(), axis.norm());
-        if !(angle.is_finite() && radius.is_finite() && length.is_finite()) {
-            return Err(PathError::NotFinite);
+    ) -> Result<Self, PathError<T>> {
+        within("coordinate", start.coords, farthest())?;
+        within("coordinate", centre.coords, farthest())?;
+        within("axis component", axis, farthest())?;
+        let max = widest();
+        if !is_within(angle, max) {
+            let name = "angle";
+            let value = angle;
+            return Err(PathError::OutOfRange { name, value, max });
         }
-        if !(radius > T::zero() && length > T::zero()) {
+        let out = start - centre;
+        let radius = length(&out);
+        if radius <= T::zero() {
             return Err(PathError::NoRadius);
         }
-        let axis = axis / length;
+        let largest = axis.amax();
+        if largest <= T::zero() {
+            return Err(PathError::NoAxis);
+        }
+        let axis = (axis / largest).normalize();
         let rounding = T::default_epsilon() * nalgebra::convert(64.0);
         let slack = rounding.max(nalgebra::convert(OUT_OF_PLANE));
-        if out.dot(&axis).abs() > radius * slack {
-            return Err(PathError::Helix);
+        let by = out.dot(&axis).abs();
+        if by > radius * slack {
+            return Err(PathError::Helix { by });
         }
         Ok(Self {
             shape: Shape::Arc {
@@ -99,14 +125,18 @@ impl<T: RealField + Copy> Path<T> {
     #[must_use]
     pub fn length(&self) -> T {
         match &self.shape {
-            Shape::Line { from, to } => (to - from).norm(),
-            Shape::Arc { start, angle, .. } => (start.norm() * angle.abs()).min(max_value()),
+            Shape::Line { from, to } => length(&(to - from)),
+            Shape::Arc { start, angle, .. } => length(start) * angle.abs(),
         }
     }
 
-    /// The place after a share of the path, 0..=1.
+    /// The place after a share of the path; `None` unless that is within 0..=1.
     #[must_use]
-    pub fn point_at(&self, fraction: T) -> Point3<T> {
+    pub fn point_at(&self, fraction: T) -> Option<Point3<T>> {
+        (fraction >= T::zero() && fraction <= T::one()).then(|| self.place(fraction))
+    }
+
+    pub(super) fn place(&self, fraction: T) -> Point3<T> {
         match &self.shape {
             // From the nearer end, so that both are met exactly.
             Shape::Line { from, to } if fraction * two() < T::one() => {
@@ -134,8 +164,31 @@ impl<T: RealField + Copy> Path<T> {
                 let turn = (*angle * share).abs();
                 // r (1 - cos(turn/2)) without its cancellation.
                 let sin = (turn / (two::<T>() * two())).sin();
-                (turn <= T::pi()).then(|| start.norm() * two() * sin * sin)
+                (turn <= T::pi()).then(|| length(start) * two() * sin * sin)
             }
         }
+    }
+}
+
+fn within<T: RealField + Copy>(
+    name: &'static str,
+    vector: Vector3<T>,
+    max: T,
+) -> Result<(), PathError<T>> {
+    for value in vector.iter().copied() {
+        if !is_within(value, max) {
+            return Err(PathError::OutOfRange { name, value, max });
+        }
+    }
+    Ok(())
+}
+
+/// The length of a vector, also of one whose squares are below the least number.
+fn length<T: RealField + Copy>(vector: &Vector3<T>) -> T {
+    let largest = vector.amax();
+    if largest > T::zero() {
+        (vector / largest).norm() * largest
+    } else {
+        T::zero()
     }
 }

@@ -4,7 +4,8 @@ use nalgebra::{Point3, RealField};
 
 use super::bisect::Bisection;
 use super::{FollowError, Pace, Path, Waypoint};
-use crate::Delta;
+use crate::arm::zip;
+use crate::{Arm, Delta};
 
 /// Yields each waypoint or the reason why there is none; ends after an error.
 #[derive(Debug, Clone)]
@@ -37,7 +38,7 @@ impl<T: RealField + Copy> Walk<T> {
     }
 
     fn start(&mut self) -> Step<T> {
-        let point = self.path.point_at(T::zero());
+        let point = self.path.place(T::zero());
         let fraction = T::zero();
         let first = Waypoint {
             angles: self.inverse(fraction, point)?,
@@ -88,8 +89,18 @@ impl<T: RealField + Copy> Walk<T> {
     }
 
     fn try_step(&self, last: &Waypoint<T>, fraction: T) -> Step<T> {
-        let point = self.path.point_at(fraction);
+        let point = self.path.place(fraction);
         let angles = self.inverse(fraction, point)?;
+        let turned = zip(Arm::ALL, (angles - last.angles).into());
+        for (arm, turned) in turned {
+            if turned.abs() > T::pi() {
+                return Err(FollowError::Turn {
+                    fraction,
+                    point,
+                    arm,
+                });
+            }
+        }
         let share = fraction - last.fraction;
         let departure = self.path.height(share).and_then(|height| {
             let bound = self

@@ -5,11 +5,11 @@ use core::iter::FusedIterator;
 use nalgebra::{Point3, RealField, Vector3};
 
 use super::Workspace;
-use crate::limits::half;
 
 /// The points at which rays from a centre first leave the workspace.
 ///
-/// Each is inside, at most 1e-6 of the machine's span from the edge.
+/// Each is inside, with a [`clearance`](Workspace::clearance) of at most 1e-6 of the machine's
+/// span.
 #[derive(Debug, Clone)]
 #[must_use = "iterators are lazy"]
 pub struct Outline<T: RealField = f64> {
@@ -20,24 +20,16 @@ pub struct Outline<T: RealField = f64> {
     next: u32,
 }
 
-/// How near to the edge a point of the outline is, as a share of the span.
+/// How near to the edge a point of the outline is, in spans.
 const NEAR: f64 = 1e-6;
 
-/// A ray that grazes the edge is given up here, at a place inside.
-const MOST_STEPS: u32 = 4096;
-
 impl<T: RealField + Copy> Outline<T> {
-    pub(super) fn new(
+    pub(super) const fn new(
         workspace: Workspace<T>,
         centre: Point3<T>,
         plane: [Vector3<T>; 2],
         points: u32,
     ) -> Self {
-        let points = if workspace.contains(centre) {
-            points
-        } else {
-            0
-        };
         Self {
             workspace,
             centre,
@@ -47,23 +39,18 @@ impl<T: RealField + Copy> Outline<T> {
         }
     }
 
-    /// The last place on a ray that is known to be inside.
+    /// The last place on a ray that is known to be inside: steps of the clearance, until it is
+    /// small. As each is longer than 1e-6 spans, a million leave the machine's reach.
     fn leave(&self, direction: Vector3<T>) -> Point3<T> {
         let near = self.workspace.delta.span() * nalgebra::convert(NEAR);
         let mut place = self.centre;
-        for _ in 0..MOST_STEPS {
-            let workspace = &self.workspace;
-            let mut step = workspace.clearance(place).min(workspace.steady(place));
-            // The assembly may change sooner.
-            while step > near && !workspace.contains(place + direction * step) {
-                step *= half();
-            }
+        loop {
+            let step = self.workspace.clearance(place);
             if step <= near {
-                break;
+                return place;
             }
             place += direction * step;
         }
-        place
     }
 }
 

@@ -29,10 +29,12 @@ pub fn delta() -> Option<()> {
     let last = delta.follow(line, 0.01, pace).ok()?.last()?;
     holds((last.point - line.point_at(1.0)).norm() < CLOSE_MM)?;
     let workspace = delta.workspace();
-    holds(workspace.covers_cylinder(black_box(60.0), [-290.0, -260.0], 1.0))?;
+    let radius = workspace.largest_cylinder([-290.0, black_box(-260.0)], 2.0);
+    holds(radius.ok()? > 60.0)?;
     holds(
         workspace
             .horizontal_slice(-260.0, 8)
+            .ok()?
             .all(|edge| workspace.contains(edge)),
     )
 }

@@ -1,0 +1,139 @@
+//! Assembly modes: on which side of the knees' plane the platform is.
+
+use core::fmt;
+
+use nalgebra::{RealField, Vector3};
+
+use crate::arm::zip;
+use crate::scale::{half, two};
+use crate::{Delta, InverseError, ZAxis};
+
+/// Which of the two places where the lower arms meet the platform takes.
+///
+/// They are mirror images in the plane of the knees (each moved inward by the platform's radius),
+/// and the platform comes from one to the other only where the rods lie in that plane, a parallel
+/// singularity. So a mode is a side of the plane, counted in the order of the arms: it keeps its
+/// name wherever the machine can go without passing a singularity, also where the plane tilts
+/// beyond vertical far out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "three spheres meet in two points")]
+pub enum AssemblyMode {
+    /// Below the knees that stand round the axis in the order of their azimuths: as Delta robots
+    /// hang.
+    #[default]
+    Lower,
+    /// Above them.
+    Upper,
+}
+
+impl AssemblyMode {
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Lower => Self::Upper,
+            Self::Upper => Self::Lower,
+        }
+    }
+}
+
+impl fmt::Display for AssemblyMode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lower => "lower",
+            Self::Upper => "upper",
+        })
+    }
+}
+
+/// The platform above the plane of the spheres' centres.
+struct Tripod<T> {
+    /// Square to the plane, twice the area of the centres' triangle long.
+    normal: Vector3<T>,
+    /// Square of a side of the triangle, not much shorter than the longest.
+    side2: T,
+    /// The platform's distance from the plane times the normal's length.
+    volume: T,
+}
+
+impl<T: RealField + Copy> Tripod<T> {
+    /// From the rods, each from its centre to the platform.
+    #[inline(always)]
+    fn new([first, second, third]: [Vector3<T>; 3]) -> Self {
+        let (d2, d3) = (first - second, first - third);
+        let normal = d2.cross(&d3);
+        Self {
+            normal,
+            side2: d2.norm_squared().max(d3.norm_squared()),
+            volume: first.dot(&normal),
+        }
+    }
+
+    /// Whether the triangle is higher than twice what rounding makes of a line.
+    #[inline(always)]
+    fn is_plane(&self, tolerance: T) -> bool {
+        let height = tolerance * two();
+        self.normal.norm_squared() > self.side2 * (height * height)
+    }
+}
+
+impl<T: RealField + Copy> Delta<T> {
+    /// Whether the rods, each from its centre to the platform, are clearly in the machine's
+    /// assembly mode.
+    #[inline(always)]
+    pub(crate) fn is_assembled(&self, rods: [Vector3<T>; 3]) -> bool {
+        let tripod = Tripod::new(rods);
+        (tripod.volume * self.side() > T::zero()) & tripod.is_plane(self.tolerance())
+    }
+
+    /// Whether `forward` of these angles is the platform's place, or why it is not.
+    ///
+    /// A place as far beyond the singular surface as a change of the rods' lengths by a quarter
+    /// of the [`tolerance`](Self::tolerance), the rounding of `forward` and `inverse` together,
+    /// moves it counts as on it:
+    ///
+    /// ```text
+    /// La - √(La² - d²) = d²/(2 La) ≤ tolerance/4
+    /// ```
+    pub(crate) fn check_assembly(
+        &self,
+        local: &Vector3<T>,
+        thetas: [T; 3],
+    ) -> Result<(), InverseError<T>> {
+        let centres = self.centres_at(thetas);
+        let tripod = Tripod::new(centres.map(|centre| local - centre));
+        if !tripod.is_plane(self.tolerance()) {
+            return Err(InverseError::Collinear);
+        }
+        let beyond = -tripod.volume * self.side() / tripod.normal.norm();
+        let [l1, l2, l3] = self.legs().each_ref().map(|leg| leg.lower);
+        let rounding = l1.min(l2).min(l3) * self.tolerance() * half();
+        if beyond <= T::zero() || beyond * beyond <= rounding {
+            return Ok(());
+        }
+        let assembly_mode = self.assembly_mode().other();
+        let z = self.other_z(local);
+        Err(InverseError::OtherAssembly { assembly_mode, z })
+    }
+
+    /// The other direction of z, where a place on the far side of the base plane would be in the
+    /// machine's modes with it.
+    pub(crate) fn other_z(&self, local: &Vector3<T>) -> Option<ZAxis> {
+        let is_across = match self.assembly_mode() {
+            AssemblyMode::Lower => local.z > T::zero(),
+            AssemblyMode::Upper => local.z < T::zero(),
+        };
+        let mirrored = Vector3::new(local.x, local.y, -local.z);
+        let rods = zip(self.legs().each_ref(), self.working_mode()).map(|(leg, knee)| {
+            let triangle = leg.triangle(&mirrored).at_edge();
+            leg.rod(&triangle, &triangle.heading(knee))
+        });
+        (is_across && self.is_assembled(rods)).then(|| match self.z() {
+            ZAxis::Up => ZAxis::Down,
+            ZAxis::Down => ZAxis::Up,
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! What an arm's numbers may be, and why a geometry is refused.
+
+use nalgebra::RealField;
+
+use crate::arm::zip;
+use crate::rounded::Rounded;
+use crate::scale::{half, is_within, least_share, longest, shortest, widest};
+use crate::{Arm, ArmGeometry};
+
+/// Why a geometry is refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum GeometryError<T: RealField + Copy = f64> {
+    /// A length is not a number between the stated ends.
+    #[error(
+        "{arm}: {name} {} is not within {}..={}",
+        Rounded(*.length), Rounded(*.min), Rounded(*.max)
+    )]
+    Length {
+        /// The arm.
+        arm: Arm,
+        /// `base radius`, `platform radius`, `upper arm` or `lower arm`.
+        name: &'static str,
+        /// The length given.
+        length: T,
+        /// Least length allowed.
+        min: T,
+        /// Greatest length allowed.
+        max: T,
+    },
+    /// An angle is not a number of the stated size.
+    #[error("{arm}: {name} {} rad is not within ±{} rad", Rounded(*.angle), Rounded(*.max))]
+    Angle {
+        /// The arm.
+        arm: Arm,
+        /// `azimuth` or `zero`.
+        name: &'static str,
+        /// The angle given.
+        angle: T,
+        /// Greatest angle allowed, either way.
+        max: T,
+    },
+    /// Two arms stand at one azimuth: their knees have no order round the axis, and so the
+    /// assembly modes no names.
+    #[error("{first} and {second} stand at the same azimuth")]
+    SameAzimuth {
+        /// One of them.
+        first: Arm,
+        /// The other.
+        second: Arm,
+    },
+    /// A joint range is empty, not finite, too far from zero or wider than a turn.
+    #[error(
+        "joint range {}..={} rad is empty, wider than a turn or not within ±{} rad",
+        Rounded(*.min), Rounded(*.max), Rounded(widest::<T>())
+    )]
+    Range {
+        /// Lower end given, in radians.
+        min: T,
+        /// Upper end given, in radians.
+        max: T,
+    },
+    /// A ball joint's limit is not an angle that means something.
+    #[error("ball joints may lean by {} rad, which is not above 0 and below π/2", Rounded(*.max_lean))]
+    Lean {
+        /// The limit given, in radians.
+        max_lean: T,
+    },
+}
+
+/// The span of arms whose numbers are all within the range that the crate takes.
+pub(crate) fn checked_span<T: RealField + Copy>(
+    arms: &[ArmGeometry<T>; 3],
+) -> Result<T, GeometryError<T>> {
+    check_lengths(arms, shortest())?;
+    check_angles(arms)?;
+    let [first, second, third] = arms.map(|arm| arm.base + arm.platform + arm.upper + arm.lower);
+    let span = first.max(second).max(third);
+    check_lengths(arms, span * least_share())?;
+    Ok(span)
+}
+
+fn check_lengths<T: RealField + Copy>(
+    arms: &[ArmGeometry<T>; 3],
+    least_arm: T,
+) -> Result<(), GeometryError<T>> {
+    let max = longest();
+    for (arm, geometry) in zip(Arm::ALL, *arms) {
+        for (name, length, min) in [
+            ("base radius", geometry.base, T::zero()),
+            ("platform radius", geometry.platform, T::zero()),
+            ("upper arm", geometry.upper, least_arm),
+            ("lower arm", geometry.lower, least_arm),
+        ] {
+            // Written so that NaN is refused too.
+            if !(length >= min && length <= max) {
+                return Err(GeometryError::Length {
+                    arm,
+                    name,
+                    length,
+                    min,
+                    max,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_angles<T: RealField + Copy>(arms: &[ArmGeometry<T>; 3]) -> Result<(), GeometryError<T>> {
+    let max = widest();
+    for (arm, geometry) in zip(Arm::ALL, *arms) {
+        for (name, angle) in [("azimuth", geometry.azimuth), ("zero", geometry.zero)] {
+            if !is_within(angle, max) {
+                return Err(GeometryError::Angle {
+                    arm,
+                    name,
+                    angle,
+                    max,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// 1 where the azimuths of arms 1, 2, 3 go round counter-clockwise seen from above, -1 where they
+/// go round clockwise.
+///
+/// ```text
+/// sin(a2 - a1) + sin(a3 - a2) + sin(a1 - a3) = -4 sin((a2 - a1)/2) sin((a3 - a2)/2) sin((a1 - a3)/2)
+/// ```
+pub(crate) fn order<T: RealField + Copy>(
+    arms: &[ArmGeometry<T>; 3],
+) -> Result<T, GeometryError<T>> {
+    let [a1, a2, a3] = arms.each_ref().map(|arm| arm.azimuth);
+    let [first, second, third] = Arm::ALL;
+    let largest = T::one().max(a1.abs()).max(a2.abs()).max(a3.abs());
+    let rounding = largest * T::default_epsilon() * nalgebra::convert(4.0);
+    let mut order = -T::one();
+    for (pair, apart) in [
+        ((first, second), a2 - a1),
+        ((second, third), a3 - a2),
+        ((third, first), a1 - a3),
+    ] {
+        let sin = (apart * half()).sin();
+        if sin.abs() <= rounding {
+            let (first, second) = pair;
+            return Err(GeometryError::SameAzimuth { first, second });
+        }
+        order *= sin.signum();
+    }
+    Ok(order)
+}

@@ -1,0 +1,64 @@
+//! The range of numbers that the crate takes: what lies outside is refused by name.
+//!
+//! | number | range | `f64` | `f32` |
+//! |---|---|---|---|
+//! | upper and lower arm | 1/√h..=h | 2e-38..=3.6e75 | 9e-5..=1.3e8 |
+//! | the same, in spans of the machine | ε^¼.. | 1.2e-4.. | 0.019.. |
+//! | base and platform radius | 0..=h | 0..=3.6e75 | 0..=1.3e8 |
+//! | coordinates of paths and measured points | ±4 h | ±1.4e76 | ±5.4e8 |
+//! | angles, azimuths, zeros, ends of ranges, in rad | ±1/√ε | ±6.7e7 | ±2900 |
+//! | feed, rates of the arms | 1/h²..=h² | 8e-152..=1e151 | 6e-17..=1.8e16 |
+//!
+//! h is the fourth root of the largest number, divided by 32: products of four lengths neither
+//! overflow nor lose digits. In an arm shorter than ε^¼ of the span rounding would turn the rods
+//! by more than ε^¾; an angle beyond 1/√ε has fewer than half its digits after the point.
+
+use nalgebra::RealField;
+
+/// h: the greatest length of an arm.
+pub(crate) fn longest<T: RealField + Copy>() -> T {
+    max_value::<T>().sqrt().sqrt() / nalgebra::convert(32.0)
+}
+
+/// The least length of an upper or lower arm.
+pub(crate) fn shortest<T: RealField + Copy>() -> T {
+    longest::<T>().sqrt().recip()
+}
+
+/// The least upper or lower arm of a machine, in units of its span.
+pub(crate) fn least_share<T: RealField + Copy>() -> T {
+    T::default_epsilon().sqrt().sqrt()
+}
+
+/// The greatest coordinate of a path or a measured point, either way.
+pub(crate) fn farthest<T: RealField + Copy>() -> T {
+    longest::<T>() * nalgebra::convert(4.0)
+}
+
+/// The greatest angle, either way, in radians.
+pub(crate) fn widest<T: RealField + Copy>() -> T {
+    T::default_epsilon().sqrt().recip()
+}
+
+/// The greatest feed and rate; the least is its reciprocal.
+pub(crate) fn fastest<T: RealField + Copy>() -> T {
+    longest::<T>() * longest::<T>()
+}
+
+/// Whether `value` is a number within ±`max`.
+pub(crate) fn is_within<T: RealField + Copy>(value: T, max: T) -> bool {
+    value.abs() <= max
+}
+
+/// The largest finite number; every `RealField` of machine floats has one.
+pub(crate) fn max_value<T: RealField>() -> T {
+    T::max_value().unwrap_or_else(T::one)
+}
+
+pub(crate) fn two<T: RealField>() -> T {
+    T::one() + T::one()
+}
+
+pub(crate) fn half<T: RealField>() -> T {
+    nalgebra::convert(0.5)
+}

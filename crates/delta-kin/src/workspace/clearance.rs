@@ -1,0 +1,105 @@
+//! How far the platform can move from a point in any direction.
+
+use nalgebra::{Point3, RealField, Vector3};
+
+use super::Workspace;
+use crate::arm::zip;
+use crate::leg::Leg;
+use crate::pose::invert_rods;
+use crate::scale::two;
+use crate::{Delta, Knee, Pose};
+
+impl<T: RealField + Copy> Workspace<T> {
+    /// How far the platform can be moved from `point` in any direction, in the unit of length: the
+    /// whole ball round it is in the workspace. Zero where `point` itself is not.
+    ///
+    /// It is the least of the distances to what limits each arm, and of a distance within which
+    /// the rods cannot come to lie in a plane:
+    ///
+    /// ```text
+    /// reach:    La - |P - nearest place of the knee|,  |P - farthest place of the knee| - La
+    /// ranges:   ||P - knee at the end of the range| - La|
+    /// balls:    La sin(max lean) - |w|
+    /// assembly: see below
+    /// ```
+    ///
+    /// None of the first three changes by more than the point moves, and by continuity no angle
+    /// leaves its range inside the ball. The last is a lower bound: more may be free.
+    ///
+    /// Proof. Let the platform move by d, |d| ≤ δ, and a knee by a chord of length y. With e along
+    /// the rod, t and s along the knee's way and the upper arm, λ = |e · t|, σ = |e · s|, the
+    /// length of the rod is kept if
+    ///
+    /// ```text
+    /// λ y ≤ δ + (δ + y)²/(2 La) + (λ + σ) y²/(2 Lb)
+    /// ```
+    ///
+    /// While y grows from 0 it cannot pass a Y for which this is false, such as Y = 2 δ/λ if
+    ///
+    /// ```text
+    /// Y < λ / (9/(4 La) + (λ + σ)/Lb)
+    /// ```
+    ///
+    /// So no rod turns by more than η = (δ + Y)/La, and with κ the Frobenius norm of the inverse
+    /// of the rods' matrix none comes into the plane of the others while κ √(η1² + η2² + η3²) < 1.
+    #[must_use]
+    pub fn clearance(&self, point: Point3<T>) -> T {
+        let Ok(pose) = self.delta.pose_at(point) else {
+            return T::zero();
+        };
+        let local = self.delta.flip(point.coords);
+        zip(self.delta.legs().each_ref(), self.delta.working_mode())
+            .map(|(leg, knee)| leg_clearance(leg, knee, &local))
+            .into_iter()
+            .fold(steady(&self.delta, &pose), T::min)
+            .max(T::zero())
+    }
+}
+
+fn leg_clearance<T: RealField + Copy>(leg: &Leg<T>, knee: Knee, local: &Vector3<T>) -> T {
+    let side = local.dot(&leg.sideways()).abs();
+    let clearance = leg.reach_margin(local).min(leg.max_side - side);
+    if !leg.has_range() {
+        return clearance;
+    }
+    let end = |theta: T| {
+        // The knee at an end may also be behind the other solution: then the wrist's distance
+        // from the upper arm's line at that end holds it off.
+        let hip = leg.centre(theta) - leg.spoke(theta);
+        let ahead = (local - hip).dot(&leg.tangent(theta)) / leg.upper;
+        let other = match knee {
+            Knee::Out => ahead,
+            Knee::In => -ahead,
+        };
+        leg.stretch(local, theta).abs().max(other)
+    };
+    clearance.min(end(leg.low)).min(end(leg.high))
+}
+
+/// How far the platform can move from a pose before its rods could lie in a plane.
+fn steady<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> T {
+    if pose.rod_inverse().is_err() {
+        return T::zero();
+    }
+    let [a, b, c] = invert_rods(pose.rods());
+    let kappa = (a.norm_squared() + b.norm_squared() + c.norm_squared()).sqrt();
+    let nine_quarters: T = nalgebra::convert(2.25);
+    let legs = zip(delta.legs().each_ref(), pose.levers().into());
+    let [first, second, third] = legs.map(|(leg, lever)| {
+        let along = (lever / leg.upper).abs();
+        // λ + σ is the most with the rod in the arm's plane.
+        let both = along
+            + ((T::one() - along) * (T::one() + along))
+                .max(T::zero())
+                .sqrt();
+        let least_y = along / (nine_quarters / leg.lower + both / leg.upper);
+        // η for δ = 1.
+        let turn = (T::one() + two::<T>() / along) / leg.lower;
+        (least_y * along / two(), turn)
+    });
+    let held = first.0.min(second.0).min(third.0);
+    let turn = Vector3::new(first.1, second.1, third.1).norm();
+    // What rounding leaves of the bounds.
+    let share: T = nalgebra::convert(1.0 - 1e-3);
+    held.min((kappa * turn).recip()) * share
+}

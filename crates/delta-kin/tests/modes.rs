@@ -1,0 +1,251 @@
+//! Working and assembly modes: nothing is answered, followed, calibrated or counted as reached in
+//! another mode than the machine's.
+#![cfg(test)]
+
+use delta_kin::nalgebra::{Point3, Vector3};
+use delta_kin::{
+    AssemblyMode, CalibrationError, Delta, FollowError, InverseError, JointRange, Knee, Measured,
+    Pace, Parameter, Path, Positive, Quantity, WorkspaceError, ZAxis,
+};
+
+fn thesis() -> Delta {
+    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
+}
+
+fn pace() -> Pace {
+    Pace::new(100.0, [5.0; 3]).unwrap()
+}
+
+/// Who works with z down and does not say so is told, and not driven to a place 460 mm away.
+#[test]
+fn a_point_above_the_base_is_refused_with_the_likely_cause() {
+    let above = Point3::new(30.0, 20.0, 300.0);
+    let refused = thesis().inverse(above).unwrap_err();
+    assert_eq!(
+        refused,
+        InverseError::OtherAssembly {
+            assembly_mode: AssemblyMode::Upper,
+            z: Some(ZAxis::Down),
+        }
+    );
+    assert_eq!(
+        refused.to_string(),
+        "the point lies above the base plane, where only the upper assembly mode reaches it; \
+         ZAxis::Down would put it where the machine works"
+    );
+    let down = thesis().with_z(ZAxis::Down);
+    let angles = down.inverse(above).unwrap();
+    assert!((down.forward(angles).unwrap() - above).norm() < 1e-12);
+    // The other way round.
+    assert!(matches!(
+        down.inverse(Point3::new(30.0, 20.0, -300.0)),
+        Err(InverseError::OtherAssembly {
+            z: Some(ZAxis::Up),
+            ..
+        })
+    ));
+    // Joint ranges do not hide the cause.
+    let ranged = thesis().with_range(JointRange::new(-0.3, 2.0).unwrap());
+    assert_eq!(ranged.inverse(above), Err(refused));
+    assert!(thesis().pose_at(above).is_err());
+}
+
+/// By name it is reached, and nothing below is.
+#[test]
+fn the_other_assembly_mode_is_asked_for_by_name() {
+    let upper = thesis().with_assembly_mode(AssemblyMode::Upper);
+    let above = Point3::new(30.0, 20.0, 300.0);
+    let angles = upper.inverse(above).unwrap();
+    assert!((upper.forward(angles).unwrap() - above).norm() < 1e-12);
+    let elsewhere = thesis().forward(angles).unwrap();
+    assert!((elsewhere - above).norm() > 450.0, "{elsewhere}");
+    let refused = upper.inverse(Point3::new(30.0, 20.0, -300.0)).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the point lies below the base plane, where only the lower assembly mode reaches it; \
+         ZAxis::Down would put it where the machine works"
+    );
+    let (line, cylinder) = (
+        Path::line(above, Point3::new(-30.0, 20.0, 300.0)).unwrap(),
+        [230.0, 290.0],
+    );
+    assert!(upper.follow(line, 0.01, pace()).unwrap().count() > 2);
+    assert!(upper.workspace().largest_cylinder(cylinder, 1.0).is_ok());
+}
+
+/// Rods that can come level with the platform: the singular surface lies below the base plane.
+#[test]
+fn a_point_beyond_the_singular_surface_is_refused() {
+    let flat = Delta::new(60.0, 20.0, 120.0, 130.0).unwrap();
+    // On the axis the knees are above the platform or below it.
+    let reached = |z: f64| flat.inverse(Point3::new(0.0, 0.0, z));
+    let height = |z: f64| {
+        let upper = flat.with_assembly_mode(AssemblyMode::Upper);
+        let angle = reached(z)
+            .or_else(|_| upper.inverse(Point3::new(0.0, 0.0, z)))
+            .unwrap()
+            .x;
+        -120.0 * angle.cos() - z
+    };
+    let (mut inside, mut beyond) = (-150.0, 150.0);
+    assert!(height(inside) > 0.0 && height(beyond) < 0.0);
+    for _ in 0..60 {
+        let middle = f64::midpoint(inside, beyond);
+        if height(middle) > 0.0 {
+            inside = middle;
+        } else {
+            beyond = middle;
+        }
+    }
+    // Within rounding of the surface both modes are one.
+    assert!(reached(inside - 1e-4).is_ok() && reached(inside + 1e-4).is_err());
+    assert!(reached(inside).is_ok() && reached(inside + 1e-9).is_ok());
+    let refused = reached(inside + 1.0).unwrap_err();
+    let words = if inside + 1.0 > 0.0 {
+        "the point lies above the base plane"
+    } else {
+        "the point lies beyond the singular surface"
+    };
+    assert!(refused.to_string().starts_with(words), "{refused}");
+}
+
+/// Far out the plane of the knees tilts beyond upright: the mode is kept, and so is `forward`.
+#[test]
+fn a_tilted_plane_of_knees_is_no_other_mode() {
+    let delta = thesis();
+    let home = Point3::new(0.0, 0.0, -250.0);
+    let far = Point3::new(2.0, 257.0, 62.0);
+    let pose = delta.pose_at(far).unwrap();
+    let [a, b, c] = pose.knees().map(|knee| knee.coords);
+    let [ra, rb, rc] = [0usize, 1, 2].map(|k| {
+        let arm = delta.arms()[k];
+        Vector3::new(arm.azimuth.cos(), arm.azimuth.sin(), 0.0) * arm.platform
+    });
+    let (d2, d3) = ((b - rb) - (a - ra), (c - rc) - (a - ra));
+    assert!(d2.cross(&d3).z < 0.0);
+    assert!((delta.forward(pose.angles()).unwrap() - far).norm() < 1e-11);
+    // It is reached from home without a singularity, in two straight lines.
+    let corner = Point3::new(-95.0, 185.0, -164.0);
+    for (from, to) in [(home, corner), (corner, far)] {
+        let line = Path::line(from, to).unwrap();
+        let last = delta.follow(line, 0.1, pace()).unwrap().last().unwrap();
+        assert!((delta.forward(last.angles).unwrap() - to).norm() < 1e-11);
+    }
+}
+
+#[test]
+fn a_path_in_the_other_mode_is_refused() {
+    let at = |x: f64, z: f64| Point3::new(x, 20.0, z);
+    let above = Path::line(at(30.0, 300.0), at(-30.0, 300.0)).unwrap();
+    match thesis().follow(above, 0.01, pace()) {
+        Err(FollowError::Unreachable {
+            fraction, reason, ..
+        }) => {
+            assert!(fraction == 0.0 && thesis().inverse(at(30.0, 300.0)) == Err(reason));
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A machine file that does not say that z points down: every point would be hundreds of
+/// millimetres off, and the best fit nonsense.
+#[test]
+fn measurements_of_the_other_mode_are_refused() {
+    let real = thesis().with_z(ZAxis::Down);
+    let measured: Vec<Measured> = [(30.0, 250.0), (-60.0, 300.0), (10.0, 280.0)]
+        .map(|(x, z)| {
+            let point = Point3::new(x, 20.0, z);
+            let angles = real.inverse(point).unwrap();
+            Measured { angles, point }
+        })
+        .to_vec();
+    let parameters = [Parameter::common(Quantity::Lower)];
+    let refused = thesis().calibrate(parameters, &measured).unwrap_err();
+    assert_eq!(
+        refused,
+        CalibrationError::OtherAssembly {
+            index: 0,
+            assembly_mode: AssemblyMode::Upper,
+            z: Some(ZAxis::Down),
+        }
+    );
+    assert!(
+        refused
+            .to_string()
+            .starts_with("measured point 0: the point lies above the base plane")
+    );
+    let found = real.calibrate(parameters, &measured).unwrap();
+    assert!(found.largest() < 1e-9);
+    assert_eq!(found.delta().z(), ZAxis::Down);
+}
+
+/// The workspace is that of the modes named. Mirrored in the base plane, a knee that was out
+/// counts as in: it turns the other way.
+#[test]
+fn the_workspace_is_that_of_the_modes() {
+    let above = Point3::new(0.0, 0.0, 250.0);
+    let upper = thesis()
+        .with_assembly_mode(AssemblyMode::Upper)
+        .with_working_mode([Knee::In; 3]);
+    let (lower, upper) = (thesis().workspace(), upper.workspace());
+    let mirrored = upper.largest_cylinder([230.0, 290.0], 1.0);
+    assert_eq!(lower.largest_cylinder([-290.0, -230.0], 1.0), mirrored);
+    assert!(!lower.contains(above) && upper.contains(above));
+    assert!(lower.clearance(above) == 0.0 && upper.clearance(above) > 10.0);
+    assert!(matches!(
+        lower.horizontal_slice(250.0, 8),
+        Err(WorkspaceError::Outside {
+            reason: InverseError::OtherAssembly { .. },
+            ..
+        })
+    ));
+    let down = thesis().with_z(ZAxis::Down).workspace();
+    let point = Point3::new(40.0, -30.0, -280.0);
+    let mirrored = Point3::new(40.0, -30.0, 280.0);
+    for same in [down, upper] {
+        assert!(same.contains(above));
+        assert!((same.clearance(mirrored) - lower.clearance(point)).abs() < 1e-9);
+    }
+}
+
+/// The working mode holds for everything that goes from points to angles, and limits with it.
+#[test]
+fn the_working_mode_is_asked_for_by_name() {
+    let point = Point3::new(20.0, -10.0, -280.0);
+    for knees in [
+        [Knee::Out, Knee::In, Knee::Out],
+        [Knee::In, Knee::In, Knee::Out],
+        [Knee::In; 3],
+    ] {
+        let bent = thesis().with_working_mode(knees);
+        let [lower, upper] =
+            [AssemblyMode::Lower, AssemblyMode::Upper].map(|mode| bent.with_assembly_mode(mode));
+        let bent = if lower.inverse(point).is_ok() {
+            lower
+        } else {
+            upper
+        };
+        let pose = bent.pose_at(point).unwrap();
+        for (lever, knee) in pose.levers().iter().zip(knees) {
+            assert_eq!(*lever > 0.0, knee == Knee::In);
+        }
+        assert!((bent.forward(pose.angles()).unwrap() - point).norm() < 1e-11);
+        assert_eq!(bent.working_mode(), knees);
+        // Inward angles have the other sign, and the same knees.
+        let inward = bent.with_positive(Positive::Inward);
+        assert!((inward.inverse(point).unwrap() + pose.angles()).amax() < 1e-15);
+        // A range that holds the angles holds the ball of the clearance.
+        let [low, high] = [pose.angles().min() - 0.05, pose.angles().max() + 0.05];
+        let ranged = bent.with_range(JointRange::new(low, high).unwrap());
+        let workspace = ranged.workspace();
+        let clearance = workspace.clearance(point);
+        assert!(clearance > 0.5, "{clearance}");
+        for k in 0..100 {
+            let (sin, cos) = (f64::from(k) * 2.4).sin_cos();
+            let up = f64::from(k) / 50.0 - 1.0;
+            let flat = (1.0 - up * up).sqrt();
+            let out = Vector3::new(flat * cos, flat * sin, up) * (clearance * 0.999);
+            assert!(workspace.contains(point + out), "{knees:?}");
+        }
+    }
+}
