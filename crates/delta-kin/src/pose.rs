@@ -218,6 +218,11 @@ impl<T: RealField + Copy> Pose<T> {
         finite("rod forces", Vector3::from(forces))
     }
 
+    /// What rounding does to the direction of a rod.
+    pub(crate) const fn rounding(&self) -> T {
+        self.rounding
+    }
+
     /// Columns of the inverse of the matrix whose rows are the rods.
     pub(crate) fn rod_inverse(&self) -> Result<[Vector3<T>; 3], PoseError<T>> {
         let sine = self.parallel_distance();

@@ -145,7 +145,7 @@ fn config() -> ProptestConfig {
     let given = ProptestConfig::default();
     ProptestConfig {
         cases: given.cases.max(1000),
-        max_global_rejects: 1 << 16,
+        max_global_rejects: given.cases.max(1000).saturating_mul(64),
         ..given
     }
 }
@@ -214,10 +214,14 @@ proptest! {
             Err(InverseError::TooFar { by, .. } | InverseError::TooNear { by, .. }) => {
                 prop_assert!(by > delta.tolerance() && (by + margin).abs() <= delta.tolerance());
             }
-            other => prop_assert!(
-                is_reached(&other) && margin >= -delta.tolerance(),
-                "{other:?} {margin:e}"
-            ),
+            other => {
+                // The margin's own rounding is not the crate's.
+                let rounding = 4.0 * f64::EPSILON * delta.span();
+                prop_assert!(
+                    is_reached(&other) && margin >= -delta.tolerance() - rounding,
+                    "{other:?} {margin:e}"
+                );
+            }
         }
     }
 

@@ -76,6 +76,9 @@ fn leg_clearance<T: RealField + Copy>(leg: &Leg<T>, knee: Knee, local: &Vector3<
     clearance.min(end(leg.low)).min(end(leg.high))
 }
 
+/// Where rods count as lying in a plane, in roundings of their directions: more than `inverse` has.
+const SINGULAR: f64 = 8.0;
+
 /// How far the platform can move from a pose before its rods could lie in a plane.
 fn steady<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     if pose.rod_inverse().is_err() {
@@ -99,7 +102,8 @@ fn steady<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     });
     let held = first.0.min(second.0).min(third.0);
     let turn = Vector3::new(first.1, second.1, third.1).norm();
-    // What rounding leaves of the bounds.
+    // As far as rounding takes for singular nothing is known.
+    let rounding = pose.rounding() * nalgebra::convert(SINGULAR);
     let share: T = nalgebra::convert(1.0 - 1e-3);
-    held.min((kappa * turn).recip()) * share
+    held.min((kappa.recip() - rounding) / turn) * share
 }
