@@ -493,7 +493,7 @@ fn bad_files_are_one_line_and_leave_nothing() {
         (&["--geometry", &home], "home.toml: home_deg: arm 1"),
         (
             &["--geometry", &no_home],
-            "no_home.toml: arm 1: zero NaN is not finite",
+            "no_home.toml: arm 1: zero NaN rad is not within",
         ),
         (
             &["--geometry", &two],
