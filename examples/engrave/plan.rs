@@ -124,7 +124,7 @@ impl<W: Write> Planner<'_, W> {
     /// The joint waypoints of a stroke with the elbow of the stroke before, or with the
     /// other one where that does not reach.
     fn waypoints(&mut self, points: &[Point2<f64>]) -> Result<Vec<Waypoint>> {
-        let elbow = Elbow::of(&self.joints);
+        let elbow = Elbow::of(&self.joints).context("the joints are not finite")?;
         let follow = |elbow| {
             let points = points.iter().copied();
             self.machine

@@ -1,9 +1,14 @@
 //! The arm: link lengths, base, limits, keep-out.
 
+mod error;
+
 use nalgebra::{Isometry2, RealField};
 
-use crate::limits::max_value;
-use crate::{Limits, Workspace};
+pub use error::GeometryError;
+
+use crate::Limits;
+use crate::limits::two;
+use crate::range::{largest_ratio, link_lengths, within};
 
 /// A two-link arm with parallel joint axes, in any unit of length, the same throughout.
 ///
@@ -36,49 +41,6 @@ pub struct Arm<T: RealField = f64> {
     tolerance: T,
 }
 
-/// Why a geometry is refused.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum GeometryError<T = f64> {
-    /// A link length is not a number between the stated ends.
-    #[error("length {length} of the {link} is not within {min:e}..={max:e}")]
-    LinkLength {
-        /// The link: `upper arm` or `forearm`.
-        link: &'static str,
-        /// The length given.
-        length: T,
-        /// Shortest length that is accurate in `T`.
-        min: T,
-        /// Longest length that is accurate in `T`.
-        max: T,
-    },
-    /// A joint range is empty or not finite.
-    #[error("joint range {min}..={max} rad is empty or not finite")]
-    EmptyRange {
-        /// Lower end given, in radians.
-        min: T,
-        /// Upper end given, in radians.
-        max: T,
-    },
-    /// The keep-out radius is negative, not finite, or leaves nothing within reach.
-    #[error("keep-out radius {radius} is not within 0..{reach}")]
-    KeepOut {
-        /// The radius given.
-        radius: T,
-        /// The arm's reach.
-        reach: T,
-    },
-    /// A setting is infinite or not a number.
-    #[error("{name} is {value}, not a finite number")]
-    NotFinite {
-        /// The setting.
-        name: &'static str,
-        /// Its value.
-        value: T,
-    },
-}
-
 /// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of
 /// reach and base distance: a product, a rotation and a sum for each of two
 /// links, and the base's transformation there and back.
@@ -87,26 +49,34 @@ const ROUNDING_STEPS: f64 = 16.0;
 impl<T: RealField + Copy> Arm<T> {
     /// An arm of the two link lengths, its base at the origin along X, without limits.
     ///
-    /// The lengths may differ. With h the fourth root of the largest number of `T`,
-    /// divided by 4, they lie within 1/√h and h (f64: 6e-39..=2.8e76, f32: 3e-5..=1e9):
-    /// outside, products of four lengths would overflow or lose digits.
+    /// The lengths may differ by a factor of 1/64ε (f64: 7e13, f32: 1.3e5). In f64 they lie
+    /// within 6e-39..=2.8e76, in f32 within 3e-5..=1e9.
     ///
     /// # Errors
     /// [`GeometryError::LinkLength`].
     pub fn new(upper: T, fore: T) -> Result<Self, GeometryError<T>> {
-        let max = max_value::<T>().sqrt().sqrt() * nalgebra::convert(0.25);
-        let min = max.sqrt().recip();
-        for (link, length) in [("upper arm", upper), ("forearm", fore)] {
+        let (min, max) = link_lengths::<T>();
+        let check = |link, length: T, min: T, max: T| {
             // Written so that NaN is refused too.
-            if !(length >= min && length <= max) {
-                return Err(GeometryError::LinkLength {
+            if length >= min && length <= max {
+                Ok(())
+            } else {
+                Err(GeometryError::LinkLength {
                     link,
                     length,
                     min,
                     max,
-                });
+                })
             }
-        }
+        };
+        check("upper arm", upper, min, max)?;
+        let ratio = largest_ratio::<T>();
+        check(
+            "forearm",
+            fore,
+            min.max(upper / ratio),
+            max.min(upper * ratio),
+        )?;
         let arm = Self {
             upper,
             fore,
@@ -122,17 +92,25 @@ impl<T: RealField + Copy> Arm<T> {
     /// The arm with its base at `base`: the position of the shoulder's axis and the
     /// direction in which the upper arm's zero points.
     ///
+    /// Its coordinates are at most 1/64ε (f64: 7e13, f32: 1.3e5) of the shorter link. A
+    /// rotation that has drifted from length one by up to √ε is corrected.
+    ///
     /// # Errors
-    /// [`GeometryError::NotFinite`].
-    pub fn with_base(mut self, base: Isometry2<T>) -> Result<Self, GeometryError<T>> {
-        for (name, value) in [
-            ("base x", base.translation.x),
-            ("base y", base.translation.y),
-            ("base rotation", base.rotation.angle()),
-        ] {
-            if !value.is_finite() {
-                return Err(GeometryError::NotFinite { name, value });
-            }
+    /// [`GeometryError::OutOfRange`], [`GeometryError::Rotation`].
+    pub fn with_base(mut self, mut base: Isometry2<T>) -> Result<Self, GeometryError<T>> {
+        let farthest = self.upper.min(self.fore) * largest_ratio();
+        within(farthest, "base x", base.translation.x)?;
+        within(farthest, "base y", base.translation.y)?;
+        let (re, im) = (base.rotation.re, base.rotation.im);
+        let length = re.hypot(im);
+        let drift = (length - T::one()).abs();
+        let is_rotation = drift <= T::default_epsilon().sqrt();
+        if !is_rotation {
+            return Err(GeometryError::Rotation { length });
+        }
+        // What nalgebra's constructors make stays as it is, to the bit.
+        if drift > T::default_epsilon() * two() {
+            base.rotation.renormalize();
         }
         self.base = base;
         Ok(self.with_tolerance())
@@ -218,11 +196,5 @@ impl<T: RealField + Copy> Arm<T> {
     #[must_use]
     pub const fn tolerance(&self) -> T {
         self.tolerance
-    }
-
-    /// What the arm can reach, as data.
-    #[must_use]
-    pub const fn workspace(&self) -> Workspace<T> {
-        Workspace::new(*self)
     }
 }

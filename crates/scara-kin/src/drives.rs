@@ -2,6 +2,7 @@
 
 use nalgebra::RealField;
 
+use crate::range::{largest_angle, within};
 use crate::{GeometryError, Joints};
 
 /// The sense in which a drive turns its joint.
@@ -43,6 +44,9 @@ pub struct DriveAngles<T = f64> {
 /// `coupling` is what the forearm's drive sees of the shoulder's turning: 0 where its
 /// motor rides on the upper arm, 1 where it stands on the base and turns the forearm
 /// through a parallel 1:1 belt, other values for belts of other ratios.
+///
+/// Both ways an angle is exact to the rounding of its largest term. An angle that is not
+/// finite gives one that is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drives<T = f64> {
@@ -65,13 +69,14 @@ impl<T: RealField + Copy> Default for Drives<T> {
 }
 
 impl<T: RealField + Copy> Drives<T> {
-    /// The drives read zero when their sums above equal `zero`, in radians.
+    /// The drives read zero when their sums above equal `zero`, in radians, each within
+    /// ±1/√ε (f64: 6.7e7, f32: 2896).
     ///
     /// # Errors
-    /// [`GeometryError::NotFinite`].
+    /// [`GeometryError::OutOfRange`].
     pub fn with_zero(mut self, zero: Joints<T>) -> Result<Self, GeometryError<T>> {
-        finite("shoulder zero", zero.shoulder)?;
-        finite("elbow zero", zero.elbow)?;
+        within(largest_angle(), "shoulder zero", zero.shoulder)?;
+        within(largest_angle(), "elbow zero", zero.elbow)?;
         self.zero = zero;
         Ok(self)
     }
@@ -84,12 +89,12 @@ impl<T: RealField + Copy> Drives<T> {
         self
     }
 
-    /// The share of the shoulder's turning that the forearm's drive sees.
+    /// The share of the shoulder's turning that the forearm's drive sees, within ±1/√ε.
     ///
     /// # Errors
-    /// [`GeometryError::NotFinite`].
+    /// [`GeometryError::OutOfRange`].
     pub fn with_coupling(mut self, coupling: T) -> Result<Self, GeometryError<T>> {
-        finite("coupling", coupling)?;
+        within(largest_angle(), "coupling", coupling)?;
         self.coupling = coupling;
         Ok(self)
     }
@@ -140,13 +145,5 @@ impl Direction {
             Self::Forward => angle,
             Self::Reversed => -angle,
         }
-    }
-}
-
-fn finite<T: RealField + Copy>(name: &'static str, value: T) -> Result<(), GeometryError<T>> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(GeometryError::NotFinite { name, value })
     }
 }

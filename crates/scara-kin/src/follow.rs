@@ -2,13 +2,18 @@
 
 mod bisect;
 mod bound;
+mod error;
 mod walk;
 
+use core::fmt::{Display, Formatter};
 use core::iter::FusedIterator;
 
 use nalgebra::{Point2, RealField};
 
-use crate::{Arm, Elbow, InverseError, Joints};
+pub use error::FollowError;
+
+use crate::digits::Digits;
+use crate::{Arm, Elbow, Joints};
 use walk::Walk;
 
 /// A place along a polyline.
@@ -23,14 +28,11 @@ pub struct CurvePlace<T: RealField = f64> {
     pub point: Point2<T>,
 }
 
-impl<T: RealField + core::fmt::Display> core::fmt::Display for CurvePlace<T> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self {
-            line,
-            fraction,
-            point,
-        } = self;
-        write!(f, "line {line} at {fraction} ({}, {})", point.x, point.y)
+impl<T: RealField + Copy> Display for CurvePlace<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        let (x, y) = (Digits(self.point.x), Digits(self.point.y));
+        let fraction = Digits(self.fraction);
+        write!(f, "line {} at {fraction} ({x}, {y})", self.line)
     }
 }
 
@@ -44,46 +46,14 @@ pub struct Waypoint<T: RealField = f64> {
     pub place: CurvePlace<T>,
 }
 
-/// Why a curve cannot be followed; nothing of it has been handed out.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FollowError<T: RealField = f64> {
-    /// The tolerance is not a length above the arm's rounding [`Arm::tolerance`].
-    #[error("chord tolerance {tolerance} is not above the rounding {rounding}")]
-    Tolerance {
-        /// The tolerance given.
-        tolerance: T,
-        /// The least tolerance that is allowed.
-        rounding: T,
-    },
-    /// The curve has no point.
-    #[error("the curve has no point")]
-    Empty,
-    /// The tool cannot be at a point of the curve.
-    #[error("{place}: {reason}")]
-    Unreachable {
-        /// The first such place.
-        place: CurvePlace<T>,
-        /// Why.
-        reason: InverseError<T>,
-    },
-    /// A joint would have to turn at once by more than any number of waypoints can
-    /// follow: the curve passes the base, or almost.
-    #[error("{place}: a joint would have to jump")]
-    Jump {
-        /// The place from which no step is short enough.
-        place: CurvePlace<T>,
-    },
-}
-
 impl<T: RealField + Copy> Arm<T> {
     /// Joint waypoints along the polyline `points` such that the straight joint move
     /// from each waypoint to the next keeps the tool within `tolerance` of the curve.
     ///
     /// The tolerance is a guarantee: a step is taken when its [`chord_bound`](Self::chord_bound),
-    /// which is proven and not sampled, keeps it, and is halved until it does. Both ends
-    /// of a step lie on the polyline, so this holds from path to curve and from curve
-    /// to path.
+    /// which is proven and not sampled, and the rounding of its ends keep it, and is halved
+    /// until they do. Both ends of a step lie on the polyline, so this holds from path to
+    /// curve and from curve to path.
     ///
     /// The elbow is kept along the curve, angles are continuous and within the limits;
     /// since limits are ranges, the moves between waypoints keep them too. Each point of
@@ -123,13 +93,6 @@ impl<T: RealField + Copy> Arm<T> {
         I: IntoIterator<Item = Point2<T>>,
         I::IntoIter: Clone,
     {
-        let rounding = self.tolerance();
-        if !(tolerance.is_finite() && tolerance > rounding) {
-            return Err(FollowError::Tolerance {
-                tolerance,
-                rounding,
-            });
-        }
         let walk = Walk::new(*self, points.into_iter(), elbow, tolerance, previous);
         let mut waypoints = 0;
         for waypoint in walk.clone() {

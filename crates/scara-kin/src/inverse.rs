@@ -1,62 +1,16 @@
 //! From a position to joint angles: both elbows, within the limits, with reasons.
 
+mod admit;
+mod error;
 mod solutions;
 
 use nalgebra::{Point2, RealField, Vector2};
 
+pub use error::InverseError;
 pub use solutions::Solutions;
 
-use crate::limits::max_value;
-use crate::{Arm, Elbow, Joint, Joints};
-
-/// Why no joint angles reach a point.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum InverseError<T = f64> {
-    /// A coordinate is infinite or not a number.
-    #[error("point ({x}, {y}) is not finite")]
-    NotFinite {
-        /// X as given.
-        x: T,
-        /// Y as given.
-        y: T,
-    },
-    /// The point lies outside the stretched arm's circle.
-    #[error("too far: distance {distance} from the base is past the reach {reach}")]
-    TooFar {
-        /// Distance from the base.
-        distance: T,
-        /// Distance of the stretched arm.
-        reach: T,
-    },
-    /// The point lies inside the folded arm's circle, or inside the keep-out radius.
-    #[error("too near: distance {distance} from the base is within the inner reach {reach}")]
-    TooNear {
-        /// Distance from the base.
-        distance: T,
-        /// Least distance allowed.
-        reach: T,
-    },
-    /// The point is the base itself and the links are equal: with the elbow folded,
-    /// every shoulder angle is a solution. [`Arm::inverse_nearest`] picks one.
-    #[error("the point is the base of an arm with equal links: any shoulder angle reaches it")]
-    Centre,
-    /// The point is within reach, but a joint would leave its range.
-    #[error("{joint} at {angle} rad ({elbow:?} elbow) is outside its range {min}..={max} rad")]
-    JointLimit {
-        /// The elbow tried; where both fail, the one that misses by less.
-        elbow: Elbow,
-        /// The joint that would leave its range.
-        joint: Joint,
-        /// Its angle, in radians.
-        angle: T,
-        /// Lower end of its range, in radians.
-        min: T,
-        /// Upper end of its range, in radians.
-        max: T,
-    },
-}
+use crate::range::{largest_angle, max_value};
+use crate::{Arm, Elbow, Joints};
 
 /// The triangle base, elbow, tool of a reachable point, in the base's frame.
 struct Triangle<T> {
@@ -85,6 +39,11 @@ impl<T: RealField + Copy> Triangle<T> {
             },
         }
     }
+
+    #[inline]
+    fn both(&self) -> [Joints<T>; 2] {
+        [self.joints(Elbow::Right), self.joints(Elbow::Left)]
+    }
 }
 
 impl<T: RealField + Copy> Arm<T> {
@@ -100,8 +59,8 @@ impl<T: RealField + Copy> Arm<T> {
     /// ```
     ///
     /// The factors are exact differences, so nothing cancels at the rim, at the fold,
-    /// for equal links or for very unequal ones: `forward(inverse(p))` is within 1e-15 of
-    /// the reach in f64 (plus as much of the base's distance) everywhere. What [`forward`](Self::forward)
+    /// for equal links or for very unequal ones: `forward(inverse(p))` is within 7 machine
+    /// epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
     /// made is never refused: up to [`tolerance`](Self::tolerance) past an edge counts
     /// as on it, for limits too.
     ///
@@ -112,8 +71,7 @@ impl<T: RealField + Copy> Arm<T> {
     #[inline]
     pub fn inverse(&self, point: Point2<T>) -> Result<Solutions<T>, InverseError<T>> {
         let triangle = self.triangle(point)?;
-        let raw = [triangle.joints(Elbow::Right), triangle.joints(Elbow::Left)];
-        Solutions::new(self, raw, triangle.tool)
+        Solutions::new(self, triangle.both(), triangle.tool)
     }
 
     /// Joint angles of one elbow that bring the tool to `point`.
@@ -125,11 +83,12 @@ impl<T: RealField + Copy> Arm<T> {
         point: Point2<T>,
         elbow: Elbow,
     ) -> Result<Joints<T>, InverseError<T>> {
-        self.inverse_elbow_near(point, elbow, self.limits().middle())
+        self.elbow_near(point, elbow, self.limits().middle())
     }
 
     /// As [`inverse_elbow`](Self::inverse_elbow), each joint at the whole turn nearest
-    /// to `previous` that is within its range.
+    /// to `previous` that is within its range. Turns from zero an angle is rounded to its
+    /// own last place, and the tool with it: by up to reach · ε/2 · angle.
     ///
     /// # Errors
     /// [`InverseError`]; with limits, if this elbow does not keep them.
@@ -140,13 +99,12 @@ impl<T: RealField + Copy> Arm<T> {
         elbow: Elbow,
         previous: Joints<T>,
     ) -> Result<Joints<T>, InverseError<T>> {
-        let triangle = self.triangle(point)?;
-        self.admit(triangle.joints(elbow), previous, triangle.tool)
-            .map_err(|miss| miss.error(elbow))
+        self.elbow_near(point, elbow, checked(previous)?)
     }
 
     /// Joint angles that bring the tool to `point` with the least joint travel from
-    /// `previous`: over both elbows and all whole turns within the limits.
+    /// `previous`, counting the joint that turns further: over both elbows and all whole
+    /// turns within the limits. Of two equal ones the right elbow is taken.
     ///
     /// On the base of an arm with equal links the shoulder stays where it is.
     ///
@@ -156,9 +114,11 @@ impl<T: RealField + Copy> Arm<T> {
         &self,
         point: Point2<T>,
         previous: Joints<T>,
-    ) -> Result<Joints<T>, InverseError<T>> {
-        match self.inverse(point) {
-            Ok(solutions) => Ok(solutions.nearest_to(previous).1),
+    ) -> Result<(Elbow, Joints<T>), InverseError<T>> {
+        let previous = checked(previous)?;
+        match self.triangle(point) {
+            Ok(triangle) => Solutions::near(self, triangle.both(), previous, triangle.tool)
+                .map(|solutions| solutions.nearest_to(previous)),
             Err(InverseError::Centre) => self.folded(previous),
             Err(error) => Err(error),
         }
@@ -171,20 +131,29 @@ impl<T: RealField + Copy> Arm<T> {
     }
 
     /// The folded arm of equal links, the shoulder as near as may be to `previous`.
-    fn folded(&self, previous: Joints<T>) -> Result<Joints<T>, InverseError<T>> {
-        let tool = Vector2::zeros();
+    fn folded(&self, previous: Joints<T>) -> Result<(Elbow, Joints<T>), InverseError<T>> {
         let raw = Joints::new(previous.shoulder, T::pi());
-        self.admit(raw, previous, tool)
-            .or_else(|miss| {
-                // Any shoulder angle will do: the end of its range that was missed.
-                let shoulder = self
-                    .limits()
-                    .shoulder
-                    .fit(previous.shoulder, previous.shoulder);
-                self.admit(Joints::new(shoulder, T::pi()), previous, tool)
-                    .map_err(|_| miss)
-            })
-            .map_err(|miss| miss.error(Elbow::Right))
+        let joints = self
+            .admit(raw, previous, Vector2::zeros())
+            .map_err(|miss| miss.error(Elbow::Right))?;
+        let elbow = if joints.elbow.sin() < T::zero() {
+            Elbow::Left
+        } else {
+            Elbow::Right
+        };
+        Ok((elbow, joints))
+    }
+
+    #[inline]
+    fn elbow_near(
+        &self,
+        point: Point2<T>,
+        elbow: Elbow,
+        near: Joints<T>,
+    ) -> Result<Joints<T>, InverseError<T>> {
+        let triangle = self.triangle(point)?;
+        self.admit(triangle.joints(elbow), near, triangle.tool)
+            .map_err(|miss| miss.error(elbow))
     }
 
     // Handed on in registers: as a call it costs a third of the whole.
@@ -231,116 +200,14 @@ impl<T: RealField + Copy> Arm<T> {
             InverseError::NotFinite { x, y }
         }
     }
-
-    /// `joints` at the whole turn nearest to `near` within the limits; a joint beyond
-    /// an end of its range is put on the end if the tool then still is at `tool` within
-    /// rounding.
-    #[inline]
-    fn admit(
-        &self,
-        joints: Joints<T>,
-        near: Joints<T>,
-        tool: Vector2<T>,
-    ) -> Result<Joints<T>, Miss<T>> {
-        if self.limits().holds_near(&joints, &near) {
-            Ok(joints)
-        } else {
-            self.admit_fitted(joints, near, tool)
-        }
-    }
-
-    #[cold]
-    fn admit_fitted(
-        &self,
-        joints: Joints<T>,
-        near: Joints<T>,
-        tool: Vector2<T>,
-    ) -> Result<Joints<T>, Miss<T>> {
-        let fitted = self.limits().fit(joints, near);
-        // Near a straight or folded arm rounding moves both joints by far more than
-        // itself, against each other: one on its end, the other as that needs it.
-        let candidates = [
-            fitted,
-            Joints {
-                elbow: self.elbow_behind(fitted.shoulder, tool),
-                ..fitted
-            },
-            Joints {
-                shoulder: self.shoulder_before(fitted.elbow, tool),
-                ..fitted
-            },
-        ];
-        candidates
-            .into_iter()
-            .map(|candidate| self.limits().fit(candidate, fitted))
-            .find(|candidate| (self.tip(*candidate) - tool).norm() <= self.tolerance())
-            .ok_or_else(|| Miss::new(self, joints, fitted))
-    }
-
-    /// The elbow that points the forearm at `tool` with the shoulder as given.
-    fn elbow_behind(&self, shoulder: T, tool: Vector2<T>) -> T {
-        let (sin, cos) = shoulder.sin_cos();
-        let along = cos * tool.x + sin * tool.y - self.upper();
-        let across = cos * tool.y - sin * tool.x;
-        across.atan2(along)
-    }
-
-    /// The shoulder that points the arm at `tool` with the elbow as given.
-    fn shoulder_before(&self, elbow: T, tool: Vector2<T>) -> T {
-        let tip = self.tip(Joints::new(T::zero(), elbow));
-        tip.perp(&tool).atan2(tip.dot(&tool))
-    }
 }
 
-/// A joint that cannot take the angle that a point asks for.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Miss<T> {
-    joint: Joint,
-    angle: T,
-    min: T,
-    max: T,
-    /// By how many radians the angle misses its range.
-    by: T,
-}
-
-impl<T: RealField + Copy> Miss<T> {
-    #[cold]
-    fn new(arm: &Arm<T>, joints: Joints<T>, fitted: Joints<T>) -> Self {
-        let shoulder = off_turn(joints.shoulder, fitted.shoulder);
-        let elbow = off_turn(joints.elbow, fitted.elbow);
-        let (joint, angle, by) = if shoulder >= elbow {
-            (Joint::Shoulder, joints.shoulder, shoulder)
-        } else {
-            (Joint::Elbow, joints.elbow, elbow)
-        };
-        let range = arm.limits().range(joint);
-        Self {
-            joint,
-            angle,
-            min: range.min(),
-            max: range.max(),
-            by,
-        }
+/// The joints before, within the range of angles.
+fn checked<T: RealField + Copy>(joints: Joints<T>) -> Result<Joints<T>, InverseError<T>> {
+    if joints.are_angles() {
+        Ok(joints)
+    } else {
+        let largest = largest_angle();
+        Err(InverseError::Previous { joints, largest })
     }
-
-    pub(crate) fn error(self, elbow: Elbow) -> InverseError<T> {
-        InverseError::JointLimit {
-            elbow,
-            joint: self.joint,
-            angle: self.angle,
-            min: self.min,
-            max: self.max,
-        }
-    }
-
-    fn by(&self) -> T {
-        self.by
-    }
-}
-
-/// How far two angles are apart, whole turns aside: 0..=π.
-fn off_turn<T: RealField + Copy>(a: T, b: T) -> T {
-    let turn = T::two_pi();
-    let way = a - b;
-    (way - (way / turn).round() * turn).abs()
 }

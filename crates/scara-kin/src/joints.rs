@@ -2,6 +2,8 @@
 
 use nalgebra::{RealField, Vector2};
 
+use crate::range::is_angle;
+
 /// The joint angles of a two-link arm, in radians.
 ///
 /// ```text
@@ -39,8 +41,9 @@ impl<T: RealField + Copy> Joints<T> {
         Vector2::new(to.shoulder - self.shoulder, to.elbow - self.elbow)
     }
 
-    pub(crate) fn is_finite(&self) -> bool {
-        self.shoulder.is_finite() && self.elbow.is_finite()
+    /// Whether both angles are within the range of angles.
+    pub(crate) fn are_angles(&self) -> bool {
+        is_angle(self.shoulder) && is_angle(self.elbow)
     }
 }
 
@@ -59,12 +62,17 @@ pub enum Elbow {
 
 impl Elbow {
     /// The elbow of an arm pose: by the sign of the elbow angle's sine, so that
-    /// whole turns do not matter; a straight or folded arm counts as `Right`.
-    pub fn of<T: RealField + Copy>(joints: &Joints<T>) -> Self {
-        if joints.elbow.sin() < T::zero() {
-            Self::Left
+    /// whole turns do not matter. An elbow at zero counts as `Right`, one at the float ±π as
+    /// its sign says. `None` where the angle is not finite.
+    #[must_use]
+    pub fn of<T: RealField + Copy>(joints: &Joints<T>) -> Option<Self> {
+        let sin = joints.elbow.sin();
+        if sin < T::zero() {
+            Some(Self::Left)
+        } else if sin >= T::zero() {
+            Some(Self::Right)
         } else {
-            Self::Right
+            None
         }
     }
 

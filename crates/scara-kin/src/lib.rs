@@ -7,17 +7,18 @@
 extern crate std;
 
 mod arm;
+mod digits;
 mod drives;
 mod follow;
 mod forward;
 mod inverse;
 mod joints;
 mod limits;
+mod range;
 #[cfg(feature = "serde")]
 mod serde;
 mod tangent;
 mod velocity;
-mod workspace;
 
 pub use nalgebra;
 
@@ -28,5 +29,4 @@ pub use inverse::{InverseError, Solutions};
 pub use joints::{Elbow, Joint, Joints};
 pub use limits::{JointRange, Limits};
 pub use tangent::{TangentError, TangentTool, ToolTurn};
-pub use velocity::SingularPose;
-pub use workspace::Workspace;
+pub use velocity::RatesError;

@@ -2,11 +2,13 @@
 
 use nalgebra::RealField;
 
+use crate::range::{is_angle, largest_angle};
 use crate::{GeometryError, Joint, Joints};
 
 /// The closed range of one joint, in radians.
 ///
-/// A range may be wider than a whole turn, and need not hold zero.
+/// A range may be wider than a whole turn, and need not hold zero. Its ends lie within
+/// ±1/√ε rad (f64: 6.7e7, f32: 2896), beyond which an angle has lost half of its digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct JointRange<T = f64> {
@@ -18,22 +20,23 @@ impl<T: RealField + Copy> JointRange<T> {
     /// A range from `min` to `max`, in radians.
     ///
     /// # Errors
-    /// [`GeometryError::EmptyRange`] unless both are finite and `min < max`.
+    /// [`GeometryError::JointRange`] unless `min < max` and both are within ±1/√ε.
     pub fn new(min: T, max: T) -> Result<Self, GeometryError<T>> {
-        if min.is_finite() && max.is_finite() && min < max {
+        if is_angle(min) && is_angle(max) && min < max {
             Ok(Self { min, max })
         } else {
-            Err(GeometryError::EmptyRange { min, max })
+            let largest = largest_angle();
+            Err(GeometryError::JointRange { min, max, largest })
         }
     }
 
-    /// Any angle.
+    /// Any angle: within ±1/√ε rad.
     #[must_use]
     pub fn unlimited() -> Self {
-        let huge = max_value::<T>();
+        let largest = largest_angle::<T>();
         Self {
-            min: -huge,
-            max: huge,
+            min: -largest,
+            max: largest,
         }
     }
 
@@ -49,11 +52,6 @@ impl<T: RealField + Copy> JointRange<T> {
         self.max
     }
 
-    /// Whether some angle is in the range at no turn.
-    pub(crate) fn is_within_a_turn(&self) -> bool {
-        self.max - self.min < T::two_pi()
-    }
-
     /// Whether `angle`, taken as it is, lies in the range.
     #[must_use]
     pub fn contains(&self, angle: T) -> bool {
@@ -66,25 +64,28 @@ impl<T: RealField + Copy> JointRange<T> {
         self.contains(angle) && (angle - near).abs() <= T::pi()
     }
 
-    /// The angle of the range, equal to `angle` but for whole turns, that is
-    /// nearest to `near`; an `angle` that fits at no turn is returned at the end
-    /// of the range which it misses least.
-    pub(crate) fn fit(&self, angle: T, near: T) -> T {
-        if self.holds_near(angle, near) {
-            return angle;
+    /// `angle` at its whole turn nearest to `near`, and at the next one towards the range
+    /// where that one is beyond an end.
+    pub(crate) fn fit(&self, angle: T, near: T) -> [Fitted<T>; 2] {
+        let near = near.max(self.min).min(self.max);
+        let turns = ((near - angle) / T::two_pi()).round();
+        let nearest = turned(angle, turns);
+        let next = if nearest < self.min {
+            turned(angle, turns + T::one())
+        } else if nearest > self.max {
+            turned(angle, turns - T::one())
+        } else {
+            nearest
+        };
+        [self.clamp(nearest), self.clamp(next)]
+    }
+
+    fn clamp(&self, angle: T) -> Fitted<T> {
+        let clamped = angle.max(self.min).min(self.max);
+        Fitted {
+            angle: clamped,
+            beyond: angle - clamped,
         }
-        let turn = T::two_pi();
-        let lowest = ((self.min - angle) / turn).ceil();
-        let highest = ((self.max - angle) / turn).floor();
-        if lowest <= highest {
-            let turns = ((near - angle) / turn).round();
-            let turned = angle + turns.max(lowest).min(highest) * turn;
-            // The sum is rounded.
-            return turned.max(self.min).min(self.max);
-        }
-        let below = self.min - (angle + highest * turn);
-        let above = angle + lowest * turn - self.max;
-        if below <= above { self.min } else { self.max }
     }
 
     /// The part of the range in which each angle is at the turn nearest to the middle.
@@ -135,15 +136,6 @@ impl<T: RealField + Copy> Limits<T> {
             && self.elbow.holds_near(joints.elbow, near.elbow)
     }
 
-    /// Each joint at the whole turn nearest to `near`, at the end of its range
-    /// where no turn fits.
-    pub(crate) fn fit(&self, joints: Joints<T>, near: Joints<T>) -> Joints<T> {
-        Joints {
-            shoulder: self.shoulder.fit(joints.shoulder, near.shoulder),
-            elbow: self.elbow.fit(joints.elbow, near.elbow),
-        }
-    }
-
     pub(crate) fn window(&self) -> Self {
         Self {
             shoulder: self.shoulder.window(),
@@ -179,9 +171,27 @@ impl<T: RealField + Copy> Limits<T> {
     }
 }
 
-/// The largest finite number; every `RealField` of machine floats has one.
-pub(crate) fn max_value<T: RealField>() -> T {
-    T::max_value().unwrap_or_else(T::one)
+/// An angle put into a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fitted<T> {
+    /// The angle, or the end of the range beyond which it lies.
+    pub(crate) angle: T,
+    /// How far beyond: negative below the range, positive above.
+    pub(crate) beyond: T,
+}
+
+/// `angle` and a number of whole turns, rounded to the nearest or next to it.
+pub(crate) fn turned<T: RealField + Copy>(angle: T, turns: T) -> T {
+    // 2π as a sum: products with the first part are exact, and the second one has the digits
+    // that a rounded 2π lacks.
+    let coarse: T = nalgebra::convert(6.281_25);
+    let rest: T = nalgebra::convert(0.001_935_307_179_586_476_9);
+    turns * coarse + (turns * rest + angle)
+}
+
+/// `angle` at its whole turn in -π..=π.
+pub(crate) fn half_turn<T: RealField + Copy>(angle: T) -> T {
+    turned(angle, -(angle / T::two_pi()).round())
 }
 
 pub(crate) fn two<T: RealField>() -> T {
@@ -207,31 +217,47 @@ mod tests {
             (-2.0, 9.0, -2.0 + TAU),
             (3.0, -3.0, 3.0 - TAU),
         ] {
-            let fitted = range.fit(angle, near);
+            let fitted = range
+                .fit(angle, near)
+                .into_iter()
+                .find(|fitted| fitted.beyond.abs() < ROUNDING)
+                .unwrap();
             assert!(
-                (fitted - wanted).abs() < ROUNDING,
-                "{angle} {near}: {fitted}"
+                (fitted.angle - wanted).abs() < ROUNDING,
+                "{angle} {near}: {fitted:?}"
             );
         }
     }
 
     #[test]
-    fn angles_that_fit_at_no_turn_go_to_the_nearer_end() {
+    fn angles_that_fit_at_no_turn_go_to_both_ends() {
         let range = JointRange::new(-0.5, 1.0).unwrap();
-        for (angle, end) in [
-            (1.1, 1.0),
-            (-0.6, -0.5),
-            (1.1 + TAU, 1.0),
-            (3.0, 1.0),
-            (-2.0, -0.5),
-            (-3.0, 1.0),
+        for (angle, near, beyond) in [
+            (1.1, 0.0, [0.1, 0.6 + 1.0 - TAU]),
+            (-0.6, 0.0, [-0.1, TAU - 1.6]),
+            (1.1 + TAU, 0.0, [0.1, 1.6 - TAU]),
+            (-3.0, 0.0, [-2.5, TAU - 4.0]),
+            (-3.0, 1.0, [TAU - 4.0, -2.5]),
         ] {
-            assert_eq!(
-                range.fit(angle, 0.0).to_bits(),
-                f64::to_bits(end),
-                "{angle}"
-            );
+            let fitted = range.fit(angle, near);
+            for (fitted, beyond) in fitted.into_iter().zip(beyond) {
+                assert!((fitted.beyond - beyond).abs() < ROUNDING, "{fitted:?}");
+                let end = if beyond < 0.0 { -0.5f64 } else { 1.0 };
+                assert_eq!(fitted.angle.to_bits(), end.to_bits());
+            }
         }
+    }
+
+    /// 2π · 10⁷ to 26 digits is 62831853.07179586476925286766; an f64 there has 7.5e-9 to
+    /// its neighbour, an f32 of 2π · 400 = 2513.2741228718345907701 has 2.4e-4.
+    #[test]
+    fn turns_are_rounded_once() {
+        assert_eq!(
+            turned(0.0, 1e7f64).to_bits(),
+            62_831_853.071_795_866_f64.to_bits()
+        );
+        assert_eq!(turned(0.0, 400.0f32).to_bits(), 2_513.274_2_f32.to_bits());
+        assert!((half_turn(turned(1.0, -1e7)) - 1.0f64).abs() < 7.5e-9);
     }
 
     #[test]
@@ -241,9 +267,10 @@ mod tests {
             (1.0, 0.0),
             (f64::NAN, 1.0),
             (0.0, f64::INFINITY),
+            (0.0, 6.8e7),
         ] {
             assert!(JointRange::new(min, max).is_err());
         }
-        assert!(JointRange::<f64>::unlimited().contains(1e300));
+        assert!(JointRange::<f64>::unlimited().contains(6.7e7));
     }
 }

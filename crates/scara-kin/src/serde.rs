@@ -14,9 +14,7 @@ macro_rules! serialise_as {
             }
         }
 
-        impl<'de, T: RealField + Copy + core::fmt::LowerExp + Deserialize<'de>> Deserialize<'de>
-            for $checked<T>
-        {
+        impl<'de, T: RealField + Copy + Deserialize<'de>> Deserialize<'de> for $checked<T> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 $plain::deserialize(deserializer)?
                     .try_into()

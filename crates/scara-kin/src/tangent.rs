@@ -1,7 +1,12 @@
 //! The angle of a tool that must stay tangent to the curve.
 
+use core::fmt::{Display, Formatter};
+
 use nalgebra::{RealField, Vector2};
 
+use crate::digits::Digits;
+use crate::limits::{half_turn, turned};
+use crate::range::{is_angle, largest_angle};
 use crate::{Arm, Joints};
 
 /// A disc or blade on the forearm that is turned so that it stays tangent to the curve.
@@ -47,39 +52,60 @@ pub struct ToolTurn<T = f64> {
 }
 
 /// Why a tangent tool cannot be set.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum TangentError<T = f64> {
     /// The corner threshold is not an angle above zero.
-    #[error("corner threshold {corner} rad is not above zero")]
     Corner {
         /// The threshold given, in radians.
         corner: T,
     },
-    /// The starting angle is infinite or not a number.
-    #[error("starting angle {theta3} rad is not finite")]
-    Start {
-        /// The angle given, in radians.
-        theta3: T,
-    },
     /// The direction of the curve has no length, or is not finite.
-    #[error("direction ({x}, {y}) has no heading")]
     NoHeading {
         /// X of the direction given.
         x: T,
         /// Y of the direction given.
         y: T,
     },
-    /// A joint angle is infinite or not a number.
-    #[error("joints ({shoulder}, {elbow}) rad are not finite")]
-    NotFinite {
-        /// The shoulder given, in radians.
-        shoulder: T,
-        /// The elbow given, in radians.
-        elbow: T,
+    /// An angle is not a number within the range of angles: the tool's after many turns, where
+    /// [`TangentTool::starting_at`] begins anew.
+    OutOfRange {
+        /// The angle.
+        name: &'static str,
+        /// Its value, in radians.
+        value: T,
+        /// Largest angle that is accurate in `T`, in radians.
+        largest: T,
     },
 }
+
+impl<T: RealField + Copy> Display for TangentError<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match *self {
+            Self::Corner { corner } => write!(
+                f,
+                "corner threshold {} rad is not above zero",
+                Digits(corner)
+            ),
+            Self::NoHeading { x, y } => {
+                write!(f, "direction ({}, {}) has no heading", Digits(x), Digits(y))
+            }
+            Self::OutOfRange {
+                name,
+                value,
+                largest,
+            } => write!(
+                f,
+                "{name} is {} rad, not within ±{} rad",
+                Digits(value),
+                Digits(largest)
+            ),
+        }
+    }
+}
+
+impl<T: RealField + Copy> core::error::Error for TangentError<T> {}
 
 impl<T: RealField + Copy> TangentTool<T> {
     /// A tool at θ3 = 0 that counts changes of heading above `corner`, in radians, as
@@ -102,11 +128,9 @@ impl<T: RealField + Copy> TangentTool<T> {
     /// The tool at the angle at which it stands now, in radians, instead of 0.
     ///
     /// # Errors
-    /// [`TangentError::Start`] unless `theta3` is finite.
+    /// [`TangentError::OutOfRange`] unless `theta3` is within ±1/√ε (f64: 6.7e7, f32: 2896).
     pub fn starting_at(mut self, theta3: T) -> Result<Self, TangentError<T>> {
-        if !theta3.is_finite() {
-            return Err(TangentError::Start { theta3 });
-        }
+        within("starting angle", theta3)?;
         self.theta3 = theta3;
         Ok(self)
     }
@@ -126,8 +150,8 @@ impl<T: RealField + Copy> TangentTool<T> {
     /// Turns the tool to the curve's `direction` at the pose `joints`.
     ///
     /// # Errors
-    /// [`TangentError::NoHeading`], [`TangentError::NotFinite`]; the tool then stays as
-    /// it was.
+    /// [`TangentError::NoHeading`]; [`TangentError::OutOfRange`] for a joint or for the tool
+    /// after many turns. The tool then stays as it was.
     pub fn follow(
         &mut self,
         arm: &Arm<T>,
@@ -135,29 +159,37 @@ impl<T: RealField + Copy> TangentTool<T> {
         direction: Vector2<T>,
     ) -> Result<ToolTurn<T>, TangentError<T>> {
         let (x, y) = (direction.x, direction.y);
-        let length = x.hypot(y);
-        if !(length.is_finite() && length > T::zero()) {
+        let is_finite = x.is_finite() && y.is_finite();
+        if !is_finite || (x == T::zero() && y == T::zero()) {
             return Err(TangentError::NoHeading { x, y });
         }
-        if !joints.is_finite() {
-            let Joints { shoulder, elbow } = joints;
-            return Err(TangentError::NotFinite { shoulder, elbow });
-        }
+        within("shoulder", joints.shoulder)?;
+        within("elbow", joints.elbow)?;
         let heading = y.atan2(x);
         let change = self.heading.map(|before| half_turn(heading - before));
         let base = arm.base().rotation.angle();
         let wanted = heading - base - joints.shoulder - joints.elbow;
-        self.theta3 += half_turn(wanted - self.theta3);
+        let turns = ((self.theta3 - wanted) / T::two_pi()).round();
+        let theta3 = turned(wanted, turns);
+        within("tool angle", theta3)?;
+        self.theta3 = theta3;
         self.heading = Some(heading);
         Ok(ToolTurn {
-            theta3: self.theta3,
+            theta3,
             corner: change.filter(|change| change.abs() > self.corner),
         })
     }
 }
 
-/// The angle equal to `angle` but for whole turns in -π..=π.
-fn half_turn<T: RealField + Copy>(angle: T) -> T {
-    let turn = T::two_pi();
-    angle - (angle / turn).round() * turn
+/// Refuses by its name what is not within the range of angles.
+fn within<T: RealField + Copy>(name: &'static str, value: T) -> Result<(), TangentError<T>> {
+    if is_angle(value) {
+        Ok(())
+    } else {
+        Err(TangentError::OutOfRange {
+            name,
+            value,
+            largest: largest_angle(),
+        })
+    }
 }

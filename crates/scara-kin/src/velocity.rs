@@ -1,20 +1,50 @@
 //! Jacobian, speeds, accelerations, distance from singular poses.
 
+use core::fmt::{Display, Formatter};
+
 use nalgebra::{Matrix2, RealField, Vector2};
 
+use crate::digits::Digits;
 use crate::limits::two;
 use crate::{Arm, Joints};
 
-/// The arm is straight or folded: the tool cannot move along the forearm, so that
-/// joint speeds do not follow from a tool speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+/// Why joint speeds do not follow from a tool speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("singular pose: elbow at {elbow} rad leaves the arm straight or folded")]
-#[expect(clippy::exhaustive_structs, reason = "there is one cause")]
-pub struct SingularPose<T = f64> {
-    /// The elbow angle, in radians.
-    pub elbow: T,
+#[non_exhaustive]
+pub enum RatesError<T = f64> {
+    /// The arm is straight or folded, within the rounding of the elbow angle: the tool cannot
+    /// move along the forearm.
+    Singular {
+        /// The elbow angle, in radians.
+        elbow: T,
+    },
+    /// Something given is infinite or not a number, or what follows from it is too large for
+    /// `T`.
+    NotFinite {
+        /// What it is.
+        name: &'static str,
+        /// Its value.
+        value: T,
+    },
 }
+
+impl<T: RealField + Copy> Display for RatesError<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match *self {
+            Self::Singular { elbow } => write!(
+                f,
+                "singular pose: elbow at {} rad leaves the arm straight or folded within rounding",
+                Digits(elbow)
+            ),
+            Self::NotFinite { name, value } => {
+                write!(f, "{name} is {}, not a finite number", Digits(value))
+            }
+        }
+    }
+}
+
+impl<T: RealField + Copy> core::error::Error for RatesError<T> {}
 
 impl<T: RealField + Copy> Arm<T> {
     /// The Jacobian of the tool position: columns shoulder and elbow, in length per radian.
@@ -61,7 +91,7 @@ impl<T: RealField + Copy> Arm<T> {
     }
 
     /// Joint rates (shoulder, elbow) in rad/s that give a tool velocity in length per
-    /// second: the honest way to hold a feed in mm/s at the tool.
+    /// second, to hold a feed in mm/s at the tool.
     ///
     /// ```text
     /// q̇1 = (f · v) / det J,   q̇2 = -(t · v) / det J
@@ -70,23 +100,38 @@ impl<T: RealField + Copy> Arm<T> {
     /// f the forearm, t the line from base to tool, det J = l1 l2 sin q2.
     ///
     /// # Errors
-    /// [`SingularPose`] within a few machine epsilons of a straight or folded arm.
+    /// [`RatesError::Singular`] within a few machine epsilons of a straight or folded arm,
+    /// [`RatesError::NotFinite`].
     pub fn joint_rates(
         &self,
         joints: Joints<T>,
         velocity: Vector2<T>,
-    ) -> Result<Vector2<T>, SingularPose<T>> {
-        // sin(π) in floating point is half an epsilon, not zero.
-        let rounding = T::default_epsilon() * two();
-        let sin = joints.elbow.sin();
-        if sin.abs() <= rounding || !sin.is_finite() {
-            let elbow = joints.elbow;
-            return Err(SingularPose { elbow });
+    ) -> Result<Vector2<T>, RatesError<T>> {
+        finite(["shoulder", "elbow"], [joints.shoulder, joints.elbow])?;
+        finite(["velocity x", "velocity y"], velocity.into())?;
+        self.solve(joints, velocity)
+    }
+
+    /// The rates that the Jacobian turns into `velocity`, all given being finite.
+    fn solve(&self, joints: Joints<T>, velocity: Vector2<T>) -> Result<Vector2<T>, RatesError<T>> {
+        let elbow = joints.elbow;
+        // sin(π) in floating point is half an epsilon, not zero; turns from zero it is what
+        // the angle was rounded by.
+        let rounding = T::default_epsilon() * elbow.abs().max(two());
+        let sin = elbow.sin();
+        if sin.abs() <= rounding {
+            return Err(RatesError::Singular { elbow });
         }
         let links = self.links(joints);
         let local = self.base().rotation.inverse() * velocity;
         let det = self.upper() * self.fore() * sin;
-        Ok(Vector2::new(links.fore.dot(&local), -links.tip().dot(&local)) / det)
+        // Divided first: a product of length and velocity could leave the range of `T`.
+        let rates = Vector2::new(
+            (links.fore / det).dot(&local),
+            -(links.tip() / det).dot(&local),
+        );
+        finite(["rate of the shoulder", "rate of the elbow"], rates.into())?;
+        Ok(rates)
     }
 
     /// Tool acceleration in length per second² from joint rates in rad/s and joint
@@ -109,25 +154,44 @@ impl<T: RealField + Copy> Arm<T> {
     /// length per second² at the given joint rates in rad/s.
     ///
     /// # Errors
-    /// [`SingularPose`] as for [`joint_rates`](Self::joint_rates).
+    /// [`RatesError`] as for [`joint_rates`](Self::joint_rates).
     pub fn joint_accelerations(
         &self,
         joints: Joints<T>,
         rates: Vector2<T>,
         acceleration: Vector2<T>,
-    ) -> Result<Vector2<T>, SingularPose<T>> {
-        self.joint_rates(joints, acceleration - self.centripetal(joints, rates))
+    ) -> Result<Vector2<T>, RatesError<T>> {
+        finite(["shoulder", "elbow"], [joints.shoulder, joints.elbow])?;
+        finite(["rate of the shoulder", "rate of the elbow"], rates.into())?;
+        finite(["acceleration x", "acceleration y"], acceleration.into())?;
+        let centripetal = self.centripetal(joints, rates);
+        finite(["centripetal x", "centripetal y"], centripetal.into())?;
+        self.solve(joints, acceleration - centripetal)
     }
 
     /// The part of the tool's acceleration that the joint rates alone cause.
     fn centripetal(&self, joints: Joints<T>, rates: Vector2<T>) -> Vector2<T> {
         let links = self.links(joints);
         let (upper, fore) = (rates.x, rates.x + rates.y);
-        let local = links.upper * (upper * upper) + links.fore * (fore * fore);
+        // Not by the squares: they could leave the range of `T`.
+        let local = links.upper * upper * upper + links.fore * fore * fore;
         -(self.base().rotation * local)
     }
 }
 
 fn quarter_turn<T: RealField + Copy>(v: Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
+}
+
+/// Refuses by its name what is not finite.
+fn finite<T: RealField + Copy>(
+    names: [&'static str; 2],
+    values: [T; 2],
+) -> Result<(), RatesError<T>> {
+    for (name, value) in names.into_iter().zip(values) {
+        if !value.is_finite() {
+            return Err(RatesError::NotFinite { name, value });
+        }
+    }
+    Ok(())
 }

@@ -9,7 +9,8 @@ use scara_kin::{
     Arm, Direction, Drives, Elbow, InverseError, JointRange, Joints, Limits, TangentTool,
 };
 
-/// `forward(inverse(p))` against p, in units of reach plus base distance: the promise.
+/// `forward(inverse(p))` against p, in units of reach plus base distance, for arms and points at
+/// random; the worst are found and bounded in `accuracy.rs`.
 const ROUND_TRIP: f64 = 1e-15;
 /// The same in f32: as many units in the last place.
 const ROUND_TRIP_F32: f32 = 1e-15 / 2.22e-16 * 1.19e-7;
@@ -48,12 +49,6 @@ fn joints() -> impl Strategy<Value = Joints> {
     (-PI..PI, -PI..PI).prop_map(|(shoulder, elbow)| Joints::new(shoulder, elbow))
 }
 
-/// A joint range that is a whole turn or leaves out 0.78 rad at least: a narrower wedge may fall
-/// between the points of a grid.
-fn range_width() -> impl Strategy<Value = f64> {
-    prop_oneof![0.1..5.5f64, 2.0 * PI..7.0]
-}
-
 /// At least a thousand cases; `PROPTEST_CASES` asks for more.
 fn config() -> ProptestConfig {
     let given = ProptestConfig::default();
@@ -75,7 +70,7 @@ proptest! {
         let point = at(&arm, share, heading);
         match arm.inverse(point) {
             Ok(solutions) => for (elbow, joints) in solutions.iter() {
-                prop_assert!(Elbow::of(&joints) == elbow || joints.elbow.sin().abs() < 1e-15);
+                prop_assert!(Elbow::of(&joints) == Some(elbow) || joints.elbow.sin().abs() < 1e-15);
                 let miss = (arm.forward(joints) - point).norm() / arm.reach();
                 prop_assert!(miss <= ROUND_TRIP, "{miss:e}");
             },
@@ -145,7 +140,7 @@ proptest! {
         let tip = arm.forward(inside);
         let back = arm.inverse_nearest(tip, inside);
         prop_assert!(back.is_ok(), "{back:?}");
-        let back = back.unwrap();
+        let (_, back) = back.unwrap();
         prop_assert!(limits.contains(&back), "{back:?}");
         prop_assert!((arm.forward(back) - tip).norm() <= arm.tolerance());
     }
@@ -169,8 +164,9 @@ proptest! {
         (shoulder, elbow) in (-10.0..10.0f64, -10.0..10.0f64),
     ) {
         let previous = Joints::new(shoulder, elbow);
-        let solutions = arm.inverse(at(&arm, share, heading)).unwrap();
-        let (_, nearest) = solutions.nearest_to(previous);
+        let point = at(&arm, share, heading);
+        let solutions = arm.inverse(point).unwrap();
+        let (_, nearest) = arm.inverse_nearest(point, previous).unwrap();
         let best = solutions
             .iter()
             .flat_map(|(_, j)| (-3..=3).flat_map(move |a| (-3..=3).map(move |b| {
@@ -291,7 +287,7 @@ proptest! {
                         from.elbow + way.y * t,
                     ));
                     let off = distance_to_line(tool, a, b);
-                    prop_assert!(off <= tolerance + arm.tolerance(), "{off} > {tolerance}");
+                    prop_assert!(off <= tolerance, "{off} > {tolerance}");
                 }
             }
             before = Some(waypoint.joints);
@@ -331,68 +327,6 @@ proptest! {
             prop_assert!((angle - before).abs() <= PI + ANGLE);
             before = angle;
         }
-    }
-
-    #[test]
-    fn what_is_covered_is_reached(
-        (low1, wide1, low2, wide2) in (-4.0..3.0f64, range_width(), -4.0..3.0f64, range_width()),
-        (share, heading) in (0.0..=1.0f64, -PI..PI),
-        (width, height) in (0.0..120.0f64, 0.0..120.0f64),
-        turn in -PI..PI,
-        right in any::<bool>(),
-    ) {
-        let elbow = if right { Elbow::Right } else { Elbow::Left };
-        let arm = Arm::new(132.0, 100.0).unwrap()
-            .with_base(Isometry2::rotation(turn)).unwrap()
-            .with_limits(Limits {
-                shoulder: JointRange::new(low1, low1 + wide1).unwrap(),
-                elbow: JointRange::new(low2, low2 + wide2).unwrap(),
-            });
-        let (centre, half) = (at(&arm, share, heading), Vector2::new(width, height) / 2.0);
-        let workspace = arm.workspace();
-        let grid = (-10..=10).flat_map(|i| (-10..=10).map(move |j| (f64::from(i), f64::from(j))));
-        let reached = |off: Vector2<f64>| arm.inverse_elbow(centre + off, elbow).is_ok();
-        let in_box = grid.clone().map(|(i, j)| half.component_mul(&Vector2::new(i, j)) / 10.0);
-        let in_disc = grid.map(|(i, j)| {
-            let angle = i * PI / 10.0;
-            Vector2::new(angle.cos(), angle.sin()) * (half.x * j / 10.0)
-        });
-        // What is not covered misses a point of a grid, or is close to missing one.
-        let close = half.norm() / 4.0 + 1.0;
-        let grown = |offs: Vec<Vector2<f64>>| {
-            offs.iter().all(|off| reached(*off))
-                && offs.iter().all(|off| reached(off + off.cap_magnitude(close)))
-        };
-        if workspace.covers_box(centre - half, centre + half, elbow) {
-            for off in in_box {
-                prop_assert!(reached(off), "{off}");
-            }
-        } else {
-            prop_assert!(!grown(in_box.collect()), "box");
-        }
-        if workspace.covers_circle(centre, half.x, elbow) {
-            for off in in_disc {
-                prop_assert!(reached(off), "{off}");
-            }
-        } else {
-            prop_assert!(!grown(in_disc.collect()), "disc");
-        }
-    }
-
-    #[test]
-    fn box_margin_is_that_of_the_worst_point(
-        (x, y, w, h) in (-300.0..300.0f64, -300.0..300.0f64, 0.0..300.0f64, 0.0..300.0f64),
-    ) {
-        let arm = Arm::new(132.0, 100.0).unwrap();
-        let workspace = arm.workspace();
-        let corner = Point2::new(x, y);
-        let margin = workspace.box_margin(corner, corner + Vector2::new(w, h));
-        let worst = (0..=40)
-            .flat_map(|i| (0..=40).map(move |j| (f64::from(i) / 40.0, f64::from(j) / 40.0)))
-            .map(|(s, t)| workspace.margin(corner + Vector2::new(w * s, h * t)))
-            .fold(f64::INFINITY, f64::min);
-        // The grid misses the nearest point by less than a cell.
-        prop_assert!(margin <= worst + 1e-9 && worst - margin <= (w + h) / 40.0);
     }
 }
 

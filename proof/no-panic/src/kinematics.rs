@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use scara_kin::nalgebra::{Point2, Vector2};
-use scara_kin::{Arm, Elbow, Follow, InverseError, Joints, SingularPose, Solutions, Waypoint};
+use scara_kin::{Arm, Elbow, Follow, InverseError, Joints, RatesError, Solutions, Waypoint};
 
 type Line = IntoIter<Point2<f64>, 2>;
 
@@ -29,7 +29,11 @@ fn inverse_elbow(arm: &Arm, point: Point2<f64>, elbow: Elbow) -> Result<Joints, 
 
 #[no_panic]
 #[inline(never)]
-fn inverse_nearest(arm: &Arm, point: Point2<f64>, now: Joints) -> Result<Joints, InverseError> {
+fn inverse_nearest(
+    arm: &Arm,
+    point: Point2<f64>,
+    now: Joints,
+) -> Result<(Elbow, Joints), InverseError> {
     arm.inverse_nearest(point, now)
 }
 
@@ -39,7 +43,7 @@ fn joint_rates(
     arm: &Arm,
     joints: Joints,
     velocity: Vector2<f64>,
-) -> Result<Vector2<f64>, SingularPose> {
+) -> Result<Vector2<f64>, RatesError> {
     arm.joint_rates(joints, velocity)
 }
 

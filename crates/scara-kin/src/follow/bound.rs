@@ -62,20 +62,24 @@ struct Turns<T> {
     upper: T,
     /// Turn of the forearm in the base's frame.
     fore: T,
-    /// Half the elbow angle at the lower end of the move.
-    low: T,
-    /// Half the elbow angle at the upper end of the move.
-    high: T,
+    /// Sine and cosine of half the elbow angle at both ends of the move.
+    halves: [(T, T); 2],
+    /// Whether the arm may be straight or folded between the ends.
+    is_singular: bool,
 }
 
 impl<T: RealField + Copy> Turns<T> {
     fn new(from: Joints<T>, to: Joints<T>) -> Self {
         let way = from.way_to(to);
+        let halves = [from, to].map(|joints| (joints.elbow / two()).sin_cos());
+        // Half the sines of the elbow angles.
+        let [from, to] = halves.map(|(sin, cos)| sin * cos);
+        let changes_sign = from.min(to) < T::zero() && from.max(to) > T::zero();
         Self {
             upper: way.x,
             fore: way.x + way.y,
-            low: from.elbow.min(to.elbow) / two(),
-            high: from.elbow.max(to.elbow) / two(),
+            halves,
+            is_singular: changes_sign || way.y.abs() >= T::pi(),
         }
     }
 
@@ -83,15 +87,12 @@ impl<T: RealField + Copy> Turns<T> {
     fn longest(&self, arm: &Arm<T>, p: T, q: T) -> T {
         let stretched = (arm.upper() * p + arm.fore() * q).abs();
         let folded = (arm.upper() * p - arm.fore() * q).abs();
-        let quarter = T::frac_pi_2();
-        let singular = ((self.low / quarter).floor() + T::one()) * quarter;
-        if self.low < singular && singular < self.high {
+        if self.is_singular {
             return stretched.max(folded);
         }
-        let length = |half: T| {
-            let (sin, cos) = half.sin_cos();
-            (stretched * cos).hypot(folded * sin)
-        };
-        length(self.low).max(length(self.high))
+        let [from, to] = self
+            .halves
+            .map(|(sin, cos)| (stretched * cos).hypot(folded * sin));
+        from.max(to)
     }
 }

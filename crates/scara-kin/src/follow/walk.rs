@@ -164,7 +164,11 @@ where
             return Err(FollowError::Unreachable { place, reason });
         }
         let joints = self.joints_at(place)?;
-        if self.arm.chord_bound(self.joints, joints) <= self.tolerance {
+        let rounding = self
+            .arm
+            .rounding(self.joints)
+            .max(self.arm.rounding(joints));
+        if self.arm.chord_bound(self.joints, joints) + rounding <= self.tolerance {
             return Ok(joints);
         }
         let way = self.joints.way_to(joints);
@@ -172,13 +176,14 @@ where
             (Joint::Shoulder, way.x, joints.shoulder),
             (Joint::Elbow, way.y, joints.elbow),
         ] {
-            // The nearer whole turn is out of range, or it would have been taken.
-            if way.abs() > T::pi() {
-                let range = self.arm.limits().range(joint);
+            // Where the nearer whole turn is out of range, that is the reason.
+            let angle = angle - T::two_pi().copysign(way);
+            let range = self.arm.limits().range(joint);
+            if way.abs() > T::pi() && !range.contains(angle) {
                 let reason = InverseError::JointLimit {
                     elbow: self.elbow,
                     joint,
-                    angle: angle - T::two_pi().copysign(way),
+                    angle,
                     min: range.min(),
                     max: range.max(),
                 };
@@ -190,9 +195,20 @@ where
 
     /// Joint angles at a place, at the whole turn nearest to those before.
     fn joints_at(&self, place: CurvePlace<T>) -> Result<Joints<T>, FollowError<T>> {
-        self.arm
+        let joints = self
+            .arm
             .inverse_elbow_near(place.point, self.elbow, self.joints)
-            .map_err(|reason| FollowError::Unreachable { place, reason })
+            .map_err(|reason| FollowError::Unreachable { place, reason })?;
+        let (tolerance, rounding) = (self.tolerance, self.arm.rounding(joints));
+        // Written so that NaN is refused too.
+        if tolerance > rounding && tolerance.is_finite() {
+            Ok(joints)
+        } else {
+            Err(FollowError::Tolerance {
+                tolerance,
+                rounding,
+            })
+        }
     }
 
     fn arrive(&mut self, joints: Joints<T>, place: CurvePlace<T>) -> Waypoint<T> {

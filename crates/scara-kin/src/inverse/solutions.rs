@@ -3,7 +3,7 @@
 use nalgebra::{RealField, Vector2};
 
 use super::InverseError;
-use crate::{Arm, Elbow, Joints, Limits};
+use crate::{Arm, Elbow, Joints};
 
 /// The joint angles that reach one point: those of one elbow or of both.
 ///
@@ -13,7 +13,6 @@ pub struct Solutions<T = f64> {
     right: Joints<T>,
     left: Joints<T>,
     allowed: Allowed,
-    limits: Limits<T>,
 }
 
 /// The elbows whose joints keep their limits.
@@ -35,21 +34,19 @@ impl<T: RealField + Copy> Solutions<T> {
                 right,
                 left,
                 allowed: Allowed::Both,
-                limits: *arm.limits(),
             });
         }
-        Self::sorted(arm, [right, left], tool)
+        Self::near(arm, [right, left], arm.limits().middle(), tool)
     }
 
-    /// The same where a joint has to be put on another turn, or leaves its range.
-    #[cold]
-    fn sorted(
+    /// The joints at the whole turns nearest to `near` that their ranges allow.
+    #[inline(never)]
+    pub(super) fn near(
         arm: &Arm<T>,
         [right, left]: [Joints<T>; 2],
+        near: Joints<T>,
         tool: Vector2<T>,
     ) -> Result<Self, InverseError<T>> {
-        let limits = *arm.limits();
-        let near = limits.middle();
         let (right, left, allowed) =
             match (arm.admit(right, near, tool), arm.admit(left, near, tool)) {
                 (Ok(right), Ok(left)) => (right, left, Allowed::Both),
@@ -62,7 +59,6 @@ impl<T: RealField + Copy> Solutions<T> {
             right,
             left,
             allowed,
-            limits,
         })
     }
 
@@ -70,9 +66,10 @@ impl<T: RealField + Copy> Solutions<T> {
     /// [`Arm::inverse_elbow`] names the reason.
     #[must_use]
     pub fn get(&self, elbow: Elbow) -> Option<Joints<T>> {
-        match self.allowed {
-            Allowed::Only(only) if only != elbow => None,
-            _ => Some(self.branch(elbow)),
+        match (self.allowed, elbow) {
+            (Allowed::Both | Allowed::Only(Elbow::Right), Elbow::Right) => Some(self.right),
+            (Allowed::Both | Allowed::Only(Elbow::Left), Elbow::Left) => Some(self.left),
+            _ => None,
         }
     }
 
@@ -84,30 +81,15 @@ impl<T: RealField + Copy> Solutions<T> {
             .filter_map(move |elbow| Some((elbow, solutions.get(elbow)?)))
     }
 
-    /// The solution of least joint travel from `previous`, counting the joint that
-    /// turns further; each joint at the whole turn nearest to where it was, within its
-    /// range. Of two equal ones the right elbow is taken.
-    #[must_use]
-    pub fn nearest_to(&self, previous: Joints<T>) -> (Elbow, Joints<T>) {
-        let candidate = |elbow| (elbow, self.limits.fit(self.branch(elbow), previous));
-        let travel = |(_, joints): &(Elbow, Joints<T>)| previous.way_to(*joints).amax();
+    /// The solution of least joint travel, as it stands; of two equal ones the right one.
+    pub(super) fn nearest_to(&self, previous: Joints<T>) -> (Elbow, Joints<T>) {
+        let (right, left) = ((Elbow::Right, self.right), (Elbow::Left, self.left));
+        let travel = |joints| previous.way_to(joints).amax();
         match self.allowed {
-            Allowed::Only(elbow) => candidate(elbow),
-            Allowed::Both => {
-                let (right, left) = (candidate(Elbow::Right), candidate(Elbow::Left));
-                if travel(&left) < travel(&right) {
-                    left
-                } else {
-                    right
-                }
-            }
-        }
-    }
-
-    fn branch(&self, elbow: Elbow) -> Joints<T> {
-        match elbow {
-            Elbow::Right => self.right,
-            Elbow::Left => self.left,
+            Allowed::Only(Elbow::Right) => right,
+            Allowed::Only(Elbow::Left) => left,
+            Allowed::Both if travel(self.left) < travel(self.right) => left,
+            Allowed::Both => right,
         }
     }
 }

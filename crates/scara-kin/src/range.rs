@@ -1,0 +1,54 @@
+//! The range of numbers that the crate computes with, in one place.
+
+use nalgebra::RealField;
+
+use crate::GeometryError;
+
+/// The largest joint angle and limit in radians, 1/√ε: 2²⁶ (6.7e7) in f64, 2896 in f32. There
+/// half of the digits are left: an angle is rounded to √ε/2 rad.
+pub(crate) fn largest_angle<T: RealField>() -> T {
+    T::default_epsilon().sqrt().recip()
+}
+
+/// The longest link and the largest coordinate of the base, in units of the shorter link,
+/// 1/64ε: 7e13 in f64, 1.3e5 in f32. There the shorter link is not much longer than what
+/// positions are rounded by.
+pub(crate) fn largest_ratio<T: RealField>() -> T {
+    (T::default_epsilon() * nalgebra::convert(64.0)).recip()
+}
+
+/// Shortest and longest link. With h the fourth root of the largest number of `T`, divided
+/// by 4, they are 1/√h and h (f64: 6e-39 and 2.8e76, f32: 3e-5 and 1e9): outside, products of
+/// four lengths would overflow or lose digits.
+pub(crate) fn link_lengths<T: RealField + Copy>() -> (T, T) {
+    let max = max_value::<T>().sqrt().sqrt() * nalgebra::convert(0.25);
+    (max.sqrt().recip(), max)
+}
+
+/// Whether an angle is within ±[`largest_angle`]; NaN is not.
+pub(crate) fn is_angle<T: RealField + Copy>(angle: T) -> bool {
+    angle.abs() <= largest_angle()
+}
+
+/// Refuses by its name what is not within ±`largest`.
+pub(crate) fn within<T: RealField + Copy>(
+    largest: T,
+    name: &'static str,
+    value: T,
+) -> Result<(), GeometryError<T>> {
+    // Written so that NaN is refused too.
+    if value.abs() <= largest {
+        Ok(())
+    } else {
+        Err(GeometryError::OutOfRange {
+            name,
+            value,
+            largest,
+        })
+    }
+}
+
+/// The largest finite number; every `RealField` of machine floats has one.
+pub(crate) fn max_value<T: RealField>() -> T {
+    T::max_value().unwrap_or_else(T::one)
+}
