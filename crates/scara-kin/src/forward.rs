@@ -26,7 +26,7 @@ impl<T: RealField + Copy> Arm<T> {
     ///
     /// q1 the shoulder, q2 the elbow, in radians. The angles are not added first:
     /// their sum would be rounded once more. Limits are not looked at. Any finite angles
-    /// are right to 3 machine epsilons of reach plus base distance; angles that are not
+    /// are right to 4 machine epsilons of reach plus base distance; angles that are not
     /// finite give coordinates that are not numbers.
     #[must_use]
     #[inline]
