@@ -163,6 +163,35 @@ fn limits_choose_the_other_elbow() {
     ));
 }
 
+/// A pose with the shoulder or elbow on the end of its range is no answer for the other elbow,
+/// which would have to pass that end.
+#[test]
+fn the_other_elbow_is_not_answered_in_its_place() {
+    let range = |min, max| JointRange::new(min, max).unwrap();
+    for (arm, pose) in [
+        (range(-1.0, 1.0), Joints::new(1.0, 0.8)),
+        (range(-1.0, 1.0), Joints::new(-1.0, -0.8)),
+        (range(-1.0, 1.0), Joints::new(1.0, 1e-3)),
+        (range(0.5, 2.0), Joints::new(2.0, 3.1)),
+        (range(0.5, 2.0), Joints::new(2.0 - 1e-15, 3.1)),
+    ]
+    .map(|(shoulder, pose)| {
+        let elbow = JointRange::unlimited();
+        let arm = Arm::new(132.0, 100.0).unwrap();
+        (arm.with_limits(Limits { shoulder, elbow }), pose)
+    }) {
+        let own = Elbow::of(&pose).unwrap();
+        let point = arm.forward(pose);
+        let refused = arm.inverse_elbow_near(point, own.other(), pose);
+        assert!(
+            matches!(refused, Err(InverseError::JointLimit { elbow, .. }) if elbow == own.other()),
+            "{pose:?}: {refused:?}"
+        );
+        let solutions = arm.inverse(point).unwrap();
+        assert!(solutions.get(own).is_some() && solutions.get(own.other()).is_none());
+    }
+}
+
 /// The nearest solution keeps the whole turn that the arm is on, as far as limits allow.
 #[test]
 fn nearest_solution_counts_whole_turns() {

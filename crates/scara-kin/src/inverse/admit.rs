@@ -33,36 +33,59 @@ impl<T: RealField + Copy> Arm<T> {
     ) -> Result<Joints<T>, Miss<T>> {
         let shoulders = self.limits().shoulder.fit(joints.shoulder, near.shoulder);
         let elbows = self.limits().elbow.fit(joints.elbow, near.elbow);
-        // The turn nearest to `near` comes first, even if it is the end of a range that
-        // rounding missed.
-        shoulders
-            .into_iter()
-            .flat_map(|shoulder| elbows.into_iter().map(move |elbow| (shoulder, elbow)))
-            .find_map(|(shoulder, elbow)| self.settle(shoulder, elbow, tool))
-            .ok_or_else(|| Miss::new(self, shoulders, elbows))
+        let travel = |joints: Joints<T>| near.way_to(joints).amax();
+        let mut nearest = None;
+        let mut consider = |candidate| {
+            if nearest.is_none_or(|nearest| travel(candidate) < travel(nearest)) {
+                nearest = Some(candidate);
+            }
+        };
+        for (shoulder, elbow) in pairs(shoulders, elbows) {
+            let fitted = Joints::new(shoulder.angle, elbow.angle);
+            if shoulder.beyond == T::zero() && elbow.beyond == T::zero() {
+                consider(fitted);
+                break;
+            }
+            for candidate in self.beside(fitted, near, tool) {
+                if self.stands_for(candidate, joints, tool) {
+                    consider(candidate);
+                }
+            }
+        }
+        nearest.ok_or_else(|| Miss::new(self, shoulders, elbows))
     }
 
-    /// The joints within the limits that bring the tool to `tool`, the fitted ones or,
-    /// within rounding, some beside them.
-    fn settle(&self, shoulder: Fitted<T>, elbow: Fitted<T>, tool: Vector2<T>) -> Option<Joints<T>> {
-        let fitted = Joints::new(shoulder.angle, elbow.angle);
-        if shoulder.beyond == T::zero() && elbow.beyond == T::zero() {
-            return Some(fitted);
-        }
-        // Near a straight or folded arm rounding moves both joints by far more than
-        // itself, against each other: one on its end, the other as that needs it.
+    /// `fitted`, and joints of which one stays and the other points at `tool`. Near a straight
+    /// or folded arm rounding moves both by far more than itself, against each other: where
+    /// one is put on its end, the other goes with it.
+    fn beside(&self, fitted: Joints<T>, near: Joints<T>, tool: Vector2<T>) -> [Joints<T>; 5] {
+        let Joints { shoulder, elbow } = fitted;
         let limits = self.limits();
-        let elbow = self.elbow_behind(fitted.shoulder, tool);
-        let [elbow, _] = limits.elbow.fit(elbow, fitted.elbow);
-        let shoulder = self.shoulder_before(fitted.elbow, tool);
-        let [shoulder, _] = limits.shoulder.fit(shoulder, fitted.shoulder);
-        [
-            fitted,
-            Joints::new(fitted.shoulder, elbow.angle),
-            Joints::new(shoulder.angle, fitted.elbow),
-        ]
-        .into_iter()
-        .find(|joints| (self.tip(*joints) - tool).norm() <= self.rounding(*joints))
+        let elbows = limits
+            .elbow
+            .fit(self.elbow_behind(shoulder, tool), near.elbow);
+        let shoulders = limits
+            .shoulder
+            .fit(self.shoulder_before(elbow, tool), near.shoulder);
+        let [a, b] = elbows.map(|elbow| Joints::new(shoulder, elbow.angle));
+        let [c, d] = shoulders.map(|shoulder| Joints::new(shoulder.angle, elbow));
+        [fitted, a, b, c, d]
+    }
+
+    /// Whether `candidate` is, within rounding, what `joints` is: the tool is at `tool`, and
+    /// the elbow on the same side.
+    fn stands_for(&self, candidate: Joints<T>, joints: Joints<T>, tool: Vector2<T>) -> bool {
+        let rounding = self.rounding(candidate);
+        let side = candidate.elbow.sin();
+        let is_same_side = if joints.elbow < T::zero() {
+            side <= T::zero()
+        } else {
+            side >= T::zero()
+        };
+        let r = tool.norm();
+        let folded = (self.upper() - self.fore()).abs();
+        let is_straight_or_folded = r >= self.reach() - rounding || r <= folded + rounding;
+        (is_same_side || is_straight_or_folded) && (self.tip(candidate) - tool).norm() <= rounding
     }
 
     /// How far from its place rounding alone may put the tool, in the unit of length: the
@@ -132,6 +155,16 @@ impl<T: RealField + Copy> Miss<T> {
     pub(super) fn by(&self) -> T {
         self.by
     }
+}
+
+/// The turns of both joints, the nearest ones first.
+fn pairs<T: RealField + Copy>(
+    shoulders: [Fitted<T>; 2],
+    elbows: [Fitted<T>; 2],
+) -> impl Iterator<Item = (Fitted<T>, Fitted<T>)> {
+    shoulders
+        .into_iter()
+        .flat_map(move |shoulder| elbows.map(|elbow| (shoulder, elbow)))
 }
 
 /// The turn of an angle that is nearer to its range.
