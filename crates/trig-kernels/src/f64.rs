@@ -1,0 +1,70 @@
+//! Double precision.
+
+mod derived;
+
+use self::derived::{
+    ARCTAN, COMMON_ANGLE, COSINE, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
+    TWICE_ATAN_HALF, TWICE_ATAN_HALF_TAIL, TWO_OVER_PI,
+};
+use crate::{atan2::atan2, large::reduce_large, sin_cos::sin_cos};
+
+/// 1.5 · 2^52: numbers of this size have no fraction.
+const SHIFT: f64 = 1.5 * power_of_two(52);
+/// The highest 26 of 53 bits of a significand, with sign and exponent.
+const HEAD: u64 = !0x7FF_FFFF;
+
+/// Lengths whose reciprocals have all their bits.
+const COMMON_LENGTHS: [f64; 2] = [power_of_two(-500), power_of_two(500)];
+/// From here on no remainder of a division is cut off at the end of the range of f64.
+const COMMON_SMALL: f64 = power_of_two(-900);
+/// Bring all other lengths into the common range.
+const SCALES: [f64; 2] = [power_of_two(-600), power_of_two(600)];
+/// Quotients below do not change π/2.
+const TINY_QUOTIENT: f64 = power_of_two(-60);
+
+// In pairs instead of one chain: a processor computes them side by side.
+#[inline(always)]
+fn sine_polynomial(z: f64) -> f64 {
+    let [c0, c1, c2, c3, c4, c5] = SINE;
+    let z2 = z * z;
+    ((c0 + z * c1) + z2 * (c2 + z * c3)) + (z2 * z2) * (c4 + z * c5)
+}
+
+#[inline(always)]
+fn cosine_polynomial(z: f64) -> f64 {
+    let [c0, c1, c2, c3, c4, c5] = COSINE;
+    let z2 = z * z;
+    ((c0 + z * c1) + z2 * (c2 + z * c3)) + (z2 * z2) * (c4 + z * c5)
+}
+
+#[inline(always)]
+fn arctan_polynomial(z: f64) -> f64 {
+    let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = ARCTAN;
+    let z2 = z * z;
+    let z4 = z2 * z2;
+    let low = (c0 + z * c1) + z2 * (c2 + z * c3);
+    let high = (c4 + z * c5) + z2 * (c6 + z * c7);
+    low + z4 * (high + z4 * c8)
+}
+
+/// `small < large` of two numbers that are not negative.
+#[inline(always)]
+fn is_less(small: f64, large: f64) -> bool {
+    small < large
+}
+
+#[inline(always)]
+fn is_common_large(large: f64) -> bool {
+    let [min, max] = COMMON_LENGTHS;
+    (large >= min) & (large <= max)
+}
+
+/// Above [`COMMON_SMALL`], and zero.
+#[inline(always)]
+fn is_common_small(small: f64) -> bool {
+    (small > COMMON_SMALL) | (small == 0.0)
+}
+
+sin_cos!(f64, u64);
+reduce_large!(f64, u64, u128, i128);
+atan2!(f64, u64);

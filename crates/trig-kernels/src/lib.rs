@@ -1,0 +1,107 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+#[cfg(test)]
+extern crate std;
+
+mod atan2;
+mod f32;
+mod f64;
+mod large;
+mod sin_cos;
+
+mod sealed {
+    #[expect(unnameable_types, reason = "that is what seals `Trig`")]
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// `f32` or `f64`: what the functions of this crate are for.
+///
+/// Its functions are not methods, so that code which is generic over `T: RealField + Trig` can
+/// go on calling those of `nalgebra` by `x.sin_cos()`, and calls these by name:
+///
+/// ```
+/// use trig_kernels::{Trig, atan2, sin_cos};
+///
+/// fn turned<T: Trig + core::ops::Add<Output = T>>(angle: T, by: T) -> T {
+///     let (sin, cos) = sin_cos(angle + by);
+///     atan2(sin, cos)
+/// }
+/// assert_eq!(turned(0.5_f32, 0.25), 0.75);
+/// ```
+pub trait Trig: Copy + sealed::Sealed {
+    /// See [`sin_cos`].
+    #[must_use]
+    fn sin_cos(x: Self) -> (Self, Self);
+
+    /// See [`sin_cos_lanes`].
+    #[must_use]
+    fn sin_cos_lanes<const L: usize>(x: [Self; L]) -> ([Self; L], [Self; L]);
+
+    /// See [`atan2`].
+    #[must_use]
+    fn atan2(y: Self, x: Self) -> Self;
+
+    /// See [`atan2_lanes`].
+    #[must_use]
+    fn atan2_lanes<const L: usize>(y: [Self; L], x: [Self; L]) -> [Self; L];
+}
+
+macro_rules! trig {
+    ($($float:ident)*) => {$(
+        impl Trig for $float {
+            #[inline]
+            fn sin_cos(x: Self) -> (Self, Self) {
+                self::$float::sin_cos(x)
+            }
+
+            #[inline]
+            fn sin_cos_lanes<const L: usize>(x: [Self; L]) -> ([Self; L], [Self; L]) {
+                self::$float::sin_cos_lanes(x)
+            }
+
+            #[inline]
+            fn atan2(y: Self, x: Self) -> Self {
+                self::$float::atan2(y, x)
+            }
+
+            #[inline]
+            fn atan2_lanes<const L: usize>(y: [Self; L], x: [Self; L]) -> [Self; L] {
+                self::$float::atan2_lanes(y, x)
+            }
+        }
+    )*};
+}
+trig!(f32 f64);
+
+/// Sine and cosine of an angle in radians.
+#[must_use]
+#[inline]
+pub fn sin_cos<T: Trig>(x: T) -> (T, T) {
+    T::sin_cos(x)
+}
+
+/// Sines and cosines of several angles in radians.
+#[must_use]
+#[inline]
+pub fn sin_cos_lanes<T: Trig, const L: usize>(x: [T; L]) -> ([T; L], [T; L]) {
+    T::sin_cos_lanes(x)
+}
+
+/// The angle of the vector (x, y) against the axis of x, in radians from -π to π.
+#[must_use]
+#[inline]
+pub fn atan2<T: Trig>(y: T, x: T) -> T {
+    T::atan2(y, x)
+}
+
+/// The angles of several vectors (x, y) against the axis of x, in radians from -π to π.
+#[must_use]
+#[inline]
+pub fn atan2_lanes<T: Trig, const L: usize>(y: [T; L], x: [T; L]) -> [T; L] {
+    T::atan2_lanes(y, x)
+}
