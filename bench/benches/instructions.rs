@@ -14,6 +14,8 @@
 //! | `ticks_of_eight` | 10,000 | tick of eight accumulators in a loop |
 //! | `ticks_of_eight_by_call` | 10,000 | the same as a function of its own, its call included |
 //! | `decoded_records` | 65,536 | record of three bytes |
+//! | `sines`, `sines_in_lanes`, `angles`, `angles_in_lanes` | 1024 | value of f64 |
+//! | `sines_of_libm`, `angles_of_libm` | 1024 | the same by `libm` |
 //!
 //! The bytes of 3964R are counted in its own crate: `cargo bench -p proto3964r --bench instructions`.
 
@@ -163,6 +165,67 @@ fn decoded_records(bytes: Vec<u8>) -> i32 {
     sum
 }
 
+/// Evenly from -3 to 3.
+fn numbers() -> Vec<f64> {
+    (0..1024_u32)
+        .map(|n| f64::from(n.wrapping_mul(2_654_435_769)) * (6.0 / 4_294_967_296.0) - 3.0)
+        .collect()
+}
+
+fn sum_of_sines(numbers: &[f64], sin_cos: impl Fn(f64) -> (f64, f64)) -> f64 {
+    numbers
+        .iter()
+        .map(|&x| sin_cos(x))
+        .fold(0.0, |sum, (sin, cos)| sum + sin + cos)
+}
+
+fn sum_of_angles(numbers: &[f64], atan2: impl Fn(f64, f64) -> f64) -> f64 {
+    numbers
+        .iter()
+        .zip(numbers.iter().rev())
+        .map(|(&y, &x)| atan2(y, x))
+        .sum()
+}
+
+#[library_benchmark(setup = numbers)]
+fn sines(numbers: Vec<f64>) -> f64 {
+    sum_of_sines(numbers.leak(), trig_kernels::sin_cos)
+}
+
+#[library_benchmark(setup = numbers)]
+fn sines_of_libm(numbers: Vec<f64>) -> f64 {
+    sum_of_sines(numbers.leak(), libm::sincos)
+}
+
+#[library_benchmark(setup = numbers)]
+fn sines_in_lanes(numbers: Vec<f64>) -> f64 {
+    let (chunks, _) = numbers.leak().as_chunks::<8>();
+    chunks
+        .iter()
+        .map(|&x| trig_kernels::sin_cos_lanes(x))
+        .fold(0.0, |sum, (sin, cos)| sum + sin[0] + cos[0])
+}
+
+#[library_benchmark(setup = numbers)]
+fn angles(numbers: Vec<f64>) -> f64 {
+    sum_of_angles(numbers.leak(), trig_kernels::atan2)
+}
+
+#[library_benchmark(setup = numbers)]
+fn angles_of_libm(numbers: Vec<f64>) -> f64 {
+    sum_of_angles(numbers.leak(), libm::atan2)
+}
+
+#[library_benchmark(setup = numbers)]
+fn angles_in_lanes(numbers: Vec<f64>) -> f64 {
+    let (chunks, _) = numbers.leak().as_chunks::<8>();
+    chunks
+        .iter()
+        .zip(chunks.iter().rev())
+        .map(|(&y, &x)| trig_kernels::atan2_lanes(y, x)[0])
+        .sum()
+}
+
 library_benchmark_group!(name = kinematics; benchmarks = inverse_bare, inverse_both);
 library_benchmark_group!(
     name = pulses;
@@ -177,10 +240,15 @@ library_benchmark_group!(
     benchmarks = ticks_of_eight, ticks_of_eight_by_call
 );
 library_benchmark_group!(name = patterns; benchmarks = decoded_records);
+library_benchmark_group!(
+    name = trigonometry;
+    benchmarks = sines, sines_of_libm, sines_in_lanes, angles, angles_of_libm, angles_in_lanes
+);
 
 main!(
     library_benchmark_groups = kinematics,
     pulses,
     accumulators,
-    patterns
+    patterns,
+    trigonometry
 );

@@ -14,6 +14,7 @@ mod patterns;
 mod poses;
 mod stepping;
 mod tables;
+mod trig;
 mod unit;
 
 fn main() {
@@ -28,6 +29,7 @@ fn main() {
     line::run();
     jobs::run();
     unit::run();
+    trig::run();
     #[cfg(feature = "control")]
     control::run();
 }

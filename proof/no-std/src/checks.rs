@@ -6,6 +6,7 @@ mod codecs;
 mod delta;
 mod line;
 mod pulses;
+mod trig;
 mod unit;
 
 /// The checks; the number of each is its exit status.
@@ -28,6 +29,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     line::read_data_block,
     unit::unit_telegrams,
     unit::panel,
+    trig::angles,
 ];
 
 /// A thousandth of a micrometre: far above the rounding of an arm of 264 mm, far below any machine.
