@@ -61,7 +61,6 @@ struct Tripod<T> {
 
 impl<T: RealField + Copy> Tripod<T> {
     /// From the rods, each from its centre to the platform.
-    #[inline(always)]
     fn new([first, second, third]: [Vector3<T>; 3]) -> Self {
         let (d2, d3) = (first - second, first - third);
         let normal = d2.cross(&d3);
@@ -73,7 +72,6 @@ impl<T: RealField + Copy> Tripod<T> {
     }
 
     /// Whether the triangle is higher than twice what rounding makes of a line.
-    #[inline(always)]
     fn is_plane(&self, tolerance: T) -> bool {
         let height = tolerance * two();
         self.normal.norm_squared() > self.side2 * (height * height)
@@ -82,11 +80,15 @@ impl<T: RealField + Copy> Tripod<T> {
 
 impl<T: RealField + Copy> Delta<T> {
     /// Whether the rods, each from its centre to the platform, are clearly in the machine's
-    /// assembly mode.
+    /// assembly mode: so far that the triangle, too, is no line.
+    ///
+    /// With d a side of the triangle and h its height, the volume is at most La d h.
     #[inline(always)]
-    pub(crate) fn is_assembled(&self, rods: [Vector3<T>; 3]) -> bool {
-        let tripod = Tripod::new(rods);
-        (tripod.volume * self.side() > T::zero()) & tripod.is_plane(self.tolerance())
+    pub(crate) fn is_assembled(&self, [first, second, third]: [Vector3<T>; 3]) -> bool {
+        let span = self.span();
+        let volume = first.dot(&second.cross(&third)) * self.side();
+        // A side is shorter than two spans.
+        volume > self.tolerance() * span * span * two() * two()
     }
 
     /// Whether `forward` of these angles is the platform's place, or why it is not.

@@ -2,6 +2,8 @@
 //! machines are tried, 2000 unless set; `--nocapture` shows what was found.
 #![cfg(test)]
 
+#[path = "common/reach.rs"]
+mod reach;
 #[path = "common/uneven.rs"]
 mod uneven;
 
@@ -11,7 +13,8 @@ use delta_kin::{ArmGeometry, AssemblyMode, Delta, ForwardError, Knee};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use uneven::{assembly_modes, knees, uneven_arms};
+use reach::reach_margins;
+use uneven::{modes, uneven_arms};
 
 /// By how much `inverse` misses the lower arms' lengths, in machine epsilons of the span.
 const INVERSE: f64 = 4.0;
@@ -134,13 +137,12 @@ fn cases() -> impl Strategy<Value = Case> {
     (
         uneven_arms(),
         prop::array::uniform3(-3.1..3.1f64),
-        assembly_modes(),
-        knees(),
+        modes(),
         prop::array::uniform3(-1.0..1.0f64),
         share,
     )
         .prop_map(
-            |(arms, angles, assembly_mode, working_mode, direction, share)| Case {
+            |(arms, angles, (assembly_mode, working_mode), direction, share)| Case {
                 arms,
                 angles,
                 assembly_mode,
@@ -149,19 +151,6 @@ fn cases() -> impl Strategy<Value = Case> {
                 share,
             },
         )
-}
-
-/// By how much the arms reach a point.
-fn reach_margin(arms: &[ArmGeometry; 3], point: Point3<f64>) -> f64 {
-    let margins = arms.map(|arm| {
-        let (sin, cos) = arm.azimuth.sin_cos();
-        let inward = arm.base - arm.platform - (point.x * cos + point.y * sin);
-        let side = point.y * cos - point.x * sin;
-        let h = inward.hypot(point.z);
-        let (near, far) = ((h - arm.upper).hypot(side), (h + arm.upper).hypot(side));
-        (arm.lower - near).min(far - arm.lower)
-    });
-    Vector3::from(margins).min()
 }
 
 #[derive(Default)]
@@ -221,7 +210,7 @@ impl Search {
             return;
         };
         let point = point.map(narrow::<T>);
-        if reach_margin(&exact, point.map(wide)) < 0.0 {
+        if reach_margins(&exact, point.map(wide)).min() < 0.0 {
             return;
         }
         let delta = delta.with_working_mode(case.working_mode);
@@ -290,7 +279,7 @@ fn towards_the_edge(
     let (mut inside, mut outside) = (0.0, 3.0 * span);
     for _ in 0..60 {
         let middle = f64::midpoint(inside, outside);
-        if reach_margin(arms, from + direction * middle) > 0.0 {
+        if reach_margins(arms, from + direction * middle).min() > 0.0 {
             inside = middle;
         } else {
             outside = middle;

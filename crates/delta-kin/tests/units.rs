@@ -12,7 +12,7 @@ use delta_kin::{
     WorkspaceError,
 };
 use proptest::prelude::*;
-use uneven::{assembly_modes, knees, uneven_arms};
+use uneven::{modes, uneven_arms};
 
 /// What rounding of the numbers that go in does to those that come out, in units of their own
 /// size or the span's, where no singularity and no edge is near.
@@ -32,14 +32,13 @@ struct Case {
 fn cases() -> impl Strategy<Value = Case> {
     (
         uneven_arms(),
-        assembly_modes(),
-        knees(),
+        modes(),
         prop::array::uniform3(-3.1..3.1f64),
         prop::array::uniform3(-0.05..0.05f64),
         any::<bool>(),
     )
         .prop_map(
-            |(arms, assembly_mode, working_mode, angles, other, is_limited)| Case {
+            |(arms, (assembly_mode, working_mode), angles, other, is_limited)| Case {
                 arms,
                 assembly_mode,
                 working_mode,

@@ -44,10 +44,9 @@ pub(crate) fn uneven_arms() -> impl Strategy<Value = [ArmGeometry; 3]> {
     )
 }
 
-pub(crate) fn knees() -> impl Strategy<Value = [Knee; 3]> {
-    prop::array::uniform3(prop_oneof![Just(Knee::Out), Just(Knee::In)])
-}
-
-pub(crate) fn assembly_modes() -> impl Strategy<Value = AssemblyMode> {
-    prop_oneof![Just(AssemblyMode::Lower), Just(AssemblyMode::Upper)]
+/// An assembly and a working mode.
+pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [Knee; 3])> {
+    let assembly_mode = prop_oneof![Just(AssemblyMode::Lower), Just(AssemblyMode::Upper)];
+    let knee = || prop_oneof![Just(Knee::Out), Just(Knee::In)];
+    (assembly_mode, [knee(), knee(), knee()])
 }
