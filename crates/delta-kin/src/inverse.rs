@@ -4,7 +4,7 @@ use core::fmt;
 
 use nalgebra::{Point3, RealField, Vector3};
 
-use crate::arm::zip;
+use crate::arm::{least, zip};
 use crate::leg::{Leg, Triangle, middle};
 use crate::rounded::Rounded;
 use crate::scale::max_value;
@@ -202,7 +202,26 @@ impl<T: RealField + Copy> Delta<T> {
             };
             (by > T::zero()).then_some((by, error))
         }))?;
-        Ok(Vector3::from(fitted.map(|(_, _, (angle, _))| angle)))
+        let angles = Vector3::from(fitted.map(|(_, _, (angle, _))| angle));
+        if self.forward(angles).is_err() {
+            // Beyond the edges by a rounding each, and all rods in a plane: together too much.
+            return Err(self.missed(&local, angles));
+        }
+        Ok(angles)
+    }
+
+    /// The arm whose rods miss by most.
+    fn missed(&self, local: &Vector3<T>, angles: Vector3<T>) -> InverseError<T> {
+        let misses = zip(self.legs().each_ref(), self.thetas(angles))
+            .map(|(leg, theta)| leg.stretch(local, theta));
+        let (arm, most) = least(misses.map(|miss| -miss.abs()));
+        let by = -most;
+        let [first, second, third] = misses;
+        if first.max(second).max(third) >= by {
+            InverseError::TooFar { arm, by }
+        } else {
+            InverseError::TooNear { arm, by }
+        }
     }
 
     /// By how much the rod cannot be where the wrist is.
