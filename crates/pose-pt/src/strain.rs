@@ -65,14 +65,11 @@ pub(crate) fn linear_strain<const N: usize, T: RealField + Copy>(
 
 /// |√(L² + change) - L|, without cancellation; L where the square would be negative.
 fn departure<T: RealField + Copy>(length: T, change: T) -> T {
-    let square = (length * length + change).max(T::zero());
-    (change / (length + square.sqrt()))
-        .abs()
-        .min(if change < T::zero() {
-            length
-        } else {
-            change.abs()
-        })
+    let square = length * length + change;
+    if square <= T::zero() {
+        return length;
+    }
+    change.abs() / (length + square.sqrt())
 }
 
 /// The most by which the distance of any two locators departs from that of their anchors
