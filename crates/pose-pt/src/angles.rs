@@ -2,7 +2,8 @@
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3};
 
-use crate::number::{epsilons, half};
+use crate::number::{epsilons, half, largest_angle};
+use crate::rotation::zero_if_finite;
 
 /// How the three angles of a pose vector make a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -165,7 +166,8 @@ impl<T: RealField + Copy> PoseVector<T> {
 
     /// The pose vector of a pose that is nearest to `previous`: each angle at its whole
     /// turn nearest to the previous one, at gimbal lock with the previous α. But for whole
-    /// turns β is within -π/2..=π/2.
+    /// turns β is within -π/2..=π/2. An angle of n turns is rounded to 2π n machine epsilons;
+    /// beyond 1/√ε, 6.7e7 rad in f64 and 2896 in f32, it is not a number.
     #[must_use]
     pub fn from_isometry_near(
         pose: &Isometry3<T>,
@@ -205,7 +207,8 @@ struct Angles<T> {
 
 impl<T: RealField + Copy> Angles<T> {
     fn new(rotation: &UnitQuaternion<T>, convention: Convention) -> Self {
-        let q = rotation.quaternion();
+        // Arc tangents would make angles of what is infinite.
+        let q = rotation.quaternion() * (T::one() + zero_if_finite(rotation.as_vector()));
         // Rx(α) Ry(β) Rz(γ) is the inverse of Rz(-γ) Ry(-β) Rx(-α).
         let sign = match convention {
             Convention::ExtrinsicXyz => T::one(),
@@ -257,8 +260,11 @@ impl<T: RealField + Copy> Angles<T> {
     }
 }
 
-/// `angle` at the whole turn nearest to `near`.
+/// `angle` at the whole turn nearest to `near`; not a number where that is out of range.
 fn nearest_turn<T: RealField + Copy>(angle: T, near: T) -> T {
+    if near.abs() > largest_angle() {
+        return T::zero() / T::zero();
+    }
     let turns = ((near - angle) / T::two_pi()).round();
     angle + turns * T::two_pi()
 }

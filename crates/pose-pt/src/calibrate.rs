@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
-use crate::fit::{mean, rms_and_largest};
-use crate::number::{first_beyond, largest};
+use crate::fit::{longest, mean, rms_and_largest};
+use crate::number::{first_beyond, largest, smallest};
+use crate::short::short;
 use crate::svd::Svd;
 
 /// A locator's frame, as measured: what
@@ -47,7 +48,7 @@ impl<T: RealField + Copy> Calibration<T> {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum CalibrationError<T = f64> {
+pub enum CalibrationError<T: RealField + Copy = f64> {
     /// The number of axis positions and points differs.
     #[error("{positions} axis positions for {points} points")]
     Count {
@@ -62,8 +63,8 @@ pub enum CalibrationError<T = f64> {
         /// Points given.
         count: usize,
     },
-    /// A number is not finite, or so large that its square overflows.
-    #[error("{value} of measurement {point} is not within ±{max:e}")]
+    /// A number is not finite, or beyond the range of the crate.
+    #[error("{} of measurement {point} is not within ±{}", short(.value), short(.max))]
     Coordinate {
         /// The measurement, from 0.
         point: usize,
@@ -75,7 +76,8 @@ pub enum CalibrationError<T = f64> {
     /// The axis positions lie in a plane, on a line or in a point: some axis was not
     /// moved by itself.
     #[error(
-        "the axis positions span {rank} of 3 directions: {width} across, more than {needed} is needed"
+        "the axis positions span {rank} of 3 directions: {} across, more than {} is needed",
+        short(.width), short(.needed)
     )]
     Rank {
         /// Directions that they span.
@@ -132,15 +134,26 @@ pub fn calibrate<T: RealField + Copy>(
             .zip(points)
             .map(|(position, point)| (position - mean_axes, point.coords - mean_point))
     };
-    let scatter: Matrix3<T> = arms().map(|(axes, _)| axes * axes.transpose()).sum();
-    let inverse = inverse_scatter(&Svd::new(&scatter))?;
+    // In parts of the longest, so that no square of a square leaves the range.
+    let extent = longest(arms().map(|(position, _)| position)).norm();
+    if extent < smallest() {
+        return Err(CalibrationError::Rank {
+            rank: 0,
+            width: extent,
+            needed: smallest(),
+        });
+    }
+    let directions = || arms().map(|(position, _)| position / extent);
+    let scatter: Matrix3<T> = directions().map(|d| d * d.transpose()).sum();
+    let inverse = inverse_scatter(&Svd::new(&scatter), extent)?;
     let mut axes = Matrix3::zeros();
     // The second round takes back the rounding of the first.
     for _ in 0..2 {
         let moment: Matrix3<T> = arms()
-            .map(|(position, point)| (point - axes * position) * position.transpose())
+            .zip(directions())
+            .map(|((position, point), direction)| (point - axes * position) * direction.transpose())
             .sum();
-        axes += moment * inverse;
+        axes += moment * inverse / extent;
     }
     let (rms, max_residual) =
         rms_and_largest(arms().map(|(position, point)| point - axes * position));
@@ -152,7 +165,10 @@ pub fn calibrate<T: RealField + Copy>(
     })
 }
 
-fn inverse_scatter<T: RealField + Copy>(svd: &Svd<T>) -> Result<Matrix3<T>, CalibrationError<T>> {
+fn inverse_scatter<T: RealField + Copy>(
+    svd: &Svd<T>,
+    extent: T,
+) -> Result<Matrix3<T>, CalibrationError<T>> {
     let [s1, s2, s3] = svd.sigma.map(|sigma| sigma.abs());
     let root = T::default_epsilon().sqrt() * nalgebra::convert::<f64, T>(WIDTH_ROOTS);
     let needed = s1.sqrt() * root;
@@ -164,8 +180,8 @@ fn inverse_scatter<T: RealField + Copy>(svd: &Svd<T>) -> Result<Matrix3<T>, Cali
         let width = if rank < 2 { s2.sqrt() } else { s3.sqrt() };
         return Err(CalibrationError::Rank {
             rank,
-            width,
-            needed,
+            width: width * extent,
+            needed: needed * extent,
         });
     }
     let [u1, u2, u3] = &svd.u;

@@ -2,6 +2,7 @@
 
 use nalgebra::{RealField, Vector3};
 
+use crate::number::{epsilons, larger};
 use crate::path::Leg;
 use crate::path::leg::{Shape, Turning, VectorLeg};
 use crate::rotation::to_matrix;
@@ -30,6 +31,25 @@ pub(crate) struct TurningCourse<const N: usize, T> {
     sine: [Vector3<T>; N],
     versine: [Vector3<T>; N],
     angle: T,
+}
+
+/// By how much more than its way an axis may move where the three of a locator are least
+/// independent, and what positions round off besides.
+const STILL_EPSILONS: f64 = 64.0;
+
+/// Whether the body stays where it is, or moves by so little that no axis sees it.
+pub(crate) fn is_still<const N: usize, T: RealField + Copy>(
+    platform: &Platform<N, T>,
+    leg: &Leg<T>,
+) -> bool {
+    let arms = platform.anchors().iter().map(|anchor| anchor.coords.norm());
+    let way = leg.length() + leg.turn() * arms.fold(T::zero(), larger);
+    if way == T::zero() {
+        return true;
+    }
+    let [start, end] = [leg.pose(T::zero()), leg.pose(T::one())].map(|pose| platform.axes(&pose));
+    let far = start.iter().map(Vector3::amax).fold(T::zero(), larger);
+    start == end && way <= far * epsilons(STILL_EPSILONS)
 }
 
 /// Where a course stands that is walked by equal parts.

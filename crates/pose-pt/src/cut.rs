@@ -2,6 +2,7 @@
 
 use nalgebra::RealField;
 
+use crate::course::is_still;
 use crate::number::{count, epsilons, two};
 use crate::path::Leg;
 use crate::strain::pairs;
@@ -108,7 +109,7 @@ impl<T: RealField + Copy> Cut<T> {
         number: usize,
         leg: &Leg<T>,
     ) -> Result<u32, PlanError<T>> {
-        if leg.is_still() {
+        if is_still(platform, leg) {
             return Ok(0);
         }
         let parts = match self.rule {
@@ -121,18 +122,23 @@ impl<T: RealField + Copy> Cut<T> {
                 .map(|(moves, turns)| moves.max(turns)),
             Rule::Strain(allowed) => parts_within(leg.turn(), largest_turn(platform, leg, allowed)),
         };
-        within_max(parts.map(|parts| parts.max(self.at_least)), number)
+        within_max(
+            parts.map(|parts| parts.max(self.at_least)),
+            number,
+            MAX_PARTS,
+        )
     }
 }
 
 /// Refuses more parts than a leg can have.
-pub(crate) fn within_max<T>(parts: Option<u32>, leg: usize) -> Result<u32, PlanError<T>> {
+pub(crate) fn within_max<T: RealField + Copy>(
+    parts: Option<u32>,
+    leg: usize,
+    max: u32,
+) -> Result<u32, PlanError<T>> {
     match parts {
-        Some(parts) if parts <= MAX_PARTS => Ok(parts.max(1)),
-        _ => Err(PlanError::TooFine {
-            leg,
-            max: MAX_PARTS,
-        }),
+        Some(parts) if parts <= max => Ok(parts.max(1)),
+        _ => Err(PlanError::TooFine { leg, max }),
     }
 }
 

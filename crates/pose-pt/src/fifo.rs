@@ -2,6 +2,8 @@
 
 use nalgebra::RealField;
 
+use crate::number::largest;
+use crate::short::short;
 use crate::{PtPoint, PvtPoint};
 
 /// Something that takes a controller a time to run.
@@ -16,8 +18,8 @@ impl<const N: usize, T: Copy> Timed<T> for PtPoint<N, T> {
     }
 }
 
-impl<const N: usize, T: Copy> Timed<T> for PvtPoint<N, T> {
-    fn segment_s(&self) -> T {
+impl<const N: usize> Timed<f64> for PvtPoint<N> {
+    fn segment_s(&self) -> f64 {
         self.segment_s
     }
 }
@@ -39,9 +41,9 @@ pub struct FifoState<T = f64> {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum FifoError<T = f64> {
+pub enum FifoError<T: RealField + Copy = f64> {
     /// The controller has run out of points: it stopped, or went on blindly.
-    #[error("underrun: the buffer was empty at {at_s} s, {late_s} s ago, after {points} points")]
+    #[error("underrun: the buffer was empty at {} s, {} s ago, after {points} points", short(.at_s), short(.late_s))]
     Underrun {
         /// When the last point was reached.
         at_s: T,
@@ -50,21 +52,25 @@ pub enum FifoError<T = f64> {
         /// Points handed out until then.
         points: u64,
     },
-    /// Time ran backwards, or is not a number.
-    #[error("time {now_s} s is before {last_s} s")]
+    /// Time ran backwards, is not a number, or is beyond the range of the crate.
+    #[error("time {} s is not within {}..={} s", short(.now_s), short(.last_s), short(.max_s))]
     Time {
         /// The time given.
         now_s: T,
-        /// The time given before.
+        /// The time given before; at first the smallest.
         last_s: T,
+        /// The largest time.
+        max_s: T,
     },
     /// A segment has no positive finite time.
-    #[error("point {point} takes {segment_s} s")]
+    #[error("point {point} takes {} s, not above 0 and at most {} s", short(.segment_s), short(.max_s))]
     Segment {
         /// The point, counted from 0 over all that were handed out.
         point: u64,
         /// Its time.
         segment_s: T,
+        /// The longest time.
+        max_s: T,
     },
     /// The first point was not handed out before the start.
     #[error("nothing to start with")]
@@ -155,10 +161,12 @@ impl<const SLOTS: usize, T: RealField + Copy> Fifo<SLOTS, T> {
         if segment_s == T::zero() && number == 0 {
             return Ok(Some(point));
         }
-        if !(segment_s > T::zero() && segment_s.is_finite()) {
+        let max_s = largest();
+        if !(segment_s > T::zero() && segment_s <= max_s) {
             return Err(FifoError::Segment {
                 point: number,
                 segment_s,
+                max_s,
             });
         }
         self.push(now_s, segment_s);
@@ -232,11 +240,16 @@ impl<const SLOTS: usize, T: RealField + Copy> Fifo<SLOTS, T> {
     }
 
     fn tell(&mut self, now_s: T) -> Result<(), FifoError<T>> {
-        let last_s = self.now_s.unwrap_or(now_s);
-        if now_s >= last_s && now_s.is_finite() {
+        let max_s = largest::<T>();
+        let last_s = self.now_s.unwrap_or(-max_s);
+        if now_s >= last_s && now_s <= max_s {
             self.now_s = Some(now_s);
             return Ok(());
         }
-        Err(FifoError::Time { now_s, last_s })
+        Err(FifoError::Time {
+            now_s,
+            last_s,
+            max_s,
+        })
     }
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, RealField, Vector3};
 
-use crate::number::{epsilons, first_beyond, largest};
+use crate::number::{epsilons, first_beyond, largest, smallest};
 use crate::rotation::{quaternion, to_matrix};
+use crate::short::short;
 use crate::svd::Svd;
 
 /// Which of the two sets of points.
@@ -30,7 +31,7 @@ impl core::fmt::Display for Side {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum FitError<T = f64> {
+pub enum FitError<T: RealField + Copy = f64> {
     /// The sets differ in size.
     #[error("{from} points are to meet {to}")]
     Count {
@@ -45,8 +46,8 @@ pub enum FitError<T = f64> {
         /// Points given.
         count: usize,
     },
-    /// A coordinate is not finite, or so large that its square overflows.
-    #[error("coordinate {value} of the {side} point {point} is not within ±{max:e}")]
+    /// A coordinate is not finite, or beyond the range of the crate.
+    #[error("coordinate {} of the {side} point {point} is not within ±{}", short(.value), short(.max))]
     Coordinate {
         /// The set.
         side: Side,
@@ -57,8 +58,8 @@ pub enum FitError<T = f64> {
         /// Largest coordinate.
         max: T,
     },
-    /// All points are the same within rounding.
-    #[error("the {side} points coincide within {length}, more than {needed} is needed")]
+    /// All points are the same within rounding, or below the range of the crate.
+    #[error("the {side} points coincide within {}, more than {} is needed", short(.length), short(.needed))]
     Coincident {
         /// The set.
         side: Side,
@@ -69,7 +70,8 @@ pub enum FitError<T = f64> {
     },
     /// All points are on a line within rounding: the rotation about it is free.
     #[error(
-        "the {side} points are on a line: {width} wide, {length} long, more than {needed} is needed"
+        "the {side} points are on a line: {} wide, {} long, more than {} is needed",
+        short(.width), short(.length), short(.needed)
     )]
     Collinear {
         /// The set.
@@ -84,7 +86,8 @@ pub enum FitError<T = f64> {
     /// Two different rotations fit equally well, as when the points met are a mirror
     /// image of those moved.
     #[error(
-        "two rotations fit equally well: eigenvalue gap {gap:e}, more than {needed:e} is needed"
+        "two rotations fit equally well: eigenvalue gap {}, more than {} is needed",
+        short(.gap), short(.needed)
     )]
     Ambiguous {
         /// Eigenvalue gap, in length².
@@ -141,7 +144,7 @@ pub(crate) struct Shape<T: RealField> {
 impl<T: RealField + Copy> Shape<T> {
     pub(crate) fn new(points: &[Point3<T>], side: Side) -> Result<Self, FitError<T>> {
         let far = largest_coordinate(points, side)?;
-        let needed = epsilons::<T>(ROUNDING_EPSILONS) * far;
+        let needed = (epsilons::<T>(ROUNDING_EPSILONS) * far).max(smallest());
         let mean = mean(points.iter().map(|point| point.coords));
         let arms = || points.iter().map(|point| point.coords - mean);
         let farthest = longest(arms());
@@ -224,7 +227,9 @@ pub(crate) fn rms_and_largest<T: RealField + Copy>(
     ((sum / count).sqrt(), largest)
 }
 
-fn longest<T: RealField + Copy>(vectors: impl Iterator<Item = Vector3<T>>) -> Vector3<T> {
+pub(crate) fn longest<T: RealField + Copy>(
+    vectors: impl Iterator<Item = Vector3<T>>,
+) -> Vector3<T> {
     vectors.fold(Vector3::zeros(), |longest, vector| {
         if vector.norm_squared() > longest.norm_squared() {
             vector

@@ -15,6 +15,7 @@ mod platform;
 mod rotation;
 #[cfg(feature = "serde")]
 mod serde;
+mod short;
 mod svd;
 
 pub use nalgebra;

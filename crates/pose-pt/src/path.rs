@@ -2,11 +2,12 @@
 
 pub(crate) mod leg;
 
-use nalgebra::{Isometry3, RealField};
+use nalgebra::{Isometry3, RealField, UnitQuaternion, Vector3};
 
 pub use leg::Leg;
 
-use crate::number::epsilons;
+use crate::number::{constant, epsilons, first_beyond, largest, largest_angle};
+use crate::short::short;
 use crate::{Convention, PoseVector};
 
 /// How a body moves from one pose to the next. The three differ: say which one you mean.
@@ -30,22 +31,45 @@ pub enum Interpolation {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PathError<T = f64> {
+pub enum PathError<T: RealField + Copy = f64> {
     /// A path has at least a first and a last pose.
     #[error("{poses} poses do not make a path, at least 2 do")]
     TooFew {
         /// The number of poses.
         poses: usize,
     },
-    /// A pose is not finite.
-    #[error("pose {pose} is not finite")]
-    NotFinite {
+    /// A coordinate is not finite, or beyond the range of the crate.
+    #[error("coordinate {} of pose {pose} is not within ±{}", short(.value), short(.max))]
+    Coordinate {
         /// The pose, from 0.
         pose: usize,
+        /// Its coordinate.
+        value: T,
+        /// Largest coordinate.
+        max: T,
+    },
+    /// An angle of a pose vector is not finite, or so large that its rounding counts.
+    #[error("angle {} of pose {pose} is not within ±{} rad", short(.value), short(.max))]
+    Angle {
+        /// The pose, from 0.
+        pose: usize,
+        /// Its angle, in radians.
+        value: T,
+        /// Largest angle, in radians.
+        max: T,
+    },
+    /// The quaternion of a pose is no rotation.
+    #[error("the rotation of pose {pose} is a quaternion of length {}, not 1", short(.length))]
+    Rotation {
+        /// The pose, from 0.
+        pose: usize,
+        /// Length of its quaternion.
+        length: T,
     },
     /// The turn between two poses is half a turn: both ways round are the shorter one.
     #[error(
-        "the turn from pose {pose} to the next is {angle} rad, half a turn: name a pose between"
+        "the turn from pose {pose} to the next is {} rad, half a turn: name a pose between",
+        short(.angle)
     )]
     HalfTurn {
         /// The first of the two poses, from 0.
@@ -54,6 +78,9 @@ pub enum PathError<T = f64> {
         angle: T,
     },
 }
+
+/// Lengths of a quaternion that is a rotation, errors of scale aside: they do no harm.
+const ROTATION_LENGTH: [f64; 2] = [0.5, 2.0];
 
 /// How near to half a turn its direction is lost, in machine epsilons.
 const HALF_TURN_EPSILONS: f64 = 64.0;
@@ -80,11 +107,10 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
         poses: &'a [Isometry3<T>],
         interpolation: Interpolation,
     ) -> Result<Self, PathError<T>> {
-        let finite = |pose: &Isometry3<T>| {
-            let rotation = pose.rotation.as_vector();
-            (pose.translation.vector.norm() + rotation.norm()).is_finite()
-        };
-        check(poses, finite)?;
+        check(poses, |number, pose| {
+            check_position(number, &pose.translation.vector)?;
+            check_rotation(number, &pose.rotation)
+        })?;
         let path = Self {
             stations: Stations::Poses(poses, interpolation),
         };
@@ -103,8 +129,10 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
         vectors: &'a [PoseVector<T>],
         convention: Convention,
     ) -> Result<Self, PathError<T>> {
-        let finite = |v: &PoseVector<T>| (v.position().norm() + v.angles().norm()).is_finite();
-        check(vectors, finite)?;
+        check(vectors, |number, vector| {
+            check_position(number, &vector.position())?;
+            check_angles(number, &vector.angles())
+        })?;
         Ok(Self {
             stations: Stations::Vectors(vectors, convention),
         })
@@ -145,14 +173,42 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
     }
 }
 
-fn check<S, T>(stations: &[S], finite: impl Fn(&S) -> bool) -> Result<(), PathError<T>> {
+fn check<S, T: RealField + Copy>(
+    stations: &[S],
+    check: impl Fn(usize, &S) -> Result<(), PathError<T>>,
+) -> Result<(), PathError<T>> {
     if stations.len() < 2 {
         return Err(PathError::TooFew {
             poses: stations.len(),
         });
     }
-    match stations.iter().position(|station| !finite(station)) {
-        Some(pose) => Err(PathError::NotFinite { pose }),
-        None => Ok(()),
+    let mut numbered = stations.iter().enumerate();
+    numbered.try_for_each(|(number, station)| check(number, station))
+}
+
+fn check_position<T: RealField + Copy>(
+    pose: usize,
+    position: &Vector3<T>,
+) -> Result<(), PathError<T>> {
+    let max = largest();
+    first_beyond(position, max).map_or(Ok(()), |value| {
+        Err(PathError::Coordinate { pose, value, max })
+    })
+}
+
+fn check_angles<T: RealField + Copy>(pose: usize, angles: &Vector3<T>) -> Result<(), PathError<T>> {
+    let max = largest_angle();
+    first_beyond(angles, max).map_or(Ok(()), |value| Err(PathError::Angle { pose, value, max }))
+}
+
+fn check_rotation<T: RealField + Copy>(
+    pose: usize,
+    rotation: &UnitQuaternion<T>,
+) -> Result<(), PathError<T>> {
+    let length = rotation.as_vector().norm();
+    let [min, max] = ROTATION_LENGTH.map(constant::<T>);
+    if length >= min && length <= max {
+        return Ok(());
     }
+    Err(PathError::Rotation { pose, length })
 }

@@ -1,12 +1,15 @@
 //! Why a table cannot be made.
 
+use nalgebra::RealField;
+
 use crate::LimitError;
+use crate::short::short;
 
 /// Why a table cannot be made; nothing of it has been handed out.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PlanError<T = f64> {
+pub enum PlanError<T: RealField + Copy = f64> {
     /// An axis would leave its stroke on the way; the first such point.
     #[error("leg {leg}, point {point}: {reason}")]
     Limit {
@@ -18,7 +21,7 @@ pub enum PlanError<T = f64> {
         reason: LimitError<T>,
     },
     /// A number of parts, a step or a strain that is not positive and finite.
-    #[error("cut by {value}: not a positive finite number")]
+    #[error("cut by {}: not a positive finite number", short(.value))]
     Cut {
         /// The number given.
         value: T,
@@ -40,23 +43,38 @@ pub enum PlanError<T = f64> {
         available: usize,
     },
     /// The allowed strain is below what the positions are rounded to.
-    #[error("strain {allowed} is below {least}, what positions round off")]
+    #[error("strain {} is below {}, what positions round off", short(.allowed), short(.least))]
     Strain {
         /// The strain allowed.
         allowed: T,
         /// The least strain that can be asked for.
         least: T,
     },
-    /// A pace that is not above 0 and at most 1.
-    #[error("a pace of {pace} is not above 0 and at most 1")]
+    /// Two points of a leg cannot be told apart: so near are they, or so late, that the float
+    /// type has the same numbers for both.
+    #[error("leg {leg}: point {point} and the one before have the same positions or times")]
+    Indistinct {
+        /// The leg, from 0.
+        leg: usize,
+        /// The point of the leg, from 0.
+        point: u32,
+    },
+    /// A pace that is above 1, or so low that times leave the range of the crate.
+    #[error("a pace of {} is not within {}..=1", short(.pace), short(.min))]
     Pace {
         /// The pace given.
         pace: T,
+        /// The lowest pace.
+        min: T,
     },
-    /// A highest feed that is not positive and finite.
-    #[error("a highest feed of {max} is not a positive finite number")]
+    /// A highest feed that is beyond the range of the crate.
+    #[error("a highest feed of {} is not within {}..={}", short(.feed), short(.min), short(.max))]
     Feed {
         /// The feed given.
+        feed: T,
+        /// The lowest.
+        min: T,
+        /// The highest.
         max: T,
     },
 }

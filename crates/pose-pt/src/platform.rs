@@ -23,8 +23,6 @@ pub struct Platform<const N: usize, T: RealField = f64> {
     /// All axes are parallel to the world's: nothing needs turning.
     parallel: bool,
     largest_distance: T,
-    /// How far past its stroke each locator's axes may be by rounding alone.
-    rounding: [T; N],
 }
 
 /// The two locators whose distance departs most from that of their anchors.
@@ -74,7 +72,6 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
             to_axes,
             parallel: to_axes.iter().all(|m| *m == Matrix3::identity()),
             largest_distance,
-            rounding: locators.map(|locator| check::rounding(&locator)),
         })
     }
 
@@ -148,7 +145,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
     /// Axis coordinates of a pose, all within their strokes.
     ///
     /// An axis at the end of its stroke may be past it by what the pose rounds off: 16
-    /// machine epsilons of the distances of anchor and origin and of the stroke.
+    /// machine epsilons of the distances of anchor and origin and of the largest coordinate.
     ///
     /// # Errors
     /// [`LimitError`]; the axis that is farthest out of its stroke.
@@ -163,7 +160,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
     /// # Errors
     /// [`LimitError`]; the axis that is farthest out of its stroke.
     pub fn check_axes(&self, axes: &[Vector3<T>; N]) -> Result<(), LimitError<T>> {
-        check::strokes(&self.locators, &self.rounding, axes)
+        check::strokes(&self.locators, axes)
     }
 
     /// Axis speeds at a pose whose reference point moves at `linear` while the body turns at
@@ -236,7 +233,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
     }
 
     /// The two locators whose distance departs most from that of their anchors when they
-    /// are at these points of the world.
+    /// are at these points of the world. A point that is not finite gives a change that is not.
     #[must_use]
     pub fn strain(&self, points: &[Point3<T>; N]) -> Strain<T> {
         let mut worst = Strain {
@@ -249,7 +246,8 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
             for (first, (other_anchor, other_point)) in both().take(second) {
                 let distance = (anchor - other_anchor).norm();
                 let change = (point - other_point).norm() - distance;
-                if change.abs() >= worst.change.abs() {
+                let known = worst.change.abs();
+                if change.abs() >= known || (known.is_finite() && !change.is_finite()) {
                     worst = Strain {
                         locators: [first, second],
                         distance,

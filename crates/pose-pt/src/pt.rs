@@ -75,17 +75,19 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
             duration_s: T::zero(),
         };
         let mut walk = table.points();
-        while let Some(point) = walk.next() {
+        let mut last_s = None;
+        while let Some(PtPoint { time_s, axes, .. }) = walk.next() {
+            let (leg, point) = (walk.leg, walk.index);
             platform
-                .check_axes(&point.axes)
-                .map_err(|reason| PlanError::Limit {
-                    leg: walk.leg,
-                    point: walk.index,
-                    reason,
-                })?;
+                .check_axes(&axes)
+                .map_err(|reason| PlanError::Limit { leg, point, reason })?;
+            if last_s.is_some_and(|last_s| time_s <= last_s) {
+                return Err(PlanError::Indistinct { leg, point });
+            }
+            last_s = Some(time_s);
         }
         Ok(Self {
-            duration_s: walk.time_s,
+            duration_s: walk.clock.time_s,
             ..table
         })
     }
@@ -189,7 +191,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
             parts: 0,
             course: None,
             axes: [Vector3::zeros(); N],
-            time_s: T::zero(),
+            clock: Clock::zero(),
             remaining: self.points,
         }
     }
@@ -238,8 +240,33 @@ pub struct PtPoints<'a, const N: usize, T: RealField = f64> {
     parts: u32,
     course: Option<(Course<'a, N, T>, Walk<T>)>,
     axes: [Vector3<T>; N],
-    time_s: T,
+    clock: Clock<T>,
     remaining: usize,
+}
+
+/// A sum of times that loses nothing to rounding, however many there are (Kahan).
+#[derive(Debug, Clone, Copy)]
+struct Clock<T> {
+    time_s: T,
+    /// What the sum has too much.
+    excess_s: T,
+}
+
+impl<T: RealField + Copy> Clock<T> {
+    fn zero() -> Self {
+        Self {
+            time_s: T::zero(),
+            excess_s: T::zero(),
+        }
+    }
+
+    #[inline]
+    fn advance(&mut self, segment_s: T) {
+        let step_s = segment_s - self.excess_s;
+        let time_s = self.time_s + step_s;
+        self.excess_s = (time_s - self.time_s) - step_s;
+        self.time_s = time_s;
+    }
 }
 
 impl<'a, const N: usize, T: RealField + Copy> PtPoints<'a, N, T> {
@@ -282,7 +309,7 @@ impl<'a, const N: usize, T: RealField + Copy> Iterator for PtPoints<'a, N, T> {
         if self.course.is_none() {
             self.axes = self.first()?;
             return Some(PtPoint {
-                time_s: self.time_s,
+                time_s: self.clock.time_s,
                 segment_s: T::zero(),
                 axes: self.axes,
             });
@@ -295,10 +322,10 @@ impl<'a, const N: usize, T: RealField + Copy> Iterator for PtPoints<'a, N, T> {
         self.index = self.index.saturating_add(1);
         let axes = course.axes(walk);
         let segment_s = slowest(self.table.platform.locators(), &self.axes, &axes);
-        self.time_s += segment_s;
+        self.clock.advance(segment_s);
         self.axes = axes;
         Some(PtPoint {
-            time_s: self.time_s,
+            time_s: self.clock.time_s,
             segment_s,
             axes,
         })

@@ -9,9 +9,10 @@ pub(crate) mod segment;
 mod smooth;
 mod window;
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::Vector3;
 
-use crate::course::{Course, Place};
+use crate::course::{Course, Place, is_still};
+use crate::number::{larger_or_nan, smallest};
 use crate::path::{Leg, Path};
 use crate::strain::hermite_strain;
 use crate::{Cut, PlanError, Platform};
@@ -19,27 +20,16 @@ use planner::Planner;
 pub use points::{PvtPoint, PvtPoints};
 
 /// Memory for one point of a [`PvtTable`] while it is planned and as long as it lives.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Knot<T = f64> {
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Knot {
     /// Parameter of the leg.
-    s: T,
+    s: f64,
     /// Speed of the parameter.
-    speed: T,
+    speed: f64,
     /// Time to the next knot.
-    segment_s: T,
+    segment_s: f64,
     /// Parts of the leg.
     parts: u32,
-}
-
-impl<T: RealField> Default for Knot<T> {
-    fn default() -> Self {
-        Self {
-            s: T::zero(),
-            speed: T::zero(),
-            segment_s: T::zero(),
-            parts: 0,
-        }
-    }
 }
 
 /// A checked position-velocity-time table: every axis runs a cubic from each point to the next,
@@ -56,20 +46,20 @@ impl<T: RealField> Default for Knot<T> {
 /// Between points a cubic has one jerk; at a point its acceleration steps, which counts as a
 /// jerk over the time between the middles of the segments.
 #[derive(Debug, Clone, Copy)]
-pub struct PvtTable<'a, const N: usize, T: RealField = f64> {
-    platform: &'a Platform<N, T>,
-    path: Path<'a, T>,
-    knots: &'a [Knot<T>],
+pub struct PvtTable<'a, const N: usize> {
+    platform: &'a Platform<N>,
+    path: Path<'a>,
+    knots: &'a [Knot],
     points: usize,
-    duration_s: T,
+    duration_s: f64,
     /// By what all times are multiplied.
-    stretch: T,
+    stretch: f64,
 }
 
 /// Fewest parts of a leg: it starts and stops.
 const MIN_PARTS: u32 = 2;
 
-impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
+impl<'a, const N: usize> PvtTable<'a, N> {
     /// Plans the table in memory of the caller: for each leg one knot more than parts.
     ///
     /// With [`Cut::strain`] each leg has a number of parts that keeps the allowed strain while
@@ -79,11 +69,11 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
     pub fn plan(
-        platform: &'a Platform<N, T>,
-        path: &Path<'a, T>,
-        cut: Cut<T>,
-        knots: &'a mut [Knot<T>],
-    ) -> Result<Self, PlanError<T>> {
+        platform: &'a Platform<N>,
+        path: &Path<'a>,
+        cut: Cut,
+        knots: &'a mut [Knot],
+    ) -> Result<Self, PlanError> {
         cut.check(platform)?;
         let planner = Planner {
             platform,
@@ -98,7 +88,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
         };
         planner.check_memory(path, knots.len())?;
         let (mut used, mut points) = (0_usize, 1_usize);
-        for (number, leg) in moving(path) {
+        for (number, leg) in moving(platform, path, 0) {
             let free = knots.get_mut(used..).unwrap_or_default();
             let taken = planner.plan_leg(number, &leg, used, free)?;
             points = points.saturating_add(taken).saturating_sub(1);
@@ -112,10 +102,8 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             path: *path,
             knots,
             points,
-            duration_s: knots
-                .iter()
-                .fold(T::zero(), |sum, knot| sum + knot.segment_s),
-            stretch: T::one(),
+            duration_s: knots.iter().fold(0.0, |sum, knot| sum + knot.segment_s),
+            stretch: 1.0,
         })
     }
 
@@ -124,15 +112,16 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     ///
     /// # Errors
     /// [`PlanError::Pace`].
-    pub fn at_pace(self, pace: T) -> Result<Self, PlanError<T>> {
-        if pace > T::zero() && pace <= T::one() {
+    pub fn at_pace(self, pace: f64) -> Result<Self, PlanError> {
+        let min = self.stretch * smallest::<f64>();
+        if pace >= min && pace <= 1.0 {
             return Ok(Self {
                 stretch: self.stretch / pace,
                 duration_s: self.duration_s / pace,
                 ..self
             });
         }
-        Err(PlanError::Pace { pace })
+        Err(PlanError::Pace { pace, min })
     }
 
     /// The number of points: one more than segments.
@@ -144,27 +133,27 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
 
     /// Seconds from the first point to the last.
     #[must_use]
-    pub const fn duration_s(&self) -> T {
+    pub const fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
     /// The platform of the table.
     #[must_use]
-    pub const fn platform(&self) -> &'a Platform<N, T> {
+    pub const fn platform(&self) -> &'a Platform<N> {
         self.platform
     }
 
     /// The most by which the distance of two locators ever departs from that of their anchors:
     /// the largest [`hermite_strain`] of all segments.
     #[must_use]
-    pub fn strain_bound(&self) -> T {
+    pub fn strain_bound(&self) -> f64 {
         strain_bound(self.platform, self.points())
     }
 
     /// The place of a point, slopes by time, and the time to the next point.
-    pub(crate) fn node(&self, number: usize) -> Option<(Place<N, T>, T)> {
+    pub(crate) fn node(&self, number: usize) -> Option<(Place<N, f64>, f64)> {
         let (mut knots, mut left) = (self.knots, number);
-        for (_, leg) in moving(&self.path) {
+        for (_, leg) in moving(self.platform, &self.path, 0) {
             let size = knots_of(knots.first()?.parts);
             let (own, later) = knots.split_at_checked(size)?;
             // The last knot of a leg is the first of the next, but for the last leg.
@@ -177,14 +166,14 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             }
             (knots, left) = (later, left.saturating_sub(size.saturating_sub(1)));
         }
-        let mut place = first_course(self.platform, &self.path)?.place(T::zero());
+        let mut place = first_course(self.platform, &self.path)?.place(0.0);
         place.slope = [Vector3::zeros(); N];
-        (number == 0).then_some((place, T::zero()))
+        (number == 0).then_some((place, 0.0))
     }
 
     /// The points in their order.
     #[must_use]
-    pub fn points(&self) -> PvtPoints<'a, N, T> {
+    pub fn points(&self) -> PvtPoints<'a, N> {
         PvtPoints::new(
             self.platform,
             &self.path,
@@ -195,54 +184,53 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     }
 }
 
-fn has_jerk<const N: usize, T: RealField + Copy>(platform: &Platform<N, T>) -> bool {
+fn has_jerk<const N: usize>(platform: &Platform<N>) -> bool {
     let mut limits = platform.locators().iter().flat_map(|l| &l.limits);
     limits.any(|limits| limits.jerk.is_some())
 }
 
-fn strain_bound<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    mut points: PvtPoints<'_, N, T>,
-) -> T {
+fn strain_bound<const N: usize>(platform: &Platform<N>, mut points: PvtPoints<'_, N>) -> f64 {
     let Some(mut from) = points.next() else {
-        return T::zero();
+        return 0.0;
     };
-    points.fold(T::zero(), |worst, to| {
+    points.fold(0.0, |worst, to| {
         let strain = hermite_strain(platform, &from, &to);
         from = to;
-        worst.max(strain)
+        larger_or_nan(worst, strain)
     })
 }
 
-/// The legs on which something moves, with their numbers.
-fn moving<'a, T: RealField + Copy>(
-    path: &Path<'a, T>,
-) -> impl Iterator<Item = (usize, Leg<T>)> + use<'a, T> {
+/// The legs on which something moves, with their numbers, from the leg `first` on.
+fn moving<'a, const N: usize>(
+    platform: &'a Platform<N>,
+    path: &Path<'a>,
+    first: usize,
+) -> impl Iterator<Item = (usize, Leg)> + use<'a, N> {
     let path = *path;
-    let legs = (0..path.legs()).filter_map(move |number| Some((number, path.leg(number)?)));
-    legs.filter(|(_, leg)| !leg.is_still())
+    let legs = (first..path.legs()).filter_map(move |number| Some((number, path.leg(number)?)));
+    legs.filter(|(_, leg)| !is_still(platform, leg))
 }
 
 /// The first leg on which something moves; the first of all where nothing does.
-fn first_course<'a, const N: usize, T: RealField + Copy>(
-    platform: &'a Platform<N, T>,
-    path: &Path<'_, T>,
-) -> Option<Course<'a, N, T>> {
-    let leg = moving(path).next().map(|(_, leg)| leg);
+fn first_course<'a, const N: usize>(
+    platform: &'a Platform<N>,
+    path: &Path<'_>,
+) -> Option<Course<'a, N, f64>> {
+    let leg = moving(platform, path, 0).next().map(|(_, leg)| leg);
     Some(Course::new(platform, &leg.or_else(|| path.leg(0))?))
 }
 
 /// Both ends of each segment of the leg whose knots are the first of `knots`.
-fn segments<'a, const N: usize, T: RealField + Copy>(
-    course: &'a Course<'_, N, T>,
-    knots: &'a [Knot<T>],
-) -> impl Iterator<Item = [PvtPoint<N, T>; 2]> + use<'a, N, T> {
-    let point = move |knot: &Knot<T>, segment_s: T| {
-        PvtPoint::new(&course.place(knot.s), knot.speed, T::zero(), segment_s)
+fn segments<'a, const N: usize>(
+    course: &'a Course<'_, N, f64>,
+    knots: &'a [Knot],
+) -> impl Iterator<Item = [PvtPoint<N>; 2]> + use<'a, N> {
+    let point = move |knot: &Knot, segment_s: f64| {
+        PvtPoint::new(&course.place(knot.s), knot.speed, 0.0, segment_s)
     };
     let parts = knots.first().map_or(0, |knot| knot.parts);
     let knots = knots.get(..knots_of(parts)).unwrap_or_default();
-    let mut from = knots.first().map(|knot| point(knot, T::zero()));
+    let mut from = knots.first().map(|knot| point(knot, 0.0));
     knots.windows(2).filter_map(move |pair| {
         let [before, knot] = pair else { return None };
         let to = point(knot, before.segment_s);

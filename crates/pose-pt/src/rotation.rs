@@ -3,22 +3,30 @@
 use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, Vector4};
 
 use crate::number::{epsilons, half, two};
+use crate::short::short;
 use crate::svd::Svd;
 
 /// A 3 × 3 matrix that is not a rotation.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[error(
-    "matrix is no rotation: Rᵀ R departs from 1 by {departure}, allowed {allowed}, determinant {determinant}"
+    "matrix is no rotation: Rᵀ R departs from 1 by {}, allowed {}, determinant {}",
+    short(.departure), short(.allowed), short(.determinant)
 )]
 #[expect(clippy::exhaustive_structs, reason = "there is one cause")]
-pub struct NotARotation<T = f64> {
+pub struct NotARotation<T: RealField + Copy = f64> {
     /// Largest entry of Rᵀ R - 1; the largest number where an entry is not finite.
     pub departure: T,
     /// What was allowed.
     pub allowed: T,
     /// The determinant: negative for a reflection.
     pub determinant: T,
+}
+
+/// Zero where a quaternion is finite, else not a number: added to what is made of it, so that
+/// nothing infinite ends as an angle or as a matrix of zeros and ones.
+pub(crate) fn zero_if_finite<T: RealField + Copy>(quaternion: &Vector4<T>) -> T {
+    quaternion.norm_squared() * T::zero()
 }
 
 /// The two quaternions, the second with the sign that makes the arc shorter.
@@ -65,14 +73,18 @@ pub fn angle_between<T: RealField + Copy>(a: &UnitQuaternion<T>, b: &UnitQuatern
 /// ```
 ///
 /// `t` = 0 gives `a` and 1 gives `b` to the last bit (up to the sign of the quaternion);
-/// other values go on beyond the ends. The way from `b` to `a` at 1 - `t` is the same.
-/// Of two arcs of π, that of the quaternions as they are is taken. `t` must be finite.
+/// the way from `b` to `a` at 1 - `t` is the same. Other values go on beyond the ends, to the
+/// angle between both times `t` as it is rounded.
+/// Of two arcs of π, that of the quaternions as they are is taken.
 #[must_use]
 pub fn slerp<T: RealField + Copy>(
     a: &UnitQuaternion<T>,
     b: &UnitQuaternion<T>,
     t: T,
 ) -> UnitQuaternion<T> {
+    if t < T::zero() || t > T::one() {
+        return from_rotation_vector(&(rotation_vector_between(a, b) * t)) * a;
+    }
     let (a, b) = shorter(a, b);
     // The same from both ends, unlike the products of `way`; the weights of close rotations
     // do not depend on the last digits of the angle.
@@ -113,11 +125,12 @@ pub fn rotation_vector_between<T: RealField + Copy>(
 fn log<T: RealField + Copy>(w: T, v: Vector3<T>) -> Vector3<T> {
     let (w, v) = if w < T::zero() { (-w, -v) } else { (w, v) };
     let sin = v.norm();
-    if sin > T::zero() {
-        v * (two::<T>() * sin.atan2(w) / sin)
+    let scale = if sin > T::zero() {
+        two::<T>() * sin.atan2(w) / sin
     } else {
-        v * two::<T>()
-    }
+        two()
+    };
+    v * (scale + zero_if_finite(&Vector4::new(v.x, v.y, v.z, w)))
 }
 
 /// The rotation about `vector` by its length in radians.
@@ -138,7 +151,7 @@ pub fn from_rotation_vector<T: RealField + Copy>(vector: &Vector3<T>) -> UnitQua
 pub fn to_matrix<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Rotation3<T> {
     let (w, x, y, z) = (rotation.w, rotation.i, rotation.j, rotation.k);
     // Not 2: the squares of a rounded quaternion do not add up to one.
-    let s = two::<T>() / rotation.as_vector().norm_squared();
+    let s = two::<T>() / rotation.as_vector().norm_squared() + zero_if_finite(rotation.as_vector());
     let (sx, sy, sz) = (s * x, s * y, s * z);
     let one = T::one();
     Rotation3::from_matrix_unchecked(Matrix3::new(
@@ -161,12 +174,18 @@ pub fn to_matrix<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Rotation3
 /// returned.
 ///
 /// # Errors
-/// [`NotARotation`] for more than that, for a reflection, and for entries that are not finite.
+/// [`NotARotation`] for more than that, for a reflection, for a singular matrix, and for entries
+/// that are not finite.
 pub fn from_matrix<T: RealField + Copy>(
     matrix: &Matrix3<T>,
     allowed: T,
 ) -> Result<UnitQuaternion<T>, NotARotation<T>> {
-    let allowed = allowed.max(epsilons(ROUNDING_EPSILONS));
+    let rounding = epsilons(ROUNDING_EPSILONS);
+    let allowed = if allowed < rounding {
+        rounding
+    } else {
+        allowed
+    };
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return Err(NotARotation {
             departure: T::max_value().unwrap_or_else(T::one),
@@ -175,16 +194,21 @@ pub fn from_matrix<T: RealField + Copy>(
         });
     }
     let departure = (matrix.tr_mul(matrix) - Matrix3::identity()).amax();
-    let determinant = matrix.determinant();
-    if departure <= allowed && determinant > T::zero() {
-        Ok(quaternion(&Svd::new(matrix).rotation()))
+    // Of a matrix far from a rotation no square may overflow or vanish.
+    let scale = if departure <= half() {
+        T::one()
     } else {
-        Err(NotARotation {
-            departure,
-            allowed,
-            determinant,
-        })
+        matrix.amax()
+    };
+    let svd = Svd::new(&(matrix / scale));
+    if departure <= allowed && svd.is_proper() {
+        return Ok(quaternion(&svd.rotation()));
     }
+    Err(NotARotation {
+        departure: departure.min(T::max_value().unwrap_or_else(T::one)),
+        allowed,
+        determinant: matrix.determinant(),
+    })
 }
 
 /// What the products of an own rotation matrix may depart from 1 by rounding.

@@ -2,41 +2,33 @@
 
 use core::cell::Cell;
 
-use nalgebra::RealField;
-
 use crate::course::Place;
-use crate::number::{largest, two};
+use crate::number::{largest, smallest};
 use crate::pvt::segment::{Reciprocals, Segment};
+use crate::short::short;
 use crate::{PlanError, PvtPoint, PvtTable};
 
 /// Memory for one point of a table that runs: what the points ahead still allow.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ahead<T = f64> {
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ahead {
     /// The highest feed at this point from which the rest can be run.
-    ceiling: T,
+    ceiling: f64,
     /// The feed at the next point that goes with it, as a share.
-    after: T,
-}
-
-impl<T: RealField> Default for Ahead<T> {
-    fn default() -> Self {
-        Self {
-            ceiling: T::zero(),
-            after: T::zero(),
-        }
-    }
+    after: f64,
 }
 
 /// A share that the feed override cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("feed {feed} is not within 0..={max}")]
+#[error("feed {} is neither 0 nor within {}..={}", short(.feed), short(.min), short(.max))]
 #[expect(clippy::exhaustive_structs, reason = "there is one cause")]
-pub struct FeedError<T = f64> {
+pub struct FeedError {
     /// The feed asked for, 1 for 100 %.
-    pub feed: T,
+    pub feed: f64,
+    /// The lowest feed above 0.
+    pub min: f64,
     /// The highest feed that this run was made for.
-    pub max: T,
+    pub max: f64,
 }
 
 /// A [`PvtTable`] on the way to the controller, at a feed that may change from point to point.
@@ -57,29 +49,34 @@ pub struct FeedError<T = f64> {
 /// and acceleration alone. It also changes the speed within a segment and with it the strain:
 /// [`hermite_strain`](crate::hermite_strain) of two points handed out bounds it.
 #[derive(Debug, Clone)]
-pub struct PvtRun<'a, const N: usize, T: RealField = f64> {
-    table: PvtTable<'a, N, T>,
-    ahead: &'a [Ahead<T>],
-    limits: Reciprocals<N, T>,
-    max: T,
-    wanted: T,
+pub struct PvtRun<'a, const N: usize> {
+    table: PvtTable<'a, N>,
+    ahead: &'a [Ahead],
+    limits: Reciprocals<N>,
+    max: f64,
+    wanted: f64,
     /// Feed at the last point handed out.
-    feed: T,
+    feed: f64,
     /// The last point handed out, as in the table.
-    last: Option<(usize, Place<N, T>)>,
-    time_s: T,
+    last: Option<(usize, Place<N, f64>)>,
+    time_s: f64,
 }
 
-impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
+impl<'a, const N: usize> PvtTable<'a, N> {
     /// The table at a feed of 1, to be changed up to `max`, 1.5 for 150 %. Needs memory for each
     /// point of the table.
     ///
     /// # Errors
-    /// [`PlanError::Feed`] for a `max` that is not positive and finite,
+    /// [`PlanError::Feed`] for a `max` that is beyond the range of the crate,
     /// [`PlanError::TooManyPoints`] for too little memory.
-    pub fn run(&self, max: T, ahead: &'a mut [Ahead<T>]) -> Result<PvtRun<'a, N, T>, PlanError<T>> {
-        if !(max > T::zero() && max < largest()) {
-            return Err(PlanError::Feed { max });
+    pub fn run(&self, max: f64, ahead: &'a mut [Ahead]) -> Result<PvtRun<'a, N>, PlanError> {
+        let (lowest, highest) = (smallest(), largest());
+        if !(max >= lowest && max <= highest) {
+            return Err(PlanError::Feed {
+                feed: max,
+                min: lowest,
+                max: highest,
+            });
         }
         let (needed, available) = (self.len(), ahead.len());
         let ahead = ahead
@@ -92,21 +89,21 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             ahead,
             limits,
             max,
-            wanted: T::one().min(max),
-            feed: T::zero(),
+            wanted: max.min(1.0),
+            feed: 0.0,
             last: None,
-            time_s: T::zero(),
+            time_s: 0.0,
         })
     }
 
     /// From the end: the highest feed at each point from which the rest can be run.
-    fn look_ahead(&self, limits: &Reciprocals<N, T>, max: T, ahead: &mut [Ahead<T>]) {
-        let full = T::one().min(max);
+    fn look_ahead(&self, limits: &Reciprocals<N>, max: f64, ahead: &mut [Ahead]) {
+        let full = max.min(1.0);
         let ahead = Cell::from_mut(ahead).as_slice_of_cells();
         if let Some(last) = ahead.last() {
             last.set(Ahead {
                 ceiling: max,
-                after: T::one(),
+                after: 1.0,
             });
         }
         let mut to = self.node(self.len().saturating_sub(1));
@@ -123,7 +120,7 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
             } else {
                 Ahead {
                     ceiling: full,
-                    after: T::one(),
+                    after: 1.0,
                 }
             });
             to = Some(from);
@@ -131,30 +128,28 @@ impl<'a, const N: usize, T: RealField + Copy> PvtTable<'a, N, T> {
     }
 }
 
-impl<const N: usize, T: RealField + Copy> PvtRun<'_, N, T> {
+impl<const N: usize> PvtRun<'_, N> {
     /// Wants a feed, 1 for 100 %; 0 stops.
     ///
     /// # Errors
     /// [`FeedError`]; the wanted feed stays.
-    pub fn set_feed(&mut self, feed: T) -> Result<(), FeedError<T>> {
-        if feed >= T::zero() && feed <= self.max {
+    pub fn set_feed(&mut self, feed: f64) -> Result<(), FeedError> {
+        let (min, max) = (smallest(), self.max);
+        if feed == 0.0 || (feed >= min && feed <= max) {
             self.wanted = feed;
             return Ok(());
         }
-        Err(FeedError {
-            feed,
-            max: self.max,
-        })
+        Err(FeedError { feed, min, max })
     }
 
     /// Stops as soon as the accelerations allow, on the path. [`set_feed`](Self::set_feed) goes on.
     pub fn stop(&mut self) {
-        self.wanted = T::zero();
+        self.wanted = 0.0;
     }
 
     /// The feed at the last point handed out.
     #[must_use]
-    pub const fn feed(&self) -> T {
+    pub const fn feed(&self) -> f64 {
         self.feed
     }
 
@@ -176,31 +171,32 @@ impl<const N: usize, T: RealField + Copy> PvtRun<'_, N, T> {
 
     /// The next point; `None` at the end and where the machine rests at a feed of zero, until
     /// another is wanted.
-    pub fn next_point(&mut self) -> Option<PvtPoint<N, T>> {
+    pub fn next_point(&mut self) -> Option<PvtPoint<N>> {
         let Some((number, from)) = self.last else {
             let (place, _) = self.table.node(0)?;
             self.last = Some((0, place));
-            return Some(PvtPoint::new(&place, T::zero(), T::zero(), T::zero()));
+            return Some(PvtPoint::new(&place, 0.0, 0.0, 0.0));
         };
         let next = number.checked_add(1)?;
         let (here, there) = (self.ahead.get(number)?, self.ahead.get(next)?);
-        if from.slope.iter().all(|slope| slope.amax() == T::zero()) {
+        if from.slope.iter().all(|slope| slope.amax() == 0.0) {
             self.feed = self.wanted.min(here.ceiling);
         }
         let ((_, duration), (to, _)) = (self.table.node(number)?, self.table.node(next)?);
         let wanted = self.wanted.min(there.ceiling);
         // At a constant feed of at most 1 the table itself holds.
-        let feed = if wanted == self.feed && wanted <= T::one() {
+        #[expect(clippy::float_cmp, reason = "the same number")]
+        let feed = if wanted == self.feed && wanted <= 1.0 {
             wanted
         } else {
             let segment = Segment::new(&self.limits, &from, &to, duration);
             segment.toward(self.feed, wanted, self.feed * here.after)
         };
         let both = self.feed + feed;
-        if both <= T::zero() {
+        if both <= 0.0 {
             return None;
         }
-        let segment_s = two::<T>() * duration / both;
+        let segment_s = 2.0 * duration / both;
         self.time_s += segment_s;
         self.feed = feed;
         self.last = Some((next, to));
@@ -208,10 +204,10 @@ impl<const N: usize, T: RealField + Copy> PvtRun<'_, N, T> {
     }
 }
 
-impl<const N: usize, T: RealField + Copy> Iterator for PvtRun<'_, N, T> {
-    type Item = PvtPoint<N, T>;
+impl<const N: usize> Iterator for PvtRun<'_, N> {
+    type Item = PvtPoint<N>;
 
-    fn next(&mut self) -> Option<PvtPoint<N, T>> {
+    fn next(&mut self) -> Option<PvtPoint<N>> {
         self.next_point()
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{RealField, Vector3};
 
-use crate::number::constant;
+use crate::number::{larger_or_nan, sqrt};
 use crate::path::Leg;
 use crate::path::leg::Shape;
 use crate::{Platform, PvtPoint};
@@ -100,55 +100,51 @@ fn departure<T: RealField + Copy>(length: T, change: T) -> T {
 ///
 /// The fourth-order figure alone does not hold where the speed changes.
 #[must_use]
-pub fn hermite_strain<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    from: &PvtPoint<N, T>,
-    to: &PvtPoint<N, T>,
-) -> T {
-    let duration = to.segment_s;
-    let ends = [from, to].map(|point| {
-        let turned = |vectors: &[Vector3<T>; N]| {
-            let mut world = *vectors;
-            for (locator, vector) in platform.locators().iter().zip(&mut world) {
-                *vector = locator.axes * *vector;
-            }
-            world
-        };
-        let positions = platform
-            .locator_positions(&point.axes)
-            .map(|position| position.coords);
-        (positions, turned(&point.velocities))
-    });
-    numbers::<N>().fold(T::zero(), |worst, (first, second)| {
-        let vectors = ends.each_ref().map(|(positions, velocities)| {
-            let apart = |all: &[Vector3<T>; N]| Some(all.get(first)? - all.get(second)?);
-            apart(positions)
-                .zip(apart(velocities))
-                .unwrap_or((Vector3::zeros(), Vector3::zeros()))
-        });
-        worst.max(pair_strain(&vectors, duration))
-    })
+pub fn hermite_strain<const N: usize>(
+    platform: &Platform<N>,
+    from: &PvtPoint<N>,
+    to: &PvtPoint<N>,
+) -> f64 {
+    // Where each locator is in the world, and how fast.
+    let held = |point: &PvtPoint<N>| {
+        let mut held = [(Vector3::zeros(), Vector3::zeros()); N];
+        let axes = point.axes.iter().zip(&point.velocities);
+        let locators = platform.locators().iter().zip(axes);
+        for ((locator, (axes, velocity)), held) in locators.zip(&mut held) {
+            *held = (locator.position(axes).coords, locator.axes * velocity);
+        }
+        held
+    };
+    let (starts, ends, duration) = (held(from), held(to), to.segment_s);
+    let both = || starts.iter().zip(&ends).enumerate();
+    let mut worst = 0.0;
+    for (number, (start, end)) in both() {
+        for (_, (other_start, other_end)) in both().take(number) {
+            let from = (start.0 - other_start.0, start.1 - other_start.1);
+            let to = (end.0 - other_end.0, end.1 - other_end.1);
+            worst = larger_or_nan(worst, pair_strain([from, to], duration));
+        }
+    }
+    worst
 }
 
 /// The bound for one pair from the vector between them and its derivative at both ends.
-fn pair_strain<T: RealField + Copy>(ends: &[(Vector3<T>, Vector3<T>); 2], duration: T) -> T {
-    let [(b0, from), (b3, to)] = *ends;
-    let third = duration / constant::<T>(3.0);
+fn pair_strain(ends: [(Vector3<f64>, Vector3<f64>); 2], duration: f64) -> f64 {
+    let [(b0, from), (b3, to)] = ends;
+    let third = duration / 3.0;
     // Differences from the ends: B₀·B₀ = L² is taken out before anything is rounded.
     let (first, last) = (from * third, to * third);
     let chord = b3 - b0;
     let square = b0.norm_squared();
     let (b1, b2) = (b0 + first, b3 - last);
-    let (two, three, nine) = (constant::<T>(2.0), constant::<T>(3.0), constant::<T>(9.0));
     // B₀·B₂ - L² = B₀·(chord - last), and so on.
-    let e2 = two * b0.dot(&(chord - last)) + three * first.dot(&(b0 * two + first));
-    let e3 = (b0.dot(&chord) + nine * (b1.dot(&b2) - square)) / two;
-    let e4 = two * (b1.dot(&b3) - square) + three * (b2.norm_squared() - square);
-    let low = (three * e2).min(two * e3).min(three * e4).min(T::zero());
-    let high = (three * e2).max(two * e3).max(three * e4).max(T::zero());
-    let sixteenth = constant::<T>(1.0 / 16.0);
-    let length = square.sqrt();
-    departure(length, low * sixteenth).max(departure(length, high * sixteenth))
+    let e2 = 2.0 * b0.dot(&(chord - last)) + 3.0 * first.dot(&(b0 * 2.0 + first));
+    let e3 = (b0.dot(&chord) + 9.0 * (b1.dot(&b2) - square)) / 2.0;
+    let e4 = 2.0 * (b1.dot(&b3) - square) + 3.0 * (b2.norm_squared() - square);
+    let length = sqrt(square);
+    [3.0 * e2, 2.0 * e3, 3.0 * e4].iter().fold(0.0, |worst, e| {
+        larger_or_nan(worst, departure(length, e / 16.0))
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, RealField, Vector3};
 
-use crate::number::two;
+use crate::number::{epsilons, two};
 
 /// H = Σ σₖ uₖ vₖᵀ, σ₁ ≥ σ₂ ≥ |σ₃|; u and v are right-handed, so that σ₃ has the sign
 /// of det H.
@@ -15,6 +15,9 @@ pub(crate) struct Svd<T> {
 
 /// Sweeps of rotations; they converge quadratically, after four to six in f64.
 const SWEEPS: usize = 12;
+
+/// Rounding of a singular value, in machine epsilons of the largest.
+const ROUNDING_EPSILONS: f64 = 64.0;
 
 /// A column of H V and the column of V that made it.
 type Pair<T> = (Vector3<T>, Vector3<T>);
@@ -56,6 +59,13 @@ impl<T: RealField + Copy> Svd<T> {
     pub(crate) fn gap(&self) -> T {
         let [_, s2, s3] = self.sigma;
         two::<T>() * (s2 + s3)
+    }
+
+    /// Whether H turns and stretches, without a reflection, and no direction vanishes by
+    /// rounding.
+    pub(crate) fn is_proper(&self) -> bool {
+        let [s1, _, s3] = self.sigma;
+        s3 > s1 * epsilons(ROUNDING_EPSILONS)
     }
 
     /// The second singular value.

@@ -193,7 +193,16 @@ fn wrong_input_is_named() {
     assert_eq!(one, PathError::TooFew { poses: 1 });
     let bad = [good[0], pose([f64::NAN, 0.0, 0.0], [0.0; 3])];
     let bad = Path::new(&bad, Interpolation::Screw).unwrap_err();
-    assert_eq!(bad, PathError::NotFinite { pose: 1 });
+    assert_eq!(
+        bad.to_string(),
+        "coordinate NaN of pose 1 is not within ±1e50"
+    );
+    let far = [good[0], pose([0.0, -1e160, 0.0], [0.0; 3])];
+    let far = Path::new(&far, Interpolation::Straight).unwrap_err();
+    assert_eq!(
+        far.to_string(),
+        "coordinate -1e160 of pose 1 is not within ±1e50"
+    );
     let half = [good[0], pose([0.0; 3], [0.0, core::f64::consts::PI, 0.0])];
     let half = Path::new(&half, Interpolation::Straight).unwrap_err();
     assert!(matches!(half, PathError::HalfTurn { pose: 0, .. }));

@@ -139,7 +139,7 @@ fn wrong_feeds_and_memory_are_named() {
             available: 10
         }
     );
-    for max in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
+    for max in [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e-310, 1e300] {
         let error = table.run(max, &mut ahead).unwrap_err();
         assert!(matches!(error, PlanError::Feed { .. }), "{error}");
     }
@@ -149,10 +149,13 @@ fn wrong_feeds_and_memory_are_named() {
         error,
         FeedError {
             feed: 1.6,
+            min: 1e-50,
             max: 1.5
         }
     );
-    assert!(run.set_feed(-0.1).is_err() && run.set_feed(f64::NAN).is_err());
+    for feed in [-0.1, f64::NAN, 1e-310] {
+        assert!(run.set_feed(feed).is_err(), "{feed}");
+    }
 }
 
 /// A sender that polls every 100 ms keeps a buffer of 16 points filled.
@@ -227,7 +230,7 @@ fn memory_is_fixed() {
     use pose_pt::{PtPoints, PtTable, PvtPoints, PvtRun};
 
     assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
-    assert_eq!(size_of::<PtPoints<'_, 3>>(), 656);
+    assert_eq!(size_of::<PtPoints<'_, 3>>(), 664);
     assert_eq!(size_of::<PvtTable<'_, 3>>(), 72);
     assert_eq!(size_of::<PvtPoints<'_, 3>>(), 400);
     assert_eq!(size_of::<PvtRun<'_, 3>>(), 424);

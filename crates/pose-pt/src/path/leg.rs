@@ -109,11 +109,6 @@ impl<T: RealField + Copy> Leg<T> {
     pub(crate) const fn is_even(&self) -> bool {
         matches!(self.shape, Shape::Turning(_))
     }
-
-    /// Whether the body stays where it is.
-    pub(crate) fn is_still(&self) -> bool {
-        self.turn() == T::zero() && self.length() == T::zero()
-    }
 }
 
 impl<T: RealField + Copy> Turning<T> {

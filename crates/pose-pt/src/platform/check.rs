@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
 use crate::fit::{FitError, Shape, Side};
-use crate::number::{epsilons, first_beyond, largest};
+use crate::number::{epsilons, first_beyond, largest, smallest};
 use crate::{Axis, LimitError, Locator, PlatformError};
 
 /// Axes that one motion card drives [Alignment 2010].
@@ -18,7 +18,7 @@ const MIN_VOLUME: f64 = 0.1;
 /// Distance of two anchors against the largest coordinate, in machine epsilons.
 const DISTANCE_EPSILONS: f64 = 64.0;
 
-pub(super) fn count<T>(locators: usize) -> Result<(), PlatformError<T>> {
+pub(super) fn count<T: RealField + Copy>(locators: usize) -> Result<(), PlatformError<T>> {
     let max = MAX_AXES / 3;
     if (3..=max).contains(&locators) {
         Ok(())
@@ -62,12 +62,15 @@ pub(super) fn locator<T: RealField + Copy>(
             ("acceleration", Some(limits.acceleration)),
             ("jerk", limits.jerk),
         ] {
-            if let Some(value) = value.filter(|v| !(v.is_finite() && *v > T::zero())) {
+            let (min, max) = (smallest(), largest());
+            if let Some(value) = value.filter(|value| !(*value >= min && *value <= max)) {
                 return Err(PlatformError::Rating {
                     locator: number,
                     axis,
                     name,
                     value,
+                    min,
+                    max,
                 });
             }
         }
@@ -113,7 +116,7 @@ pub(super) fn anchors<T: RealField + Copy>(anchors: &[Point3<T>]) -> Result<T, P
         .iter()
         .map(|p| p.coords.amax())
         .fold(T::zero(), T::max);
-    let needed = epsilons::<T>(DISTANCE_EPSILONS) * far;
+    let needed = (epsilons::<T>(DISTANCE_EPSILONS) * far).max(smallest());
     let mut largest = T::zero();
     for (second, anchor) in anchors.iter().enumerate() {
         for (first, other) in anchors.iter().enumerate().take(second) {
@@ -140,7 +143,13 @@ pub(super) fn anchors<T: RealField + Copy>(anchors: &[Point3<T>]) -> Result<T, P
             length,
             needed,
         }),
-        _ => Ok(largest),
+        Err(FitError::Coincident { length, needed, .. }) => Err(PlatformError::Collinear {
+            width: length,
+            length,
+            needed,
+        }),
+        // Count and coordinates have been checked.
+        Ok(_) | Err(_) => Ok(largest),
     }
 }
 
@@ -148,24 +157,18 @@ pub(super) fn anchors<T: RealField + Copy>(anchors: &[Point3<T>]) -> Result<T, P
 /// a rotation, three sums and a frame.
 const ROUNDING_EPSILONS: f64 = 16.0;
 
-pub(super) fn rounding<T: RealField + Copy>(locator: &Locator<T>) -> T {
-    let stroke = locator
-        .limits
-        .iter()
-        .map(|limits| limits.min.abs().max(limits.max.abs()))
-        .fold(T::zero(), T::max);
-    let span = locator.anchor.coords.norm() + locator.origin.coords.norm() + stroke;
+/// What axis coordinates are off by rounding.
+fn rounding<T: RealField + Copy>(locator: &Locator<T>, coordinates: &Vector3<T>) -> T {
+    let span = locator.anchor.coords.norm() + locator.origin.coords.norm() + coordinates.amax();
     span * epsilons(ROUNDING_EPSILONS)
 }
 
 pub(super) fn strokes<T: RealField + Copy>(
     locators: &[Locator<T>],
-    rounding: &[T],
     axes: &[Vector3<T>],
 ) -> Result<(), LimitError<T>> {
     let mut worst: Option<(T, LimitError<T>)> = None;
-    let held = locators.iter().zip(rounding).zip(axes);
-    for (number, ((locator, rounding), coordinates)) in held.enumerate() {
+    for (number, (locator, coordinates)) in locators.iter().zip(axes).enumerate() {
         let each = Axis::ALL.into_iter().zip(coordinates.iter().copied());
         for ((axis, value), limits) in each.zip(&locator.limits) {
             if !value.is_finite() {
@@ -176,7 +179,10 @@ pub(super) fn strokes<T: RealField + Copy>(
                 });
             }
             let by = (limits.min - value).max(value - limits.max);
-            if by > *rounding && worst.is_none_or(|(most, _)| by > most) {
+            if by > T::zero()
+                && by > rounding(locator, coordinates)
+                && worst.is_none_or(|(most, _)| by > most)
+            {
                 let (min, max) = (limits.min, limits.max);
                 let error = LimitError::Stroke {
                     locator: number,

@@ -1,12 +1,15 @@
 //! Why a platform or a pose is refused.
 
+use nalgebra::RealField;
+
 use crate::Axis;
+use crate::short::short;
 
 /// Why locators make no platform.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PlatformError<T = f64> {
+pub enum PlatformError<T: RealField + Copy = f64> {
     /// Fewer than 3 locators, or more than 32 axes.
     #[error("{locators} locators: 3 to {max} are possible")]
     Count {
@@ -15,8 +18,8 @@ pub enum PlatformError<T = f64> {
         /// Most locators.
         max: usize,
     },
-    /// A coordinate is not finite, or so large that its square overflows.
-    #[error("locator {locator}: {name} is {value}, not within ±{max:e}")]
+    /// A coordinate is not finite, or beyond the range of the crate.
+    #[error("locator {locator}: {name} is {}, not within ±{}", short(.value), short(.max))]
     Coordinate {
         /// The locator, from 0.
         locator: usize,
@@ -28,7 +31,7 @@ pub enum PlatformError<T = f64> {
         max: T,
     },
     /// An axis has no unit length, errors of scale aside.
-    #[error("locator {locator}, axis {axis}: direction has length {length}, not {min}..={max}")]
+    #[error("locator {locator}, axis {axis}: direction has length {}, not {}..={}", short(.length), short(.min), short(.max))]
     AxisLength {
         /// The locator, from 0.
         locator: usize,
@@ -42,7 +45,7 @@ pub enum PlatformError<T = f64> {
         max: T,
     },
     /// The three axes of a locator are nearly in one plane.
-    #[error("locator {locator}: axes span a volume of {volume}, at least {min} is needed")]
+    #[error("locator {locator}: axes span a volume of {}, at least {} is needed", short(.volume), short(.min))]
     DependentAxes {
         /// The locator, from 0.
         locator: usize,
@@ -52,7 +55,7 @@ pub enum PlatformError<T = f64> {
         min: T,
     },
     /// A stroke is empty or not finite.
-    #[error("locator {locator}, axis {axis}: stroke {min}..={max} is empty or not finite")]
+    #[error("locator {locator}, axis {axis}: stroke {}..={} is empty or not finite", short(.min), short(.max))]
     Stroke {
         /// The locator, from 0.
         locator: usize,
@@ -63,8 +66,8 @@ pub enum PlatformError<T = f64> {
         /// Upper end.
         max: T,
     },
-    /// A rated speed, acceleration or jerk is not a positive number.
-    #[error("locator {locator}, axis {axis}: {name} is {value}, not a positive number")]
+    /// A rated speed, acceleration or jerk is not a number within the range of the crate.
+    #[error("locator {locator}, axis {axis}: {name} is {}, not within {}..={}", short(.value), short(.min), short(.max))]
     Rating {
         /// The locator, from 0.
         locator: usize,
@@ -74,10 +77,15 @@ pub enum PlatformError<T = f64> {
         name: &'static str,
         /// Its value.
         value: T,
+        /// Smallest value.
+        min: T,
+        /// Largest value.
+        max: T,
     },
     /// Two locators hold the same point of the body.
     #[error(
-        "locators {first} and {second} hold the body {distance} apart, more than {needed} is needed"
+        "locators {first} and {second} hold the body {} apart, more than {} is needed",
+        short(.distance), short(.needed)
     )]
     Coincident {
         /// A locator, from 0.
@@ -90,7 +98,7 @@ pub enum PlatformError<T = f64> {
         needed: T,
     },
     /// All anchors are on a line: the body could turn about it.
-    #[error("the anchors are on a line: {width} wide, {length} long, more than {needed} is needed")]
+    #[error("the anchors are on a line: {} wide, {} long, more than {} is needed", short(.width), short(.length), short(.needed))]
     Collinear {
         /// Largest distance from the line.
         width: T,
@@ -105,9 +113,9 @@ pub enum PlatformError<T = f64> {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum LimitError<T = f64> {
+pub enum LimitError<T: RealField + Copy = f64> {
     /// An axis would leave its stroke.
-    #[error("locator {locator}, axis {axis}: {value} is {by} beyond the stroke {min}..={max}")]
+    #[error("locator {locator}, axis {axis}: {} is {} beyond the stroke {}..={}", short(.value), short(.by), short(.min), short(.max))]
     Stroke {
         /// The locator, from 0.
         locator: usize,
@@ -123,7 +131,7 @@ pub enum LimitError<T = f64> {
         by: T,
     },
     /// A coordinate is not finite.
-    #[error("locator {locator}, axis {axis}: {value} is not a finite number")]
+    #[error("locator {locator}, axis {axis}: {} is not a finite number", short(.value))]
     NotFinite {
         /// The locator, from 0.
         locator: usize,

@@ -1,58 +1,62 @@
 //! What a table asks of the axes, found on the cubics that the controller will run.
 
-use nalgebra::{RealField, Vector3};
-
+use super::segment::NOISE;
 use super::{Knot, segments};
 use crate::course::Course;
-use crate::number::{constant, cube_root, half, two};
+use crate::number::{cube_root, sqrt};
 use crate::{Axis, LimitError, Locator, Platform, PvtPoint};
 
 /// One axis over one segment.
 #[derive(Debug, Clone, Copy)]
-struct Cubic<T> {
-    q0: T,
-    q1: T,
-    v0: T,
-    v1: T,
-    duration: T,
+struct Cubic {
+    q0: f64,
+    q1: f64,
+    v0: f64,
+    v1: f64,
+    duration: f64,
 }
 
-impl<T: RealField + Copy> Cubic<T> {
+impl Cubic {
     /// Accelerations at both ends; between them the acceleration is linear.
-    fn accelerations(&self) -> [T; 2] {
-        let six_means = constant::<T>(6.0) * (self.q1 - self.q0) / self.duration;
-        let (two, four) = (constant::<T>(2.0), constant::<T>(4.0));
+    fn accelerations(&self) -> [f64; 2] {
+        let six_means = 6.0 * (self.q1 - self.q0) / self.duration;
         [
-            (six_means - four * self.v0 - two * self.v1) / self.duration,
-            (two * self.v0 + four * self.v1 - six_means) / self.duration,
+            (six_means - 4.0 * self.v0 - 2.0 * self.v1) / self.duration,
+            (2.0 * self.v0 + 4.0 * self.v1 - six_means) / self.duration,
         ]
     }
 
+    /// What both accelerations may be off by where they are computed anew from rounded speeds
+    /// and times.
+    fn noise(&self) -> f64 {
+        let mean = (self.q1 - self.q0).abs() / self.duration;
+        NOISE * (mean + self.v0.abs() + self.v1.abs()) / self.duration
+    }
+
     /// The largest speed.
-    fn peak(&self) -> T {
+    fn peak(&self) -> f64 {
         let ends = self.v0.abs().max(self.v1.abs());
         let [a0, a1] = self.accelerations();
-        if (a0 > T::zero()) == (a1 > T::zero()) || a0 == a1 {
+        if (a0 > 0.0) == (a1 > 0.0) {
             return ends;
         }
         // Where the acceleration passes zero.
         let time = self.duration * a0 / (a0 - a1);
-        ends.max((self.v0 + a0 * time * half()).abs())
+        ends.max((self.v0 + a0 * time * 0.5).abs())
     }
 
     /// Position at a share of the duration.
-    fn position(&self, share: T) -> T {
-        let rest = T::one() - share;
-        let three = two::<T>() + T::one();
-        let third = self.duration / three;
+    fn position(&self, share: f64) -> f64 {
+        let rest = 1.0 - share;
+        let third = self.duration / 3.0;
         let (b1, b2) = (self.q0 + self.v0 * third, self.q1 - self.v1 * third);
         let outer = self.q0 * rest * rest * rest + self.q1 * share * share * share;
-        outer + three * share * rest * (b1 * rest + b2 * share)
+        outer + 3.0 * share * rest * (b1 * rest + b2 * share)
     }
 
     /// Whether the control points, and so the cubic, are within a stroke.
-    fn surely_within(&self, min: T, max: T) -> bool {
-        let third = self.duration * nalgebra::convert(1.0 / 3.0);
+    fn surely_within(&self, min: f64, max: f64) -> bool {
+        let third = self.duration / 3.0;
         let points = [
             self.q0 + self.v0 * third,
             self.q1 - self.v1 * third,
@@ -63,19 +67,16 @@ impl<T: RealField + Copy> Cubic<T> {
     }
 
     /// The lowest and the highest position.
-    fn reach(&self) -> [T; 2] {
+    fn reach(&self) -> [f64; 2] {
         let (mut low, mut high) = (self.q0.min(self.q1), self.q0.max(self.q1));
         let [a0, a1] = self.accelerations();
         // v0 + a0 t + (a1 - a0) t² / 2T = 0, as shares of the duration.
-        let (a, b) = (
-            (a1 - a0) * self.duration * half(),
-            a0 * self.duration * half(),
-        );
+        let (a, b) = ((a1 - a0) * self.duration * 0.5, a0 * self.duration * 0.5);
         let square = b * b - a * self.v0;
-        if square >= T::zero() {
-            let sum = -(b + square.sqrt().copysign(b));
+        if square >= 0.0 {
+            let sum = -(b + sqrt(square).copysign(b));
             for share in [sum / a, self.v0 / sum] {
-                if share > T::zero() && share < T::one() {
+                if share > 0.0 && share < 1.0 {
                     let position = self.position(share);
                     (low, high) = (low.min(position), high.max(position));
                 }
@@ -85,11 +86,11 @@ impl<T: RealField + Copy> Cubic<T> {
     }
 }
 
-fn cubics<'a, const N: usize, T: RealField + Copy>(
-    locators: &'a [Locator<T>; N],
-    from: &'a PvtPoint<N, T>,
-    to: &'a PvtPoint<N, T>,
-) -> impl Iterator<Item = (usize, usize, &'a crate::AxisLimits<T>, Cubic<T>)> {
+fn cubics<'a, const N: usize>(
+    locators: &'a [Locator; N],
+    from: &'a PvtPoint<N>,
+    to: &'a PvtPoint<N>,
+) -> impl Iterator<Item = (usize, usize, &'a crate::AxisLimits, Cubic)> {
     let ends = from.axes.iter().zip(&to.axes);
     let speeds = from.velocities.iter().zip(&to.velocities);
     let all = locators.iter().zip(ends.zip(speeds)).enumerate();
@@ -113,11 +114,11 @@ fn cubics<'a, const N: usize, T: RealField + Copy>(
 }
 
 /// The axis that leaves its stroke between two points, if one does.
-pub(super) fn strokes<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    from: &PvtPoint<N, T>,
-    to: &PvtPoint<N, T>,
-) -> Result<(), LimitError<T>> {
+pub(super) fn strokes<const N: usize>(
+    platform: &Platform<N>,
+    from: &PvtPoint<N>,
+    to: &PvtPoint<N>,
+) -> Result<(), LimitError> {
     platform.check_axes(&to.axes)?;
     for (locator, axis, limits, cubic) in cubics(platform.locators(), from, to) {
         if cubic.surely_within(limits.min, limits.max) {
@@ -125,7 +126,7 @@ pub(super) fn strokes<const N: usize, T: RealField + Copy>(
         }
         let [low, high] = cubic.reach();
         let by = (limits.min - low).max(high - limits.max);
-        if by > T::zero() {
+        if by > 0.0 {
             // Ends are checked with the tolerance of the platform.
             let value = if high > limits.max { high } else { low };
             let ends =
@@ -145,24 +146,27 @@ pub(super) fn strokes<const N: usize, T: RealField + Copy>(
     Ok(())
 }
 
-/// The largest shares of the limits that a run of segments asks for.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Shares<const N: usize, T> {
-    speed: T,
-    acceleration: T,
-    jerk: T,
-    /// Accelerations at the end of the segment before.
-    before: [Vector3<T>; N],
-    segment_s: T,
+/// An axis at the end of a segment.
+#[derive(Debug, Clone, Copy, Default)]
+struct End {
+    acceleration: f64,
+    noise: f64,
 }
 
-impl<const N: usize, T: RealField + Copy> Shares<N, T> {
+/// The largest shares of the limits that a run of segments asks for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shares<const N: usize> {
+    speed: f64,
+    acceleration: f64,
+    jerk: f64,
+    /// All axes at the end of the segment before.
+    before: [[End; 3]; N],
+    segment_s: f64,
+}
+
+impl<const N: usize> Shares<N> {
     /// The shares of a leg's knots, from rest to rest.
-    pub(super) fn of(
-        locators: &[Locator<T>; N],
-        course: &Course<'_, N, T>,
-        knots: &[Knot<T>],
-    ) -> Self {
+    pub(super) fn of(locators: &[Locator; N], course: &Course<'_, N, f64>, knots: &[Knot]) -> Self {
         let mut shares = Self::new();
         for [from, to] in segments(course, knots) {
             shares.add(locators, &from, &to);
@@ -174,18 +178,18 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
     /// At rest.
     fn new() -> Self {
         Self {
-            speed: T::zero(),
-            acceleration: T::zero(),
-            jerk: T::zero(),
-            before: [Vector3::zeros(); N],
-            segment_s: T::zero(),
+            speed: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+            before: [[End::default(); 3]; N],
+            segment_s: 0.0,
         }
     }
 
     /// By what the time may be multiplied at the least so that all limits are kept.
-    pub(super) fn stretch(&self) -> T {
+    pub(super) fn stretch(&self) -> f64 {
         self.speed
-            .max(self.acceleration.sqrt())
+            .max(sqrt(self.acceleration))
             .max(cube_root(self.jerk))
     }
 
@@ -193,34 +197,37 @@ impl<const N: usize, T: RealField + Copy> Shares<N, T> {
     ///
     /// A cubic has one jerk. At a point the acceleration steps: that counts as a jerk over the
     /// time between the middles of the two segments.
-    fn add(&mut self, locators: &[Locator<T>; N], from: &PvtPoint<N, T>, to: &PvtPoint<N, T>) {
-        let mean_s = (self.segment_s + to.segment_s) * half();
+    fn add(&mut self, locators: &[Locator; N], from: &PvtPoint<N>, to: &PvtPoint<N>) {
+        let mean_s = (self.segment_s + to.segment_s) * 0.5;
         let mut before = self.before;
-        let axes = before.iter_mut().flat_map(Vector3::iter_mut);
+        let axes = before.as_flattened_mut();
         for ((_, _, limits, cubic), before) in cubics(locators, from, to).zip(axes) {
-            let [a0, a1] = cubic.accelerations();
-            let hardest = a0.abs().max(a1.abs());
+            let ([a0, a1], noise) = (cubic.accelerations(), cubic.noise());
+            let hardest = a0.abs().max(a1.abs()) + noise;
             self.speed = self.speed.max(cubic.peak() / limits.speed);
             self.acceleration = self.acceleration.max(hardest / limits.acceleration);
             if let Some(limit) = limits.jerk {
-                let inside = (a1 - a0).abs() / to.segment_s;
-                let step = (a0 - *before).abs() / mean_s;
+                let inside = ((a1 - a0).abs() + 2.0 * noise) / to.segment_s;
+                let step = ((a0 - before.acceleration).abs() + noise + before.noise) / mean_s;
                 self.jerk = self.jerk.max(inside.max(step) / limit);
             }
-            *before = a1;
+            *before = End {
+                acceleration: a1,
+                noise,
+            };
         }
         self.before = before;
         self.segment_s = to.segment_s;
     }
 
     /// Takes the standstill after the last segment into account.
-    fn stop(&mut self, locators: &[Locator<T>; N]) {
-        let mean_s = self.segment_s * half();
+    fn stop(&mut self, locators: &[Locator; N]) {
+        let mean_s = self.segment_s * 0.5;
         let limits = locators.iter().flat_map(|locator| &locator.limits);
-        let axes = self.before.iter().flat_map(Vector3::iter);
-        for (limits, before) in limits.zip(axes) {
+        for (limits, before) in limits.zip(self.before.as_flattened()) {
             if let Some(limit) = limits.jerk {
-                self.jerk = self.jerk.max(before.abs() / mean_s / limit);
+                let step = (before.acceleration.abs() + before.noise) / mean_s;
+                self.jerk = self.jerk.max(step / limit);
             }
         }
     }
@@ -243,7 +250,7 @@ mod tests {
         (f64::from(number) * step).fract() * 2.0 - 1.0
     }
 
-    fn cubics() -> impl Iterator<Item = Cubic<f64>> {
+    fn cubics() -> impl Iterator<Item = Cubic> {
         (1..400).map(|number| Cubic {
             q0: spread(number, 0.618_034),
             q1: spread(number, 0.414_214),
@@ -254,7 +261,7 @@ mod tests {
     }
 
     /// Hermite's form, by time.
-    fn position(cubic: &Cubic<f64>, share: f64) -> f64 {
+    fn position(cubic: &Cubic, share: f64) -> f64 {
         let [a0, a1] = cubic.accelerations();
         let time = share * cubic.duration;
         let jerk = (a1 - a0) / cubic.duration;

@@ -2,19 +2,17 @@
 
 use core::cell::Cell;
 
-use nalgebra::RealField;
-
 use super::segment::{Reciprocals, Segment};
 use super::{Knot, knots_of};
 use crate::Locator;
 use crate::course::{Course, Place};
-use crate::number::{count, largest, two};
+use crate::number::largest;
 
 /// Fills the first knots, one more than parts, with the fastest motion.
-pub(super) fn fastest<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
-    course: &Course<'_, N, T>,
-    knots: &mut [Knot<T>],
+pub(super) fn fastest<const N: usize>(
+    locators: &[Locator; N],
+    course: &Course<'_, N, f64>,
+    knots: &mut [Knot],
     parts: u32,
 ) {
     let knots = knots.get_mut(..knots_of(parts)).unwrap_or_default();
@@ -27,15 +25,15 @@ pub(super) fn fastest<const N: usize, T: RealField + Copy>(
 
 /// Spreads the knots as u² (3 - 2u), dense where the leg starts and stops: there the speed
 /// changes most from knot to knot, and with it the strain.
-fn spread<T: RealField + Copy>(knots: &mut [Knot<T>], parts: u32) {
-    let whole = count::<T>(parts);
+fn spread(knots: &mut [Knot], parts: u32) {
+    let whole = f64::from(parts);
     for (index, knot) in (0..=parts).zip(knots) {
-        let share = count::<T>(index) / whole;
-        let s = share * share * (two::<T>() + T::one() - two::<T>() * share);
+        let share = f64::from(index) / whole;
+        let s = share * share * (3.0 - 2.0 * share);
         *knot = Knot {
             s,
-            speed: T::zero(),
-            segment_s: T::zero(),
+            speed: 0.0,
+            segment_s: 0.0,
             parts,
         };
     }
@@ -43,12 +41,12 @@ fn spread<T: RealField + Copy>(knots: &mut [Knot<T>], parts: u32) {
 
 /// From the end: the highest speed at each knot from which the rest can be run, in `speed`, and
 /// the speed after it as a share, in `segment_s`.
-fn backward<const N: usize, T: RealField + Copy>(
-    limits: &Reciprocals<N, T>,
-    course: &Course<'_, N, T>,
-    knots: &[Cell<Knot<T>>],
+fn backward<const N: usize>(
+    limits: &Reciprocals<N>,
+    course: &Course<'_, N, f64>,
+    knots: &[Cell<Knot>],
 ) {
-    let mut to: Option<Place<N, T>> = None;
+    let mut to: Option<Place<N, f64>> = None;
     for pair in knots.windows(2).rev() {
         let [from_knot, to_knot] = pair else { continue };
         let (mut knot, next) = (from_knot.get(), to_knot.get());
@@ -64,13 +62,13 @@ fn backward<const N: usize, T: RealField + Copy>(
 }
 
 /// From the start at rest: as fast as each segment and what is left allow.
-fn forward<const N: usize, T: RealField + Copy>(
-    limits: &Reciprocals<N, T>,
-    course: &Course<'_, N, T>,
-    knots: &[Cell<Knot<T>>],
+fn forward<const N: usize>(
+    limits: &Reciprocals<N>,
+    course: &Course<'_, N, f64>,
+    knots: &[Cell<Knot>],
 ) {
-    let mut speed = T::zero();
-    let mut from: Option<Place<N, T>> = None;
+    let mut speed = 0.0;
+    let mut from: Option<Place<N, f64>> = None;
     for pair in knots.windows(2) {
         let [from_knot, to_knot] = pair else { continue };
         let (mut knot, mut next) = (from_knot.get(), to_knot.get());
@@ -80,7 +78,7 @@ fn forward<const N: usize, T: RealField + Copy>(
         let segment = Segment::new(limits, &start, &to, way);
         let after = segment.end(speed, next.speed, speed * knot.segment_s);
         knot.speed = speed;
-        knot.segment_s = two::<T>() * way / (speed + after);
+        knot.segment_s = 2.0 * way / (speed + after);
         from_knot.set(knot);
         next.speed = after;
         to_knot.set(next);

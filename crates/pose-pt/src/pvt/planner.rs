@@ -1,38 +1,32 @@
 //! The knots of a table: how many, at which speeds, and whether they keep what was asked.
 
-use nalgebra::RealField;
-
 use super::check::{self, Shares};
 use super::{Knot, first_course, has_jerk, knots_of, leg, moving, segments, smooth};
 use crate::course::Course;
 use crate::cut::{Rule, within_max};
-use crate::number::epsilons;
+use crate::number::{larger_or_nan, sqrt};
 use crate::path::{Leg, Path};
 use crate::strain::hermite_strain;
 use crate::{Cut, PlanError, Platform};
 
 /// What all legs are planned with.
-pub(super) struct Planner<'a, const N: usize, T: RealField> {
-    pub(super) platform: &'a Platform<N, T>,
-    pub(super) cut: Cut<T>,
+pub(super) struct Planner<'a, const N: usize> {
+    pub(super) platform: &'a Platform<N>,
+    pub(super) cut: Cut,
     /// Fewest parts of a leg.
     pub(super) least: u32,
 }
 
-impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
+impl<const N: usize> Planner<'_, N> {
     /// Where the number of parts is known beforehand, the memory is checked before all else.
-    pub(super) fn check_memory(
-        &self,
-        path: &Path<'_, T>,
-        available: usize,
-    ) -> Result<(), PlanError<T>> {
+    pub(super) fn check_memory(&self, path: &Path<'_>, available: usize) -> Result<(), PlanError> {
         let mut needed = 0_usize;
-        for (number, leg) in moving(path) {
+        for (number, leg) in moving(self.platform, path, 0) {
             let parts = match self.cut.rule {
                 Rule::Strain(_) => self.least,
                 _ => self.parts(number, &leg)?,
             };
-            needed = needed.saturating_add(knots_of(within_max(Some(parts), number)?));
+            needed = needed.saturating_add(knots_of(within_max(Some(parts), number, MAX_PARTS)?));
         }
         if needed <= available {
             return Ok(());
@@ -41,19 +35,19 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
     }
 
     /// Parts of a leg where the cut alone decides them.
-    fn parts(&self, number: usize, leg: &Leg<T>) -> Result<u32, PlanError<T>> {
+    fn parts(&self, number: usize, leg: &Leg) -> Result<u32, PlanError> {
         let parts = self.cut.linear_parts(self.platform, number, leg)?;
-        Ok(parts.max(self.least))
+        within_max(Some(parts.max(self.least)), number, MAX_PARTS)
     }
 
     /// Plans a leg in the first of the free knots; the number of them.
     pub(super) fn plan_leg(
         &self,
         number: usize,
-        leg: &Leg<T>,
+        leg: &Leg,
         used: usize,
-        free: &mut [Knot<T>],
-    ) -> Result<usize, PlanError<T>> {
+        free: &mut [Knot],
+    ) -> Result<usize, PlanError> {
         let course = Course::new(self.platform, leg);
         let parts = match self.cut.rule {
             Rule::Strain(allowed) => self.fewest(number, &course, used, free, allowed)?,
@@ -64,7 +58,7 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
     }
 
     /// Plans a leg with a number of parts.
-    fn lay(&self, course: &Course<'_, N, T>, free: &mut [Knot<T>], parts: u32) {
+    fn lay(&self, course: &Course<'_, N, f64>, free: &mut [Knot], parts: u32) {
         if let Some(knots) = free.get_mut(..knots_of(parts)) {
             let locators = self.platform.locators();
             if has_jerk(self.platform) {
@@ -79,11 +73,11 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
     fn fewest(
         &self,
         number: usize,
-        course: &Course<'_, N, T>,
+        course: &Course<'_, N, f64>,
         used: usize,
-        free: &mut [Knot<T>],
-        allowed: T,
-    ) -> Result<u32, PlanError<T>> {
+        free: &mut [Knot],
+        allowed: f64,
+    ) -> Result<u32, PlanError> {
         let room = u32::try_from(free.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let mut strain = |parts| {
             self.lay(course, free, parts);
@@ -118,20 +112,16 @@ impl<const N: usize, T: RealField + Copy> Planner<'_, N, T> {
     }
 }
 
+/// Most parts of a leg: 12 machine epsilons of the way from its last knot but one to its end.
+pub(super) const MAX_PARTS: u32 = 1 << 24;
+
 /// Parts beyond which rounding is all that is left of a strain.
 const FINEST: u32 = 1 << 20;
 
 /// Why no number of parts that there is room for keeps the strain. It shrinks with the square
 /// of the number; a tenth more is enough.
-fn too_coarse<T: RealField + Copy>(
-    leg: usize,
-    excess: T,
-    parts: u32,
-    used: usize,
-    room: u32,
-) -> PlanError<T> {
-    let more: f64 = nalgebra::try_convert(excess.sqrt()).unwrap_or(f64::MAX);
-    let estimate = f64::from(parts) * more * 1.1;
+fn too_coarse(leg: usize, excess: f64, parts: u32, used: usize, room: u32) -> PlanError {
+    let estimate = f64::from(parts) * sqrt(excess) * 1.1;
     if parts < room || estimate > f64::from(FINEST) {
         return PlanError::TooFine { leg, max: FINEST };
     }
@@ -148,36 +138,36 @@ fn too_coarse<T: RealField + Copy>(
 }
 
 /// The strain bound of a leg whose knots are the first of `knots`.
-fn leg_strain<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    course: &Course<'_, N, T>,
-    knots: &[Knot<T>],
-) -> T {
-    segments(course, knots).fold(T::zero(), |worst, [from, to]| {
-        worst.max(hermite_strain(platform, &from, &to))
+fn leg_strain<const N: usize>(
+    platform: &Platform<N>,
+    course: &Course<'_, N, f64>,
+    knots: &[Knot],
+) -> f64 {
+    segments(course, knots).fold(0.0, |worst, [from, to]| {
+        larger_or_nan(worst, hermite_strain(platform, &from, &to))
     })
 }
 
 /// What a stretched leg rounds off.
-const STRETCH_EPSILONS: f64 = 64.0;
+const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// Looks at what the controller will run: every stroke, and where jerk is limited every limit;
 /// the time is then multiplied so that it just keeps them all. The fastest table keeps them by
 /// its making.
-pub(super) fn check_legs<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    path: &Path<'_, T>,
-    knots: &mut [Knot<T>],
-) -> Result<(), PlanError<T>> {
+pub(super) fn check_legs<const N: usize>(
+    platform: &Platform<N>,
+    path: &Path<'_>,
+    knots: &mut [Knot],
+) -> Result<(), PlanError> {
     let Some(course) = first_course(platform, path) else {
         return Ok(());
     };
     let failed = |leg, point| move |reason| PlanError::Limit { leg, point, reason };
     platform
-        .check_axes(&course.place(T::zero()).axes)
+        .check_axes(&course.place(0.0).axes)
         .map_err(failed(0, 0))?;
-    let mut rest = knots;
-    for (number, leg) in moving(path) {
+    let (mut rest, mut time_s) = (knots, 0.0);
+    for (number, leg) in moving(platform, path, 0) {
         let parts = rest.first().map_or(0, |knot| knot.parts);
         let Some((knots, later)) = rest.split_at_mut_checked(knots_of(parts)) else {
             break;
@@ -189,14 +179,28 @@ pub(super) fn check_legs<const N: usize, T: RealField + Copy>(
         }
         if has_jerk(platform) {
             let stretch = Shares::of(platform.locators(), &course, knots).stretch();
-            stretch_time(knots, stretch * (T::one() + epsilons(STRETCH_EPSILONS)));
+            stretch_time(knots, stretch * STRETCHED);
         }
+        time_s = check_times(number, knots, time_s)?;
     }
     Ok(())
 }
 
+/// Refuses knots that no time lies between; the time at the last.
+fn check_times(leg: usize, knots: &[Knot], mut time_s: f64) -> Result<f64, PlanError> {
+    let segments = knots.split_last().map_or(knots, |(_, segments)| segments);
+    for (point, knot) in (1..).zip(segments) {
+        let before_s = time_s;
+        time_s += knot.segment_s;
+        if !(time_s > before_s && time_s.is_finite()) {
+            return Err(PlanError::Indistinct { leg, point });
+        }
+    }
+    Ok(time_s)
+}
+
 /// Multiplies the time of a leg.
-fn stretch_time<T: RealField + Copy>(knots: &mut [Knot<T>], stretch: T) {
+fn stretch_time(knots: &mut [Knot], stretch: f64) {
     for knot in knots {
         knot.speed /= stretch;
         knot.segment_s *= stretch;

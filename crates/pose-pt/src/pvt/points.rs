@@ -2,7 +2,7 @@
 
 use core::iter::FusedIterator;
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::Vector3;
 
 use super::{Knot, first_course, moving};
 use crate::Platform;
@@ -13,20 +13,20 @@ use crate::path::Path;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct PvtPoint<const N: usize, T = f64> {
+pub struct PvtPoint<const N: usize> {
     /// Seconds since the start.
-    pub time_s: T,
+    pub time_s: f64,
     /// Seconds since the point before; zero at the first.
-    pub segment_s: T,
+    pub segment_s: f64,
     /// Coordinates of each locator's three axes.
-    pub axes: [Vector3<T>; N],
+    pub axes: [Vector3<f64>; N],
     /// Speeds of each locator's three axes, per second.
-    pub velocities: [Vector3<T>; N],
+    pub velocities: [Vector3<f64>; N],
 }
 
-impl<const N: usize, T: RealField + Copy> PvtPoint<N, T> {
+impl<const N: usize> PvtPoint<N> {
     /// A place that is passed at a speed of the parameter.
-    pub(crate) fn new(place: &Place<N, T>, speed: T, time_s: T, segment_s: T) -> Self {
+    pub(crate) fn new(place: &Place<N, f64>, speed: f64, time_s: f64, segment_s: f64) -> Self {
         Self {
             time_s,
             segment_s,
@@ -38,27 +38,27 @@ impl<const N: usize, T: RealField + Copy> PvtPoint<N, T> {
 
 /// The points of a [`PvtTable`](super::PvtTable).
 #[derive(Debug, Clone)]
-pub struct PvtPoints<'a, const N: usize, T: RealField = f64> {
-    platform: &'a Platform<N, T>,
-    path: Path<'a, T>,
+pub struct PvtPoints<'a, const N: usize> {
+    platform: &'a Platform<N>,
+    path: Path<'a>,
     /// Knots that are still to come.
-    knots: &'a [Knot<T>],
+    knots: &'a [Knot],
     /// The next leg, and knots of the present one that are still to come.
     leg: usize,
     left: u32,
-    course: Option<Course<'a, N, T>>,
-    stretch: T,
-    time_s: T,
-    segment_s: T,
+    course: Option<Course<'a, N, f64>>,
+    stretch: f64,
+    time_s: f64,
+    segment_s: f64,
     remaining: usize,
 }
 
-impl<'a, const N: usize, T: RealField + Copy> PvtPoints<'a, N, T> {
+impl<'a, const N: usize> PvtPoints<'a, N> {
     pub(super) fn new(
-        platform: &'a Platform<N, T>,
-        path: &Path<'a, T>,
-        knots: &'a [Knot<T>],
-        stretch: T,
+        platform: &'a Platform<N>,
+        path: &Path<'a>,
+        knots: &'a [Knot],
+        stretch: f64,
         points: usize,
     ) -> Self {
         Self {
@@ -69,14 +69,14 @@ impl<'a, const N: usize, T: RealField + Copy> PvtPoints<'a, N, T> {
             left: 0,
             course: None,
             stretch,
-            time_s: T::zero(),
-            segment_s: T::zero(),
+            time_s: 0.0,
+            segment_s: 0.0,
             remaining: points,
         }
     }
 
     /// The next knot.
-    fn knot(&mut self) -> Option<Knot<T>> {
+    fn knot(&mut self) -> Option<Knot> {
         let (knot, rest) = self.knots.split_first()?;
         self.knots = rest;
         self.segment_s = knot.segment_s * self.stretch;
@@ -84,9 +84,8 @@ impl<'a, const N: usize, T: RealField + Copy> PvtPoints<'a, N, T> {
     }
 
     /// Begins the next leg on which something moves; its first knot.
-    fn begin(&mut self) -> Option<Knot<T>> {
-        let from = self.leg;
-        let (number, leg) = moving(&self.path).find(|(number, _)| *number >= from)?;
+    fn begin(&mut self) -> Option<Knot> {
+        let (number, leg) = moving(self.platform, &self.path, self.leg).next()?;
         self.leg = number.saturating_add(1);
         self.course = Some(Course::new(self.platform, &leg));
         let knot = self.knot()?;
@@ -95,20 +94,19 @@ impl<'a, const N: usize, T: RealField + Copy> PvtPoints<'a, N, T> {
     }
 
     /// The first point of all; the first pose where nothing moves anywhere.
-    fn first(&mut self) -> Option<PvtPoint<N, T>> {
-        let zero = T::zero();
+    fn first(&mut self) -> Option<PvtPoint<N>> {
         let course = first_course(self.platform, &self.path)?;
         if self.begin().is_none() {
             self.course = Some(course);
         }
-        Some(PvtPoint::new(&course.place(zero), zero, zero, zero))
+        Some(PvtPoint::new(&course.place(0.0), 0.0, 0.0, 0.0))
     }
 }
 
-impl<const N: usize, T: RealField + Copy> Iterator for PvtPoints<'_, N, T> {
-    type Item = PvtPoint<N, T>;
+impl<const N: usize> Iterator for PvtPoints<'_, N> {
+    type Item = PvtPoint<N>;
 
-    fn next(&mut self) -> Option<PvtPoint<N, T>> {
+    fn next(&mut self) -> Option<PvtPoint<N>> {
         self.remaining = self.remaining.checked_sub(1)?;
         if self.course.is_none() {
             return self.first();
@@ -131,6 +129,6 @@ impl<const N: usize, T: RealField + Copy> Iterator for PvtPoints<'_, N, T> {
     }
 }
 
-impl<const N: usize, T: RealField + Copy> ExactSizeIterator for PvtPoints<'_, N, T> {}
+impl<const N: usize> ExactSizeIterator for PvtPoints<'_, N> {}
 
-impl<const N: usize, T: RealField + Copy> FusedIterator for PvtPoints<'_, N, T> {}
+impl<const N: usize> FusedIterator for PvtPoints<'_, N> {}

@@ -1,22 +1,20 @@
 //! Motion from rest to rest with limited speed, acceleration and jerk.
 
-use nalgebra::RealField;
-
-use crate::number::{count, cube_root, half, two};
+use crate::number::{cube_root, sqrt};
 
 /// Seven phases of constant jerk over a way of 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SCurve<T> {
+pub(super) struct SCurve {
     /// Duration and jerk of each phase.
-    phases: [(T, T); 7],
+    phases: [(f64, f64); 7],
 }
 
 /// State of the motion: way, speed, acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Motion<T> {
-    pub(super) way: T,
-    pub(super) speed: T,
-    acceleration: T,
+pub(super) struct Motion {
+    pub(super) way: f64,
+    pub(super) speed: f64,
+    acceleration: f64,
 }
 
 /// Share of a ramp's time below which a phase is left out.
@@ -25,33 +23,32 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Most parts that are needed for seven phases.
 pub(super) const PHASES: u32 = 7;
 
-impl<T: RealField + Copy> SCurve<T> {
+impl SCurve {
     /// The shortest motion with these limits, in 1/s, 1/s² and 1/s³.
-    pub(super) fn new(speed: T, acceleration: T, jerk: T) -> Self {
+    pub(super) fn new(speed: f64, acceleration: f64, jerk: f64) -> Self {
         let top = speed.min(Self::top_of_short_way(acceleration, jerk));
         // Whether the acceleration is reached before the speed.
         let (rise, hold) = if top * jerk > acceleration * acceleration {
             let rise = acceleration / jerk;
             (rise, top / acceleration - rise)
         } else {
-            ((top / jerk).sqrt(), T::zero())
+            (sqrt(top / jerk), 0.0)
         };
         // Both ramps together make the way top · (2 rise + hold).
-        let ramps = top * (two::<T>() * rise + hold);
-        let cruise = (T::one() - ramps) / top;
-        let zero = T::zero();
+        let ramps = top * (2.0 * rise + hold);
+        let cruise = (1.0 - ramps) / top;
         // Next to nothing would be a segment of its own.
-        let least = (two::<T>() * rise + hold) * nalgebra::convert(NEGLIGIBLE);
-        let kept = |time: T| if time > least { time } else { zero };
+        let least = (2.0 * rise + hold) * NEGLIGIBLE;
+        let kept = |time: f64| if time > least { time } else { 0.0 };
         let (hold, cruise) = (kept(hold), kept(cruise));
         let mut curve = Self {
             phases: [
                 (rise, jerk),
-                (hold, zero),
+                (hold, 0.0),
                 (rise, -jerk),
-                (cruise, zero),
+                (cruise, 0.0),
                 (rise, -jerk),
-                (hold, zero),
+                (hold, 0.0),
                 (rise, jerk),
             ],
         };
@@ -62,7 +59,7 @@ impl<T: RealField + Copy> SCurve<T> {
         curve
     }
 
-    fn end(&self) -> Motion<T> {
+    fn end(&self) -> Motion {
         let phases = self.phases.iter();
         phases.fold(Motion::rest(), |state, (time, jerk)| {
             state.after(*time, *jerk)
@@ -75,32 +72,28 @@ impl<T: RealField + Copy> SCurve<T> {
     /// v (v/A + A/J) = 1      where A is reached,  v J ≥ A²
     /// v · 2 √(v/J) = 1       else
     /// ```
-    fn top_of_short_way(acceleration: T, jerk: T) -> T {
+    fn top_of_short_way(acceleration: f64, jerk: f64) -> f64 {
         let rise = acceleration / jerk;
-        let four = two::<T>() + two();
-        let root = (rise * rise + four / acceleration).sqrt();
+        let root = sqrt(rise * rise + 4.0 / acceleration);
         // A (√(rise² + 4/A) - rise) / 2, without cancellation.
-        let top = two::<T>() / (root + rise);
+        let top = 2.0 / (root + rise);
         if top * jerk >= acceleration * acceleration {
             top
         } else {
-            cube_root(jerk / four)
+            cube_root(jerk / 4.0)
         }
     }
 
     /// Calls `knot` with the state and the time to the next for `parts` parts, each within a
     /// phase, and with the end.
-    pub(super) fn knots(&self, parts: u32, mut knot: impl FnMut(Motion<T>, T)) {
-        let total = self
-            .phases
-            .iter()
-            .fold(T::zero(), |sum, (time, _)| sum + *time);
-        let used = self.phases.iter().filter(|(time, _)| *time > T::zero());
+    pub(super) fn knots(&self, parts: u32, mut knot: impl FnMut(Motion, f64)) {
+        let total = self.phases.iter().fold(0.0, |sum, (time, _)| sum + *time);
+        let used = self.phases.iter().filter(|(time, _)| *time > 0.0);
         let mut phases_left = used.count().try_into().unwrap_or(PHASES);
         let (mut parts_left, mut time_left) = (parts, total);
         let mut state = Motion::rest();
         for (time, jerk) in self.phases {
-            if time <= T::zero() {
+            if time <= 0.0 {
                 continue;
             }
             phases_left = u32::saturating_sub(phases_left, 1);
@@ -108,46 +101,45 @@ impl<T: RealField + Copy> SCurve<T> {
             let free = parts_left.saturating_sub(phases_left).max(1);
             let parts = share(free, time / time_left).min(free).max(1);
             let parts = if phases_left == 0 { parts_left } else { parts };
-            let step = time / count(parts);
+            let step = time / f64::from(parts);
             for part in 0..parts {
-                knot(state.after(step * count(part), jerk), step);
+                knot(state.after(step * f64::from(part), jerk), step);
             }
             state = state.after(time, jerk);
             parts_left = parts_left.saturating_sub(parts);
             time_left -= time;
         }
         let end = Motion {
-            way: T::one(),
+            way: 1.0,
             ..Motion::rest()
         };
-        knot(end, T::zero());
+        knot(end, 0.0);
     }
 }
 
 /// The share of a count, rounded.
-pub(super) fn share<T: RealField + Copy>(whole: u32, share: T) -> u32 {
-    let value: Option<f64> = nalgebra::try_convert((count::<T>(whole) * share).round());
+pub(super) fn share(whole: u32, share: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a share of a u32; a cast saturates"
     )]
-    value.map_or(0, |value| value as u32)
+    let rounded = (f64::from(whole) * share + 0.5) as u32;
+    rounded
 }
 
-impl<T: RealField + Copy> Motion<T> {
+impl Motion {
     fn rest() -> Self {
         Self {
-            way: T::zero(),
-            speed: T::zero(),
-            acceleration: T::zero(),
+            way: 0.0,
+            speed: 0.0,
+            acceleration: 0.0,
         }
     }
 
-    fn after(self, time: T, jerk: T) -> Self {
-        let third = T::one() / nalgebra::convert(3.0);
-        let speeding = self.acceleration + jerk * time * half();
-        let way = self.speed + (self.acceleration + jerk * time * third) * time * half();
+    fn after(self, time: f64, jerk: f64) -> Self {
+        let speeding = self.acceleration + jerk * time * 0.5;
+        let way = self.speed + (self.acceleration + jerk * time / 3.0) * time * 0.5;
         Self {
             way: self.way + way * time,
             speed: self.speed + speeding * time,

@@ -1,22 +1,28 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
-use nalgebra::RealField;
+use nalgebra::Vector3;
 
 use crate::Locator;
 use crate::course::Place;
-use crate::number::{constant, epsilons, half, larger, magnitude};
+use crate::number::{larger, sqrt};
 
 /// One over the limits of speed and acceleration of each axis, a margin included.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reciprocals<const N: usize, T>([[[T; 2]; 3]; N]);
+pub(crate) struct Reciprocals<const N: usize>([[Reciprocal; 3]; N]);
 
-impl<const N: usize, T: RealField + Copy> Reciprocals<N, T> {
-    pub(crate) fn new(locators: &[Locator<T>; N]) -> Self {
-        let margin = T::one() + epsilons(MARGIN_EPSILONS);
+#[derive(Debug, Clone, Copy)]
+struct Reciprocal {
+    speed: f64,
+    acceleration: f64,
+}
+
+impl<const N: usize> Reciprocals<N> {
+    pub(crate) fn new(locators: &[Locator; N]) -> Self {
         Self(locators.map(|locator| {
-            locator
-                .limits
-                .map(|limits| [margin / limits.speed, margin / limits.acceleration])
+            locator.limits.map(|limits| Reciprocal {
+                speed: MARGIN / limits.speed,
+                acceleration: MARGIN / limits.acceleration,
+            })
         }))
     }
 }
@@ -26,6 +32,17 @@ impl<const N: usize, T: RealField + Copy> Reciprocals<N, T> {
 pub(crate) enum End {
     From,
     To,
+}
+
+/// Shares of the limits of one axis, in the speeds w₀ and w₁.
+#[derive(Debug, Clone, Copy)]
+struct AxisLoad {
+    /// Accelerations at the start and at the end: coefficients of y and z.
+    accelerations: [[f64; 2]; 2],
+    /// What both may be off by rounding: coefficient of y.
+    noise: f64,
+    /// Speed between the ends: coefficients of w₀ and w₁.
+    middle: [f64; 2],
 }
 
 /// All limits of one cubic segment, in the speeds w₀ and w₁ of the parameter at its ends.
@@ -42,73 +59,87 @@ pub(crate) enum End {
 /// p₀ w₀, (3m/2 - p₀) w₀ + (3m/2 - p₁) w₁ and p₁ w₁: no larger value is passed on the way.
 /// All of it scales with the speeds: what holds for a pair holds for each slower pair of the
 /// same ratio.
+///
+/// The controller gets speeds p w and a time T that are rounded. Its accelerations are sums of
+/// terms of the size of (|m| + |p₀| + |p₁|) y / Δs, and are off by some machine epsilons of that:
+/// where T is short, by many of the limit.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Segment<const N: usize, T> {
-    /// Accelerations at both ends as shares of the limits: coefficients of y and z.
-    accelerations: [[[[T; 2]; 2]; 3]; N],
-    /// The middle of the speed as a share of the limit: coefficients of w₀ and w₁.
-    middles: [[[T; 2]; 3]; N],
+pub(crate) struct Segment<const N: usize> {
+    axes: [[AxisLoad; 3]; N],
     /// Largest share of a speed limit per w₀, and per w₁.
-    ends: [T; 2],
+    ends: [f64; 2],
 }
 
-/// By how much limits are taken lower, in machine epsilons: what the products below and
-/// those of a table's reader round off.
-const MARGIN_EPSILONS: f64 = 64.0;
+/// By how much limits are taken lower: what a dozen products round off.
+const MARGIN: f64 = 1.0 + 64.0 * f64::EPSILON;
 
-/// What a root may be off by, in machine epsilons; less than the margin.
-const ROOT_EPSILONS: f64 = 32.0;
+/// What the terms of an acceleration round off, from the places on to the numbers that a
+/// controller gets, with those of a feed.
+pub(super) const NOISE: f64 = 128.0 * f64::EPSILON;
+
+/// What a root may be off by; less than the margin.
+const ROOT: f64 = 1.0 + 32.0 * f64::EPSILON;
+
+/// The share of the noise that is left where a root has its own.
+const ROOT_NOISE: f64 = 0.75;
+
+/// Limits that a search goes down by, one after the other.
+const PASSES: u32 = 8;
 
 /// Halvings that leave nothing of a relative gap.
 const HALVINGS: u32 = 48;
 
-impl<const N: usize, T: RealField + Copy> Segment<N, T> {
+impl AxisLoad {
+    const NONE: Self = Self {
+        accelerations: [[0.0; 2]; 2],
+        noise: 0.0,
+        middle: [0.0; 2],
+    };
+
+    fn new(limit: &Reciprocal, [q0, q1]: [f64; 2], [p0, p1]: [f64; 2], inverse: f64) -> Self {
+        let mean = (q1 - q0) * inverse;
+        let share = inverse * limit.acceleration;
+        Self {
+            accelerations: [
+                [
+                    (6.0 * mean - 4.0 * p0 - 2.0 * p1) * share,
+                    (4.0 * p0 - 2.0 * p1) * share,
+                ],
+                [
+                    (2.0 * p0 + 4.0 * p1 - 6.0 * mean) * share,
+                    (4.0 * p1 - 2.0 * p0) * share,
+                ],
+            ],
+            noise: NOISE * (mean.abs() + p0.abs() + p1.abs()) * share,
+            middle: [
+                (1.5 * mean - p0) * limit.speed,
+                (1.5 * mean - p1) * limit.speed,
+            ],
+        }
+    }
+}
+
+impl<const N: usize> Segment<N> {
     pub(crate) fn new(
-        limits: &Reciprocals<N, T>,
-        from: &Place<N, T>,
-        to: &Place<N, T>,
-        way: T,
+        limits: &Reciprocals<N>,
+        from: &Place<N, f64>,
+        to: &Place<N, f64>,
+        way: f64,
     ) -> Self {
-        let (two, four) = (constant::<T>(2.0), constant::<T>(4.0));
-        let (inverse, half_thrice) = (T::one() / way, constant::<T>(1.5));
-        let zero = T::zero();
+        let inverse = 1.0 / way;
         let mut segment = Self {
-            accelerations: [[[[zero; 2]; 2]; 3]; N],
-            middles: [[[zero; 2]; 3]; N],
-            ends: [zero; 2],
+            axes: [[AxisLoad::NONE; 3]; N],
+            ends: [0.0; 2],
         };
-        let rows = segment.accelerations.iter_mut().zip(&mut segment.middles);
-        let places = from.axes.iter().zip(&to.axes);
-        let slopes = from.slope.iter().zip(&to.slope);
-        for ((limits, (accelerations, middles)), ((q0, q1), (p0, p1))) in
-            limits.0.iter().zip(rows).zip(places.zip(slopes))
-        {
-            let q = q0.iter().zip(q1.iter());
-            let p = p0.iter().zip(p1.iter());
-            let rows = accelerations.iter_mut().zip(middles);
-            for (([speed, acceleration], (row, middle)), ((q0, q1), (p0, p1))) in
-                limits.iter().zip(rows).zip(q.zip(p))
-            {
-                let (p0, p1) = (*p0, *p1);
-                let mean = (*q1 - *q0) * inverse;
-                let six = constant::<T>(6.0) * mean;
-                let share = inverse * *acceleration;
-                *row = [
-                    [
-                        (six - four * p0 - two * p1) * share,
-                        (four * p0 - two * p1) * share,
-                    ],
-                    [
-                        (two * p0 + four * p1 - six) * share,
-                        (four * p1 - two * p0) * share,
-                    ],
-                ];
-                let high = half_thrice * mean;
-                *middle = [(high - p0) * *speed, (high - p1) * *speed];
-                let [from, to] = &mut segment.ends;
-                *from = larger(*from, magnitude(p0) * *speed);
-                *to = larger(*to, magnitude(p1) * *speed);
-            }
+        let [from_end, to_end] = &mut segment.ends;
+        let loads = segment.axes.as_flattened_mut().iter_mut();
+        let places = flat(&from.axes).zip(flat(&to.axes));
+        let slopes = flat(&from.slope).zip(flat(&to.slope));
+        let all = loads.zip(limits.0.as_flattened()).zip(places.zip(slopes));
+        for ((load, limit), ((q0, q1), (p0, p1))) in all {
+            *load = AxisLoad::new(limit, [*q0, *q1], [*p0, *p1], inverse);
+            *from_end = from_end.max(p0.abs() * limit.speed);
+            *to_end = to_end.max(p1.abs() * limit.speed);
         }
         segment
     }
@@ -116,58 +147,57 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
     /// The largest share of a limit that these speeds ask for, squared where it is a speed:
     /// at most 1 where all hold, and growing with the square of both speeds.
     #[inline]
-    pub(crate) fn load(&self, w0: T, w1: T) -> T {
+    pub(crate) fn load(&self, w0: f64, w1: f64) -> f64 {
         let [from, to] = self.ends;
-        let fastest = larger(from * w0, to * w1);
         let (y, z) = products(w0, w1);
-        let mut hardest = T::zero();
-        let mut middle = fastest;
-        for (accelerations, middles) in self.accelerations.iter().zip(&self.middles) {
-            for [[c0, d0], [c1, d1]] in accelerations {
-                hardest = larger(hardest, magnitude(*c0 * y + *d0 * z));
-                hardest = larger(hardest, magnitude(*c1 * y + *d1 * z));
+        let mut hardest = 0.0_f64;
+        let mut fastest = (from * w0).max(to * w1);
+        for axis in self.axes.as_flattened() {
+            let noise = axis.noise * y * ROOT_NOISE;
+            for [c, d] in axis.accelerations {
+                hardest = larger(hardest, (c * y + d * z).abs() + noise);
             }
-            for [e, f] in middles {
-                middle = larger(middle, magnitude(*e * w0 + *f * w1));
-            }
+            let [e, f] = axis.middle;
+            fastest = larger(fastest, (e * w0 + f * w1).abs());
         }
-        larger(hardest, middle * middle)
+        hardest.max(fastest * fastest)
     }
 
-    pub(crate) fn holds(&self, w0: T, w1: T) -> bool {
-        self.load(w0, w1) <= T::one() + epsilons(ROOT_EPSILONS)
+    pub(crate) fn holds(&self, w0: f64, w1: f64) -> bool {
+        self.load(w0, w1) <= ROOT
     }
 
     /// The highest speed at one end, at most `cap`, that the limits from above allow with the
     /// speed `other` at the other end. Where a limit asks for a higher speed, the result does
     /// not hold: the caller looks.
-    pub(crate) fn highest(&self, end: End, other: T, cap: T) -> T {
+    pub(crate) fn highest(&self, end: End, other: f64, cap: f64) -> f64 {
         let [from, to] = self.ends;
         let share = if end == End::From { from } else { to };
         let mut speed = cap;
-        if share * speed > T::one() {
-            speed = T::one() / share;
+        if share * speed > 1.0 {
+            speed = 1.0 / share;
         }
-        for middle in self.middles.as_flattened() {
-            let [e, f] = *middle;
+        for axis in self.axes.as_flattened() {
+            let [e, f] = axis.middle;
             let (own, others) = if end == End::From { (e, f) } else { (f, e) };
             let value = own * speed + others * other;
-            if magnitude(value) > T::one() {
-                let highest = (T::one().copysign(value) - others * other) / own;
-                if highest > T::zero() && highest < speed {
+            if value.abs() > 1.0 {
+                let highest = (1.0_f64.copysign(value) - others * other) / own;
+                if highest > 0.0 && highest < speed {
                     speed = highest;
                 }
             }
         }
-        for row in self.accelerations.as_flattened().as_flattened() {
-            let [c, d] = *row;
-            let d = if end == End::From { -d } else { d };
-            let (y, z) = products(other, speed);
-            let value = c * y + d * z;
-            if value > T::one() {
-                speed = lower(c, d, other, speed);
-            } else if value < -T::one() {
-                speed = lower(-c, -d, other, speed);
+        for axis in self.axes.as_flattened() {
+            for [c, d] in axis.accelerations {
+                let d = if end == End::From { -d } else { d };
+                let (y, z) = products(other, speed);
+                let (value, noise) = (c * y + d * z, axis.noise * y);
+                if value + noise > 1.0 {
+                    speed = lower(c + axis.noise, d, other, speed);
+                } else if value - noise < -1.0 {
+                    speed = lower(axis.noise - c, -d, other, speed);
+                }
             }
         }
         speed
@@ -175,52 +205,80 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
 
     /// The highest speed from which the segment can be begun if it must end with at most
     /// `ceiling`, and the speed at its end that goes with it.
-    pub(crate) fn begin(&self, ceiling: T, cap: T) -> (T, T) {
+    ///
+    /// What can be begun at a speed can be begun at each lower one, ending slower by the same
+    /// share: from a speed that holds, steps that grow find one that does not, and halvings the
+    /// highest between.
+    pub(crate) fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
         let fast = self.highest(End::From, ceiling, cap);
-        if self.holds(fast, ceiling) {
+        if fast >= ceiling && self.holds(fast, ceiling) {
             return (fast, ceiling);
         }
-        let end = self.highest(End::To, fast, ceiling);
-        if self.holds(fast, end) {
-            return (fast, end);
-        }
-        // On the ray to that pair a slower one holds; from there up by halves.
-        let scale = T::one() / self.load(fast, end).sqrt();
-        let (mut best, mut low, mut high) = ((fast * scale, end * scale), fast * scale, fast);
+        let reached = self.reach(fast, ceiling);
+        // At one speed all along.
+        let even = ceiling.min(1.0 / sqrt(self.load(1.0, 1.0)));
+        let (mut best, mut high) = match reached {
+            Some(end) if fast >= even => return (fast, end),
+            Some(_) => ((even, even), cap),
+            None => {
+                // On the ray to a pair that does not hold there is one that does.
+                let end = self.highest(End::To, fast, ceiling);
+                let scale = 1.0 / sqrt(self.load(fast, end));
+                ((fast * scale, end * scale), fast)
+            }
+        };
+        let mut step = best.0 * CLOSE;
         for _ in 0..HALVINGS {
-            if high - low <= low * nalgebra::convert(CLOSE) {
+            if high - best.0 <= best.0 * CLOSE {
                 break;
             }
-            let middle = (low + high) * half();
-            let end = self.highest(End::To, middle, ceiling);
-            if self.holds(middle, end) {
-                (best, low) = ((middle, end), middle);
-            } else {
-                high = middle;
+            let middle = (best.0 + step).min((best.0 + high) * 0.5);
+            match self.reach(middle, ceiling) {
+                Some(end) => (best, step) = ((middle, end), step * 4.0),
+                None => high = middle,
             }
         }
         best
     }
 
+    /// The highest speed at the end, at most `ceiling`, after the speed `w0`.
+    ///
+    /// Each limit forbids an interval of speeds or all above one. Where the next lower speed that
+    /// one allows is forbidden by another, the search goes on from there.
+    fn reach(&self, w0: f64, ceiling: f64) -> Option<f64> {
+        let mut speed = ceiling;
+        for _ in 0..PASSES {
+            let lower = self.highest(End::To, w0, speed);
+            if self.holds(w0, lower) {
+                return Some(lower);
+            }
+            if lower >= speed {
+                break;
+            }
+            speed = lower;
+        }
+        None
+    }
+
     /// The highest speed at the end, at most `ceiling`, after the speed `w0`; `known` is one
     /// that holds.
-    pub(crate) fn end(&self, w0: T, ceiling: T, known: T) -> T {
-        let fast = self.highest(End::To, w0, ceiling);
-        if w0 == T::zero() {
+    pub(crate) fn end(&self, w0: f64, ceiling: f64, known: f64) -> f64 {
+        if w0 == 0.0 {
+            let fast = self.highest(End::To, w0, ceiling);
             let load = self.load(w0, fast);
-            return fast / load.max(T::one()).sqrt();
+            return fast / sqrt(load.max(1.0));
         }
-        self.toward(w0, fast, known)
+        self.reach(w0, ceiling).unwrap_or(known)
     }
 
     /// The speed at the end that is nearest to `wanted` on the way from `known`, which holds.
-    pub(crate) fn toward(&self, w0: T, wanted: T, known: T) -> T {
+    pub(crate) fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
         if self.holds(w0, wanted) {
             return wanted;
         }
         let (mut good, mut bad) = (known, wanted);
         for _ in 0..HALVINGS {
-            let middle = (good + bad) * half();
+            let middle = (good + bad) * 0.5;
             if self.holds(w0, middle) {
                 good = middle;
             } else {
@@ -234,25 +292,29 @@ impl<const N: usize, T: RealField + Copy> Segment<N, T> {
 /// Relative gap at which the search for a beginning stops: it costs that share of the time.
 const CLOSE: f64 = 1e-5;
 
+/// The coordinates of all axes.
+fn flat<const N: usize>(vectors: &[Vector3<f64>; N]) -> impl Iterator<Item = &f64> {
+    vectors.iter().flat_map(|vector| vector.as_slice())
+}
+
 /// y and z of the two speeds.
 #[inline]
-fn products<T: RealField + Copy>(w0: T, w1: T) -> (T, T) {
-    let (mean, rise) = ((w0 + w1) * half(), (w1 - w0) * half());
+fn products(w0: f64, w1: f64) -> (f64, f64) {
+    let (mean, rise) = ((w0 + w1) * 0.5, (w1 - w0) * 0.5);
     (mean * mean, mean * rise)
 }
 
 /// The speed w below `speed` at which c (w + o)²/4 + d (w² - o²)/4 = 1, if it does not hold
 /// at `speed` and holds at zero.
-fn lower<T: RealField + Copy>(c: T, d: T, other: T, speed: T) -> T {
-    let four = nalgebra::convert::<f64, T>(4.0);
-    let rest = (c - d) * other * other - four;
-    if rest >= T::zero() {
+fn lower(c: f64, d: f64, other: f64, speed: f64) -> f64 {
+    let rest = (c - d) * other * other - 4.0;
+    if rest >= 0.0 {
         return speed;
     }
     let linear = c * other;
-    let root = (linear * linear - (c + d) * rest).max(T::zero()).sqrt();
+    let root = sqrt((linear * linear - (c + d) * rest).max(0.0));
     let below = -rest / (linear + root);
-    if below > T::zero() && below < speed {
+    if below > 0.0 && below < speed {
         below
     } else {
         speed

@@ -1,13 +1,11 @@
 //! Speeds along one leg whose jerk is limited.
 
-use nalgebra::RealField;
-
 use super::check::Shares;
 use super::scurve::{SCurve, share};
 use super::{Knot, MIN_PARTS, leg, window};
 use crate::Locator;
 use crate::course::Course;
-use crate::number::{constant, count, cube_root, half, larger, largest, magnitude, two};
+use crate::number::{cube_root, largest, sqrt};
 
 /// Fills the knots of a leg, one more than parts, with the faster of an S-curve along the path
 /// and the fastest motion without a limit of jerk, averaged over a window of time.
@@ -16,10 +14,10 @@ use crate::number::{constant, count, cube_root, half, larger, largest, magnitude
 /// speed is that of the hardest place. The average over a time w lasts w longer than what it
 /// is taken of, and a step of the acceleration by a becomes a jerk of a / w. Whatever either
 /// asks of the axes besides is made up for by stretching its time.
-pub(super) fn smooth<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
-    course: &Course<'_, N, T>,
-    knots: &mut [Knot<T>],
+pub(super) fn smooth<const N: usize>(
+    locators: &[Locator; N],
+    course: &Course<'_, N, f64>,
+    knots: &mut [Knot],
     parts: u32,
 ) {
     let curve = Easing::Curve(s_curve(locators, course));
@@ -32,7 +30,7 @@ pub(super) fn smooth<const N: usize, T: RealField + Copy>(
     };
     let average = trial.best_average();
     trial.parts = parts;
-    let least_s = trial.time(&curve) * nalgebra::convert(1.0 - LEAST_GAIN);
+    let least_s = trial.time(&curve) * (1.0 - LEAST_GAIN);
     // What is not a number is not faster.
     let is_faster = trial.time(&average) < least_s;
     if !is_faster {
@@ -42,10 +40,10 @@ pub(super) fn smooth<const N: usize, T: RealField + Copy>(
 
 /// A locator whose axes accelerate no more than they need to where only speed and jerk are
 /// limited: √(v j).
-fn eased<T: RealField + Copy>(mut locator: Locator<T>) -> Locator<T> {
+fn eased(mut locator: Locator) -> Locator {
     for limits in &mut locator.limits {
         if let Some(jerk) = limits.jerk {
-            limits.acceleration = limits.acceleration.min((limits.speed * jerk).sqrt());
+            limits.acceleration = limits.acceleration.min(sqrt(limits.speed * jerk));
         }
     }
     locator
@@ -66,16 +64,16 @@ const REFINEMENTS: u32 = 3;
 
 /// A motion of limited jerk.
 #[derive(Debug, Clone, Copy)]
-enum Easing<T> {
-    Curve(SCurve<T>),
+enum Easing {
+    Curve(SCurve),
     /// The fastest motion, of `fastest_s`, averaged over `window_s`.
     Average {
-        fastest_s: T,
-        window_s: T,
+        fastest_s: f64,
+        window_s: f64,
     },
 }
 
-fn lay_curve<T: RealField + Copy>(curve: &SCurve<T>, knots: &mut [Knot<T>], parts: u32) {
+fn lay_curve(curve: &SCurve, knots: &mut [Knot], parts: u32) {
     let mut rest = knots.iter_mut();
     curve.knots(parts, |motion, segment_s| {
         if let Some(knot) = rest.next() {
@@ -90,16 +88,16 @@ fn lay_curve<T: RealField + Copy>(curve: &SCurve<T>, knots: &mut [Knot<T>], part
 }
 
 /// A leg on which motions are compared.
-struct Trial<'a, const N: usize, T: RealField> {
-    locators: &'a [Locator<T>; N],
-    eased: [Locator<T>; N],
-    course: &'a Course<'a, N, T>,
+struct Trial<'a, const N: usize> {
+    locators: &'a [Locator; N],
+    eased: [Locator; N],
+    course: &'a Course<'a, N, f64>,
     parts: u32,
-    knots: &'a mut [Knot<T>],
+    knots: &'a mut [Knot],
 }
 
-impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
-    fn lay(&mut self, easing: &Easing<T>) {
+impl<const N: usize> Trial<'_, N> {
+    fn lay(&mut self, easing: &Easing) {
         let (parts, knots) = (self.parts, &mut *self.knots);
         match easing {
             Easing::Curve(curve) => lay_curve(curve, knots, parts),
@@ -116,20 +114,20 @@ impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
     }
 
     /// The time that a motion takes when it just keeps all limits.
-    fn time(&mut self, easing: &Easing<T>) -> T {
+    fn time(&mut self, easing: &Easing) -> f64 {
         self.lay(easing);
         let shares = Shares::of(self.locators, self.course, self.knots);
         self.duration_s() * shares.stretch()
     }
 
-    fn duration_s(&self) -> T {
+    fn duration_s(&self) -> f64 {
         let parts = usize::try_from(self.parts).unwrap_or(usize::MAX);
         let segments = self.knots.iter().take(parts);
-        segments.fold(T::zero(), |sum, knot| sum + knot.segment_s)
+        segments.fold(0.0, |sum, knot| sum + knot.segment_s)
     }
 
     /// The average with the window of the shortest time.
-    fn best_average(&mut self) -> Easing<T> {
+    fn best_average(&mut self) -> Easing {
         leg::fastest(&self.eased, self.course, self.knots, self.parts);
         let fastest_s = self.duration_s();
         let average = |window_s| Easing::Average {
@@ -137,7 +135,7 @@ impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
             window_s,
         };
         let (mut window_s, mut best_s) = (fastest_s, self.time(&average(fastest_s)));
-        let mut attempt = |trial: &mut Self, candidate: T| {
+        let mut attempt = |trial: &mut Self, candidate: f64| {
             let time_s = trial.time(&average(candidate));
             if time_s < best_s {
                 (window_s, best_s) = (candidate, time_s);
@@ -147,15 +145,15 @@ impl<const N: usize, T: RealField + Copy> Trial<'_, N, T> {
         let mut candidate = fastest_s;
         let mut best = fastest_s;
         for _ in 1..WINDOWS {
-            candidate *= half();
+            candidate *= 0.5;
             best = attempt(self, candidate);
         }
-        let mut factor = two::<T>().sqrt();
+        let mut factor = core::f64::consts::SQRT_2;
         for _ in 0..REFINEMENTS {
             let middle = best;
             attempt(self, middle * factor);
             best = attempt(self, middle / factor);
-            factor = factor.sqrt();
+            factor = sqrt(factor);
         }
         average(window_s)
     }
@@ -173,35 +171,31 @@ const SAMPLES: u32 = 64;
 /// The speed is taken so that q″ ṡ² uses at most half of the acceleration and q‴ ṡ³ a third
 /// of the jerk, the acceleration so that its product uses at most another third; what is
 /// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
-fn s_curve<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
-    course: &Course<'_, N, T>,
-) -> SCurve<T> {
+fn s_curve<const N: usize>(locators: &[Locator; N], course: &Course<'_, N, f64>) -> SCurve {
     let derivatives = derivatives(course);
     let all = || {
         let limits = locators.iter().flat_map(|locator| &locator.limits);
         limits.zip(derivatives.iter().flatten())
     };
-    let most = largest::<T>();
+    let most = largest::<f64>();
     let speed = all().fold(most, |speed, (limits, [p1, p2, p3])| {
         let jerk = limits.jerk.unwrap_or(most);
         speed
             .min(limits.speed / *p1)
-            .min((limits.acceleration / (two::<T>() * *p2)).sqrt())
-            .min(cube_root(jerk / (constant::<T>(3.0) * *p3)))
+            .min(sqrt(limits.acceleration / (2.0 * *p2)))
+            .min(cube_root(jerk / (3.0 * *p3)))
     });
     let acceleration = all().fold(most, |acceleration, (limits, [p1, p2, _])| {
         let jerk = limits.jerk.unwrap_or(most);
         acceleration
             .min((limits.acceleration - *p2 * speed * speed) / *p1)
-            .min(jerk / (constant::<T>(9.0) * *p2 * speed))
+            .min(jerk / (9.0 * *p2 * speed))
     });
     // Without an axis that limits it: a thousandth of the time that the way takes.
-    let jerk = acceleration * acceleration.sqrt() * constant::<T>(1e3);
+    let jerk = acceleration * sqrt(acceleration) * 1e3;
     let jerk = all().fold(jerk, |least, (limits, [p1, p2, p3])| match limits.jerk {
         Some(jerk) => {
-            let used =
-                *p3 * speed * speed * speed + constant::<T>(3.0) * *p2 * speed * acceleration;
+            let used = *p3 * speed * speed * speed + 3.0 * *p2 * speed * acceleration;
             least.min((jerk - used) / *p1)
         }
         None => least,
@@ -211,11 +205,11 @@ fn s_curve<const N: usize, T: RealField + Copy>(
 
 /// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a
 /// number that can be divided by.
-fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -> [[[T; 3]; 3]; N] {
-    let samples = count::<T>(SAMPLES);
-    let mut most = [[[T::one() / largest(); 3]; 3]; N];
+fn derivatives<const N: usize>(course: &Course<'_, N, f64>) -> [[[f64; 3]; 3]; N] {
+    let samples = f64::from(SAMPLES);
+    let mut most = [[[1.0 / largest::<f64>(); 3]; 3]; N];
     for index in 0..SAMPLES - 1 {
-        let slope = |next: u32| course.place(count::<T>(index + next) / samples).slope;
+        let slope = |next: u32| course.place(f64::from(index + next) / samples).slope;
         let (first, second, third) = (slope(0), slope(1), slope(2));
         let values = first.iter().zip(second.iter().zip(&third));
         for (most, (first, (second, third))) in most.iter_mut().zip(values) {
@@ -223,13 +217,13 @@ fn derivatives<const N: usize, T: RealField + Copy>(course: &Course<'_, N, T>) -
             for ([p1, p2, p3], (first, (second, third))) in most.iter_mut().zip(values) {
                 let changes = [*second - *first, *third - *second].map(|change| change * samples);
                 for slope in [*first, *second, *third] {
-                    *p1 = larger(*p1, magnitude(slope));
+                    *p1 = p1.max(slope.abs());
                 }
                 for change in changes {
-                    *p2 = larger(*p2, magnitude(change));
+                    *p2 = p2.max(change.abs());
                 }
                 let [before, after] = changes;
-                *p3 = larger(*p3, magnitude((after - before) * samples));
+                *p3 = p3.max(((after - before) * samples).abs());
             }
         }
     }

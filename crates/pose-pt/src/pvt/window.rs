@@ -1,9 +1,6 @@
 //! A motion averaged over a window of time.
 
-use nalgebra::RealField;
-
 use super::Knot;
-use crate::number::{count, half};
 
 /// Replaces the motion s(t) of the first `parts - late` parts by its mean over the `window_s`
 /// before t, and lets the last `late` parts run it out.
@@ -15,22 +12,17 @@ use crate::number::{count, half};
 /// Before the motion s is 0, behind it 1. The mean at t needs nothing later than t: from the end
 /// to the start it is taken in place. The integral is kept as that of s(t) - s(u), which has the
 /// digits of near places.
-pub(super) fn average<T: RealField + Copy>(
-    knots: &mut [Knot<T>],
-    parts: u32,
-    late: u32,
-    window_s: T,
-) {
+pub(super) fn average(knots: &mut [Knot], parts: u32, late: u32, window_s: f64) {
     let place = |parts: u32| usize::try_from(parts).unwrap_or(usize::MAX);
     let (last, end) = (place(parts.saturating_sub(late)), place(parts));
     let Some(mut now) = knots.get(last).copied() else {
         return;
     };
     let mut behind = Behind::new(last, now);
-    let mut lag = T::zero();
+    let mut lag = 0.0;
     for index in (0..end).rev() {
-        let (mut before, mut gained) = (now, T::zero());
-        before.segment_s = window_s / count(late);
+        let (mut before, mut gained) = (now, 0.0);
+        before.segment_s = window_s / f64::from(late);
         if index < last {
             before = knots.get(index).copied().unwrap_or(now);
             gained = lag_of_segment(&before, &now);
@@ -50,59 +42,58 @@ pub(super) fn average<T: RealField + Copy>(
     }
     let rest = |s| Knot {
         s,
-        speed: T::zero(),
-        segment_s: T::zero(),
+        speed: 0.0,
+        segment_s: 0.0,
         parts,
     };
     if let Some(knot) = knots.get_mut(end) {
-        *knot = rest(T::one());
+        *knot = rest(1.0);
     }
     if let Some(knot) = knots.first_mut() {
         *knot = Knot {
             segment_s: knot.segment_s,
-            ..rest(T::zero())
+            ..rest(0.0)
         };
     }
 }
 
 /// ∫ (s(end) - s(u)) du over a segment of even acceleration: h² (v₀ + 2 v₁) / 6.
-fn lag_of_segment<T: RealField + Copy>(from: &Knot<T>, to: &Knot<T>) -> T {
-    let sixth = nalgebra::convert::<f64, T>(1.0 / 6.0);
+fn lag_of_segment(from: &Knot, to: &Knot) -> f64 {
     let time = from.segment_s;
-    (from.speed + to.speed + to.speed) * time * time * sixth
+    (from.speed + to.speed + to.speed) * time * time / 6.0
 }
 
 /// Where the window begins, on its way back along the motion.
-struct Behind<T> {
+struct Behind {
     /// Knots before the segment.
     index: usize,
     /// The segment's first knot; at rest at 0 before the motion.
-    from: Knot<T>,
-    acceleration: T,
+    from: Knot,
+    acceleration: f64,
     /// Time since the segment's first knot.
-    offset_s: T,
+    offset_s: f64,
 }
 
-impl<T: RealField + Copy> Behind<T> {
+impl Behind {
     /// At a knot.
-    fn new(index: usize, knot: Knot<T>) -> Self {
+    fn new(index: usize, knot: Knot) -> Self {
         Self {
             index,
             from: knot,
-            acceleration: T::zero(),
-            offset_s: T::zero(),
+            acceleration: 0.0,
+            offset_s: 0.0,
         }
     }
 
-    fn s(&self) -> T {
-        let mean = self.from.speed + self.acceleration * self.offset_s * half();
+    fn s(&self) -> f64 {
+        let mean = self.from.speed + self.acceleration * self.offset_s * 0.5;
         self.from.s + mean * self.offset_s
     }
 
     /// Goes back by a time; ∫ (s - s(u)) du over it.
-    fn back(&mut self, knots: &[Knot<T>], time: T, s: T) -> T {
+    fn back(&mut self, knots: &[Knot], time: f64, s: f64) -> f64 {
         let mut left = time;
-        let mut integral = T::zero();
+        let mut integral = 0.0;
         while left > self.offset_s {
             left -= self.offset_s;
             integral += self.within(self.offset_s, s);
@@ -116,16 +107,15 @@ impl<T: RealField + Copy> Behind<T> {
     }
 
     /// Goes back by a time within the segment.
-    fn within(&mut self, time: T, s: T) -> T {
-        let third = nalgebra::convert::<f64, T>(1.0 / 3.0);
+    fn within(&mut self, time: f64, s: f64) -> f64 {
         self.offset_s -= time;
         let speed = self.from.speed + self.acceleration * self.offset_s;
-        let mean = (speed + self.acceleration * time * third) * time * half();
+        let mean = (speed + self.acceleration * time / 3.0) * time * 0.5;
         (s - self.s() - mean) * time
     }
 
     /// Enters a segment at its end.
-    fn enter(&mut self, index: usize, knots: &[Knot<T>]) {
+    fn enter(&mut self, index: usize, knots: &[Knot]) {
         let Some(from) = knots.get(index).copied() else {
             return;
         };
@@ -169,7 +159,7 @@ mod tests {
     }
 
     /// The motion's knots, with room for late ones.
-    fn knots(scale: f64) -> [Knot<f64>; 12] {
+    fn knots(scale: f64) -> [Knot; 12] {
         let mut time = 0.0;
         let mut knots = [Knot::default(); 12];
         let times = TIMES.iter().chain([&0.0]);

@@ -4,7 +4,7 @@ use pose_pt::PvtPoint;
 use pose_pt::nalgebra::Vector3;
 
 /// Position, speed, acceleration and jerk of one axis at a share of a segment's time.
-pub(crate) fn cubic(from: (f64, f64), to: (f64, f64), time: f64, share: f64) -> [f64; 4] {
+fn cubic(from: (f64, f64), to: (f64, f64), time: f64, share: f64) -> [f64; 4] {
     let ((q0, v0), (q1, v1)) = (from, to);
     let (u, rest) = (share, 1.0 - share);
     let position = q0 * (1.0 + 2.0 * u) * rest * rest
