@@ -159,6 +159,20 @@ fn matrices_that_are_no_rotations_are_refused() {
     assert!(from_matrix(&printed, 0.0).is_err());
     let near = from_matrix(&printed, 1e-3).unwrap();
     assert!(angle_between(&near, &start()) < 1e-4);
+    // However much is allowed, a matrix without a nearest rotation is none, and one of any size
+    // has the one that it has.
+    assert!(from_matrix(&rotation, f64::NAN).is_err());
+    for singular in [Matrix3::zeros(), Matrix3::from_element(0.5)] {
+        assert!(from_matrix(&singular, f64::INFINITY).is_err());
+    }
+    for size in [5e-324, 1e-300, 1e-160, 0.2, 3.0, 1e160, 1e300] {
+        let flat = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * size;
+        let found = from_matrix(&flat, f64::INFINITY).unwrap();
+        assert!(
+            (to_matrix(&found).matrix() * size - flat).amax() <= ROUNDING * size,
+            "{size:e}"
+        );
+    }
     // All four ways of choosing the largest component, half turns among them.
     for half_turn in [
         Vector3::new(1.0, 1.0, 1.0),

@@ -168,6 +168,23 @@ fn a_pose_of_axes_at_their_ends_is_not_refused() {
     assert!(platform.checked_axes(&beyond).is_err());
 }
 
+/// A far end does not make the near one soft.
+#[test]
+fn each_end_of_a_stroke_is_as_sharp_as_the_other() {
+    for far in [1e15, 1e300, f64::MAX] {
+        let platform = with(1, |l| {
+            l.limits[0] = AxisLimits::new(-10.0, far, 20.0, 100.0);
+        });
+        let refused = platform
+            .unwrap()
+            .checked_axes(&Isometry3::from(Translation3::new(-10.0 - 1e-9, 0.0, 0.0)));
+        assert!(
+            matches!(refused, Err(LimitError::Stroke { locator: 1, .. })),
+            "{far:e}: {refused:?}"
+        );
+    }
+}
+
 #[test]
 fn coordinates_that_are_not_finite_are_refused() {
     let platform = panel();

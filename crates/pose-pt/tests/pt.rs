@@ -280,6 +280,62 @@ fn single_precision_keeps_the_body_rigid() {
     }
 }
 
+/// Points that have the same numbers are no points.
+#[test]
+fn points_that_cannot_be_told_apart_are_refused() {
+    let platform = panel();
+    let poses = [
+        pose([1000.0, 0.0, 0.0], [0.0; 3]),
+        pose([1000.0 + 1e-11, 0.0, 0.0], [0.0; 3]),
+    ];
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    assert_eq!(
+        PtTable::plan(&platform, &path, Cut::parts(10))
+            .unwrap()
+            .len(),
+        11
+    );
+    let error = PtTable::plan(&platform, &path, Cut::parts(1000)).unwrap_err();
+    assert!(
+        matches!(error, PlanError::Indistinct { leg: 0, .. }),
+        "{error}"
+    );
+    // A way that no axis sees is none: each is at 500 mm.
+    let platform = Platform::new(panel().locators().map(|mut locator| {
+        locator.origin -= Vector3::new(0.0, 500.0, 0.0);
+        locator
+    }))
+    .unwrap();
+    let poses = [0.0, 1e-14, 1.0].map(|y| pose([0.0, y, 0.0], [0.0; 3]));
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    assert_eq!(
+        PtTable::plan(&platform, &path, Cut::parts(3))
+            .unwrap()
+            .len(),
+        4
+    );
+}
+
+/// In single precision: a tenth of a million points, and times as exact as one of them.
+#[test]
+fn times_lose_nothing_to_rounding() {
+    let anchors = [[0.0_f32, 0.0, 0.0], [400.0, 0.0, 5.0], [180.0, 149.0, -8.0]];
+    let limits = AxisLimits::new(-150.0_f32, 150.0, 10.0, 25.0);
+    let locators = anchors.map(|anchor| Locator::new(anchor.into(), anchor.into(), [limits; 3]));
+    let platform = Platform::new(locators).unwrap();
+    let poses = [
+        Isometry3::identity(),
+        Isometry3::translation(100.0, 30.0, -20.0),
+    ];
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let table = PtTable::plan(&platform, &path, Cut::parts(100_000)).unwrap();
+    let exact: f64 = table.points().map(|point| f64::from(point.segment_s)).sum();
+    let off = (f64::from(table.duration_s()) - exact).abs();
+    assert!(off <= exact * f64::from(f32::EPSILON), "{off}");
+    let error = PtTable::plan(&platform, &path, Cut::parts(1 << 26)).unwrap_err();
+    assert!(matches!(error, PlanError::Indistinct { .. }), "{error}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

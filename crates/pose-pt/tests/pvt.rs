@@ -359,6 +359,10 @@ fn wrong_input_is_named() {
         }
     ));
 
+    let error = PvtTable::plan(&platform, &path, Cut::parts((1 << 24) + 1), &mut []).unwrap_err();
+    let max = 1 << 24;
+    assert_eq!(error, PlanError::TooFine { leg: 0, max });
+
     let turning = from_rest([0.0; 3], [0.0, 0.0, 0.02]);
     let turning = Path::new(&turning, Interpolation::Straight).unwrap();
     let few = &mut knots[..9];

@@ -26,17 +26,20 @@ pub(super) fn fastest<const N: usize>(
 /// Spreads the knots as u² (3 - 2u), dense where the leg starts and stops: there the speed
 /// changes most from knot to knot, and with it the strain.
 fn spread(knots: &mut [Knot], parts: u32) {
-    let whole = f64::from(parts);
     for (index, knot) in (0..=parts).zip(knots) {
-        let share = f64::from(index) / whole;
-        let s = share * share * (3.0 - 2.0 * share);
         *knot = Knot {
-            s,
+            s: place(index, parts),
             speed: 0.0,
             segment_s: 0.0,
             parts,
         };
     }
+}
+
+/// The parameter of a knot.
+fn place(index: u32, parts: u32) -> f64 {
+    let share = f64::from(index) / f64::from(parts);
+    share * share * (3.0 - 2.0 * share)
 }
 
 /// From the end: the highest speed at each knot from which the rest can be run, in `speed`, and
@@ -84,5 +87,20 @@ fn forward<const N: usize>(
         to_knot.set(next);
         speed = after;
         from = Some(to);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::place;
+    use crate::pvt::planner::MAX_PARTS;
+
+    #[test]
+    fn knots_of_the_finest_leg_are_apart() {
+        for parts in [MAX_PARTS, MAX_PARTS - 1, MAX_PARTS - 12_345, 1000] {
+            let mut ends = (0..500).chain(parts - 500..parts);
+            assert!(ends.all(|index| place(index, parts) < place(index + 1, parts)));
+            assert!((place(parts, parts) - 1.0).abs() < f64::MIN_POSITIVE);
+        }
     }
 }
