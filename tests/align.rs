@@ -525,7 +525,7 @@ fn bad_input_is_one_line_and_no_file() {
     in_file(
         "speed_mm_s = [20.0, 20.0, 10.0]",
         "speed_mm_s = [20.0, 0.0, 10.0]",
-        "locator 0, axis Y: speed is 0, not a positive number",
+        "locator 0, axis Y: speed is 0, not within 1e-50..=1e50",
     );
     in_file(
         "full_jog_mm_s = 10.0",
