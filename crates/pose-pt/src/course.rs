@@ -3,8 +3,8 @@
 use nalgebra::{RealField, Vector3};
 
 use crate::number::{epsilons, larger};
-use crate::path::Leg;
 use crate::path::leg::{Shape, Turning, VectorLeg};
+use crate::path::{Leg, Path};
 use crate::rotation::to_matrix;
 use crate::turn::{Sweep, Turn};
 use crate::{Platform, PoseVector};
@@ -37,17 +37,21 @@ pub(crate) struct TurningCourse<const N: usize, T> {
 /// independent, and what positions round off besides.
 const STILL_EPSILONS: f64 = 64.0;
 
-/// Whether the body stays where it is, or moves by so little that no axis sees it.
+/// Whether the body stays where it is on leg `number`, or moves by so little that no axis sees
+/// it.
 pub(crate) fn is_still<const N: usize, T: RealField + Copy>(
     platform: &Platform<N, T>,
-    leg: &Leg<T>,
+    path: &Path<'_, T>,
+    number: usize,
 ) -> bool {
+    let ends = path
+        .axes(platform, number)
+        .zip(path.axes(platform, number.saturating_add(1)));
+    let Some((leg, (start, end))) = path.leg(number).zip(ends) else {
+        return true;
+    };
     let arms = platform.anchors().iter().map(|anchor| anchor.coords.norm());
     let way = leg.length() + leg.turn() * arms.fold(T::zero(), larger);
-    if way == T::zero() {
-        return true;
-    }
-    let [start, end] = [leg.pose(T::zero()), leg.pose(T::one())].map(|pose| platform.axes(&pose));
     let far = start.iter().map(Vector3::amax).fold(T::zero(), larger);
     start == end && way <= far * epsilons(STILL_EPSILONS)
 }

@@ -4,7 +4,7 @@ use nalgebra::RealField;
 
 use crate::course::is_still;
 use crate::number::{count, epsilons, two};
-use crate::path::Leg;
+use crate::path::{Leg, Path};
 use crate::strain::pairs;
 use crate::{PlanError, Platform};
 
@@ -106,12 +106,13 @@ impl<T: RealField + Copy> Cut<T> {
     pub(crate) fn linear_parts<const N: usize>(
         &self,
         platform: &Platform<N, T>,
+        path: &Path<'_, T>,
         number: usize,
-        leg: &Leg<T>,
     ) -> Result<u32, PlanError<T>> {
-        if is_still(platform, leg) {
-            return Ok(0);
-        }
+        let leg = match path.leg(number) {
+            Some(leg) if !is_still(platform, path, number) => leg,
+            _ => return Ok(0),
+        };
         let parts = match self.rule {
             Rule::Parts(parts) => Some(parts),
             Rule::Steps {
@@ -120,7 +121,9 @@ impl<T: RealField + Copy> Cut<T> {
             } => parts_below(leg.length(), translation)
                 .zip(parts_below(leg.turn(), rotation_rad))
                 .map(|(moves, turns)| moves.max(turns)),
-            Rule::Strain(allowed) => parts_within(leg.turn(), largest_turn(platform, leg, allowed)),
+            Rule::Strain(allowed) => {
+                parts_within(leg.turn(), largest_turn(platform, &leg, allowed))
+            }
         };
         within_max(
             parts.map(|parts| parts.max(self.at_least)),

@@ -8,7 +8,7 @@ pub use leg::Leg;
 
 use crate::number::{constant, epsilons, first_beyond, largest, largest_angle};
 use crate::short::short;
-use crate::{Convention, PoseVector};
+use crate::{Convention, Platform, PoseVector};
 
 /// How a body moves from one pose to the next. The three differ: say which one you mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -158,6 +158,21 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
             }
             Stations::Vectors(vectors, convention) => {
                 Leg::of_vectors(vectors.get(number)?, vectors.get(next)?, convention)
+            }
+        })
+    }
+
+    /// Where the axes are at pose `number`; `None` past the last.
+    pub(crate) fn axes<const N: usize>(
+        &self,
+        platform: &Platform<N, T>,
+        number: usize,
+    ) -> Option<[Vector3<T>; N]> {
+        Some(match self.stations {
+            Stations::Poses(poses, _) => platform.axes(poses.get(number)?),
+            Stations::Vectors(vectors, convention) => {
+                let vector = vectors.get(number)?;
+                platform.axes_at(&vector.to_rotation(convention), &vector.position())
             }
         })
     }

@@ -58,7 +58,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         cut.check(platform)?;
         let mut points = 1_usize;
         for number in 0..path.legs() {
-            let parts = parts(platform, path, cut, number)?;
+            let parts = cut.linear_parts(platform, path, number)?;
             points = usize::try_from(parts)
                 .ok()
                 .and_then(|parts| points.checked_add(parts))
@@ -198,19 +198,9 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
 
     fn parts(&self, leg: usize) -> u32 {
         // The plan has found no error in any leg.
-        parts(self.platform, &self.path, self.cut, leg).unwrap_or(0)
-    }
-}
-
-fn parts<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    path: &Path<'_, T>,
-    cut: Cut<T>,
-    number: usize,
-) -> Result<u32, PlanError<T>> {
-    match path.leg(number) {
-        Some(leg) => cut.linear_parts(platform, number, &leg),
-        None => Ok(0),
+        self.cut
+            .linear_parts(self.platform, &self.path, leg)
+            .unwrap_or(0)
     }
 }
 

@@ -7,17 +7,19 @@ mod points;
 mod scurve;
 pub(crate) mod segment;
 mod smooth;
+mod track;
 mod window;
 
 use nalgebra::Vector3;
 
-use crate::course::{Course, Place, is_still};
+use crate::course::{Place, is_still};
 use crate::number::{larger_or_nan, smallest};
-use crate::path::{Leg, Path};
+use crate::path::Path;
 use crate::strain::hermite_strain;
 use crate::{Cut, PlanError, Platform};
 use planner::Planner;
 pub use points::{PvtPoint, PvtPoints};
+use track::Track;
 
 /// Memory for one point of a [`PvtTable`] while it is planned and as long as it lives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -77,6 +79,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
         cut.check(platform)?;
         let planner = Planner {
             platform,
+            path: *path,
             cut,
             // Each phase of an S-curve has a part.
             least: if has_jerk(platform) {
@@ -86,11 +89,11 @@ impl<'a, const N: usize> PvtTable<'a, N> {
             }
             .max(cut.at_least),
         };
-        planner.check_memory(path, knots.len())?;
+        planner.check_memory(knots.len())?;
         let (mut used, mut points) = (0_usize, 1_usize);
-        for (number, leg) in moving(platform, path, 0) {
+        for track in moving(platform, path, 0) {
             let free = knots.get_mut(used..).unwrap_or_default();
-            let taken = planner.plan_leg(number, &leg, used, free)?;
+            let taken = planner.plan_leg(&track, used, free)?;
             points = points.saturating_add(taken).saturating_sub(1);
             used = used.saturating_add(taken);
         }
@@ -153,20 +156,20 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     /// The place of a point, slopes by time, and the time to the next point.
     pub(crate) fn node(&self, number: usize) -> Option<(Place<N, f64>, f64)> {
         let (mut knots, mut left) = (self.knots, number);
-        for (_, leg) in moving(self.platform, &self.path, 0) {
+        for track in moving(self.platform, &self.path, 0) {
             let size = knots_of(knots.first()?.parts);
             let (own, later) = knots.split_at_checked(size)?;
             // The last knot of a leg is the first of the next, but for the last leg.
             if left.saturating_add(1) < size || later.is_empty() {
                 let knot = own.get(left)?;
-                let mut place = Course::new(self.platform, &leg).place(knot.s);
+                let mut place = track.place(knot.s);
                 let speed = knot.speed / self.stretch;
                 place.slope = place.slope.map(|slope| slope * speed);
                 return Some((place, knot.segment_s * self.stretch));
             }
             (knots, left) = (later, left.saturating_sub(size.saturating_sub(1)));
         }
-        let mut place = first_course(self.platform, &self.path)?.place(0.0);
+        let mut place = first_track(self.platform, &self.path)?.place(0.0);
         place.slope = [Vector3::zeros(); N];
         (number == 0).then_some((place, 0.0))
     }
@@ -200,33 +203,33 @@ fn strain_bound<const N: usize>(platform: &Platform<N>, mut points: PvtPoints<'_
     })
 }
 
-/// The legs on which something moves, with their numbers, from the leg `first` on.
+/// The legs on which something moves, from the leg `first` on.
 fn moving<'a, const N: usize>(
     platform: &'a Platform<N>,
     path: &Path<'a>,
     first: usize,
-) -> impl Iterator<Item = (usize, Leg)> + use<'a, N> {
+) -> impl Iterator<Item = Track<'a, N>> + use<'a, N> {
     let path = *path;
-    let legs = (first..path.legs()).filter_map(move |number| Some((number, path.leg(number)?)));
-    legs.filter(|(_, leg)| !is_still(platform, leg))
+    let legs = (first..path.legs()).filter(move |number| !is_still(platform, &path, *number));
+    legs.filter_map(move |number| Track::new(platform, &path, number))
 }
 
 /// The first leg on which something moves; the first of all where nothing does.
-fn first_course<'a, const N: usize>(
+fn first_track<'a, const N: usize>(
     platform: &'a Platform<N>,
-    path: &Path<'_>,
-) -> Option<Course<'a, N, f64>> {
-    let leg = moving(platform, path, 0).next().map(|(_, leg)| leg);
-    Some(Course::new(platform, &leg.or_else(|| path.leg(0))?))
+    path: &Path<'a>,
+) -> Option<Track<'a, N>> {
+    let track = moving(platform, path, 0).next();
+    track.or_else(|| Track::new(platform, path, 0))
 }
 
 /// Both ends of each segment of the leg whose knots are the first of `knots`.
 fn segments<'a, const N: usize>(
-    course: &'a Course<'_, N, f64>,
+    track: &'a Track<'_, N>,
     knots: &'a [Knot],
 ) -> impl Iterator<Item = [PvtPoint<N>; 2]> + use<'a, N> {
     let point = move |knot: &Knot, segment_s: f64| {
-        PvtPoint::new(&course.place(knot.s), knot.speed, 0.0, segment_s)
+        PvtPoint::new(&track.place(knot.s), knot.speed, 0.0, segment_s)
     };
     let parts = knots.first().map_or(0, |knot| knot.parts);
     let knots = knots.get(..knots_of(parts)).unwrap_or_default();

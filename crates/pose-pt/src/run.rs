@@ -182,7 +182,7 @@ impl<const N: usize> PvtRun<'_, N> {
         if from.slope.iter().all(|slope| slope.amax() == 0.0) {
             self.feed = self.wanted.min(here.ceiling);
         }
-        let ((_, duration), (to, _)) = (self.table.node(number)?, self.table.node(next)?);
+        let ((_, duration), (to, later)) = (self.table.node(number)?, self.table.node(next)?);
         let wanted = self.wanted.min(there.ceiling);
         // At a constant feed of at most 1 the table itself holds.
         #[expect(clippy::float_cmp, reason = "the same number")]
@@ -190,7 +190,14 @@ impl<const N: usize> PvtRun<'_, N> {
             wanted
         } else {
             let segment = Segment::new(&self.limits, &from, &to, duration);
-            segment.toward(self.feed, wanted, self.feed * here.after)
+            let nearest = segment.toward(self.feed, wanted, self.feed * here.after);
+            if wanted == 0.0 && nearest > 0.0 {
+                let highest = self.feed.min(there.ceiling);
+                let rest = self.rest_after(next, &to, later, highest);
+                segment.toward(self.feed, rest.max(nearest), nearest)
+            } else {
+                nearest
+            }
         };
         let both = self.feed + feed;
         if both <= 0.0 {
@@ -201,6 +208,19 @@ impl<const N: usize> PvtRun<'_, N> {
         self.feed = feed;
         self.last = Some((next, to));
         Some(PvtPoint::new(&to, feed, self.time_s, segment_s))
+    }
+
+    /// The highest feed at a point from which the machine rests at the one after it, at most
+    /// `highest`: braking as hard as it can before, it would crawl there.
+    fn rest_after(&self, number: usize, here: &Place<N, f64>, duration: f64, highest: f64) -> f64 {
+        let after = number
+            .checked_add(1)
+            .and_then(|after| self.table.node(after));
+        after.map_or(0.0, |(there, _)| {
+            let segment = Segment::new(&self.limits, here, &there, duration);
+            let (feed, _) = segment.begin(0.0, highest);
+            feed
+        })
     }
 }
 

@@ -3,8 +3,6 @@
 
 #[path = "support/cubic.rs"]
 mod cubic;
-#[path = "support/exact.rs"]
-mod exact;
 #[path = "support/moves.rs"]
 mod moves;
 #[path = "support/optimum.rs"]
@@ -13,12 +11,11 @@ mod optimum;
 mod support;
 
 use cubic::between;
-use exact::Exact;
 use moves::{ALL, from_rest, poses};
 use pose_pt::nalgebra::{Point3, Vector3};
 use pose_pt::{
-    Ahead, Axis, AxisLimits, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError,
-    Platform, PvtPoint, PvtTable,
+    Axis, AxisLimits, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform,
+    PvtPoint, PvtTable,
 };
 use proptest::prelude::*;
 use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
@@ -454,77 +451,6 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
             }
         }
     }
-}
-
-/// Where segments are short, the rounding of the numbers that a controller gets is seen in the
-/// accelerations that it makes of them.
-#[test]
-fn limits_hold_to_the_last_digit() {
-    let turn = [0.01, 0.02, 0.05];
-    let jerk = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(100.0);
-    for (name, platform) in [
-        ("panel", panel()),
-        ("jerk", panel_with(jerk)),
-        ("skewed", skewed()),
-    ] {
-        for poses in [
-            from_rest([20.0, -5.0, 3.0], turn),
-            from_rest([0.01, 0.0, 0.0], [0.0; 3]),
-        ] {
-            for (parts, kind) in [(40, 0), (1024, 1), (2048, 2), (8192, 0), (30_000, 1)] {
-                let path = Path::new(&poses, ALL[kind]).unwrap();
-                let mut knots = vec![Knot::default(); 30_001];
-                let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots);
-                let table = table.unwrap();
-                let slower = table.at_pace(1.0 - f64::EPSILON).unwrap();
-                let mut ahead = vec![Ahead::default(); table.len()];
-                let run = slower.run(1.0, &mut ahead).unwrap();
-                let excess = [
-                    exact_excess(&platform, table.points()),
-                    exact_excess(&platform, slower.points()),
-                    exact_excess(&platform, run),
-                ];
-                assert!(
-                    excess.iter().all(|of| *of <= 0.0),
-                    "{name}, {parts}: {excess:?}"
-                );
-            }
-        }
-    }
-}
-
-/// The most by which an acceleration or a jerk of what the controller gets is above its limit, as
-/// a share of it, in exact arithmetic.
-fn exact_excess(platform: &Platform<3>, points: impl Iterator<Item = PvtPoint<3>>) -> f64 {
-    let points: Vec<_> = points.collect();
-    let mut worst = f64::MIN;
-    for pair in points.windows(2) {
-        let [from, to] = pair else { unreachable!() };
-        for (number, axis) in (0..9).map(|number| (number / 3, number % 3)) {
-            let limits = platform.locators()[number].limits[axis];
-            let [q0, q1] = [from, to].map(|point| Exact::from(point.axes[number][axis]));
-            let [v0, v1] = [from, to].map(|point| Exact::from(point.velocities[number][axis]));
-            let [two, four, six] = [2.0, 4.0, 6.0].map(Exact::from);
-            let (time, way) = (Exact::from(to.segment_s), six * (q1 - q0));
-            let allowed = Exact::from(limits.acceleration) * time * time;
-            for asked in [
-                way - (four * v0 + two * v1) * time,
-                (two * v0 + four * v1) * time - way,
-            ] {
-                worst = worst.max(share_above(asked, allowed));
-            }
-            if let Some(limit) = limits.jerk {
-                let asked = six * (v0 + v1) * time - (way + way);
-                worst = worst.max(share_above(asked, Exact::from(limit) * time * time * time));
-            }
-        }
-    }
-    worst
-}
-
-fn share_above(asked: Exact, allowed: Exact) -> f64 {
-    let above = asked.abs() - allowed;
-    above.value() / allowed.value()
 }
 
 proptest! {

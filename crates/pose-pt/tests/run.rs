@@ -123,6 +123,28 @@ fn a_stop_is_on_the_path_and_can_go_on() {
     assert!((points[400].axes[2].x - 100.0).abs() < ROUNDING);
 }
 
+/// Braking as hard as it can before the last segment, the machine would crawl on it.
+#[test]
+fn no_stop_crawls() {
+    let platform = panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, 2.0));
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 51];
+    let table = PvtTable::plan(&platform, &path, Cut::parts(50), &mut knots).unwrap();
+    for moving in 2..50 {
+        let mut ahead = [Ahead::default(); 51];
+        let mut run = table.run(1.0, &mut ahead).unwrap();
+        let mut points: Vec<_> = run.by_ref().take(moving).collect();
+        run.stop();
+        points.extend(run);
+        check_limits(&platform, &points);
+        for (found, planned) in points.iter().zip(table.points()).skip(1) {
+            let longer = found.segment_s / planned.segment_s;
+            assert!(longer < 10.0, "{moving}: {longer}");
+        }
+    }
+}
+
 #[test]
 fn wrong_feeds_and_memory_are_named() {
     let platform = panel();
@@ -232,7 +254,7 @@ fn memory_is_fixed() {
     assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
     assert_eq!(size_of::<PtPoints<'_, 3>>(), 664);
     assert_eq!(size_of::<PvtTable<'_, 3>>(), 72);
-    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 400);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 552);
     assert_eq!(size_of::<PvtRun<'_, 3>>(), 424);
     assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
     assert_eq!(size_of::<Fifo<512>>(), 512 * 8 + 72);

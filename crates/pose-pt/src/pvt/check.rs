@@ -1,8 +1,8 @@
 //! What a table asks of the axes, found on the cubics that the controller will run.
 
 use super::segment::NOISE;
+use super::track::Track;
 use super::{Knot, segments};
-use crate::course::Course;
 use crate::number::{cube_root, sqrt};
 use crate::{Axis, LimitError, Locator, Platform, PvtPoint};
 
@@ -166,9 +166,9 @@ pub(super) struct Shares<const N: usize> {
 
 impl<const N: usize> Shares<N> {
     /// The shares of a leg's knots, from rest to rest.
-    pub(super) fn of(locators: &[Locator; N], course: &Course<'_, N, f64>, knots: &[Knot]) -> Self {
+    pub(super) fn of(locators: &[Locator; N], track: &Track<'_, N>, knots: &[Knot]) -> Self {
         let mut shares = Self::new();
-        for [from, to] in segments(course, knots) {
+        for [from, to] in segments(track, knots) {
             shares.add(locators, &from, &to);
         }
         shares.stop(locators);

@@ -3,15 +3,16 @@
 use core::cell::Cell;
 
 use super::segment::{Reciprocals, Segment};
+use super::track::Track;
 use super::{Knot, knots_of};
 use crate::Locator;
-use crate::course::{Course, Place};
+use crate::course::Place;
 use crate::number::largest;
 
 /// Fills the first knots, one more than parts, with the fastest motion.
 pub(super) fn fastest<const N: usize>(
     locators: &[Locator; N],
-    course: &Course<'_, N, f64>,
+    track: &Track<'_, N>,
     knots: &mut [Knot],
     parts: u32,
 ) {
@@ -19,8 +20,8 @@ pub(super) fn fastest<const N: usize>(
     spread(knots, parts);
     let knots = Cell::from_mut(knots).as_slice_of_cells();
     let limits = Reciprocals::new(locators);
-    backward(&limits, course, knots);
-    forward(&limits, course, knots);
+    backward(&limits, track, knots);
+    forward(&limits, track, knots);
 }
 
 /// Spreads the knots as u² (3 - 2u), dense where the leg starts and stops: there the speed
@@ -44,17 +45,13 @@ fn place(index: u32, parts: u32) -> f64 {
 
 /// From the end: the highest speed at each knot from which the rest can be run, in `speed`, and
 /// the speed after it as a share, in `segment_s`.
-fn backward<const N: usize>(
-    limits: &Reciprocals<N>,
-    course: &Course<'_, N, f64>,
-    knots: &[Cell<Knot>],
-) {
+fn backward<const N: usize>(limits: &Reciprocals<N>, track: &Track<'_, N>, knots: &[Cell<Knot>]) {
     let mut to: Option<Place<N, f64>> = None;
     for pair in knots.windows(2).rev() {
         let [from_knot, to_knot] = pair else { continue };
         let (mut knot, next) = (from_knot.get(), to_knot.get());
-        let from = course.place(knot.s);
-        let end = to.unwrap_or_else(|| course.place(next.s));
+        let from = track.place(knot.s);
+        let end = to.unwrap_or_else(|| track.place(next.s));
         let segment = Segment::new(limits, &from, &end, next.s - knot.s);
         let (speed, after) = segment.begin(next.speed, largest());
         knot.speed = speed;
@@ -65,18 +62,14 @@ fn backward<const N: usize>(
 }
 
 /// From the start at rest: as fast as each segment and what is left allow.
-fn forward<const N: usize>(
-    limits: &Reciprocals<N>,
-    course: &Course<'_, N, f64>,
-    knots: &[Cell<Knot>],
-) {
+fn forward<const N: usize>(limits: &Reciprocals<N>, track: &Track<'_, N>, knots: &[Cell<Knot>]) {
     let mut speed = 0.0;
     let mut from: Option<Place<N, f64>> = None;
     for pair in knots.windows(2) {
         let [from_knot, to_knot] = pair else { continue };
         let (mut knot, mut next) = (from_knot.get(), to_knot.get());
-        let start = from.unwrap_or_else(|| course.place(knot.s));
-        let to = course.place(next.s);
+        let start = from.unwrap_or_else(|| track.place(knot.s));
+        let to = track.place(next.s);
         let way = next.s - knot.s;
         let segment = Segment::new(limits, &start, &to, way);
         let after = segment.end(speed, next.speed, speed * knot.segment_s);

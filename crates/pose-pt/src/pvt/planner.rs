@@ -1,17 +1,18 @@
 //! The knots of a table: how many, at which speeds, and whether they keep what was asked.
 
 use super::check::{self, Shares};
-use super::{Knot, first_course, has_jerk, knots_of, leg, moving, segments, smooth};
-use crate::course::Course;
+use super::track::Track;
+use super::{Knot, first_track, has_jerk, knots_of, leg, moving, segments, smooth};
 use crate::cut::{Rule, within_max};
 use crate::number::{larger_or_nan, sqrt};
-use crate::path::{Leg, Path};
+use crate::path::Path;
 use crate::strain::hermite_strain;
 use crate::{Cut, PlanError, Platform};
 
 /// What all legs are planned with.
 pub(super) struct Planner<'a, const N: usize> {
     pub(super) platform: &'a Platform<N>,
+    pub(super) path: Path<'a>,
     pub(super) cut: Cut,
     /// Fewest parts of a leg.
     pub(super) least: u32,
@@ -19,12 +20,12 @@ pub(super) struct Planner<'a, const N: usize> {
 
 impl<const N: usize> Planner<'_, N> {
     /// Where the number of parts is known beforehand, the memory is checked before all else.
-    pub(super) fn check_memory(&self, path: &Path<'_>, available: usize) -> Result<(), PlanError> {
+    pub(super) fn check_memory(&self, available: usize) -> Result<(), PlanError> {
         let mut needed = 0_usize;
-        for (number, leg) in moving(self.platform, path, 0) {
+        for Track { number, .. } in moving(self.platform, &self.path, 0) {
             let parts = match self.cut.rule {
                 Rule::Strain(_) => self.least,
-                _ => self.parts(number, &leg)?,
+                _ => self.parts(number)?,
             };
             needed = needed.saturating_add(knots_of(within_max(Some(parts), number, MAX_PARTS)?));
         }
@@ -35,36 +36,34 @@ impl<const N: usize> Planner<'_, N> {
     }
 
     /// Parts of a leg where the cut alone decides them.
-    fn parts(&self, number: usize, leg: &Leg) -> Result<u32, PlanError> {
-        let parts = self.cut.linear_parts(self.platform, number, leg)?;
+    fn parts(&self, number: usize) -> Result<u32, PlanError> {
+        let parts = (self.cut).linear_parts(self.platform, &self.path, number)?;
         within_max(Some(parts.max(self.least)), number, MAX_PARTS)
     }
 
     /// Plans a leg in the first of the free knots; the number of them.
     pub(super) fn plan_leg(
         &self,
-        number: usize,
-        leg: &Leg,
+        track: &Track<'_, N>,
         used: usize,
         free: &mut [Knot],
     ) -> Result<usize, PlanError> {
-        let course = Course::new(self.platform, leg);
         let parts = match self.cut.rule {
-            Rule::Strain(allowed) => self.fewest(number, &course, used, free, allowed)?,
-            _ => self.parts(number, leg)?,
+            Rule::Strain(allowed) => self.fewest(track, used, free, allowed)?,
+            _ => self.parts(track.number)?,
         };
-        self.lay(&course, free, parts);
+        self.lay(track, free, parts);
         Ok(knots_of(parts))
     }
 
     /// Plans a leg with a number of parts.
-    fn lay(&self, course: &Course<'_, N, f64>, free: &mut [Knot], parts: u32) {
+    fn lay(&self, track: &Track<'_, N>, free: &mut [Knot], parts: u32) {
         if let Some(knots) = free.get_mut(..knots_of(parts)) {
             let locators = self.platform.locators();
             if has_jerk(self.platform) {
-                smooth::smooth(locators, course, knots, parts);
+                smooth::smooth(locators, track, knots, parts);
             } else {
-                leg::fastest(locators, course, knots, parts);
+                leg::fastest(locators, track, knots, parts);
             }
         }
     }
@@ -72,16 +71,15 @@ impl<const N: usize> Planner<'_, N> {
     /// A number of parts that keeps the allowed strain, while one fewer does not.
     fn fewest(
         &self,
-        number: usize,
-        course: &Course<'_, N, f64>,
+        track: &Track<'_, N>,
         used: usize,
         free: &mut [Knot],
         allowed: f64,
     ) -> Result<u32, PlanError> {
         let room = u32::try_from(free.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let mut strain = |parts| {
-            self.lay(course, free, parts);
-            leg_strain(self.platform, course, free)
+            self.lay(track, free, parts);
+            leg_strain(self.platform, track, free)
         };
         let (mut too_few, mut parts) = (self.least.saturating_sub(1), self.least);
         if room < parts {
@@ -93,7 +91,7 @@ impl<const N: usize> Planner<'_, N> {
         let mut bound = strain(parts);
         while bound > allowed {
             if parts >= room || parts >= FINEST {
-                return Err(too_coarse(number, bound / allowed, parts, used, room));
+                return Err(too_coarse(track.number, bound / allowed, parts, used, room));
             }
             too_few = parts;
             parts = parts.saturating_mul(2).min(room).min(FINEST);
@@ -138,12 +136,8 @@ fn too_coarse(leg: usize, excess: f64, parts: u32, used: usize, room: u32) -> Pl
 }
 
 /// The strain bound of a leg whose knots are the first of `knots`.
-fn leg_strain<const N: usize>(
-    platform: &Platform<N>,
-    course: &Course<'_, N, f64>,
-    knots: &[Knot],
-) -> f64 {
-    segments(course, knots).fold(0.0, |worst, [from, to]| {
+fn leg_strain<const N: usize>(platform: &Platform<N>, track: &Track<'_, N>, knots: &[Knot]) -> f64 {
+    segments(track, knots).fold(0.0, |worst, [from, to]| {
         larger_or_nan(worst, hermite_strain(platform, &from, &to))
     })
 }
@@ -159,29 +153,28 @@ pub(super) fn check_legs<const N: usize>(
     path: &Path<'_>,
     knots: &mut [Knot],
 ) -> Result<(), PlanError> {
-    let Some(course) = first_course(platform, path) else {
+    let Some(track) = first_track(platform, path) else {
         return Ok(());
     };
     let failed = |leg, point| move |reason| PlanError::Limit { leg, point, reason };
     platform
-        .check_axes(&course.place(0.0).axes)
+        .check_axes(&track.place(0.0).axes)
         .map_err(failed(0, 0))?;
     let (mut rest, mut time_s) = (knots, 0.0);
-    for (number, leg) in moving(platform, path, 0) {
+    for track in moving(platform, path, 0) {
         let parts = rest.first().map_or(0, |knot| knot.parts);
         let Some((knots, later)) = rest.split_at_mut_checked(knots_of(parts)) else {
             break;
         };
         rest = later;
-        let course = Course::new(platform, &leg);
-        for (index, [from, to]) in (1..).zip(segments(&course, knots)) {
-            check::strokes(platform, &from, &to).map_err(failed(number, index))?;
+        for (index, [from, to]) in (1..).zip(segments(&track, knots)) {
+            check::strokes(platform, &from, &to).map_err(failed(track.number, index))?;
         }
         if has_jerk(platform) {
-            let stretch = Shares::of(platform.locators(), &course, knots).stretch();
+            let stretch = Shares::of(platform.locators(), &track, knots).stretch();
             stretch_time(knots, stretch * STRETCHED);
         }
-        time_s = check_times(number, knots, time_s)?;
+        time_s = check_times(track.number, knots, time_s)?;
     }
     Ok(())
 }

@@ -4,9 +4,10 @@ use core::iter::FusedIterator;
 
 use nalgebra::Vector3;
 
-use super::{Knot, first_course, moving};
+use super::track::Track;
+use super::{Knot, first_track, moving};
 use crate::Platform;
-use crate::course::{Course, Place};
+use crate::course::Place;
 use crate::path::Path;
 
 /// A line of a PVT table: where every axis is at a time, and how fast it moves then.
@@ -46,7 +47,7 @@ pub struct PvtPoints<'a, const N: usize> {
     /// The next leg, and knots of the present one that are still to come.
     leg: usize,
     left: u32,
-    course: Option<Course<'a, N, f64>>,
+    track: Option<Track<'a, N>>,
     stretch: f64,
     time_s: f64,
     segment_s: f64,
@@ -67,7 +68,7 @@ impl<'a, const N: usize> PvtPoints<'a, N> {
             knots,
             leg: 0,
             left: 0,
-            course: None,
+            track: None,
             stretch,
             time_s: 0.0,
             segment_s: 0.0,
@@ -85,9 +86,9 @@ impl<'a, const N: usize> PvtPoints<'a, N> {
 
     /// Begins the next leg on which something moves; its first knot.
     fn begin(&mut self) -> Option<Knot> {
-        let (number, leg) = moving(self.platform, &self.path, self.leg).next()?;
-        self.leg = number.saturating_add(1);
-        self.course = Some(Course::new(self.platform, &leg));
+        let track = moving(self.platform, &self.path, self.leg).next()?;
+        self.leg = track.number.saturating_add(1);
+        self.track = Some(track);
         let knot = self.knot()?;
         self.left = knot.parts;
         Some(knot)
@@ -95,11 +96,11 @@ impl<'a, const N: usize> PvtPoints<'a, N> {
 
     /// The first point of all; the first pose where nothing moves anywhere.
     fn first(&mut self) -> Option<PvtPoint<N>> {
-        let course = first_course(self.platform, &self.path)?;
+        let track = first_track(self.platform, &self.path)?;
         if self.begin().is_none() {
-            self.course = Some(course);
+            self.track = Some(track);
         }
-        Some(PvtPoint::new(&course.place(0.0), 0.0, 0.0, 0.0))
+        Some(PvtPoint::new(&track.place(0.0), 0.0, 0.0, 0.0))
     }
 }
 
@@ -108,7 +109,7 @@ impl<const N: usize> Iterator for PvtPoints<'_, N> {
 
     fn next(&mut self) -> Option<PvtPoint<N>> {
         self.remaining = self.remaining.checked_sub(1)?;
-        if self.course.is_none() {
+        if self.track.is_none() {
             return self.first();
         }
         if self.left == 0 {
@@ -119,7 +120,7 @@ impl<const N: usize> Iterator for PvtPoints<'_, N> {
         let segment_s = self.segment_s;
         self.time_s += segment_s;
         let knot = self.knot()?;
-        let place = self.course.as_ref()?.place(knot.s);
+        let place = self.track.as_ref()?.place(knot.s);
         let speed = knot.speed / self.stretch;
         Some(PvtPoint::new(&place, speed, self.time_s, segment_s))
     }

@@ -2,9 +2,9 @@
 
 use super::check::Shares;
 use super::scurve::{SCurve, share};
+use super::track::Track;
 use super::{Knot, MIN_PARTS, leg, window};
 use crate::Locator;
-use crate::course::Course;
 use crate::number::{cube_root, largest, sqrt};
 
 /// Fills the knots of a leg, one more than parts, with the faster of an S-curve along the path
@@ -16,15 +16,15 @@ use crate::number::{cube_root, largest, sqrt};
 /// asks of the axes besides is made up for by stretching its time.
 pub(super) fn smooth<const N: usize>(
     locators: &[Locator; N],
-    course: &Course<'_, N, f64>,
+    track: &Track<'_, N>,
     knots: &mut [Knot],
     parts: u32,
 ) {
-    let curve = Easing::Curve(s_curve(locators, course));
+    let curve = Easing::Curve(s_curve(locators, track));
     let mut trial = Trial {
         locators,
         eased: locators.map(eased),
-        course,
+        track,
         parts: parts.min(TRIAL_PARTS),
         knots,
     };
@@ -91,7 +91,7 @@ fn lay_curve(curve: &SCurve, knots: &mut [Knot], parts: u32) {
 struct Trial<'a, const N: usize> {
     locators: &'a [Locator; N],
     eased: [Locator; N],
-    course: &'a Course<'a, N, f64>,
+    track: &'a Track<'a, N>,
     parts: u32,
     knots: &'a mut [Knot],
 }
@@ -107,7 +107,7 @@ impl<const N: usize> Trial<'_, N> {
             } => {
                 let late = share(parts, *window_s / (*fastest_s + *window_s));
                 let late = late.min(parts.saturating_sub(MIN_PARTS)).max(1);
-                leg::fastest(&self.eased, self.course, knots, parts.saturating_sub(late));
+                leg::fastest(&self.eased, self.track, knots, parts.saturating_sub(late));
                 window::average(knots, parts, late, *window_s);
             }
         }
@@ -116,7 +116,7 @@ impl<const N: usize> Trial<'_, N> {
     /// The time that a motion takes when it just keeps all limits.
     fn time(&mut self, easing: &Easing) -> f64 {
         self.lay(easing);
-        let shares = Shares::of(self.locators, self.course, self.knots);
+        let shares = Shares::of(self.locators, self.track, self.knots);
         self.duration_s() * shares.stretch()
     }
 
@@ -128,7 +128,7 @@ impl<const N: usize> Trial<'_, N> {
 
     /// The average with the window of the shortest time.
     fn best_average(&mut self) -> Easing {
-        leg::fastest(&self.eased, self.course, self.knots, self.parts);
+        leg::fastest(&self.eased, self.track, self.knots, self.parts);
         let fastest_s = self.duration_s();
         let average = |window_s| Easing::Average {
             fastest_s,
@@ -171,8 +171,8 @@ const SAMPLES: u32 = 64;
 /// The speed is taken so that q″ ṡ² uses at most half of the acceleration and q‴ ṡ³ a third
 /// of the jerk, the acceleration so that its product uses at most another third; what is
 /// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
-fn s_curve<const N: usize>(locators: &[Locator; N], course: &Course<'_, N, f64>) -> SCurve {
-    let derivatives = derivatives(course);
+fn s_curve<const N: usize>(locators: &[Locator; N], track: &Track<'_, N>) -> SCurve {
+    let derivatives = derivatives(track);
     let all = || {
         let limits = locators.iter().flat_map(|locator| &locator.limits);
         limits.zip(derivatives.iter().flatten())
@@ -205,11 +205,11 @@ fn s_curve<const N: usize>(locators: &[Locator; N], course: &Course<'_, N, f64>)
 
 /// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a
 /// number that can be divided by.
-fn derivatives<const N: usize>(course: &Course<'_, N, f64>) -> [[[f64; 3]; 3]; N] {
+fn derivatives<const N: usize>(track: &Track<'_, N>) -> [[[f64; 3]; 3]; N] {
     let samples = f64::from(SAMPLES);
     let mut most = [[[1.0 / largest::<f64>(); 3]; 3]; N];
     for index in 0..SAMPLES - 1 {
-        let slope = |next: u32| course.place(f64::from(index + next) / samples).slope;
+        let slope = |next: u32| track.place(f64::from(index + next) / samples).slope;
         let (first, second, third) = (slope(0), slope(1), slope(2));
         let values = first.iter().zip(second.iter().zip(&third));
         for (most, (first, (second, third))) in most.iter_mut().zip(values) {
