@@ -259,7 +259,7 @@ impl<T: RealField + Copy> Delta<T> {
 
     /// How far past an edge of the workspace a point may lie by rounding alone, in the unit of
     /// length: 16 machine epsilons of the [`span`](Self::span), and where angles read far from
-    /// zero their own rounding, ε (|zero| + the farther end of the range) times the upper arm.
+    /// zero their own rounding, 2 ε (|zero| + the farther end of the range) times the upper arm.
     /// Such a point is taken as being on the edge.
     #[must_use]
     pub const fn tolerance(&self) -> T {

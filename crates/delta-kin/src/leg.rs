@@ -101,7 +101,8 @@ impl<T: RealField + Copy> Leg<T> {
         } else {
             T::zero()
         };
-        self.upper * (self.zero.abs() + reading)
+        // Half an epsilon for each arm, two arms in each sphere's place, once here and once there.
+        self.upper * (self.zero.abs() + reading) * two()
     }
 
     pub(crate) fn has_range(&self) -> bool {

@@ -13,8 +13,9 @@ impl<T: RealField + Copy> Workspace<T> {
     /// How far the platform can be moved from `point` in any direction, in the unit of length: the
     /// whole ball round it is in the workspace. Zero where `point` itself is not.
     ///
-    /// It is the least of the distances to what limits each arm, and of a distance within which
-    /// the rods cannot come to lie in a plane:
+    /// It is the least of the distances to what limits each arm, less the
+    /// [`tolerance`](Delta::tolerance), and of a distance within which the rods cannot come to lie
+    /// in a plane:
     ///
     /// ```text
     /// reach:    La - |P - nearest place of the knee|,  |P - farthest place of the knee| - La
@@ -49,7 +50,7 @@ impl<T: RealField + Copy> Workspace<T> {
         };
         let local = self.delta.flip(point.coords);
         zip(self.delta.legs().each_ref(), self.delta.working_mode())
-            .map(|(leg, knee)| leg_clearance(leg, knee, &local))
+            .map(|(leg, knee)| leg_clearance(leg, knee, &local) - self.delta.tolerance())
             .into_iter()
             .fold(steady(&self.delta, &pose), T::min)
             .max(T::zero())
@@ -76,9 +77,6 @@ fn leg_clearance<T: RealField + Copy>(leg: &Leg<T>, knee: Knee, local: &Vector3<
     clearance.min(end(leg.low)).min(end(leg.high))
 }
 
-/// Where rods count as lying in a plane, in roundings of their directions: more than `inverse` has.
-const SINGULAR: f64 = 8.0;
-
 /// How far the platform can move from a pose before its rods could lie in a plane.
 fn steady<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     if pose.rod_inverse().is_err() {
@@ -102,8 +100,9 @@ fn steady<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     });
     let held = first.0.min(second.0).min(third.0);
     let turn = Vector3::new(first.1, second.1, third.1).norm();
-    // As far as rounding takes for singular nothing is known.
-    let rounding = pose.rounding() * nalgebra::convert(SINGULAR);
+    // There rods that are longer or shorter by the tolerance decide whether they meet at all: at
+    // a height d over the knees' plane with d²/(2 La) up to the tolerance.
+    let rounding = (pose.rounding() * two()).sqrt() * two();
     let share: T = nalgebra::convert(1.0 - 1e-3);
     held.min((kappa.recip() - rounding) / turn) * share
 }
