@@ -107,7 +107,7 @@ pub enum RampError {
 /// The square roots are exact integer roots, carried from edge to edge with their remainder, so
 /// that nothing adds up. They are kept in subticks: 2^p to a tick, with the largest p <= 16 for
 /// which F v / a is at most 2^31 subticks and D less than 2^61. Every edge is within half a tick
-/// and two subticks of t(s), and the end within half a tick and one subtick of D.
+/// and two subticks of t(s), and the end within half a tick of D.
 ///
 /// # Examples
 /// ```

@@ -10,8 +10,8 @@ use stepper_sync::{Ramp, RampError, RampLimits, Rate, TrainError};
 
 /// The goal: total time within 0.01 % of the closed form.
 const TOTAL_RELATIVE: f64 = 1e-4;
-/// The end is rounded to whole ticks (1/2); the rest is the start rate in whole subticks.
-const END_TICKS: f64 = 0.51;
+/// The end is rounded to whole ticks.
+const END_TICKS: f64 = 0.5 + F64_TICKS;
 /// Error of this test's own f64 arithmetic, in ticks: 2^40 ticks have 12 bits behind the point.
 const F64_TICKS: f64 = 1e-3;
 
@@ -155,6 +155,37 @@ fn every_edge_is_at_its_place_and_the_sum_is_the_end() {
             }
             assert_eq!(ticks, ramp.end_ticks());
         }
+    }
+}
+
+/// An acceleration of so many ticks that a subtick is a tick, from a start rate between subticks.
+#[test]
+fn the_slowest_acceleration_ends_within_half_a_tick() {
+    let rate = (268_435_519, 1);
+    let setting = Setting {
+        tick_hz: f64::from(rate.0),
+        rate,
+        limits: RampLimits {
+            start_millihertz: 3302,
+            max_millihertz: 525_861_857,
+            accel_steps_per_s2: 71_151,
+        },
+    };
+    for n in 1..300 {
+        let (mut ticks, ramp) = (0, setting.ramp([n]));
+        let [axis] = ramp.axes();
+        for (k, interval) in (1_u32..).zip(axis) {
+            ticks += interval;
+            let exact = setting.time(f64::from(k) / 2.0, f64::from(n));
+            let error = (ticks as f64 - exact).abs();
+            assert!(
+                error <= setting.edge_ticks(),
+                "edge {k} of {n}: {ticks}, not {exact}"
+            );
+        }
+        assert_eq!(ticks, ramp.end_ticks());
+        let error = (ticks as f64 - setting.total(f64::from(n))).abs();
+        assert!(error <= END_TICKS, "{n} steps: {error} ticks");
     }
 }
 

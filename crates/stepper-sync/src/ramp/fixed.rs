@@ -8,6 +8,12 @@ pub(super) const fn whole(q: u128) -> u64 {
     (q >> FRACTION) as u64
 }
 
+/// The nearest whole number, halves up.
+pub(super) const fn nearest(q: u128) -> u64 {
+    // q < 2^127 for all numbers of a plan.
+    whole(q.wrapping_add(1 << (FRACTION - 1)))
+}
+
 /// Whole part, rounded up.
 pub(super) const fn whole_up(q: u128) -> u64 {
     // q < 2^127 for all numbers of a plan.

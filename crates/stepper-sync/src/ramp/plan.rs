@@ -4,7 +4,7 @@
 //! 2^shift subticks a tick, shift <= 16. Every product below stays in 128 bits with these.
 
 use super::axis::{AxisRamp, Cruise, Slope};
-use super::fixed::{FRACTION, of_whole, ratio, whole};
+use super::fixed::{FRACTION, nearest, ratio, whole};
 use super::{RampError, RampLimits};
 use crate::{Rate, Timer};
 
@@ -66,17 +66,18 @@ impl Plan {
             limits: *limits,
             tick_rate,
             triangular: v * v - v0 * v0 >= n * 1_000_000 * a,
-            start: whole(start + (1 << (FRACTION - 1))),
+            start: nearest(start),
             lag: ratio(f_sub * (v - v0) * (v - v0), 2000 * v * a * f_den)?,
             end: 0,
         };
         plan.end = if most == 0 {
             0
         } else if plan.triangular {
-            // The peak rate is at most v, so c² + g n <= (F v / a + 1)² < 2^63.
-            let square = of_whole(plan.start * plan.start) + plan.growth(most)? * n;
-            // The root of 64 fraction bits has 32.
-            ((square.isqrt() << (FRACTION >> 1)) - of_whole(plan.start)) * 2
+            // The peak rate is at most v, so c² + g n <= (F v / a + 1)² < 2^63. The root of 64
+            // fraction bits has 32, and so has the c that is squared.
+            let half = FRACTION >> 1;
+            let square = (start >> half) * (start >> half) + plan.growth(most)? * n;
+            ((square.isqrt() - (start >> half)) * 2) << half
         } else {
             let cruising = plan.period(most)?.checked_mul(2 * n)?;
             cruising.checked_add(plan.lag * 2)?
@@ -86,7 +87,17 @@ impl Plan {
 
     /// The tick of the last edge of every moving axis.
     pub(super) const fn end_ticks(&self) -> u64 {
-        AxisRamp::to_ticks(whole(self.end), self.shift)
+        AxisRamp::to_ticks(self.end_subticks(), self.shift)
+    }
+
+    /// The end such that it is rounded once on its way to ticks: here where subticks are ticks, else
+    /// from subticks to ticks, where the fraction of a subtick does not count.
+    const fn end_subticks(&self) -> u64 {
+        if self.shift == 0 {
+            nearest(self.end)
+        } else {
+            whole(self.end)
+        }
     }
 
     /// The edges of an axis with `pulses` pulses, at most those of the leading axis.
@@ -123,7 +134,12 @@ impl Plan {
             period,
             edges_left: pulses * 2 - accel * 2 - 1,
         };
-        Some(AxisRamp::new(whole(self.end), self.shift, &slope, cruise))
+        Some(AxisRamp::new(
+            self.end_subticks(),
+            self.shift,
+            &slope,
+            cruise,
+        ))
     }
 
     /// Edges made while speeding up: floor(2 `s_a` m / n).
