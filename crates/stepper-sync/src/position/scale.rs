@@ -1,4 +1,7 @@
+//! From positions and increments to whole steps.
+
 use core::num::NonZeroU32;
+use core::ops::RangeInclusive;
 use thiserror::Error;
 
 /// Why a position has no number of steps.
@@ -6,8 +9,8 @@ use thiserror::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ScaleError {
-    /// Steps per unit that are zero or not finite.
-    #[error("{steps_per_unit} steps per unit")]
+    /// Steps per unit that are zero, not finite or outside 1e-150..=1e150 either way.
+    #[error("{steps_per_unit:.5e} steps per unit, not within 1e-150..=1e150 either way")]
     Scale {
         /// Steps per unit given.
         steps_per_unit: f64,
@@ -27,7 +30,7 @@ pub enum ScaleError {
         position: f64,
     },
     /// More steps than 31 bits hold.
-    #[error("position {position} is {steps} steps, more than {limit} either way")]
+    #[error("position {position:.5e} is {steps:.5e} steps, more than {limit} either way")]
     OutOfRange {
         /// Position given.
         position: f64,
@@ -69,16 +72,20 @@ pub enum ScaleError {
     serde(try_from = "f64", into = "f64")
 )]
 pub struct StepScale {
+    // Within `RANGE` either way: the position of every step is a normal number.
     steps_per_unit: f64,
 }
 
+/// Steps per unit.
+const RANGE: RangeInclusive<f64> = 1e-150..=1e150;
+
 impl StepScale {
-    /// A scale; negative when the motor turns against the axis.
+    /// A scale from 1e-150 to 1e150 steps per unit; negative when the motor turns against the axis.
     ///
     /// # Errors
-    /// [`ScaleError::Scale`] for zero, an infinity or NaN.
+    /// [`ScaleError::Scale`] outside that range, for zero and NaN.
     pub fn new(steps_per_unit: f64) -> Result<Self, ScaleError> {
-        if steps_per_unit.is_finite() && steps_per_unit.abs() > 0.0 {
+        if RANGE.contains(&steps_per_unit.abs()) {
             Ok(Self { steps_per_unit })
         } else {
             Err(ScaleError::Scale { steps_per_unit })
