@@ -20,7 +20,7 @@ impl Factor {
         self.0
     }
 
-    /// sqrt(square) / steps, to the nearest 65536th; 1 where there are no steps. Below 2^16.
+    /// sqrt(square) / steps, within one 65536th; 1 where there are no steps. Below 2^16.
     pub(crate) fn ratio(square: u64, steps: u64) -> Self {
         Self::of_q16(length_q16(square), steps)
     }
@@ -36,10 +36,17 @@ impl Factor {
     }
 }
 
-/// sqrt(square) in 65536ths, below 2^48.
-pub(crate) fn length_q16(square: u64) -> u64 {
-    // The root of 96 bits has 48.
-    u64::try_from((u128::from(square) << 32).isqrt()).unwrap_or(u64::MAX)
+/// sqrt(square) in 65536ths, to the nearest, below 2^48.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the root of 96 bits has 48"
+)]
+pub(crate) const fn length_q16(square: u64) -> u64 {
+    let square = (square as u128) << 32;
+    let root = square.isqrt();
+    // (root + 1/2)² has no whole number between root (root + 1) and itself.
+    let up = square.wrapping_sub(root.wrapping_mul(root)) > root;
+    (root as u64).wrapping_add(up as u64)
 }
 
 /// Intervals in whole ticks from factors; what is rounded off is carried to the next.

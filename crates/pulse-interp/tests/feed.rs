@@ -133,8 +133,11 @@ fn factors_at_the_ends_of_their_range() {
     assert_eq!(factor([7, 0]), 65_536);
     // sqrt(1/2) and sqrt(2) in 65536ths: 46340.95, 92681.9.
     assert_eq!(factor([-i32::MAX, i32::MAX]), 46_341);
-    let line = Line::new([i32::MAX, i32::MAX]).unwrap();
-    assert_eq!(line.move_factor().to_q16(), 92_682);
+    for end in [1, 2, 1000, i32::MAX] {
+        let line = Line::new([end, end]).unwrap();
+        assert_eq!(line.step_factor().to_q16(), 46_341);
+        assert_eq!(line.move_factor().to_q16(), 92_682);
+    }
     // Back to an end outside that the rule has passed: a straight step.
     let arc = Arc::near([0, -10], [11, 1], Turn::CounterClockwise, 2000).unwrap();
     let mut steps = arc.steps(Rule::Centred);
