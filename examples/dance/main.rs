@@ -118,7 +118,7 @@ fn write_data(
     let frames = || dance.frames.iter().copied();
     let header = DataHeader::new()
         .with_timing(score.timing())
-        .with_threshold(score.threshold())
+        .with_threshold(score.threshold())?
         .with_packing(Sizes::of(frames()).smallest());
     let mut text = String::new();
     header.write(frames(), &mut text)?;

@@ -46,6 +46,7 @@ fn header(frames: &[Frame], packing: Packing, threshold: u16) -> String {
         .with_packing(packing)
         .with_timing(timing)
         .with_threshold(threshold)
+        .unwrap()
         .write(frames.iter().copied(), &mut text)
         .unwrap();
     text

@@ -75,6 +75,7 @@ proptest! {
             .with_dialect(if sdcc { Dialect::Sdcc } else { Dialect::C51 })
             .with_timing(timing)
             .with_threshold(threshold)
+            .unwrap()
             .with_packing(packing);
         let mut text = String::new();
         header.write(frames.iter().copied(), &mut text).unwrap();
@@ -343,8 +344,11 @@ fn tables_that_no_firmware_holds_are_not_written() {
     let error = write(8193).unwrap_err().to_string();
     assert_eq!(error, "a table of 65544 bytes, an 8051 addresses 65536");
     assert!(write(8192).is_ok());
+    let error = DataHeader::new().with_threshold(127).unwrap_err();
+    assert_eq!(error.to_string(), "a threshold of 127, 128 is the least");
     for (name, wanted) in [
         ("", "the name of a table is empty"),
+        ("xdata", "a table cannot have a keyword"),
         ("1st", "'1' cannot stand in the name"),
         ("a b", "' ' cannot stand in the name"),
         (

@@ -266,7 +266,7 @@ fn what_no_motor_makes_is_refused() {
             "{error}"
         );
         assert!(turn(law, 400, frames).is_ok());
-        assert!(turn(law, 2, 0).is_err());
+        assert!(turn(law, 2, 0).is_err() && turn(law, -1, 0).is_err());
     }
     // Nine frames of 40 and one of 33 are the next.
     let error = turn(Law::Reset, 397, 10).unwrap_err().to_string();

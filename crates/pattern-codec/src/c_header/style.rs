@@ -29,7 +29,8 @@ impl<'n> Name<'n> {
     /// Checks a name.
     ///
     /// # Errors
-    /// [`NameError`] when it is empty, too long, or no letters, digits and `_` with a letter first.
+    /// [`NameError`] when it is empty, too long, no letters, digits and `_` with a letter first, or
+    /// a word of C that no table can have as a name, in C51 or SDCC.
     pub fn new(name: &'n str) -> Result<Self, NameError> {
         let Some(first) = name.chars().next() else {
             return Err(NameError::Empty);
@@ -43,6 +44,7 @@ impl<'n> Name<'n> {
         }
         match name.len() {
             length if length > Self::MAX_LEN => Err(NameError::TooLong { length }),
+            _ if KEYWORDS.split(' ').any(|word| word == name) => Err(NameError::Keyword),
             _ => Ok(Self(name)),
         }
     }
@@ -58,6 +60,13 @@ impl<'n> Name<'n> {
     }
 }
 
+/// The words of C, then those that C51 and SDCC have besides.
+const KEYWORDS: &str = "auto break case char const continue default do double else enum extern \
+    float for goto if inline int long register restrict return short signed sizeof static struct \
+    switch typedef union unsigned void volatile while \
+    alien asm at bdata bit code compact critical data far idata interrupt large naked near pdata \
+    reentrant sbit sfr sfr16 sfr32 small using wparam xdata";
+
 /// Why a table cannot have a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -72,6 +81,9 @@ pub enum NameError {
         /// The first such character.
         character: char,
     },
+    /// A word that means something else in C.
+    #[error("a table cannot have a keyword of the compiler as its name")]
+    Keyword,
     /// Too many characters.
     #[error(
         "a table's name of {length} characters, {} are the most",

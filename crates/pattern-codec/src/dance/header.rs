@@ -2,7 +2,7 @@ use core::fmt::Write;
 use core::iter::FusedIterator;
 
 use super::motor::THRESHOLD;
-use super::{Decoded, Motor, Packing, Sizes, Timing};
+use super::{Decoded, Motor, Packing, Sizes, ThresholdTooLow, Timing};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
     array, check_size, setting,
@@ -77,10 +77,15 @@ impl<'n> DataHeader<'n> {
         Self { timing, ..self }
     }
 
-    /// For another threshold of the accumulators, [`Motor::MIN_THRESHOLD`](super::Motor) or more.
-    #[must_use]
-    pub const fn with_threshold(self, threshold: u16) -> Self {
-        Self { threshold, ..self }
+    /// For another threshold of the accumulators.
+    ///
+    /// # Errors
+    /// [`ThresholdTooLow`] below [`Motor::MIN_THRESHOLD`](super::Motor): [`Data`] would not read it.
+    pub const fn with_threshold(self, threshold: u16) -> Result<Self, ThresholdTooLow> {
+        if threshold < Motor::MIN_THRESHOLD {
+            return Err(ThresholdTooLow { threshold });
+        }
+        Ok(Self { threshold, ..self })
     }
 
     /// With another packing.

@@ -123,12 +123,14 @@ pub struct Fit {
 impl Fit {
     /// Whether the memory holds both.
     #[must_use]
-    pub const fn fits(&self) -> bool {
-        self.used() <= self.memory_bytes
+    pub fn fits(&self) -> bool {
+        self.too_many() == 0
     }
 
-    const fn used(&self) -> u64 {
-        self.data_bytes.saturating_add(self.code_bytes)
+    /// Bytes that do not fit.
+    fn too_many(&self) -> u128 {
+        let used = u128::from(self.data_bytes).saturating_add(self.code_bytes.into());
+        used.saturating_sub(self.memory_bytes.into())
     }
 }
 
@@ -140,12 +142,15 @@ impl fmt::Display for Fit {
             code_bytes,
         } = self;
         write!(f, "{data_bytes} bytes of data and {code_bytes} of code ")?;
-        match memory_bytes.checked_sub(self.used()) {
-            Some(left) => write!(f, "fit into {memory_bytes} bytes: {left} left"),
-            None => {
-                let over = self.used().saturating_sub(*memory_bytes);
-                write!(f, "do not fit into {memory_bytes} bytes: {over} too many")
+        match self.too_many() {
+            0 => {
+                // They fit, so the differences do, too.
+                let left = memory_bytes
+                    .wrapping_sub(*data_bytes)
+                    .wrapping_sub(*code_bytes);
+                write!(f, "fit into {memory_bytes} bytes: {left} left")
             }
+            over => write!(f, "do not fit into {memory_bytes} bytes: {over} too many"),
         }
     }
 }

@@ -40,10 +40,12 @@ impl Motor {
     ///
     /// # Errors
     /// [`TurnError::TooFast`] when a frame needs a speed above [`Motor::max_speed`];
-    /// [`TurnError::Unreachable`] when no plan was found that ends within one half step.
+    /// [`TurnError::Unreachable`] when no plan was found that ends within one half step, or there is
+    /// no frame to turn in.
     pub fn turn(&self, half_steps: i32, frames: u16, easing: Easing) -> Result<Turn, TurnError> {
         let turn = Turn::new(*self, half_steps, frames, easing)?;
-        if turn.end.abs_diff(half_steps.into()) > 1 {
+        let off = turn.end.abs_diff(half_steps.into());
+        if off > 1 || frames == 0 && off > 0 {
             return Err(TurnError::Unreachable {
                 half_steps,
                 frames,

@@ -1,0 +1,218 @@
+//! Every function with anything: 0, the largest and smallest numbers, what overflows. The answer is
+//! right, against its definition in 128 bits, or an error. What parses bytes and texts has its own
+//! tests, and fuzzing.
+#![cfg(test)]
+
+use pattern_codec::c_header::Name;
+use pattern_codec::dance::{
+    Data, DataHeader, Easing, Law, Motor, Packing, ProgramMemory, Sizes, Timing, TurnError,
+};
+use pattern_codec::engraving::{
+    Axis, AxisCodes, Builder, Fast, HalfPeriods, JointPulses, PerAxis, Record, Slow, Statistics,
+};
+use proptest::prelude::*;
+
+/// Numbers of every size, most of them at an end of one.
+fn any_u64() -> impl Strategy<Value = u64> {
+    let near_power = (0..64_u32, 0..=2_u64).prop_map(|(bits, off)| (1 << bits) + off - 1);
+    let end = (0..=2_u64).prop_map(|off| u64::MAX - off);
+    let sized = (any::<u64>(), 0..64_u32).prop_map(|(number, bits)| number >> bits);
+    prop_oneof![Just(0), near_power, end, sized]
+}
+
+fn any_u32() -> impl Strategy<Value = u32> {
+    any_u64().prop_map(|number| u32::try_from(number & 0xFFFF_FFFF).unwrap())
+}
+
+fn any_u16() -> impl Strategy<Value = u16> {
+    any_u64().prop_map(|number| u16::try_from(number & 0xFFFF).unwrap())
+}
+
+fn any_i32() -> impl Strategy<Value = i32> {
+    prop_oneof![
+        any_u32().prop_map(u32::cast_signed),
+        any_u32().prop_map(|number| number.cast_signed().wrapping_neg()),
+    ]
+}
+
+fn joint_pulses() -> impl Strategy<Value = JointPulses> {
+    (any_i32(), any_i32(), any_i32()).prop_map(|(theta1, theta2, theta3)| JointPulses {
+        theta1,
+        theta2,
+        theta3,
+    })
+}
+
+/// Half steps of frames at a speed, by the definition of the law, in closed form.
+fn half_steps(law: Law, threshold: u16, ticks: u64, speed: i8) -> i128 {
+    let (threshold, ticks) = (i128::from(threshold), i128::from(ticks));
+    let magnitude = i128::from(speed).abs();
+    let steps = match law {
+        _ if magnitude == 0 => 0,
+        Law::Reset => ticks / ((threshold + magnitude - 1) / magnitude),
+        _ => ticks * magnitude / threshold,
+    };
+    steps * i128::from(speed.signum())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn motors_run(
+        (tick_us, frame_ticks) in (any_u32(), any_u32()),
+        threshold in any_u16(),
+        speed: i8,
+        law in prop::sample::select(&[Law::Reset, Law::CarryMagnitude, Law::CarrySigned][..]),
+    ) {
+        let timing = Timing::new(tick_us, frame_ticks);
+        prop_assert_eq!(timing.is_ok(), tick_us > 0 && frame_ticks > 0);
+        let Ok(timing) = timing else { return Ok(()) };
+        prop_assert_eq!(timing.frame_us(), u64::from(tick_us) * u64::from(frame_ticks));
+        let motor = Motor::new(law, threshold, timing);
+        prop_assert_eq!(motor.is_ok(), threshold >= Motor::MIN_THRESHOLD);
+        prop_assert_eq!(DataHeader::new().with_threshold(threshold).is_ok(), motor.is_ok());
+        let Ok(mut motor) = motor else { return Ok(()) };
+        for frames in 1..4 {
+            motor.run(speed);
+            let ticks = frames * u64::from(frame_ticks);
+            let wanted = half_steps(law, threshold, ticks, speed);
+            prop_assert_eq!(i128::from(motor.position()), wanted);
+        }
+    }
+
+    #[test]
+    fn turns_end_or_say_why(
+        frame_ticks in any_u32(),
+        threshold in 128..=u16::MAX,
+        law in prop::sample::select(&[Law::Reset, Law::CarryMagnitude, Law::CarrySigned][..]),
+        easing in prop::sample::select(&[Easing::Linear, Easing::In, Easing::Out, Easing::Smooth][..]),
+        before: i8,
+        max_speed: u8,
+        half_steps in any_i32(),
+        frames in prop_oneof![0..9_u16, 0..300_u16],
+    ) {
+        let timing = Timing::new(1, frame_ticks.max(1)).unwrap();
+        let mut motor = Motor::new(law, threshold, timing).unwrap().with_max_speed(max_speed);
+        motor.run(before);
+        let start = motor.position();
+        let wanted = i64::from(half_steps);
+        match motor.turn(half_steps, frames, easing) {
+            Ok(turn) => {
+                prop_assert_eq!(turn.len(), usize::from(frames));
+                for speed in turn {
+                    prop_assert!(speed.unsigned_abs() <= motor.max_speed());
+                    prop_assert!(i64::from(speed) * wanted >= 0);
+                    motor.run(speed);
+                }
+                prop_assert!((motor.position() - start).abs_diff(wanted) <= 1);
+            }
+            Err(TurnError::TooFast { speed, max, .. }) => prop_assert!(speed > max.into()),
+            Err(TurnError::Unreachable { nearest, .. }) => {
+                prop_assert!(nearest.abs_diff(wanted) > u64::from(frames > 0));
+            }
+            Err(error) => prop_assert!(false, "{error}"),
+        }
+    }
+
+    #[test]
+    fn eased_speeds(highest: i8, frames in any_u16(), easing in prop::sample::select(&[Easing::Linear, Easing::In, Easing::Out, Easing::Smooth][..])) {
+        let speeds = easing.speeds(highest, frames);
+        prop_assert_eq!(speeds.len(), usize::from(frames));
+        for (k, speed) in (0_u16..).zip(speeds).take(300) {
+            // At the middle of the frame.
+            let t = (f64::from(k) + 0.5) / f64::from(frames);
+            let part = match easing {
+                Easing::In => t,
+                Easing::Out => 1.0 - t,
+                Easing::Smooth => 4.0 * t * (1.0 - t),
+                _ => 1.0,
+            };
+            prop_assert!((f64::from(speed) - f64::from(highest) * part).abs() <= 0.5 + 1e-9);
+        }
+    }
+
+    #[test]
+    fn sizes_and_memories(frames in prop::collection::vec(any::<[i8; 3]>(), 0..9), repeat in 1..700_usize, data in any_u64(), code in any_u64(), bytes in any_u64()) {
+        let frames = frames.into_iter().flat_map(|frame| core::iter::repeat_n(frame, repeat));
+        let sizes = Sizes::of(frames.clone());
+        prop_assert_eq!(sizes.frames(), frames.clone().count() as u64);
+        for packing in Packing::ALL {
+            let encoded: Vec<u8> = packing.encode(frames.clone()).collect();
+            prop_assert_eq!(sizes.bytes(packing), encoded.len() as u64);
+            prop_assert!(sizes.bytes(sizes.smallest()) <= sizes.bytes(packing));
+            prop_assert!(packing.decode(encoded).map(Result::unwrap).eq(frames.clone()));
+        }
+        let fits = u128::from(data) + u128::from(code) <= u128::from(bytes);
+        let fit = ProgramMemory { bytes }.fit(data, code);
+        prop_assert_eq!(fit.fits(), fits);
+        prop_assert_eq!(fit.to_string().contains(" left"), fits);
+    }
+
+    #[test]
+    fn records_of_any_motion(axis in prop::sample::select(&Axis::ALL[..]), start in any_i32(), pulses in any_i32(), joints in joint_pulses()) {
+        let fast = Fast::new(axis, pulses);
+        prop_assert_eq!(fast.is_ok(), pulses.unsigned_abs() <= 65_535);
+        let slow = Slow::new(joints);
+        let most = [joints.theta1, joints.theta2, joints.theta3].map(i32::unsigned_abs);
+        prop_assert_eq!(slow.is_ok(), most.iter().all(|pulses| *pulses <= 30));
+        let mut position = PerAxis::default();
+        *position.get_mut(axis) = start;
+        let mut builder = Builder::at(position);
+        let sum = start.checked_add(pulses);
+        match builder.fast(axis, pulses) {
+            Ok(records) => {
+                prop_assert_eq!(records.remaining(), u64::from(pulses.unsigned_abs().div_ceil(65_535)));
+                prop_assert_eq!(Some(*builder.position().get(axis)), sum);
+                prop_assert_eq!(records.map(|record| i64::from(*record.pulses().get(axis))).sum::<i64>(), i64::from(pulses));
+            }
+            Err(_) => {
+                prop_assert_eq!(sum, None);
+                prop_assert_eq!(builder.position(), position);
+            }
+        }
+        let before = builder;
+        match builder.slow(joints) {
+            Ok(records) => {
+                prop_assert_eq!(records.remaining(), u64::from(most.into_iter().max().unwrap().div_ceil(30)));
+                for record in records.take(30) {
+                    let Record::Slow(slow) = record else { panic!("a cutting motion is slow") };
+                    prop_assert!(Slow::new(slow.pulses()).is_ok());
+                }
+            }
+            Err(_) => prop_assert_eq!(builder, before),
+        }
+        let home = builder.home(Axis::ALL).unwrap();
+        prop_assert!(home.remaining() <= 4 * 32_769);
+        prop_assert_eq!(builder, Builder::new());
+    }
+
+    #[test]
+    fn statistics_do_not_wrap(counts in [any_u64(), any_u64()], ticks in [any_u32(), any_u32()], pulses in -65_535..=65_535_i32) {
+        let mut statistics = Statistics::default();
+        [statistics.fast_records, statistics.fast_periods] = counts;
+        statistics.add(Fast::new(Axis::Vertical, pulses).unwrap().into());
+        let [records, periods] = counts.map(u128::from);
+        let most = u128::from(u64::MAX);
+        let records = (records + 1).min(most);
+        let periods = (periods + u128::from(pulses.unsigned_abs())).min(most);
+        prop_assert_eq!(u128::from(statistics.records()), records);
+        prop_assert_eq!(u128::from(statistics.bytes()), (3 * records).min(most));
+        let half_periods = HalfPeriods { fast_ticks: ticks[0], slow_ticks: ticks[1] };
+        prop_assert_eq!(statistics.duration_ticks(half_periods), 2 * periods * u128::from(ticks[0]));
+    }
+
+    #[test]
+    fn codes_and_names(codes: [u8; 4], name in "[a-zA-Z0-9_ é]{0,40}") {
+        let [theta1, theta2, theta3, vertical] = codes;
+        let all = AxisCodes::new(PerAxis { theta1, theta2, theta3, vertical });
+        prop_assert_eq!(all.is_ok(), (0..4).all(|code| codes.contains(&code)));
+        if let Ok(name) = Name::new(&name) {
+            let mut text = String::new();
+            DataHeader::new().with_name(name).write([[1_i8, -1]], &mut text).unwrap();
+            let data = Data::<2>::read(&text).unwrap();
+            prop_assert_eq!(data.name(), name.as_str());
+            prop_assert!(data.frames().eq([[1, -1]]));
+        }
+    }
+}
