@@ -214,7 +214,12 @@ fn follows<T: RealField + Copy>(
             numbers.mostly(3.0),
         ],
     );
-    let tolerance = numbers.mostly(1e-3 * span);
+    let mut tolerance: T = numbers.mostly(1e-3 * span);
+    // As fine as this is refused, or takes a minute of waypoints.
+    let is_fine = wide(tolerance) < 1e-6 * span;
+    if is_fine && wide(tolerance) > 64.0 * wide(delta.tolerance()) {
+        tolerance = nalgebra::convert(1e-6 * span);
+    }
     for path in [Path::line(near, to), arc].into_iter().filter_map(read) {
         finite([&path.length()])?;
         let share: T = numbers.mostly(0.5);
