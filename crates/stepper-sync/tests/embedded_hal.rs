@@ -9,7 +9,7 @@ use core::{cell::RefCell, convert::Infallible, fmt};
 use std::collections::HashMap;
 
 use embedded_hal::delay::DelayNs;
-use embedded_hal::digital::{Error, ErrorKind, ErrorType, OutputPin};
+use embedded_hal::digital::{Error, ErrorKind, ErrorType, OutputPin, PinState};
 use stepper_sync::embedded_hal::{StepDir, StepDirError, StepDirTiming, WindingPins};
 use stepper_sync::{Direction, Level, Phases, Polarity, Stepping, Wiring};
 
@@ -109,6 +109,9 @@ fn windings_go_off_before_others_go_on() {
     motor.release().unwrap();
     assert_eq!(board.take(), "A+- A-- B+- B--");
     assert_eq!(motor.phase(), phases.start());
+    // The dead time runs from the release: the next phase may be the other half of a bridge.
+    motor.step(0, &mut board).unwrap();
+    assert_eq!(board.take(), "7 A++ B++");
     motor.step(0, &mut board).unwrap();
     assert_eq!(board.take(), "A++ B++");
 }
@@ -160,6 +163,95 @@ impl OutputPin for Broken {
     fn set_high(&mut self) -> Result<(), Gone> {
         Err(Gone)
     }
+}
+
+/// A pin that refuses its n-th settings.
+struct Flaky {
+    pin: Pin,
+    refused: &'static [usize],
+    settings: usize,
+}
+
+impl Flaky {
+    fn new(pin: Pin, refused: &'static [usize]) -> Self {
+        Self {
+            pin,
+            refused,
+            settings: 0,
+        }
+    }
+
+    fn set(&mut self, state: PinState) -> Result<(), Gone> {
+        self.settings += 1;
+        if self.refused.contains(&self.settings) {
+            self.pin.board.log("x");
+            return Err(Gone);
+        }
+        self.pin.set_state(state).map_err(|never| match never {})
+    }
+}
+
+impl ErrorType for Flaky {
+    type Error = Gone;
+}
+
+impl OutputPin for Flaky {
+    fn set_low(&mut self) -> Result<(), Gone> {
+        self.set(PinState::Low)
+    }
+
+    fn set_high(&mut self) -> Result<(), Gone> {
+        self.set(PinState::High)
+    }
+}
+
+#[test]
+fn a_pulse_that_did_not_end_is_ended_before_the_next() {
+    let mut board = Board::default();
+    let step_pin = Flaky::new(board.pin("s"), &[2]);
+    let mut motor = StepDir::new(step_pin, board.pin("d"), TIMING);
+    let forward = Some(Direction::Positive);
+    assert!(motor.step(forward, &mut board).is_err());
+    assert_eq!(board.take(), "d+ 33 s+ 11 x");
+    // Without the edge down there would be none up: a step less.
+    motor.step(forward, &mut board).unwrap();
+    assert_eq!(board.take(), "s- 22 s+ 11 s- 22");
+    motor.step(forward, &mut board).unwrap();
+    assert_eq!(board.take(), "s+ 11 s- 22");
+}
+
+#[test]
+fn a_direction_that_was_not_set_does_not_forget_the_pulse_before() {
+    let mut board = Board::default();
+    let direction_pin = Flaky::new(board.pin("d"), &[2]);
+    let mut motor = StepDir::new(board.pin("s"), direction_pin, TIMING);
+    motor
+        .set_direction(Direction::Positive, &mut board)
+        .unwrap();
+    assert!(
+        motor
+            .set_direction(Direction::Negative, &mut board)
+            .is_err()
+    );
+    motor.set_level(Level::High).unwrap();
+    motor.set_level(Level::Low).unwrap();
+    board.take();
+    motor
+        .set_direction(Direction::Negative, &mut board)
+        .unwrap();
+    assert_eq!(board.take(), "44 d- 33");
+}
+
+#[test]
+fn other_levels_are_set_even_where_the_direction_stays() {
+    let mut board = Board::default();
+    let mut motor = StepDir::new(board.pin("s"), board.pin("d"), TIMING);
+    let forward = Some(Direction::Positive);
+    motor.step(forward, &mut board).unwrap();
+    let mut motor = motor.with_polarity(Polarity::ActiveHigh, Polarity::ActiveLow);
+    board.take();
+    motor.step(forward, &mut board).unwrap();
+    assert_eq!(board.take(), "44 d- 33 s+ 11 s- 22");
 }
 
 #[test]

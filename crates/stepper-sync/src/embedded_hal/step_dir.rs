@@ -1,3 +1,5 @@
+//! Motors behind a step and a direction pin.
+
 use crate::{Direction, Level, Polarity};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{OutputPin, PinState};
@@ -85,6 +87,10 @@ pub struct StepDir<S, D> {
     step_polarity: Polarity,
     direction_polarity: Polarity,
     set: Option<Direction>,
+    /// A pulse has begun since the last change of direction.
+    pulsed: bool,
+    /// The step pin did not follow.
+    unsure: bool,
 }
 
 impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
@@ -98,15 +104,19 @@ impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
             step_polarity: Polarity::ActiveHigh,
             direction_polarity: Polarity::ActiveHigh,
             set: None,
+            pulsed: false,
+            unsure: false,
         }
     }
 
-    /// The same with other levels.
+    /// The same with other levels, which the next step or direction sets.
     #[must_use]
     pub fn with_polarity(self, step: Polarity, direction: Polarity) -> Self {
         Self {
             step_polarity: step,
             direction_polarity: direction,
+            set: None,
+            unsure: self.unsure || step != self.step_polarity,
             ..self
         }
     }
@@ -124,8 +134,10 @@ impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
         if self.set == Some(direction) {
             return Ok(());
         }
-        if self.set.take().is_some() {
+        self.set = None;
+        if self.pulsed {
             delay.delay_ns(self.timing.hold_ns);
+            self.pulsed = false;
         }
         let level = level(self.direction_polarity, direction == Direction::Positive);
         self.direction
@@ -142,13 +154,18 @@ impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
     /// [`StepDirError::Step`].
     pub fn set_level(&mut self, edge: Level) -> Result<(), StepDirError<S::Error, D::Error>> {
         let level = level(self.step_polarity, edge == Level::High);
-        self.step.set_state(level).map_err(StepDirError::Step)
+        self.pulsed |= edge == Level::High;
+        self.unsure = true;
+        self.step.set_state(level).map_err(StepDirError::Step)?;
+        self.unsure = false;
+        Ok(())
     }
 
     /// Makes one step and waits until the next may come; nothing for `None`.
     ///
     /// # Errors
     /// [`StepDirError`]; after [`StepDirError::Step`] it is not known whether the motor has stepped.
+    /// The next step then begins by ending the pulse.
     pub fn step(
         &mut self,
         direction: Option<Direction>,
@@ -157,9 +174,19 @@ impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
         let Some(direction) = direction else {
             return Ok(());
         };
+        if self.unsure {
+            self.end_pulse(delay)?;
+        }
         self.set_direction(direction, delay)?;
         self.set_level(Level::High)?;
         delay.delay_ns(self.timing.pulse_ns);
+        self.end_pulse(delay)
+    }
+
+    fn end_pulse(
+        &mut self,
+        delay: &mut impl DelayNs,
+    ) -> Result<(), StepDirError<S::Error, D::Error>> {
         self.set_level(Level::Low)?;
         delay.delay_ns(self.timing.pause_ns);
         Ok(())

@@ -1,3 +1,5 @@
+//! Motors on four winding pins.
+
 use crate::{Phase, Phases};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{OutputPin, PinState};
@@ -30,6 +32,8 @@ pub struct WindingPins<P> {
     phase: Phase,
     // Windings that may be on. All, until the pins have been set.
     on: u8,
+    // Windings went off, and no dead time has been waited since.
+    released: bool,
     dead_time_ns: u32,
 }
 
@@ -42,6 +46,7 @@ impl<P: OutputPin> WindingPins<P> {
             phases,
             phase: phases.start(),
             on: 0xF,
+            released: false,
             dead_time_ns,
         }
     }
@@ -61,7 +66,11 @@ impl<P: OutputPin> WindingPins<P> {
         if off != 0 {
             self.switch(off, false)?;
             self.on &= wanted;
+            self.released = true;
+        }
+        if self.released {
             delay.delay_ns(self.dead_time_ns);
+            self.released = false;
         }
         // Also those that are on: an error may have left them off.
         self.on |= wanted;
@@ -87,6 +96,7 @@ impl<P: OutputPin> WindingPins<P> {
     /// That of a pin.
     pub fn release(&mut self) -> Result<(), P::Error> {
         self.switch(0xF, false)?;
+        self.released |= self.on != 0;
         self.on = 0;
         Ok(())
     }
