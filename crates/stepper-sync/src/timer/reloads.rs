@@ -34,6 +34,12 @@ impl Timer {
     /// The reloads of an axis on this timer, from its intervals: an
     /// [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp).
     ///
+    /// A value that the handler writes into the counter, or into a compare register without a
+    /// buffer, is for the period that has just begun. A register from which hardware has reloaded
+    /// already when the handler comes (`SysTick`, CMSDK, 8052 timer 2, MCS-51 mode 2, STM32 with
+    /// preload, RP2040 PWM) is for the period after: write the first value before the start, the
+    /// second right after it, and go on one ahead.
+    ///
     /// # Examples
     /// ```
     /// use stepper_sync::{Timer, Trains};
