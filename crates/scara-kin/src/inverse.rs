@@ -61,8 +61,8 @@ impl<T: RealField + Copy> Arm<T> {
     /// The factors are exact differences, so nothing cancels at the rim, at the fold,
     /// for equal links or for very unequal ones: `forward(inverse(p))` is within 7 machine
     /// epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
-    /// made is never refused: up to [`tolerance`](Self::tolerance) past an edge counts
-    /// as on it, for limits too.
+    /// made of allowed joints is never refused: up to [`tolerance`](Self::tolerance) past an
+    /// edge counts as on it, for limits too.
     ///
     /// Angles are in radians at the whole turn nearest to the middle of their range.
     ///
