@@ -25,7 +25,7 @@ use artefacts::{assert_all_or_none, assert_refused, run_into};
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("examples/engrave")
+        .join("machines/engraver")
         .join(name)
 }
 
@@ -252,7 +252,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             &["--tolerance", "x"],
             "invalid value 'x' for '--tolerance <MM>'",
         ),
-        (&["--placement", "1e30,0,0,1e30,0,0"], "too far"),
+        (
+            &["--placement", "1e30,0,0,1e30,0,0", "--keep-order"],
+            "too far",
+        ),
         (&["--machine", &slow], "slow.toml: [rapid]: start rate"),
         (
             &["--tolerance", "nan"],

@@ -14,12 +14,6 @@
 extern crate alloc;
 
 #[cfg(unix)]
-#[path = "../common/arguments.rs"]
-mod arguments;
-#[cfg(unix)]
-#[path = "../common/artefacts.rs"]
-mod artefacts;
-#[cfg(unix)]
 mod chart;
 #[cfg(unix)]
 mod drives;
@@ -36,9 +30,6 @@ mod report;
 #[cfg(unix)]
 mod run;
 #[cfg(unix)]
-#[path = "../common/settings.rs"]
-mod settings;
-#[cfg(unix)]
 mod table;
 #[cfg(unix)]
 mod unit;
@@ -51,7 +42,7 @@ use std::process::ExitCode;
 
 #[cfg(unix)]
 fn main() -> ExitCode {
-    let arguments = arguments::read().map_err(|error| anyhow::anyhow!("{error}"));
+    let arguments = command_line::arguments();
     match arguments.and_then(|arguments| run::run(&arguments)) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(2),

@@ -9,7 +9,6 @@ use pose2pulse::pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platfo
 use serde::Deserialize;
 
 use crate::run::Pose;
-use crate::settings;
 
 /// The platform file, as written.
 #[derive(Deserialize)]
@@ -113,7 +112,7 @@ pub(crate) const STEP_UDEG: u32 = 10;
 
 impl Settings {
     pub(crate) fn read(file: &Path) -> Result<Self> {
-        settings::read(file)
+        command_line::read(file, |text| Ok(machine_sim::input::parse_settings(text)?))
     }
 
     /// Where the body is, and where it goes.

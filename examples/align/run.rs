@@ -7,7 +7,6 @@ use anyhow::{Context, Result, anyhow, ensure};
 use clap::Parser;
 use pose2pulse::pose_pt::{Platform, PoseVector};
 
-use crate::artefacts::{Artefacts, write_json};
 use crate::drives::Examination;
 use crate::operator::Task;
 use crate::platform::Settings;
@@ -15,6 +14,7 @@ use crate::report::Report;
 use crate::table::{Mode, Planner, Table};
 use crate::world::World;
 use crate::{operator, picture};
+use command_line::{Artefacts, write_json};
 
 const PLATFORM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/align/platform.toml");
 

@@ -10,10 +10,6 @@
 //!
 //! `cargo run --release --example dance -- [--score FILE] [--law LAW] [--out DIR]`
 
-#[path = "../common/arguments.rs"]
-mod arguments;
-#[path = "../common/artefacts.rs"]
-mod artefacts;
 mod law;
 mod picture;
 mod report;
@@ -25,11 +21,11 @@ use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Context as _, Result};
 use clap::Parser;
 use pose2pulse::pattern_codec::dance::{Choreography, Data, DataHeader, Score, Sizes};
 
-use artefacts::{Artefacts, write_json};
+use command_line::Artefacts;
 use law::Law;
 use report::Report;
 use simulation::{Firmware, simulate};
@@ -61,9 +57,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let danced = arguments::read()
-        .map_err(|error| anyhow!("{error}"))
-        .and_then(|args| dance(&args));
+    let danced = command_line::arguments().and_then(|args| dance(&args));
     match danced {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(2),
@@ -101,7 +95,7 @@ fn dance(args: &Args) -> Result<bool> {
         &danced,
         &other,
     )?;
-    write_json(artefacts.create("report.json")?, &report)?;
+    artefacts.write_json("report.json", &report)?;
     artefacts.keep()?;
     report
         .write_summary(std::io::stdout().lock(), &args.score, &args.out)

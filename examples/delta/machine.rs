@@ -8,8 +8,6 @@ use pose2pulse::delta_kin::{Arm, ArmGeometry, Delta, JointRange, Pace};
 use pose2pulse::stepper_sync::StepScale;
 use serde::Deserialize;
 
-use crate::settings;
-
 /// The geometry file, as written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,7 +68,9 @@ pub(crate) struct Machine {
 
 impl Machine {
     pub(crate) fn read(file: &Path) -> Result<Self> {
-        Self::check(&settings::read(file)?).with_context(|| file.display().to_string())
+        command_line::read(file, |text| {
+            Self::check(&machine_sim::input::parse_settings(text)?)
+        })
     }
 
     fn check(settings: &Settings) -> Result<Self> {

@@ -13,21 +13,13 @@
 //!
 //! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--port PATH] [--out DIR]`
 
-#[path = "../common/arguments.rs"]
-mod arguments;
-#[path = "../common/artefacts.rs"]
-mod artefacts;
 mod command;
 mod drive;
 mod input;
 mod machine;
-#[path = "../common/notes.rs"]
-mod notes;
 mod picture;
 mod report;
 mod session;
-#[path = "../common/settings.rs"]
-mod settings;
 mod simulation;
 
 use std::io::Write;
@@ -37,11 +29,11 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, anyhow};
 use clap::Parser;
 
-use artefacts::{Artefacts, write_json};
+use command_line::Artefacts;
 use drive::seconds;
 use input::Terminal;
 use machine::Machine;
-use notes::Notes;
+use machine_sim::input::Notes;
 use report::{Report, Tick};
 use session::{Outcome, Session};
 
@@ -69,9 +61,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let served = arguments::read()
-        .map_err(|error| anyhow!("{error}"))
-        .and_then(|args| run(&args));
+    let served = command_line::arguments().and_then(|args| run(&args));
     match served {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -120,7 +110,7 @@ fn run(args: &Args) -> Result<()> {
         },
     };
     picture::write(artefacts.create("delta.svg")?, &machine, &outcome, &ticked)?;
-    write_json(artefacts.create("report.json")?, &report)?;
+    artefacts.write_json("report.json", &report)?;
     artefacts.keep()?;
     for note in &report.notes {
         eprintln!("note: {}: {note}", args.input.display());

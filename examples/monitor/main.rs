@@ -15,8 +15,6 @@
 //! 0.009000 < 10
 //! ```
 
-#[path = "../common/arguments.rs"]
-mod arguments;
 #[path = "../station/preset.rs"]
 mod preset;
 #[path = "../station/text.rs"]
@@ -65,7 +63,10 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match arguments::read().and_then(|options| run(&options)) {
+    match command_line::arguments()
+        .map_err(Into::into)
+        .and_then(|options| run(&options))
+    {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("monitor: {error}");

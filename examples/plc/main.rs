@@ -10,9 +10,6 @@
 //! PLC, bytes) and `report.json`.
 
 #[cfg(unix)]
-#[path = "../common/arguments.rs"]
-mod arguments;
-#[cfg(unix)]
 mod line;
 #[cfg(unix)]
 mod party;
@@ -23,7 +20,10 @@ use std::process::ExitCode;
 
 #[cfg(unix)]
 fn main() -> ExitCode {
-    match arguments::read().and_then(|options| run::run(&options)) {
+    match command_line::arguments()
+        .map_err(Into::into)
+        .and_then(|options| run::run(&options))
+    {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("plc: {error}");

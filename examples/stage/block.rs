@@ -3,8 +3,8 @@
 use anyhow::{Result, bail, ensure};
 
 use crate::codes::{self, Code, Mode};
-use crate::notes::Notes;
 use crate::words::Word;
+use machine_sim::input::Notes;
 
 /// Beyond it, no curve is the stage's.
 const LARGEST_MM: f64 = 100_000.0;

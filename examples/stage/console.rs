@@ -8,7 +8,7 @@ use kurbo::{Point, Vec2};
 
 use crate::controller::Controller;
 use crate::interpreter::{Command, Interpreter};
-use crate::notes::Notes;
+use machine_sim::input::Notes;
 
 /// One press of a key.
 const JOG_MM: f64 = 1.0;

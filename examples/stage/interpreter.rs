@@ -8,8 +8,8 @@ use crate::arc::{ARC_TOLERANCE_MM, Arc, Centre, SAME_MM};
 use crate::block::Block;
 use crate::codes::{self, Code, Mode, Plane};
 use crate::geometry::{Motion, Shape};
-use crate::notes::Notes;
 use crate::words;
+use machine_sim::input::Notes;
 
 /// G0.
 pub(crate) const RAPID_MM_S: f64 = 50.0;

@@ -10,19 +10,12 @@
 //! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
 
 mod arc;
-#[path = "../common/arguments.rs"]
-mod arguments;
-#[expect(dead_code, reason = "nothing is read back here")]
-#[path = "../common/artefacts.rs"]
-mod artefacts;
 mod block;
 mod codes;
 mod console;
 mod controller;
 mod geometry;
 mod interpreter;
-#[path = "../common/notes.rs"]
-mod notes;
 mod picture;
 mod plan;
 mod program;
@@ -37,7 +30,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Parser;
 
-use artefacts::{Artefacts, write_json};
+use command_line::Artefacts;
 use controller::Controller;
 use plan::PathRule;
 use program::Program;
@@ -82,7 +75,7 @@ fn share(text: &str) -> Result<f64> {
 
 fn main() -> ExitCode {
     let run = || -> Result<()> {
-        let args: Args = arguments::read().map_err(|error| anyhow::anyhow!("{error}"))?;
+        let args: Args = command_line::arguments()?;
         stage(&args)
     };
     match run() {
@@ -119,7 +112,7 @@ fn stage(args: &Args) -> Result<()> {
     };
     let run = controller.finish(notes)?;
     picture::write(artefacts.create("stage.svg")?, &run)?;
-    write_json(artefacts.create("report.json")?, &run.report)?;
+    artefacts.write_json("report.json", &run.report)?;
     artefacts.keep()?;
     report::summary(std::io::stdout().lock(), &run.report, &args.out).context("standard output")
 }

@@ -5,8 +5,8 @@ use anyhow::{Context, Result};
 use crate::codes;
 use crate::geometry::Motion;
 use crate::interpreter::{Command, Interpreter};
-use crate::notes::Notes;
 use crate::words;
+use machine_sim::input::Notes;
 
 /// A motion, and the number of its line from 1.
 pub(crate) struct Line {

@@ -19,8 +19,6 @@
 //! the exit code 1. The program ends at the end of the input, after
 //! the outcome of the last job; with `--listen` it stays that much longer.
 
-#[path = "../common/arguments.rs"]
-mod arguments;
 mod preset;
 mod text;
 
@@ -78,7 +76,10 @@ enum PriorityName {
 type Line = (usize, Result<Vec<u8>, String>);
 
 fn main() -> ExitCode {
-    match arguments::read().and_then(|options| run(&options)) {
+    match command_line::arguments()
+        .map_err(Into::into)
+        .and_then(|options| run(&options))
+    {
         Ok(code) => code,
         Err(error) => {
             eprintln!("station: {error}");

@@ -1,0 +1,225 @@
+//! The machine: from its settings to checked geometry, steps and timing.
+
+mod settings;
+
+use anyhow::{Context, Result, ensure};
+use nalgebra::Point2;
+use pattern_codec::engraving::{Format, PerAxis};
+use scara_kin::{Arm, JointRange, Joints, Limits, TangentTool};
+use stepper_sync::{Ramp, RampLimits, Rate, StepScale, Timer};
+
+pub(crate) use self::settings::Settings;
+use self::settings::{DiscSettings, JointSettings, RapidSettings, TimerSettings, VerticalSettings};
+use crate::placement::Bed;
+
+/// The two joints of the arm as the steppers see them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointScale {
+    pub(crate) rad_per_pulse: f64,
+    pub(crate) home_rad: f64,
+    scale: StepScale,
+}
+
+impl JointScale {
+    fn new(step_deg: f64, gear_ratio: f64, home_deg: f64) -> Result<Self> {
+        positive("step_deg", step_deg)?;
+        positive("gear_ratio", gear_ratio)?;
+        finite("home_deg", home_deg)?;
+        let rad_per_pulse = step_deg.to_radians() / gear_ratio;
+        Ok(Self {
+            rad_per_pulse,
+            home_rad: home_deg.to_radians(),
+            scale: StepScale::new(rad_per_pulse.recip())?,
+        })
+    }
+
+    /// The whole step nearest to an angle, counted from home.
+    pub(crate) fn to_pulses(self, angle_rad: f64) -> Result<i32> {
+        Ok(self.scale.to_steps(angle_rad - self.home_rad)?)
+    }
+
+    /// The angle at a step.
+    pub(crate) fn to_rad(self, pulses: i32) -> f64 {
+        self.home_rad + f64::from(pulses) * self.rad_per_pulse
+    }
+}
+
+/// The machine, checked: arm, steppers, timer, format of the pattern.
+#[derive(Debug, Clone)]
+pub struct Machine {
+    pub(crate) settings: Settings,
+    pub(crate) arm: Arm,
+    pub(crate) theta1: JointScale,
+    pub(crate) theta2: JointScale,
+    pub(crate) theta3: JointScale,
+    pub(crate) disc: TangentTool,
+    /// Pulses from home down into the glass.
+    pub(crate) lift_pulses: i32,
+    pub(crate) format: Format,
+    pub(crate) timer: Timer,
+    pub(crate) half_period_ticks: u64,
+    pub(crate) rapid: RampLimits,
+    pub(crate) bed: Bed,
+}
+
+impl Machine {
+    /// Reads a machine file, as `machine.toml` of this package.
+    ///
+    /// # Errors
+    /// What is wrong with it, and where.
+    pub fn parse(text: &str) -> Result<Self> {
+        Self::check(machine_sim::input::parse_settings(text)?)
+    }
+
+    /// Where a drawing is fitted in.
+    #[must_use]
+    pub const fn bed(&self) -> Bed {
+        self.bed
+    }
+
+    /// The controller's timer.
+    #[must_use]
+    pub const fn timer(&self) -> Timer {
+        self.timer
+    }
+
+    fn check(settings: Settings) -> Result<Self> {
+        let Settings {
+            arm,
+            theta1,
+            theta2,
+            theta3,
+            vertical,
+            timer,
+            rapid,
+            pattern,
+            bed,
+        } = &settings;
+        let limits = Limits {
+            shoulder: range(theta2).context("[theta2]")?,
+            elbow: range(theta1).context("[theta1]")?,
+        };
+        let timing = timing(timer).context("[timer]")?;
+        Ok(Self {
+            arm: Arm::new(arm.upper_mm, arm.fore_mm)
+                .and_then(|checked| checked.with_limits(limits).with_keep_out(arm.keep_out_mm))
+                .context("[arm]")?,
+            theta1: joint(theta1).context("[theta1]")?,
+            theta2: joint(theta2).context("[theta2]")?,
+            theta3: JointScale::new(theta3.step_deg, theta3.gear_ratio, theta3.home_deg)
+                .context("[theta3]")?,
+            disc: disc(theta3).context("[theta3]")?,
+            lift_pulses: lift(vertical).context("[vertical]")?,
+            format: Format::new()
+                .with_axis_codes(pattern.axis_codes)
+                .with_byte_order(pattern.byte_order),
+            timer: timing.0,
+            half_period_ticks: timing.1,
+            rapid: ramp(rapid, timing.0).context("[rapid]")?,
+            bed: bed.check().context("[bed]")?,
+            settings,
+        })
+    }
+
+    /// A tick of the timer, in seconds.
+    pub(crate) fn tick_s(&self) -> f64 {
+        let rate = self.timer.tick_rate();
+        f64::from(rate.denominator()) / f64::from(rate.numerator())
+    }
+
+    /// The arm's joints at a position of the steppers.
+    pub(crate) fn joints(&self, position: PerAxis<i32>) -> Joints {
+        Joints::new(
+            self.theta2.to_rad(position.theta2),
+            self.theta1.to_rad(position.theta1),
+        )
+    }
+
+    /// How far the tool can be from where rounding to whole steps has it, in mm: half a
+    /// step of each joint through the Jacobian at the tool's position, and the second order.
+    pub(crate) fn half_step_mm(&self, tool: Point2<f64>) -> f64 {
+        let (upper, fore) = (self.arm.upper(), self.arm.fore());
+        let shoulder = self.theta2.rad_per_pulse / 2.0;
+        let elbow = self.theta1.rad_per_pulse / 2.0;
+        let curved = upper * shoulder.powi(2) + fore * (shoulder + elbow).powi(2);
+        shoulder * tool.coords.norm() + elbow * fore + curved / 2.0
+    }
+}
+
+fn joint(settings: &JointSettings) -> Result<JointScale> {
+    let range = settings.min_deg..=settings.max_deg;
+    ensure!(
+        range.contains(&settings.home_deg),
+        "home_deg = {} is not within min_deg..=max_deg, {range:?}",
+        settings.home_deg
+    );
+    JointScale::new(settings.step_deg, settings.gear_ratio, settings.home_deg)
+}
+
+fn disc(settings: &DiscSettings) -> Result<TangentTool> {
+    let corner = TangentTool::new(settings.corner_deg.to_radians());
+    let disc = corner.with_context(|| format!("corner_deg = {}", settings.corner_deg))?;
+    let home = disc.starting_at(settings.home_deg.to_radians());
+    home.with_context(|| format!("home_deg = {}", settings.home_deg))
+}
+
+fn range(settings: &JointSettings) -> Result<JointRange> {
+    let (min, max) = (settings.min_deg, settings.max_deg);
+    JointRange::new(min.to_radians(), max.to_radians())
+        .with_context(|| format!("min_deg = {min}, max_deg = {max}"))
+}
+
+fn lift(settings: &VerticalSettings) -> Result<i32> {
+    positive("mm_per_pulse", settings.mm_per_pulse)?;
+    positive("lift_mm", settings.lift_mm)?;
+    let pulses = StepScale::new(settings.mm_per_pulse.recip())?.to_steps(settings.lift_mm)?;
+    ensure!(
+        pulses > 0,
+        "lift_mm = {} is less than half a pulse",
+        settings.lift_mm
+    );
+    Ok(pulses)
+}
+
+fn timing(settings: &TimerSettings) -> Result<(Timer, u64)> {
+    let timer = Timer::mcs51_mode1(settings.crystal_hz).context("crystal_hz")?;
+    let rate = Rate::from_millihertz(millihertz("process_hz", settings.process_hz)?)?;
+    let ticks = timer.half_period(rate).context("process_hz")?.nearest();
+    Ok((timer, ticks))
+}
+
+fn ramp(settings: &RapidSettings, timer: Timer) -> Result<RampLimits> {
+    let accel = settings.accel_hz_per_s;
+    let limits = RampLimits {
+        start_millihertz: millihertz("start_hz", settings.start_hz)?,
+        max_millihertz: millihertz("max_hz", settings.max_hz)?,
+        accel_steps_per_s2: whole(accel)
+            .with_context(|| format!("accel_hz_per_s = {accel} is not within 1..=2147483647"))?,
+    };
+    // Whether the rates fit each other and the timer, before anything is planned.
+    Ramp::new([1], &limits, timer.tick_rate())?;
+    Ok(limits)
+}
+
+fn millihertz(name: &str, hz: f64) -> Result<u32> {
+    whole(hz * 1000.0).with_context(|| format!("{name} = {hz} is not within 0.001..=2147483 Hz"))
+}
+
+/// A number above zero that 31 bits hold, rounded.
+fn whole(value: f64) -> Option<u32> {
+    let whole = StepScale::new(1.0).ok()?.to_steps(value).ok()?;
+    u32::try_from(whole).ok().filter(|whole| *whole > 0)
+}
+
+pub(crate) fn positive(name: &str, value: f64) -> Result<()> {
+    ensure!(
+        value.is_finite() && value > 0.0,
+        "{name} = {value} is not above zero"
+    );
+    Ok(())
+}
+
+pub(crate) fn finite(name: &str, value: f64) -> Result<()> {
+    ensure!(value.is_finite(), "{name} = {value} is not finite");
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! The machine file, as written: TOML, lengths in mm, angles in degrees, rates in pulses per second.
+
+use pattern_codec::engraving::{AxisCodes, ByteOrder};
+use serde::{Deserialize, Serialize};
+
+use crate::placement::Bed;
+
+/// The machine file.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Settings {
+    pub(super) arm: ArmSettings,
+    pub(super) theta2: JointSettings,
+    pub(super) theta1: JointSettings,
+    pub(super) theta3: DiscSettings,
+    pub(super) vertical: VerticalSettings,
+    pub(super) timer: TimerSettings,
+    pub(super) rapid: RapidSettings,
+    #[serde(default)]
+    pub(super) pattern: PatternSettings,
+    pub(super) bed: Bed,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArmSettings {
+    pub(super) upper_mm: f64,
+    pub(super) fore_mm: f64,
+    #[serde(default)]
+    pub(super) keep_out_mm: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct JointSettings {
+    pub(super) step_deg: f64,
+    pub(super) gear_ratio: f64,
+    pub(super) home_deg: f64,
+    pub(super) min_deg: f64,
+    pub(super) max_deg: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DiscSettings {
+    pub(super) step_deg: f64,
+    pub(super) gear_ratio: f64,
+    pub(super) home_deg: f64,
+    pub(super) corner_deg: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct VerticalSettings {
+    pub(super) mm_per_pulse: f64,
+    pub(super) lift_mm: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TimerSettings {
+    pub(super) crystal_hz: u32,
+    pub(super) process_hz: f64,
+}
+
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RapidSettings {
+    pub(super) start_hz: f64,
+    pub(super) max_hz: f64,
+    pub(super) accel_hz_per_s: f64,
+}
+
+#[derive(Debug, Clone, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct PatternSettings {
+    pub(super) axis_codes: AxisCodes,
+    pub(super) byte_order: ByteOrder,
+}
+
+impl Settings {
+    pub(crate) const fn mm_per_vertical_pulse(&self) -> f64 {
+        self.vertical.mm_per_pulse
+    }
+}

@@ -1,0 +1,193 @@
+//! The numbers of a run, for programs and for people.
+
+use core::fmt;
+
+use pattern_codec::engraving::{ByteOrder, PerAxis};
+use serde::Serialize;
+
+use crate::drawing::Drawing;
+use crate::machine::{Machine, Settings};
+use crate::plan::Plan;
+use crate::simulation::Run;
+
+/// `report.json`; displayed, a summary in lines.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report<'a> {
+    /// a b c d e f, from the drawing's user units to machine mm:
+    /// x' = ax + cy + e, y' = bx + dy + f.
+    placement: [f64; 6],
+    mm_per_unit: f64,
+    /// The same by the size that the drawing's file states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    own_mm_per_unit: Option<f64>,
+    /// What the drawing shows and is not engraved, or otherwise.
+    notes: &'a [String],
+    machine: MachineReport<'a>,
+    strokes: usize,
+    length_mm: f64,
+    /// Of the lifted tool, in straight lines from home over all strokes and back.
+    travel_mm: f64,
+    records: u64,
+    fast_records: u64,
+    slow_records: u64,
+    bytes: u64,
+    pulses: PerAxis<u64>,
+    end_position: PerAxis<i32>,
+    duration_s: f64,
+    /// Of strokes, with the tool at full depth.
+    in_glass_s: f64,
+    /// Of this, the disc turns and the tool stands.
+    dwell_s: f64,
+    /// Min and max mean speed of the tool in a record that moves the arms.
+    tool_speed_mm_s: Option<[f64; 2]>,
+    tolerance_mm: f64,
+    max_deviation_mm: f64,
+    rms_deviation_mm: f64,
+    path_to_drawing_mm: f64,
+    drawing_to_path_mm: f64,
+    missing_mm: f64,
+    bound_mm: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct MachineReport<'a> {
+    upper_mm: f64,
+    fore_mm: f64,
+    rad_per_pulse: Joints,
+    home_rad: Joints,
+    mm_per_vertical_pulse: f64,
+    lift_pulses: i32,
+    axis_codes: PerAxis<u8>,
+    byte_order: ByteOrder,
+    direction_bit: &'a str,
+    half_period_ticks: u64,
+    tick_ns: f64,
+    settings: &'a Settings,
+}
+
+/// theta2 the upper arm against the body, theta1 the forearm against the upper arm,
+/// theta3 the disc against the forearm.
+#[derive(Debug, Clone, Serialize)]
+struct Joints {
+    theta1: f64,
+    theta2: f64,
+    theta3: f64,
+}
+
+impl<'a> Report<'a> {
+    /// The numbers of a run.
+    #[must_use]
+    pub fn new(machine: &'a Machine, drawing: &'a Drawing, plan: &Plan, run: &Run) -> Self {
+        let deviation = &run.deviation;
+        Self {
+            placement: plan.placement.0.as_coeffs(),
+            mm_per_unit: plan.placement.mm_per_unit(),
+            own_mm_per_unit: drawing.own_mm_per_unit(),
+            notes: drawing.notes(),
+            machine: MachineReport::new(machine),
+            strokes: plan.reference().outlines.len(),
+            length_mm: plan.length_mm,
+            travel_mm: plan.travel_mm,
+            records: run.records,
+            fast_records: plan.statistics.fast_records,
+            slow_records: plan.statistics.slow_records,
+            bytes: plan.statistics.bytes(),
+            pulses: run.pulses,
+            end_position: run.end,
+            duration_s: run.duration_s,
+            in_glass_s: run.tool_speed.in_glass_s,
+            dwell_s: run.tool_speed.dwell_s,
+            tool_speed_mm_s: run.tool_speed.range_mm_s,
+            tolerance_mm: plan.reference().tolerance_mm,
+            max_deviation_mm: run.max_deviation_mm(),
+            rms_deviation_mm: deviation.rms_mm,
+            path_to_drawing_mm: deviation.path_to_drawing_mm,
+            drawing_to_path_mm: deviation.drawing_to_path_mm,
+            missing_mm: deviation.missing_mm,
+            bound_mm: plan.reference().bound_mm(),
+        }
+    }
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} strokes, {:.0} mm; {:.0} mm of travel above the glass",
+            self.strokes, self.length_mm, self.travel_mm
+        )?;
+        let scale = self.mm_per_unit;
+        write!(f, "placed: a unit of the drawing is {scale:.4} mm")?;
+        match self.own_mm_per_unit {
+            Some(own) => writeln!(f, ", {:.4} times its own size", scale / own)?,
+            None => writeln!(f, "; the file states no size in mm")?,
+        }
+        writeln!(
+            f,
+            "pattern.bin: {} records ({} fast, {} slow), {} bytes",
+            self.records, self.fast_records, self.slow_records, self.bytes
+        )?;
+        let pulses = &self.pulses;
+        writeln!(
+            f,
+            "simulated from the bytes alone: {} + {} + {} + {} pulses, {:.1} s",
+            pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical, self.duration_s
+        )?;
+        if let Some([min, max]) = self.tool_speed_mm_s {
+            writeln!(
+                f,
+                "tool: {min:.1} to {max:.1} mm/s along the strokes: the format has one pulse \
+                 interval"
+            )?;
+        }
+        writeln!(
+            f,
+            "disc: turns for {:.1} of the {:.1} s in the glass, and the tool dwells there",
+            self.dwell_s, self.in_glass_s
+        )?;
+        let is_kept = self.max_deviation_mm <= self.bound_mm;
+        writeln!(
+            f,
+            "deviation: {:.3} mm max, {:.3} mm rms; bound {:.3} mm: {}",
+            self.max_deviation_mm,
+            self.rms_deviation_mm,
+            self.bound_mm,
+            if is_kept { "kept" } else { "NOT KEPT" }
+        )?;
+        if self.missing_mm > 0.0 {
+            writeln!(f, "not engraved: {:.1} mm of the drawing", self.missing_mm)?;
+        }
+        Ok(())
+    }
+}
+
+impl<'a> MachineReport<'a> {
+    fn new(machine: &'a Machine) -> Self {
+        let joints = [machine.theta1, machine.theta2, machine.theta3];
+        let [theta1, theta2, theta3] = joints.map(|joint| joint.rad_per_pulse);
+        let rad_per_pulse = Joints {
+            theta1,
+            theta2,
+            theta3,
+        };
+        let [theta1, theta2, theta3] = joints.map(|joint| joint.home_rad);
+        Self {
+            upper_mm: machine.arm.upper(),
+            fore_mm: machine.arm.fore(),
+            rad_per_pulse,
+            home_rad: Joints {
+                theta1,
+                theta2,
+                theta3,
+            },
+            mm_per_vertical_pulse: machine.settings.mm_per_vertical_pulse(),
+            lift_pulses: machine.lift_pulses,
+            axis_codes: machine.format.axis_codes.codes(),
+            byte_order: machine.format.byte_order,
+            direction_bit: "set for negative pulses",
+            half_period_ticks: machine.half_period_ticks,
+            tick_ns: 1e9 * machine.tick_s(),
+            settings: &machine.settings,
+        }
+    }
+}

@@ -1,0 +1,13 @@
+#![doc = include_str!("../README.md")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+mod figure;
+#[cfg(feature = "input")]
+pub mod input;
+mod profile;
+mod vcd;
+
+pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
+pub use self::profile::Profile;
+pub use self::vcd::{VcdError, VcdWriter, Wire};
