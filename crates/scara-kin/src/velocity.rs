@@ -74,14 +74,15 @@ impl<T: RealField + Copy> Arm<T> {
     /// per radian.
     ///
     /// ```text
-    /// σ₂ = 2 |det J| / (√(a + 2|det J|) + √(a - 2|det J|)),   a = Σ Jᵢⱼ²
+    /// σ₂ = 2 |det J| / (σ₁ + σ₂ + σ₁ - σ₂),   σ₁ ± σ₂ = √((J₁₁ ± J₂₂)² + (J₁₂ ∓ J₂₁)²)
     /// ```
     #[must_use]
     pub fn singularity_distance(&self, joints: Joints<T>) -> T {
-        let double_det = self.manipulability(joints) * two();
-        let a = self.jacobian(joints).norm_squared();
-        let sum = (a + double_det).sqrt() + (a - double_det).max(T::zero()).sqrt();
-        double_det / sum
+        let j = self.jacobian(joints);
+        // For det J < 0 sum and difference change places.
+        let sum = (j.m11 + j.m22).hypot(j.m12 - j.m21);
+        let difference = (j.m11 - j.m22).hypot(j.m12 + j.m21);
+        self.manipulability(joints) * two() / (sum + difference)
     }
 
     /// Tool velocity in length per second from joint rates (shoulder, elbow) in rad/s.

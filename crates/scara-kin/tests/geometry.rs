@@ -86,6 +86,20 @@ fn straight_and_folded_arms_have_no_joint_rates() {
     assert!(arm.singularity_distance(Joints::new(0.3, 0.0)).abs() < ROUNDING);
 }
 
+/// With links of √2 : 1 and the elbow at 135° the Jacobian is isotropic: the tool moves equally
+/// well in all directions, by one forearm per radian.
+#[test]
+fn isotropic_poses_are_found_to_the_last_digits() {
+    for fore in [100.0, 93.7, 0.31] {
+        let arm = Arm::new(fore * 2f64.sqrt(), fore).unwrap();
+        for shoulder in (0..100).map(|k| f64::from(k) * 0.07) {
+            let distance = arm.singularity_distance(Joints::new(shoulder, 0.75 * PI));
+            let error = (distance - fore) / fore;
+            assert!(error.abs() < 4.0 * f64::EPSILON, "{shoulder}: {error:e}");
+        }
+    }
+}
+
 #[test]
 fn the_disc_refuses_what_has_no_heading() {
     let arm = Arm::new(132.0, 132.0).unwrap();
