@@ -59,7 +59,7 @@ impl<T: RealField + Copy> Arm<T> {
     /// ```
     ///
     /// The factors are exact differences, so nothing cancels at the rim, at the fold,
-    /// for equal links or for very unequal ones: `forward(inverse(p))` is within 7 machine
+    /// for equal links or for very unequal ones: `forward(inverse(p))` is within 8 machine
     /// epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
     /// made of allowed joints is never refused: up to [`tolerance`](Self::tolerance) past an
     /// edge counts as on it, for limits too.

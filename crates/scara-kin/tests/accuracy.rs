@@ -14,7 +14,7 @@ use twofloat::TwoFloat;
 
 /// The documented figures, in machine epsilons of reach and base distance: tool errors of the
 /// inverse alone, of forward after inverse, and of forward alone.
-const DOCUMENTED: [f64; 3] = [6.0, 7.0, 4.0];
+const DOCUMENTED: [f64; 3] = [7.0, 8.0, 4.0];
 const NAMES: [&str; 3] = ["inverse", "forward of inverse", "forward"];
 
 /// The generator `SplitMix64`.
