@@ -3,9 +3,7 @@
 use std::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{
-    Delta, Follow, ForwardError, InverseError, Pace, Path, Pose, PoseError, Waypoint,
-};
+use delta_kin::{Delta, Follow, ForwardError, InverseError, Pace, Path, Pose, PoseError, Waypoint};
 use no_panic::no_panic;
 
 #[no_panic]
