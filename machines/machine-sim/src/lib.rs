@@ -6,8 +6,13 @@ mod figure;
 #[cfg(feature = "input")]
 pub mod input;
 mod profile;
+mod random;
+mod scale;
+mod stepper;
 mod vcd;
 
 pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
 pub use self::profile::Profile;
+pub use self::scale::{LimitSwitches, Scale};
+pub use self::stepper::Stepper;
 pub use self::vcd::{VcdError, VcdWriter, Wire};

@@ -11,7 +11,7 @@ const RIGHT_PX: f64 = 14.0;
 /// Between two ticks at least.
 const TICKS_PX: [f64; 2] = [62.0, 30.0];
 /// Mean width of a character, as a fraction of the font's size.
-const CHARACTER: f64 = 0.56;
+const CHARACTER: f64 = 0.58;
 
 /// Estimated width of a text.
 pub(super) fn text_px(text: &str, font_px: f64) -> f64 {

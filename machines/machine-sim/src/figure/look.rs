@@ -86,7 +86,7 @@ pub struct Stroke {
 
 impl Stroke {
     /// What was asked for: wide and light, below everything else.
-    pub const COMMANDED: Self = Self::solid(Colour::rgb(196, 220, 242), 4.0);
+    pub const COMMANDED: Self = Self::solid(Colour::rgb(184, 213, 240), 5.0);
     /// What a machine did.
     pub const ACTUAL: Self = Self::solid(Colour::rgb(140, 29, 24), 1.4);
     /// What it would have done otherwise.
