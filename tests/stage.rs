@@ -1,6 +1,5 @@
 //! The example `stage` from outside: its files, checked by other code than its own.
 #![cfg(test)]
-#![cfg(feature = "pulse-interp")]
 
 #[path = "tools/artefacts.rs"]
 mod artefacts;
@@ -28,7 +27,7 @@ const DRAWINGS: [&str; 3] = ["test", "rosette", "link"];
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("examples/stage/drawings")
+        .join("machines/stage/drawings")
         .join(name)
         .with_extension("gcode")
 }
@@ -37,7 +36,11 @@ fn shipped(name: &str) -> PathBuf {
 fn shipped_drawings_end_where_they_are_programmed_to() {
     let ends = [[20.0, 20.0], [60.0, 50.0], [15.0, 20.0]];
     for (drawing, end) in DRAWINGS.into_iter().zip(ends) {
-        for (rule, most_mm) in [("textbook", 0.02), ("centred", 0.015), ("bresenham", 0.015)] {
+        for (rule, most_mm) in [
+            ("published", 0.02),
+            ("nearest", 0.015),
+            ("bresenham", 0.015),
+        ] {
             let file = shipped(drawing);
             let run = Run::of(&["--gcode", file.to_str().unwrap(), "--rule", rule]);
             let path = run.path();
@@ -61,7 +64,7 @@ fn shipped_drawings_end_where_they_are_programmed_to() {
 #[test]
 fn a_circle_is_a_circle_at_its_feed() {
     let gcode = "G21 G90\nG0 X80 Y50\nG3 I-20 F600\n";
-    for (rule, most_steps) in [("textbook", 1.0), ("centred", 0.7072), ("bresenham", 0.5)] {
+    for (rule, most_steps) in [("published", 1.0), ("nearest", 0.7072), ("bresenham", 0.5)] {
         let run = Run::of_text(gcode, &["--rule", rule]);
         let path = run.path();
         let begin = path
@@ -143,7 +146,7 @@ fn arcs_of_a_few_steps() {
         ("G3 I0.0049 J0.0049 F600", 8, 0.0145),
         ("G0 X0.0049 Y0.0049\nG3 I-0.0098 F600", 8, 0.0145),
     ] {
-        let run = Run::of_text(arc, &["--rule", "centred"]);
+        let run = Run::of_text(arc, &["--rule", "nearest"]);
         assert_eq!(run.path().len(), steps, "{arc}");
         let worst = run.number("/max_deviation_mm");
         assert!(worst < most_mm, "{arc}: {worst} mm");
@@ -158,7 +161,7 @@ fn arcs_off_the_grid_stay_as_close() {
         "G0 X10.0051 Y10.0051\nG3 X19.9949 Y19.9949 I4.9998 J4.9998 F600",
         "G0 X10.0049 Y10.0049\nG3 X20.0051 Y20.0051 I5.0001 J5.0001 F600",
     ] {
-        let run = Run::of_text(arc, &["--rule", "centred"]);
+        let run = Run::of_text(arc, &["--rule", "nearest"]);
         let worst = run.number("/max_deviation_mm");
         assert!(worst < 0.0155, "{arc}: {worst} mm");
     }
@@ -270,7 +273,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             &["--gcode", "nowhere.gcode"][..],
             "nowhere.gcode: No such file",
         ),
-        (&["--lose-steps", "1.5"], "not a share within 0..=1"),
+        (&["--lose-steps", "1.5"], "not a fraction within 0..=1"),
         (
             &["--lose-steps", "1"],
             "homing X: the switch has not closed within 15000 steps",

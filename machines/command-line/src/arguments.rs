@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Context as _, Result, anyhow, ensure};
 use clap::Parser;
 
 /// The options, or one line that says what is wrong with them. `--help` prints and exits.
@@ -20,6 +20,23 @@ pub fn arguments<O: Parser>() -> Result<O> {
             error.exit()
         }
     })
+}
+
+/// Reads a fraction within 0..=1, as 0.001 or 0.1%: for clap's `value_parser`.
+///
+/// # Errors
+/// It is no number, or outside of 0..=1.
+pub fn fraction(text: &str) -> Result<f64> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    let fraction = number.trim().parse::<f64>()? * unit;
+    ensure!(
+        (0.0..=1.0).contains(&fraction),
+        "not a fraction within 0..=1"
+    );
+    Ok(fraction)
 }
 
 /// Runs a program with its options; an error is one line on standard error and exit status 1.

@@ -175,9 +175,9 @@ impl<'a> Reader<'a> {
 
     /// `X1e-5` is one number to some programs, and X1 with the extruder's E-5 to a printer.
     fn no_exponent(&self, text: &str, column: usize) -> Result<()> {
-        let mut behind = self.rest.chars();
-        let is_exponent = matches!(behind.next(), Some('e' | 'E'))
-            && matches!(behind.next(), Some('0'..='9' | '+' | '-'));
+        let mut after = self.rest.chars();
+        let is_exponent = matches!(after.next(), Some('e' | 'E'))
+            && matches!(after.next(), Some('0'..='9' | '+' | '-'));
         ensure!(
             !is_exponent,
             "column {column}: {text}{}: a number has no exponent; a word E needs a space before it",

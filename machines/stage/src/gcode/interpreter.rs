@@ -2,17 +2,17 @@
 
 use anyhow::{Context, Result, bail, ensure};
 use kurbo::Point;
-use pose2pulse::pulse_interp::Turn;
+use pulse_interp::Turn;
 
-use crate::arc::{ARC_TOLERANCE_MM, Arc, Centre, SAME_MM};
-use crate::block::Block;
-use crate::codes::{self, Code, Mode, Plane};
-use crate::geometry::{Motion, Shape};
-use crate::words;
+use super::arc::{ARC_TOLERANCE_MM, Arc, Centre, SAME_MM};
+use super::block::Block;
+use super::codes::{self, Code, Mode, Plane};
+use super::words;
+use crate::motion::{Motion, Shape};
 use machine_sim::input::Notes;
 
 /// G0.
-pub(crate) const RAPID_MM_S: f64 = 50.0;
+const RAPID_MM_S: f64 = 50.0;
 /// What the motors can follow; the note on feeds above says it too.
 const FEEDS_MM_MIN: core::ops::RangeInclusive<f64> = 0.1..=6000.0;
 
@@ -85,7 +85,7 @@ impl Interpreter {
 
     /// A straight move from here, outside any program.
     pub(crate) fn jog(&self, to: Point) -> Motion {
-        self.line_to(to, RAPID_MM_S)
+        self.rapid_to(to)
     }
 
     /// The stage stands elsewhere than where the last line would have brought it.
@@ -93,12 +93,13 @@ impl Interpreter {
         self.at = at;
     }
 
-    const fn line_to(&self, to: Point, feed_mm_s: f64) -> Motion {
+    const fn rapid_to(&self, to: Point) -> Motion {
         Motion {
             from: self.at,
             to,
             shape: Shape::Line,
-            feed_mm_s,
+            feed_mm_s: RAPID_MM_S,
+            is_rapid: true,
         }
     }
 
@@ -119,7 +120,7 @@ impl Interpreter {
         } else {
             self.motion(block, notes)?.into_iter().collect()
         };
-        // What has no way needs no steps.
+        // What has no length needs no steps.
         let goes = |it: &Motion| !matches!(it.shape, Shape::Line) || it.from != it.to;
         Ok(Command::Moves(moves.into_iter().filter(goes).collect()))
     }
@@ -207,12 +208,12 @@ impl Interpreter {
 
     /// Over the point that the block names, in the axes that it names, or in all.
     fn return_to_reference(&mut self, block: &Block<'_>) -> Vec<Motion> {
-        let over = self.line_to(self.target(block), RAPID_MM_S);
+        let over = self.rapid_to(self.target(block));
         self.at = over.to;
         let all = block.names_no_axis();
         let zero = |letter: &str, at: f64| if all || block.has(letter) { 0.0 } else { at };
         let to = Point::new(zero("X", self.at.x), zero("Y", self.at.y));
-        let home = self.line_to(to, RAPID_MM_S);
+        let home = self.rapid_to(to);
         self.at = to;
         if all || block.has("Z") {
             self.z_mm = None;
@@ -276,9 +277,11 @@ impl Interpreter {
                 Shape::Line
             }
         };
-        let feed_mm_s = match mode {
-            Mode::Rapid | Mode::Cycle(_) => RAPID_MM_S,
-            Mode::Straight | Mode::Circular(_) => self.feed_mm_s()?,
+        let is_rapid = matches!(mode, Mode::Rapid | Mode::Cycle(_));
+        let feed_mm_s = if is_rapid {
+            RAPID_MM_S
+        } else {
+            self.feed_mm_s()?
         };
         let from = core::mem::replace(&mut self.at, to);
         Ok(Some(Motion {
@@ -286,6 +289,7 @@ impl Interpreter {
             to,
             shape,
             feed_mm_s,
+            is_rapid,
         }))
     }
 

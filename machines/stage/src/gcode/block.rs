@@ -2,8 +2,8 @@
 
 use anyhow::{Result, bail, ensure};
 
-use crate::codes::{self, Code, Mode};
-use crate::words::Word;
+use super::codes::{self, Code, Mode};
+use super::words::Word;
 use machine_sim::input::Notes;
 
 /// Beyond it, no curve is the stage's.
@@ -138,7 +138,7 @@ impl<'a> Block<'a> {
         self.words.iter().any(|word| letters.contains(word.letter))
     }
 
-    /// Whether anything is said of places.
+    /// Whether any coordinate is named.
     pub(crate) fn has_axes(&self) -> bool {
         self.has("XYZIJKR")
     }
@@ -153,7 +153,7 @@ impl<'a> Block<'a> {
         !self.names_no_axis() && !self.has("XY")
     }
 
-    /// The number behind a letter, in the program's unit.
+    /// The number after a letter, in the program's unit.
     pub(crate) fn value(&self, letter: char) -> Option<f64> {
         let word = self.words.iter().find(|word| word.letter == letter)?;
         word.number
@@ -234,7 +234,7 @@ const fn group(code: Code) -> Option<&'static str> {
     }
 }
 
-/// What is told of a word that moves neither X nor Y; nothing for a word of motions.
+/// What is noted of a word that moves neither X nor Y; nothing for a word of motions.
 fn passed_over(word: &Word, block: &[Word]) -> Result<Option<&'static str>> {
     Ok(Some(match word.letter {
         'A' | 'B' | 'C' | 'W' => codes::AXES,

@@ -1,6 +1,6 @@
 //! What the codes of G-code mean to a stage that has two axes and nothing else.
 
-use pose2pulse::pulse_interp::Turn;
+use pulse_interp::Turn;
 
 /// What the next axis words do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -8,7 +8,7 @@ pub(crate) enum Mode {
     Rapid,
     Straight,
     Circular(Turn),
-    /// A drilling cycle, by its number, of which this stage makes the way to the hole.
+    /// A drilling cycle, by its number, of which this stage makes the move to the hole.
     Cycle(u32),
 }
 
@@ -50,7 +50,7 @@ pub(crate) enum Code {
 /// A code that moves neither X nor Y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PassedOver {
-    /// What is told of it: its kind.
+    /// What is noted of it: its kind.
     pub(crate) note: &'static str,
     /// The letters beside it that are its own.
     pub(crate) own: &'static str,

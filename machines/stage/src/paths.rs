@@ -1,38 +1,61 @@
-//! Programmed motions to paths of whole steps.
+//! From programmed motions to paths of whole steps.
 
 use core::f64::consts::{PI, TAU};
+use core::fmt;
+use core::str::FromStr;
 
-use anyhow::{Context, Result};
-use clap::ValueEnum;
+use anyhow::{Context, Error, Result, bail};
 use kurbo::Point;
-use pose2pulse::pulse_interp::{
-    Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule,
-};
+use pulse_interp::{Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule};
 
-use crate::arc::ARC_TOLERANCE_MM;
-use crate::geometry::{Motion, Shape, angle_on};
+use crate::gcode::ARC_TOLERANCE_MM;
+use crate::motion::{Motion, Shape, angle_on};
 
 /// 4 mm pitch, 1.8 degrees a step, two microsteps.
 pub(crate) const STEPS_PER_MM: f64 = 100.0;
 
-/// The name of a rule on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PathRule {
+/// Which axis steps next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum PathRule {
     /// One axis at a time, as published.
-    Textbook,
+    Published,
     /// One axis at a time, with half the deviation.
-    Centred,
+    #[default]
+    Nearest,
     /// Both axes where due: Bresenham's line, the midpoint arc.
     Bresenham,
 }
 
 impl PathRule {
-    pub(crate) const fn name(self) -> &'static str {
+    /// Its name on a command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
         match self {
-            Self::Textbook => "textbook",
-            Self::Centred => "centred",
+            Self::Published => "published",
+            Self::Nearest => "nearest",
             Self::Bresenham => "bresenham",
         }
+    }
+}
+
+impl fmt::Display for PathRule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for PathRule {
+    type Err = Error;
+
+    /// Reads a name, also those of earlier versions, `textbook` and `centred`.
+    fn from_str(name: &str) -> Result<Self> {
+        Ok(match name {
+            "published" | "textbook" => Self::Published,
+            "nearest" | "centred" => Self::Nearest,
+            "bresenham" => Self::Bresenham,
+            _ => bail!("the rules are published, nearest and bresenham"),
+        })
     }
 }
 
@@ -95,7 +118,7 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
         _ if from == to => TAU,
         angle => angle,
     };
-    // Ends that change places when they are rounded make a turn of a dot, and a dot of a turn.
+    // Ends that pass each other when they are rounded make a turn of a dot, and a dot of a turn.
     let end = if rounded_rad - sweep_rad > PI {
         return Ok(vec![line(from, to, rule)?]);
     } else if sweep_rad - rounded_rad > PI {
@@ -116,8 +139,8 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
     let arc = Arc::near(about(from), about(end), turn, tolerance as u32);
     let arc = arc.with_context(|| format!("an arc of radius {radius:.4} mm"))?;
     let path = match rule {
-        PathRule::Textbook => Path::ArcSteps(arc.steps(Rule::Textbook)),
-        PathRule::Centred => Path::ArcSteps(arc.steps(Rule::Centred)),
+        PathRule::Published => Path::ArcSteps(arc.steps(Rule::Textbook)),
+        PathRule::Nearest => Path::ArcSteps(arc.steps(Rule::Centred)),
         PathRule::Bresenham => Path::ArcMoves(arc.moves()),
     };
     Ok(vec![path, line(end, to, rule)?])
@@ -140,8 +163,8 @@ fn grid_centre(centre: Point, radius: f64, from: [i32; 2]) -> [i32; 2] {
 fn line(from: [i32; 2], to: [i32; 2], rule: PathRule) -> Result<Path> {
     let line = Line::new([to[0] - from[0], to[1] - from[1]])?;
     Ok(match rule {
-        PathRule::Textbook => Path::LineSteps(line.steps(Rule::Textbook), line.step_factor()),
-        PathRule::Centred => Path::LineSteps(line.steps(Rule::Centred), line.step_factor()),
+        PathRule::Published => Path::LineSteps(line.steps(Rule::Textbook), line.step_factor()),
+        PathRule::Nearest => Path::LineSteps(line.steps(Rule::Centred), line.step_factor()),
         PathRule::Bresenham => Path::LineMoves(line.moves(), line.move_factor()),
     })
 }

@@ -1,9 +1,9 @@
-//! Programmed lines and arcs, in mm.
+//! Programmed motions, lines and arcs, in mm.
 
-use core::f64::consts::{FRAC_PI_2, TAU};
+use core::f64::consts::TAU;
 
 use kurbo::{Point, Vec2};
-use pose2pulse::pulse_interp::Turn;
+use pulse_interp::Turn;
 
 /// A programmed motion.
 #[derive(Debug, Clone, Copy)]
@@ -12,6 +12,7 @@ pub(crate) struct Motion {
     pub(crate) to: Point,
     pub(crate) shape: Shape,
     pub(crate) feed_mm_s: f64,
+    pub(crate) is_rapid: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +21,7 @@ pub(crate) enum Shape {
     Arc {
         centre: Point,
         turn: Turn,
-        /// Way around the centre, above 0 to a full turn.
+        /// Angle around the centre, above 0 to a full turn.
         sweep_rad: f64,
     },
 }
@@ -41,10 +42,10 @@ impl Motion {
         let to_ends = at.distance(self.from).min(at.distance(self.to));
         match self.shape {
             Shape::Line => {
-                let way = self.to - self.from;
-                let along = (at - self.from).dot(way) / way.hypot2();
+                let line = self.to - self.from;
+                let along = (at - self.from).dot(line) / line.hypot2();
                 if (0.0..=1.0).contains(&along) {
-                    at.distance(self.from + way * along)
+                    at.distance(self.from + line * along)
                 } else {
                     to_ends
                 }
@@ -64,36 +65,29 @@ impl Motion {
         }
     }
 
-    /// The curve as the data of an SVG path.
-    pub(crate) fn svg(&self) -> String {
-        let Self { from, to, .. } = self;
-        let start = format!("M{:.4} {:.4}", from.x, from.y);
+    /// Points of the curve, near enough for a picture.
+    pub(crate) fn points(&self) -> Vec<Point> {
+        /// Between two points of an arc.
+        const STEP_RAD: f64 = TAU / 480.0;
         let Shape::Arc {
             centre,
             turn,
             sweep_rad,
         } = self.shape
         else {
-            return format!("{start}L{:.4} {:.4}", to.x, to.y);
+            return vec![self.from, self.to];
         };
-        // In pieces of at most a quarter: a full turn is no arc to SVG.
-        let radius = from.distance(centre);
         let sign = match turn {
             Turn::CounterClockwise => 1.0,
             Turn::Clockwise => -1.0,
         };
-        let begin = (*from - centre).atan2();
-        let mut path = start;
-        for piece in 1..=4_u8 {
-            let share = f64::from(piece) / 4.0;
-            let at = centre + Vec2::from_angle(begin + sign * sweep_rad * share) * radius;
-            let flag = u8::from(sign > 0.0);
-            path += &format!(
-                "A{radius:.4} {radius:.4} 0 0 {flag} {:.4} {:.4}",
-                at.x, at.y
-            );
-        }
-        debug_assert!(sweep_rad / 4.0 <= FRAC_PI_2 + 1e-9, "a piece is too long");
-        path
+        let (radius, begin) = (self.from.distance(centre), (self.from - centre).atan2());
+        let angles = (0_u32..)
+            .map(|k| f64::from(k) * STEP_RAD)
+            .take_while(|angle| *angle < sweep_rad);
+        angles
+            .map(|angle| centre + Vec2::from_angle(begin + sign * angle) * radius)
+            .chain([self.to])
+            .collect()
     }
 }

@@ -4,9 +4,9 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use anyhow::{Result, bail, ensure};
 use kurbo::Point;
-use pose2pulse::pulse_interp::Turn;
+use pulse_interp::Turn;
 
-use crate::geometry::angle_on;
+use crate::motion::angle_on;
 
 /// How far the end of an arc may be from its circle, in mm.
 pub(crate) const ARC_TOLERANCE_MM: f64 = 0.02;
@@ -29,7 +29,7 @@ pub(crate) struct Arc {
     to: Point,
     turn: Turn,
     pub(crate) centre: Point,
-    /// Way around the centre, above 0 to a full turn.
+    /// Angle around the centre, above 0 to a full turn.
     pub(crate) sweep_rad: f64,
 }
 
@@ -79,7 +79,7 @@ impl Arc {
         let ends = [self.from, self.to].map(|at| along(at) - middle);
         let radius = self.from.distance(self.centre);
         let begin = (self.from - self.centre).atan2();
-        // Where the circle turns back, and which way from the centre that is.
+        // Where the circle turns back, and on which side of the centre that is.
         let first = if coordinate == 0 { 0.0 } else { FRAC_PI_2 };
         let beyond = [(first, 1.0), (first + PI, -1.0)].map(|(extreme, sign)| {
             let on = match self.turn {
@@ -97,9 +97,9 @@ impl Arc {
     }
 }
 
-/// The centre of an arc given by its radius: the shorter way around, the longer if it is negative.
+/// The centre of an arc given by its radius: the shorter arc, the longer if it is negative.
 fn centre_of(from: Point, to: Point, turn: Turn, radius: f64) -> Result<Point> {
-    let (way, half) = (to - from, from.distance(to) / 2.0);
+    let (chord, half) = (to - from, from.distance(to) / 2.0);
     ensure!(half > 0.0, "a full circle by R: its centre can be anywhere");
     ensure!(
         half <= radius.abs() + ARC_TOLERANCE_MM / 2.0,
@@ -107,8 +107,8 @@ fn centre_of(from: Point, to: Point, turn: Turn, radius: f64) -> Result<Point> {
         2.0 * half
     );
     let height = (radius * radius - half * half).max(0.0).sqrt();
-    // To the left of the way for the shorter arc counter-clockwise.
+    // To the left of the chord for the shorter arc counter-clockwise.
     let left = (turn == Turn::CounterClockwise) == (radius > 0.0);
-    let aside = way.turn_90() / way.hypot() * if left { height } else { -height };
+    let aside = chord.turn_90() / chord.hypot() * if left { height } else { -height };
     Ok(from.midpoint(to) + aside)
 }

@@ -1,0 +1,118 @@
+//! G-code becomes step pulses for a two-axis stage, with the loop closed over its scales: the
+//! command line of `machines/stage`.
+//!
+//! ```text
+//! G-code -> lines and arcs in mm -> steps -> pulses -> simulated motors, which may lose some
+//!                                     ^                              |
+//!                                     +------- corrections <--- linear scales
+//! ```
+//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections.
+//!
+//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
+
+use std::io::{Read as _, Write as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::Parser;
+use command_line::{Artefacts, Port, fraction, print_notes, print_summary, read_bytes};
+use stage::{PathRule, Program, Run, Session, Settings, StepLog, StepObserver};
+
+/// Of the terminal.
+const BAUD: u32 = 9600;
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/machines/stage");
+
+/// Moves a simulated two-axis stage along G-code.
+#[derive(Parser, Debug)]
+#[command(version)]
+struct Args {
+    /// The drawing: G0 G1 G2 G3 with I J or R, G20 G21 G90 G91 G90.1 G91.1, F, M2 M30. What else
+    /// moves neither X nor Y is passed over with a note, what would is refused.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("drawings/test.gcode"))]
+    gcode: PathBuf,
+    /// Takes lines from this terminal instead, and answers each; `?` reports the position, the
+    /// keys < > v ^ jog by a millimetre, M2 ends.
+    #[arg(long, value_name = "TTY", conflicts_with = "gcode")]
+    port: Option<String>,
+    /// Which axis steps next: one at a time as `published`, the one with the `nearest` point, or
+    /// both where due, `bresenham`.
+    #[arg(long, default_value_t)]
+    rule: PathRule,
+    /// The fraction of steps that the motors lose, as 0.001 or 0.1%.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = fraction, allow_negative_numbers = true)]
+    lose_steps: f64,
+    /// Which steps are lost.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Where the artefacts go.
+    #[arg(long, value_name = "DIR", default_value = "target/stage")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    command_line::run(stage)
+}
+
+/// Where the motions come from.
+enum Source {
+    Program(Program),
+    Port(Port),
+}
+
+fn stage(args: &Args) -> Result<ExitCode> {
+    let settings = Settings {
+        rule: args.rule,
+        lose_steps: args.lose_steps,
+        seed: args.seed,
+    };
+    let name = match &args.port {
+        Some(port) => port.clone(),
+        None => args.gcode.display().to_string(),
+    };
+    let source = match &args.port {
+        Some(port) => Source::Port(Port::open(port, BAUD)?),
+        // All of it is checked before anything moves.
+        None => {
+            let bytes = read_bytes(&args.gcode)?;
+            Source::Program(Program::from_bytes(&bytes).context(name.clone())?)
+        }
+    };
+    let mut artefacts = Artefacts::new(&args.out)?;
+    let mut log = StepLog::new(artefacts.create("steps.csv")?)?;
+    let mut observer = |ticks, by| log.step(ticks, by);
+    let (run, notes) = match source {
+        Source::Port(port) => serve(port, &settings, &mut observer).context(name)?,
+        Source::Program(program) => {
+            let run = stage::run(&program, &settings, &mut observer).context(name)?;
+            print_notes(&args.gcode, &program.notes());
+            (run, program.notes())
+        }
+    };
+    log.finish()?;
+    artefacts.write("stage.svg", run.picture().to_string())?;
+    let report = run.report().with_notes(notes);
+    artefacts.write_json("report.json", &report)?;
+    let names = artefacts.keep()?;
+    print_summary(format!("{report}in {}: {names}\n", args.out.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Answers lines and keys until the end of the program or of the line.
+fn serve(
+    mut port: Port,
+    settings: &Settings,
+    observer: StepObserver<'_>,
+) -> Result<(Run, Vec<String>)> {
+    let mut session = Session::new(settings, observer)?;
+    let mut byte = [0];
+    while !session.is_over() && port.read(&mut byte)? > 0 {
+        let [byte] = byte;
+        if let Some(answer) = session.handle_byte(byte) {
+            writeln!(port, "{answer}")?;
+            port.flush()?;
+        }
+    }
+    session.finish()
+}

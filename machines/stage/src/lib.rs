@@ -1,0 +1,49 @@
+//! The two-axis stage of \[Stage\]: ball screws with 100 steps/mm, scales with 500 counts/mm, four
+//! limit switches.
+//!
+//! ```text
+//! G-code -> lines and arcs in mm -> steps -> pulses -> simulated motors, which may lose some
+//!                                     ^                              |
+//!                                     +------- corrections <--- linear scales
+//! ```
+//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Text
+//! and bytes in, values out: no files, no printing.
+//!
+//! ```
+//! use stage::{Program, Settings, run};
+//!
+//! let program = Program::parse(stage::TEST)?;
+//! let settings = Settings { lose_steps: 0.001, ..Settings::default() };
+//! let mut steps = 0;
+//! let run = run(&program, &settings, &mut |_, _| {
+//!     steps += 1;
+//!     Ok(())
+//! })?;
+//! println!("{steps} moves\n{}", run.report());
+//! assert!(run.picture().to_string().contains("<svg"));
+//! # Ok::<(), anyhow::Error>(())
+//! ```
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+mod controller;
+mod gcode;
+mod motion;
+mod paths;
+mod picture;
+mod record;
+mod report;
+mod run;
+mod session;
+mod stage;
+mod step_log;
+
+pub use self::controller::{Settings, StepObserver};
+pub use self::gcode::Program;
+pub use self::paths::PathRule;
+pub use self::report::Report;
+pub use self::run::{Run, run};
+pub use self::session::Session;
+pub use self::step_log::StepLog;
+
+/// The test path of the source: rectangle, diagonal, circle.
+pub const TEST: &str = include_str!("../drawings/test.gcode");

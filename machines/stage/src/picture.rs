@@ -1,0 +1,131 @@
+//! The picture of a run: the programmed path, the stage's with and without corrections, the largest
+//! deviation enlarged, and the deviations over time.
+
+use kurbo::Point;
+use machine_sim::{Axis, Colour, Figure, Mark, Plot, Profile, Stroke};
+
+use crate::controller::seconds;
+use crate::paths::STEPS_PER_MM;
+use crate::record::{Leg, Seen};
+use crate::run::Run;
+use crate::stage::SWITCHES;
+
+const UM_PER_MM: f64 = 1000.0;
+/// Half the side of the enlarged square, in steps.
+const ENLARGED_STEPS: f64 = 10.0;
+const WORST: Colour = Colour::rgb(0, 125, 90);
+
+pub(crate) fn picture(run: &Run) -> Figure {
+    let (record, [closed_mm, open_mm]) = (&run.record, run.closing_mm);
+    let measured = |name: &str, seen: &Seen, end_mm: f64| {
+        let max = seen.worst.deviation_mm;
+        format!("{name}: {max:.3} mm off the curve at most, {end_mm:.3} mm off at the end.")
+    };
+    let [steps_x, steps_y] = record.steps;
+    let title = format!(
+        "Stage: {steps_x} + {steps_y} steps by the {} rule in {:.1} s",
+        run.settings.rule.name(),
+        run.duration_s
+    );
+    let figure = Figure::new(title).with_note(measured("Closed loop", &record.closed, closed_mm));
+    let closed = deviations(run, "closed loop", Stroke::ACTUAL, &record.closed);
+    if !is_lossy(run) {
+        return figure.with_row(maps(run)).with_row([closed]);
+    }
+    let open = deviations(run, "open loop", Stroke::OTHER, &record.open);
+    let [closed_lost, open_lost] = run.lost;
+    let lost = format!(
+        "Steps lost: {closed_lost} in the closed loop, {} corrected; {open_lost} in the open loop.",
+        record.corrected
+    );
+    figure
+        .with_note(measured("Open loop", &record.open, open_mm))
+        .with_note(lost)
+        .with_row(maps(run))
+        .with_row([closed, open])
+        .with_row([corrections(run)])
+}
+
+fn is_lossy(run: &Run) -> bool {
+    let [closed, open] = run.lost;
+    closed + open > 0
+}
+
+fn maps(run: &Run) -> Vec<Plot> {
+    let programmed = |with_rapids: bool| {
+        let motions = run.record.programmed.iter();
+        let motions = motions.filter(move |it| with_rapids || !it.is_rapid);
+        motions.map(|it| it.points().into_iter().map(|at| [at.x, at.y]))
+    };
+    let whole = map(
+        run,
+        Plot::map(Axis::new("X in mm"), Axis::new("Y in mm"))
+            .with_weight(2.1)
+            .lines("programmed", Stroke::COMMANDED, programmed(false)),
+    );
+    let worst = &run.record.closed.worst;
+    let Some(at) = worst.at else {
+        return vec![whole];
+    };
+    let half = ENLARGED_STEPS / STEPS_PER_MM;
+    let around = |name: &str, mm: f64| Axis::new(name).over(mm - half..=mm + half);
+    let steps = worst.steps.iter().map(|at| [at.x, at.y]);
+    let near = Plot::map(around("X in mm", at.x), around("Y in mm", at.y))
+        .with_title("Enlarged: largest deviation")
+        .lines("", Stroke::COMMANDED, programmed(true))
+        .line("", Stroke::ACTUAL, steps);
+    let ring = |plot: Plot, name: &str| plot.marks(name, Mark::Ring, WORST, [[at.x, at.y]]);
+    vec![ring(whole, "largest deviation"), ring(near, "")]
+}
+
+/// Switches, and the paths of both stages.
+fn map(run: &Run, plot: Plot) -> Plot {
+    let legs = |seen: &Seen, is_rapid: bool| -> Vec<Vec<[f64; 2]>> {
+        let point = |at: &Point| [at.x, at.y];
+        let line = |leg: &Leg| leg.points.iter().map(point).collect();
+        let legs = seen.legs.iter().filter(|leg| leg.is_rapid == is_rapid);
+        legs.map(line).collect()
+    };
+    let [[x0, x1], [y0, y1]] =
+        SWITCHES.map(|ends| ends.map(|steps| f64::from(steps) / STEPS_PER_MM));
+    let switches = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
+    let (closed, open) = (&run.record.closed, &run.record.open);
+    let mut plot = plot.line("limit switches", Stroke::LIMIT, switches);
+    if is_lossy(run) {
+        plot = plot.lines("open loop", Stroke::OTHER, legs(open, false));
+    }
+    plot = plot
+        .lines("rapid", Stroke::RAPID, legs(closed, true))
+        .lines("closed loop", Stroke::ACTUAL, legs(closed, false));
+    match closed.legs.first().and_then(|leg| leg.points.first()) {
+        Some(at) => plot.start([at.x, at.y]),
+        None => plot,
+    }
+}
+
+/// How far a stage is from the programmed curve.
+fn deviations(run: &Run, name: &str, stroke: Stroke, seen: &Seen) -> Plot {
+    let points = over_time(&seen.deviations).map(|[t, mm]| [t, mm * UM_PER_MM]);
+    time_chart(run, "distance in µm")
+        .with_title("Distance from the programmed curve")
+        .line(name, stroke, points)
+}
+
+fn corrections(run: &Run) -> Plot {
+    let start = [[0.0, 0.0]].into_iter();
+    let corrected = over_time(&run.record.corrections).filter(|[_, steps]| steps.is_finite());
+    time_chart(run, "steps")
+        .with_title("Corrections so far")
+        .line("corrected", Stroke::series(2), start.chain(corrected))
+}
+
+fn time_chart(run: &Run, name: &str) -> Plot {
+    let time = Axis::new("time in s").over(0.0..=run.duration_s);
+    Plot::chart(time, Axis::new(name).including(0.0))
+}
+
+/// Time in s and the largest value; no number where there is none.
+fn over_time(profile: &Profile) -> impl Iterator<Item = [f64; 2]> {
+    let parts = profile.parts();
+    parts.map(|(ticks, max)| [seconds(ticks), max.unwrap_or(f64::NAN)])
+}

@@ -1,0 +1,95 @@
+//! The numbers of a run, for programs and for people.
+
+use core::fmt;
+
+use serde::Serialize;
+
+use crate::run::Run;
+
+/// `report.json`; displayed, a summary in lines. Steps are those of the path, as in `steps.csv`;
+/// corrections are counted apart.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    rule: &'static str,
+    /// Either way.
+    steps_x: u64,
+    /// Either way.
+    steps_y: u64,
+    /// From the drawing's zero.
+    end_steps: [i32; 2],
+    /// Of the stage from the programmed curve.
+    max_deviation_mm: f64,
+    /// Of the stage from the programmed end.
+    closing_error_mm: f64,
+    lost_steps: u64,
+    corrected_steps: u64,
+    duration_s: f64,
+    open_loop: OpenLoop,
+    lose_steps: f64,
+    seed: u64,
+    /// What the program asked for that was left out or done otherwise.
+    notes: Vec<String>,
+}
+
+/// The stage beside it, without corrections.
+#[derive(Debug, Clone, Serialize)]
+struct OpenLoop {
+    max_deviation_mm: f64,
+    closing_error_mm: f64,
+    lost_steps: u64,
+}
+
+impl Report {
+    pub(crate) fn new(run: &Run) -> Self {
+        let [steps_x, steps_y] = run.record.steps;
+        let [closed_mm, open_mm] = run.closing_mm;
+        let [closed_lost, open_lost] = run.lost;
+        Self {
+            rule: run.settings.rule.name(),
+            steps_x,
+            steps_y,
+            end_steps: run.commanded,
+            max_deviation_mm: run.record.closed.worst.deviation_mm,
+            closing_error_mm: closed_mm,
+            lost_steps: closed_lost,
+            corrected_steps: run.record.corrected,
+            duration_s: run.duration_s,
+            open_loop: OpenLoop {
+                max_deviation_mm: run.record.open.worst.deviation_mm,
+                closing_error_mm: open_mm,
+                lost_steps: open_lost,
+            },
+            lose_steps: run.settings.lose_steps,
+            seed: run.settings.seed,
+            notes: Vec::new(),
+        }
+    }
+
+    /// The same with notes on the program.
+    #[must_use]
+    pub fn with_notes(mut self, notes: Vec<String>) -> Self {
+        self.notes = notes;
+        self
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} + {} steps by the {} rule in {:.1} s",
+            self.steps_x, self.steps_y, self.rule, self.duration_s
+        )?;
+        writeln!(
+            f,
+            "closed loop: {} steps lost, {} corrected; {:.3} mm off the curve at most, {:.3} mm at the end",
+            self.lost_steps, self.corrected_steps, self.max_deviation_mm, self.closing_error_mm
+        )?;
+        let open = &self.open_loop;
+        writeln!(
+            f,
+            "open loop:   {} steps lost; {:.3} mm off the curve at most, {:.3} mm at the end",
+            open.lost_steps, open.max_deviation_mm, open.closing_error_mm
+        )
+    }
+}
