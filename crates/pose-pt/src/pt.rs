@@ -76,12 +76,18 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         };
         let mut walk = table.points();
         let mut last_s = None;
-        while let Some(PtPoint { time_s, axes, .. }) = walk.next() {
+        while let Some(point) = walk.next() {
+            let PtPoint {
+                time_s,
+                segment_s,
+                axes,
+            } = point;
             let (leg, point) = (walk.leg, walk.index);
             platform
                 .check_axes(&axes)
                 .map_err(|reason| PlanError::Limit { leg, point, reason })?;
-            if last_s.is_some_and(|last_s| time_s <= last_s) {
+            let takes_time = |last_s| segment_s > T::zero() && time_s > last_s;
+            if last_s.is_some_and(|last_s| !takes_time(last_s)) {
                 return Err(PlanError::Indistinct { leg, point });
             }
             last_s = Some(time_s);
