@@ -263,6 +263,28 @@ fn memory_is_fixed() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
+    /// What goes faster at one place must not go slower for it at the next.
+    #[test]
+    fn more_feed_never_takes_longer(
+        translation in prop::array::uniform3(-300.0..300.0), turn in prop::array::uniform3(-1.5..1.5),
+        on in prop::array::uniform3(-300.0..300.0), on_turn in prop::array::uniform3(-1.5..1.5),
+        parts in 2..30_u32, pace in 0.3..1.0, feed in 1.0..3.0, speed in 5.0..1e4,
+    ) {
+        let platform = panel_with(AxisLimits::new(-1e5, 1e5, speed, ACCELERATION));
+        let poses = [pose([0.0; 3], [0.0; 3]), pose(translation, turn), pose(on, on_turn)];
+        let Ok(path) = Path::new(&poses, Interpolation::Screw) else { return Ok(()) };
+        let mut knots = [Knot::default(); 62];
+        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
+        let table = table.at_pace(pace).unwrap();
+        let mut ahead = [Ahead::default(); 61];
+        let mut run = table.run(feed, &mut ahead).unwrap();
+        run.set_feed(feed).unwrap();
+        let points: Vec<_> = run.collect();
+        check_limits(&platform, &points);
+        let share = points.last().unwrap().time_s / table.duration_s();
+        prop_assert!(share <= LIMIT, "{share}");
+    }
+
     /// Any feeds at any points: limits, the path, the end.
     #[test]
     fn limits_hold_under_any_feed(

@@ -215,8 +215,7 @@ impl<const N: usize> Segment<N> {
             return (fast, ceiling);
         }
         let reached = self.reach(fast, ceiling);
-        // At one speed all along.
-        let even = ceiling.min(1.0 / sqrt(self.load(1.0, 1.0)));
+        let even = ceiling.min(self.even());
         let (mut best, mut high) = match reached {
             Some(end) if fast >= even => return (fast, end),
             Some(_) => ((even, even), cap),
@@ -239,6 +238,36 @@ impl<const N: usize> Segment<N> {
             }
         }
         best
+    }
+
+    /// The highest speed from which the segment can be begun if it ends with `ceiling`, or where
+    /// that is higher, with the speed that it begins with: never slower than it need be later.
+    pub(crate) fn begin_evenly(&self, ceiling: f64, cap: f64) -> f64 {
+        let even = self.even();
+        if even <= ceiling {
+            return even;
+        }
+        let (mut good, mut bad) = (ceiling, self.highest(End::From, ceiling, cap));
+        if bad > good && self.holds(bad, ceiling) {
+            return bad;
+        }
+        for _ in 0..HALVINGS {
+            if bad - good <= good * CLOSE {
+                break;
+            }
+            let middle = (good + bad) * 0.5;
+            if self.holds(middle, ceiling) {
+                good = middle;
+            } else {
+                bad = middle;
+            }
+        }
+        good
+    }
+
+    /// The highest speed for both ends.
+    pub(crate) fn even(&self) -> f64 {
+        1.0 / sqrt(self.load(1.0, 1.0))
     }
 
     /// The highest speed at the end, at most `ceiling`, after the speed `w0`.
@@ -271,10 +300,18 @@ impl<const N: usize> Segment<N> {
         self.reach(w0, ceiling).unwrap_or(known)
     }
 
-    /// The speed at the end that is nearest to `wanted` on the way from `known`, which holds.
+    /// The speed at the end that is nearest to `wanted` after the speed `w0`: the highest below it,
+    /// or where none is, one above it on the way from `known`, which holds.
     pub(crate) fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
         if self.holds(w0, wanted) {
             return wanted;
+        }
+        if let Some(below) = self.reach(w0, wanted) {
+            return if known <= wanted {
+                below.max(known)
+            } else {
+                below
+            };
         }
         let (mut good, mut bad) = (known, wanted);
         for _ in 0..HALVINGS {
