@@ -37,6 +37,7 @@ fn write_line(data: &mut String, points: &[Point], frame: &Frame) {
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
         if frame.is_beside(*from, *to) {
+            end_line(data);
             pen = None;
             continue;
         }
@@ -56,6 +57,14 @@ fn write_line(data: &mut String, points: &[Point], frame: &Frame) {
             let _ = write!(data, "{separator}{}{}", Tenths(dx), Next(dy));
             pen = Some(at);
         }
+    }
+    end_line(data);
+}
+
+/// A line whose points are one on the grid is a dot: `l` without numbers would end the path.
+fn end_line(data: &mut String) {
+    if data.ends_with('l') {
+        data.push_str("0 0");
     }
 }
 
@@ -119,5 +128,34 @@ impl fmt::Display for Next {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let space = if self.0 < 0 { "" } else { " " };
         write!(f, "{space}{}", Tenths(self.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::axis::Axis;
+    use crate::figure::plot::Plot;
+
+    #[test]
+    fn lines_of_no_length_are_dots() {
+        let plot = Plot::map(
+            Axis::new("x").over(0.0..=10.0),
+            Axis::new("y").over(0.0..=10.0),
+        );
+        let frame = Frame::new(&plot, 700.0);
+        let standing = vec![[5.0, 5.0], [5.0, 5.0]];
+        let moving = vec![[5.0, 5.0], [5.0001, 5.0], [6.0, 5.0]];
+        // Beside the frame before it moves.
+        let leaving = vec![[5.0, 5.0], [5.0, 5.0], [11.0, 11.0], [12.0, 11.0]];
+        let dot = path_data(&[vec![[5.0, 5.0]]], &frame, true);
+        assert_eq!(path_data(&[standing.clone()], &frame, true), dot);
+        for lines in [[standing.clone(), moving], [standing, leaving]] {
+            let data = path_data(&lines, &frame, true);
+            assert!(data.starts_with(&dot), "{data}");
+            let numbers = data.split('M').skip(1).map(|line| line.split_once('l'));
+            let is_drawn = |line: Option<(&str, &str)>| line.is_some_and(|(_, to)| !to.is_empty());
+            assert!(numbers.map(is_drawn).all(|it| it), "{data}");
+        }
     }
 }
