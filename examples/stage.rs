@@ -10,13 +10,12 @@
 //!
 //! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
 
-use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use command_line::{Artefacts, Port, fraction, print_notes, print_summary, read_bytes};
+use command_line::{Artefacts, Terminal, fraction, print_notes, print_summary, read_bytes};
 use stage::{PathRule, Program, Run, Session, Settings, StepLog, StepObserver};
 
 /// Of the terminal.
@@ -58,7 +57,7 @@ fn main() -> ExitCode {
 /// Where the motions come from.
 enum Source {
     Program(Program),
-    Port(Port),
+    Terminal(Terminal),
 }
 
 fn stage(args: &Args) -> Result<ExitCode> {
@@ -72,7 +71,7 @@ fn stage(args: &Args) -> Result<ExitCode> {
         None => args.gcode.display().to_string(),
     };
     let source = match &args.port {
-        Some(port) => Source::Port(Port::open(port, BAUD)?),
+        Some(port) => Source::Terminal(Terminal::open_port(port, BAUD)?),
         // All of it is checked before anything moves.
         None => {
             let bytes = read_bytes(&args.gcode)?;
@@ -83,7 +82,7 @@ fn stage(args: &Args) -> Result<ExitCode> {
     let mut log = StepLog::new(artefacts.create("steps.csv")?)?;
     let mut observer = |ticks, by| log.step(ticks, by);
     let (run, notes) = match source {
-        Source::Port(port) => serve(port, &settings, &mut observer).context(name)?,
+        Source::Terminal(terminal) => serve(terminal, &settings, &mut observer).context(name)?,
         Source::Program(program) => {
             let run = stage::run(&program, &settings, &mut observer).context(name)?;
             print_notes(&args.gcode, &program.notes());
@@ -101,17 +100,16 @@ fn stage(args: &Args) -> Result<ExitCode> {
 
 /// Answers lines and keys until the end of the program or of the line.
 fn serve(
-    mut port: Port,
+    mut terminal: Terminal,
     settings: &Settings,
     observer: StepObserver<'_>,
 ) -> Result<(Run, Vec<String>)> {
     let mut session = Session::new(settings, observer)?;
-    let mut byte = [0];
-    while !session.is_over() && port.read(&mut byte)? > 0 {
-        let [byte] = byte;
+    while !session.is_over()
+        && let Some(byte) = terminal.read_byte()?
+    {
         if let Some(answer) = session.handle_byte(byte) {
-            writeln!(port, "{answer}")?;
-            port.flush()?;
+            terminal.answer(&answer)?;
         }
     }
     session.finish()

@@ -1,6 +1,5 @@
 //! The example `delta` from outside: its files, checked by other code than its own.
 #![cfg(test)]
-#![cfg(all(feature = "delta-kin", feature = "stepper-sync"))]
 
 #[path = "tools/artefacts.rs"]
 mod artefacts;
@@ -25,7 +24,7 @@ use example::example;
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("examples/delta")
+        .join("machines/delta")
         .join(name)
 }
 

@@ -1,9 +1,9 @@
-//! One line of input.
+//! One line of input: `x y z [feed]`, `end`, or a comment.
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, anyhow, bail, ensure};
 use nalgebra::Point3;
 
-/// A line that asks for something.
+/// What a line asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Command {
     /// Go there in a straight line, at a feed in mm/s if one is given.
@@ -26,7 +26,7 @@ fn without_comment(line: &str) -> &str {
     line.split_once('#').map_or(line, |(words, _)| words).trim()
 }
 
-/// Reads `x y z [feed]` or `end`; nothing for an empty line or a comment.
+/// Reads a line; nothing for an empty one or a comment.
 pub(crate) fn parse(line: &str) -> Result<Option<Command>> {
     let line = without_comment(line);
     if line.is_empty() {
@@ -45,7 +45,7 @@ pub(crate) fn parse(line: &str) -> Result<Option<Command>> {
     let (x, y, z, feed_mm_s) = match *numbers {
         [x, y, z] => (x, y, z, None),
         [x, y, z, feed] => (x, y, z, Some(feed)),
-        _ => anyhow::bail!(
+        _ => bail!(
             "{} numbers in {line:?}, `x y z [feed]` is needed",
             numbers.len()
         ),

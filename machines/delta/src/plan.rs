@@ -1,9 +1,9 @@
 //! From a line in space to the times of single steps.
 
 use anyhow::{Context, Result, bail};
+use delta_kin::{Arm, Path};
 use nalgebra::Point3;
-use pose2pulse::delta_kin::{Arm, Path};
-use pose2pulse::stepper_sync::{Level, Trains};
+use stepper_sync::{Level, Trains};
 
 use crate::machine::Machine;
 
@@ -25,39 +25,38 @@ impl Plan {
         to: Point3<f64>,
         feed_mm_s: f64,
     ) -> Result<Self> {
-        // The end first: a place that cannot be reached is the better reason.
+        // The end first: a point that cannot be reached is the better reason.
         machine.delta.inverse(to)?;
         let line = Path::line(from, to)?;
         let pace = machine.pace(feed_mm_s)?;
-        let least_step_s = machine.rad_per_step / machine.max_rate_rad_s;
+        let min_step_s = machine.rad_per_step / machine.max_rate_rad_s;
         let mut trains = Vec::new();
         let mut last = machine.delta.inverse(from)?;
         let (mut end_s, mut now) = (0.0, 0);
         for waypoint in machine.delta.follow(line, machine.tolerance_mm, pace)? {
             let feed_s = waypoint.length / feed_mm_s;
             if waypoint.duration_s > feed_s * (1.0 + f64::EPSILON) {
-                let way = (waypoint.angles - last).abs();
-                let (fastest, way) = way.argmax();
+                let (fastest, turn) = (waypoint.angles - last).abs().argmax();
                 let arm = Arm::ALL.get(fastest).context("no such arm")?;
                 bail!(
                     "feed {feed_mm_s} mm/s: {arm} would turn at {:.1} deg/s, above {:.1}",
-                    (way / feed_s).to_degrees(),
+                    (turn / feed_s).to_degrees(),
                     machine.max_rate_rad_s.to_degrees()
                 );
             }
             last = waypoint.angles;
             end_s += waypoint.duration_s;
             let target = machine.steps(waypoint.angles)?;
-            let way = between(position, target).context("more steps than a train has")?;
-            let pulses = way.iter().map(|way| way.unsigned_abs()).max().unwrap_or(0);
+            let steps = between(position, target).context("more steps than a train has")?;
+            let pulses = steps.map(i32::unsigned_abs).into_iter().fold(0, u32::max);
             if pulses == 0 {
                 continue;
             }
             // From where the time has come to, so that its rounding does not add up.
-            let left_s = (end_s - seconds(now)).max(f64::from(pulses) * least_step_s);
+            let left_s = (end_s - seconds(now)).max(f64::from(pulses) * min_step_s);
             let half_period =
                 half_period(left_s, pulses).with_context(|| format!("feed {feed_mm_s} mm/s"))?;
-            let piece = Trains::new(way, half_period)?;
+            let piece = Trains::new(steps, half_period)?;
             now += piece.end_ticks();
             trains.push(piece);
             position = target;
@@ -83,15 +82,15 @@ impl Plan {
     ) -> Result<u64> {
         let mut now = start;
         for trains in &self.trains {
-            let way = trains.steps();
+            let directions = trains.steps().map(i32::signum);
             for edge in trains.edges() {
                 if edge.level == Level::Low {
                     continue;
                 }
-                if let (Some(position), Some(way)) =
-                    (position.get_mut(edge.axis), way.get(edge.axis))
+                if let (Some(position), Some(direction)) =
+                    (position.get_mut(edge.axis), directions.get(edge.axis))
                 {
-                    *position += way.signum();
+                    *position += direction;
                 }
                 step(now + edge.ticks, position)?;
             }
@@ -101,7 +100,7 @@ impl Plan {
     }
 }
 
-/// The steps of each motor from one place to another, if they can be counted.
+/// The steps of each motor from one position to another, if they can be counted.
 fn between(from: [i32; 3], to: [i32; 3]) -> Option<[i32; 3]> {
     let ([a1, a2, a3], [b1, b2, b3]) = (from, to);
     Some([
@@ -132,24 +131,4 @@ fn half_period(duration_s: f64, pulses: u32) -> Result<u64> {
 #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are 28 years")]
 pub(crate) fn seconds(ticks: u64) -> f64 {
     ticks as f64 / f64::from(TICKS_PER_S)
-}
-
-/// The thesis' controller: at each tick every motor that has steps to go makes one. Yields the
-/// position after each tick.
-pub(crate) fn ticked(
-    targets: impl IntoIterator<Item = [i32; 3]>,
-) -> impl Iterator<Item = [i32; 3]> {
-    let mut position = [0; 3];
-    let mut targets = targets.into_iter();
-    let mut target = targets.next();
-    core::iter::from_fn(move || {
-        while target == Some(position) {
-            target = targets.next();
-        }
-        let target = target?;
-        for (position, target) in position.iter_mut().zip(target) {
-            *position += (target - *position).signum();
-        }
-        Some(position)
-    })
 }

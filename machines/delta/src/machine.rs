@@ -1,14 +1,13 @@
-//! The machine: from its file to checked settings.
-
-use std::path::Path;
+//! The machine: from its settings in TOML to checked numbers.
 
 use anyhow::{Context, Result, ensure};
+use delta_kin::{Arm, ArmGeometry, Delta, JointRange, Pace};
+use machine_sim::input::parse_settings;
 use nalgebra::{Point3, Vector3};
-use pose2pulse::delta_kin::{Arm, ArmGeometry, Delta, JointRange, Pace};
-use pose2pulse::stepper_sync::StepScale;
 use serde::Deserialize;
+use stepper_sync::StepScale;
 
-/// The geometry file, as written.
+/// The settings, as written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
@@ -16,7 +15,8 @@ struct Settings {
     platform_mm: f64,
     upper_mm: f64,
     lower_mm: f64,
-    max_lean_deg: Option<f64>,
+    #[serde(alias = "max_lean_deg")]
+    max_swivel_deg: Option<f64>,
     motor: Motor,
     path: PathSettings,
     #[serde(default)]
@@ -56,7 +56,8 @@ struct Deviation {
 }
 
 /// The checked machine. Its angles read zero at home, as the steps do.
-pub(crate) struct Machine {
+#[derive(Debug, Clone)]
+pub struct Machine {
     pub(crate) delta: Delta,
     pub(crate) rad_per_step: f64,
     scale: StepScale,
@@ -67,10 +68,13 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    pub(crate) fn read(file: &Path) -> Result<Self> {
-        command_line::read(file, |text| {
-            Self::check(&machine_sim::input::parse_settings(text)?)
-        })
+    /// Reads a machine, as in [`MACHINE`](crate::MACHINE).
+    ///
+    /// # Errors
+    /// A mistake with its line and column, a number that no machine has, or a home that the
+    /// machine cannot be in.
+    pub fn parse(text: &str) -> Result<Self> {
+        Self::check(&parse_settings(text)?)
     }
 
     fn check(settings: &Settings) -> Result<Self> {
@@ -174,10 +178,10 @@ impl Settings {
         let [first, second, third] = arms.map(|arm| arm.zero);
         let ranges = [range(first)?, range(second)?, range(third)?];
         let delta = delta.with_ranges(ranges.map(Some));
-        match self.max_lean_deg {
-            Some(lean) => delta
-                .with_ball_joints(lean.to_radians())
-                .with_context(|| format!("max_lean_deg = {lean}")),
+        match self.max_swivel_deg {
+            Some(swivel) => delta
+                .with_ball_joints(swivel.to_radians())
+                .with_context(|| format!("max_swivel_deg = {swivel}")),
             None => Ok(delta),
         }
     }

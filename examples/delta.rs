@@ -1,0 +1,92 @@
+//! A Delta robot on the end of a serial line, points in, steps out, and the steps on a simulated
+//! machine: the command line of `machines/delta`.
+//!
+//! ```text
+//! x y z [feed] -> line -> joint waypoints -> pulse trains -> steps.csv
+//!                 steps.csv -> simulated arms -> path of the platform
+//! ```
+//!
+//! The second line reads nothing but the steps of the first. Lines are in mm and mm/s; each is
+//! answered with `ok a b c`, the steps of the three motors from home, or `error: ...`, and then
+//! the machine stays where it is, which is said, and the exit status is 1. `#` begins a comment,
+//! `end` ends the input.
+//!
+//! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--port PATH] [--out DIR]`
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Parser;
+use command_line::{Artefacts, Terminal, print_notes, print_summary, read};
+use delta::{Machine, Record, Session, StepLog, simulate};
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/machines/delta");
+
+/// Moves a simulated Delta robot by lines of `x y z [feed]`.
+#[derive(Parser, Debug)]
+#[command(version)]
+struct Args {
+    /// Lines in mm and mm/s; `-` for standard input.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("inputs/pick-and-place.txt"), conflicts_with = "port")]
+    input: PathBuf,
+    /// The machine, as in machines/delta/machine.toml.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("machine.toml"))]
+    geometry: PathBuf,
+    /// A serial port or pseudo-terminal that brings the lines and takes the answers.
+    #[arg(long, value_name = "PATH")]
+    port: Option<String>,
+    /// Bits per second of the port.
+    #[arg(long, default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(1..))]
+    baud: u32,
+    /// Where the artefacts go.
+    #[arg(long, value_name = "DIR", default_value = "target/delta")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    command_line::run(run)
+}
+
+fn run(args: &Args) -> Result<ExitCode> {
+    let machine = read(&args.geometry, Machine::parse)?;
+    let terminal = match &args.port {
+        Some(port) => Terminal::open_port(port, args.baud)?,
+        None => Terminal::open_file(&args.input)?,
+    };
+    let mut artefacts = Artefacts::new(&args.out)?;
+    let record = serve(terminal, &machine, artefacts.create("steps.csv")?)?;
+    let run = simulate(&machine, &record, artefacts.reopen("steps.csv")?)?;
+    artefacts.write("delta.svg", run.picture()?.to_string())?;
+    let report = run.report();
+    artefacts.write_json("report.json", &report)?;
+    let names = artefacts.keep()?;
+    print_notes(&args.input, &record.notes());
+    print_summary(format!("{report}in {}: {names}\n", args.out.display()))?;
+    report.check().map(|()| ExitCode::SUCCESS)
+}
+
+/// Answers line after line and writes the steps of those that can be done.
+fn serve(mut terminal: Terminal, machine: &Machine, csv: impl Write) -> Result<Record> {
+    let mut log = StepLog::new(csv)?;
+    let mut observer = |ticks, steps| log.step(ticks, steps);
+    let mut session = Session::new(machine, &mut observer)?;
+    // In a file, what stands behind the end is noted.
+    while !session.is_over() || terminal.is_file() {
+        let byte = terminal.read_byte()?;
+        let answer = match byte {
+            Some(byte) => session.handle_byte(byte)?,
+            None => session.handle_end()?,
+        };
+        if let Some(answer) = answer {
+            terminal.answer(&answer)?;
+        }
+        if byte.is_none() {
+            break;
+        }
+    }
+    let record = session.finish();
+    log.finish()?;
+    Ok(record)
+}

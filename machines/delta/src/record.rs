@@ -1,0 +1,46 @@
+//! What came of the lines of an input.
+
+use machine_sim::input::Notes;
+use nalgebra::Point3;
+use serde::Serialize;
+
+/// A line that has been answered with `ok`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Move {
+    pub(crate) from: Point3<f64>,
+    pub(crate) to: Point3<f64>,
+    pub(crate) feed_mm_s: f64,
+    /// Where it ends, in steps from home.
+    pub(crate) end: [i32; 3],
+    pub(crate) end_ticks: u64,
+}
+
+/// A line that has been answered with `error:`.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Refusal {
+    pub(crate) line: usize,
+    pub(crate) reason: String,
+    /// Where the machine was left, and the next move starts.
+    pub(crate) stays_at_mm: [f64; 3],
+}
+
+/// What came of the lines: moves, refusals, and what else was not done.
+#[derive(Debug, Clone, Default)]
+pub struct Record {
+    pub(crate) moves: Vec<Move>,
+    pub(crate) refusals: Vec<Refusal>,
+    pub(crate) notes: Notes,
+}
+
+impl Record {
+    /// What else was not done, one line for each kind.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.lines()
+    }
+
+    /// The time of the last move's end.
+    pub(crate) fn duration_ticks(&self) -> u64 {
+        self.moves.last().map_or(0, |last| last.end_ticks)
+    }
+}
