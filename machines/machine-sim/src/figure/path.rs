@@ -149,13 +149,16 @@ mod tests {
         // Beside the frame before it moves.
         let leaving = vec![[5.0, 5.0], [5.0, 5.0], [11.0, 11.0], [12.0, 11.0]];
         let dot = path_data(&[vec![[5.0, 5.0]]], &frame, true);
-        assert_eq!(path_data(&[standing.clone()], &frame, true), dot);
+        assert_eq!(
+            path_data(core::slice::from_ref(&standing), &frame, true),
+            dot
+        );
         for lines in [[standing.clone(), moving], [standing, leaving]] {
             let data = path_data(&lines, &frame, true);
             assert!(data.starts_with(&dot), "{data}");
-            let numbers = data.split('M').skip(1).map(|line| line.split_once('l'));
+            let mut numbers = data.split('M').skip(1).map(|line| line.split_once('l'));
             let is_drawn = |line: Option<(&str, &str)>| line.is_some_and(|(_, to)| !to.is_empty());
-            assert!(numbers.map(is_drawn).all(|it| it), "{data}");
+            assert!(numbers.all(is_drawn), "{data}");
         }
     }
 }
