@@ -196,6 +196,49 @@ fn the_dump_has_every_pulse() {
     assert!((f64::from(last) * 1e3 - duration_ns).abs() < 1e4);
 }
 
+/// 1,200 strokes whose file goes from one end of the drawing to the other for each.
+#[test]
+fn strokes_are_ordered_and_a_huge_dump_is_asked_for() {
+    let stroke = |k: u32| {
+        let (x, y) = (k * 737 % 1200 % 40, k * 737 % 1200 / 40);
+        format!("<path d='M{x}.2 {y}.1h.6' stroke='black'/>")
+    };
+    let body: String = (0..1200).map(stroke).collect();
+    let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 40 30'>{body}</svg>");
+    let folder = TempDir::new().unwrap();
+    let svg = folder.path().join("hatch.svg");
+    fs::write(&svg, text).unwrap();
+    let out = folder.path().join("out");
+    let run = |options: &[&str]| {
+        let input = ["--svg", svg.to_str().unwrap()];
+        let output = run_into(&out, "engrave", &[&input, options].concat());
+        assert!(output.status.success(), "{output:?}");
+        let report = fs::read(out.join("report.json")).unwrap();
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        let dump = fs::metadata(out.join("pulses.vcd")).ok();
+        (report, dump.map(|file| file.len()))
+    };
+    let number = |report: &Value, name: &str| report[name].as_f64().unwrap();
+
+    let (kept, dump) = run(&["--keep-order", "--vcd"]);
+    let pulses = |report: &Value| {
+        let pulses = report["pulses"].as_object().unwrap();
+        pulses.values().filter_map(Value::as_u64).sum::<u64>()
+    };
+    // An edge up and one down of each pulse, with a stamp or another edge: 4 bytes at least.
+    assert!(dump.unwrap() > 4 * pulses(&kept));
+    let (ordered, dump) = run(&[]);
+    assert!(pulses(&ordered) > 500_000);
+    assert_eq!(dump, None, "the run before has left its own");
+    for same in ["strokes", "length_mm"] {
+        assert!(
+            (number(&ordered, same) - number(&kept, same)).abs() < 1e-6,
+            "{same}"
+        );
+    }
+    assert!(number(&ordered, "travel_mm") * 10.0 < number(&kept, "travel_mm"));
+}
+
 #[test]
 fn bad_input_is_one_line_and_leaves_nothing() {
     let folder = TempDir::new().unwrap();
