@@ -3,6 +3,7 @@
 use core::fmt;
 
 use nalgebra::{RealField, Vector3};
+use trig_kernels::Trig;
 
 use crate::arm::zip;
 use crate::scale::{half, two};
@@ -59,7 +60,7 @@ struct Tripod<T> {
     volume: T,
 }
 
-impl<T: RealField + Copy> Tripod<T> {
+impl<T: RealField + Trig> Tripod<T> {
     /// From the rods, each from its centre to the platform.
     fn new([first, second, third]: [Vector3<T>; 3]) -> Self {
         let (d2, d3) = (first - second, first - third);
@@ -78,7 +79,7 @@ impl<T: RealField + Copy> Tripod<T> {
     }
 }
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// Whether the rods, each from its centre to the platform, are clearly in the machine's
     /// assembly mode: so far that the triangle, too, is no line.
     ///

@@ -5,6 +5,7 @@ mod parameter;
 mod rank;
 
 use nalgebra::{Point3, RealField, SVector, Vector3};
+use trig_kernels::Trig;
 
 use crate::inverse::Across;
 use crate::rounded::Rounded;
@@ -98,7 +99,7 @@ pub struct Calibration<const N: usize, T: RealField = f64> {
 
 const MOST_ITERATIONS: u32 = 200;
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// The machine whose `parameters` fit measured points best, all others kept.
     ///
     /// ```text
@@ -185,7 +186,7 @@ impl<T: RealField + Copy> Delta<T> {
     }
 }
 
-impl<const N: usize, T: RealField + Copy> Calibration<N, T> {
+impl<const N: usize, T: RealField + Trig> Calibration<N, T> {
     /// The calibrated machine.
     #[must_use]
     pub const fn delta(&self) -> Delta<T> {
@@ -266,7 +267,7 @@ struct Problem<'a, const N: usize, T: RealField> {
     measured: &'a [Measured<T>],
 }
 
-impl<const N: usize, T: RealField + Copy> Problem<'_, N, T> {
+impl<const N: usize, T: RealField + Trig> Problem<'_, N, T> {
     /// What a change of 1 is, in the unit of length or in radians.
     fn units(&self) -> [T; N] {
         self.parameters
@@ -298,6 +299,13 @@ impl<const N: usize, T: RealField + Copy> Problem<'_, N, T> {
         self.measured.iter().try_fold(T::zero(), |sum, measured| {
             Some(sum + self.missing(delta, measured)?.norm_squared())
         })
+    }
+
+    /// What the sum is where each point is met to a machine epsilon of the span.
+    fn rounding(&self) -> T {
+        let epsilon = T::default_epsilon();
+        let squares = self.measured.iter().map(|_| epsilon * epsilon);
+        squares.fold(T::zero(), |sum, square| sum + square)
     }
 
     /// The triangularised Jacobian with the residuals, and the sum of their squares.

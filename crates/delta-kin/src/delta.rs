@@ -1,6 +1,7 @@
 //! The machine: three arms, frame, limits.
 
 use nalgebra::{RealField, Vector3};
+use trig_kernels::{Trig, sin_cos_lanes};
 
 use crate::arm::zip;
 use crate::geometry::{checked_span, order};
@@ -77,7 +78,7 @@ pub enum Positive {
 /// an arm's lengths: a sine, two products and two sums for each of three spheres.
 const ROUNDING_STEPS: f64 = 16.0;
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// A machine of three equal arms, 120° apart, without limits: base radius R, platform
     /// radius r, upper arm Lb, lower arm La.
     ///
@@ -295,7 +296,8 @@ impl<T: RealField + Copy> Delta<T> {
     /// Centres of the three spheres on which the platform's centre lies.
     #[inline]
     pub(crate) fn centres_at(&self, thetas: [T; 3]) -> [Vector3<T>; 3] {
-        zip(self.legs.each_ref(), thetas).map(|(leg, theta)| leg.centre(theta))
+        let (sines, cosines) = sin_cos_lanes(thetas);
+        zip(self.legs.each_ref(), zip(sines, cosines)).map(|(leg, theta)| leg.centre(theta))
     }
 
     /// A point or vector in the thesis' frame, or from it: the same either way.

@@ -9,6 +9,7 @@ use core::fmt;
 use core::iter::FusedIterator;
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::Trig;
 
 use crate::rounded::Rounded;
 use crate::scale::fastest;
@@ -150,7 +151,7 @@ impl<T: RealField + Copy> fmt::Display for At<T> {
 /// The least tolerance, in those of the machine: the rounding of three rods, times conditioning.
 const LEAST_TOLERANCE: f64 = 64.0;
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// Joint waypoints along `path`, in the machine's modes, such that the straight joint move from
     /// each to the next keeps the platform within `tolerance` of the path, in the time that
     /// `pace` allows.
@@ -199,7 +200,7 @@ pub struct Follow<T: RealField = f64> {
     waypoints: usize,
 }
 
-impl<T: RealField + Copy> Iterator for Follow<T> {
+impl<T: RealField + Trig> Iterator for Follow<T> {
     type Item = Waypoint<T>;
 
     fn next(&mut self) -> Option<Waypoint<T>> {
@@ -214,6 +215,6 @@ impl<T: RealField + Copy> Iterator for Follow<T> {
     }
 }
 
-impl<T: RealField + Copy> ExactSizeIterator for Follow<T> {}
+impl<T: RealField + Trig> ExactSizeIterator for Follow<T> {}
 
-impl<T: RealField + Copy> FusedIterator for Follow<T> {}
+impl<T: RealField + Trig> FusedIterator for Follow<T> {}

@@ -1,6 +1,7 @@
 //! From the three angles to the position: where three spheres meet.
 
 use nalgebra::{Matrix2, Point3, RealField, Vector2, Vector3};
+use trig_kernels::Trig;
 
 use crate::arm::{least, zip};
 use crate::rounded::Rounded;
@@ -117,7 +118,7 @@ impl<T: RealField + Copy> Foot<T> {
 /// The error is squared with each step: this is enough from any start.
 const NEWTON_STEPS: u32 = 12;
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// The position of the platform's centre, in the machine's assembly mode.
     ///
     /// It lies on three spheres round the knees, moved inward by the platform's radius, each

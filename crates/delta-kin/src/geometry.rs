@@ -1,6 +1,7 @@
 //! What an arm's numbers may be, and why a geometry is refused.
 
 use nalgebra::RealField;
+use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
 use crate::rounded::Rounded;
@@ -131,7 +132,7 @@ fn check_angles<T: RealField + Copy>(arms: &[ArmGeometry<T>; 3]) -> Result<(), G
 /// ```text
 /// sin(a2 - a1) + sin(a3 - a2) + sin(a1 - a3) = -4 sin((a2 - a1)/2) sin((a3 - a2)/2) sin((a1 - a3)/2)
 /// ```
-pub(crate) fn order<T: RealField + Copy>(
+pub(crate) fn order<T: RealField + Trig>(
     arms: &[ArmGeometry<T>; 3],
 ) -> Result<T, GeometryError<T>> {
     let [a1, a2, a3] = arms.each_ref().map(|arm| arm.azimuth);
@@ -144,7 +145,7 @@ pub(crate) fn order<T: RealField + Copy>(
         ((second, third), a3 - a2),
         ((third, first), a1 - a3),
     ] {
-        let sin = (apart * half()).sin();
+        let (sin, _) = sin_cos(apart * half());
         if sin.abs() <= rounding {
             let (first, second) = pair;
             return Err(GeometryError::SameAzimuth { first, second });

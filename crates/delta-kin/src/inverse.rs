@@ -3,9 +3,10 @@
 use core::fmt;
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::{Trig, atan2};
 
 use crate::arm::{least, zip};
-use crate::leg::{Leg, Triangle, middle};
+use crate::leg::{Leg, Triangle, middle, thetas};
 use crate::rounded::Rounded;
 use crate::scale::max_value;
 use crate::{Arm, AssemblyMode, Delta, ZAxis};
@@ -122,7 +123,7 @@ impl fmt::Display for Across {
     }
 }
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// The angles that bring the platform's centre to `point`, in the machine's working and
     /// assembly modes: `forward` of them is the point.
     ///
@@ -149,20 +150,22 @@ impl<T: RealField + Copy> Delta<T> {
     #[inline]
     pub fn inverse(&self, point: Point3<T>) -> Result<Vector3<T>, InverseError<T>> {
         let local = self.flip(point.coords);
-        let solved = zip(self.legs().each_ref(), self.working_mode()).map(|(leg, knee)| {
+        let arms = zip(self.legs().each_ref(), self.working_mode()).map(|(leg, knee)| {
             let triangle = leg.triangle(&local);
-            let heading = triangle.heading(knee);
-            let angle = leg.angle(heading.theta());
-            let admitted = triangle.is_within_reach()
+            (leg, triangle, triangle.heading(knee))
+        });
+        let thetas = thetas(arms.map(|(_, _, heading)| heading));
+        let angles = zip(self.legs().each_ref(), thetas).map(|(leg, theta)| leg.angle(theta));
+        let is_admitted = zip(arms, angles).map(|((leg, triangle, _), angle)| {
+            triangle.is_within_reach()
                 & (leg.min <= angle)
                 & (angle <= leg.max)
-                & (triangle.side.abs() <= leg.max_side);
-            (angle, admitted, leg.rod(&triangle, &heading))
+                & (triangle.side.abs() <= leg.max_side)
         });
-        let [first, second, third] = solved;
-        let is_admitted = first.1 & second.1 & third.1;
-        if is_admitted & self.is_assembled(solved.map(|(_, _, rod)| rod)) {
-            return Ok(Vector3::new(first.0, second.0, third.0));
+        let [first, second, third] = is_admitted;
+        let rods = arms.map(|(leg, triangle, heading)| leg.rod(&triangle, &heading));
+        if first & second & third & self.is_assembled(rods) {
+            return Ok(Vector3::from(angles));
         }
         self.inverse_at_limits(point, local)
     }
@@ -186,8 +189,10 @@ impl<T: RealField + Copy> Delta<T> {
                 return Err(InverseError::AnyAngle { arm });
             }
         }
-        let thetas = zip(arms, self.working_mode())
-            .map(|((_, _, triangle), knee)| triangle.at_edge().heading(knee).theta());
+        let thetas = thetas(
+            zip(arms, self.working_mode())
+                .map(|((_, _, triangle), knee)| triangle.at_edge().heading(knee)),
+        );
         self.check_assembly(&local, thetas)?;
         worst(arms.map(|(arm, leg, triangle)| self.leaning(arm, leg, &triangle)))?;
         let fitted = zip(arms, thetas)
@@ -248,7 +253,10 @@ impl<T: RealField + Copy> Delta<T> {
         leg: &Leg<T>,
         triangle: &Triangle<T>,
     ) -> Option<(T, InverseError<T>)> {
-        let asin = |side: T| (side / leg.lower).min(T::one()).asin();
+        let asin = |side: T| {
+            let side = side.min(leg.lower);
+            atan2(side, ((leg.lower - side) * (leg.lower + side)).sqrt())
+        };
         let (lean, max) = (asin(triangle.side.abs()), asin(leg.max_side));
         let error = InverseError::BallJoint { arm, lean, max };
         (triangle.side.abs() > leg.max_side + self.tolerance()).then_some((lean - max, error))
@@ -281,7 +289,7 @@ impl<T: RealField + Copy> Delta<T> {
     }
 }
 
-impl<T: RealField + Copy> Leg<T> {
+impl<T: RealField + Trig> Leg<T> {
     /// How far the point can move before the arm, without its limits, no longer reaches it.
     pub(crate) fn reach_margin(&self, local: &Vector3<T>) -> T {
         let (near, far) = self.knee_distances(&self.triangle(local));

@@ -1,6 +1,7 @@
 //! One arm with all that follows from its geometry, in the frame of [Delta thesis].
 
 use nalgebra::{RealField, Vector3};
+use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
 
 use crate::scale::{half, max_value, two};
 use crate::{ArmGeometry, JointRange, Knee, Positive};
@@ -51,14 +52,14 @@ pub(crate) struct Heading<T> {
     cos: T,
 }
 
-impl<T: RealField + Copy> Leg<T> {
+impl<T: RealField + Trig> Leg<T> {
     pub(crate) fn new(
         arm: &ArmGeometry<T>,
         range: Option<JointRange<T>>,
         max_lean: Option<T>,
         positive: Positive,
     ) -> Self {
-        let (sin, cos) = arm.azimuth.sin_cos();
+        let (sin, cos) = sin_cos(arm.azimuth);
         let huge = max_value::<T>();
         let turn = match positive {
             Positive::Outward => T::one(),
@@ -78,7 +79,7 @@ impl<T: RealField + Copy> Leg<T> {
             max,
             low: a.min(b),
             high: a.max(b),
-            max_side: max_lean.map_or(huge, |lean| arm.lower * lean.sin()),
+            max_side: max_lean.map_or(huge, |lean| arm.lower * sin_cos(lean).0),
         }
     }
 
@@ -143,22 +144,19 @@ impl<T: RealField + Copy> Leg<T> {
     }
 
     /// Centre of the sphere on which the platform's centre lies: the knee, moved inward by
-    /// the platform's radius.
+    /// the platform's radius. From sine and cosine of theta, as the next two.
     #[inline]
-    pub(crate) fn centre(&self, theta: T) -> Vector3<T> {
-        let (sin, cos) = theta.sin_cos();
+    pub(crate) fn centre(&self, (sin, cos): (T, T)) -> Vector3<T> {
         self.in_plane(self.offset + self.upper * sin, -self.upper * cos)
     }
 
     /// The upper arm as a vector.
-    pub(crate) fn spoke(&self, theta: T) -> Vector3<T> {
-        let (sin, cos) = theta.sin_cos();
+    pub(crate) fn spoke(&self, (sin, cos): (T, T)) -> Vector3<T> {
         self.in_plane(self.upper * sin, -self.upper * cos)
     }
 
     /// How the knee moves when theta grows.
-    pub(crate) fn tangent(&self, theta: T) -> Vector3<T> {
-        let (sin, cos) = theta.sin_cos();
+    pub(crate) fn tangent(&self, (sin, cos): (T, T)) -> Vector3<T> {
         self.in_plane(self.upper * cos, self.upper * sin)
     }
 
@@ -175,7 +173,7 @@ impl<T: RealField + Copy> Leg<T> {
 
     /// By how much the rod would be too short if the knee were at `theta`.
     pub(crate) fn stretch(&self, point: &Vector3<T>, theta: T) -> T {
-        (point - self.centre(theta)).norm() - self.lower
+        (point - self.centre(sin_cos(theta))).norm() - self.lower
     }
 
     /// How far the nearest and the farthest place of the knee are from the wrist.
@@ -219,11 +217,12 @@ impl<T: RealField + Copy> Triangle<T> {
     }
 }
 
-impl<T: RealField + Copy> Heading<T> {
-    #[inline(always)]
-    pub(crate) fn theta(&self) -> T {
-        self.sin.atan2(self.cos)
-    }
+/// The thetas of three upper arms.
+#[inline(always)]
+pub(crate) fn thetas<T: Trig>([first, second, third]: [Heading<T>; 3]) -> [T; 3] {
+    // Two fill the vectors of every processor that has some; three would not be put into them.
+    let [one, two] = atan2_lanes([first.sin, second.sin], [first.cos, second.cos]);
+    [one, two, atan2(third.sin, third.cos)]
 }
 
 /// The mean of two numbers that may be as large as there are.

@@ -24,6 +24,7 @@ mod serde;
 mod workspace;
 
 pub use nalgebra;
+pub use trig_kernels::Trig;
 
 pub use arm::{Arm, ArmGeometry, Knee};
 pub use assembly::AssemblyMode;

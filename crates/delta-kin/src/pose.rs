@@ -1,6 +1,7 @@
 //! A pose and what holds in it: Jacobian, speeds, singularities, torques.
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::{least, zip};
 use crate::rounded::Rounded;
@@ -63,7 +64,7 @@ pub struct Pose<T: RealField = f64> {
     rounding: T,
 }
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// The pose with the platform's centre at `point`, in the machine's modes.
     ///
     /// # Errors
@@ -81,11 +82,12 @@ impl<T: RealField + Copy> Delta<T> {
     }
 }
 
-impl<T: RealField + Copy> Pose<T> {
+impl<T: RealField + Trig> Pose<T> {
     pub(crate) fn new(delta: &Delta<T>, angles: Vector3<T>, point: Point3<T>) -> Self {
         let local = delta.flip(point.coords);
         let legs = zip(delta.legs().each_ref(), delta.arms().each_ref());
         let arms = zip(legs, delta.thetas(angles)).map(|((leg, arm), theta)| {
+            let theta = sin_cos(theta);
             let centre = leg.centre(theta);
             let rod = (local - centre) / leg.lower;
             let lever = rod.dot(&leg.tangent(theta)) * leg.turn;

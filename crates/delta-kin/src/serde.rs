@@ -2,19 +2,20 @@
 
 use nalgebra::RealField;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use trig_kernels::Trig;
 
 use crate::{ArmGeometry, AssemblyMode, Delta, GeometryError, JointRange, Knee, Positive, ZAxis};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
     ($checked:ident, $plain:ident) => {
-        impl<T: RealField + Copy + Serialize> Serialize for $checked<T> {
+        impl<T: RealField + Trig + Serialize> Serialize for $checked<T> {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 $plain::from(*self).serialize(serializer)
             }
         }
 
-        impl<'de, T: RealField + Copy + Deserialize<'de>> Deserialize<'de> for $checked<T> {
+        impl<'de, T: RealField + Trig + Deserialize<'de>> Deserialize<'de> for $checked<T> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 $plain::deserialize(deserializer)?
                     .try_into()
@@ -34,7 +35,7 @@ struct PlainRange<T> {
     max: T,
 }
 
-impl<T: RealField + Copy> From<JointRange<T>> for PlainRange<T> {
+impl<T: RealField + Trig> From<JointRange<T>> for PlainRange<T> {
     fn from(range: JointRange<T>) -> Self {
         Self {
             min: range.min(),
@@ -43,7 +44,7 @@ impl<T: RealField + Copy> From<JointRange<T>> for PlainRange<T> {
     }
 }
 
-impl<T: RealField + Copy> TryFrom<PlainRange<T>> for JointRange<T> {
+impl<T: RealField + Trig> TryFrom<PlainRange<T>> for JointRange<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainRange<T>) -> Result<Self, Self::Error> {
@@ -55,8 +56,8 @@ impl<T: RealField + Copy> TryFrom<PlainRange<T>> for JointRange<T> {
 #[serde(
     deny_unknown_fields,
     bound(
-        serialize = "T: RealField + Copy + Serialize",
-        deserialize = "T: RealField + Copy + Deserialize<'de>"
+        serialize = "T: RealField + Trig + Serialize",
+        deserialize = "T: RealField + Trig + Deserialize<'de>"
     )
 )]
 struct PlainDelta<T> {
@@ -79,7 +80,7 @@ const fn knees_out() -> [Knee; 3] {
     [Knee::Out; 3]
 }
 
-impl<T: RealField + Copy> From<Delta<T>> for PlainDelta<T> {
+impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {
     fn from(delta: Delta<T>) -> Self {
         Self {
             arms: *delta.arms(),
@@ -93,7 +94,7 @@ impl<T: RealField + Copy> From<Delta<T>> for PlainDelta<T> {
     }
 }
 
-impl<T: RealField + Copy> TryFrom<PlainDelta<T>> for Delta<T> {
+impl<T: RealField + Trig> TryFrom<PlainDelta<T>> for Delta<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainDelta<T>) -> Result<Self, Self::Error> {

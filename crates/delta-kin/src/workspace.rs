@@ -5,6 +5,7 @@ mod cylinder;
 mod outline;
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::rounded::Rounded;
 use crate::scale::{is_within, widest};
@@ -64,7 +65,7 @@ pub enum WorkspaceError<T: RealField + Copy = f64> {
     },
 }
 
-impl<T: RealField + Copy> Workspace<T> {
+impl<T: RealField + Trig> Workspace<T> {
     pub(crate) const fn new(delta: Delta<T>) -> Self {
         Self { delta }
     }
@@ -100,7 +101,7 @@ impl<T: RealField + Copy> Workspace<T> {
         if !is_within(azimuth, max) {
             return Err(WorkspaceError::Azimuth { azimuth, max });
         }
-        let (sin, cos) = azimuth.sin_cos();
+        let (sin, cos) = sin_cos(azimuth);
         self.slice(z, [Vector3::new(cos, sin, T::zero()), Vector3::z()], points)
     }
 

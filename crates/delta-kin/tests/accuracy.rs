@@ -9,7 +9,7 @@ mod uneven;
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
-use delta_kin::{ArmGeometry, AssemblyMode, Delta, ForwardError, Knee};
+use delta_kin::{ArmGeometry, AssemblyMode, Delta, ForwardError, Knee, Trig};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -163,7 +163,7 @@ struct Search {
 
 impl Search {
     /// In the arithmetic of `T`, whose numbers are all numbers of `f64`.
-    fn run<T: RealField + Copy>(&mut self, case: &Case, consts: &mut Consts) {
+    fn run<T: RealField + Trig>(&mut self, case: &Case, consts: &mut Consts) {
         let arms = case.arms.map(|arm| ArmGeometry {
             azimuth: narrow(arm.azimuth),
             base: narrow(arm.base),
@@ -237,7 +237,7 @@ impl Search {
 }
 
 /// The last angles on a way to where the rods do not meet.
-fn last_that_touch<T: RealField + Copy>(
+fn last_that_touch<T: RealField + Trig>(
     delta: &Delta<T>,
     from: Vector3<T>,
     case: &Case,
@@ -288,7 +288,7 @@ fn towards_the_edge(
     Some(from + direction * (inside * case.share))
 }
 
-fn search<T: RealField + Copy>() {
+fn search<T: RealField + Trig>() {
     let machines = std::env::var("DELTA_KIN_CASES").map_or(2000, |text| text.parse().unwrap());
     let mut runner = TestRunner::deterministic();
     let mut consts = Consts::new().unwrap();

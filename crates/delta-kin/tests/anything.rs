@@ -5,7 +5,7 @@
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
     Arm, ArmGeometry, AssemblyMode, Delta, InverseError, JointRange, Knee, Measured, Pace,
-    Parameter, Path, Pose, Positive, Quantity, ZAxis,
+    Parameter, Path, Pose, Positive, Quantity, Trig, ZAxis,
 };
 use proptest::prelude::*;
 
@@ -96,7 +96,7 @@ fn read<A, E: core::error::Error>(answer: Result<A, E>) -> Option<A> {
         .ok()
 }
 
-fn machine<T: RealField + Copy>(numbers: &mut Source) -> Option<Delta<T>> {
+fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
     let size = numbers.pick(&[1.0, 1.0, 1e-6, 1e6, 1e-37, 1e30, 1e75]);
     let lengths = [0.42, 0.18, 1.2, 2.43].map(|length| length * size);
     let mut arms = Arm::ALL.map(|arm| {
@@ -130,7 +130,7 @@ fn machine<T: RealField + Copy>(numbers: &mut Source) -> Option<Delta<T>> {
     Some(delta)
 }
 
-fn prop_assert_range<T: RealField + Copy>(range: &JointRange<T>, numbers: &mut Source) {
+fn prop_assert_range<T: RealField + Trig>(range: &JointRange<T>, numbers: &mut Source) {
     assert!(range.min() < range.max() && (range.max() - range.min()).is_finite());
     let angle: T = numbers.next();
     assert_eq!(
@@ -140,7 +140,7 @@ fn prop_assert_range<T: RealField + Copy>(range: &JointRange<T>, numbers: &mut S
 }
 
 /// What is promised of a pose: it meets its lengths, and `forward` of it is where it is.
-fn is_right<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> Result<(), TestCaseError> {
+fn is_right<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> Result<(), TestCaseError> {
     let epsilon = wide(T::default_epsilon());
     // Of angles many turns from zero their own rounding counts.
     let tolerance = wide(delta.tolerance());
@@ -165,7 +165,7 @@ fn is_right<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> Result<(),
     Ok(())
 }
 
-fn statics<T: RealField + Copy>(pose: &Pose<T>, numbers: &mut Source) -> Result<(), TestCaseError> {
+fn statics<T: RealField + Trig>(pose: &Pose<T>, numbers: &mut Source) -> Result<(), TestCaseError> {
     if let Some(jacobian) = read(pose.jacobian()) {
         finite(&jacobian)?;
     }
@@ -188,7 +188,7 @@ fn statics<T: RealField + Copy>(pose: &Pose<T>, numbers: &mut Source) -> Result<
     Ok(())
 }
 
-fn follows<T: RealField + Copy>(
+fn follows<T: RealField + Trig>(
     delta: &Delta<T>,
     near: Point3<T>,
     numbers: &mut Source,
@@ -246,7 +246,7 @@ fn follows<T: RealField + Copy>(
     Ok(())
 }
 
-fn reaches<T: RealField + Copy>(
+fn reaches<T: RealField + Trig>(
     delta: &Delta<T>,
     point: Point3<T>,
     numbers: &mut Source,
@@ -279,7 +279,7 @@ fn reaches<T: RealField + Copy>(
     Ok(())
 }
 
-fn calibrates<T: RealField + Copy>(
+fn calibrates<T: RealField + Trig>(
     delta: &Delta<T>,
     pose: &Pose<T>,
     numbers: &mut Source,
@@ -314,7 +314,7 @@ fn calibrates<T: RealField + Copy>(
     Ok(())
 }
 
-fn everything<T: RealField + Copy>(numbers: &mut Source) -> Result<(), TestCaseError> {
+fn everything<T: RealField + Trig>(numbers: &mut Source) -> Result<(), TestCaseError> {
     let Some(delta) = machine::<T>(numbers) else {
         return Ok(());
     };

@@ -3,6 +3,7 @@
 mod error;
 
 use nalgebra::{Isometry2, RealField};
+use trig_kernels::Trig;
 
 pub use error::GeometryError;
 
@@ -46,7 +47,7 @@ pub struct Arm<T: RealField = f64> {
 /// links, and the base's transformation there and back.
 const ROUNDING_STEPS: f64 = 16.0;
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// An arm of the two link lengths, its base at the origin along X, without limits.
     ///
     /// The lengths may differ by a factor of 1/64ε (f64: 7e13, f32: 1.3e5). In f64 they lie

@@ -9,6 +9,7 @@ use core::fmt::{Display, Formatter};
 use core::iter::FusedIterator;
 
 use nalgebra::{Point2, RealField};
+use trig_kernels::Trig;
 
 pub use error::FollowError;
 
@@ -46,7 +47,7 @@ pub struct Waypoint<T: RealField = f64> {
     pub place: CurvePlace<T>,
 }
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// Joint waypoints along the polyline `points` such that the straight joint move
     /// from each waypoint to the next keeps the tool within `tolerance` of the curve.
     ///
@@ -116,7 +117,7 @@ pub struct Follow<I, T: RealField = f64> {
 impl<I, T> Iterator for Follow<I, T>
 where
     I: Iterator<Item = Point2<T>>,
-    T: RealField + Copy,
+    T: RealField + Trig,
 {
     type Item = Waypoint<T>;
 
@@ -135,13 +136,13 @@ where
 impl<I, T> ExactSizeIterator for Follow<I, T>
 where
     I: Iterator<Item = Point2<T>>,
-    T: RealField + Copy,
+    T: RealField + Trig,
 {
 }
 
 impl<I, T> FusedIterator for Follow<I, T>
 where
     I: Iterator<Item = Point2<T>>,
-    T: RealField + Copy,
+    T: RealField + Trig,
 {
 }

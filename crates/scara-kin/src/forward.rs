@@ -1,6 +1,7 @@
 //! From joint angles to positions.
 
 use nalgebra::{Point2, RealField, Vector2};
+use trig_kernels::{Trig, sin_cos, sin_cos_lanes};
 
 use crate::{Arm, Joints};
 
@@ -17,7 +18,7 @@ impl<T: RealField + Copy> Links<T> {
     }
 }
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// Position of the tool.
     ///
     /// ```text
@@ -37,15 +38,14 @@ impl<T: RealField + Copy> Arm<T> {
     /// Position of the elbow's axis.
     #[must_use]
     pub fn elbow_position(&self, joints: Joints<T>) -> Point2<T> {
-        let (sin, cos) = joints.shoulder.sin_cos();
+        let (sin, cos) = sin_cos(joints.shoulder);
         self.base() * Point2::new(self.upper() * cos, self.upper() * sin)
     }
 
     /// The tool in the base's frame.
     #[inline]
     pub(crate) fn tip(&self, joints: Joints<T>) -> Vector2<T> {
-        let (sin1, cos1) = joints.shoulder.sin_cos();
-        let (sin2, cos2) = joints.elbow.sin_cos();
+        let ([sin1, sin2], [cos1, cos2]) = sin_cos_lanes([joints.shoulder, joints.elbow]);
         let along = self.upper() + self.fore() * cos2;
         let across = self.fore() * sin2;
         Vector2::new(cos1 * along - sin1 * across, sin1 * along + cos1 * across)
@@ -53,8 +53,7 @@ impl<T: RealField + Copy> Arm<T> {
 
     /// Both links in the base's frame.
     pub(crate) fn links(&self, joints: Joints<T>) -> Links<T> {
-        let (sin1, cos1) = joints.shoulder.sin_cos();
-        let (sin2, cos2) = joints.elbow.sin_cos();
+        let ([sin1, sin2], [cos1, cos2]) = sin_cos_lanes([joints.shoulder, joints.elbow]);
         Links {
             upper: Vector2::new(cos1, sin1) * self.upper(),
             fore: Vector2::new(cos1 * cos2 - sin1 * sin2, sin1 * cos2 + cos1 * sin2) * self.fore(),

@@ -5,6 +5,7 @@ mod error;
 mod solutions;
 
 use nalgebra::{Point2, RealField, Vector2};
+use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
 
 pub use error::InverseError;
 pub use solutions::Solutions;
@@ -19,34 +20,39 @@ struct Triangle<T> {
     s: T,
     /// r² + l1² - l2²
     k1: T,
-    /// Elbow angle of the right elbow, 0..=π.
-    elbow: T,
+    /// r² - l1² - l2²
+    k2: T,
 }
 
-impl<T: RealField + Copy> Triangle<T> {
+impl<T: RealField + Trig> Triangle<T> {
     #[inline]
     fn joints(&self, elbow: Elbow) -> Joints<T> {
-        let (k1, s) = match elbow {
-            Elbow::Right => (self.k1, self.s),
-            Elbow::Left => (self.k1, -self.s),
+        let s = match elbow {
+            Elbow::Right => self.s,
+            Elbow::Left => -self.s,
         };
-        let (x, y) = (self.tool.x, self.tool.y);
-        Joints {
-            shoulder: (k1 * y - s * x).atan2(k1 * x + s * y),
-            elbow: match elbow {
-                Elbow::Right => self.elbow,
-                Elbow::Left => -self.elbow,
-            },
-        }
+        let (sin, cos) = self.shoulder(s);
+        let [shoulder, elbow] = atan2_lanes([sin, s], [cos, self.k2]);
+        Joints { shoulder, elbow }
     }
 
     #[inline]
     fn both(&self) -> [Joints<T>; 2] {
-        [self.joints(Elbow::Right), self.joints(Elbow::Left)]
+        let (right, left) = (self.shoulder(self.s), self.shoulder(-self.s));
+        let elbow = atan2(self.s, self.k2);
+        let [right, left] = atan2_lanes([right.0, left.0], [right.1, left.1]);
+        [Joints::new(right, elbow), Joints::new(left, -elbow)]
+    }
+
+    /// Sine and cosine of the shoulder, times some length, for the area `s` with the elbow's sign.
+    #[inline(always)]
+    fn shoulder(&self, s: T) -> (T, T) {
+        let (x, y) = (self.tool.x, self.tool.y);
+        (self.k1 * y - s * x, self.k1 * x + s * y)
     }
 }
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// Joint angles of both elbows that bring the tool to `point`.
     ///
     /// ```text
@@ -136,7 +142,7 @@ impl<T: RealField + Copy> Arm<T> {
         let joints = self
             .admit(raw, previous, Vector2::zeros())
             .map_err(|miss| miss.error(Elbow::Right))?;
-        let elbow = if joints.elbow.sin() < T::zero() {
+        let elbow = if sin_cos(joints.elbow).0 < T::zero() {
             Elbow::Left
         } else {
             Elbow::Right
@@ -185,8 +191,7 @@ impl<T: RealField + Copy> Arm<T> {
         } else {
             (square(l2) + l1 * l1, square(l2) - l1 * l1)
         };
-        let elbow = s.atan2(k2);
-        Ok(Triangle { tool, s, k1, elbow })
+        Ok(Triangle { tool, s, k1, k2 })
     }
 
     #[cold]
@@ -203,7 +208,7 @@ impl<T: RealField + Copy> Arm<T> {
 }
 
 /// The joints before, within the range of angles.
-fn checked<T: RealField + Copy>(joints: Joints<T>) -> Result<Joints<T>, InverseError<T>> {
+fn checked<T: RealField + Trig>(joints: Joints<T>) -> Result<Joints<T>, InverseError<T>> {
     if joints.are_angles() {
         Ok(joints)
     } else {

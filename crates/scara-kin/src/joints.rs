@@ -1,6 +1,7 @@
 //! Joint angles, and the names of an arm's two joints and two elbows.
 
 use nalgebra::{RealField, Vector2};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::range::is_angle;
 
@@ -65,8 +66,8 @@ impl Elbow {
     /// whole turns do not matter. An elbow at zero counts as `Right`, one at the float ±π as
     /// its sign says. `None` where the angle is not finite.
     #[must_use]
-    pub fn of<T: RealField + Copy>(joints: &Joints<T>) -> Option<Self> {
-        let sin = joints.elbow.sin();
+    pub fn of<T: RealField + Trig>(joints: &Joints<T>) -> Option<Self> {
+        let sin = sin_cos(joints.elbow).0;
         if sin < T::zero() {
             Some(Self::Left)
         } else if sin >= T::zero() {

@@ -21,6 +21,7 @@ mod tangent;
 mod velocity;
 
 pub use nalgebra;
+pub use trig_kernels::Trig;
 
 pub use arm::{Arm, GeometryError};
 pub use drives::{Direction, DriveAngles, Drives};

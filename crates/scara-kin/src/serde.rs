@@ -2,19 +2,20 @@
 
 use nalgebra::{Isometry2, RealField, Vector2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use trig_kernels::{Trig, atan2};
 
 use crate::{Arm, Direction, Drives, GeometryError, JointRange, Joints, Limits};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
     ($checked:ident, $plain:ident) => {
-        impl<T: RealField + Copy + Serialize> Serialize for $checked<T> {
+        impl<T: RealField + Trig + Serialize> Serialize for $checked<T> {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 $plain::from(*self).serialize(serializer)
             }
         }
 
-        impl<'de, T: RealField + Copy + Deserialize<'de>> Deserialize<'de> for $checked<T> {
+        impl<'de, T: RealField + Trig + Deserialize<'de>> Deserialize<'de> for $checked<T> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 $plain::deserialize(deserializer)?
                     .try_into()
@@ -36,7 +37,7 @@ struct PlainRange<T> {
     max: T,
 }
 
-impl<T: RealField + Copy> From<JointRange<T>> for PlainRange<T> {
+impl<T: RealField + Trig> From<JointRange<T>> for PlainRange<T> {
     fn from(range: JointRange<T>) -> Self {
         Self {
             min: range.min(),
@@ -45,7 +46,7 @@ impl<T: RealField + Copy> From<JointRange<T>> for PlainRange<T> {
     }
 }
 
-impl<T: RealField + Copy> TryFrom<PlainRange<T>> for JointRange<T> {
+impl<T: RealField + Trig> TryFrom<PlainRange<T>> for JointRange<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainRange<T>) -> Result<Self, Self::Error> {
@@ -61,17 +62,17 @@ struct PlainLimits<T> {
     elbow: Option<PlainRange<T>>,
 }
 
-fn limited<T: RealField + Copy>(range: JointRange<T>) -> Option<PlainRange<T>> {
+fn limited<T: RealField + Trig>(range: JointRange<T>) -> Option<PlainRange<T>> {
     (range != JointRange::unlimited()).then(|| range.into())
 }
 
-fn range<T: RealField + Copy>(
+fn range<T: RealField + Trig>(
     plain: Option<PlainRange<T>>,
 ) -> Result<JointRange<T>, GeometryError<T>> {
     plain.map_or_else(|| Ok(JointRange::unlimited()), TryInto::try_into)
 }
 
-impl<T: RealField + Copy> From<Limits<T>> for PlainLimits<T> {
+impl<T: RealField + Trig> From<Limits<T>> for PlainLimits<T> {
     fn from(limits: Limits<T>) -> Self {
         Self {
             shoulder: limited(limits.shoulder),
@@ -80,7 +81,7 @@ impl<T: RealField + Copy> From<Limits<T>> for PlainLimits<T> {
     }
 }
 
-impl<T: RealField + Copy> TryFrom<PlainLimits<T>> for Limits<T> {
+impl<T: RealField + Trig> TryFrom<PlainLimits<T>> for Limits<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainLimits<T>) -> Result<Self, Self::Error> {
@@ -118,21 +119,21 @@ fn no_limits<T>() -> PlainLimits<T> {
     }
 }
 
-impl<T: RealField + Copy> From<Arm<T>> for PlainArm<T> {
+impl<T: RealField + Trig> From<Arm<T>> for PlainArm<T> {
     fn from(arm: Arm<T>) -> Self {
         Self {
             upper: arm.upper(),
             fore: arm.fore(),
             base_x: arm.base().translation.x,
             base_y: arm.base().translation.y,
-            base_rad: arm.base().rotation.angle(),
+            base_rad: atan2(arm.base().rotation.im, arm.base().rotation.re),
             keep_out: arm.keep_out(),
             limits: (*arm.limits()).into(),
         }
     }
 }
 
-impl<T: RealField + Copy> TryFrom<PlainArm<T>> for Arm<T> {
+impl<T: RealField + Trig> TryFrom<PlainArm<T>> for Arm<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainArm<T>) -> Result<Self, Self::Error> {
@@ -165,7 +166,7 @@ fn no_offset<T: RealField>() -> Joints<T> {
     Joints::new(T::zero(), T::zero())
 }
 
-impl<T: RealField + Copy> From<Drives<T>> for PlainDrives<T> {
+impl<T: RealField + Trig> From<Drives<T>> for PlainDrives<T> {
     fn from(drives: Drives<T>) -> Self {
         let (shoulder, elbow) = drives.directions();
         Self {
@@ -177,7 +178,7 @@ impl<T: RealField + Copy> From<Drives<T>> for PlainDrives<T> {
     }
 }
 
-impl<T: RealField + Copy> TryFrom<PlainDrives<T>> for Drives<T> {
+impl<T: RealField + Trig> TryFrom<PlainDrives<T>> for Drives<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainDrives<T>) -> Result<Self, Self::Error> {

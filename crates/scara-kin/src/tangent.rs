@@ -3,6 +3,7 @@
 use core::fmt::{Display, Formatter};
 
 use nalgebra::{RealField, Vector2};
+use trig_kernels::{Trig, atan2};
 
 use crate::digits::Digits;
 use crate::limits::{half_turn, turned};
@@ -107,7 +108,7 @@ impl<T: RealField + Copy> Display for TangentError<T> {
 
 impl<T: RealField + Copy> core::error::Error for TangentError<T> {}
 
-impl<T: RealField + Copy> TangentTool<T> {
+impl<T: RealField + Trig> TangentTool<T> {
     /// A tool at θ3 = 0 that counts changes of heading above `corner`, in radians, as
     /// corners. With π or more there are none.
     ///
@@ -165,9 +166,10 @@ impl<T: RealField + Copy> TangentTool<T> {
         }
         within("shoulder", joints.shoulder)?;
         within("elbow", joints.elbow)?;
-        let heading = y.atan2(x);
+        let heading = atan2(y, x);
         let change = self.heading.map(|before| half_turn(heading - before));
-        let base = arm.base().rotation.angle();
+        let base = arm.base().rotation;
+        let base = atan2(base.im, base.re);
         let wanted = heading - base - joints.shoulder - joints.elbow;
         let turns = ((self.theta3 - wanted) / T::two_pi()).round();
         let theta3 = turned(wanted, turns);

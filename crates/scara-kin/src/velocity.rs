@@ -3,6 +3,7 @@
 use core::fmt::{Display, Formatter};
 
 use nalgebra::{Matrix2, RealField, Vector2};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::digits::Digits;
 use crate::limits::two;
@@ -46,7 +47,7 @@ impl<T: RealField + Copy> Display for RatesError<T> {
 
 impl<T: RealField + Copy> core::error::Error for RatesError<T> {}
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// The Jacobian of the tool position: columns shoulder and elbow, in length per radian.
     ///
     /// ```text
@@ -66,7 +67,7 @@ impl<T: RealField + Copy> Arm<T> {
     /// zero where the arm is straight or folded.
     #[must_use]
     pub fn manipulability(&self, joints: Joints<T>) -> T {
-        self.upper() * self.fore() * joints.elbow.sin().abs()
+        self.upper() * self.fore() * sin_cos(joints.elbow).0.abs()
     }
 
     /// Distance from a singular pose: the smaller singular value of the Jacobian, the
@@ -119,7 +120,7 @@ impl<T: RealField + Copy> Arm<T> {
         // sin(π) in floating point is half an epsilon, not zero; turns from zero it is what
         // the angle was rounded by.
         let rounding = T::default_epsilon() * elbow.abs().max(two());
-        let sin = elbow.sin();
+        let (sin, _) = sin_cos(elbow);
         if sin.abs() <= rounding {
             return Err(RatesError::Singular { elbow });
         }

@@ -9,7 +9,7 @@
 use core::f64::consts::PI;
 
 use scara_kin::nalgebra::{self, Isometry2, Point2, RealField, Vector2};
-use scara_kin::{Arm, Elbow, Joints};
+use scara_kin::{Arm, Elbow, Joints, Trig};
 use twofloat::TwoFloat;
 
 /// The documented figures, in machine epsilons of reach and base distance: tool errors of the
@@ -104,7 +104,7 @@ impl Case {
         }
     }
 
-    fn arm<T: RealField + Copy>(&self) -> Arm<T> {
+    fn arm<T: RealField + Trig>(&self) -> Arm<T> {
         let [x, y, turn] = self.base.map(nalgebra::convert::<_, T>);
         Arm::new(nalgebra::convert(self.upper), nalgebra::convert(self.fore))
             .and_then(|arm| arm.with_base(Isometry2::new(Vector2::new(x, y), turn)))
@@ -114,7 +114,7 @@ impl Case {
     /// Tool errors of inverse, forward of inverse and forward in machine epsilons, and what
     /// the rounding of the angles may add. `None` for the base itself and where rounding has
     /// put the point beyond a rim.
-    fn errors<T: RealField + Copy>(&self, is_wound: bool) -> Option<[f64; 3]> {
+    fn errors<T: RealField + Trig>(&self, is_wound: bool) -> Option<[f64; 3]> {
         let arm = self.arm::<T>();
         let (inner, outer) = (double(arm.inner_reach()), double(arm.reach()));
         let r = inner + (outer - inner) * self.share;
@@ -154,7 +154,7 @@ impl Case {
     }
 }
 
-fn double<T: RealField + Copy>(number: T) -> f64 {
+fn double<T: RealField + Trig>(number: T) -> f64 {
     nalgebra::convert_unchecked(number)
 }
 
@@ -162,12 +162,12 @@ fn distance(a: [TwoFloat; 2], b: [TwoFloat; 2]) -> f64 {
     f64::from(a[0] - b[0]).hypot(f64::from(a[1] - b[1]))
 }
 
-fn rotation<T: RealField + Copy>(arm: &Arm<T>) -> [TwoFloat; 2] {
+fn rotation<T: RealField + Trig>(arm: &Arm<T>) -> [TwoFloat; 2] {
     let rotation = arm.base().rotation;
     [rotation.re, rotation.im].map(|part| TwoFloat::from(double(part)))
 }
 
-fn in_base<T: RealField + Copy>(arm: &Arm<T>, point: Point2<TwoFloat>) -> [TwoFloat; 2] {
+fn in_base<T: RealField + Trig>(arm: &Arm<T>, point: Point2<TwoFloat>) -> [TwoFloat; 2] {
     let base = arm.base().translation.vector;
     let (x, y) = (point.x - double(base.x), point.y - double(base.y));
     let [re, im] = rotation(arm);
@@ -175,7 +175,7 @@ fn in_base<T: RealField + Copy>(arm: &Arm<T>, point: Point2<TwoFloat>) -> [TwoFl
 }
 
 /// The tool of the joints.
-fn tool<T: RealField + Copy>(arm: &Arm<T>, joints: Joints<T>) -> [TwoFloat; 2] {
+fn tool<T: RealField + Trig>(arm: &Arm<T>, joints: Joints<T>) -> [TwoFloat; 2] {
     let (s1, c1) = TwoFloat::from(double(joints.shoulder)).sin_cos();
     let (s2, c2) = TwoFloat::from(double(joints.elbow)).sin_cos();
     let along = c2 * double(arm.fore()) + double(arm.upper());
@@ -194,7 +194,7 @@ fn setting(name: &str, otherwise: u64) -> u64 {
 }
 
 /// Half of the cases are new, half beside the worst ones.
-fn search<T: RealField + Copy>(is_placed: bool, is_wound: bool) {
+fn search<T: RealField + Trig>(is_placed: bool, is_wound: bool) {
     let mut random = Random(setting("ACCURACY_SEED", 1));
     let mut worst = [(0.0, Case::new(&mut random, is_placed)); 3];
     let mut counted = 0;

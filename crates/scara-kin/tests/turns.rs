@@ -4,13 +4,13 @@
 use core::f64::consts::{PI, TAU};
 
 use scara_kin::nalgebra::{Point2, RealField, convert};
-use scara_kin::{Arm, Elbow, JointRange, Joints, Limits};
+use scara_kin::{Arm, Elbow, JointRange, Joints, Limits, Trig};
 
 /// Turns of both joints: from none to nearly as many as there may be.
 const TURNS: [i32; 9] = [0, 1, -3, 10, 20, -100, 400, 100_000, -10_000_000];
 
 /// Poses all over one turn of both joints, none of them straight or folded.
-fn poses<T: RealField + Copy>() -> impl Iterator<Item = Joints<T>> {
+fn poses<T: RealField + Trig>() -> impl Iterator<Item = Joints<T>> {
     (-18..18).flat_map(|shoulder| {
         (1..18).chain(-17..0).map(move |elbow| {
             let angle = |tenths: i32| convert((f64::from(tenths) + 0.37) * PI / 18.0);
@@ -19,18 +19,18 @@ fn poses<T: RealField + Copy>() -> impl Iterator<Item = Joints<T>> {
     })
 }
 
-fn turned<T: RealField + Copy>(joints: Joints<T>, turns: i32) -> Joints<T> {
+fn turned<T: RealField + Trig>(joints: Joints<T>, turns: i32) -> Joints<T> {
     let way: T = convert(f64::from(turns) * TAU);
     Joints::new(joints.shoulder + way, joints.elbow - way)
 }
 
 /// What rounding may move the tool by: of lengths or, many turns from zero, of angles.
-fn rounding<T: RealField + Copy>(arm: &Arm<T>, joints: Joints<T>) -> T {
+fn rounding<T: RealField + Trig>(arm: &Arm<T>, joints: Joints<T>) -> T {
     let angles = joints.shoulder.abs() * arm.reach() + joints.elbow.abs() * arm.fore();
     arm.tolerance().max(angles * T::default_epsilon())
 }
 
-fn reaches_its_own_points<T: RealField + Copy>(least_elbow: T) {
+fn reaches_its_own_points<T: RealField + Trig>(least_elbow: T) {
     let arms = [(132.0, 132.0), (200.0, 125.0), (10.0, 300.0)]
         .map(|(upper, fore)| Arm::new(convert(upper), convert(fore)).unwrap());
     let largest = JointRange::<T>::unlimited().max() - T::two_pi();

@@ -6,7 +6,9 @@ use core::f64::consts::PI;
 
 use proptest::prelude::*;
 use scara_kin::nalgebra::{self, Isometry2, Point2, RealField, Vector2};
-use scara_kin::{Arm, Elbow, FollowError, InverseError, JointRange, Joints, Limits, TangentTool};
+use scara_kin::{
+    Arm, Elbow, FollowError, InverseError, JointRange, Joints, Limits, TangentTool, Trig,
+};
 
 /// Roundings of lengths that are a product with a power of ten, of a few hundred operations,
 /// in machine epsilons.
@@ -40,7 +42,7 @@ fn pose() -> impl Strategy<Value = [f64; 2]> {
         .prop_map(|(shoulder, elbow, left)| [shoulder, if left { -elbow } else { elbow }])
 }
 
-impl<T: RealField + Copy> Pair<T> {
+impl<T: RealField + Trig> Pair<T> {
     fn new(lengths: Lengths, power: i32) -> Self {
         let scale = single::<T>(10f64.powi(power));
         let ([upper, fore], [x, y, turn], keep_out) = lengths;
@@ -85,7 +87,7 @@ impl<T: RealField + Copy> Pair<T> {
 }
 
 /// Angles or rates are the same.
-fn same<T: RealField + Copy>(plain: [T; 2], scaled: [T; 2], size: T) {
+fn same<T: RealField + Trig>(plain: [T; 2], scaled: [T; 2], size: T) {
     let rounding = T::default_epsilon() * single(ROUNDING) * size;
     for (plain, scaled) in plain.into_iter().zip(scaled) {
         assert!((plain - scaled).abs() <= rounding, "{plain} {scaled}");
@@ -96,7 +98,7 @@ fn angles<T>(joints: Joints<T>) -> [T; 2] {
     [joints.shoulder, joints.elbow]
 }
 
-fn geometry<T: RealField + Copy>(pair: &Pair<T>) {
+fn geometry<T: RealField + Trig>(pair: &Pair<T>) {
     let (arm, scaled) = (&pair.arm, &pair.scaled);
     for (a, b) in [
         (arm.upper(), scaled.upper()),
@@ -113,7 +115,7 @@ fn geometry<T: RealField + Copy>(pair: &Pair<T>) {
     pair.vector(base(arm), base(scaled), pair.span());
 }
 
-fn positions<T: RealField + Copy>(pair: &Pair<T>, pose: [f64; 2]) {
+fn positions<T: RealField + Trig>(pair: &Pair<T>, pose: [f64; 2]) {
     let (arm, scaled) = (&pair.arm, &pair.scaled);
     let joints = Joints::new(single::<T>(pose[0]), single(pose[1]));
     let point = arm.forward(joints);
@@ -150,7 +152,7 @@ fn positions<T: RealField + Copy>(pair: &Pair<T>, pose: [f64; 2]) {
     errors(pair, plain, scaled);
 }
 
-fn errors<T: RealField + Copy>(pair: &Pair<T>, plain: InverseError<T>, scaled: InverseError<T>) {
+fn errors<T: RealField + Trig>(pair: &Pair<T>, plain: InverseError<T>, scaled: InverseError<T>) {
     use InverseError::{TooFar, TooNear};
     let lengths = |error| match error {
         TooFar { distance, reach } => (true, distance, reach),
@@ -164,7 +166,7 @@ fn errors<T: RealField + Copy>(pair: &Pair<T>, plain: InverseError<T>, scaled: I
     pair.length(reach, other_reach, pair.span());
 }
 
-fn rates<T: RealField + Copy>(pair: &Pair<T>, pose: [f64; 2], given: [f64; 4]) {
+fn rates<T: RealField + Trig>(pair: &Pair<T>, pose: [f64; 2], given: [f64; 4]) {
     let (arm, scaled, scale) = (&pair.arm, &pair.scaled, pair.scale);
     let joints = Joints::new(single::<T>(pose[0]), single(pose[1]));
     let [a, b, c, d] = given.map(single::<T>);
@@ -215,7 +217,7 @@ fn rates<T: RealField + Copy>(pair: &Pair<T>, pose: [f64; 2], given: [f64; 4]) {
     same([plain.theta3; 2], [other.theta3; 2], T::pi());
 }
 
-fn curves<T: RealField + Copy>(pair: &Pair<T>, from: [f64; 2], to: [f64; 2], tolerance: f64) {
+fn curves<T: RealField + Trig>(pair: &Pair<T>, from: [f64; 2], to: [f64; 2], tolerance: f64) {
     let (arm, scaled, scale) = (&pair.arm, &pair.scaled, pair.scale);
     let [from, to] = [from, to].map(|pose| Joints::new(single::<T>(pose[0]), single(pose[1])));
     let bound = arm.chord_bound(from, to);

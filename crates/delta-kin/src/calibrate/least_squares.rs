@@ -1,6 +1,7 @@
 //! Levenberg-Marquardt for N parameters and any number of residuals, in fixed memory.
 
 use nalgebra::{RealField, SMatrix, SVector};
+use trig_kernels::Trig;
 
 use super::Problem;
 use crate::Delta;
@@ -28,7 +29,7 @@ pub(super) struct Fit<const N: usize, T: RealField> {
     pub(super) is_converged: bool,
 }
 
-impl<const N: usize, T: RealField + Copy> LeastSquares<N, T> {
+impl<const N: usize, T: RealField + Trig> LeastSquares<N, T> {
     pub(super) fn new() -> Self {
         Self {
             r: SMatrix::zeros(),
@@ -114,7 +115,7 @@ impl<const N: usize, T: RealField + Copy> LeastSquares<N, T> {
 const FIRST_DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
 
-pub(super) fn minimise<const N: usize, T: RealField + Copy>(
+pub(super) fn minimise<const N: usize, T: RealField + Trig>(
     problem: &Problem<'_, N, T>,
     most: u32,
 ) -> Fit<N, T> {
@@ -134,8 +135,12 @@ pub(super) fn minimise<const N: usize, T: RealField + Copy>(
         (system, sum) = now;
         iterations += 1;
         scales = scales.sup(&system.scales());
-        // No step that reduces the sum: rounding is all that is left.
+        // Without a step that reduces the sum rounding is all that is left, and where residuals are
+        // rounding it is chance that reduces it.
         is_converged = true;
+        if sum <= problem.rounding() {
+            break;
+        }
         while damping <= nalgebra::convert(MOST_DAMPING) {
             let step = system.step(damping, &scales);
             let next = changes + step;

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use nalgebra::{RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
 use crate::{Arm, ArmGeometry, Delta, Pose};
@@ -93,7 +94,7 @@ impl Parameter {
     /// ```
     ///
     /// for each arm, e along its rods and C the centre of its sphere.
-    pub(super) fn influence<T: RealField + Copy>(
+    pub(super) fn influence<T: RealField + Trig>(
         self,
         delta: &Delta<T>,
         pose: &Pose<T>,
@@ -105,6 +106,7 @@ impl Parameter {
             .into_iter()
             .filter(|(arm, _)| self.is_of(*arm))
             .map(|(_, ((leg, theta), (rod, column)))| {
+                let theta = sin_cos(theta);
                 let along = match self.quantity {
                     Quantity::Azimuth => {
                         let centre = leg.centre(theta);

@@ -1,6 +1,7 @@
 //! What a least-squares problem determines: its singular values and directions.
 
 use nalgebra::{RealField, SMatrix, SVector};
+use trig_kernels::Trig;
 
 use super::least_squares::{LeastSquares, ROUNDINGS};
 
@@ -24,7 +25,7 @@ const MOST_SWEEPS: usize = 40;
 /// A parameter counts as undetermined where its part of a null direction of length 1 is above this.
 const PART: f64 = 1e-4;
 
-impl<const N: usize, T: RealField + Copy> Rank<N, T> {
+impl<const N: usize, T: RealField + Trig> Rank<N, T> {
     pub(super) fn new(system: &LeastSquares<N, T>, sum: T, rows: usize, units: &[T; N]) -> Self {
         let scales = system.scales();
         let mut u = system.r;

@@ -1,6 +1,7 @@
 //! How far the platform can leave the straight line between two poses while the arms turn linearly.
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
 use crate::leg::Leg;
@@ -18,7 +19,7 @@ struct Swing<T> {
     turn: T,
 }
 
-impl<T: RealField + Copy> Delta<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// The most by which the platform leaves the straight line between two poses of this machine
     /// while all arms turn linearly from one to the other, in the unit of length; `None` where
     /// the move is too long to tell, or a pose is another machine's. The platform stays in its
@@ -110,7 +111,7 @@ impl<T: RealField + Copy> Delta<T> {
     }
 }
 
-impl<T: RealField + Copy> Swing<T> {
+impl<T: RealField + Trig> Swing<T> {
     fn new(
         leg: &Leg<T>,
         (from, to): (T, T),
@@ -120,6 +121,7 @@ impl<T: RealField + Copy> Swing<T> {
     ) -> Option<Self> {
         let rate = to - from;
         let theta = from + rate * half();
+        let theta = sin_cos(theta);
         let rod = halfway - leg.centre(theta);
         let length = rod.norm();
         let relative = velocity - leg.tangent(theta) * rate;

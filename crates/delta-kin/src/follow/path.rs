@@ -1,6 +1,7 @@
 //! Straight lines and arcs of circles.
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use crate::rounded::Rounded;
 use crate::scale::{farthest, is_within, two, widest};
@@ -60,7 +61,7 @@ pub enum PathError<T: RealField + Copy = f64> {
 /// in, and some roundings of `T`.
 const OUT_OF_PLANE: f64 = 1e-9;
 
-impl<T: RealField + Copy> Path<T> {
+impl<T: RealField + Trig> Path<T> {
     /// A straight line. Coordinates are within ±4 h, h the fourth root of the largest number
     /// divided by 32 (f64: ±1.4e76, f32: ±5.4e8).
     ///
@@ -149,7 +150,7 @@ impl<T: RealField + Copy> Path<T> {
                 ahead,
                 angle,
             } => {
-                let (sin, cos) = (*angle * fraction).sin_cos();
+                let (sin, cos) = sin_cos(*angle * fraction);
                 centre + start * cos + ahead * sin
             }
         }
@@ -163,7 +164,7 @@ impl<T: RealField + Copy> Path<T> {
             Shape::Arc { start, angle, .. } => {
                 let turn = (*angle * share).abs();
                 // r (1 - cos(turn/2)) without its cancellation.
-                let sin = (turn / (two::<T>() * two())).sin();
+                let (sin, _) = sin_cos(turn / (two::<T>() * two()));
                 (turn <= T::pi()).then(|| length(start) * two() * sin * sin)
             }
         }

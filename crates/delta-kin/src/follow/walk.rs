@@ -1,6 +1,7 @@
 //! The way along a path, waypoint by waypoint, each step as long as the tolerance allows.
 
 use nalgebra::{Point3, RealField};
+use trig_kernels::Trig;
 
 use super::bisect::Bisection;
 use super::{FollowError, Pace, Path, Waypoint};
@@ -26,7 +27,7 @@ enum State<T: RealField> {
 
 type Step<T> = Result<Waypoint<T>, FollowError<T>>;
 
-impl<T: RealField + Copy> Walk<T> {
+impl<T: RealField + Trig> Walk<T> {
     pub(super) const fn new(delta: Delta<T>, path: Path<T>, tolerance: T, pace: Pace<T>) -> Self {
         Self {
             delta,
@@ -122,7 +123,7 @@ impl<T: RealField + Copy> Walk<T> {
     }
 }
 
-impl<T: RealField + Copy> Iterator for Walk<T> {
+impl<T: RealField + Trig> Iterator for Walk<T> {
     type Item = Step<T>;
 
     fn next(&mut self) -> Option<Step<T>> {

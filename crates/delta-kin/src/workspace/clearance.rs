@@ -1,6 +1,7 @@
 //! How far the platform can move from a point in any direction.
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use super::Workspace;
 use crate::arm::zip;
@@ -9,7 +10,7 @@ use crate::pose::invert_rods;
 use crate::scale::two;
 use crate::{Delta, Knee, Pose};
 
-impl<T: RealField + Copy> Workspace<T> {
+impl<T: RealField + Trig> Workspace<T> {
     /// How far the platform can be moved from `point` in any direction, in the unit of length: the
     /// whole ball round it is in the workspace. Zero where `point` itself is not.
     ///
@@ -57,7 +58,7 @@ impl<T: RealField + Copy> Workspace<T> {
     }
 }
 
-fn leg_clearance<T: RealField + Copy>(leg: &Leg<T>, knee: Knee, local: &Vector3<T>) -> T {
+fn leg_clearance<T: RealField + Trig>(leg: &Leg<T>, knee: Knee, local: &Vector3<T>) -> T {
     let side = local.dot(&leg.sideways()).abs();
     let clearance = leg.reach_margin(local).min(leg.max_side - side);
     if !leg.has_range() {
@@ -66,8 +67,9 @@ fn leg_clearance<T: RealField + Copy>(leg: &Leg<T>, knee: Knee, local: &Vector3<
     let end = |theta: T| {
         // The knee at an end may also be behind the other solution: then the wrist's distance
         // from the upper arm's line at that end holds it off.
-        let hip = leg.centre(theta) - leg.spoke(theta);
-        let ahead = (local - hip).dot(&leg.tangent(theta)) / leg.upper;
+        let direction = sin_cos(theta);
+        let hip = leg.centre(direction) - leg.spoke(direction);
+        let ahead = (local - hip).dot(&leg.tangent(direction)) / leg.upper;
         let other = match knee {
             Knee::Out => ahead,
             Knee::In => -ahead,
@@ -78,7 +80,7 @@ fn leg_clearance<T: RealField + Copy>(leg: &Leg<T>, knee: Knee, local: &Vector3<
 }
 
 /// How far the platform can move from a pose before its rods could lie in a plane.
-fn steady<T: RealField + Copy>(delta: &Delta<T>, pose: &Pose<T>) -> T {
+fn steady<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     if pose.rod_inverse().is_err() {
         return T::zero();
     }

@@ -1,6 +1,7 @@
 //! The largest cylinder: halved into boxes until each is in the ball of its middle's clearance.
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::Trig;
 
 use super::{Workspace, WorkspaceError};
 use crate::scale::{half, is_within};
@@ -8,7 +9,7 @@ use crate::scale::{half, is_within};
 /// How many resolutions the span may have.
 const FINEST: f64 = 4096.0;
 
-impl<T: RealField + Copy> Workspace<T> {
+impl<T: RealField + Trig> Workspace<T> {
     /// Radius of the largest cylinder round the base's axis between two heights, every point of
     /// which is reached in the machine's modes and within its limits.
     ///
@@ -70,7 +71,7 @@ struct Cylinder<'a, T: RealField> {
     resolution: T,
 }
 
-impl<T: RealField + Copy> Cylinder<'_, T> {
+impl<T: RealField + Trig> Cylinder<'_, T> {
     /// Whether what a box has of the cylinder is reached. Each level halves the longest side, so
     /// that 3 log2(4096) levels are the most.
     fn holds(&self, middle: Point3<T>, reach: Vector3<T>) -> bool {

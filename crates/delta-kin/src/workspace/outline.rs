@@ -3,6 +3,7 @@
 use core::iter::FusedIterator;
 
 use nalgebra::{Point3, RealField, Vector3};
+use trig_kernels::{Trig, sin_cos};
 
 use super::Workspace;
 
@@ -23,7 +24,7 @@ pub struct Outline<T: RealField = f64> {
 /// How near to the edge a point of the outline is, in spans.
 const NEAR: f64 = 1e-6;
 
-impl<T: RealField + Copy> Outline<T> {
+impl<T: RealField + Trig> Outline<T> {
     pub(super) const fn new(
         workspace: Workspace<T>,
         centre: Point3<T>,
@@ -54,7 +55,7 @@ impl<T: RealField + Copy> Outline<T> {
     }
 }
 
-impl<T: RealField + Copy> Iterator for Outline<T> {
+impl<T: RealField + Trig> Iterator for Outline<T> {
     type Item = Point3<T>;
 
     fn next(&mut self) -> Option<Point3<T>> {
@@ -63,7 +64,7 @@ impl<T: RealField + Copy> Iterator for Outline<T> {
         }
         let share: T = nalgebra::convert(f64::from(self.next) / f64::from(self.points));
         self.next = self.next.saturating_add(1);
-        let (sin, cos) = (share * T::two_pi()).sin_cos();
+        let (sin, cos) = sin_cos(share * T::two_pi());
         let [right, up] = self.plane;
         Some(self.leave(right * cos + up * sin))
     }
@@ -76,6 +77,6 @@ impl<T: RealField + Copy> Iterator for Outline<T> {
     }
 }
 
-impl<T: RealField + Copy> ExactSizeIterator for Outline<T> {}
+impl<T: RealField + Trig> ExactSizeIterator for Outline<T> {}
 
-impl<T: RealField + Copy> FusedIterator for Outline<T> {}
+impl<T: RealField + Trig> FusedIterator for Outline<T> {}

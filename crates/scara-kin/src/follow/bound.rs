@@ -1,11 +1,12 @@
 //! How far a straight joint move can leave the straight line between its ends.
 
 use nalgebra::RealField;
+use trig_kernels::{Trig, sin_cos};
 
 use crate::limits::two;
 use crate::{Arm, Joints};
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// The most by which the tool leaves the straight line between two poses while both
     /// joints move linearly from one to the other, in the unit of length.
     ///
@@ -68,10 +69,10 @@ struct Turns<T> {
     is_singular: bool,
 }
 
-impl<T: RealField + Copy> Turns<T> {
+impl<T: RealField + Trig> Turns<T> {
     fn new(from: Joints<T>, to: Joints<T>) -> Self {
         let way = from.way_to(to);
-        let halves = [from, to].map(|joints| (joints.elbow / two()).sin_cos());
+        let halves = [from, to].map(|joints| sin_cos(joints.elbow / two()));
         // Half the sines of the elbow angles.
         let [from, to] = halves.map(|(sin, cos)| sin * cos);
         let changes_sign = from.min(to) < T::zero() && from.max(to) > T::zero();

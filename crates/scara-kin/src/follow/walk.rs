@@ -1,6 +1,7 @@
 //! The way along a polyline, waypoint by waypoint, each step as long as the tolerance allows.
 
 use nalgebra::{Point2, RealField};
+use trig_kernels::Trig;
 
 use super::bisect::Bisection;
 use super::{CurvePlace, FollowError, Waypoint};
@@ -40,7 +41,7 @@ struct Line<T: RealField> {
     steps: Bisection,
 }
 
-impl<T: RealField + Copy> Line<T> {
+impl<T: RealField + Trig> Line<T> {
     fn place(&self, fraction: T) -> CurvePlace<T> {
         let point = if fraction == T::one() {
             self.to
@@ -67,7 +68,7 @@ type Step<T> = Result<Waypoint<T>, FollowError<T>>;
 impl<I, T> Walk<I, T>
 where
     I: Iterator<Item = Point2<T>>,
-    T: RealField + Copy,
+    T: RealField + Trig,
 {
     pub(super) fn new(
         arm: Arm<T>,
@@ -220,7 +221,7 @@ where
 impl<I, T> Iterator for Walk<I, T>
 where
     I: Iterator<Item = Point2<T>>,
-    T: RealField + Copy,
+    T: RealField + Trig,
 {
     type Item = Step<T>;
 

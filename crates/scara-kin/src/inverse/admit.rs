@@ -1,12 +1,13 @@
 //! Whole turns and limits: from the angles of a triangle to those of a machine.
 
 use nalgebra::{RealField, Vector2};
+use trig_kernels::{Trig, atan2, sin_cos};
 
 use super::InverseError;
 use crate::limits::Fitted;
 use crate::{Arm, Elbow, Joint, Joints};
 
-impl<T: RealField + Copy> Arm<T> {
+impl<T: RealField + Trig> Arm<T> {
     /// `joints` at the whole turn nearest to `near` within the limits; a joint beyond
     /// an end of its range is put on the end if the tool then still is at `tool` within
     /// rounding.
@@ -76,7 +77,7 @@ impl<T: RealField + Copy> Arm<T> {
     /// the elbow on the same side.
     fn stands_for(&self, candidate: Joints<T>, joints: Joints<T>, tool: Vector2<T>) -> bool {
         let rounding = self.rounding(candidate);
-        let side = candidate.elbow.sin();
+        let side = sin_cos(candidate.elbow).0;
         let is_same_side = if joints.elbow < T::zero() {
             side <= T::zero()
         } else {
@@ -98,16 +99,16 @@ impl<T: RealField + Copy> Arm<T> {
 
     /// The elbow that points the forearm at `tool` with the shoulder as given.
     fn elbow_behind(&self, shoulder: T, tool: Vector2<T>) -> T {
-        let (sin, cos) = shoulder.sin_cos();
+        let (sin, cos) = sin_cos(shoulder);
         let along = cos * tool.x + sin * tool.y - self.upper();
         let across = cos * tool.y - sin * tool.x;
-        across.atan2(along)
+        atan2(across, along)
     }
 
     /// The shoulder that points the arm at `tool` with the elbow as given.
     fn shoulder_before(&self, elbow: T, tool: Vector2<T>) -> T {
         let tip = self.tip(Joints::new(T::zero(), elbow));
-        tip.perp(&tool).atan2(tip.dot(&tool))
+        atan2(tip.perp(&tool), tip.dot(&tool))
     }
 }
 
@@ -122,7 +123,7 @@ pub(super) struct Miss<T> {
     by: T,
 }
 
-impl<T: RealField + Copy> Miss<T> {
+impl<T: RealField + Trig> Miss<T> {
     /// The joint that misses its range by more, at the turn that misses by less.
     #[cold]
     fn new(arm: &Arm<T>, shoulders: [Fitted<T>; 2], elbows: [Fitted<T>; 2]) -> Self {
@@ -158,7 +159,7 @@ impl<T: RealField + Copy> Miss<T> {
 }
 
 /// The turns of both joints, the nearest ones first.
-fn pairs<T: RealField + Copy>(
+fn pairs<T: RealField + Trig>(
     shoulders: [Fitted<T>; 2],
     elbows: [Fitted<T>; 2],
 ) -> impl Iterator<Item = (Fitted<T>, Fitted<T>)> {
@@ -168,7 +169,7 @@ fn pairs<T: RealField + Copy>(
 }
 
 /// The turn of an angle that is nearer to its range.
-fn nearer<T: RealField + Copy>([a, b]: [Fitted<T>; 2]) -> Fitted<T> {
+fn nearer<T: RealField + Trig>([a, b]: [Fitted<T>; 2]) -> Fitted<T> {
     if b.beyond.abs() < a.beyond.abs() {
         b
     } else {

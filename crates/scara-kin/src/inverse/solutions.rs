@@ -1,6 +1,7 @@
 //! The joint angles that reach one point: one elbow or both.
 
 use nalgebra::{RealField, Vector2};
+use trig_kernels::Trig;
 
 use super::InverseError;
 use crate::{Arm, Elbow, Joints};
@@ -22,7 +23,7 @@ enum Allowed {
     Only(Elbow),
 }
 
-impl<T: RealField + Copy> Solutions<T> {
+impl<T: RealField + Trig> Solutions<T> {
     #[inline]
     pub(super) fn new(
         arm: &Arm<T>,

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Point2, RealField};
-use scara_kin::{Arm, CurvePlace, Elbow, FollowError, Joints, Waypoint};
+use scara_kin::{Arm, CurvePlace, Elbow, FollowError, Joints, Trig, Waypoint};
 
 use super::inverse::{is_true, rounding};
 use super::machine::{Recipe, recipes};
@@ -13,7 +13,7 @@ use super::{angle, any_size, anything, config, double, epsilon, is_readable, sin
 const SAMPLES: u32 = 32;
 
 /// The most by which the tool is seen to leave the straight line between two poses.
-fn departure<T: RealField + Copy>(arm: &Arm<T>, from: Joints<T>, to: Joints<T>) -> f64 {
+fn departure<T: RealField + Trig>(arm: &Arm<T>, from: Joints<T>, to: Joints<T>) -> f64 {
     let (a, b) = (arm.forward(from), arm.forward(to));
     let way = from.way_to(to);
     (0..=SAMPLES)
@@ -28,7 +28,7 @@ fn departure<T: RealField + Copy>(arm: &Arm<T>, from: Joints<T>, to: Joints<T>) 
         .fold(0.0, f64::max)
 }
 
-fn distance_to_line<T: RealField + Copy>(tool: Point2<T>, a: Point2<T>, b: Point2<T>) -> f64 {
+fn distance_to_line<T: RealField + Trig>(tool: Point2<T>, a: Point2<T>, b: Point2<T>) -> f64 {
     let (along, off) = ((b - a).map(double), (tool - a).map(double));
     // Of squares of which the sum is a number.
     let size = along.amax().max(off.amax());
@@ -45,7 +45,7 @@ fn distance_to_line<T: RealField + Copy>(tool: Point2<T>, a: Point2<T>, b: Point
     (off - along * share).norm() * size
 }
 
-fn bound<T: RealField + Copy>(recipe: Recipe, [a, b, c, d]: [f64; 4]) -> TestCaseResult {
+fn bound<T: RealField + Trig>(recipe: Recipe, [a, b, c, d]: [f64; 4]) -> TestCaseResult {
     let arm = recipe.arm::<T>();
     let from = Joints::new(single::<T>(a), single(b));
     let to = Joints::new(single::<T>(c), single(d));
@@ -63,7 +63,7 @@ fn bound<T: RealField + Copy>(recipe: Recipe, [a, b, c, d]: [f64; 4]) -> TestCas
     Ok(())
 }
 
-fn follow<T: RealField + Copy>(
+fn follow<T: RealField + Trig>(
     recipe: Recipe,
     points: [[f64; 2]; 3],
     tolerance: f64,
@@ -100,7 +100,7 @@ fn follow<T: RealField + Copy>(
 }
 
 /// An error says what is so.
-fn is_so<T: RealField + Copy>(
+fn is_so<T: RealField + Trig>(
     arm: &Arm<T>,
     points: [Point2<T>; 3],
     error: &FollowError<T>,
@@ -124,7 +124,7 @@ fn is_so<T: RealField + Copy>(
 }
 
 /// A place is on the line that it names.
-fn is_on<T: RealField + Copy>(points: [Point2<T>; 3], place: CurvePlace<T>) -> TestCaseResult {
+fn is_on<T: RealField + Trig>(points: [Point2<T>; 3], place: CurvePlace<T>) -> TestCaseResult {
     let CurvePlace {
         line,
         fraction,
@@ -143,7 +143,7 @@ fn is_on<T: RealField + Copy>(points: [Point2<T>; 3], place: CurvePlace<T>) -> T
 }
 
 /// The tool keeps the tolerance between the waypoints.
-fn keeps<T: RealField + Copy>(
+fn keeps<T: RealField + Trig>(
     arm: &Arm<T>,
     points: [Point2<T>; 3],
     tolerance: T,

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Point2, RealField};
-use scara_kin::{Arm, Elbow, InverseError, JointRange, Joints};
+use scara_kin::{Arm, Elbow, InverseError, JointRange, Joints, Trig};
 
 use super::machine::{Recipe, recipes};
 use super::{angle, anything, config, double, epsilon, is_readable, single};
@@ -12,14 +12,14 @@ use super::{angle, anything, config, double, epsilon, is_readable, single};
 const FORWARD: f64 = 8.0;
 
 /// Reach and base distance.
-pub(crate) fn span<T: RealField + Copy>(arm: &Arm<T>) -> f64 {
+pub(crate) fn span<T: RealField + Trig>(arm: &Arm<T>) -> f64 {
     let base = arm.base().translation.vector;
     double(arm.reach()) + double(base.x).hypot(double(base.y))
 }
 
 /// The tool of an arm with its base at the origin, in units of the reach, from double
 /// precision and another library's sines.
-pub(crate) fn tool(arm: &Arm<impl RealField + Copy>, shoulder: f64, elbow: f64) -> [f64; 2] {
+pub(crate) fn tool(arm: &Arm<impl RealField + Trig>, shoulder: f64, elbow: f64) -> [f64; 2] {
     let reach = double(arm.reach());
     let (upper, fore) = (double(arm.upper()) / reach, double(arm.fore()) / reach);
     let ((s1, c1), (s2, c2)) = (shoulder.sin_cos(), elbow.sin_cos());
@@ -30,17 +30,17 @@ pub(crate) fn tool(arm: &Arm<impl RealField + Copy>, shoulder: f64, elbow: f64) 
 }
 
 /// What rounding may move the tool by: of lengths or, many turns from zero, of angles.
-pub(crate) fn rounding<T: RealField + Copy>(arm: &Arm<T>, joints: Joints<T>) -> f64 {
+pub(crate) fn rounding<T: RealField + Trig>(arm: &Arm<T>, joints: Joints<T>) -> f64 {
     let angles = double(joints.shoulder).abs() * double(arm.reach())
         + double(joints.elbow).abs() * double(arm.fore());
     double(arm.tolerance()).max(angles * epsilon::<T>())
 }
 
-fn distance<T: RealField + Copy>(a: Point2<T>, b: Point2<T>) -> f64 {
+fn distance<T: RealField + Trig>(a: Point2<T>, b: Point2<T>) -> f64 {
     (double(a.x) - double(b.x)).hypot(double(a.y) - double(b.y))
 }
 
-fn forward<T: RealField + Copy>(recipe: Recipe, shoulder: f64, elbow: f64) -> TestCaseResult {
+fn forward<T: RealField + Trig>(recipe: Recipe, shoulder: f64, elbow: f64) -> TestCaseResult {
     let arm = recipe.arm::<T>();
     let joints = Joints::new(single::<T>(shoulder), single(elbow));
     let (shoulder, elbow) = (double(joints.shoulder), double(joints.elbow));
@@ -78,7 +78,7 @@ fn forward<T: RealField + Copy>(recipe: Recipe, shoulder: f64, elbow: f64) -> Te
     Ok(())
 }
 
-fn is_right<T: RealField + Copy>(
+fn is_right<T: RealField + Trig>(
     arm: &Arm<T>,
     point: Point2<T>,
     joints: Joints<T>,
@@ -95,7 +95,7 @@ fn is_right<T: RealField + Copy>(
 }
 
 /// An error says what is so.
-pub(crate) fn is_true<T: RealField + Copy>(
+pub(crate) fn is_true<T: RealField + Trig>(
     arm: &Arm<T>,
     point: Point2<T>,
     error: &InverseError<T>,
@@ -130,7 +130,7 @@ pub(crate) fn is_true<T: RealField + Copy>(
     Ok(())
 }
 
-fn inverse<T: RealField + Copy>(
+fn inverse<T: RealField + Trig>(
     arm: &Arm<T>,
     point: Point2<T>,
     previous: Joints<T>,
@@ -181,7 +181,7 @@ fn inverse<T: RealField + Copy>(
 }
 
 /// Whether a pose is one that an arm may have had.
-fn is_known<T: RealField + Copy>(joints: Joints<T>) -> bool {
+fn is_known<T: RealField + Trig>(joints: Joints<T>) -> bool {
     let free = JointRange::unlimited();
     free.contains(joints.shoulder) && free.contains(joints.elbow)
 }
@@ -221,7 +221,7 @@ proptest! {
     }
 }
 
-fn own_points<T: RealField + Copy>(recipe: Recipe, shoulder: f64, elbow: f64) -> TestCaseResult {
+fn own_points<T: RealField + Trig>(recipe: Recipe, shoulder: f64, elbow: f64) -> TestCaseResult {
     let arm = recipe.arm::<T>();
     // Into the ranges, so that most are within.
     let into =

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Complex, Isometry2, RealField, Translation2, UnitComplex, Vector2};
-use scara_kin::{Arm, GeometryError, JointRange, Joints, Limits};
+use scara_kin::{Arm, GeometryError, JointRange, Joints, Limits, Trig};
 
 use super::{angle, any_size, anything, config, double, epsilon, is_readable, single};
 
@@ -46,7 +46,7 @@ pub(crate) fn recipes() -> impl Strategy<Value = Recipe> {
 }
 
 impl Recipe {
-    pub(crate) fn arm<T: RealField + Copy>(self) -> Arm<T> {
+    pub(crate) fn arm<T: RealField + Trig>(self) -> Arm<T> {
         let (min, max) = link_range(Arm::<T>::new(T::zero(), T::one()));
         let upper = (min.ln() * single(1.0 - self.upper) + max.ln() * single(self.upper)).exp();
         let upper = upper.max(min).min(max);
@@ -70,14 +70,14 @@ impl Recipe {
     }
 }
 
-fn link_range<T: RealField + Copy>(refused: Result<Arm<T>, GeometryError<T>>) -> (T, T) {
+fn link_range<T: RealField + Trig>(refused: Result<Arm<T>, GeometryError<T>>) -> (T, T) {
     match refused {
         Err(GeometryError::LinkLength { min, max, .. }) => (min, max),
         other => panic!("{other:?}"),
     }
 }
 
-fn range<T: RealField + Copy>(recipe: Option<(f64, f64)>) -> JointRange<T> {
+fn range<T: RealField + Trig>(recipe: Option<(f64, f64)>) -> JointRange<T> {
     let free = JointRange::unlimited();
     recipe.map_or(free, |(middle, half)| {
         let (middle, half) = (single::<T>(middle), single::<T>(half.abs()));
@@ -85,7 +85,7 @@ fn range<T: RealField + Copy>(recipe: Option<(f64, f64)>) -> JointRange<T> {
     })
 }
 
-fn settings<T: RealField + Copy>(recipe: Recipe, values: [f64; 6]) -> TestCaseResult {
+fn settings<T: RealField + Trig>(recipe: Recipe, values: [f64; 6]) -> TestCaseResult {
     let [a, b, c, d, e, f] = values.map(single::<T>);
     let largest = double(JointRange::<T>::unlimited().max());
     match Arm::new(a, b) {

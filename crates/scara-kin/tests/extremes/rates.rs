@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Matrix2, RealField, Vector2};
-use scara_kin::{Arm, Joints, RatesError};
+use scara_kin::{Arm, Joints, RatesError, Trig};
 
 use super::inverse::tool;
 use super::machine::{Recipe, recipes};
@@ -38,13 +38,13 @@ impl Scaled {
 }
 
 /// The reach as a number of about 1 and a power of two.
-fn reach<T: RealField + Copy>(arm: &Arm<T>) -> (f64, f64) {
+fn reach<T: RealField + Trig>(arm: &Arm<T>) -> (f64, f64) {
     let exponent = double(arm.reach()).log2().floor();
     (double(arm.reach()) * (-exponent).exp2(), exponent)
 }
 
 /// The Jacobian with lengths in units of the reach.
-fn jacobian<T: RealField + Copy>(arm: &Arm<T>, shoulder: f64, elbow: f64) -> Matrix2<f64> {
+fn jacobian<T: RealField + Trig>(arm: &Arm<T>, shoulder: f64, elbow: f64) -> Matrix2<f64> {
     let [x, y] = tool(arm, shoulder, elbow);
     let unit = double(arm.upper()) / double(arm.reach());
     let (fx, fy) = (x - unit * shoulder.cos(), y - unit * shoulder.sin());
@@ -59,7 +59,7 @@ fn finite<const N: usize>(values: [f64; N]) -> bool {
 
 /// Whether `value` is what `exact` · 2^exponent rounds to within `allowed` · 2^exponent and
 /// `least`, or is not finite because that is too large.
-fn is_right<T: RealField + Copy>(
+fn is_right<T: RealField + Trig>(
     value: Vector2<T>,
     exact: Vector2<f64>,
     exponent: f64,
@@ -82,7 +82,7 @@ fn is_right<T: RealField + Copy>(
     Ok(())
 }
 
-fn statics<T: RealField + Copy>(recipe: Recipe, shoulder: f64, elbow: f64) -> TestCaseResult {
+fn statics<T: RealField + Trig>(recipe: Recipe, shoulder: f64, elbow: f64) -> TestCaseResult {
     let arm = recipe.arm::<T>();
     let joints = Joints::new(single::<T>(shoulder), single(elbow));
     let (shoulder, elbow) = (double(joints.shoulder), double(joints.elbow));
@@ -106,7 +106,7 @@ fn statics<T: RealField + Copy>(recipe: Recipe, shoulder: f64, elbow: f64) -> Te
     Ok(())
 }
 
-fn velocity<T: RealField + Copy>(recipe: Recipe, numbers: [f64; 6]) -> TestCaseResult {
+fn velocity<T: RealField + Trig>(recipe: Recipe, numbers: [f64; 6]) -> TestCaseResult {
     let arm = recipe.arm::<T>();
     let [shoulder, elbow, a, b, c, d] = numbers.map(single::<T>);
     let joints = Joints::new(shoulder, elbow);
@@ -152,7 +152,7 @@ fn velocity<T: RealField + Copy>(recipe: Recipe, numbers: [f64; 6]) -> TestCaseR
     Ok(())
 }
 
-fn back<T: RealField + Copy>(recipe: Recipe, numbers: [f64; 6]) -> TestCaseResult {
+fn back<T: RealField + Trig>(recipe: Recipe, numbers: [f64; 6]) -> TestCaseResult {
     let arm = recipe.arm::<T>();
     let [shoulder, elbow, a, b, c, d] = numbers.map(single::<T>);
     let joints = Joints::new(shoulder, elbow);
@@ -195,7 +195,7 @@ fn back<T: RealField + Copy>(recipe: Recipe, numbers: [f64; 6]) -> TestCaseResul
 }
 
 /// An error says what is so.
-fn is_true<T: RealField + Copy>(
+fn is_true<T: RealField + Trig>(
     arm: &Arm<T>,
     joints: Joints<T>,
     given: [T; 4],

@@ -5,16 +5,16 @@ use core::f64::consts::PI;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{RealField, Vector2};
-use scara_kin::{Direction, DriveAngles, Drives, JointRange, Joints, TangentTool};
+use scara_kin::{Direction, DriveAngles, Drives, JointRange, Joints, TangentTool, Trig};
 
 use super::machine::{Recipe, recipes};
 use super::{angle, anything, config, double, epsilon, is_readable, single, smallest};
 
-fn largest_angle<T: RealField + Copy>() -> f64 {
+fn largest_angle<T: RealField + Trig>() -> f64 {
     double(JointRange::<T>::unlimited().max())
 }
 
-fn tangent<T: RealField + Copy>(
+fn tangent<T: RealField + Trig>(
     recipe: Recipe,
     corner: f64,
     start: f64,
@@ -70,7 +70,7 @@ fn tangent<T: RealField + Copy>(
     Ok(())
 }
 
-fn drives<T: RealField + Copy>(settings: [f64; 3], joints: [f64; 2]) -> TestCaseResult {
+fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCaseResult {
     let [zero1, zero2, coupling] = settings.map(single::<T>);
     let [shoulder, elbow] = joints.map(single::<T>);
     let zero = Joints::new(zero1, zero2);
