@@ -1,7 +1,7 @@
 //! `dance.c`: the order of the writes on the bus, and how long a tick lasts.
 
 use pose2pulse::pattern_codec::c_header::Dialect;
-use pose2pulse::pattern_codec::dance::{DataHeader, Packing, Timing};
+use pose2pulse::pattern_codec::dance::{DataHeader, Packing, Threshold, Timing};
 use pose2pulse::stepper_sync::{
     Accumulation, BusWrite, LatchWrites, Latches, Phases, Rate, SpeedLaw, Stepping, Wiring,
 };
@@ -45,8 +45,7 @@ fn header(frames: &[Frame], packing: Packing, threshold: u16) -> String {
         .with_dialect(Dialect::Sdcc)
         .with_packing(packing)
         .with_timing(timing)
-        .with_threshold(threshold)
-        .unwrap()
+        .with_threshold(Threshold::new(threshold).unwrap())
         .write(frames.iter().copied(), &mut text)
         .unwrap();
     text

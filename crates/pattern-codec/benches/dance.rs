@@ -4,13 +4,18 @@
 
 use core::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use pattern_codec::dance::{Data, DataHeader, Easing, Law, Motor, Packing, Timing};
+use pattern_codec::dance::{Data, DataHeader, Packing};
 
 const FRAMES: usize = 1500;
 
 /// Speeds that rise and fall in turn on every motor, with rests between.
 fn dance() -> Vec<[i8; 8]> {
-    let wave: Vec<i8> = Easing::Smooth.speeds(100, 20).chain([0; 10]).collect();
+    let rise = [5, 28, 47, 63, 75, 85, 92, 97, 99, 100];
+    let wave: Vec<i8> = rise
+        .into_iter()
+        .chain(rise.into_iter().rev())
+        .chain([0; 10])
+        .collect();
     let frames = (0..FRAMES).map(|frame| {
         let speed = |motor: usize| wave.get((frame + 4 * motor) % wave.len()).copied();
         [0, 1, 2, 3, 4, 5, 6, 7].map(|motor| speed(motor).unwrap())
@@ -62,42 +67,5 @@ fn header(c: &mut Criterion) {
     group.finish();
 }
 
-fn turn(c: &mut Criterion) {
-    let mut group = c.benchmark_group("turn of 25 frames");
-    for law in [Law::Reset, Law::CarrySigned] {
-        let motor = Motor::new(law, 600, Timing::DEFAULT).unwrap();
-        group.bench_function(format!("{law:?}"), |b| {
-            b.iter(|| {
-                motor
-                    .turn(black_box(517), 25, Easing::Smooth)
-                    .unwrap()
-                    .len()
-            });
-        });
-    }
-    group.finish();
-}
-
-/// Ten times as many frames, each shorter than a step, take ten times as long.
-fn short_frames(c: &mut Criterion) {
-    let mut group = c.benchmark_group("turn in frames of one tick");
-    for law in [Law::Reset, Law::CarrySigned] {
-        let motor = Motor::new(law, 600, Timing::new(1000, 1).unwrap()).unwrap();
-        for frames in [6553, 65_535] {
-            group.throughput(Throughput::Elements(frames.into()));
-            group.bench_function(format!("{law:?}, {frames} frames"), |b| {
-                let half_steps = i32::from(frames) / 13;
-                b.iter(|| {
-                    motor
-                        .turn(black_box(half_steps), frames, Easing::Smooth)
-                        .unwrap()
-                        .len()
-                });
-            });
-        }
-    }
-    group.finish();
-}
-
-criterion_group!(benches, bytes, header, turn, short_frames);
+criterion_group!(benches, bytes, header);
 criterion_main!(benches);

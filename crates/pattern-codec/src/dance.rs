@@ -5,7 +5,7 @@
 //!
 //! | case | decision |
 //! |---|---|
-//! | speed -128 | a byte like any other, magnitude 128, in every packing and header; a score never makes it, because -(-128) does not fit into the `signed char` of the firmware |
+//! | speed -128 | a byte like any other, magnitude 128, in every packing and header; plans leave it out, because -(-128) does not fit into the `signed char` of the firmware |
 //! | a run of count 0 | error |
 //! | a mask with bits of motors that are not there | error |
 //! | runs that could be one, speeds in a mask that do not change | read; never written |
@@ -15,25 +15,16 @@
 //! AT89C52, where the source has 1.5 K. [`Packing`] has two forms with run lengths, [`Sizes`] and
 //! [`ProgramMemory`] say what fits.
 
-mod easing;
 mod header;
-mod motor;
 mod packing;
-#[cfg(feature = "score")]
-mod score;
 mod size;
+mod threshold;
 mod timing;
-mod turn;
 mod unpacking;
 
-pub use easing::{Easing, Speeds};
 pub use header::{Data, DataHeader, Frames};
-pub use motor::{Law, Motor, ThresholdTooLow};
 pub use packing::{Encoded, Packing};
-#[cfg(feature = "score")]
-#[cfg_attr(docsrs, doc(cfg(feature = "score")))]
-pub use score::{Choreography, Landing, Score, ScoreError, ScoreErrorKind, ScorePart};
 pub use size::{Fit, ProgramMemory, Sizes};
+pub use threshold::{Threshold, ThresholdTooLow};
 pub use timing::{Timing, ZeroPeriod};
-pub use turn::{Turn, TurnError};
 pub use unpacking::{DecodeError, DecodeErrorKind, Decoded};

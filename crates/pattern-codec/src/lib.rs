@@ -10,8 +10,6 @@
     )
 )]
 
-#[cfg(feature = "score")]
-extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 

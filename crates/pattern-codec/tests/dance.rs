@@ -2,7 +2,9 @@
 #![cfg(test)]
 
 use pattern_codec::c_header::{Dialect, Name};
-use pattern_codec::dance::{Data, DataHeader, DecodeError, Packing, ProgramMemory, Sizes, Timing};
+use pattern_codec::dance::{
+    Data, DataHeader, DecodeError, Packing, ProgramMemory, Sizes, Threshold, Timing,
+};
 use proptest::prelude::*;
 
 /// Frames with runs in them, some longer than one count holds.
@@ -74,15 +76,14 @@ proptest! {
             .with_name(Name::new("Waltz_3").unwrap())
             .with_dialect(if sdcc { Dialect::Sdcc } else { Dialect::C51 })
             .with_timing(timing)
-            .with_threshold(threshold)
-            .unwrap()
+            .with_threshold(Threshold::new(threshold).unwrap())
             .with_packing(packing);
         let mut text = String::new();
         header.write(frames.iter().copied(), &mut text).unwrap();
         for text in [loosened(&text), text] {
             let data = Data::<8>::read(&text).unwrap();
             prop_assert_eq!((data.name(), data.timing(), data.packing()), ("Waltz_3", timing, packing));
-            prop_assert_eq!(data.threshold(), threshold);
+            prop_assert_eq!(data.threshold().get(), threshold);
             prop_assert_eq!(data.frames().remaining(), frames.len() as u64);
             prop_assert!(data.frames().eq(frames.iter().copied()));
         }
@@ -344,7 +345,7 @@ fn tables_that_no_firmware_holds_are_not_written() {
     let error = write(8193).unwrap_err().to_string();
     assert_eq!(error, "a table of 65544 bytes, an 8051 addresses 65536");
     assert!(write(8192).is_ok());
-    let error = DataHeader::new().with_threshold(127).unwrap_err();
+    let error = Threshold::new(127).unwrap_err();
     assert_eq!(error.to_string(), "a threshold of 127, 128 is the least");
     for (name, wanted) in [
         ("", "the name of a table is empty"),

@@ -4,10 +4,7 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use pattern_codec::c_header::{HeaderError, Item, Items, Place, items};
-use pattern_codec::dance::{
-    Data, DecodeError, Decoded, Easing, Encoded, Frames, Law, Motor, Packing, Speeds, Timing, Turn,
-    TurnError,
-};
+use pattern_codec::dance::{Data, DecodeError, Decoded, Encoded, Frames, Packing};
 use pattern_codec::engraving::{
     Format, PatternData, PatternRecords, Record, ReloadData, TimerPeriod, TimerPeriods,
 };
@@ -69,30 +66,6 @@ fn period_next(periods: &mut TimerPeriods<'_>) -> Option<TimerPeriod> {
     periods.next()
 }
 
-#[no_panic]
-#[inline(never)]
-fn motor_run(motor: &mut Motor, speed: i8) {
-    motor.run(speed);
-}
-
-#[no_panic]
-#[inline(never)]
-fn motor_turn(motor: &Motor, steps: i32, frames: u16, easing: Easing) -> Result<Turn, TurnError> {
-    motor.turn(steps, frames, easing)
-}
-
-#[no_panic]
-#[inline(never)]
-fn turn_next(turn: &mut Turn) -> Option<i8> {
-    turn.next()
-}
-
-#[no_panic]
-#[inline(never)]
-fn speed_next(speeds: &mut Speeds) -> Option<i8> {
-    speeds.next()
-}
-
 pub fn run() {
     let frames = black_box([[60, -60, 0, 0, 0, 0, 0, 0]; 3].as_slice());
     let bytes = black_box([3, 1, 60, 1, 0, 0, 0, 0, 0].as_slice());
@@ -112,13 +85,5 @@ pub fn run() {
     }
     if let Ok(data) = reloads_read(text, black_box("p")) {
         black_box(period_next(&mut black_box(data.periods())));
-    }
-    if let Ok(mut motor) = Motor::new(black_box(Law::Reset), black_box(600), Timing::DEFAULT) {
-        motor_run(&mut motor, black_box(60));
-        let easing = black_box(Easing::Smooth);
-        if let Ok(turn) = motor_turn(&black_box(motor), black_box(500), black_box(25), easing) {
-            black_box(turn_next(&mut black_box(turn)));
-        }
-        black_box(speed_next(&mut black_box(easing.speeds(60, 25))));
     }
 }

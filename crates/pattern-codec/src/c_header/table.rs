@@ -1,5 +1,3 @@
-use core::ops::RangeInclusive;
-
 use super::{HeaderError, HeaderErrorKind, Item, Items, Place, items};
 
 /// The value of the `#define` whose name is a table's in upper case, `_` and `end`.
@@ -134,20 +132,20 @@ pub(crate) fn agree(
     }
 }
 
-/// The value of a `#define` of a table within a range; the default where there is none.
-pub(crate) fn setting(
+/// What a `#define` of a table stands for; the default where there is none.
+///
+/// # Errors
+/// [`HeaderErrorKind::Range`] where `parse` has no answer, with the range of those that have one.
+pub(crate) fn setting<T>(
     text: &str,
     table: &str,
     end: &str,
-    range: RangeInclusive<u32>,
-    default: u32,
-) -> Result<u32, HeaderError> {
+    default: T,
+    (min, max): (i64, i64),
+    parse: impl Fn(i64) -> Option<T>,
+) -> Result<T, HeaderError> {
     let Some((place, value)) = define(text, table, end) else {
         return Ok(default);
     };
-    let fits = u32::try_from(value).ok();
-    fits.filter(|value| range.contains(value)).ok_or_else(|| {
-        let (min, max) = (i64::from(*range.start()), i64::from(*range.end()));
-        place.error(HeaderErrorKind::Range { value, min, max })
-    })
+    parse(value).ok_or_else(|| place.error(HeaderErrorKind::Range { value, min, max }))
 }

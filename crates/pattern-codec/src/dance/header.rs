@@ -1,8 +1,8 @@
 use core::fmt::Write;
 use core::iter::FusedIterator;
+use core::num::NonZeroU32;
 
-use super::motor::THRESHOLD;
-use super::{Decoded, Motor, Packing, Sizes, ThresholdTooLow, Timing};
+use super::{Decoded, Packing, Sizes, Threshold, Timing};
 use crate::c_header::{
     BYTE, Bytes, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Name, WriteError, agree,
     array, check_size, setting,
@@ -36,7 +36,7 @@ pub struct DataHeader<'n> {
     name: Name<'n>,
     dialect: Dialect,
     timing: Timing,
-    threshold: u16,
+    threshold: Threshold,
     packing: Packing,
 }
 
@@ -54,7 +54,7 @@ impl<'n> DataHeader<'n> {
             name: Name::fixed("dance"),
             dialect: Dialect::C51,
             timing: Timing::DEFAULT,
-            threshold: THRESHOLD,
+            threshold: Threshold::DEFAULT,
             packing: Packing::Raw,
         }
     }
@@ -78,14 +78,9 @@ impl<'n> DataHeader<'n> {
     }
 
     /// For another threshold of the accumulators.
-    ///
-    /// # Errors
-    /// [`ThresholdTooLow`] below [`Motor::MIN_THRESHOLD`](super::Motor): [`Data`] would not read it.
-    pub const fn with_threshold(self, threshold: u16) -> Result<Self, ThresholdTooLow> {
-        if threshold < Motor::MIN_THRESHOLD {
-            return Err(ThresholdTooLow { threshold });
-        }
-        Ok(Self { threshold, ..self })
+    #[must_use]
+    pub const fn with_threshold(self, threshold: Threshold) -> Self {
+        Self { threshold, ..self }
     }
 
     /// With another packing.
@@ -117,7 +112,7 @@ impl<'n> DataHeader<'n> {
         layout.define("FRAMES", sizes.frames())?;
         layout.define("FRAME_TICKS", self.timing.frame_ticks().into())?;
         layout.define("TICK_US", self.timing.tick_us().into())?;
-        layout.define("THRESHOLD", self.threshold.into())?;
+        layout.define("THRESHOLD", self.threshold.get().into())?;
         layout.define("PACKING", number(self.packing))?;
         layout.define("BYTES", bytes)?;
         layout.out.write_str(match self.packing {
@@ -213,7 +208,7 @@ const fn element(packing: Packing) -> Element {
 pub struct Data<'t, const N: usize = 8> {
     name: &'t str,
     timing: Timing,
-    threshold: u16,
+    threshold: Threshold,
     packing: Packing,
     frames: u64,
     bytes: u64,
@@ -293,7 +288,7 @@ impl<'t, const N: usize> Data<'t, N> {
 
     /// Threshold of the accumulators.
     #[must_use]
-    pub const fn threshold(&self) -> u16 {
+    pub const fn threshold(&self) -> Threshold {
         self.threshold
     }
 
@@ -321,28 +316,42 @@ impl<'t, const N: usize> Data<'t, N> {
 /// What the `#define`s of a header say.
 struct Settings {
     timing: Timing,
-    threshold: u16,
+    threshold: Threshold,
     packing: Packing,
 }
 
 impl Settings {
     fn read(text: &str, name: &str) -> Result<Self, HeaderError> {
-        let find = |end, range, default| setting(text, name, end, range, default);
-        let default = Timing::DEFAULT;
-        let tick_us = find("TICK_US", 1..=u32::MAX, default.tick_us())?;
-        let frame_ticks = find("FRAME_TICKS", 1..=u32::MAX, default.frame_ticks())?;
-        let least = Motor::MIN_THRESHOLD.into();
-        let threshold = find("THRESHOLD", least..=u16::MAX.into(), THRESHOLD.into())?;
-        let wanted = u64::from(find("PACKING", 0..=2, 0)?);
-        let mut all = Packing::ALL.into_iter();
-        let packing = all
-            .find(|packing| number(*packing) == wanted)
-            .unwrap_or_default();
+        let period = |end, default| {
+            let range = (1, u32::MAX.into());
+            let parse = |value| NonZeroU32::new(u32::try_from(value).ok()?);
+            setting(text, name, end, default, range, parse)
+        };
+        let Timing {
+            tick_us,
+            frame_ticks,
+        } = Timing::DEFAULT;
+        let timing = Timing {
+            tick_us: period("TICK_US", tick_us)?,
+            frame_ticks: period("FRAME_TICKS", frame_ticks)?,
+        };
+        let range = (Threshold::MIN.get().into(), u16::MAX.into());
+        let threshold = |value| Threshold::new(u16::try_from(value).ok()?).ok();
+        let packing = |value| {
+            let mut all = Packing::ALL.into_iter();
+            all.find(|packing| u64::try_from(value) == Ok(number(*packing)))
+        };
         Ok(Self {
-            // Neither is 0.
-            timing: Timing::new(tick_us, frame_ticks).unwrap_or_default(),
-            threshold: u16::try_from(threshold).unwrap_or(THRESHOLD),
-            packing,
+            timing,
+            threshold: setting(
+                text,
+                name,
+                "THRESHOLD",
+                Threshold::DEFAULT,
+                range,
+                threshold,
+            )?,
+            packing: setting(text, name, "PACKING", Packing::Raw, (0, 2), packing)?,
         })
     }
 }

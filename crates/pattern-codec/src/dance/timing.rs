@@ -1,3 +1,5 @@
+//! How long a frame is in force.
+
 use core::num::NonZeroU32;
 
 use thiserror::Error;
@@ -8,8 +10,8 @@ use thiserror::Error;
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Timing {
-    tick_us: NonZeroU32,
-    frame_ticks: NonZeroU32,
+    pub(super) tick_us: NonZeroU32,
+    pub(super) frame_ticks: NonZeroU32,
 }
 
 impl Timing {

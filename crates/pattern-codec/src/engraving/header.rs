@@ -173,17 +173,19 @@ impl<'t> PatternData<'t> {
         let mut codes = format.axis_codes.codes();
         for (axis, end) in CODES {
             let code = codes.get_mut(axis);
-            let defined = setting(text, name, end, 0..=3, u32::from(*code))?;
-            // At most 3.
-            [*code, ..] = defined.to_le_bytes();
+            *code = setting(text, name, end, *code, (0, 3), |value| {
+                u8::try_from(value).ok().filter(|code| *code <= 3)
+            })?;
         }
         let codes = AxisCodes::new(codes)
             .map_err(|error| start.error(HeaderErrorKind::AxisCodes(error)))?;
-        let high_byte_first = u32::from(format.byte_order == ByteOrder::BigEndian);
-        let byte_order = match setting(text, name, "HIGH_BYTE_FIRST", 0..=1, high_byte_first)? {
-            0 => ByteOrder::LittleEndian,
-            _ => ByteOrder::BigEndian,
+        let order = |value| match value {
+            0 => Some(ByteOrder::LittleEndian),
+            1 => Some(ByteOrder::BigEndian),
+            _ => None,
         };
+        let byte_order = format.byte_order;
+        let byte_order = setting(text, name, "HIGH_BYTE_FIRST", byte_order, (0, 1), order)?;
         let mut data = Self {
             name,
             format: format.with_axis_codes(codes).with_byte_order(byte_order),

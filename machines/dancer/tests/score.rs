@@ -1,10 +1,9 @@
 //! Scores: what they become, and what is refused.
 #![cfg(test)]
 
-use pattern_codec::dance::{Choreography, Law, Motor, Score, ScoreErrorKind, Timing};
+use dancer::{Choreography, Law, Motor, Score, ScoreErrorKind};
+use pattern_codec::dance::{Threshold, Timing};
 use proptest::prelude::*;
-
-const LAWS: [Law; 3] = [Law::Reset, Law::CarryMagnitude, Law::CarrySigned];
 
 const MOTORS: &str = "
 [[motor]]
@@ -26,14 +25,14 @@ fn compile(moves: &str, law: Law) -> Choreography<8> {
 
 /// Where the firmware brings a motor.
 fn position(frames: &[[i8; 8]], law: Law, motor: usize) -> i64 {
-    let mut one = Motor::new(law, 600, Timing::DEFAULT).unwrap();
+    let mut one = Motor::new(law, Threshold::DEFAULT, Timing::DEFAULT);
     frames.iter().for_each(|frame| one.run(frame[motor]));
     one.position()
 }
 
 #[test]
 fn an_arm_waves_as_asked() {
-    for law in LAWS {
+    for law in Law::ALL {
         let dance = compile(
             "
             [[move]]
@@ -121,7 +120,11 @@ fn other_timings_count() {
     );
     let score: Score = text.parse().unwrap();
     assert_eq!(
-        (score.frames(), score.timing().frame_us(), score.threshold()),
+        (
+            score.frames(),
+            score.timing().frame_us(),
+            score.threshold().get()
+        ),
         (4, 50_000, 300)
     );
     assert_eq!(score.title(), "Gavotte");
@@ -374,7 +377,7 @@ proptest! {
 
     #[test]
     fn turns_end_within_one_half_step(
-        law in prop::sample::select(&LAWS[..]),
+        law in prop::sample::select(&Law::ALL[..]),
         turns in prop::collection::vec((-1.0_f64..1.0, 4_u32..30, prop::sample::select(&["linear", "in", "out", "smooth"][..])), 1..12),
     ) {
         let (mut moves, mut start) = (String::new(), 0);

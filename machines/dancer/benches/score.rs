@@ -5,7 +5,7 @@
 use core::fmt::Write;
 use core::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use pattern_codec::dance::{Law, Score};
+use dancer::{Law, Score};
 
 /// Two motors that turn there and back in frames of 0.2 s, one after the other.
 fn score(moves: u32) -> String {

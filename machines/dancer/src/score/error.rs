@@ -1,9 +1,11 @@
-use alloc::string::String;
+//! Why a score is not danced, and where.
+
 use core::fmt;
 
+use pattern_codec::dance::{ThresholdTooLow, ZeroPeriod};
 use thiserror::Error;
 
-use super::super::{ThresholdTooLow, TurnError, ZeroPeriod};
+use crate::turn::TurnError;
 
 /// Why a score is not danced, and where.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -1,12 +1,14 @@
-use alloc::string::String;
-use alloc::vec::Vec;
-use core::str::FromStr;
-
-use super::{Easing, Timing};
+//! A dance as a person writes it: which motor moves when, how long, how far or how fast.
 
 mod compile;
 mod error;
 mod text;
+
+use core::str::FromStr;
+
+use pattern_codec::dance::{Threshold, Timing};
+
+use crate::easing::Easing;
 
 pub use compile::{Choreography, Landing};
 pub use error::{ScoreError, ScoreErrorKind, ScorePart};
@@ -14,7 +16,7 @@ pub use error::{ScoreError, ScoreErrorKind, ScorePart};
 /// A dance as a person writes it: which motor moves when, how long, how far or how fast.
 ///
 /// ```
-/// use pattern_codec::dance::{Law, Score};
+/// use dancer::{Law, Score};
 ///
 /// let score: Score = r#"
 ///     [[motor]]
@@ -67,7 +69,7 @@ pub use error::{ScoreError, ScoreErrorKind, ScorePart};
 pub struct Score {
     title: String,
     timing: Timing,
-    threshold: u16,
+    threshold: Threshold,
     motors: Vec<Performer>,
     /// In the order of their starts, no two of one motor at once.
     moves: Vec<Move>,
@@ -122,9 +124,9 @@ impl Score {
         self.timing
     }
 
-    /// What an accumulator gathers for one half step.
+    /// What an accumulator adds up for one half step.
     #[must_use]
-    pub const fn threshold(&self) -> u16 {
+    pub const fn threshold(&self) -> Threshold {
         self.threshold
     }
 

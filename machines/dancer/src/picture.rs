@@ -1,16 +1,14 @@
 //! The angles of the motors over time, one panel each, as an SVG picture.
 
 use core::fmt::Write as _;
-use std::io::Write;
 
 use anyhow::{Context as _, Result};
-use pose2pulse::pattern_codec::dance::Score;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 
 use crate::MOTORS;
-use crate::law::Law;
-use crate::simulation::Danced;
+use crate::score::Score;
+use crate::simulation::Run;
 
 const WIDTH: f64 = 1000.0;
 const PANEL: f64 = 96.0;
@@ -29,19 +27,14 @@ const GRID: &str = "#dddddd";
 const HERE: &str = "#1b5fa8";
 const THERE: &str = "#d9822b";
 
-/// Writes `dance.svg`: what the motors did, and what the other law would have done.
-pub(crate) fn write(
-    out: impl Write,
-    law: Law,
-    score: &Score,
-    danced: &Danced,
-    other: &[[i32; MOTORS]],
-) -> Result<()> {
-    let end_s = danced.duration_s();
-    let panels = score.motors().len();
-    let mut picture = Picture::new(out, panels)?;
+/// `dance.svg`: what the motors did, and what they would have done under the other law.
+///
+/// # Errors
+/// The run has fewer motors than the score.
+pub fn picture(score: &Score, run: &Run) -> Result<String> {
+    let mut picture = Picture::new(score.motors().len())?;
     picture.text(8.0, HEAD / 2.0 + 4.0, "start", score.title())?;
-    let (here, there) = (law.name(), law.other().name());
+    let (here, there) = (run.law.name(), run.law.other().name());
     picture.key(LEFT, HERE, false, &format!("as danced, law {here}"))?;
     picture.key(
         LEFT + 250.0,
@@ -56,22 +49,22 @@ pub(crate) fn write(
             let angles: Option<Vec<f64>> = positions.iter().map(angle).collect();
             angles.context("more motors than latches")
         };
-        picture.panel(top, name, &series(&danced.positions)?, &series(other)?)?;
+        picture.panel(top, name, &series(&run.positions)?, &series(&run.other)?)?;
         top += PANEL + GAP;
     }
-    picture.time_axis(top - GAP, end_s)?;
+    picture.time_axis(top - GAP, run.duration_s)?;
     picture.finish()
 }
 
-struct Picture<W: Write> {
-    xml: Writer<W>,
+struct Picture {
+    xml: Writer<Vec<u8>>,
 }
 
-impl<W: Write> Picture<W> {
-    fn new(out: W, panels: usize) -> Result<Self> {
+impl Picture {
+    fn new(panels: usize) -> Result<Self> {
         let panels = f64::from(u32::try_from(panels)?);
         let height = HEAD + panels * (PANEL + GAP) - GAP + FOOT;
-        let mut xml = Writer::new_with_indent(out, b' ', 1);
+        let mut xml = Writer::new_with_indent(Vec::new(), b' ', 1);
         xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
         let svg = BytesStart::new("svg").with_attributes([
             ("xmlns", "http://www.w3.org/2000/svg"),
@@ -133,10 +126,9 @@ impl<W: Write> Picture<W> {
         self.text(LEFT + across / 2.0, y + 38.0, "middle", "time in s")
     }
 
-    fn finish(mut self) -> Result<()> {
+    fn finish(mut self) -> Result<String> {
         self.end("svg")?;
-        self.xml.get_mut().write_all(b"\n")?;
-        Ok(self.xml.get_mut().flush()?)
+        Ok(String::from_utf8(self.xml.into_inner())? + "\n")
     }
 
     fn path(&mut self, line: &str, colour: &str, width: f64, dashed: bool) -> Result<()> {

@@ -1,10 +1,9 @@
 //! A score as frames.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
-use super::super::{Law, Motor, Turn, TurnError};
 use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart, approximate};
+use crate::law::Law;
+use crate::motor::Motor;
+use crate::turn::TurnError;
 
 /// A score as frames.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +19,6 @@ pub struct Choreography<const N: usize> {
 
 /// The end of a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Landing {
     /// The move, from 1.
@@ -66,11 +64,7 @@ impl Score {
             landings: Vec::new(),
             end: [0; N],
         };
-        let motor = Motor::new(law, self.threshold, self.timing).map_err(|error| ScoreError {
-            line: 1,
-            part: ScorePart::Head,
-            kind: error.into(),
-        })?;
+        let motor = Motor::new(law, self.threshold, self.timing);
         let motors = self.motors.iter();
         let mut dancers: Vec<_> = motors
             .map(|performer| Dancer::new(motor, performer))
@@ -133,7 +127,7 @@ impl<'s> Dancer<'s> {
             Action::TurnDeg(deg) => self.asked += deg / half_step_deg,
         }
         let turn = turn(&self.motor, self.performer, self.asked, one)?;
-        play(&mut self.motor, turn, bytes);
+        play(&mut self.motor, turn.into_iter(), bytes);
         dance.landings.push(Landing {
             number: one.number,
             motor: one.motor,
@@ -163,7 +157,7 @@ fn turn(
     performer: &Performer,
     asked: f64,
     one: &Move,
-) -> Result<Turn, ScoreErrorKind> {
+) -> Result<Vec<i8>, ScoreErrorKind> {
     let nearest = asked.round();
     let way = nearest - approximate(motor.position());
     if way.abs() > f64::from(i32::MAX) {
@@ -171,22 +165,23 @@ fn turn(
     }
     #[expect(clippy::cast_possible_truncation, reason = "whole and within i32")]
     let way = way as i32;
-    let try_way = |way: i32| {
+    let try_turn = |way: i32| {
         let turn = motor.turn(way, one.frames, one.easing)?;
-        let nearest = turn.end();
-        if (approximate(motor.position().saturating_add(nearest)) - asked).abs() <= 1.0 {
+        let mut turned = *motor;
+        turn.iter().for_each(|speed| turned.run(*speed));
+        if (approximate(turned.position()) - asked).abs() <= 1.0 {
             return Ok(turn);
         }
         Err(TurnError::Unreachable {
             half_steps: way,
             frames: one.frames,
-            nearest,
+            nearest: turned.position() - motor.position(),
         })
     };
     // One half step beside the nearest may be more than one beside what was asked: then the whole
     // number on the other side of that is tried, too.
     let other = way.saturating_add(if asked < nearest { -1 } else { 1 });
-    let turn = try_way(way).or_else(|refusal| try_way(other).map_err(|_| refusal));
+    let turn = try_turn(way).or_else(|refusal| try_turn(other).map_err(|_| refusal));
     turn.map_err(|error| ScoreErrorKind::Turn {
         motor: performer.name.clone(),
         error,

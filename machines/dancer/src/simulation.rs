@@ -1,65 +1,54 @@
-//! The firmware, the bus and the motors.
+//! The firmware, the bus and the motors, from the frames of a header alone.
 
 use std::io::Write;
 
 use anyhow::{Context as _, Result, ensure};
-use pose2pulse::pattern_codec::dance::Data;
-use pose2pulse::stepper_sync::{
-    Accumulation, Accumulators, LatchWrites, Latches, Phase, Phases, Rate, SpeedLaw, Stepping,
-    Wiring,
+use pattern_codec::dance::Data;
+use stepper_sync::{
+    Accumulation, Accumulators, LatchWrites, Latches, Phase, Phases, Rate, Stepping, Wiring,
 };
 
 use crate::MOTORS;
-use crate::waves::Waves;
+use crate::bus_log::BusLog;
+use crate::law::Law;
 
 /// The most ticks that are simulated: three days of 1 ms, some seconds of a PC.
-const MOST_TICKS: u64 = 1 << 28;
+const MAX_TICKS: u64 = 1 << 28;
 
 /// What the motors did.
-pub(crate) struct Danced {
+#[derive(Debug, Clone)]
+pub struct Run {
+    pub(crate) law: Law,
     /// Half steps from the start at the end of every frame, before the first one too.
     pub(crate) positions: Vec<[i32; MOTORS]>,
+    /// The same for the same frames under the law to compare with.
+    pub(crate) other: Vec<[i32; MOTORS]>,
     /// Half steps made, in both directions together.
     pub(crate) steps: [u64; MOTORS],
-    /// Period of a frame, in s.
-    frame_s: f64,
-}
-
-impl Danced {
-    /// Length of the dance in s, without the digits that binary rounding adds.
-    pub(crate) fn duration_s(&self) -> f64 {
-        let frames = u32::try_from(self.positions.len() - 1).map_or(f64::INFINITY, f64::from);
-        (frames * self.frame_s * 1e6).round() / 1e6
-    }
+    /// Length of the dance, without the digits that binary rounding adds.
+    pub(crate) duration_s: f64,
 }
 
 /// What runs in the microcontroller.
-pub(crate) struct Firmware {
+struct Firmware {
     accumulators: Accumulators<MOTORS>,
     phases: Phases,
     at: [Phase; MOTORS],
     frame_ticks: u32,
-    frame_s: f64,
 }
 
 impl Firmware {
-    pub(crate) fn new(data: &Data<'_, MOTORS>, law: SpeedLaw) -> Result<Self> {
+    fn new(data: &Data<'_, MOTORS>, law: Law) -> Result<Self> {
         let timing = data.timing();
-        let frames = data.frames().remaining();
-        let ticks = frames.saturating_mul(timing.frame_ticks().into());
-        ensure!(
-            ticks <= MOST_TICKS,
-            "data.h: {ticks} ticks, {MOST_TICKS} are the most"
-        );
         let tick = Rate::new(1_000_000, timing.tick_us())?;
-        let accumulation = Accumulation::new(law, data.threshold(), tick).context("data.h")?;
+        let accumulation =
+            Accumulation::new(law.into(), data.threshold().get(), tick).context("data.h")?;
         let phases = Phases::new(Stepping::Half, Wiring::UNIPOLAR)?;
         Ok(Self {
             accumulators: accumulation.motors(),
             phases,
             at: [phases.start(); MOTORS],
             frame_ticks: timing.frame_ticks(),
-            frame_s: f64::from(timing.tick_us()) * f64::from(timing.frame_ticks()) / 1e6,
         })
     }
 
@@ -77,10 +66,7 @@ impl Firmware {
     }
 
     /// The positions that the accumulators alone come to.
-    pub(crate) fn count(
-        mut self,
-        frames: impl Iterator<Item = [i8; MOTORS]>,
-    ) -> Vec<[i32; MOTORS]> {
+    fn count(mut self, frames: impl Iterator<Item = [i8; MOTORS]>) -> Vec<[i32; MOTORS]> {
         let mut position = [0; MOTORS];
         let mut positions = vec![position];
         for speeds in frames {
@@ -122,12 +108,26 @@ impl Rotor {
     }
 }
 
-/// Dances frames: every write goes over the bus into the latches, and the rotors follow those.
-pub(crate) fn simulate<W: Write>(
-    mut firmware: Firmware,
-    frames: impl Iterator<Item = [i8; MOTORS]>,
-    mut waves: Waves<W>,
-) -> Result<Danced> {
+/// Dances the frames of a header: every write goes over the bus into the latches, and the rotors
+/// follow those. The bus over time goes to `vcd` as a value change dump, the frames that are done
+/// and all of them to `progress`.
+///
+/// # Errors
+/// A dance of over 2^28 ticks, what the firmware's accumulators refuse, or `vcd` does not take it.
+pub fn simulate(
+    data: &Data<'_, MOTORS>,
+    law: Law,
+    vcd: impl Write,
+    progress: impl Fn(u64, u64),
+) -> Result<Run> {
+    let (timing, frames) = (data.timing(), data.frames().remaining());
+    let ticks = frames.saturating_mul(timing.frame_ticks().into());
+    ensure!(
+        ticks <= MAX_TICKS,
+        "data.h: {ticks} ticks, {MAX_TICKS} are the most"
+    );
+    let mut firmware = Firmware::new(data, law)?;
+    let mut log = BusLog::new(vcd, timing)?;
     let phases = firmware.phases;
     let rest = Rotor {
         half_step: phases.start().half_step(),
@@ -139,12 +139,13 @@ pub(crate) fn simulate<W: Write>(
     let mut positions = vec![[0; MOTORS]];
     // The windings carry current before the first tick.
     let start = [Some(phases.byte(phases.start())); MOTORS];
-    waves.tick(&mut latches, LatchWrites::new(start))?;
-    for speeds in frames {
+    log.tick(&mut latches, LatchWrites::new(start))?;
+    for (speeds, done) in data.frames().zip(0..) {
+        progress(done, frames);
         firmware.accumulators.set_speeds(speeds);
         for _ in 0..firmware.frame_ticks {
             let bytes = firmware.tick();
-            waves.tick(&mut latches, LatchWrites::new(bytes))?;
+            log.tick(&mut latches, LatchWrites::new(bytes))?;
             for (number, (rotor, byte)) in rotors.iter_mut().zip(latches.outputs()).enumerate() {
                 let followed = rotor.follow(&phases, byte);
                 followed.with_context(|| format!("motor {number}"))?;
@@ -152,10 +153,17 @@ pub(crate) fn simulate<W: Write>(
         }
         positions.push(rotors.map(|rotor| rotor.position));
     }
-    waves.finish()?;
-    Ok(Danced {
+    log.finish()?;
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "a dance has fewer ticks than 2^28"
+    )]
+    let duration_s = ticks as f64 * f64::from(timing.tick_us()) / 1e6;
+    Ok(Run {
+        law,
         positions,
+        other: Firmware::new(data, law.other())?.count(data.frames()),
         steps: rotors.map(|rotor| rotor.steps),
-        frame_s: firmware.frame_s,
+        duration_s: (duration_s * 1e6).round() / 1e6,
     })
 }

@@ -1,17 +1,14 @@
 //! A score from its text.
 
-use alloc::collections::BTreeMap;
-use alloc::string::String;
-use alloc::vec;
-use alloc::vec::Vec;
+use std::collections::HashMap;
 
+use pattern_codec::dance::{Threshold, Timing};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use toml::Spanned;
 
-use super::super::motor::THRESHOLD;
-use super::super::{Easing, Law, Motor, Timing};
 use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart, approximate};
+use crate::easing::Easing;
 
 /// The most frames of a dance: 3.6 hours at 200 ms.
 const MOST_FRAMES: u32 = 65_535;
@@ -73,12 +70,13 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
     let zero_line = if tick_us == 0 { tick_line } else { frame_line };
     let timing = Timing::new(tick_us, frame_ticks);
     let timing = timing.map_err(|error| head(zero_line, error.into()))?;
-    let (threshold_line, threshold) = setting(&lines, score.threshold, THRESHOLD);
-    let motor = Motor::new(Law::Reset, threshold, timing);
-    motor.map_err(|error| head(threshold_line, error.into()))?;
+    let default = Threshold::DEFAULT.get();
+    let (threshold_line, threshold) = setting(&lines, score.threshold, default);
+    let threshold = Threshold::new(threshold);
+    let threshold = threshold.map_err(|error| head(threshold_line, error.into()))?;
 
     let mut motors: Vec<Performer> = Vec::new();
-    let mut names = BTreeMap::new();
+    let mut names = HashMap::new();
     for (motor, number) in score.motor.into_iter().zip(1..) {
         let line = lines.line(motor.span().start);
         let part = ScorePart::Motor(number);
@@ -161,7 +159,7 @@ fn setting<T>(lines: &Lines, given: Option<Spanned<T>>, default: T) -> (u32, T) 
 }
 
 impl MotorText {
-    fn check(self, others: &BTreeMap<String, usize>) -> Result<Performer, ScoreErrorKind> {
+    fn check(self, others: &HashMap<String, usize>) -> Result<Performer, ScoreErrorKind> {
         let Self {
             name,
             half_step_deg,
@@ -201,7 +199,7 @@ impl MoveText {
         line: u32,
         clock: Clock,
         motors: &[Performer],
-        names: &BTreeMap<String, usize>,
+        names: &HashMap<String, usize>,
     ) -> Result<(Move, u32, u32), ScoreErrorKind> {
         let motor = names.get(&self.motor).copied();
         let performer = motor.and_then(|motor| Some((motor, motors.get(motor)?)));

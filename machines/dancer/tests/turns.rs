@@ -3,10 +3,10 @@
 
 use std::collections::HashSet;
 
-use pattern_codec::dance::{Easing, Law, Motor, Timing, TurnError};
+use dancer::{Easing, Law, Motor, TurnError};
+use pattern_codec::dance::{Threshold, Timing};
 use proptest::prelude::*;
 
-const LAWS: [Law; 3] = [Law::Reset, Law::CarryMagnitude, Law::CarrySigned];
 const EASINGS: [Easing; 4] = [Easing::Linear, Easing::In, Easing::Out, Easing::Smooth];
 
 /// The firmware: one addition and one comparison per tick.
@@ -53,11 +53,11 @@ impl Firmware {
 }
 
 fn motor(law: Law) -> Motor {
-    Motor::new(law, 600, Timing::DEFAULT).unwrap()
+    Motor::new(law, Threshold::DEFAULT, Timing::DEFAULT)
 }
 
 fn laws() -> impl Strategy<Value = Law> {
-    prop::sample::select(&LAWS[..])
+    prop::sample::select(&Law::ALL[..])
 }
 
 fn easings() -> impl Strategy<Value = Easing> {
@@ -67,7 +67,7 @@ fn easings() -> impl Strategy<Value = Easing> {
 proptest! {
     #[test]
     fn a_motor_is_where_the_ticks_bring_it(law in laws(), frame_ticks in 1_u32..700, threshold in 128_u16..2000, speeds in prop::collection::vec(any::<i8>(), 0..40)) {
-        let mut motor = Motor::new(law, threshold, Timing::new(1000, frame_ticks).unwrap()).unwrap();
+        let mut motor = Motor::new(law, Threshold::new(threshold).unwrap(), Timing::new(1000, frame_ticks).unwrap());
         let mut firmware = Firmware { threshold: threshold.into(), ..Firmware::new(law) };
         for speed in speeds {
             motor.run(speed);
@@ -113,7 +113,7 @@ proptest! {
     fn no_turn_is_made_too_fast(half_steps: i32, frames: u16, easing in easings(), law in laws()) {
         let mut motor = motor(law);
         if let Ok(turn) = motor.turn(half_steps, frames.min(300), easing) {
-            turn.for_each(|speed| motor.run(speed));
+            turn.into_iter().for_each(|speed| motor.run(speed));
             prop_assert!(motor.position().abs_diff(half_steps.into()) <= 1);
         }
     }
@@ -122,7 +122,8 @@ proptest! {
     fn eased_speeds_reach_the_highest(highest: i8, frames in 1_u16..400, easing in easings()) {
         let speeds = easing.speeds(highest, frames);
         prop_assert_eq!(speeds.len(), usize::from(frames));
-        let magnitude = speeds.clone().map(i8::unsigned_abs).max().unwrap();
+        let speeds: Vec<i8> = speeds.collect();
+        let magnitude = speeds.iter().map(|speed| speed.unsigned_abs()).max().unwrap();
         prop_assert!(magnitude <= highest.unsigned_abs());
         if easing == Easing::Linear {
             prop_assert_eq!(magnitude, highest.unsigned_abs());
@@ -166,15 +167,75 @@ proptest! {
         negative: bool,
     ) {
         let timing = Timing::new(1000, frame_ticks).unwrap();
-        let motor = Motor::new(Law::Reset, threshold, timing).unwrap();
+        let motor = Motor::new(Law::Reset, Threshold::new(threshold).unwrap(), timing);
         for half_steps in makeable(threshold, frame_ticks, frames) {
             let way = i32::try_from(half_steps).unwrap() * if negative { -1 } else { 1 };
             let turn = motor.turn(way, frames, Easing::Linear);
             prop_assert!(turn.is_ok(), "{way} in {frames} frames: {turn:?}");
             let mut firmware = Firmware { threshold: threshold.into(), ..Firmware::new(Law::Reset) };
-            turn.unwrap().for_each(|speed| firmware.ticks(speed, frame_ticks));
+            turn.unwrap().into_iter().for_each(|speed| firmware.ticks(speed, frame_ticks));
             prop_assert!(firmware.position.abs_diff(way.into()) <= 1);
         }
+    }
+}
+
+/// Plans every turn that brute force can make, runs it tick by tick, and counts them.
+fn check_makeable(threshold: u16, frame_ticks: u32, frames: u16, easing: Easing) -> u32 {
+    let timing = Timing::new(1000, frame_ticks).unwrap();
+    let motor = Motor::new(Law::Reset, Threshold::new(threshold).unwrap(), timing);
+    let mut planned = 0;
+    for half_steps in makeable(threshold, frame_ticks, frames) {
+        let half_steps = i32::try_from(half_steps).unwrap();
+        let turn = match motor.turn(half_steps, frames, easing) {
+            // The easing alone, without what the law loses, needs more than the highest speed.
+            Err(TurnError::TooFast { .. }) => continue,
+            turn => turn.unwrap_or_else(|error| panic!("{threshold}, {frame_ticks}: {error}")),
+        };
+        let mut firmware = Firmware {
+            threshold: threshold.into(),
+            ..Firmware::new(Law::Reset)
+        };
+        turn.iter()
+            .for_each(|speed| firmware.ticks(*speed, frame_ticks));
+        let off = firmware.position.abs_diff(half_steps.into());
+        assert!(
+            off <= 1,
+            "{threshold}, {frame_ticks}: {}",
+            firmware.position
+        );
+        planned += 1;
+    }
+    planned
+}
+
+/// The easing leaves too much to the last frames, or only a speed that loses more meets the end.
+#[test]
+fn what_any_speeds_can_make_is_not_refused() {
+    for (threshold, frame_ticks, frames, easing) in [
+        (137, 22, 4, Easing::In),
+        (277, 27, 4, Easing::Smooth),
+        (153, 28, 4, Easing::In),
+        (165, 38, 4, Easing::Smooth),
+        (134, 32, 5, Easing::Smooth),
+        (150, 12, 5, Easing::Smooth),
+        (133, 22, 5, Easing::Smooth),
+        (257, 28, 6, Easing::In),
+    ] {
+        assert!(check_makeable(threshold, frame_ticks, frames, easing) > 9);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn no_turn_of_few_frames_is_refused_that_any_speeds_can_make(
+        threshold in 128_u16..1000,
+        frame_ticks in 1_u32..40,
+        frames in 1_u16..6,
+        easing in easings(),
+    ) {
+        check_makeable(threshold, frame_ticks, frames, easing);
     }
 }
 
@@ -183,7 +244,7 @@ fn frames_shorter_than_a_step_follow_the_way() {
     // At 127 a step of 600 takes 5 ticks.
     for frame_ticks in [1, 2, 4] {
         let timing = Timing::new(1000, frame_ticks).unwrap();
-        let mut motor = Motor::new(Law::Reset, 600, timing).unwrap();
+        let mut motor = Motor::new(Law::Reset, Threshold::DEFAULT, timing);
         let mut firmware = Firmware::new(Law::Reset);
         let (mut made, mut worst) = (0.0, 0.0_f64);
         for speed in motor.turn(-40, 1200, Easing::Linear).unwrap() {
@@ -217,7 +278,7 @@ fn a_million_ticks_are_those_of_the_reference() {
             (Law::CarrySigned, fields[3]),
         ] {
             for (speed, sign) in [(speed, 1), (speed.wrapping_neg(), -1)] {
-                let mut motor = Motor::new(law, 600, timing).unwrap();
+                let mut motor = Motor::new(law, Threshold::DEFAULT, timing);
                 motor.run(speed);
                 let wanted: i64 = steps.parse().unwrap();
                 assert_eq!(motor.position(), sign * wanted, "{law:?} {speed}");
@@ -233,7 +294,7 @@ fn the_reset_law_has_44_speeds() {
     let timing = Timing::new(1000, 100_000_000).unwrap();
     let mut positions: Vec<_> = (1..=127)
         .map(|speed| {
-            let mut motor = Motor::new(Law::Reset, 600, timing).unwrap();
+            let mut motor = Motor::new(Law::Reset, Threshold::DEFAULT, timing);
             motor.run(speed);
             motor.position()
         })
@@ -249,7 +310,7 @@ fn what_no_motor_makes_is_refused() {
             .turn(half_steps, frames, Easing::Linear)
             .map(|_| ())
     };
-    for law in LAWS {
+    for law in Law::ALL {
         assert_eq!(turn(law, 0, 0), Ok(()));
         let frames = 10;
         let error = turn(law, 430, frames).unwrap_err();
@@ -279,13 +340,13 @@ fn what_no_motor_makes_is_refused() {
 
 #[test]
 fn a_lower_highest_speed_is_kept() {
-    for law in LAWS {
+    for law in Law::ALL {
         assert_eq!(motor(law).with_max_speed(200).max_speed(), 127);
         let slow = motor(law).with_max_speed(60);
         assert_eq!(slow.max_speed(), 60);
         // A frame at 60 makes 20 half steps.
         let turn = slow.turn(200, 10, Easing::Linear).unwrap();
-        assert!(turn.eq([60; 10]));
+        assert_eq!(turn, [60; 10]);
         let refused = slow.turn(210, 10, Easing::Linear).unwrap_err();
         assert!(
             matches!(
