@@ -72,7 +72,7 @@ fn serve(mut terminal: Terminal, machine: &Machine, csv: impl Write) -> Result<R
     let mut log = StepLog::new(csv)?;
     let mut observer = |ticks, steps| log.step(ticks, steps);
     let mut session = Session::new(machine, &mut observer)?;
-    // In a file, what stands behind the end is noted.
+    // In a file, what comes after the end is noted.
     while !session.is_over() || terminal.is_file() {
         let byte = terminal.read_byte()?;
         let answer = match byte {

@@ -352,7 +352,7 @@ fn after_a_refusal_the_next_line_starts_where_the_machine_is() {
 }
 
 #[test]
-fn what_stands_behind_the_end_is_said() {
+fn what_comes_after_the_end_is_noted() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("some.txt");
     fs::write(
@@ -363,7 +363,7 @@ fn what_stands_behind_the_end_is_said() {
     let file = file.to_str().unwrap();
     let run = Run::of(&["--input", file], "");
     assert_eq!((run.answers.len(), run.status), (1, Some(0)));
-    let note = "line 5: \"0 0 -240\", \"hello\": behind `end`, not done (2 times)";
+    let note = "line 5: \"0 0 -240\", \"hello\": after `end`, not done (2 times)";
     assert_eq!(run.errors, [format!("note: {file}: {note}")]);
     assert_eq!(run.report["notes"], serde_json::json!([note]));
     // Nobody waits for what may come behind it on a line.

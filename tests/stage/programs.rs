@@ -117,7 +117,7 @@ fn freecad() {
             "line 7: M5, M3: passed over, there is no spindle and no laser (3 times)",
             "line 12: Z, K: passed over, the stage has no such axis (10 times)",
             "line 20: G98: passed over, they move neither X nor Y (1 time)",
-            "line 21: G81: a rapid move to the place of the hole, which is not drilled (3 times)",
+            "line 21: G81: a rapid move to the hole, which is not drilled (3 times)",
         ]
     );
 }
@@ -236,15 +236,15 @@ fn lines_end_as_on_any_system() {
 }
 
 #[test]
-fn what_stands_behind_the_end_is_said() {
+fn what_comes_after_the_end_is_noted() {
     for (program, note) in [
         (
             "G0 X5\nM2\nG0 X9\nG0 X8\n",
-            "line 3: \"G0 X9\", \"G0 X8\": behind the program's end, not run (2 times)",
+            "line 3: \"G0 X9\", \"G0 X8\": after the program's end, not run (2 times)",
         ),
         (
             "%\nG0 X5\n%\nhello",
-            "line 4: \"hello\": behind the program's end, not run (1 time)",
+            "line 4: \"hello\": after the program's end, not run (1 time)",
         ),
         (
             "/G0 X5",

@@ -103,7 +103,7 @@ impl<'a> Session<'a> {
             if !command::is_empty(&line) {
                 let name = format!("{line:?}");
                 let notes = &mut self.record.notes;
-                notes.add(self.lines, name, "behind `end`, not done");
+                notes.add(self.lines, name, "after `end`, not done");
             }
             return Ok(None);
         }
