@@ -8,8 +8,11 @@ use anyhow::{Context, Result, ensure};
 use serialport::{SerialPort, TTYPort};
 
 /// 8 data bits, even parity, one stop bit.
-pub(crate) const BITS_PER_SECOND: u32 = 9600;
-pub(crate) const BITS_PER_CHARACTER: u8 = 11;
+const BITS_PER_SECOND: u32 = 9600;
+const BITS_PER_CHARACTER: u8 = 11;
+/// What the stations know of it.
+pub(crate) const WIRE: proto3964r::Line =
+    proto3964r::Line::paced(BITS_PER_SECOND, BITS_PER_CHARACTER);
 /// Time of a character on the line, rounded up.
 const CHARACTER_US: u64 = (BITS_PER_CHARACTER as u64 * 1_000_000).div_ceil(BITS_PER_SECOND as u64);
 /// Far longer than a pseudo-terminal holds a byte back.

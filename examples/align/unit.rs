@@ -1,14 +1,15 @@
 //! The simulated hand-held unit: keys, knobs, lamps and display behind an own 3964R station.
 
 use alloc::collections::VecDeque;
+use core::time::Duration;
 
 use pose2pulse::handwheel::{
     COLUMNS, Command, Key, Knob, LINES, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT,
     Model, Place, Position, Report, Status,
 };
-use proto3964r::{Config, Event, Instant, Priority, Station};
+use proto3964r::{Config, Event, Priority, Station};
 
-use crate::line::{BITS_PER_CHARACTER, BITS_PER_SECOND};
+use crate::line::WIRE;
 
 const MODEL: Model = Model::Hbls;
 /// The unit's longest block, and the longest it takes.
@@ -33,9 +34,10 @@ pub(crate) struct Unit {
 impl Unit {
     /// A unit without power.
     pub(crate) fn new() -> Self {
-        let line = Config::euchner_hbls()
-            .with_priority(Priority::Low)
-            .with_line(BITS_PER_SECOND, BITS_PER_CHARACTER);
+        let line = Config {
+            priority: Priority::Low,
+            ..Config::euchner_hbls(WIRE)
+        };
         Self {
             station: Station::new(line),
             powered: false,
@@ -56,7 +58,7 @@ impl Unit {
     }
 
     /// Without power nothing is heard.
-    pub(crate) fn hear(&mut self, now: Instant, byte: u8) {
+    pub(crate) fn hear(&mut self, now: Duration, byte: u8) {
         if self.powered {
             self.station.handle_byte(now, byte);
         }
@@ -105,7 +107,7 @@ impl Unit {
     }
 
     /// Takes what the station has received, and hands it the next report.
-    pub(crate) fn work(&mut self, now: Instant) {
+    pub(crate) fn work(&mut self, now: Duration) {
         self.station.handle_timeout(now);
         loop {
             let telegram = match self.station.poll_event() {
@@ -134,13 +136,13 @@ impl Unit {
             }
         }
         if self.station.is_idle()
-            && self.station.can_send()
+            && !self.station.is_busy()
             && let Some(report) = self.reports.pop_front()
         {
             let mut telegram = [0; MAX_REPORT];
             let sent = report
                 .encode(MODEL, &mut telegram)
-                .is_ok_and(|telegram| self.station.send(now, telegram).is_ok());
+                .is_ok_and(|telegram| self.station.submit(now, telegram).is_ok());
             self.faults += usize::from(!sent);
         }
     }

@@ -1,13 +1,15 @@
 //! The workstation's side of the unit: station, driver and panel.
 
+use core::time::Duration;
+
 use pose2pulse::handwheel::{
-    Action, Arbiter, Command, Driver, Event, Input, Instant, LcdAnswer, Led, Light, MAX_COMMAND,
-    Model, Panel, Settings, SettingsError, Shown, Timing, UnitId,
+    Action, Arbiter, Command, Driver, Event, Input, Job, LcdAnswer, Led, Light, MAX_COMMAND, Model,
+    Panel, Settings, SettingsError, Shown, Timing, UnitId,
 };
-use proto3964r::{Config, Priority, Station};
+use proto3964r::{Config, Station};
 use serde::Serialize;
 
-use crate::line::{BITS_PER_CHARACTER, BITS_PER_SECOND};
+use crate::line::WIRE;
 
 const MODEL: Model = Model::Hbls;
 
@@ -52,11 +54,8 @@ pub(crate) struct Workstation<const N: usize> {
 
 impl<const N: usize> Workstation<N> {
     pub(crate) fn new(settings: Settings) -> Result<Self, SettingsError> {
-        let line = Config::euchner_hbls()
-            .with_priority(Priority::High)
-            .with_line(BITS_PER_SECOND, BITS_PER_CHARACTER);
         Ok(Self {
-            station: Station::new(line),
+            station: Station::new(Config::euchner_hbls(WIRE)),
             driver: Driver::new(MODEL, Timing::DEFAULT),
             panel: Panel::new(UnitId(1), settings)?,
             arbiter: Arbiter::new(),
@@ -72,30 +71,33 @@ impl<const N: usize> Workstation<N> {
     }
 
     /// Takes what station and driver have to say; returns what the machine must do.
-    pub(crate) fn work(&mut self, now_us: u64) -> Vec<Action> {
-        let now = Instant::from_micros(now_us);
-        self.station
-            .handle_timeout(proto3964r::Instant::from_micros(now_us));
-        let mut events: Vec<_> = self.driver.handle_timeout(now).into_iter().collect();
+    pub(crate) fn work(&mut self, now: Duration) -> Vec<Action> {
+        self.station.handle_timeout(now);
+        self.driver.handle_timeout(now);
+        let mut actions = self.drain();
         while let Some(event) = self.station.poll_event() {
-            events.extend(match event {
+            match event {
                 proto3964r::Event::Received(telegram) => self.driver.handle_block(now, telegram),
                 proto3964r::Event::Sent { .. } => self.driver.handle_delivered(now),
                 proto3964r::Event::Failed(_) => {
                     self.telegrams.failed += 1;
-                    self.driver.handle_failed(now)
+                    self.driver.handle_failed(now);
                 }
-                proto3964r::Event::Rejected(_) => {
-                    self.telegrams.rejected += 1;
-                    None
-                }
-                _ => None,
-            });
+                proto3964r::Event::Rejected(_) => self.telegrams.rejected += 1,
+                _ => {}
+            }
+            actions.extend(self.drain());
         }
-        events
-            .iter()
-            .filter_map(|event| self.event(event))
-            .collect()
+        actions
+    }
+
+    /// Hands the driver's events to the panel.
+    fn drain(&mut self) -> Vec<Action> {
+        let mut actions = Vec::new();
+        while let Some(event) = self.driver.poll_event() {
+            actions.extend(self.event(&event));
+        }
+        actions
     }
 
     fn event(&mut self, event: &Event) -> Option<Action> {
@@ -128,31 +130,33 @@ impl<const N: usize> Workstation<N> {
 
     /// Asks the driver for the next telegram, when the line is free. What the lamp and the display
     /// lack goes first.
-    pub(crate) fn talk(&mut self, now_us: u64, positions_um: &[[i32; 3]; N]) -> anyhow::Result<()> {
-        if self.driver.is_online() && self.driver.is_ready() {
+    pub(crate) fn talk(
+        &mut self,
+        now: Duration,
+        positions_um: &[[i32; 3]; N],
+    ) -> anyhow::Result<()> {
+        if self.driver.is_online() && !self.driver.is_busy() {
             let light = self.panel.light();
             let screen = self.panel.screen(&self.arbiter, positions_um);
             if self.light != Some(light) {
-                self.driver.set_led(Some(Led::MIN), light)?;
+                let led = Some(Led::MIN);
+                self.driver.submit(Job::Led { led, light })?;
                 self.light = Some(light);
             } else if let Some(block) = self.shown.update(&screen, MODEL) {
-                self.driver.send_lcd(&block)?;
+                self.driver.submit(Job::Lcd(block))?;
             }
         }
-        if !self.station.is_idle() || !self.station.can_send() {
+        if !self.station.is_idle() || self.station.is_busy() {
             return Ok(());
         }
-        let mut telegram = [0; MAX_COMMAND];
-        let now = Instant::from_micros(now_us);
-        if let Some(telegram) = self.driver.poll_transmit(now, &mut telegram)? {
+        if let Some(telegram) = self.driver.poll_transmit(now) {
             let count = match Command::decode(MODEL, telegram)? {
                 Command::StatusRequest => &mut self.telegrams.status_requests,
                 Command::Lcd(_) => &mut self.telegrams.display_blocks,
                 _ => &mut self.telegrams.lamps,
             };
             *count += 1;
-            self.station
-                .send(proto3964r::Instant::from_micros(now_us), telegram)?;
+            self.station.submit(now, telegram)?;
         }
         Ok(())
     }

@@ -1,10 +1,10 @@
 //! Everything at one table, and the time.
 
-use anyhow::{Result, ensure};
+use core::time::Duration;
+
+use anyhow::{Context as _, Result, ensure};
 use nalgebra::Vector3;
-use pose2pulse::handwheel::{
-    self, Action, Input, Instant, Key, Knob, PoseChange, Position, WheelSampler,
-};
+use pose2pulse::handwheel::{self, Action, Input, Key, Knob, PoseChange, Position, WheelSampler};
 use proto3964r::Transmit;
 
 use crate::drives::Drives;
@@ -70,7 +70,7 @@ impl<'a, const N: usize> World<'a, N> {
             workstation: Workstation::new(panel)?,
             drives: Drives::new(planner.platform, &axes),
             counter: 0,
-            sampler: WheelSampler::new(Instant::ZERO, 0),
+            sampler: WheelSampler::new(Duration::ZERO, 0),
             positions_um: micrometres(&axes),
             pose,
             jog: Jog::default(),
@@ -119,7 +119,7 @@ impl<'a, const N: usize> World<'a, N> {
     /// Turns the wheel by some counts, evenly over the next sample.
     pub(crate) fn wheel(&mut self, counts: i32) -> Result<()> {
         self.counter = self.counter.wrapping_add_signed(counts);
-        let due = self.sampler.due().as_micros();
+        let due = micros(self.sampler.due()).context("the sampler's clock")?;
         self.advance_to(due)
     }
 
@@ -179,35 +179,31 @@ impl<'a, const N: usize> World<'a, N> {
 
     /// The next moment at which something happens by itself.
     fn next_due(&self) -> Option<u64> {
-        let stations = [
+        let timeouts = [
             self.workstation.station.poll_timeout(),
             self.unit.station.poll_timeout(),
-        ];
-        let own = [
             self.workstation.driver.poll_timeout(),
             Some(self.sampler.due()),
         ];
-        let stations = stations.map(|due| due.map(proto3964r::Instant::as_micros));
-        let own = own.map(|due| due.map(Instant::as_micros));
+        let timeouts = timeouts.map(|due| due.and_then(micros));
         let others = [self.line.due_us(), self.drives.due_us()];
-        let all = stations.into_iter().chain(own).chain(others).flatten();
+        let all = timeouts.into_iter().chain(others).flatten();
         all.filter(|due| *due > self.now_us).min()
     }
 
     /// Does everything that is due now.
     fn work(&mut self) -> Result<()> {
-        let line_now = proto3964r::Instant::from_micros(self.now_us);
+        let now = self.now();
         while let Some(byte) = self.line.carry(Side::Control, self.now_us)? {
-            self.unit.hear(line_now, byte);
+            self.unit.hear(now, byte);
         }
         while let Some(byte) = self.line.carry(Side::Unit, self.now_us)? {
-            self.workstation.station.handle_byte(line_now, byte);
+            self.workstation.station.handle_byte(now, byte);
         }
-        self.unit.work(line_now);
-        for action in self.workstation.work(self.now_us) {
+        self.unit.work(now);
+        for action in self.workstation.work(now) {
             self.act(Some(action))?;
         }
-        let now = Instant::from_micros(self.now_us);
         if let Some(counts) = self.sampler.sample(now, self.counter) {
             self.jog.samples.push((self.now_s(), counts));
             self.positions_um = micrometres(&self.drives.axes());
@@ -221,13 +217,13 @@ impl<'a, const N: usize> World<'a, N> {
                 self.at_rest()?;
             }
         }
-        self.workstation.talk(self.now_us, &self.positions_um)?;
+        self.workstation.talk(now, &self.positions_um)?;
         self.transmit()
     }
 
     /// Hands what both stations send to the line.
     fn transmit(&mut self) -> Result<()> {
-        let now = proto3964r::Instant::from_micros(self.now_us);
+        let now = self.now();
         let mut bytes = [0; 64];
         while let Some(transmit) = self.workstation.station.poll_transmit(now, &mut bytes) {
             send(&mut self.line, Side::Control, self.now_us, transmit);
@@ -287,11 +283,20 @@ impl<'a, const N: usize> World<'a, N> {
         }
     }
 
+    fn now(&self) -> Duration {
+        Duration::from_micros(self.now_us)
+    }
+
     fn now_s(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "hours of microseconds")]
         let micros = self.now_us as f64;
         micros * 1e-6
     }
+}
+
+/// Whole microseconds, rounded up; `None` beyond half a million years.
+fn micros(time: Duration) -> Option<u64> {
+    u64::try_from(time.as_nanos().div_ceil(1000)).ok()
 }
 
 fn send(line: &mut Line, side: Side, now_us: u64, transmit: Transmit<'_>) {

@@ -4,17 +4,19 @@ use core::error::Error;
 use core::mem::take;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use core::time::Duration;
-use std::io::{ErrorKind, Read, Write};
 use std::time::Instant;
 
-use proto3964r::{Event, Station, Transmit};
-use rk512::{Area, Config, DataBlock, Endpoint, MAX_TELEGRAM, Memory, Outcome};
-use serialport::{ClearBuffer, SerialPort, TTYPort};
+use proto3964r::{self, serialport::Driver};
+use rk512::{Area, Command, Config, DataBlock, Endpoint, Event, MAX_TELEGRAM, Memory, Outcome};
+use serialport::TTYPort;
 
 /// Bytes of the longest job and of each data block.
 pub(crate) const BLOCK: usize = 512;
 /// QVZ of the example: a pseudo-terminal has no bit rate, so its times are short.
 pub(crate) const QVZ_MS: u16 = 100;
+/// How soon an order or a reaction time that ran out is noticed.
+const TURN: Duration = Duration::from_millis(1);
+
 /// Data for a DB of the partner.
 pub(crate) struct Order {
     pub(crate) area: Area,
@@ -32,9 +34,8 @@ pub(crate) struct Tally {
 }
 
 pub(crate) struct Party {
-    port: TTYPort,
     start: Instant,
-    station: Station<MAX_TELEGRAM>,
+    line: Driver<MAX_TELEGRAM>,
     endpoint: Endpoint<BLOCK>,
     /// The next one last.
     orders: Vec<Order>,
@@ -44,20 +45,20 @@ pub(crate) struct Party {
 
 impl Party {
     pub(crate) fn new(
-        mut port: TTYPort,
+        port: TTYPort,
         line: proto3964r::Config,
         mut orders: Vec<Order>,
         start: Instant,
     ) -> Result<Self, Box<dyn Error + Send + Sync>> {
         orders.reverse();
-        port.set_timeout(Duration::from_millis(1))?;
-        let config = Config::DEFAULT
-            .with_reaction_time(Duration::from_secs(2))
-            .with_resync(Duration::from_millis(QVZ_MS.into()));
+        let config = Config {
+            reaction_time: Duration::from_secs(2),
+            resync: Duration::from_millis(QVZ_MS.into()),
+            ..Config::DEFAULT
+        };
         Ok(Self {
-            port,
             start,
-            station: Station::new(line),
+            line: Driver::new(Box::new(port), line)?,
             endpoint: Endpoint::new(config),
             orders,
             written: false,
@@ -87,93 +88,71 @@ impl Party {
         Ok(take(&mut self.tally))
     }
 
-    fn micros(&self) -> u64 {
-        u64::try_from(self.start.elapsed().as_micros()).unwrap_or(u64::MAX)
+    fn now(&self) -> Duration {
+        self.start.elapsed()
     }
 
-    fn line_now(&self) -> proto3964r::Instant {
-        proto3964r::Instant::from_micros(self.micros())
-    }
-
-    fn now(&self) -> rk512::Instant {
-        rk512::Instant::from_micros(self.micros())
-    }
-
-    /// Bytes from the port into the station, blocks from the station into the endpoint.
+    /// The next event of the line, for the endpoint.
     fn receive(&mut self, memory: &mut Memory<'_, 2>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        let mut buffer = [0; 256];
-        let count = match self.port.read(&mut buffer) {
-            Ok(count) => count,
-            Err(error) if error.kind() == ErrorKind::TimedOut => 0,
-            Err(error) => return Err(error.into()),
-        };
-        let (line_now, now) = (self.line_now(), self.now());
-        self.station
-            .handle_bytes(line_now, buffer.get(..count).unwrap_or_default());
-        self.station.handle_timeout(line_now);
-        self.endpoint.handle_timeout(now, memory);
-        while let Some(event) = self.station.poll_event() {
-            match event {
-                Event::Received(block) => self.endpoint.handle_block(now, block, memory),
-                Event::Sent { .. } => self.endpoint.handle_delivered(now),
-                Event::Failed(_) => self.endpoint.handle_failed(now, memory),
-                Event::Rejected(_) => self.tally.rejected += 1,
-                _ => {}
+        self.endpoint.handle_timeout(self.now(), memory);
+        let event = self.line.wait(TURN)?;
+        let now = self.start.elapsed();
+        match event {
+            Some(proto3964r::Event::Received(block)) => {
+                self.endpoint.handle_block(now, block, memory);
             }
-            if self.endpoint.wants_recall() {
-                self.station.cancel(line_now);
-            }
+            Some(proto3964r::Event::Sent { .. }) => self.endpoint.handle_delivered(now),
+            Some(proto3964r::Event::Failed(_)) => self.endpoint.handle_failed(now, memory),
+            Some(proto3964r::Event::Rejected(_)) => self.tally.rejected += 1,
+            _ => {}
         }
         Ok(())
     }
 
     /// Writes the next data, reads them back, compares; begins again when a job fails.
     fn work(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
-        let Some(order) = self.orders.last() else {
-            return Ok(());
-        };
-        match self.endpoint.poll_outcome() {
-            Some(Outcome::Sent { .. }) => self.written = true,
-            Some(Outcome::Fetched { data, .. }) => {
-                self.tally.different += usize::from(data != order.data);
-                self.tally.done += 1;
-                self.tally.bytes += 2 * data.len();
-                self.written = false;
-                self.orders.pop();
+        while let Some(event) = self.endpoint.poll_event() {
+            match event {
+                Event::Own(Outcome::Sent { .. }) => self.written = true,
+                Event::Own(Outcome::Fetched { data, .. }) => {
+                    let order = self.orders.pop();
+                    let differs = order.is_none_or(|order| data != order.data);
+                    self.tally.different += usize::from(differs);
+                    self.tally.done += 1;
+                    self.tally.bytes += 2 * data.len();
+                    self.written = false;
+                }
+                Event::Own(_) => {
+                    self.tally.failed += 1;
+                    self.written = false;
+                }
+                Event::Partner(_) => {}
             }
-            Some(Outcome::Failed { .. }) => {
-                self.tally.failed += 1;
-                self.written = false;
-            }
-            _ => {}
         }
         if let Some(order) = self.orders.last()
-            && !self.endpoint.client().is_busy()
+            && !self.endpoint.is_busy()
         {
+            let words = u16::try_from(order.data.len() / 2)?;
             if self.written {
-                let words = u16::try_from(order.data.len() / 2)?;
-                self.endpoint.fetch(order.area, words)?;
+                let read_back = Command::fetch(order.area, words)?;
+                self.endpoint.submit(read_back, &[])?;
             } else {
-                self.endpoint.send(order.area, &order.data)?;
+                let write = Command::send(order.area, words)?;
+                self.endpoint.submit(write, &order.data)?;
             }
         }
         Ok(())
     }
 
-    /// Telegrams from the endpoint into the station, bytes from the station into the port.
+    /// Telegrams from the endpoint to the line, and back what is out of date.
     fn transmit(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
-        let (line_now, now) = (self.line_now(), self.now());
-        if self.station.can_send()
-            && let Some(telegram) = self.endpoint.poll_transmit(now)
-        {
-            self.station.send(line_now, &telegram)?;
+        if self.endpoint.wants_recall() {
+            self.line.cancel();
         }
-        let mut buffer = [0; 64];
-        while let Some(transmit) = self.station.poll_transmit(line_now, &mut buffer) {
-            match transmit {
-                Transmit::Bytes(bytes) => self.port.write_all(bytes)?,
-                Transmit::Discard => self.port.clear(ClearBuffer::Output)?,
-            }
+        if !self.line.is_busy()
+            && let Some(telegram) = self.endpoint.poll_transmit(self.now())
+        {
+            self.line.submit(&telegram)?;
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use clap::Parser;
-use proto3964r::{Config as LineConfig, Priority};
+use proto3964r::{Config as LineConfig, Line, Priority};
 use rk512::Area;
 use serialport::TTYPort;
 
@@ -85,11 +85,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let log = options.out.join("line.log");
     let created = fs::create_dir_all(&options.out).and_then(|()| File::create(&log));
     let tap = Tap::new(created.map_err(|error| format!("{}: {error}", log.display()))?);
-    let line = |priority| {
-        LineConfig::siemens_3964r(priority)
-            .with_qvz_ms(QVZ_MS)
-            .with_zvz_ms(QVZ_MS / 2)
-            .with_bwz_ms(4 * QVZ_MS)
+    let line = |priority| LineConfig {
+        qvz_ms: QVZ_MS,
+        zvz_ms: QVZ_MS / 2,
+        bwz_ms: 4 * QVZ_MS,
+        ..LineConfig::siemens_3964r(priority, Line::Instant)
     };
     let side = |priority, salt| {
         let (master, slave) = TTYPort::pair()?;

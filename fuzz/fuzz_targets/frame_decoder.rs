@@ -6,8 +6,7 @@ use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use pose2pulse_fuzz::Cuts;
 use proto3964r::frame::{
-    Check, Decoder, EncodeError, FrameError, IllegalDle, bcc, decode, encode, encoded_len,
-    max_encoded_len,
+    Check, Decoder, EncodeError, FrameError, IllegalDle, decode, encode, max_encoded_len,
 };
 
 fuzz_target!(|data: &[u8]| {
@@ -46,9 +45,7 @@ fn by_byte(mut decoder: Decoder, bytes: &[u8], capacity: usize) -> Vec<Block> {
     for (index, &byte) in bytes.iter().enumerate() {
         if let Some(block) = decoder.push(byte, &mut buffer) {
             blocks.push((index + 1, block.map(|len| buffer[..len].to_vec())));
-            assert!(decoder.is_empty() && decoder.fault().is_none());
         }
-        assert!(decoder.len() <= capacity);
     }
     blocks
 }
@@ -59,11 +56,11 @@ fn by_piece(mut decoder: Decoder, bytes: &[u8], cuts: &Cuts, capacity: usize) ->
     let mut taken = 0;
     for mut piece in cuts.of(bytes) {
         while !piece.is_empty() {
-            let fed = decoder.feed(piece, &mut buffer);
-            taken += fed.consumed;
-            piece = &piece[fed.consumed..];
-            assert!(fed.block.is_some() || piece.is_empty());
-            if let Some(block) = fed.block {
+            let (count, block) = decoder.feed(piece, &mut buffer);
+            taken += count;
+            piece = &piece[count..];
+            assert!(block.is_some() || piece.is_empty());
+            if let Some(block) = block {
                 blocks.push((taken, block.map(|len| buffer[..len].to_vec())));
             }
         }
@@ -80,8 +77,7 @@ fn body(payload: &[u8], check: Check) -> Vec<u8> {
 
 fn round_trip(payload: &[u8], check: Check) {
     let body = body(payload, check);
-    assert_eq!(body.len(), encoded_len(payload, check));
-    assert!(check == Check::None || bcc(&body) == 0);
+    assert!(check == Check::None || body.iter().fold(0, |xor, byte| xor ^ byte) == 0);
     let mut short = vec![0; body.len() - 1];
     let refused = encode(payload, check, &mut short);
     let (needed, available) = (body.len(), short.len());

@@ -5,8 +5,8 @@
 use std::time::Duration;
 
 use handwheel::{
-    Action, Arbiter, Command, Driver, Event, Input, Instant, LcdBlock, MAX_COMMAND, MAX_REPORT,
-    Model, Panel, Refusal, Report, Settings, Shown, Timing, UnitId, WheelQuantiser,
+    Action, Arbiter, Command, Driver, Event, Input, Job, LcdBlock, MAX_COMMAND, MAX_REPORT, Model,
+    Panel, Refusal, Report, Settings, Shown, Timing, UnitId, WheelQuantiser,
 };
 use libfuzzer_sys::fuzz_target;
 
@@ -42,21 +42,21 @@ fuzz_target!(|data: &[u8]| {
     let mut panel = Panel::new(UnitId(1), Settings::new(wheel)).unwrap();
     let mut arbiter = Arbiter::<3>::new();
     let mut driver = Driver::new(model, Timing::DEFAULT);
-    let (mut now, mut shown) = (Instant::ZERO, Shown::UNKNOWN);
+    let (mut now, mut shown) = (Duration::ZERO, Shown::UNKNOWN);
     let (mut jobs, mut moving) = (0, false);
     while let Some((&[happening, value], rest)) = input.split_first_chunk() {
         input = rest;
-        let mut events = [driver.handle_timeout(now), None];
+        driver.handle_timeout(now);
+        let mut events: Vec<_> = driver.poll_event().into_iter().collect();
         let mut direct = None;
         match happening % 10 {
             0 => {
-                let mut buffer = [0; MAX_COMMAND];
-                let telegram = driver.poll_transmit(now, &mut buffer).unwrap();
+                let telegram = driver.poll_transmit(now);
                 telegram.into_iter().for_each(|it| round_trip(model, it));
             }
-            1 => events[1] = driver.handle_delivered(now),
-            2 => events[1] = driver.handle_failed(now),
-            3 => now = now + Duration::from_millis(20 * u64::from(value)),
+            1 => driver.handle_delivered(now),
+            2 => driver.handle_failed(now),
+            3 => now += Duration::from_millis(20 * u64::from(value)),
             4 => {
                 direct = Some(Input::Enable {
                     left: value & 1 != 0,
@@ -71,24 +71,25 @@ fuzz_target!(|data: &[u8]| {
             7 if value == 0 => direct = Some(Input::Refused(Refusal::OutOfReach)),
             7 => {
                 let screen = panel.screen(&arbiter, &[[i32::from(value) << 20; 3]; 3]);
-                if driver.is_ready()
+                if !driver.is_busy()
                     && let Some(block) = shown.update(&screen, model)
                 {
-                    jobs += u32::from(driver.send_lcd(&block).is_ok());
+                    jobs += u32::from(driver.submit(Job::Lcd(block)).is_ok());
                 }
             }
             _ => {
                 let (telegram, behind) = input.split_at(input.len().min(usize::from(value) % 8));
                 input = behind;
                 round_trip(model, telegram);
-                events[1] = driver.handle_block(now, telegram);
+                driver.handle_block(now, telegram);
             }
         }
-        for event in events.iter().flatten() {
+        events.extend(std::iter::from_fn(|| driver.poll_event()));
+        for event in &events {
             jobs -= u32::from(matches!(event, Event::Lcd { .. } | Event::Failed(..)));
         }
-        assert_eq!(driver.is_ready(), jobs == 0);
-        let inputs = events.iter().flatten().filter_map(Input::of_event);
+        assert_eq!(driver.is_busy(), jobs == 1);
+        let inputs = events.iter().filter_map(Input::of_event);
         for input in inputs.chain(direct) {
             let action = panel.handle(input, &mut arbiter);
             moving &= !matches!(input, Input::AtRest | Input::Refused(_));

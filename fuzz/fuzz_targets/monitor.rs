@@ -6,7 +6,7 @@ use std::time::Duration;
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use proto3964r::frame::{encode, max_encoded_len};
-use proto3964r::{Check, Instant, Observation, Observations, Side};
+use proto3964r::{Check, Observation, Observations, Side};
 
 /// Longest payload that is kept.
 const LONGEST: usize = 24;
@@ -22,7 +22,7 @@ fuzz_target!(|data: &[u8]| {
 fn run(u: &mut Unstructured<'_>) -> Result<()> {
     let config = pose2pulse_fuzz::config(u, 0)?;
     let mut monitor = Monitor::new(config);
-    let mut now = Instant::ZERO;
+    let mut now = Duration::ZERO;
     let mut spoken = [Vec::new(), Vec::new()];
     while !u.is_empty() {
         let event: u8 = u.arbitrary()?;
@@ -37,7 +37,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
         let heard = &mut spoken[usize::from(event & 1)];
         match event >> 1 & 15 {
             0 => {
-                now = now + Duration::from_millis(u.int_in_range(0..=6000)?);
+                now += Duration::from_millis(u.int_in_range(0..=6000)?);
                 for observation in monitor.handle_timeout(now) {
                     let _ = observation.to_string();
                 }
@@ -53,7 +53,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
                 );
             }
             step => {
-                now = now + Duration::from_millis(u64::from(step / 4));
+                now += Duration::from_millis(u64::from(step / 4));
                 heard.push(byte);
                 check(monitor.handle_byte(now, side, byte), &spoken, config.check);
             }
@@ -69,7 +69,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
 }
 
 /// What was due has been reported, and is so once.
-fn comes_to_rest(monitor: &mut Monitor, now: Instant) {
+fn comes_to_rest(monitor: &mut Monitor, now: Duration) {
     assert!(monitor.poll_timeout().is_none_or(|due| due > now));
     assert_eq!(monitor.handle_timeout(now).count(), 0);
 }

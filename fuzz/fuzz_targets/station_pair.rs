@@ -3,10 +3,11 @@
 #![no_main]
 
 use std::collections::VecDeque;
+use std::time::Duration;
 
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use proto3964r::{Event, Instant, Station, Transmit};
+use proto3964r::{Config, Event, Station, Transmit};
 
 /// Longest block.
 const LONGEST: usize = 16;
@@ -26,18 +27,18 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
     ];
     let mut line = Line {
         ends: configs.map(|config| End {
-            station: Station::new(config.with_check(check)),
+            station: Station::new(Config { check, ..config }),
             job: None,
             received: Vec::new(),
         }),
         way: [VecDeque::new(), VecDeque::new()],
-        now: Instant::ZERO,
+        now: Duration::ZERO,
     };
     while !u.is_empty() {
         let happening: u8 = u.arbitrary()?;
         let side = usize::from(happening & 1);
         match happening >> 1 & 7 {
-            0 => line.send(side, u)?,
+            0 => line.submit(side, u)?,
             1 => line.ends[side].cancel(line.now),
             2 => line.time_passes(),
             // The first characters on the way, each with its fate.
@@ -64,7 +65,7 @@ struct End {
 }
 
 impl End {
-    fn cancel(&mut self, now: Instant) {
+    fn cancel(&mut self, now: Duration) {
         assert!(!self.station.cancel(now) || self.job.is_some());
     }
 
@@ -90,15 +91,15 @@ struct Line {
     ends: [End; 2],
     /// Characters that each end has sent and the other has not got.
     way: [VecDeque<u8>; 2],
-    now: Instant,
+    now: Duration,
 }
 
 impl Line {
-    fn send(&mut self, side: usize, u: &mut Unstructured<'_>) -> Result<()> {
+    fn submit(&mut self, side: usize, u: &mut Unstructured<'_>) -> Result<()> {
         let len = u.int_in_range(0..=LONGEST)?;
         let payload = u.bytes(len.min(u.len()))?;
         let end = &mut self.ends[side];
-        if end.station.send(self.now, payload).is_ok() {
+        if end.station.submit(self.now, payload).is_ok() {
             assert_eq!(end.job.replace(payload.to_vec()), None);
         }
         Ok(())
@@ -126,7 +127,9 @@ impl Line {
         match u.arbitrary::<u8>()? {
             0 => {}
             1 => station.handle_byte(now, u.arbitrary()?),
-            2 => station.handle_bytes(now, &[byte, byte]),
+            2 => [byte, byte]
+                .into_iter()
+                .for_each(|byte| station.handle_byte(now, byte)),
             3 => station.handle_damaged(now, byte, pose2pulse_fuzz::line_error(u)?),
             4 => station.handle_break(now),
             _ => station.handle_byte(now, byte),
@@ -183,7 +186,7 @@ impl Line {
                 .all(|end| end.station.poll_timeout().is_none())
             {
                 for end in &self.ends {
-                    assert!(end.station.is_idle() && end.station.can_send());
+                    assert!(end.station.is_idle() && !end.station.is_busy());
                     assert_eq!(end.job, None);
                 }
                 return;
@@ -200,7 +203,7 @@ impl Line {
     fn deliver_fresh(&mut self, from: usize) {
         let payload = [0x10, 0x03, 0x02, 0x15];
         let end = &mut self.ends[from];
-        end.station.send(self.now, &payload).expect("it is idle");
+        end.station.submit(self.now, &payload).expect("it is idle");
         end.job = Some(payload.to_vec());
         let before = self.ends[1 - from].received.len();
         assert!(self.exchange()[from]);

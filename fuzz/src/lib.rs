@@ -3,7 +3,7 @@
 use arbitrary::{Arbitrary, Result, Unstructured};
 use pattern_codec::engraving::{AxisCodes, ByteOrder, Format, Mode, PerAxis};
 use proto3964r::{
-    Check, Collision, Config, IdleNoise, IllegalDle, LineError, Priority, SilenceInBlock,
+    Check, Config, Conflict, IdleNoise, IllegalDle, Line, LineError, Priority, SilenceInBlock,
 };
 
 /// The pieces of a slice: lengths over and over, at least one byte each.
@@ -56,32 +56,39 @@ pub fn line_error(u: &mut Unstructured<'_>) -> Result<LineError> {
     u.choose(&errors).copied()
 }
 
+/// Any line, of which a character takes up to 5 ms.
+fn line(u: &mut Unstructured<'_>) -> Result<Line> {
+    let character_ns = u.int_in_range(0..=5_000_000)?;
+    let paced = Line::Paced { character_ns };
+    let lines = [Line::Instant, paced, Line::Buffered { character_ns }];
+    u.choose(&lines).copied()
+}
+
 /// Any station's settings, times from `least_ms` on, at most 7 attempts of a kind.
 pub fn config(u: &mut Unstructured<'_>, least_ms: u16) -> Result<Config> {
-    let mut ms = |most: u16| u.int_in_range(least_ms..=most);
-    let config = Config::siemens_3964r(Priority::Low)
-        .with_qvz_ms(ms(3000)?)
-        .with_zvz_ms(ms(500)?)
-        .with_bwz_ms(ms(5000)?)
-        .with_buffer_wait_ms(ms(1000)?);
-    let collisions = [Collision::Wait, Collision::YieldOnRetry, Collision::Repeat];
+    let conflicts = [Conflict::Wait, Conflict::YieldOnRetry, Conflict::Repeat];
     let noises = [
         IdleNoise::NakAfterSilence,
         IdleNoise::NakAtOnce,
         IdleNoise::Ignore,
     ];
     let silences = [SilenceInBlock::Idle, SilenceInBlock::ExpectRepeat];
-    Ok(config
-        .with_babble_s(u.int_in_range(1..=10)?)
-        .with_setup_attempts(u.int_in_range(0..=7)?)
-        .with_transfer_attempts(u.int_in_range(0..=7)?)
-        .with_priority(*u.choose(&[Priority::Low, Priority::High])?)
-        .with_check(check(u)?)
-        .with_collision(*u.choose(&collisions)?)
-        .with_idle_noise(*u.choose(&noises)?)
-        .with_illegal_dle(illegal_dle(u)?)
-        .with_silence_in_block(*u.choose(&silences)?)
-        .with_allow_empty(u.arbitrary()?)
-        .with_nak_at_startup(u.arbitrary()?)
-        .with_ignore_early_answers(u.arbitrary()?))
+    Ok(Config {
+        qvz_ms: u.int_in_range(least_ms..=3000)?,
+        zvz_ms: u.int_in_range(least_ms..=500)?,
+        bwz_ms: u.int_in_range(least_ms..=5000)?,
+        buffer_wait_ms: u.int_in_range(least_ms..=1000)?,
+        line: line(u)?,
+        babble_s: u.int_in_range(1..=10)?,
+        connection_attempts: u.int_in_range(0..=7)?,
+        transmission_attempts: u.int_in_range(0..=7)?,
+        priority: *u.choose(&[Priority::Low, Priority::High])?,
+        check: check(u)?,
+        conflict: *u.choose(&conflicts)?,
+        idle_noise: *u.choose(&noises)?,
+        illegal_dle: illegal_dle(u)?,
+        silence_in_block: *u.choose(&silences)?,
+        allow_empty: u.arbitrary()?,
+        nak_at_startup: u.arbitrary()?,
+    })
 }

@@ -5,11 +5,10 @@ use core::time::Duration;
 
 use thiserror::Error;
 
-use crate::command::{Light, STATUS_REQUEST};
+use crate::command::{Command, Light, STATUS_REQUEST};
 use crate::lcd::LcdBlock;
 use crate::number::{Key, Led, Position};
-use crate::report::{DecodeError, EncodeError, Knob, LcdAnswer, Model, Report, Status, put};
-use crate::time::Instant;
+use crate::report::{DecodeError, Knob, LcdAnswer, Model, Report, Status};
 
 /// How long the driver waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,15 +42,19 @@ impl Timing {
     };
 }
 
-/// What the driver was asked to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+/// What the driver is asked to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Job {
-    /// A lamp.
-    Led,
+    /// A lamp of the HBLS.
+    Led {
+        /// Which; `None` for all of them.
+        led: Option<Led>,
+        /// What it does.
+        light: Light,
+    },
     /// A display block.
-    Lcd,
+    Lcd(LcdBlock),
 }
 
 /// Why a job was not done, as far as is known.
@@ -73,15 +76,18 @@ pub enum Failure {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SubmitError {
-    /// The job before has not ended.
-    #[error("the job before has not ended")]
+    /// The job before has not ended, or its outcome has not been polled.
+    #[error("the job before has not ended, or its outcome has not been polled")]
     Busy,
-    /// The block or the lamp is another unit's.
-    #[error(transparent)]
-    Encode(#[from] EncodeError),
+    /// The block or the lamp is another model's.
+    #[error("the {model:?} has no such telegram")]
+    Model {
+        /// The model of the unit.
+        model: Model,
+    },
 }
 
-/// What came of a push into the driver.
+/// What [`Driver::poll_event`] hands out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -106,9 +112,9 @@ pub enum Event {
         /// The HBAS's status.
         status: Option<Status>,
     },
-    /// A job may not have been done. A status request follows by itself, which resets the unit;
+    /// The job may not have been done. A status request follows by itself, which resets the unit;
     /// what the display shows is not known.
-    Failed(Job, Failure),
+    Failed(Failure),
     /// The unit does not answer. Requests go on; the next [`Status`](Self::Status) tells when it
     /// is back.
     Lost,
@@ -119,7 +125,8 @@ pub enum Event {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Request {
     Status,
-    Job(Job),
+    Led,
+    Lcd,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -128,23 +135,15 @@ enum State {
     Idle,
     /// The transport has a telegram.
     Transfer(Request),
-    /// It is delivered, its reply is due.
-    Reply(Request, Instant),
+    /// It is delivered, its reply is due until then.
+    Reply(Request, Duration),
 }
 
+/// A job that waits or is under way, as its telegram.
 #[derive(Clone, Copy)]
 enum Pending {
-    Led(u8),
+    Led([u8; 1]),
     Lcd(LcdBlock),
-}
-
-impl Pending {
-    const fn job(&self) -> Job {
-        match self {
-            Self::Led(_) => Job::Led,
-            Self::Lcd(_) => Job::Lcd,
-        }
-    }
 }
 
 /// Serialises requests to one unit and their replies, as both manuals advise: nothing goes out
@@ -158,22 +157,19 @@ impl Pending {
 /// The driver sits on a transport of whole telegrams, as a 3964R station is, and owns no clock.
 /// Push [`handle_delivered`](Self::handle_delivered), [`handle_failed`](Self::handle_failed),
 /// [`handle_block`](Self::handle_block) and [`handle_timeout`](Self::handle_timeout) when
-/// something happens; each returns at most one event. Then, **while the transport receives
-/// nothing**, pull [`poll_transmit`](Self::poll_transmit) and hand the telegram to the transport,
-/// which answers exactly once with `handle_delivered` or `handle_failed`.
+/// something happens, and pull [`poll_event`](Self::poll_event) after each. Then, **while the
+/// transport receives nothing**, pull [`poll_transmit`](Self::poll_transmit) and hand the telegram
+/// to the transport, which answers exactly once with `handle_delivered` or `handle_failed`.
 /// [`poll_timeout`](Self::poll_timeout) tells when to call `handle_timeout` and `poll_transmit`
-/// next; too early does nothing, too late only delays.
+/// next; too early does nothing, too late only delays. Times are `Duration`s since an epoch of the
+/// caller and must not run backwards.
 ///
 /// Each job that was taken ends with exactly one [`Event::LedDone`], [`Event::Lcd`] or
-/// [`Event::Failed`].
+/// [`Event::Failed`]. Of other events that nobody polls the newest is kept.
 ///
 /// # Size
-/// At most 256 bytes.
+/// At most 288 bytes.
 #[derive(Clone)]
-#[expect(
-    missing_copy_implementations,
-    reason = "a copy would be a second driver of one unit"
-)]
 pub struct Driver {
     model: Model,
     timing: Timing,
@@ -183,11 +179,15 @@ pub struct Driver {
     /// The HBAS has a display block whose fate its next status tells; `must_poll` is set then.
     lcd_open: bool,
     /// The next status request; `None` for never.
-    poll_at: Option<Instant>,
+    poll_at: Option<Duration>,
     /// A status request has to come before anything else.
     must_poll: bool,
     online: bool,
     dropped: u32,
+    /// How the job ended.
+    outcome: Option<Event>,
+    /// What else happened.
+    report: Option<Event>,
 }
 
 impl Driver {
@@ -200,10 +200,12 @@ impl Driver {
             state: State::Idle,
             pending: None,
             lcd_open: false,
-            poll_at: Some(Instant::ZERO),
+            poll_at: Some(Duration::ZERO),
             must_poll: true,
             online: false,
             dropped: 0,
+            outcome: None,
+            report: None,
         }
     }
 
@@ -213,16 +215,10 @@ impl Driver {
         self.online
     }
 
-    /// Whether a job would be taken.
+    /// Whether a job is under way, or its outcome has not been polled.
     #[must_use]
-    pub const fn is_ready(&self) -> bool {
-        self.pending.is_none()
-    }
-
-    /// Whether a reply is due.
-    #[must_use]
-    pub const fn awaits_reply(&self) -> bool {
-        matches!(self.state, State::Reply(..))
+    pub const fn is_busy(&self) -> bool {
+        self.pending.is_some() || self.outcome.is_some()
     }
 
     /// Answers to display blocks that came unasked, and were dropped.
@@ -231,193 +227,185 @@ impl Driver {
         self.dropped
     }
 
-    /// Takes a lamp of the HBLS as the next job; `None` for all of them.
+    /// Takes a job.
     ///
     /// # Errors
     /// [`SubmitError`]; the job before goes on.
-    pub fn set_led(&mut self, led: Option<Led>, light: Light) -> Result<(), SubmitError> {
-        let mut byte = [0; 1];
-        crate::Command::Led { led, light }.encode(self.model, &mut byte)?;
-        let [code] = byte;
-        self.submit(Pending::Led(code))
-    }
-
-    /// Takes a display block as the next job.
-    ///
-    /// # Errors
-    /// [`SubmitError`]; the job before goes on.
-    pub fn send_lcd(&mut self, block: &LcdBlock) -> Result<(), SubmitError> {
-        let model = self.model;
-        if block.model() != model {
-            return Err(EncodeError::Model { model }.into());
-        }
-        self.submit(Pending::Lcd(*block))
-    }
-
-    fn submit(&mut self, pending: Pending) -> Result<(), SubmitError> {
-        if self.pending.is_some() {
+    pub fn submit(&mut self, job: Job) -> Result<(), SubmitError> {
+        if self.is_busy() {
             return Err(SubmitError::Busy);
         }
-        self.pending = Some(pending);
+        let model = self.model;
+        self.pending = Some(match job {
+            Job::Led { led, light } => {
+                let mut telegram = [0; 1];
+                Command::Led { led, light }
+                    .encode(model, &mut telegram)
+                    .map_err(|_| SubmitError::Model { model })?;
+                Pending::Led(telegram)
+            }
+            Job::Lcd(block) if block.model() == model => Pending::Lcd(block),
+            Job::Lcd(_) => return Err(SubmitError::Model { model }),
+        });
         Ok(())
     }
 
-    /// The next telegram for the transport, in the head of `buffer`, if it is time for one.
-    ///
-    /// [`MAX_COMMAND`](crate::MAX_COMMAND) bytes hold every telegram.
-    ///
-    /// # Errors
-    /// [`EncodeError::NoRoom`]; the telegram is still to come then.
-    pub fn poll_transmit<'b>(
-        &mut self,
-        now: Instant,
-        buffer: &'b mut [u8],
-    ) -> Result<Option<&'b [u8]>, EncodeError> {
+    /// The next telegram for the transport, if it is time for one.
+    #[must_use]
+    pub fn poll_transmit(&mut self, now: Duration) -> Option<&[u8]> {
         if !matches!(self.state, State::Idle) {
-            return Ok(None);
+            return None;
         }
-        let poll_is_due = self.poll_at.is_some_and(|due| due <= now);
-        let (request, telegram) = match &self.pending {
-            Some(Pending::Led(code)) if !self.must_poll => {
-                (Request::Job(Job::Led), put(buffer, &[*code])?)
-            }
-            Some(Pending::Lcd(block)) if !self.must_poll => {
-                (Request::Job(Job::Lcd), put(buffer, block.as_bytes())?)
-            }
-            _ if poll_is_due => (Request::Status, put(buffer, &[STATUS_REQUEST])?),
-            _ => return Ok(None),
+        let (request, telegram): (_, &[u8]) = match &self.pending {
+            Some(Pending::Led(telegram)) if !self.must_poll => (Request::Led, telegram),
+            Some(Pending::Lcd(block)) if !self.must_poll => (Request::Lcd, block.as_bytes()),
+            _ if self.poll_at.is_some_and(|due| due <= now) => (Request::Status, &[STATUS_REQUEST]),
+            _ => return None,
         };
         self.state = State::Transfer(request);
-        Ok(Some(telegram))
+        Some(telegram)
+    }
+
+    /// What happened; how the job ended comes first.
+    #[must_use]
+    pub const fn poll_event(&mut self) -> Option<Event> {
+        match self.outcome.take() {
+            Some(outcome) => Some(outcome),
+            None => self.report.take(),
+        }
     }
 
     /// The transport delivered the telegram.
-    #[must_use]
-    pub fn handle_delivered(&mut self, now: Instant) -> Option<Event> {
+    pub const fn handle_delivered(&mut self, now: Duration) {
         let State::Transfer(request) = self.state else {
-            return None;
+            return;
         };
         match (request, self.model) {
-            (Request::Job(Job::Led), _) => {
+            (Request::Led, _) => {
                 self.state = State::Idle;
-                self.pending = None;
-                Some(Event::LedDone)
+                self.end(Event::LedDone);
             }
-            (Request::Job(Job::Lcd), Model::Hbas) => {
+            (Request::Lcd, Model::Hbas) => {
                 self.lcd_open = true;
                 self.poll(now);
-                None
             }
-            _ => {
-                self.state = State::Reply(request, now + self.timing.reply);
-                None
-            }
+            _ => self.state = State::Reply(request, now.saturating_add(self.timing.reply)),
         }
     }
 
     /// The transport gave the telegram up; it may have arrived all the same.
-    #[must_use]
-    pub fn handle_failed(&mut self, now: Instant) -> Option<Event> {
-        match self.state {
-            State::Transfer(request) => self.fail(now, request, Failure::Transport),
-            _ => None,
+    pub const fn handle_failed(&mut self, now: Duration) {
+        if let State::Transfer(request) = self.state {
+            self.fail(now, request, Failure::Transport);
         }
     }
 
     /// Time has passed.
-    #[must_use]
-    pub fn handle_timeout(&mut self, now: Instant) -> Option<Event> {
-        match self.state {
-            State::Reply(request, deadline) if deadline <= now => {
-                self.fail(now, request, Failure::NoReply(self.timing.reply))
-            }
-            _ => None,
+    pub fn handle_timeout(&mut self, now: Duration) {
+        if let State::Reply(request, deadline) = self.state
+            && deadline <= now
+        {
+            self.fail(now, request, Failure::NoReply(self.timing.reply));
         }
     }
 
     /// When [`handle_timeout`](Self::handle_timeout) and
     /// [`poll_transmit`](Self::poll_transmit) are due next; it may lie in the past.
     #[must_use]
-    pub const fn poll_timeout(&self) -> Option<Instant> {
+    pub const fn poll_timeout(&self) -> Option<Duration> {
         match self.state {
             State::Reply(_, deadline) => Some(deadline),
             State::Transfer(_) => None,
-            State::Idle if self.pending.is_some() && !self.must_poll => Some(Instant::ZERO),
+            State::Idle if self.pending.is_some() && !self.must_poll => Some(Duration::ZERO),
             State::Idle => self.poll_at,
         }
     }
 
     /// A telegram came from the unit.
-    #[must_use]
-    pub fn handle_block(&mut self, now: Instant, telegram: &[u8]) -> Option<Event> {
+    pub fn handle_block(&mut self, now: Duration, telegram: &[u8]) {
         let report = match Report::decode(self.model, telegram) {
             Ok(report) => report,
-            Err(error) => return Some(Event::Unreadable(error)),
+            Err(error) => {
+                self.report = Some(Event::Unreadable(error));
+                return;
+            }
         };
         if !self.must_poll {
-            self.poll_at = self.timing.keep_alive.map(|quiet| now + quiet);
+            self.poll_later(now);
         }
         match report {
-            Report::Key(key) => Some(Event::Key(key)),
-            Report::Knob { knob, position } => Some(Event::Knob(knob, position)),
+            Report::Key(key) => self.report = Some(Event::Key(key)),
+            Report::Knob { knob, position } => self.report = Some(Event::Knob(knob, position)),
             Report::Lcd(answer) => self.lcd_answer(answer, None),
             Report::Status(status) => self.status(now, status),
         }
     }
 
-    fn status(&mut self, now: Instant, status: Status) -> Option<Event> {
+    fn status(&mut self, now: Duration, status: Status) {
         if matches!(self.state, State::Reply(Request::Status, _)) {
             self.state = State::Idle;
             self.must_poll = false;
-            self.poll_at = self.timing.keep_alive.map(|quiet| now + quiet);
+            self.poll_later(now);
         }
-        let connected = !self.online;
-        self.online = true;
-        if let Status::Hbas { lcd, .. } = status
-            && self.lcd_open
-        {
-            return self.lcd_answer(lcd, Some(status));
+        let connected = !core::mem::replace(&mut self.online, true);
+        match status {
+            Status::Hbas { lcd, .. } if self.lcd_open => self.lcd_answer(lcd, Some(status)),
+            _ => self.report = Some(Event::Status { status, connected }),
         }
-        Some(Event::Status { status, connected })
     }
 
-    fn lcd_answer(&mut self, answer: LcdAnswer, status: Option<Status>) -> Option<Event> {
-        let awaited = matches!(self.state, State::Reply(Request::Job(Job::Lcd), _));
+    const fn lcd_answer(&mut self, answer: LcdAnswer, status: Option<Status>) {
+        let awaited = matches!(self.state, State::Reply(Request::Lcd, _));
         if !awaited && !self.lcd_open {
             self.dropped = self.dropped.saturating_add(1);
-            return None;
+            return;
         }
         if awaited {
             self.state = State::Idle;
         }
         self.lcd_open = false;
-        self.pending = None;
-        Some(Event::Lcd { answer, status })
+        self.end(Event::Lcd { answer, status });
     }
 
     /// The telegram or its reply is lost: the unit is asked for its status before anything else.
-    fn fail(&mut self, now: Instant, request: Request, failure: Failure) -> Option<Event> {
+    const fn fail(&mut self, now: Duration, request: Request, failure: Failure) {
         match request {
-            Request::Job(job) => {
+            Request::Led | Request::Lcd => {
                 self.poll(now);
-                self.pending = None;
-                Some(Event::Failed(job, failure))
+                self.end(Event::Failed(failure));
             }
             Request::Status => {
-                self.poll(now + self.timing.retry);
-                if core::mem::take(&mut self.lcd_open) {
-                    self.pending = None;
-                    return Some(Event::Failed(Job::Lcd, failure));
+                self.poll(now.saturating_add(self.timing.retry));
+                if self.lcd_open {
+                    self.lcd_open = false;
+                    self.end(Event::Failed(failure));
+                } else if self.online {
+                    self.online = false;
+                    self.report = Some(Event::Lost);
                 }
-                core::mem::take(&mut self.online).then_some(Event::Lost)
             }
         }
     }
 
-    const fn poll(&mut self, at: Instant) {
+    /// The job has ended.
+    const fn end(&mut self, outcome: Event) {
+        self.pending = None;
+        self.outcome = Some(outcome);
+    }
+
+    /// The status is asked for next.
+    const fn poll(&mut self, at: Duration) {
         self.state = State::Idle;
         self.must_poll = true;
         self.poll_at = Some(at);
+    }
+
+    /// The unit is there: its status is asked for when it has been silent.
+    fn poll_later(&mut self, now: Duration) {
+        self.poll_at = self
+            .timing
+            .keep_alive
+            .map(|quiet| now.saturating_add(quiet));
     }
 }
 
@@ -426,7 +414,7 @@ impl fmt::Debug for Driver {
         f.debug_struct("Driver")
             .field("model", &self.model)
             .field("state", &self.state)
-            .field("pending", &self.pending.as_ref().map(Pending::job))
+            .field("is_busy", &self.is_busy())
             .field("poll_at", &self.poll_at)
             .field("online", &self.online)
             .field("dropped", &self.dropped)

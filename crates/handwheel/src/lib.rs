@@ -15,7 +15,6 @@ mod panel;
 mod report;
 mod screen;
 mod text;
-mod time;
 mod wheel;
 
 pub use arbiter::{Arbiter, Refused, Target, UnitId};
@@ -29,5 +28,4 @@ pub use panel::{
 pub use report::{DecodeError, EncodeError, Knob, LcdAnswer, MAX_REPORT, Model, Report, Status};
 pub use screen::{COLUMNS, LINES, Screen, Shown};
 pub use text::{CharacterError, MAX_TEXT, Text};
-pub use time::Instant;
 pub use wheel::{SAMPLE, WheelError, WheelQuantiser, WheelSampler};

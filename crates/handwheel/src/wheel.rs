@@ -4,8 +4,6 @@ use core::time::Duration;
 
 use thiserror::Error;
 
-use crate::time::Instant;
-
 /// Time in which the pulses of one sample are counted [Alignment 2010].
 pub const SAMPLE: Duration = Duration::from_millis(200);
 
@@ -138,14 +136,14 @@ impl WheelQuantiser {
 /// Makes samples of [`SAMPLE`] out of a counter that is read whenever there is time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelSampler {
-    since: Instant,
+    since: Duration,
     counter: u32,
 }
 
 impl WheelSampler {
     /// Begins with the counter as it stands.
     #[must_use]
-    pub const fn new(now: Instant, counter: u32) -> Self {
+    pub const fn new(now: Duration, counter: u32) -> Self {
         Self {
             since: now,
             counter,
@@ -158,23 +156,24 @@ impl WheelSampler {
     /// mean speed since, to the nearest towards zero: a stall of the caller is no jump of the
     /// speed.
     #[must_use]
-    pub fn sample(&mut self, now: Instant, counter: u32) -> Option<i32> {
-        let elapsed = now.as_micros().saturating_sub(self.since.as_micros());
-        let period = SAMPLE.subsec_micros();
-        if elapsed < period.into() {
+    pub fn sample(&mut self, now: Duration, counter: u32) -> Option<i32> {
+        // In whole nanoseconds: `Duration`'s own subtraction has a way to a panic.
+        let elapsed = now.as_nanos().saturating_sub(self.since.as_nanos());
+        if elapsed < SAMPLE.as_nanos() {
             return None;
         }
         let way = counter.wrapping_sub(self.counter).cast_signed();
         *self = Self::new(now, counter);
-        let scaled = i64::from(way).saturating_mul(period.into());
+        let scaled = i64::from(way).saturating_mul(SAMPLE.subsec_nanos().into());
+        // After some 292 years nothing is left of any count.
         let elapsed = i64::try_from(elapsed).unwrap_or(i64::MAX);
-        let mean = scaled.checked_div(elapsed).unwrap_or_default();
+        let mean = scaled.checked_div(elapsed)?;
         i32::try_from(mean).ok()
     }
 
     /// When the sample is over.
     #[must_use]
-    pub fn due(&self) -> Instant {
-        self.since + SAMPLE
+    pub fn due(&self) -> Duration {
+        self.since.saturating_add(SAMPLE)
     }
 }

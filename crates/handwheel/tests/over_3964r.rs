@@ -2,12 +2,14 @@
 //! comes to show what it must.
 #![cfg(test)]
 
+use core::time::Duration;
+
 use handwheel::{
-    Command, Driver, Event, Instant, LcdAnswer, LcdCommand, MAX_COMMAND, Model, Position, Report,
+    Command, Driver, Event, Job, LcdAnswer, LcdCommand, MAX_COMMAND, Model, Position, Report,
     Screen, Shown, Status, Timing,
 };
 use proptest::prelude::*;
-use proto3964r::{Config, Priority, Station, Transmit};
+use proto3964r::{Config, Line, Priority, Station, Transmit};
 
 const MODEL: Model = Model::Hbls;
 /// Bytes of the longest block on the line: two damaged bytes in one can cancel in the BCC.
@@ -17,10 +19,12 @@ const STEP_US: u64 = 1000;
 
 type End = Station<MAX_COMMAND>;
 
+/// What a station hands out arrives within the same step.
 fn config(priority: Priority) -> Config {
-    Config::euchner_hbls()
-        .with_priority(priority)
-        .with_character_us(u32::try_from(STEP_US).unwrap())
+    Config {
+        priority,
+        ..Config::euchner_hbls(Line::Instant)
+    }
 }
 
 /// The unit: dead until asked, one answer for each display block.
@@ -43,7 +47,7 @@ impl Unit {
         }
     }
 
-    fn work(&mut self, now: proto3964r::Instant) {
+    fn work(&mut self, now: Duration) {
         self.station.handle_timeout(now);
         while let Some(event) = self.station.poll_event() {
             let proto3964r::Event::Received(telegram) = event else {
@@ -77,10 +81,10 @@ impl Unit {
                 other => panic!("{other:?}"),
             }
         }
-        if self.station.is_idle() && self.station.can_send() && !self.replies.is_empty() {
+        if self.station.is_idle() && !self.station.is_busy() && !self.replies.is_empty() {
             let mut telegram = [0; 3];
             let telegram = self.replies.remove(0).encode(MODEL, &mut telegram).unwrap();
-            self.station.send(now, telegram).unwrap();
+            self.station.submit(now, telegram).unwrap();
         }
     }
 }
@@ -118,20 +122,20 @@ fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
             rows.eq(screen.lines().map(str::to_owned))
         };
         let mut micros = 0;
-        while !(wanted(&unit) && driver.is_ready() && driver.is_online()) {
+        while !(wanted(&unit) && !driver.is_busy() && driver.is_online()) {
             micros += STEP_US;
             // Each damaged byte costs at most all attempts, a reply's deadline and a retry.
             prop_assert!(micros < 400_000_000, "{text} is not shown, {driver:?}");
             step(&mut station, &mut driver, &mut unit, &mut spoil, micros);
-            if driver.is_ready()
+            if !driver.is_busy()
                 && driver.is_online()
                 && let Some(block) = shown.update(&screen, MODEL)
             {
-                driver.send_lcd(&block)?;
+                driver.submit(Job::Lcd(block))?;
             }
-            let now = Instant::from_micros(micros);
+            let now = Duration::from_micros(micros);
             for event in events(&mut station, &mut driver, now) {
-                let lost = matches!(event, Event::Failed(..));
+                let lost = matches!(event, Event::Failed(_));
                 if lost
                     || matches!(
                         event,
@@ -161,15 +165,14 @@ fn step(
     spoil: &mut impl FnMut(u8) -> Option<u8>,
     micros: u64,
 ) {
-    let now = proto3964r::Instant::from_micros(micros);
+    let now = Duration::from_micros(micros);
     station.handle_timeout(now);
     unit.work(now);
-    let mut telegram = [0; MAX_COMMAND];
-    if station.is_idle() && station.can_send() {
-        let next = driver.poll_transmit(Instant::from_micros(micros), &mut telegram);
-        if let Some(telegram) = next.unwrap() {
-            station.send(now, telegram).unwrap();
-        }
+    if station.is_idle()
+        && !station.is_busy()
+        && let Some(telegram) = driver.poll_transmit(now)
+    {
+        station.submit(now, telegram).unwrap();
     }
     let mut byte = [0];
     let forth = match station.poll_transmit(now, &mut byte) {
@@ -189,15 +192,18 @@ fn step(
     }
 }
 
-fn events(station: &mut End, driver: &mut Driver, now: Instant) -> Vec<Event> {
-    let mut events: Vec<_> = driver.handle_timeout(now).into_iter().collect();
+fn events(station: &mut End, driver: &mut Driver, now: Duration) -> Vec<Event> {
+    let mut events = Vec::new();
+    driver.handle_timeout(now);
+    events.extend(driver.poll_event());
     while let Some(event) = station.poll_event() {
-        events.extend(match event {
+        match event {
             proto3964r::Event::Received(telegram) => driver.handle_block(now, telegram),
             proto3964r::Event::Sent { .. } => driver.handle_delivered(now),
             proto3964r::Event::Failed(_) => driver.handle_failed(now),
-            _ => None,
-        });
+            _ => {}
+        }
+        events.extend(core::iter::from_fn(|| driver.poll_event()));
     }
     events
 }

@@ -447,7 +447,7 @@ proptest! {
 #[test]
 fn sizes() {
     use core::mem::size_of;
-    assert!(size_of::<handwheel::Driver>() <= 256);
+    assert!(size_of::<handwheel::Driver>() <= 288);
     assert!(size_of::<Panel>() <= 112);
     assert_eq!(size_of::<Arbiter<10>>(), 22);
     assert!(size_of::<handwheel::LcdBlock>() <= 144);

@@ -14,23 +14,23 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use proto3964r::{Check, frame};
 
 fn throughput(criterion: &mut Criterion) {
-    let payload = work::payload();
+    let payload = work::random();
     let telegram = work::telegram(&payload);
-    let mut station = work::station();
+    let mut bench = work::Bench::new();
     let mut out = vec![0; frame::max_encoded_len(work::LEN)];
     let mut group = criterion.benchmark_group("1024 random bytes");
     group.throughput(Throughput::Bytes(1024));
     group.bench_function("receive in one piece", |b| {
-        b.iter(|| work::receive_slice(&mut station, black_box(&telegram)));
+        b.iter(|| bench.receive_slice(black_box(&telegram)));
     });
     group.bench_function("receive byte by byte", |b| {
-        b.iter(|| work::receive_bytes(&mut station, black_box(&telegram)));
+        b.iter(|| bench.receive_bytes(black_box(&telegram)));
     });
     group.bench_function("send in one piece", |b| {
-        b.iter(|| work::send_slice(&mut station, black_box(&payload), &mut out));
+        b.iter(|| bench.send_slice(black_box(&payload), &mut out));
     });
     group.bench_function("send byte by byte", |b| {
-        b.iter(|| work::send_bytes(&mut station, black_box(&payload)));
+        b.iter(|| bench.send_bytes(black_box(&payload)));
     });
     group.bench_function("frame::encode", |b| {
         b.iter(|| frame::encode(black_box(&payload), Check::Bcc, &mut out).unwrap());

@@ -1,8 +1,13 @@
 //! What the sources leave to a parameter list, and what they disagree on.
 
+mod line;
 mod presets;
 
+use core::time::Duration;
+
 use crate::frame::{Check, IllegalDle};
+
+pub use line::Line;
 
 /// Who gives way when both stations send STX at the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,19 +21,21 @@ pub enum Priority {
     High,
 }
 
-/// What a station of high priority does when it reads STX in place of the answer to its own STX.
+/// What a station of high priority does in an initialization conflict (collision): it reads STX in
+/// place of the answer to its own STX.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Collision {
+pub enum Conflict {
     /// Waits on for DLE; QVZ ends the attempt. Siemens, WAGO, EUCHNER.
     #[default]
     Wait,
-    /// Waits in the first setup attempt and gives way in a later one, which ends the stand-off of
-    /// two stations of high priority. Linux line discipline.
+    /// Waits in the first connection attempt and gives way in a later one, which ends the stand-off
+    /// of two stations of high priority. Linux line discipline.
     YieldOnRetry,
-    /// Repeats STX at once, as the next setup attempt. KM271 clients, Beckhoff ("sends again").
+    /// Repeats STX as the next connection attempt, unless the partner's STX came so soon that its
+    /// answer to the own one may still come. KM271 clients, Beckhoff ("sends again").
     Repeat,
 }
 
@@ -66,53 +73,56 @@ pub enum SilenceInBlock {
 ///
 /// Begin with a preset, change what differs:
 /// ```
-/// use proto3964r::{Config, Priority};
+/// use proto3964r::{Config, Line, Priority};
 ///
-/// const CONFIG: Config = Config::siemens_3964r(Priority::High)
-///     .with_qvz_ms(500)
-///     .with_line(9600, 11);
-/// assert_eq!((CONFIG.zvz_ms, CONFIG.character_us), (220, 1146));
+/// const CONFIG: Config = Config {
+///     qvz_ms: 500,
+///     ..Config::siemens_3964r(Priority::High, Line::paced(9600, 11))
+/// };
+/// assert_eq!((CONFIG.zvz_ms, CONFIG.connection_attempts), (220, 6));
 /// ```
-/// Times are whole milliseconds up to 65.535 s; Siemens' own parameter lists end at 65.530 s. An
-/// attempt count of 0 is taken as 1.
+/// Times are whole milliseconds up to 65.535 s, as in Siemens' own parameter lists, which end at
+/// 65.530 s. An attempt count of 0 is taken as 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "plain settings, to be written as a literal on top of a preset"
+)]
 pub struct Config {
-    /// QVZ, acknowledgement delay: from STX, and from the end of the block, to the answer, in ms.
-    /// Siemens: 2000 with BCC, 550 without.
+    /// Acknowledgement delay time (QVZ): from STX, and from the end of the block, to the answer, in
+    /// ms. Siemens: 2000 with BCC, 550 without.
     pub qvz_ms: u16,
-    /// ZVZ, character delay: longest gap between two received characters, in ms. It runs from the
-    /// DLE that invites the block, restarts with every character, and is also the silence that
-    /// is awaited after noise. A station counts 0 as 1. Siemens: 220.
+    /// Character delay time (ZVZ): longest gap between two received characters, in ms. It runs
+    /// from the DLE that invites the block, restarts with every character, and is also the silence
+    /// that is awaited after noise. A station counts 0 as 1. Siemens: 220.
     pub zvz_ms: u16,
-    /// BWZ, block wait: from NAK to the STX of the repeat, in ms. Siemens: 4000.
+    /// Block wait time (BWZ): from NAK to the STX of the repeat, in ms. Siemens: 4000.
     pub bwz_ms: u16,
     /// Longest wait for a free receive buffer after STX, in ms; never longer than QVZ less 10 ms.
     /// Siemens: 400.
     pub buffer_wait_ms: u16,
-    /// Time that one character takes on the line, in us. QVZ, ZVZ and BWZ then count from the end
-    /// of the transmission, however far ahead the output is queued. 0 when bytes are handed to
-    /// the line one by one.
-    pub character_us: u32,
+    /// How the output reaches the wire. QVZ, ZVZ and BWZ count from the end of the transmission,
+    /// however far ahead the output is queued.
+    pub line: Line,
     /// Longest time that a block which is already known to be bad, or noise, may go on without a
     /// pause before NAK is sent into it, in s: a total deadline where Siemens knows only gaps.
     /// 10, longer than a block of 4096 bytes at 9600 bit/s.
     pub babble_s: u8,
-    /// Setup attempts: STX per transfer attempt. Siemens: 6.
-    pub setup_attempts: u8,
-    /// Transfer attempts: blocks per job, and rejected receptions in a row. Siemens: 6.
-    pub transfer_attempts: u8,
-    /// Who gives way in a collision.
+    /// Connection attempts: STX per transmission attempt. Siemens: 6.
+    pub connection_attempts: u8,
+    /// Transmission attempts: blocks per job, and rejected receptions in a row. Siemens: 6.
+    pub transmission_attempts: u8,
+    /// Who gives way in an initialization conflict.
     pub priority: Priority,
     /// 3964R or 3964.
     pub check: Check,
-    /// The high side in a collision.
-    pub collision: Collision,
+    /// The high side in an initialization conflict.
+    pub conflict: Conflict,
     /// Characters that come while idle.
     pub idle_noise: IdleNoise,
-    /// DLE in front of anything but DLE and ETX.
+    /// DLE before anything but DLE and ETX.
     pub illegal_dle: IllegalDle,
     /// After ZVZ ran out in a block.
     pub silence_in_block: SilenceInBlock,
@@ -120,77 +130,28 @@ pub struct Config {
     pub allow_empty: bool,
     /// Whether a new station begins with one NAK that puts the partner into idle. Siemens: yes.
     pub nak_at_startup: bool,
-    /// Whether what comes in sooner than two times [`character_us`](Self::character_us) after STX
-    /// is ignored, since it left the partner before STX arrived: a NAK that crosses STX otherwise
-    /// makes a second STX, which the partner takes for data, and costs a repeat. Only for a line
-    /// that is truly that slow: on a pseudo-terminal or over a network answers come sooner.
-    /// Siemens: no.
-    pub ignore_early_answers: bool,
-}
-
-/// `const fn with_field(self, value) -> Self` for each field.
-macro_rules! setters {
-    ($($setter:ident, $field:ident: $type:ty;)*) => {
-        impl Config {$(
-            #[doc = concat!("The same with another [`", stringify!($field), "`](Self::", stringify!($field), ").")]
-            #[must_use]
-            pub const fn $setter(mut self, $field: $type) -> Self {
-                self.$field = $field;
-                self
-            }
-        )*}
-    };
-}
-
-setters! {
-    with_qvz_ms, qvz_ms: u16;
-    with_zvz_ms, zvz_ms: u16;
-    with_bwz_ms, bwz_ms: u16;
-    with_buffer_wait_ms, buffer_wait_ms: u16;
-    with_babble_s, babble_s: u8;
-    with_character_us, character_us: u32;
-    with_setup_attempts, setup_attempts: u8;
-    with_transfer_attempts, transfer_attempts: u8;
-    with_priority, priority: Priority;
-    with_check, check: Check;
-    with_collision, collision: Collision;
-    with_idle_noise, idle_noise: IdleNoise;
-    with_illegal_dle, illegal_dle: IllegalDle;
-    with_silence_in_block, silence_in_block: SilenceInBlock;
-    with_allow_empty, allow_empty: bool;
-    with_nak_at_startup, nak_at_startup: bool;
-    with_ignore_early_answers, ignore_early_answers: bool;
 }
 
 impl Config {
-    /// The same with [`character_us`](Self::character_us) of a line of `baud` bit/s, rounded up.
-    ///
-    /// ```text
-    /// character_us = bits * 10^6 / baud       8E1: bits = 11, 8N1: bits = 10
-    /// ```
-    /// 0 for `baud` = 0.
-    #[must_use]
-    pub const fn with_line(self, baud: u32, bits: u8) -> Self {
-        let micros = if baud == 0 {
-            0
-        } else {
-            (bits as u32 * 1_000_000).div_ceil(baud)
-        };
-        self.with_character_us(micros)
+    pub(crate) fn qvz(&self) -> Duration {
+        Duration::from_millis(self.qvz_ms.into())
     }
 
-    /// `babble_s` in us.
-    pub(crate) fn babble_us(&self) -> u64 {
-        u64::from(self.babble_s) * 1_000_000
+    pub(crate) fn zvz(&self) -> Duration {
+        Duration::from_millis(self.zvz_ms.into())
     }
 
-    /// The wait for a receive buffer: `min(buffer_wait_ms, qvz_ms - 10)`.
-    pub(crate) const fn effective_buffer_wait_ms(&self) -> u16 {
-        let below_qvz = self.qvz_ms.saturating_sub(10);
-        if self.buffer_wait_ms < below_qvz {
-            self.buffer_wait_ms
-        } else {
-            below_qvz
-        }
+    pub(crate) fn bwz(&self) -> Duration {
+        Duration::from_millis(self.bwz_ms.into())
+    }
+
+    pub(crate) fn babble(&self) -> Duration {
+        Duration::from_secs(self.babble_s.into())
+    }
+
+    /// `min(buffer_wait, QVZ - 10 ms)`.
+    pub(crate) fn buffer_wait(&self) -> Duration {
+        let ms = self.buffer_wait_ms.min(self.qvz_ms.saturating_sub(10));
+        Duration::from_millis(ms.into())
     }
 }

@@ -1,16 +1,19 @@
 //! A blocking driver for ports with the traits of [`embedded-io`](https://docs.rs/embedded-io) 0.7.
 
+use core::time::Duration;
+
 use embedded_io::{Read, ReadReady, Write};
 
 use crate::{
     event::Event,
-    station::{SendError, Station, Transmit},
-    time::Instant,
+    piece::Piece,
+    station::{Station, SubmitError, Transmit},
 };
 
 /// Characters that are handed to the port at a time: so many can no longer be called back when
 /// the partner interrupts the block.
-const PIECE: usize = 8;
+const OUTPUT: usize = 8;
+const INPUT: usize = 32;
 
 /// A station with its port and a clock.
 ///
@@ -19,34 +22,35 @@ const PIECE: usize = 8;
 ///
 /// # Examples
 /// ```no_run
-/// use proto3964r::{Config, Event, Instant, Priority, Station, embedded_io::Driver};
+/// use core::time::Duration;
+/// use proto3964r::{Config, Event, Line, Priority, Station, embedded_io::Driver};
 ///
-/// # fn demo<P>(uart: P, mut micros: impl FnMut() -> u64) -> Result<(), P::Error>
-/// # where P: embedded_io::Read + embedded_io::ReadReady + embedded_io::Write {
-/// let station = Station::<128>::new(Config::siemens_3964r(Priority::High).with_line(9600, 11));
-/// let mut line = Driver::new(station, uart, || Instant::from_micros(micros()));
-/// line.send(b"A").ok();
-/// loop {
-///     match line.wait()? {
-///         Event::Received(telegram) => { /* use it */ }
-///         Event::Sent { .. } => break,
-///         _ => {}
+/// fn tare<P>(uart: P, mut micros: impl FnMut() -> u64) -> Result<(), P::Error>
+/// where
+///     P: embedded_io::Read + embedded_io::ReadReady + embedded_io::Write,
+/// {
+///     let config = Config::siemens_3964r(Priority::High, Line::paced(9600, 11));
+///     let clock = || Duration::from_micros(micros());
+///     let mut line = Driver::new(Station::<128>::new(config), uart, clock);
+///     line.submit(b"tare").ok();
+///     while line.is_busy() {
+///         if let Event::Received(telegram) = line.wait()? { /* use it */ }
 ///     }
+///     Ok(())
 /// }
-/// # Ok(())
-/// # }
 /// ```
 #[derive(Debug)]
 pub struct Driver<P, C, const N: usize, const T: usize = N> {
     station: Station<N, T>,
     port: P,
     clock: C,
+    input: Piece<INPUT>,
 }
 
 impl<P, C, const N: usize, const T: usize> Driver<P, C, N, T>
 where
     P: Read + ReadReady + Write,
-    C: FnMut() -> Instant,
+    C: FnMut() -> Duration,
 {
     /// Puts a station on a port. `clock` gives the time that has passed since any epoch.
     pub fn new(station: Station<N, T>, port: P, clock: C) -> Self {
@@ -54,6 +58,7 @@ where
             station,
             port,
             clock,
+            input: Piece::EMPTY,
         }
     }
 
@@ -70,9 +75,20 @@ where
     /// Takes a job.
     ///
     /// # Errors
-    /// Those of [`Station::send`].
-    pub fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
-        self.station.send((self.clock)(), payload)
+    /// Those of [`Station::submit`].
+    pub fn submit(&mut self, payload: &[u8]) -> Result<(), SubmitError> {
+        self.station.submit((self.clock)(), payload)
+    }
+
+    /// Gives the job up, as [`Station::cancel`] does.
+    pub fn cancel(&mut self) -> bool {
+        self.station.cancel((self.clock)())
+    }
+
+    /// Whether a job is under way, or its outcome has not been polled.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.station.is_busy()
     }
 
     /// Moves what is there, in both directions, and does what is due; does not wait for input.
@@ -83,7 +99,7 @@ where
     /// Those of the port. A receiver error (parity, framing, overrun) is one of them on most
     /// ports: tell the station with [`Station::handle_damaged`] and go on.
     pub fn step(&mut self) -> Result<(), P::Error> {
-        let mut out = [0; PIECE];
+        let mut out = [0; OUTPUT];
         self.read()?;
         self.station.handle_timeout((self.clock)());
         while let Some(transmit) = self.station.poll_transmit((self.clock)(), &mut out) {
@@ -108,24 +124,27 @@ where
     /// # Errors
     /// Those of [`step`](Self::step).
     pub fn wait(&mut self) -> Result<Event<'_>, P::Error> {
-        while !self.station.has_event() {
+        let note = loop {
+            if let Some(note) = self.station.take_note() {
+                break note;
+            }
             self.step()?;
-        }
-        // There is one: the fallback is never taken.
-        Ok(self.station.poll_event().unwrap_or(Event::Break))
+        };
+        Ok(self.station.event(note))
     }
 
-    /// Reads while something is there, up to the next event that somebody must take.
+    /// Reads while something is there, up to the next telegram: that must be polled first.
     fn read(&mut self) -> Result<(), P::Error> {
-        let mut input = [0; 32];
-        while self.port.read_ready()? {
-            let len = self.port.read(&mut input)?;
-            if len == 0 {
-                break;
+        loop {
+            self.input.hand_to(&mut self.station, (self.clock)());
+            if !self.input.waiting().is_empty() || !self.port.read_ready()? {
+                return Ok(());
             }
-            self.station
-                .handle_bytes((self.clock)(), input.get(..len).unwrap_or_default());
+            let len = self.port.read(self.input.room())?;
+            if len == 0 {
+                return Ok(());
+            }
+            self.input.filled(len);
         }
-        Ok(())
     }
 }

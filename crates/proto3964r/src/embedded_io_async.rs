@@ -4,26 +4,28 @@ use core::{
     future::{Future, poll_fn},
     pin::pin,
     task::Poll,
+    time::Duration,
 };
 
 use embedded_io_async::{Read, Write};
 
 use crate::{
     event::Event,
-    station::{SendError, Station, Transmit},
-    time::Instant,
+    piece::Piece,
+    station::{Station, SubmitError, Transmit},
 };
 
 /// Characters that are handed to the port at a time.
-const PIECE: usize = 16;
+const OUTPUT: usize = 16;
+const INPUT: usize = 32;
 
 /// The time, and a way to wait for it.
 pub trait Timer {
     /// The time since any epoch.
-    fn now(&mut self) -> Instant;
+    fn now(&mut self) -> Duration;
 
-    /// Returns at `instant` or later; at once when it has passed.
-    fn sleep_until(&mut self, instant: Instant) -> impl Future<Output = ()>;
+    /// Returns when it is `time` or later.
+    fn sleep_until(&mut self, time: Duration) -> impl Future<Output = ()>;
 }
 
 /// A station with the two halves of its port and a timer.
@@ -34,23 +36,23 @@ pub trait Timer {
 ///
 /// # Examples
 /// ```no_run
-/// use proto3964r::{Config, Event, Priority, Station};
+/// use embedded_io_async::{Read, Write};
 /// use proto3964r::embedded_io_async::{Driver, Timer};
+/// use proto3964r::{Config, Event, Line, Priority, Station};
 ///
-/// # async fn demo<R, W>(rx: R, tx: W, timer: impl Timer) -> Result<(), R::Error>
-/// # where R: embedded_io_async::Read, W: embedded_io_async::Write<Error = R::Error> {
-/// let station = Station::<128>::new(Config::siemens_3964r(Priority::High).with_line(9600, 11));
-/// let mut line = Driver::new(station, rx, tx, timer);
-/// line.send(b"A").ok();
-/// loop {
-///     match line.wait().await? {
-///         Event::Received(telegram) => { /* use it */ }
-///         Event::Sent { .. } => break,
-///         _ => {}
+/// async fn tare<R, W>(rx: R, tx: W, timer: impl Timer) -> Result<(), R::Error>
+/// where
+///     R: Read,
+///     W: Write<Error = R::Error>,
+/// {
+///     let config = Config::siemens_3964r(Priority::High, Line::paced(9600, 11));
+///     let mut line = Driver::new(Station::<128>::new(config), rx, tx, timer);
+///     line.submit(b"tare").ok();
+///     while line.is_busy() {
+///         if let Event::Received(telegram) = line.wait().await? { /* use it */ }
 ///     }
+///     Ok(())
 /// }
-/// # Ok(())
-/// # }
 /// ```
 #[derive(Debug)]
 pub struct Driver<R, W, M, const N: usize, const T: usize = N> {
@@ -58,26 +60,10 @@ pub struct Driver<R, W, M, const N: usize, const T: usize = N> {
     reader: R,
     writer: W,
     timer: M,
-    out: Output,
-}
-
-/// What the station handed out and the port has not taken: a dropped `wait` loses none of it.
-#[derive(Debug, Default)]
-struct Output {
-    bytes: [u8; PIECE],
-    begin: usize,
-    end: usize,
+    input: Piece<INPUT>,
+    /// What the station handed out and the port has not taken: a dropped `wait` loses none of it.
+    output: Piece<OUTPUT>,
     flushed: bool,
-}
-
-impl Output {
-    fn waiting(&self) -> &[u8] {
-        self.bytes.get(self.begin..self.end).unwrap_or_default()
-    }
-
-    fn clear(&mut self) {
-        self.begin = self.end;
-    }
 }
 
 /// What came first.
@@ -96,16 +82,14 @@ where
 {
     /// Puts a station on a port.
     pub fn new(station: Station<N, T>, reader: R, writer: W, timer: M) -> Self {
-        let out = Output {
-            flushed: true,
-            ..Output::default()
-        };
         Self {
             station,
             reader,
             writer,
             timer,
-            out,
+            input: Piece::EMPTY,
+            output: Piece::EMPTY,
+            flushed: true,
         }
     }
 
@@ -117,9 +101,20 @@ where
     /// Takes a job; it goes out while [`wait`](Self::wait) is polled.
     ///
     /// # Errors
-    /// Those of [`Station::send`].
-    pub fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
-        self.station.send(self.timer.now(), payload)
+    /// Those of [`Station::submit`].
+    pub fn submit(&mut self, payload: &[u8]) -> Result<(), SubmitError> {
+        self.station.submit(self.timer.now(), payload)
+    }
+
+    /// Gives the job up, as [`Station::cancel`] does.
+    pub fn cancel(&mut self) -> bool {
+        self.station.cancel(self.timer.now())
+    }
+
+    /// Whether a job is under way, or its outcome has not been polled.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.station.is_busy()
     }
 
     /// Works until there is an event. May be dropped and called again.
@@ -128,26 +123,31 @@ where
     /// Those of the port. A receiver error (parity, framing, overrun) is one of them on most
     /// ports: tell the station with [`Station::handle_damaged`] and go on.
     pub async fn wait(&mut self) -> Result<Event<'_>, R::Error> {
-        while !self.station.has_event() {
+        let note = loop {
+            if let Some(note) = self.station.take_note() {
+                break note;
+            }
             self.round().await?;
-        }
-        // There is one: the fallback is never taken.
-        Ok(self.station.poll_event().unwrap_or(Event::Break))
+        };
+        Ok(self.station.event(note))
     }
 
     /// Waits for whatever comes first and tells the station.
     async fn round(&mut self) -> Result<(), R::Error> {
         let now = self.timer.now();
         self.station.handle_timeout(now);
+        if !self.input.waiting().is_empty() {
+            // The rest of what came with a telegram, which has been polled meanwhile.
+            self.input.hand_to(&mut self.station, now);
+            return Ok(());
+        }
         self.refill(now);
-        let mut input = [0; 32];
-        match self.first(&mut input).await? {
-            First::Written(len) => self.out.begin += len,
-            First::Flushed => self.out.flushed = true,
+        match self.first().await? {
+            First::Written(len) => self.output.gone(len),
+            First::Flushed => self.flushed = true,
             First::Read(len) => {
-                let now = self.timer.now();
-                self.station
-                    .handle_bytes(now, input.get(..len).unwrap_or_default());
+                self.input.filled(len);
+                self.input.hand_to(&mut self.station, self.timer.now());
             }
             First::Due => {}
         }
@@ -155,38 +155,32 @@ where
     }
 
     /// Fetches the next piece when the port has taken the last one, or when that one is void.
-    fn refill(&mut self, now: Instant) {
-        let room = if self.out.waiting().is_empty() {
-            PIECE
+    fn refill(&mut self, now: Duration) {
+        let mut piece = [0; OUTPUT];
+        let room = if self.output.waiting().is_empty() {
+            OUTPUT
         } else {
             0
         };
-        let mut piece = [0; PIECE];
-        match self
-            .station
-            .poll_transmit(now, piece.get_mut(..room).unwrap_or_default())
-        {
+        let free = piece.get_mut(..room).unwrap_or_default();
+        match self.station.poll_transmit(now, free) {
             Some(Transmit::Discard) => {
-                self.out.clear();
+                self.output = Piece::EMPTY;
                 self.refill(now); // a discard never comes twice in a row
             }
             Some(Transmit::Bytes(bytes)) => {
-                let end = bytes.len();
-                self.out = Output {
-                    bytes: piece,
-                    begin: 0,
-                    end,
-                    flushed: false,
-                };
+                self.output = Piece::of(bytes);
+                self.flushed = false;
             }
             None => {}
         }
     }
 
-    async fn first(&mut self, input: &mut [u8]) -> Result<First, R::Error> {
+    async fn first(&mut self) -> Result<First, R::Error> {
         let (writer, reader, timer) = (&mut self.writer, &mut self.reader, &mut self.timer);
         let due = self.station.poll_timeout();
-        let (waiting, flushed) = (self.out.waiting(), self.out.flushed);
+        let (waiting, flushed) = (self.output.waiting(), self.flushed);
+        let input = self.input.room();
         let mut write = pin!(async {
             if !waiting.is_empty() {
                 writer.write(waiting).await.map(First::Written)

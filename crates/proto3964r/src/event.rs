@@ -28,13 +28,14 @@ pub enum Event<'a> {
     Rejected(Rejection),
     /// The partner's telegram was given up after one rejection or more.
     Abandoned(Abandoned),
-    /// Both stations sent STX.
-    Collision {
-        /// Collisions in a row without a connection or a telegram in between.
+    /// Initialization conflict (collision): both stations sent STX.
+    Conflict {
+        /// Conflicts in a row in which the partner neither gave way nor had a telegram to deliver.
         in_a_row: u8,
     },
-    /// Both stations seem to have the same priority: two high ones repeat STX against each other,
-    /// or two low ones both answered DLE.
+    /// Both stations seem to have the same priority: two high ones wait for each other's DLE in
+    /// vain, conflict after conflict, even if one of them gives way at a retry; or two low ones
+    /// both answered DLE.
     SamePriority,
     /// The line was held in BREAK; the station is idle.
     Break,
@@ -44,7 +45,7 @@ pub enum Event<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("job given up in {phase} after {attempts} attempts, first error: {cause}")]
+#[error("job given up after {attempts} {phase} attempts, first error: {cause}")]
 #[non_exhaustive]
 pub struct Failure {
     /// The phase whose attempts are used up.
@@ -56,23 +57,23 @@ pub struct Failure {
     pub attempts: u8,
 }
 
-/// The two phases of a transmission, each with its own attempt counter.
+/// The two phases of a job, each with its own attempt counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "the procedure has these two")]
 pub enum Phase {
     /// From STX to DLE.
-    Setup,
+    Connection,
     /// From DLE to the answer to the block.
-    Transfer,
+    Transmission,
 }
 
 impl fmt::Display for Phase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Setup => "setup",
-            Self::Transfer => "transfer",
+            Self::Connection => "connection",
+            Self::Transmission => "transmission",
         })
     }
 }
@@ -83,7 +84,7 @@ impl fmt::Display for Phase {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Cause {
-    /// No answer within QVZ.
+    /// No answer within the acknowledgement delay time (QVZ).
     #[error("timeout")]
     Timeout,
     /// The partner answered NAK.
@@ -96,8 +97,8 @@ pub enum Cause {
     #[error("{0}")]
     Line(LineError),
     /// The partner sent STX as well and nothing came of it.
-    #[error("collision")]
-    Collision,
+    #[error("initialization conflict")]
+    Conflict,
     /// The output did not take the next byte within QVZ.
     #[error("stalled")]
     Stalled,
@@ -121,7 +122,7 @@ pub enum LineError {
     /// The stop bit is missing.
     #[error("framing")]
     Framing,
-    /// Characters were lost in front of this one.
+    /// Characters were lost before this one.
     #[error("overrun")]
     Overrun,
 }
@@ -138,8 +139,8 @@ pub enum Rejection {
     /// A character of the block was damaged.
     #[error("{0} error")]
     Line(LineError),
-    /// A gap longer than ZVZ in the block.
-    #[error("character delay exceeded")]
+    /// A gap longer than the character delay time (ZVZ) in the block.
+    #[error("character delay time exceeded")]
     CharacterDelay,
     /// The block, already known to be bad, did not end.
     #[error("block without an end")]
@@ -161,10 +162,10 @@ pub enum Rejection {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Abandoned {
-    /// No STX within BWZ.
+    /// No STX within the block wait time (BWZ).
     #[error("no repeat within the block wait time")]
     NoRepeat,
-    /// As many rejections as transfer attempts are configured.
+    /// As many rejections as transmission attempts are configured.
     #[error("{0} rejected receptions")]
     TooMany(u8),
     /// The partner sent NAK: it gave up.

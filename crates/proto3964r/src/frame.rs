@@ -2,22 +2,21 @@
 //!
 //! ```text
 //! body = payload with every 10h doubled, 10h, 03h, [BCC]
-//! BCC  = XOR of all characters of the body in front of it     (3964R only)
+//! BCC  = XOR of all characters of the body before it          (3964R only)
 //! ```
-//! The STX in front is not part of the body: it is sent, and answered, before the body. The BCC
-//! is one raw character of any value and is never doubled; the XOR over a whole body with its BCC
-//! is 0. A doubled DLE cancels itself in the BCC.
+//! The STX before the block is not part of the body: it is sent, and answered, first. The block
+//! check character (BCC) is one raw character of any value and is never doubled; the XOR over a
+//! whole body with its BCC is 0. A doubled DLE cancels itself in the BCC.
 
 mod decoder;
 mod encoder;
-mod scan;
 #[cfg(test)]
 mod tests;
 
-pub use decoder::{DecodeError, Decoder, Fed, FrameError, IllegalDle, decode};
+pub use decoder::{DecodeError, Decoder, FrameError, IllegalDle, decode};
 pub(crate) use decoder::{Progress, Rules};
-pub(crate) use encoder::Encoder;
-pub use encoder::{EncodeError, bcc, encode, encoded_len, max_encoded_len};
+pub use encoder::{EncodeError, encode, max_encoded_len};
+pub(crate) use encoder::{Encoder, encoded_len};
 
 /// Whether a block ends in a check character.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -30,14 +29,4 @@ pub enum Check {
     /// 3964R: the block check character follows DLE ETX.
     #[default]
     Bcc,
-}
-
-impl Check {
-    /// Characters behind DLE ETX.
-    const fn len(self) -> usize {
-        match self {
-            Self::None => 0,
-            Self::Bcc => 1,
-        }
-    }
 }

@@ -8,7 +8,7 @@ extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
-pub mod ascii;
+mod ascii;
 mod config;
 #[cfg(feature = "embedded-io")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
@@ -19,15 +19,19 @@ pub mod embedded_io_async;
 mod event;
 pub mod frame;
 mod monitor;
+#[cfg(any(
+    feature = "embedded-io",
+    feature = "embedded-io-async",
+    feature = "serialport"
+))]
+mod piece;
 #[cfg(feature = "serialport")]
 #[cfg_attr(docsrs, doc(cfg(feature = "serialport")))]
 pub mod serialport;
 mod station;
-mod time;
 
-pub use config::{Collision, Config, IdleNoise, Priority, SilenceInBlock};
+pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
 pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
 pub use monitor::{Monitor, Observation, Observations, Side, Verdict};
-pub use station::{SendError, Station, Transmit};
-pub use time::Instant;
+pub use station::{Station, SubmitError, Transmit};

@@ -5,12 +5,13 @@ mod observation;
 mod tests;
 mod verdict;
 
+use core::time::Duration;
+
 use crate::{
     ascii::{DLE, NAK, STX},
     config::Config,
     event::LineError,
     frame::{IllegalDle, Progress, Rules},
-    time::Instant,
 };
 
 pub use observation::{Observation, Observations, Side};
@@ -18,6 +19,9 @@ pub use verdict::Verdict;
 
 use observation::{Mark, Marks};
 use verdict::{Tally, Trouble};
+
+/// What is longer than a limit is so by this much at least.
+const RESOLUTION: Duration = Duration::from_micros(1);
 
 /// Listens to both directions of a line and tells what happens there and why it fails.
 ///
@@ -27,11 +31,12 @@ use verdict::{Tally, Trouble};
 ///
 /// # Examples
 /// ```
-/// use proto3964r::{Config, Instant, Monitor, Priority, Side, Verdict};
+/// use core::time::Duration;
+/// use proto3964r::{Config, Line, Monitor, Priority, Side, Verdict};
 ///
-/// let mut monitor = Monitor::<64>::new(Config::siemens_3964r(Priority::Low));
+/// let mut monitor = Monitor::<64>::new(Config::siemens_3964r(Priority::Low, Line::Instant));
 /// for (ms, side, byte) in [(0, Side::A, 0x02), (3, Side::B, 0x15), (6, Side::A, 0x02), (9, Side::B, 0x15)] {
-///     for observation in monitor.handle_byte(Instant::from_millis(ms), side, byte) {
+///     for observation in monitor.handle_byte(Duration::from_millis(ms), side, byte) {
 ///         println!("{ms} {observation}");
 ///     }
 /// }
@@ -43,11 +48,11 @@ pub struct Monitor<const N: usize> {
     config: Config,
     phase: Phase,
     /// The last character that belonged to the phase.
-    last: Instant,
+    last: Duration,
     /// The deadline of this wait was reported.
     overdue: bool,
-    /// The connection grew out of a collision.
-    collided: bool,
+    /// The connection grew out of an initialization conflict.
+    in_conflict: bool,
     /// STX in a row without a connection, per side.
     requests: [u8; 2],
     decoder: Progress,
@@ -63,7 +68,7 @@ enum Phase {
     Idle,
     Requested(Side),
     /// Both sent STX, this one first.
-    Collided(Side),
+    Conflict(Side),
     Block(Side),
     /// The block is over; whether it was good.
     AwaitAck(Side, bool),
@@ -72,7 +77,7 @@ enum Phase {
 /// One character on the line.
 #[derive(Clone, Copy)]
 struct Heard {
-    now: Instant,
+    now: Duration,
     side: Side,
     byte: u8,
     error: Option<LineError>,
@@ -86,7 +91,7 @@ impl Heard {
 }
 
 impl<const N: usize> Monitor<N> {
-    /// A monitor for a line with these times and this check, in front of the first character.
+    /// A monitor for a line with these times and this check, before the first character.
     #[must_use]
     pub fn new(config: Config) -> Self {
         const {
@@ -95,9 +100,9 @@ impl<const N: usize> Monitor<N> {
         Self {
             config,
             phase: Phase::Idle,
-            last: Instant::ZERO,
+            last: Duration::ZERO,
             overdue: false,
-            collided: false,
+            in_conflict: false,
             requests: [0; 2],
             decoder: Progress::START,
             line_error: None,
@@ -108,7 +113,7 @@ impl<const N: usize> Monitor<N> {
     }
 
     /// Takes a character that `side` sent; returns what it means.
-    pub fn handle_byte(&mut self, now: Instant, side: Side, byte: u8) -> Observations<'_> {
+    pub fn handle_byte(&mut self, now: Duration, side: Side, byte: u8) -> Observations<'_> {
         self.take(Heard {
             now,
             side,
@@ -120,7 +125,7 @@ impl<const N: usize> Monitor<N> {
     /// Takes a character of `side` that came in damaged.
     pub fn handle_damaged(
         &mut self,
-        now: Instant,
+        now: Duration,
         side: Side,
         byte: u8,
         error: LineError,
@@ -136,7 +141,7 @@ impl<const N: usize> Monitor<N> {
     /// Reports a wait that has become too long by `now`.
     ///
     /// Needed on a live line only: the next character does the same.
-    pub fn handle_timeout(&mut self, now: Instant) -> Observations<'_> {
+    pub fn handle_timeout(&mut self, now: Duration) -> Observations<'_> {
         self.marks = Marks::default();
         self.check_wait(now);
         Observations::new(self.marks, &self.buffer)
@@ -145,9 +150,9 @@ impl<const N: usize> Monitor<N> {
     /// When [`handle_timeout`](Self::handle_timeout) has something to report, unless a character
     /// comes first.
     #[must_use]
-    pub fn poll_timeout(&self) -> Option<Instant> {
-        let limit = self.limit_ms()?;
-        (!self.overdue).then(|| self.last.plus_ms(limit).plus_us(1))
+    pub fn poll_timeout(&self) -> Option<Duration> {
+        let limit = self.limit()?.saturating_add(RESOLUTION);
+        (!self.overdue).then(|| self.last.saturating_add(limit))
     }
 
     /// Why the line does not work, or that it does.
@@ -159,28 +164,28 @@ impl<const N: usize> Monitor<N> {
     }
 
     /// The longest wait in this phase.
-    fn limit_ms(&self) -> Option<u16> {
+    fn limit(&self) -> Option<Duration> {
         match self.phase {
             Phase::Idle => None,
-            Phase::Block(_) => Some(self.config.zvz_ms),
-            Phase::Requested(_) | Phase::Collided(_) | Phase::AwaitAck(..) => {
-                Some(self.config.qvz_ms)
+            Phase::Block(_) => Some(self.config.zvz()),
+            Phase::Requested(_) | Phase::Conflict(_) | Phase::AwaitAck(..) => {
+                Some(self.config.qvz())
             }
         }
     }
 
     /// Reports, once per wait, that the limit has passed.
-    fn check_wait(&mut self, now: Instant) {
+    fn check_wait(&mut self, now: Duration) {
         if self.poll_timeout().is_none_or(|due| due > now) {
             return;
         }
         self.overdue = true;
-        let waited = now - self.last;
+        let waited = self.since_last(now);
         match self.phase {
             Phase::Idle => {}
             Phase::Block(by) => {
                 self.see(Observation::Gap { by, gap: waited });
-                if self.collided && self.decoder.is_lone_dle() {
+                if self.in_conflict && self.decoder.is_lone_dle() {
                     self.trouble(Trouble::BothLow, by);
                 } else {
                     self.trouble(Trouble::Gap, by);
@@ -193,7 +198,7 @@ impl<const N: usize> Monitor<N> {
                 });
                 self.trouble(Trouble::NoAnswer, by.other());
             }
-            Phase::Collided(_) => {}
+            Phase::Conflict(_) => {}
             Phase::AwaitAck(by, _) => {
                 self.see(Observation::NoAnswer {
                     silent: by.other(),
@@ -217,7 +222,7 @@ impl<const N: usize> Monitor<N> {
             Phase::Idle => self.in_idle(heard),
             Phase::Requested(by) if heard.side == by => self.after_own_request(heard),
             Phase::Requested(_) => self.answer_to_request(heard),
-            Phase::Collided(_) => self.in_collision(heard),
+            Phase::Conflict(_) => self.in_conflict(heard),
             Phase::Block(by) if heard.side == by => self.block_character(heard),
             Phase::Block(by) => self.interruption(heard, by),
             Phase::AwaitAck(by, good) if heard.side != by => self.answer_to_block(heard, good),
@@ -234,7 +239,7 @@ impl<const N: usize> Monitor<N> {
         self.tally.note(trouble, side);
     }
 
-    fn enter(&mut self, now: Instant, phase: Phase) {
+    fn enter(&mut self, now: Duration, phase: Phase) {
         self.phase = phase;
         self.last = now;
         self.overdue = false;
@@ -260,10 +265,16 @@ impl<const N: usize> Monitor<N> {
         self.trouble(Trouble::Garbage, side);
     }
 
-    fn request(&mut self, now: Instant, side: Side) {
+    /// Time since the last step; `Duration`'s own subtraction has a way to a panic.
+    fn since_last(&self, now: Duration) -> Duration {
+        let nanos = now.as_nanos().saturating_sub(self.last.as_nanos());
+        Duration::from_nanos(u64::try_from(nanos).unwrap_or(u64::MAX))
+    }
+
+    fn request(&mut self, now: Duration, side: Side) {
         let attempt = self.count_request(side);
         self.see(Observation::Request { side, attempt });
-        self.collided = false;
+        self.in_conflict = false;
         self.enter(now, Phase::Requested(side));
     }
 
@@ -291,7 +302,7 @@ impl<const N: usize> Monitor<N> {
         let Heard {
             now, side, byte, ..
         } = heard;
-        let delay = now - self.last;
+        let delay = self.since_last(now);
         match heard.intact() {
             Some(DLE) => {
                 self.see(Observation::Connected { by: side, delay });
@@ -304,20 +315,20 @@ impl<const N: usize> Monitor<N> {
                 self.enter(now, Phase::Idle);
             }
             Some(STX) => {
-                self.see(Observation::Collision);
-                self.collided = true;
+                self.see(Observation::Conflict);
+                self.in_conflict = true;
                 self.count_request(side);
                 if self.requests.iter().all(|&count| count > 1) {
                     self.trouble(Trouble::BothHigh, side);
                 }
-                self.enter(now, Phase::Collided(side.other()));
+                self.enter(now, Phase::Conflict(side.other()));
             }
             _ => self.stray(side, byte),
         }
     }
 
     /// Both sent STX: who answers DLE has given way.
-    fn in_collision(&mut self, heard: Heard) {
+    fn in_conflict(&mut self, heard: Heard) {
         let Heard {
             now, side, byte, ..
         } = heard;
@@ -325,7 +336,7 @@ impl<const N: usize> Monitor<N> {
             Some(DLE) => {
                 self.see(Observation::Connected {
                     by: side,
-                    delay: now - self.last,
+                    delay: self.since_last(now),
                 });
                 self.begin_block(now, side.other());
             }
@@ -334,7 +345,7 @@ impl<const N: usize> Monitor<N> {
         }
     }
 
-    fn begin_block(&mut self, now: Instant, by: Side) {
+    fn begin_block(&mut self, now: Duration, by: Side) {
         self.decoder = Progress::START;
         self.line_error = None;
         self.requests = [0; 2];
@@ -353,7 +364,10 @@ impl<const N: usize> Monitor<N> {
         let by = heard.side;
         let good = result.is_ok() && self.line_error.is_none();
         match result {
-            Ok(len) => self.marks.push(Mark::Block { by, len }),
+            Ok(len) => {
+                let len = usize::from(len);
+                self.marks.push(Mark::Block { by, len });
+            }
             Err(error) => {
                 self.see(Observation::BadBlock { by, error });
                 self.trouble(Trouble::BadBlock, by);
@@ -369,7 +383,7 @@ impl<const N: usize> Monitor<N> {
         } = heard;
         let answer = matches!(heard.intact(), Some(DLE | NAK));
         if answer && self.decoder.awaits_bcc() {
-            let delay = now - self.last;
+            let delay = self.since_last(now);
             self.see(Observation::NoBcc { by });
             self.see(if byte == DLE {
                 Observation::Accepted { by: side, delay }
@@ -392,7 +406,7 @@ impl<const N: usize> Monitor<N> {
         let Heard {
             now, side, byte, ..
         } = heard;
-        let delay = now - self.last;
+        let delay = self.since_last(now);
         match heard.intact() {
             Some(DLE) => {
                 self.see(Observation::Accepted { by: side, delay });

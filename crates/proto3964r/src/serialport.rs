@@ -6,21 +6,22 @@
 extern crate alloc;
 
 use alloc::boxed::Box;
+use core::time::Duration;
 use std::{
     io::{self, Read as _, Write as _},
-    time::Instant as Clock,
+    time::Instant,
 };
-
-use core::time::Duration;
 
 use serialport::{ClearBuffer, SerialPort};
 
 use crate::{
     config::Config,
     event::Event,
-    station::{SendError, Station, Transmit},
-    time::Instant,
+    piece::Piece,
+    station::{Station, SubmitError, Transmit},
 };
+
+const INPUT: usize = 256;
 
 /// The longest sleep in the port: a port that reports no input would not notice a dead line.
 const LONGEST_SLEEP: Duration = Duration::from_secs(1);
@@ -30,26 +31,25 @@ const LONGEST_SLEEP: Duration = Duration::from_secs(1);
 /// # Examples
 /// ```no_run
 /// use std::time::Duration;
-/// use proto3964r::{Config, Event, Priority, serialport::Driver};
+/// use proto3964r::{Config, Event, Line, Priority, serialport::Driver};
 ///
-/// let port = serialport::new("/dev/ttyUSB0", 9600).parity(serialport::Parity::Even).open()?;
-/// let config = Config::siemens_3964r(Priority::High).with_line(9600, 11);
-/// let mut line = Driver::<128>::new(port, config)?;
-/// line.send(b"A")?;
-/// while let Some(event) = line.wait(Duration::from_secs(20))? {
-///     match event {
-///         Event::Received(telegram) => println!("received {telegram:02X?}"),
-///         Event::Sent { .. } => break,
-///         other => println!("{other:?}"),
+/// fn main() -> Result<(), Box<dyn std::error::Error>> {
+///     let port = serialport::new("/dev/ttyUSB0", 9600).parity(serialport::Parity::Even).open()?;
+///     let config = Config::siemens_3964r(Priority::High, Line::buffered(9600, 11));
+///     let mut line = Driver::<128>::new(port, config)?;
+///     line.submit(b"tare")?;
+///     while let Some(event) = line.wait(Duration::from_secs(20))? {
+///         println!("{event:02X?}");
 ///     }
+///     Ok(())
 /// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct Driver<const N: usize, const T: usize = N> {
     station: Station<N, T>,
     port: PortBox,
-    epoch: Clock,
+    epoch: Instant,
+    input: Piece<INPUT>,
 }
 
 /// A port that can be printed.
@@ -71,7 +71,8 @@ impl<const N: usize, const T: usize> Driver<N, T> {
         Ok(Self {
             station: Station::with_buffers(config),
             port: PortBox(port),
-            epoch: Clock::now(),
+            epoch: Instant::now(),
+            input: Piece::EMPTY,
         })
     }
 
@@ -80,18 +81,27 @@ impl<const N: usize, const T: usize> Driver<N, T> {
         &mut self.station
     }
 
-    /// The time since the driver was made, as the station counts it.
-    #[must_use]
-    pub fn now(&self) -> Instant {
-        Instant::ZERO + self.epoch.elapsed()
+    fn now(&self) -> Duration {
+        self.epoch.elapsed()
     }
 
     /// Takes a job; it goes out while [`wait`](Self::wait) runs.
     ///
     /// # Errors
-    /// Those of [`Station::send`].
-    pub fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
-        self.station.send(self.now(), payload)
+    /// Those of [`Station::submit`].
+    pub fn submit(&mut self, payload: &[u8]) -> Result<(), SubmitError> {
+        self.station.submit(self.now(), payload)
+    }
+
+    /// Gives the job up, as [`Station::cancel`] does.
+    pub fn cancel(&mut self) -> bool {
+        self.station.cancel(self.now())
+    }
+
+    /// Whether a job is under way, or its outcome has not been polled.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.station.is_busy()
     }
 
     /// Works until there is an event, at most for `patience`; `None` when that has passed.
@@ -99,16 +109,20 @@ impl<const N: usize, const T: usize> Driver<N, T> {
     /// # Errors
     /// Those of the port.
     pub fn wait(&mut self, patience: Duration) -> io::Result<Option<Event<'_>>> {
-        let end = self.now() + patience;
+        let end = self.now().saturating_add(patience);
         loop {
-            self.station.handle_timeout(self.now());
+            let now = self.now();
+            self.station.handle_timeout(now);
+            self.input.hand_to(&mut self.station, now);
             self.write()?;
-            if self.station.has_event() || self.now() >= end {
-                break;
+            if let Some(note) = self.station.take_note() {
+                return Ok(Some(self.station.event(note)));
+            }
+            if now >= end {
+                return Ok(None);
             }
             self.read(end)?;
         }
-        Ok(self.station.poll_event())
     }
 
     fn write(&mut self) -> io::Result<()> {
@@ -123,23 +137,19 @@ impl<const N: usize, const T: usize> Driver<N, T> {
     }
 
     /// Reads what comes in before something is due or `end` has come.
-    fn read(&mut self, end: Instant) -> io::Result<()> {
-        let now = self.now();
+    fn read(&mut self, end: Duration) -> io::Result<()> {
         let due = self.station.poll_timeout().map_or(end, |due| due.min(end));
         // Whole milliseconds, rounded up: the port does not count finer.
-        let sleep = (due - now).min(LONGEST_SLEEP) + Duration::from_millis(1);
+        let sleep = due.saturating_sub(self.now()).min(LONGEST_SLEEP) + Duration::from_millis(1);
         self.port.0.set_timeout(sleep)?;
-        let mut input = [0; 256];
-        match self.port.0.read(&mut input) {
-            Ok(len) => {
-                let now = self.now();
-                self.station
-                    .handle_bytes(now, input.get(..len).unwrap_or_default());
-                Ok(())
-            }
-            Err(error) if is_silence(&error) => Ok(()),
-            Err(error) => Err(error),
+        match self.port.0.read(self.input.room()) {
+            Ok(len) => self.input.filled(len),
+            Err(error) if is_silence(&error) => {}
+            Err(error) => return Err(error),
         }
+        let now = self.now();
+        self.input.hand_to(&mut self.station, now);
+        Ok(())
     }
 }
 

@@ -1,27 +1,31 @@
-//! One end of the line.
+//! One end of the line: what it is, its contract, and the user's side of it.
 
-mod compact;
+mod character;
 #[cfg(test)]
 mod explore;
+mod output;
+mod queue;
 mod receive;
-mod report;
 mod state;
 #[cfg(test)]
 mod tests;
+mod timeout;
 mod transmit;
+
+use core::time::Duration;
 
 use thiserror::Error;
 
+pub(crate) use queue::Note;
+
 use self::{
-    compact::{Flag, Flags, Note, Notes, Replies, Reply},
-    state::{Job, State},
+    queue::{Notes, Replies, Reply},
+    state::{Burst, Job, JobState, State},
 };
 use crate::{
-    ascii::DLE,
     config::Config,
-    event::{Cause, LineError},
-    frame::{Encoder, Progress, Rules},
-    time::Instant,
+    event::{Cause, Event, LineError},
+    frame::Rules,
 };
 
 /// One end of a 3964 or 3964R line.
@@ -35,8 +39,8 @@ use crate::{
 /// |---|---|
 /// | [`handle_bytes`](Self::handle_bytes), [`handle_byte`](Self::handle_byte) | characters came in |
 /// | [`handle_damaged`](Self::handle_damaged), [`handle_break`](Self::handle_break) | the receiver circuit saw an error |
-/// | [`handle_timeout`](Self::handle_timeout) | the instant of `poll_timeout` has come |
-/// | [`send`](Self::send), [`cancel`](Self::cancel) | the user wants it |
+/// | [`handle_timeout`](Self::handle_timeout) | the time of `poll_timeout` has come |
+/// | [`submit`](Self::submit), [`cancel`](Self::cancel) | the user wants it |
 ///
 /// | pull | what |
 /// |---|---|
@@ -46,53 +50,44 @@ use crate::{
 ///
 /// After any push, call all three pullers, the first two until they give `None`, `poll_timeout`
 /// last. An extra call is a no-op; a call of `handle_timeout` before its time is one too; a late
-/// one only delays. No call takes longer than its bytes need. Time must not run backwards.
+/// one only delays. No call takes longer than its bytes need.
+///
+/// Times are `Duration`s since an epoch of the caller, the same in all calls, and must not run
+/// backwards. How fine the clock must be, [`Line`](crate::Line) tells.
 ///
 /// # Jobs
-/// A station holds one job: from [`send`](Self::send) until its outcome has been polled. A job
-/// waits while a telegram comes in, and survives a collision and a failed reception. It ends with
-/// exactly one [`Event::Sent`](crate::Event::Sent) or [`Event::Failed`](crate::Event::Failed).
+/// A station holds one job: from [`submit`](Self::submit) until its outcome has been polled. A job
+/// waits while a telegram comes in, and survives an initialization conflict and a failed reception.
+/// It ends with exactly one [`Event::Sent`] or [`Event::Failed`].
 ///
 /// # The receive buffer
-/// It is in use from the first STX until [`Event::Received`](crate::Event::Received) has been
-/// polled. A partner that sends in between is made to wait and then answered NAK, as the
-/// procedure wants it.
+/// It is in use from the first STX until [`Event::Received`] has been polled. A partner that sends
+/// in between is made to wait and then answered NAK, as the procedure wants it.
 ///
 /// # Size
-/// At most `N + T + 96` bytes.
+/// At most `N + T + 160` bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Station<const N: usize, const T: usize = N> {
-    /// What the state waits for; `NEVER` in idle.
-    deadline: Instant,
-    /// Receiving and quiet: the end of patience, whatever comes in. Waiting for DLE: the end of
-    /// the burst that spoiled the attempt before. Sending: the end of the output so far.
-    limit: Instant,
     config: Config,
-    decoder: Progress,
-    encoder: Encoder,
-    notes: Notes,
-    dropped_notes: u8,
-    replies: Replies,
+    /// The configured ZVZ.
+    zvz: Duration,
     state: State,
     job: Job,
-    /// STX in this transfer attempt.
-    setup: u8,
-    /// Transfer attempts of the job.
-    transfer: u8,
-    /// First error of the job.
-    first_cause: Option<Cause>,
+    /// When the last character that was handed out begins to leave, at the earliest.
+    leaving_at: Option<Duration>,
+    /// What was handed out and is not on the line yet must not go there.
+    discard: bool,
+    replies: Replies,
+    notes: Notes,
     /// Rejected receptions in a row.
     rejections: u8,
-    /// Collisions in a row.
-    collisions: u8,
-    /// First damage of the block that is coming in.
-    line_error: Option<LineError>,
-    /// First character of the noise that is being waited out.
-    noise: u8,
-    flags: Flags,
-    rx_len: u16,
-    tx_len: u16,
+    /// Conflicts in a row that the partner did not settle.
+    conflicts: u8,
+    /// The receive buffer holds a telegram that has not been polled.
+    holds_telegram: bool,
     rx: [u8; N],
+    /// Length of the payload in the transmit buffer.
+    tx_len: u16,
     tx: [u8; T],
 }
 
@@ -101,8 +96,9 @@ pub struct Station<const N: usize, const T: usize = N> {
 #[must_use]
 #[expect(clippy::exhaustive_enums, reason = "a driver must know all of them")]
 pub enum Transmit<'o> {
-    /// Drop what was handed out before and is not on the line yet: the block was aborted, and
-    /// what follows must not stand behind its rest.
+    /// Drop what was handed out before and is not on the line yet: the block was broken off, and
+    /// what follows must not come after its rest. Not on a [buffered](crate::Line::Buffered)
+    /// line.
     Discard,
     /// Send these characters.
     Bytes(&'o [u8]),
@@ -112,7 +108,7 @@ pub enum Transmit<'o> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum SendError {
+pub enum SubmitError {
     /// The outcome of the job before has not been polled.
     #[error("the outcome of the job before has not been polled")]
     Busy,
@@ -149,36 +145,29 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 "a block holds at most 65535 bytes"
             );
         }
+        let config = Config {
+            // No gap at all would end a block between two of its characters.
+            zvz_ms: config.zvz_ms.max(1),
+            ..config
+        };
         let mut replies = Replies::EMPTY;
         if config.nak_at_startup {
             replies.push(Reply::Nak);
         }
         Self {
-            deadline: Instant::NEVER,
-            limit: Instant::NEVER,
-            decoder: Progress::START,
-            encoder: Encoder::START,
-            config: Config {
-                // No gap at all would end a block between two of its characters.
-                zvz_ms: config.zvz_ms.max(1),
-                ..config
-            },
-            notes: Notes::default(),
-            dropped_notes: 0,
-            replies,
+            zvz: config.zvz(),
+            config,
             state: State::Idle,
-            job: Job::None,
-            setup: 0,
-            transfer: 0,
-            first_cause: None,
+            job: Job::NONE,
+            leaving_at: None,
+            discard: false,
+            replies,
+            notes: Notes::EMPTY,
             rejections: 0,
-            collisions: 0,
-            line_error: None,
-            noise: 0,
-            flags: Flags::default(),
-            rx_len: 0,
-            tx_len: 0,
+            conflicts: 0,
+            holds_telegram: false,
             rx: [0; N],
+            tx_len: 0,
             tx: [0; T],
         }
     }
@@ -192,184 +181,188 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Whether neither a transmission nor a reception is under way.
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        self.state == State::Idle
+        matches!(self.state, State::Idle)
     }
 
-    /// Whether [`send`](Self::send) would take a job.
+    /// Whether a job is under way, or its outcome has not been polled.
     #[must_use]
-    pub fn can_send(&self) -> bool {
-        self.job == Job::None
+    pub fn is_busy(&self) -> bool {
+        self.job.state != JobState::None
     }
 
     /// Takes a job. STX goes out at once when the line is idle, else after the reception.
     ///
     /// # Errors
-    /// [`SendError::Busy`] until the outcome of the job before has been polled;
-    /// [`SendError::TooLong`] above `T` bytes; [`SendError::Empty`] unless
+    /// [`SubmitError::Busy`] until the outcome of the job before has been polled;
+    /// [`SubmitError::TooLong`] above `T` bytes; [`SubmitError::Empty`] unless
     /// [`Config::allow_empty`].
-    pub fn send(&mut self, now: Instant, payload: &[u8]) -> Result<(), SendError> {
-        let too_long = SendError::TooLong {
+    pub fn submit(&mut self, now: Duration, payload: &[u8]) -> Result<(), SubmitError> {
+        let too_long = SubmitError::TooLong {
             len: payload.len(),
             capacity: T,
         };
-        if self.job != Job::None {
-            return Err(SendError::Busy);
+        if self.is_busy() {
+            return Err(SubmitError::Busy);
         }
         if payload.is_empty() && !self.config.allow_empty {
-            return Err(SendError::Empty);
+            return Err(SubmitError::Empty);
         }
         let len = u16::try_from(payload.len()).map_err(|_| too_long)?;
         self.tx
             .get_mut(..payload.len())
             .ok_or(too_long)?
             .copy_from_slice(payload);
-        if let Some(behind) = self.tx.get_mut(payload.len()) {
-            *behind = DLE; // where `Encoder::next_plain` stops
-        }
-        self.handle_timeout(now);
         self.tx_len = len;
-        self.job = Job::Open;
-        self.setup = 0;
-        self.transfer = 1;
-        self.first_cause = None;
-        self.flags.clear(Flag::YIELDED);
-        if self.state == State::Idle {
-            self.start_setup(now, Instant::ZERO);
+        self.handle_timeout(now);
+        self.job = Job {
+            state: JobState::Open,
+            transmission_attempts: 1,
+            ..Job::NONE
+        };
+        if self.is_idle() {
+            self.request(now, Burst::NONE);
         }
         Ok(())
     }
 
     /// Gives the job up; `false` when there is none to give up.
     ///
-    /// Its outcome is [`Event::Failed`](crate::Event::Failed) with [`Cause::Cancelled`] unless an error came before.
-    /// A transmission under way ends with NAK.
-    pub fn cancel(&mut self, now: Instant) -> bool {
+    /// Its outcome is [`Event::Failed`] with [`Cause::Cancelled`] unless an error came before. A
+    /// transmission under way ends with NAK.
+    pub fn cancel(&mut self, now: Duration) -> bool {
         self.handle_timeout(now);
-        if self.job != Job::Open {
-            return false;
+        let had_job = self.job.is_open();
+        if had_job {
+            self.end_job(now, Cause::Cancelled);
         }
-        self.end_job(now, Cause::Cancelled);
-        true
+        had_job
     }
 
     /// Takes a BREAK: the line is idle at once, a transmission under way fails.
-    pub fn handle_break(&mut self, now: Instant) {
+    pub fn handle_break(&mut self, now: Duration) {
         self.handle_timeout(now);
-        self.diagnose(Note::Break);
-        if self.state.is_job() {
+        self.notes.diagnosis(Note::Break);
+        if self.state.phase().is_some() {
             self.end_job(now, Cause::Break);
         } else {
             self.go_idle(now);
         }
     }
 
-    /// Takes characters from the line, in pieces of any size.
+    /// Takes characters from the line, in pieces of any size; returns how many.
     ///
-    /// Call [`poll_transmit`](Self::poll_transmit), [`poll_event`](Self::poll_event) and
-    /// [`poll_timeout`](Self::poll_timeout) afterwards.
-    pub fn handle_bytes(&mut self, now: Instant, bytes: &[u8]) {
+    /// Less than all only when they end a telegram: poll it, and call again with the rest. Whoever
+    /// calls again without having polled makes the partner wait.
+    #[must_use = "the characters after a telegram are not taken"]
+    pub fn handle_bytes(&mut self, now: Duration, bytes: &[u8]) -> usize {
+        let held_telegram = self.holds_telegram;
         let mut rest = bytes;
-        while !rest.is_empty() {
+        while let Some((&byte, after)) = rest.split_first() {
             self.handle_timeout(now);
-            rest = if self.state.is_receiving() {
-                self.receive_block(now, rest)
-            } else {
-                let Some((&byte, behind)) = rest.split_first() else {
-                    return;
-                };
-                self.character(now, byte, None);
-                behind
+            rest = match &self.state {
+                State::Receiving { .. } | State::Spoiled { .. } => {
+                    let taken = self.block_characters(now, rest);
+                    rest.get(taken..).unwrap_or_default()
+                }
+                // Of characters that are waited out the last one counts.
+                State::Noise { .. } | State::Interrupted { .. } => {
+                    self.await_silence(now);
+                    &[]
+                }
+                _ => {
+                    self.character(now, byte, None);
+                    after
+                }
             };
+            if self.holds_telegram && !held_telegram {
+                break;
+            }
         }
+        bytes.len() - rest.len()
     }
 
     /// Takes one character from the line, as an interrupt handler has it.
     #[inline]
-    pub fn handle_byte(&mut self, now: Instant, byte: u8) {
-        // One condition at a time: the compiler makes one branch of each, and nothing else.
-        if self.state != State::Receiving {
-            return self.handle_other_byte(now, byte);
-        }
-        if now >= self.deadline {
-            return self.handle_other_byte(now, byte);
-        }
-        if byte == DLE {
-            return self.handle_other_byte(now, byte);
-        }
-        if self.decoder.push_plain(byte, &mut self.rx) {
-            let zvz_us = u64::from(self.config.zvz_ms) * 1000;
-            self.deadline = now.plus_us_unchecked_end(zvz_us);
+    pub fn handle_byte(&mut self, now: Duration, byte: u8) {
+        // What nearly all characters are, first: one more byte of a good block, in time.
+        if let State::Receiving { block, gap_at } = &mut self.state
+            && now < *gap_at
+            && let Some(next_gap_at) = now.checked_add(self.zvz)
+            && block.push_data(byte, &mut self.rx)
+        {
+            *gap_at = next_gap_at;
         } else {
             self.handle_other_byte(now, byte);
         }
     }
 
-    /// Anything but one more data byte.
-    #[cold]
     #[inline(never)]
-    fn handle_other_byte(&mut self, now: Instant, byte: u8) {
-        self.handle_timeout(now);
-        self.character(now, byte, None);
+    fn handle_other_byte(&mut self, now: Duration, byte: u8) {
+        match self.state {
+            // A bad block is swallowed no slower than it must.
+            State::Spoiled {
+                gap_at, babble_at, ..
+            } if now < gap_at && now < babble_at => self.block_character(now, byte, None),
+            _ => {
+                self.handle_timeout(now);
+                self.character(now, byte, None);
+            }
+        }
     }
 
     /// Takes one character that came in damaged.
     ///
     /// In a block the error is noted and the block rejected at its end; in place of an answer it
     /// is a wrong answer; in idle it is noise.
-    pub fn handle_damaged(&mut self, now: Instant, byte: u8, error: LineError) {
+    pub fn handle_damaged(&mut self, now: Duration, byte: u8, error: LineError) {
         self.handle_timeout(now);
         self.character(now, byte, Some(error));
     }
 
-    /// Does what is due at `now`; nothing when nothing is.
-    #[inline]
-    pub fn handle_timeout(&mut self, now: Instant) {
-        if now >= self.deadline || self.state.has_other_due() {
-            self.handle_due(now);
-        }
-    }
-
-    fn handle_due(&mut self, now: Instant) {
-        if self.state == State::WaitBuffer && !self.flags.has(Flag::RX_FULL) {
-            self.invite(now);
-        } else if self.poll_timeout().is_some_and(|due| due <= now) {
-            match self.state {
-                State::Idle => {}
-                State::WaitBuffer
-                | State::Receiving
-                | State::ReceivingOther
-                | State::AwaitRepeat
-                | State::NoiseQuiet => {
-                    self.receive_timeout(now);
-                }
-                State::AwaitDle
-                | State::Sending
-                | State::SendingOther
-                | State::ResendQuiet
-                | State::AwaitAck => {
-                    self.transmit_timeout(now);
-                }
-            }
-        }
-    }
-
-    /// When [`handle_timeout`](Self::handle_timeout) must be called; an instant in the past means
-    /// at once, `None` means that only a push can change anything.
-    ///
-    /// Changes after every push, after [`poll_transmit`](Self::poll_transmit), and after
-    /// [`Event::Received`](crate::Event::Received) was polled.
+    /// The next event, in the order in which they happened.
     #[must_use]
-    pub fn poll_timeout(&self) -> Option<Instant> {
-        let due = match self.state {
-            State::Idle => return None,
-            State::WaitBuffer if !self.flags.has(Flag::RX_FULL) => Instant::ZERO,
-            State::Sending | State::SendingOther => self.limit.plus_ms(self.config.qvz_ms),
-            State::ReceivingOther | State::NoiseQuiet | State::ResendQuiet => {
-                self.deadline.min(self.limit)
+    pub fn poll_event(&mut self) -> Option<Event<'_>> {
+        let note = self.take_note()?;
+        Some(self.event(note))
+    }
+
+    /// Whether a telegram waits to be polled.
+    #[cfg(any(
+        feature = "embedded-io",
+        feature = "embedded-io-async",
+        feature = "serialport"
+    ))]
+    pub(crate) fn holds_telegram(&self) -> bool {
+        self.holds_telegram
+    }
+
+    /// The first half of [`poll_event`](Self::poll_event), for loops that end with an event.
+    pub(crate) fn take_note(&mut self) -> Option<Note> {
+        self.notes.pop()
+    }
+
+    /// The second half.
+    pub(crate) fn event(&mut self, note: Note) -> Event<'_> {
+        match note {
+            Note::Received { len } => {
+                self.holds_telegram = false;
+                Event::Received(self.rx.get(..usize::from(len)).unwrap_or_default())
             }
-            _ => self.deadline,
-        };
-        Some(due)
+            Note::Sent => {
+                self.job.state = JobState::None;
+                let len = usize::from(self.tx_len);
+                Event::Sent { len }
+            }
+            Note::Failed(failure) => {
+                self.job.state = JobState::None;
+                Event::Failed(failure)
+            }
+            Note::Rejected(rejection) => Event::Rejected(rejection),
+            Note::Abandoned(abandoned) => Event::Abandoned(abandoned),
+            Note::Conflict(in_a_row) => Event::Conflict { in_a_row },
+            Note::SamePriority => Event::SamePriority,
+            Note::Break => Event::Break,
+        }
     }
 
     const fn rules(&self) -> Rules {
@@ -379,34 +372,11 @@ impl<const N: usize, const T: usize> Station<N, T> {
         }
     }
 
-    /// One character, in any state.
-    fn character(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
-        match self.state {
-            State::Receiving | State::ReceivingOther => {
-                if error.is_some() {
-                    self.line_error = self.line_error.or(error);
-                }
-                self.receive_byte(now, byte);
-            }
-            State::Idle | State::AwaitRepeat => self.idle_character(now, byte, error),
-            State::WaitBuffer => self.waiting_character(now, byte, error),
-            State::NoiseQuiet | State::ResendQuiet => {
-                self.deadline = now.plus_ms(self.config.zvz_ms);
-            }
-            State::AwaitDle if self.flags.has(Flag::STX) => self.early_character(now, byte, error),
-            State::AwaitDle => self.setup_answer(now, byte, error),
-            State::Sending | State::SendingOther => self.interrupted(now, byte, error),
-            State::AwaitAck => self.block_answer(now, byte, error),
-        }
-    }
-
     /// The end of whatever was under way. A waiting job gets its turn.
-    fn go_idle(&mut self, now: Instant) {
+    fn go_idle(&mut self, now: Duration) {
         self.state = State::Idle;
-        self.deadline = Instant::NEVER;
-        self.limit = Instant::NEVER;
         self.rejections = 0;
-        if self.job == Job::Open {
+        if self.job.is_open() {
             self.resume(now);
         }
     }

@@ -1,9 +1,11 @@
 //! Mistakes of earlier implementations of 3964R, one test for each.
 #![cfg(test)]
 
+use core::time::Duration;
+
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, IdleNoise, Instant, Monitor, Phase, Priority,
-    Rejection, SendError, Side, Station, Transmit, Verdict, frame::FrameError,
+    Abandoned, Cause, Config, Event, Failure, IdleNoise, Line, Monitor, Phase, Priority, Rejection,
+    Side, Station, SubmitError, Transmit, Verdict, frame::FrameError,
 };
 
 const STX: u8 = 0x02;
@@ -11,15 +13,30 @@ const DLE: u8 = 0x10;
 const NAK: u8 = 0x15;
 
 fn low() -> Config {
-    Config::siemens_3964r(Priority::Low).with_nak_at_startup(false)
+    Config {
+        nak_at_startup: false,
+        ..Config::siemens_3964r(Priority::Low, Line::Instant)
+    }
 }
 
-fn ms(millis: u64) -> Instant {
-    Instant::from_millis(millis)
+fn ms(millis: u64) -> Duration {
+    Duration::from_millis(millis)
+}
+
+/// Takes all characters; telegrams in them wait to be polled.
+fn hear<const N: usize, const T: usize>(
+    station: &mut Station<N, T>,
+    now: Duration,
+    characters: &[u8],
+) {
+    let mut rest = characters;
+    while !rest.is_empty() {
+        rest = &rest[station.handle_bytes(now, rest)..];
+    }
 }
 
 /// What the station sends now, with the discards dropped.
-fn sent<const N: usize, const T: usize>(station: &mut Station<N, T>, now: Instant) -> Vec<u8> {
+fn sent<const N: usize, const T: usize>(station: &mut Station<N, T>, now: Duration) -> Vec<u8> {
     let mut all = Vec::new();
     let mut out = [0; 300];
     while let Some(transmit) = station.poll_transmit(now, &mut out) {
@@ -42,7 +59,7 @@ fn events<const N: usize, const T: usize>(station: &mut Station<N, T>) -> Vec<St
 /// A station that has sent the block of its job and awaits the answer, at 0 ms.
 fn after_block(payload: &[u8]) -> Station<64> {
     let mut station = Station::new(low());
-    station.send(ms(0), payload).unwrap();
+    station.submit(ms(0), payload).unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_byte(ms(0), DLE);
     assert!(!sent(&mut station, ms(0)).is_empty());
@@ -52,7 +69,7 @@ fn after_block(payload: &[u8]) -> Station<64> {
 #[test]
 fn m01_bcc_starts_again_with_the_stx_of_a_repeat() {
     let mut station = Station::<64>::new(low());
-    station.send(ms(0), &[0x55]).unwrap();
+    station.submit(ms(0), &[0x55]).unwrap();
     for _ in 0..3 {
         assert_eq!(sent(&mut station, ms(0)), [STX]);
         station.handle_byte(ms(0), DLE);
@@ -62,15 +79,19 @@ fn m01_bcc_starts_again_with_the_stx_of_a_repeat() {
     // And on the receiving side.
     let mut station = Station::<64>::new(low());
     for bcc in [0x00, 0x52] {
-        station.handle_bytes(ms(0), &[STX, 0x41, 0x10, 0x03, bcc]);
+        hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, bcc]);
     }
     assert_eq!(sent(&mut station, ms(0)), [DLE, NAK, DLE, DLE]);
 }
 
 #[test]
-fn m02_dle_in_front_of_anything_else_is_an_error() {
+fn m02_dle_before_anything_else_is_an_error() {
     let mut station = Station::<64>::new(low());
-    station.handle_bytes(ms(0), &[STX, 0x10, 0x41, 0x42, 0x10, 0x03, 0x10]);
+    hear(
+        &mut station,
+        ms(0),
+        &[STX, 0x10, 0x41, 0x42, 0x10, 0x03, 0x10],
+    );
     assert_eq!(sent(&mut station, ms(0)), [DLE, NAK]);
     assert_eq!(
         station.poll_event(),
@@ -91,11 +112,11 @@ fn m03_a_job_survives_a_collision_whatever_becomes_of_the_reception() {
     ];
     for (body, wait, answer) in cases {
         let mut station = Station::<64>::new(low());
-        station.send(ms(0), &[0x41]).unwrap();
+        station.submit(ms(0), &[0x41]).unwrap();
         assert_eq!(sent(&mut station, ms(0)), [STX]);
         station.handle_byte(ms(0), STX);
         assert_eq!(sent(&mut station, ms(0)), [DLE]);
-        station.handle_bytes(ms(0), body);
+        hear(&mut station, ms(0), body);
         if wait == 4000 {
             assert_eq!(sent(&mut station, ms(0)), [NAK]);
         }
@@ -112,7 +133,7 @@ fn m03_a_job_survives_a_collision_whatever_becomes_of_the_reception() {
 fn m04_the_receiver_gives_up_after_six_rejections() {
     let mut station = Station::<64>::new(low());
     for attempt in 1..=6 {
-        station.handle_bytes(ms(0), &[STX, 0x41, 0x10, 0x03, 0x00]);
+        hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, 0x00]);
         assert_eq!(sent(&mut station, ms(0)), [DLE, NAK]);
         let bad = Event::Rejected(Rejection::Frame(FrameError::Bcc {
             computed: 0x52,
@@ -128,7 +149,7 @@ fn m04_the_receiver_gives_up_after_six_rejections() {
 #[test]
 fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
     let mut station = Station::<64>::new(low());
-    station.send(ms(0), &[0x41]).unwrap();
+    station.submit(ms(0), &[0x41]).unwrap();
     let mut now = ms(0);
     while let Some(due) = station.poll_timeout() {
         assert!(due > now);
@@ -140,7 +161,7 @@ fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
     assert!(matches!(
         failure,
         Some(Event::Failed(Failure {
-            phase: Phase::Setup,
+            phase: Phase::Connection,
             cause: Cause::Stalled,
             attempts: 6,
             ..
@@ -148,7 +169,7 @@ fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
     ));
     // The same in the middle of the block.
     let mut station = Station::<64>::new(low());
-    station.send(ms(0), &[0x41]).unwrap();
+    station.submit(ms(0), &[0x41]).unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_byte(ms(0), DLE);
     assert_eq!(
@@ -167,7 +188,7 @@ fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
 #[test]
 fn m06_a_buffer_that_becomes_free_is_seen_at_once() {
     let mut station = Station::<64>::new(low());
-    station.handle_bytes(ms(0), &[STX, 0x41, 0x10, 0x03, 0x52]);
+    hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, 0x52]);
     assert_eq!(sent(&mut station, ms(0)), [DLE, DLE]);
     station.handle_byte(ms(10), STX);
     assert_eq!(sent(&mut station, ms(10)), []);
@@ -176,7 +197,7 @@ fn m06_a_buffer_that_becomes_free_is_seen_at_once() {
     assert!(station.poll_timeout().is_some_and(|due| due <= ms(10)));
     station.handle_timeout(ms(10));
     assert_eq!(sent(&mut station, ms(10)), [DLE]);
-    station.handle_bytes(ms(10), &[0x42, 0x10, 0x03, 0x51]);
+    hear(&mut station, ms(10), &[0x42, 0x10, 0x03, 0x51]);
     assert_eq!(station.poll_event(), Some(Event::Received(b"B")));
 }
 
@@ -187,11 +208,11 @@ fn m07_a_burst_of_garbage_costs_one_attempt() {
     let garbage = [0x55; 40];
     for piece in [1, 7, 40] {
         let mut station = Station::<64>::new(low());
-        station.send(ms(0), &[0x41]).unwrap();
+        station.submit(ms(0), &[0x41]).unwrap();
         assert_eq!(sent(&mut station, ms(0)), [STX]);
         let mut answers = Vec::new();
         for (time, bytes) in (1..).zip(garbage.chunks(piece)) {
-            station.handle_bytes(ms(time), bytes);
+            hear(&mut station, ms(time), bytes);
             answers.extend(sent(&mut station, ms(time)));
         }
         assert_eq!(answers, [STX], "pieces of {piece}");
@@ -200,7 +221,7 @@ fn m07_a_burst_of_garbage_costs_one_attempt() {
         // The same in place of the answer to the block.
         let mut answers = Vec::new();
         for (time, bytes) in (101..).zip(garbage.chunks(piece)) {
-            station.handle_bytes(ms(time), bytes);
+            hear(&mut station, ms(time), bytes);
             answers.extend(sent(&mut station, ms(time)));
         }
         assert_eq!(answers, [STX], "pieces of {piece}");
@@ -210,7 +231,7 @@ fn m07_a_burst_of_garbage_costs_one_attempt() {
 #[test]
 fn m07_garbage_after_a_pause_is_a_new_answer() {
     let mut station = Station::<64>::new(low());
-    station.send(ms(0), &[0x41]).unwrap();
+    station.submit(ms(0), &[0x41]).unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     for attempt in 2..=6 {
         station.handle_byte(ms(attempt * 220), 0x55);
@@ -225,7 +246,7 @@ fn m08_the_rest_of_an_aborted_block_is_discarded() {
     // (character, what follows) after two bytes of the block.
     for (byte, silence) in [(NAK, 0), (0x55, 220), (DLE, 220), (STX, 220)] {
         let mut station = Station::<64>::new(low());
-        station.send(ms(0), &[1, 2, 3, 4, 5, 6]).unwrap();
+        station.submit(ms(0), &[1, 2, 3, 4, 5, 6]).unwrap();
         assert_eq!(sent(&mut station, ms(0)), [STX]);
         station.handle_byte(ms(0), DLE);
         let mut two = [0; 2];
@@ -259,14 +280,19 @@ fn m08_the_rest_of_an_aborted_block_is_discarded() {
 /// The output was queued whole: the character time tells that the block is still going out.
 #[test]
 fn m08_a_nak_into_a_queued_block_discards_its_rest() {
-    let mut station = Station::<64>::new(low().with_line(9600, 11));
-    station.send(ms(0), &[0x41; 50]).unwrap();
+    let mut station = Station::<64>::new(Config {
+        line: Line::Paced {
+            character_ns: 1_146_000,
+        },
+        ..low()
+    });
+    station.submit(ms(0), &[0x41; 50]).unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_byte(ms(3), DLE);
     assert_eq!(sent(&mut station, ms(3)).len(), 53);
     assert_eq!(
         station.poll_timeout(),
-        Some(Instant::from_micros(3000 + 53 * 1146 + 2_000_000))
+        Some(Duration::from_micros(3000 + 53 * 1146 + 2_000_000))
     );
     station.handle_byte(ms(20), NAK);
     assert_eq!(
@@ -292,7 +318,11 @@ fn m09_every_character_restarts_the_character_delay() {
 #[test]
 fn m10_a_zero_byte_is_data() {
     let mut station = Station::<64>::new(low());
-    station.handle_bytes(ms(0), &[STX, 0x00, 0x41, 0x00, 0x10, 0x03, 0x52]);
+    hear(
+        &mut station,
+        ms(0),
+        &[STX, 0x00, 0x41, 0x00, 0x10, 0x03, 0x52],
+    );
     assert_eq!(
         station.poll_event(),
         Some(Event::Received(&[0x00, 0x41, 0x00]))
@@ -303,7 +333,7 @@ fn m10_a_zero_byte_is_data() {
 fn m11_a_wrong_bcc_is_answered_nak() {
     for bcc in (0..=255).filter(|&bcc| bcc != 0x52) {
         let mut station = Station::<64>::new(low());
-        station.handle_bytes(ms(0), &[STX, 0x41, 0x10, 0x03, bcc]);
+        hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, bcc]);
         assert_eq!(sent(&mut station, ms(0)), [DLE, NAK]);
         assert!(matches!(station.poll_event(), Some(Event::Rejected(_))));
         assert_eq!(station.poll_event(), None);
@@ -313,11 +343,15 @@ fn m11_a_wrong_bcc_is_answered_nak() {
 #[test]
 fn m12_the_bcc_covers_the_doubled_dle() {
     let mut station = Station::<64>::new(low());
-    station.send(ms(0), &[0x10]).unwrap();
+    station.submit(ms(0), &[0x10]).unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_byte(ms(0), DLE);
     assert_eq!(sent(&mut station, ms(0)), [0x10, 0x10, 0x10, 0x03, 0x13]);
-    station.handle_bytes(ms(0), &[DLE, STX, 0x10, 0x10, 0x10, 0x03, 0x03]);
+    hear(
+        &mut station,
+        ms(0),
+        &[DLE, STX, 0x10, 0x10, 0x10, 0x03, 0x03],
+    );
     assert!(
         events(&mut station)[1].starts_with("Rejected"),
         "03h would be the BCC of the undoubled data"
@@ -325,9 +359,13 @@ fn m12_the_bcc_covers_the_doubled_dle() {
 }
 
 #[test]
-fn m13_a_doubled_dle_in_front_of_03_is_data() {
+fn m13_a_doubled_dle_before_03_is_data() {
     let mut station = Station::<64>::new(low());
-    station.handle_bytes(ms(0), &[STX, 0x10, 0x10, 0x03, 0x41, 0x10, 0x03, 0x51]);
+    hear(
+        &mut station,
+        ms(0),
+        &[STX, 0x10, 0x10, 0x03, 0x41, 0x10, 0x03, 0x51],
+    );
     assert_eq!(
         station.poll_event(),
         Some(Event::Received(&[0x10, 0x03, 0x41]))
@@ -337,7 +375,11 @@ fn m13_a_doubled_dle_in_front_of_03_is_data() {
 #[test]
 fn m14_a_block_too_long_is_swallowed_to_its_end() {
     let mut station = Station::<4>::new(low());
-    station.handle_bytes(ms(0), &[STX, 1, 2, 3, 4, 5, STX, 0x41, 0x15, 0x10, 0x03]);
+    hear(
+        &mut station,
+        ms(0),
+        &[STX, 1, 2, 3, 4, 5, STX, 0x41, 0x15, 0x10, 0x03],
+    );
     assert_eq!(sent(&mut station, ms(0)), [DLE]);
     station.handle_byte(ms(0), 0x00);
     assert_eq!(sent(&mut station, ms(0)), [NAK]);
@@ -357,8 +399,11 @@ fn m15_a_nak_while_idle_is_never_answered() {
         IdleNoise::NakAtOnce,
         IdleNoise::Ignore,
     ] {
-        let mut station = Station::<64>::new(low().with_idle_noise(policy));
-        station.handle_bytes(ms(0), &[NAK; 20]);
+        let mut station = Station::<64>::new(Config {
+            idle_noise: policy,
+            ..low()
+        });
+        hear(&mut station, ms(0), &[NAK; 20]);
         assert_eq!(station.poll_timeout(), None);
         assert_eq!(sent(&mut station, ms(0)), []);
         assert_eq!(station.poll_event(), None);
@@ -368,19 +413,19 @@ fn m15_a_nak_while_idle_is_never_answered() {
 #[test]
 fn m16_every_state_but_idle_has_a_deadline() {
     let mut waiting_for_dle = Station::<64>::new(low());
-    waiting_for_dle.send(ms(0), b"A").unwrap();
+    waiting_for_dle.submit(ms(0), b"A").unwrap();
     let mut receiving = Station::<64>::new(low());
     receiving.handle_byte(ms(0), STX);
     let mut rejected = Station::<64>::new(low());
-    rejected.handle_bytes(ms(0), &[STX, 0x10, 0x03, 0x00]);
+    hear(&mut rejected, ms(0), &[STX, 0x10, 0x03, 0x00]);
     let mut no_buffer = Station::<64>::new(low());
-    no_buffer.handle_bytes(ms(0), &[STX, 0x10, 0x03, 0x13, STX]);
+    hear(&mut no_buffer, ms(0), &[STX, 0x10, 0x03, 0x13, STX]);
     let mut noise = Station::<64>::new(low());
     noise.handle_byte(ms(0), 0x41);
     let mut interrupted = Station::<64>::new(low());
-    interrupted.send(ms(0), b"A").unwrap();
+    interrupted.submit(ms(0), b"A").unwrap();
     assert_eq!(sent(&mut interrupted, ms(0)), [STX]);
-    interrupted.handle_bytes(ms(0), &[DLE, 0x41]);
+    hear(&mut interrupted, ms(0), &[DLE, 0x41]);
     for mut station in [
         after_block(b"A"),
         waiting_for_dle,
@@ -400,7 +445,7 @@ fn m16_every_state_but_idle_has_a_deadline() {
 
 #[test]
 fn m17_a_monitor_tells_why_the_link_does_not_come_up() {
-    let mut monitor = Monitor::<64>::new(Config::siemens_3964r(Priority::Low));
+    let mut monitor = Monitor::<64>::new(Config::siemens_3964r(Priority::Low, Line::Instant));
     for attempt in 0..6 {
         assert_eq!(
             monitor.handle_byte(ms(10 * attempt), Side::A, STX).count(),
@@ -428,8 +473,8 @@ fn m17_a_monitor_tells_why_the_link_does_not_come_up() {
 fn endless_input_does_not_hang() {
     for prefix in [&[STX, 0x10, 0x41][..], &[0x41], &[STX]] {
         let mut station = Station::<8>::new(low());
-        station.handle_bytes(ms(0), prefix);
-        station.send(ms(0), b"job").unwrap();
+        hear(&mut station, ms(0), prefix);
+        station.submit(ms(0), b"job").unwrap();
         let end = (1..200_000_u64).step_by(10).find(|&time| {
             if station.poll_timeout().is_some_and(|due| due <= ms(time)) {
                 station.handle_timeout(ms(time));
@@ -447,8 +492,11 @@ fn endless_input_does_not_hang() {
 #[test]
 fn same_priority_is_reported() {
     // Two high ones: STX against STX, again and again.
-    let mut high = Station::<8>::new(low().with_priority(Priority::High));
-    high.send(ms(0), b"A").unwrap();
+    let mut high = Station::<8>::new(Config {
+        priority: Priority::High,
+        ..low()
+    });
+    high.submit(ms(0), b"A").unwrap();
     for attempt in 0..2 {
         high.handle_timeout(ms(2000 * attempt));
         assert_eq!(sent(&mut high, ms(2000 * attempt)), [STX]);
@@ -457,21 +505,21 @@ fn same_priority_is_reported() {
     assert_eq!(
         events(&mut high),
         [
-            "Collision { in_a_row: 1 }",
-            "Collision { in_a_row: 2 }",
+            "Conflict { in_a_row: 1 }",
+            "Conflict { in_a_row: 2 }",
             "SamePriority"
         ]
     );
     // Two low ones: DLE against DLE.
     let mut station = Station::<8>::new(low());
-    station.send(ms(0), b"A").unwrap();
+    station.submit(ms(0), b"A").unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
-    station.handle_bytes(ms(0), &[STX, DLE]);
+    hear(&mut station, ms(0), &[STX, DLE]);
     station.handle_timeout(ms(220));
     assert_eq!(
         events(&mut station),
         [
-            "Collision { in_a_row: 1 }",
+            "Conflict { in_a_row: 1 }",
             "SamePriority",
             "Rejected(CharacterDelay)"
         ]
@@ -480,25 +528,28 @@ fn same_priority_is_reported() {
 
 #[test]
 fn wrong_jobs_are_named() {
-    let mut station = Station::<8, 4>::with_buffers(low().with_allow_empty(false));
+    let mut station = Station::<8, 4>::with_buffers(Config {
+        allow_empty: false,
+        ..low()
+    });
     assert_eq!(
-        station.send(ms(0), b"12345"),
-        Err(SendError::TooLong {
+        station.submit(ms(0), b"12345"),
+        Err(SubmitError::TooLong {
             len: 5,
             capacity: 4
         })
     );
-    assert_eq!(station.send(ms(0), b""), Err(SendError::Empty));
-    assert_eq!(station.send(ms(0), b"1234"), Ok(()));
-    assert_eq!(station.send(ms(0), b"1"), Err(SendError::Busy));
+    assert_eq!(station.submit(ms(0), b""), Err(SubmitError::Empty));
+    assert_eq!(station.submit(ms(0), b"1234"), Ok(()));
+    assert_eq!(station.submit(ms(0), b"1"), Err(SubmitError::Busy));
     assert!(station.cancel(ms(0)));
     assert!(!station.cancel(ms(0)));
     assert_eq!(
         events(&mut station),
-        ["Failed(Failure { phase: Setup, cause: Cancelled, attempts: 1 })"]
+        ["Failed(Failure { phase: Connection, cause: Cancelled, attempts: 1 })"]
     );
     assert_eq!(sent(&mut station, ms(0)), [NAK]);
-    assert!(station.can_send());
+    assert!(!station.is_busy());
 }
 
 #[test]
@@ -509,11 +560,11 @@ fn break_ends_a_transmission_and_a_reception() {
         events(&mut station),
         [
             "Break",
-            "Failed(Failure { phase: Transfer, cause: Break, attempts: 1 })"
+            "Failed(Failure { phase: Transmission, cause: Break, attempts: 1 })"
         ]
     );
     let mut station = Station::<8>::new(low());
-    station.handle_bytes(ms(0), &[STX, 0x41]);
+    hear(&mut station, ms(0), &[STX, 0x41]);
     station.handle_break(ms(1));
     assert!(station.is_idle());
     assert_eq!(events(&mut station), ["Break"]);

@@ -15,7 +15,7 @@ use std::{
     time::Instant as Clock,
 };
 
-use proto3964r::{Config, Event, Priority, serialport::Driver};
+use proto3964r::{Config, Event, Line, Priority, serialport::Driver};
 use serialport::{SerialPort as _, TTYPort};
 
 const COUNT: usize = 200;
@@ -91,8 +91,8 @@ fn exchange(config: Config, arguments: &[&str]) {
     let (mut sent, mut received) = (0, Vec::new());
     let begin = Clock::now();
     while sent < COUNT || received.len() < COUNT {
-        if sent < COUNT && line.station_mut().can_send() {
-            line.send(&telegram(0x00, sent)).unwrap();
+        if sent < COUNT && !line.is_busy() {
+            line.submit(&telegram(0x00, sent)).unwrap();
         }
         match line.wait(Duration::from_secs(1)).unwrap() {
             Some(Event::Received(payload)) => {
@@ -151,7 +151,7 @@ fn exchange(config: Config, arguments: &[&str]) {
 #[test]
 fn station_low_peer_high() {
     exchange(
-        Config::siemens_3964r(Priority::Low),
+        Config::siemens_3964r(Priority::Low, Line::Instant),
         &["--priority", "high"],
     );
 }
@@ -159,14 +159,17 @@ fn station_low_peer_high() {
 #[test]
 fn station_high_peer_low() {
     exchange(
-        Config::siemens_3964r(Priority::High),
+        Config::siemens_3964r(Priority::High, Line::Instant),
         &["--priority", "low"],
     );
 }
 
 #[test]
 fn without_bcc() {
-    let config = Config::siemens_3964(Priority::High).with_nak_at_startup(false);
+    let config = Config {
+        nak_at_startup: false,
+        ..Config::siemens_3964(Priority::High, Line::Instant)
+    };
     exchange(
         config,
         &[

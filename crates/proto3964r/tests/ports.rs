@@ -7,6 +7,7 @@
 )]
 
 use core::{
+    convert::Infallible,
     future::Future,
     pin::pin,
     task::{Context, Poll, Waker},
@@ -19,7 +20,7 @@ use std::{
 };
 
 use proto3964r::{
-    Config, Event, Instant, Priority, Station, embedded_io as blocking,
+    Config, Event, Line, Priority, Station, embedded_io as blocking,
     embedded_io_async as asynchronous, serialport::Driver,
 };
 use serialport::{SerialPort, TTYPort};
@@ -38,7 +39,7 @@ fn telegram(number: u8) -> Vec<u8> {
 }
 
 fn config(priority: Priority) -> Config {
-    Config::siemens_3964r(priority)
+    Config::siemens_3964r(priority, Line::Instant)
 }
 
 /// What one end has done so far.
@@ -80,8 +81,8 @@ fn partner(port: TTYPort) -> thread::JoinHandle<()> {
         let mut ledger = Ledger::default();
         let begin = Clock::now();
         loop {
-            if let Some(telegram) = ledger.next().filter(|_| line.station_mut().can_send()) {
-                line.send(&telegram).unwrap();
+            if let Some(telegram) = ledger.next().filter(|_| !line.is_busy()) {
+                line.submit(&telegram).unwrap();
             }
             match line.wait(Duration::from_secs(1)).unwrap() {
                 Some(event) => ledger.enter(event),
@@ -106,8 +107,8 @@ fn serialport_both_ways() {
     let mut ledger = Ledger::default();
     let begin = Clock::now();
     while !ledger.is_complete() {
-        if let Some(telegram) = ledger.next().filter(|_| line.station_mut().can_send()) {
-            line.send(&telegram).unwrap();
+        if let Some(telegram) = ledger.next().filter(|_| !line.is_busy()) {
+            line.submit(&telegram).unwrap();
         }
         if let Some(event) = line.wait(Duration::from_secs(1)).unwrap() {
             ledger.enter(event);
@@ -187,11 +188,11 @@ fn embedded_io_both_ways() {
     let other = partner(there);
     let epoch = Clock::now();
     let station = Station::<64>::new(config(Priority::Low));
-    let mut line = blocking::Driver::new(station, Port(here), || Instant::ZERO + epoch.elapsed());
+    let mut line = blocking::Driver::new(station, Port(here), || epoch.elapsed());
     let mut ledger = Ledger::default();
     while !ledger.is_complete() {
-        if let Some(telegram) = ledger.next().filter(|_| line.station_mut().can_send()) {
-            line.send(&telegram).unwrap();
+        if let Some(telegram) = ledger.next().filter(|_| !line.is_busy()) {
+            line.submit(&telegram).unwrap();
         }
         ledger.enter(line.wait().unwrap());
         assert!(epoch.elapsed() < PATIENCE);
@@ -200,15 +201,126 @@ fn embedded_io_both_ways() {
     other.join().unwrap();
 }
 
+/// Two telegrams that an adapter handed on in one piece.
+const BOTH: [u8; 10] = [0x02, 0x41, 0x10, 0x03, 0x52, 0x02, 0x42, 0x10, 0x03, 0x51];
+const ANSWERS: [u8; 4] = [0x10; 4];
+
+/// Hands on all that has come in at once, and keeps what is written.
+#[derive(Default)]
+struct Canned {
+    input: Vec<u8>,
+    output: Vec<u8>,
+}
+
+impl embedded_io::ErrorType for Canned {
+    type Error = Infallible;
+}
+
+impl embedded_io::ReadReady for Canned {
+    fn read_ready(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.input.is_empty())
+    }
+}
+
+impl embedded_io::Read for Canned {
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize, Infallible> {
+        let len = self.input.len();
+        for (to, from) in buffer.iter_mut().zip(self.input.drain(..)) {
+            *to = from;
+        }
+        Ok(len)
+    }
+}
+
+impl embedded_io::Write for Canned {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        self.output.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+impl embedded_io_async::Read for Canned {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, Infallible> {
+        if self.input.is_empty() {
+            core::future::pending::<()>().await;
+        }
+        embedded_io::Read::read(self, buffer)
+    }
+}
+
+impl embedded_io_async::Write for Canned {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        embedded_io::Write::write(self, bytes)
+    }
+
+    async fn flush(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+fn silent() -> Config {
+    Config {
+        nak_at_startup: false,
+        ..config(Priority::Low)
+    }
+}
+
+#[test]
+fn embedded_io_gives_both_telegrams_of_one_read() {
+    let port = Canned {
+        input: BOTH.to_vec(),
+        output: vec![],
+    };
+    let mut line = blocking::Driver::new(Station::<64>::new(silent()), port, || Duration::ZERO);
+    assert_eq!(line.wait().unwrap(), Event::Received(b"A"));
+    assert_eq!(line.wait().unwrap(), Event::Received(b"B"));
+    line.step().unwrap();
+    assert_eq!(line.port_mut().output, ANSWERS);
+}
+
+#[test]
+fn embedded_io_async_gives_both_telegrams_of_one_read() {
+    let reader = Canned {
+        input: BOTH.to_vec(),
+        output: vec![],
+    };
+    let timer = SystemTimer(Clock::now());
+    let station = Station::<64>::new(silent());
+    let mut line = asynchronous::Driver::new(station, reader, Canned::default(), timer);
+    block_on(async {
+        assert_eq!(line.wait().await.unwrap(), Event::Received(b"A"));
+        assert_eq!(line.wait().await.unwrap(), Event::Received(b"B"));
+    });
+}
+
+#[test]
+fn serialport_gives_both_telegrams_of_one_read() {
+    let (here, mut there) = TTYPort::pair().expect("a pseudo-terminal");
+    let mut line = Driver::<64>::new(Box::new(here), silent()).unwrap();
+    there.write_all(&BOTH).unwrap();
+    let patience = Duration::from_secs(5);
+    assert_eq!(line.wait(patience).unwrap(), Some(Event::Received(b"A")));
+    assert_eq!(line.wait(patience).unwrap(), Some(Event::Received(b"B")));
+    assert_eq!(line.wait(Duration::ZERO).unwrap(), None);
+    let mut answers = [0; ANSWERS.len()];
+    there.set_timeout(patience).unwrap();
+    there.read_exact(&mut answers).unwrap();
+    assert_eq!(answers, ANSWERS);
+}
+
 struct SystemTimer(Clock);
 
 impl asynchronous::Timer for SystemTimer {
-    fn now(&mut self) -> Instant {
-        Instant::ZERO + self.0.elapsed()
+    fn now(&mut self) -> Duration {
+        self.0.elapsed()
     }
 
-    async fn sleep_until(&mut self, instant: Instant) {
-        core::future::poll_fn(|_| match self.now() < instant {
+    async fn sleep_until(&mut self, time: Duration) {
+        core::future::poll_fn(|_| match self.now() < time {
             true => Poll::Pending,
             false => Poll::Ready(()),
         })
@@ -242,8 +354,8 @@ fn embedded_io_async_both_ways() {
     let begin = Clock::now();
     block_on(async {
         while !ledger.is_complete() {
-            if let Some(telegram) = ledger.next().filter(|_| line.station_mut().can_send()) {
-                line.send(&telegram).unwrap();
+            if let Some(telegram) = ledger.next().filter(|_| !line.is_busy()) {
+                line.submit(&telegram).unwrap();
             }
             ledger.enter(line.wait().await.unwrap());
             assert!(begin.elapsed() < PATIENCE);

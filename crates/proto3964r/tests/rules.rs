@@ -1,31 +1,49 @@
 //! Rules that the documentation states and that neither the vectors nor the mistakes touch.
 #![cfg(test)]
 
+use core::time::Duration;
+
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, Instant, Phase, Priority, Rejection, Station,
-    Transmit,
+    Abandoned, Cause, Config, Event, Failure, Line, Phase, Priority, Rejection, Station, Transmit,
 };
 
 const STX: u8 = 0x02;
 const DLE: u8 = 0x10;
 const NAK: u8 = 0x15;
+/// Of 11 bits at 9600 bit/s.
+const CHARACTER: Duration = Duration::from_nanos(1_145_833);
 
 fn low() -> Config {
-    Config::siemens_3964r(Priority::Low).with_nak_at_startup(false)
+    Config {
+        nak_at_startup: false,
+        ..Config::siemens_3964r(Priority::Low, Line::Instant)
+    }
 }
 
-fn ms(millis: u64) -> Instant {
-    Instant::from_millis(millis)
+fn ms(millis: u64) -> Duration {
+    Duration::from_millis(millis)
 }
 
-fn sent(station: &mut Station<16>, now: Instant) -> Vec<u8> {
+/// Takes all characters; telegrams in them wait to be polled.
+fn hear<const N: usize, const T: usize>(
+    station: &mut Station<N, T>,
+    now: Duration,
+    characters: &[u8],
+) {
+    let mut rest = characters;
+    while !rest.is_empty() {
+        rest = &rest[station.handle_bytes(now, rest)..];
+    }
+}
+
+fn sent(station: &mut Station<16>, now: Duration) -> Vec<u8> {
     core::iter::from_fn(|| station.poll_transmit_byte(now)).collect()
 }
 
 #[test]
 fn nak_at_startup_comes_before_anything_else() {
-    let mut station = Station::<16>::new(Config::siemens_3964r(Priority::Low));
-    station.send(ms(0), b"A").unwrap();
+    let mut station = Station::<16>::new(Config::siemens_3964r(Priority::Low, Line::Instant));
+    station.submit(ms(0), b"A").unwrap();
     assert_eq!(sent(&mut station, ms(0)), [NAK, STX]);
 }
 
@@ -33,7 +51,7 @@ fn nak_at_startup_comes_before_anything_else() {
 #[test]
 fn a_late_dle_counts_while_the_next_stx_is_not_out() {
     let mut station = Station::<16>::new(low());
-    station.send(ms(0), b"A").unwrap();
+    station.submit(ms(0), b"A").unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_timeout(ms(2000));
     station.handle_byte(ms(2000), DLE);
@@ -43,8 +61,11 @@ fn a_late_dle_counts_while_the_next_stx_is_not_out() {
 /// Siemens' error 0706h.
 #[test]
 fn a_dle_into_the_block_waits_for_silence() {
-    let mut station = Station::<16>::new(low().with_transfer_attempts(1));
-    station.send(ms(0), b"AB").unwrap();
+    let mut station = Station::<16>::new(Config {
+        transmission_attempts: 1,
+        ..low()
+    });
+    station.submit(ms(0), b"AB").unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_byte(ms(1), DLE);
     for character in [0x41, 0x42, DLE, 0x03] {
@@ -59,16 +80,26 @@ fn a_dle_into_the_block_waits_for_silence() {
     let Some(Event::Failed(Failure { phase, cause, .. })) = station.poll_event() else {
         panic!("the job has failed");
     };
-    assert_eq!((phase, cause), (Phase::Transfer, Cause::Unexpected(DLE)));
+    assert_eq!(
+        (phase, cause),
+        (Phase::Transmission, Cause::Unexpected(DLE))
+    );
 }
 
 #[test]
 fn a_foreign_character_into_a_queued_block_waits_for_silence() {
-    let mut station = Station::<16>::new(low().with_line(9600, 11));
-    station.send(ms(0), b"ABCDEFGHIJKLMNOP").unwrap();
+    let mut station = Station::<16>::new(Config {
+        line: Line::paced(9600, 11),
+        ..low()
+    });
+    station.submit(ms(0), b"ABCDEFGHIJKLMNOP").unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
     station.handle_byte(ms(3), DLE);
-    assert_eq!(sent(&mut station, ms(3)).len(), 19);
+    let mut block = [0; 24];
+    let Some(Transmit::Bytes(block)) = station.poll_transmit(ms(3), &mut block) else {
+        panic!("the block");
+    };
+    assert_eq!(block.len(), 19);
     station.handle_byte(ms(10), 0x55); // 19 characters take 21.8 ms
     assert_eq!(
         station.poll_transmit(ms(10), &mut [0; 9]),
@@ -84,7 +115,7 @@ fn a_series_of_rejections_ends_with_the_wait_for_its_repeat() {
     let mut station = Station::<16>::new(low());
     let bad = [STX, 0x41, 0x10, 0x03, 0x00];
     for _ in 0..5 {
-        station.handle_bytes(ms(0), &bad);
+        hear(&mut station, ms(0), &bad);
     }
     while station.poll_event().is_some() {}
     station.handle_timeout(ms(4000));
@@ -92,7 +123,7 @@ fn a_series_of_rejections_ends_with_the_wait_for_its_repeat() {
         station.poll_event(),
         Some(Event::Abandoned(Abandoned::NoRepeat))
     );
-    station.handle_bytes(ms(4000), &bad);
+    hear(&mut station, ms(4000), &bad);
     assert!(matches!(
         station.poll_event(),
         Some(Event::Rejected(Rejection::Frame(_)))
@@ -107,11 +138,11 @@ fn times_run_from_the_hand_over() {
     station.handle_byte(ms(0), STX);
     assert_eq!(sent(&mut station, ms(100)), [DLE]);
     assert_eq!(station.poll_timeout(), Some(ms(320)));
-    station.handle_bytes(ms(200), &[0x41, 0x10, 0x03, 0x00]);
+    hear(&mut station, ms(200), &[0x41, 0x10, 0x03, 0x00]);
     assert_eq!(sent(&mut station, ms(300)), [NAK]);
     assert_eq!(station.poll_timeout(), Some(ms(4300)));
     let mut station = Station::<16>::new(low());
-    station.send(ms(0), b"A").unwrap();
+    station.submit(ms(0), b"A").unwrap();
     assert_eq!(sent(&mut station, ms(70)), [STX]);
     assert_eq!(station.poll_timeout(), Some(ms(2070)));
 }
@@ -119,9 +150,9 @@ fn times_run_from_the_hand_over() {
 #[test]
 fn nak_ends_the_wait_for_a_buffer() {
     let mut station = Station::<16>::new(low());
-    station.handle_bytes(ms(0), &[STX, 0x41, 0x10, 0x03, 0x52]);
+    hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, 0x52]);
     assert_eq!(sent(&mut station, ms(0)), [DLE, DLE]);
-    station.handle_bytes(ms(1), &[STX, NAK]);
+    hear(&mut station, ms(1), &[STX, NAK]);
     assert!(station.is_idle());
     // A second STX does not prolong the wait of the first.
     station.handle_byte(ms(10), STX);
@@ -133,7 +164,7 @@ fn nak_ends_the_wait_for_a_buffer() {
 #[test]
 fn asking_first_and_delivering_nothing_costs_attempts() {
     let mut station = Station::<16>::new(low());
-    station.send(ms(0), b"A").unwrap();
+    station.submit(ms(0), b"A").unwrap();
     let mut now = 0;
     for _ in 0..6 {
         station.handle_byte(ms(now), STX);
@@ -152,20 +183,48 @@ fn asking_first_and_delivering_nothing_costs_attempts() {
             last = Some((phase, cause, attempts));
         }
     }
-    assert_eq!(last, Some((Phase::Setup, Cause::Collision, 6)));
+    assert_eq!(last, Some((Phase::Connection, Cause::Conflict, 6)));
 }
 
+/// Earlier than one and a half characters after STX: it left the partner before STX was there.
 #[test]
 fn an_answer_sooner_than_the_line_allows_is_none() {
-    let config = low().with_line(9600, 11).with_ignore_early_answers(true);
-    for (byte, answer) in [(NAK, &[][..]), (0x55, &[]), (DLE, &[])] {
-        let mut station = Station::<16>::new(config);
-        station.send(ms(0), b"A").unwrap();
-        assert_eq!(sent(&mut station, ms(0)), [STX]);
-        station.handle_byte(Instant::from_micros(2 * 1146 - 1), byte);
-        assert_eq!(sent(&mut station, ms(3)), answer);
-        station.handle_byte(Instant::from_micros(2 * 1146), DLE);
-        assert_eq!(sent(&mut station, ms(3)), [0x41, 0x10, 0x03, 0x52]);
+    let earliest = CHARACTER + CHARACTER / 2;
+    for line in [Line::paced(9600, 11), Line::buffered(9600, 11)] {
+        for byte in [NAK, 0x55, DLE] {
+            let mut station = Station::<16>::new(Config { line, ..low() });
+            station.submit(ms(0), b"A").unwrap();
+            assert_eq!(sent(&mut station, ms(0)), [STX]);
+            station.handle_byte(earliest - Duration::from_nanos(1), byte);
+            assert_eq!(sent(&mut station, ms(3)), []);
+            station.handle_byte(earliest, DLE);
+            assert_eq!(sent(&mut station, ms(3)), [0x41, 0x10, 0x03, 0x52]);
+        }
+    }
+}
+
+/// Both UARTs report a character in the middle of its stop bit, and both baud rates are 3 % fast:
+/// that soon DLE is the answer to STX, and to the block.
+#[test]
+fn an_answer_as_soon_as_a_uart_reports_it_counts() {
+    for payload in [1, 20, 250] {
+        for (line, bits) in [(Line::paced(9600, 11), 11), (Line::paced(115_200, 10), 10)] {
+            let mut station = Station::<250>::new(Config { line, ..low() });
+            let baud = if bits == 11 { 9600 } else { 115_200 };
+            let after = |bits: u64| Duration::from_nanos(bits * 1_000_000_000 / baud) * 100 / 103;
+            station.submit(ms(0), &[0x41; 250][..payload]).unwrap();
+            assert_eq!(station.poll_transmit_byte(ms(0)), Some(STX));
+            let answer = after(2 * bits - 1);
+            station.handle_byte(answer, DLE);
+            let mut out = [0; 300];
+            let block = station.poll_transmit(answer, &mut out);
+            let Some(Transmit::Bytes(block)) = block else {
+                panic!("{block:?} after DLE");
+            };
+            let len = u64::try_from(block.len()).unwrap();
+            station.handle_byte(answer + after((len + 1) * bits - 1), DLE);
+            assert_eq!(station.poll_event(), Some(Event::Sent { len: payload }));
+        }
     }
 }
 
@@ -173,13 +232,13 @@ fn an_answer_sooner_than_the_line_allows_is_none() {
 #[test]
 fn a_character_delay_of_zero_counts_as_one_millisecond() {
     let block = [0x41, 0x10, 0x03, 0x52];
-    let mut whole = Station::<16>::new(low().with_zvz_ms(0));
-    let mut single = Station::<16>::new(low().with_zvz_ms(0));
+    let mut whole = Station::<16>::new(Config { zvz_ms: 0, ..low() });
+    let mut single = Station::<16>::new(Config { zvz_ms: 0, ..low() });
     for station in [&mut whole, &mut single] {
         station.handle_byte(ms(0), STX);
         assert_eq!(sent(station, ms(0)), [DLE]);
     }
-    whole.handle_bytes(ms(0), &block);
+    hear(&mut whole, ms(0), &block);
     for byte in block {
         single.handle_byte(ms(0), byte);
     }

@@ -1,8 +1,10 @@
 //! Every byte-level vector of `tests/data/vectors.txt`, each as a test of its own: characters with their times, and events with their times, must be exactly those.
 #![cfg(test)]
 
+use core::time::Duration;
+
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, Instant, LineError, Priority, Rejection, Station,
+    Abandoned, Cause, Config, Event, Failure, Line, LineError, Phase, Priority, Rejection, Station,
     Transmit, frame::FrameError,
 };
 
@@ -74,12 +76,15 @@ impl<const N: usize> Bench<N> {
             Priority::Low
         };
         let config = if configuration.contains("3964") {
-            Config::siemens_3964(priority)
+            Config::siemens_3964(priority, Line::Instant)
         } else {
-            Config::siemens_3964r(priority)
+            Config::siemens_3964r(priority, Line::Instant)
         };
         let mut bench = Self {
-            station: Station::new(config.with_nak_at_startup(false)),
+            station: Station::new(Config {
+                nak_at_startup: false,
+                ..config
+            }),
             now_ms: 0,
             hold_events: false,
             record: Record::default(),
@@ -93,13 +98,17 @@ impl<const N: usize> Bench<N> {
         bench
     }
 
-    fn now(&self) -> Instant {
-        Instant::from_millis(self.now_ms)
+    fn now(&self) -> Duration {
+        Duration::from_millis(self.now_ms)
     }
 
     fn receive(&mut self, bytes: &[u8]) {
-        self.station.handle_bytes(self.now(), bytes);
-        self.pull();
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let taken = self.station.handle_bytes(self.now(), rest);
+            rest = &rest[taken..];
+            self.pull();
+        }
     }
 
     fn pull(&mut self) {
@@ -125,9 +134,11 @@ impl<const N: usize> Bench<N> {
         while let Some(due) = self
             .station
             .poll_timeout()
-            .filter(|&due| due <= Instant::from_millis(end))
+            .filter(|&due| due <= Duration::from_millis(end))
         {
-            self.now_ms = self.now_ms.max(due.as_micros().div_ceil(1000));
+            self.now_ms = self
+                .now_ms
+                .max(u64::try_from(due.as_nanos().div_ceil(1_000_000)).unwrap());
             self.station.handle_timeout(self.now());
             self.pull();
         }
@@ -148,7 +159,7 @@ impl<const N: usize> Bench<N> {
                 }
             } else if let Some(text) = stimulus.strip_prefix("send(") {
                 self.station
-                    .send(self.now(), &payload(text.trim_end_matches(')')))
+                    .submit(self.now(), &payload(text.trim_end_matches(')')))
                     .unwrap();
                 self.pull();
             } else if let Some(ms) = stimulus.strip_prefix('+') {
@@ -183,11 +194,17 @@ fn name(event: Event<'_>) -> Option<String> {
         Event::Received([]) => "Received(empty)".to_owned(),
         Event::Received(payload) => format!("Received({})", hex(payload)),
         Event::Sent { len } => format!("Sent({len})"),
-        Event::Failed(Failure { phase, cause, .. }) => match cause {
-            Cause::Timeout => format!("SendFailed({phase}:QVZ)"),
-            Cause::Nak => format!("SendFailed({phase}:NAK)"),
-            _ => format!("SendFailed({phase}:{cause})"),
-        },
+        Event::Failed(Failure { phase, cause, .. }) => {
+            let phase = match phase {
+                Phase::Connection => "setup",
+                Phase::Transmission => "transfer",
+            };
+            match cause {
+                Cause::Timeout => format!("SendFailed({phase}:QVZ)"),
+                Cause::Nak => format!("SendFailed({phase}:NAK)"),
+                _ => format!("SendFailed({phase}:{cause})"),
+            }
+        }
         Event::Rejected(rejection) => match rejection {
             Rejection::Frame(FrameError::Bcc { .. }) => "RxError(bcc)",
             Rejection::Frame(FrameError::IllegalDle { .. }) => "RxError(dle)",
@@ -200,7 +217,7 @@ fn name(event: Event<'_>) -> Option<String> {
         }
         .to_owned(),
         Event::Abandoned(Abandoned::NoRepeat) => "ReceiveFailed(BWZ)".to_owned(),
-        Event::Collision { .. } | Event::SamePriority => return None,
+        Event::Conflict { .. } | Event::SamePriority => return None,
         other => format!("{other:?}"),
     })
 }

@@ -4,31 +4,6 @@ use core::fmt;
 
 use thiserror::Error;
 
-/// What the length of an area counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(
-    clippy::exhaustive_enums,
-    reason = "RK512 knows bytes and words, no more"
-)]
-pub enum Unit {
-    /// One byte.
-    Byte,
-    /// One word: two bytes, high byte first.
-    Word,
-}
-
-impl Unit {
-    /// Bytes in one unit.
-    #[must_use]
-    pub const fn bytes(self) -> usize {
-        match self {
-            Self::Byte => 1,
-            Self::Word => 2,
-        }
-    }
-}
-
 /// The kind of a memory area: byte 4 of a FETCH command.
 ///
 /// | kind | code | unit of length |
@@ -76,7 +51,7 @@ pub enum AreaKind {
 
 impl AreaKind {
     /// Every kind, in the order of the table.
-    pub const ALL: [Self; 10] = [
+    const ALL: [Self; 10] = [
         Self::DataBlock,
         Self::ExtendedDataBlock,
         Self::Inputs,
@@ -112,12 +87,12 @@ impl AreaKind {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
     }
 
-    /// What lengths in this area count.
+    /// Bytes in one unit of length: 1 where lengths count bytes, 2 where they count words.
     #[must_use]
-    pub const fn unit(self) -> Unit {
+    pub const fn bytes_per_unit(self) -> usize {
         match self {
-            Self::Inputs | Self::Outputs | Self::Flags | Self::Peripheral => Unit::Byte,
-            _ => Unit::Word,
+            Self::Inputs | Self::Outputs | Self::Flags | Self::Peripheral => 1,
+            _ => 2,
         }
     }
 
@@ -125,8 +100,7 @@ impl AreaKind {
     ///
     /// It is the block's number in DB and DX. For S5 absolute addresses and system data the
     /// sources do not describe it: any value passes.
-    #[must_use]
-    pub const fn has_number(self) -> bool {
+    const fn has_number(self) -> bool {
         matches!(
             self,
             Self::DataBlock | Self::ExtendedDataBlock | Self::Absolute | Self::System
@@ -181,7 +155,7 @@ impl Area {
     /// A place of any kind.
     ///
     /// # Errors
-    /// [`AreaError`] if `number` is not 0 and the kind [has none](AreaKind::has_number).
+    /// [`AreaError`] if `number` is not 0 and the kind has none.
     pub const fn new(kind: AreaKind, number: u8, start: u8) -> Result<Self, AreaError> {
         if number != 0 && !kind.has_number() {
             return Err(AreaError { kind, number });

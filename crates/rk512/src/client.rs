@@ -7,12 +7,10 @@ use core::time::Duration;
 
 pub use outcome::{JobError, Outcome, SubmitError};
 
-use crate::area::Area;
 use crate::command::{Command, Continuation};
 use crate::config::Config;
 use crate::reaction::{Reaction, ReactionFault};
 use crate::telegram::{Part, Telegram};
-use crate::time::Instant;
 
 #[derive(Clone, Copy, Debug)]
 struct Job {
@@ -28,7 +26,7 @@ enum Step {
     /// The transport has it.
     Transfer,
     /// It is delivered, its reaction is due.
-    Reaction { deadline: Instant },
+    Reaction { deadline: Duration },
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -50,8 +48,8 @@ enum State {
 ///
 /// # Contract
 /// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),
-/// [`poll_outcome`](Self::poll_outcome), [`poll_timeout`](Self::poll_timeout). A poll too many
-/// does nothing. [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only
+/// [`poll_event`](Self::poll_event), [`poll_timeout`](Self::poll_timeout). A poll too many
+/// does nothing. Times are `Duration`s since an epoch of the caller and must not run backwards. [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only
 /// delays.
 ///
 /// Each telegram that `poll_transmit` returns is one block for the transport, which answers
@@ -67,7 +65,7 @@ pub struct Client<const N: usize> {
     /// The transport has a telegram, of this job or of a cancelled one.
     in_transfer: bool,
     /// No telegram before then: the pause after the last reaction.
-    pause_until: Option<Instant>,
+    pause_until: Option<Duration>,
     dropped: u32,
 }
 
@@ -85,33 +83,11 @@ impl<const N: usize> Client<N> {
         }
     }
 
-    /// Starts a SEND: writes `data` (words, high byte first) to a DB or DX.
+    /// Starts a job; `data` are those of a SEND (words, high byte first), empty for a FETCH.
     ///
     /// # Errors
     /// [`SubmitError`]; the running job goes on.
-    pub fn send(&mut self, area: Area, data: &[u8]) -> Result<Command, SubmitError> {
-        let len = data.len();
-        let words = u16::try_from(len / 2)
-            .ok()
-            .filter(|&words| words != 0 && len.is_multiple_of(2))
-            .ok_or(SubmitError::NotWords { len })?;
-        self.submit(Command::send(area, words)?, data)
-    }
-
-    /// Starts a FETCH: reads `length` units (words or bytes, as the area counts).
-    ///
-    /// # Errors
-    /// [`SubmitError`]; the running job goes on.
-    pub fn fetch(&mut self, area: Area, length: u16) -> Result<Command, SubmitError> {
-        self.submit(Command::fetch(area, length)?, &[])
-    }
-
-    /// Starts any job, for example one with a [`Coordination`](crate::Coordination) flag; `data`
-    /// are those of a SEND, empty for a FETCH. Returns the command, as its outcome will.
-    ///
-    /// # Errors
-    /// [`SubmitError`]; the running job goes on.
-    pub fn submit(&mut self, command: Command, data: &[u8]) -> Result<Command, SubmitError> {
+    pub fn submit(&mut self, command: Command, data: &[u8]) -> Result<(), SubmitError> {
         if !matches!(self.state, State::Idle) {
             return Err(SubmitError::Busy);
         }
@@ -131,13 +107,13 @@ impl<const N: usize> Client<N> {
             job: Job { command, done: 0 },
             step: Step::Ready,
         };
-        Ok(command)
+        Ok(())
     }
 
     /// Gives the running job up; its outcome is [`JobError::Cancelled`]. Without one, does nothing.
     ///
     /// A telegram that the transport has stays there: the next job waits for its report.
-    pub fn cancel(&mut self, now: Instant) {
+    pub fn cancel(&mut self, now: Duration) {
         if let State::Running { job, step } = self.state {
             if matches!(step, Step::Reaction { .. }) {
                 self.pause(now, self.config.resync);
@@ -153,8 +129,7 @@ impl<const N: usize> Client<N> {
     }
 
     /// Whether a reaction is due.
-    #[must_use]
-    pub const fn awaits_reaction(&self) -> bool {
+    pub(crate) const fn awaits_reaction(&self) -> bool {
         matches!(
             self.state,
             State::Running {
@@ -186,7 +161,7 @@ impl<const N: usize> Client<N> {
 
     /// The next telegram for the transport, if it is time for one.
     #[must_use]
-    pub fn poll_transmit(&mut self, now: Instant) -> Option<Telegram> {
+    pub fn poll_transmit(&mut self, now: Duration) -> Option<Telegram> {
         self.handle_timeout(now);
         let State::Running { job, step } = &mut self.state else {
             return None;
@@ -212,14 +187,14 @@ impl<const N: usize> Client<N> {
     }
 
     /// The transport delivered the telegram.
-    pub fn handle_delivered(&mut self, now: Instant) {
+    pub fn handle_delivered(&mut self, now: Duration) {
         if !self.in_transfer {
             return;
         }
         self.in_transfer = false;
         match &mut self.state {
             State::Running { step, .. } if matches!(step, Step::Transfer) => {
-                let deadline = now + self.config.reaction_time;
+                let deadline = now.saturating_add(self.config.reaction_time);
                 *step = Step::Reaction { deadline };
             }
             // The telegram of a cancelled job: its reaction is to come and to be dropped.
@@ -228,7 +203,7 @@ impl<const N: usize> Client<N> {
     }
 
     /// The transport gave the telegram up; it may have arrived all the same.
-    pub fn handle_failed(&mut self, now: Instant) {
+    pub fn handle_failed(&mut self, now: Duration) {
         if !self.in_transfer {
             return;
         }
@@ -242,7 +217,7 @@ impl<const N: usize> Client<N> {
     }
 
     /// A block came from the partner.
-    pub fn handle_block(&mut self, now: Instant, block: &[u8]) {
+    pub fn handle_block(&mut self, now: Duration, block: &[u8]) {
         let State::Running {
             mut job,
             step: Step::Reaction { .. },
@@ -274,7 +249,7 @@ impl<const N: usize> Client<N> {
     }
 
     /// Time has passed.
-    pub fn handle_timeout(&mut self, now: Instant) {
+    pub fn handle_timeout(&mut self, now: Duration) {
         self.pause_until = self.pause_until.filter(|&until| now < until);
         if let State::Running { job, step } = self.state
             && let Step::Reaction { deadline } = step
@@ -288,7 +263,7 @@ impl<const N: usize> Client<N> {
     /// When [`handle_timeout`](Self::handle_timeout) and then
     /// [`poll_transmit`](Self::poll_transmit) are due next; it may lie in the past.
     #[must_use]
-    pub fn poll_timeout(&self) -> Option<Instant> {
+    pub fn poll_timeout(&self) -> Option<Duration> {
         match self.state {
             State::Running { step, .. } => match step {
                 Step::Ready if !self.in_transfer => self.pause_until,
@@ -301,7 +276,7 @@ impl<const N: usize> Client<N> {
 
     /// How the job ended, once; then the client takes the next.
     #[must_use]
-    pub fn poll_outcome(&mut self) -> Option<Outcome<'_>> {
+    pub fn poll_event(&mut self) -> Option<Outcome<'_>> {
         let State::Ended { job, result } = self.state else {
             return None;
         };
@@ -321,9 +296,9 @@ impl<const N: usize> Client<N> {
         })
     }
 
-    fn pause(&mut self, now: Instant, time: Duration) {
+    fn pause(&mut self, now: Duration, time: Duration) {
         if !time.is_zero() {
-            self.pause_until = Some(now + time);
+            self.pause_until = Some(now.saturating_add(time));
         }
     }
 

@@ -31,8 +31,7 @@ pub enum Request {
 
 impl Request {
     /// Bytes 3 and 4.
-    #[must_use]
-    pub const fn codes(self) -> [u8; 2] {
+    pub(crate) const fn codes(self) -> [u8; 2] {
         match self {
             Self::SendDb => *b"AD",
             Self::SendDx => *b"OD",
@@ -41,11 +40,7 @@ impl Request {
     }
 
     /// What bytes 3 and 4 say.
-    ///
-    /// # Errors
-    /// [`CommandError::Request`] for byte 3, [`CommandError::AreaKind`] or
-    /// [`CommandError::SendSource`] for byte 4.
-    pub fn from_codes([request, kind]: [u8; 2]) -> Result<Self, CommandError> {
+    fn from_codes([request, kind]: [u8; 2]) -> Result<Self, CommandError> {
         let send = match request {
             b'A' => Self::SendDb,
             b'O' => Self::SendDx,
@@ -79,7 +74,7 @@ impl Request {
 /// | 3, 4 | [`Request`] |
 /// | 5 | number of the DB or DX, else 0 |
 /// | 6 | first data word, byte, timer or counter |
-/// | 7, 8 | length of the whole job, high byte first, in the area's [`Unit`](crate::Unit) |
+/// | 7, 8 | length of the whole job, high byte first, in words or bytes, as the area counts |
 /// | 9, 10 | [`Coordination`] |
 ///
 /// Source: Siemens help for S7-300/400 point-to-point; CP 341 manual.
@@ -168,13 +163,13 @@ impl Command {
     /// Length of the whole job in bytes.
     #[must_use]
     pub fn byte_len(self) -> usize {
-        usize::from(self.length).saturating_mul(self.area.kind().unit().bytes())
+        usize::from(self.length).saturating_mul(self.area.kind().bytes_per_unit())
     }
 
     /// Where the job starts, in bytes from the start of its block or area.
     #[must_use]
     pub fn byte_start(self) -> usize {
-        usize::from(self.area.start()) * self.area.kind().unit().bytes()
+        usize::from(self.area.start()) * self.area.kind().bytes_per_unit()
     }
 
     /// User data that go with the telegram after `done` bytes have moved.
@@ -192,8 +187,7 @@ impl Command {
     }
 
     /// The header.
-    #[must_use]
-    pub const fn encode(self) -> [u8; COMMAND_HEADER] {
+    const fn encode(self) -> [u8; COMMAND_HEADER] {
         let [request, kind] = self.request.codes();
         let [high, low] = self.length.to_be_bytes();
         let [flag, nibbles] = self.coordination.encode();
@@ -217,7 +211,7 @@ impl Command {
         Telegram::new(self.encode(), data)
     }
 
-    /// Decodes and checks a first telegram; returns the data behind the header.
+    /// Decodes and checks a first telegram; returns the data after the header.
     ///
     /// # Errors
     /// [`CommandError`] names the byte, the value, and the reaction that it earns.
@@ -311,8 +305,7 @@ impl Continuation {
     }
 
     /// The header.
-    #[must_use]
-    pub const fn encode(self) -> [u8; SHORT_HEADER] {
+    const fn encode(self) -> [u8; SHORT_HEADER] {
         let [request, kind] = self.request.codes();
         [Part::Continuation.code(), 0, request, kind]
     }
@@ -325,7 +318,7 @@ impl Continuation {
         Telegram::new(self.encode(), data)
     }
 
-    /// Decodes a continuation; returns the data behind the header.
+    /// Decodes a continuation; returns the data after the header.
     ///
     /// Whether it continues anything, only the [`Server`](crate::Server) knows.
     ///

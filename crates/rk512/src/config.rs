@@ -4,12 +4,26 @@ use core::time::Duration;
 
 /// Times that a client or server keeps.
 ///
+/// Begin with the defaults, change what differs:
+/// ```
+/// use core::time::Duration;
+/// use rk512::Config;
+///
+/// const CONFIG: Config = Config {
+///     reaction_time: Config::reaction_time_for(9600),
+///     ..Config::DEFAULT
+/// };
+/// assert_eq!(CONFIG.reaction_time, Duration::from_secs(5));
+/// ```
 /// RK512 numbers nothing: a reaction that comes twice or too late looks like the one that is due
 /// now. Two times keep them apart: [`quiet`](Self::quiet) and [`resync`](Self::resync).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "plain settings, to be written as a literal on top of the defaults"
+)]
 pub struct Config {
     /// Client: from the delivery of a command to its reaction, at most. Siemens: 20 s, or
     /// [by baud rate](Self::reaction_time_for). WAGO's default is 500 ms.
@@ -19,10 +33,10 @@ pub struct Config {
     ///
     /// For transports that repeat a telegram whose acknowledgement was lost (3964R does) to a
     /// partner that does not [take it back](crate::Endpoint::wants_recall); then longer than such
-    /// a repeat takes. On 3964R that is three times QVZ.
+    /// a repeat takes. On 3964R that is three times the acknowledgement delay time (QVZ).
     pub quiet: Duration,
     /// Client: pause after a job that ended without its reaction; a late reaction that comes in it
-    /// is dropped. 2 s by default, as long as a 3964R partner waits for an answer (QVZ).
+    /// is dropped. 2 s by default, as long as a 3964R partner waits for an answer.
     pub resync: Duration,
     /// Server: from the delivery of a reaction to the continuation, at most; then the job is given
     /// up. 20 s by default, as the client's time.
@@ -55,34 +69,6 @@ impl Config {
             1200..38_400 => 5,
             38_400.. => 3,
         })
-    }
-
-    /// The same with another [`reaction_time`](Self::reaction_time).
-    #[must_use]
-    pub const fn with_reaction_time(mut self, time: Duration) -> Self {
-        self.reaction_time = time;
-        self
-    }
-
-    /// The same with another [`quiet`](Self::quiet) time.
-    #[must_use]
-    pub const fn with_quiet(mut self, time: Duration) -> Self {
-        self.quiet = time;
-        self
-    }
-
-    /// The same with another [`resync`](Self::resync) time.
-    #[must_use]
-    pub const fn with_resync(mut self, time: Duration) -> Self {
-        self.resync = time;
-        self
-    }
-
-    /// The same with another [`continuation_time`](Self::continuation_time).
-    #[must_use]
-    pub const fn with_continuation_time(mut self, time: Duration) -> Self {
-        self.continuation_time = time;
-        self
     }
 }
 

@@ -25,8 +25,7 @@ pub enum Cpu {
 
 impl Cpu {
     /// The CPU's number, 1 to 4.
-    #[must_use]
-    pub const fn number(self) -> u8 {
+    const fn number(self) -> u8 {
         match self {
             Self::One => 1,
             Self::Two => 2,
@@ -36,8 +35,7 @@ impl Cpu {
     }
 
     /// The CPU with that number, if it is 1 to 4.
-    #[must_use]
-    pub const fn from_number(number: u8) -> Option<Self> {
+    const fn from_number(number: u8) -> Option<Self> {
         match number {
             1 => Some(Self::One),
             2 => Some(Self::Two),
@@ -101,12 +99,6 @@ impl CoordinationFlag {
         self.byte
     }
 
-    /// Number of the bit in it.
-    #[must_use]
-    pub const fn bit(self) -> u8 {
-        self.bit
-    }
-
     /// The byte in which this flag alone is set.
     #[must_use]
     pub const fn mask(self) -> u8 {
@@ -152,14 +144,13 @@ pub struct Coordination {
 
 impl Coordination {
     /// Neither flag nor CPU.
-    pub const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         flag: None,
         cpu: None,
     };
 
     /// Bytes 9 and 10.
-    #[must_use]
-    pub const fn encode(self) -> [u8; 2] {
+    pub(crate) const fn encode(self) -> [u8; 2] {
         let (byte, bit) = match self.flag {
             Some(flag) => (flag.byte, flag.bit),
             None => (NO_FLAG, NO_NIBBLE),
@@ -172,11 +163,8 @@ impl Coordination {
         [byte, cpu << 4 | bit]
     }
 
-    /// What bytes 9 and 10 say.
-    ///
-    /// # Errors
-    /// [`CoordinationError`] for pairs outside the table.
-    pub const fn decode([byte, nibbles]: [u8; 2]) -> Result<Self, CoordinationError> {
+    /// What bytes 9 and 10 say; [`CoordinationError`] for pairs outside the table.
+    pub(crate) const fn decode([byte, nibbles]: [u8; 2]) -> Result<Self, CoordinationError> {
         let (cpu, bit) = (nibbles >> 4, nibbles & 0x0F);
         let flag = if byte == NO_FLAG && bit == NO_NIBBLE {
             None
@@ -212,5 +200,51 @@ impl From<Cpu> for Coordination {
             flag: None,
             cpu: Some(cpu),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordination_follows_the_nibble_rules() {
+        let flag = Some(CoordinationFlag::new(20, 3).unwrap());
+        let cpu = Some(Cpu::Two);
+        let table = [
+            (Coordination::NONE, [0xFF, 0xFF]),
+            (Coordination { flag, cpu: None }, [20, 0x03]),
+            (Coordination { flag: None, cpu }, [0xFF, 0x2F]),
+            (Coordination { flag, cpu }, [20, 0x23]),
+        ];
+        for (coordination, bytes) in table {
+            assert_eq!(coordination.encode(), bytes);
+            assert_eq!(Coordination::decode(bytes), Ok(coordination));
+        }
+    }
+
+    #[test]
+    fn coordination_accepts_exactly_what_it_encodes() {
+        let mut accepted = 0;
+        for bytes in (0..=u16::MAX).map(u16::to_be_bytes) {
+            if let Ok(coordination) = Coordination::decode(bytes) {
+                assert_eq!(coordination.encode(), bytes);
+                accepted += 1;
+            }
+        }
+        // 255 flag bytes of 8 bits or no flag, each with one of four CPUs or none.
+        assert_eq!(accepted, (255 * 8 + 1) * 5);
+    }
+
+    #[test]
+    fn wrong_coordination_names_the_bytes() {
+        let flag = |byte, bit| Err(CoordinationError::Flag { byte, bit });
+        assert_eq!(Coordination::decode([0xFF, 0x03]), flag(0xFF, 3));
+        assert_eq!(Coordination::decode([20, 0x08]), flag(20, 8));
+        assert_eq!(Coordination::decode([20, 0x0F]), flag(20, 0x0F));
+        let cpu = |nibble| Err(CoordinationError::Cpu { nibble });
+        assert_eq!(Coordination::decode([20, 0x53]), cpu(5));
+        assert_eq!(Coordination::decode([20, 0xF3]), cpu(0xF));
+        assert_eq!(Coordination::decode([0xFF, 0x0F]), cpu(0));
     }
 }

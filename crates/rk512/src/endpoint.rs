@@ -1,18 +1,29 @@
 //! Client and server on one line.
 
-use crate::area::Area;
+use core::time::Duration;
+
 use crate::client::{Client, Outcome, SubmitError};
 use crate::command::Command;
 use crate::config::Config;
 use crate::server::{Server, ServerEvent};
 use crate::source::DataSource;
 use crate::telegram::{SHORT_HEADER, Telegram, is_reaction};
-use crate::time::Instant;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Client,
     Server,
+}
+
+/// What an endpoint reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_enums, reason = "the line has two sides")]
+pub enum Event<'a> {
+    /// How the own job ended.
+    Own(Outcome<'a>),
+    /// What became of the partner's command.
+    Partner(ServerEvent),
 }
 
 /// Client and server on one line: the quasi-duplex case, in which the partner's command may come
@@ -26,8 +37,8 @@ enum Side {
 ///
 /// # Contract
 /// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),
-/// [`poll_outcome`](Self::poll_outcome), [`poll_event`](Self::poll_event),
-/// [`poll_timeout`](Self::poll_timeout). A poll too many does nothing.
+/// [`poll_event`](Self::poll_event), [`poll_timeout`](Self::poll_timeout). A poll too many does
+/// nothing.
 /// [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only delays.
 ///
 /// Each telegram that `poll_transmit` returns is one block for the transport, which answers
@@ -53,50 +64,28 @@ impl<const N: usize> Endpoint<N> {
         }
     }
 
-    /// The own commands.
-    #[must_use]
-    pub const fn client(&self) -> &Client<N> {
-        &self.client
-    }
-
-    /// The partner's commands.
-    #[must_use]
-    pub const fn server(&self) -> &Server {
-        &self.server
-    }
-
-    /// Starts a SEND; see [`Client::send`].
+    /// Starts a job of one's own; see [`Client::submit`].
     ///
     /// # Errors
     /// [`SubmitError`]; the running job goes on.
-    pub fn send(&mut self, area: Area, data: &[u8]) -> Result<Command, SubmitError> {
-        self.client.send(area, data)
-    }
-
-    /// Starts a FETCH; see [`Client::fetch`].
-    ///
-    /// # Errors
-    /// [`SubmitError`]; the running job goes on.
-    pub fn fetch(&mut self, area: Area, length: u16) -> Result<Command, SubmitError> {
-        self.client.fetch(area, length)
-    }
-
-    /// Starts any job; see [`Client::submit`].
-    ///
-    /// # Errors
-    /// [`SubmitError`]; the running job goes on.
-    pub fn submit(&mut self, command: Command, data: &[u8]) -> Result<Command, SubmitError> {
+    pub fn submit(&mut self, command: Command, data: &[u8]) -> Result<(), SubmitError> {
         self.client.submit(command, data)
     }
 
+    /// Whether an own job runs or its outcome waits to be polled.
+    #[must_use]
+    pub const fn is_busy(&self) -> bool {
+        self.client.is_busy()
+    }
+
     /// Gives the own job up; see [`Client::cancel`].
-    pub fn cancel(&mut self, now: Instant) {
+    pub fn cancel(&mut self, now: Duration) {
         self.client.cancel(now);
     }
 
     /// The next telegram for the transport, if it is time for one.
     #[must_use]
-    pub fn poll_transmit(&mut self, now: Instant) -> Option<Telegram> {
+    pub fn poll_transmit(&mut self, now: Duration) -> Option<Telegram> {
         if self.in_transfer.is_some() {
             return None;
         }
@@ -120,7 +109,7 @@ impl<const N: usize> Endpoint<N> {
     }
 
     /// The transport delivered the telegram.
-    pub fn handle_delivered(&mut self, now: Instant) {
+    pub fn handle_delivered(&mut self, now: Duration) {
         match self.in_transfer.take() {
             Some(Side::Client) => self.client.handle_delivered(now),
             Some(Side::Server) => self.server.handle_delivered(now),
@@ -129,7 +118,7 @@ impl<const N: usize> Endpoint<N> {
     }
 
     /// The transport gave the telegram up; it may have arrived all the same.
-    pub fn handle_failed<D: DataSource + ?Sized>(&mut self, now: Instant, source: &mut D) {
+    pub fn handle_failed<D: DataSource + ?Sized>(&mut self, now: Duration, source: &mut D) {
         match self.in_transfer.take() {
             Some(Side::Client) => self.client.handle_failed(now),
             Some(Side::Server) => self.server.handle_failed(source),
@@ -142,7 +131,7 @@ impl<const N: usize> Endpoint<N> {
     /// One that is too short to tell goes to the client if a reaction is due, else to the server.
     pub fn handle_block<D: DataSource + ?Sized>(
         &mut self,
-        now: Instant,
+        now: Duration,
         block: &[u8],
         source: &mut D,
     ) {
@@ -155,7 +144,7 @@ impl<const N: usize> Endpoint<N> {
     }
 
     /// Time has passed.
-    pub fn handle_timeout<D: DataSource + ?Sized>(&mut self, now: Instant, source: &mut D) {
+    pub fn handle_timeout<D: DataSource + ?Sized>(&mut self, now: Duration, source: &mut D) {
         self.client.handle_timeout(now);
         self.server.handle_timeout(now, source);
     }
@@ -163,20 +152,18 @@ impl<const N: usize> Endpoint<N> {
     /// When [`handle_timeout`](Self::handle_timeout) and then
     /// [`poll_transmit`](Self::poll_transmit) are due next; it may lie in the past.
     #[must_use]
-    pub fn poll_timeout(&self) -> Option<Instant> {
+    pub fn poll_timeout(&self) -> Option<Duration> {
         let (client, server) = (self.client.poll_timeout(), self.server.poll_timeout());
         client.into_iter().chain(server).min()
     }
 
-    /// How the own job ended, once.
+    /// How the own job ended, or what became of the partner's commands, once; see
+    /// [`Server::poll_event`] for the latter.
     #[must_use]
-    pub fn poll_outcome(&mut self) -> Option<Outcome<'_>> {
-        self.client.poll_outcome()
-    }
-
-    /// What became of the partner's commands; see [`Server::poll_event`].
-    #[must_use]
-    pub const fn poll_event(&mut self) -> Option<ServerEvent> {
-        self.server.poll_event()
+    pub fn poll_event(&mut self) -> Option<Event<'_>> {
+        match self.server.poll_event() {
+            Some(event) => Some(Event::Partner(event)),
+            None => self.client.poll_event().map(Event::Own),
+        }
     }
 }

@@ -13,24 +13,21 @@ mod config;
 mod coordination;
 mod endpoint;
 mod memory;
+mod message;
 mod reaction;
 mod server;
 mod source;
 mod telegram;
-mod time;
 
-pub use area::{Area, AreaError, AreaKind, Unit};
+pub use area::{Area, AreaError, AreaKind};
 pub use client::{Client, JobError, Outcome, SubmitError};
 pub use command::{Command, CommandError, Continuation, Request, RequestError};
 pub use config::Config;
 pub use coordination::{Coordination, CoordinationError, CoordinationFlag, Cpu};
-pub use endpoint::Endpoint;
+pub use endpoint::{Endpoint, Event};
 pub use memory::{DataBlock, Memory};
+pub use message::{DecodeError, Message};
 pub use reaction::{Reaction, ReactionError, ReactionFault};
 pub use server::{AbandonCause, Server, ServerEvent};
 pub use source::DataSource;
-pub use telegram::{
-    COMMAND_HEADER, DecodeError, EncodeError, MAX_DATA, MAX_TELEGRAM, Message, Part, SHORT_HEADER,
-    Telegram,
-};
-pub use time::Instant;
+pub use telegram::{EncodeError, MAX_DATA, MAX_TELEGRAM, Part, Telegram};

@@ -40,6 +40,15 @@ impl<'a> DataBlock<'a> {
 
 /// Memory of a simulated PLC with `B` data blocks, all over the caller's bytes.
 ///
+/// ```
+/// use rk512::{DataBlock, Memory};
+///
+/// let (mut db5, mut flags) = ([0; 200], [0; 32]);
+/// let plc = Memory {
+///     flags: &mut flags,
+///     ..Memory::new([DataBlock::db(5, &mut db5)])
+/// };
+/// ```
 /// It refuses what a PLC refuses: a missing block or one that is too short (14h), an area that it
 /// does not have (12h), a set coordination flag (32h), one outside its flags (0Ah). When a job's
 /// data have moved it sets the job's coordination flag. CPU numbers are ignored.
@@ -47,17 +56,27 @@ impl<'a> DataBlock<'a> {
 /// A SEND of more than 128 bytes is visible from its first telegram on, whether or not the rest
 /// comes.
 #[derive(Debug)]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "the areas of a PLC, to be written as a literal on top of none"
+)]
 pub struct Memory<'a, const B: usize> {
-    blocks: [DataBlock<'a>; B],
-    inputs: &'a mut [u8],
-    outputs: &'a mut [u8],
-    flags: &'a mut [u8],
-    timers: &'a mut [u8],
-    counters: &'a mut [u8],
+    /// Data blocks; of two with the same number the first counts.
+    pub blocks: [DataBlock<'a>; B],
+    /// Inputs.
+    pub inputs: &'a mut [u8],
+    /// Outputs.
+    pub outputs: &'a mut [u8],
+    /// Flags; coordination flags are among them.
+    pub flags: &'a mut [u8],
+    /// Timers, two bytes each.
+    pub timers: &'a mut [u8],
+    /// Counters, two bytes each.
+    pub counters: &'a mut [u8],
 }
 
 impl<'a, const B: usize> Memory<'a, B> {
-    /// Memory with data blocks alone; of two with the same number the first counts.
+    /// Memory with data blocks alone.
     #[must_use]
     pub const fn new(blocks: [DataBlock<'a>; B]) -> Self {
         Self {
@@ -70,44 +89,8 @@ impl<'a, const B: usize> Memory<'a, B> {
         }
     }
 
-    /// The same with inputs.
-    #[must_use]
-    pub const fn with_inputs(mut self, bytes: &'a mut [u8]) -> Self {
-        self.inputs = bytes;
-        self
-    }
-
-    /// The same with outputs.
-    #[must_use]
-    pub const fn with_outputs(mut self, bytes: &'a mut [u8]) -> Self {
-        self.outputs = bytes;
-        self
-    }
-
-    /// The same with flags; coordination flags are among them.
-    #[must_use]
-    pub const fn with_flags(mut self, bytes: &'a mut [u8]) -> Self {
-        self.flags = bytes;
-        self
-    }
-
-    /// The same with timers, two bytes each.
-    #[must_use]
-    pub const fn with_timers(mut self, bytes: &'a mut [u8]) -> Self {
-        self.timers = bytes;
-        self
-    }
-
-    /// The same with counters, two bytes each.
-    #[must_use]
-    pub const fn with_counters(mut self, bytes: &'a mut [u8]) -> Self {
-        self.counters = bytes;
-        self
-    }
-
     /// The bytes of an area; `number` is that of a DB or DX, else 0. `None` if there is no such.
-    #[must_use]
-    pub fn bytes(&mut self, kind: AreaKind, number: u8) -> Option<&mut [u8]> {
+    fn bytes(&mut self, kind: AreaKind, number: u8) -> Option<&mut [u8]> {
         let bytes: &mut [u8] = match kind {
             AreaKind::Inputs => self.inputs,
             AreaKind::Outputs => self.outputs,
@@ -134,7 +117,7 @@ impl<'a, const B: usize> Memory<'a, B> {
         self.bytes(area.kind(), area.number()).ok_or(missing)
     }
 
-    /// What stands `offset` bytes behind the start of the job.
+    /// What stands `offset` bytes after the start of the job.
     fn place(
         &mut self,
         command: &Command,
@@ -157,8 +140,7 @@ impl<'a, const B: usize> Memory<'a, B> {
 
 impl<const B: usize> DataSource for Memory<'_, B> {
     fn size(&mut self, command: &Command) -> Result<usize, ReactionError> {
-        let unit = command.area().kind().unit();
-        Ok(self.area(command)?.len() / unit.bytes())
+        Ok(self.area(command)?.len() / command.area().kind().bytes_per_unit())
     }
 
     fn open(&mut self, command: &Command) -> Result<(), ReactionError> {

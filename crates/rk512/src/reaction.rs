@@ -162,7 +162,7 @@ pub enum ReactionFault {
     /// A SEND reaction came with data.
     #[error("SEND reaction with {len} bytes of data")]
     SendWithData {
-        /// Bytes behind the header.
+        /// Bytes after the header.
         len: usize,
     },
 }
@@ -200,8 +200,7 @@ pub struct Reaction {
 
 impl Reaction {
     /// The header.
-    #[must_use]
-    pub const fn encode(self) -> [u8; SHORT_HEADER] {
+    pub(crate) const fn encode(self) -> [u8; SHORT_HEADER] {
         let code = match self.result {
             Ok(()) => 0,
             Err(error) => error.code(),
@@ -217,7 +216,7 @@ impl Reaction {
         Telegram::new(self.encode(), data)
     }
 
-    /// Decodes a reaction; returns the data behind the header.
+    /// Decodes a reaction; returns the data after the header.
     ///
     /// # Errors
     /// [`ReactionFault`] names the byte and its value.

@@ -1,11 +1,12 @@
 //! The side that answers.
 
+use core::time::Duration;
+
 use crate::command::{Command, CommandError, Continuation};
 use crate::config::Config;
 use crate::reaction::Reaction;
 use crate::source::DataSource;
 use crate::telegram::{Part, SHORT_HEADER, Telegram, is_continuation};
-use crate::time::Instant;
 
 /// Why a job that had begun was given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +64,7 @@ pub struct Server {
     config: Config,
     job: Option<Job>,
     /// The job ends then; set while a continuation is due.
-    deadline: Option<Instant>,
+    deadline: Option<Duration>,
     reaction: Option<Telegram>,
     in_transfer: bool,
     event: Option<ServerEvent>,
@@ -90,8 +91,7 @@ impl Server {
     }
 
     /// Whether a reaction waits for the transport or for the transport's report.
-    #[must_use]
-    pub const fn owes_reaction(&self) -> bool {
+    const fn owes_reaction(&self) -> bool {
         self.reaction.is_some() || self.in_transfer
     }
 
@@ -116,12 +116,13 @@ impl Server {
     }
 
     /// The transport delivered the reaction.
-    pub fn handle_delivered(&mut self, now: Instant) {
+    pub fn handle_delivered(&mut self, now: Duration) {
         if !self.in_transfer {
             return;
         }
         self.in_transfer = false;
-        self.deadline = self.job.map(|_| now + self.config.continuation_time);
+        let deadline = now.saturating_add(self.config.continuation_time);
+        self.deadline = self.job.map(|_| deadline);
     }
 
     /// The transport gave the reaction up: the partner will not go on.
@@ -162,7 +163,7 @@ impl Server {
     }
 
     /// Time has passed.
-    pub fn handle_timeout<D: DataSource + ?Sized>(&mut self, now: Instant, source: &mut D) {
+    pub fn handle_timeout<D: DataSource + ?Sized>(&mut self, now: Duration, source: &mut D) {
         if self.deadline.is_some_and(|deadline| deadline <= now) {
             self.abandon(source, AbandonCause::NoContinuation);
         }
@@ -170,7 +171,7 @@ impl Server {
 
     /// When [`handle_timeout`](Self::handle_timeout) is due next.
     #[must_use]
-    pub const fn poll_timeout(&self) -> Option<Instant> {
+    pub const fn poll_timeout(&self) -> Option<Duration> {
         self.deadline
     }
 

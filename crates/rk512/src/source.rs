@@ -31,7 +31,7 @@ pub trait DataSource {
         Ok(())
     }
 
-    /// Fills `data` with what stands `offset` bytes behind the start of the job.
+    /// Fills `data` with what stands `offset` bytes after the start of the job.
     ///
     /// # Errors
     /// Any; the job ends.
@@ -42,7 +42,7 @@ pub trait DataSource {
         data: &mut [u8],
     ) -> Result<(), ReactionError>;
 
-    /// Takes `data` for the place `offset` bytes behind the start of the job.
+    /// Takes `data` for the place `offset` bytes after the start of the job.
     ///
     /// A job of more than 128 bytes comes in several calls: a source that must not show half of it
     /// keeps them until [`close`](Self::close).

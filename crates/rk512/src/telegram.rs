@@ -1,19 +1,16 @@
-//! One telegram as the transport carries it.
+//! One telegram as the transport carries it, without knowledge of what it says.
 
 use core::fmt;
 use core::ops::Deref;
 
 use thiserror::Error;
 
-use crate::command::{Command, CommandError, Continuation};
-use crate::reaction::{Reaction, ReactionFault};
-
 /// User data in one telegram, at most; more goes into continuations.
 pub const MAX_DATA: usize = 128;
-/// Bytes in front of the data of a command.
-pub const COMMAND_HEADER: usize = 10;
-/// Bytes in front of the data of a continuation or a reaction.
-pub const SHORT_HEADER: usize = 4;
+/// Bytes before the data of a command.
+pub(crate) const COMMAND_HEADER: usize = 10;
+/// Bytes before the data of a continuation or a reaction.
+pub(crate) const SHORT_HEADER: usize = 4;
 /// The longest telegram: a SEND command with 128 bytes of data.
 pub const MAX_TELEGRAM: usize = COMMAND_HEADER + MAX_DATA;
 
@@ -30,8 +27,7 @@ pub enum Part {
 
 impl Part {
     /// Byte 1 of the telegram.
-    #[must_use]
-    pub const fn code(self) -> u8 {
+    pub(crate) const fn code(self) -> u8 {
         match self {
             Self::First => 0x00,
             Self::Continuation => 0xFF,
@@ -39,8 +35,7 @@ impl Part {
     }
 
     /// The part that byte 1 stands for, if any.
-    #[must_use]
-    pub const fn from_code(code: u8) -> Option<Self> {
+    pub(crate) const fn from_code(code: u8) -> Option<Self> {
         match code {
             0x00 => Some(Self::First),
             0xFF => Some(Self::Continuation),
@@ -99,7 +94,7 @@ impl Telegram {
         Ok(telegram)
     }
 
-    /// What stands behind the first `header` bytes.
+    /// What follows the first `header` bytes.
     pub(crate) fn after_mut(&mut self, header: usize) -> &mut [u8] {
         let end = usize::from(self.len);
         self.bytes.get_mut(header..end).unwrap_or_default()
@@ -141,63 +136,6 @@ impl defmt::Format for Telegram {
     }
 }
 
-/// Why a block is no telegram.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum DecodeError {
-    /// It is a command, or too short to tell, and wrong.
-    #[error("command: {0}")]
-    Command(#[from] CommandError),
-    /// It is a reaction, and wrong.
-    #[error("reaction: {0}")]
-    Reaction(#[from] ReactionFault),
-}
-
-/// Any telegram, decoded without knowledge of what went before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Message<'a> {
-    /// First telegram of a SEND or FETCH.
-    Command(Command, &'a [u8]),
-    /// Continuation of a SEND or FETCH.
-    Continuation(Continuation, &'a [u8]),
-    /// Answer to either.
-    Reaction(Reaction, &'a [u8]),
-}
-
-impl<'a> Message<'a> {
-    /// Decodes one block; byte 3 is 0 in reactions and a letter in commands.
-    ///
-    /// # Errors
-    /// [`DecodeError`] names the byte and its value.
-    pub fn decode(block: &'a [u8]) -> Result<Self, DecodeError> {
-        if is_reaction(block) {
-            let (reaction, data) = Reaction::decode(block)?;
-            return Ok(Self::Reaction(reaction, data));
-        }
-        if is_continuation(block) {
-            let (continuation, data) = Continuation::decode(block)?;
-            return Ok(Self::Continuation(continuation, data));
-        }
-        let (command, data) = Command::decode(block)?;
-        Ok(Self::Command(command, data))
-    }
-
-    /// The telegram again; the inverse of [`decode`](Self::decode).
-    ///
-    /// # Errors
-    /// [`EncodeError`] if the data do not belong to the header.
-    pub fn encode(&self) -> Result<Telegram, EncodeError> {
-        match self {
-            Self::Command(command, data) => command.telegram(data),
-            Self::Continuation(continuation, data) => continuation.telegram(data),
-            Self::Reaction(reaction, data) => reaction.telegram(data),
-        }
-    }
-}
-
 /// Whether a block is meant for the client: byte 3 is 0.
 pub(crate) fn is_reaction(block: &[u8]) -> bool {
     matches!(block, [_, _, 0, ..])
@@ -205,4 +143,18 @@ pub(crate) fn is_reaction(block: &[u8]) -> bool {
 
 pub(crate) fn is_continuation(block: &[u8]) -> bool {
     block.first() == Some(&Part::Continuation.code())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_byte_tells_first_and_continuation() {
+        for code in 0..=u8::MAX {
+            let part = Part::from_code(code);
+            assert_eq!(part.is_some(), code == 0 || code == 0xFF);
+            assert!(part.is_none_or(|part| part.code() == code));
+        }
+    }
 }

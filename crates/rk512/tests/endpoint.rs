@@ -2,17 +2,23 @@
 
 #[cfg(test)]
 mod endpoint {
-    use rk512::{Area, Config, DataBlock, Endpoint, Instant, Memory, Outcome, ServerEvent};
+    use core::time::Duration;
 
-    const NOW: Instant = Instant::from_millis(1);
+    use rk512::{Area, Command, Config, DataBlock, Endpoint, Event, Memory, Outcome, ServerEvent};
+
+    const NOW: Duration = Duration::from_millis(1);
     const PARTNER_SEND: [u8; 12] = [0, 0, 0x41, 0x44, 5, 0, 0, 1, 0xFF, 0xFF, 0x12, 0x34];
+
+    fn fetch() -> Command {
+        Command::fetch(Area::db(7, 0), 1).unwrap()
+    }
 
     #[test]
     fn the_partners_command_before_the_reaction_to_mine() {
         let mut db5 = [0; 2];
         let mut plc = Memory::new([DataBlock::db(5, &mut db5)]);
         let mut endpoint = Endpoint::<16>::new(Config::DEFAULT);
-        endpoint.fetch(Area::db(7, 0), 1).unwrap();
+        endpoint.submit(fetch(), &[]).unwrap();
         assert!(endpoint.poll_transmit(NOW).is_some());
         endpoint.handle_delivered(NOW);
 
@@ -21,17 +27,21 @@ mod endpoint {
         assert_eq!(*reaction, [0, 0, 0, 0]);
         endpoint.handle_delivered(NOW);
         let event = endpoint.poll_event();
-        assert!(matches!(event, Some(ServerEvent::Served(_))));
-        assert!(endpoint.client().awaits_reaction());
+        assert!(matches!(
+            event,
+            Some(Event::Partner(ServerEvent::Served(_)))
+        ));
+        let reaction_due = NOW + Duration::from_secs(20);
+        assert_eq!(endpoint.poll_timeout(), Some(reaction_due));
 
         endpoint.handle_block(NOW, &[0, 0, 0, 0, 0xAB, 0xCD], &mut plc);
-        let outcome = endpoint.poll_outcome();
+        let outcome = endpoint.poll_event();
         assert!(matches!(
             outcome,
-            Some(Outcome::Fetched {
+            Some(Event::Own(Outcome::Fetched {
                 data: [0xAB, 0xCD],
                 ..
-            })
+            }))
         ));
         assert_eq!(db5, [0x12, 0x34]);
     }
@@ -42,7 +52,7 @@ mod endpoint {
         let mut db5 = [0; 2];
         let mut plc = Memory::new([DataBlock::db(5, &mut db5)]);
         let mut endpoint = Endpoint::<16>::new(Config::DEFAULT);
-        endpoint.fetch(Area::db(7, 0), 1).unwrap();
+        endpoint.submit(fetch(), &[]).unwrap();
         assert!(endpoint.poll_transmit(NOW).is_some());
         endpoint.handle_block(NOW, &PARTNER_SEND, &mut plc);
         assert!(endpoint.poll_transmit(NOW).is_none(), "one block at a time");
@@ -57,11 +67,12 @@ mod endpoint {
         let mut plc = Memory::new([DataBlock::db(5, &mut db5)]);
         let mut endpoint = Endpoint::<16>::new(Config::DEFAULT);
         endpoint.handle_block(NOW, &PARTNER_SEND, &mut plc);
-        endpoint.fetch(Area::db(7, 0), 1).unwrap();
+        endpoint.submit(fetch(), &[]).unwrap();
         assert_eq!(endpoint.poll_transmit(NOW).unwrap()[2], 0);
         endpoint.handle_delivered(NOW);
         assert_eq!(endpoint.poll_transmit(NOW).unwrap()[2], 0x45);
-        assert!(!endpoint.server().owes_reaction());
+        endpoint.handle_delivered(NOW);
+        assert!(endpoint.poll_transmit(NOW).is_none());
     }
 
     /// A block that is too short to tell fails the own job, else it is answered.
@@ -71,13 +82,18 @@ mod endpoint {
         let mut endpoint = Endpoint::<16>::new(Config::DEFAULT);
         endpoint.handle_block(NOW, &[], &mut plc);
         assert_eq!(*endpoint.poll_transmit(NOW).unwrap(), [0, 0, 0, 0x34]);
+        let event = endpoint.poll_event();
+        assert!(matches!(
+            event,
+            Some(Event::Partner(ServerEvent::Refused(_)))
+        ));
         endpoint.handle_delivered(NOW);
-        endpoint.fetch(Area::db(7, 0), 1).unwrap();
+        endpoint.submit(fetch(), &[]).unwrap();
         assert!(endpoint.poll_transmit(NOW).is_some());
         endpoint.handle_delivered(NOW);
         endpoint.handle_block(NOW, &[0xFF], &mut plc);
-        let outcome = endpoint.poll_outcome();
-        assert!(matches!(outcome, Some(Outcome::Failed { .. })));
-        assert!(!endpoint.server().owes_reaction());
+        let outcome = endpoint.poll_event();
+        assert!(matches!(outcome, Some(Event::Own(Outcome::Failed { .. }))));
+        assert!(endpoint.poll_transmit(NOW).is_none());
     }
 }

@@ -6,7 +6,9 @@ mod line {
     use core::time::Duration;
 
     use proptest::prelude::*;
-    use rk512::{Area, Config, DataBlock, Endpoint, Instant, JobError, MAX_DATA, Memory, Outcome};
+    use rk512::{
+        Area, Command, Config, DataBlock, Endpoint, Event, JobError, MAX_DATA, Memory, Outcome,
+    };
 
     /// Longest way of a block, of its repeat and of the report to its sender.
     const LONGEST_MS: u64 = 1000;
@@ -97,19 +99,30 @@ mod line {
             };
             let salt = u16::try_from(self.outcomes.len() * 77 + 1).unwrap();
             let data: Vec<u8> = words(salt, usize::from(order.words)).collect();
-            let taken = if order.send {
-                self.endpoint.send(Area::db(1, order.start), &data)
+            let (command, given) = if order.send {
+                (
+                    Command::send(Area::db(1, order.start), order.words),
+                    &data[..],
+                )
             } else {
-                self.endpoint.fetch(Area::db(2, order.start), order.words)
+                (
+                    Command::fetch(Area::db(2, order.start), order.words),
+                    &[][..],
+                )
             };
+            let taken = self.endpoint.submit(command.unwrap(), given);
             taken.expect("no job runs");
             self.current = Some((order, data));
         }
 
         /// Notes the outcome of the own job; the partner's memory must bear it out.
         fn check_outcome(&mut self, partner: &Self) {
-            let Some(outcome) = self.endpoint.poll_outcome() else {
-                return;
+            let outcome = loop {
+                match self.endpoint.poll_event() {
+                    Some(Event::Own(outcome)) => break outcome,
+                    Some(Event::Partner(_)) => {}
+                    None => return,
+                }
             };
             let (order, data) = self.current.take().expect("one outcome for each job");
             let from = 2 * usize::from(order.start);
@@ -128,7 +141,7 @@ mod line {
             });
         }
 
-        fn happens(&mut self, now: Instant, happening: Happening) {
+        fn happens(&mut self, now: Duration, happening: Happening) {
             let mut plc = memory(&mut self.written, &mut self.constant);
             match happening {
                 Happening::Report(true) => self.endpoint.handle_delivered(now),
@@ -139,10 +152,10 @@ mod line {
     }
 
     struct Line {
-        now: Instant,
+        now: Duration,
         sides: [Side; 2],
         fates: Vec<Fate>,
-        ahead: Vec<(Instant, usize, Happening)>,
+        ahead: Vec<(Duration, usize, Happening)>,
         blocks: usize,
     }
 
@@ -151,7 +164,7 @@ mod line {
             fates.reverse();
             let [left, right] = orders;
             Self {
-                now: Instant::ZERO,
+                now: Duration::ZERO,
                 sides: [Side::new(config, left, 3), Side::new(config, right, 5)],
                 fates,
                 ahead: Vec::new(),
@@ -217,12 +230,12 @@ mod line {
         }
 
         /// Every job has ended, and the line has come to rest.
-        fn check_rest(&self, jobs: [usize; 2]) {
-            for (side, jobs) in self.sides.iter().zip(jobs) {
+        fn check_rest(&mut self, jobs: [usize; 2]) {
+            for (side, jobs) in self.sides.iter_mut().zip(jobs) {
                 assert_eq!(side.outcomes.len(), jobs, "one outcome for each job");
-                assert!(!side.endpoint.client().is_busy());
-                assert!(!side.endpoint.server().is_busy());
-                assert!(!side.endpoint.server().owes_reaction());
+                assert!(!side.endpoint.is_busy());
+                assert_eq!(side.endpoint.poll_timeout(), None);
+                assert!(side.endpoint.poll_transmit(self.now).is_none());
             }
         }
 
@@ -235,7 +248,7 @@ mod line {
             };
             self.fates.clear();
             // The last reaction of a job that failed may still be on its way.
-            self.now = self.now + Duration::from_millis(REPEATS_MS);
+            self.now += Duration::from_millis(REPEATS_MS);
             for side in &mut self.sides {
                 side.outcomes.clear();
                 side.orders = vec![order(true), order(false)];
@@ -248,7 +261,10 @@ mod line {
     }
 
     fn config() -> Config {
-        Config::DEFAULT.with_resync(Duration::from_millis(REPEATS_MS))
+        Config {
+            resync: Duration::from_millis(REPEATS_MS),
+            ..Config::DEFAULT
+        }
     }
 
     fn orders() -> impl Strategy<Value = Vec<Order>> {
@@ -328,7 +344,10 @@ mod line {
         #[test]
         fn loss_delay_and_repeats(a in orders(), b in orders(), fates in fates(true)) {
             let jobs = [a.len(), b.len()];
-            let config = config().with_quiet(Duration::from_millis(REPEATS_MS));
+            let config = Config {
+                quiet: Duration::from_millis(REPEATS_MS),
+                ..config()
+            };
             let mut line = Line::new(config, [a, b], fates);
             line.run();
             line.check_rest(jobs);

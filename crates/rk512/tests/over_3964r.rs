@@ -10,8 +10,8 @@ mod over_3964r {
     use core::time::Duration;
 
     use proptest::prelude::*;
-    use proto3964r::{Config as LineConfig, Event, Priority, Station};
-    use rk512::{Area, Config, DataBlock, Endpoint, Instant, MAX_TELEGRAM, Memory, Outcome};
+    use proto3964r::{Config as LineConfig, Event as LineEvent, Line, Priority, Station};
+    use rk512::{Area, Command, Config, DataBlock, Endpoint, Event, MAX_TELEGRAM, Memory, Outcome};
 
     /// 11 bits (8E1) at 9600 bit/s.
     const CHARACTER: Duration = Duration::from_micros(1146);
@@ -21,10 +21,6 @@ mod over_3964r {
     const QUIET: Duration = Duration::from_secs(6);
     /// More than any run needs; reaching it means that something is stuck.
     const STEPS: usize = 1_000_000;
-
-    fn line_time(now: Instant) -> proto3964r::Instant {
-        proto3964r::Instant::from_micros(now.as_micros())
-    }
 
     /// What happens to a byte.
     #[derive(Clone, Copy, Debug)]
@@ -37,14 +33,14 @@ mod over_3964r {
     /// One direction of the line.
     #[derive(Default)]
     struct Wire {
-        free_at: Instant,
-        bytes: VecDeque<(Instant, u8)>,
+        free_at: Duration,
+        bytes: VecDeque<(Duration, u8)>,
         /// Bytes until the damage, from the damage before.
         damages: VecDeque<(usize, Damage)>,
     }
 
     impl Wire {
-        fn put(&mut self, now: Instant, byte: u8) {
+        fn put(&mut self, now: Duration, byte: u8) {
             self.free_at = now + CHARACTER;
             let damage = match self.damages.front_mut() {
                 Some((0, damage)) => {
@@ -85,7 +81,7 @@ mod over_3964r {
         fn new(priority: Priority, config: Config, jobs: u8, out: Wire) -> Self {
             Self {
                 endpoint: Endpoint::new(config),
-                station: Station::new(LineConfig::siemens_3964r(priority)),
+                station: Station::new(LineConfig::siemens_3964r(priority, Line::paced(9600, 11))),
                 out,
                 db1: [0; DATA],
                 read_back: None,
@@ -111,62 +107,64 @@ mod over_3964r {
                 return;
             };
             let data = self.data(job);
-            match self.endpoint.poll_outcome() {
-                Some(Outcome::Sent { .. }) => self.read_back = Some(data.clone()),
-                Some(Outcome::Fetched { data, .. }) => {
-                    assert!(self.read_back.take().is_some_and(|sent| sent == data));
-                    self.jobs = job;
-                    return;
+            while let Some(event) = self.endpoint.poll_event() {
+                match event {
+                    Event::Own(Outcome::Sent { .. }) => self.read_back = Some(data.clone()),
+                    Event::Own(Outcome::Fetched { data, .. }) => {
+                        assert!(self.read_back.take().is_some_and(|sent| sent == data));
+                        self.jobs = job;
+                        return;
+                    }
+                    Event::Own(Outcome::Failed { .. }) => self.failures += 1,
+                    _ => {}
                 }
-                Some(Outcome::Failed { .. }) => self.failures += 1,
-                _ => {}
             }
-            if !self.endpoint.client().is_busy() {
+            if !self.endpoint.is_busy() {
                 let words = u16::try_from(data.len() / 2).unwrap();
                 let area = Area::db(1, job);
-                if self.read_back.is_some() {
-                    self.endpoint.fetch(area, words).unwrap();
+                let (command, data) = if self.read_back.is_some() {
+                    (Command::fetch(area, words), &[][..])
                 } else {
-                    self.endpoint.send(area, &data).unwrap();
-                }
+                    (Command::send(area, words), &data[..])
+                };
+                self.endpoint.submit(command.unwrap(), data).unwrap();
             }
         }
 
-        fn step(&mut self, now: Instant, incoming: &mut Wire) {
+        fn step(&mut self, now: Duration, incoming: &mut Wire) {
             while incoming.bytes.front().is_some_and(|&(at, _)| at <= now) {
                 let (_, byte) = incoming.bytes.pop_front().unwrap();
-                self.station.handle_byte(line_time(now), byte);
+                self.station.handle_byte(now, byte);
             }
-            self.station.handle_timeout(line_time(now));
+            self.station.handle_timeout(now);
             let mut plc = Memory::new([DataBlock::db(1, &mut self.db1)]);
             self.endpoint.handle_timeout(now, &mut plc);
             while let Some(event) = self.station.poll_event() {
                 match event {
-                    Event::Received(block) => self.endpoint.handle_block(now, block, &mut plc),
-                    Event::Sent { .. } => self.endpoint.handle_delivered(now),
-                    Event::Failed(_) => self.endpoint.handle_failed(now, &mut plc),
+                    LineEvent::Received(block) => self.endpoint.handle_block(now, block, &mut plc),
+                    LineEvent::Sent { .. } => self.endpoint.handle_delivered(now),
+                    LineEvent::Failed(_) => self.endpoint.handle_failed(now, &mut plc),
                     _ => {}
                 }
                 if self.recalls && self.endpoint.wants_recall() {
-                    self.station.cancel(line_time(now));
+                    self.station.cancel(now);
                 }
             }
             self.work();
-            if self.station.can_send()
+            if !self.station.is_busy()
                 && let Some(telegram) = self.endpoint.poll_transmit(now)
             {
-                self.station.send(line_time(now), &telegram).unwrap();
+                self.station.submit(now, &telegram).unwrap();
             }
             if self.out.free_at <= now
-                && let Some(byte) = self.station.poll_transmit_byte(line_time(now))
+                && let Some(byte) = self.station.poll_transmit_byte(now)
             {
                 self.out.put(now, byte);
             }
         }
 
-        fn next(&self, now: Instant) -> Option<Instant> {
+        fn next(&self, now: Duration) -> Option<Duration> {
             let station = self.station.poll_timeout();
-            let station = station.map(|at| Instant::from_micros(at.as_micros()));
             let arrival = self.out.bytes.front().map(|&(at, _)| at);
             let free = Some(self.out.free_at).filter(|&at| at > now);
             let all = [station, arrival, free, self.endpoint.poll_timeout()];
@@ -181,7 +179,7 @@ mod over_3964r {
         jobs: u8,
         damages: [VecDeque<(usize, Damage)>; 2],
     ) -> usize {
-        let mut now = Instant::ZERO;
+        let mut now = Duration::ZERO;
         let [left, right] = damages.map(|damages| Wire {
             damages,
             ..Wire::default()
@@ -201,7 +199,7 @@ mod over_3964r {
             let soon = now + Duration::from_micros(1);
             now = next.expect("nothing is to come").max(soon);
         }
-        panic!("stuck at {now}, {} and {} jobs left", low.jobs, high.jobs);
+        panic!("stuck at {now:?}, {} and {} jobs left", low.jobs, high.jobs);
     }
 
     #[test]
@@ -232,7 +230,11 @@ mod over_3964r {
         /// The same with transports that take nothing back: the pause does it.
         #[test]
         fn a_damaging_line_without_recall(low in damages(), high in damages()) {
-            let config = Config::DEFAULT.with_quiet(QUIET).with_resync(QUIET);
+            let config = Config {
+                quiet: QUIET,
+                resync: QUIET,
+                ..Config::DEFAULT
+            };
             run(config, false, 8, [low, high]);
         }
     }

@@ -7,24 +7,26 @@ mod properties {
     use proptest::prelude::*;
     use rk512::{
         Area, AreaKind, Command, Config, Continuation, Coordination, CoordinationFlag, Cpu,
-        DataBlock, Endpoint, Instant, MAX_DATA, Memory, Message, Part, Reaction, ReactionError,
+        DataBlock, Endpoint, Event, MAX_DATA, Memory, Message, Part, Reaction, ReactionError,
     };
 
     fn coordination() -> impl Strategy<Value = Coordination> {
         let flag = prop::option::of((0u8..=254, 0u8..8));
-        let cpu = prop::option::of(1u8..=4);
+        let cpus = vec![Cpu::One, Cpu::Two, Cpu::Three, Cpu::Four];
+        let cpu = prop::option::of(prop::sample::select(cpus));
         (flag, cpu).prop_map(|(flag, cpu)| Coordination {
             flag: flag.map(|(byte, bit)| CoordinationFlag::new(byte, bit).unwrap()),
-            cpu: cpu.and_then(Cpu::from_number),
+            cpu,
         })
     }
 
     fn command() -> impl Strategy<Value = Command> {
-        let kind = prop::sample::select(AreaKind::ALL.to_vec());
+        let kinds: Vec<_> = (0..=u8::MAX).filter_map(AreaKind::from_code).collect();
+        let kind = prop::sample::select(kinds);
         let parts = (any::<bool>(), kind, any::<u8>(), any::<u8>(), 1u16..);
         (parts, coordination()).prop_map(|((send, kind, number, start, length), coordination)| {
-            let number = if kind.has_number() { number } else { 0 };
-            let area = Area::new(kind, number, start).unwrap();
+            let numbered = Area::new(kind, number, start);
+            let area = numbered.or_else(|_| Area::new(kind, 0, start)).unwrap();
             Command::send(area, length)
                 .ok()
                 .filter(|_| send)
@@ -44,8 +46,11 @@ mod properties {
         let near = (command(), 0usize..=3, data(), any::<(u8, u8)>());
         let near = near.prop_map(|(command, kind, data, (at, value))| {
             let mut block = match kind {
-                0 => command.encode().to_vec(),
-                1 => Continuation::new(command.request()).encode().to_vec(),
+                0 => <[u8; 10]>::from(command).to_vec(),
+                1 => {
+                    let continuation = Continuation::new(command.request());
+                    continuation.telegram(&[]).unwrap().to_vec()
+                }
                 2 => vec![0, 0, 0, at % 3],
                 _ => vec![0xFF, 0, 0, at % 3],
             };
@@ -65,7 +70,7 @@ mod properties {
             let data = vec![fill; first];
             let telegram = command.telegram(&data).unwrap();
             prop_assert_eq!(Command::decode(&telegram), Ok((command, &data[..])));
-            prop_assert_eq!(Command::try_from(command.encode()), Ok(command));
+            prop_assert_eq!(Command::try_from(<[u8; 10]>::from(command)), Ok(command));
         }
 
         #[test]
@@ -100,31 +105,36 @@ mod properties {
             inputs in prop::collection::vec((0u8..8, block(), 0u64..30_000), 0..60),
         ) {
             let (mut db5, mut flags) = ([0; 400], [0; 255]);
-            let mut plc = Memory::new([DataBlock::db(5, &mut db5)]).with_flags(&mut flags);
+            let mut plc = Memory {
+                flags: &mut flags,
+                ..Memory::new([DataBlock::db(5, &mut db5)])
+            };
+            let fetch = Command::fetch(Area::db(5, 0), 150).unwrap();
+            let own = |event: Option<Event<'_>>| u32::from(matches!(event, Some(Event::Own(_))));
             let mut endpoint = Endpoint::<300>::new(Config::DEFAULT);
-            let (mut now, mut jobs, mut outcomes) = (Instant::ZERO, 0, 0);
+            let (mut now, mut jobs, mut outcomes) = (Duration::ZERO, 0, 0);
             for (input, block, millis) in inputs {
                 match input {
                     0 => endpoint.handle_delivered(now),
                     1 => endpoint.handle_failed(now, &mut plc),
-                    2 => now = now + Duration::from_millis(millis),
-                    3 => jobs += u32::from(endpoint.fetch(Area::db(5, 0), 150).is_ok()),
+                    2 => now += Duration::from_millis(millis),
+                    3 => jobs += u32::from(endpoint.submit(fetch, &[]).is_ok()),
                     4 => drop(endpoint.poll_transmit(now)),
                     5 => endpoint.cancel(now),
                     _ => endpoint.handle_block(now, &block, &mut plc),
                 }
                 endpoint.handle_timeout(now, &mut plc);
-                outcomes += u32::from(endpoint.poll_outcome().is_some());
+                outcomes += own(endpoint.poll_event()) + own(endpoint.poll_event());
             }
             for _ in 0..8 {
                 let _telegram = endpoint.poll_transmit(now);
                 endpoint.handle_delivered(now);
-                now = now + Duration::from_secs(30);
+                now += Duration::from_secs(30);
                 endpoint.handle_timeout(now, &mut plc);
-                outcomes += u32::from(endpoint.poll_outcome().is_some());
+                outcomes += own(endpoint.poll_event()) + own(endpoint.poll_event());
             }
             prop_assert_eq!(outcomes, jobs);
-            prop_assert!(!endpoint.client().is_busy() && !endpoint.server().is_busy());
+            prop_assert!(!endpoint.is_busy() && endpoint.poll_transmit(now).is_none());
             prop_assert_eq!(endpoint.poll_timeout(), None);
         }
     }

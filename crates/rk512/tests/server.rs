@@ -6,11 +6,11 @@ mod server {
 
     use rk512::{
         AbandonCause, Area, Command, CommandError, Config, Continuation, Coordination,
-        CoordinationFlag, Cpu, DataBlock, DataSource, Instant, MAX_DATA, Memory, Reaction,
-        ReactionError, Server, ServerEvent, Telegram,
+        CoordinationFlag, Cpu, DataBlock, DataSource, MAX_DATA, Memory, Reaction, ReactionError,
+        Server, ServerEvent, Telegram,
     };
 
-    const NOW: Instant = Instant::from_millis(5);
+    const NOW: Duration = Duration::from_millis(5);
 
     /// A server whose reactions are delivered at once.
     struct Bench<'a> {
@@ -23,7 +23,10 @@ mod server {
             let blocks = [DataBlock::db(5, db5), DataBlock::dx(3, dx3)];
             Self {
                 server: Server::new(Config::DEFAULT),
-                plc: Memory::new(blocks).with_flags(flags),
+                plc: Memory {
+                    flags,
+                    ..Memory::new(blocks)
+                },
             }
         }
 
@@ -209,7 +212,7 @@ mod server {
         bench.ask(&send(Area::db(5, 0), 65, &data));
         let deadline = NOW + Duration::from_secs(20);
         assert_eq!(bench.server.poll_timeout(), Some(deadline));
-        let early = Instant::from_micros(deadline.as_micros() - 1);
+        let early = deadline - Duration::from_nanos(1);
         bench.server.handle_timeout(early, &mut bench.plc);
         assert!(bench.server.is_busy());
         bench.server.handle_timeout(deadline, &mut bench.plc);

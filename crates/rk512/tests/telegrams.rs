@@ -5,9 +5,9 @@ mod telegrams {
     use core::time::Duration;
 
     use rk512::{
-        Area, AreaKind, Client, Command, CommandError, Config, Continuation, Coordination,
-        CoordinationError, CoordinationFlag, Cpu, EncodeError, Endpoint, Instant, Message, Part,
-        Reaction, ReactionError, ReactionFault, Request, RequestError, Server, Unit,
+        Area, AreaKind, Client, Command, CommandError, Config, Continuation, CoordinationError,
+        EncodeError, Endpoint, Message, Reaction, ReactionError, ReactionFault, Request,
+        RequestError, Server,
     };
 
     const SEND_DB5: [u8; 12] = [0, 0, 0x41, 0x44, 5, 10, 0, 1, 0xFF, 0xFF, 0x12, 0x34];
@@ -30,66 +30,25 @@ mod telegrams {
     #[test]
     fn area_codes_and_units_are_those_of_the_manuals() {
         let table = [
-            (AreaKind::DataBlock, 0x44, Unit::Word),
-            (AreaKind::ExtendedDataBlock, 0x58, Unit::Word),
-            (AreaKind::Inputs, 0x45, Unit::Byte),
-            (AreaKind::Outputs, 0x41, Unit::Byte),
-            (AreaKind::Flags, 0x4D, Unit::Byte),
-            (AreaKind::Timers, 0x54, Unit::Word),
-            (AreaKind::Counters, 0x5A, Unit::Word),
-            (AreaKind::Peripheral, 0x50, Unit::Byte),
-            (AreaKind::Absolute, 0x53, Unit::Word),
-            (AreaKind::System, 0x42, Unit::Word),
+            (AreaKind::DataBlock, 0x44, 2),
+            (AreaKind::ExtendedDataBlock, 0x58, 2),
+            (AreaKind::Inputs, 0x45, 1),
+            (AreaKind::Outputs, 0x41, 1),
+            (AreaKind::Flags, 0x4D, 1),
+            (AreaKind::Timers, 0x54, 2),
+            (AreaKind::Counters, 0x5A, 2),
+            (AreaKind::Peripheral, 0x50, 1),
+            (AreaKind::Absolute, 0x53, 2),
+            (AreaKind::System, 0x42, 2),
         ];
         for (kind, code, unit) in table {
-            assert_eq!((kind.code(), kind.unit()), (code, unit), "{kind}");
+            assert_eq!((kind.code(), kind.bytes_per_unit()), (code, unit), "{kind}");
             assert_eq!(AreaKind::from_code(code), Some(kind));
         }
         // The letters of a translated manual name no area.
         for letter in [b'I', b'C'] {
             assert_eq!(AreaKind::from_code(letter), None);
         }
-    }
-
-    #[test]
-    fn coordination_follows_the_nibble_rules() {
-        let flag = Some(CoordinationFlag::new(20, 3).unwrap());
-        let cpu = Some(Cpu::Two);
-        let table = [
-            (Coordination::NONE, [0xFF, 0xFF]),
-            (Coordination { flag, cpu: None }, [20, 0x03]),
-            (Coordination { flag: None, cpu }, [0xFF, 0x2F]),
-            (Coordination { flag, cpu }, [20, 0x23]),
-        ];
-        for (coordination, bytes) in table {
-            assert_eq!(coordination.encode(), bytes);
-            assert_eq!(Coordination::decode(bytes), Ok(coordination));
-        }
-    }
-
-    #[test]
-    fn coordination_accepts_exactly_what_it_encodes() {
-        let mut accepted = 0;
-        for bytes in (0..=u16::MAX).map(u16::to_be_bytes) {
-            if let Ok(coordination) = Coordination::decode(bytes) {
-                assert_eq!(coordination.encode(), bytes);
-                accepted += 1;
-            }
-        }
-        // 255 flag bytes of 8 bits or no flag, each with one of four CPUs or none.
-        assert_eq!(accepted, (255 * 8 + 1) * 5);
-    }
-
-    #[test]
-    fn wrong_coordination_names_the_bytes() {
-        let flag = |byte, bit| Err(CoordinationError::Flag { byte, bit });
-        assert_eq!(Coordination::decode([0xFF, 0x03]), flag(0xFF, 3));
-        assert_eq!(Coordination::decode([20, 0x08]), flag(20, 8));
-        assert_eq!(Coordination::decode([20, 0x0F]), flag(20, 0x0F));
-        let cpu = |nibble| Err(CoordinationError::Cpu { nibble });
-        assert_eq!(Coordination::decode([20, 0x53]), cpu(5));
-        assert_eq!(Coordination::decode([20, 0xF3]), cpu(0xF));
-        assert_eq!(Coordination::decode([0xFF, 0x0F]), cpu(0));
     }
 
     #[test]
@@ -217,15 +176,6 @@ mod telegrams {
     }
 
     #[test]
-    fn first_byte_tells_first_and_continuation() {
-        for code in 0..=u8::MAX {
-            let part = Part::from_code(code);
-            assert_eq!(part.is_some(), code == 0 || code == 0xFF);
-            assert!(part.is_none_or(|part| part.code() == code));
-        }
-    }
-
-    #[test]
     fn reaction_time_by_baud_rate() {
         let seconds = |baud| Config::reaction_time_for(baud).as_secs();
         let rates = [110, 300, 600, 1200, 2400, 9600, 19_200, 38_400, 115_200];
@@ -234,11 +184,14 @@ mod telegrams {
     }
 
     #[test]
-    fn instants_saturate_and_show_seconds() {
-        let late = Instant::from_micros(u64::MAX) + Duration::MAX;
-        assert_eq!(late.as_micros(), u64::MAX);
-        assert_eq!(Instant::from_millis(1500).to_string(), "1.500000 s");
-        assert_eq!(Instant::from_millis(u64::MAX), late);
+    fn the_end_of_time_is_late_enough() {
+        let mut client = Client::<4>::new(Config::DEFAULT);
+        client
+            .submit(Command::fetch(Area::db(1, 0), 1).unwrap(), &[])
+            .unwrap();
+        assert!(client.poll_transmit(Duration::MAX).is_some());
+        client.handle_delivered(Duration::MAX);
+        assert_eq!(client.poll_timeout(), Some(Duration::MAX));
     }
 
     #[cfg(feature = "serde")]

@@ -1,11 +1,12 @@
 //! proto3964r.
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use no_panic::no_panic;
-use proto3964r::frame::{self, Check, DecodeError, EncodeError, Fed, FrameError};
+use proto3964r::frame::{self, Check, DecodeError, EncodeError, FrameError};
 use proto3964r::{
-    Config, Event, Instant, LineError, Observation, Observations, Priority, SendError, Side,
+    Config, Event, Line, LineError, Observation, Observations, Priority, Side, SubmitError,
     Transmit, Verdict,
 };
 
@@ -14,49 +15,49 @@ type Monitor = proto3964r::Monitor<128>;
 
 #[no_panic]
 #[inline(never)]
-fn send(station: &mut Station, now: Instant, payload: &[u8]) -> Result<(), SendError> {
-    station.send(now, payload)
+fn submit(station: &mut Station, now: Duration, payload: &[u8]) -> Result<(), SubmitError> {
+    station.submit(now, payload)
 }
 
 #[no_panic]
 #[inline(never)]
-fn cancel(station: &mut Station, now: Instant) -> bool {
+fn cancel(station: &mut Station, now: Duration) -> bool {
     station.cancel(now)
 }
 
 #[no_panic]
 #[inline(never)]
-fn handle_byte(station: &mut Station, now: Instant, byte: u8) {
+fn handle_byte(station: &mut Station, now: Duration, byte: u8) {
     station.handle_byte(now, byte);
 }
 
 #[no_panic]
 #[inline(never)]
-fn handle_bytes(station: &mut Station, now: Instant, bytes: &[u8]) {
-    station.handle_bytes(now, bytes);
+fn handle_bytes(station: &mut Station, now: Duration, bytes: &[u8]) -> usize {
+    station.handle_bytes(now, bytes)
 }
 
 #[no_panic]
 #[inline(never)]
-fn handle_damaged(station: &mut Station, now: Instant, byte: u8, error: LineError) {
+fn handle_damaged(station: &mut Station, now: Duration, byte: u8, error: LineError) {
     station.handle_damaged(now, byte, error);
 }
 
 #[no_panic]
 #[inline(never)]
-fn handle_break(station: &mut Station, now: Instant) {
+fn handle_break(station: &mut Station, now: Duration) {
     station.handle_break(now);
 }
 
 #[no_panic]
 #[inline(never)]
-fn handle_timeout(station: &mut Station, now: Instant) {
+fn handle_timeout(station: &mut Station, now: Duration) {
     station.handle_timeout(now);
 }
 
 #[no_panic]
 #[inline(never)]
-fn poll_timeout(station: &Station) -> Option<Instant> {
+fn poll_timeout(station: &Station) -> Option<Duration> {
     station.poll_timeout()
 }
 
@@ -70,7 +71,7 @@ fn poll_event(station: &mut Station) -> Option<Event<'_>> {
 #[inline(never)]
 fn poll_transmit<'o>(
     station: &mut Station,
-    now: Instant,
+    now: Duration,
     out: &'o mut [u8],
 ) -> Option<Transmit<'o>> {
     station.poll_transmit(now, out)
@@ -78,7 +79,7 @@ fn poll_transmit<'o>(
 
 #[no_panic]
 #[inline(never)]
-fn poll_transmit_byte(station: &mut Station, now: Instant) -> Option<u8> {
+fn poll_transmit_byte(station: &mut Station, now: Duration) -> Option<u8> {
     station.poll_transmit_byte(now)
 }
 
@@ -100,7 +101,11 @@ fn decode<'i, 'b>(
 
 #[no_panic]
 #[inline(never)]
-fn feed(decoder: &mut frame::Decoder, bytes: &[u8], buffer: &mut [u8]) -> Fed {
+fn feed(
+    decoder: &mut frame::Decoder,
+    bytes: &[u8],
+    buffer: &mut [u8],
+) -> (usize, Option<Result<usize, FrameError>>) {
     decoder.feed(bytes, buffer)
 }
 
@@ -116,7 +121,7 @@ fn push(
 
 #[no_panic]
 #[inline(never)]
-fn monitor_byte(monitor: &mut Monitor, now: Instant, side: Side, byte: u8) -> Observations<'_> {
+fn monitor_byte(monitor: &mut Monitor, now: Duration, side: Side, byte: u8) -> Observations<'_> {
     monitor.handle_byte(now, side, byte)
 }
 
@@ -124,7 +129,7 @@ fn monitor_byte(monitor: &mut Monitor, now: Instant, side: Side, byte: u8) -> Ob
 #[inline(never)]
 fn monitor_damaged(
     monitor: &mut Monitor,
-    now: Instant,
+    now: Duration,
     side: Side,
     byte: u8,
     error: LineError,
@@ -134,7 +139,7 @@ fn monitor_damaged(
 
 #[no_panic]
 #[inline(never)]
-fn monitor_timeout(monitor: &mut Monitor, now: Instant) -> Observations<'_> {
+fn monitor_timeout(monitor: &mut Monitor, now: Duration) -> Observations<'_> {
     monitor.handle_timeout(now)
 }
 
@@ -146,7 +151,7 @@ fn observations_next<'a>(observations: &mut Observations<'a>) -> Option<Observat
 
 #[no_panic]
 #[inline(never)]
-fn monitor_due(monitor: &Monitor) -> Option<Instant> {
+fn monitor_due(monitor: &Monitor) -> Option<Duration> {
     monitor.poll_timeout()
 }
 
@@ -157,16 +162,17 @@ fn verdict(monitor: &Monitor) -> Verdict {
 }
 
 pub fn run() {
-    let now = black_box(Instant::from_millis(5));
+    let now = black_box(Duration::from_millis(5));
     let bytes = black_box([0x02, 0x41, 0x10, 0x03, 0x52].as_slice());
-    let config = Config::siemens_3964r(black_box(Priority::Low));
+    let line = black_box(Line::paced(9600, 11));
+    let config = Config::siemens_3964r(black_box(Priority::Low), line);
     let station = &mut black_box(Station::new(config));
     let mut buffer = [0; 16];
     let out = black_box(buffer.as_mut_slice());
-    let _ = black_box(send(station, now, bytes));
+    let _ = black_box(submit(station, now, bytes));
     black_box(cancel(black_box(station), now));
     handle_byte(black_box(station), now, black_box(0x02));
-    handle_bytes(black_box(station), now, bytes);
+    black_box(handle_bytes(black_box(station), now, bytes));
     handle_damaged(black_box(station), now, 0x41, black_box(LineError::Parity));
     handle_break(black_box(station), now);
     handle_timeout(black_box(station), now);

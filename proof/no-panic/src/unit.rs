@@ -1,11 +1,12 @@
 //! handwheel.
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use handwheel::{
-    Action, Arbiter, Command, DecodeError, Driver, EncodeError, Event, Input, Instant, LcdBlock,
-    LcdCommand, LcdError, Model, Panel, Report, Screen, Settings, Shown, Timing, UnitId,
-    WheelQuantiser, WheelSampler,
+    Action, Arbiter, Command, DecodeError, Driver, EncodeError, Event, Input, Job, LcdBlock,
+    LcdCommand, LcdError, Model, Panel, Report, Screen, Settings, Shown, SubmitError, Timing,
+    UnitId, WheelQuantiser, WheelSampler,
 };
 use no_panic::no_panic;
 
@@ -48,36 +49,44 @@ fn push(block: &mut LcdBlock, command: LcdCommand<'_>) -> Result<(), LcdError> {
 
 #[no_panic]
 #[inline(never)]
-fn driver_transmit<'b>(
-    driver: &mut Driver,
-    now: Instant,
-    buffer: &'b mut [u8],
-) -> Result<Option<&'b [u8]>, EncodeError> {
-    driver.poll_transmit(now, buffer)
+fn driver_submit(driver: &mut Driver, job: Job) -> Result<(), SubmitError> {
+    driver.submit(job)
 }
 
 #[no_panic]
 #[inline(never)]
-fn driver_block(driver: &mut Driver, now: Instant, telegram: &[u8]) -> Option<Event> {
-    driver.handle_block(now, telegram)
+fn driver_transmit(driver: &mut Driver, now: Duration) -> Option<&[u8]> {
+    driver.poll_transmit(now)
 }
 
 #[no_panic]
 #[inline(never)]
-fn driver_delivered(driver: &mut Driver, now: Instant) -> Option<Event> {
-    driver.handle_delivered(now)
+fn driver_event(driver: &mut Driver) -> Option<Event> {
+    driver.poll_event()
 }
 
 #[no_panic]
 #[inline(never)]
-fn driver_failed(driver: &mut Driver, now: Instant) -> Option<Event> {
-    driver.handle_failed(now)
+fn driver_block(driver: &mut Driver, now: Duration, telegram: &[u8]) {
+    driver.handle_block(now, telegram);
 }
 
 #[no_panic]
 #[inline(never)]
-fn driver_timeout(driver: &mut Driver, now: Instant) -> Option<Event> {
-    driver.handle_timeout(now)
+fn driver_delivered(driver: &mut Driver, now: Duration) {
+    driver.handle_delivered(now);
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_failed(driver: &mut Driver, now: Duration) {
+    driver.handle_failed(now);
+}
+
+#[no_panic]
+#[inline(never)]
+fn driver_timeout(driver: &mut Driver, now: Duration) {
+    driver.handle_timeout(now);
 }
 
 #[no_panic]
@@ -106,12 +115,12 @@ fn wheel_share(wheel: &WheelQuantiser, counts: i32, full: u32) -> i64 {
 
 #[no_panic]
 #[inline(never)]
-fn wheel_sample(sampler: &mut WheelSampler, now: Instant, counter: u32) -> Option<i32> {
+fn wheel_sample(sampler: &mut WheelSampler, now: Duration, counter: u32) -> Option<i32> {
     sampler.sample(now, counter)
 }
 
 pub fn run() {
-    let (now, model) = (black_box(Instant::ZERO), black_box(Model::Hbls));
+    let (now, model) = (black_box(Duration::ZERO), black_box(Model::Hbls));
     let telegram = black_box([0x6C, 0x27, 0x34, 0x30, 0xA5].as_slice());
     let buffer = &mut [0; 200];
     if let Ok(report) = report_decode(model, black_box(&[0x30, 0x41, 0x51])) {
@@ -125,12 +134,13 @@ pub fn run() {
     let _ = push(block, black_box(LcdCommand::Home));
 
     let driver = &mut black_box(Driver::new(model, Timing::DEFAULT));
-    let _ = black_box(driver.send_lcd(block));
-    let _ = black_box(driver_transmit(black_box(driver), now, black_box(buffer)));
-    black_box(driver_delivered(black_box(driver), now));
-    black_box(driver_block(black_box(driver), now, telegram));
-    black_box(driver_failed(black_box(driver), now));
-    black_box(driver_timeout(black_box(driver), now));
+    let _ = black_box(driver_submit(driver, black_box(Job::Lcd(*block))));
+    black_box(driver_transmit(black_box(driver), now));
+    driver_delivered(black_box(driver), now);
+    driver_block(black_box(driver), now, telegram);
+    driver_failed(black_box(driver), now);
+    driver_timeout(black_box(driver), now);
+    black_box(driver_event(black_box(driver)));
 
     let Ok(wheel) = WheelQuantiser::new(black_box(100), black_box(10)) else {
         return;

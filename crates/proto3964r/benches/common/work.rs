@@ -5,13 +5,18 @@
     reason = "a bench fails loudly"
 )]
 
-use proto3964r::{Check, Config, Event, Instant, Priority, Station, Transmit, frame};
+use core::{hint::black_box, time::Duration};
 
-/// Payload bytes of a telegram.
+use proto3964r::{Check, Config, Event, Line, Priority, Station, Transmit, frame};
+
+/// Payload bytes of a telegram, and characters of a flood.
 pub(crate) const LEN: usize = 1024;
 
+/// Longer than a block takes at 19200 bit/s, shorter than its answer may take.
+const LONG: Duration = Duration::from_millis(1500);
+
 /// Bytes as they come in practice: any value, so a DLE every 256 or so.
-pub(crate) fn payload() -> Vec<u8> {
+pub(crate) fn random() -> Vec<u8> {
     let mut state = 0x2545_F491_u32;
     let mut byte = || {
         state ^= state << 13;
@@ -31,68 +36,99 @@ pub(crate) fn telegram(payload: &[u8]) -> Vec<u8> {
     telegram
 }
 
-pub(crate) fn station() -> Station<LEN> {
-    Station::new(Config::siemens_3964r(Priority::Low).with_nak_at_startup(false))
+/// A station on a UART, and its clock.
+#[derive(Clone)]
+pub(crate) struct Bench {
+    pub(crate) station: Station<LEN>,
+    pub(crate) now: Duration,
 }
 
-/// Takes the two answers and the telegram.
-fn finish(station: &mut Station<LEN>, now: Instant) -> usize {
-    while station.poll_transmit_byte(now).is_some() {}
-    match station.poll_event() {
-        Some(Event::Received(payload)) => payload.len(),
-        _ => 0,
+impl Bench {
+    pub(crate) fn new() -> Self {
+        let config = Config {
+            nak_at_startup: false,
+            ..Config::siemens_3964r(Priority::Low, Line::paced(19_200, 11))
+        };
+        Self {
+            station: Station::new(config),
+            now: Duration::ZERO,
+        }
     }
-}
 
-/// One telegram in one piece; the length of its payload.
-pub(crate) fn receive_slice(station: &mut Station<LEN>, telegram: &[u8]) -> usize {
-    station.handle_bytes(Instant::ZERO, telegram);
-    finish(station, Instant::ZERO)
-}
-
-/// One telegram as an interrupt handler takes it.
-pub(crate) fn receive_bytes(station: &mut Station<LEN>, telegram: &[u8]) -> usize {
-    let now = core::hint::black_box(Instant::ZERO);
-    for &byte in telegram {
-        station.handle_byte(now, core::hint::black_box(byte));
+    /// Characters in one piece.
+    pub(crate) fn hear_slice(&mut self, characters: &[u8]) {
+        let mut rest = characters;
+        while !rest.is_empty() {
+            rest = &rest[self.station.handle_bytes(self.now, rest)..];
+        }
     }
-    finish(station, now)
-}
 
-/// One job in one piece; the characters of its block.
-pub(crate) fn send_slice(station: &mut Station<LEN>, payload: &[u8], out: &mut [u8]) -> usize {
-    begin(station, payload);
-    let mut len = 0;
-    while let Some(Transmit::Bytes(bytes)) = station.poll_transmit(Instant::ZERO, out) {
-        len += bytes.len();
+    /// Characters as an interrupt handler takes them.
+    pub(crate) fn hear_bytes(&mut self, characters: &[u8]) {
+        let now = black_box(self.now);
+        for &byte in characters {
+            self.station.handle_byte(now, black_box(byte));
+        }
     }
-    end(station);
-    len
-}
 
-/// One job as an interrupt handler sends it.
-pub(crate) fn send_bytes(station: &mut Station<LEN>, payload: &[u8]) -> usize {
-    begin(station, payload);
-    let now = core::hint::black_box(Instant::ZERO);
-    let mut len = 0;
-    while let Some(byte) = station.poll_transmit_byte(now) {
-        core::hint::black_box(byte);
-        len += 1;
+    /// Takes the two answers and the telegram; the length of its payload.
+    fn finish(&mut self) -> usize {
+        while self.station.poll_transmit_byte(self.now).is_some() {}
+        match self.station.poll_event() {
+            Some(Event::Received(payload)) => payload.len(),
+            _ => 0,
+        }
     }
-    end(station);
-    len
-}
 
-fn begin(station: &mut Station<LEN>, payload: &[u8]) {
-    station.send(Instant::ZERO, payload).unwrap();
-    assert_eq!(station.poll_transmit_byte(Instant::ZERO), Some(0x02));
-    station.handle_byte(Instant::ZERO, 0x10);
-}
+    /// One telegram in one piece; the length of its payload.
+    pub(crate) fn receive_slice(&mut self, telegram: &[u8]) -> usize {
+        self.hear_slice(telegram);
+        self.finish()
+    }
 
-fn end(station: &mut Station<LEN>) {
-    station.handle_byte(Instant::ZERO, 0x10);
-    assert!(matches!(
-        station.poll_event(),
-        Some(Event::Sent { len: LEN })
-    ));
+    /// One telegram byte by byte.
+    pub(crate) fn receive_bytes(&mut self, telegram: &[u8]) -> usize {
+        self.hear_bytes(telegram);
+        self.finish()
+    }
+
+    /// One job in one piece; the characters of its block.
+    pub(crate) fn send_slice(&mut self, payload: &[u8], out: &mut [u8]) -> usize {
+        self.begin(payload);
+        let mut len = 0;
+        while let Some(Transmit::Bytes(bytes)) = self.station.poll_transmit(self.now, out) {
+            len += bytes.len();
+        }
+        self.end();
+        len
+    }
+
+    /// One job as an interrupt handler sends it.
+    pub(crate) fn send_bytes(&mut self, payload: &[u8]) -> usize {
+        self.begin(payload);
+        let now = black_box(self.now);
+        let mut len = 0;
+        while let Some(byte) = self.station.poll_transmit_byte(now) {
+            black_box(byte);
+            len += 1;
+        }
+        self.end();
+        len
+    }
+
+    pub(crate) fn begin(&mut self, payload: &[u8]) {
+        self.station.submit(self.now, payload).unwrap();
+        assert_eq!(self.station.poll_transmit_byte(self.now), Some(0x02));
+        self.now += Duration::from_millis(3);
+        self.station.handle_byte(self.now, 0x10);
+    }
+
+    fn end(&mut self) {
+        self.now += LONG;
+        self.station.handle_byte(self.now, 0x10);
+        assert!(matches!(
+            self.station.poll_event(),
+            Some(Event::Sent { len: LEN })
+        ));
+    }
 }

@@ -1,11 +1,13 @@
-//! From the characters behind the STX to a payload.
+//! From the characters after the STX to a payload.
+
+use core::mem;
 
 use thiserror::Error;
 
-use super::{Check, scan::plain_run};
+use super::Check;
 use crate::ascii::{DLE, ETX};
 
-/// What happens when a single DLE stands in front of anything but DLE and ETX.
+/// What happens when a single DLE stands before anything but DLE and ETX.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -31,15 +33,15 @@ pub enum FrameError {
     Bcc {
         /// The XOR of what was received.
         computed: u8,
-        /// The character behind DLE ETX.
+        /// The character after DLE ETX.
         received: u8,
     },
-    /// A single DLE in front of something other than DLE and ETX.
-    #[error("10h in front of {byte:02X}h after {offset} payload bytes")]
+    /// A single DLE before something other than DLE and ETX.
+    #[error("10h before {byte:02X}h after {offset} payload bytes")]
     IllegalDle {
-        /// The character behind the DLE.
+        /// The character after the DLE.
         byte: u8,
-        /// Payload bytes in front of it.
+        /// Payload bytes before it.
         offset: u16,
     },
     /// The payload does not fit into the buffer.
@@ -48,28 +50,6 @@ pub enum FrameError {
         /// Bytes that the buffer holds.
         capacity: u16,
     },
-}
-
-/// What the decoder waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum State {
-    Data,
-    AfterDle,
-    Bcc,
-}
-
-/// What [`Decoder::feed`] did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[must_use]
-#[expect(
-    clippy::exhaustive_structs,
-    reason = "what was eaten and what came of it: nothing to add"
-)]
-pub struct Fed {
-    /// Bytes taken from the input. Less than all of them only when a block ended.
-    pub consumed: usize,
-    /// The end of a block: length of its payload, or what is wrong with it.
-    pub block: Option<Result<usize, FrameError>>,
 }
 
 /// Reads bodies, in pieces of any size, into a buffer that the caller passes with each call.
@@ -84,19 +64,23 @@ pub struct Fed {
 ///
 /// let mut decoder = Decoder::new(Check::Bcc);
 /// let mut payload = [0; 16];
-/// assert_eq!(decoder.feed(&[0x10], &mut payload).block, None);
-/// let fed = decoder.feed(&[0x10, 0x03, 0x10, 0x03, 0x10, 0x02], &mut payload);
-/// assert_eq!((fed.consumed, fed.block), (5, Some(Ok(2))));
+/// assert_eq!(decoder.feed(&[0x10], &mut payload), (1, None));
+/// let (taken, end) = decoder.feed(&[0x10, 0x03, 0x10, 0x03, 0x10, 0x02], &mut payload);
+/// assert_eq!((taken, end), (5, Some(Ok(2))));
 /// assert_eq!(payload[..2], [0x10, 0x03]);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[expect(
+    missing_copy_implementations,
+    reason = "a copy would be a second reader of one line"
+)]
 pub struct Decoder {
     progress: Progress,
     rules: Rules,
 }
 
 impl Decoder {
-    /// A decoder in front of the first character of a body, strict about DLE.
+    /// A decoder before the first character of a body, strict about DLE.
     #[must_use]
     pub const fn new(check: Check) -> Self {
         Self {
@@ -108,34 +92,11 @@ impl Decoder {
         }
     }
 
-    /// The same decoder with another rule for a DLE in front of an illegal character.
+    /// The same decoder with another rule for a DLE before an illegal character.
     #[must_use]
     pub const fn with_illegal_dle(mut self, rule: IllegalDle) -> Self {
         self.rules.illegal_dle = rule;
         self
-    }
-
-    /// Forgets the block that was begun.
-    pub fn reset(&mut self) {
-        self.progress = Progress::START;
-    }
-
-    /// Payload bytes of the block so far.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        usize::from(self.progress.len)
-    }
-
-    /// Whether no payload byte of the block has come yet.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.progress.len == 0
-    }
-
-    /// What is wrong with the block so far.
-    #[must_use]
-    pub fn fault(&self) -> Option<FrameError> {
-        self.progress.fault
     }
 
     /// Takes one character; `Some` when it ended the block.
@@ -144,16 +105,28 @@ impl Decoder {
     ///
     /// # Errors
     /// The inner [`FrameError`] when the block is no good: the first error in it.
-    #[inline]
     pub fn push(&mut self, byte: u8, buffer: &mut [u8]) -> Option<Result<usize, FrameError>> {
-        self.progress.push(self.rules, byte, buffer)
+        let end = self.progress.push(self.rules, byte, bounded(buffer))?;
+        Some(end.map(usize::from))
     }
 
-    /// Takes characters up to the end of the input or of the block, whichever comes first.
-    #[inline]
-    pub fn feed(&mut self, bytes: &[u8], buffer: &mut [u8]) -> Fed {
-        self.progress.feed(self.rules, bytes, buffer)
+    /// Takes characters up to the end of the input or of the block, whichever comes first; returns
+    /// how many, and what [`push`](Self::push) says of the last one.
+    #[must_use = "what follows the end of a block is not taken"]
+    pub fn feed(
+        &mut self,
+        bytes: &[u8],
+        buffer: &mut [u8],
+    ) -> (usize, Option<Result<usize, FrameError>>) {
+        let (taken, end) = self.progress.feed(self.rules, bytes, bounded(buffer));
+        (taken, end.map(|end| end.map(usize::from)))
     }
+}
+
+/// As much of a buffer as a block can fill.
+fn bounded(buffer: &mut [u8]) -> &mut [u8] {
+    let len = buffer.len().min(usize::from(u16::MAX));
+    buffer.get_mut(..len).unwrap_or_default()
 }
 
 /// What a decoder is set to.
@@ -163,26 +136,37 @@ pub(crate) struct Rules {
     pub(crate) illegal_dle: IllegalDle,
 }
 
-/// How far a decoder has come. The rules are the same in every call.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+/// What the next character is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Next {
+    Data,
+    /// The character after a DLE.
+    AfterDle,
+    Bcc,
+}
+
+/// How far a decoder has come. Rules and buffer, of at most 65535 bytes, are the same in every
+/// call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Progress {
     fault: Option<FrameError>,
     len: u16,
     bcc: u8,
-    state: State,
+    next: Next,
 }
 
 impl Progress {
-    /// In front of the first character.
+    /// Before the first character.
     pub(crate) const START: Self = Self {
         fault: None,
         len: 0,
         bcc: 0,
-        state: State::Data,
+        next: Next::Data,
     };
 
-    pub(crate) fn is_faulty(&self) -> bool {
-        self.fault.is_some()
+    /// The first fault so far.
+    pub(crate) const fn fault(&self) -> Option<FrameError> {
+        self.fault
     }
 
     /// Payload bytes in the buffer.
@@ -191,131 +175,139 @@ impl Progress {
         usize::from(self.len)
     }
 
-    /// Whether the next character may be data.
-    #[inline]
-    pub(crate) fn is_in_data(&self) -> bool {
-        self.state == State::Data
-    }
-
-    /// Takes a data byte other than DLE; `false`, and nothing taken, when it does not fit. Only
-    /// while [`is_in_data`](Self::is_in_data).
-    #[inline]
-    pub(crate) fn push_plain(&mut self, byte: u8, buffer: &mut [u8]) -> bool {
-        match buffer.get_mut(usize::from(self.len)) {
-            Some(slot) if self.len < u16::MAX => {
-                *slot = byte;
-                self.len = self.len.wrapping_add(1);
-                self.bcc ^= byte;
-                true
-            }
-            _ => false,
-        }
-    }
-
     /// Whether nothing but the BCC is missing.
     pub(crate) fn awaits_bcc(&self) -> bool {
-        self.state == State::Bcc
+        self.next == Next::Bcc
     }
 
     /// Whether the block consists of a single DLE so far.
     pub(crate) fn is_lone_dle(&self) -> bool {
-        self.state == State::AfterDle && self.len == 0 && self.bcc == DLE && !self.is_faulty()
+        self.next == Next::AfterDle && self.len == 0 && self.bcc == DLE && self.fault.is_none()
     }
 
+    /// Takes one character; `Some` when it ended the block.
     #[inline]
     pub(crate) fn push(
         &mut self,
         rules: Rules,
         byte: u8,
         buffer: &mut [u8],
-    ) -> Option<Result<usize, FrameError>> {
-        if self.state == State::Data {
-            self.bcc ^= byte;
-            if byte == DLE {
-                self.state = State::AfterDle;
-            } else {
-                self.store(byte, buffer);
-            }
-            return None;
+    ) -> Option<Result<u16, FrameError>> {
+        if self.push_data(byte, buffer) {
+            None
+        } else {
+            self.control(rules, byte, buffer)
         }
-        self.push_control(rules, byte, buffer)
     }
 
+    /// Takes a data byte, or half of a doubled DLE; `false`, and nothing taken, for what is no data
+    /// or the first that does not fit.
     #[inline]
-    pub(crate) fn feed(&mut self, rules: Rules, bytes: &[u8], buffer: &mut [u8]) -> Fed {
-        let mut rest = bytes;
-        while let Some((&byte, behind)) = rest.split_first() {
-            if self.state == State::Data && byte != DLE {
-                rest = self.take_run(rest, buffer);
-            } else {
-                rest = behind;
-                let block = self.push(rules, byte, buffer);
-                if block.is_some() {
-                    return Fed {
-                        consumed: bytes.len() - rest.len(),
-                        block,
-                    };
+    pub(crate) fn push_data(&mut self, byte: u8, buffer: &mut [u8]) -> bool {
+        match (self.next, byte) {
+            (Next::Data, DLE) => self.next = Next::AfterDle,
+            (Next::Data, _) | (Next::AfterDle, DLE) => {
+                match buffer.get_mut(usize::from(self.len)) {
+                    Some(slot) => {
+                        *slot = byte;
+                        self.len += 1;
+                    }
+                    None if self.fault.is_none() => return false,
+                    None => {}
                 }
+                self.next = Next::Data;
+            }
+            _ => return false,
+        }
+        self.bcc ^= byte;
+        true
+    }
+
+    #[inline]
+    pub(crate) fn feed(
+        &mut self,
+        rules: Rules,
+        bytes: &[u8],
+        buffer: &mut [u8],
+    ) -> (usize, Option<Result<u16, FrameError>>) {
+        let mut rest = bytes;
+        loop {
+            let taken = self.take_data(rest, buffer);
+            let Some((&byte, after)) = rest.get(taken..).and_then(<[u8]>::split_first) else {
+                return (bytes.len(), None);
+            };
+            rest = after;
+            let end = self.push(rules, byte, buffer);
+            if end.is_some() {
+                return (bytes.len() - rest.len(), end);
             }
         }
-        Fed {
-            consumed: bytes.len(),
-            block: None,
-        }
     }
 
-    /// Copies the run in front of the next DLE and returns what is behind it.
+    /// [`push_data`](Self::push_data) for many, up to what is no data; returns how many. Data that
+    /// do not fit are taken too.
     #[inline]
-    fn take_run<'b>(&mut self, bytes: &'b [u8], buffer: &mut [u8]) -> &'b [u8] {
-        let (len, xor) = plain_run(bytes);
-        let Some((run, rest)) = bytes.split_at_checked(len) else {
-            return &[];
-        };
-        self.bcc ^= xor;
+    fn take_data(&mut self, bytes: &[u8], buffer: &mut [u8]) -> usize {
+        if self.next != Next::Data {
+            return 0;
+        }
         let free = buffer.get_mut(usize::from(self.len)..).unwrap_or_default();
-        let fits = run
-            .len()
-            .min(free.len())
-            .min(usize::from(u16::MAX - self.len));
-        if let (Some(to), Some(from), Ok(step)) =
-            (free.get_mut(..fits), run.get(..fits), u16::try_from(fits))
-        {
-            to.copy_from_slice(from);
-            self.len = self.len.wrapping_add(step);
+        let mut slots = free.iter_mut();
+        let (mut len, mut bcc, mut is_too_long) = (self.len, self.bcc, false);
+        let mut rest = bytes.iter();
+        while let Some(&byte) = rest.next() {
+            bcc ^= byte;
+            if byte == DLE {
+                if rest.as_slice().first() != Some(&DLE) {
+                    self.next = Next::AfterDle;
+                    break;
+                }
+                rest.next();
+                bcc ^= DLE;
+            }
+            match slots.next() {
+                Some(slot) => {
+                    *slot = byte;
+                    len += 1;
+                }
+                None => is_too_long = true,
+            }
         }
-        if fits < run.len() {
-            self.too_long();
+        (self.len, self.bcc) = (len, bcc);
+        if is_too_long {
+            // The buffer is full: what it holds is its capacity.
+            self.note(FrameError::TooLong { capacity: len });
         }
-        rest
+        bytes.len() - rest.len()
     }
 
-    fn push_control(
+    /// Takes what is no data: the end of the block, or an error.
+    #[cold]
+    fn control(
         &mut self,
         rules: Rules,
         byte: u8,
         buffer: &mut [u8],
-    ) -> Option<Result<usize, FrameError>> {
-        if self.state == State::Bcc {
-            if byte != self.bcc {
-                self.note(FrameError::Bcc {
-                    computed: self.bcc,
-                    received: byte,
-                });
-            }
-            return Some(self.end());
-        }
+    ) -> Option<Result<u16, FrameError>> {
+        let (len, computed) = (self.len, self.bcc);
         self.bcc ^= byte;
-        self.state = State::Data;
-        match byte {
-            DLE => self.store(DLE, buffer),
-            ETX if rules.check == Check::None => return Some(self.end()),
-            ETX => self.state = State::Bcc,
-            _ if rules.illegal_dle == IllegalDle::Accept => self.store(byte, buffer),
+        match (mem::replace(&mut self.next, Next::Data), byte) {
+            (Next::Bcc, received) => {
+                if received != computed {
+                    self.note(FrameError::Bcc { computed, received });
+                }
+                return Some(self.end());
+            }
+            // The buffer is full: what it holds is its capacity.
+            (Next::Data, _) | (_, DLE) => self.note(FrameError::TooLong { capacity: len }),
+            (_, ETX) if rules.check == Check::None => return Some(self.end()),
+            (_, ETX) => self.next = Next::Bcc,
+            _ if rules.illegal_dle == IllegalDle::Accept => {
+                self.bcc ^= byte;
+                return self.push(rules, byte, buffer);
+            }
             _ => {
-                self.note(FrameError::IllegalDle {
-                    byte,
-                    offset: self.len,
-                });
+                self.note(FrameError::IllegalDle { byte, offset: len });
                 if rules.illegal_dle == IllegalDle::RejectAtOnce {
                     return Some(self.end());
                 }
@@ -324,34 +316,16 @@ impl Progress {
         None
     }
 
-    #[inline]
-    fn store(&mut self, byte: u8, buffer: &mut [u8]) {
-        match buffer.get_mut(usize::from(self.len)) {
-            Some(slot) if self.len < u16::MAX => {
-                *slot = byte;
-                self.len = self.len.wrapping_add(1);
-            }
-            _ => self.too_long(),
-        }
-    }
-
-    /// The buffer is full: what it holds is its capacity.
-    #[cold]
-    fn too_long(&mut self) {
-        self.note(FrameError::TooLong { capacity: self.len });
-    }
-
     fn note(&mut self, error: FrameError) {
         self.fault.get_or_insert(error);
     }
 
-    fn end(&mut self) -> Result<usize, FrameError> {
-        let result = match self.fault {
-            None => Ok(usize::from(self.len)),
+    fn end(&mut self) -> Result<u16, FrameError> {
+        let Self { fault, len, .. } = mem::replace(self, Self::START);
+        match fault {
+            None => Ok(len),
             Some(error) => Err(error),
-        };
-        *self = Self::START;
-        result
+        }
     }
 }
 
@@ -363,7 +337,7 @@ pub enum DecodeError {
     /// The block came to its end and is no good.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The bytes stop in front of the end of the block.
+    /// The bytes stop before the end of the block.
     #[error("no end of the block within {len} bytes")]
     Incomplete {
         /// Bytes that were looked at.
@@ -371,7 +345,7 @@ pub enum DecodeError {
     },
 }
 
-/// Reads one whole body into `buffer`; returns the payload and what stands behind the body.
+/// Reads one whole body into `buffer`; returns the payload and what stands after the body.
 ///
 /// # Errors
 /// [`DecodeError::Frame`] for a block that is no good, [`DecodeError::Incomplete`] for one
@@ -391,11 +365,11 @@ pub fn decode<'i, 'b>(
     check: Check,
     buffer: &'b mut [u8],
 ) -> Result<(&'b [u8], &'i [u8]), DecodeError> {
-    let fed = Decoder::new(check).feed(body, buffer);
+    let (taken, end) = Decoder::new(check).feed(body, buffer);
     let incomplete = DecodeError::Incomplete { len: body.len() };
-    let len = fed.block.ok_or(incomplete)??;
+    let len = end.ok_or(incomplete)??;
     Ok((
         buffer.get(..len).ok_or(incomplete)?,
-        body.get(fed.consumed..).ok_or(incomplete)?,
+        body.get(taken..).ok_or(incomplete)?,
     ))
 }

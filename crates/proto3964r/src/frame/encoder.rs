@@ -1,8 +1,10 @@
-//! From a payload to the characters behind the STX.
+//! From a payload to the characters after the STX.
+
+use core::mem;
 
 use thiserror::Error;
 
-use super::{Check, scan::plain_run};
+use super::Check;
 use crate::ascii::{DLE, ETX};
 
 /// Why a block was not encoded.
@@ -37,32 +39,13 @@ pub const fn max_encoded_len(payload_len: usize) -> usize {
     payload_len.saturating_mul(2).saturating_add(3)
 }
 
-/// The length of the body of this payload.
-///
-/// ```text
-/// len(payload) + number of 10h + 2 + (1 with BCC)
-/// ```
-#[must_use]
-pub fn encoded_len(payload: &[u8], check: Check) -> usize {
-    let doubled = payload.iter().filter(|&&byte| byte == DLE).count();
-    payload.len() + doubled + 2 + check.len()
-}
-
-/// The block check character: XOR of `characters` as they stand on the line.
-///
-/// Over a whole body with its BCC the result is 0.
-#[must_use]
-pub fn bcc(characters: &[u8]) -> u8 {
-    characters.iter().fold(0, |xor, byte| xor ^ byte)
-}
-
 /// Writes the body of `payload` to the front of `out` and returns its length.
 ///
 /// [`max_encoded_len`] bytes are always enough.
 ///
 /// # Errors
-/// [`EncodeError::BufferTooSmall`] when `out` is shorter than [`encoded_len`]; the contents of
-/// `out` are then unspecified. [`EncodeError::PayloadTooLong`] above 65535 bytes.
+/// [`EncodeError::BufferTooSmall`] when `out` is shorter than the body; the contents of `out`
+/// are then unspecified. [`EncodeError::PayloadTooLong`] above 65535 bytes.
 ///
 /// # Examples
 /// ```
@@ -89,13 +72,18 @@ pub fn encode(payload: &[u8], check: Check, out: &mut [u8]) -> Result<usize, Enc
     }
 }
 
+/// Bytes that the body of this payload takes: each byte, each DLE once more, DLE ETX, and the BCC.
+pub(crate) fn encoded_len(payload: &[u8], check: Check) -> usize {
+    let doubled = payload.iter().filter(|&&byte| byte == DLE).count();
+    payload.len() + doubled + 2 + usize::from(check == Check::Bcc)
+}
+
 /// What the encoder writes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Next {
     Payload,
     /// The second half of a doubled DLE.
     Twin,
-    Dle,
     Etx,
     Bcc,
     Done,
@@ -103,16 +91,16 @@ enum Next {
 
 /// Writes a body piece by piece; the payload stays with the caller.
 ///
-/// Check and payload are the same in every call; the payload has up to 65535 bytes, so that `position` never wraps.
+/// Check and payload are the same in every call; the payload has up to 65535 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Encoder {
-    position: u16,
+    position: usize,
     bcc: u8,
     next: Next,
 }
 
 impl Encoder {
-    /// In front of the first character.
+    /// Before the first character.
     pub(crate) const START: Self = Self {
         position: 0,
         bcc: 0,
@@ -123,52 +111,42 @@ impl Encoder {
         self.next == Next::Done
     }
 
-    /// Whether payload is next, or the end behind it.
-    pub(crate) fn is_in_payload(&self) -> bool {
-        self.next == Next::Payload
+    /// The next character of the body, `None` after the last one.
+    #[inline]
+    pub(crate) fn next_byte(&mut self, check: Check, payload: &[u8]) -> Option<u8> {
+        self.next_data(payload).or_else(|| self.next_control(check))
     }
 
-    /// The next byte of the payload if it is no DLE; `None`, and nothing taken, else. Only while
-    /// [`is_in_payload`](Self::is_in_payload), and with a DLE behind a payload that is shorter
-    /// than `buffer`: one comparison then finds the end too.
+    /// The next byte of the payload, or the second half of a doubled DLE; `None` after them.
     #[inline]
-    pub(crate) fn next_plain(&mut self, buffer: &[u8]) -> Option<u8> {
-        let byte = *buffer.get(usize::from(self.position))?;
-        if byte == DLE {
-            return None;
-        }
-        self.position = self.position.wrapping_add(1);
+    pub(crate) fn next_data(&mut self, payload: &[u8]) -> Option<u8> {
+        let byte = match self.next {
+            Next::Payload => {
+                let byte = *payload.get(self.position)?;
+                self.position += 1;
+                if byte == DLE {
+                    self.next = Next::Twin;
+                }
+                byte
+            }
+            Next::Twin => {
+                self.next = Next::Payload;
+                DLE
+            }
+            _ => return None,
+        };
         self.bcc ^= byte;
         Some(byte)
     }
 
-    /// The next character of the body, `None` behind the last one.
-    #[inline]
-    pub(crate) fn next_byte(&mut self, check: Check, payload: &[u8]) -> Option<u8> {
-        if self.next == Next::Payload {
-            if let Some(&byte) = payload.get(usize::from(self.position)) {
-                self.position = self.position.wrapping_add(1);
-                self.bcc ^= byte;
-                if byte == DLE {
-                    self.next = Next::Twin;
-                }
-                return Some(byte);
-            }
-            self.next = Next::Dle;
-        }
-        self.next_control(check)
-    }
-
+    /// The next character of what ends the block.
     fn next_control(&mut self, check: Check) -> Option<u8> {
         let (byte, next) = match self.next {
-            Next::Twin => (DLE, Next::Payload),
-            Next::Dle => (DLE, Next::Etx),
-            Next::Etx => match check {
-                Check::Bcc => (ETX, Next::Bcc),
-                Check::None => (ETX, Next::Done),
-            },
+            Next::Payload | Next::Twin => (DLE, Next::Etx),
+            Next::Etx if check == Check::Bcc => (ETX, Next::Bcc),
+            Next::Etx => (ETX, Next::Done),
             Next::Bcc => (self.bcc, Next::Done),
-            Next::Payload | Next::Done => return None,
+            Next::Done => return None,
         };
         self.bcc ^= byte;
         self.next = next;
@@ -177,40 +155,54 @@ impl Encoder {
 
     /// Writes as much of the body as `out` takes and returns how much.
     pub(crate) fn fill(&mut self, check: Check, payload: &[u8], out: &mut [u8]) -> usize {
-        let mut written = 0;
-        while let Some(free) = out.get_mut(written..).filter(|free| !free.is_empty()) {
-            written += match self.fill_run(payload, free) {
-                0 => match (self.next_byte(check, payload), free.first_mut()) {
-                    (Some(byte), Some(slot)) => {
-                        *slot = byte;
-                        1
-                    }
-                    _ => break,
-                },
-                run => run,
-            };
+        let mut written = self.fill_payload(payload, out);
+        while let Some(slot) = out.get_mut(written)
+            && let Some(byte) = self.next_byte(check, payload)
+        {
+            *slot = byte;
+            written += 1;
+            written += self.fill_payload(payload, out.get_mut(written..).unwrap_or_default());
         }
         written
     }
 
-    /// Copies the run up to the next DLE.
-    fn fill_run(&mut self, payload: &[u8], out: &mut [u8]) -> usize {
+    /// [`next_data`](Self::next_data) for many, as far as no DLE is parted from its twin; returns
+    /// how many characters.
+    #[inline]
+    fn fill_payload(&mut self, payload: &[u8], out: &mut [u8]) -> usize {
         if self.next != Next::Payload {
             return 0;
         }
-        let rest = payload
-            .get(usize::from(self.position)..)
-            .unwrap_or_default();
-        let reach = rest.get(..out.len()).unwrap_or(rest);
-        let (len, xor) = plain_run(reach);
-        let (Some(run), Some(out), Ok(step)) =
-            (reach.get(..len), out.get_mut(..len), u16::try_from(len))
-        else {
-            return 0;
-        };
-        out.copy_from_slice(run);
-        self.bcc ^= xor;
-        self.position = self.position.wrapping_add(step);
-        len
+        let mut rest = payload.get(self.position..).unwrap_or_default();
+        let room = out.len();
+        let (mut free, mut bcc) = (out, self.bcc);
+        loop {
+            let mut plain = 0;
+            for (slot, &byte) in free.iter_mut().zip(rest) {
+                if byte == DLE {
+                    break;
+                }
+                *slot = byte;
+                bcc ^= byte;
+                plain += 1;
+            }
+            // Two at a time: data full of DLE would cost more than three times the usual.
+            match (rest.get(plain..), mem::take(&mut free).get_mut(plain..)) {
+                (Some([DLE, DLE, after @ ..]), Some([a, b, c, d, space @ ..])) => {
+                    (*a, *b, *c, *d) = (DLE, DLE, DLE, DLE);
+                    (rest, free) = (after, space);
+                }
+                (Some([DLE, after @ ..]), Some([a, b, space @ ..])) => {
+                    (*a, *b) = (DLE, DLE);
+                    (rest, free) = (after, space);
+                }
+                (Some(after), Some(space)) => {
+                    self.position = payload.len() - after.len();
+                    self.bcc = bcc;
+                    return room - space.len();
+                }
+                _ => return 0, // a run is no longer than what it was made from
+            }
+        }
     }
 }

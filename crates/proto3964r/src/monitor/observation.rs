@@ -18,8 +18,7 @@ pub enum Side {
 
 impl Side {
     /// The other one.
-    #[must_use]
-    pub const fn other(self) -> Self {
+    pub(super) const fn other(self) -> Self {
         match self {
             Self::A => Self::B,
             Self::B => Self::A,
@@ -55,7 +54,7 @@ pub enum Observation<'a> {
         attempt: u8,
     },
     /// Both sides sent STX.
-    Collision,
+    Conflict,
     /// DLE to STX: ready to receive.
     Connected {
         /// The receiver.
@@ -70,7 +69,7 @@ pub enum Observation<'a> {
         /// Since the STX.
         delay: Duration,
     },
-    /// Data right behind STX, without waiting for the answer.
+    /// Data right after STX, without waiting for the answer.
     DidNotWait {
         /// The sender.
         side: Side,
@@ -154,7 +153,7 @@ impl fmt::Display for Observation<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Request { side, attempt } => write!(f, "{side} STX, attempt {attempt}"),
-            Self::Collision => f.write_str("collision: both sent STX"),
+            Self::Conflict => f.write_str("initialization conflict: both sent STX"),
             Self::Connected { by, delay } => {
                 write!(f, "{by} DLE, ready to receive, {}", Millis(delay))
             }

@@ -9,14 +9,14 @@ use alloc::{
 use proptest::prelude::*;
 
 use super::*;
-use crate::config::Priority;
+use crate::config::{Line, Priority};
 
 /// Reads `ms side byte...` groups, `A` to `B` and back, and returns what was seen.
 fn listen(monitor: &mut Monitor<32>, capture: &str) -> Vec<String> {
     let mut seen = Vec::new();
     for group in capture.split(';') {
         let mut words = group.split_whitespace();
-        let now = Instant::from_millis(words.next().unwrap().parse().unwrap());
+        let now = Duration::from_millis(words.next().unwrap().parse().unwrap());
         let side = if words.next() == Some("A") {
             Side::A
         } else {
@@ -35,7 +35,7 @@ fn listen(monitor: &mut Monitor<32>, capture: &str) -> Vec<String> {
 }
 
 fn monitor() -> Monitor<32> {
-    Monitor::new(Config::siemens_3964r(Priority::Low))
+    Monitor::new(Config::siemens_3964r(Priority::Low, Line::Instant))
 }
 
 #[test]
@@ -164,9 +164,9 @@ fn a_live_line_reports_the_missing_answer_once() {
     let mut monitor = monitor();
     assert_eq!(listen(&mut monitor, "0 A 02").len(), 1);
     let due = monitor.poll_timeout().unwrap();
-    assert_eq!(due, Instant::from_micros(2_000_001));
+    assert_eq!(due, Duration::from_micros(2_000_001));
     assert_eq!(
-        monitor.handle_timeout(Instant::from_millis(2000)).count(),
+        monitor.handle_timeout(Duration::from_millis(2000)).count(),
         0
     );
     assert_eq!(monitor.handle_timeout(due).size_hint(), (1, Some(1)));
@@ -179,7 +179,7 @@ fn a_damaged_character_is_no_answer() {
     let mut monitor = monitor();
     listen(&mut monitor, "0 A 02");
     let seen: Vec<_> = monitor
-        .handle_damaged(Instant::from_millis(1), Side::B, 0x10, LineError::Parity)
+        .handle_damaged(Duration::from_millis(1), Side::B, 0x10, LineError::Parity)
         .map(|observation| observation.to_string())
         .collect();
     assert_eq!(seen, vec!["B parity error in 10", "B stray 10"]);
@@ -190,7 +190,8 @@ fn a_damaged_character_is_no_answer() {
 fn a_damaged_block_is_rejected_with_reason() {
     let mut monitor = monitor();
     listen(&mut monitor, "0 A 02; 1 B 10");
-    let damaged = monitor.handle_damaged(Instant::from_millis(2), Side::A, 0x41, LineError::Parity);
+    let damaged =
+        monitor.handle_damaged(Duration::from_millis(2), Side::A, 0x41, LineError::Parity);
     assert_eq!(damaged.count(), 1);
     listen(&mut monitor, "2 A 10 03 52; 3 B 15");
     assert_eq!(monitor.verdict(), Verdict::Garbage { side: Side::A });
@@ -220,10 +221,10 @@ proptest! {
         (any::<bool>(), prop_oneof![Just(0x02), Just(0x03), Just(0x10), Just(0x15), any::<u8>()], 0..3_000_000_u64),
         0..300,
     )) {
-        let mut monitor = Monitor::<8>::new(Config::siemens_3964r(Priority::Low));
-        let mut now = Instant::ZERO;
+        let mut monitor = Monitor::<8>::new(Config::siemens_3964r(Priority::Low, Line::Instant));
+        let mut now = Duration::ZERO;
         for (from_a, byte, wait) in capture {
-            now = now.plus_us(wait);
+            now += Duration::from_micros(wait);
             let side = if from_a { Side::A } else { Side::B };
             prop_assert!(monitor.handle_byte(now, side, byte).count() < 5);
         }

@@ -93,7 +93,7 @@ pub enum Verdict {
 }
 
 /// What goes wrong, in the order in which equal counts are judged. A late answer was missing
-/// first: it stands in front of the missing one.
+/// first: it stands before the missing one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Trouble {
     BothHigh,

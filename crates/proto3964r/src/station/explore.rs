@@ -6,11 +6,13 @@
 //!
 //! - a user submits its job, or takes its events where the scope has a slow one;
 //! - a station puts the next character on the line (one in flight per direction);
-//! - the character that left first arrives, intact: both directions are equally fast, and a
-//!   station sends what it has before it takes in the next character;
+//! - the character that left first arrives, intact, at once or a character time after it left:
+//!   both directions are equally fast, and a station sends what it has before it takes in the next
+//!   character;
 //! - a fault: it is lost, or arrives as another character, or a deadline passes before it arrives;
 //! - a deadline that has come is handled; of two at the same time, either one first;
-//! - nothing is in flight: time goes on to the next deadline.
+//! - nothing else can happen: time goes on to the next arrival or deadline, but by no more than
+//!   half a character while one is in flight.
 //!
 //! The graph must have no cycle, so that every course ends, and each property is checked in every
 //! world or at every end. (The `stateright` crate would search the same graph, but its `eventually`
@@ -23,11 +25,16 @@ use std::{collections::HashMap, println};
 use super::*;
 use crate::{
     ascii::{DLE, ETX, NAK, STX},
-    config::Priority,
+    config::{Line, Priority},
     event::Event,
 };
 
 type Small = Station<2, 1>;
+
+/// The present of every world. What has been long before is forgotten.
+const NOW: Duration = Duration::from_secs(1000);
+/// Half of 11 bits at 9600 bit/s.
+const HALF_CHARACTER: Duration = Duration::from_micros(573);
 
 /// What a user knows about its job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,8 +48,8 @@ enum Seen {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct World {
     stations: [Small; 2],
-    /// Where a character goes, and the character, in the order in which they left.
-    in_flight: Vec<(usize, u8)>,
+    /// In the order in which they left.
+    in_flight: Vec<InFlight>,
     jobs: [Seen; 2],
     /// Telegrams that reached the user, at most 3 are counted.
     delivered: [u8; 2],
@@ -51,6 +58,14 @@ struct World {
     forged_dle: bool,
     /// In this step the slow user takes its events.
     user_1_looks: bool,
+}
+
+/// A character on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct InFlight {
+    to: usize,
+    byte: u8,
+    arrives_at: Duration,
 }
 
 /// What is explored.
@@ -107,28 +122,33 @@ impl World {
                 step(&|world| {
                     world.jobs[side] = Seen::Open;
                     world.stations[side]
-                        .send(Instant::ZERO, &[scope.payloads[side]])
+                        .submit(NOW, &[scope.payloads[side]])
                         .unwrap();
                 });
             }
             if self.can_launch(side) {
                 step(&|world| {
-                    let byte = world.stations[side].poll_transmit_byte(Instant::ZERO);
-                    world.in_flight.push((1 - side, byte.unwrap()));
+                    let byte = world.stations[side].poll_transmit_byte(NOW).unwrap();
+                    world.in_flight.push(InFlight {
+                        to: 1 - side,
+                        byte,
+                        arrives_at: NOW + scope.character(),
+                    });
                 });
             }
             if self.stations[side]
                 .poll_timeout()
-                .is_some_and(|due| due == Instant::ZERO)
+                .is_some_and(|due| due <= NOW)
             {
-                step(&|world| world.stations[side].handle_timeout(Instant::ZERO));
+                step(&|world| world.stations[side].handle_timeout(NOW));
             }
         }
         if scope.slow_user && self.stations[1].has_event() {
             step(&|world| world.user_1_looks = true);
         }
         let first = self.in_flight.first();
-        if let Some(&(_, byte)) = first.filter(|&&(to, _)| !self.can_launch(to)) {
+        let arrived = first.filter(|first| first.arrives_at <= NOW && !self.can_launch(first.to));
+        if let Some(&InFlight { byte, .. }) = arrived {
             step(&|world| world.arrive(byte));
             if self.faults_left > 0 {
                 step(&|world| {
@@ -145,41 +165,53 @@ impl World {
             }
         }
         let due = self.stations.iter().filter_map(Small::poll_timeout).min();
-        let quiet = self.in_flight.is_empty() && !(0..2).any(|side| self.can_launch(side));
-        if let Some(due) = due.filter(|&due| due > Instant::ZERO) {
-            if quiet {
-                step(&|world| world.pass(due));
-            } else if self.faults_left > 0 && !self.in_flight.is_empty() {
-                step(&|world| {
-                    world.faults_left -= 1;
-                    world.pass(due);
-                });
-            }
+        if due.is_some_and(|due| due <= NOW) {
+            return next;
+        }
+        let arrival = first.map(|first| first.arrives_at.min(NOW + HALF_CHARACTER));
+        let soonest = due.into_iter().chain(arrival).min();
+        let can_launch = (0..2).any(|side| self.can_launch(side));
+        if let Some(soonest) = soonest.filter(|&soonest| soonest > NOW && !can_launch) {
+            step(&|world| world.pass(soonest));
+        }
+        if let Some(due) = due
+            && self.faults_left > 0
+            && first.is_some_and(|first| first.arrives_at < due)
+        {
+            step(&|world| {
+                world.faults_left -= 1;
+                world.pass(due);
+            });
         }
         next
     }
 
     /// Whether the station has something to send and its direction is free.
     fn can_launch(&self, side: usize) -> bool {
-        let free = self.in_flight.iter().all(|&(to, _)| to == side);
+        let free = self.in_flight.iter().all(|first| first.to == side);
         free && self.stations[side]
             .clone()
-            .poll_transmit_byte(Instant::ZERO)
+            .poll_transmit_byte(NOW)
             .is_some()
     }
 
     /// The first character in flight arrives, as `byte`.
     fn arrive(&mut self, byte: u8) {
-        let (side, _) = self.in_flight.remove(0);
-        self.stations[side].handle_byte(Instant::ZERO, byte);
+        let InFlight { to, .. } = self.in_flight.remove(0);
+        self.stations[to].handle_byte(NOW, byte);
     }
 
-    /// Makes `due` the new zero of time.
-    fn pass(&mut self, due: Instant) {
+    /// Makes `due` the present.
+    fn pass(&mut self, due: Duration) {
+        let time = due - NOW;
+        for character in &mut self.in_flight {
+            character.arrives_at -= time;
+        }
         for station in &mut self.stations {
-            for time in [&mut station.deadline, &mut station.limit] {
-                if *time != Instant::NEVER {
-                    *time = Instant::ZERO + (*time - due);
+            station.leaving_at = station.leaving_at.map(|at| at.saturating_sub(time));
+            for at in station.state.times_mut() {
+                if *at != Duration::MAX {
+                    *at = at.saturating_sub(time);
                 }
             }
         }
@@ -201,7 +233,7 @@ impl World {
                     Event::Sent { .. } => {
                         assert_eq!(self.jobs[side], Seen::Open);
                         self.jobs[side] = Seen::Sent;
-                        let waiting = self.stations[1 - side].flags.has(Flag::RX_FULL);
+                        let waiting = self.stations[1 - side].holds_telegram;
                         if self.delivered[1 - side] == 0 && !waiting {
                             findings.lost += 1;
                             assert!(
@@ -222,35 +254,81 @@ impl World {
     }
 }
 
+impl State {
+    /// All times in the state.
+    fn times_mut(&mut self) -> Vec<&mut Duration> {
+        match self {
+            Self::Idle => vec![],
+            Self::Sending { begun_at, .. } => vec![begun_at],
+            Self::AwaitBuffer { refuse_at } => vec![refuse_at],
+            Self::Invited { gap_at } | Self::Receiving { gap_at, .. } => vec![gap_at],
+            Self::AwaitRepeat { give_up_at } => vec![give_up_at],
+            Self::AwaitAck { answer_at } => vec![answer_at],
+            Self::Noise {
+                silent_at,
+                babble_at,
+                ..
+            }
+            | Self::Interrupted {
+                silent_at,
+                babble_at,
+            } => vec![silent_at, babble_at],
+            Self::Spoiled {
+                gap_at, babble_at, ..
+            } => vec![gap_at, babble_at],
+            Self::Request { stalled_at, burst } => vec![stalled_at, &mut burst.until],
+            Self::AwaitDle {
+                answer_at, burst, ..
+            } => vec![answer_at, &mut burst.until],
+        }
+    }
+}
+
 impl Small {
+    /// Whether [`poll_event`](Self::poll_event) has something.
+    fn has_event(&self) -> bool {
+        self.clone().take_note().is_some()
+    }
+
+    /// Length of the telegram that has not been polled, 0 without one.
+    fn waiting_telegram(&self) -> usize {
+        let mut copy = self.clone();
+        core::iter::from_fn(|| copy.take_note())
+            .find_map(|note| match note {
+                Note::Received { len } => Some(usize::from(len)),
+                _ => None,
+            })
+            .unwrap_or(0)
+    }
+
     /// Clears what can no longer have any effect.
     fn forget(&mut self) {
-        let used = if self.flags.has(Flag::RX_FULL) {
-            usize::from(self.rx_len)
-        } else if self.state.is_receiving() {
-            self.decoder.stored()
-        } else {
-            0
+        let used = match &self.state {
+            State::Receiving { block, .. } | State::Spoiled { block, .. } => block.stored(),
+            _ => self.waiting_telegram(),
         };
         for byte in self.rx.iter_mut().skip(used) {
             *byte = 0;
         }
-        if !self.flags.has(Flag::RX_FULL) {
-            self.rx_len = 0;
+        if let State::Noise { first, .. } = &mut self.state {
+            *first = 0;
         }
-        if !self.state.is_receiving() {
-            self.decoder = Progress::START;
-            self.line_error = None;
+        self.discard = false; // a line that takes one character at a time has nothing to discard
+        let long_ago = NOW - 4 * HALF_CHARACTER;
+        self.leaving_at = self.leaving_at.filter(|&at| at > long_ago);
+        for at in self.state.times_mut() {
+            if *at < long_ago {
+                *at = Duration::ZERO;
+            }
         }
-        if !self.state.is_sending() {
-            self.encoder = Encoder::START;
+        if let State::Request { burst, .. } | State::AwaitDle { burst, .. } = &mut self.state
+            && burst.until <= NOW
+        {
+            *burst = Burst::NONE;
         }
-        self.flags.clear(Flag::DISCARD); // a line that takes one character at a time has none
-        self.dropped_notes = 0;
-        self.noise = 0;
-        if self.job == Job::None {
-            (self.setup, self.transfer, self.tx_len, self.tx) = (0, 0, 0, [0]);
-            self.first_cause = None;
+        if !self.is_busy() {
+            self.job = Job::NONE;
+            (self.tx_len, self.tx) = (0, [0]);
         }
     }
 }
@@ -310,13 +388,32 @@ impl Findings {
     }
 }
 
+impl Scope {
+    /// Time of a character.
+    fn character(&self) -> Duration {
+        match self.configs[0].line {
+            Line::Instant => Duration::ZERO,
+            _ => 2 * HALF_CHARACTER,
+        }
+    }
+
+    /// The same on a UART.
+    fn paced(mut self) -> Self {
+        let character_ns = u32::try_from(2 * HALF_CHARACTER.as_nanos()).unwrap();
+        for config in &mut self.configs {
+            config.line = Line::Paced { character_ns };
+        }
+        self
+    }
+}
+
 /// Two or three attempts keep the graph small and exercise the last attempt too.
 fn scope(priorities: [Priority; 2], attempts: u8, payloads: [u8; 2], faults: u8) -> Scope {
-    let config = |priority| {
-        Config::siemens_3964r(priority)
-            .with_setup_attempts(attempts)
-            .with_transfer_attempts(attempts)
-            .with_nak_at_startup(false)
+    let config = |priority| Config {
+        connection_attempts: attempts,
+        transmission_attempts: attempts,
+        nak_at_startup: false,
+        ..Config::siemens_3964r(priority, Line::Instant)
     };
     Scope {
         configs: priorities.map(config),
@@ -349,6 +446,31 @@ fn without_faults_everything_arrives_once() {
         } = findings;
         assert_eq!((with_failure, with_repeat, forged, lost), (0, 0, 0, 0));
     }
+}
+
+/// Characters take their time, so that some come too soon to be answers.
+#[test]
+fn on_a_paced_line_nothing_is_lost() {
+    for payloads in PAYLOADS {
+        let findings = explore(&scope(DISTINCT, 2, payloads, 0).paced());
+        report("paced, no fault", &findings);
+        let Findings {
+            with_failure,
+            with_repeat,
+            forged,
+            lost,
+            ..
+        } = findings;
+        assert_eq!((with_failure, with_repeat, forged, lost), (0, 0, 0, 0));
+    }
+    for payloads in PAYLOADS {
+        let findings = explore(&scope(DISTINCT, 5, payloads, 1).paced());
+        report("paced, one fault", &findings);
+        assert_eq!((findings.with_failure, findings.forged), (0, 0));
+    }
+    let findings = explore(&scope(DISTINCT, 2, [DLE, 0x41], 2).paced());
+    report("paced, two faults", &findings);
+    assert!(findings.ends > 0);
 }
 
 /// One fault anywhere: nothing fails, nothing is forged.

@@ -1,63 +1,163 @@
 //! Where the procedure and the job stand.
 
-/// Where the procedure stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum State {
-    Idle,
-    /// STX came, the receive buffer is in use.
-    WaitBuffer,
-    /// DLE is sent, the block comes in; nothing is wrong with it and the next character may be data.
-    Receiving,
-    /// The same behind a DLE, in front of the BCC, or with an error noted.
-    ReceivingOther,
-    /// NAK is sent, the repeat is awaited within BWZ.
-    AwaitRepeat,
-    /// Silence is awaited after noise in idle.
-    NoiseQuiet,
-    /// STX is queued or sent, DLE is awaited.
-    AwaitDle,
-    /// The block goes out; a data byte is next, or the end. `limit` is when the characters that
-    /// were handed out are on the line, and QVZ later the output has stalled.
-    Sending,
-    /// The same with something else to send first: a reply, or the rest of DLE DLE, DLE ETX BCC.
-    SendingOther,
-    /// Silence is awaited after something interrupted the block.
-    ResendQuiet,
-    /// The block is out, its answer is awaited.
-    AwaitAck,
-}
+use core::time::Duration;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Job {
-    None,
-    /// Waiting or under way.
-    Open,
-    /// The outcome is in the notes.
-    Closed,
+use crate::{
+    event::{Cause, Phase, Rejection},
+    frame::{Encoder, Progress},
+};
+
+/// Where the procedure stands, with the times at which patience ends.
+///
+/// ```text
+///         STX: DLE           character              end of a good block: DLE
+/// Idle ------------> Invited ---------> Receiving ---------------------------> Idle
+///  | | STX, no buffer   ^                   | error
+///  | +-> AwaitBuffer ---+                   v            end: NAK
+///  |        buffer free ^                Spoiled -----------------> AwaitRepeat
+///  | noise              +------------------------------------------------ STX
+///  +-----> Noise --- silence: NAK ---> Idle
+///
+///          STX             DLE            end of the block             DLE
+/// Request -----> AwaitDle -----> Sending ------------------> AwaitAck -----> Idle
+///  ^ ^ ^  NAK, QVZ  |              | NAK, other                 | NAK, QVZ
+///  | | +------------+              v                            |
+///  | +-- silence: NAK ------- Interrupted                       |
+///  +------------------------------------------------------------+
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) enum State {
+    /// Nothing is under way.
+    Idle,
+    /// A character that belongs to nothing came; NAK is sent when the line is silent.
+    Noise {
+        first: u8,
+        silent_at: Duration,
+        babble_at: Duration,
+    },
+    /// STX came, the receive buffer is in use.
+    AwaitBuffer { refuse_at: Duration },
+    /// DLE is queued or sent, no character of the block has come.
+    Invited { gap_at: Duration },
+    /// The block comes in, and nothing is wrong with it.
+    Receiving { block: Progress, gap_at: Duration },
+    /// The block is known to be bad; NAK follows at its end.
+    Spoiled {
+        block: Progress,
+        rejection: Rejection,
+        gap_at: Duration,
+        babble_at: Duration,
+    },
+    /// NAK is queued or sent, the STX of the repeat is awaited.
+    AwaitRepeat { give_up_at: Duration },
+    /// STX is next on the line.
+    Request { stalled_at: Duration, burst: Burst },
+    /// STX is sent, DLE is awaited.
+    AwaitDle {
+        answer_at: Duration,
+        burst: Burst,
+        /// The partner sent STX too.
+        in_conflict: bool,
+    },
+    /// The block goes out. It has stalled QVZ after its begin and after the end of the output so
+    /// far.
+    Sending { block: Encoder, begun_at: Duration },
+    /// The block was interrupted; it is repeated when the line is silent.
+    Interrupted {
+        silent_at: Duration,
+        babble_at: Duration,
+    },
+    /// The block is out, its answer is awaited.
+    AwaitAck { answer_at: Duration },
 }
 
 impl State {
-    /// Whether a block comes in.
-    pub(super) const fn is_receiving(self) -> bool {
-        matches!(self, Self::Receiving | Self::ReceivingOther)
+    /// The block that comes in, and when a gap in it is too long.
+    pub(super) const fn block_mut(&mut self) -> Option<(&mut Progress, &mut Duration)> {
+        match self {
+            Self::Receiving { block, gap_at } | Self::Spoiled { block, gap_at, .. } => {
+                Some((block, gap_at))
+            }
+            _ => None,
+        }
     }
 
-    /// Whether a block goes out.
-    pub(super) const fn is_sending(self) -> bool {
-        matches!(self, Self::Sending | Self::SendingOther)
+    /// The phase of the job that is under way; `None` when the line is not the job's.
+    pub(super) const fn phase(&self) -> Option<Phase> {
+        match self {
+            Self::Request { .. } | Self::AwaitDle { .. } => Some(Phase::Connection),
+            Self::Sending { .. } | Self::Interrupted { .. } | Self::AwaitAck { .. } => {
+                Some(Phase::Transmission)
+            }
+            Self::Idle
+            | Self::Noise { .. }
+            | Self::AwaitBuffer { .. }
+            | Self::Invited { .. }
+            | Self::Receiving { .. }
+            | Self::Spoiled { .. }
+            | Self::AwaitRepeat { .. } => None,
+        }
+    }
+}
+
+/// Characters that belong to the wrong answer of the attempt before: any until `until`, NAK alone
+/// if that answer was NAK.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Burst {
+    pub(super) until: Duration,
+    pub(super) of_nak: bool,
+}
+
+impl Burst {
+    pub(super) const NONE: Self = Self {
+        until: Duration::ZERO,
+        of_nak: true,
+    };
+
+    pub(super) fn has(self, now: Duration, is_nak: bool) -> bool {
+        now < self.until && (is_nak || !self.of_nak)
     }
 
-    /// Whether the station has sent or is about to send STX for its job.
-    pub(super) const fn is_job(self) -> bool {
-        self.is_sending() || matches!(self, Self::AwaitDle | Self::ResendQuiet | Self::AwaitAck)
+    /// Goes on with one more character, or begins with it.
+    pub(super) fn extend(&mut self, now: Duration, until: Duration, is_nak: bool) {
+        let begins = now >= self.until;
+        *self = Self {
+            until,
+            of_nak: is_nak && (self.of_nak || begins),
+        };
     }
+}
 
-    /// Whether something beside `deadline` may be due.
-    pub(super) const fn has_other_due(self) -> bool {
-        self.is_sending()
-            || matches!(
-                self,
-                Self::WaitBuffer | Self::ReceivingOther | Self::NoiseQuiet | Self::ResendQuiet
-            )
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum JobState {
+    None,
+    /// Waiting or under way.
+    Open,
+    /// The same, and it gave way to the partner, of which no telegram has come yet.
+    Yielded,
+    /// The outcome has not been polled.
+    Ended,
+}
+
+/// The job: from its submission until its outcome has been polled.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Job {
+    pub(super) state: JobState,
+    /// STX in this transmission attempt.
+    pub(super) connection_attempts: u8,
+    pub(super) transmission_attempts: u8,
+    pub(super) first_cause: Option<Cause>,
+}
+
+impl Job {
+    pub(super) const NONE: Self = Self {
+        state: JobState::None,
+        connection_attempts: 0,
+        transmission_attempts: 0,
+        first_cause: None,
+    };
+
+    pub(super) fn is_open(&self) -> bool {
+        matches!(self.state, JobState::Open | JobState::Yielded)
     }
 }

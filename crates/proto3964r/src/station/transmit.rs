@@ -1,337 +1,234 @@
-//! The transmitter's half of the procedure.
+//! The transmitter's half of the procedure: what the other files decide, done.
+
+use core::time::Duration;
 
 use super::{
-    Job, State, Station, Transmit,
-    compact::{Flag, Note, Reply},
+    Station,
+    queue::{Note, Reply},
+    state::{Burst, JobState, State},
 };
 use crate::{
-    ascii::{DLE, NAK, STX},
-    config::{Collision, Priority},
-    event::{Cause, LineError, Phase},
+    config::{Conflict, Priority},
+    event::{Cause, Failure, Phase},
     frame::Encoder,
-    time::Instant,
 };
 
 impl<const N: usize, const T: usize> Station<N, T> {
-    /// Hands out characters for the line, as many as `out` takes; `None` when there are none.
-    ///
-    /// The answer timer runs from the last character of the block, so hand on to the line what
-    /// you get, or tell with [`Config::character_us`](crate::Config::character_us) how long it
-    /// takes there. When [`Transmit::Discard`] comes, drop what the line has not taken yet.
-    #[must_use]
-    pub fn poll_transmit<'o>(&mut self, now: Instant, out: &'o mut [u8]) -> Option<Transmit<'o>> {
-        if self.flags.take(Flag::DISCARD) {
-            return Some(Transmit::Discard);
-        }
-        let mut len = 0;
-        while let Some(slot) = out.get_mut(len) {
-            let Some(byte) = self.next_control(now) else {
-                break;
-            };
-            *slot = byte;
-            len += 1;
-        }
-        if self.state.is_sending()
-            && let Some(free) = out.get_mut(len..)
-        {
-            let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
-            let written = self.encoder.fill(self.config.check, payload, free);
-            len += written;
-            self.handed_out(now, u32::try_from(written).unwrap_or(u32::MAX));
-        }
-        out.get(..len)
-            .filter(|bytes| !bytes.is_empty())
-            .map(Transmit::Bytes)
-    }
-
-    /// Hands out the next character, for a line that takes one at a time.
-    ///
-    /// There is nothing to discard then: what the line has taken is on the line.
-    #[must_use]
-    #[inline]
-    pub fn poll_transmit_byte(&mut self, now: Instant) -> Option<u8> {
-        if self.state == State::Sending
-            && let Some(byte) = self.encoder.next_plain(&self.tx)
-        {
-            let time = u64::from(self.config.character_us);
-            self.limit = self.limit.max(now).plus_us_unchecked_end(time);
-            return Some(byte);
-        }
-        self.next_other_byte(now)
-    }
-
-    /// Anything but one more data byte.
-    #[cold]
-    #[inline(never)]
-    fn next_other_byte(&mut self, now: Instant) -> Option<u8> {
-        self.flags.clear(Flag::DISCARD);
-        if let Some(byte) = self.next_control(now) {
-            return Some(byte);
-        }
-        if !self.state.is_sending() {
-            return None;
-        }
-        let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
-        let byte = self.encoder.next_byte(self.config.check, payload)?;
-        self.handed_out(now, 1);
-        Some(byte)
-    }
-
-    /// The next reply, or STX behind the replies. The timer of the state starts again.
-    #[inline]
-    fn next_control(&mut self, now: Instant) -> Option<u8> {
-        if self.replies.is_empty() && !self.flags.has(Flag::STX) {
-            return None;
-        }
-        let byte = match self.replies.pop() {
-            Some(reply) => reply.character(),
-            None => {
-                self.flags.clear(Flag::STX);
-                STX
-            }
+    /// Queues STX. The `burst` spoiled the attempt before.
+    pub(super) fn request(&mut self, now: Duration, burst: Burst) {
+        self.job.connection_attempts = self.job.connection_attempts.saturating_add(1);
+        self.state = State::Request {
+            stalled_at: now.saturating_add(self.config.qvz()),
+            burst,
         };
-        let on_line = now.plus_us(u64::from(self.config.character_us));
-        match self.state {
-            State::AwaitDle if !self.flags.has(Flag::STX) => {
-                self.deadline = on_line.plus_ms(self.config.qvz_ms);
-            }
-            State::Receiving | State::ReceivingOther if byte == DLE => {
-                self.deadline = on_line.plus_ms(self.config.zvz_ms);
-            }
-            State::AwaitRepeat => self.deadline = on_line.plus_ms(self.config.bwz_ms),
-            _ => {}
-        }
-        Some(byte)
-    }
-
-    /// `count` more characters of the block are on their way.
-    ///
-    /// ```text
-    /// end of output = max(end of output, now) + count * character
-    /// ```
-    fn handed_out(&mut self, now: Instant, count: u32) {
-        if count > 0 {
-            let time = u64::from(self.config.character_us) * u64::from(count);
-            self.limit = self.limit.max(now).plus_us(time);
-        }
-        if self.encoder.is_done() {
-            self.state = State::AwaitAck;
-            self.deadline = self.limit.plus_ms(self.config.qvz_ms);
-            self.limit = Instant::NEVER;
-        } else {
-            self.state = self.sending_state();
-        }
-    }
-
-    fn sending_state(&self) -> State {
-        if self.replies.is_empty() && self.encoder.is_in_payload() {
-            State::Sending
-        } else {
-            State::SendingOther
-        }
-    }
-
-    /// While an answer is awaited: when STX or the block is on the line.
-    #[inline]
-    fn end_of_output(&self) -> Instant {
-        self.deadline.minus_ms(self.config.qvz_ms)
-    }
-
-    /// Queues STX. Characters up to `burst_end` belong to what spoiled the attempt before.
-    pub(super) fn start_setup(&mut self, now: Instant, burst_end: Instant) {
-        self.setup = self.setup.saturating_add(1);
-        self.flags.set(Flag::STX);
-        self.flags.clear(Flag::COLLIDED);
-        self.state = State::AwaitDle;
-        self.deadline = now.plus_ms(self.config.qvz_ms);
-        self.limit = burst_end;
     }
 
     /// The line is free again and a job waits.
-    pub(super) fn resume(&mut self, now: Instant) {
-        if self.flags.has(Flag::YIELDED) {
-            self.flags.clear(Flag::YIELDED);
-            self.next_setup(now, Cause::Collision, Instant::ZERO);
+    pub(super) fn resume(&mut self, now: Duration) {
+        if self.job.state == JobState::Yielded {
+            self.job.state = JobState::Open;
+            self.next_connection(now, Cause::Conflict, Burst::NONE);
         } else {
-            self.start_setup(now, Instant::ZERO);
+            self.request(now, Burst::NONE);
         }
     }
 
-    fn next_setup(&mut self, now: Instant, cause: Cause, burst_end: Instant) {
-        self.first_cause.get_or_insert(cause);
-        if self.setup >= self.config.setup_attempts {
-            self.fail(now, Phase::Setup);
+    /// STX again, unless there were too many.
+    pub(super) fn next_connection(&mut self, now: Duration, cause: Cause, burst: Burst) {
+        let cause = *self.job.first_cause.get_or_insert(cause);
+        if self.job.connection_attempts >= self.config.connection_attempts {
+            self.fail(now, Phase::Connection, cause);
         } else {
-            self.start_setup(now, burst_end);
+            self.request(now, burst);
         }
     }
 
-    fn next_transfer(&mut self, now: Instant, cause: Cause, burst_end: Instant) {
-        self.first_cause.get_or_insert(cause);
-        self.flags.set(Flag::DISCARD);
-        if self.transfer >= self.config.transfer_attempts {
-            self.fail(now, Phase::Transfer);
+    /// The whole transmission again, from STX, unless there were too many.
+    pub(super) fn next_transmission(&mut self, now: Duration, cause: Cause, burst: Burst) {
+        let cause = *self.job.first_cause.get_or_insert(cause);
+        if self.job.transmission_attempts >= self.config.transmission_attempts {
+            self.fail(now, Phase::Transmission, cause);
         } else {
-            self.transfer = self.transfer.saturating_add(1);
-            self.setup = 0;
-            self.start_setup(now, burst_end);
+            self.job.transmission_attempts = self.job.transmission_attempts.saturating_add(1);
+            self.job.connection_attempts = 0;
+            self.request(now, burst);
         }
+    }
+
+    /// Breaks off what is left of the block, and begins again.
+    pub(super) fn repeat_block(&mut self, now: Duration, cause: Cause, burst: Burst) {
+        self.discard_rest();
+        self.next_transmission(now, cause, burst);
+    }
+
+    /// The burst that begins with a wrong answer.
+    fn burst_of(&self, now: Duration, cause: Cause) -> Burst {
+        Burst {
+            until: now.saturating_add(self.zvz),
+            of_nak: cause == Cause::Nak,
+        }
+    }
+
+    /// A wrong answer to STX, unless it came too soon to be one.
+    pub(super) fn wrong_answer_to_stx(&mut self, now: Duration, cause: Cause) {
+        if self.may_be_answer(now) {
+            self.next_connection(now, cause, self.burst_of(now, cause));
+        } else {
+            self.extend_burst(now, cause == Cause::Nak);
+        }
+    }
+
+    /// One more character that is no answer.
+    pub(super) fn extend_burst(&mut self, now: Duration, is_nak: bool) {
+        let until = now.saturating_add(self.zvz);
+        if let State::Request { burst, .. } | State::AwaitDle { burst, .. } = &mut self.state {
+            burst.extend(now, until, is_nak);
+        }
+    }
+
+    /// A wrong answer to the block, unless the block still goes out.
+    pub(super) fn wrong_answer_to_block(&mut self, now: Duration, cause: Cause) {
+        if now < self.end_of_output() {
+            self.interrupted(now, cause);
+        } else {
+            self.repeat_block(now, cause, self.burst_of(now, cause));
+        }
+    }
+
+    /// NAK to the block or into it. On a line that cannot take it back, the rest goes out first.
+    pub(super) fn broken_off(&mut self, now: Duration) {
+        if now < self.end_of_output() && !self.config.line.can_discard() {
+            self.interrupted(now, Cause::Nak);
+        } else {
+            self.repeat_block(now, Cause::Nak, self.burst_of(now, Cause::Nak));
+        }
+    }
+
+    /// A character in the block: silence has to be awaited, after what can no longer be held back.
+    pub(super) fn interrupted(&mut self, now: Duration, cause: Cause) {
+        self.job.first_cause.get_or_insert(cause);
+        self.discard_rest();
+        let end = if self.discard {
+            now
+        } else {
+            self.end_of_output().max(now)
+        };
+        self.state = State::Interrupted {
+            silent_at: end.saturating_add(self.zvz),
+            babble_at: end.saturating_add(self.config.babble()),
+        };
+    }
+
+    fn discard_rest(&mut self) {
+        self.discard |= self.config.line.can_discard();
     }
 
     /// The last attempt is used up: NAK puts the partner into idle.
-    fn fail(&mut self, now: Instant, phase: Phase) {
-        self.flags.clear(Flag::STX);
+    fn fail(&mut self, now: Duration, phase: Phase, cause: Cause) {
         self.replies.push(Reply::Nak);
-        self.close(Note::Failed(phase));
+        self.close_failed(phase, cause);
         self.go_idle(now);
     }
 
+    fn close_failed(&mut self, phase: Phase, cause: Cause) {
+        let attempts = match phase {
+            Phase::Connection => self.job.connection_attempts,
+            Phase::Transmission => self.job.transmission_attempts,
+        };
+        self.close(Note::Failed(Failure {
+            phase,
+            cause,
+            attempts,
+        }));
+    }
+
     fn close(&mut self, outcome: Note) {
-        self.job = Job::Closed;
-        self.flags.clear(Flag::YIELDED);
+        self.job.state = JobState::Ended;
         self.notes.result(outcome);
     }
 
     /// Ends the job from outside.
-    pub(super) fn end_job(&mut self, now: Instant, cause: Cause) {
-        self.first_cause.get_or_insert(cause);
-        let phase = match self.state {
-            State::Sending | State::SendingOther | State::ResendQuiet | State::AwaitAck => {
-                Phase::Transfer
+    pub(super) fn end_job(&mut self, now: Duration, cause: Cause) {
+        let cause = *self.job.first_cause.get_or_insert(cause);
+        match self.state.phase() {
+            None => self.close_failed(Phase::Connection, cause),
+            Some(phase) => {
+                if phase == Phase::Transmission {
+                    self.discard_rest();
+                }
+                self.fail(now, phase, cause);
             }
-            _ => Phase::Setup,
+        }
+    }
+
+    /// The partner answered DLE.
+    pub(super) fn connected(&mut self, now: Duration) {
+        if let State::AwaitDle {
+            in_conflict: true, ..
+        } = self.state
+        {
+            self.conflicts = 0; // it gave way, as its priority wants it
+        }
+        self.send_block(now);
+    }
+
+    pub(super) fn send_block(&mut self, now: Duration) {
+        self.state = State::Sending {
+            block: Encoder::START,
+            begun_at: now,
         };
-        if self.state.is_job() {
-            if phase == Phase::Transfer {
-                self.flags.set(Flag::DISCARD);
+    }
+
+    /// The partner acknowledged the block.
+    pub(super) fn sent(&mut self, now: Duration) {
+        self.close(Note::Sent);
+        self.go_idle(now);
+    }
+
+    /// Serves the partner first.
+    pub(super) fn give_way(&mut self, now: Duration) {
+        self.job.state = JobState::Yielded;
+        self.asked_to_receive(now);
+    }
+
+    /// The partner sent STX too.
+    pub(super) fn conflict(&mut self, now: Duration) {
+        let gives_way = match self.config.priority {
+            Priority::Low => true,
+            Priority::High => {
+                self.config.conflict == Conflict::YieldOnRetry && self.job.connection_attempts > 1
             }
-            self.fail(now, phase);
-        } else {
-            self.close(Note::Failed(phase));
+        };
+        if let State::Request { burst, .. } = self.state {
+            // The next STX would meet the DLE that the one before has earned.
+            self.state = State::AwaitDle {
+                answer_at: now.saturating_add(self.config.qvz()),
+                burst,
+                in_conflict: false,
+            };
         }
-    }
-
-    /// A character while STX is queued but not on the line: it answers nothing. A partner who
-    /// asks is served first; a late DLE of the attempt before still counts.
-    pub(super) fn early_character(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
-        match (byte, error) {
-            (STX, None) => {
-                self.flags.clear(Flag::STX);
-                self.flags.set(Flag::YIELDED);
-                self.asked_to_receive(now);
-            }
-            (DLE, None) if self.setup > 1 => self.start_block(now),
-            (NAK, None) => {}
-            _ => self.limit = now.plus_ms(self.config.zvz_ms),
-        }
-    }
-
-    /// The answer to STX.
-    pub(super) fn setup_answer(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
-        match (byte, error) {
-            (STX, None) => self.collision(now),
-            _ if self.config.ignore_early_answers && now < self.earliest_answer() => {}
-            (DLE, None) => self.start_block(now),
-            (NAK, None) => self.next_setup(now, Cause::Nak, Instant::ZERO),
-            _ => {
-                let burst_end = now.plus_ms(self.config.zvz_ms);
-                if now < self.limit {
-                    self.limit = burst_end;
-                } else {
-                    self.next_setup(now, wrong_answer(byte, error), burst_end);
-                }
-            }
-        }
-    }
-
-    /// STX and the answer take a character time each: what comes before has left the partner
-    /// before it saw STX, for instance a NAK that crosses STX.
-    fn earliest_answer(&self) -> Instant {
-        self.end_of_output()
-            .plus_us(u64::from(self.config.character_us))
-    }
-
-    fn start_block(&mut self, now: Instant) {
-        self.collisions = 0;
-        self.flags.clear(Flag::STX);
-        self.encoder = Encoder::START;
-        self.state = self.sending_state();
-        self.deadline = Instant::NEVER;
-        self.limit = now;
-    }
-
-    fn collision(&mut self, now: Instant) {
-        let gives_way = self.config.priority == Priority::Low
-            || (self.config.collision == Collision::YieldOnRetry && self.setup > 1);
-        if !self.flags.has(Flag::COLLIDED) {
-            self.flags.set(Flag::COLLIDED);
-            self.collisions = self.collisions.saturating_add(1);
-            self.diagnose(Note::Collision(self.collisions));
-            if self.collisions == 2 && !gives_way {
-                self.diagnose(Note::SamePriority);
-            }
-        }
+        self.count_conflict(gives_way);
         if gives_way {
-            self.flags.set(Flag::YIELDED);
-            self.asked_to_receive(now);
-        } else if self.config.collision == Collision::Repeat {
-            self.next_setup(now, Cause::Collision, Instant::ZERO);
+            self.give_way(now);
+        } else if self.config.conflict == Conflict::Repeat && self.may_be_answer(now) {
+            self.next_connection(now, Cause::Conflict, Burst::NONE);
         } else {
-            self.first_cause.get_or_insert(Cause::Collision);
+            self.job.first_cause.get_or_insert(Cause::Conflict);
         }
     }
 
-    /// A character while the block goes out.
-    pub(super) fn interrupted(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
-        if (byte, error) == (NAK, None) {
-            self.next_transfer(now, Cause::Nak, Instant::ZERO);
-        } else {
-            self.flags.set(Flag::DISCARD);
-            self.first_cause.get_or_insert(wrong_answer(byte, error));
-            self.state = State::ResendQuiet;
-            self.deadline = now.plus_ms(self.config.zvz_ms);
-            self.limit = now.plus_us(self.config.babble_us());
+    /// Reports a conflict, once in each connection attempt.
+    fn count_conflict(&mut self, gives_way: bool) {
+        let State::AwaitDle { in_conflict, .. } = &mut self.state else {
+            return;
+        };
+        if core::mem::replace(in_conflict, true) {
+            return;
+        }
+        self.conflicts = self.conflicts.saturating_add(1);
+        self.notes.diagnosis(Note::Conflict(self.conflicts));
+        if self.conflicts == 2 && !gives_way {
+            self.notes.diagnosis(Note::SamePriority);
         }
     }
-
-    /// The answer to the block.
-    pub(super) fn block_answer(&mut self, now: Instant, byte: u8, error: Option<LineError>) {
-        match (byte, error) {
-            (DLE, None) => {
-                self.close(Note::Sent);
-                self.go_idle(now);
-            }
-            (NAK, None) => self.next_transfer(now, Cause::Nak, Instant::ZERO),
-            _ if now < self.end_of_output() => self.interrupted(now, byte, error),
-            _ => {
-                let burst_end = now.plus_ms(self.config.zvz_ms);
-                self.next_transfer(now, wrong_answer(byte, error), burst_end);
-            }
-        }
-    }
-
-    pub(super) fn transmit_timeout(&mut self, now: Instant) {
-        match self.state {
-            State::AwaitDle if self.flags.has(Flag::STX) => {
-                self.next_setup(now, Cause::Stalled, Instant::ZERO);
-            }
-            State::AwaitDle => self.next_setup(now, Cause::Timeout, Instant::ZERO),
-            State::Sending | State::SendingOther => {
-                self.next_transfer(now, Cause::Stalled, Instant::ZERO);
-            }
-            State::ResendQuiet => {
-                // `fail` sends this NAK itself, and the cause was noted when the block stopped.
-                if self.transfer < self.config.transfer_attempts {
-                    self.replies.push(Reply::Nak);
-                }
-                self.next_transfer(now, Cause::Timeout, Instant::ZERO);
-            }
-            _ => self.next_transfer(now, Cause::Timeout, Instant::ZERO),
-        }
-    }
-}
-
-/// A character that is no answer, or a damaged one.
-fn wrong_answer(byte: u8, error: Option<LineError>) -> Cause {
-    error.map_or(Cause::Unexpected(byte), Cause::Line)
 }

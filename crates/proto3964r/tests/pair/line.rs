@@ -3,8 +3,9 @@
 extern crate alloc;
 
 use alloc::collections::VecDeque;
+use core::time::Duration;
 
-use proto3964r::{Config, Event, Failure, Instant, Monitor, Observation, Side, Station, Transmit};
+use proto3964r::{Config, Event, Failure, Line, Monitor, Observation, Side, Station, Transmit};
 
 /// Longest block on these lines.
 pub(crate) const BLOCK: usize = 48;
@@ -44,6 +45,11 @@ impl Random {
     fn byte(&mut self) -> u8 {
         u8::try_from(self.below(256)).unwrap()
     }
+}
+
+/// In microseconds, rounded up.
+fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos().div_ceil(1000)).unwrap()
 }
 
 /// How a job ended.
@@ -88,14 +94,14 @@ impl End {
 
     /// Gives the next job, fills the circuit and takes the events.
     fn serve(&mut self, now: u64) {
-        let time = Instant::from_micros(now);
+        let time = Duration::from_micros(now);
         loop {
             if let Some(job) = self
                 .jobs
                 .get(self.outcomes.len())
-                .filter(|_| self.station.can_send())
+                .filter(|_| !self.station.is_busy())
             {
-                self.station.send(time, job).unwrap();
+                self.station.submit(time, job).unwrap();
             }
             match self.station.poll_event() {
                 None => break,
@@ -128,7 +134,7 @@ impl End {
     fn next_due(&self) -> Option<u64> {
         let shift = (!self.fifo.is_empty()).then_some(self.shift_until);
         let arrival = self.arriving.front().map(|&(time, _)| time);
-        let timeout = self.station.poll_timeout().map(Instant::as_micros);
+        let timeout = self.station.poll_timeout().map(micros);
         [shift, arrival, timeout].into_iter().flatten().min()
     }
 
@@ -163,7 +169,10 @@ impl Pair {
         character_us: u32,
         seed: u64,
     ) -> Self {
-        let [a, b] = configs.map(|config| config.with_character_us(character_us));
+        let line = Line::Paced {
+            character_ns: 1000 * character_us,
+        };
+        let [a, b] = configs.map(|config| Config { line, ..config });
         let [a_jobs, b_jobs] = jobs;
         Self {
             ends: [End::new(a, a_jobs), End::new(b, b_jobs)],
@@ -206,7 +215,7 @@ impl Pair {
             self.carry(1 - side, byte);
         }
         let end = &mut self.ends[side];
-        let time = Instant::from_micros(now);
+        let time = Duration::from_micros(now);
         if end
             .arriving
             .front()
@@ -230,7 +239,7 @@ impl Pair {
         let side = if to == 1 { Side::A } else { Side::B };
         for observation in self
             .monitor
-            .handle_byte(Instant::from_micros(arrival), side, byte)
+            .handle_byte(Duration::from_micros(arrival), side, byte)
         {
             if let Observation::Block { payload, .. } = observation {
                 self.overheard[1 - to].push(payload.to_vec());

@@ -6,7 +6,7 @@ mod line;
 use line::{Faults, Outcome, Pair, Random};
 use proptest::prelude::*;
 use proto3964r::{
-    Check, Collision, Config, IdleNoise, IllegalDle, Priority, SilenceInBlock, Verdict,
+    Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock, Verdict,
     frame::{encode, max_encoded_len},
 };
 
@@ -51,7 +51,7 @@ fn ends_in_block(characters: &[u8], payload: &[u8]) -> bool {
 }
 
 fn configs() -> [Config; 2] {
-    [Priority::High, Priority::Low].map(Config::siemens_3964r)
+    [Priority::High, Priority::Low].map(|priority| Config::siemens_3964r(priority, Line::Instant))
 }
 
 /// On a clean line nothing is lost, repeated or refused, whoever sends when.
@@ -60,8 +60,7 @@ fn a_clean_line_carries_everything_once() {
     for seed in 0..20 {
         let work = [jobs(seed, 40, false), jobs(seed + 100, 40, false)];
         // The start-up NAK of one crosses the first STX of the other.
-        let strict = configs().map(|config| config.with_ignore_early_answers(true));
-        let mut pair = Pair::new(strict, work.clone(), Faults::default(), 1146, seed);
+        let mut pair = Pair::new(configs(), work.clone(), Faults::default(), 1146, seed);
         assert!(pair.run(HOUR_US).is_some());
         for side in 0..2 {
             assert_eq!(pair.ends[side].received, work[1 - side]);
@@ -76,7 +75,10 @@ fn a_clean_line_carries_everything_once() {
 #[test]
 fn the_same_priority_on_both_sides_ends_and_is_reported() {
     for priority in [Priority::High, Priority::Low] {
-        let config = Config::siemens_3964r(priority).with_nak_at_startup(false);
+        let config = Config {
+            nak_at_startup: false,
+            ..Config::siemens_3964r(priority, Line::Instant)
+        };
         let work = [vec![b"A".to_vec()], vec![b"B".to_vec()]];
         let mut pair = Pair::new([config, config], work, Faults::default(), 1146, 1);
         assert!(pair.run(HOUR_US).is_some());
@@ -90,15 +92,13 @@ fn the_same_priority_on_both_sides_ends_and_is_reported() {
 /// The Linux rule resolves what Siemens leaves to clock drift.
 #[test]
 fn yield_on_retry_resolves_two_high_stations() {
-    let config = Config::siemens_3964r(Priority::High);
+    let config = Config::siemens_3964r(Priority::High, Line::Instant);
+    let yielding = Config {
+        conflict: Conflict::YieldOnRetry,
+        ..config
+    };
     let work = [vec![b"A".to_vec()], vec![b"B".to_vec()]];
-    let mut pair = Pair::new(
-        [config, config.with_collision(Collision::YieldOnRetry)],
-        work.clone(),
-        Faults::default(),
-        1146,
-        1,
-    );
+    let mut pair = Pair::new([config, yielding], work.clone(), Faults::default(), 1146, 1);
     assert!(pair.run(HOUR_US).is_some());
     for side in 0..2 {
         assert_eq!(pair.ends[side].received, work[1 - side]);
@@ -148,9 +148,9 @@ fn any_config(priority: Priority) -> impl Strategy<Value = Config> {
             Just(IllegalDle::Accept)
         ],
         prop_oneof![
-            Just(Collision::Wait),
-            Just(Collision::YieldOnRetry),
-            Just(Collision::Repeat)
+            Just(Conflict::Wait),
+            Just(Conflict::YieldOnRetry),
+            Just(Conflict::Repeat)
         ],
         prop_oneof![
             Just(SilenceInBlock::Idle),
@@ -158,18 +158,20 @@ fn any_config(priority: Priority) -> impl Strategy<Value = Config> {
         ],
     )
         .prop_map(
-            move |((qvz, zvz, bwz, setup, transfer), noise, dle, collision, silence)| {
-                Config::siemens_3964r(priority)
-                    .with_qvz_ms(qvz)
-                    .with_zvz_ms(zvz)
-                    .with_bwz_ms(bwz)
-                    .with_babble_s(1)
-                    .with_setup_attempts(setup)
-                    .with_transfer_attempts(transfer)
-                    .with_idle_noise(noise)
-                    .with_illegal_dle(dle)
-                    .with_collision(collision)
-                    .with_silence_in_block(silence)
+            move |((qvz, zvz, bwz, connection, transmission), noise, dle, conflict, silence)| {
+                Config {
+                    qvz_ms: qvz,
+                    zvz_ms: zvz,
+                    bwz_ms: bwz,
+                    babble_s: 1,
+                    connection_attempts: connection,
+                    transmission_attempts: transmission,
+                    idle_noise: noise,
+                    illegal_dle: dle,
+                    conflict,
+                    silence_in_block: silence,
+                    ..Config::siemens_3964r(priority, Line::Instant)
+                }
             },
         )
 }
@@ -201,7 +203,8 @@ proptest! {
         faults in rough(),
         seed in any::<u64>(),
     ) {
-        let a = if swap_to_low { a.with_priority(Priority::Low) } else { a };
+        let priority = if swap_to_low { Priority::Low } else { a.priority };
+        let a = Config { priority, ..a };
         let work = [jobs(seed, 6, false), jobs(!seed, 6, false)];
         let mut pair = Pair::new([a, b], work, faults, 1146, seed);
         prop_assert!(pair.run(HOUR_US).is_some(), "stuck: {pair:?}");

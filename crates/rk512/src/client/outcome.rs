@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use thiserror::Error;
 
-use crate::command::{Command, RequestError};
+use crate::command::Command;
 use crate::reaction::{ReactionError, ReactionFault};
 
 /// Why a job was not taken.
@@ -31,15 +31,6 @@ pub enum SubmitError {
         /// Bytes announced; 0 for a FETCH.
         expected: usize,
     },
-    /// The data of a SEND are no whole number of words, or more than 65535 of them.
-    #[error("{len} bytes of data are not 1 to 65535 words")]
-    NotWords {
-        /// Bytes given.
-        len: usize,
-    },
-    /// There is no such command.
-    #[error(transparent)]
-    Request(#[from] RequestError),
 }
 
 /// Why a job failed.

@@ -1,3 +1,5 @@
+//! What is wrong with a command: of the own program, or of the partner.
+
 use thiserror::Error;
 
 use crate::area::{AreaError, AreaKind};
@@ -73,7 +75,7 @@ pub enum CommandError {
         /// The length.
         value: u16,
     },
-    /// Byte 6 lies behind the end of the area.
+    /// Byte 6 lies past the end of the area.
     #[error("byte 6: starts at {start}, the area has {size} units")]
     Start {
         /// First unit asked for.
@@ -84,7 +86,7 @@ pub enum CommandError {
     /// The job runs past the end of the area.
     #[error("bytes 7, 8: ends at {end}, the area has {size} units")]
     End {
-        /// First unit behind the job.
+        /// First unit after the job.
         end: usize,
         /// Units in the area.
         size: usize,
@@ -111,7 +113,7 @@ pub enum CommandError {
     /// A FETCH came with data.
     #[error("FETCH with {len} bytes of data")]
     FetchWithData {
-        /// Bytes behind the header.
+        /// Bytes after the header.
         len: usize,
     },
     /// Byte 3 of a continuation differs from the first telegram's.

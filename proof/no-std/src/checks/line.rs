@@ -1,25 +1,25 @@
 //! The serial line.
 
 use core::hint::black_box;
+use core::time::Duration;
 
-use proto3964r::{Check, Config, Event, Priority, Station, Transmit, frame};
-use rk512::{Area, Client, DataBlock, Memory, Outcome, Server};
+use proto3964r::{Check, Config, Event, Line, Priority, Station, Transmit, frame};
+use rk512::{Area, Client, Command, DataBlock, Memory, Outcome, Server};
 
 use super::holds;
 /// One telegram from station to station, and the same block without a link.
 pub fn stations() -> Option<()> {
-    use proto3964r::Instant;
-    let mut plc = Station::<64>::new(Config::siemens_3964r(Priority::High));
-    let mut scale = Station::<64>::new(Config::siemens_3964r(Priority::Low));
-    let (now, mut wire) = (Instant::ZERO, [0; 16]);
+    let mut plc = Station::<64>::new(Config::siemens_3964r(Priority::High, Line::Instant));
+    let mut scale = Station::<64>::new(Config::siemens_3964r(Priority::Low, Line::Instant));
+    let (now, mut wire) = (Duration::ZERO, [0; 16]);
     let payload = black_box(b"tare \x10\x03");
-    plc.send(now, payload).ok()?;
+    plc.submit(now, payload).ok()?;
     for _ in 0..4 {
         while let Some(Transmit::Bytes(bytes)) = plc.poll_transmit(now, &mut wire) {
-            scale.handle_bytes(now, bytes);
+            holds(scale.handle_bytes(now, bytes) == bytes.len())?;
         }
         while let Some(Transmit::Bytes(bytes)) = scale.poll_transmit(now, &mut wire) {
-            plc.handle_bytes(now, bytes);
+            holds(plc.handle_bytes(now, bytes) == bytes.len())?;
         }
     }
     holds(scale.poll_event() == Some(Event::Received(payload)))?;
@@ -32,8 +32,8 @@ pub fn stations() -> Option<()> {
 
 /// A job of two telegrams each way.
 pub fn read_data_block() -> Option<()> {
-    use rk512::{Config, Instant};
-    let now = Instant::ZERO;
+    use rk512::Config;
+    let now = Duration::ZERO;
     let mut db5 = [0; 200];
     let mut plc = Memory::new([DataBlock::db(5, &mut db5)]);
     let mut client = Client::<256>::new(Config::DEFAULT);
@@ -48,14 +48,14 @@ pub fn read_data_block() -> Option<()> {
             }
         }
     };
-    client
-        .send(Area::db(5, 10), black_box(&[0x12, 0x34]))
-        .ok()?;
+    let write = Command::send(Area::db(5, 10), 1).ok()?;
+    client.submit(write, black_box(&[0x12, 0x34])).ok()?;
     exchange(&mut client);
-    holds(matches!(client.poll_outcome(), Some(Outcome::Sent { .. })))?;
-    client.fetch(Area::db(5, 10), black_box(65)).ok()?;
+    holds(matches!(client.poll_event(), Some(Outcome::Sent { .. })))?;
+    let read = Command::fetch(Area::db(5, 10), black_box(65)).ok()?;
+    client.submit(read, &[]).ok()?;
     exchange(&mut client);
-    let Some(Outcome::Fetched { data, .. }) = client.poll_outcome() else {
+    let Some(Outcome::Fetched { data, .. }) = client.poll_event() else {
         return None;
     };
     holds(data.len() == 130 && data.starts_with(&[0x12, 0x34]))

@@ -1,19 +1,20 @@
 //! A hand-held unit.
 
 use core::hint::black_box;
+use core::time::Duration;
 
 use handwheel::{Action, Arbiter, Driver, Input, Panel, Settings, Shown, UnitId, WheelQuantiser};
 
 use super::holds;
 /// Status request, reply, and a screen in display blocks.
 pub fn unit_telegrams() -> Option<()> {
-    use handwheel::{Command, Event, Instant, Model, Timing};
-    let (now, model) = (Instant::ZERO, Model::Hbls);
+    use handwheel::{Command, Event, Job, Model, Timing};
+    let (now, model) = (Duration::ZERO, Model::Hbls);
     let mut driver = Driver::new(model, Timing::DEFAULT);
-    let mut buffer = [0; handwheel::MAX_COMMAND];
-    holds(driver.poll_transmit(now, &mut buffer).ok()? == Some(&[0x23]))?;
-    holds(driver.handle_delivered(now).is_none())?;
-    let event = driver.handle_block(now, black_box(&[0x30, 0x43, 0x52]))?;
+    holds(driver.poll_transmit(now) == Some(&[0x23]))?;
+    driver.handle_delivered(now);
+    driver.handle_block(now, black_box(&[0x30, 0x43, 0x52]));
+    let event = driver.poll_event()?;
     holds(matches!(
         event,
         Event::Status {
@@ -23,8 +24,8 @@ pub fn unit_telegrams() -> Option<()> {
     ))?;
     let (mut shown, mut letters) = (Shown::UNKNOWN, 0);
     while let Some(block) = shown.update(&handwheel::Screen::BLANK, model) {
-        driver.send_lcd(&block).ok()?;
-        let telegram = driver.poll_transmit(now, &mut buffer).ok()??;
+        driver.submit(Job::Lcd(block)).ok()?;
+        let telegram = driver.poll_transmit(now)?;
         let Ok(Command::Lcd(commands)) = Command::decode(model, black_box(telegram)) else {
             return None;
         };
@@ -33,11 +34,9 @@ pub fn unit_telegrams() -> Option<()> {
                 letters += text.len();
             }
         }
-        holds(driver.handle_delivered(now).is_none())?;
-        holds(matches!(
-            driver.handle_block(now, &[0x6C, 0x31]),
-            Some(Event::Lcd { .. })
-        ))?;
+        driver.handle_delivered(now);
+        driver.handle_block(now, &[0x6C, 0x31]);
+        holds(matches!(driver.poll_event(), Some(Event::Lcd { .. })))?;
     }
     holds(letters == 128)
 }

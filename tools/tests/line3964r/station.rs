@@ -8,9 +8,7 @@ use std::time::Instant;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::command::lines;
-use super::example::example;
-use super::refusal::assert_refused;
+use super::program::{assert_misused, assert_refused, lines, program};
 
 /// How long the partner waits for a byte, far above any time of the presets in use.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -29,9 +27,10 @@ impl Bench {
     fn new(preset: &str, options: &[&str]) -> Self {
         let (mut line, station_end) = TTYPort::pair().unwrap();
         line.set_timeout(PATIENCE).unwrap();
-        let mut station = example("station")
+        let mut station = program("station")
             .args(["--port", &station_end.name().unwrap()])
             .args(["--priority", "low", "--preset", preset])
+            .args(["--line", "instant"])
             .args(options)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -143,16 +142,16 @@ fn sent_without_spaces_and_empty() {
 }
 
 #[test]
-fn failed_setup() {
+fn failed_connection() {
     let mut bench = Bench::started("siemens-3964", &[]);
     bench.submit("41");
     bench.expect(&[0x02, 0x02, 0x02, 0x02, 0x02, 0x02, 0x15]);
-    assert_eq!(bench.event(), "failed setup timeout 6");
+    assert_eq!(bench.event(), "failed connection timeout 6");
     bench.ends_well();
 }
 
 #[test]
-fn failed_transfer() {
+fn failed_transmission() {
     let mut bench = Bench::new("hbls", &[]);
     bench.submit("41");
     for _ in 0..3 {
@@ -162,7 +161,7 @@ fn failed_transfer() {
         bench.send(&[0x15]);
     }
     bench.expect(&[0x15]);
-    assert_eq!(bench.event(), "failed transfer nak 3");
+    assert_eq!(bench.event(), "failed transmission nak 3");
     bench.ends_well();
 }
 
@@ -185,14 +184,14 @@ fn the_last_job_ends_before_the_program() {
     bench.submit("41");
     drop(bench.input.take());
     bench.expect(&[0x02]);
-    bench.send(&[0x02]); // collision: low gives way
+    bench.send(&[0x02]); // conflict: low gives way
     bench.expect(&[0x10]);
     bench.send(&[0x42, 0x10, 0x03, 0x51]);
     bench.expect(&[0x10, 0x02]);
     bench.send(&[0x10]);
     bench.expect(&[0x41, 0x10, 0x03, 0x52]);
     bench.send(&[0x10]);
-    assert_eq!(bench.event(), "collision 1");
+    assert_eq!(bench.event(), "conflict 1");
     assert_eq!(bench.event(), "received 42");
     assert_eq!(bench.event(), "sent 1");
     bench.ends_well();
@@ -232,11 +231,11 @@ fn wrong_lines_are_named_and_the_rest_is_sent() {
     assert_eq!(
         errors,
         [
-            "station: line 1: `4G` is not made of hexadecimal bytes",
-            "station: line 2: `+1` is not made of hexadecimal bytes",
-            "station: line 3: `123` is not made of hexadecimal bytes",
-            "station: line 4: stream did not contain valid UTF-8",
-            "station: line 5: the payload has 4097 bytes, the transmit buffer holds 4096",
+            "error: line 1: `4G` is not made of hexadecimal bytes",
+            "error: line 2: `+1` is not made of hexadecimal bytes",
+            "error: line 3: `123` is not made of hexadecimal bytes",
+            "error: line 4: stream did not contain valid UTF-8",
+            "error: line 5: the payload has 4097 bytes, the transmit buffer holds 4096",
         ]
     );
 }
@@ -245,7 +244,7 @@ fn wrong_lines_are_named_and_the_rest_is_sent() {
 fn an_input_that_cannot_be_read_ends_it() {
     let (_line, station_end) = TTYPort::pair().unwrap();
     let name = station_end.name().unwrap();
-    let mut command = example("station");
+    let mut command = program("station");
     command
         .args(["--port", &name, "--priority", "low"])
         .args(["--preset", "siemens-3964r"])
@@ -253,38 +252,38 @@ fn an_input_that_cannot_be_read_ends_it() {
     let output = command.output().unwrap();
     assert_eq!(
         lines(&output.stderr),
-        ["station: line 1: Is a directory (os error 21)"]
+        ["error: line 1: Is a directory (os error 21)"]
     );
     assert_eq!(output.status.code(), Some(1));
 }
 
 fn station(port: &str, priority: &str, preset: &str) -> Command {
-    let mut command = example("station");
+    let mut command = program("station");
     command.args(["--port", port, "--priority", priority, "--preset", preset]);
     command
 }
 
 #[test]
 fn wrong_options() {
-    assert_refused(
-        &mut example("station"),
-        "station: the following required arguments were not provided: --port <PORT> --priority <PRIORITY> --preset <PRESET>",
+    assert_misused(
+        &mut program("station"),
+        "error: the following required arguments were not provided: --port <PORT> --priority <PRIORITY> --preset <PRESET>",
     );
     assert_refused(
         &mut station("/nowhere/port", "high", "km271"),
-        "station: /nowhere/port: No such file or directory",
+        "error: /nowhere/port: No such file or directory",
     );
     assert_refused(
         &mut station("/dev/null", "high", "km271"),
-        "station: /dev/null: Not a typewriter",
+        "error: /dev/null: Not a typewriter",
     );
-    assert_refused(
+    assert_misused(
         &mut station("x", "middle", "km271"),
-        "station: invalid value 'middle' for '--priority <PRIORITY>' [possible values: high, low]",
+        "error: invalid value 'middle' for '--priority <PRIORITY>' [possible values: high, low]",
     );
-    assert_refused(
+    assert_misused(
         &mut station("x", "high", "s7"),
-        "station: invalid value 's7' for '--preset <PRESET>' [possible values: siemens-3964r, siemens-3964, hbls, hbas, linux, km271]",
+        "error: invalid value 's7' for '--preset <PRESET>' [possible values: siemens-3964r, siemens-3964, hbls, hbas, linux, km271]",
     );
     for (option, value, error) in [
         ("--baud <BAUD>", "0", "0 is not in 1..=4294967295"),
@@ -302,9 +301,9 @@ fn wrong_options() {
         ),
     ] {
         let name = option.split(' ').next().unwrap();
-        assert_refused(
+        assert_misused(
             station("x", "low", "linux").args([name, value]),
-            &format!("station: invalid value '{value}' for '{option}': {error}"),
+            &format!("error: invalid value '{value}' for '{option}': {error}"),
         );
     }
 }

@@ -1,28 +1,6 @@
-//! One end of a 3964R line, to bring up the other: lines of hexadecimal bytes on standard input
-//! are sent, what happens is printed, one event per line.
-//!
-//! ```text
-//! cargo run --example station -- --port /dev/ttyUSB0 --priority high --preset siemens-3964r
-//! ```
-//!
-//! ```text
-//! received [HEX ..]                  a telegram
-//! sent LENGTH                        a job acknowledged
-//! failed setup|transfer CAUSE COUNT  a job given up: timeout nak char line collision stalled break
-//! error CAUSE                        something answered NAK: bcc dle overflow line zvz endless nobuf noise
-//! receive-failed CAUSE               no good repeat: bwz attempts nak
-//! collision COUNT                    both sent STX
-//! same-priority                      both sides seem to have the same priority
-//! break                              BREAK on the line
-//! ```
-//! `-` on standard input is the empty telegram. A line that is no telegram is reported, and makes
-//! the exit code 1. The program ends at the end of the input, after
-//! the outcome of the last job; with `--listen` it stays that much longer.
+//! One end of a line: hexadecimal lines in, events out.
 
-mod preset;
-mod text;
-
-use core::{error::Error, time::Duration};
+use core::time::Duration;
 use std::{
     io::{self, BufRead as _, Write as _},
     process::ExitCode,
@@ -31,11 +9,14 @@ use std::{
     time::Instant,
 };
 
-use clap::{Parser, ValueEnum};
-use preset::{Parity, Preset};
+use anyhow::{Context as _, Result};
+use clap::{Args, ValueEnum};
 use proto3964r::{
-    Abandoned, Cause, Event, Failure, Priority, Rejection, frame::FrameError, serialport::Driver,
+    Abandoned, Cause, Config, Event, Failure, Priority, Rejection, frame::FrameError,
+    serialport::Driver,
 };
+
+use crate::{port::Frame, preset::Preset, text};
 
 /// Longest block in either direction: that of a CP 341.
 const BLOCK: usize = 4096;
@@ -43,9 +24,25 @@ const BLOCK: usize = 4096;
 /// How soon a new input line is noticed.
 const TICK: Duration = Duration::from_millis(20);
 
-/// One end of a 3964R line: sends hexadecimal lines from standard input, prints events.
-#[derive(Parser)]
-struct Options {
+/// One end of a line, to bring up the other.
+///
+/// Lines of hexadecimal bytes on standard input are sent, `-` is the empty telegram; what happens
+/// is printed, one event per line:
+///
+///   received [HEX ..]            a telegram
+///   sent LENGTH                  a job acknowledged
+///   failed PHASE CAUSE ATTEMPTS  a job given up, in the connection or transmission phase: timeout nak char line conflict stalled break
+///   error CAUSE                  something answered NAK: bcc dle overflow line zvz endless nobuf noise
+///   receive-failed CAUSE         no good repeat: bwz attempts nak
+///   conflict COUNT               both sent STX
+///   same-priority                both sides seem to have the same priority
+///   break                        BREAK on the line
+///
+/// A line that is no telegram is reported, and makes the exit status 1. The program ends at the end
+/// of the input, after the outcome of the last job.
+#[derive(Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Options {
     /// Serial device or pseudo-terminal.
     #[arg(long)]
     port: String,
@@ -55,12 +52,12 @@ struct Options {
     /// Times, attempts and policies.
     #[arg(long)]
     preset: Preset,
-    /// Bits per second.
-    #[arg(long, default_value_t = 9600, value_parser = clap::value_parser!(u32).range(1..))]
-    baud: u32,
-    /// Parity bit.
-    #[arg(long, default_value = "even")]
-    parity: Parity,
+    #[command(flatten)]
+    frame: Frame,
+    /// What lies between this program and the wire. Answers that come sooner than the wire can
+    /// carry them count only on an instant one.
+    #[arg(long, default_value = "buffered")]
+    line: LineName,
     /// Stay so many seconds after the last outcome.
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = text::seconds, allow_hyphen_values = true)]
     listen: Duration,
@@ -72,48 +69,51 @@ enum PriorityName {
     Low,
 }
 
-/// A line of standard input: its number, and a job or what is wrong with it.
-type Line = (usize, Result<Vec<u8>, String>);
+#[derive(Clone, Copy, ValueEnum)]
+enum LineName {
+    /// A pseudo-terminal.
+    Instant,
+    /// A UART whose output can be discarded.
+    Paced,
+    /// A USB adapter or serial server.
+    Buffered,
+}
 
-fn main() -> ExitCode {
-    match command_line::arguments()
-        .map_err(Into::into)
-        .and_then(|options| run(&options))
-    {
-        Ok(code) => code,
-        Err(error) => {
-            eprintln!("station: {error}");
-            ExitCode::FAILURE
-        }
+impl Options {
+    fn config(&self) -> Config {
+        let priority = match self.priority {
+            PriorityName::High => Priority::High,
+            PriorityName::Low => Priority::Low,
+        };
+        let Frame { baud, .. } = self.frame;
+        let line = match self.line {
+            LineName::Instant => proto3964r::Line::Instant,
+            LineName::Paced => proto3964r::Line::paced(baud, self.frame.bits()),
+            LineName::Buffered => proto3964r::Line::buffered(baud, self.frame.bits()),
+        };
+        self.preset.config(priority, line)
     }
 }
 
-fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
-    let priority = match options.priority {
-        PriorityName::High => Priority::High,
-        PriorityName::Low => Priority::Low,
-    };
-    let port = serialport::new(&options.port, options.baud)
-        .parity(options.parity.of_port())
-        .open()
-        .map_err(|error| format!("{}: {error}", options.port))?;
-    let config = options
-        .preset
-        .config(priority)
-        .with_line(options.baud, bits(options.parity));
-    let mut line = Driver::<BLOCK>::new(port, config)?;
+/// A line of standard input: its number, and a job or what is wrong with it.
+type InputLine = (usize, Result<Vec<u8>, String>);
+
+pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+    let port = options.frame.open(&options.port, Duration::ZERO)?;
+    let mut line =
+        Driver::<BLOCK>::new(port, options.config()).with_context(|| options.port.clone())?;
     let input = read_input();
     let mut code = ExitCode::SUCCESS;
     let mut input_ended = false;
     let mut last_outcome: Option<Instant> = None;
     loop {
-        if line.station_mut().can_send() && !input_ended {
+        if !line.is_busy() && !input_ended {
             match input.try_recv() {
                 Ok((number, job)) => {
-                    let sent =
-                        job.and_then(|job| line.send(&job).map_err(|error| error.to_string()));
-                    if let Err(error) = sent {
-                        eprintln!("station: line {number}: {error}");
+                    let taken =
+                        job.and_then(|job| line.submit(&job).map_err(|error| error.to_string()));
+                    if let Err(error) = taken {
+                        eprintln!("error: line {number}: {error}");
                         code = ExitCode::FAILURE;
                     }
                 }
@@ -122,11 +122,11 @@ fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
             }
         }
         let event = line.wait(TICK);
-        if let Some(event) = event.map_err(|error| format!("{}: {error}", options.port))? {
+        if let Some(event) = event.with_context(|| options.port.clone())? {
             writeln!(io::stdout(), "{}", describe(event))?;
             continue;
         }
-        if input_ended && line.station_mut().can_send() && line.station_mut().is_idle() {
+        if input_ended && !line.is_busy() && line.station_mut().is_idle() {
             let since = last_outcome.get_or_insert_with(Instant::now);
             if since.elapsed() >= options.listen {
                 return Ok(code);
@@ -135,16 +135,8 @@ fn run(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     }
 }
 
-/// Bits of a character on the line, with start and stop bit.
-fn bits(parity: Parity) -> u8 {
-    match parity {
-        Parity::None => 10,
-        Parity::Even | Parity::Odd => 11,
-    }
-}
-
 /// Reads standard input in a thread of its own.
-fn read_input() -> Receiver<Line> {
+fn read_input() -> Receiver<InputLine> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
         for (number, line) in (1..).zip(io::stdin().lock().lines()) {
@@ -190,7 +182,7 @@ fn describe(event: Event<'_>) -> String {
         Event::Abandoned(Abandoned::NoRepeat) => "receive-failed bwz".to_owned(),
         Event::Abandoned(Abandoned::TooMany(_)) => "receive-failed attempts".to_owned(),
         Event::Abandoned(Abandoned::ByPartner) => "receive-failed nak".to_owned(),
-        Event::Collision { in_a_row } => format!("collision {in_a_row}"),
+        Event::Conflict { in_a_row } => format!("conflict {in_a_row}"),
         Event::SamePriority => "same-priority".to_owned(),
         Event::Break => "break".to_owned(),
         other => format!("{other:?}"),
@@ -201,6 +193,7 @@ fn cause_word(cause: Cause) -> String {
     match cause {
         Cause::Unexpected(_) => "char".to_owned(),
         Cause::Line(_) => "line".to_owned(),
+        Cause::Conflict => "conflict".to_owned(),
         other => other.to_string(),
     }
 }

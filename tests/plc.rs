@@ -1,13 +1,22 @@
-//! `plc`: nothing is lost on a line that damages bytes.
+//! The example `plc`: nothing is lost on a line that damages bytes.
+#![cfg(test)]
+#![cfg(all(unix, feature = "proto3964r", feature = "rk512"))]
+
+#[path = "tools/command.rs"]
+mod command;
+#[path = "tools/example.rs"]
+mod example;
+#[path = "tools/refusal.rs"]
+mod refusal;
 
 use std::fs;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::command::{lines, run};
-use super::example::example;
-use super::refusal::assert_refused;
+use command::{lines, run};
+use example::example;
+use refusal::assert_refused;
 
 const ROUNDS: u64 = 6;
 

@@ -9,12 +9,11 @@ use std::thread;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::command::{lines, run};
-use super::example::example;
+use super::program::{lines, program, run};
 
 const PEER: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/crates/proto3964r/tests/peer/peer3964r.py"
+    "/../crates/proto3964r/tests/peer/peer3964r.py"
 );
 const COUNT: usize = 200;
 /// Far above the few seconds that the exchange takes.
@@ -100,11 +99,11 @@ fn exchange(priority: &str, peer_priority: &str) {
     peer.args([PEER, "--port", &peer_end.name().unwrap()])
         .args(["--priority", peer_priority, "--seconds", PATIENCE_S])
         .args(["--expect", &COUNT.to_string(), "--linger-ms", "500"]);
-    let mut station = example("station");
+    let mut station = program("station");
     station
         .args(["--port", &station_end.name().unwrap()])
         .args(["--priority", priority, "--preset", "siemens-3964r"])
-        .args(["--listen", "2"]);
+        .args(["--line", "instant", "--listen", "2"]);
     let over = AtomicBool::new(false);
     let (forth, back) = (
         station_line.try_clone_native(),

@@ -8,9 +8,7 @@ use std::process::Stdio;
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
-use super::command::{lines, run};
-use super::example::example;
-use super::refusal::assert_refused;
+use super::program::{assert_misused, assert_refused, lines, program, run};
 
 /// A capture file that lasts as long as the folder.
 fn capture(text: &[u8]) -> (TempDir, PathBuf) {
@@ -22,7 +20,7 @@ fn capture(text: &[u8]) -> (TempDir, PathBuf) {
 
 fn replay(options: &[&str], text: &str) -> Vec<String> {
     let (_folder, path) = capture(text.as_bytes());
-    let output = run(example("monitor").args(options).arg(path), b"");
+    let output = run(program("monitor").args(options).arg(path), b"");
     assert_eq!(lines(&output.stderr), [""; 0]);
     assert!(output.status.success());
     lines(&output.stdout)
@@ -127,7 +125,7 @@ fn the_times_are_those_of_the_preset() {
 #[test]
 fn two_ports() {
     let [(mut from_a, tap_a), (mut from_b, tap_b)] = [(); 2].map(|()| TTYPort::pair().unwrap());
-    let mut monitor = example("monitor")
+    let mut monitor = program("monitor")
         .args(["--port", &tap_a.name().unwrap()])
         .args(["--port", &tap_b.name().unwrap()])
         .args(["--seconds", "6"])
@@ -165,19 +163,19 @@ fn wrong_lines_are_named() {
         ("-1 < 10\n", "1: `-1` is not a time in seconds"),
         ("nan < 10\n", "1: `nan` is not a time in seconds"),
         ("0 = 10\n", "1: `=` is neither `>` nor `<`"),
-        ("\n# only a time\n0.5\n", "3: no direction behind the time"),
-        ("0 >\n", "1: no bytes behind the direction"),
+        ("\n# only a time\n0.5\n", "3: no direction after the time"),
+        ("0 >\n", "1: no bytes after the direction"),
         ("0 > 02 1G\n", "1: `1G` is not made of hexadecimal bytes"),
         ("0 > 123\n", "1: `123` is not made of hexadecimal bytes"),
         ("0 > +2\n", "1: `+2` is not made of hexadecimal bytes"),
         (
             "0.5 > 02\n0.25 < 10\n",
-            "2: time runs backwards: 0.250000s behind 0.500000s",
+            "2: time runs backwards: 0.250000s after 0.500000s",
         ),
     ] {
         let (_folder, path) = capture(text.as_bytes());
-        let line = format!("monitor: {}:{error}", path.display());
-        assert_refused(example("monitor").arg(&path), &line);
+        let line = format!("error: {}:{error}", path.display());
+        assert_refused(program("monitor").arg(&path), &line);
     }
 }
 
@@ -185,14 +183,14 @@ fn wrong_lines_are_named() {
 fn unreadable_captures_are_named() {
     let (folder, binary) = capture(&[0xFF, 0x02]);
     let name = binary.display();
-    let line = format!("monitor: {name}: stream did not contain valid UTF-8");
-    assert_refused(example("monitor").arg(&binary), &line);
+    let line = format!("error: {name}: stream did not contain valid UTF-8");
+    assert_refused(program("monitor").arg(&binary), &line);
     let missing = folder.path().join("missing");
     let line = format!(
-        "monitor: {}: No such file or directory (os error 2)",
+        "error: {}: No such file or directory (os error 2)",
         missing.display()
     );
-    assert_refused(example("monitor").arg(missing), &line);
+    assert_refused(program("monitor").arg(missing), &line);
 }
 
 #[test]
@@ -203,14 +201,6 @@ fn wrong_options() {
             "the following required arguments were not provided: <CAPTURE>",
         ),
         (
-            &["--port", "a"],
-            "two ports are needed, one for each direction",
-        ),
-        (
-            &["--port", "/nowhere/a", "--port", "/nowhere/b"],
-            "/nowhere/a: No such file or directory",
-        ),
-        (
             &["--port", "a", "line.txt"],
             "the argument '--port <PORT>' cannot be used with '[CAPTURE]'",
         ),
@@ -219,9 +209,18 @@ fn wrong_options() {
             "invalid value '-1' for '--seconds <SECONDS>': `-1` is not a time in seconds",
         ),
     ] {
-        assert_refused(
-            example("monitor").args(options),
-            &format!("monitor: {error}"),
-        );
+        assert_misused(program("monitor").args(options), &format!("error: {error}"));
+    }
+    for (ports, error) in [
+        (
+            &["--port", "a"][..],
+            "two ports are needed, one for each direction",
+        ),
+        (
+            &["--port", "/nowhere/a", "--port", "/nowhere/b"],
+            "/nowhere/a: No such file or directory",
+        ),
+    ] {
+        assert_refused(program("monitor").args(ports), &format!("error: {error}"));
     }
 }

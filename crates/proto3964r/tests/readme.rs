@@ -1,0 +1,16 @@
+//! The README shows the examples as they are.
+#![cfg(test)]
+
+const README: &str = include_str!("../README.md");
+
+#[test]
+fn the_programs_in_the_readme_are_the_examples() {
+    for example in [
+        include_str!("../examples/one_telegram.rs"),
+        include_str!("../examples/serial.rs"),
+    ] {
+        let (_, program) = example.split_once("\n\n").unwrap();
+        let shown = README.contains(&format!("\n{program}```\n"));
+        assert!(shown, "not in the README:\n{program}");
+    }
+}

@@ -1,0 +1,8 @@
+//! `line3964r` from outside, as its users run it.
+#![cfg(test)]
+#![cfg(unix)]
+
+mod exchange;
+mod monitor;
+mod program;
+mod station;
