@@ -83,12 +83,12 @@ fn read(text: &str) {
         }
     }
     if let Ok(data) = Data::<3>::read(text) {
-        assert_eq!(data.frames().count() as u64, data.frames().remaining());
+        assert_eq!(data.frames().count() as u64, data.frame_count());
     }
     if let Ok(data) = PatternData::read(text, Format::new()) {
-        assert_eq!(data.records().count() as u64, data.records().remaining());
+        assert_eq!(data.records().count() as u64, data.record_count());
     }
     if let Ok(data) = ReloadData::read(text, "p") {
-        assert_eq!(data.periods().count() as u64, data.periods().remaining());
+        assert_eq!(data.periods().count() as u64, data.period_count());
     }
 }

@@ -4,7 +4,6 @@
 
 use core::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use pattern_codec::container::{Header, Writer, open};
 use pattern_codec::engraving::{
     Axis, Builder, Decoder, Format, JointPulses, Mode, Record, Statistics,
 };
@@ -117,21 +116,5 @@ fn encode(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn container(criterion: &mut Criterion) {
-    let format = Format::default();
-    let payload = drawing(&format);
-    let records = u64::try_from(payload.len() / 3).unwrap();
-    let header = Header::engraving(&format, records).unwrap();
-    let (bytes, mut writer) = Writer::new(header);
-    writer.update(&payload).unwrap();
-    let bytes = [&bytes[..], &payload, &writer.finish().unwrap()].concat();
-    let mut group = criterion.benchmark_group("container");
-    group.throughput(Throughput::Bytes(bytes.len().try_into().unwrap()));
-    group.bench_function("open", |bench| {
-        bench.iter(|| open(black_box(&bytes)).unwrap().payload().len());
-    });
-    group.finish();
-}
-
-criterion_group!(benches, decode, encode, container);
+criterion_group!(benches, decode, encode);
 criterion_main!(benches);

@@ -25,13 +25,15 @@
 
 mod error;
 mod items;
+mod read;
 mod scan;
 mod style;
-mod table;
+mod write;
 
 pub use error::{HeaderError, HeaderErrorKind, Place};
 pub use items::{Item, Items, items};
-pub use style::{Dialect, Name, NameError, WriteError};
+pub use style::{Dialect, Name, NameError};
+pub use write::{TableHeader, WriteError};
 
-pub(crate) use style::{Element, Layout, check_size};
-pub(crate) use table::{ArrayValues, BYTE, Bytes, WORD, agree, array, setting};
+pub(crate) use read::{ArrayValues, BYTE, Bytes, Checked, Source, WORD};
+pub(crate) use write::{Element, Layout, Value};

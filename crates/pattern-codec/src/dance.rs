@@ -15,14 +15,14 @@
 //! AT89C52, where the source has 1.5 K. [`Packing`] has two forms with run lengths, [`Sizes`] and
 //! [`ProgramMemory`] say what fits.
 
-mod header;
+mod data_header;
 mod packing;
 mod size;
 mod threshold;
 mod timing;
 mod unpacking;
 
-pub use header::{Data, DataHeader, Frames};
+pub use data_header::{Data, DataHeader, FrameFormat};
 pub use packing::{Encoded, Packing};
 pub use size::{Fit, ProgramMemory, Sizes};
 pub use threshold::{Threshold, ThresholdTooLow};

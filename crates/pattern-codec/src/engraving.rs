@@ -31,9 +31,9 @@ mod axis;
 mod build;
 mod decode;
 mod format;
-mod header;
+mod pattern_header;
 mod record;
-mod reloads;
+mod reload_header;
 mod split;
 mod statistics;
 
@@ -41,9 +41,9 @@ pub use axis::{Axis, PerAxis};
 pub use build::{Builder, HomeRecords, PositionError, RepeatedAxis};
 pub use decode::{DecodeError, DecodeErrorKind, Decoder, Located, Records};
 pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Mode};
-pub use header::{PatternData, PatternHeader, PatternRecords};
+pub use pattern_header::{PatternData, PatternHeader};
 pub use record::{Fast, JointPulses, PulsesError, Record, Slow};
-pub use reloads::{ReloadData, ReloadHeader, TimerPeriod, TimerPeriods};
+pub use reload_header::{ReloadData, ReloadFormat, ReloadHeader, TimerPeriod};
 pub use split::{FastRecords, SlowRecords};
 pub use statistics::{HalfPeriods, Statistics};
 

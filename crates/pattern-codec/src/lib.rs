@@ -14,7 +14,6 @@
 extern crate std;
 
 pub mod c_header;
-pub mod container;
 pub mod dance;
 pub mod engraving;
 mod size_hint;

@@ -84,7 +84,7 @@ proptest! {
             let data = Data::<8>::read(&text).unwrap();
             prop_assert_eq!((data.name(), data.timing(), data.packing()), ("Waltz_3", timing, packing));
             prop_assert_eq!(data.threshold().get(), threshold);
-            prop_assert_eq!(data.frames().remaining(), frames.len() as u64);
+            prop_assert_eq!(data.frame_count(), frames.len() as u64);
             prop_assert!(data.frames().eq(frames.iter().copied()));
         }
     }

@@ -57,7 +57,7 @@ proptest! {
         // What the header says counts, not what the reader expects.
         let data = PatternData::read(&text, other).unwrap();
         prop_assert_eq!((data.name(), data.format()), ("rosette", format));
-        prop_assert_eq!(data.records().remaining(), records.len() as u64);
+        prop_assert_eq!(data.record_count(), records.len() as u64);
         prop_assert!(data.records().eq(records.iter().copied()));
     }
 
@@ -69,7 +69,7 @@ proptest! {
         let mut text = String::new();
         header.write(periods.clone(), &mut text).unwrap();
         let data = ReloadData::read(&text, "theta1").unwrap();
-        prop_assert_eq!(data.periods().remaining(), periods.len() as u64);
+        prop_assert_eq!(data.period_count(), periods.len() as u64);
         prop_assert!(data.periods().eq(periods));
     }
 
@@ -80,6 +80,74 @@ proptest! {
             let _ = ReloadData::read(&text, "p");
         }
     }
+}
+
+#[test]
+fn a_pattern_looks_like_this() {
+    let slow = JointPulses {
+        theta1: 15,
+        theta2: -30,
+        theta3: 2,
+    };
+    let records: [Record; 2] = [
+        Fast::new(Axis::Vertical, -400).unwrap().into(),
+        Slow::new(slow).unwrap().into(),
+    ];
+    let mut text = String::new();
+    let header = PatternHeader::new(Format::new()).with_dialect(Dialect::Sdcc);
+    header.write(records, &mut text).unwrap();
+    let wanted = "\
+/* pattern: 2 records, 1 FAST and 1 SLOW, 6 bytes.
+   Pulses: theta1 15, theta2 30, theta3 2, vertical 400. */
+#ifndef PATTERN_H
+#define PATTERN_H
+
+#define PATTERN_RECORDS 2
+#define PATTERN_BYTES 6
+#define PATTERN_THETA1_CODE 0
+#define PATTERN_THETA2_CODE 1
+#define PATTERN_THETA3_CODE 2
+#define PATTERN_VERTICAL_CODE 3
+#define PATTERN_HIGH_BYTE_FIRST 1
+
+const __code unsigned char pattern[6] = {
+  0xFF, 0x01, 0x90,
+  0x02, 0x0F, 0x9E
+};
+
+#endif
+";
+    assert_eq!(text, wanted);
+}
+
+#[test]
+fn reloads_look_like_this() {
+    let periods = (0..9).map(|k| TimerPeriod {
+        reload: 0xF000 + k,
+        toggles: k != 2,
+    });
+    let mut text = String::new();
+    ReloadHeader::new().write(periods, &mut text).unwrap();
+    let wanted = "\
+/* reloads: 9 timer periods, 8 edges, 20 bytes. */
+#ifndef RELOADS_H
+#define RELOADS_H
+
+#define RELOADS_COUNT 9
+
+unsigned int code reloads[9] = {
+  0xF000, 0xF001, 0xF002, 0xF003, 0xF004, 0xF005, 0xF006, 0xF007,
+  0xF008
+};
+
+/* Bit k of byte j: whether the pin toggles after period 8 j + k. */
+unsigned char code reloads_toggles[2] = {
+  0xFB, 0x01
+};
+
+#endif
+";
+    assert_eq!(text, wanted);
 }
 
 #[test]

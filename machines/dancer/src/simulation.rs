@@ -120,7 +120,7 @@ pub fn simulate(
     vcd: impl Write,
     progress: impl Fn(u64, u64),
 ) -> Result<Run> {
-    let (timing, frames) = (data.timing(), data.frames().remaining());
+    let (timing, frames) = (data.timing(), data.frame_count());
     let ticks = frames.saturating_mul(timing.frame_ticks().into());
     ensure!(
         ticks <= MAX_TICKS,

@@ -4,10 +4,8 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use pattern_codec::c_header::{HeaderError, Item, Items, Place, items};
-use pattern_codec::dance::{Data, DecodeError, Decoded, Encoded, Frames, Packing};
-use pattern_codec::engraving::{
-    Format, PatternData, PatternRecords, Record, ReloadData, TimerPeriod, TimerPeriods,
-};
+use pattern_codec::dance::{Data, DecodeError, Decoded, Encoded, Packing};
+use pattern_codec::engraving::{Format, PatternData, ReloadData};
 
 type Bytes<'a> = std::iter::Copied<std::slice::Iter<'a, u8>>;
 type Eight<'a> = std::iter::Copied<std::slice::Iter<'a, [i8; 8]>>;
@@ -36,10 +34,11 @@ fn data_read(text: &str) -> Result<Data<'_, 8>, HeaderError> {
     Data::read(text)
 }
 
+/// Frames, records and timer periods of a header.
 #[no_panic]
 #[inline(never)]
-fn frame_next(frames: &mut Frames<'_, 8>) -> Option<[i8; 8]> {
-    frames.next()
+fn table_next<I: Iterator>(items: &mut I) -> Option<I::Item> {
+    items.next()
 }
 
 #[no_panic]
@@ -50,20 +49,8 @@ fn pattern_read(text: &str, format: Format) -> Result<PatternData<'_>, HeaderErr
 
 #[no_panic]
 #[inline(never)]
-fn record_next(records: &mut PatternRecords<'_>) -> Option<Record> {
-    records.next()
-}
-
-#[no_panic]
-#[inline(never)]
 fn reloads_read<'a>(text: &'a str, name: &str) -> Result<ReloadData<'a>, HeaderError> {
     ReloadData::read(text, name)
-}
-
-#[no_panic]
-#[inline(never)]
-fn period_next(periods: &mut TimerPeriods<'_>) -> Option<TimerPeriod> {
-    periods.next()
 }
 
 pub fn run() {
@@ -78,12 +65,12 @@ pub fn run() {
     }
     let _ = black_box(item_next(&mut black_box(items(text))));
     if let Ok(data) = data_read(text) {
-        black_box(frame_next(&mut black_box(data.frames())));
+        black_box(table_next(&mut black_box(data.frames())));
     }
     if let Ok(data) = pattern_read(text, black_box(Format::new())) {
-        black_box(record_next(&mut black_box(data.records())));
+        black_box(table_next(&mut black_box(data.records())));
     }
     if let Ok(data) = reloads_read(text, black_box("p")) {
-        black_box(period_next(&mut black_box(data.periods())));
+        black_box(table_next(&mut black_box(data.periods())));
     }
 }

@@ -1,12 +1,8 @@
-//! pattern-codec.
+//! pattern-codec: engraving records.
 
 use std::hint::black_box;
 
 use no_panic::no_panic;
-use pattern_codec::container::{
-    Container, ContainerError, HEADER_LEN, Header, LengthMismatch, TRAILER_LEN, Verifier, Writer,
-    open,
-};
 use pattern_codec::engraving::{
     Axis, Builder, DecodeError, Decoder, FastRecords, Format, HomeRecords, JointPulses, Located,
     PositionError, RECORD_LEN, Record, Records, SlowRecords,
@@ -60,42 +56,6 @@ fn home_next(records: &mut HomeRecords) -> Option<Record> {
     records.next()
 }
 
-#[no_panic]
-#[inline(never)]
-fn container_open(bytes: &[u8]) -> Result<Container<'_>, ContainerError> {
-    open(bytes)
-}
-
-#[no_panic]
-#[inline(never)]
-fn verifier_update(verifier: &mut Verifier, bytes: &[u8]) -> Result<(), ContainerError> {
-    verifier.update(bytes)
-}
-
-#[no_panic]
-#[inline(never)]
-fn verifier_finish(verifier: Verifier) -> Result<Header, ContainerError> {
-    verifier.finish()
-}
-
-#[no_panic]
-#[inline(never)]
-fn writer_new(header: Header) -> ([u8; HEADER_LEN], Writer) {
-    Writer::new(header)
-}
-
-#[no_panic]
-#[inline(never)]
-fn writer_update(writer: &mut Writer, payload: &[u8]) -> Result<(), LengthMismatch> {
-    writer.update(payload)
-}
-
-#[no_panic]
-#[inline(never)]
-fn writer_finish(writer: Writer) -> Result<[u8; TRAILER_LEN], LengthMismatch> {
-    writer.finish()
-}
-
 pub fn run() {
     let format = black_box(Format::default());
     let bytes = black_box([0x02, 0x0F, 0x9E, 0x7F, 0x01, 0x00].as_slice());
@@ -119,15 +79,5 @@ pub fn run() {
     }
     if let Ok(home) = builder.home(black_box(Axis::ALL)) {
         black_box(home_next(&mut black_box(home)));
-    }
-    let _ = black_box(container_open(bytes));
-    let mut verifier = black_box(Verifier::new());
-    let _ = black_box(verifier_update(&mut verifier, bytes));
-    let _ = black_box(verifier_finish(black_box(verifier)));
-    if let Ok(header) = Header::engraving(&format, black_box(2)) {
-        let (head, mut writer) = writer_new(black_box(header));
-        black_box(head);
-        let _ = black_box(writer_update(&mut writer, bytes));
-        let _ = black_box(writer_finish(black_box(writer)));
     }
 }

@@ -23,7 +23,6 @@ pub const ALL: &[fn() -> Option<()>] = &[
     pulses::interpolation,
     pulses::closed_loop,
     codecs::records,
-    codecs::container,
     codecs::dance_header,
     line::stations,
     line::read_data_block,

@@ -1,3 +1,5 @@
+//! Why a header cannot be read, and where.
+
 use core::fmt;
 
 use thiserror::Error;

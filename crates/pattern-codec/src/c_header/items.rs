@@ -1,3 +1,5 @@
+//! The items of any C header, one after the other: `#define`s, arrays and their values.
+
 use core::iter::FusedIterator;
 
 use super::scan::{Reach, Scanner, Token};

@@ -1,3 +1,5 @@
+//! A text cut into tokens of C, without blanks and comments.
+
 use core::num::IntErrorKind;
 use core::str::Chars;
 

@@ -1,3 +1,5 @@
+//! Frames to bytes: raw, as runs, and as runs with masks.
+
 use core::iter::FusedIterator;
 
 /// How frames stand in memory.

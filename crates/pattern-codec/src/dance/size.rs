@@ -1,3 +1,5 @@
+//! Bytes of each packing, and whether they fit into a program memory.
+
 use core::fmt;
 
 use super::Packing;

@@ -1,3 +1,5 @@
+//! Bytes to frames, for every packing.
+
 use core::iter::FusedIterator;
 
 use thiserror::Error;

@@ -1,3 +1,5 @@
+//! The four axes of the engraver, and one value for each of them.
+
 use core::fmt;
 
 /// One of the engraver's four axes, named as in [Engraver 2000].

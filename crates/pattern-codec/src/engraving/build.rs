@@ -1,3 +1,5 @@
+//! Motions of any length to records, and where the axes are after them.
+
 use core::iter::FusedIterator;
 use thiserror::Error;
 

@@ -1,3 +1,5 @@
+//! Bytes to records, from a slice or from chunks of any size.
+
 use core::iter::FusedIterator;
 use thiserror::Error;
 

@@ -1,3 +1,5 @@
+//! What the source leaves open: axis codes, byte order, strictness.
+
 use thiserror::Error;
 
 use super::{Axis, PerAxis};

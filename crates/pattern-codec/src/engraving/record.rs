@@ -1,3 +1,5 @@
+//! The two kinds of record, and their bytes.
+
 use thiserror::Error;
 
 use super::{Axis, ByteOrder, Format, PerAxis, RECORD_LEN};

@@ -1,3 +1,5 @@
+//! One motion cut into as few records as hold it, evenly.
+
 use core::iter::FusedIterator;
 
 use super::record::NEGATIVE;

@@ -1,3 +1,5 @@
+//! Records, bytes, pulses and duration of a sequence of records.
+
 use super::{PerAxis, RECORD_LEN, Record};
 
 /// What a sequence of records amounts to, in constant memory.

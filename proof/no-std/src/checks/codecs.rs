@@ -2,7 +2,6 @@
 
 use core::hint::black_box;
 
-use pattern_codec::container::{Header, Verifier, Writer, open};
 use pattern_codec::dance::{Data, DataHeader, Packing};
 use pattern_codec::engraving::{Axis, Builder, Decoder, Format, JointPulses};
 
@@ -32,31 +31,6 @@ pub fn records() -> Option<()> {
         arm.track(located.record).ok()?;
     }
     holds(decoder.finish() == Ok(15) && arm.position() == builder.position())
-}
-
-/// A container that opens, and does not when a bit is wrong.
-pub fn container() -> Option<()> {
-    let payload = black_box([0x02, 0x0F, 0x9E]);
-    let header = Header::engraving(&Format::default(), 1).ok()?;
-    let (head, mut writer) = Writer::new(header);
-    writer.update(&payload).ok()?;
-    let mut file = [0; 23];
-    let parts = head
-        .iter()
-        .chain(&payload)
-        .copied()
-        .chain(writer.finish().ok()?);
-    for (place, byte) in file.iter_mut().zip(parts) {
-        *place = byte;
-    }
-    holds(open(black_box(&file)).ok()?.payload() == payload)?;
-    let mut verifier = Verifier::new();
-    for chunk in file.chunks(5) {
-        verifier.update(chunk).ok()?;
-    }
-    holds(verifier.finish() == Ok(header))?;
-    *file.get_mut(17)? ^= 0x10;
-    holds(open(black_box(&file)).is_err())
 }
 
 /// Frames written as a C header and read back.

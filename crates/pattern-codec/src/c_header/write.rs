@@ -1,0 +1,191 @@
+//! The writer that all tables share: comment, include guard, `#define`s and arrays.
+
+use core::fmt::{self, Write};
+
+use thiserror::Error;
+
+use super::{Dialect, Name};
+
+/// Writes a table as a C header; what the table holds is a format of
+/// [`dance`](crate::dance::DataHeader) or of [`engraving`](crate::engraving::PatternHeader).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TableHeader<'n, F> {
+    name: Name<'n>,
+    dialect: Dialect,
+    pub(crate) format: F,
+}
+
+impl<'n, F: Copy> TableHeader<'n, F> {
+    /// For C51, with the name that tables of this kind have unless told otherwise.
+    pub(crate) const fn of(name: &'static str, format: F) -> Self {
+        Self {
+            name: Name::fixed(name),
+            dialect: Dialect::C51,
+            format,
+        }
+    }
+
+    /// With another name of the table.
+    #[must_use]
+    pub const fn with_name(self, name: Name<'n>) -> Self {
+        Self { name, ..self }
+    }
+
+    /// For another compiler.
+    #[must_use]
+    pub const fn with_dialect(self, dialect: Dialect) -> Self {
+        Self { dialect, ..self }
+    }
+
+    /// A header of so many bytes of tables: what the comment says of them, the ends and values of
+    /// the `#define`s, and the tables.
+    pub(crate) fn write_parts<W: Write>(
+        &self,
+        bytes: u64,
+        comment: fmt::Arguments<'_>,
+        defines: &[(&str, u64)],
+        tables: impl FnOnce(&mut Layout<'_, '_, W>) -> fmt::Result,
+        out: &mut W,
+    ) -> Result<(), WriteError> {
+        check_size(bytes)?;
+        let (name, dialect) = (self.name.as_str(), self.dialect);
+        let upper = Upper(name);
+        writeln!(out, "/* {name}: {comment} */")?;
+        write!(out, "#ifndef {upper}_H\n#define {upper}_H\n\n")?;
+        for (end, value) in defines {
+            writeln!(out, "#define {upper}_{end} {value}")?;
+        }
+        tables(&mut Layout { name, dialect, out })?;
+        Ok(out.write_str("\n#endif\n")?)
+    }
+}
+
+/// Why a header is not written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum WriteError {
+    /// Nothing to write: C has no empty arrays.
+    #[error("a table without values")]
+    Empty,
+    /// More than the address space of code memory.
+    #[error("a table of {bytes} bytes, an 8051 addresses {limit}")]
+    TooLong {
+        /// Bytes of the table.
+        bytes: u64,
+        /// The most.
+        limit: u64,
+    },
+    /// The writer refused.
+    #[error("the header could not be written")]
+    Format,
+}
+
+impl From<fmt::Error> for WriteError {
+    fn from(_: fmt::Error) -> Self {
+        Self::Format
+    }
+}
+
+/// Code memory that an 8051 addresses, in bytes.
+const CODE_SPACE: u64 = 65_536;
+
+/// Refuses a table of so many bytes that no firmware can hold.
+const fn check_size(bytes: u64) -> Result<(), WriteError> {
+    match bytes {
+        0 => Err(WriteError::Empty),
+        1..=CODE_SPACE => Ok(()),
+        _ => Err(WriteError::TooLong {
+            bytes,
+            limit: CODE_SPACE,
+        }),
+    }
+}
+
+/// A name in upper case.
+struct Upper<'n>(&'n str);
+
+impl fmt::Display for Upper<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut upper = self.0.chars().map(|c| c.to_ascii_uppercase());
+        upper.try_for_each(|c| f.write_char(c))
+    }
+}
+
+/// Type of a table's elements.
+#[derive(Clone, Copy)]
+pub(crate) enum Element {
+    SignedChar,
+    UnsignedChar,
+    UnsignedInt,
+}
+
+/// A value as it stands in a table.
+#[derive(Clone, Copy)]
+pub(crate) enum Value {
+    /// In decimal, in a column of four.
+    Signed(i8),
+    /// In decimal.
+    Count(u8),
+    /// In hexadecimal.
+    Byte(u8),
+    /// In hexadecimal.
+    Word(u16),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Signed(value) => write!(f, "{value:4}"),
+            Self::Count(value) => write!(f, "{value}"),
+            Self::Byte(value) => write!(f, "0x{value:02X}"),
+            Self::Word(value) => write!(f, "0x{value:04X}"),
+        }
+    }
+}
+
+/// Where the tables of a header are written.
+pub(crate) struct Layout<'n, 'w, W: Write> {
+    name: &'n str,
+    dialect: Dialect,
+    out: &'w mut W,
+}
+
+impl<W: Write> Layout<'_, '_, W> {
+    /// What is said of the table that follows, after an empty line.
+    pub(crate) fn comment(&mut self, comment: fmt::Arguments<'_>) -> fmt::Result {
+        write!(self.out, "\n/* {comment} */\n")
+    }
+
+    pub(crate) fn empty_line(&mut self) -> fmt::Result {
+        self.out.write_char('\n')
+    }
+
+    /// An array of so many elements, with the end of its name. Some of its values begin a row.
+    pub(crate) fn table(
+        &mut self,
+        element: Element,
+        end: &str,
+        length: u64,
+        values: impl Iterator<Item = (bool, Value)>,
+    ) -> fmt::Result {
+        let Self { name, dialect, out } = self;
+        let element = match element {
+            Element::SignedChar => "signed char",
+            Element::UnsignedChar => "unsigned char",
+            Element::UnsignedInt => "unsigned int",
+        };
+        match dialect {
+            Dialect::C51 => write!(out, "{element} code {name}{end}[{length}] = {{")?,
+            Dialect::Sdcc => write!(out, "const __code {element} {name}{end}[{length}] = {{")?,
+        }
+        let mut before_row = "\n  ";
+        for (begins_row, value) in values {
+            let between = if begins_row { before_row } else { ", " };
+            write!(out, "{between}{value}")?;
+            before_row = ",\n  ";
+        }
+        out.write_str("\n};\n")
+    }
+}

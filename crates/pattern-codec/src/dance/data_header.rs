@@ -1,0 +1,285 @@
+//! Frames as a C header, `data.h`, and back.
+
+use core::fmt::{self, Write};
+use core::iter::FusedIterator;
+use core::num::NonZeroU32;
+
+use super::{Decoded, Packing, Sizes, Threshold, Timing};
+use crate::c_header::{
+    BYTE, Bytes, Checked, Element, HeaderError, HeaderErrorKind, Layout, Source, TableHeader,
+    Value, WriteError,
+};
+
+/// Writes frames as a C header, `data.h`.
+///
+/// ```
+/// use pattern_codec::dance::{Data, DataHeader, Packing};
+///
+/// let frames = [[60, -60, 0]; 25].into_iter().chain([[0; 3]]);
+/// let mut text = String::new();
+/// let header = DataHeader::new().with_packing(Packing::Runs);
+/// header.write(frames.clone(), &mut text)?;
+/// assert!(text.contains("unsigned char code dance[8] = {\n  25, 0x3C, 0xC4, 0x00,\n"));
+///
+/// let data = Data::<3>::read(&text)?;
+/// assert!(data.frames().eq(frames));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+/// The `#define`s, each behind the name of the table in upper case: `MOTORS`, `FRAMES`,
+/// `FRAME_TICKS`, `TICK_US`, `THRESHOLD`, `PACKING` (0 raw, 1 runs, 2 masked runs) and `BYTES`.
+///
+/// Raw frames are `signed char` in decimal numbers, eight a row for eight motors; runs are
+/// `unsigned char`: the count in decimal, masks and speeds as two's complement in hex, one run a
+/// row.
+pub type DataHeader<'n> = TableHeader<'n, FrameFormat>;
+
+/// What a [`DataHeader`] says of its frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct FrameFormat {
+    timing: Timing,
+    threshold: Threshold,
+    packing: Packing,
+}
+
+impl Default for DataHeader<'_> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl DataHeader<'_> {
+    /// The table `dance` for C51, raw frames of 200 ms, for a threshold of 600.
+    #[must_use]
+    pub const fn new() -> Self {
+        let format = FrameFormat {
+            timing: Timing::DEFAULT,
+            threshold: Threshold::DEFAULT,
+            packing: Packing::Raw,
+        };
+        Self::of("dance", format)
+    }
+
+    /// With another tick or frame.
+    #[must_use]
+    pub const fn with_timing(mut self, timing: Timing) -> Self {
+        self.format.timing = timing;
+        self
+    }
+
+    /// For another threshold of the accumulators.
+    #[must_use]
+    pub const fn with_threshold(mut self, threshold: Threshold) -> Self {
+        self.format.threshold = threshold;
+        self
+    }
+
+    /// With another packing.
+    #[must_use]
+    pub const fn with_packing(mut self, packing: Packing) -> Self {
+        self.format.packing = packing;
+        self
+    }
+
+    /// Writes the header. The frames are gone through several times, because the totals stand
+    /// first.
+    ///
+    /// # Errors
+    /// [`WriteError`]: no frames, more bytes than an 8051 addresses, or the writer's error.
+    pub fn write<const N: usize, I, W>(&self, frames: I, out: &mut W) -> Result<(), WriteError>
+    where
+        I: IntoIterator<Item = [i8; N]>,
+        I::IntoIter: Clone,
+        W: Write,
+    {
+        let FrameFormat {
+            timing,
+            threshold,
+            packing,
+        } = self.format;
+        let frames = frames.into_iter();
+        let sizes = Sizes::of(frames.clone());
+        let (count, bytes) = (sizes.frames(), sizes.bytes(packing));
+        let us = timing.frame_us().saturating_mul(count);
+        let ms = us.checked_div(1000).unwrap_or(0);
+        let [raw, runs, masked] = Packing::ALL.map(|packing| sizes.bytes(packing));
+        let comment = format_args!(
+            "{count} frames of {N} motors, {ms} ms.\n   \
+             Bytes: {raw} raw, {runs} as runs, {masked} as masked runs; here {}.",
+            packing.name()
+        );
+        let defines = [
+            ("MOTORS", N as u64),
+            ("FRAMES", count),
+            ("FRAME_TICKS", timing.frame_ticks().into()),
+            ("TICK_US", timing.tick_us().into()),
+            ("THRESHOLD", threshold.get().into()),
+            ("PACKING", number(packing)),
+            ("BYTES", bytes),
+        ];
+        let (element, each_row) = match packing {
+            Packing::Raw => (Element::SignedChar, "the speeds of one frame"),
+            Packing::Runs => (Element::UnsignedChar, "count of frames, their speeds"),
+            Packing::MaskedRuns => (
+                Element::UnsignedChar,
+                "count of frames, mask, speeds of the motors in the mask",
+            ),
+        };
+        let values = packing.rows(frames).flat_map(|row| {
+            row.enumerate().map(move |(place, byte)| match packing {
+                Packing::Raw => (place == 0, Value::Signed(byte.cast_signed())),
+                _ if place == 0 => (true, Value::Count(byte)),
+                _ => (false, Value::Byte(byte)),
+            })
+        });
+        let table = |layout: &mut Layout<'_, '_, W>| {
+            layout.comment(format_args!("Each row: {each_row}."))?;
+            layout.table(element, "", bytes, values)
+        };
+        self.write_parts(bytes, comment, &defines, table, out)
+    }
+}
+
+const fn number(packing: Packing) -> u64 {
+    match packing {
+        Packing::Raw => 0,
+        Packing::Runs => 1,
+        Packing::MaskedRuns => 2,
+    }
+}
+
+impl FrameFormat {
+    fn read(source: &Source<'_>) -> Result<Self, HeaderError> {
+        let period = |end, default| {
+            let range = (1, u32::MAX.into());
+            let parse = |value| NonZeroU32::new(u32::try_from(value).ok()?);
+            source.setting(end, default, range, parse)
+        };
+        let Timing {
+            tick_us,
+            frame_ticks,
+        } = Timing::DEFAULT;
+        let timing = Timing {
+            tick_us: period("TICK_US", tick_us)?,
+            frame_ticks: period("FRAME_TICKS", frame_ticks)?,
+        };
+        let range = (Threshold::MIN.get().into(), u16::MAX.into());
+        let threshold = |value| Threshold::new(u16::try_from(value).ok()?).ok();
+        let packing = |value| {
+            let mut all = Packing::ALL.into_iter();
+            all.find(|packing| u64::try_from(value) == Ok(number(*packing)))
+        };
+        Ok(Self {
+            timing,
+            threshold: source.setting("THRESHOLD", Threshold::DEFAULT, range, threshold)?,
+            packing: source.setting("PACKING", Packing::Raw, (0, 2), packing)?,
+        })
+    }
+}
+
+/// The frames of a C header, checked as a whole when it is read.
+///
+/// The header may be one of [`DataHeader`] or written by hand:
+/// ```
+/// use pattern_codec::dance::{Data, Packing, Timing};
+///
+/// let by_hand = "
+///     #define STOP 0
+///     signed code char Tango [] [4]={ {STOP,STOP , 60,-60}, // left turn
+///         {0x3C, 0xC4, 0,0}, };";
+/// let data = Data::<4>::read(by_hand)?;
+/// assert_eq!((data.name(), data.packing()), ("Tango", Packing::Raw));
+/// assert_eq!(data.timing(), Timing::default());
+/// assert!(data.frames().eq([[0, 0, 60, -60], [60, -60, 0, 0]]));
+/// # Ok::<(), pattern_codec::c_header::HeaderError>(())
+/// ```
+/// What its `#define`s say counts; without them frames are raw, have the period of
+/// [`Timing::default`] and are for a threshold of 600. `MOTORS`, `FRAMES` and `BYTES` must agree with the table. Values are
+/// -128..=255: 196 and -60 are the same byte.
+#[derive(Debug, Clone)]
+pub struct Data<'t, const N: usize = 8> {
+    name: &'t str,
+    format: FrameFormat,
+    bytes: u64,
+    frames: Checked<Decoded<Bytes<'t>, N>>,
+}
+
+impl<'t, const N: usize> Data<'t, N> {
+    /// Reads a header with one array.
+    ///
+    /// # Errors
+    /// [`HeaderError`] names a place and what is wrong there.
+    pub fn read(text: &'t str) -> Result<Self, HeaderError> {
+        Self::find(text, None)
+    }
+
+    /// Reads the array of that name; there may be others.
+    ///
+    /// # Errors
+    /// As [`Data::read`].
+    pub fn read_array(text: &'t str, name: &str) -> Result<Self, HeaderError> {
+        Self::find(text, Some(name))
+    }
+
+    fn find(text: &'t str, wanted: Option<&str>) -> Result<Self, HeaderError> {
+        let (source, values) = Source::find(text, wanted, BYTE)?;
+        let format = FrameFormat::read(&source)?;
+        let (frames, at_end) = Checked::new(
+            format.packing.decode(Bytes(values)),
+            |decoded| &decoded.bytes().0,
+            |error| HeaderErrorKind::Frames(error.kind),
+        )?;
+        let bytes = at_end.offset();
+        source.agree("MOTORS", N as u64)?;
+        source.agree("FRAMES", frames.left())?;
+        source.agree("BYTES", bytes)?;
+        Ok(Self {
+            name: source.name,
+            format,
+            bytes,
+            frames,
+        })
+    }
+
+    /// The name of the array.
+    #[must_use]
+    pub const fn name(&self) -> &'t str {
+        self.name
+    }
+
+    /// Tick and period of a frame.
+    #[must_use]
+    pub const fn timing(&self) -> Timing {
+        self.format.timing
+    }
+
+    /// Threshold of the accumulators.
+    #[must_use]
+    pub const fn threshold(&self) -> Threshold {
+        self.format.threshold
+    }
+
+    /// How the frames are stored.
+    #[must_use]
+    pub const fn packing(&self) -> Packing {
+        self.format.packing
+    }
+
+    /// Bytes of the table.
+    #[must_use]
+    pub const fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// The number of frames.
+    #[must_use]
+    pub const fn frame_count(&self) -> u64 {
+        self.frames.left()
+    }
+
+    /// The frames, straight from the text.
+    #[must_use]
+    pub fn frames(&self) -> impl FusedIterator<Item = [i8; N]> + Clone + fmt::Debug + use<'t, N> {
+        self.frames.clone()
+    }
+}
