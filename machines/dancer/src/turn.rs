@@ -36,8 +36,8 @@ impl Motor {
     /// where the easing has it, half steps and what the accumulator holds of the next; the last
     /// three are searched together for the end nearest to what was asked, at first from where the
     /// easing has it, then from up to 8 half steps ahead or behind. What would be refused then is
-    /// searched once more, among all speeds of the last 4 to 12 frames, as many as 8 million frames
-    /// looked at reach: a turn of so few frames is refused only where no speeds make it.
+    /// searched once more, among all speeds of the last 3 to 12 frames, as many as 2 million tries
+    /// reach: a turn of so few frames is refused only where no speeds make it.
     ///
     /// # Errors
     /// [`TurnError::TooFast`] when a frame needs a speed above [`Motor::max_speed`];

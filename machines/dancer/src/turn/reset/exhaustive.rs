@@ -9,8 +9,8 @@ use crate::motor::Motor;
 /// The most frames at the end of a turn whose speeds are searched.
 const MAX_ENDING: u16 = 12;
 
-/// The most frames that are tried out: a quarter of a second on a PC.
-const MAX_TRIED: u32 = 1 << 23;
+/// The most frames that are tried out: some tens of milliseconds on a PC.
+const MAX_TRIED: u32 = 1 << 21;
 
 /// Position and accumulator.
 type State = (i64, i64);
