@@ -3,5 +3,5 @@
 mod step_dir;
 mod winding_pins;
 
-pub use step_dir::{StepDir, StepDirError, StepDirTiming};
+pub use step_dir::{StepDir, StepDirError};
 pub use winding_pins::WindingPins;

@@ -13,28 +13,34 @@
 extern crate std;
 
 mod accumulators;
+mod cubic;
 mod edges;
 #[cfg(feature = "embedded-hal")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-hal")))]
 pub mod embedded_hal;
+mod fixed;
 mod latches;
 mod phases;
 mod position;
 mod ramp;
 mod rate;
-mod ratio;
 mod single_reload;
+mod step_dir_timing;
 mod timer;
 mod trains;
 
 pub use accumulators::{Accumulation, AccumulatorError, Accumulators, SpeedLaw};
+pub use cubic::{
+    AxisSegments, JoinedSegments, KnotError, MinIntervals, PvtKnot, PvtQuantiser, PvtRow, PvtSteps,
+    RowError, Segment, SegmentError, SegmentPlayer, Step,
+};
 pub use edges::{Edge, Edges, Level};
 pub use latches::{BusError, BusWrite, LatchWrites, Latches};
 pub use phases::{Phase, Phases, Placement, Polarity, Stepping, Wiring, WiringError};
 pub use position::{Position, PositionError, ScaleError, StepCarry, StepScale};
-pub use ramp::{AxisRamp, Ramp, RampError, RampLimits};
+pub use ramp::{AxisRamp, Ramp, RampEnds, RampError, RampLimits, RampRows};
 pub use rate::{Rate, RateError};
-pub use ratio::Ratio;
 pub use single_reload::{Rounding, SingleReload};
+pub use step_dir_timing::StepDirTiming;
 pub use timer::{CounterWidth, ExactInterval, Periods, Reload, Reloads, Timer, TimerError};
 pub use trains::{AxisTrain, Direction, TrainError, Trains};

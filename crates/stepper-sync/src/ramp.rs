@@ -1,14 +1,18 @@
 //! Trapezoidal speed for rapid moves.
 
 mod axis;
-mod fixed;
 mod plan;
+mod real;
+mod rows;
 
 pub use axis::AxisRamp;
+pub use rows::RampRows;
 
+use crate::cubic::PvtKnot;
 use crate::trains::most_pulses;
 use crate::{Direction, Edges, Rate, TrainError};
 use plan::Plan;
+use rows::AxisRows;
 use thiserror::Error;
 
 /// What the leading axis of a rapid move may do. One pulse is one step.
@@ -22,6 +26,19 @@ pub struct RampLimits {
     pub max_millihertz: u32,
     /// Acceleration and deceleration, in steps/s².
     pub accel_steps_per_s2: u32,
+}
+
+/// How fast the leading axis is at both ends of a move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "written as a literal")]
+pub struct RampEnds {
+    /// Rate at the start, in mHz: that of the end of the move before, or what the motor starts
+    /// with.
+    pub entry_millihertz: u32,
+    /// Rate at the end, in mHz.
+    pub exit_millihertz: u32,
 }
 
 /// Why a ramp cannot be made.
@@ -45,6 +62,28 @@ pub enum RampError {
         start_millihertz: u32,
         /// Highest rate given, in mHz.
         max_millihertz: u32,
+    },
+    /// A rate at one of the ends is above the highest rate.
+    #[error("{end_millihertz} mHz at an end, above the highest rate {max_millihertz} mHz")]
+    EndAboveMax {
+        /// Rate given, in mHz.
+        end_millihertz: u32,
+        /// Highest rate given, in mHz.
+        max_millihertz: u32,
+    },
+    /// The way is too short for the change of the rate.
+    #[error(
+        "from {} to {} mHz in {steps} steps, fewer than the {needed} that it takes",
+        ends.entry_millihertz,
+        ends.exit_millihertz
+    )]
+    TooShort {
+        /// Steps of the leading axis.
+        steps: u32,
+        /// Rates given.
+        ends: RampEnds,
+        /// Steps that the change takes.
+        needed: u64,
     },
     /// The highest rate has less than two ticks between edges.
     #[error(
@@ -90,24 +129,20 @@ pub enum RampError {
 /// A rapid move of N axes: trapezoidal speed of the leading axis, triangular when the way is too
 /// short, the others in exact proportion, all ends on the same tick.
 ///
-/// With n steps of the leading axis, start rate v0, highest rate v, acceleration a and F ticks a
-/// second, edge k = 1..2n of the leading axis lies at s = k/2 steps, and
+/// With n steps of the leading axis, rates v0 and v1 at the start and the end, highest rate v,
+/// acceleration a and F ticks a second:
 /// ```text
-/// s_a = (v² - v0²) / 2a                                          way of one ramp
-/// t(s) = F (sqrt(v0² + 2 a s) - v0) / a                          s <= min(s_a, n/2)
-/// t(s) = F (s/v + (v - v0)² / (2 v a))                           s_a <= s <= n - s_a
-/// t(s) = D - t(n - s)                                            otherwise
-/// D = F (n/v + (v - v0)² / (v a))       for n >= 2 s_a           the whole move
-/// D = 2 F (sqrt(v0² + a n) - v0) / a    otherwise
+/// n a >= v² - (v0² + v1²)/2:  D = F (n/v + ((v - v0)² + (v - v1)²) / (2 v a))
+/// otherwise:                  D = F (2 p - v0 - v1) / a,  p² = n a + (v0² + v1²)/2
 /// ```
-/// Pulse i rises at s = i - 1/2 and falls at s = i. An axis with m steps makes its edges where the
-/// leading axis, moving smoothly, would be at s = k n / 2m: the same formula with v0, v and a
-/// scaled by m/n.
+/// D and the ways up and down, F (v - v0)/a and F (v - v1)/a, are rounded to whole ticks; the speed
+/// between them follows from the way, so that speed and acceleration are off by one part in as
+/// many as the move and its ramps have ticks. These phases are the [`rows`](Self::rows) of a PVT
+/// table, and the steps those of [`PvtSteps`](crate::PvtSteps): step i where the axis passes
+/// i - 1/2 steps, less than 2 ticks and 2^-28 steps from its place on the exact trapezoid.
 ///
-/// The square roots are exact integer roots, carried from edge to edge with their remainder, so
-/// that nothing adds up. They are kept in subticks: 2^p to a tick, with the largest p <= 16 for
-/// which F v / a is at most 2^31 subticks and D less than 2^61. Every edge is within half a tick
-/// and two subticks of t(s), and the end within half a tick of D.
+/// Each pulse lasts nearly half of the shortest period: the last step of an axis comes half a step
+/// before its end, which all axes reach at [`end_ticks`](Self::end_ticks).
 ///
 /// # Examples
 /// ```
@@ -120,36 +155,64 @@ pub enum RampError {
 /// let ramp = Ramp::new([4000, -1500], &limits, Rate::from_hz(1_000_000)?)?;
 /// // 4000 / 2000 + 2000 / 10,000 s.
 /// assert_eq!(ramp.end_ticks(), 2_200_000);
-/// assert_eq!(ramp.axes().map(|axis| axis.sum::<u64>()), [2_200_000; 2]);
+/// assert_eq!(ramp.axes().map(|axis| axis.count()), [8000, 3000]);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ramp<const N: usize> {
-    axes: [AxisRamp; N],
+    plan: Plan,
     steps: [i32; N],
-    end_ticks: u64,
 }
 
 impl<const N: usize> Ramp<N> {
     /// A ramp for `steps` signed steps per axis, in ticks of `tick_rate`
-    /// ([`Timer::tick_rate`](crate::Timer::tick_rate)).
+    /// ([`Timer::tick_rate`](crate::Timer::tick_rate)), that starts and stops at the start rate.
     ///
     /// # Errors
     /// [`RampError`]: each variant names the value and its limit.
     pub fn new(steps: [i32; N], limits: &RampLimits, tick_rate: Rate) -> Result<Self, RampError> {
-        let most = most_pulses(&steps)?;
-        let plan = Plan::new(most, limits, tick_rate)?;
-        Ok(Self {
-            axes: steps.map(|n| plan.axis(n.unsigned_abs())),
-            steps,
-            end_ticks: plan.end_ticks(),
-        })
+        let ends = RampEnds {
+            entry_millihertz: limits.start_millihertz,
+            exit_millihertz: limits.start_millihertz,
+        };
+        Self::between(steps, limits, ends, tick_rate)
     }
 
-    /// The tick D at which every moving axis makes its last edge.
+    /// The same between other rates: moves in one proportion join where one ends as fast as the
+    /// next begins.
+    ///
+    /// # Errors
+    /// [`RampError`]: each variant names the value and its limit.
+    ///
+    /// # Examples
+    /// ```
+    /// use stepper_sync::{Ramp, RampEnds, RampLimits, Rate};
+    /// let limits = RampLimits {
+    ///     start_millihertz: 0,
+    ///     max_millihertz: 2_000_000,
+    ///     accel_steps_per_s2: 10_000,
+    /// };
+    /// let ends = RampEnds { entry_millihertz: 0, exit_millihertz: 1_000_000 };
+    /// // 50 steps in 0.1 s up to 1000 steps/s.
+    /// let ramp = Ramp::between([50], &limits, ends, Rate::from_hz(1_000_000)?)?;
+    /// assert_eq!(ramp.end_ticks(), 100_000);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn between(
+        steps: [i32; N],
+        limits: &RampLimits,
+        ends: RampEnds,
+        tick_rate: Rate,
+    ) -> Result<Self, RampError> {
+        let most = most_pulses(&steps)?;
+        let plan = Plan::new(most, limits, ends, tick_rate)?;
+        Ok(Self { plan, steps })
+    }
+
+    /// The tick D at which every axis is at its end.
     #[must_use]
     pub const fn end_ticks(&self) -> u64 {
-        self.end_ticks
+        self.plan.end_ticks()
     }
 
     /// The signed steps of each axis.
@@ -164,9 +227,24 @@ impl<const N: usize> Ramp<N> {
         self.steps.map(Direction::of)
     }
 
+    /// Where the rows begin: at 0, with the rate of the start.
+    #[must_use]
+    pub fn start(&self) -> [PvtKnot; N] {
+        self.steps
+            .map(|steps| AxisRows::new(&self.plan, steps).knot())
+    }
+
+    /// The same move as rows of a PVT table.
+    pub fn rows(&self) -> RampRows<N> {
+        RampRows::new(self.steps.map(|steps| AxisRows::new(&self.plan, steps)))
+    }
+
     /// One iterator of intervals per axis, each for its own timer and interrupt handler.
     pub fn axes(&self) -> [AxisRamp; N] {
-        self.axes.clone()
+        self.steps.map(|steps| {
+            let rows = AxisRows::new(&self.plan, steps);
+            AxisRamp::new(rows, self.plan.pulse_ticks, steps)
+        })
     }
 
     /// The edges of all axes in time order, for one timer or a simulation.

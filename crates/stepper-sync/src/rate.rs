@@ -160,7 +160,7 @@ impl From<Rate> for (u32, u32) {
     clippy::integer_division_remainder_used,
     reason = "the loop ends before the divisor is zero"
 )]
-pub(crate) const fn gcd(mut a: u32, mut b: u32) -> u32 {
+const fn gcd(mut a: u32, mut b: u32) -> u32 {
     while b != 0 {
         (a, b) = (b, a % b);
     }

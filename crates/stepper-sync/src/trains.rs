@@ -30,6 +30,13 @@ impl Direction {
             _ => Some(Self::Negative),
         }
     }
+
+    pub(crate) const fn reversed(self) -> Self {
+        match self {
+            Self::Positive => Self::Negative,
+            Self::Negative => Self::Positive,
+        }
+    }
 }
 
 /// Why no trains can be made.

@@ -10,8 +10,8 @@ use std::collections::HashMap;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, OutputPin, PinState};
-use stepper_sync::embedded_hal::{StepDir, StepDirError, StepDirTiming, WindingPins};
-use stepper_sync::{Direction, Level, Phases, Polarity, Stepping, Wiring};
+use stepper_sync::embedded_hal::{StepDir, StepDirError, WindingPins};
+use stepper_sync::{Direction, Level, Phases, Polarity, StepDirTiming, Stepping, Wiring};
 
 /// All pins and the clock of a test: `name+`, `name-`, and waits in nanoseconds.
 #[derive(Clone, Default)]

@@ -253,9 +253,9 @@ proptest! {
                 }
             }
             for (position, speed) in position.into_iter().zip(speeds) {
-                let mean = accumulation.steps_per_tick(speed).to_f64();
+                let mean = accumulation.steps_per_tick(speed);
                 prop_assert!((f64::from(position) - 1000.0 * mean).abs() <= 1.0);
-                let error = accumulation.error(speed).to_f64();
+                let error = accumulation.error(speed);
                 let exact = f64::from(speed) / f64::from(threshold);
                 prop_assert!((mean - exact * (1.0 + error)).abs() < 1e-12);
                 let hz = mean * f64::from(rate.numerator()) / f64::from(rate.denominator());

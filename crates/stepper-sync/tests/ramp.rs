@@ -6,12 +6,17 @@
     reason = "ticks below 2^53 and counts below 2^31, compared within a tolerance"
 )]
 
-use stepper_sync::{Ramp, RampError, RampLimits, Rate, TrainError};
+use stepper_sync::{
+    AxisRamp, MinIntervals, PvtSteps, Ramp, RampEnds, RampError, RampLimits, Rate, TrainError,
+};
 
 /// The goal: total time within 0.01 % of the closed form.
 const TOTAL_RELATIVE: f64 = 1e-4;
 /// The end is rounded to whole ticks.
 const END_TICKS: f64 = 0.5 + F64_TICKS;
+/// The documented bound of a step: ticks, and steps.
+const STEP_TICKS: f64 = 2.0;
+const STEP_PLACE: f64 = 1.0 / (1_u32 << 28) as f64;
 /// Error of this test's own f64 arithmetic, in ticks: 2^40 ticks have 12 bits behind the point.
 const F64_TICKS: f64 = 1e-3;
 
@@ -75,17 +80,6 @@ impl Setting {
         (self.v().powi(2) - self.v0().powi(2)) / (2.0 * self.a())
     }
 
-    /// The documented bound of one edge: half a tick and two subticks.
-    fn edge_ticks(&self) -> f64 {
-        let from_rest = self.tick_hz * self.v() / self.a();
-        let subticks = (f64::from(1_u32 << 31) / from_rest)
-            .log2()
-            .floor()
-            .min(16.0)
-            .exp2();
-        0.5 + 2.0 / subticks + F64_TICKS
-    }
-
     /// Closed form of the whole move, in ticks.
     fn total(&self, n: f64) -> f64 {
         let (v0, v, a) = (self.v0(), self.v(), self.a());
@@ -136,29 +130,50 @@ fn total_time_is_within_a_hundredth_of_a_percent_for_1_to_a_million_steps() {
     println!("worst: {} ticks, {} of the time", worst.0, worst.1);
 }
 
-#[test]
-fn every_edge_is_at_its_place_and_the_sum_is_the_end() {
-    for s in SETTINGS {
-        for n in [1, 2, 3, 4, 5, 10, 33, 100, 1000, 5000, 40_000] {
-            let ramp = s.ramp([n]);
-            let [axis] = ramp.axes();
-            let mut ticks = 0_u64;
-            for (k, interval) in (1_u32..).zip(axis) {
-                assert!(interval > 0);
-                ticks += interval;
-                let exact = s.time(f64::from(k) / 2.0, f64::from(n));
-                let error = (ticks as f64 - exact).abs();
-                assert!(
-                    error <= s.edge_ticks(),
-                    "edge {k} of {n}, {s:?}: {ticks}, not {exact}"
-                );
-            }
-            assert_eq!(ticks, ramp.end_ticks());
+/// Checks the edges of an axis with m of n steps, and returns the greatest error of a step.
+fn check(s: &Setting, axis: AxisRamp, m: u32, n: f64, end: u64) -> f64 {
+    assert_eq!(axis.remaining(), u64::from(2 * m));
+    let mut ticks = 0_u64;
+    let mut pulses = Vec::new();
+    let mut worst = 0.0_f64;
+    for (k, interval) in (0_u32..).zip(axis) {
+        assert!(interval > 0);
+        ticks += interval;
+        if k % 2 == 1 {
+            pulses.push(interval);
+            continue;
         }
+        let way = (f64::from(k) + 1.0) * n / (2.0 * f64::from(m));
+        let exact = s.time(way, n);
+        let error = (ticks as f64 - exact).abs();
+        // Ticks of a step of this axis at the highest rate.
+        let step = s.tick_hz / s.v() * n / f64::from(m);
+        assert!(
+            error <= STEP_TICKS + step * STEP_PLACE,
+            "step {k} of {m} of {n}, {s:?}: {ticks}, not {exact}"
+        );
+        worst = worst.max(error);
     }
+    assert!(pulses.windows(2).all(|pair| pair[0] == pair[1]));
+    assert_eq!(pulses.len(), usize::try_from(m).unwrap());
+    assert!(ticks <= end, "{m} of {n}, {s:?}");
+    worst
 }
 
-/// An acceleration of so many ticks that a subtick is a tick, from a start rate between subticks.
+#[test]
+fn every_step_is_at_its_place() {
+    let mut worst = 0.0_f64;
+    for s in SETTINGS {
+        for n in [1, 2, 3, 4, 5, 10, 33, 100, 1000, 5000, 40_000_u32] {
+            let ramp = s.ramp([i32::try_from(n).unwrap()]);
+            let [axis] = ramp.axes();
+            worst = worst.max(check(&s, axis, n, f64::from(n), ramp.end_ticks()));
+        }
+    }
+    println!("worst: {worst} ticks");
+}
+
+/// An acceleration of 2^30 ticks, from a rate that is no whole number of steps a second.
 #[test]
 fn the_slowest_acceleration_ends_within_half_a_tick() {
     let rate = (268_435_519, 1);
@@ -172,18 +187,10 @@ fn the_slowest_acceleration_ends_within_half_a_tick() {
         },
     };
     for n in 1..300 {
-        let (mut ticks, ramp) = (0, setting.ramp([n]));
+        let ramp = setting.ramp([n]);
         let [axis] = ramp.axes();
-        for (k, interval) in (1_u32..).zip(axis) {
-            ticks += interval;
-            let exact = setting.time(f64::from(k) / 2.0, f64::from(n));
-            let error = (ticks as f64 - exact).abs();
-            assert!(
-                error <= setting.edge_ticks(),
-                "edge {k} of {n}: {ticks}, not {exact}"
-            );
-        }
-        assert_eq!(ticks, ramp.end_ticks());
+        let ticks = ramp.end_ticks();
+        check(&setting, axis, n.unsigned_abs(), f64::from(n), ticks);
         let error = (ticks as f64 - setting.total(f64::from(n))).abs();
         assert!(error <= END_TICKS, "{n} steps: {error} ticks");
     }
@@ -195,8 +202,8 @@ fn a_million_steps_lose_nothing() {
         let ramp = s.ramp([1_000_000, 1]);
         let [leader, follower] = ramp.axes();
         assert_eq!(leader.remaining(), 2_000_000);
-        assert_eq!(leader.sum::<u64>(), ramp.end_ticks());
-        assert_eq!(follower.sum::<u64>(), ramp.end_ticks());
+        check(&s, leader, 1_000_000, 1e6, ramp.end_ticks());
+        check(&s, follower, 1, 1e6, ramp.end_ticks());
     }
 }
 
@@ -205,20 +212,80 @@ fn followers_keep_the_proportion() {
     for s in SETTINGS {
         let ramp = s.ramp([5000, -1234, 1, 0, 4999]);
         for (axis, m) in ramp.axes().into_iter().zip([5000, 1234, 1, 0, 4999_u32]) {
-            assert_eq!(axis.remaining(), 2 * u64::from(m));
-            let mut ticks = 0_u64;
-            for (k, interval) in (1_u32..).zip(axis) {
-                ticks += interval;
-                let way = f64::from(k) * 5000.0 / (2.0 * f64::from(m));
-                let exact = s.time(way, 5000.0);
-                let error = (ticks as f64 - exact).abs();
-                assert!(
-                    error <= s.edge_ticks(),
-                    "edge {k} of {m}, {s:?}: {ticks}, not {exact}"
-                );
-            }
-            assert!(m == 0 || ticks == ramp.end_ticks());
+            check(&s, axis, m, 5000.0, ramp.end_ticks());
         }
+    }
+}
+
+/// Ticks of the steps of one axis.
+fn steps(axis: AxisRamp) -> Vec<u64> {
+    let edges = axis.scan(0, |ticks, interval| {
+        *ticks += interval;
+        Some(*ticks)
+    });
+    edges.step_by(2).collect()
+}
+
+/// Three moves that join at speed are as long as one, and step where it does.
+#[test]
+fn ramps_join() {
+    let limits = RampLimits {
+        start_millihertz: 200_000,
+        max_millihertz: 4_000_000,
+        accel_steps_per_s2: 10_000,
+    };
+    let rate = Rate::from_hz(72_000_000).unwrap();
+    let whole = Ramp::new([2400, 600], &limits, rate).unwrap();
+    // 798 steps up, 804 on, 798 down: cut where it has 2000 and where it has 4000 steps/s.
+    let parts = [
+        (198, 200_000, 2_000_000),
+        (1402, 2_000_000, 4_000_000),
+        (800, 4_000_000, 200_000),
+    ];
+    let mut joined = Vec::new();
+    let mut start = 0;
+    for (n, entry_millihertz, exit_millihertz) in parts {
+        let ends = RampEnds {
+            entry_millihertz,
+            exit_millihertz,
+        };
+        let ramp = Ramp::between([n], &limits, ends, rate).unwrap();
+        let [axis] = ramp.axes();
+        joined.extend(steps(axis).into_iter().map(|ticks| start + ticks));
+        start += ramp.end_ticks();
+    }
+    // Three ends rounded instead of one.
+    assert!(start.abs_diff(whole.end_ticks()) <= 2);
+    let [axis, _] = whole.axes();
+    let whole = steps(axis);
+    assert_eq!(whole.len(), joined.len());
+    for (a, b) in whole.into_iter().zip(joined) {
+        // Each within 2 ticks of the exact trapezoid, and 1 for the rounded joints.
+        assert!(a.abs_diff(b) <= 5, "{a} and {b}");
+    }
+}
+
+/// The rows of a table are the same move.
+#[test]
+fn rows_step_as_the_axes_do() {
+    for s in SETTINGS {
+        let ramp = s.ramp([500, -123, 0]);
+        let least = MinIntervals {
+            step_ticks: 1,
+            reversal_ticks: 1,
+        };
+        let mut merged = PvtSteps::new(ramp.start(), least);
+        let mut made = [Vec::new(), Vec::new(), Vec::new()];
+        for row in ramp.rows() {
+            merged.push(&row).unwrap();
+            for step in merged.by_ref() {
+                made[step.axis].push(step.ticks);
+                assert_eq!(Some(step.direction), ramp.directions()[step.axis]);
+            }
+        }
+        assert_eq!(merged.steps(), [500, -123, 0]);
+        assert_eq!(merged.end_ticks(), ramp.end_ticks());
+        assert_eq!(ramp.axes().map(steps), made);
     }
 }
 
@@ -276,6 +343,30 @@ fn errors_name_value_and_limit() {
             max_millihertz: 99
         }
     );
+    let ends = |entry_millihertz, exit_millihertz| RampEnds {
+        entry_millihertz,
+        exit_millihertz,
+    };
+    assert_eq!(
+        Ramp::between([1], &limits, ends(0, 1_000_001), rate),
+        Err(RampError::EndAboveMax {
+            end_millihertz: 1_000_001,
+            max_millihertz: 1_000_000
+        })
+    );
+    // (1000² - 200²) / 2000 = 480 steps.
+    let change = ends(1_000_000, 200_000);
+    assert_eq!(
+        Ramp::between([-479, 3], &limits, change, rate),
+        Err(RampError::TooShort {
+            steps: 479,
+            ends: change,
+            needed: 480
+        })
+    );
+    let just_enough = Ramp::between([-480, 3], &limits, change, rate).unwrap();
+    // (1000 - 200) / 1000 s.
+    assert_eq!(just_enough.end_ticks(), 800_000);
     assert_eq!(
         error(
             RampLimits {

@@ -4,9 +4,11 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use stepper_sync::{
-    Accumulation, Accumulators, AxisRamp, AxisTrain, BusError, BusWrite, Direction, Edge, Edges,
-    LatchWrites, Latches, Periods, Phase, Phases, Position, PositionError, Ramp, RampLimits, Rate,
-    Reload, Reloads, SpeedLaw, Stepping, Timer, TimerError, Trains, Wiring,
+    Accumulation, Accumulators, AxisRamp, AxisSegments, AxisTrain, BusError, BusWrite, Direction,
+    Edge, Edges, LatchWrites, Latches, MinIntervals, Periods, Phase, Phases, Position,
+    PositionError, PvtKnot, PvtRow, PvtSteps, Ramp, RampLimits, Rate, Reload, Reloads, RowError,
+    Segment, SegmentError, SegmentPlayer, SpeedLaw, Step, Stepping, Timer, TimerError, Trains,
+    Wiring,
 };
 
 #[no_panic]
@@ -31,6 +33,57 @@ fn train_edges_next(edges: &mut Edges<AxisTrain, 2>) -> Option<Edge> {
 #[inline(never)]
 fn ramp_edges_next(edges: &mut Edges<AxisRamp, 2>) -> Option<Edge> {
     edges.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn row_push(axis: &mut AxisSegments, ticks: u32, knot: PvtKnot) -> Result<(), RowError> {
+    axis.push(ticks, knot)
+}
+
+#[no_panic]
+#[inline(never)]
+fn segments_next(axis: &mut AxisSegments) -> Option<Segment> {
+    axis.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn rows_push(steps: &mut PvtSteps<3>, row: &PvtRow<3>) -> Result<(), RowError> {
+    steps.push(row)
+}
+
+#[no_panic]
+#[inline(never)]
+fn steps_next(steps: &mut PvtSteps<3>) -> Option<Step> {
+    steps.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn segment_encode<'b>(
+    segment: &Segment,
+    buffer: &'b mut [u8; Segment::MAX_ENCODED_LEN],
+) -> &'b [u8] {
+    segment.encode(buffer)
+}
+
+#[no_panic]
+#[inline(never)]
+fn segment_decode(bytes: &[u8]) -> Result<(Segment, &[u8]), SegmentError> {
+    Segment::decode(bytes)
+}
+
+#[no_panic]
+#[inline(never)]
+fn player_load(player: &mut SegmentPlayer, segment: &Segment) -> u64 {
+    player.load(segment)
+}
+
+#[no_panic]
+#[inline(never)]
+fn player_next(player: &mut SegmentPlayer) -> Option<u32> {
+    player.next()
 }
 
 #[no_panic]
@@ -116,7 +169,37 @@ fn latches_write(latches: &mut Latches<8>, write: BusWrite) -> Result<(), BusErr
 
 pub fn run() {
     motion();
+    cubics();
     dance();
+}
+
+fn cubics() {
+    let least = black_box(MinIntervals {
+        step_ticks: 100,
+        reversal_ticks: 200,
+    });
+    let (start, end) = (
+        black_box(PvtKnot::at_rest(0)),
+        black_box(PvtKnot::at_rest(-3)),
+    );
+    let mut axis = black_box(AxisSegments::new(start, least));
+    let _ = black_box(row_push(&mut axis, black_box(10_000), end));
+    if let Some(segment) = segments_next(&mut axis) {
+        let mut buffer = [0; Segment::MAX_ENCODED_LEN];
+        let bytes = black_box(segment_encode(black_box(&segment), &mut buffer));
+        if let Ok((segment, _)) = segment_decode(bytes) {
+            let mut player = black_box(SegmentPlayer::new());
+            black_box(player_load(&mut player, black_box(&segment)));
+            black_box(player_next(&mut player));
+        }
+    }
+    let mut steps = black_box(PvtSteps::new([start; 3], least));
+    let row = black_box(PvtRow {
+        ticks: 10_000,
+        knots: [end; 3],
+    });
+    let _ = black_box(rows_push(&mut steps, &row));
+    black_box(steps_next(&mut steps));
 }
 
 fn dance() {

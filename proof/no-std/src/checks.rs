@@ -19,6 +19,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     body::tables,
     pulses::trains,
     pulses::ramp,
+    pulses::cubic,
     pulses::dance,
     pulses::interpolation,
     pulses::closed_loop,

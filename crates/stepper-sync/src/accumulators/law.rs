@@ -1,6 +1,7 @@
+//! The laws of accumulators, and the mean speeds that come of them.
+
 use super::{Accumulators, MAX_THRESHOLD, MIN_THRESHOLD};
 use crate::Rate;
-use crate::ratio::Ratio;
 use thiserror::Error;
 
 /// What becomes of an accumulator that has passed its threshold.
@@ -61,8 +62,8 @@ pub enum AccumulatorError {
 /// let tick = Rate::from_hz(1000)?;
 /// let paper = Accumulation::new(SpeedLaw::Reset, 600, tick)?;
 /// // 119 should make a step in 5.04 ticks and makes one in 6.
-/// assert_eq!(paper.steps_per_tick(119).denominator(), 6);
-/// assert_eq!(paper.error(119).per_million(), -159_664);
+/// assert_eq!(paper.steps_per_tick(119), 1.0 / 6.0);
+/// assert_eq!(paper.error(119), -19.0 / 119.0);
 /// let exact = Accumulation::new(SpeedLaw::CarrySigned, 600, tick)?;
 /// assert_eq!(exact.millihertz(119), 198_333);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
@@ -131,7 +132,7 @@ impl Accumulation {
         Accumulators::new(self.law, self.threshold.cast_signed())
     }
 
-    /// Mean steps per tick at a constant speed, signed and exact.
+    /// Mean steps per tick at a constant speed, with its sign.
     ///
     /// ```text
     /// reset         ±1 / ⌈threshold / |speed|⌉
@@ -139,17 +140,12 @@ impl Accumulation {
     /// ```
     /// In \[Dancer\] speeds are multiples of V0, 1/5 step per tick: V0 · speed / 120 is meant.
     #[must_use]
-    pub fn steps_per_tick(&self, speed: i8) -> Ratio {
-        match self.law {
-            SpeedLaw::Reset if speed == 0 => Ratio::ZERO,
-            SpeedLaw::Reset => Ratio::new(i32::from(speed.signum()), self.reset_ticks(speed)),
-            SpeedLaw::CarryMagnitude | SpeedLaw::CarrySigned => {
-                Ratio::new(i32::from(speed), u32::from(self.threshold))
-            }
-        }
+    pub fn steps_per_tick(&self, speed: i8) -> f64 {
+        let (steps, ticks) = self.mean(speed);
+        f64::from(steps) / f64::from(ticks)
     }
 
-    /// By how much the mean speed is off `speed / threshold`, relative to it: exact.
+    /// By how much the mean speed is off `speed / threshold`, relative to it.
     ///
     /// ```text
     /// reset         threshold / (|speed| · ⌈threshold / |speed|⌉) - 1, never above 0
@@ -157,32 +153,39 @@ impl Accumulation {
     /// ```
     /// 0 at rest.
     #[must_use]
-    pub fn error(&self, speed: i8) -> Ratio {
+    pub fn error(&self, speed: i8) -> f64 {
         match self.law {
             SpeedLaw::Reset if speed != 0 => {
                 // At most threshold + |speed|: far below 2^31.
                 let gathered =
                     u32::from(speed.unsigned_abs()).wrapping_mul(self.reset_ticks(speed));
                 let lost = gathered.wrapping_sub(u32::from(self.threshold));
-                Ratio::new(lost.cast_signed().wrapping_neg(), gathered)
+                0.0 - f64::from(lost) / f64::from(gathered)
             }
-            _ => Ratio::ZERO,
+            _ => 0.0,
         }
     }
 
     /// Mean steps per second in millihertz, signed, to the nearest, halves up.
     #[must_use]
     pub fn millihertz(&self, speed: i8) -> i64 {
-        let steps_per_tick = self.steps_per_tick(speed);
+        let (steps, ticks) = self.mean(speed);
         // 2^7 * 2^32 * 2000 and 2^15 * 2^32 * 2 fit 64 bits.
-        let denominator = i64::from(steps_per_tick.denominator())
-            .wrapping_mul(i64::from(self.tick_rate.denominator()));
-        i64::from(steps_per_tick.numerator())
+        let denominator = i64::from(ticks).wrapping_mul(i64::from(self.tick_rate.denominator()));
+        i64::from(steps)
             .wrapping_mul(i64::from(self.tick_rate.numerator()))
             .wrapping_mul(2000)
             .wrapping_add(denominator)
             .checked_div_euclid(denominator.wrapping_mul(2))
             .unwrap_or(0)
+    }
+
+    /// Steps in ticks, above 0.
+    fn mean(&self, speed: i8) -> (i8, u32) {
+        match self.law {
+            SpeedLaw::Reset if speed != 0 => (speed.signum(), self.reset_ticks(speed)),
+            _ => (speed, u32::from(self.threshold)),
+        }
     }
 
     /// Ticks from step to step under [`SpeedLaw::Reset`]; 0 at rest.

@@ -1,50 +1,9 @@
 //! Motors behind a step and a direction pin.
 
-use crate::{Direction, Level, Polarity};
+use crate::{Direction, Level, Polarity, StepDirTiming};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{OutputPin, PinState};
 use thiserror::Error;
-
-/// What a driver chip asks of its step and direction inputs, in nanoseconds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(
-    clippy::exhaustive_structs,
-    reason = "written as a literal from a data sheet"
-)]
-pub struct StepDirTiming {
-    /// Least time of the active level of a pulse.
-    pub pulse_ns: u32,
-    /// Least time from the end of a pulse to the next.
-    pub pause_ns: u32,
-    /// Least time from a change of direction to the next pulse.
-    pub setup_ns: u32,
-    /// Least time from the start of a pulse to a change of direction.
-    pub hold_ns: u32,
-}
-
-impl StepDirTiming {
-    /// Allegro A4988: 1 us, 1 us, 200 ns, 200 ns.
-    pub const A4988: Self = Self {
-        pulse_ns: 1000,
-        pause_ns: 1000,
-        setup_ns: 200,
-        hold_ns: 200,
-    };
-
-    /// Texas Instruments DRV8825: 1.9 us, 1.9 us, 650 ns, 650 ns.
-    pub const DRV8825: Self = Self {
-        pulse_ns: 1900,
-        pause_ns: 1900,
-        setup_ns: 650,
-        hold_ns: 650,
-    };
-}
 
 /// A pin that could not be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -68,8 +27,8 @@ pub enum StepDirError<S, D> {
 ///
 /// # Examples
 /// ```
-/// use stepper_sync::Direction;
-/// use stepper_sync::embedded_hal::{StepDir, StepDirTiming};
+/// use stepper_sync::embedded_hal::StepDir;
+/// use stepper_sync::{Direction, StepDirTiming};
 /// # fn demo<P, D>(step_pin: P, direction_pin: P, mut delay: D) -> Result<(), stepper_sync::embedded_hal::StepDirError<P::Error, P::Error>>
 /// # where P: embedded_hal::digital::OutputPin, D: embedded_hal::delay::DelayNs {
 /// let mut motor = StepDir::new(step_pin, direction_pin, StepDirTiming::A4988);

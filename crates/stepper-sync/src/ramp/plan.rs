@@ -1,200 +1,142 @@
-//! The shape of a ramp in subdivided ticks, once per move.
-//!
-//! Ranges: F = fn/fd with fn < 2^32 and fd <= 2^20; rates V, V0 in mHz and a below 2^32; n < 2^31;
-//! 2^shift subticks a tick, shift <= 16. Every product below stays in 128 bits with these.
+//! The shape of a ramp in whole ticks, once per move.
+#![expect(
+    clippy::arithmetic_side_effects,
+    clippy::cast_possible_wrap,
+    reason = "rates below 2^32, denominators at most 2^20; phases sum up to the end"
+)]
 
-use super::axis::{AxisRamp, Cruise, Slope};
-use super::fixed::{FRACTION, nearest, ratio, whole};
-use super::{RampError, RampLimits};
+use super::real::Real;
+use super::{RampEnds, RampError, RampLimits};
+use crate::cubic::PvtKnot;
+use crate::fixed::quotient;
 use crate::{Rate, Timer};
 
-/// Most subticks per tick, log2: an edge is then within 0.51 ticks of its ideal.
-const MAX_SHIFT: u32 = 16;
-/// Subticks from rest to the highest rate, log2 of the limit: squares stay below 2^62.
+/// Ticks from rest to the highest rate, log2 of the limit: a row has 32 bits.
 const RAMP_BITS: u32 = 31;
-/// Subticks of the whole move, log2 of the limit.
+/// Ticks of the whole move, log2 of the limit.
 const END_BITS: u32 = 61;
 
-/// What all axes of a move have in common.
+/// The leading axis of a move, in steps and ticks: up to a velocity, on with it, and down.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
-    most: u32,
-    shift: u32,
-    limits: RampLimits,
-    tick_rate: Rate,
-    triangular: bool,
-    /// F v0 / a, in whole subticks.
-    start: u64,
-    /// Time lost by one ramp, F (v - v0)² / (2 v a), in subticks, fixed point.
-    lag: u128,
-    /// The whole move, in subticks, fixed point.
-    end: u128,
+    /// Steps.
+    pub(super) most: u32,
+    pub(super) up_ticks: u64,
+    pub(super) cruise_ticks: u64,
+    pub(super) down_ticks: u64,
+    /// In 2^-56 steps a tick.
+    pub(super) entry: i64,
+    pub(super) peak: i64,
+    pub(super) exit: i64,
+    /// Ticks of a pulse: half of the shortest period, less what steps may be off their places.
+    pub(super) pulse_ticks: u64,
 }
 
 impl Plan {
-    pub(super) fn new(most: u32, limits: &RampLimits, tick_rate: Rate) -> Result<Self, RampError> {
-        check(limits, tick_rate)?;
-        (0..=MAX_SHIFT)
-            .rev()
-            .find_map(|shift| Self::with_shift(most, limits, tick_rate, shift))
+    /// With the formulas of [`Ramp`](super::Ramp). The phases are rounded to whole ticks, and the
+    /// velocity between them follows from the way.
+    pub(super) fn new(
+        most: u32,
+        limits: &RampLimits,
+        ends: RampEnds,
+        tick_rate: Rate,
+    ) -> Result<Self, RampError> {
+        check(limits, ends, tick_rate)?;
+        let needed = needed_steps(limits, ends);
+        if u64::from(most) < needed && most > 0 {
+            return Err(RampError::TooShort {
+                steps: most,
+                ends,
+                needed,
+            });
+        }
+        let rate = |millihertz| Real::whole(millihertz).over(Real::whole(1000));
+        let ticks = Real::whole(tick_rate.numerator()).over(Real::whole(tick_rate.denominator()));
+        let way = Real::whole(most);
+        let acceleration = Real::whole(limits.accel_steps_per_s2);
+        let [v0, v1] = [ends.entry_millihertz, ends.exit_millihertz].map(rate);
+        let highest = rate(limits.max_millihertz);
+
+        let ground = v0.squared().plus(v1.squared()).half();
+        let square = acceleration.times(way).plus(ground);
+        let triangular = square < highest.squared();
+        let peak = if triangular { square.root() } else { highest };
+        let (rise, fall) = (peak.minus(v0), peak.minus(v1));
+        let seconds = if triangular {
+            rise.plus(fall).over(acceleration)
+        } else {
+            let lost = rise.squared().plus(fall.squared()).half();
+            way.plus(lost.over(acceleration)).over(peak)
+        };
+        let end = if most > 0 {
+            ticks.times(seconds).rounded()
+        } else {
+            Some(0)
+        };
+        let end = end
+            .filter(|end| end >> END_BITS == 0)
             .ok_or(RampError::TooLong {
                 steps: most,
                 bits: END_BITS,
-            })
-    }
+            })?;
 
-    /// `None` when the times do not fit their ranges at this subdivision.
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "ranges in the head of the file"
-    )]
-    fn with_shift(most: u32, limits: &RampLimits, tick_rate: Rate, shift: u32) -> Option<Self> {
-        let (f_num, f_den) = parts(tick_rate);
-        let f_sub = f_num << shift;
-        let v0 = u128::from(limits.start_millihertz);
-        let v = u128::from(limits.max_millihertz);
-        let a = u128::from(limits.accel_steps_per_s2);
-        let n = u128::from(most);
-
-        // F v / a.
-        if f_sub * v > (f_den * 1000 * a) << RAMP_BITS {
-            return None;
-        }
-        let start = ratio(f_sub * v0, f_den * 1000 * a)?;
-        let mut plan = Self {
+        let phase = |change: Real, left: u64| {
+            let phase = ticks.times(change.over(acceleration)).rounded();
+            phase.map_or(left, |phase| phase.min(left))
+        };
+        let up = phase(rise, end);
+        let down = if triangular {
+            end - up
+        } else {
+            phase(fall, end - up)
+        };
+        // Steps a tick: the ways of the three phases sum up to the whole one.
+        let [v0, v1] = [v0, v1].map(|v| v.over(ticks));
+        let [up_ticks, down_ticks] = [up, down].map(|phase| Real::scaled(phase, 0));
+        let at_ends = v0.times(up_ticks).plus(v1.times(down_ticks));
+        let peak = way.plus(way).minus(at_ends);
+        let peak = peak.over(Real::scaled(2 * end - up - down, 0));
+        let half_period = Real::whole(1).over(v0.max(v1).max(peak)).half();
+        let half_period = half_period.floor(0).unwrap_or(u64::MAX);
+        let velocity = |real: Real| {
+            let velocity = real.floor(PvtKnot::VELOCITY_BITS as i32);
+            velocity.and_then(|v| i64::try_from(v).ok()).unwrap_or(0)
+        };
+        Ok(Self {
             most,
-            shift,
-            limits: *limits,
-            tick_rate,
-            triangular: v * v - v0 * v0 >= n * 1_000_000 * a,
-            start: nearest(start),
-            lag: ratio(f_sub * (v - v0) * (v - v0), 2000 * v * a * f_den)?,
-            end: 0,
-        };
-        plan.end = if most == 0 {
-            0
-        } else if plan.triangular {
-            // The peak rate is at most v, so c² + g n <= (F v / a + 1)² < 2^63. The root of 64
-            // fraction bits has 32, and so has the c that is squared.
-            let half = FRACTION >> 1;
-            let square = (start >> half) * (start >> half) + plan.growth(most)? * n;
-            ((square.isqrt() - (start >> half)) * 2) << half
-        } else {
-            let cruising = plan.period(most)?.checked_mul(2 * n)?;
-            cruising.checked_add(plan.lag * 2)?
-        };
-        (plan.end >> (FRACTION + END_BITS) == 0).then_some(plan)
+            up_ticks: up,
+            cruise_ticks: end - up - down,
+            down_ticks: down,
+            entry: velocity(v0),
+            peak: velocity(peak),
+            exit: velocity(v1),
+            pulse_ticks: (half_period - (half_period >> 6)).saturating_sub(1).max(1),
+        })
     }
 
-    /// The tick of the last edge of every moving axis.
+    /// Ticks of the whole move.
     pub(super) const fn end_ticks(&self) -> u64 {
-        AxisRamp::to_ticks(self.end_subticks(), self.shift)
-    }
-
-    /// The end such that it is rounded once on its way to ticks: here where subticks are ticks, else
-    /// from subticks to ticks, where the fraction of a subtick does not count.
-    const fn end_subticks(&self) -> u64 {
-        if self.shift == 0 {
-            nearest(self.end)
-        } else {
-            whole(self.end)
-        }
-    }
-
-    /// The edges of an axis with `pulses` pulses, at most those of the leading axis.
-    pub(super) fn axis(&self, pulses: u32) -> AxisRamp {
-        self.moving_axis(pulses).unwrap_or_else(AxisRamp::at_rest)
-    }
-
-    /// `None` for no pulses.
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "accel < pulses < 2^31; ranges in the head of the file"
-    )]
-    fn moving_axis(&self, pulses: u32) -> Option<AxisRamp> {
-        let last = pulses.checked_sub(1)?;
-        let accel = if self.triangular {
-            last
-        } else {
-            self.accel_edges(pulses).min(last)
-        };
-        let growth = if accel > 0 { self.growth(pulses)? } else { 0 };
-        let period = self.period(pulses)?;
-        let first = if self.triangular {
-            self.end >> 1
-        } else {
-            self.lag + period * u128::from(accel + 1)
-        };
-        let slope = Slope {
-            start: self.start,
-            growth,
-            edges: accel,
-        };
-        let cruise = Cruise {
-            next: first,
-            period,
-            edges_left: pulses * 2 - accel * 2 - 1,
-        };
-        Some(AxisRamp::new(
-            self.end_subticks(),
-            self.shift,
-            &slope,
-            cruise,
-        ))
-    }
-
-    /// Edges made while speeding up: floor(2 `s_a` m / n).
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "ranges in the head of the file"
-    )]
-    fn accel_edges(&self, pulses: u32) -> u32 {
-        let v0 = u128::from(self.limits.start_millihertz);
-        let v = u128::from(self.limits.max_millihertz);
-        let a = u128::from(self.limits.accel_steps_per_s2);
-        ((v * v - v0 * v0) * u128::from(pulses))
-            .checked_div(1_000_000 * a * u128::from(self.most))
-            .and_then(|edges| u32::try_from(edges).ok())
-            .unwrap_or(0)
-    }
-
-    /// Growth of (t + F v0/a)² per edge: F² n / (a m) in square subticks, fixed point.
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "ranges in the head of the file"
-    )]
-    fn growth(&self, pulses: u32) -> Option<u128> {
-        let (f_num, f_den) = parts(self.tick_rate);
-        let a = u128::from(self.limits.accel_steps_per_s2);
-        ratio(
-            (f_num * f_num * u128::from(self.most)) << (2 * self.shift),
-            f_den * f_den * a * u128::from(pulses),
-        )
-    }
-
-    /// Interval at the highest rate: F n / (2 v m) in subticks, fixed point.
-    #[expect(
-        clippy::arithmetic_side_effects,
-        reason = "ranges in the head of the file"
-    )]
-    fn period(&self, pulses: u32) -> Option<u128> {
-        let (f_num, f_den) = parts(self.tick_rate);
-        let v = u128::from(self.limits.max_millihertz);
-        ratio(
-            (f_num * 500 * u128::from(self.most)) << self.shift,
-            f_den * v * u128::from(pulses),
-        )
+        self.up_ticks + self.cruise_ticks + self.down_ticks
     }
 }
 
-fn parts(rate: Rate) -> (u128, u128) {
-    (u128::from(rate.numerator()), u128::from(rate.denominator()))
+/// n / d, rounded up.
+const fn quotient_up(n: u64, d: u64) -> u64 {
+    let whole = quotient(n, d);
+    if whole * d < n { whole + 1 } else { whole }
 }
 
-#[expect(
-    clippy::arithmetic_side_effects,
-    reason = "ranges in the head of the file"
-)]
-fn check(limits: &RampLimits, tick_rate: Rate) -> Result<(), RampError> {
+/// Steps that the change of the rate takes, |v1² - v0²| / 2a, rounded up.
+fn needed_steps(limits: &RampLimits, ends: RampEnds) -> u64 {
+    let [v0, v1] =
+        [ends.entry_millihertz, ends.exit_millihertz].map(|v| u64::from(v) * u64::from(v));
+    quotient_up(
+        v0.abs_diff(v1),
+        2_000_000 * u64::from(limits.accel_steps_per_s2),
+    )
+}
+
+fn check(limits: &RampLimits, ends: RampEnds, tick_rate: Rate) -> Result<(), RampError> {
     let &RampLimits {
         start_millihertz,
         max_millihertz,
@@ -219,25 +161,33 @@ fn check(limits: &RampLimits, tick_rate: Rate) -> Result<(), RampError> {
             max_millihertz,
         });
     }
-    let (f_num, f_den) = parts(tick_rate);
-    let v = u128::from(max_millihertz);
-    if v * f_den > f_num * 250 {
+    for end_millihertz in [ends.entry_millihertz, ends.exit_millihertz] {
+        if end_millihertz > max_millihertz {
+            return Err(RampError::EndAboveMax {
+                end_millihertz,
+                max_millihertz,
+            });
+        }
+    }
+    let ticks = u64::from(tick_rate.numerator());
+    let seconds = u64::from(tick_rate.denominator());
+    if u64::from(max_millihertz) * seconds > ticks * 250 {
         return Err(RampError::RateTooHigh {
             max_millihertz,
-            limit_millihertz: (f_num * 250)
-                .checked_div(f_den)
-                .and_then(|limit| u64::try_from(limit).ok())
-                .unwrap_or(u64::MAX),
+            limit_millihertz: quotient(ticks * 250, seconds),
         });
     }
     // F v / 2^31.
-    let least = (f_num * v).div_ceil((f_den * 1000) << RAMP_BITS);
-    match u64::try_from(least) {
-        Ok(limit) if u64::from(accel_steps_per_s2) < limit => Err(RampError::AccelerationTooLow {
+    let least = quotient_up(
+        ticks * u64::from(max_millihertz),
+        (seconds * 1000) << RAMP_BITS,
+    );
+    if u64::from(accel_steps_per_s2) < least {
+        return Err(RampError::AccelerationTooLow {
             accel_steps_per_s2,
-            limit_steps_per_s2: limit,
+            limit_steps_per_s2: least,
             max_millihertz,
-        }),
-        _ => Ok(()),
+        });
     }
+    Ok(())
 }

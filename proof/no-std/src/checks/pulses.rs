@@ -4,8 +4,9 @@ use core::hint::black_box;
 
 use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Pace, Rule, ScaleRatio, Turn};
 use stepper_sync::{
-    Accumulation, LatchWrites, Latches, Phases, Position, Ramp, RampLimits, Rate, SpeedLaw,
-    Stepping, Timer, Trains, Wiring,
+    Accumulation, JoinedSegments, LatchWrites, Latches, Phases, Position, PvtQuantiser, PvtSteps,
+    Ramp, RampLimits, Rate, Segment, SpeedLaw, StepDirTiming, StepScale, Stepping, Timer, Trains,
+    Wiring,
 };
 
 use super::holds;
@@ -38,7 +39,33 @@ pub fn ramp() -> Option<()> {
     };
     let ramp = Ramp::new([4000, -1500], &limits, Rate::from_hz(1_000_000).ok()?).ok()?;
     holds(ramp.end_ticks() == 2_200_000)?;
-    holds(ramp.edges().last()?.ticks == ramp.end_ticks())
+    // The last edge ends the pulse of the last step, half a step before the end.
+    holds(ramp.edges().last()?.ticks < ramp.end_ticks())
+}
+
+/// From rest to rest along a cubic: merged in time, and over a wire.
+pub fn cubic() -> Option<()> {
+    let tick_rate = Rate::from_hz(black_box(72_000_000)).ok()?;
+    let least = StepDirTiming::DRV8825.min_intervals(tick_rate);
+    let scale = StepScale::new(black_box(80.0)).ok()?;
+    let mut table = PvtQuantiser::new(tick_rate, [scale; 2], [0.0; 2]).ok()?;
+    let start = table.knots();
+    let row = table.row(0.5, black_box([5.0, -1.0]), [0.0; 2]).ok()?;
+    let mut merged = PvtSteps::new(start, least);
+    merged.push(&row).ok()?;
+    holds(merged.by_ref().count() == 480 && merged.steps() == [400, -80])?;
+    let ([start, _], [end, _]) = (start, row.knots);
+    let mut axis = JoinedSegments::new(start, least);
+    axis.push(row.ticks, end).ok()?;
+    axis.finish();
+    let mut buffer = [0; Segment::MAX_ENCODED_LEN];
+    let mut played = 0;
+    for segment in axis {
+        let (segment, rest) = Segment::decode(segment.encode(&mut buffer)).ok()?;
+        holds(rest.is_empty())?;
+        played += 1 + segment.intervals().count();
+    }
+    holds(played == 400)
 }
 
 /// A frame for two motors through accumulators, phases and latches.

@@ -1,0 +1,23 @@
+//! Steps along the cubics of PVT tables.
+
+mod axis;
+mod joined;
+mod limits;
+mod polynomial;
+mod quantiser;
+mod row;
+mod run;
+mod segment;
+mod series;
+mod steps;
+mod wire;
+
+pub use axis::AxisSegments;
+pub use joined::JoinedSegments;
+pub use limits::{MinIntervals, RowError};
+pub(crate) use polynomial::distance;
+pub use quantiser::{KnotError, PvtQuantiser};
+pub use row::{PvtKnot, PvtRow};
+pub use segment::{Segment, SegmentPlayer};
+pub use steps::{PvtSteps, Step};
+pub use wire::SegmentError;

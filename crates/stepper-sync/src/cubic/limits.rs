@@ -1,0 +1,72 @@
+//! What a driver can follow, and the rows that it cannot.
+
+use thiserror::Error;
+
+/// The least ticks from a step to the next.
+///
+/// [`StepDirTiming::min_intervals`](crate::StepDirTiming::min_intervals) has those of a driver's
+/// data sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "written as a literal")]
+pub struct MinIntervals {
+    /// In the same direction: pulse and pause.
+    pub step_ticks: u64,
+    /// In the other direction: the same, or hold and setup time of the direction pin if longer.
+    pub reversal_ticks: u64,
+}
+
+/// Why a row is refused. Nothing of it has been put out then, and another may follow in its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RowError {
+    /// Steps of the row before are still to be taken.
+    #[error("row {row}, axis {axis}: steps of the row before are still to be taken")]
+    Busy {
+        /// Number of the row, from 0.
+        row: u64,
+        /// Index of the axis.
+        axis: usize,
+    },
+    /// A row of no ticks that moves.
+    #[error("row {row}, axis {axis}: moves in 0 ticks")]
+    NoTime {
+        /// Number of the row, from 0.
+        row: u64,
+        /// Index of the axis.
+        axis: usize,
+    },
+    /// Faster than the driver takes steps.
+    #[error(
+        "row {row}, axis {axis}, tick {ticks}: a step every {interval_ticks} ticks, \
+         fewer than {least_ticks}"
+    )]
+    TooFast {
+        /// Number of the row, from 0.
+        row: u64,
+        /// Index of the axis.
+        axis: usize,
+        /// Where, in ticks since the start.
+        ticks: u64,
+        /// Ticks of a step at that velocity, rounded down.
+        interval_ticks: u64,
+        /// [`MinIntervals::step_ticks`] and 2 ticks for the rounding of both steps, 3 in
+        /// [`JoinedSegments`](crate::JoinedSegments).
+        least_ticks: u64,
+    },
+    /// Two steps in opposite directions come too soon after each other.
+    #[error("row {row}, axis {axis}, tick {ticks}: steps back in fewer than {least_ticks} ticks")]
+    ReversalTooQuick {
+        /// Number of the row, from 0.
+        row: u64,
+        /// Index of the axis.
+        axis: usize,
+        /// Where, in ticks since the start.
+        ticks: u64,
+        /// [`MinIntervals::reversal_ticks`], and 2 ticks in
+        /// [`JoinedSegments`](crate::JoinedSegments).
+        least_ticks: u64,
+    },
+}

@@ -1,0 +1,266 @@
+//! Segments as bytes.
+#![expect(
+    clippy::arithmetic_side_effects,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "bytes are cut out of numbers; lengths and shifts below 64"
+)]
+
+use super::segment::{MAX_COUNT, Segment, Units};
+use crate::Direction;
+use thiserror::Error;
+
+/// Most bytes of a number: 64 bits, 7 in each.
+const MAX_NUMBER_LEN: usize = 10;
+/// In the first byte: the direction is negative.
+const NEGATIVE: u8 = 0x80;
+/// In the first byte: where the number of differences is.
+const DIFFERENCES_SHIFT: u32 = 5;
+/// In the first byte: the low bits of the count.
+const LOW_COUNT: u8 = 0x1F;
+
+/// Why bytes are no segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum SegmentError {
+    /// They end too early.
+    #[error("{len} bytes end within a segment")]
+    Truncated {
+        /// Bytes given.
+        len: usize,
+    },
+    /// A number has more than 64 bits, or more bytes than it needs.
+    #[error("the number that ends with byte {at} is too long")]
+    Number {
+        /// Its last byte, from 0.
+        at: usize,
+    },
+    /// The steps do not fit the differences: n differences take more than n steps, and more than
+    /// one step at least one difference.
+    #[error("{count} steps by {differences} differences")]
+    Count {
+        /// Steps.
+        count: u32,
+        /// Differences.
+        differences: u8,
+    },
+    /// The last difference is 0: there should be one fewer.
+    #[error("the last of {differences} differences is 0")]
+    ZeroDifference {
+        /// Differences.
+        differences: u8,
+    },
+    /// A step comes less than 1 or more than 2^31 ticks after the one before it.
+    #[error("step {step} comes less than 1 or more than 2^31 ticks after the one before it")]
+    Interval {
+        /// Number of the step, from 0.
+        step: u16,
+    },
+    /// A step comes 2^32 ticks or more after the first.
+    #[error("step {step} comes 2^32 ticks or more after the first")]
+    Span {
+        /// Number of the step, from 0.
+        step: u16,
+    },
+}
+
+/// # Bytes
+/// | bytes | what | when |
+/// |---|---|---|
+/// | 1 | bit 7: negative direction; bits 6 and 5: n, the number of differences; bits 4 to 0: low bits of count - 1 | |
+/// | 1 | high bits of count - 1 | n > 0 |
+/// | 1 | phase | n > 0 |
+/// | 1 to 10 | delay, unsigned | |
+/// | 1 to 7 | interval, unsigned | n > 0 |
+/// | 1 to 8 | second difference, signed | n > 1 |
+/// | 1 to 10 | third difference, signed | n > 2 |
+///
+/// Numbers are LEB128: seven bits a byte, low ones first, bit 7 set in all bytes but the last.
+/// Signed ones have their sign in the lowest bit: 0, -1, 1, -2 are 0, 1, 2, 3. A segment has one
+/// spelling.
+impl Segment {
+    /// The most bytes of a segment.
+    pub const MAX_ENCODED_LEN: usize = 3 + 4 * MAX_NUMBER_LEN;
+
+    /// The segment as bytes, in the front of a buffer.
+    pub fn encode<'b>(&self, buffer: &'b mut [u8; Self::MAX_ENCODED_LEN]) -> &'b [u8] {
+        let differences = self.differences();
+        let count = self.count.saturating_sub(1);
+        let head = differences << DIFFERENCES_SHIFT | count as u8 & LOW_COUNT;
+        let mut writer = Writer { buffer, len: 0 };
+        writer.byte(match self.direction {
+            Direction::Positive => head,
+            Direction::Negative => head | NEGATIVE,
+        });
+        if differences > 0 {
+            writer.byte((count >> 5) as u8);
+            writer.byte(self.phase);
+        }
+        writer.unsigned(self.delay_ticks);
+        if differences > 0 {
+            writer.unsigned(self.interval as u64);
+        }
+        if differences > 1 {
+            writer.signed(self.second);
+        }
+        if differences > 2 {
+            writer.signed(self.third);
+        }
+        writer.finish()
+    }
+
+    /// The segment in the front of `bytes`, and the bytes after it.
+    ///
+    /// # Errors
+    /// [`SegmentError`]. Whatever decodes is played forwards in time.
+    pub fn decode(bytes: &[u8]) -> Result<(Self, &[u8]), SegmentError> {
+        let mut reader = Reader { bytes, rest: bytes };
+        let head = reader.byte()?;
+        let differences = (head >> DIFFERENCES_SHIFT) & 3;
+        let mut count = u32::from(head & LOW_COUNT) + 1;
+        let mut phase = 0;
+        if differences > 0 {
+            count += u32::from(reader.byte()?) << 5;
+            phase = reader.byte()?;
+        }
+        let most = if differences > 0 { MAX_COUNT } else { 1 };
+        let error = SegmentError::Count { count, differences };
+        let count = u16::try_from(count)
+            .ok()
+            .filter(|&count| count > u16::from(differences) && count <= most)
+            .ok_or(error)?;
+        let mut segment = Self {
+            delay_ticks: reader.unsigned()?,
+            count,
+            direction: if head & NEGATIVE == 0 {
+                Direction::Positive
+            } else {
+                Direction::Negative
+            },
+            phase,
+            interval: 0,
+            second: 0,
+            third: 0,
+        };
+        if differences > 0 {
+            segment.interval = i64::try_from(reader.unsigned()?)
+                .map_err(|_| SegmentError::Interval { step: 1 })?;
+        }
+        if differences > 1 {
+            segment.second = reader.signed()?;
+        }
+        if differences > 2 {
+            segment.third = reader.signed()?;
+        }
+        if segment.differences() != differences {
+            return Err(SegmentError::ZeroDifference { differences });
+        }
+        segment.check_times()?;
+        Ok((segment, reader.rest))
+    }
+
+    /// Differences up to the last that is not 0.
+    const fn differences(&self) -> u8 {
+        match (self.interval, self.second, self.third) {
+            (0, 0, 0) => 0,
+            (_, 0, 0) => 1,
+            (_, _, 0) => 2,
+            _ => 3,
+        }
+    }
+
+    /// Whether all steps come 1 to 2^31 ticks after the one before, and the last before 2^32.
+    fn check_times(&self) -> Result<(), SegmentError> {
+        let units = Units::of(self.count);
+        // In 2^-32 ticks, without what the player's sums of 64 bits may lose on top.
+        let wide = |difference: i64, bits: u32| i128::from(difference) << (32 - bits);
+        let mut time = i128::from(self.phase) << 24;
+        let mut interval = wide(self.interval, units.interval);
+        let mut second = wide(self.second, units.second);
+        let third = wide(self.third, units.third);
+        for step in 1..self.count {
+            if !(1 << 32..=1 << 63).contains(&interval) {
+                return Err(SegmentError::Interval { step });
+            }
+            time += interval;
+            if time >> 64 > 0 {
+                return Err(SegmentError::Span { step });
+            }
+            interval += second;
+            second += third;
+        }
+        Ok(())
+    }
+}
+
+/// Fills the front of a buffer that everything fits in.
+struct Writer<'b> {
+    buffer: &'b mut [u8; Segment::MAX_ENCODED_LEN],
+    len: usize,
+}
+
+impl<'b> Writer<'b> {
+    fn byte(&mut self, byte: u8) {
+        if let Some(place) = self.buffer.get_mut(self.len) {
+            *place = byte;
+            self.len += 1;
+        }
+    }
+
+    fn unsigned(&mut self, mut number: u64) {
+        while number >> 7 > 0 {
+            self.byte(number as u8 | 0x80);
+            number >>= 7;
+        }
+        self.byte(number as u8);
+    }
+
+    fn signed(&mut self, number: i64) {
+        self.unsigned(((number << 1) ^ (number >> 63)) as u64);
+    }
+
+    fn finish(self) -> &'b [u8] {
+        self.buffer.get(..self.len).unwrap_or_default()
+    }
+}
+
+/// Takes from the front of bytes.
+struct Reader<'b> {
+    bytes: &'b [u8],
+    rest: &'b [u8],
+}
+
+impl Reader<'_> {
+    fn byte(&mut self) -> Result<u8, SegmentError> {
+        let (&byte, rest) = self.rest.split_first().ok_or(SegmentError::Truncated {
+            len: self.bytes.len(),
+        })?;
+        self.rest = rest;
+        Ok(byte)
+    }
+
+    fn unsigned(&mut self) -> Result<u64, SegmentError> {
+        let mut number = 0;
+        for shift in (0..).step_by(7) {
+            let byte = self.byte()?;
+            let bits = u64::from(byte & 0x7F);
+            // Of the tenth byte one bit is left; a last byte of 0 is one too many.
+            if shift > 63 || bits << shift >> shift != bits || (byte == 0 && shift > 0) {
+                let at = self.bytes.len() - self.rest.len() - 1;
+                return Err(SegmentError::Number { at });
+            }
+            number |= bits << shift;
+            if byte & 0x80 == 0 {
+                break;
+            }
+        }
+        Ok(number)
+    }
+
+    fn signed(&mut self) -> Result<i64, SegmentError> {
+        let number = self.unsigned()?;
+        Ok((number >> 1) as i64 ^ -((number & 1) as i64))
+    }
+}

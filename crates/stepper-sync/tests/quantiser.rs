@@ -1,0 +1,208 @@
+//! From knots in seconds and units to rows: what is documented of the departure, and refusals.
+#![cfg(test)]
+#![expect(clippy::cast_precision_loss, reason = "compared within a stated bound")]
+
+use proptest::prelude::*;
+use stepper_sync::{KnotError, PvtKnot, PvtQuantiser, PvtRow, Rate, StepScale};
+
+/// What `f64` loses, in steps (2^-30 is documented), steps a tick and steps a tick²: some units of
+/// 2^-53 of ten steps a tick and of what they change by in a row of 500 ticks.
+const F64: [f64; 3] = [9.3e-10, 1e-14, 1e-16];
+
+/// A cubic: position at the share s of T ticks, from positions and velocities a tick at its ends.
+#[derive(Clone, Copy, Debug)]
+struct Cubic {
+    ticks: f64,
+    q: [f64; 4],
+}
+
+impl Cubic {
+    fn new(from: (f64, f64), to: (f64, f64), ticks: f64) -> Self {
+        let (way, v0, v1) = (to.0 - from.0, from.1 * ticks, to.1 * ticks);
+        let q = [from.0, v0, 3.0 * way - 2.0 * v0 - v1, v0 + v1 - 2.0 * way];
+        Self { ticks, q }
+    }
+
+    /// Position, velocity and acceleration.
+    fn at(&self, tick: f64) -> [f64; 3] {
+        let s = tick / self.ticks;
+        let [a, b, c, d] = self.q;
+        [
+            a + s * (b + s * (c + s * d)),
+            (b + s * (2.0 * c + s * 3.0 * d)) / self.ticks,
+            (2.0 * c + s * 6.0 * d) / self.ticks.powi(2),
+        ]
+    }
+}
+
+fn in_steps(knot: PvtKnot) -> (f64, f64) {
+    (
+        knot.position as f64 / 32_f64.exp2(),
+        knot.velocity as f64 / 56_f64.exp2(),
+    )
+}
+
+/// Knots of one axis: milliseconds after the one before, steps, and steps a second.
+fn motions() -> impl Strategy<Value = Vec<(f64, f64, f64)>> {
+    prop::collection::vec(
+        (0.5..20.0_f64, -300.0..300.0_f64, -30_000.0..30_000.0_f64),
+        1..8,
+    )
+}
+
+proptest! {
+    #[test]
+    fn rows_depart_from_the_motion_by_what_is_documented(
+        motion in motions(),
+        tick_hz in 1_000_000..200_000_000_u32,
+    ) {
+        let hz = f64::from(tick_hz);
+        let rate = Rate::from_hz(tick_hz).unwrap();
+        let mut pvt = PvtQuantiser::new(rate, [StepScale::new(1.0).unwrap()], [0.0]).unwrap();
+        let [mut knot] = pvt.knots();
+        let (mut time, mut start_tick) = (0.0, 0.0);
+        // The motion in ticks: where each cubic begins.
+        let mut last = (0.0, 0.0);
+        let mut pieces: Vec<(f64, Cubic)> = Vec::new();
+        for (ms, position, velocity) in motion {
+            let began = time * hz;
+            time += ms / 1000.0;
+            let to = (position, velocity / hz);
+            pieces.push((began, Cubic::new(last, to, time * hz - began)));
+            last = to;
+            let row = pvt.row(time, [position], [velocity]).unwrap();
+            let [end] = row.knots;
+            let cubic = Cubic::new(in_steps(knot), in_steps(end), f64::from(row.ticks));
+            let ticks = cubic.ticks;
+            // The most by which accelerations differ where two cubics of the motion meet.
+            let [one, other] = match pieces[..] {
+                [.., (_, a), (_, b)] => {
+                    [0.0, 1.0].map(|n| (a.at(a.ticks - n)[2] - b.at(-n)[2]).abs())
+                }
+                _ => [0.0; 2],
+            };
+            let a = one.max(other);
+            let bounds = [
+                a * (4.0 / 27.0 * ticks + 0.5) + (-33_f64).exp2() + 0.3 * (-57_f64).exp2() * ticks,
+                a * (1.0 + 0.75 / ticks) + (-57_f64).exp2() + 1.5 * (-32_f64).exp2() / ticks,
+                a * (4.0 / ticks + 3.0 / ticks.powi(2))
+                    + 6.0 * (-57_f64).exp2() / ticks
+                    + 6.0 * (-32_f64).exp2() / ticks.powi(2),
+            ];
+            for n in 0..=50 {
+                let tick = ticks * f64::from(n) / 50.0;
+                let now = start_tick + tick;
+                let &(began, piece) = pieces.iter().rev().find(|piece| piece.0 <= now).unwrap();
+                let wanted = piece.at(now - began);
+                let made = cubic.at(tick);
+                for k in 0..3 {
+                    // Within a tick of a knot the acceleration is that of one cubic or the other.
+                    let near = (now - began).min(began + piece.ticks - now) < 1.0;
+                    if k == 2 && near {
+                        continue;
+                    }
+                    let off = (made[k] - wanted[k]).abs();
+                    prop_assert!(
+                        off <= bounds[k] + F64[k],
+                        "{k}: {off}, not {}, at {tick} of {ticks}",
+                        bounds[k]
+                    );
+                }
+            }
+            start_tick += ticks;
+            knot = end;
+        }
+    }
+
+    #[test]
+    fn any_numbers_make_a_row_or_a_reason(
+        time in any::<f64>(),
+        position in any::<f64>(),
+        velocity in any::<f64>(),
+        hz in 1..=u32::MAX,
+    ) {
+        let one = StepScale::new(1.0).unwrap();
+        let mut pvt = PvtQuantiser::new(Rate::from_hz(hz).unwrap(), [one], [0.0]).unwrap();
+        let before = pvt.clone();
+        match pvt.row(time, [position], [velocity]) {
+            Ok(row) => {
+                prop_assert!(row.ticks > 0);
+                let off = f64::from(row.ticks) / f64::from(hz) - time;
+                prop_assert!(off.abs() <= 1.0 / f64::from(hz));
+            }
+            Err(error) => {
+                prop_assert_eq!(pvt.knots(), before.knots());
+                match error {
+                    KnotError::Time { .. } => {
+                        let ticks = time * f64::from(hz);
+                        prop_assert!(!(1.0..4_294_967_296.0).contains(&ticks));
+                    }
+                    KnotError::Position { .. } | KnotError::Velocity { .. } => {}
+                    other => prop_assert!(false, "{other}"),
+                }
+            }
+        }
+        match pvt.jump([velocity]) {
+            Ok(row) => prop_assert_eq!((row.ticks, row.knots), (0, pvt.knots())),
+            Err(error) => {
+                let in_range = (velocity / f64::from(hz)).abs() < 127.9;
+                let named = matches!(error, KnotError::Velocity { axis: 0, .. });
+                prop_assert!(named && !in_range);
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_by_hand() {
+    // 80 steps/mm, 1 MHz: from rest to 10 mm/s in 0.1 s over 0.5 mm.
+    let rate = Rate::from_hz(1_000_000).unwrap();
+    let scale = StepScale::new(80.0).unwrap();
+    let mut pvt = PvtQuantiser::new(rate, [scale], [1.0]).unwrap();
+    assert_eq!(pvt.knots(), [PvtKnot::at_rest(80)]);
+    let moving = PvtKnot {
+        position: 120 << 32,
+        // 800 steps/s are 0.0008 a tick; to the nearest.
+        velocity: ((1_i64 << 56) * 8 + 5000) / 10_000,
+    };
+    let row = PvtRow {
+        ticks: 100_000,
+        knots: [moving],
+    };
+    assert_eq!(pvt.row(0.1, [1.5], [10.0]), Ok(row));
+    // At once to rest.
+    let rest = PvtRow {
+        ticks: 0,
+        knots: [PvtKnot::at_rest(120)],
+    };
+    assert_eq!(pvt.jump([0.0]), Ok(rest));
+    assert_eq!(pvt.knots(), rest.knots);
+}
+
+#[test]
+fn refusals_name_the_axis_and_the_value() {
+    let rate = Rate::from_hz(1_000_000).unwrap();
+    let scales = [StepScale::new(1.0).unwrap(); 2];
+    let mut pvt = PvtQuantiser::new(rate, scales, [0.0; 2]).unwrap();
+    let error = pvt.row(1.0, [0.0, 3e9], [0.0; 2]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "axis 1: position 3000000000.000000 steps, not within 2^31"
+    );
+    let error = pvt.row(1.0, [0.0; 2], [f64::NAN, 0.0]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "axis 0: velocity NaN steps a tick, not within 128"
+    );
+    pvt.row(1.0, [0.0; 2], [0.0; 2]).unwrap();
+    for time_s in [1.0, 0.5, 1.000_000_5, f64::NAN, 1e300, 5000.0] {
+        let refused = pvt.row(time_s, [0.0; 2], [0.0; 2]);
+        assert!(matches!(refused, Err(KnotError::Time { .. })), "{time_s}");
+    }
+    assert_eq!(
+        pvt.row(0.5, [0.0; 2], [0.0; 2]).unwrap_err().to_string(),
+        "time 0.500000 s is not 1 to 2^32 - 1 whole ticks after 1.000000 s"
+    );
+    let outside = PvtQuantiser::new(rate, scales, [f64::INFINITY, 0.0]);
+    assert!(matches!(outside, Err(KnotError::Position { axis: 0, .. })));
+}
