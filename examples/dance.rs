@@ -77,7 +77,7 @@ fn dance(args: &Args) -> Result<ExitCode> {
     drop(progress);
 
     let report = Report::new(&score, &dance, &data, &run, args.code_bytes);
-    artefacts.write("dance.svg", picture(&score, &run)?)?;
+    artefacts.write("dance.svg", picture(&score, &run).to_string())?;
     artefacts.write_json("report.json", &report)?;
     let names = artefacts.keep()?;
     let name = args.score.file_name().unwrap_or(args.score.as_os_str());

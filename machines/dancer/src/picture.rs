@@ -1,187 +1,49 @@
-//! The angles of the motors over time, one panel each, as an SVG picture.
+//! The picture of a run: the angle of each motor over time, and how far off it would be under the
+//! other law.
 
-use core::fmt::Write as _;
+use machine_sim::{Axis, Figure, Plot, Stroke};
 
-use anyhow::{Context as _, Result};
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
-
-use crate::MOTORS;
 use crate::score::Score;
 use crate::simulation::Run;
 
-const WIDTH: f64 = 1000.0;
-const PANEL: f64 = 96.0;
-/// Room left of the panels, for names and angles.
-const LEFT: f64 = 130.0;
-const RIGHT: f64 = 20.0;
-/// Room above the panels, for what the lines mean.
-const HEAD: f64 = 40.0;
-/// Room below, for the time.
-const FOOT: f64 = 50.0;
-/// Between the panels.
-const GAP: f64 = 16.0;
-
-const INK: &str = "#333333";
-const GRID: &str = "#dddddd";
-const HERE: &str = "#1b5fa8";
-const THERE: &str = "#d9822b";
+/// Height of a motor's chart.
+const HEIGHT_PX: f64 = 110.0;
 
 /// `dance.svg`: what the motors did, and what they would have done under the other law.
-///
-/// # Errors
-/// The run has fewer motors than the score.
-pub fn picture(score: &Score, run: &Run) -> Result<String> {
-    let mut picture = Picture::new(score.motors().len())?;
-    picture.text(8.0, HEAD / 2.0 + 4.0, "start", score.title())?;
-    let (here, there) = (run.law.name(), run.law.other().name());
-    picture.key(LEFT, HERE, false, &format!("as danced, law {here}"))?;
-    picture.key(
-        LEFT + 250.0,
-        THERE,
-        true,
-        &format!("the same frames, law {there}"),
-    )?;
-    let mut top = HEAD;
+#[must_use]
+pub fn picture(score: &Score, run: &Run) -> Figure {
+    let steps: u64 = run.steps.iter().sum();
+    let title = format!("Danced: {steps} half steps in {} s", run.duration_s);
+    let mut figure = Figure::new(title).with_note(score.title());
+    let other = run.law.other().name();
+    let mut apart = Plot::chart(time(run), Axis::new("half steps").including(0.0)).with_title(
+        format!("The same frames under the law {other}: how far from where they were danced"),
+    );
     for (motor, (name, half_step_deg)) in score.motors().enumerate() {
-        let series = |positions: &[[i32; MOTORS]]| -> Result<Vec<f64>> {
-            let angle = |all: &[i32; MOTORS]| Some(f64::from(*all.get(motor)?) * half_step_deg);
-            let angles: Option<Vec<f64>> = positions.iter().map(angle).collect();
-            angles.context("more motors than latches")
-        };
-        picture.panel(top, name, &series(&run.positions)?, &series(&run.other)?)?;
-        top += PANEL + GAP;
+        let angle = |[here, _]: [i32; 2]| f64::from(here) * half_step_deg;
+        let angle_axis = Axis::new("angle in °").including(0.0);
+        let chart = Plot::chart(time(run), angle_axis)
+            .with_title(name)
+            .with_height(HEIGHT_PX)
+            .line("", Stroke::ACTUAL, over_time(run, motor, angle));
+        figure = figure.with_row([chart]);
+        let off = |[here, there]: [i32; 2]| f64::from(there) - f64::from(here);
+        apart = apart.line(name, Stroke::series(motor), over_time(run, motor, off));
     }
-    picture.time_axis(top - GAP, run.duration_s)?;
-    picture.finish()
+    figure.with_row([apart])
 }
 
-struct Picture {
-    xml: Writer<Vec<u8>>,
+fn time(run: &Run) -> Axis {
+    Axis::new("time in s").over(0.0..=run.duration_s)
 }
 
-impl Picture {
-    fn new(panels: usize) -> Result<Self> {
-        let panels = f64::from(u32::try_from(panels)?);
-        let height = HEAD + panels * (PANEL + GAP) - GAP + FOOT;
-        let mut xml = Writer::new_with_indent(Vec::new(), b' ', 1);
-        xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-        let svg = BytesStart::new("svg").with_attributes([
-            ("xmlns", "http://www.w3.org/2000/svg"),
-            ("width", format!("{WIDTH}").as_str()),
-            ("height", &format!("{height}")),
-            ("viewBox", &format!("0 0 {WIDTH} {height}")),
-            ("font-family", "sans-serif"),
-        ]);
-        xml.write_event(Event::Start(svg))?;
-        let mut picture = Self { xml };
-        picture.empty(
-            "rect",
-            &[("width", "100%"), ("height", "100%"), ("fill", "white")],
-        )?;
-        Ok(picture)
-    }
-
-    /// A piece of line and what it means.
-    fn key(&mut self, x: f64, colour: &str, dashed: bool, meaning: &str) -> Result<()> {
-        let y = HEAD / 2.0;
-        self.path(&format!("M{x} {y}h30"), colour, 1.5, dashed)?;
-        self.text(x + 38.0, y + 4.0, "start", meaning)
-    }
-
-    fn panel(&mut self, top: f64, name: &str, here: &[f64], there: &[f64]) -> Result<()> {
-        let both = || here.iter().chain(there).copied();
-        let (low, high) = (both().fold(0.0, f64::min), both().fold(0.0, f64::max));
-        // A motor that rests has a range, too.
-        let high = if high - low < 1.0 { low + 1.0 } else { high };
-        let y = |deg: f64| top + PANEL * (high - deg) / (high - low);
-        let step = round_step((high - low) / 5.0);
-        for deg in multiples(step, low, high) {
-            let line = format!("M{LEFT} {:.2}H{}", y(deg), WIDTH - RIGHT);
-            self.path(&line, GRID, 0.7, false)?;
-            self.text(LEFT - 6.0, y(deg) + 4.0, "end", &format!("{deg}°"))?;
-        }
-        self.text(8.0, top + PANEL / 2.0 + 4.0, "start", name)?;
-        for (angles, colour, dashed) in [(there, THERE, true), (here, HERE, false)] {
-            let across = (WIDTH - LEFT - RIGHT) / f64::from(u32::try_from(angles.len() - 1)?);
-            let mut line = String::new();
-            for (frame, deg) in (0_u32..).zip(angles) {
-                let letter = if frame == 0 { 'M' } else { 'L' };
-                let x = LEFT + across * f64::from(frame);
-                write!(line, "{letter}{x:.2} {:.2}", y(*deg))?;
-            }
-            self.path(&line, colour, 1.2, dashed)?;
-        }
-        let frame = format!("M{LEFT} {top}v{PANEL}H{}", WIDTH - RIGHT);
-        self.path(&frame, INK, 0.8, false)
-    }
-
-    fn time_axis(&mut self, y: f64, end_s: f64) -> Result<()> {
-        let across = WIDTH - LEFT - RIGHT;
-        for s in multiples(round_step(end_s / 10.0), 0.0, end_s) {
-            let x = LEFT + across * s / end_s;
-            self.path(&format!("M{x:.2} {y}v5"), INK, 0.8, false)?;
-            self.text(x, y + 18.0, "middle", &format!("{s}"))?;
-        }
-        self.text(LEFT + across / 2.0, y + 38.0, "middle", "time in s")
-    }
-
-    fn finish(mut self) -> Result<String> {
-        self.end("svg")?;
-        Ok(String::from_utf8(self.xml.into_inner())? + "\n")
-    }
-
-    fn path(&mut self, line: &str, colour: &str, width: f64, dashed: bool) -> Result<()> {
-        self.empty(
-            "path",
-            &[
-                ("d", line),
-                ("fill", "none"),
-                ("stroke", colour),
-                ("stroke-width", &format!("{width}")),
-                ("stroke-dasharray", if dashed { "4 3" } else { "none" }),
-            ],
-        )
-    }
-
-    fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) -> Result<()> {
-        let start = BytesStart::new("text").with_attributes([
-            ("x", format!("{x:.2}").as_str()),
-            ("y", &format!("{y:.2}")),
-            ("text-anchor", anchor),
-            ("font-size", "12"),
-            ("fill", INK),
-        ]);
-        self.xml.write_event(Event::Start(start))?;
-        // XML has no place for control characters, not even escaped.
-        let text = text.replace(char::is_control, " ");
-        self.xml.write_event(Event::Text(BytesText::new(&text)))?;
-        self.end("text")
-    }
-
-    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) -> Result<()> {
-        let element = BytesStart::new(name).with_attributes(attributes.iter().copied());
-        Ok(self.xml.write_event(Event::Empty(element))?)
-    }
-
-    fn end(&mut self, name: &str) -> Result<()> {
-        Ok(self.xml.write_event(Event::End(BytesEnd::new(name)))?)
-    }
-}
-
-/// The next of 1, 2, 5, 10, 20, ... that is not below, for a value above zero.
-fn round_step(least: f64) -> f64 {
-    let decade = 10_f64.powf(least.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0];
-    let step = steps.into_iter().find(|step| step * decade >= least);
-    step.unwrap_or(10.0) * decade
-}
-
-/// The multiples of a step from low to high.
-fn multiples(step: f64, low: f64, high: f64) -> impl Iterator<Item = f64> {
-    let first = (low / step).ceil();
+/// A value of a motor at the end of every frame, from its position as danced and under the other
+/// law.
+fn over_time(run: &Run, motor: usize, value: impl Fn([i32; 2]) -> f64) -> Vec<[f64; 2]> {
+    let (frame_s, both) = (run.frame_s(), run.positions.iter().zip(&run.other));
+    let of_motor = both.filter_map(|(here, there)| Some([*here.get(motor)?, *there.get(motor)?]));
     (0_u32..)
-        .map(move |k| (first + f64::from(k)) * step)
-        .take_while(move |value| *value <= high)
-        .map(|value| (value * 1e6).round() / 1e6 + 0.0)
+        .zip(of_motor)
+        .map(|(frame, both)| [f64::from(frame) * frame_s, value(both)])
+        .collect()
 }

@@ -29,6 +29,14 @@ pub struct Run {
     pub(crate) duration_s: f64,
 }
 
+impl Run {
+    /// Length of a frame.
+    pub(crate) fn frame_s(&self) -> f64 {
+        let frames = u32::try_from(self.positions.len() - 1).map_or(f64::INFINITY, f64::from);
+        self.duration_s / frames
+    }
+}
+
 /// What runs in the microcontroller.
 struct Firmware {
     accumulators: Accumulators<MOTORS>,
