@@ -6,6 +6,8 @@
 pub use delta_kin;
 #[cfg(feature = "handwheel")]
 pub use handwheel;
+#[cfg(feature = "path-timing")]
+pub use path_timing;
 #[cfg(feature = "pattern-codec")]
 pub use pattern_codec;
 #[cfg(feature = "pose-pt")]

@@ -19,6 +19,7 @@ mod short;
 mod svd;
 
 pub use nalgebra;
+pub use path_timing;
 
 pub use angles::{Convention, PoseVector, Resolved};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
@@ -37,15 +38,15 @@ mod path;
 mod plan_error;
 mod pt;
 mod pvt;
-mod run;
 mod strain;
 mod turn;
 
 pub use cut::Cut;
 pub use fifo::{Fifo, FifoError, FifoState, Timed};
+pub use path_timing::{Ahead, FeedError, Knot};
+
 pub use path::{Interpolation, Leg, Path, PathError};
 pub use plan_error::PlanError;
 pub use pt::{PtPoint, PtPoints, PtTable};
-pub use pvt::{Knot, PvtPoint, PvtPoints, PvtTable};
-pub use run::{Ahead, FeedError, PvtRun};
+pub use pvt::{PvtPoint, PvtPoints, PvtRun, PvtTable};
 pub use strain::hermite_strain;

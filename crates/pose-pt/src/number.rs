@@ -91,32 +91,3 @@ pub(crate) fn larger_or_nan(a: f64, b: f64) -> f64 {
 pub(crate) fn sqrt(x: f64) -> f64 {
     nalgebra::ComplexField::sqrt(x)
 }
-
-/// Rounds that bring any finite number's root to its last digits: each leaves a quarter of the
-/// error of the logarithm.
-const ROOT_ROUNDS: u32 = 36;
-
-/// The cube root of a positive number as the limit of y = ⁴√(x y); zero of those below. The
-/// library's has an index in it that cannot be proven.
-pub(crate) fn cube_root(x: f64) -> f64 {
-    if !x.is_finite() {
-        return x;
-    }
-    let root = sqrt(x.max(0.0));
-    (0..ROOT_ROUNDS).fold(root, |y, _| sqrt(root * sqrt(y)))
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn cube_roots() {
-        for x in [1e-80, 1e-9, 0.3, 1.0, 8.0, 1e9, 1e86] {
-            let root = super::cube_root(x);
-            assert!(
-                (root / libm::cbrt(x) - 1.0).abs() < 4.0 * f64::EPSILON,
-                "{x}"
-            );
-        }
-        assert_eq!(super::cube_root(0.0).to_bits(), 0);
-    }
-}

@@ -1,5 +1,7 @@
 //! Why a table cannot be made.
 
+use core::convert::Infallible;
+
 use nalgebra::RealField;
 
 use crate::LimitError;
@@ -77,4 +79,34 @@ pub enum PlanError<T: RealField + Copy = f64> {
         /// The highest.
         max: T,
     },
+    /// Whatever else the planner of `path-timing` refuses.
+    #[error("{0}")]
+    Timing(path_timing::PlanError<Infallible>),
+}
+
+impl PlanError {
+    /// What `path-timing` refuses, in the words of a platform; `numbers` are those of the legs that
+    /// it was given.
+    pub(crate) fn of_timing(
+        error: path_timing::PlanError<Infallible>,
+        mut numbers: impl Iterator<Item = usize>,
+    ) -> Self {
+        use path_timing::PlanError as Timing;
+
+        let mut number = |leg| numbers.nth(leg).unwrap_or(leg);
+        match error {
+            Timing::TooFine { leg, max } => Self::TooFine {
+                leg: number(leg),
+                max,
+            },
+            Timing::Memory { needed, available } => Self::TooManyPoints { needed, available },
+            Timing::Indistinct { leg, knot } => Self::Indistinct {
+                leg: number(leg),
+                point: knot,
+            },
+            Timing::SpeedScale { scale, min } => Self::Pace { pace: scale, min },
+            Timing::Feed { feed, min, max } => Self::Feed { feed, min, max },
+            other => Self::Timing(other),
+        }
+    }
 }

@@ -176,8 +176,16 @@ mod tests {
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let course = Course::new(&platform, &path.leg(0).unwrap());
         // The mean speed is 1, and so is the time.
-        let from = PvtPoint::new(&course.place(0.0), 1.0 - change, 0.0, 0.0);
-        let to = PvtPoint::new(&course.place(1.0), 1.0 + change, 1.0, 1.0);
+        let point = |s, speed| {
+            let place = course.place(s);
+            PvtPoint {
+                time_s: s,
+                segment_s: s,
+                axes: place.axes,
+                velocities: place.slope.map(|slope| slope * speed),
+            }
+        };
+        let (from, to) = (point(0.0, 1.0 - change), point(1.0, 1.0 + change));
         let measured = (0..=1000).fold(0.0_f64, |worst, place| {
             let u = f64::from(place) / 1000.0;
             let v = 1.0 - u;

@@ -33,7 +33,7 @@ fn angles_to_matrices_and_back() {
 
 #[test]
 fn rotations_between_rotations() {
-    search("slerp", 5.0, slerp_between);
+    search("slerp", 8.0, slerp_between);
     search("angle between close rotations", 5.0, angle_between_close);
 }
 

@@ -1,14 +1,12 @@
-//! The points of a table, computed from its knots.
+//! The points of a table: rows of `path-timing` as those of a platform.
 
 use core::iter::FusedIterator;
 
 use nalgebra::Vector3;
+use path_timing::{Row, Rows};
 
-use super::track::Track;
-use super::{Knot, first_track, moving};
-use crate::Platform;
-use crate::course::Place;
-use crate::path::Path;
+use super::PvtTable;
+use super::moving::Moving;
 
 /// A line of a PVT table: where every axis is at a time, and how fast it moves then.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,81 +24,45 @@ pub struct PvtPoint<const N: usize> {
 }
 
 impl<const N: usize> PvtPoint<N> {
-    /// A place that is passed at a speed of the parameter.
-    pub(crate) fn new(place: &Place<N, f64>, speed: f64, time_s: f64, segment_s: f64) -> Self {
+    pub(crate) fn new(row: &Row<[[f64; 3]; N]>) -> Self {
         Self {
-            time_s,
-            segment_s,
-            axes: place.axes,
-            velocities: place.slope.map(|slope| slope * speed),
+            time_s: row.time_s,
+            segment_s: row.duration_s,
+            axes: row.position.map(Vector3::from),
+            velocities: row.velocity.map(Vector3::from),
+        }
+    }
+
+    /// The same as a row.
+    pub(super) fn row(&self) -> Row<[[f64; 3]; N]> {
+        Row {
+            time_s: self.time_s,
+            duration_s: self.segment_s,
+            position: self.axes.map(Into::into),
+            velocity: self.velocities.map(Into::into),
         }
     }
 }
 
-/// The points of a [`PvtTable`](super::PvtTable).
+/// The points of a [`PvtTable`].
 #[derive(Debug, Clone)]
 pub struct PvtPoints<'a, const N: usize> {
-    platform: &'a Platform<N>,
-    path: Path<'a>,
-    /// Knots that are still to come.
-    knots: &'a [Knot],
-    /// The next leg, and knots of the present one that are still to come.
-    leg: usize,
-    left: u32,
-    track: Option<Track<'a, N>>,
-    stretch: f64,
-    time_s: f64,
-    segment_s: f64,
-    remaining: usize,
+    rows: Rows<'a, Moving<'a, N>>,
+    /// The only point where nothing moves.
+    still: Option<PvtPoint<N>>,
 }
 
 impl<'a, const N: usize> PvtPoints<'a, N> {
-    pub(super) fn new(
-        platform: &'a Platform<N>,
-        path: &Path<'a>,
-        knots: &'a [Knot],
-        stretch: f64,
-        points: usize,
-    ) -> Self {
+    pub(super) fn new(table: &PvtTable<'a, N>) -> Self {
         Self {
-            platform,
-            path: *path,
-            knots,
-            leg: 0,
-            left: 0,
-            track: None,
-            stretch,
-            time_s: 0.0,
-            segment_s: 0.0,
-            remaining: points,
+            rows: table.table.rows(),
+            still: table.still_point(),
         }
     }
 
-    /// The next knot.
-    fn knot(&mut self) -> Option<Knot> {
-        let (knot, rest) = self.knots.split_first()?;
-        self.knots = rest;
-        self.segment_s = knot.segment_s * self.stretch;
-        Some(*knot)
-    }
-
-    /// Begins the next leg on which something moves; its first knot.
-    fn begin(&mut self) -> Option<Knot> {
-        let track = moving(self.platform, &self.path, self.leg).next()?;
-        self.leg = track.number.saturating_add(1);
-        self.track = Some(track);
-        let knot = self.knot()?;
-        self.left = knot.parts;
-        Some(knot)
-    }
-
-    /// The first point of all; the first pose where nothing moves anywhere.
-    fn first(&mut self) -> Option<PvtPoint<N>> {
-        let track = first_track(self.platform, &self.path)?;
-        if self.begin().is_none() {
-            self.track = Some(track);
-        }
-        Some(PvtPoint::new(&track.place(0.0), 0.0, 0.0, 0.0))
+    /// The moving leg, from 0, on which the segment before the next point lies.
+    pub(super) fn leg(&self) -> usize {
+        self.rows.leg()
     }
 }
 
@@ -108,25 +70,19 @@ impl<const N: usize> Iterator for PvtPoints<'_, N> {
     type Item = PvtPoint<N>;
 
     fn next(&mut self) -> Option<PvtPoint<N>> {
-        self.remaining = self.remaining.checked_sub(1)?;
-        if self.track.is_none() {
-            return self.first();
+        if let Some(point) = self.still.take() {
+            return Some(point);
         }
-        if self.left == 0 {
-            // The first knot of a leg is the last of the leg before.
-            self.begin()?;
-        }
-        self.left = self.left.saturating_sub(1);
-        let segment_s = self.segment_s;
-        self.time_s += segment_s;
-        let knot = self.knot()?;
-        let place = self.track.as_ref()?.place(knot.s);
-        let speed = knot.speed / self.stretch;
-        Some(PvtPoint::new(&place, speed, self.time_s, segment_s))
+        let Ok(row) = self.rows.next()?;
+        Some(PvtPoint::new(&row))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.remaining, Some(self.remaining))
+        let remaining = self
+            .rows
+            .len()
+            .saturating_add(usize::from(self.still.is_some()));
+        (remaining, Some(remaining))
     }
 }
 

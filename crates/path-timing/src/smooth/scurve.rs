@@ -4,28 +4,28 @@ use crate::number::{cube_root, sqrt};
 
 /// Seven phases of constant jerk over a way of 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SCurve {
+pub(crate) struct SCurve {
     /// Duration and jerk of each phase.
     phases: [(f64, f64); 7],
 }
 
 /// State of the motion: way, speed, acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Motion {
-    pub(super) way: f64,
-    pub(super) speed: f64,
+pub(crate) struct Motion {
+    pub(crate) way: f64,
+    pub(crate) speed: f64,
     acceleration: f64,
 }
 
 /// Share of a ramp's time below which a phase is left out.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Most parts that are needed for seven phases.
-pub(super) const PHASES: u32 = 7;
+/// Most segments that are needed for seven phases.
+pub(crate) const PHASES: u32 = 7;
 
 impl SCurve {
     /// The shortest motion with these limits, in 1/s, 1/s² and 1/s³.
-    pub(super) fn new(speed: f64, acceleration: f64, jerk: f64) -> Self {
+    pub(crate) fn new(speed: f64, acceleration: f64, jerk: f64) -> Self {
         let top = speed.min(Self::top_of_short_way(acceleration, jerk));
         // Whether the acceleration is reached before the speed.
         let (rise, hold) = if top * jerk > acceleration * acceleration {
@@ -84,29 +84,33 @@ impl SCurve {
         }
     }
 
-    /// Calls `knot` with the state and the time to the next for `parts` parts, each within a
+    /// Calls `knot` with the state and the time to the next for so many segments, each within a
     /// phase, and with the end.
-    pub(super) fn knots(&self, parts: u32, mut knot: impl FnMut(Motion, f64)) {
+    pub(crate) fn knots(&self, segments: u32, mut knot: impl FnMut(Motion, f64)) {
         let total = self.phases.iter().fold(0.0, |sum, (time, _)| sum + *time);
         let used = self.phases.iter().filter(|(time, _)| *time > 0.0);
         let mut phases_left = used.count().try_into().unwrap_or(PHASES);
-        let (mut parts_left, mut time_left) = (parts, total);
+        let (mut segments_left, mut time_left) = (segments, total);
         let mut state = Motion::rest();
         for (time, jerk) in self.phases {
             if time <= 0.0 {
                 continue;
             }
             phases_left = u32::saturating_sub(phases_left, 1);
-            // One part at least, and one for each phase to come.
-            let free = parts_left.saturating_sub(phases_left).max(1);
-            let parts = share(free, time / time_left).min(free).max(1);
-            let parts = if phases_left == 0 { parts_left } else { parts };
-            let step = time / f64::from(parts);
-            for part in 0..parts {
-                knot(state.after(step * f64::from(part), jerk), step);
+            // One segment at least, and one for each phase to come.
+            let free = segments_left.saturating_sub(phases_left).max(1);
+            let segments = share(free, time / time_left).min(free).max(1);
+            let segments = if phases_left == 0 {
+                segments_left
+            } else {
+                segments
+            };
+            let step = time / f64::from(segments);
+            for number in 0..segments {
+                knot(state.after(step * f64::from(number), jerk), step);
             }
             state = state.after(time, jerk);
-            parts_left = parts_left.saturating_sub(parts);
+            segments_left = segments_left.saturating_sub(segments);
             time_left -= time;
         }
         let end = Motion {
@@ -118,7 +122,7 @@ impl SCurve {
 }
 
 /// The share of a count, rounded.
-pub(super) fn share(whole: u32, share: f64) -> u32 {
+pub(crate) fn share(whole: u32, share: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -1,20 +1,21 @@
 //! A motion averaged over a window of time.
 
-use super::Knot;
+use crate::Knot;
 
-/// Replaces the motion s(t) of the first `parts - late` parts by its mean over the `window_s`
-/// before t, and lets the last `late` parts run it out.
+/// Replaces the motion s(t) of all segments but the last `late` by its mean over the `window_s`
+/// before t, and lets those run it out.
 ///
 /// ```text
 /// s̄(t) = 1/w ∫ s(u) du,  u = t - w..t      ds̄/dt = (s(t) - s(t - w)) / w
 /// ```
 ///
-/// Before the motion s is 0, behind it 1. The mean at t needs nothing later than t: from the end
+/// Before the motion s is 0, after it 1. The mean at t needs nothing later than t: from the end
 /// to the start it is taken in place. The integral is kept as that of s(t) - s(u), which has the
 /// digits of near places.
-pub(super) fn average(knots: &mut [Knot], parts: u32, late: u32, window_s: f64) {
-    let place = |parts: u32| usize::try_from(parts).unwrap_or(usize::MAX);
-    let (last, end) = (place(parts.saturating_sub(late)), place(parts));
+pub(crate) fn average(knots: &mut [Knot], late: u32, window_s: f64) {
+    let late_knots = usize::try_from(late).unwrap_or(usize::MAX);
+    let end = knots.len().saturating_sub(1);
+    let last = end.saturating_sub(late_knots);
     let Some(mut now) = knots.get(last).copied() else {
         return;
     };
@@ -22,12 +23,12 @@ pub(super) fn average(knots: &mut [Knot], parts: u32, late: u32, window_s: f64) 
     let mut lag = 0.0;
     for index in (0..end).rev() {
         let (mut before, mut gained) = (now, 0.0);
-        before.segment_s = window_s / f64::from(late);
+        before.duration_s = window_s / f64::from(late);
         if index < last {
             before = knots.get(index).copied().unwrap_or(now);
             gained = lag_of_segment(&before, &now);
         }
-        let time = before.segment_s;
+        let time = before.duration_s;
         lag -= gained + (now.s - before.s) * (window_s - time);
         lag += behind.back(knots, time, before.s);
         now = before;
@@ -35,31 +36,25 @@ pub(super) fn average(knots: &mut [Knot], parts: u32, late: u32, window_s: f64) 
             *knot = Knot {
                 s: now.s - lag / window_s,
                 speed: (now.s - behind.s()) / window_s,
-                segment_s: time,
-                parts,
+                duration_s: time,
+                after: 0.0,
             };
         }
     }
-    let rest = |s| Knot {
-        s,
-        speed: 0.0,
-        segment_s: 0.0,
-        parts,
-    };
-    if let Some(knot) = knots.get_mut(end) {
-        *knot = rest(1.0);
+    if let Some(knot) = knots.last_mut() {
+        *knot = Knot {
+            s: 1.0,
+            ..Knot::default()
+        };
     }
     if let Some(knot) = knots.first_mut() {
-        *knot = Knot {
-            segment_s: knot.segment_s,
-            ..rest(0.0)
-        };
+        (knot.s, knot.speed) = (0.0, 0.0);
     }
 }
 
 /// ∫ (s(end) - s(u)) du over a segment of even acceleration: h² (v₀ + 2 v₁) / 6.
 fn lag_of_segment(from: &Knot, to: &Knot) -> f64 {
-    let time = from.segment_s;
+    let time = from.duration_s;
     (from.speed + to.speed + to.speed) * time * time / 6.0
 }
 
@@ -122,8 +117,8 @@ impl Behind {
         *self = Self {
             index,
             from,
-            acceleration: (self.from.speed - from.speed) / from.segment_s,
-            offset_s: from.segment_s,
+            acceleration: (self.from.speed - from.speed) / from.duration_s,
+            offset_s: from.duration_s,
         };
     }
 }
@@ -132,7 +127,7 @@ impl Behind {
 mod tests {
     use super::{Knot, average};
 
-    const PARTS: u32 = 6;
+    const SEGMENTS: u32 = 6;
     const TIMES: [f64; 6] = [0.3, 0.1, 0.5, 0.2, 0.4, 0.25];
     const SPEEDS: [f64; 7] = [0.0, 0.9, 0.6, 0.75, 0.75, 0.2, 0.0];
     /// Of the sum that stands for an integral.
@@ -167,8 +162,8 @@ mod tests {
             *knot = Knot {
                 s: motion(time, scale)[0],
                 speed: speed * scale,
-                segment_s: *duration,
-                parts: PARTS,
+                duration_s: *duration,
+                after: 0.0,
             };
             time += duration;
         }
@@ -180,8 +175,9 @@ mod tests {
         let scale = 1.0 / motion(TIMES.iter().sum::<f64>() - 1e-15, 1.0)[0];
         for (late, window) in [(1, 0.01), (2, 0.35), (3, 1.1), (5, 1.75), (4, 9.0)] {
             let mut knots = knots(scale);
-            average(&mut knots, PARTS + late, late, window);
-            let knots = knots.iter().take(1 + (PARTS + late) as usize);
+            let knots = &mut knots[..1 + (SEGMENTS + late) as usize];
+            average(knots, late, window);
+            let knots = knots.iter();
             let mut time = 0.0;
             for knot in knots.clone() {
                 let slice = window / f64::from(SLICES);
@@ -192,8 +188,7 @@ mod tests {
                 assert!((knot.s - mean).abs() < TOLERANCE, "{window} s at {time}");
                 let gained = motion(time, scale)[0] - motion(time - window, scale)[0];
                 assert!((knot.speed - gained / window).abs() < TOLERANCE / window);
-                assert_eq!(knot.parts, PARTS + late);
-                time += knot.segment_s;
+                time += knot.duration_s;
             }
             assert!((time - TIMES.iter().sum::<f64>() - window).abs() < TOLERANCE);
             let mut ends = knots.map(|knot| [knot.s, knot.speed]);

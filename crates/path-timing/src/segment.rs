@@ -1,29 +1,35 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
-use nalgebra::Vector3;
-
-use crate::Locator;
-use crate::course::Place;
 use crate::number::{larger, sqrt};
+use crate::{Axes, AxisLimits, Place};
 
-/// One over the limits of speed and acceleration of each axis, a margin included.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Reciprocals<const N: usize>([[Reciprocal; 3]; N]);
-
+/// One over the limits of speed and acceleration of an axis, a margin included.
 #[derive(Debug, Clone, Copy)]
 struct Reciprocal {
     speed: f64,
     acceleration: f64,
 }
 
-impl<const N: usize> Reciprocals<N> {
-    pub(crate) fn new(locators: &[Locator; N]) -> Self {
-        Self(locators.map(|locator| {
-            locator.limits.map(|limits| Reciprocal {
+/// The reciprocals of all axes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reciprocals<A: Axes>(A::Of<Reciprocal>);
+
+impl<A: Axes> Reciprocals<A> {
+    pub(crate) fn new(limits: &A::Of<AxisLimits>) -> Self {
+        let mut reciprocals = A::filled(Reciprocal {
+            speed: 0.0,
+            acceleration: 0.0,
+        });
+        for (reciprocal, limits) in A::each_mut(&mut reciprocals)
+            .iter_mut()
+            .zip(A::each(limits))
+        {
+            *reciprocal = Reciprocal {
                 speed: MARGIN / limits.speed,
                 acceleration: MARGIN / limits.acceleration,
-            })
-        }))
+            };
+        }
+        Self(reciprocals)
     }
 }
 
@@ -64,8 +70,8 @@ struct AxisLoad {
 /// terms of the size of (|m| + |p₀| + |p₁|) y / Δs, and are off by some machine epsilons of that:
 /// where T is short, by many of the limit.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Segment<const N: usize> {
-    axes: [[AxisLoad; 3]; N],
+pub(crate) struct Segment<A: Axes> {
+    axes: A::Of<AxisLoad>,
     /// Largest share of a speed limit per w₀, and per w₁.
     ends: [f64; 2],
 }
@@ -75,7 +81,7 @@ const MARGIN: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// What the terms of an acceleration round off, from the places on to the numbers that a
 /// controller gets, with those of a feed.
-pub(super) const NOISE: f64 = 128.0 * f64::EPSILON;
+pub(crate) const NOISE: f64 = 128.0 * f64::EPSILON;
 
 /// What a root may be off by; less than the margin.
 const ROOT: f64 = 1.0 + 32.0 * f64::EPSILON;
@@ -119,23 +125,20 @@ impl AxisLoad {
     }
 }
 
-impl<const N: usize> Segment<N> {
-    pub(crate) fn new(
-        limits: &Reciprocals<N>,
-        from: &Place<N, f64>,
-        to: &Place<N, f64>,
-        way: f64,
-    ) -> Self {
+impl<A: Axes> Segment<A> {
+    pub(crate) fn new(limits: &Reciprocals<A>, from: &Place<A>, to: &Place<A>, way: f64) -> Self {
         let inverse = 1.0 / way;
         let mut segment = Self {
-            axes: [[AxisLoad::NONE; 3]; N],
+            axes: A::filled(AxisLoad::NONE),
             ends: [0.0; 2],
         };
         let [from_end, to_end] = &mut segment.ends;
-        let loads = segment.axes.as_flattened_mut().iter_mut();
-        let places = flat(&from.axes).zip(flat(&to.axes));
-        let slopes = flat(&from.slope).zip(flat(&to.slope));
-        let all = loads.zip(limits.0.as_flattened()).zip(places.zip(slopes));
+        let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
+        let slopes = (from.slope.as_slice().iter()).zip(to.slope.as_slice());
+        let all = (A::each_mut(&mut segment.axes)
+            .iter_mut()
+            .zip(A::each(&limits.0)))
+        .zip(positions.zip(slopes));
         for ((load, limit), ((q0, q1), (p0, p1))) in all {
             *load = AxisLoad::new(limit, [*q0, *q1], [*p0, *p1], inverse);
             *from_end = from_end.max(p0.abs() * limit.speed);
@@ -152,7 +155,7 @@ impl<const N: usize> Segment<N> {
         let (y, z) = products(w0, w1);
         let mut hardest = 0.0_f64;
         let mut fastest = (from * w0).max(to * w1);
-        for axis in self.axes.as_flattened() {
+        for axis in A::each(&self.axes) {
             let noise = axis.noise * y * ROOT_NOISE;
             for [c, d] in axis.accelerations {
                 hardest = larger(hardest, (c * y + d * z).abs() + noise);
@@ -177,7 +180,7 @@ impl<const N: usize> Segment<N> {
         if share * speed > 1.0 {
             speed = 1.0 / share;
         }
-        for axis in self.axes.as_flattened() {
+        for axis in A::each(&self.axes) {
             let [e, f] = axis.middle;
             let (own, others) = if end == End::From { (e, f) } else { (f, e) };
             let value = own * speed + others * other;
@@ -188,7 +191,7 @@ impl<const N: usize> Segment<N> {
                 }
             }
         }
-        for axis in self.axes.as_flattened() {
+        for axis in A::each(&self.axes) {
             for [c, d] in axis.accelerations {
                 let d = if end == End::From { -d } else { d };
                 let (y, z) = products(other, speed);
@@ -328,11 +331,6 @@ impl<const N: usize> Segment<N> {
 
 /// Relative gap at which the search for a beginning stops: it costs that share of the time.
 const CLOSE: f64 = 1e-5;
-
-/// The coordinates of all axes.
-fn flat<const N: usize>(vectors: &[Vector3<f64>; N]) -> impl Iterator<Item = &f64> {
-    vectors.iter().flat_map(|vector| vector.as_slice())
-}
 
 /// y and z of the two speeds.
 #[inline]

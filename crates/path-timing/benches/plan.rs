@@ -1,0 +1,70 @@
+//! Time of a plan, of its rows and of a run, for three axes and for nine.
+#![expect(clippy::expect_used, reason = "a bench stops at once")]
+
+use core::convert::Infallible;
+use core::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use path_timing::{Ahead, AxisLimits, Knot, PathFn, Place, Table};
+
+/// Segments of the path.
+const SEGMENTS: u32 = 1000;
+
+/// Axes that swing along the path, each by its own frequency: the path costs little itself.
+fn swing<const N: usize>(s: f64) -> Result<Place<[f64; N]>, Infallible> {
+    let (sin, cos) = (s * 1.5).sin_cos();
+    let mut place = Place {
+        position: [0.0; N],
+        slope: [0.0; N],
+    };
+    let axes = place.position.iter_mut().zip(&mut place.slope);
+    for (number, (position, slope)) in (1..).zip(axes) {
+        let share = f64::from(number) / 10.0;
+        *position = share * sin + s;
+        *slope = share * cos * 1.5 + 1.0;
+    }
+    Ok(place)
+}
+
+fn measure<const N: usize>(criterion: &mut Criterion) {
+    let limits = |jerk| {
+        [AxisLimits {
+            speed: 1.0,
+            acceleration: 3.0,
+            jerk,
+        }; N]
+    };
+    let path = PathFn::new(4.0, swing::<N>);
+    let mut group = criterion.benchmark_group(format!("{N} axes, {SEGMENTS} segments"));
+    for (name, jerk) in [("plan", None), ("plan with jerk", Some(20.0))] {
+        let mut knots = vec![Knot::default(); 1001];
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let table = Table::plan([&path], limits(jerk), |_| SEGMENTS, black_box(&mut knots));
+                table.expect("plan is good").duration_s()
+            });
+        });
+    }
+    let mut knots = vec![Knot::default(); 1001];
+    let table = Table::plan([&path], limits(None), |_| SEGMENTS, &mut knots);
+    let table = table.expect("plan is good");
+    group.bench_function("rows", |bencher| {
+        bencher.iter(|| table.rows().filter(|row| black_box(row).is_ok()).count());
+    });
+    let mut ahead = vec![Ahead::default(); 1001];
+    group.bench_function("run", |bencher| {
+        bencher.iter(|| {
+            let run = table.run(1.0, black_box(&mut ahead));
+            let run = run.expect("memory is enough");
+            run.filter(|row| black_box(row).is_ok()).count()
+        });
+    });
+}
+
+fn benches(criterion: &mut Criterion) {
+    measure::<3>(criterion);
+    measure::<9>(criterion);
+}
+
+criterion_group!(all, benches);
+criterion_main!(all);

@@ -1,0 +1,145 @@
+//! What a leg asks of the axes, found on the cubics that the controller will run.
+
+use crate::leg::Leg;
+use crate::number::{cube_root, sqrt};
+use crate::table::rows_of_leg;
+use crate::{Axes, AxisLimits, Cubic, Knot, Path, PlanError, Row};
+
+/// An axis at the end of a segment.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    acceleration: f64,
+    noise: f64,
+}
+
+impl End {
+    const REST: Self = Self {
+        acceleration: 0.0,
+        noise: 0.0,
+    };
+}
+
+/// The largest shares of the limits that a run of segments asks for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Demand<A: Axes> {
+    speed: f64,
+    acceleration: f64,
+    jerk: f64,
+    /// All axes at the end of the segment before.
+    before: A::Of<End>,
+    duration_s: f64,
+}
+
+impl<A: Axes> Demand<A> {
+    /// What a leg's knots ask for, from rest to rest.
+    pub(crate) fn of<P: Path<Axes = A>>(
+        limits: &A::Of<AxisLimits>,
+        leg: &Leg<P>,
+        knots: &[Knot],
+    ) -> Result<Self, PlanError<P::Error>> {
+        let mut demand = Self::at_rest();
+        for rows in rows_of_leg(leg, knots) {
+            let [from, to] = rows?;
+            demand.add(limits, &from, &to);
+        }
+        demand.stop(limits);
+        Ok(demand)
+    }
+
+    fn at_rest() -> Self {
+        Self {
+            speed: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+            before: A::filled(End::REST),
+            duration_s: 0.0,
+        }
+    }
+
+    /// By what the time may be multiplied at the least so that all limits are kept.
+    pub(crate) fn stretch(&self) -> f64 {
+        self.speed
+            .max(sqrt(self.acceleration))
+            .max(cube_root(self.jerk))
+    }
+
+    /// Takes the segment from one row to the next into account.
+    ///
+    /// A cubic has one jerk. At a row the acceleration steps: that counts as a jerk over the
+    /// time between the middles of the two segments.
+    fn add(&mut self, limits: &A::Of<AxisLimits>, from: &Row<A>, to: &Row<A>) {
+        let mean_s = (self.duration_s + to.duration_s) * 0.5;
+        let axes = A::each(limits).iter().zip(A::each_mut(&mut self.before));
+        for (cubic, (limits, before)) in Cubic::between(from, to).zip(axes) {
+            let ([a0, a1], noise) = (cubic.accelerations(), cubic.noise());
+            let hardest = a0.abs().max(a1.abs()) + noise;
+            self.speed = self.speed.max(cubic.peak_speed() / limits.speed);
+            self.acceleration = self.acceleration.max(hardest / limits.acceleration);
+            if let Some(limit) = limits.jerk {
+                let inside = ((a1 - a0).abs() + 2.0 * noise) / to.duration_s;
+                let step = ((a0 - before.acceleration).abs() + noise + before.noise) / mean_s;
+                self.jerk = self.jerk.max(inside.max(step) / limit);
+            }
+            *before = End {
+                acceleration: a1,
+                noise,
+            };
+        }
+        self.duration_s = to.duration_s;
+    }
+
+    /// Takes the standstill after the last segment into account.
+    fn stop(&mut self, limits: &A::Of<AxisLimits>) {
+        let mean_s = self.duration_s * 0.5;
+        for (limits, before) in A::each(limits).iter().zip(A::each(&self.before)) {
+            if let Some(limit) = limits.jerk {
+                let step = (before.acceleration.abs() + before.noise) / mean_s;
+                self.jerk = self.jerk.max(step / limit);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Demand;
+    use crate::{AxisLimits, Row};
+
+    const ROUNDING: f64 = 1e-12;
+
+    /// 2 s of 1 mm/s² from rest, 1 s of -2 mm/s² to rest. No jerk inside; the steps are 1, 3 and
+    /// 2 mm/s² over half of 2 s, half of 3 s, half of 1 s.
+    #[test]
+    fn steps_of_the_acceleration_are_jerks() {
+        let limits = [AxisLimits {
+            speed: 4.0,
+            acceleration: 5.0,
+            jerk: Some(8.0),
+        }];
+        let row = |duration_s, position, velocity| Row {
+            time_s: 0.0,
+            duration_s,
+            position: [position],
+            velocity: [velocity],
+        };
+        let rows = [row(0.0, 0.0, 0.0), row(2.0, 2.0, 2.0), row(1.0, 3.0, 0.0)];
+        let mut demand = Demand::<[f64; 1]>::at_rest();
+        let mut jerks = [0.0; 3];
+        for (jerk, pair) in jerks.iter_mut().zip(rows.windows(2)) {
+            demand.add(&limits, &pair[0], &pair[1]);
+            *jerk = demand.jerk;
+        }
+        demand.stop(&limits);
+        jerks[2] = demand.jerk;
+        let wanted = [1.0, 2.0, 4.0].map(|jerk| jerk / 8.0);
+        let off = jerks
+            .iter()
+            .zip(wanted)
+            .map(|(a, b): (&f64, f64)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < ROUNDING, "{jerks:?}");
+        assert!((demand.speed - 2.0 / 4.0).abs() < ROUNDING);
+        assert!((demand.acceleration - 2.0 / 5.0).abs() < ROUNDING);
+        // The jerk asks for the most: 0.79 against 0.63 and 0.5.
+        assert!((demand.stretch() - 0.5_f64.cbrt()).abs() < ROUNDING);
+    }
+}

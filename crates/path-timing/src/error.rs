@@ -1,0 +1,109 @@
+//! Why a table cannot be made.
+
+use crate::short::short;
+
+/// Why a table cannot be made; nothing of it has been handed out. `E` is the path's own error.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum PlanError<E> {
+    /// A limit is not a number within the range of the crate.
+    #[error("axis {axis}: {name} is {}, not within {}..={}", short(.value), short(.min), short(.max))]
+    Limit {
+        /// The axis, from 0.
+        axis: usize,
+        /// Which: `speed`, `acceleration` or `jerk`.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// The machine cannot be at a place of the path.
+    #[error("leg {leg}, at {}: {reason}", short(.s))]
+    Path {
+        /// The leg, from 0.
+        leg: usize,
+        /// The parameter.
+        s: f64,
+        /// What the path said.
+        reason: E,
+    },
+    /// A position or a slope of a path is not a finite number.
+    #[error("leg {leg}, at {}: a position or slope is not a finite number", short(.s))]
+    NotFinite {
+        /// The leg, from 0.
+        leg: usize,
+        /// The parameter.
+        s: f64,
+    },
+    /// The length of a path is not a number within the range of the crate.
+    #[error("leg {leg}: a length of {} is not within the range of numbers", short(.length))]
+    Length {
+        /// The leg, from 0.
+        leg: usize,
+        /// Its length.
+        length: f64,
+    },
+    /// A leg does not begin where the one before ends, to the last bit.
+    #[error("leg {leg}, axis {axis}: begins {} from where the leg before ends", short(.by))]
+    Gap {
+        /// The leg, from 0.
+        leg: usize,
+        /// The axis, from 0.
+        axis: usize,
+        /// How far apart.
+        by: f64,
+    },
+    /// A leg would have more segments than can be told apart.
+    #[error("leg {leg} would be cut into more than {max} segments")]
+    TooFine {
+        /// The leg, from 0.
+        leg: usize,
+        /// Most segments of a leg.
+        max: u32,
+    },
+    /// The memory given is too small.
+    #[error("memory for {needed} is needed, there is room for {available}")]
+    Memory {
+        /// Knots, or rows that run, that are enough.
+        needed: usize,
+        /// Those for which there is memory.
+        available: usize,
+    },
+    /// An allowed departure that is not positive and finite.
+    #[error("an allowed departure of {} is not a positive finite number", short(.allowed))]
+    Allowed {
+        /// The departure given.
+        allowed: f64,
+    },
+    /// Two knots of a leg cannot be told apart: so near are they, or so late, that `f64` has the
+    /// same numbers for both.
+    #[error("leg {leg}: knot {knot} and the one before have the same positions or times")]
+    Indistinct {
+        /// The leg, from 0.
+        leg: usize,
+        /// The knot of the leg, from 0.
+        knot: u32,
+    },
+    /// A scale of the speed that is above 1, or so low that times leave the range of the crate.
+    #[error("a speed scale of {} is not within {}..=1", short(.scale), short(.min))]
+    SpeedScale {
+        /// The scale given.
+        scale: f64,
+        /// The lowest scale.
+        min: f64,
+    },
+    /// A highest feed that is beyond the range of the crate.
+    #[error("a highest feed of {} is not within {}..={}", short(.feed), short(.min), short(.max))]
+    Feed {
+        /// The feed given.
+        feed: f64,
+        /// The lowest.
+        min: f64,
+        /// The highest.
+        max: f64,
+    },
+}

@@ -1,0 +1,61 @@
+//! One path among several, its parameter as a share of its length.
+
+use crate::number::range;
+use crate::{Axes as _, Path, Place, PlanError};
+
+/// A leg: a path, and which of all it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Leg<P> {
+    /// From 0.
+    pub(crate) number: usize,
+    path: P,
+    length: f64,
+}
+
+impl<P: Path> Leg<P> {
+    pub(crate) fn new(number: usize, path: P) -> Self {
+        let length = path.length();
+        Self {
+            number,
+            path,
+            length,
+        }
+    }
+
+    pub(crate) const fn path(&self) -> &P {
+        &self.path
+    }
+
+    /// Whether its length is one that the crate computes with.
+    pub(crate) fn check(&self) -> Result<(), PlanError<P::Error>> {
+        if range().contains(&self.length) {
+            return Ok(());
+        }
+        Err(PlanError::Length {
+            leg: self.number,
+            length: self.length,
+        })
+    }
+
+    /// Positions, and slopes by the share, at a share 0..=1 of the length.
+    pub(crate) fn place(&self, share: f64) -> Result<Place<P::Axes>, P::Error> {
+        let Place { position, slope } = self.path.place(share * self.length)?;
+        Ok(Place {
+            position,
+            slope: slope.scaled(self.length),
+        })
+    }
+
+    /// The same, refused by name where the machine cannot be there.
+    pub(crate) fn checked_place(&self, share: f64) -> Result<Place<P::Axes>, PlanError<P::Error>> {
+        let (leg, s) = (self.number, share * self.length);
+        let place = self
+            .place(share)
+            .map_err(|reason| PlanError::Path { leg, s, reason })?;
+        let mut numbers = (place.position.as_slice().iter()).chain(place.slope.as_slice());
+        if numbers.all(|number| number.is_finite()) {
+            return Ok(place);
+        }
+        Err(PlanError::NotFinite { leg, s })
+    }
+}

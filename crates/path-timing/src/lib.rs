@@ -1,0 +1,33 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+mod axes;
+mod cubic;
+mod demand;
+mod error;
+mod leg;
+mod number;
+mod path;
+mod planner;
+mod profile;
+mod row;
+mod rows;
+mod run;
+mod segment;
+mod short;
+mod smooth;
+mod table;
+
+pub use axes::{Axes, AxisLimits};
+pub use cubic::Cubic;
+pub use error::PlanError;
+pub use path::{Legs, Path, PathFn, Place};
+pub use row::Row;
+pub use rows::Rows;
+pub use run::{Ahead, FeedError, Run};
+pub use table::{Knot, Table};

@@ -1,0 +1,72 @@
+//! The range of the numbers that the crate computes with, and roots of them.
+
+use core::ops::RangeInclusive;
+
+/// The smallest number above 0 that the crate computes with.
+pub(crate) const SMALLEST: f64 = 1e-50;
+
+/// The largest number that the crate computes with: above all that a machine has, and so far from
+/// the end of the float type that no fourth power of it leaves it.
+pub(crate) const LARGEST: f64 = 1e50;
+
+/// Lengths, speeds, accelerations, jerks and feeds that the crate computes with.
+pub(crate) fn range() -> RangeInclusive<f64> {
+    SMALLEST..=LARGEST
+}
+
+/// The larger of two numbers; a comparison where `f64::max` is a call of a library.
+#[inline]
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The larger of two numbers; not a number where either is none, unlike `f64::max`.
+pub(crate) fn larger_or_nan(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+/// The square root: the same bits on a PC and on a microcontroller.
+pub(crate) fn sqrt(x: f64) -> f64 {
+    libm::sqrt(x)
+}
+
+/// Rounds that bring the guess, a few percent off, to its last digits: each triples them.
+const ROOT_ROUNDS: u32 = 4;
+
+/// The cube root of a positive number, by Halley's iteration from a third of its logarithm; 0 of
+/// those below. The library's has an index in it that cannot be proven.
+///
+/// ```text
+/// y ← y (y³ + 2x) / (2y³ + x)
+/// ```
+pub(crate) fn cube_root(x: f64) -> f64 {
+    if x <= 0.0 {
+        return 0.0;
+    }
+    if !x.is_finite() {
+        return x;
+    }
+    // The bits of a float are its logarithm, nearly; two thirds of the bits of 1 go on top.
+    let guess = f64::from_bits(x.to_bits() / 3 + 1.0_f64.to_bits() / 3 * 2);
+    (0..ROOT_ROUNDS).fold(guess, |y, _| {
+        let cube = y * y * y;
+        y * ((cube + 2.0 * x) / (2.0 * cube + x))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn cube_roots() {
+        for x in [1e-300, 1e-80, 1e-9, 0.3, 1.0, 8.0, 1e9, 1e86, 1e300] {
+            let root = super::cube_root(x);
+            assert!(
+                (root / libm::cbrt(x) - 1.0).abs() < 4.0 * f64::EPSILON,
+                "{x}"
+            );
+        }
+        assert_eq!(super::cube_root(0.0).to_bits(), 0);
+        assert_eq!(super::cube_root(-1.0).to_bits(), 0);
+        assert!(super::cube_root(f64::NAN).is_nan());
+    }
+}

@@ -1,0 +1,232 @@
+//! The knots of a table: how many, at which speeds, and whether they can be told apart.
+
+use crate::demand::Demand;
+use crate::leg::Leg;
+use crate::number::{LARGEST, SMALLEST, larger_or_nan, sqrt};
+use crate::segment::Reciprocals;
+use crate::table::rows_of_leg;
+use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Row, profile, smooth};
+
+/// What all legs are planned with.
+pub(crate) struct Planner<A: Axes> {
+    limits: A::Of<AxisLimits>,
+    reciprocals: Reciprocals<A>,
+    has_jerk: bool,
+}
+
+/// Fewest segments of a leg: it starts and stops.
+pub(crate) const MIN_SEGMENTS: u32 = 2;
+
+/// Most segments of a leg: 12 machine epsilons of the way from its last knot but one to its end.
+pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
+
+/// Segments beyond which rounding is all that is left of a departure.
+const FINEST: u32 = 1 << 20;
+
+/// What a stretched leg rounds off.
+const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
+
+impl<A: Axes> Planner<A> {
+    /// The planner for axes with limits within the range of the crate.
+    pub(crate) fn new<E>(limits: A::Of<AxisLimits>) -> Result<Self, PlanError<E>> {
+        for (axis, limits) in A::each(&limits).iter().enumerate() {
+            if let Some((name, value)) = limits.outside() {
+                return Err(PlanError::Limit {
+                    axis,
+                    name,
+                    value,
+                    min: SMALLEST,
+                    max: LARGEST,
+                });
+            }
+        }
+        Ok(Self {
+            reciprocals: Reciprocals::new(&limits),
+            has_jerk: A::each(&limits).iter().any(|limits| limits.jerk.is_some()),
+            limits,
+        })
+    }
+
+    pub(crate) const fn reciprocals(&self) -> &Reciprocals<A> {
+        &self.reciprocals
+    }
+
+    /// A number of segments that a leg can have; more than asked for where each phase of an
+    /// S-curve needs one.
+    pub(crate) fn bounded<E>(&self, leg: usize, segments: u32) -> Result<u32, PlanError<E>> {
+        let least = if self.has_jerk {
+            smooth::PHASES
+        } else {
+            MIN_SEGMENTS
+        };
+        let max = MAX_SEGMENTS;
+        if segments <= max {
+            Ok(segments.max(least))
+        } else {
+            Err(PlanError::TooFine { leg, max })
+        }
+    }
+
+    /// Looks at the legs and at the memory for the least that they need, before anything is
+    /// planned.
+    pub(crate) fn check_legs<L: Legs<Axes = A>>(
+        &self,
+        legs: L,
+        least: impl Fn(&L::Leg) -> u32,
+        available: usize,
+    ) -> Result<(), PlanError<L::Error>> {
+        let mut needed = 0_usize;
+        let mut last: Option<A> = None;
+        for (number, path) in legs.enumerate() {
+            let leg = Leg::new(number, path);
+            leg.check()?;
+            if let Some(last) = last {
+                check_joint(number, &last, &leg.checked_place(0.0)?.position)?;
+            }
+            last = Some(leg.checked_place(1.0)?.position);
+            needed = needed.saturating_add(knots_of(self.bounded(number, least(leg.path()))?));
+        }
+        if needed <= available {
+            return Ok(());
+        }
+        Err(PlanError::Memory { needed, available })
+    }
+
+    /// Plans a leg in the first of the free knots; those that it takes.
+    pub(crate) fn plan_leg<'k, P: Path<Axes = A>>(
+        &self,
+        leg: &Leg<P>,
+        free: &'k mut [Knot],
+        segments: u32,
+    ) -> Result<&'k mut [Knot], PlanError<P::Error>> {
+        let (needed, available) = (knots_of(segments), free.len());
+        let own = free
+            .get_mut(..needed)
+            .ok_or(PlanError::Memory { needed, available })?;
+        if self.has_jerk {
+            smooth::smooth(&self.limits, leg, own)?;
+        } else {
+            profile::fastest(&self.reciprocals, leg, own)?;
+        }
+        Ok(own)
+    }
+
+    /// Stretches the time of a leg with jerk so that it just keeps all limits; the fastest motion
+    /// keeps them by its making. The time at its last knot.
+    pub(crate) fn finish<P: Path<Axes = A>>(
+        &self,
+        leg: &Leg<P>,
+        knots: &mut [Knot],
+        time_s: f64,
+    ) -> Result<f64, PlanError<P::Error>> {
+        if self.has_jerk {
+            let stretch = Demand::of(&self.limits, leg, knots)?.stretch() * STRETCHED;
+            for knot in &mut *knots {
+                knot.speed /= stretch;
+                knot.duration_s *= stretch;
+            }
+        }
+        check_times(leg.number, knots, time_s)
+    }
+
+    /// A number of segments that keeps the allowed departure, while one fewer does not.
+    pub(crate) fn fewest<P: Path<Axes = A>>(
+        &self,
+        leg: &Leg<P>,
+        used: usize,
+        free: &mut [Knot],
+        at_least: u32,
+        allowed: f64,
+        departure: &impl Fn(&Row<A>, &Row<A>) -> f64,
+    ) -> Result<u32, PlanError<P::Error>> {
+        let least = self.bounded(leg.number, at_least)?;
+        let room = u32::try_from(free.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        if room < least {
+            return Err(PlanError::Memory {
+                needed: used.saturating_add(knots_of(least)),
+                available: used.saturating_add(free.len()),
+            });
+        }
+        let mut bound_of = |segments| {
+            let knots = self.plan_leg(leg, free, segments)?;
+            bound_of_leg(leg, knots, departure)
+        };
+        let (mut too_few, mut enough) = (least.saturating_sub(1), least);
+        let mut bound = bound_of(enough)?;
+        while bound > allowed {
+            if enough >= room || enough >= FINEST {
+                return Err(too_coarse(leg.number, bound / allowed, enough, used, room));
+            }
+            too_few = enough;
+            enough = enough.saturating_mul(2).min(room).min(FINEST);
+            bound = bound_of(enough)?;
+        }
+        while enough.saturating_sub(too_few) > 1 {
+            let middle = too_few.midpoint(enough);
+            if bound_of(middle)? <= allowed {
+                enough = middle;
+            } else {
+                too_few = middle;
+            }
+        }
+        Ok(enough)
+    }
+}
+
+/// Knots of a leg with so many segments.
+pub(crate) fn knots_of(segments: u32) -> usize {
+    usize::try_from(segments).map_or(usize::MAX, |segments| segments.saturating_add(1))
+}
+
+/// Refuses a leg that begins elsewhere than the one before ends.
+fn check_joint<A: Axes, E>(leg: usize, end: &A, start: &A) -> Result<(), PlanError<E>> {
+    let axes = start.as_slice().iter().zip(end.as_slice());
+    let mut apart = axes.map(|(start, end)| start - end).enumerate();
+    apart
+        .find(|(_, by)| *by != 0.0)
+        .map_or(Ok(()), |(axis, by)| Err(PlanError::Gap { leg, axis, by }))
+}
+
+/// Refuses knots that no time lies between; the time at the last.
+fn check_times<E>(leg: usize, knots: &[Knot], mut time_s: f64) -> Result<f64, PlanError<E>> {
+    let segments = knots.split_last().map_or(knots, |(_, segments)| segments);
+    for (knot, segment) in (1..).zip(segments) {
+        let before_s = time_s;
+        time_s += segment.duration_s;
+        if !(time_s > before_s && time_s.is_finite()) {
+            return Err(PlanError::Indistinct { leg, knot });
+        }
+    }
+    Ok(time_s)
+}
+
+/// Why no number of segments that there is room for keeps the departure. It shrinks with the
+/// square of the number; a tenth more is enough.
+fn too_coarse<E>(leg: usize, excess: f64, segments: u32, used: usize, room: u32) -> PlanError<E> {
+    let estimate = f64::from(segments) * sqrt(excess) * 1.1;
+    if segments < room || estimate > f64::from(FINEST) {
+        return PlanError::TooFine { leg, max: FINEST };
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked against the finest"
+    )]
+    let needed = (estimate as u32).saturating_add(1);
+    PlanError::Memory {
+        needed: used.saturating_add(knots_of(needed)),
+        available: used.saturating_add(knots_of(room)),
+    }
+}
+
+/// The largest departure of a leg's segments.
+fn bound_of_leg<P: Path>(
+    leg: &Leg<P>,
+    knots: &[Knot],
+    departure: &impl Fn(&Row<P::Axes>, &Row<P::Axes>) -> f64,
+) -> Result<f64, PlanError<P::Error>> {
+    rows_of_leg(leg, knots).try_fold(0.0, |worst, rows| {
+        let [from, to] = rows?;
+        Ok(larger_or_nan(worst, departure(&from, &to)))
+    })
+}

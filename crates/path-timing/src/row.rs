@@ -1,0 +1,31 @@
+//! Rows of a table: what a controller gets.
+
+use crate::{Axes, Place};
+
+/// A row of a position-velocity-time table. From one to the next every axis runs the
+/// [`Cubic`](crate::Cubic) with these positions and velocities at its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "the columns of every such table")]
+pub struct Row<A> {
+    /// Seconds since the start.
+    pub time_s: f64,
+    /// Seconds since the row before; 0 in the first.
+    pub duration_s: f64,
+    /// Position of each axis.
+    pub position: A,
+    /// Velocity of each axis, per second.
+    pub velocity: A,
+}
+
+impl<A: Axes> Row<A> {
+    /// A place that is passed at a speed of its parameter.
+    pub(crate) fn new(place: &Place<A>, speed: f64, time_s: f64, duration_s: f64) -> Self {
+        Self {
+            time_s,
+            duration_s,
+            position: place.position,
+            velocity: place.slope.scaled(speed),
+        }
+    }
+}

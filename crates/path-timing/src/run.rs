@@ -1,0 +1,314 @@
+//! A table that runs under a feed override and can stop on its path.
+
+use crate::leg::Leg;
+use crate::number::{LARGEST, SMALLEST, range};
+use crate::rows::{Node, Nodes};
+use crate::segment::{Reciprocals, Segment};
+use crate::short::short;
+use crate::{Axes, Knot, Legs, Place, PlanError, Row, Table};
+
+/// Memory for one row of a table that runs: what the rows ahead still allow.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ahead {
+    /// The highest feed at this row from which the rest can be run.
+    ceiling: f64,
+    /// The feed at the next row that goes with it, as a share.
+    after: f64,
+}
+
+/// A share that the feed override cannot take.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[error("feed {} is neither 0 nor within {}..={}", short(.feed), short(.min), short(.max))]
+#[expect(clippy::exhaustive_structs, reason = "there is one cause")]
+pub struct FeedError {
+    /// The feed asked for, 1 for 100 %.
+    pub feed: f64,
+    /// The lowest feed above 0.
+    pub min: f64,
+    /// The highest feed that this run was made for.
+    pub max: f64,
+}
+
+/// A [`Table`] on the way to the controller, at a feed that may change from row to row.
+///
+/// Each row is handed out with the time that the present feed makes of its segment, so that the
+/// machine stays on its path at any feed. From one row to the next the feed goes as far towards
+/// the wanted one as the speeds and accelerations of all axes allow, checked on the cubic that the
+/// controller will run; above 1 it goes only as far as what lies ahead can be run with. A stop is a
+/// wanted feed of zero: the machine comes to rest at a row of the table, at most one segment later
+/// than it could between rows. Where it rests, the feed changes at once.
+///
+/// ```text
+/// segment time = 2 T / (f₀ + f₁)     velocity = f v
+/// ```
+///
+/// Where the feed changes, the cubic between two rows is not the table's and may turn back some
+/// 4 % of its way later: at the ends of the strokes leave that room. More feed does not make a table
+/// take longer than at 1; of 100,000 random tables none did.
+///
+/// A limit of jerk is kept at a constant feed of at most 1; a change of the feed looks at speed and
+/// acceleration alone. It also changes the speed within a segment and with it the departure from
+/// the path.
+#[derive(Debug, Clone)]
+pub struct Run<'a, L: Legs> {
+    nodes: Nodes<'a, L>,
+    /// The row handed out last, at a feed of 1, and the two after it.
+    here: Option<Node<L::Axes>>,
+    next: Option<Node<L::Axes>>,
+    after_next: Option<Node<L::Axes>>,
+    /// From the row handed out last on.
+    ahead: &'a [Ahead],
+    limits: Reciprocals<L::Axes>,
+    max: f64,
+    wanted: f64,
+    /// Feed at the row handed out last.
+    feed: f64,
+    time_s: f64,
+    remaining: usize,
+}
+
+impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
+    /// The table at a feed of 1, to be changed up to `max`, 1.5 for 150 %. Needs memory for each
+    /// row of the table.
+    ///
+    /// # Errors
+    /// [`PlanError::Feed`] for a `max` that is beyond the range of the crate,
+    /// [`PlanError::Memory`] for too little memory, and where the path refuses a place.
+    pub fn run(&self, max: f64, ahead: &'a mut [Ahead]) -> Result<Run<'a, L>, PlanError<L::Error>> {
+        if !range().contains(&max) {
+            return Err(PlanError::Feed {
+                feed: max,
+                min: SMALLEST,
+                max: LARGEST,
+            });
+        }
+        let (needed, available) = (self.len(), ahead.len());
+        let ahead = ahead
+            .get_mut(..needed)
+            .ok_or(PlanError::Memory { needed, available })?;
+        self.look_ahead(max, ahead)?;
+        Ok(Run {
+            nodes: Nodes::new(self),
+            here: None,
+            next: None,
+            after_next: None,
+            ahead,
+            limits: self.limits,
+            max,
+            wanted: max.min(1.0),
+            feed: 0.0,
+            time_s: 0.0,
+            remaining: needed,
+        })
+    }
+
+    /// From the end: the highest feed at each row from which the rest can be run.
+    fn look_ahead(&self, max: f64, ahead: &mut [Ahead]) -> Result<(), PlanError<L::Error>> {
+        let mut slots = ahead.iter_mut().rev();
+        let Some(last) = slots.next() else {
+            return Ok(());
+        };
+        *last = Ahead {
+            ceiling: max,
+            after: 1.0,
+        };
+        let (mut later, mut knots) = (max, self.knots);
+        let count = self.legs.clone().count();
+        for (number, path) in (0..count).rev().zip(self.legs.clone().rev()) {
+            let leg = Leg::new(number, path);
+            // A leg begins at 0.
+            let first = knots.iter().rposition(|knot| knot.s <= 0.0);
+            let (rest, own) = knots
+                .split_at_checked(first.unwrap_or(0))
+                .unwrap_or_default();
+            knots = rest;
+            let mut own = own.iter().rev();
+            let Some(last) = own.next() else { continue };
+            let mut end = self.velocities(&leg, last)?;
+            for (knot, slot) in own.zip(&mut slots) {
+                let start = self.velocities(&leg, knot)?;
+                let duration_s = knot.duration_s * self.stretch;
+                let segment = Segment::new(&self.limits, &start, &end, duration_s);
+                *slot = look_back(&segment, [&start, &end], later, max);
+                (end, later) = (start, slot.ceiling);
+            }
+        }
+        Ok(())
+    }
+
+    /// A knot's place, slopes by time.
+    fn velocities(&self, leg: &Leg<L::Leg>, knot: &Knot) -> Result<Place<A>, PlanError<L::Error>> {
+        let mut place = leg.checked_place(knot.s)?;
+        place.slope = place.slope.scaled(knot.speed / self.stretch);
+        Ok(place)
+    }
+}
+
+/// What a segment allows at its start where its end allows `later`.
+fn look_back<A: Axes>(
+    segment: &Segment<A>,
+    [start, end]: [&Place<A>; 2],
+    later: f64,
+    max: f64,
+) -> Ahead {
+    let ceiling = if is_rest(start) {
+        // Any feed is as good, since it makes no speed.
+        max
+    } else if is_rest(end) {
+        segment.even().min(max)
+    } else {
+        segment.begin_evenly(later, max)
+    };
+    // The table itself holds.
+    let ceiling = ceiling.max(max.min(1.0));
+    Ahead {
+        ceiling,
+        after: later.min(ceiling) / ceiling,
+    }
+}
+
+fn is_rest<A: Axes>(place: &Place<A>) -> bool {
+    place.slope.as_slice().iter().all(|slope| *slope == 0.0)
+}
+
+impl<L: Legs> Run<'_, L> {
+    /// Wants a feed, 1 for 100 %; 0 stops.
+    ///
+    /// # Errors
+    /// [`FeedError`]; the wanted feed stays.
+    pub fn set_feed(&mut self, feed: f64) -> Result<(), FeedError> {
+        let (min, max) = (SMALLEST, self.max);
+        if feed == 0.0 || (feed >= min && feed <= max) {
+            self.wanted = feed;
+            return Ok(());
+        }
+        Err(FeedError { feed, min, max })
+    }
+
+    /// Stops as soon as the accelerations allow, on the path. [`set_feed`](Self::set_feed) goes on.
+    pub const fn stop(&mut self) {
+        self.wanted = 0.0;
+    }
+
+    /// The feed at the row handed out last.
+    #[must_use]
+    pub const fn feed(&self) -> f64 {
+        self.feed
+    }
+
+    /// Rows of the table that have not been handed out.
+    #[must_use]
+    pub const fn remaining(&self) -> usize {
+        self.remaining
+    }
+
+    /// Whether the last row of the table has been handed out.
+    #[must_use]
+    pub const fn is_finished(&self) -> bool {
+        self.remaining == 0
+    }
+
+    /// The next row; `None` at the end and where the machine rests at a feed of zero, until
+    /// another is wanted.
+    ///
+    /// # Errors
+    /// Where the path refuses a place that it has given while the table was planned.
+    pub fn next_row(&mut self) -> Result<Option<Row<L::Axes>>, L::Error> {
+        let Some(from) = self.here else {
+            return self.first_row();
+        };
+        let (Some(to), [here, there, ..]) = (self.next, self.ahead) else {
+            return Ok(None);
+        };
+        let feed = self.next_feed(&from, &to, *here, *there);
+        let both = self.feed + feed;
+        if both <= 0.0 {
+            return Ok(None);
+        }
+        let after_next = self.nodes.next()?;
+        let duration_s = 2.0 * from.duration_s / both;
+        self.time_s += duration_s;
+        self.feed = feed;
+        (self.here, self.next, self.after_next) = (self.next, self.after_next, after_next);
+        self.ahead = self.ahead.get(1..).unwrap_or_default();
+        self.remaining = self.remaining.saturating_sub(1);
+        Ok(Some(Row::new(&to.place, feed, self.time_s, duration_s)))
+    }
+
+    /// The first row, at rest.
+    fn first_row(&mut self) -> Result<Option<Row<L::Axes>>, L::Error> {
+        let Some(first) = self.nodes.next()? else {
+            return Ok(None);
+        };
+        self.next = self.nodes.next()?;
+        self.after_next = self.nodes.next()?;
+        self.here = Some(first);
+        self.remaining = self.remaining.saturating_sub(1);
+        Ok(Some(Row::new(&first.place, 0.0, 0.0, 0.0)))
+    }
+
+    /// The feed at the next row. The feed here is set anew where the machine rests.
+    fn next_feed(
+        &mut self,
+        from: &Node<L::Axes>,
+        to: &Node<L::Axes>,
+        here: Ahead,
+        there: Ahead,
+    ) -> f64 {
+        let wanted = self.wanted.min(there.ceiling);
+        let segment = Segment::new(&self.limits, &from.place, &to.place, from.duration_s);
+        if is_rest(&from.place) {
+            self.feed = wanted.min(segment.even().max(1.0));
+        }
+        // From rest and to rest at one feed, so that the cubic has the shape of the table's; at a
+        // constant feed of at most 1 the table itself holds.
+        #[expect(clippy::float_cmp, reason = "the same number")]
+        let is_even = is_rest(&from.place)
+            || (is_rest(&to.place) && self.feed > 0.0)
+            || (wanted == self.feed && wanted <= 1.0);
+        if is_even {
+            return self.feed;
+        }
+        // A feed that both ends allow may stay.
+        let known = if self.feed <= there.ceiling {
+            self.feed
+        } else {
+            self.feed * here.after
+        };
+        let nearest = segment.toward(self.feed, wanted, known);
+        if wanted > 0.0 || nearest <= 0.0 {
+            return nearest;
+        }
+        let highest = self.feed.min(there.ceiling);
+        let rest = self.feed_to_rest(to, highest);
+        segment.toward(self.feed, rest.max(nearest), nearest)
+    }
+
+    /// The highest feed at the next row from which the machine rests at the one after it, at most
+    /// `highest`: braking as hard as it can before, it would crawl there.
+    fn feed_to_rest(&self, next: &Node<L::Axes>, highest: f64) -> f64 {
+        let Some(after) = &self.after_next else {
+            return 0.0;
+        };
+        let segment = Segment::new(&self.limits, &next.place, &after.place, next.duration_s);
+        if is_rest(&after.place) {
+            return highest.min(segment.even().max(1.0));
+        }
+        let (feed, _) = segment.begin(0.0, highest);
+        feed
+    }
+}
+
+impl<L: Legs> Iterator for Run<'_, L> {
+    type Item = Result<Row<L::Axes>, L::Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.next_row().transpose()
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        // A stop hands out fewer for now.
+        (0, Some(self.remaining))
+    }
+}
