@@ -14,6 +14,7 @@ mod patterns;
 mod poses;
 mod stepping;
 mod tables;
+mod timing;
 mod trig;
 mod unit;
 
@@ -22,6 +23,7 @@ fn main() {
     delta::run();
     poses::run();
     tables::run();
+    timing::run();
     stepping::run();
     paths::run();
     patterns::run();

@@ -6,6 +6,7 @@ mod codecs;
 mod delta;
 mod line;
 mod pulses;
+mod timing;
 mod trig;
 mod unit;
 
@@ -17,6 +18,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     delta::calibration,
     body::pose,
     body::tables,
+    timing::table,
     pulses::trains,
     pulses::ramp,
     pulses::cubic,

@@ -1,0 +1,79 @@
+//! Tables along a path and their runs.
+
+use core::convert::Infallible;
+use std::array::IntoIter;
+use std::hint::black_box;
+
+use no_panic::no_panic;
+use path_timing::{Ahead, AxisLimits, Knot, Path, Place, PlanError, Row, Rows, Run, Table};
+
+/// A parabola, one axis by the square of the other.
+#[derive(Debug, Clone, Copy)]
+struct Parabola;
+
+impl Path for Parabola {
+    type Axes = [f64; 2];
+    type Error = Infallible;
+
+    fn length(&self) -> f64 {
+        black_box(10.0)
+    }
+
+    fn place(&self, s: f64) -> Result<Place<[f64; 2]>, Infallible> {
+        Ok(Place {
+            position: [s, s * s],
+            slope: [1.0, 2.0 * s],
+        })
+    }
+}
+
+type Legs = IntoIter<Parabola, 1>;
+
+#[no_panic]
+#[inline(never)]
+fn plan(
+    limits: [AxisLimits; 2],
+    segments: u32,
+    knots: &mut [Knot],
+) -> Result<Table<'_, Legs, [f64; 2]>, PlanError<Infallible>> {
+    Table::plan([Parabola], limits, |_| segments, knots)
+}
+
+#[no_panic]
+#[inline(never)]
+fn next_row(rows: &mut Rows<'_, Legs>) -> Option<Result<Row<[f64; 2]>, Infallible>> {
+    rows.next()
+}
+
+#[no_panic]
+#[inline(never)]
+fn run_table<'a>(
+    table: &Table<'a, Legs, [f64; 2]>,
+    max: f64,
+    ahead: &'a mut [Ahead],
+) -> Result<Run<'a, Legs>, PlanError<Infallible>> {
+    table.run(max, ahead)
+}
+
+#[no_panic]
+#[inline(never)]
+fn run_next(run: &mut Run<'_, Legs>) -> Result<Option<Row<[f64; 2]>>, Infallible> {
+    run.next_row()
+}
+
+pub fn run() {
+    let limits = AxisLimits {
+        speed: 1.0,
+        acceleration: 2.0,
+        jerk: Some(3.0),
+    };
+    let mut knots = black_box([Knot::default(); 64]);
+    let Ok(table) = plan(black_box([limits; 2]), black_box(60), black_box(&mut knots)) else {
+        return;
+    };
+    black_box(next_row(&mut black_box(&table).rows()).is_some());
+    let mut ahead = black_box([Ahead::default(); 64]);
+    if let Ok(mut run) = run_table(&table, black_box(1.5), black_box(&mut ahead)) {
+        black_box(run_next(&mut run).is_ok());
+    }
+}
