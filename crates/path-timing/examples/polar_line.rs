@@ -1,5 +1,4 @@
-//! A polar arm along a line: rows of time, positions and velocities, under 100 % of the feed and
-//! with a hold on the way.
+//! A polar arm along a line: rows of time, positions and velocities, with a hold on the way.
 
 use core::convert::Infallible;
 use core::error::Error;
