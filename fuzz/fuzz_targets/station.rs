@@ -9,7 +9,7 @@ use std::time::Duration;
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use proto3964r::frame::{IllegalDle, encode, max_encoded_len};
-use proto3964r::{Cause, Config, Event, Station, Transmit};
+use proto3964r::{Cause, Config, Event, Line, Station, Transmit};
 
 /// Longest block.
 const LONGEST: usize = 24;
@@ -59,7 +59,11 @@ impl Scene {
         let happening: u8 = u.arbitrary()?;
         match happening & 15 {
             0 | 1 => {
-                self.now += Duration::from_millis(u.int_in_range(0..=6000)?);
+                self.now += match happening >> 4 {
+                    0 => Duration::from_secs(u.arbitrary::<u32>()?.into()),
+                    1 => Duration::from_nanos(u.arbitrary::<u32>()?.into()),
+                    _ => Duration::from_millis(u.int_in_range(0..=6000)?),
+                };
                 self.time_passes();
             }
             2 => {
@@ -82,7 +86,7 @@ impl Scene {
                 self.station.handle_damaged(self.now, byte, error);
                 self.twin.handle_damaged(self.now, byte, error);
             }
-            8 => self.take(usize::from(happening >> 4)),
+            8 => self.take(1 + usize::from(happening >> 4)),
             9 => self.take(usize::MAX),
             10 => self.hear(vec![0x02]),
             11 => self.hear(vec![0x10]),
@@ -142,9 +146,23 @@ impl Scene {
                 None => break,
             }
         }
-        let twin = std::iter::from_fn(|| self.twin.poll_transmit_byte(self.now));
+        let twin = std::iter::from_fn(|| self.twin_byte());
         assert_eq!(twin.take(most).collect::<Vec<_>>(), together);
         self.sent.extend(together);
+    }
+
+    /// The twin's next character. A line that takes them one at a time has sent the one before,
+    /// which only an instant line has at once.
+    fn twin_byte(&mut self) -> Option<u8> {
+        if self.twin.config().line == Line::Instant {
+            return self.twin.poll_transmit_byte(self.now);
+        }
+        loop {
+            match self.twin.poll_transmit(self.now, &mut [0])? {
+                Transmit::Bytes(bytes) => return bytes.first().copied(),
+                Transmit::Discard => {}
+            }
+        }
     }
 
     fn poll_events(&mut self) {

@@ -27,7 +27,11 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
     ];
     let mut line = Line {
         ends: configs.map(|config| End {
-            station: Station::new(Config { check, ..config }),
+            station: Station::new(Config {
+                check,
+                line: proto3964r::Line::Instant, // all that is carried arrives at once
+                ..config
+            }),
             job: None,
             received: Vec::new(),
         }),

@@ -34,8 +34,9 @@ pub enum Conflict {
     /// Waits in the first connection attempt and gives way in a later one, which ends the stand-off
     /// of two stations of high priority. Linux line discipline.
     YieldOnRetry,
-    /// Repeats STX as the next connection attempt, unless the partner's STX came so soon that its
-    /// answer to the own one may still come. KM271 clients, Beckhoff ("sends again").
+    /// Repeats STX as the next connection attempt, ZVZ after the partner's. KM271 clients, Beckhoff
+    /// ("sends again"), which do not wait: a partner that has given way takes such a STX for data,
+    /// and two of them cancel in the BCC.
     Repeat,
 }
 

@@ -228,7 +228,8 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Gives the job up; `false` when there is none to give up.
     ///
     /// Its outcome is [`Event::Failed`] with [`Cause::Cancelled`] unless an error came before. A
-    /// transmission under way ends with NAK.
+    /// transmission under way ends with NAK, and the next one waits for ZVZ of silence, so that no
+    /// answer to the one is taken for an answer to the other.
     pub fn cancel(&mut self, now: Duration) -> bool {
         self.handle_timeout(now);
         let had_job = self.job.is_open();
@@ -244,9 +245,8 @@ impl<const N: usize, const T: usize> Station<N, T> {
         self.notes.diagnosis(Note::Break);
         if self.state.phase().is_some() {
             self.end_job(now, Cause::Break);
-        } else {
-            self.go_idle(now);
         }
+        self.go_idle(now);
     }
 
     /// Takes characters from the line, in pieces of any size; returns how many.

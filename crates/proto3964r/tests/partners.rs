@@ -172,6 +172,49 @@ fn on_a_buffered_line_a_block_that_was_broken_off_leaves_first() {
     assert_eq!(station.poll_event(), Some(Event::Sent { len: 50 }));
 }
 
+/// The partner may have the block whole, and answer it: that is no answer to the next job's STX.
+#[test]
+fn the_answer_to_a_cancelled_block_is_not_for_the_next_job() {
+    for line in [Line::Instant, uart(), Line::buffered(9600, 11)] {
+        let mut station = Station::<64>::new(low(line));
+        station.submit(ms(0), &[0x41; 50]).unwrap();
+        assert_eq!(sent(&mut station, ms(0)), [STX]);
+        station.handle_byte(ms(3), DLE);
+        assert_eq!(sent(&mut station, ms(3)).len(), 53); // on the line until 63.7 ms
+        assert!(station.cancel(ms(20)));
+        assert!(matches!(station.poll_event(), Some(Event::Failed(_))));
+        station.submit(ms(20), b"A").unwrap();
+        assert_eq!(sent(&mut station, ms(20)), [NAK], "{line:?}");
+        station.handle_byte(ms(68), DLE);
+        assert_eq!(sent(&mut station, ms(68)), []);
+        let silent = ms(68 + 220);
+        assert_eq!(station.poll_timeout(), Some(silent));
+        station.handle_timeout(silent);
+        assert_eq!(sent(&mut station, silent), [STX]);
+        station.handle_byte(ms(292), DLE);
+        assert_eq!(sent(&mut station, ms(292)), [0x41, 0x10, 0x03, 0x52]);
+        station.handle_byte(ms(300), DLE);
+        assert_eq!(station.poll_event(), Some(Event::Sent { len: 1 }));
+    }
+}
+
+/// STX again and again, for jobs that are given up, would be data that cancel in the BCC.
+#[test]
+fn after_a_cancelled_request_the_partner_has_time_to_give_up() {
+    let mut station = Station::<64>::new(low(uart()));
+    let mut out = Vec::new();
+    for _ in 0..3 {
+        station.submit(ms(0), b"A").unwrap();
+        out.extend(sent(&mut station, ms(0)));
+        station.cancel(ms(1));
+        assert!(station.poll_event().is_some());
+    }
+    out.extend(sent(&mut station, ms(1)));
+    assert_eq!(out, [STX, NAK]);
+    station.handle_byte(ms(3), STX); // a partner that asks is served
+    assert_eq!(sent(&mut station, ms(3)), [DLE]);
+}
+
 /// A partner that insists on its STX sends NAK STX: twice, and it cancels in the BCC.
 #[test]
 fn what_a_partner_says_before_it_can_see_dle_is_no_data() {
@@ -321,9 +364,9 @@ fn conflicts_that_the_partner_settles_are_no_sign_of_the_same_priority() {
     }
 }
 
-/// A KM271 client repeats STX in a conflict, but not while the answer to the first may still come.
+/// A KM271 client repeats STX in a conflict, but not while a partner that gave way takes it for data.
 #[test]
-fn stx_is_not_repeated_in_a_conflict_while_the_answer_may_come() {
+fn stx_is_repeated_in_a_conflict_after_a_silence() {
     let mut station = Station::<64>::new(Config {
         conflict: Conflict::Repeat,
         priority: Priority::High,
@@ -334,9 +377,12 @@ fn stx_is_not_repeated_in_a_conflict_while_the_answer_may_come() {
     station.handle_byte(ms(1), STX); // crosses ours
     assert_eq!(sent(&mut station, ms(1)), []);
     station.handle_byte(ms(30), STX); // in place of the answer
-    assert_eq!(sent(&mut station, ms(30)), [STX]);
-    station.handle_byte(ms(33), DLE);
-    assert_eq!(sent(&mut station, ms(33)).len(), 4);
+    assert_eq!(sent(&mut station, ms(30)), []);
+    assert_eq!(station.poll_timeout(), Some(ms(221)));
+    station.handle_timeout(ms(221));
+    assert_eq!(sent(&mut station, ms(221)), [STX]);
+    station.handle_byte(ms(224), DLE);
+    assert_eq!(sent(&mut station, ms(224)).len(), 4);
 }
 
 /// At the end of time a gap is none, for a block in one piece and for its characters one by one.

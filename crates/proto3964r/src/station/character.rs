@@ -41,12 +41,16 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.block_character(now, byte, damage);
             }
             // The partner wants to send: DLE, or a wait for the receive buffer.
-            (State::Idle | State::AwaitRepeat { .. }, Stx) => self.asked_to_receive(now),
+            (State::Idle | State::AwaitRepeat { .. } | State::Settling { .. }, Stx) => {
+                self.asked_to_receive(now);
+            }
             // NAK in idle is never answered: two stations would go on for ever.
             (State::Idle, Nak) => {}
             (State::Idle, _) => self.noise(now, byte),
             // Noise or NAK is waited out: the silence begins again.
-            (State::Noise { .. } | State::Interrupted { .. }, _) => self.await_silence(now),
+            (State::Noise { .. } | State::Interrupted { .. } | State::Settling { .. }, _) => {
+                self.await_silence(now);
+            }
             // NAK has been sent for the block before. NAK is the partner's last word, STX must not
             // be missed because of noise before it.
             (State::AwaitRepeat { .. }, Nak) => self.abandon(now, Abandoned::ByPartner),

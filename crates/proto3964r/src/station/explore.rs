@@ -272,6 +272,10 @@ impl State {
             | Self::Interrupted {
                 silent_at,
                 babble_at,
+            }
+            | Self::Settling {
+                silent_at,
+                babble_at,
             } => vec![silent_at, babble_at],
             Self::Spoiled {
                 gap_at, babble_at, ..

@@ -35,7 +35,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
         match &mut self.state {
             State::Noise { silent_at, .. } => *silent_at = in_zvz,
             // Not before the rest of the block has left.
-            State::Interrupted { silent_at, .. } => *silent_at = in_zvz.max(*silent_at),
+            State::Interrupted { silent_at, .. } | State::Settling { silent_at, .. } => {
+                *silent_at = in_zvz.max(*silent_at);
+            }
             _ => {}
         }
     }

@@ -24,6 +24,8 @@ use crate::{
 ///  | | +------------+              v                            |
 ///  | +-- silence: NAK ------- Interrupted                       |
 ///  +------------------------------------------------------------+
+///
+/// any of these -- given up: NAK --> Settling -- silence --> Idle
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum State {
@@ -67,6 +69,12 @@ pub(super) enum State {
         silent_at: Duration,
         babble_at: Duration,
     },
+    /// The job was given up while it had the line; what the partner still answers belongs to no
+    /// other.
+    Settling {
+        silent_at: Duration,
+        babble_at: Duration,
+    },
     /// The block is out, its answer is awaited.
     AwaitAck { answer_at: Duration },
 }
@@ -95,7 +103,8 @@ impl State {
             | Self::Invited { .. }
             | Self::Receiving { .. }
             | Self::Spoiled { .. }
-            | Self::AwaitRepeat { .. } => None,
+            | Self::AwaitRepeat { .. }
+            | Self::Settling { .. } => None,
         }
     }
 }

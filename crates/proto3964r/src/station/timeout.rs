@@ -30,6 +30,10 @@ impl<const N: usize, const T: usize> Station<N, T> {
             | State::Interrupted {
                 silent_at,
                 babble_at,
+            }
+            | State::Settling {
+                silent_at,
+                babble_at,
             } => silent_at.min(babble_at),
             State::Invited { gap_at } | State::Receiving { gap_at, .. } => gap_at,
             State::Spoiled {
@@ -88,6 +92,8 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 }
                 self.next_transmission(now, Cause::Timeout, Burst::NONE);
             }
+            // Nobody answers the job that was given up any more.
+            State::Settling { .. } => self.go_idle(now),
             // QVZ ran out: all again from STX (0705h).
             State::AwaitAck { .. } => self.repeat_block(now, Cause::Timeout, Burst::NONE),
         }

@@ -108,15 +108,20 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn interrupted(&mut self, now: Duration, cause: Cause) {
         self.job.first_cause.get_or_insert(cause);
         self.discard_rest();
-        let end = if self.discard {
-            now
-        } else {
-            self.end_of_output().max(now)
-        };
+        let end = self.end_of_rest(now);
         self.state = State::Interrupted {
             silent_at: end.saturating_add(self.zvz),
             babble_at: end.saturating_add(self.config.babble()),
         };
+    }
+
+    /// When what can no longer be held back has left.
+    fn end_of_rest(&self, now: Duration) -> Duration {
+        if self.discard {
+            now
+        } else {
+            self.end_of_output().max(now)
+        }
     }
 
     fn discard_rest(&mut self) {
@@ -147,18 +152,24 @@ impl<const N: usize, const T: usize> Station<N, T> {
         self.notes.result(outcome);
     }
 
-    /// Ends the job from outside.
+    /// Ends the job from outside. If it has the line, NAK says so, and what the partner has not yet
+    /// answered is waited out.
     pub(super) fn end_job(&mut self, now: Duration, cause: Cause) {
         let cause = *self.job.first_cause.get_or_insert(cause);
-        match self.state.phase() {
-            None => self.close_failed(Phase::Connection, cause),
-            Some(phase) => {
-                if phase == Phase::Transmission {
-                    self.discard_rest();
-                }
-                self.fail(now, phase, cause);
-            }
+        let Some(phase) = self.state.phase() else {
+            self.close_failed(Phase::Connection, cause);
+            return;
+        };
+        if phase == Phase::Transmission {
+            self.discard_rest();
         }
+        self.replies.push(Reply::Nak);
+        self.close_failed(phase, cause);
+        let end = self.end_of_rest(now);
+        self.state = State::Settling {
+            silent_at: end.saturating_add(self.zvz),
+            babble_at: end.saturating_add(self.config.babble()),
+        };
     }
 
     /// The partner answered DLE.
@@ -210,10 +221,14 @@ impl<const N: usize, const T: usize> Station<N, T> {
         self.count_conflict(gives_way);
         if gives_way {
             self.give_way(now);
-        } else if self.config.conflict == Conflict::Repeat && self.may_be_answer(now) {
-            self.next_connection(now, Cause::Conflict, Burst::NONE);
-        } else {
-            self.job.first_cause.get_or_insert(Cause::Conflict);
+            return;
+        }
+        self.job.first_cause.get_or_insert(Cause::Conflict);
+        if let State::AwaitDle { answer_at, .. } = &mut self.state
+            && self.config.conflict == Conflict::Repeat
+        {
+            // By then a partner that gave way waits for no data any more, of which STX would be.
+            *answer_at = now.saturating_add(self.zvz).min(*answer_at);
         }
     }
 

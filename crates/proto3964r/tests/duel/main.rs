@@ -3,8 +3,9 @@
 #![cfg(test)]
 
 mod line;
+mod scripts;
 
-use line::{Duel, Noise, Random, Tally};
+use line::{ADAPTER, Duel, Habits, Noise, Random, Tally};
 use proto3964r::{Config, IdleNoise, IllegalDle, Line, Priority};
 
 /// Telegrams of both sides together.
@@ -17,6 +18,8 @@ const NOISY: Noise = Noise {
     spacing: 400,
     answers: 100,
     late: 0,
+    late_ms: 2500,
+    seen: false,
 };
 
 /// Short ones and long ones, that differ, with many control characters.
@@ -56,7 +59,7 @@ fn fight(line: Line, noise: Noise) -> Tally {
         let mut random = Random::new(seed);
         let jobs = [jobs(&mut random, 0xA0), jobs(&mut random, 0xB0)];
         let configs = [Priority::High, Priority::Low].map(|priority| config(priority, line));
-        let mut duel = Duel::new(configs, jobs, noise, seed);
+        let mut duel = Duel::new(configs, jobs, ADAPTER, Habits::default(), noise, seed);
         duel.run();
         for end in &duel.ends {
             all.sent += end.tally.sent;
@@ -78,7 +81,7 @@ fn a_clean_line_carries_everything() {
     let clean = Noise {
         spacing: 0,
         answers: 0,
-        late: 0,
+        ..NOISY
     };
     for line in [adapters(), Line::Instant] {
         let tally = fight(line, clean);
