@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// A hand-held unit; every panel at one arbiter has its own.
+/// A hand-held pendant; every panel at one arbiter has its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -9,7 +9,7 @@ pub const MAX_COMMAND: usize = Model::Hbas.max_lcd_block();
 
 pub(crate) const STATUS_REQUEST: u8 = 0x23;
 
-/// What a lamp does.
+/// What an LED does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -39,7 +39,7 @@ impl Light {
 pub enum Command<'a> {
     /// 23h: the unit replies with its status.
     StatusRequest,
-    /// A lamp of the HBLS.
+    /// An LED of the HBLS.
     Led {
         /// Which; `None` all of them, which is inferred from the printed ranges.
         led: Option<Led>,

@@ -46,7 +46,7 @@ impl Timing {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Job {
-    /// A lamp of the HBLS.
+    /// An LED of the HBLS.
     Led {
         /// Which; `None` for all of them.
         led: Option<Led>,
@@ -79,7 +79,7 @@ pub enum SubmitError {
     /// The job before has not ended, or its outcome has not been polled.
     #[error("the job before has not ended, or its outcome has not been polled")]
     Busy,
-    /// The block or the lamp is another model's.
+    /// The block or the LED is another model's.
     #[error("the {model:?} has no such telegram")]
     Model {
         /// The model of the unit.
@@ -100,10 +100,10 @@ pub enum Event {
     Status {
         /// Keys and knobs.
         status: Status,
-        /// The unit was not known to be there before. It may have lost its display and lamps.
+        /// The unit was not known to be there before. It may have lost its display and LEDs.
         connected: bool,
     },
-    /// The lamp is set.
+    /// The LED is set.
     LedDone,
     /// The unit's word on the display block. The HBAS says it in its status.
     Lcd {

@@ -104,7 +104,7 @@ number! {
     Position, "position", 1..=12
 }
 number! {
-    /// A lamp of the HBLS, 1 to 12.
+    /// An LED of the HBLS, 1 to 12.
     Led, "LED", 1..=12
 }
 number! {

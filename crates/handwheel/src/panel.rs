@@ -1,4 +1,4 @@
-//! The operator's panel: what keys, knobs, wheel and enable switches of one unit do.
+//! The operator's panel: what keys, knobs, wheel and enabling switches of one unit do.
 
 mod input;
 mod picture;
@@ -48,13 +48,13 @@ enum Message {
     Lost,
 }
 
-/// The panel of one hand-held unit.
+/// The panel of one hand-held pendant.
 ///
 /// A pure state machine: [`handle`](Self::handle) takes what happened at the unit and at the
 /// machine and returns what the machine must do; [`screen`](Self::screen) says what the unit must
 /// show. Panels of several units share one [`Arbiter`].
 ///
-/// # The enable switches
+/// # The enabling switches
 /// Nothing moves unless both are down. When one comes up, or the stop button is pressed, or the
 /// link is lost, a motion stops at once, in every state. After power-on and after a lost link both
 /// must have been seen up before they count: a switch that is stuck or tied down enables nothing.
@@ -120,7 +120,7 @@ impl Panel {
         self.unit
     }
 
-    /// Whether both enable switches are down, and count.
+    /// Whether both enabling switches are down, and count.
     #[must_use]
     pub const fn is_enabled(&self) -> bool {
         self.left && self.right && self.armed
@@ -138,7 +138,7 @@ impl Panel {
         self.change
     }
 
-    /// For a lamp: flashing while something moves, on while both switches enable it.
+    /// For an LED: flashing while something moves, on while both switches enable it.
     #[must_use]
     pub const fn light(&self) -> Light {
         if self.is_moving() {

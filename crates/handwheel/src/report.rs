@@ -21,7 +21,7 @@ const HBLS_KEYS: u8 = 12;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Model {
-    /// 12 keys, two knobs, 12 lamps; answers a display block by an own telegram.
+    /// 12 keys, two knobs, 12 LEDs; answers a display block by an own telegram.
     #[default]
     Hbls,
     /// 20 keys; its status reply says whether the last display block was right.

@@ -1,4 +1,4 @@
-//! From wheel pulses to a calm speed.
+//! From wheel pulses to an even speed.
 
 use core::time::Duration;
 
@@ -18,7 +18,7 @@ pub const SAMPLE: Duration = Duration::from_millis(200);
 ///        sign(n) max                                  |n| >= max
 /// ```
 /// The printed formula leaves `|n| = max` open and takes the floor of the signed count, so that
-/// `f(-5)` is not `-f(5)`; both are put right here. `f` is odd, monotone and never above `max`,
+/// `f(-5)` is not `-f(5)`; both are corrected here. `f` is odd, monotone and never above `max`,
 /// and a count in the middle of a bin stays what it is. Everything is exact in integers: `f(n)`
 /// is [`level`](Self::level) half bins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -162,9 +162,9 @@ impl WheelSampler {
         if elapsed < SAMPLE.as_nanos() {
             return None;
         }
-        let way = counter.wrapping_sub(self.counter).cast_signed();
+        let moved = counter.wrapping_sub(self.counter).cast_signed();
         *self = Self::new(now, counter);
-        let scaled = i64::from(way).saturating_mul(SAMPLE.subsec_nanos().into());
+        let scaled = i64::from(moved).saturating_mul(SAMPLE.subsec_nanos().into());
         // After some 292 years nothing is left of any count.
         let elapsed = i64::try_from(elapsed).unwrap_or(i64::MAX);
         let mean = scaled.checked_div(elapsed)?;

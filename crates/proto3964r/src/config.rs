@@ -51,7 +51,7 @@ pub enum IdleNoise {
     NakAfterSilence,
     /// Sends NAK at once. `ProviewR`, Dust3964r.
     NakAtOnce,
-    /// Drops it. Linux line discipline, WAGO, ``ProtoCore``.
+    /// Drops it. Linux line discipline, WAGO, `ProtoCore`.
     Ignore,
 }
 

@@ -4,6 +4,7 @@ use core::fmt::Write as _;
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::io::{ErrorKind, Read as _, Write as _};
+use std::path::Path;
 use std::process::Command;
 use std::thread;
 
@@ -52,11 +53,12 @@ fn carry(mut from: TTYPort, mut to: TTYPort, over: &AtomicBool) {
     }
 }
 
-fn has_python() -> bool {
+/// A machine may lack Python, and the published package the other crate's station.
+fn has_peer() -> bool {
     let version = Command::new("python3").arg("--version").output();
-    let found = version.is_ok_and(|output| output.status.success());
+    let found = version.is_ok_and(|output| output.status.success()) && Path::new(PEER).exists();
     if !found {
-        eprintln!("skipped: there is no python3 to run the independent station");
+        eprintln!("skipped: there is no python3, or no {PEER}");
     }
     found
 }
@@ -90,7 +92,7 @@ fn assert_exchanged(report: &[String], sent_by: u8, received_from: u8) {
 }
 
 fn exchange(priority: &str, peer_priority: &str) {
-    if !has_python() {
+    if !has_peer() {
         return;
     }
     let (station_line, station_end) = TTYPort::pair().unwrap();

@@ -16,7 +16,7 @@ pub enum Input {
     Knob(Knob, Position),
     /// Where keys and knobs stand.
     Status(Status),
-    /// The enable switches, which have their own wires: true while down. Hand them in whenever one
+    /// The enabling switches, which have their own wires: true while down. Hand them in whenever one
     /// changes, and once at the start.
     Enable {
         /// The left one.
@@ -38,7 +38,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// What the driver's event means to a panel; `None` for the outcomes of display and lamps.
+    /// What the driver's event means to a panel; `None` for the outcomes of display and LEDs.
     #[must_use]
     pub const fn of_event(event: &Event) -> Option<Self> {
         match *event {

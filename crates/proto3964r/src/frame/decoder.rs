@@ -16,7 +16,8 @@ pub enum IllegalDle {
     /// Note the error and go on to the end of the block, then reject it. Siemens CP 440 manual.
     #[default]
     RejectAtEnd,
-    /// Reject the block at once, as ``ProtoCore`` does.
+    /// Reject the block at once, as `ProtoCore` does. What is left of it may then read as STX and a
+    /// block of its own, which passes the BCC once in 256.
     RejectAtOnce,
     /// Drop the DLE and keep the character, as the former Linux line discipline did.
     Accept,
