@@ -3,11 +3,9 @@
 mod circle;
 mod geometry;
 mod moves;
-mod published;
 mod steps;
 
 pub use moves::ArcMoves;
-pub use published::PublishedSteps;
 pub use steps::ArcSteps;
 
 use crate::{Rule, Turn};
@@ -167,14 +165,6 @@ impl Arc {
     /// At most 1 step off the circle by [`Rule::Textbook`], 0.7072 by [`Rule::Centred`].
     pub fn steps(&self, rule: Rule) -> ArcSteps {
         ArcSteps::new(self, &self.sweep(), rule)
-    }
-
-    /// The published walk: the same number of steps by [`Rule::Textbook`], counted, without a look
-    /// at the end. It ends elsewhere in about one of six arcs whose end was rounded to whole steps.
-    pub fn published_steps(&self) -> PublishedSteps {
-        let sweep = self.sweep();
-        let count = ArcSteps::new(self, &sweep, Rule::Textbook).remaining();
-        PublishedSteps::new(ArcSteps::endless(self, &sweep), count)
     }
 
     /// The arc as moves to any of eight neighbours: the midpoint arc.

@@ -21,7 +21,7 @@ mod line;
 mod moves;
 mod switches;
 
-pub use arc::{Arc, ArcError, ArcMoves, ArcSteps, PublishedSteps};
+pub use arc::{Arc, ArcError, ArcMoves, ArcSteps};
 pub use axes::{AxesError, AxesLine, AxesSteps, AxisStep, Dda, DdaTicks};
 pub use closed_loop::{AxisLoop, LoopError, LoopSettings, LostSteps, ScaleRatio};
 pub use feed::{Factor, Pace};

@@ -42,16 +42,6 @@ fn within(at: [i64; 2], radius_squared: u64, hundredths: i128) -> bool {
     off <= 200 * radius_up * hundredths + hundredths * hundredths
 }
 
-/// Whether both ways through what is left after `begun` moves give the same.
-fn folds_as_it_steps(mut moves: impl Iterator<Item = Move> + Clone, begun: usize) -> bool {
-    moves.by_ref().take(begun).for_each(drop);
-    let mut stepped = moves.clone();
-    let one_by_one: Vec<Move> = core::iter::from_fn(|| stepped.next()).collect();
-    let mut folded = Vec::new();
-    moves.for_each(|step| folded.push(step));
-    folded == one_by_one
-}
-
 proptest! {
     #[test]
     fn lines_follow_their_rule(to in [lengths(), lengths()]) {
@@ -160,23 +150,6 @@ proptest! {
         prop_assert_eq!((at, made), (wanted, left));
     }
 
-    /// `fold` has a loop of its own.
-    #[test]
-    fn folding_and_stepping_are_the_same(
-        start in [-40..=40, -40..=40],
-        end in [-40..=40, -40..=40],
-        turn in turns(),
-        begun in 0..50_usize,
-    ) {
-        let Ok(arc) = Arc::near(start, end, turn, 5000) else {
-            return Ok(());
-        };
-        for rule in RULES {
-            prop_assert!(folds_as_it_steps(arc.steps(rule), begun));
-        }
-        prop_assert!(folds_as_it_steps(arc.moves(), begun));
-    }
-
     /// Size hints count down, and the end is final.
     #[test]
     fn size_hints_are_exact(start in [-40..=40, -40..=40], end in [-40..=40, -40..=40], turn in turns()) {
@@ -210,9 +183,6 @@ fn the_largest_circle_crosses_axes_and_diagonals() {
     let circle = Arc::new([R, 0], [R, 0], Turn::CounterClockwise).unwrap();
     assert_eq!(circle.steps(Rule::Centred).remaining(), 8 << 30);
     assert_eq!(circle.steps(Rule::Textbook).remaining(), 8 << 30);
-    // Also where 32 bits of a size do not hold the count.
-    let published = circle.published_steps();
-    assert_eq!(published.remaining(), 8 << 30);
     // 4 sqrt(2) R moves, but for rounding.
     let moves = circle.moves().remaining();
     assert!(moves.abs_diff(6_074_000_999) < 8, "{moves}");

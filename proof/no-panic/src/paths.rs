@@ -35,18 +35,6 @@ fn arc_move(moves: &mut ArcMoves) -> Option<Move> {
 
 #[no_panic]
 #[inline(never)]
-fn arc_steps_fold(steps: ArcSteps) -> i32 {
-    steps.fold(0, |sum, step| sum ^ step.dx() ^ step.dy())
-}
-
-#[no_panic]
-#[inline(never)]
-fn arc_moves_fold(moves: ArcMoves) -> i32 {
-    moves.fold(0, |sum, step| sum ^ step.dx() ^ step.dy())
-}
-
-#[no_panic]
-#[inline(never)]
 fn arc_step_factor(steps: &ArcSteps) -> Factor {
     steps.factor()
 }
@@ -116,11 +104,9 @@ pub fn run() {
         let mut steps = black_box(arc.steps(Rule::Textbook));
         black_box(arc_step(&mut steps));
         black_box(arc_step_factor(&steps));
-        black_box(arc_steps_fold(steps));
         let mut moves = black_box(arc.moves());
         black_box(arc_move(&mut moves));
         black_box(arc_move_factor(&moves));
-        black_box(arc_moves_fold(moves));
     }
     if let Ok(line) = AxesLine::new(black_box([30, -7, 2])) {
         black_box(axes_step(&mut black_box(line.steps())));

@@ -71,23 +71,6 @@ impl Octant {
         }
     }
 
-    /// All moves. A loop for each kind spares half the instructions.
-    #[inline]
-    fn fold<B>(&mut self, init: B, mut f: impl FnMut(B, Move) -> B) -> B {
-        let mut octant = *self;
-        let mut folded = init;
-        while !octant.is_at_end() {
-            while octant.decision >= 0 && !octant.is_at_end() {
-                folded = f(folded, octant.take_diagonal());
-            }
-            while octant.decision < 0 && !octant.is_at_end() {
-                folded = f(folded, octant.take_straight());
-            }
-        }
-        *self = octant;
-        folded
-    }
-
     /// Moves still to come.
     const fn left(&self) -> u64 {
         self.straight_end.abs_diff(self.straight_by) >> 1
@@ -329,18 +312,6 @@ impl Iterator for ArcMoves {
         let (rest, step) = self.clone().beyond();
         *self = rest;
         step
-    }
-
-    // Octant by octant: the state of one stays in registers.
-    #[inline]
-    fn fold<B, F: FnMut(B, Move) -> B>(mut self, init: B, mut f: F) -> B {
-        let mut folded = init;
-        loop {
-            folded = self.octant.fold(folded, &mut f);
-            if !self.advance() {
-                return folded;
-            }
-        }
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -93,31 +93,6 @@ impl Passage {
         }
     }
 
-    /// All steps. A call in each branch spares the loop a third.
-    #[inline]
-    fn fold<B>(&mut self, init: B, mut f: impl FnMut(B, Move) -> B) -> B {
-        let mut passage = *self;
-        let mut folded = init;
-        loop {
-            if passage.decision >= 0 {
-                if passage.inward == passage.inward_end {
-                    break;
-                }
-                folded = f(folded, passage.rule_inward());
-            } else {
-                if passage.outward == passage.outward_end {
-                    break;
-                }
-                folded = f(folded, passage.rule_outward());
-            }
-        }
-        while let Some(step) = passage.other_axis() {
-            folded = f(folded, step);
-        }
-        *self = passage;
-        folded
-    }
-
     /// Steps still to come.
     fn left(&self) -> u64 {
         let inward = self.inward.wrapping_sub(self.inward_end);
@@ -132,8 +107,8 @@ struct Ahead {
     crossings: u8,
     turn: Turn,
     rule: Rule,
-    /// Whether the last passage stops at the end.
-    stops: bool,
+    /// Whether the steps left lead back to an end that the rule has passed.
+    is_back: bool,
     /// Where the path crosses the axes.
     crossing: i64,
     /// In the quadrant of the end.
@@ -145,20 +120,6 @@ struct Ahead {
 
 impl ArcSteps {
     pub(super) fn new(arc: &Arc, sweep: &Sweep, rule: Rule) -> Self {
-        Self::from_parts(arc, sweep, rule, true)
-    }
-
-    /// Without an end, by the textbook rule.
-    pub(super) fn endless(arc: &Arc, sweep: &Sweep) -> Self {
-        let sweep = Sweep {
-            // A published walk is at most 4 crossings long, and may miss its end by one more.
-            crossings: 6,
-            ..*sweep
-        };
-        Self::from_parts(arc, &sweep, Rule::Textbook, false)
-    }
-
-    fn from_parts(arc: &Arc, sweep: &Sweep, rule: Rule, stops: bool) -> Self {
         let square = arc.radius_squared;
         let crossing = match rule {
             // F >= 0 at a = 1. At R = 1 the path goes through the centre, and from there out by 1.
@@ -187,7 +148,7 @@ impl ArcSteps {
                 crossings: sweep.crossings,
                 turn: arc.turn,
                 rule,
-                stops,
+                is_back: false,
                 crossing,
                 end: sweep.end,
                 steps: 0,
@@ -244,7 +205,7 @@ impl ArcSteps {
             return true;
         }
         let end = self.ahead.end;
-        if !self.ahead.stops || place == end {
+        if self.ahead.is_back || place == end {
             return false;
         }
         // The rule never comes back: what is missing lies against both of its moves.
@@ -256,7 +217,7 @@ impl ArcSteps {
             inward: self.passage.quadrant.of_signs(1, 0).unwrap_or(Move::Right),
             outward: self.passage.quadrant.of_signs(0, -1).unwrap_or(Move::Down),
         };
-        self.ahead.stops = false;
+        self.ahead.is_back = true;
         self.ahead.steps = 0;
         self.passage.inward = back.a.wrapping_mul(2);
         self.passage.inward_end = 0;
@@ -294,7 +255,7 @@ impl ArcSteps {
     #[inline]
     pub fn factor(&self) -> Factor {
         let at_last = self.ahead.crossings == 0 && self.passage.left() == 0;
-        if at_last || self.ahead.is_back() {
+        if at_last || self.ahead.is_back {
             return Factor::ONE;
         }
         // inward + outward = 2 (a + b) under both rules.
@@ -311,18 +272,13 @@ impl ArcSteps {
 impl Ahead {
     /// Where the passage in hand ends.
     const fn target(&self) -> Place {
-        match (self.crossings, self.stops) {
-            (0, true) => self.end,
-            _ => Place {
-                a: 0,
-                b: self.crossing,
-            },
+        if self.crossings == 0 {
+            return self.end;
         }
-    }
-
-    /// Whether the steps left lead back to an end that the rule has passed.
-    const fn is_back(&self) -> bool {
-        self.crossings == 0 && !self.stops
+        Place {
+            a: 0,
+            b: self.crossing,
+        }
     }
 
     /// Steps after the passage from `from`.
@@ -330,9 +286,6 @@ impl Ahead {
         // A whole quadrant is at most 2^31 steps.
         let quadrant = self.crossing.unsigned_abs().wrapping_mul(2);
         let whole = |crossings: u8| u64::from(crossings).wrapping_mul(quadrant);
-        if !self.stops {
-            return whole(self.crossings);
-        }
         match self.crossings.checked_sub(1) {
             // Out, and in or back to the end.
             Some(between) => whole(between)
@@ -359,18 +312,6 @@ impl Iterator for ArcSteps {
             return step;
         }
         Some(self.passage.rule_step())
-    }
-
-    // Passage by passage: the state of one stays in registers.
-    #[inline]
-    fn fold<B, F: FnMut(B, Move) -> B>(mut self, init: B, mut f: F) -> B {
-        let mut folded = init;
-        loop {
-            folded = self.passage.fold(folded, &mut f);
-            if !self.advance() {
-                return folded;
-            }
-        }
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
