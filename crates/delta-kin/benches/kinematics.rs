@@ -18,7 +18,7 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, JointRange, Measured, Pace, Path};
+use delta_kin::{Delta, JointRange, Measured, Path, SpeedLimits};
 
 use bare::{BASE, LOWER, PLATFORM, UPPER};
 use eleven::eleven;
@@ -121,14 +121,16 @@ fn follow(c: &mut Criterion) {
         Point3::new(80.0, 20.0, -280.0),
     );
     let line = line.expect("points are finite");
-    let pace = Pace::new(200.0, [3.0; 3]).expect("pace is good");
-    let count = delta.follow(line, 0.01, pace).map_or(0, |way| way.len());
+    let limits = SpeedLimits::new(200.0, [3.0; 3]).expect("limits are good");
+    let count = delta
+        .follow(line, 0.01, limits)
+        .map_or(0, |path| path.remaining());
     let mut group = c.benchmark_group("follow");
-    group.throughput(Throughput::Elements(u64::try_from(count).unwrap_or(0)));
+    group.throughput(Throughput::Elements(count));
     group.bench_function("waypoints, checked and handed out", |b| {
         b.iter(|| {
             delta
-                .follow(black_box(line), 0.01, pace)
+                .follow(black_box(line), 0.01, limits)
                 .map_or(0.0, |way| way.map(|waypoint| waypoint.duration_s).sum())
         });
     });

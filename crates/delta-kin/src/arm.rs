@@ -1,4 +1,4 @@
-//! The three arms by name, their knees and their geometry.
+//! The three arms by name, their elbows and their geometry.
 
 use core::fmt;
 
@@ -40,13 +40,13 @@ impl fmt::Display for Arm {
     }
 }
 
-/// On which side of the line from hip to wrist an arm's knee lies.
+/// On which side of the line from shoulder to wrist an arm's elbow lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "two circles meet in two points")]
-pub enum Knee {
+pub enum Elbow {
     /// Outside, as Delta robots are built.
     Out,
     /// Inside, towards the axis of the base.
@@ -57,11 +57,11 @@ pub enum Knee {
 ///
 /// ```text
 ///   axis of the base
-///    :<------ base ----->o hip, a motor
+///    :<------ base ----->o shoulder, a motor
 ///    :                    \
 ///    :                     \  upper
 ///    :                  θ   \
-///    :<- platform ->o---     o knee       θ from straight down, outward positive
+///    :<- platform ->o---     o elbow       θ from straight down, outward positive
 ///                wrist  \---/
 ///                        lower
 /// ```
@@ -74,13 +74,13 @@ pub struct ArmGeometry<T = f64> {
     /// Direction of the arm round the base's axis, in radians from X, counter-clockwise
     /// seen from above.
     pub azimuth: T,
-    /// R: from the base's axis to the hip.
+    /// R: from the base's axis to the shoulder.
     pub base: T,
     /// r: from the platform's centre to the wrist.
     pub platform: T,
-    /// Lb: upper arm, from hip to knee.
+    /// Lb: upper arm, from shoulder to elbow.
     pub upper: T,
-    /// La: lower arm, the rods from knee to wrist.
+    /// La: lower arm, the rods from elbow to wrist.
     pub lower: T,
     /// The θ, from straight down and outward positive, at which the arm's angle reads zero.
     pub zero: T,

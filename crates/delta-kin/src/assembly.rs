@@ -1,4 +1,4 @@
-//! Assembly modes: on which side of the knees' plane the platform is.
+//! Assembly modes: on which side of the elbows' plane the platform is.
 
 use core::fmt;
 
@@ -11,7 +11,7 @@ use crate::{Delta, InverseError, ZAxis};
 
 /// Which of the two places where the lower arms meet the platform takes.
 ///
-/// They are mirror images in the plane of the knees (each moved inward by the platform's radius),
+/// They are mirror images in the plane of the elbows (each moved inward by the platform's radius),
 /// and the platform comes from one to the other only where the rods lie in that plane, a parallel
 /// singularity. So a mode is a side of the plane, counted in the order of the arms: it keeps its
 /// name wherever the machine can go without passing a singularity, also where the plane tilts
@@ -22,7 +22,7 @@ use crate::{Delta, InverseError, ZAxis};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "three spheres meet in two points")]
 pub enum AssemblyMode {
-    /// Below the knees that stand round the axis in the order of their azimuths: as Delta robots
+    /// Below the elbows that stand round the axis in the order of their azimuths: as Delta robots
     /// hang.
     #[default]
     Lower,
@@ -112,7 +112,7 @@ impl<T: RealField + Trig> Delta<T> {
             return Err(InverseError::Collinear);
         }
         let beyond = -tripod.volume * self.side() / tripod.normal.norm();
-        let [l1, l2, l3] = self.legs().each_ref().map(|leg| leg.lower);
+        let [l1, l2, l3] = self.prepared().each_ref().map(|prepared| prepared.lower);
         let rounding = l1.min(l2).min(l3) * self.tolerance() * half();
         if beyond <= T::zero() || beyond * beyond <= rounding {
             return Ok(());
@@ -130,9 +130,9 @@ impl<T: RealField + Trig> Delta<T> {
             AssemblyMode::Upper => local.z < T::zero(),
         };
         let mirrored = Vector3::new(local.x, local.y, -local.z);
-        let rods = zip(self.legs().each_ref(), self.working_mode()).map(|(leg, knee)| {
-            let triangle = leg.triangle(&mirrored).at_edge();
-            leg.rod(&triangle, &triangle.heading(knee))
+        let rods = zip(self.prepared().each_ref(), self.working_mode()).map(|(prepared, elbow)| {
+            let triangle = prepared.triangle(&mirrored).at_edge();
+            prepared.rod(&triangle, &triangle.heading(elbow))
         });
         (is_across && self.is_assembled(rods)).then(|| match self.z() {
             ZAxis::Up => ZAxis::Down,

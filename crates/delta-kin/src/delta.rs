@@ -5,14 +5,14 @@ use trig_kernels::{Trig, sin_cos_lanes};
 
 use crate::arm::zip;
 use crate::geometry::{checked_span, order};
-use crate::leg::Leg;
-use crate::{Arm, ArmGeometry, AssemblyMode, GeometryError, JointRange, Knee, Workspace};
+use crate::prepared::PreparedArm;
+use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange, Workspace};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
-/// The frame is that of [Delta thesis] unless set otherwise: z up from the plane of the hips,
+/// The frame is that of [Delta thesis] unless set otherwise: z up from the plane of the shoulders,
 /// the platform hanging at z < 0; angles zero straight down, outward (upward) positive. The
-/// machine works with its knees out and its platform below them; the other solutions are another
+/// machine works with its elbows out and its platform below them; the other solutions are another
 /// machine's, asked for by name with [`with_working_mode`](Self::with_working_mode) and
 /// [`with_assembly_mode`](Self::with_assembly_mode). Each `with_` method returns the changed
 /// machine:
@@ -33,12 +33,12 @@ pub struct Delta<T: RealField = f64> {
     arms: [ArmGeometry<T>; 3],
     z: ZAxis,
     positive: Positive,
-    ranges: [Option<JointRange<T>>; 3],
-    max_lean: Option<T>,
-    working_mode: [Knee; 3],
+    ranges: [JointRange<T>; 3],
+    max_swivel: Option<T>,
+    working_mode: [Elbow; 3],
     assembly_mode: AssemblyMode,
     /// What follows from the above, ready for use.
-    legs: [Leg<T>; 3],
+    prepared: [PreparedArm<T>; 3],
     span: T,
     tolerance: T,
     /// 1 where the azimuths go round counter-clockwise, else -1.
@@ -103,16 +103,18 @@ impl<T: RealField + Trig> Delta<T> {
             arms,
             z: ZAxis::default(),
             positive: Positive::default(),
-            ranges: [None; 3],
-            max_lean: None,
-            working_mode: [Knee::Out; 3],
+            ranges: [JointRange::unlimited(); 3],
+            max_swivel: None,
+            working_mode: [Elbow::Out; 3],
             assembly_mode: AssemblyMode::Lower,
-            legs: arms.map(|arm| Leg::new(&arm, None, None, Positive::Outward)),
+            prepared: arms.map(|arm| {
+                PreparedArm::new(&arm, JointRange::unlimited(), None, Positive::Outward)
+            }),
             span,
             tolerance: T::zero(),
             order: order(&arms)?,
         };
-        Ok(delta.prepared())
+        Ok(delta.prepare())
     }
 
     /// The machine with other arms, in the same frame and with the same limits.
@@ -124,12 +126,12 @@ impl<T: RealField + Trig> Delta<T> {
             z: self.z,
             positive: self.positive,
             ranges: self.ranges,
-            max_lean: self.max_lean,
+            max_swivel: self.max_swivel,
             working_mode: self.working_mode,
             assembly_mode: self.assembly_mode,
             ..Self::from_arms(arms)?
         };
-        Ok(delta.prepared())
+        Ok(delta.prepare())
     }
 
     /// The machine with all angles zero at `theta`, in radians from straight down, outward
@@ -145,7 +147,7 @@ impl<T: RealField + Trig> Delta<T> {
     #[must_use]
     pub fn with_positive(mut self, positive: Positive) -> Self {
         self.positive = positive;
-        self.prepared()
+        self.prepare()
     }
 
     /// The machine with the given direction of z.
@@ -158,36 +160,36 @@ impl<T: RealField + Trig> Delta<T> {
     /// The machine with the same joint range for all arms, as their angles read.
     #[must_use]
     pub fn with_range(self, range: JointRange<T>) -> Self {
-        self.with_ranges([Some(range); 3])
+        self.with_ranges([range; 3])
     }
 
-    /// The machine with a joint range for each arm, as their angles read; `None`: no limit.
+    /// The machine with a joint range for each arm, as their angles read.
     #[must_use]
-    pub fn with_ranges(mut self, ranges: [Option<JointRange<T>>; 3]) -> Self {
+    pub fn with_ranges(mut self, ranges: [JointRange<T>; 3]) -> Self {
         self.ranges = ranges;
-        self.prepared()
+        self.prepare()
     }
 
-    /// The machine with ball joints that let the rods lean by `max_lean` radians.
+    /// The machine with ball joints that let the rods swivel by `max_swivel` radians.
     ///
-    /// The studs of the balls lie along the motor's axis, at knee and wrist alike, and a rod
-    /// swings about them freely; out of the plane square to them it leans by at most this
+    /// The studs of the balls lie along the motor's axis, at elbow and wrist alike, and a rod
+    /// swings about them freely; out of the plane square to them it swivels by at most this
     /// angle: the cone that the joint's housing leaves.
     ///
     /// # Errors
-    /// [`GeometryError::Lean`] unless 0 < `max_lean` < π/2.
-    pub fn with_ball_joints(mut self, max_lean: T) -> Result<Self, GeometryError<T>> {
-        if !(max_lean > T::zero() && max_lean < T::frac_pi_2()) {
-            return Err(GeometryError::Lean { max_lean });
+    /// [`GeometryError::Swivel`] unless 0 < `max_swivel` < π/2.
+    pub fn with_ball_joints(mut self, max_swivel: T) -> Result<Self, GeometryError<T>> {
+        if !(max_swivel > T::zero() && max_swivel < T::frac_pi_2()) {
+            return Err(GeometryError::Swivel { max_swivel });
         }
-        self.max_lean = Some(max_lean);
-        Ok(self.prepared())
+        self.max_swivel = Some(max_swivel);
+        Ok(self.prepare())
     }
 
-    /// The machine with each knee on the side named: the working mode in which it is built, knees
+    /// The machine with each elbow on the side named: the working mode in which it is built, elbows
     /// out unless set. It is left only through a serial singularity, an arm stretched or folded.
     #[must_use]
-    pub const fn with_working_mode(mut self, working_mode: [Knee; 3]) -> Self {
+    pub const fn with_working_mode(mut self, working_mode: [Elbow; 3]) -> Self {
         self.working_mode = working_mode;
         self
     }
@@ -200,10 +202,10 @@ impl<T: RealField + Trig> Delta<T> {
         self
     }
 
-    fn prepared(mut self) -> Self {
-        self.legs = zip(self.arms, self.ranges)
-            .map(|(arm, range)| Leg::new(&arm, range, self.max_lean, self.positive));
-        let [first, second, third] = self.legs.each_ref().map(Leg::angle_rounding);
+    fn prepare(mut self) -> Self {
+        self.prepared = zip(self.arms, self.ranges)
+            .map(|(arm, range)| PreparedArm::new(&arm, range, self.max_swivel, self.positive));
+        let [first, second, third] = self.prepared.each_ref().map(PreparedArm::angle_rounding);
         let steps = self.span * nalgebra::convert(ROUNDING_STEPS);
         self.tolerance = T::default_epsilon() * (steps + first.max(second).max(third));
         self
@@ -227,25 +229,25 @@ impl<T: RealField + Trig> Delta<T> {
         self.positive
     }
 
-    /// The joint ranges, as the angles read; `None`: no limit.
+    /// The joint ranges, as the angles read.
     #[must_use]
-    pub const fn ranges(&self) -> &[Option<JointRange<T>>; 3] {
+    pub const fn ranges(&self) -> &[JointRange<T>; 3] {
         &self.ranges
     }
 
-    /// By how many radians the rods may lean at their ball joints; `None`: no limit.
+    /// By how many radians the rods may swivel at their ball joints; `None`: no limit.
     #[must_use]
-    pub const fn max_lean(&self) -> Option<T> {
-        self.max_lean
+    pub const fn max_swivel(&self) -> Option<T> {
+        self.max_swivel
     }
 
-    /// On which side of the line from hip to wrist each knee is.
+    /// On which side of the line from shoulder to wrist each elbow is.
     #[must_use]
-    pub const fn working_mode(&self) -> [Knee; 3] {
+    pub const fn working_mode(&self) -> [Elbow; 3] {
         self.working_mode
     }
 
-    /// On which side of the knees' plane the platform is.
+    /// On which side of the elbows' plane the platform is.
     #[must_use]
     pub const fn assembly_mode(&self) -> AssemblyMode {
         self.assembly_mode
@@ -283,21 +285,22 @@ impl<T: RealField + Trig> Delta<T> {
         }
     }
 
-    pub(crate) const fn legs(&self) -> &[Leg<T>; 3] {
-        &self.legs
+    pub(crate) const fn prepared(&self) -> &[PreparedArm<T>; 3] {
+        &self.prepared
     }
 
     /// The thesis' angles, from the angles as they read.
     #[inline]
     pub(crate) fn thetas(&self, angles: Vector3<T>) -> [T; 3] {
-        zip(self.legs, angles.into()).map(|(leg, angle)| leg.theta(angle))
+        zip(self.prepared, angles.into()).map(|(prepared, angle)| prepared.theta(angle))
     }
 
     /// Centres of the three spheres on which the platform's centre lies.
     #[inline]
     pub(crate) fn centres_at(&self, thetas: [T; 3]) -> [Vector3<T>; 3] {
         let (sines, cosines) = sin_cos_lanes(thetas);
-        zip(self.legs.each_ref(), zip(sines, cosines)).map(|(leg, theta)| leg.centre(theta))
+        zip(self.prepared.each_ref(), zip(sines, cosines))
+            .map(|(prepared, theta)| prepared.centre(theta))
     }
 
     /// A point or vector in the thesis' frame, or from it: the same either way.

@@ -37,16 +37,16 @@ pub struct Waypoint<T: RealField = f64> {
 /// How fast the platform and the arms may move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Pace<T = f64> {
+pub struct SpeedLimits<T = f64> {
     feed: T,
     max_rates: [T; 3],
 }
 
-impl<T: RealField + Copy> Pace<T> {
+impl<T: RealField + Copy> SpeedLimits<T> {
     /// A feed of the platform in length per second, and the greatest rate of each arm in rad/s.
     ///
     /// # Errors
-    /// [`FollowError::Pace`] unless all are within 1/h²..=h², h the fourth root of the largest
+    /// [`FollowError::SpeedLimits`] unless all are within 1/h²..=h², h the fourth root of the largest
     /// number divided by 32 (f64: 8e-152..=1e151, f32: 6e-17..=1.8e16).
     pub fn new(feed: T, max_rates: [T; 3]) -> Result<Self, FollowError<T>> {
         let [first, second, third] = max_rates;
@@ -60,7 +60,7 @@ impl<T: RealField + Copy> Pace<T> {
             let min = max.recip();
             // Written so that NaN is refused too.
             if !(value >= min && value <= max) {
-                return Err(FollowError::Pace {
+                return Err(FollowError::SpeedLimits {
                     name,
                     value,
                     min,
@@ -95,7 +95,7 @@ pub enum FollowError<T: RealField + Copy = f64> {
     },
     /// A feed or rate is not a number between the stated ends.
     #[error("{name} {} is not within {}..={}", Rounded(*.value), Rounded(*.min), Rounded(*.max))]
-    Pace {
+    SpeedLimits {
         /// `feed` or the rate of an arm.
         name: &'static str,
         /// The value given.
@@ -154,7 +154,7 @@ const LEAST_TOLERANCE: f64 = 64.0;
 impl<T: RealField + Trig> Delta<T> {
     /// Joint waypoints along `path`, in the machine's modes, such that the straight joint move from
     /// each to the next keeps the platform within `tolerance` of the path, in the time that
-    /// `pace` allows.
+    /// `limits` allows.
     ///
     /// The tolerance is a guarantee: a step is taken when its
     /// [`chord_bound`](Self::chord_bound), which is proven and not sampled, plus the height of
@@ -165,7 +165,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// the tolerance. The working mode is kept at each waypoint, the assembly mode all the way.
     ///
     /// The path is walked once before anything is handed out, so that an error comes first
-    /// and the number of waypoints is known. Memory does not grow with the path.
+    /// and the number of waypoints is known: [`Follow::remaining`]. Memory does not grow with the path.
     ///
     /// # Errors
     /// [`FollowError`]; the place named is the first along the path.
@@ -173,7 +173,7 @@ impl<T: RealField + Trig> Delta<T> {
         &self,
         path: Path<T>,
         tolerance: T,
-        pace: Pace<T>,
+        limits: SpeedLimits<T>,
     ) -> Result<Follow<T>, FollowError<T>> {
         let rounding = self.tolerance() * nalgebra::convert(LEAST_TOLERANCE);
         if !(tolerance.is_finite() && tolerance > rounding) {
@@ -182,13 +182,13 @@ impl<T: RealField + Trig> Delta<T> {
                 rounding,
             });
         }
-        let walk = Walk::new(*self, path, tolerance, pace);
-        let mut waypoints = 0;
+        let walk = Walk::new(*self, path, tolerance, limits);
+        let mut remaining: u64 = 0;
         for waypoint in walk.clone() {
             waypoint?;
-            waypoints += 1;
+            remaining = remaining.saturating_add(1);
         }
-        Ok(Follow { walk, waypoints })
+        Ok(Follow { walk, remaining })
     }
 }
 
@@ -197,7 +197,15 @@ impl<T: RealField + Trig> Delta<T> {
 #[must_use = "iterators are lazy"]
 pub struct Follow<T: RealField = f64> {
     walk: Walk<T>,
-    waypoints: usize,
+    remaining: u64,
+}
+
+impl<T: RealField> Follow<T> {
+    /// Waypoints still to come.
+    #[must_use]
+    pub const fn remaining(&self) -> u64 {
+        self.remaining
+    }
 }
 
 impl<T: RealField + Trig> Iterator for Follow<T> {
@@ -206,15 +214,16 @@ impl<T: RealField + Trig> Iterator for Follow<T> {
     fn next(&mut self) -> Option<Waypoint<T>> {
         // The walk has no error: it is the one that was checked.
         let waypoint = self.walk.next()?.ok()?;
-        self.waypoints = self.waypoints.saturating_sub(1);
+        self.remaining = self.remaining.saturating_sub(1);
         Some(waypoint)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.waypoints, Some(self.waypoints))
+        match usize::try_from(self.remaining) {
+            Ok(remaining) => (remaining, Some(remaining)),
+            Err(_) => (usize::MAX, None),
+        }
     }
 }
-
-impl<T: RealField + Trig> ExactSizeIterator for Follow<T> {}
 
 impl<T: RealField + Trig> FusedIterator for Follow<T> {}

@@ -14,16 +14,16 @@ use crate::{Arm, Delta};
 #[non_exhaustive]
 pub enum ForwardError<T: RealField + Copy = f64> {
     /// An angle is not a number of the stated size, or is not when counted from straight down.
-    #[error("{arm}: angle {} rad is not within ±{} rad", Rounded(*.angle), Rounded(*.max))]
+    #[error("{arm}: angle {} rad is not within ±{} rad", Rounded(*.angle), Rounded(*.largest))]
     Angle {
         /// The arm.
         arm: Arm,
         /// The angle given.
         angle: T,
         /// The greatest angle from straight down, either way: 1/√ε.
-        max: T,
+        largest: T,
     },
-    /// The knees are so far apart that the lower arms cannot meet.
+    /// The elbows are so far apart that the lower arms cannot meet.
     #[error("the lower arms do not meet: that of {arm} ends {} before the others' line", Rounded(*.by))]
     Apart {
         /// The arm with the shortest lower arm.
@@ -32,9 +32,9 @@ pub enum ForwardError<T: RealField + Copy = f64> {
         /// equal lower arms, by how much each is too short.
         by: T,
     },
-    /// The knees, each moved inward by the platform's radius, lie on a line: the platform could
+    /// The elbows, each moved inward by the platform's radius, lie on a line: the platform could
     /// turn about it.
-    #[error("the knees, moved inward by the platform's radius, lie on a line")]
+    #[error("the elbows, moved inward by the platform's radius, lie on a line")]
     Collinear,
 }
 
@@ -121,7 +121,7 @@ const NEWTON_STEPS: u32 = 12;
 impl<T: RealField + Trig> Delta<T> {
     /// The position of the platform's centre, in the machine's assembly mode.
     ///
-    /// It lies on three spheres round the knees, moved inward by the platform's radius, each
+    /// It lies on three spheres round the elbows, moved inward by the platform's radius, each
     /// with its own lower arm as radius. With c their centres, the first that of the shortest
     /// lower arm, and e1, e2 the directions from it to the second and across to the third:
     ///
@@ -141,7 +141,7 @@ impl<T: RealField + Trig> Delta<T> {
     #[inline]
     pub fn forward(&self, angles: Vector3<T>) -> Result<Point3<T>, ForwardError<T>> {
         let thetas = self.thetas(angles);
-        let lowers = self.legs().each_ref().map(|leg| leg.lower);
+        let lowers = self.prepared().each_ref().map(|prepared| prepared.lower);
         let (shortest, _) = least(lowers);
         let centres = turned(self.centres_at(thetas), shortest);
         let lowers = turned(lowers, shortest);
@@ -172,10 +172,14 @@ impl<T: RealField + Trig> Delta<T> {
 
     #[cold]
     fn check_angles(&self, angles: Vector3<T>, thetas: [T; 3]) -> Result<(), ForwardError<T>> {
-        let max = widest();
+        let largest = widest();
         for (arm, (angle, theta)) in zip(Arm::ALL, zip(angles.into(), thetas)) {
-            if !is_within(theta, max) {
-                return Err(ForwardError::Angle { arm, angle, max });
+            if !is_within(theta, largest) {
+                return Err(ForwardError::Angle {
+                    arm,
+                    angle,
+                    largest,
+                });
             }
         }
         Ok(())

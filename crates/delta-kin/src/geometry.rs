@@ -31,7 +31,7 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         max: T,
     },
     /// An angle is not a number of the stated size.
-    #[error("{arm}: {name} {} rad is not within ±{} rad", Rounded(*.angle), Rounded(*.max))]
+    #[error("{arm}: {name} {} rad is not within ±{} rad", Rounded(*.angle), Rounded(*.largest))]
     Angle {
         /// The arm.
         arm: Arm,
@@ -40,9 +40,9 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         /// The angle given.
         angle: T,
         /// Greatest angle allowed, either way.
-        max: T,
+        largest: T,
     },
-    /// Two arms stand at one azimuth: their knees have no order round the axis, and so the
+    /// Two arms stand at one azimuth: their elbows have no order round the axis, and so the
     /// assembly modes no names.
     #[error("{first} and {second} stand at the same azimuth")]
     SameAzimuth {
@@ -54,19 +54,21 @@ pub enum GeometryError<T: RealField + Copy = f64> {
     /// A joint range is empty, not finite, too far from zero or wider than a turn.
     #[error(
         "joint range {}..={} rad is empty, wider than a turn or not within ±{} rad",
-        Rounded(*.min), Rounded(*.max), Rounded(widest::<T>())
+        Rounded(*.min), Rounded(*.max), Rounded(*.largest)
     )]
-    Range {
+    JointRange {
         /// Lower end given, in radians.
         min: T,
         /// Upper end given, in radians.
         max: T,
+        /// The greatest angle, either way.
+        largest: T,
     },
     /// A ball joint's limit is not an angle that means something.
-    #[error("ball joints may lean by {} rad, which is not above 0 and below π/2", Rounded(*.max_lean))]
-    Lean {
+    #[error("ball joints may swivel by {} rad, which is not above 0 and below π/2", Rounded(*.max_swivel))]
+    Swivel {
         /// The limit given, in radians.
-        max_lean: T,
+        max_swivel: T,
     },
 }
 
@@ -110,15 +112,15 @@ fn check_lengths<T: RealField + Copy>(
 }
 
 fn check_angles<T: RealField + Copy>(arms: &[ArmGeometry<T>; 3]) -> Result<(), GeometryError<T>> {
-    let max = widest();
+    let largest = widest();
     for (arm, geometry) in zip(Arm::ALL, *arms) {
         for (name, angle) in [("azimuth", geometry.azimuth), ("zero", geometry.zero)] {
-            if !is_within(angle, max) {
+            if !is_within(angle, largest) {
                 return Err(GeometryError::Angle {
                     arm,
                     name,
                     angle,
-                    max,
+                    largest,
                 });
             }
         }

@@ -6,7 +6,7 @@ use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, atan2};
 
 use crate::arm::{least, zip};
-use crate::leg::{Leg, Triangle, middle, thetas};
+use crate::prepared::{PreparedArm, Triangle, middle, thetas};
 use crate::rounded::Rounded;
 use crate::scale::max_value;
 use crate::{Arm, AssemblyMode, Delta, ZAxis};
@@ -51,10 +51,10 @@ pub enum InverseError<T: RealField + Copy = f64> {
         /// The arm.
         arm: Arm,
     },
-    /// The knees would lie on a line, each moved inward by the platform's radius: the arms do not
+    /// The elbows would lie on a line, each moved inward by the platform's radius: the arms do not
     /// hold the platform, it could turn about that line.
     #[error(
-        "the knees, moved inward by the platform's radius, lie on a line: nothing holds the platform"
+        "the elbows, moved inward by the platform's radius, lie on a line: nothing holds the platform"
     )]
     Collinear,
     /// The arms reach the point, but only in the other assembly mode: with these angles
@@ -68,16 +68,16 @@ pub enum InverseError<T: RealField + Copy = f64> {
         /// singular surface.
         z: Option<ZAxis>,
     },
-    /// The point is within reach, but a rod would lean too far for its ball joints.
+    /// The point is within reach, but a rod would swivel too far for its ball joints.
     #[error(
-        "{arm} would lean by {} rad at its ball joints, more than {} rad",
-        Rounded(*.lean), Rounded(*.max)
+        "{arm} would swivel by {} rad at its ball joints, more than {} rad",
+        Rounded(*.swivel), Rounded(*.max)
     )]
     BallJoint {
         /// The arm.
         arm: Arm,
-        /// How far the rods would lean out of the arm's plane, in radians.
-        lean: T,
+        /// How far the rods would swivel out of the arm's plane, in radians.
+        swivel: T,
         /// How far they may, in radians.
         max: T,
     },
@@ -133,8 +133,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// p = D - u,   h² = p² + z²
     /// k = (La² - w² - (h - Lb)²) - ((h + Lb)² - La² + w²)
     /// m = 2 √(La² - w² - (h - Lb)²) √((h + Lb)² - La² + w²)
-    /// knee out: θ = atan2(k p - m z, k z + m p)
-    /// knee in:  θ = atan2(k p + m z, k z - m p)
+    /// elbow out: θ = atan2(k p - m z, k z + m p)
+    /// elbow in:  θ = atan2(k p + m z, k z - m p)
     /// ```
     ///
     /// Nothing is divided by what can vanish, and the two solutions never change places. Where a
@@ -150,20 +150,21 @@ impl<T: RealField + Trig> Delta<T> {
     #[inline]
     pub fn inverse(&self, point: Point3<T>) -> Result<Vector3<T>, InverseError<T>> {
         let local = self.flip(point.coords);
-        let arms = zip(self.legs().each_ref(), self.working_mode()).map(|(leg, knee)| {
-            let triangle = leg.triangle(&local);
-            (leg, triangle, triangle.heading(knee))
+        let arms = zip(self.prepared().each_ref(), self.working_mode()).map(|(prepared, elbow)| {
+            let triangle = prepared.triangle(&local);
+            (prepared, triangle, triangle.heading(elbow))
         });
         let thetas = thetas(arms.map(|(_, _, heading)| heading));
-        let angles = zip(self.legs().each_ref(), thetas).map(|(leg, theta)| leg.angle(theta));
-        let is_admitted = zip(arms, angles).map(|((leg, triangle, _), angle)| {
+        let angles =
+            zip(self.prepared().each_ref(), thetas).map(|(prepared, theta)| prepared.angle(theta));
+        let is_admitted = zip(arms, angles).map(|((prepared, triangle, _), angle)| {
             triangle.is_within_reach()
-                & (leg.min <= angle)
-                & (angle <= leg.max)
-                & (triangle.side.abs() <= leg.max_side)
+                & (prepared.min <= angle)
+                & (angle <= prepared.max)
+                & (triangle.side.abs() <= prepared.max_side)
         });
         let [first, second, third] = is_admitted;
-        let rods = arms.map(|(leg, triangle, heading)| leg.rod(&triangle, &heading));
+        let rods = arms.map(|(prepared, triangle, heading)| prepared.rod(&triangle, &heading));
         if first & second & third & self.is_assembled(rods) {
             return Ok(Vector3::from(angles));
         }
@@ -181,9 +182,9 @@ impl<T: RealField + Trig> Delta<T> {
             let (x, y, z) = (point.x, point.y, point.z);
             return Err(InverseError::NotFinite { x, y, z });
         }
-        let arms = zip(Arm::ALL, self.legs().each_ref())
-            .map(|(arm, leg)| (arm, leg, leg.triangle(&local)));
-        worst(arms.map(|(arm, leg, triangle)| self.out_of_reach(arm, leg, &triangle)))?;
+        let arms = zip(Arm::ALL, self.prepared().each_ref())
+            .map(|(arm, prepared)| (arm, prepared, prepared.triangle(&local)));
+        worst(arms.map(|(arm, prepared, triangle)| self.out_of_reach(arm, prepared, &triangle)))?;
         for (arm, _, triangle) in arms {
             if triangle.h <= self.tolerance() {
                 return Err(InverseError::AnyAngle { arm });
@@ -191,14 +192,19 @@ impl<T: RealField + Trig> Delta<T> {
         }
         let thetas = thetas(
             zip(arms, self.working_mode())
-                .map(|((_, _, triangle), knee)| triangle.at_edge().heading(knee)),
+                .map(|((_, _, triangle), elbow)| triangle.at_edge().heading(elbow)),
         );
         self.check_assembly(&local, thetas)?;
-        worst(arms.map(|(arm, leg, triangle)| self.leaning(arm, leg, &triangle)))?;
-        let fitted = zip(arms, thetas)
-            .map(|((arm, leg, _), theta)| (arm, leg, self.fit(leg, &local, leg.angle(theta))));
-        worst(fitted.map(|(arm, leg, (angle, by))| {
-            let (min, max) = (leg.min, leg.max);
+        worst(arms.map(|(arm, prepared, triangle)| self.swivelling(arm, prepared, &triangle)))?;
+        let fitted = zip(arms, thetas).map(|((arm, prepared, _), theta)| {
+            (
+                arm,
+                prepared,
+                self.fit(prepared, &local, prepared.angle(theta)),
+            )
+        });
+        worst(fitted.map(|(arm, prepared, (angle, by))| {
+            let (min, max) = (prepared.min, prepared.max);
             let error = InverseError::JointLimit {
                 arm,
                 angle,
@@ -217,8 +223,8 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// The arm whose rods miss by most.
     fn missed(&self, local: &Vector3<T>, angles: Vector3<T>) -> InverseError<T> {
-        let misses = zip(self.legs().each_ref(), self.thetas(angles))
-            .map(|(leg, theta)| leg.stretch(local, theta));
+        let misses = zip(self.prepared().each_ref(), self.thetas(angles))
+            .map(|(prepared, theta)| prepared.stretch(local, theta));
         let (arm, most) = least(misses.map(|miss| -miss.abs()));
         let by = -most;
         let [first, second, third] = misses;
@@ -233,39 +239,43 @@ impl<T: RealField + Trig> Delta<T> {
     fn out_of_reach(
         &self,
         arm: Arm,
-        leg: &Leg<T>,
+        prepared: &PreparedArm<T>,
         triangle: &Triangle<T>,
     ) -> Option<(T, InverseError<T>)> {
-        let (near, far) = leg.knee_distances(triangle);
+        let (near, far) = prepared.elbow_distances(triangle);
         // Near the largest number a distance overflows.
-        let short = (near - leg.lower).min(max_value());
-        let long = leg.lower - far;
+        let short = (near - prepared.lower).min(max_value());
+        let long = prepared.lower - far;
         if short > self.tolerance() {
             return Some((short, InverseError::TooFar { arm, by: short }));
         }
         (long > self.tolerance()).then_some((long, InverseError::TooNear { arm, by: long }))
     }
 
-    /// By how much the rods lean too far.
-    fn leaning(
+    /// By how much the rods swivel too far.
+    fn swivelling(
         &self,
         arm: Arm,
-        leg: &Leg<T>,
+        prepared: &PreparedArm<T>,
         triangle: &Triangle<T>,
     ) -> Option<(T, InverseError<T>)> {
         let asin = |side: T| {
-            let side = side.min(leg.lower);
-            atan2(side, ((leg.lower - side) * (leg.lower + side)).sqrt())
+            let side = side.min(prepared.lower);
+            atan2(
+                side,
+                ((prepared.lower - side) * (prepared.lower + side)).sqrt(),
+            )
         };
-        let (lean, max) = (asin(triangle.side.abs()), asin(leg.max_side));
-        let error = InverseError::BallJoint { arm, lean, max };
-        (triangle.side.abs() > leg.max_side + self.tolerance()).then_some((lean - max, error))
+        let (swivel, max) = (asin(triangle.side.abs()), asin(prepared.max_side));
+        let error = InverseError::BallJoint { arm, swivel, max };
+        (triangle.side.abs() > prepared.max_side + self.tolerance())
+            .then_some((swivel - max, error))
     }
 
     /// `angle` at the whole turn within the range, or on an end that it misses by rounding alone;
     /// and by how much it misses the range.
-    fn fit(&self, leg: &Leg<T>, local: &Vector3<T>, angle: T) -> (T, T) {
-        let (min, max) = (leg.min, leg.max);
+    fn fit(&self, prepared: &PreparedArm<T>, local: &Vector3<T>, angle: T) -> (T, T) {
+        let (min, max) = (prepared.min, prepared.max);
         let holds = |angle: T| min <= angle && angle <= max;
         if holds(angle) {
             return (angle, T::zero());
@@ -280,7 +290,7 @@ impl<T: RealField + Trig> Delta<T> {
             // The other end may be the nearer one by a whole turn.
             let apart = (end - angle) / turn;
             let nearest = (apart - apart.round()).abs() * turn;
-            let miss = leg.stretch(local, leg.theta(end)).abs();
+            let miss = prepared.stretch(local, prepared.theta(end)).abs();
             if nearest < T::frac_pi_2() && miss <= self.tolerance() {
                 return (end, T::zero());
             }
@@ -289,10 +299,10 @@ impl<T: RealField + Trig> Delta<T> {
     }
 }
 
-impl<T: RealField + Trig> Leg<T> {
+impl<T: RealField + Trig> PreparedArm<T> {
     /// How far the point can move before the arm, without its limits, no longer reaches it.
     pub(crate) fn reach_margin(&self, local: &Vector3<T>) -> T {
-        let (near, far) = self.knee_distances(&self.triangle(local));
+        let (near, far) = self.elbow_distances(&self.triangle(local));
         (self.lower - near).min(far - self.lower)
     }
 }

@@ -14,9 +14,9 @@ mod follow;
 mod forward;
 mod geometry;
 mod inverse;
-mod leg;
 mod limits;
 mod pose;
+mod prepared;
 mod rounded;
 mod scale;
 #[cfg(feature = "serde")]
@@ -26,11 +26,11 @@ mod workspace;
 pub use nalgebra;
 pub use trig_kernels::Trig;
 
-pub use arm::{Arm, ArmGeometry, Knee};
+pub use arm::{Arm, ArmGeometry, Elbow};
 pub use assembly::AssemblyMode;
 pub use calibrate::{Calibration, CalibrationError, Measured, Parameter, Quantity};
 pub use delta::{Delta, Positive, ZAxis};
-pub use follow::{Follow, FollowError, Pace, Path, PathError, Waypoint};
+pub use follow::{Follow, FollowError, Path, PathError, SpeedLimits, Waypoint};
 pub use forward::ForwardError;
 pub use geometry::GeometryError;
 pub use inverse::InverseError;

@@ -3,7 +3,7 @@
 use nalgebra::RealField;
 
 use crate::GeometryError;
-use crate::scale::{is_within, widest};
+use crate::scale::{is_within, max_value, widest};
 
 /// The closed range of one arm's angle, in radians, at most a whole turn wide.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,13 +17,24 @@ impl<T: RealField + Copy> JointRange<T> {
     /// A range from `min` to `max`, in radians.
     ///
     /// # Errors
-    /// [`GeometryError::Range`] unless both are within ±1/√ε and `min < max <= min + 2π`.
+    /// [`GeometryError::JointRange`] unless both are within ±1/√ε and `min < max <= min + 2π`.
     pub fn new(min: T, max: T) -> Result<Self, GeometryError<T>> {
         let are_angles = is_within(min, widest()) && is_within(max, widest());
         if are_angles && min < max && max - min <= T::two_pi() {
             Ok(Self { min, max })
         } else {
-            Err(GeometryError::Range { min, max })
+            let largest = widest();
+            Err(GeometryError::JointRange { min, max, largest })
+        }
+    }
+
+    /// Any angle.
+    #[must_use]
+    pub fn unlimited() -> Self {
+        let huge = max_value::<T>();
+        Self {
+            min: -huge,
+            max: huge,
         }
     }
 

@@ -44,7 +44,7 @@ pub enum PoseError<T: RealField + Copy = f64> {
 
 /// The machine in one pose: both the angles and the place of the platform.
 ///
-/// For each arm, with e the unit vector along its rods, E its knee, v the platform's speed and
+/// For each arm, with e the unit vector along its rods, E its elbow, v the platform's speed and
 /// ω the arm's rate:
 ///
 /// ```text
@@ -56,7 +56,7 @@ pub enum PoseError<T: RealField + Copy = f64> {
 pub struct Pose<T: RealField = f64> {
     angles: Vector3<T>,
     point: Point3<T>,
-    knees: [Point3<T>; 3],
+    elbows: [Point3<T>; 3],
     rods: [Vector3<T>; 3],
     levers: [T; 3],
     tolerance: T,
@@ -85,20 +85,20 @@ impl<T: RealField + Trig> Delta<T> {
 impl<T: RealField + Trig> Pose<T> {
     pub(crate) fn new(delta: &Delta<T>, angles: Vector3<T>, point: Point3<T>) -> Self {
         let local = delta.flip(point.coords);
-        let legs = zip(delta.legs().each_ref(), delta.arms().each_ref());
-        let arms = zip(legs, delta.thetas(angles)).map(|((leg, arm), theta)| {
+        let prepared = zip(delta.prepared().each_ref(), delta.arms().each_ref());
+        let arms = zip(prepared, delta.thetas(angles)).map(|((prepared, arm), theta)| {
             let theta = sin_cos(theta);
-            let centre = leg.centre(theta);
-            let rod = (local - centre) / leg.lower;
-            let lever = rod.dot(&leg.tangent(theta)) * leg.turn;
-            let knee = centre + leg.in_plane(arm.platform, T::zero());
-            (Point3::from(delta.flip(knee)), delta.flip(rod), lever)
+            let centre = prepared.centre(theta);
+            let rod = (local - centre) / prepared.lower;
+            let lever = rod.dot(&prepared.tangent(theta)) * prepared.turn;
+            let elbow = centre + prepared.in_plane(arm.platform, T::zero());
+            (Point3::from(delta.flip(elbow)), delta.flip(rod), lever)
         });
-        let [first, second, third] = delta.legs().each_ref().map(|leg| leg.lower);
+        let [first, second, third] = delta.prepared().each_ref().map(|prepared| prepared.lower);
         Self {
             angles,
             point,
-            knees: arms.map(|(knee, _, _)| knee),
+            elbows: arms.map(|(elbow, _, _)| elbow),
             rods: arms.map(|(_, rod, _)| rod),
             levers: arms.map(|(_, _, lever)| lever),
             tolerance: delta.tolerance(),
@@ -118,13 +118,13 @@ impl<T: RealField + Trig> Pose<T> {
         self.point
     }
 
-    /// The knees, at the middle between an arm's two rods.
+    /// The elbows, at the middle between an arm's two rods.
     #[must_use]
-    pub const fn knees(&self) -> &[Point3<T>; 3] {
-        &self.knees
+    pub const fn elbows(&self) -> &[Point3<T>; 3] {
+        &self.elbows
     }
 
-    /// Unit vectors along the rods, from the knees to the platform.
+    /// Unit vectors along the rods, from the elbows to the platform.
     #[must_use]
     pub const fn rods(&self) -> &[Vector3<T>; 3] {
         &self.rods

@@ -4,7 +4,7 @@ use nalgebra::RealField;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use trig_kernels::Trig;
 
-use crate::{ArmGeometry, AssemblyMode, Delta, GeometryError, JointRange, Knee, Positive, ZAxis};
+use crate::{ArmGeometry, AssemblyMode, Delta, Elbow, GeometryError, JointRange, Positive, ZAxis};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
@@ -69,15 +69,15 @@ struct PlainDelta<T> {
     #[serde(default)]
     ranges: [Option<JointRange<T>>; 3],
     #[serde(default)]
-    max_lean: Option<T>,
-    #[serde(default = "knees_out")]
-    working_mode: [Knee; 3],
+    max_swivel: Option<T>,
+    #[serde(default = "elbows_out")]
+    working_mode: [Elbow; 3],
     #[serde(default)]
     assembly_mode: AssemblyMode,
 }
 
-const fn knees_out() -> [Knee; 3] {
-    [Knee::Out; 3]
+const fn elbows_out() -> [Elbow; 3] {
+    [Elbow::Out; 3]
 }
 
 impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {
@@ -86,8 +86,10 @@ impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {
             arms: *delta.arms(),
             z: delta.z(),
             positive: delta.positive(),
-            ranges: *delta.ranges(),
-            max_lean: delta.max_lean(),
+            ranges: delta
+                .ranges()
+                .map(|range| (range != JointRange::unlimited()).then_some(range)),
+            max_swivel: delta.max_swivel(),
             working_mode: delta.working_mode(),
             assembly_mode: delta.assembly_mode(),
         }
@@ -101,11 +103,15 @@ impl<T: RealField + Trig> TryFrom<PlainDelta<T>> for Delta<T> {
         let delta = Self::from_arms(plain.arms)?
             .with_z(plain.z)
             .with_positive(plain.positive)
-            .with_ranges(plain.ranges)
+            .with_ranges(
+                plain
+                    .ranges
+                    .map(|range| range.unwrap_or_else(JointRange::unlimited)),
+            )
             .with_working_mode(plain.working_mode)
             .with_assembly_mode(plain.assembly_mode);
         plain
-            .max_lean
-            .map_or(Ok(delta), |lean| delta.with_ball_joints(lean))
+            .max_swivel
+            .map_or(Ok(delta), |swivel| delta.with_ball_joints(swivel))
     }
 }

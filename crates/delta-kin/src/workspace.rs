@@ -32,20 +32,20 @@ pub enum WorkspaceError<T: RealField + Copy = f64> {
         reason: InverseError<T>,
     },
     /// The azimuth is not an angle.
-    #[error("azimuth {} rad is not within ±{} rad", Rounded(*.azimuth), Rounded(*.max))]
+    #[error("azimuth {} rad is not within ±{} rad", Rounded(*.azimuth), Rounded(*.largest))]
     Azimuth {
         /// The azimuth given, in radians.
         azimuth: T,
         /// The greatest allowed, either way: 1/√ε.
-        max: T,
+        largest: T,
     },
     /// A height is not within the machine's span.
-    #[error("height {} is not within ±{}", Rounded(*.z), Rounded(*.max))]
+    #[error("height {} is not within ±{}", Rounded(*.z), Rounded(*.largest))]
     Height {
         /// The height given.
         z: T,
         /// The machine's span.
-        max: T,
+        largest: T,
     },
     /// The resolution is not a length of the stated size.
     #[error("resolution {} is not within {}..={}", Rounded(*.resolution), Rounded(*.min), Rounded(*.max))]
@@ -97,9 +97,9 @@ impl<T: RealField + Trig> Workspace<T> {
         z: T,
         points: u32,
     ) -> Result<Outline<T>, WorkspaceError<T>> {
-        let max = widest();
-        if !is_within(azimuth, max) {
-            return Err(WorkspaceError::Azimuth { azimuth, max });
+        let largest = widest();
+        if !is_within(azimuth, largest) {
+            return Err(WorkspaceError::Azimuth { azimuth, largest });
         }
         let (sin, cos) = sin_cos(azimuth);
         self.slice(z, [Vector3::new(cos, sin, T::zero()), Vector3::z()], points)

@@ -9,7 +9,7 @@ mod uneven;
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
-use delta_kin::{ArmGeometry, AssemblyMode, Delta, ForwardError, Knee, Trig};
+use delta_kin::{ArmGeometry, AssemblyMode, Delta, Elbow, ForwardError, Trig};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -122,7 +122,7 @@ struct Case {
     arms: [ArmGeometry; 3],
     angles: [f64; 3],
     assembly_mode: AssemblyMode,
-    working_mode: [Knee; 3],
+    working_mode: [Elbow; 3],
     direction: [f64; 3],
     /// How far along the direction, in what there is up to the edge of the reach.
     share: f64,

@@ -4,8 +4,8 @@
 
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, InverseError, JointRange, Knee, Measured, Pace,
-    Parameter, Path, Pose, Positive, Quantity, Trig, ZAxis,
+    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Measured, Parameter,
+    Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
 
@@ -120,7 +120,7 @@ fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
         .with_z(numbers.pick(&[ZAxis::Up, ZAxis::Down]))
         .with_positive(numbers.pick(&[Positive::Outward, Positive::Inward]))
         .with_assembly_mode(numbers.pick(&[AssemblyMode::Lower, AssemblyMode::Upper]))
-        .with_working_mode([0; 3].map(|_| numbers.pick(&[Knee::Out, Knee::In])));
+        .with_working_mode([0; 3].map(|_| numbers.pick(&[Elbow::Out, Elbow::In])));
     delta = read(delta.with_zero(numbers.mostly(0.3))).unwrap_or(delta);
     delta = read(delta.with_ball_joints(numbers.mostly(1.5))).unwrap_or(delta);
     if let Some(range) = read(JointRange::new(numbers.mostly(-3.0), numbers.mostly(3.1))) {
@@ -151,7 +151,7 @@ fn is_right<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> Result<(),
     }
     finite(&pose.angles())?;
     finite(&pose.point().coords)?;
-    finite(pose.knees().iter().flat_map(|knee| knee.iter()))?;
+    finite(pose.elbows().iter().flat_map(|elbow| elbow.iter()))?;
     finite(&pose.levers())?;
     finite([&pose.serial_distance().1, &pose.parallel_distance()])?;
     let sine = wide(pose.parallel_distance());
@@ -206,7 +206,7 @@ fn follows<T: RealField + Trig>(
         numbers.mostly(1.0),
     );
     let arc = Path::arc(near, centre, axis, numbers.mostly(0.7));
-    let pace = Pace::new(
+    let limits = SpeedLimits::new(
         numbers.mostly(span),
         [
             numbers.mostly(3.0),
@@ -227,11 +227,11 @@ fn follows<T: RealField + Trig>(
             prop_assert!(share >= T::zero() && share <= T::one());
             finite(&place.coords)?;
         }
-        let Some(pace) = read(pace) else { continue };
-        let Some(follow) = read(delta.follow(path, tolerance, pace)) else {
+        let Some(limits) = read(limits) else { continue };
+        let Some(follow) = read(delta.follow(path, tolerance, limits)) else {
             continue;
         };
-        let expected = follow.len();
+        let expected = follow.remaining();
         let mut count = 0;
         for waypoint in follow.take(1000) {
             finite(&waypoint.angles)?;
@@ -263,7 +263,7 @@ fn reaches<T: RealField + Trig>(
         workspace.vertical_slice(numbers.mostly(0.5), z, 3),
     ];
     for slice in slices.into_iter().filter_map(read) {
-        prop_assert_eq!(slice.len(), 3);
+        prop_assert_eq!(slice.remaining(), 3);
         for edge in slice {
             prop_assert!(workspace.contains(edge), "{edge}");
         }

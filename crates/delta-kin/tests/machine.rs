@@ -5,8 +5,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, ForwardError, GeometryError, InverseError, JointRange,
-    Knee, PoseError, Positive, ZAxis,
+    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, ForwardError, GeometryError, InverseError,
+    JointRange, PoseError, Positive, ZAxis,
 };
 
 /// Printed numbers have 16 digits.
@@ -50,7 +50,7 @@ fn the_thesis_example_is_refused() {
         panic!("{:?}", delta.inverse(point));
     };
     assert_eq!(arm, Arm::First);
-    // The farthest place of the knee, by hand.
+    // The farthest place of the elbow, by hand.
     let h = 24.0 - 50.0 * (0.75f64.sqrt() + 0.5);
     let side = 50.0 * (0.75f64.sqrt() - 0.5);
     let far = (h.hypot(100.0) + 120.0).hypot(side);
@@ -92,8 +92,8 @@ fn z_may_point_down_and_angles_inward() {
     assert_eq!(down.inverse(mirrored), up.inverse(point));
     let angles = up.inverse(point).unwrap();
     assert!((down.forward(angles).unwrap() - mirrored).norm() <= up.tolerance());
-    let knee = |delta: Delta| delta.pose_of(angles).unwrap().knees()[0];
-    assert!((knee(up).z + knee(down).z).abs() < PRINTED);
+    let elbow = |delta: Delta| delta.pose_of(angles).unwrap().elbows()[0];
+    assert!((elbow(up).z + elbow(down).z).abs() < PRINTED);
 
     let inward = up
         .with_zero(FRAC_PI_2)
@@ -136,11 +136,11 @@ fn limits_are_told_by_arm_and_amount() {
     match delta.inverse(point) {
         Err(InverseError::BallJoint {
             arm: Arm::Second,
-            lean,
+            swivel,
             max,
         }) => {
             // The wrist is beside the arm's plane by 68.3 mm.
-            assert!((lean - (68.301_270_189_221_94_f64 / 243.0).asin()).abs() < 1e-14);
+            assert!((swivel - (68.301_270_189_221_94_f64 / 243.0).asin()).abs() < 1e-14);
             assert!((max - 0.2).abs() < 1e-14);
         }
         other => panic!("{other:?}"),
@@ -157,7 +157,7 @@ fn limits_are_told_by_arm_and_amount() {
 /// By radians, not by their ratio to the end of the range.
 #[test]
 fn of_two_arms_outside_the_farther_is_named() {
-    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| JointRange::new(-1.0, max).ok());
+    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| JointRange::new(-1.0, max).unwrap());
     let delta = thesis().with_ranges([first, second, third]);
     let refused = delta.inverse(Point3::new(50.0, 50.0, -300.0));
     let arm = Arm::First;
@@ -168,7 +168,7 @@ fn of_two_arms_outside_the_farther_is_named() {
 #[test]
 fn a_range_chooses_the_turn() {
     let delta = thesis();
-    let bent = delta.with_working_mode([Knee::In; 3]);
+    let bent = delta.with_working_mode([Elbow::In; 3]);
     let knees_in = bent.inverse(Point3::new(0.0, 0.0, -130.0)).unwrap();
     assert!(knees_in.max() < -2.0);
     let turned = bent
@@ -192,10 +192,10 @@ fn a_range_chooses_the_turn() {
     );
 }
 
-/// Knees almost on a line: the circumcentre of their triangle alone does not hold the lengths.
+/// Elbows almost on a line: the circumcentre of their triangle alone does not hold the lengths.
 #[test]
 fn a_thin_triangle_of_knees_keeps_the_lengths() {
-    // Far out, where the knees have changed their order round the axis.
+    // Far out, where the elbows have changed their order round the axis.
     let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0)
         .unwrap()
         .with_assembly_mode(AssemblyMode::Upper);
@@ -208,7 +208,7 @@ fn a_thin_triangle_of_knees_keeps_the_lengths() {
 fn impossible_angles_are_refused() {
     let short = Delta::new(100.0, 20.0, 120.0, 150.0).unwrap();
     match short.forward(Vector3::repeat(FRAC_PI_2)) {
-        // Knees 200 from the axis, rods of 150.
+        // Elbows 200 from the axis, rods of 150.
         Err(ForwardError::Apart { arm, by }) => {
             assert!(arm == Arm::First && (by - 50.0).abs() < 1e-12);
         }
@@ -285,8 +285,8 @@ fn geometry_is_checked() {
     ] {
         assert!(JointRange::new(min, max).is_err());
     }
-    for lean in [0.0, -0.1, 1.6, f64::NAN] {
-        assert!(thesis().with_ball_joints(lean).is_err());
+    for swivel in [0.0, -0.1, 1.6, f64::NAN] {
+        assert!(thesis().with_ball_joints(swivel).is_err());
     }
     let arm = ArmGeometry::nominal(Arm::Third, 1.0, 1.0, 1.0, 1.0);
     assert!((arm.azimuth - 1.5 * PI).abs() < 1e-15);
@@ -295,7 +295,7 @@ fn geometry_is_checked() {
 /// Both kinds of singularity, at hand-made places.
 #[test]
 fn singular_poses_are_told() {
-    // Stretched straight: hip to wrist is Lb + La along the line through the hip.
+    // Stretched straight: shoulder to wrist is Lb + La along the line through the shoulder.
     let delta = Delta::new(50.0, 40.0, 100.0, 200.0).unwrap();
     let down = -(300f64 * 300.0 - 10.0 * 10.0).sqrt();
     let stretched = delta.pose_at(Point3::new(0.0, 0.0, down)).unwrap();
@@ -321,10 +321,10 @@ fn singular_poses_are_told() {
     assert!(pose.parallel_distance() > 0.2 && pose.parallel_distance() <= 1.0);
 }
 
-/// The figure of the README.
+/// The figure of `docs/performance.md`.
 #[test]
 fn memory_is_as_stated() {
-    assert_eq!(size_of::<Delta>(), 552);
+    assert_eq!(size_of::<Delta>(), 528);
 }
 
 /// Straight above the middle each arm holds a third of the weight, by hand.

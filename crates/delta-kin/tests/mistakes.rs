@@ -4,14 +4,14 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{AssemblyMode, Delta, InverseError, Knee, Pose};
+use delta_kin::{AssemblyMode, Delta, Elbow, InverseError, Pose};
 
 /// Angles away from singular poses, in radians.
 const ANGLE_ERROR: f64 = 1e-13;
 
-/// The pose with the knees in, in the one assembly mode that has it there.
+/// The pose with the elbows in, in the one assembly mode that has it there.
 fn bent_in(delta: &Delta, point: Point3<f64>) -> Pose {
-    let bent = delta.with_working_mode([Knee::In; 3]);
+    let bent = delta.with_working_mode([Elbow::In; 3]);
     let lower = bent.pose_at(point);
     let upper = bent.with_assembly_mode(AssemblyMode::Upper).pose_at(point);
     assert!(lower.is_ok() != upper.is_ok(), "{lower:?} {upper:?}");
@@ -22,7 +22,7 @@ fn bent_in(delta: &Delta, point: Point3<f64>) -> Pose {
 /// round in forums then hands on.
 #[test]
 fn the_plane_of_the_hips_is_no_exception() {
-    // Rods short enough for the platform to come up between the hips, above its knees.
+    // Rods short enough for the platform to come up between the shoulders, above its elbows.
     let delta: Delta = Delta::new(60.0, 20.0, 120.0, 130.0)
         .unwrap()
         .with_assembly_mode(AssemblyMode::Upper);
@@ -56,12 +56,12 @@ fn every_arm_has_its_own_length() {
         let angles = delta.inverse(point).unwrap();
         assert!((delta.forward(angles).unwrap() - point).norm() <= delta.tolerance());
         let pose = delta.pose_at(point).unwrap();
-        for ((knee, arm), angle) in pose.knees().iter().zip(arms).zip(&angles) {
+        for ((elbow, arm), angle) in pose.elbows().iter().zip(arms).zip(&angles) {
             let wrist =
                 point + Vector3::new(arm.azimuth.cos(), arm.azimuth.sin(), 0.0) * arm.platform;
-            assert!(((wrist - knee).norm() - arm.lower).abs() <= delta.tolerance());
+            assert!(((wrist - elbow).norm() - arm.lower).abs() <= delta.tolerance());
             let theta = angle + arm.zero;
-            assert!((knee.z + arm.upper * theta.cos()).abs() <= delta.tolerance());
+            assert!((elbow.z + arm.upper * theta.cos()).abs() <= delta.tolerance());
         }
     }
 }
@@ -77,11 +77,11 @@ fn arms_above_horizontal_are_found() {
     }
 }
 
-/// In the tangent half-angle form θ = π has no tangent, and there the root that means "knee
+/// In the tangent half-angle form θ = π has no tangent, and there the root that means "elbow
 /// out" changes its sign.
 #[test]
 fn straight_up_is_an_angle_like_others() {
-    // A platform wider than the base, for which a knee straight up is out.
+    // A platform wider than the base, for which a elbow straight up is out.
     let delta: Delta = Delta::new(18.0, 42.0, 120.0, 243.0).unwrap();
     for off in [-1e-3, -1e-9, 0.0, 1e-9, 1e-3] {
         let angles = Vector3::repeat(PI + off);
@@ -98,7 +98,7 @@ fn straight_up_is_an_angle_like_others() {
     }
 }
 
-/// Knee out is the solution whose knee is farther from the base's axis, wherever A changes sign.
+/// Elbow out is the solution whose elbow is farther from the base's axis, wherever A changes sign.
 #[test]
 fn knees_keep_their_names() {
     let delta: Delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
@@ -106,7 +106,7 @@ fn knees_keep_their_names() {
         let point = Point3::new(20.0, -10.0, f64::from(z));
         let out = delta.pose_at(point).unwrap();
         let inside = bent_in(&delta, point);
-        for (out, inside) in out.knees().iter().zip(inside.knees()) {
+        for (out, inside) in out.elbows().iter().zip(inside.elbows()) {
             let radial = out.coords.normalize();
             assert!(radial.dot(&(out - inside)) > 0.0 || out.z > inside.z, "{z}");
         }
@@ -129,17 +129,17 @@ fn own_stretched_and_folded_poses_are_reached() {
             let Ok(pose) = delta.pose_of(angles) else {
                 continue;
             };
-            let knees = <[f64; 3]>::from(pose.levers())
-                .map(|lever| if lever > 0.0 { Knee::In } else { Knee::Out });
-            let reached = delta.with_working_mode(knees).inverse(pose.point());
+            let elbows = <[f64; 3]>::from(pose.levers())
+                .map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out });
+            let reached = delta.with_working_mode(elbows).inverse(pose.point());
             assert!(reached.is_ok(), "{angles}: {reached:?}");
         }
     }
-    // All arms stretched or folded in their planes, where knee out and knee in are one.
+    // All arms stretched or folded in their planes, where elbow out and elbow in are one.
     let plain: Delta = Delta::new(50.0, 40.0, 100.0, 200.0).unwrap();
     for theta in [-10f64.atan2(300.0), 10f64.atan2(100.0)] {
-        for knee in [Knee::Out, Knee::In] {
-            let machine = plain.with_working_mode([knee; 3]);
+        for elbow in [Elbow::Out, Elbow::In] {
+            let machine = plain.with_working_mode([elbow; 3]);
             let made = machine.forward(Vector3::repeat(theta)).unwrap();
             let back = machine.inverse(made).unwrap();
             assert!((machine.forward(back).unwrap() - made).norm() < 1e-12);
@@ -147,7 +147,7 @@ fn own_stretched_and_folded_poses_are_reached() {
     }
 }
 
-/// Some answer where all knees meet on the axis: three rods beside each other hold nothing.
+/// Some answer where all elbows meet on the axis: three rods beside each other hold nothing.
 #[test]
 fn knees_on_one_place_hold_no_platform() {
     let plain: Delta = Delta::new(50.0, 50.0, 100.0, 200.0).unwrap();

@@ -4,16 +4,16 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    AssemblyMode, CalibrationError, Delta, FollowError, InverseError, JointRange, Knee, Measured,
-    Pace, Parameter, Path, Positive, Quantity, WorkspaceError, ZAxis,
+    AssemblyMode, CalibrationError, Delta, Elbow, FollowError, InverseError, JointRange, Measured,
+    Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
 };
 
 fn thesis() -> Delta {
     Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
 }
 
-fn pace() -> Pace {
-    Pace::new(100.0, [5.0; 3]).unwrap()
+fn limits() -> SpeedLimits {
+    SpeedLimits::new(100.0, [5.0; 3]).unwrap()
 }
 
 /// Who works with z down and does not say so is told, and not driven to a place 460 mm away.
@@ -69,7 +69,7 @@ fn the_other_assembly_mode_is_asked_for_by_name() {
         Path::line(above, Point3::new(-30.0, 20.0, 300.0)).unwrap(),
         [230.0, 290.0],
     );
-    assert!(upper.follow(line, 0.01, pace()).unwrap().count() > 2);
+    assert!(upper.follow(line, 0.01, limits()).unwrap().count() > 2);
     assert!(upper.workspace().largest_cylinder(cylinder, 1.0).is_ok());
 }
 
@@ -77,7 +77,7 @@ fn the_other_assembly_mode_is_asked_for_by_name() {
 #[test]
 fn a_point_beyond_the_singular_surface_is_refused() {
     let flat = Delta::new(60.0, 20.0, 120.0, 130.0).unwrap();
-    // On the axis the knees are above the platform or below it.
+    // On the axis the elbows are above the platform or below it.
     let reached = |z: f64| flat.inverse(Point3::new(0.0, 0.0, z));
     let height = |z: f64| {
         let upper = flat.with_assembly_mode(AssemblyMode::Upper);
@@ -109,14 +109,14 @@ fn a_point_beyond_the_singular_surface_is_refused() {
     assert!(refused.to_string().starts_with(words), "{refused}");
 }
 
-/// Far out the plane of the knees tilts beyond upright: the mode is kept, and so is `forward`.
+/// Far out the plane of the elbows tilts beyond upright: the mode is kept, and so is `forward`.
 #[test]
 fn a_tilted_plane_of_knees_is_no_other_mode() {
     let delta = thesis();
     let home = Point3::new(0.0, 0.0, -250.0);
     let far = Point3::new(2.0, 257.0, 62.0);
     let pose = delta.pose_at(far).unwrap();
-    let [a, b, c] = pose.knees().map(|knee| knee.coords);
+    let [a, b, c] = pose.elbows().map(|elbow| elbow.coords);
     let [ra, rb, rc] = [0usize, 1, 2].map(|k| {
         let arm = delta.arms()[k];
         Vector3::new(arm.azimuth.cos(), arm.azimuth.sin(), 0.0) * arm.platform
@@ -128,7 +128,7 @@ fn a_tilted_plane_of_knees_is_no_other_mode() {
     let corner = Point3::new(-95.0, 185.0, -164.0);
     for (from, to) in [(home, corner), (corner, far)] {
         let line = Path::line(from, to).unwrap();
-        let last = delta.follow(line, 0.1, pace()).unwrap().last().unwrap();
+        let last = delta.follow(line, 0.1, limits()).unwrap().last().unwrap();
         assert!((delta.forward(last.angles).unwrap() - to).norm() < 1e-11);
     }
 }
@@ -137,7 +137,7 @@ fn a_tilted_plane_of_knees_is_no_other_mode() {
 fn a_path_in_the_other_mode_is_refused() {
     let at = |x: f64, z: f64| Point3::new(x, 20.0, z);
     let above = Path::line(at(30.0, 300.0), at(-30.0, 300.0)).unwrap();
-    match thesis().follow(above, 0.01, pace()) {
+    match thesis().follow(above, 0.01, limits()) {
         Err(FollowError::Unreachable {
             fraction, reason, ..
         }) => {
@@ -179,14 +179,14 @@ fn measurements_of_the_other_mode_are_refused() {
     assert_eq!(found.delta().z(), ZAxis::Down);
 }
 
-/// The workspace is that of the modes named. Mirrored in the base plane, a knee that was out
+/// The workspace is that of the modes named. Mirrored in the base plane, a elbow that was out
 /// counts as in: it turns the other way.
 #[test]
 fn the_workspace_is_that_of_the_modes() {
     let above = Point3::new(0.0, 0.0, 250.0);
     let upper = thesis()
         .with_assembly_mode(AssemblyMode::Upper)
-        .with_working_mode([Knee::In; 3]);
+        .with_working_mode([Elbow::In; 3]);
     let (lower, upper) = (thesis().workspace(), upper.workspace());
     let mirrored = upper.largest_cylinder([230.0, 290.0], 1.0);
     assert_eq!(lower.largest_cylinder([-290.0, -230.0], 1.0), mirrored);
@@ -212,12 +212,12 @@ fn the_workspace_is_that_of_the_modes() {
 #[test]
 fn the_working_mode_is_asked_for_by_name() {
     let point = Point3::new(20.0, -10.0, -280.0);
-    for knees in [
-        [Knee::Out, Knee::In, Knee::Out],
-        [Knee::In, Knee::In, Knee::Out],
-        [Knee::In; 3],
+    for elbows in [
+        [Elbow::Out, Elbow::In, Elbow::Out],
+        [Elbow::In, Elbow::In, Elbow::Out],
+        [Elbow::In; 3],
     ] {
-        let bent = thesis().with_working_mode(knees);
+        let bent = thesis().with_working_mode(elbows);
         let [lower, upper] =
             [AssemblyMode::Lower, AssemblyMode::Upper].map(|mode| bent.with_assembly_mode(mode));
         let bent = if lower.inverse(point).is_ok() {
@@ -226,12 +226,12 @@ fn the_working_mode_is_asked_for_by_name() {
             upper
         };
         let pose = bent.pose_at(point).unwrap();
-        for (lever, knee) in pose.levers().iter().zip(knees) {
-            assert_eq!(*lever > 0.0, knee == Knee::In);
+        for (lever, elbow) in pose.levers().iter().zip(elbows) {
+            assert_eq!(*lever > 0.0, elbow == Elbow::In);
         }
         assert!((bent.forward(pose.angles()).unwrap() - point).norm() < 1e-11);
-        assert_eq!(bent.working_mode(), knees);
-        // Inward angles have the other sign, and the same knees.
+        assert_eq!(bent.working_mode(), elbows);
+        // Inward angles have the other sign, and the same elbows.
         let inward = bent.with_positive(Positive::Inward);
         assert!((inward.inverse(point).unwrap() + pose.angles()).amax() < 1e-15);
         // A range that holds the angles holds the ball of the clearance.
@@ -245,7 +245,7 @@ fn the_working_mode_is_asked_for_by_name() {
             let up = f64::from(k) / 50.0 - 1.0;
             let flat = (1.0 - up * up).sqrt();
             let out = Vector3::new(flat * cos, flat * sin, up) * (clearance * 0.999);
-            assert!(workspace.contains(point + out), "{knees:?}");
+            assert!(workspace.contains(point + out), "{elbows:?}");
         }
     }
 }

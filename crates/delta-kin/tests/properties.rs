@@ -10,7 +10,8 @@ use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, InverseError, JointRange, Knee, Pace, Path, Pose, ZAxis,
+    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Path, Pose,
+    SpeedLimits, ZAxis,
 };
 use proptest::prelude::*;
 use reach::reach_margins;
@@ -76,8 +77,8 @@ fn directions() -> impl Strategy<Value = Vector3<f64>> {
 }
 
 /// The working mode of a pose, however it was made.
-fn working_mode(pose: &Pose) -> [Knee; 3] {
-    <[f64; 3]>::from(pose.levers()).map(|lever| if lever > 0.0 { Knee::In } else { Knee::Out })
+fn working_mode(pose: &Pose) -> [Elbow; 3] {
+    <[f64; 3]>::from(pose.levers()).map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out })
 }
 
 /// The machine in its two assembly modes.
@@ -144,10 +145,10 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn forward_undoes_inverse(delta in machines(), thetas in thetas(), (mode, knees) in modes()) {
+    fn forward_undoes_inverse(delta in machines(), thetas in thetas(), (mode, elbows) in modes()) {
         for made in assembled(&delta).map(|delta| delta.forward(thetas)) {
             prop_assume!(made.is_ok());
-            let delta = delta.with_assembly_mode(mode).with_working_mode(knees);
+            let delta = delta.with_assembly_mode(mode).with_working_mode(elbows);
             round_trip(&delta, made.unwrap())?;
         }
     }
@@ -158,10 +159,10 @@ proptest! {
         arms in uneven_arms(),
         direction in directions(),
         share in 0.0..0.8f64,
-        (mode, knees) in modes(),
+        (mode, elbows) in modes(),
     ) {
         let delta = Delta::from_arms(arms).unwrap();
-        let delta = delta.with_assembly_mode(mode).with_working_mode(knees);
+        let delta = delta.with_assembly_mode(mode).with_working_mode(elbows);
         let point = Point3::from(direction * (share * delta.span()));
         prop_assume!(reach_margins(delta.arms(), point).min() > 0.0);
         round_trip(&delta, point)?;
@@ -232,7 +233,7 @@ proptest! {
         prop_assume!(pose.is_ok());
         let pose = pose.unwrap();
         prop_assume!(pose.parallel_distance() > 0.1);
-        // Stretched, an arm has both knees, and rounding chooses.
+        // Stretched, an arm has both elbows, and rounding chooses.
         prop_assume!(pose.serial_distance().1 > 1e-3 * delta.span());
         let limited = delta.with_range(range).with_working_mode(working_mode(&pose));
         let back = limited.inverse(pose.point());
@@ -244,7 +245,7 @@ proptest! {
     fn assembly_modes_are_named_by_height_round_the_axis(
         delta in machines(), thetas in thetas(), down in any::<bool>(),
     ) {
-        // With the knees outside the platform's radius the plane of the knees is not upright.
+        // With the elbows outside the platform's radius the plane of the elbows is not upright.
         let spread = delta.arms().iter().zip(&thetas).all(|(arm, angle)| {
             arm.base - arm.platform + arm.upper * (angle + arm.zero).sin() > 0.0
         });
@@ -257,7 +258,7 @@ proptest! {
     }
 
     /// Along a way of the arms on which the rods come nowhere near a plane the platform moves
-    /// without a jump, also where its plane of knees tilts beyond upright.
+    /// without a jump, also where its plane of elbows tilts beyond upright.
     #[test]
     fn an_assembly_mode_is_kept_without_a_singularity(
         delta in machines(),
@@ -270,7 +271,7 @@ proptest! {
             let pose = delta.pose_of(from + (to - from) * share).ok();
             let pose = pose.filter(|pose| pose.parallel_distance() > 0.2);
             if let (Some(last), Some(pose)) = (&last, &pose) {
-                // Knees move by at most 1/400 of two turns of the upper arm, the platform by
+                // Elbows move by at most 1/400 of two turns of the upper arm, the platform by
                 // that over the sine, which itself is not constant.
                 let jump = (pose.point() - last.point()).norm();
                 prop_assert!(jump <= 0.3 * delta.span(), "{} {}", last.point(), pose.point());
@@ -368,15 +369,15 @@ proptest! {
             prop_assume!((from - centre).norm() > 1.0);
             Path::arc(from, centre, Vector3::z(), turn).unwrap()
         };
-        let pace = Pace::new(500.0, [2.0, 2.0, 1.5]).unwrap();
-        let follow = delta.follow(path, tolerance, pace);
+        let limits = SpeedLimits::new(500.0, [2.0, 2.0, 1.5]).unwrap();
+        let follow = delta.follow(path, tolerance, limits);
         prop_assume!(follow.is_ok());
         let follow = follow.unwrap();
-        let count = follow.len();
+        let count = follow.remaining();
         let waypoints: Vec<_> = follow.collect();
-        prop_assert_eq!(waypoints.len(), count);
+        prop_assert_eq!(waypoints.len() as u64, count);
         prop_assert!((waypoints[0].point - path.point_at(0.0).unwrap()).norm() == 0.0);
-        prop_assert!((waypoints[count - 1].point - path.point_at(1.0).unwrap()).norm() == 0.0);
+        prop_assert!((waypoints.last().unwrap().point - path.point_at(1.0).unwrap()).norm() == 0.0);
         let length: f64 = waypoints.iter().map(|w| w.length).sum();
         prop_assert!((length - path.length()).abs() <= 1e-9 * path.length().max(1.0));
         for pair in waypoints.windows(2) {

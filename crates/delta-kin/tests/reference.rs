@@ -5,7 +5,7 @@
 mod reach;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, AssemblyMode, Delta, ForwardError, InverseError, Knee, Pose};
+use delta_kin::{Arm, AssemblyMode, Delta, Elbow, ForwardError, InverseError, Pose};
 use reach::reach_margins;
 
 const CASES: &str = include_str!("data/delta.csv");
@@ -64,9 +64,9 @@ fn both(delta: &Delta, angles: Vector3<f64>) -> Result<[Point3<f64>; 2], Forward
     Ok([delta.forward(angles)?, upper.forward(angles)?])
 }
 
-/// The pose with all knees as named, in the assembly mode that has it.
-fn pose(delta: &Delta, point: Point3<f64>, knee: Knee) -> Pose {
-    let delta = delta.with_working_mode([knee; 3]);
+/// The pose with all elbows as named, in the assembly mode that has it.
+fn pose(delta: &Delta, point: Point3<f64>, elbow: Elbow) -> Pose {
+    let delta = delta.with_working_mode([elbow; 3]);
     let upper = delta.with_assembly_mode(AssemblyMode::Upper);
     delta
         .pose_at(point)
@@ -112,8 +112,8 @@ fn angles_are_exact_to_the_arms_lever() {
     let (mut worst_angle, mut worst_length) = (0f64, 0f64);
     for row in rows().filter(|row| row.is("ik", "ok")) {
         let delta = row.delta();
-        for (knee, column) in [(Knee::Out, 13), (Knee::In, 16)] {
-            let pose = pose(&delta, row.point(), knee);
+        for (elbow, column) in [(Elbow::Out, 13), (Elbow::In, 16)] {
+            let pose = pose(&delta, row.point(), elbow);
             let errors = pose.angles() - row.numbers(column);
             let unit = f64::EPSILON * delta.span();
             for (error, lever) in errors.iter().zip(&pose.levers()) {
@@ -159,8 +159,8 @@ fn forward_of_inverse_is_the_point() {
     let mut worst = 0f64;
     for row in rows().filter(|row| row.is("ik", "ok")) {
         let (delta, point) = (row.delta(), row.point());
-        for knees in [Knee::Out, Knee::In] {
-            let pose = pose(&delta, point, knees);
+        for elbows in [Elbow::Out, Elbow::In] {
+            let pose = pose(&delta, point, elbows);
             let found = both(&delta, pose.angles()).unwrap();
             let error = found.map(|place| (place - point).norm());
             let error = error[0].min(error[1]);

@@ -3,7 +3,7 @@
 #![cfg(feature = "serde")]
 
 use delta_kin::{
-    Arm, AssemblyMode, Delta, JointRange, Knee, Measured, Parameter, Positive, Quantity, ZAxis,
+    Arm, AssemblyMode, Delta, Elbow, JointRange, Measured, Parameter, Positive, Quantity, ZAxis,
 };
 
 #[test]
@@ -14,10 +14,14 @@ fn a_machine_is_read_back() {
         .unwrap()
         .with_z(ZAxis::Down)
         .with_positive(Positive::Inward)
-        .with_ranges([None, Some(JointRange::new(-1.0, 2.0).unwrap()), None])
+        .with_ranges([
+            JointRange::unlimited(),
+            JointRange::new(-1.0, 2.0).unwrap(),
+            JointRange::unlimited(),
+        ])
         .with_ball_joints(0.6)
         .unwrap()
-        .with_working_mode([Knee::Out, Knee::In, Knee::Out])
+        .with_working_mode([Elbow::Out, Elbow::In, Elbow::Out])
         .with_assembly_mode(AssemblyMode::Upper);
     let text = serde_json::to_string(&delta).unwrap();
     assert_eq!(serde_json::from_str::<Delta>(&text).unwrap(), delta);
@@ -45,8 +49,8 @@ fn wrong_values_are_refused_with_their_reason() {
             "arm 3: lower arm -1 is not within",
         ),
         (
-            text(arm, r#","max_lean":2.0"#),
-            "ball joints may lean by 2 rad",
+            text(arm, r#","max_swivel":2.0"#),
+            "ball joints may swivel by 2 rad",
         ),
         (
             text(arm, r#","ranges":[null,null,{"min":1,"max":1}]"#),

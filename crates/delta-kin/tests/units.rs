@@ -7,8 +7,8 @@ mod uneven;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, CalibrationError, Delta, FollowError, ForwardError,
-    InverseError, JointRange, Knee, Measured, Pace, Parameter, Path, Pose, Quantity,
+    Arm, ArmGeometry, AssemblyMode, CalibrationError, Delta, Elbow, FollowError, ForwardError,
+    InverseError, JointRange, Measured, Parameter, Path, Pose, Quantity, SpeedLimits,
     WorkspaceError,
 };
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1e-9;
 struct Case {
     arms: [ArmGeometry; 3],
     assembly_mode: AssemblyMode,
-    working_mode: [Knee; 3],
+    working_mode: [Elbow; 3],
     angles: [f64; 3],
     other: [f64; 3],
     is_limited: bool,
@@ -97,7 +97,7 @@ impl Case {
         let range = |angle: f64| JointRange::new(angle - 1.0, angle + 0.5).unwrap();
         Some(
             delta
-                .with_ranges(self.angles.map(|angle| Some(range(angle))))
+                .with_ranges(self.angles.map(range))
                 .with_ball_joints(1.2)
                 .unwrap(),
         )
@@ -158,7 +158,11 @@ impl Case {
 
 fn pose_answers(pose: &Pose, unit: f64, answers: &mut Answers) {
     answers.numbers("point", &pose.point().coords, 1);
-    answers.numbers("knees", pose.knees().iter().flat_map(|knee| knee.iter()), 1);
+    answers.numbers(
+        "elbows",
+        pose.elbows().iter().flat_map(|elbow| elbow.iter()),
+        1,
+    );
     answers.numbers("rods", pose.rods().iter().flat_map(|rod| rod.iter()), 0);
     answers.numbers("levers", &pose.levers(), 1);
     answers.number("serial", pose.serial_distance().1, 1);
@@ -184,11 +188,11 @@ fn slow_answers(delta: &Delta, unit: f64) -> Answers {
         4.0,
     )
     .unwrap();
-    let pace = Pace::new(200.0 * unit, [3.0; 3]).unwrap();
+    let limits = SpeedLimits::new(200.0 * unit, [3.0; 3]).unwrap();
     for path in [line, arc] {
         answers.number("length", path.length(), 1);
         answers.numbers("place", &path.point_at(0.3).unwrap().coords, 1);
-        for waypoint in delta.follow(path, 0.05 * unit, pace).unwrap() {
+        for waypoint in delta.follow(path, 0.05 * unit, limits).unwrap() {
             answers.numbers("angles", &waypoint.angles, 0);
             answers.numbers("waypoint", &waypoint.point.coords, 1);
             answers.number("fraction", waypoint.fraction, 0);
@@ -197,7 +201,7 @@ fn slow_answers(delta: &Delta, unit: f64) -> Answers {
         }
     }
     let out = Path::line(at(0.0, 0.0, -280.0), at(400.0, 0.0, -280.0)).unwrap();
-    match delta.follow(out, 0.05 * unit, pace) {
+    match delta.follow(out, 0.05 * unit, limits) {
         Err(FollowError::Unreachable {
             fraction, point, ..
         }) => {
@@ -206,7 +210,7 @@ fn slow_answers(delta: &Delta, unit: f64) -> Answers {
         }
         other => panic!("{other:?}"),
     }
-    match delta.follow(line, 1e-13 * unit, pace) {
+    match delta.follow(line, 1e-13 * unit, limits) {
         Err(FollowError::Tolerance { rounding, .. }) => answers.number("rounding", rounding, 1),
         other => panic!("{other:?}"),
     }

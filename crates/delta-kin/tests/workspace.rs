@@ -3,7 +3,7 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, FollowError, InverseError, JointRange, Pace, Path, PathError, WorkspaceError,
+    Delta, FollowError, InverseError, JointRange, Path, PathError, SpeedLimits, WorkspaceError,
 };
 
 fn delta() -> Delta {
@@ -103,7 +103,7 @@ fn outlines_are_on_the_edge() {
                 && (is_near || !workspace.contains(point + out * (3.0 * near)))
         };
         let flat = workspace.horizontal_slice(-260.0, 90).unwrap();
-        assert_eq!(flat.len(), 90);
+        assert_eq!(flat.remaining(), 90);
         let flat: Vec<_> = flat.collect();
         let upright: Vec<_> = workspace.vertical_slice(0.5, -260.0, 90).unwrap().collect();
         assert_eq!((flat.len(), upright.len()), (90, 90));
@@ -134,8 +134,8 @@ fn outlines_are_on_the_edge() {
     }
 }
 
-fn pace() -> Pace {
-    Pace::new(100.0, [5.0; 3]).unwrap()
+fn limits() -> SpeedLimits {
+    SpeedLimits::new(100.0, [5.0; 3]).unwrap()
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn paths_end_at_the_first_place_out_of_reach() {
         Point3::new(0.0, 0.0, -300.0),
         Point3::new(400.0, 0.0, -300.0),
     );
-    match delta().follow(line.unwrap(), 0.01, pace()) {
+    match delta().follow(line.unwrap(), 0.01, limits()) {
         Err(FollowError::Unreachable {
             fraction,
             point,
@@ -184,7 +184,7 @@ fn a_path_through_a_singularity_is_refused() {
     let flat = Delta::new(60.0, 20.0, 120.0, 159.0).unwrap();
     let line = Path::line(Point3::new(0.0, 0.0, -30.0), Point3::new(0.0, 0.0, 30.0)).unwrap();
     assert!(matches!(
-        flat.follow(line, 0.01, pace()),
+        flat.follow(line, 0.01, limits()),
         Err(FollowError::Singular { .. } | FollowError::Unreachable { .. })
     ));
 }
@@ -232,18 +232,18 @@ fn paths_and_paces_are_checked() {
         (1.0, f64::INFINITY),
     ] {
         assert!(matches!(
-            Pace::new(feed, [rate; 3]),
-            Err(FollowError::Pace { .. })
+            SpeedLimits::new(feed, [rate; 3]),
+            Err(FollowError::SpeedLimits { .. })
         ));
     }
     let line = Path::line(a, b).unwrap();
     for tolerance in [0.0, -1.0, f64::NAN, 64.0 * delta().tolerance()] {
         assert!(matches!(
-            delta().follow(line, tolerance, pace()),
+            delta().follow(line, tolerance, limits()),
             Err(FollowError::Tolerance { .. })
         ));
     }
     // A path without length has one waypoint.
     let still = Path::line(a, a).unwrap();
-    assert_eq!(delta().follow(still, 0.01, pace()).unwrap().count(), 1);
+    assert_eq!(delta().follow(still, 0.01, limits()).unwrap().count(), 1);
 }

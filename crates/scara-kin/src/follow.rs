@@ -5,7 +5,6 @@ mod bound;
 mod error;
 mod walk;
 
-use core::fmt::{Display, Formatter};
 use core::iter::FusedIterator;
 
 use nalgebra::{Point2, RealField};
@@ -13,29 +12,8 @@ use trig_kernels::Trig;
 
 pub use error::FollowError;
 
-use crate::digits::Digits;
 use crate::{Arm, Elbow, Joints};
 use walk::Walk;
-
-/// A place along a polyline.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::exhaustive_structs, reason = "a place is just this")]
-pub struct CurvePlace<T: RealField = f64> {
-    /// Number of the line, counted from 0: from point `line` to point `line + 1`.
-    pub line: usize,
-    /// Share of the line that lies behind, 0..=1.
-    pub fraction: T,
-    /// The point there.
-    pub point: Point2<T>,
-}
-
-impl<T: RealField + Copy> Display for CurvePlace<T> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
-        let (x, y) = (Digits(self.point.x), Digits(self.point.y));
-        let fraction = Digits(self.fraction);
-        write!(f, "line {} at {fraction} ({x}, {y})", self.line)
-    }
-}
 
 /// A joint pose on the curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +21,12 @@ impl<T: RealField + Copy> Display for CurvePlace<T> {
 pub struct Waypoint<T: RealField = f64> {
     /// Joint angles in radians, continuous along the curve.
     pub joints: Joints<T>,
-    /// Where on the curve the tool is then.
-    pub place: CurvePlace<T>,
+    /// Where the tool is then, on the curve.
+    pub point: Point2<T>,
+    /// Number of the line, counted from 0: from point `line` to point `line + 1`.
+    pub line: usize,
+    /// The fraction of the line up to there, 0..=1.
+    pub fraction: T,
 }
 
 impl<T: RealField + Trig> Arm<T> {
@@ -60,7 +42,7 @@ impl<T: RealField + Trig> Arm<T> {
     /// since limits are ranges, the moves between waypoints keep them too. Each point of
     /// the polyline becomes a waypoint, but for repeated points. The curve is walked
     /// once before anything is handed out, so that an error comes first, and the
-    /// number of waypoints is known; `points` must therefore give the same points
+    /// number of waypoints is known: [`Follow::remaining`]; `points` must therefore give the same points
     /// again when cloned.
     ///
     /// # Errors
@@ -95,23 +77,32 @@ impl<T: RealField + Trig> Arm<T> {
         I::IntoIter: Clone,
     {
         let walk = Walk::new(*self, points.into_iter(), elbow, tolerance, previous);
-        let mut waypoints = 0;
+        let mut remaining: u64 = 0;
         for waypoint in walk.clone() {
             waypoint?;
-            waypoints += 1;
+            remaining = remaining.saturating_add(1);
         }
-        if waypoints == 0 {
+        if remaining == 0 {
             return Err(FollowError::Empty);
         }
-        Ok(Follow { walk, waypoints })
+        Ok(Follow { walk, remaining })
     }
 }
 
 /// The waypoints of a curve that has been found to be reachable: see [`Arm::follow`].
 #[derive(Debug, Clone)]
+#[must_use = "iterators are lazy"]
 pub struct Follow<I, T: RealField = f64> {
     walk: Walk<I, T>,
-    waypoints: usize,
+    remaining: u64,
+}
+
+impl<I, T: RealField> Follow<I, T> {
+    /// Waypoints still to come.
+    #[must_use]
+    pub const fn remaining(&self) -> u64 {
+        self.remaining
+    }
 }
 
 impl<I, T> Iterator for Follow<I, T>
@@ -124,20 +115,16 @@ where
     fn next(&mut self) -> Option<Waypoint<T>> {
         // The walk has no error: it is the one that was checked.
         let waypoint = self.walk.next()?.ok()?;
-        self.waypoints = self.waypoints.saturating_sub(1);
+        self.remaining = self.remaining.saturating_sub(1);
         Some(waypoint)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.waypoints, Some(self.waypoints))
+        match usize::try_from(self.remaining) {
+            Ok(remaining) => (remaining, Some(remaining)),
+            Err(_) => (usize::MAX, None),
+        }
     }
-}
-
-impl<I, T> ExactSizeIterator for Follow<I, T>
-where
-    I: Iterator<Item = Point2<T>>,
-    T: RealField + Trig,
-{
 }
 
 impl<I, T> FusedIterator for Follow<I, T>

@@ -115,7 +115,7 @@ impl<T: RealField + Trig> Arm<T> {
     /// On the base of an arm with equal links the shoulder stays where it is.
     ///
     /// # Errors
-    /// [`InverseError`], but never [`InverseError::Centre`].
+    /// [`InverseError`], but never [`InverseError::AnyAngle`].
     pub fn inverse_nearest(
         &self,
         point: Point2<T>,
@@ -125,7 +125,7 @@ impl<T: RealField + Trig> Arm<T> {
         match self.triangle(point) {
             Ok(triangle) => Solutions::near(self, triangle.both(), previous, triangle.tool)
                 .map(|solutions| solutions.nearest_to(previous)),
-            Err(InverseError::Centre) => self.folded(previous),
+            Err(InverseError::AnyAngle) => self.folded(previous),
             Err(error) => Err(error),
         }
     }
@@ -180,7 +180,7 @@ impl<T: RealField + Trig> Arm<T> {
             return Err(InverseError::TooNear { distance: r, reach });
         }
         if r == T::zero() && folded == T::zero() {
-            return Err(InverseError::Centre);
+            return Err(InverseError::AnyAngle);
         }
         let s2 = (r - folded) * (r + folded) * ((reach - r) * (reach + r));
         let s = s2.max(T::zero()).sqrt();

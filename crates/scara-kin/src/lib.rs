@@ -25,7 +25,7 @@ pub use trig_kernels::Trig;
 
 pub use arm::{Arm, GeometryError};
 pub use drives::{Direction, DriveAngles, Drives};
-pub use follow::{CurvePlace, Follow, FollowError, Waypoint};
+pub use follow::{Follow, FollowError, Waypoint};
 pub use inverse::{InverseError, Solutions};
 pub use joints::{Elbow, Joint, Joints};
 pub use limits::{JointRange, Limits};

@@ -232,24 +232,32 @@ fn curves<T: RealField + Trig>(pair: &Pair<T>, from: [f64; 2], to: [f64; 2], tol
     ];
     match followed {
         [Ok(plain), Ok(other)] => {
-            assert_eq!(plain.len(), other.len());
+            assert_eq!(plain.remaining(), other.remaining());
             for (a, b) in plain.zip(other) {
-                assert!(a.place.line == b.place.line && a.place.fraction == b.place.fraction);
-                pair.point(a.place.point, b.place.point);
+                assert!(a.line == b.line && a.fraction == b.fraction);
+                pair.point(a.point, b.point);
                 let worth = pair.span() / arm.singularity_distance(a.joints);
                 same(angles(a.joints), angles(b.joints), worth);
             }
         }
         [
-            Err(FollowError::Unreachable { place, .. }),
-            Err(FollowError::Unreachable { place: other, .. }),
+            Err(FollowError::Unreachable { line, point, .. }),
+            Err(FollowError::Unreachable {
+                line: same,
+                point: other,
+                ..
+            }),
         ]
         | [
-            Err(FollowError::Jump { place }),
-            Err(FollowError::Jump { place: other }),
+            Err(FollowError::Singular { line, point, .. }),
+            Err(FollowError::Singular {
+                line: same,
+                point: other,
+                ..
+            }),
         ] => {
-            assert_eq!(place.line, other.line);
-            pair.point(place.point, other.point);
+            assert_eq!(line, same);
+            pair.point(point, other);
         }
         [plain, other] => panic!("{:?} {:?}", plain.err(), other.err()),
     }

@@ -1,7 +1,7 @@
 //! The machine: from its settings in TOML to checked numbers.
 
 use anyhow::{Context, Result, ensure};
-use delta_kin::{Arm, ArmGeometry, Delta, JointRange, Pace};
+use delta_kin::{Arm, ArmGeometry, Delta, JointRange, SpeedLimits};
 use machine_sim::input::parse_settings;
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
@@ -142,8 +142,8 @@ impl Machine {
         Ok(self.delta.forward(self.angles(steps))?)
     }
 
-    pub(crate) fn pace(&self, feed_mm_s: f64) -> Result<Pace> {
-        Ok(Pace::new(feed_mm_s, [self.max_rate_rad_s; 3])?)
+    pub(crate) fn pace(&self, feed_mm_s: f64) -> Result<SpeedLimits> {
+        Ok(SpeedLimits::new(feed_mm_s, [self.max_rate_rad_s; 3])?)
     }
 }
 
@@ -177,7 +177,7 @@ impl Settings {
         };
         let [first, second, third] = arms.map(|arm| arm.zero);
         let ranges = [range(first)?, range(second)?, range(third)?];
-        let delta = delta.with_ranges(ranges.map(Some));
+        let delta = delta.with_ranges(ranges);
         match self.max_swivel_deg {
             Some(swivel) => delta
                 .with_ball_joints(swivel.to_radians())

@@ -123,7 +123,7 @@ fn mechanism(run: &Run<'_>) -> Result<Vec<Line>> {
     let pose = machine.delta.pose_of(machine.angles(run.trains.end))?;
     let platform = pose.point();
     let (mut shoulders, mut wrists, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-    for (geometry, elbow) in machine.delta.arms().iter().zip(pose.knees()) {
+    for (geometry, elbow) in machine.delta.arms().iter().zip(pose.elbows()) {
         let (sin, cos) = geometry.azimuth.sin_cos();
         let outward = Vector3::new(cos, sin, 0.0);
         let shoulder = Point3::from(outward * geometry.base);

@@ -217,11 +217,11 @@ impl Planner<'_> {
                 to: *to,
             };
             self.line(line, direction)?;
-            self.note_bound(to.place.point);
+            self.note_bound(to.point);
         }
-        self.note_bound(first.place.point);
+        self.note_bound(first.point);
         self.plan.length_mm += lines()
-            .map(|(from, to)| (to.place.point - from.place.point).norm())
+            .map(|(from, to)| (to.point - from.point).norm())
             .sum::<f64>();
         self.vertical(self.machine.lift_pulses)
     }
@@ -303,7 +303,7 @@ impl Planner<'_> {
                     continue;
                 }
                 let tool = machine.arm.forward(machine.joints(position));
-                let off = distance_to_segment(tool, line.from.place.point, line.to.place.point);
+                let off = distance_to_segment(tool, line.from.point, line.to.point);
                 if off > machine.half_step_mm(tool) + self.plan.reference.tolerance_mm / 2.0 {
                     return Ok(false);
                 }
@@ -366,5 +366,5 @@ impl Planner<'_> {
 }
 
 fn heading(from: &Waypoint, to: &Waypoint) -> Vector2<f64> {
-    to.place.point - from.place.point
+    to.point - from.point
 }

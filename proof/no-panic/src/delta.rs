@@ -3,7 +3,9 @@
 use std::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, Follow, ForwardError, InverseError, Pace, Path, Pose, PoseError, Waypoint};
+use delta_kin::{
+    Delta, Follow, ForwardError, InverseError, Path, Pose, PoseError, SpeedLimits, Waypoint,
+};
 use no_panic::no_panic;
 
 #[no_panic]
@@ -58,7 +60,7 @@ pub fn run() {
         black_box(chord_bound(delta, pose, pose));
     }
     let line = Path::line(point(), Point3::new(-50.0, 50.0, -300.0));
-    let pace = Pace::new(black_box(200.0), [3.0; 3]);
+    let pace = SpeedLimits::new(black_box(200.0), [3.0; 3]);
     if let (Ok(line), Ok(pace)) = (line, pace)
         && let Ok(follow) = delta.follow(line, 0.01, pace)
     {

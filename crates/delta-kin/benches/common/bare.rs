@@ -18,7 +18,7 @@ pub(crate) fn directions() -> [Direction; 3] {
     })
 }
 
-/// Three angles, knees out.
+/// Three angles, elbows out.
 pub(crate) fn inverse(arms: &[Direction; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
     arms.map(|(c, s)| {
         let p = (BASE - PLATFORM) - (x * c + y * s);

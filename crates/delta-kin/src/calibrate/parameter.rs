@@ -100,23 +100,23 @@ impl Parameter {
         pose: &Pose<T>,
         inverse: &[Vector3<T>; 3],
     ) -> Vector3<T> {
-        let legs = zip(delta.legs().each_ref(), delta.thetas(pose.angles()));
+        let prepared = zip(delta.prepared().each_ref(), delta.thetas(pose.angles()));
         let rods = zip(pose.rods().map(|rod| delta.flip(rod)), *inverse);
-        zip(Arm::ALL, zip(legs, rods))
+        zip(Arm::ALL, zip(prepared, rods))
             .into_iter()
             .filter(|(arm, _)| self.is_of(*arm))
-            .map(|(_, ((leg, theta), (rod, column)))| {
+            .map(|(_, ((prepared, theta), (rod, column)))| {
                 let theta = sin_cos(theta);
                 let along = match self.quantity {
                     Quantity::Azimuth => {
-                        let centre = leg.centre(theta);
+                        let centre = prepared.centre(theta);
                         Vector3::z().cross(&centre).dot(&rod)
                     }
-                    Quantity::Base => leg.in_plane(T::one(), T::zero()).dot(&rod),
-                    Quantity::Platform => -leg.in_plane(T::one(), T::zero()).dot(&rod),
-                    Quantity::Upper => leg.spoke(theta).dot(&rod) / leg.upper,
+                    Quantity::Base => prepared.in_plane(T::one(), T::zero()).dot(&rod),
+                    Quantity::Platform => -prepared.in_plane(T::one(), T::zero()).dot(&rod),
+                    Quantity::Upper => prepared.spoke(theta).dot(&rod) / prepared.upper,
                     Quantity::Lower => T::one(),
-                    Quantity::Zero => leg.tangent(theta).dot(&rod),
+                    Quantity::Zero => prepared.tangent(theta).dot(&rod),
                 };
                 column * along
             })

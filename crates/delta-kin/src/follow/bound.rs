@@ -4,8 +4,8 @@ use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
-use crate::leg::Leg;
 use crate::pose::{invert_rods, least_sine};
+use crate::prepared::PreparedArm;
 use crate::scale::{half, two};
 use crate::{Delta, Pose};
 
@@ -25,7 +25,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// the move is too long to tell, or a pose is another machine's. The platform stays in its
     /// assembly mode on the way.
     ///
-    /// Proof. Let the platform be on the line, P(s) = P0 + s V over s = 0..=1, and the knees where
+    /// Proof. Let the platform be on the line, P(s) = P0 + s V over s = 0..=1, and the elbows where
     /// the arms have them, C(s), so that |C'| = Lb |ω|, |C"| = Lb ω², |C‴| = Lb |ω|³. The square
     /// of a rod's length there, g(s) = |P - C|², is right at both ends and departs between them
     /// from La² by at most an eighth of its largest second derivative
@@ -56,10 +56,10 @@ impl<T: RealField + Trig> Delta<T> {
     pub fn chord_bound(&self, from: &Pose<T>, to: &Pose<T>) -> Option<T> {
         for pose in [from, to] {
             let local = self.flip(pose.point().coords);
-            let legs = zip(self.legs().each_ref(), self.thetas(pose.angles()));
-            for (leg, theta) in legs {
+            let prepared = zip(self.prepared().each_ref(), self.thetas(pose.angles()));
+            for (prepared, theta) in prepared {
                 // Written so that NaN is refused too.
-                let is_met = leg.stretch(&local, theta).abs() <= self.tolerance();
+                let is_met = prepared.stretch(&local, theta).abs() <= self.tolerance();
                 if !is_met {
                     return None;
                 }
@@ -79,9 +79,10 @@ impl<T: RealField + Trig> Delta<T> {
         );
         let halfway = start + velocity * half::<T>();
         let thetas = zip(self.thetas(from.0), self.thetas(to.0));
-        let [first, second, third] = zip(self.legs().each_ref(), thetas);
+        let [first, second, third] = zip(self.prepared().each_ref(), thetas);
         let rounding = self.tolerance();
-        let swing = |(leg, thetas)| Swing::new(leg, thetas, &halfway, &velocity, rounding);
+        let swing =
+            |(prepared, thetas)| Swing::new(prepared, thetas, &halfway, &velocity, rounding);
         let swings = [swing(first)?, swing(second)?, swing(third)?];
 
         let rods = swings.each_ref().map(|swing| swing.rod);
@@ -99,7 +100,7 @@ impl<T: RealField + Trig> Delta<T> {
             return None;
         }
         let kappa = kappa / rest;
-        let [l1, l2, l3] = self.legs().each_ref().map(|leg| leg.lower);
+        let [l1, l2, l3] = self.prepared().each_ref().map(|prepared| prepared.lower);
         let lower = l1.min(l2).min(l3);
         let root3: T = nalgebra::convert(1.732_050_807_568_877_4); // √3, upwards
         let x = two::<T>() * two() * root3 * kappa * kappa * e / lower;
@@ -113,7 +114,7 @@ impl<T: RealField + Trig> Delta<T> {
 
 impl<T: RealField + Trig> Swing<T> {
     fn new(
-        leg: &Leg<T>,
+        prepared: &PreparedArm<T>,
         (from, to): (T, T),
         halfway: &Vector3<T>,
         velocity: &Vector3<T>,
@@ -122,11 +123,11 @@ impl<T: RealField + Trig> Swing<T> {
         let rate = to - from;
         let theta = from + rate * half();
         let theta = sin_cos(theta);
-        let rod = halfway - leg.centre(theta);
+        let rod = halfway - prepared.centre(theta);
         let length = rod.norm();
-        let relative = velocity - leg.tangent(theta) * rate;
-        let inward = leg.spoke(theta) * (-rate * rate);
-        let b = leg.upper * rate * rate;
+        let relative = velocity - prepared.tangent(theta) * rate;
+        let inward = prepared.spoke(theta) * (-rate * rate);
+        let b = prepared.upper * rate * rate;
         let c = b * rate.abs();
         let a = relative.norm() + b * half();
         let l = length + a * half();
@@ -138,7 +139,7 @@ impl<T: RealField + Trig> Swing<T> {
         let least = length + (length - way);
         (least > T::zero()).then(|| Self {
             rod: rod / length,
-            miss: largest / (leg.lower * nalgebra::convert(8.0)) + rounding,
+            miss: largest / (prepared.lower * nalgebra::convert(8.0)) + rounding,
             turn: two::<T>() * way / least,
         })
     }

@@ -34,14 +34,14 @@ enum Shape<T: RealField> {
 #[non_exhaustive]
 pub enum PathError<T: RealField + Copy = f64> {
     /// A number of the path is not one of the stated size.
-    #[error("{name} {} of the path is not within ±{}", Rounded(*.value), Rounded(*.max))]
+    #[error("{name} {} of the path is not within ±{}", Rounded(*.value), Rounded(*.largest))]
     OutOfRange {
         /// `coordinate`, `axis component` or `angle`.
         name: &'static str,
         /// The value given, in the unit of length or in radians.
         value: T,
         /// The greatest allowed, either way.
-        max: T,
+        largest: T,
     },
     /// The arc starts at its centre.
     #[error("the arc starts at its centre")]
@@ -90,11 +90,15 @@ impl<T: RealField + Trig> Path<T> {
         within("coordinate", start.coords, farthest())?;
         within("coordinate", centre.coords, farthest())?;
         within("axis component", axis, farthest())?;
-        let max = widest();
-        if !is_within(angle, max) {
+        let largest = widest();
+        if !is_within(angle, largest) {
             let name = "angle";
             let value = angle;
-            return Err(PathError::OutOfRange { name, value, max });
+            return Err(PathError::OutOfRange {
+                name,
+                value,
+                largest,
+            });
         }
         let out = start - centre;
         let radius = length(&out);
@@ -174,11 +178,15 @@ impl<T: RealField + Trig> Path<T> {
 fn within<T: RealField + Copy>(
     name: &'static str,
     vector: Vector3<T>,
-    max: T,
+    largest: T,
 ) -> Result<(), PathError<T>> {
     for value in vector.iter().copied() {
-        if !is_within(value, max) {
-            return Err(PathError::OutOfRange { name, value, max });
+        if !is_within(value, largest) {
+            return Err(PathError::OutOfRange {
+                name,
+                value,
+                largest,
+            });
         }
     }
     Ok(())

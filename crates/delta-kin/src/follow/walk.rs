@@ -4,7 +4,7 @@ use nalgebra::{Point3, RealField};
 use trig_kernels::Trig;
 
 use super::bisect::Bisection;
-use super::{FollowError, Pace, Path, Waypoint};
+use super::{FollowError, Path, SpeedLimits, Waypoint};
 use crate::arm::zip;
 use crate::{Arm, Delta};
 
@@ -14,7 +14,7 @@ pub(super) struct Walk<T: RealField> {
     delta: Delta<T>,
     path: Path<T>,
     tolerance: T,
-    pace: Pace<T>,
+    limits: SpeedLimits<T>,
     state: State<T>,
 }
 
@@ -28,12 +28,17 @@ enum State<T: RealField> {
 type Step<T> = Result<Waypoint<T>, FollowError<T>>;
 
 impl<T: RealField + Trig> Walk<T> {
-    pub(super) const fn new(delta: Delta<T>, path: Path<T>, tolerance: T, pace: Pace<T>) -> Self {
+    pub(super) const fn new(
+        delta: Delta<T>,
+        path: Path<T>,
+        tolerance: T,
+        limits: SpeedLimits<T>,
+    ) -> Self {
         Self {
             delta,
             path,
             tolerance,
-            pace,
+            limits,
             state: State::Start,
         }
     }
@@ -118,7 +123,7 @@ impl<T: RealField + Trig> Walk<T> {
             point,
             fraction,
             length,
-            duration_s: self.pace.duration_s(length, angles - last.angles),
+            duration_s: self.limits.duration_s(length, angles - last.angles),
         })
     }
 }

@@ -5,10 +5,10 @@ use trig_kernels::{Trig, sin_cos};
 
 use super::Workspace;
 use crate::arm::zip;
-use crate::leg::Leg;
 use crate::pose::invert_rods;
+use crate::prepared::PreparedArm;
 use crate::scale::two;
-use crate::{Delta, Knee, Pose};
+use crate::{Delta, Elbow, Pose};
 
 impl<T: RealField + Trig> Workspace<T> {
     /// How far the platform can be moved from `point` in any direction, in the unit of length: the
@@ -19,17 +19,17 @@ impl<T: RealField + Trig> Workspace<T> {
     /// in a plane:
     ///
     /// ```text
-    /// reach:    La - |P - nearest place of the knee|,  |P - farthest place of the knee| - La
-    /// ranges:   ||P - knee at the end of the range| - La|
-    /// balls:    La sin(max lean) - |w|
+    /// reach:    La - |P - nearest place of the elbow|,  |P - farthest place of the elbow| - La
+    /// ranges:   ||P - elbow at the end of the range| - La|
+    /// balls:    La sin(max swivel) - |w|
     /// assembly: see below
     /// ```
     ///
     /// None of the first three changes by more than the point moves, and by continuity no angle
     /// leaves its range inside the ball. The last is a lower bound: more may be free.
     ///
-    /// Proof. Let the platform move by d, |d| ≤ δ, and a knee by a chord of length y. With e along
-    /// the rod, t and s along the knee's way and the upper arm, λ = |e · t|, σ = |e · s|, the
+    /// Proof. Let the platform move by d, |d| ≤ δ, and a elbow by a chord of length y. With e along
+    /// the rod, t and s along the elbow's way and the upper arm, λ = |e · t|, σ = |e · s|, the
     /// length of the rod is kept if
     ///
     /// ```text
@@ -50,33 +50,39 @@ impl<T: RealField + Trig> Workspace<T> {
             return T::zero();
         };
         let local = self.delta.flip(point.coords);
-        zip(self.delta.legs().each_ref(), self.delta.working_mode())
-            .map(|(leg, knee)| leg_clearance(leg, knee, &local) - self.delta.tolerance())
+        zip(self.delta.prepared().each_ref(), self.delta.working_mode())
+            .map(|(prepared, elbow)| {
+                arm_clearance(prepared, elbow, &local) - self.delta.tolerance()
+            })
             .into_iter()
             .fold(steady(&self.delta, &pose), T::min)
             .max(T::zero())
     }
 }
 
-fn leg_clearance<T: RealField + Trig>(leg: &Leg<T>, knee: Knee, local: &Vector3<T>) -> T {
-    let side = local.dot(&leg.sideways()).abs();
-    let clearance = leg.reach_margin(local).min(leg.max_side - side);
-    if !leg.has_range() {
+fn arm_clearance<T: RealField + Trig>(
+    prepared: &PreparedArm<T>,
+    elbow: Elbow,
+    local: &Vector3<T>,
+) -> T {
+    let side = local.dot(&prepared.sideways()).abs();
+    let clearance = prepared.reach_margin(local).min(prepared.max_side - side);
+    if !prepared.is_limited() {
         return clearance;
     }
     let end = |theta: T| {
-        // The knee at an end may also be behind the other solution: then the wrist's distance
+        // The elbow at an end may also be behind the other solution: then the wrist's distance
         // from the upper arm's line at that end holds it off.
         let direction = sin_cos(theta);
-        let hip = leg.centre(direction) - leg.spoke(direction);
-        let ahead = (local - hip).dot(&leg.tangent(direction)) / leg.upper;
-        let other = match knee {
-            Knee::Out => ahead,
-            Knee::In => -ahead,
+        let shoulder = prepared.centre(direction) - prepared.spoke(direction);
+        let ahead = (local - shoulder).dot(&prepared.tangent(direction)) / prepared.upper;
+        let other = match elbow {
+            Elbow::Out => ahead,
+            Elbow::In => -ahead,
         };
-        leg.stretch(local, theta).abs().max(other)
+        prepared.stretch(local, theta).abs().max(other)
     };
-    clearance.min(end(leg.low)).min(end(leg.high))
+    clearance.min(end(prepared.low)).min(end(prepared.high))
 }
 
 /// How far the platform can move from a pose before its rods could lie in a plane.
@@ -87,23 +93,23 @@ fn steady<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     let [a, b, c] = invert_rods(pose.rods());
     let kappa = (a.norm_squared() + b.norm_squared() + c.norm_squared()).sqrt();
     let nine_quarters: T = nalgebra::convert(2.25);
-    let legs = zip(delta.legs().each_ref(), pose.levers().into());
-    let [first, second, third] = legs.map(|(leg, lever)| {
-        let along = (lever / leg.upper).abs();
+    let prepared = zip(delta.prepared().each_ref(), pose.levers().into());
+    let [first, second, third] = prepared.map(|(prepared, lever)| {
+        let along = (lever / prepared.upper).abs();
         // λ + σ is the most with the rod in the arm's plane.
         let both = along
             + ((T::one() - along) * (T::one() + along))
                 .max(T::zero())
                 .sqrt();
-        let least_y = along / (nine_quarters / leg.lower + both / leg.upper);
+        let least_y = along / (nine_quarters / prepared.lower + both / prepared.upper);
         // η for δ = 1.
-        let turn = (T::one() + two::<T>() / along) / leg.lower;
+        let turn = (T::one() + two::<T>() / along) / prepared.lower;
         (least_y * along / two(), turn)
     });
     let held = first.0.min(second.0).min(third.0);
     let turn = Vector3::new(first.1, second.1, third.1).norm();
     // There rods that are longer or shorter by the tolerance decide whether they meet at all: at
-    // a height d over the knees' plane with d²/(2 La) up to the tolerance.
+    // a height d over the elbows' plane with d²/(2 La) up to the tolerance.
     let rounding = (pose.rounding() * two()).sqrt() * two();
     let share: T = nalgebra::convert(1.0 - 1e-3);
     held.min((kappa.recip() - rounding) / turn) * share

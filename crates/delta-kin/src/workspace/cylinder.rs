@@ -23,7 +23,7 @@ impl<T: RealField + Trig> Workspace<T> {
         let span = self.delta.span();
         for z in heights {
             if !is_within(z, span) {
-                return Err(WorkspaceError::Height { z, max: span });
+                return Err(WorkspaceError::Height { z, largest: span });
             }
         }
         let min = span / nalgebra::convert(FINEST);

@@ -40,6 +40,12 @@ impl<T: RealField + Trig> Outline<T> {
         }
     }
 
+    /// Points still to come.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        self.points.saturating_sub(self.next).into()
+    }
+
     /// The last place on a ray that is known to be inside: steps of the clearance, until it is
     /// small. As each is longer than 1e-6 spans, a million leave the machine's reach.
     fn leave(&self, direction: Vector3<T>) -> Point3<T> {
@@ -70,13 +76,11 @@ impl<T: RealField + Trig> Iterator for Outline<T> {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        match usize::try_from(self.points.saturating_sub(self.next)) {
-            Ok(left) => (left, Some(left)),
+        match usize::try_from(self.remaining()) {
+            Ok(remaining) => (remaining, Some(remaining)),
             Err(_) => (usize::MAX, None),
         }
     }
 }
-
-impl<T: RealField + Trig> ExactSizeIterator for Outline<T> {}
 
 impl<T: RealField + Trig> FusedIterator for Outline<T> {}

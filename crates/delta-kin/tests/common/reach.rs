@@ -1,10 +1,10 @@
-//! How far arms reach, by the plain geometry of the knee's circle.
+//! How far arms reach, by the plain geometry of the elbow's circle.
 
 use delta_kin::ArmGeometry;
 use delta_kin::nalgebra::{Point3, Vector3};
 
 /// By how much each arm reaches a point, by the wrist's distances from the nearest and the
-/// farthest place of the knee; negative: by how much its rods are too short or too long.
+/// farthest place of the elbow; negative: by how much its rods are too short or too long.
 pub(crate) fn reach_margins(arms: &[ArmGeometry; 3], point: Point3<f64>) -> Vector3<f64> {
     Vector3::from(arms.map(|arm| {
         let (sin, cos) = arm.azimuth.sin_cos();

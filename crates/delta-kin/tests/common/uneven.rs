@@ -1,6 +1,6 @@
 //! Machines whose arms differ widely, and anything that they may be set to.
 
-use delta_kin::{Arm, ArmGeometry, AssemblyMode, Knee};
+use delta_kin::{Arm, ArmGeometry, AssemblyMode, Elbow};
 use proptest::prelude::*;
 
 /// 10 to the power of what is between two ends.
@@ -45,8 +45,8 @@ pub(crate) fn uneven_arms() -> impl Strategy<Value = [ArmGeometry; 3]> {
 }
 
 /// An assembly and a working mode.
-pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [Knee; 3])> {
+pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [Elbow; 3])> {
     let assembly_mode = prop_oneof![Just(AssemblyMode::Lower), Just(AssemblyMode::Upper)];
-    let knee = || prop_oneof![Just(Knee::Out), Just(Knee::In)];
-    (assembly_mode, [knee(), knee(), knee()])
+    let elbow = || prop_oneof![Just(Elbow::Out), Just(Elbow::In)];
+    (assembly_mode, [elbow(), elbow(), elbow()])
 }

@@ -2,9 +2,8 @@
 
 use core::fmt::{Display, Formatter};
 
-use nalgebra::RealField;
+use nalgebra::{Point2, RealField};
 
-use super::CurvePlace;
 use crate::InverseError;
 use crate::digits::Digits;
 
@@ -24,16 +23,24 @@ pub enum FollowError<T: RealField = f64> {
     Empty,
     /// The tool cannot be at a point of the curve.
     Unreachable {
-        /// The first such place.
-        place: CurvePlace<T>,
+        /// Number of the line, counted from 0.
+        line: usize,
+        /// The fraction of the line up to there.
+        fraction: T,
+        /// The first such point.
+        point: Point2<T>,
         /// Why.
         reason: InverseError<T>,
     },
-    /// A joint would have to turn at once by more than any number of waypoints can
-    /// follow: the curve passes the base, or almost.
-    Jump {
-        /// The place from which no step is short enough.
-        place: CurvePlace<T>,
+    /// No step is short enough: a joint would have to turn at once, since the curve passes the
+    /// base, or almost.
+    Singular {
+        /// Number of the line, counted from 0.
+        line: usize,
+        /// The fraction of the line up to there.
+        fraction: T,
+        /// The point.
+        point: Point2<T>,
     },
 }
 
@@ -50,10 +57,29 @@ impl<T: RealField + Copy> Display for FollowError<T> {
                 Digits(*rounding)
             ),
             Self::Empty => f.write_str("the curve has no point"),
-            Self::Unreachable { place, reason } => write!(f, "{place}: {reason}"),
-            Self::Jump { place } => write!(f, "{place}: a joint would have to jump"),
+            Self::Unreachable {
+                line,
+                fraction,
+                point,
+                reason,
+            } => write!(f, "{}: {reason}", At(*line, *fraction, *point)),
+            Self::Singular {
+                line,
+                fraction,
+                point,
+            } => write!(f, "{}: singular", At(*line, *fraction, *point)),
         }
     }
 }
 
 impl<T: RealField + Copy> core::error::Error for FollowError<T> {}
+
+/// A point of a curve.
+struct At<T: RealField>(usize, T, Point2<T>);
+
+impl<T: RealField + Copy> Display for At<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        let [fraction, x, y] = [self.1, self.2.x, self.2.y].map(Digits);
+        write!(f, "at {fraction} of line {}, ({x}, {y})", self.0)
+    }
+}

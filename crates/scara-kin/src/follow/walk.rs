@@ -4,7 +4,7 @@ use nalgebra::{Point2, RealField};
 use trig_kernels::Trig;
 
 use super::bisect::Bisection;
-use super::{CurvePlace, FollowError, Waypoint};
+use super::{FollowError, Waypoint};
 use crate::{Arm, Elbow, InverseError, Joint, Joints};
 
 /// Yields each waypoint or the reason why there is none; ends after an error.
@@ -30,6 +30,25 @@ enum State<T: RealField> {
     End,
 }
 
+/// A point of the curve.
+#[derive(Clone, Copy)]
+struct Place<T: RealField> {
+    line: usize,
+    fraction: T,
+    point: Point2<T>,
+}
+
+impl<T: RealField + Copy> Place<T> {
+    fn unreachable(self, reason: InverseError<T>) -> FollowError<T> {
+        FollowError::Unreachable {
+            line: self.line,
+            fraction: self.fraction,
+            point: self.point,
+            reason,
+        }
+    }
+}
+
 /// A line on which the walk stands.
 #[derive(Debug, Clone, Copy)]
 struct Line<T: RealField> {
@@ -42,13 +61,13 @@ struct Line<T: RealField> {
 }
 
 impl<T: RealField + Trig> Line<T> {
-    fn place(&self, fraction: T) -> CurvePlace<T> {
+    fn place(&self, fraction: T) -> Place<T> {
         let point = if fraction == T::one() {
             self.to
         } else {
             self.from + (self.to - self.from) * fraction
         };
-        CurvePlace {
+        Place {
             line: self.line,
             fraction,
             point,
@@ -56,7 +75,7 @@ impl<T: RealField + Trig> Line<T> {
     }
 
     /// The dip, if the next step would jump over it.
-    fn dip_ahead(&self) -> Option<CurvePlace<T>> {
+    fn dip_ahead(&self) -> Option<Place<T>> {
         let dip = self.dip?;
         let ahead = self.steps.position::<T>() < dip && dip < self.steps.target();
         ahead.then(|| self.place(dip))
@@ -89,7 +108,7 @@ where
 
     fn start(&mut self) -> Option<Step<T>> {
         let point = self.points.next()?;
-        let place = CurvePlace {
+        let place = Place {
             line: 0,
             fraction: T::zero(),
             point,
@@ -155,14 +174,14 @@ where
         }
     }
 
-    fn try_step(&self, line: &Line<T>, place: CurvePlace<T>) -> Result<Joints<T>, FollowError<T>> {
+    fn try_step(&self, line: &Line<T>, place: Place<T>) -> Result<Joints<T>, FollowError<T>> {
         if let Some(place) = line.dip_ahead() {
             let centre = Point2::from(self.arm.base().translation.vector);
             let reason = InverseError::TooNear {
                 distance: (place.point - centre).norm(),
                 reach: self.arm.inner_reach(),
             };
-            return Err(FollowError::Unreachable { place, reason });
+            return Err(place.unreachable(reason));
         }
         let joints = self.joints_at(place)?;
         let rounding = self
@@ -188,18 +207,22 @@ where
                     min: range.min(),
                     max: range.max(),
                 };
-                return Err(FollowError::Unreachable { place, reason });
+                return Err(place.unreachable(reason));
             }
         }
-        Err(FollowError::Jump { place })
+        Err(FollowError::Singular {
+            line: place.line,
+            fraction: place.fraction,
+            point: place.point,
+        })
     }
 
     /// Joint angles at a place, at the whole turn nearest to those before.
-    fn joints_at(&self, place: CurvePlace<T>) -> Result<Joints<T>, FollowError<T>> {
+    fn joints_at(&self, place: Place<T>) -> Result<Joints<T>, FollowError<T>> {
         let joints = self
             .arm
             .inverse_elbow_near(place.point, self.elbow, self.joints)
-            .map_err(|reason| FollowError::Unreachable { place, reason })?;
+            .map_err(|reason| place.unreachable(reason))?;
         let (tolerance, rounding) = (self.tolerance, self.arm.rounding(joints));
         // Written so that NaN is refused too.
         if tolerance > rounding && tolerance.is_finite() {
@@ -212,9 +235,14 @@ where
         }
     }
 
-    fn arrive(&mut self, joints: Joints<T>, place: CurvePlace<T>) -> Waypoint<T> {
+    fn arrive(&mut self, joints: Joints<T>, place: Place<T>) -> Waypoint<T> {
         self.joints = joints;
-        Waypoint { joints, place }
+        Waypoint {
+            joints,
+            point: place.point,
+            line: place.line,
+            fraction: place.fraction,
+        }
     }
 }
 

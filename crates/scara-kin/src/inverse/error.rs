@@ -36,7 +36,7 @@ pub enum InverseError<T = f64> {
     /// The point is the base itself and the links are equal: with the elbow folded,
     /// every shoulder angle is a solution. [`Arm::inverse_nearest`](crate::Arm::inverse_nearest)
     /// picks one.
-    Centre,
+    AnyAngle,
     /// The point is within reach, but a joint would leave its range.
     JointLimit {
         /// The elbow tried; where both fail, the one that misses by less.
@@ -79,7 +79,7 @@ impl<T: RealField + Copy> Display for InverseError<T> {
                 Digits(reach),
                 Digits(reach - distance)
             ),
-            Self::Centre => f.write_str(
+            Self::AnyAngle => f.write_str(
                 "the point is the base of an arm with equal links: any shoulder angle reaches it",
             ),
             Self::JointLimit {

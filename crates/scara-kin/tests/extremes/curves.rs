@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Point2, RealField};
-use scara_kin::{Arm, CurvePlace, Elbow, FollowError, Joints, Trig, Waypoint};
+use scara_kin::{Arm, Elbow, FollowError, Joints, Trig, Waypoint};
 
 use super::inverse::{is_true, rounding};
 use super::machine::{Recipe, recipes};
@@ -83,7 +83,8 @@ fn follow<T: RealField + Trig>(
     ] {
         match followed {
             Ok(waypoints) => {
-                prop_assert_eq!(waypoints.len(), waypoints.clone().count());
+                prop_assert_eq!(waypoints.size_hint().0, waypoints.clone().count());
+                prop_assert_eq!(waypoints.remaining(), waypoints.clone().count() as u64);
                 prop_assert!(double(tolerance).is_finite());
                 keeps(&arm, points, tolerance, waypoints.take(100).collect())?;
             }
@@ -113,23 +114,32 @@ fn is_so<T: RealField + Trig>(
             let good = tolerance > rounding && tolerance.is_finite();
             prop_assert!(!good && *rounding >= arm.tolerance());
         }
-        FollowError::Unreachable { place, reason } => {
-            is_on(points, *place)?;
-            is_true(arm, place.point, reason)?;
+        FollowError::Unreachable {
+            line,
+            fraction,
+            point,
+            reason,
+        } => {
+            is_on(points, *line, *fraction, *point)?;
+            is_true(arm, *point, reason)?;
         }
-        FollowError::Jump { place } => is_on(points, *place)?,
+        FollowError::Singular {
+            line,
+            fraction,
+            point,
+        } => is_on(points, *line, *fraction, *point)?,
         _ => prop_assert!(false, "{error}"),
     }
     Ok(())
 }
 
-/// A place is on the line that it names.
-fn is_on<T: RealField + Trig>(points: [Point2<T>; 3], place: CurvePlace<T>) -> TestCaseResult {
-    let CurvePlace {
-        line,
-        fraction,
-        point,
-    } = place;
+/// A point is on the line that is named.
+fn is_on<T: RealField + Trig>(
+    points: [Point2<T>; 3],
+    line: usize,
+    fraction: T,
+    point: Point2<T>,
+) -> TestCaseResult {
     prop_assert!(line < 2 && fraction >= T::zero() && fraction <= T::one());
     let fraction = double(fraction);
     let ends = [points[line], points[line + 1]].map(|end| end.coords.map(double));
@@ -152,11 +162,9 @@ fn keeps<T: RealField + Trig>(
     for waypoint in &waypoints {
         let joints = waypoint.joints;
         prop_assert!(arm.limits().contains(&joints));
-        let miss = (arm.forward(joints) - waypoint.place.point)
-            .map(double)
-            .norm();
+        let miss = (arm.forward(joints) - waypoint.point).map(double).norm();
         prop_assert!(miss <= rounding(arm, joints), "{miss}");
-        is_on(points, waypoint.place)?;
+        is_on(points, waypoint.line, waypoint.fraction, waypoint.point)?;
     }
     for pair in waypoints.windows(2) {
         let [from, to] = [pair[0].joints, pair[1].joints];

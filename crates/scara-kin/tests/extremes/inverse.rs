@@ -113,7 +113,7 @@ pub(crate) fn is_true<T: RealField + Trig>(
         InverseError::TooNear { distance, reach } => {
             prop_assert!(finite && distance < reach && from_base <= double(reach) + rounding);
         }
-        InverseError::Centre => {
+        InverseError::AnyAngle => {
             prop_assert!(arm.upper() == arm.fore() && from_base <= rounding);
         }
         InverseError::JointLimit {

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, Measured, Pace, Parameter, Path, Quantity};
+use delta_kin::{Delta, Measured, Parameter, Path, Quantity, SpeedLimits};
 
 use super::{CLOSE_MM, holds};
 fn thesis() -> Option<Delta> {
@@ -25,7 +25,7 @@ pub fn delta() -> Option<()> {
             .is_err(),
     )?;
     let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
-    let pace = Pace::new(200.0, [3.0; 3]).ok()?;
+    let pace = SpeedLimits::new(200.0, [3.0; 3]).ok()?;
     let last = delta.follow(line, 0.01, pace).ok()?.last()?;
     holds((last.point - line.point_at(1.0)?).norm() < CLOSE_MM)?;
     let workspace = delta.workspace();

@@ -4,11 +4,11 @@ use nalgebra::{RealField, Vector3};
 use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
 
 use crate::scale::{half, max_value, two};
-use crate::{ArmGeometry, JointRange, Knee, Positive};
+use crate::{ArmGeometry, Elbow, JointRange, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leg<T> {
+pub(crate) struct PreparedArm<T> {
     cos: T,
     sin: T,
     /// R - r.
@@ -28,20 +28,20 @@ pub(crate) struct Leg<T> {
     pub(crate) max_side: T,
 }
 
-/// The hip, the wrist and what lies between, as seen square to the arm's plane.
+/// The shoulder, the wrist and what lies between, as seen square to the arm's plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Triangle<T> {
-    /// From the wrist inward to the hip.
+    /// From the wrist inward to the shoulder.
     pub(crate) inward: T,
     pub(crate) z: T,
     /// Wrist beside the arm's plane.
     pub(crate) side: T,
-    /// Distance between hip and wrist in the plane, and its square.
+    /// Distance between shoulder and wrist in the plane, and its square.
     pub(crate) h: T,
     h2: T,
-    /// La² less the square of the wrist's distance from the nearest place of the knee.
+    /// La² less the square of the wrist's distance from the nearest place of the elbow.
     past_near: T,
-    /// Square of the wrist's distance from the farthest place of the knee, less La².
+    /// Square of the wrist's distance from the farthest place of the elbow, less La².
     short_of_far: T,
 }
 
@@ -52,11 +52,11 @@ pub(crate) struct Heading<T> {
     cos: T,
 }
 
-impl<T: RealField + Trig> Leg<T> {
+impl<T: RealField + Trig> PreparedArm<T> {
     pub(crate) fn new(
         arm: &ArmGeometry<T>,
-        range: Option<JointRange<T>>,
-        max_lean: Option<T>,
+        range: JointRange<T>,
+        max_swivel: Option<T>,
         positive: Positive,
     ) -> Self {
         let (sin, cos) = sin_cos(arm.azimuth);
@@ -65,7 +65,7 @@ impl<T: RealField + Trig> Leg<T> {
             Positive::Outward => T::one(),
             Positive::Inward => -T::one(),
         };
-        let (min, max) = range.map_or((-huge, huge), |range| (range.min(), range.max()));
+        let (min, max) = (range.min(), range.max());
         let (a, b) = (arm.zero + turn * min, arm.zero + turn * max);
         Self {
             cos,
@@ -79,7 +79,7 @@ impl<T: RealField + Trig> Leg<T> {
             max,
             low: a.min(b),
             high: a.max(b),
-            max_side: max_lean.map_or(huge, |lean| arm.lower * sin_cos(lean).0),
+            max_side: max_swivel.map_or(huge, |swivel| arm.lower * sin_cos(swivel).0),
         }
     }
 
@@ -97,7 +97,7 @@ impl<T: RealField + Trig> Leg<T> {
     /// The part of [`Delta::tolerance`](crate::Delta::tolerance) that the size of the angles asks
     /// for, in machine epsilons.
     pub(crate) fn angle_rounding(&self) -> T {
-        let reading = if self.has_range() {
+        let reading = if self.is_limited() {
             self.min.abs().max(self.max.abs())
         } else {
             T::zero()
@@ -106,7 +106,7 @@ impl<T: RealField + Trig> Leg<T> {
         self.upper * (self.zero.abs() + reading) * two()
     }
 
-    pub(crate) fn has_range(&self) -> bool {
+    pub(crate) fn is_limited(&self) -> bool {
         self.max < max_value()
     }
 
@@ -130,7 +130,7 @@ impl<T: RealField + Trig> Leg<T> {
         }
     }
 
-    /// The rod, from the knee to the wrist.
+    /// The rod, from the elbow to the wrist.
     #[inline(always)]
     pub(crate) fn rod(&self, triangle: &Triangle<T>, heading: &Heading<T>) -> Vector3<T> {
         let scale = (triangle.h2 * two() * two()).recip();
@@ -143,7 +143,7 @@ impl<T: RealField + Trig> Leg<T> {
         )
     }
 
-    /// Centre of the sphere on which the platform's centre lies: the knee, moved inward by
+    /// Centre of the sphere on which the platform's centre lies: the elbow, moved inward by
     /// the platform's radius. From sine and cosine of theta, as the next two.
     #[inline]
     pub(crate) fn centre(&self, (sin, cos): (T, T)) -> Vector3<T> {
@@ -155,7 +155,7 @@ impl<T: RealField + Trig> Leg<T> {
         self.in_plane(self.upper * sin, -self.upper * cos)
     }
 
-    /// How the knee moves when theta grows.
+    /// How the elbow moves when theta grows.
     pub(crate) fn tangent(&self, (sin, cos): (T, T)) -> Vector3<T> {
         self.in_plane(self.upper * cos, self.upper * sin)
     }
@@ -171,13 +171,13 @@ impl<T: RealField + Trig> Leg<T> {
         Vector3::new(outward * self.cos, outward * self.sin, up)
     }
 
-    /// By how much the rod would be too short if the knee were at `theta`.
+    /// By how much the rod would be too short if the elbow were at `theta`.
     pub(crate) fn stretch(&self, point: &Vector3<T>, theta: T) -> T {
         (point - self.centre(sin_cos(theta))).norm() - self.lower
     }
 
-    /// How far the nearest and the farthest place of the knee are from the wrist.
-    pub(crate) fn knee_distances(&self, triangle: &Triangle<T>) -> (T, T) {
+    /// How far the nearest and the farthest place of the elbow are from the wrist.
+    pub(crate) fn elbow_distances(&self, triangle: &Triangle<T>) -> (T, T) {
         let h = triangle.inward.hypot(triangle.z);
         let near = (h - self.upper).hypot(triangle.side);
         let far = (h + self.upper).hypot(triangle.side);
@@ -201,14 +201,14 @@ impl<T: RealField + Copy> Triangle<T> {
         }
     }
 
-    /// The upper arm with the knee on the given side; not a number out of reach.
+    /// The upper arm with the elbow on the given side; not a number out of reach.
     #[inline(always)]
-    pub(crate) fn heading(&self, knee: Knee) -> Heading<T> {
+    pub(crate) fn heading(&self, elbow: Elbow) -> Heading<T> {
         let along = self.past_near - self.short_of_far;
         let across = (self.past_near * self.short_of_far).sqrt() * two();
-        let across = match knee {
-            Knee::Out => across,
-            Knee::In => -across,
+        let across = match elbow {
+            Elbow::Out => across,
+            Elbow::In => -across,
         };
         Heading {
             sin: along * self.inward - across * self.z,
