@@ -4,7 +4,7 @@
 //! cargo test --release -p trig-kernels --test exhaustive -- --ignored --nocapture --test-threads 1
 //! ```
 //!
-//! What they print stands in the README.
+//! What they print stands in `docs/accuracy.md`.
 #![expect(clippy::expect_used, reason = "a test stops at once")]
 
 #[path = "common/double_double.rs"]

@@ -4,29 +4,26 @@ use core::fmt;
 
 use thiserror::Error;
 
-/// A location in a text, line and column counted from 1.
+/// A place in a text, line and column counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct Location {
+pub struct Place {
     /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,
 }
 
-impl Location {
+impl Place {
     pub(super) const START: Self = Self { line: 1, column: 1 };
 
     pub(crate) const fn error(self, kind: HeaderErrorKind) -> HeaderError {
-        HeaderError {
-            location: self,
-            kind,
-        }
+        HeaderError { place: self, kind }
     }
 }
 
-impl fmt::Display for Location {
+impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { line, column } = self;
         write!(f, "line {line}, column {column}")
@@ -36,11 +33,11 @@ impl fmt::Display for Location {
 /// Why a header cannot be read, and where.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("{location}: {kind}")]
+#[error("{place}: {kind}")]
 #[non_exhaustive]
 pub struct HeaderError {
     /// Where.
-    pub location: Location,
+    pub place: Place,
     /// Why.
     pub kind: HeaderErrorKind,
 }
@@ -55,16 +52,16 @@ pub enum HeaderErrorKind {
     Unexpected {
         /// The character.
         found: char,
-        /// What the location needs.
+        /// What the place needs.
         wanted: &'static str,
     },
     /// The text ends too early.
     #[error("the text ends where {wanted} must stand")]
     UnexpectedEnd {
-        /// What the location needs.
+        /// What the place needs.
         wanted: &'static str,
     },
-    /// A comment without end; the location is its start.
+    /// A comment without end; the place is its start.
     #[error("this comment has no end")]
     OpenComment,
     /// Digits and letters that are no number.
@@ -79,7 +76,7 @@ pub enum HeaderErrorKind {
     /// Row brackets in an array without row length.
     #[error("a row in an array that is not declared as name[][n]")]
     Row,
-    /// A row shorter or longer than declared; the location is its end.
+    /// A row shorter or longer than declared; the place is its end.
     #[error("a row of {values} values, declared are {declared}")]
     RowLength {
         /// Values in the row.
@@ -87,7 +84,7 @@ pub enum HeaderErrorKind {
         /// The declared row length.
         declared: u32,
     },
-    /// An array shorter or longer than declared; the location is its end.
+    /// An array shorter or longer than declared; the place is its end.
     #[error("an array of {values} values, declared are {declared}")]
     ArrayLength {
         /// Values in the array.
@@ -95,7 +92,7 @@ pub enum HeaderErrorKind {
         /// The product of its declared dimensions; for toggles, the bytes that the reloads need.
         declared: u32,
     },
-    /// No array, or none of the wanted name; the location is the end of the text.
+    /// No array, or none of the wanted name; the place is the end of the text.
     #[error("the text ends without the array")]
     NoArray,
     /// A second array where only one can be meant.
@@ -106,9 +103,9 @@ pub enum HeaderErrorKind {
     Range {
         /// The value.
         value: i64,
-        /// The lowest that fits.
+        /// The least that fits.
         min: i64,
-        /// The highest that fits.
+        /// The most that fits.
         max: i64,
     },
     /// A `#define` that contradicts the caller or the table.
@@ -121,13 +118,13 @@ pub enum HeaderErrorKind {
         /// The value that fits.
         wanted: i64,
     },
-    /// Bytes that are no frames; the location is that of the last value read, or the end.
+    /// Bytes that are no frames; the place is that of the last value read, or the end.
     #[error(transparent)]
     Frames(crate::dance::DecodeErrorKind),
-    /// Bytes that are no records; the location is that of the last value read, or the end.
+    /// Bytes that are no records; the place is that of the last value read, or the end.
     #[error(transparent)]
     Records(crate::engraving::DecodeError),
-    /// Axis codes that are no permutation of 0..=3; the location is the start of the table.
+    /// Axis codes that are no permutation of 0..=3; the place is the start of the table.
     #[error(transparent)]
     AxisCodes(crate::engraving::AxisCodeError),
 }
