@@ -118,17 +118,48 @@ pub struct AxisLimits {
     pub jerk: Option<f64>,
 }
 
+/// What the tool may do along a path whose parameter is the tool's way, in its unit and seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "named fields")]
+pub struct ToolLimits {
+    /// Largest speed along the path, per second.
+    pub feed: f64,
+    /// Largest acceleration along the path, per second², if there is such a limit.
+    pub acceleration: Option<f64>,
+}
+
+/// The first limit that is outside the range of the crate, with its name.
+fn outside<const N: usize>(
+    limits: [(&'static str, Option<f64>); N],
+) -> Option<(&'static str, f64)> {
+    let given = limits.into_iter();
+    let mut given = given.filter_map(|(name, value)| Some((name, value?)));
+    given.find(|(_, value)| !range().contains(value))
+}
+
 impl AxisLimits {
     /// The first limit that is outside the range of the crate, with its name.
     pub(crate) fn outside(&self) -> Option<(&'static str, f64)> {
-        let all = [
+        outside([
             ("speed", Some(self.speed)),
             ("acceleration", Some(self.acceleration)),
             ("jerk", self.jerk),
-        ];
-        let mut given = all
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value?)));
-        given.find(|(_, value)| !range().contains(value))
+        ])
+    }
+}
+
+impl ToolLimits {
+    /// The first limit that is outside the range of the crate, with its name.
+    pub(crate) fn outside(&self) -> Option<(&'static str, f64)> {
+        outside([
+            ("feed", Some(self.feed)),
+            ("acceleration", self.acceleration),
+        ])
     }
 }

@@ -3,7 +3,7 @@
 use crate::leg::Leg;
 use crate::number::{cube_root, sqrt};
 use crate::table::rows_of_leg;
-use crate::{Axes, AxisLimits, Cubic, Knot, Path, PlanError, Row};
+use crate::{Axes, AxisLimits, Cubic, Knot, Path, PlanError, Row, ToolLimits};
 
 /// An axis at the end of a segment.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +43,11 @@ impl<A: Axes> Demand<A> {
             demand.add(limits, &from, &to);
         }
         demand.stop(limits);
+        for pair in knots.windows(2) {
+            if let (Some(tool), [from, to]) = (leg.tool(), pair) {
+                demand.add_tool(tool, from, to);
+            }
+        }
         Ok(demand)
     }
 
@@ -86,6 +91,23 @@ impl<A: Axes> Demand<A> {
             };
         }
         self.duration_s = to.duration_s;
+    }
+
+    /// Takes the tool's motion from one knot to the next into account.
+    fn add_tool(&mut self, tool: &ToolLimits, from: &Knot, to: &Knot) {
+        let way = Cubic {
+            q0: from.s,
+            q1: to.s,
+            v0: from.speed,
+            v1: to.speed,
+            duration_s: from.duration_s,
+        };
+        self.speed = self.speed.max(way.peak_speed() / tool.feed);
+        if let Some(limit) = tool.acceleration {
+            let [a0, a1] = way.accelerations().map(f64::abs);
+            let hardest = a0.max(a1) + way.noise();
+            self.acceleration = self.acceleration.max(hardest / limit);
+        }
     }
 
     /// Takes the standstill after the last segment into account.

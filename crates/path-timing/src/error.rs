@@ -21,6 +21,20 @@ pub enum PlanError<E> {
         /// Largest value.
         max: f64,
     },
+    /// A limit of the tool along a path is not a number within the range of the crate.
+    #[error("leg {leg}: {name} is {}, not within {}..={}", short(.value), short(.min), short(.max))]
+    Tool {
+        /// The leg, from 0.
+        leg: usize,
+        /// Which: `feed` or `acceleration`.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
     /// The machine cannot be at a place of the path.
     #[error("leg {leg}, at {}: {reason}", short(.s))]
     Path {

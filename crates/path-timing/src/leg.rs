@@ -1,7 +1,7 @@
 //! One path among several, its parameter as a share of its length.
 
-use crate::number::range;
-use crate::{Axes as _, Path, Place, PlanError};
+use crate::number::{LARGEST, SMALLEST, range};
+use crate::{Axes as _, Path, Place, PlanError, ToolLimits};
 
 /// A leg: a path, and which of all it is.
 #[derive(Debug, Clone, Copy)]
@@ -10,15 +10,22 @@ pub(crate) struct Leg<P> {
     pub(crate) number: usize,
     path: P,
     length: f64,
+    /// By the share.
+    tool: Option<ToolLimits>,
 }
 
 impl<P: Path> Leg<P> {
     pub(crate) fn new(number: usize, path: P) -> Self {
         let length = path.length();
+        let tool = path.tool().map(|tool| ToolLimits {
+            feed: tool.feed / length,
+            acceleration: tool.acceleration.map(|limit| limit / length),
+        });
         Self {
             number,
             path,
             length,
+            tool,
         }
     }
 
@@ -26,15 +33,27 @@ impl<P: Path> Leg<P> {
         &self.path
     }
 
-    /// Whether its length is one that the crate computes with.
+    /// What the tool may do, by the share.
+    pub(crate) const fn tool(&self) -> Option<&ToolLimits> {
+        self.tool.as_ref()
+    }
+
+    /// Whether its length and the limits of its tool are ones that the crate computes with.
     pub(crate) fn check(&self) -> Result<(), PlanError<P::Error>> {
-        if range().contains(&self.length) {
-            return Ok(());
+        let (leg, length) = (self.number, self.length);
+        if !range().contains(&length) {
+            return Err(PlanError::Length { leg, length });
         }
-        Err(PlanError::Length {
-            leg: self.number,
-            length: self.length,
-        })
+        match self.path.tool().and_then(|tool| tool.outside()) {
+            Some((name, value)) => Err(PlanError::Tool {
+                leg,
+                name,
+                value,
+                min: SMALLEST,
+                max: LARGEST,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Positions, and slopes by the share, at a share 0..=1 of the length.

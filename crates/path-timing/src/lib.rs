@@ -23,11 +23,12 @@ mod short;
 mod smooth;
 mod table;
 
-pub use axes::{Axes, AxisLimits};
+pub use axes::{Axes, AxisLimits, ToolLimits};
 pub use cubic::Cubic;
 pub use error::PlanError;
 pub use path::{Legs, Path, PathFn, Place};
 pub use row::Row;
 pub use rows::Rows;
 pub use run::{Ahead, FeedError, Run};
+pub use short::SixDigits;
 pub use table::{Knot, Table};

@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Debug};
 
-use crate::Axes;
+use crate::{Axes, ToolLimits};
 
 /// Axes at a place of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +32,12 @@ pub trait Path {
     /// # Errors
     /// Why the machine cannot be there.
     fn place(&self, s: f64) -> Result<Place<Self::Axes>, Self::Error>;
+
+    /// What the tool may do along the path, where the parameter is its way: the feed. Nothing but
+    /// the axes limits it otherwise.
+    fn tool(&self) -> Option<ToolLimits> {
+        None
+    }
 }
 
 impl<P: Path> Path for &P {
@@ -45,6 +51,10 @@ impl<P: Path> Path for &P {
     fn place(&self, s: f64) -> Result<Place<P::Axes>, P::Error> {
         (**self).place(s)
     }
+
+    fn tool(&self) -> Option<ToolLimits> {
+        (**self).tool()
+    }
 }
 
 /// A path by a function.
@@ -52,12 +62,26 @@ impl<P: Path> Path for &P {
 pub struct PathFn<F> {
     length: f64,
     place: F,
+    tool: Option<ToolLimits>,
 }
 
 impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> PathFn<F> {
     /// The path of `place` from 0 to `length`.
     pub const fn new(length: f64, place: F) -> Self {
-        Self { length, place }
+        Self {
+            length,
+            place,
+            tool: None,
+        }
+    }
+
+    /// The path at a feed.
+    #[must_use]
+    pub fn with_tool(self, tool: ToolLimits) -> Self {
+        Self {
+            tool: Some(tool),
+            ..self
+        }
     }
 }
 
@@ -71,6 +95,10 @@ impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> Path for PathFn<F> {
 
     fn place(&self, s: f64) -> Result<Place<A>, E> {
         (self.place)(s)
+    }
+
+    fn tool(&self) -> Option<ToolLimits> {
+        self.tool
     }
 }
 

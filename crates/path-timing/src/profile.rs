@@ -48,7 +48,8 @@ fn backward<P: Path>(
     let mut end = leg.checked_place(to.s)?;
     for from in before {
         let start = leg.checked_place(from.s)?;
-        let segment = Segment::new(limits, &start, &end, to.s - from.s);
+        let way = to.s - from.s;
+        let segment = Segment::new(limits, &start, &end, way).with_tool(leg.tool(), way);
         (from.speed, from.after) = segment.begin(to.speed, LARGEST);
         (to, end) = (from, start);
     }
@@ -71,7 +72,7 @@ fn forward<P: Path>(
     for to in rest {
         let end = leg.checked_place(to.s)?;
         let way = to.s - from.s;
-        let segment = Segment::new(limits, &start, &end, way);
+        let segment = Segment::new(limits, &start, &end, way).with_tool(leg.tool(), way);
         let next_ratio = to.after / to.speed;
         // What holds for the highest speed here holds slower at the same ratio.
         to.speed = segment.end(from.speed, to.speed, from.speed * ratio);

@@ -47,7 +47,8 @@ pub struct FeedError {
 /// 4 % of its way later: at the ends of the strokes leave that room. More feed does not make a table
 /// take longer than at 1; of 100,000 random tables none did.
 ///
-/// A limit of jerk is kept at a constant feed of at most 1; a change of the feed looks at speed and
+/// The tool's feed along a path is what is overridden: above 1 it goes beyond that of the path, and
+/// only the axes limit it. A limit of jerk is kept at a constant feed of at most 1; a change of the feed looks at speed and
 /// acceleration alone. It also changes the speed within a segment and with it the departure from
 /// the path.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
 use crate::number::{larger, sqrt};
-use crate::{Axes, AxisLimits, Place};
+use crate::{Axes, AxisLimits, Place, ToolLimits};
 
 /// One over the limits of speed and acceleration of an axis, a margin included.
 #[derive(Debug, Clone, Copy)]
@@ -74,6 +74,8 @@ pub(crate) struct Segment<A: Axes> {
     axes: A::Of<AxisLoad>,
     /// Largest share of a speed limit per w₀, and per w₁.
     ends: [f64; 2],
+    /// Acceleration of the tool: coefficient of z.
+    tool: f64,
 }
 
 /// By how much limits are taken lower: what a dozen products round off.
@@ -131,6 +133,7 @@ impl<A: Axes> Segment<A> {
         let mut segment = Self {
             axes: A::filled(AxisLoad::NONE),
             ends: [0.0; 2],
+            tool: 0.0,
         };
         let [from_end, to_end] = &mut segment.ends;
         let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
@@ -145,6 +148,23 @@ impl<A: Axes> Segment<A> {
             *to_end = to_end.max(p1.abs() * limit.speed);
         }
         segment
+    }
+
+    /// The segment with the limits of the tool: its way is the parameter, p₀ = p₁ = m = 1.
+    ///
+    /// ```text
+    /// speeds w₀, w₁     acceleration 2 z / Δs = (w₁² - w₀²) / 2Δs
+    /// ```
+    pub(crate) fn with_tool(mut self, tool: Option<&ToolLimits>, way: f64) -> Self {
+        if let Some(tool) = tool {
+            for end in &mut self.ends {
+                *end = end.max(MARGIN / tool.feed);
+            }
+            if let Some(acceleration) = tool.acceleration {
+                self.tool = 2.0 * MARGIN / (way * acceleration);
+            }
+        }
+        self
     }
 
     /// The largest share of a limit that these speeds ask for, squared where it is a speed:
@@ -163,6 +183,7 @@ impl<A: Axes> Segment<A> {
             let [e, f] = axis.middle;
             fastest = larger(fastest, (e * w0 + f * w1).abs());
         }
+        hardest = larger(hardest, (self.tool * z).abs());
         hardest.max(fastest * fastest)
     }
 
@@ -202,6 +223,15 @@ impl<A: Axes> Segment<A> {
                     speed = lower(axis.noise - c, -d, other, speed);
                 }
             }
+        }
+        let d = if end == End::From {
+            -self.tool
+        } else {
+            self.tool
+        };
+        let (_, z) = products(other, speed);
+        if (d * z).abs() > 1.0 {
+            speed = lower(0.0, d.copysign(d * z), other, speed);
         }
         speed
     }

@@ -2,19 +2,22 @@
 
 use core::fmt::{self, Write};
 
-/// Six digits of a number, without zeros at their end: `0.0123457`, `-310`, `1e300`.
-pub(crate) struct Short(f64);
+/// Displays six digits of a number, without zeros at their end, as the messages of this crate and of
+/// those on it do: `0.0123457`, `-310`, `1e300`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "a number")]
+pub struct SixDigits(pub f64);
 
 /// The number as it stands in a message.
-pub(crate) const fn short(value: &f64) -> Short {
-    Short(*value)
+pub(crate) const fn short(value: &f64) -> SixDigits {
+    SixDigits(*value)
 }
 
 /// Exponents of the numbers that are written without one; the last has all six digits before the
 /// point.
 const PLAIN: core::ops::RangeInclusive<i32> = -4..=5;
 
-impl fmt::Display for Short {
+impl fmt::Display for SixDigits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(value) = *self;
         let mut text = Text::default();

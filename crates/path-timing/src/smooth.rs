@@ -9,7 +9,7 @@ use crate::number::{LARGEST, cube_root, sqrt};
 use crate::planner::{MIN_SEGMENTS, knots_of};
 use crate::profile;
 use crate::segment::Reciprocals;
-use crate::{Axes, AxisLimits, Knot, Path, PlanError};
+use crate::{Axes, AxisLimits, Knot, Path, PlanError, ToolLimits};
 pub(crate) use scurve::PHASES;
 use scurve::{SCurve, share};
 
@@ -205,10 +205,12 @@ const SAMPLES: u32 = 64;
 /// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
 fn s_curve<P: Path>(limits: &LimitsOf<P>, leg: &Leg<P>) -> Result<SCurve, PlanError<P::Error>> {
     let derivatives = derivatives(leg)?;
+    let tool = leg.tool().map(as_axis);
     let all = || {
-        P::Axes::each(limits)
+        let axes = P::Axes::each(limits)
             .iter()
-            .zip(P::Axes::each(&derivatives))
+            .zip(P::Axes::each(&derivatives));
+        axes.chain(tool.iter().zip([&STRAIGHT]))
     };
     let speed = all().fold(LARGEST, |speed, (limits, [p1, p2, p3])| {
         let jerk = limits.jerk.unwrap_or(LARGEST);
@@ -233,6 +235,18 @@ fn s_curve<P: Path>(limits: &LimitsOf<P>, leg: &Leg<P>) -> Result<SCurve, PlanEr
         None => least,
     });
     Ok(SCurve::new(speed, acceleration, jerk))
+}
+
+/// Derivatives of the tool's way by itself.
+const STRAIGHT: [f64; 3] = [1.0, 1.0 / LARGEST, 1.0 / LARGEST];
+
+/// The tool as an axis that moves by the parameter.
+fn as_axis(tool: &ToolLimits) -> AxisLimits {
+    AxisLimits {
+        speed: tool.feed,
+        acceleration: tool.acceleration.unwrap_or(LARGEST),
+        jerk: None,
+    }
 }
 
 /// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a

@@ -10,7 +10,7 @@ use core::convert::Infallible;
 
 use limited::check_limits;
 use machine::{Line, limits};
-use path_timing::{Knot, PathFn, Place, PlanError, Row, Table};
+use path_timing::{Ahead, Knot, Path, PathFn, Place, PlanError, Row, Table, ToolLimits};
 use proptest::prelude::*;
 
 /// Of sums of some hundred times and positions.
@@ -211,6 +211,80 @@ fn no_leg_is_no_row() {
     assert!(table.is_empty() && table.rows().next().is_none());
     let mut run = table.run(1.0, &mut []).unwrap();
     assert!(run.is_finished() && run.next_row().unwrap().is_none());
+}
+
+/// Axes that limit nothing: a trapezoid of the tool, as fast as a feed override makes it.
+#[test]
+fn the_tool_keeps_its_feed_and_acceleration() {
+    let tool = ToolLimits {
+        feed: 10.0,
+        acceleration: Some(25.0),
+    };
+    let path = PathFn::new(100.0, straight).with_tool(tool);
+    let mut knots = [Knot::default(); 257];
+    for jerk in [None, Some(1e9)] {
+        let limits = [limits(1e9, 1e9, jerk)];
+        let table = Table::plan([path], limits, |_| 256, &mut knots).unwrap();
+        let share = table.duration_s() / (100.0 / 10.0 + 10.0 / 25.0);
+        assert!((1.0 - ROUNDING..1.002).contains(&share), "{share}");
+        let as_axis = [machine::limits(10.0, 25.0, None)];
+        check_limits(&as_axis, &rows(table.rows()));
+        let mut ahead = [Ahead::default(); 257];
+        let mut run = table.run(1.5, &mut ahead).unwrap();
+        run.set_feed(1.5).unwrap();
+        let time_s = run.last().unwrap().unwrap().time_s;
+        assert!((time_s * 1.5 / table.duration_s() - 1.0).abs() < ROUNDING);
+    }
+}
+
+/// The tool on a line at a feed that the axes allow on the way, but not at its ends.
+#[test]
+fn the_tool_on_a_line_is_as_fast_as_its_feed() {
+    let tool = ToolLimits {
+        feed: 120.0,
+        acceleration: None,
+    };
+    let line = Line {
+        from: [-100.0, 80.0],
+        to: [100.0, 80.0],
+    };
+    let path = PathFn::new(line.length(), |s| line.place(s)).with_tool(tool);
+    let mut knots = [Knot::default(); 201];
+    for jerk in [None, Some(400.0)] {
+        let limits = [limits(2.0, 20.0, jerk), limits(300.0, 2000.0, None)];
+        let table = Table::plan([&path], limits, |_| 200, &mut knots).unwrap();
+        let all = rows(table.rows());
+        check_limits(&limits, &all);
+        let speeds = all.iter().map(|row| {
+            let [angle, reach] = row.velocity;
+            reach.hypot(angle * row.position[1])
+        });
+        let fastest = speeds.clone().fold(0.0, f64::max);
+        assert!(
+            fastest < 120.0 * (1.0 + ROUNDING) && fastest > 119.0,
+            "{fastest}"
+        );
+        let at_feed = speeds.filter(|speed| *speed > 119.0).count();
+        assert!(jerk.is_some() || at_feed > 80, "{at_feed}");
+    }
+    for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e300] {
+        let feed = ToolLimits { feed: bad, ..tool };
+        let acceleration = Some(bad);
+        for wrong in [
+            feed,
+            ToolLimits {
+                acceleration,
+                ..tool
+            },
+        ] {
+            let limits = [limits(2.0, 20.0, None); 2];
+            let error = Table::plan([path.with_tool(wrong)], limits, |_| 200, &mut knots);
+            assert!(
+                matches!(error.unwrap_err(), PlanError::Tool { leg: 0, .. }),
+                "{bad}"
+            );
+        }
+    }
 }
 
 proptest! {

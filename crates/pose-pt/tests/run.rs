@@ -254,8 +254,8 @@ fn memory_is_fixed() {
     assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
     assert_eq!(size_of::<PtPoints<'_, 3>>(), 664);
     assert_eq!(size_of::<PvtTable<'_, 3>>(), 232);
-    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 736);
-    assert_eq!(size_of::<PvtRun<'_, 3>>(), 1392);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 760);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 1416);
     assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
     assert_eq!(size_of::<Fifo<512>>(), 512 * 8 + 72);
 }
