@@ -19,6 +19,7 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "written as a literal")]
 pub struct RampLimits {
     /// Rate at which the motor starts and stops without a ramp, in mHz; 0 for a start from rest.
     pub start_millihertz: u32,

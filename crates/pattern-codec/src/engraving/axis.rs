@@ -67,6 +67,7 @@ impl fmt::Display for Axis {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "the format has four axes")]
 pub struct PerAxis<T> {
     /// The value of [`Axis::Theta1`].
     pub theta1: T,

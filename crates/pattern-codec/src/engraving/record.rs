@@ -272,6 +272,7 @@ impl From<Slow> for JointPulses {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "a SLOW record has three axes")]
 pub struct JointPulses {
     /// Pulses of the forearm.
     pub theta1: i32,
