@@ -1,6 +1,7 @@
 //! Steps along hand-worked cubics, what is refused, and pictures.
 #![cfg(test)]
 
+use proptest::prelude::*;
 use stepper_sync::{
     AxisSegments, Direction, JoinedSegments, MinIntervals, PvtKnot, PvtRow, PvtSteps, Rate,
     RowError, SegmentPlayer, StepDirTiming,
@@ -376,6 +377,77 @@ fn pictures_of_pulses() {
             ">           --------------------___________",
         ]
     );
+}
+
+/// Rows of three axes, some too fast or too quick for some of them.
+fn any_rows() -> impl Strategy<Value = Vec<PvtRow<3>>> {
+    let knots = prop::array::uniform3((-40..40_i64, -5_i64..5));
+    prop::collection::vec((0..5000_u32, knots), 1..20).prop_map(|rows| {
+        let row = |(ticks, knots): (u32, [(i64, i64); 3])| PvtRow {
+            ticks,
+            knots: knots.map(|(position, velocity)| {
+                knot(position * STEP / 2, velocity * (STEP_A_TICK / 50))
+            }),
+        };
+        rows.into_iter().map(row).collect()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// The steps of all axes are those of each by itself, in time order; a row is taken by all
+    /// axes or by none.
+    #[test]
+    fn axes_are_merged_in_time_order(rows in any_rows()) {
+        let start = [knot(0, 0), knot(STEP / 2, 0), knot(-3 * STEP, 0)];
+        let mut merged = PvtSteps::new(start, LEAST);
+        let mut axes = start.map(|knot| AxisSegments::new(knot, LEAST));
+        let mut last_ticks = [0; 3];
+        for row in rows {
+            let before = axes.clone();
+            let alone: Vec<_> = axes
+                .iter_mut()
+                .zip(row.knots)
+                .map(|(axis, knot)| axis.push(row.ticks, knot))
+                .collect();
+            let first_refusal = alone.iter().position(Result::is_err);
+            let taken = merged.push(&row);
+            prop_assert_eq!(taken.is_err(), first_refusal.is_some());
+            if let Some(axis) = first_refusal {
+                let named = match taken.unwrap_err() {
+                    RowError::NoTime { axis, .. }
+                    | RowError::TooFast { axis, .. }
+                    | RowError::ReversalTooQuick { axis, .. } => axis,
+                    other => panic!("{other}"),
+                };
+                prop_assert_eq!(named, axis);
+                prop_assert!(merged.next().is_none());
+                axes = before;
+                continue;
+            }
+            let mut wanted = Vec::new();
+            for (index, (axis, last)) in axes.iter_mut().zip(&mut last_ticks).enumerate() {
+                for segment in axis.by_ref() {
+                    let mut player = SegmentPlayer::new();
+                    *last += player.load(&segment);
+                    wanted.push((*last, index, segment.direction()));
+                    for interval in player {
+                        *last += u64::from(interval);
+                        wanted.push((*last, index, segment.direction()));
+                    }
+                }
+            }
+            wanted.sort_by_key(|&(ticks, axis, _)| (ticks, axis));
+            let made: Vec<_> = merged
+                .by_ref()
+                .map(|step| (step.ticks, step.axis, step.direction))
+                .collect();
+            prop_assert_eq!(made, wanted);
+            prop_assert_eq!(merged.steps(), axes.each_ref().map(AxisSegments::steps));
+            prop_assert_eq!(merged.end_ticks(), axes[0].end_ticks());
+        }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
