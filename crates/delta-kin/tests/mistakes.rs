@@ -81,7 +81,7 @@ fn arms_above_horizontal_are_found() {
 /// out" changes its sign.
 #[test]
 fn straight_up_is_an_angle_like_others() {
-    // A platform wider than the base, for which a elbow straight up is out.
+    // A platform wider than the base, for which an elbow straight up is out.
     let delta: Delta = Delta::new(18.0, 42.0, 120.0, 243.0).unwrap();
     for off in [-1e-3, -1e-9, 0.0, 1e-9, 1e-3] {
         let angles = Vector3::repeat(PI + off);

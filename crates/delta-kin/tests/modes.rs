@@ -179,7 +179,7 @@ fn measurements_of_the_other_mode_are_refused() {
     assert_eq!(found.delta().z(), ZAxis::Down);
 }
 
-/// The workspace is that of the modes named. Mirrored in the base plane, a elbow that was out
+/// The workspace is that of the modes named. Mirrored in the base plane, an elbow that was out
 /// counts as in: it turns the other way.
 #[test]
 fn the_workspace_is_that_of_the_modes() {

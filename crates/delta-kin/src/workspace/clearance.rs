@@ -28,7 +28,7 @@ impl<T: RealField + Trig> Workspace<T> {
     /// None of the first three changes by more than the point moves, and by continuity no angle
     /// leaves its range inside the ball. The last is a lower bound: more may be free.
     ///
-    /// Proof. Let the platform move by d, |d| ≤ δ, and a elbow by a chord of length y. With e along
+    /// Proof. Let the platform move by d, |d| ≤ δ, and an elbow by a chord of length y. With e along
     /// the rod, t and s along the elbow's way and the upper arm, λ = |e · t|, σ = |e · s|, the
     /// length of the rod is kept if
     ///
