@@ -110,7 +110,12 @@ impl<L: Legs> Iterator for Rows<'_, L> {
             Err(error) => return Some(Err(error)),
         };
         self.time_s += self.duration_s;
-        let row = Row::new(&node.place, 1.0, self.time_s, self.duration_s);
+        let row = Row {
+            time_s: self.time_s,
+            duration_s: self.duration_s,
+            position: node.place.position,
+            velocity: node.place.slope,
+        };
         self.duration_s = node.duration_s;
         Some(Ok(row))
     }
