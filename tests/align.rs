@@ -1,11 +1,6 @@
 //! The example `align` from outside: its files, checked by other code than its own.
 #![cfg(test)]
-#![cfg(all(
-    unix,
-    feature = "handwheel",
-    feature = "pose-pt",
-    feature = "proto3964r"
-))]
+#![cfg(unix)]
 
 #[path = "tools/command.rs"]
 mod command;
@@ -25,7 +20,10 @@ use command::{lines, run};
 use example::example;
 use refusal::assert_refused;
 
-const PLATFORM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/align/platform.toml");
+const PLATFORM: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/machines/platform/platform.toml"
+);
 /// Poses in mm and degrees, other than those of the platform file, in whole steps of the unit.
 const FROM: &str = "-12 30.5 1185 -0.4 0.3 1";
 const TO: [f64; 6] = [41.25, -18.006, 1231.5, 1.1, -0.70001, -2.2];
@@ -514,7 +512,7 @@ fn bad_input_is_one_line_and_no_file() {
     );
     refused(
         &["--to", "0 900 1200 0 0 0"],
-        "error: --to: out of reach: locator 0, axis Y: 900 is 650 beyond the stroke -250..=250",
+        "error: to: out of reach: locator 0, axis Y: 900 is 650 beyond the stroke -250..=250",
     );
     let in_file = |from: &str, to: &str, error: &str| {
         let file = changed(&[(from, to)]);

@@ -1,28 +1,30 @@
-//! Speed of writing and reading display blocks, and of the panel.
+//! Speed of writing and reading display blocks, and of the wheel quantiser.
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use handwheel::{
-    Arbiter, Command, Input, Model, Panel, Screen, Settings, Shown, UnitId, WheelQuantiser,
+    Command, LcdBlock, LcdCommand, LcdError, Line, Model, Place, Text, WheelQuantiser,
 };
 
+/// Six lines of 16 characters, as many as a block has room for.
+fn block(text: &str) -> Result<LcdBlock, LcdError> {
+    let mut block = LcdBlock::new(Model::Hbls);
+    for line in 0..6 {
+        let (Ok(line), Ok(text)) = (Line::new(line), Text::new(text)) else {
+            continue;
+        };
+        let column = handwheel::Column::MIN;
+        block.push(LcdCommand::Goto(Place { line, column }))?;
+        block.push(LcdCommand::Text(text))?;
+    }
+    Ok(block)
+}
+
 fn telegrams(c: &mut Criterion) {
-    let Ok(wheel) = WheelQuantiser::new(100, 10) else {
-        return;
-    };
-    let Ok(mut panel) = Panel::new(UnitId(1), Settings::new(wheel)) else {
-        return;
-    };
-    let mut arbiter = Arbiter::<3>::new();
-    let screen = panel.screen(&arbiter, &[[0; 3]; 3]);
-    let update = |screen: &Screen| {
-        let mut shown = Shown::UNKNOWN;
-        shown.update(black_box(screen), Model::Hbls)
-    };
-    c.bench_function("first display block of a screen", |b| {
-        b.iter(|| update(&screen));
+    c.bench_function("write a display block", |b| {
+        b.iter(|| block(black_box("LOCATOR  1  IDLE")));
     });
-    if let Some(block) = update(&screen) {
+    if let Ok(block) = block("LOCATOR  1  IDLE") {
         c.bench_function("read a display block", |b| {
             b.iter(
                 || match Command::decode(Model::Hbls, black_box(block.as_bytes())) {
@@ -32,12 +34,11 @@ fn telegrams(c: &mut Criterion) {
             );
         });
     }
-    c.bench_function("panel: one wheel sample", |b| {
-        b.iter(|| panel.handle(black_box(Input::Wheel(57)), &mut arbiter));
-    });
-    c.bench_function("quantise one sample", |b| {
-        b.iter(|| wheel.share(black_box(57), black_box(10_000)));
-    });
+    if let Ok(wheel) = WheelQuantiser::new(100, 10) {
+        c.bench_function("quantise one sample", |b| {
+            b.iter(|| wheel.share(black_box(57), black_box(10_000)));
+        });
+    }
 }
 
 criterion_group!(benches, telegrams);

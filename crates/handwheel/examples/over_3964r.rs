@@ -9,7 +9,7 @@ fn exchange(
     station: &mut Station<MAX_COMMAND>,
     driver: &mut Driver,
     now: Duration,
-    mut at_event: impl FnMut(Event), // `Input::of_event` goes into a panel
+    mut at_event: impl FnMut(Event),
 ) -> Result<(), SubmitError> {
     driver.handle_timeout(now);
     while let Some(event) = station.poll_event() {

@@ -6,26 +6,18 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
-mod arbiter;
 mod command;
 mod driver;
 mod lcd;
 mod number;
-mod panel;
 mod report;
-mod screen;
 mod text;
 mod wheel;
 
-pub use arbiter::{Arbiter, Refused, Target, UnitId};
 pub use command::{Command, Light, MAX_COMMAND};
 pub use driver::{Driver, Event, Failure, Job, SubmitError, Timing};
 pub use lcd::{AreaEffect, Font, LcdBlock, LcdCommand, LcdCommands, LcdError, Place, Rect};
 pub use number::{AreaNumber, Column, Key, Led, Line, NumberError, Position, TextNumber};
-pub use panel::{
-    Action, Axis, Input, KeyRole, Multiplier, Panel, PoseChange, Refusal, Settings, SettingsError,
-};
 pub use report::{DecodeError, EncodeError, Knob, LcdAnswer, MAX_REPORT, Model, Report, Status};
-pub use screen::{COLUMNS, LINES, Screen, Shown};
 pub use text::{CharacterError, MAX_TEXT, Text};
 pub use wheel::{SAMPLE, WheelError, WheelQuantiser, WheelSampler};

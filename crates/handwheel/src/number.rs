@@ -123,8 +123,3 @@ number! {
     /// An area of the display that the unit keeps, 1 to 32.
     AreaNumber, "area", 1..=32
 }
-
-impl Key {
-    /// Keys 1 to 4.
-    pub(crate) const FIRST_FOUR: [Self; 4] = [Self(1), Self(2), Self(3), Self(4)];
-}

@@ -292,3 +292,9 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn sizes() {
+    assert!(size_of::<Driver>() <= 288);
+    assert!(size_of::<LcdBlock>() <= 144);
+}

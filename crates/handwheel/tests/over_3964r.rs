@@ -5,8 +5,8 @@
 use core::time::Duration;
 
 use handwheel::{
-    Command, Driver, Event, Job, LcdAnswer, LcdCommand, MAX_COMMAND, Model, Position, Report,
-    Screen, Shown, Status, Timing,
+    Column, Command, Driver, Event, Job, LcdAnswer, LcdBlock, LcdCommand, Line as Row, MAX_COMMAND,
+    Model, Place, Position, Report, Status, Text, Timing,
 };
 use proptest::prelude::*;
 use proto3964r::{Config, Line, Priority, Station, Transmit};
@@ -89,12 +89,36 @@ impl Unit {
     }
 }
 
+/// A text on all lines, shifted by one column from line to line.
+fn rows(text: &str) -> Vec<String> {
+    (0..8)
+        .map(|line| format!("{:line$}{text:<width$}", "", width = 16 - line))
+        .collect()
+}
+
+/// The blocks that show all lines: six in the first, as many as it has room for, two in the second.
+fn blocks(rows: &[String]) -> [LcdBlock; 2] {
+    let mut blocks = [LcdBlock::new(MODEL); 2];
+    for (number, row) in rows.iter().enumerate() {
+        let block = &mut blocks[usize::from(number >= 6)];
+        let line = Row::new(u8::try_from(number).unwrap()).unwrap();
+        let column = Column::MIN;
+        block
+            .push(LcdCommand::Goto(Place { line, column }))
+            .unwrap();
+        block
+            .push(LcdCommand::Text(Text::new(row).unwrap()))
+            .unwrap();
+    }
+    blocks
+}
+
 /// Two texts to be shown, one after the other, and the damage: how many bytes are left alone
 /// before one is lost or changed.
 fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
     let mut station = End::new(config(Priority::High));
     let mut driver = Driver::new(MODEL, Timing::DEFAULT);
-    let (mut unit, mut shown) = (Unit::new(), Shown::UNKNOWN);
+    let mut unit = Unit::new();
     let mut damage = damage.iter();
     let mut next = damage.next();
     let mut passed = 0;
@@ -110,16 +134,13 @@ fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
         (flip != 0).then_some(byte ^ flip)
     };
     for text in texts {
-        let mut screen = Screen::BLANK;
-        for line in 0..8 {
-            screen.put(line, line, text);
-        }
+        let rows = rows(text);
+        let blocks = blocks(&rows);
+        let mut waiting = blocks.iter();
         let wanted = |unit: &Unit| {
-            let rows = unit
-                .display
-                .iter()
-                .map(|line| line.iter().collect::<String>());
-            rows.eq(screen.lines().map(str::to_owned))
+            let shown = unit.display.iter();
+            let shown = shown.map(|line| line.iter().collect::<String>());
+            shown.eq(rows.iter().cloned())
         };
         let mut micros = 0;
         while !(wanted(&unit) && !driver.is_busy() && driver.is_online()) {
@@ -129,9 +150,9 @@ fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
             step(&mut station, &mut driver, &mut unit, &mut spoil, micros);
             if !driver.is_busy()
                 && driver.is_online()
-                && let Some(block) = shown.update(&screen, MODEL)
+                && let Some(block) = waiting.next()
             {
-                driver.submit(Job::Lcd(block))?;
+                driver.submit(Job::Lcd(*block))?;
             }
             let now = Duration::from_micros(micros);
             for event in events(&mut station, &mut driver, now) {
@@ -145,7 +166,7 @@ fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
                         }
                     )
                 {
-                    shown = Shown::UNKNOWN;
+                    waiting = blocks.iter();
                 }
             }
         }

@@ -5,10 +5,12 @@ mod arguments;
 mod artefacts;
 mod input;
 mod progress;
+mod pseudo_terminal;
 mod terminal;
 
 pub use arguments::{arguments, fraction, print_notes, print_summary, run};
 pub use artefacts::{Artefacts, write_json};
 pub use input::{read, read_bytes};
 pub use progress::Progress;
+pub use pseudo_terminal::PseudoTerminal;
 pub use terminal::Terminal;

@@ -4,9 +4,8 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use handwheel::{
-    Action, Arbiter, Command, DecodeError, Driver, EncodeError, Event, Input, Job, LcdBlock,
-    LcdCommand, LcdError, Model, Panel, Report, Screen, Settings, Shown, SubmitError, Timing,
-    UnitId, WheelQuantiser, WheelSampler,
+    Command, DecodeError, Driver, EncodeError, Event, Job, LcdBlock, LcdCommand, LcdError, Model,
+    Report, SubmitError, Timing, WheelQuantiser, WheelSampler,
 };
 use no_panic::no_panic;
 
@@ -91,24 +90,6 @@ fn driver_timeout(driver: &mut Driver, now: Duration) {
 
 #[no_panic]
 #[inline(never)]
-fn panel_input(panel: &mut Panel, input: Input, platform: &mut Arbiter<3>) -> Option<Action> {
-    panel.handle(input, platform)
-}
-
-#[no_panic]
-#[inline(never)]
-fn panel_screen(panel: &Panel, platform: &Arbiter<3>, positions_um: &[[i32; 3]; 3]) -> Screen {
-    panel.screen(platform, positions_um)
-}
-
-#[no_panic]
-#[inline(never)]
-fn display_update(shown: &mut Shown, screen: &Screen, model: Model) -> Option<LcdBlock> {
-    shown.update(screen, model)
-}
-
-#[no_panic]
-#[inline(never)]
 fn wheel_share(wheel: &WheelQuantiser, counts: i32, full: u32) -> i64 {
     wheel.share(counts, full)
 }
@@ -148,15 +129,4 @@ pub fn run() {
     black_box(wheel_share(&wheel, black_box(57), black_box(10_000)));
     let sampler = &mut black_box(WheelSampler::new(now, 0));
     black_box(wheel_sample(sampler, black_box(now), black_box(5)));
-    let Ok(panel) = Panel::new(UnitId(1), Settings::new(wheel)) else {
-        return;
-    };
-    let (panel, platform) = (&mut black_box(panel), &mut black_box(Arbiter::new()));
-    black_box(panel_input(panel, black_box(Input::Wheel(5)), platform));
-    let screen = panel_screen(black_box(panel), platform, &black_box([[7; 3]; 3]));
-    black_box(display_update(
-        &mut black_box(Shown::UNKNOWN),
-        &screen,
-        model,
-    ));
 }

@@ -30,7 +30,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     line::stations,
     line::read_data_block,
     unit::unit_telegrams,
-    unit::panel,
+    unit::wheel,
     trig::angles,
 ];
 

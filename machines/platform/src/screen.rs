@@ -2,17 +2,14 @@
 
 use core::fmt;
 
-use crate::lcd::{LcdBlock, LcdCommand, Place};
-use crate::number::{Column, Line};
-use crate::report::Model;
-use crate::text::{Text, is_printable};
+use handwheel::{Column, LcdBlock, LcdCommand, Line, Model, Place, Text};
 
 /// Lines of the display. Printed for the HBAS (small font); the HBLS is taken to have as many.
-pub const LINES: usize = 8;
+pub(crate) const LINES: usize = 8;
 /// Characters of a line.
-pub const COLUMNS: usize = 16;
+pub(crate) const COLUMNS: usize = 16;
 
-/// Bytes of a goto in front of the characters.
+/// Bytes of a goto before the characters.
 const GOTO: usize = 3;
 
 /// A full display of printable ASCII.
@@ -27,7 +24,7 @@ impl Screen {
         lines: [[b' '; COLUMNS]; LINES],
     };
 
-    /// The lines from the top, [`COLUMNS`] characters each.
+    /// The lines from the top, 16 characters each.
     #[must_use]
     pub fn lines(&self) -> impl ExactSizeIterator<Item = &str> {
         self.lines
@@ -40,12 +37,12 @@ impl Screen {
     pub fn put(&mut self, line: usize, column: usize, text: &str) {
         let line = self.lines.get_mut(line).into_iter().flatten();
         for (to, byte) in line.skip(column).zip(text.bytes()) {
-            *to = if is_printable(byte) { byte } else { b'?' };
+            let is_printable = matches!(byte, b' '..=b'~');
+            *to = if is_printable { byte } else { b'?' };
         }
     }
 
-    /// Writes a decimal that ends in front of `end`, with `decimals` of its digits behind
-    /// the point; stars where `width` is too small.
+    /// Writes a decimal that ends before `end`, with `decimals` of its digits after the point; stars where `width` is too small.
     pub(crate) fn put_number(&mut self, line: usize, end: usize, width: usize, value: Decimal) {
         let Some(cells) = self.lines.get_mut(line) else {
             return;
@@ -64,7 +61,7 @@ impl Screen {
 pub(crate) struct Decimal {
     pub(crate) value: i32,
     pub(crate) decimals: u8,
-    /// A plus in front of what is not negative.
+    /// A plus before what is not negative.
     pub(crate) signed: bool,
 }
 
@@ -106,7 +103,7 @@ impl fmt::Display for Screen {
     }
 }
 
-/// What a unit is known to show; makes the blocks that change it.
+/// What a pendant is known to show; makes the blocks that change it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// 0 where it is not known.

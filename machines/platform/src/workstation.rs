@@ -1,20 +1,20 @@
-//! The workstation's side of the unit: station, driver and panel.
+//! The control's end of the line: station, driver and panel.
 
 use core::time::Duration;
 
-use pose2pulse::handwheel::{
-    Action, Arbiter, Command, Driver, Event, Input, Job, LcdAnswer, Led, Light, MAX_COMMAND, Model,
-    Panel, Settings, SettingsError, Shown, Timing, UnitId,
-};
+use handwheel::{Command, Driver, Event, Job, LcdAnswer, Led, Light, MAX_COMMAND, Model, Timing};
 use proto3964r::{Config, Station};
 use serde::Serialize;
 
-use crate::line::WIRE;
+use crate::arbiter::{Arbiter, PendantId};
+use crate::line::PACED;
+use crate::panel::{Action, Input, Panel, PanelSettings, PanelSettingsError};
+use crate::screen::Shown;
 
 const MODEL: Model = Model::Hbls;
 
 /// Telegrams, as the workstation counts them.
-#[derive(Clone, Copy, Default, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 pub(crate) struct Telegrams {
     status_requests: usize,
     lamps: usize,
@@ -47,17 +47,17 @@ pub(crate) struct Workstation<const N: usize> {
     pub(crate) panel: Panel,
     arbiter: Arbiter<N>,
     shown: Shown,
-    /// The lamp as it was last set.
+    /// The LED as it was last set.
     light: Option<Light>,
     pub(crate) telegrams: Telegrams,
 }
 
 impl<const N: usize> Workstation<N> {
-    pub(crate) fn new(settings: Settings) -> Result<Self, SettingsError> {
+    pub(crate) fn new(settings: PanelSettings) -> Result<Self, PanelSettingsError> {
         Ok(Self {
-            station: Station::new(Config::euchner_hbls(WIRE)),
+            station: Station::new(Config::euchner_hbls(PACED)),
             driver: Driver::new(MODEL, Timing::DEFAULT),
-            panel: Panel::new(UnitId(1), settings)?,
+            panel: Panel::new(PendantId(1), settings)?,
             arbiter: Arbiter::new(),
             shown: Shown::UNKNOWN,
             light: None,
@@ -128,7 +128,7 @@ impl<const N: usize> Workstation<N> {
         self.input(Input::of_event(event)?)
     }
 
-    /// Asks the driver for the next telegram, when the line is free. What the lamp and the display
+    /// Asks the driver for the next telegram, when the line is free. What the LED and the display
     /// lack goes first.
     pub(crate) fn talk(
         &mut self,

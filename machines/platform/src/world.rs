@@ -3,26 +3,29 @@
 use core::time::Duration;
 
 use anyhow::{Context as _, Result, ensure};
+use handwheel::{Key, Knob, Position, WheelSampler};
 use nalgebra::Vector3;
-use pose2pulse::handwheel::{self, Action, Input, Key, Knob, PoseChange, Position, WheelSampler};
 use proto3964r::Transmit;
 
 use crate::drives::Drives;
-use crate::line::{Line, Side};
-use crate::run::Pose;
-use crate::table::{Plan, Planner, Table};
-use crate::unit::Unit;
+use crate::line::{Line, Side, Wire};
+use crate::machine::isometry;
+use crate::panel::{Action, Input, PanelSettings};
+use crate::pendant::Pendant;
+use crate::planner::{Plan, Planner};
+use crate::pose::{Pose, changed};
+use crate::table::Table;
 use crate::workstation::{Telegrams, Workstation};
 
-/// A jog under way: what the wheel says, what the axis is told, and what it does.
+/// A jog: what the wheel says, what the axis is commanded to do, and what it does.
 #[derive(Default)]
 pub(crate) struct Jog {
     /// End of each sample, in seconds, and its counts.
     pub(crate) samples: Vec<(f64, i32)>,
-    /// Time, speed told, in mm per second.
-    pub(crate) told: Vec<(f64, f64)>,
+    /// Time in seconds, commanded speed in mm per second.
+    pub(crate) commanded: Vec<[f64; 2]>,
     /// Time, speed of the axis.
-    pub(crate) done: Vec<(f64, f64)>,
+    pub(crate) done: Vec<[f64; 2]>,
     pub(crate) locator: usize,
     pub(crate) axis: usize,
 }
@@ -33,14 +36,15 @@ pub(crate) struct Course {
     /// The plan that was run.
     pub(crate) plan: Option<Plan>,
     pub(crate) telegrams: Telegrams,
-    pub(crate) line: Line,
+    pub(crate) line_log: String,
+    pub(crate) line_bytes: usize,
 }
 
 pub(crate) struct World<'a, const N: usize> {
     planner: &'a Planner<'a, N>,
     now_us: u64,
-    pub(crate) unit: Unit,
-    line: Line,
+    pub(crate) pendant: Pendant,
+    line: Line<'a>,
     workstation: Workstation<N>,
     drives: Drives<N>,
     /// Pulses of the wheel, on their own wires.
@@ -55,18 +59,19 @@ pub(crate) struct World<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> World<'a, N> {
-    /// The body at rest, the unit without power.
+    /// The body at rest, the pendant without power.
     pub(crate) fn new(
         planner: &'a Planner<'a, N>,
-        panel: handwheel::Settings,
+        panel: PanelSettings,
         pose: Pose,
+        wire: Wire<'a>,
     ) -> Result<Self> {
-        let axes = planner.platform.axes(&planner.isometry(pose));
+        let axes = planner.platform.axes(&isometry(pose));
         Ok(Self {
             planner,
             now_us: 0,
-            unit: Unit::new(),
-            line: Line::new()?,
+            pendant: Pendant::new(),
+            line: Line::new(wire),
             workstation: Workstation::new(panel)?,
             drives: Drives::new(planner.platform, &axes),
             counter: 0,
@@ -99,18 +104,18 @@ impl<'a, const N: usize> World<'a, N> {
     }
 
     pub(crate) fn press(&mut self, key: Key) {
-        self.unit.press(Some(key));
+        self.pendant.press(Some(key));
     }
 
     pub(crate) fn release(&mut self) {
-        self.unit.press(None);
+        self.pendant.press(None);
     }
 
     pub(crate) fn turn(&mut self, knob: Knob, position: Position) {
-        self.unit.turn(knob, position);
+        self.pendant.turn(knob, position);
     }
 
-    /// The enable switches have their own wires.
+    /// The enabling switches have their own wires.
     pub(crate) fn switches(&mut self, left: bool, right: bool) -> Result<()> {
         let action = self.workstation.input(Input::Enable { left, right });
         self.act(action)
@@ -141,7 +146,7 @@ impl<'a, const N: usize> World<'a, N> {
 
     /// How far the axes are from where they hold the body in its pose, in mm.
     pub(crate) fn pull(&self) -> f64 {
-        let pose = self.planner.isometry(self.pose);
+        let pose = isometry(self.pose);
         let held = self.planner.platform.axes(&pose);
         let axes = self.drives.axes();
         let pulls = held.iter().zip(&axes).map(|(held, is)| (held - is).norm());
@@ -150,18 +155,19 @@ impl<'a, const N: usize> World<'a, N> {
 
     pub(crate) fn finish(mut self) -> Result<Course> {
         self.wait_until("quiet line", 10, |world| {
-            world.unit.is_quiet() && world.workstation.station.is_idle()
+            world.pendant.is_quiet() && world.workstation.station.is_idle()
         })?;
         ensure!(
-            self.unit.faults == 0,
-            "{} telegrams did not reach or leave the unit",
-            self.unit.faults
+            self.pendant.faults == 0,
+            "{} telegrams did not reach or leave the pendant",
+            self.pendant.faults
         );
         Ok(Course {
             jog: self.jog,
             plan: self.plan,
             telegrams: self.workstation.telegrams,
-            line: self.line,
+            line_bytes: self.line.bytes(),
+            line_log: self.line.into_log(),
         })
     }
 
@@ -181,7 +187,7 @@ impl<'a, const N: usize> World<'a, N> {
     fn next_due(&self) -> Option<u64> {
         let timeouts = [
             self.workstation.station.poll_timeout(),
-            self.unit.station.poll_timeout(),
+            self.pendant.station.poll_timeout(),
             self.workstation.driver.poll_timeout(),
             Some(self.sampler.due()),
         ];
@@ -195,12 +201,12 @@ impl<'a, const N: usize> World<'a, N> {
     fn work(&mut self) -> Result<()> {
         let now = self.now();
         while let Some(byte) = self.line.carry(Side::Control, self.now_us)? {
-            self.unit.hear(now, byte);
+            self.pendant.hear(now, byte);
         }
-        while let Some(byte) = self.line.carry(Side::Unit, self.now_us)? {
+        while let Some(byte) = self.line.carry(Side::Pendant, self.now_us)? {
             self.workstation.station.handle_byte(now, byte);
         }
-        self.unit.work(now);
+        self.pendant.work(now);
         for action in self.workstation.work(now) {
             self.act(Some(action))?;
         }
@@ -228,8 +234,8 @@ impl<'a, const N: usize> World<'a, N> {
         while let Some(transmit) = self.workstation.station.poll_transmit(now, &mut bytes) {
             send(&mut self.line, Side::Control, self.now_us, transmit);
         }
-        while let Some(transmit) = self.unit.station.poll_transmit(now, &mut bytes) {
-            send(&mut self.line, Side::Unit, self.now_us, transmit);
+        while let Some(transmit) = self.pendant.station.poll_transmit(now, &mut bytes) {
+            send(&mut self.line, Side::Pendant, self.now_us, transmit);
         }
         Ok(())
     }
@@ -244,7 +250,7 @@ impl<'a, const N: usize> World<'a, N> {
             }) => {
                 let speed = f64::from(speed_um_s) / 1000.0;
                 (self.jog.locator, self.jog.axis) = (locator.into(), axis.index());
-                self.jog.told.push((self.now_s(), speed));
+                self.jog.commanded.push([self.now_s(), speed]);
                 self.drives.jog(self.now_us, locator, axis, speed);
                 Ok(())
             }
@@ -258,13 +264,12 @@ impl<'a, const N: usize> World<'a, N> {
                 Ok(())
             }
             Some(Action::Stop(_)) => {
-                self.jog.told.push((self.now_s(), 0.0));
+                self.jog.commanded.push([self.now_s(), 0.0]);
                 if self.drives.stop() {
                     self.at_rest()?;
                 }
                 Ok(())
             }
-            Some(other) => Err(anyhow::anyhow!("{other:?} is not known here")),
         }
     }
 
@@ -279,7 +284,7 @@ impl<'a, const N: usize> World<'a, N> {
         let state = states.and_then(|states| states.get(self.jog.axis));
         if let Some(state) = state.filter(|_| self.plan.is_none()) {
             let time = self.now_s();
-            self.jog.done.push((time, state.speed));
+            self.jog.done.push([time, state.speed]);
         }
     }
 
@@ -299,22 +304,11 @@ fn micros(time: Duration) -> Option<u64> {
     u64::try_from(time.as_nanos().div_ceil(1000)).ok()
 }
 
-fn send(line: &mut Line, side: Side, now_us: u64, transmit: Transmit<'_>) {
+fn send(line: &mut Line<'_>, side: Side, now_us: u64, transmit: Transmit<'_>) {
     match transmit {
         Transmit::Bytes(bytes) => line.send(side, now_us, bytes),
         Transmit::Discard => line.discard(side),
     }
-}
-
-/// The pose vector with a change added, in mm and degrees.
-pub(crate) fn changed(pose: Pose, change: &PoseChange) -> Pose {
-    let lengths = change.translation_um.map(|um| f64::from(um) / 1e3);
-    let angles = change.rotation_udeg.map(|udeg| f64::from(udeg) / 1e6);
-    let mut changed = pose;
-    for (value, change) in changed.iter_mut().zip(lengths.into_iter().chain(angles)) {
-        *value += change;
-    }
-    changed
 }
 
 fn micrometres<const N: usize>(axes: &[Vector3<f64>; N]) -> [[i32; 3]; N] {

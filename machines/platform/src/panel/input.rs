@@ -1,20 +1,18 @@
 //! What goes into a panel and what comes out.
 
-use crate::arbiter::Target;
-use crate::driver::Event;
-use crate::number::{Key, Position};
-use crate::report::{Knob, Status};
+use handwheel::{Event, Key, Knob, Position, Status};
 
-/// Something that happened at the unit or at the machine.
+use crate::arbiter::Target;
+
+/// Something that happened at the pendant or at the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Input {
     /// A key went down, or all are released.
     Key(Option<Key>),
-    /// A knob was turned.
+    /// A rotary switch was turned.
     Knob(Knob, Position),
-    /// Where keys and knobs stand.
+    /// Where keys and rotary switches stand.
     Status(Status),
     /// The enabling switches, which have their own wires: true while down. Hand them in whenever one
     /// changes, and once at the start.
@@ -26,14 +24,14 @@ pub enum Input {
     },
     /// The stop button, which has its own wires too.
     StopButton,
-    /// Wheel counts of one [`SAMPLE`](crate::SAMPLE); zero when the wheel stood still.
+    /// Wheel counts of one [`SAMPLE`](handwheel::SAMPLE); zero when the wheel stood still.
     Wheel(i32),
-    /// The link to the unit is lost.
+    /// The link to the pendant is lost.
     Lost,
-    /// What this unit moved is at rest: it stopped as told, or the pose is reached, or the axis
+    /// What this pendant moved is at rest: it stopped as told, or the pose is reached, or the axis
     /// ended its jog by itself. Only when it is: a panel at rest has nothing to stop.
     AtRest,
-    /// The machine does not carry out this unit's last action; nothing moves.
+    /// The machine does not carry out this pendant's last action; nothing moves.
     Refused(Refusal),
 }
 
@@ -57,7 +55,6 @@ impl Input {
 
 /// Why the machine does not move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Refusal {
     /// Out of the stroke of an axis.
@@ -68,7 +65,6 @@ pub enum Refusal {
 
 /// What the machine must do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Action {
     /// Move one axis of a locator at a speed, until the next action. Comes with every sample of
@@ -89,8 +85,6 @@ pub enum Action {
 
 /// An axis of a locator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_enums, reason = "a locator has three")]
 pub enum Axis {
     /// The first.
@@ -126,8 +120,6 @@ impl Axis {
 
 /// A change of the body's pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_structs, reason = "six values, no more")]
 pub struct PoseChange {
     /// dX, dY, dZ in micrometres.
@@ -143,7 +135,7 @@ impl PoseChange {
         rotation_udeg: [0; 3],
     };
 
-    /// Its values: positions 1 to 6 of the direction knob.
+    /// Its values: positions 1 to 6 of the direction switch.
     pub(crate) const DIRECTIONS: u8 = 6;
 
     /// The six values in the order of the screen, each with whether it is an angle.

@@ -1,21 +1,22 @@
-//! The operator's panel: what keys, knobs, wheel and enabling switches of one unit do.
+//! The operator's panel: what keys, rotary switches, wheel and enabling switches of one pendant do.
 
 mod input;
-mod picture;
+mod screens;
 mod settings;
 
 pub use input::{Action, Axis, Input, PoseChange, Refusal};
-pub use settings::{KeyRole, Multiplier, Settings, SettingsError};
+pub use settings::{PanelSettings, PanelSettingsError};
 
-use crate::arbiter::{Arbiter, Refused, Target, UnitId};
-use crate::command::Light;
-use crate::number::{Key, Position};
-use crate::report::{Knob, Status};
+use self::settings::{KeyRole, Multiplier};
+
+use handwheel::{Key, Knob, Light, Position, Status};
+
+use crate::arbiter::{Arbiter, PendantId, Refused, Target};
 
 /// Which of the three screens is up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum View {
-    /// SINGLE: the list of locators, and the body behind them.
+    /// SINGLE: the list of locators, and the body after them.
     List,
     /// One locator, counted from 0.
     Locator(u8),
@@ -41,7 +42,7 @@ enum Message {
     Multiplier,
     NoChange,
     Limit,
-    Busy(UnitId),
+    Busy(PendantId),
     Refused(Refusal),
     Stopped,
     Done,
@@ -50,9 +51,9 @@ enum Message {
 
 /// The panel of one hand-held pendant.
 ///
-/// A pure state machine: [`handle`](Self::handle) takes what happened at the unit and at the
-/// machine and returns what the machine must do; [`screen`](Self::screen) says what the unit must
-/// show. Panels of several units share one [`Arbiter`].
+/// A pure state machine: [`handle`](Self::handle) takes what happened at the pendant and at the
+/// machine and returns what the machine must do; [`screen`](Self::screen) says what the pendant must
+/// show. Panels of several pendants share one [`Arbiter`].
 ///
 /// # The enabling switches
 /// Nothing moves unless both are down. When one comes up, or the stop button is pressed, or the
@@ -63,19 +64,19 @@ enum Message {
 /// | screen | page up, down | enter | motion start | wheel |
 /// |---|---|---|---|---|
 /// | SINGLE | cursor | opens the locator or ADJUST | | |
-/// | locator | previous, next locator | back to SINGLE; stops a motion first | | jogs the axis of the direction knob (positions 1 to 3: X, Y, Z) |
-/// | ADJUST | | back to SINGLE; stops a motion first | runs the pose change | sets the value of the direction knob (positions 1 to 6: X, Y, Z, alpha, beta, gamma) |
+/// | locator | previous, next locator | back to SINGLE; stops a motion first | | jogs the axis of the direction switch (positions 1 to 3: X, Y, Z) |
+/// | ADJUST | | back to SINGLE; stops a motion first | runs the pose change | sets the value of the direction switch (positions 1 to 6: X, Y, Z, alpha, beta, gamma) |
 ///
-/// The multiplier knob (positions 1, 2, 3: x1, x10, x100) scales the speed of a jog and the step
-/// of a value. Turning the direction knob stops a jog.
+/// The multiplier switch (positions 1, 2, 3: x1, x10, x100) scales the speed of a jog and the step
+/// of a value. Turning the direction switch stops a jog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[expect(
     missing_copy_implementations,
-    reason = "a copy would be a second panel of one unit"
+    reason = "a copy would be a second panel of one pendant"
 )]
 pub struct Panel {
-    unit: UnitId,
-    settings: Settings,
+    pendant: PendantId,
+    settings: PanelSettings,
     view: View,
     /// Line of the list.
     cursor: u8,
@@ -92,13 +93,13 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel that shows SINGLE, with both switches up and the knobs not known yet.
+    /// A panel that shows SINGLE, with both switches up and the rotary switches not known yet.
     ///
     /// # Errors
-    /// [`SettingsError`] for settings that cannot work.
-    pub fn new(unit: UnitId, settings: Settings) -> Result<Self, SettingsError> {
+    /// [`PanelSettingsError`] for settings that cannot work.
+    pub fn new(pendant: PendantId, settings: PanelSettings) -> Result<Self, PanelSettingsError> {
         Ok(Self {
-            unit,
+            pendant,
             settings: settings.check()?,
             view: View::List,
             cursor: 0,
@@ -114,19 +115,13 @@ impl Panel {
         })
     }
 
-    /// The unit that the panel belongs to.
-    #[must_use]
-    pub const fn unit(&self) -> UnitId {
-        self.unit
-    }
-
     /// Whether both enabling switches are down, and count.
     #[must_use]
     pub const fn is_enabled(&self) -> bool {
         self.left && self.right && self.armed
     }
 
-    /// Whether a motion of this unit has not come to rest.
+    /// Whether a motion of this pendant has not come to rest.
     #[must_use]
     pub const fn is_moving(&self) -> bool {
         !matches!(self.motion, Motion::Rest)
@@ -203,7 +198,7 @@ impl Panel {
     }
 
     fn page(&mut self, lines: i8, locators: usize) {
-        // The list has the body behind the locators.
+        // The list has the body after the locators.
         let last = match self.view {
             View::List => locators,
             View::Locator(_) => locators.saturating_sub(1),
@@ -264,7 +259,7 @@ impl Panel {
         None
     }
 
-    /// Where keys and knobs stand: a key that went down unseen does nothing.
+    /// Where keys and rotary switches stand: a key that went down unseen does nothing.
     fn status(&mut self, status: Status) -> Option<Action> {
         self.key = status.key();
         let Status::Hbls { w1, w2, .. } = status else {
@@ -330,7 +325,7 @@ impl Panel {
         if self.view == View::Adjust && !matches!(message, Message::Refused(_)) {
             self.change = PoseChange::ZERO;
         }
-        arbiter.release(self.unit);
+        arbiter.release(self.pendant);
     }
 
     fn wheel<const N: usize>(&mut self, counts: i32, arbiter: &mut Arbiter<N>) -> Option<Action> {
@@ -404,7 +399,7 @@ impl Panel {
         }
     }
 
-    /// Both knobs, or a message which of them means nothing where it stands.
+    /// Both rotary switches, or a message which of them means nothing where it stands.
     fn knobs<D, M>(&mut self, direction: Option<D>, multiplier: Option<M>) -> Option<(D, M)> {
         if direction.is_none() {
             self.message = Message::Direction;
@@ -415,7 +410,7 @@ impl Panel {
     }
 
     fn acquire<const N: usize>(&mut self, target: Target, arbiter: &mut Arbiter<N>) -> Option<()> {
-        match arbiter.acquire(target, self.unit) {
+        match arbiter.acquire(target, self.pendant) {
             Ok(()) => Some(()),
             Err(Refused::Owned { owner, .. }) => {
                 self.message = Message::Busy(owner);

@@ -1,10 +1,10 @@
 //! The panel as an operator and a machine see it.
 #![cfg(test)]
 
-use handwheel::Position;
-use handwheel::{
-    Action, Arbiter, Axis, Event, Input, Key, Knob, LcdAnswer, Light, Panel, PoseChange, Refusal,
-    Refused, Settings, SettingsError, Status, Target, UnitId, WheelQuantiser,
+use handwheel::{Event, Key, Knob, LcdAnswer, Light, Position, Status, WheelQuantiser};
+use platform::{
+    Action, Arbiter, Axis, Input, Panel, PanelSettings, PanelSettingsError, PendantId, PoseChange,
+    Refusal, Refused, Target,
 };
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ const DOWN: u8 = 2;
 const ENTER: u8 = 3;
 const START: u8 = 4;
 
-/// A panel with three locators, its knobs known, both switches seen up.
+/// A panel with three locators, its rotary switches known, both switches seen up.
 struct Desk {
     arbiter: Arbiter<3>,
     panels: Vec<Panel>,
@@ -21,8 +21,8 @@ struct Desk {
 
 impl Desk {
     fn new(units: u8) -> Self {
-        let settings = Settings::new(WheelQuantiser::new(100, 10).unwrap());
-        let panel = |unit| Panel::new(UnitId(unit), settings).unwrap();
+        let settings = PanelSettings::new(WheelQuantiser::new(100, 10).unwrap());
+        let panel = |unit| Panel::new(PendantId(unit), settings).unwrap();
         let mut desk = Self {
             arbiter: Arbiter::new(),
             panels: (0..units).map(panel).collect(),
@@ -176,8 +176,8 @@ fn events_of_the_driver_are_inputs() {
 
 #[test]
 fn the_list_scrolls() {
-    let settings = Settings::new(WheelQuantiser::new(100, 10).unwrap());
-    let mut panel = Panel::new(UnitId(0), settings).unwrap();
+    let settings = PanelSettings::new(WheelQuantiser::new(100, 10).unwrap());
+    let mut panel = Panel::new(PendantId(0), settings).unwrap();
     let mut arbiter = Arbiter::<10>::new();
     for _ in 0..12 {
         panel.handle(Input::Key(Key::new(DOWN).ok()), &mut arbiter);
@@ -256,7 +256,7 @@ fn a_pose_change_runs() {
     assert_eq!(desk.press(0, START), Some(Action::Move(change)));
     assert_eq!(desk.press(0, START), None);
     assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
-    // The body does not follow the knobs.
+    // The body does not follow the rotary switches.
     assert_eq!(desk.on(0, Input::Knob(Knob::W2, Position::MIN)), None);
     assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
     desk.on(0, Input::AtRest);
@@ -329,9 +329,9 @@ fn one_owner_at_a_time() {
 #[test]
 fn arbiter_refuses_by_name() {
     let mut arbiter = Arbiter::<2>::new();
-    let (target, owner) = (Target::Locator(1), UnitId(7));
+    let (target, owner) = (Target::Locator(1), PendantId(7));
     arbiter.acquire(target, owner).unwrap();
-    let refused = arbiter.acquire(Target::Body, UnitId(1));
+    let refused = arbiter.acquire(Target::Body, PendantId(1));
     assert_eq!(refused, Err(Refused::Owned { target, owner }));
     assert!(arbiter.acquire(Target::Body, owner).is_ok());
     assert_eq!(arbiter.owner(Target::Locator(0)), Some(owner));
@@ -344,19 +344,19 @@ fn arbiter_refuses_by_name() {
 
 #[test]
 fn settings_are_checked() {
-    let good = Settings::new(WheelQuantiser::new(100, 10).unwrap());
+    let good = PanelSettings::new(WheelQuantiser::new(100, 10).unwrap());
     let (name, value) = ("step_um", 0);
-    let zero = Settings { step_um: 0, ..good };
-    let refused = Panel::new(UnitId(0), zero);
-    assert_eq!(refused, Err(SettingsError::Range { name, value }));
+    let zero = PanelSettings { step_um: 0, ..good };
+    let refused = Panel::new(PendantId(0), zero);
+    assert_eq!(refused, Err(PanelSettingsError::Range { name, value }));
     let key = Key::MIN;
-    let same = Settings {
+    let same = PanelSettings {
         keys: [key, Key::MAX, key, Key::MAX],
         ..good
     };
     assert_eq!(
-        Panel::new(UnitId(0), same),
-        Err(SettingsError::SameKey { key })
+        Panel::new(PendantId(0), same),
+        Err(PanelSettingsError::SameKey { key })
     );
 }
 
@@ -385,7 +385,7 @@ fn input() -> impl Strategy<Value = Input> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// Any course of inputs at two units: nothing moves unless both switches of its unit are down
+    /// Any course of inputs at two pendants: nothing moves unless both switches of its pendant are down
     /// and have been up before; a stop follows at once when one comes up, or the link or the
     /// stop button says so; nothing is moved by two; and every screen can be shown.
     #[test]
@@ -436,20 +436,10 @@ proptest! {
             for (unit, panel) in (0u8..).zip(&desk.panels) {
                 prop_assert_eq!(panel.is_moving(), moving[usize::from(unit)].is_some());
                 let owns = [0, 1, 2].map(Target::Locator).into_iter().chain([Target::Body])
-                    .any(|it| desk.arbiter.owner(it) == Some(UnitId(unit)));
+                    .any(|it| desk.arbiter.owner(it) == Some(PendantId(unit)));
                 prop_assert_eq!(owns, panel.is_moving());
             }
             prop_assert!(desk.screen(unit).iter().all(|line| line.len() <= 16));
         }
     }
-}
-
-#[test]
-fn sizes() {
-    use core::mem::size_of;
-    assert!(size_of::<handwheel::Driver>() <= 288);
-    assert!(size_of::<Panel>() <= 112);
-    assert_eq!(size_of::<Arbiter<10>>(), 22);
-    assert!(size_of::<handwheel::LcdBlock>() <= 144);
-    assert_eq!(size_of::<handwheel::Shown>(), 128);
 }

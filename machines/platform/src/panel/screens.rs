@@ -1,8 +1,7 @@
-//! What the panel's unit shows.
+//! The three screens, as the panel's pendant must show them.
 
-use super::{Message, Motion, Multiplier, Panel, Refusal, View};
+use super::{Axis, Message, Motion, Multiplier, Panel, Refusal, View};
 use crate::arbiter::{Arbiter, Target};
-use crate::panel::Axis;
 use crate::screen::{Decimal, LINES, Screen};
 
 /// Lines between title and message.
@@ -13,12 +12,12 @@ const STATE: usize = 12;
 /// Where a number ends, and how many cells it has: sign, point and digits.
 const NUMBER_END: usize = 13;
 const NUMBER: usize = 10;
-/// Behind `LOCATOR`, and as wide as 255.
+/// After `LOCATOR`, and as wide as 255.
 const INDEX_END: usize = 11;
 const INDEX: usize = 3;
 
 impl Panel {
-    /// What the unit must show. `positions_um` are the axis positions of all locators, in
+    /// What the pendant must show. `positions_um` are the axis positions of all locators, in
     /// micrometres.
     #[must_use]
     pub fn screen<const N: usize>(

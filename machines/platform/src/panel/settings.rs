@@ -1,16 +1,21 @@
 //! What an installation chooses.
 
+use handwheel::{Key, Knob, Position, WheelQuantiser};
 use thiserror::Error;
 
-use crate::number::{Key, Position};
-use crate::report::Knob;
-use crate::wheel::WheelQuantiser;
+const KEYS: [Key; 4] = [key(1), key(2), key(3), key(4)];
+
+const fn key(number: u8) -> Key {
+    match Key::new(number) {
+        Ok(key) => key,
+        #[expect(clippy::panic, reason = "of constants")]
+        Err(_) => panic!("no such key"),
+    }
+}
 
 /// What a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "the panel has these four")]
-pub enum KeyRole {
+pub(crate) enum KeyRole {
     /// The cursor goes up.
     PageUp,
     /// The cursor goes down.
@@ -21,11 +26,9 @@ pub enum KeyRole {
     Start,
 }
 
-/// By what the multiplier knob multiplies.
+/// By what the multiplier switch multiplies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "the panel has these three")]
-pub enum Multiplier {
+pub(crate) enum Multiplier {
     /// Position 1.
     X1,
     /// Position 2.
@@ -45,8 +48,7 @@ impl Multiplier {
     }
 
     /// 1, 10 or 100.
-    #[must_use]
-    pub const fn factor(self) -> u8 {
+    pub(crate) const fn factor(self) -> u8 {
         match self {
             Self::X1 => 1,
             Self::X10 => 10,
@@ -63,10 +65,10 @@ impl Multiplier {
     }
 }
 
-/// Keys, knobs, speeds and steps of a panel.
+/// Keys, rotary switches, speeds and steps of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::exhaustive_structs, reason = "plain settings")]
-pub struct Settings {
+pub struct PanelSettings {
     /// From wheel counts to a share of the jog speed.
     pub wheel: WheelQuantiser,
     /// Jog speed of a wheel at full speed with x100, in micrometres per second.
@@ -81,15 +83,14 @@ pub struct Settings {
     pub most_udeg: u32,
     /// The keys for page up, page down, enter and motion start.
     pub keys: [Key; 4],
-    /// The right knob, which chooses the direction; the other one is the multiplier.
+    /// The right rotary switch, which chooses the direction; the other one is the multiplier.
     pub direction_knob: Knob,
 }
 
 /// Why settings cannot work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum SettingsError {
+pub enum PanelSettingsError {
     /// A speed, step or limit of zero, or above what a signed 32-bit number holds.
     #[error("{name} = {value} is not within 1..=2147483647")]
     Range {
@@ -106,7 +107,7 @@ pub enum SettingsError {
     },
 }
 
-impl Settings {
+impl PanelSettings {
     /// Full jog speed 10 mm/s, steps of 1 um and 0.0001 deg, pose changes up to 100 mm and 10 deg,
     /// keys 1 to 4, the direction on W2.
     #[must_use]
@@ -118,7 +119,7 @@ impl Settings {
             step_udeg: 100,
             most_um: 100_000,
             most_udeg: 10_000_000,
-            keys: Key::FIRST_FOUR,
+            keys: KEYS,
             direction_knob: Knob::W2,
         }
     }
@@ -130,7 +131,7 @@ impl Settings {
         KeyRole::Start,
     ];
 
-    pub(crate) fn check(self) -> Result<Self, SettingsError> {
+    pub(crate) fn check(self) -> Result<Self, PanelSettingsError> {
         for (name, value) in [
             ("full_jog_um_s", self.full_jog_um_s),
             ("step_um", self.step_um),
@@ -139,7 +140,7 @@ impl Settings {
             ("most_udeg", self.most_udeg),
         ] {
             if value == 0 || i32::try_from(value).is_err() {
-                return Err(SettingsError::Range { name, value });
+                return Err(PanelSettingsError::Range { name, value });
             }
         }
         for (index, &key) in self.keys.iter().enumerate() {
@@ -149,7 +150,7 @@ impl Settings {
                 .skip(index.saturating_add(1))
                 .any(|&other| other == key)
             {
-                return Err(SettingsError::SameKey { key });
+                return Err(PanelSettingsError::SameKey { key });
             }
         }
         Ok(self)

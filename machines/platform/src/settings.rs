@@ -1,17 +1,17 @@
-//! The platform: from its file to checked settings.
+//! The platform file: as written, and what its numbers become.
 
-use std::path::Path;
-
-use anyhow::{Context, Result, anyhow, ensure};
-use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
-use pose2pulse::handwheel::{self, WheelQuantiser};
-use pose2pulse::pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platform};
+use anyhow::{Context as _, Result, ensure};
+use handwheel::WheelQuantiser;
+use nalgebra::{Matrix3, Point3, Vector3};
+use pose_pt::{AxisLimits, Interpolation, Locator};
 use serde::Deserialize;
 
-use crate::run::Pose;
+use crate::machine::CONVENTION;
+use crate::panel::PanelSettings;
+use crate::pose::Pose;
 
 /// The platform file, as written.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     locator: Vec<LocatorSettings>,
@@ -20,7 +20,7 @@ pub(crate) struct Settings {
     wheel: WheelSettings,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LocatorSettings {
     anchor_mm: Numbers<3>,
@@ -33,13 +33,13 @@ struct LocatorSettings {
     jerk_mm_s3: Option<Numbers<3>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BodySettings {
     outline_mm: Vec<Numbers<3>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PathSettings {
     from: Numbers<6>,
@@ -48,7 +48,7 @@ struct PathSettings {
     strain_mm: Finite,
 }
 
-#[derive(Deserialize, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum InterpolationName {
     Straight,
@@ -56,7 +56,7 @@ enum InterpolationName {
     Vector,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WheelSettings {
     full_counts: u32,
@@ -65,7 +65,7 @@ struct WheelSettings {
 }
 
 /// A number that is one.
-#[derive(Deserialize, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
 struct Finite(f64);
 
@@ -78,8 +78,8 @@ impl TryFrom<f64> for Finite {
     }
 }
 
-/// So many and no more: an array of serde leaves what is behind it unread.
-#[derive(Deserialize, Clone, Copy)]
+/// N values and no more: an array of serde leaves what is after it unread.
+#[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "Vec<T>", bound(deserialize = "T: Deserialize<'de>"))]
 struct Exactly<T, const N: usize>([T; N]);
 
@@ -101,7 +101,7 @@ impl<const N: usize> Numbers<N> {
     }
 }
 
-/// Largest length and angle that the unit can set: as many digits as it shows.
+/// Largest length and angle that the pendant can set: as many digits as it shows.
 const MOST_UM: u32 = 2_000_000_000;
 const MOST_UDEG: u32 = 99_999_990;
 /// Counts of full speed, at most: what the operator turns beyond them still fits a sample.
@@ -111,10 +111,6 @@ pub(crate) const STEP_UM: u32 = 1;
 pub(crate) const STEP_UDEG: u32 = 10;
 
 impl Settings {
-    pub(crate) fn read(file: &Path) -> Result<Self> {
-        command_line::read(file, |text| Ok(machine_sim::input::parse_settings(text)?))
-    }
-
     /// Where the body is, and where it goes.
     pub(crate) fn poses(&self) -> [Pose; 2] {
         [self.path.from.values(), self.path.to.values()]
@@ -125,40 +121,26 @@ impl Settings {
         self.path.strain_mm.0
     }
 
-    pub(crate) const fn locators(&self) -> usize {
-        self.locator.len()
-    }
-
-    /// `N` must be the number of locators.
-    pub(crate) fn platform<const N: usize>(&self) -> Result<Platform<N>> {
-        let locators: Vec<_> = self.locator.iter().map(LocatorSettings::locator).collect();
-        let locators = locators
-            .try_into()
-            .map_err(|_| anyhow!("the file has no {N} locators"))?;
-        Ok(Platform::new(locators)?)
-    }
-
-    pub(crate) const fn convention(&self) -> Convention {
-        Convention::ExtrinsicXyz
+    pub(crate) fn locators(&self) -> Vec<Locator> {
+        let locators = self.locator.iter();
+        locators.map(LocatorSettings::locator).collect()
     }
 
     pub(crate) const fn interpolation(&self) -> Interpolation {
         match self.path.interpolation {
             InterpolationName::Straight => Interpolation::Straight,
             InterpolationName::Screw => Interpolation::Screw,
-            InterpolationName::Vector => Interpolation::Vector(self.convention()),
+            InterpolationName::Vector => Interpolation::Vector(CONVENTION),
         }
     }
 
-    /// The body's outline in the world.
-    pub(crate) fn outline(&self, pose: &Isometry3<f64>) -> Vec<Point3<f64>> {
+    /// The body's outline in its own frame.
+    pub(crate) fn outline(&self) -> Vec<Point3<f64>> {
         let outline = self.body.outline_mm.iter();
-        outline
-            .map(|point| pose * Point3::from(point.values()))
-            .collect()
+        outline.map(|point| Point3::from(point.values())).collect()
     }
 
-    pub(crate) fn panel(&self) -> Result<handwheel::Settings> {
+    pub(crate) fn panel(&self) -> Result<PanelSettings> {
         let wheel = &self.wheel;
         let Finite(full_jog_mm_s) = wheel.full_jog_mm_s;
         let speeds = self
@@ -187,13 +169,13 @@ impl Settings {
             reason = "checked"
         )]
         let full_jog_um_s = um_s.round() as u32;
-        Ok(handwheel::Settings {
+        Ok(PanelSettings {
             full_jog_um_s,
             step_um: STEP_UM,
             step_udeg: STEP_UDEG,
             most_um: MOST_UM,
             most_udeg: MOST_UDEG,
-            ..handwheel::Settings::new(quantiser)
+            ..PanelSettings::new(quantiser)
         })
     }
 }

@@ -1,21 +1,22 @@
-//! The simulated hand-held unit: keys, knobs, lamps and display behind an own 3964R station.
+//! The simulated pendant: keys, rotary switches, LEDs and display on a 3964R station of its own.
 
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
-use pose2pulse::handwheel::{
-    COLUMNS, Command, Key, Knob, LINES, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT,
-    Model, Place, Position, Report, Status,
+use handwheel::{
+    Command, Key, Knob, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT, Model, Place,
+    Position, Report, Status,
 };
 use proto3964r::{Config, Event, Priority, Station};
 
-use crate::line::WIRE;
+use crate::line::PACED;
+use crate::screen::{COLUMNS, LINES};
 
 const MODEL: Model = Model::Hbls;
-/// The unit's longest block, and the longest it takes.
+/// The pendant's longest block, and the longest it takes.
 const BLOCK: usize = Model::Hbls.max_lcd_block();
 
-pub(crate) struct Unit {
+pub(crate) struct Pendant {
     pub(crate) station: Station<BLOCK>,
     powered: bool,
     /// Its status has been asked for.
@@ -31,12 +32,12 @@ pub(crate) struct Unit {
     pub(crate) faults: usize,
 }
 
-impl Unit {
-    /// A unit without power.
+impl Pendant {
+    /// A pendant without power.
     pub(crate) fn new() -> Self {
         let line = Config {
             priority: Priority::Low,
-            ..Config::euchner_hbls(WIRE)
+            ..Config::euchner_hbls(PACED)
         };
         Self {
             station: Station::new(line),

@@ -1,15 +1,14 @@
 //! The operator: reads the display, turns, presses.
 
 use anyhow::{Context, Result, ensure};
-use pose2pulse::handwheel::{
-    Key, Knob, Light, PoseChange, Position, SAMPLE, Settings, WheelQuantiser,
-};
+use handwheel::{Key, Knob, Light, Position, SAMPLE, WheelQuantiser};
 
-use crate::platform::{STEP_UDEG, STEP_UM};
-use crate::run::Pose;
-use crate::world::{World, changed};
+use crate::panel::{PanelSettings, PoseChange};
+use crate::pose::{Pose, changed};
+use crate::settings::{STEP_UDEG, STEP_UM};
+use crate::world::World;
 
-/// The knob for the direction and the one for the multiplier.
+/// The rotary switch for the direction and the one for the multiplier.
 const DIRECTION: Knob = Knob::W2;
 const MULTIPLIER: Knob = Knob::W1;
 /// Counts of the samples of a jog, parts of full speed in percent: away, and the same way back.
@@ -28,16 +27,16 @@ const MARGIN: f64 = 1.25;
 
 /// What the operator is to do.
 pub(crate) struct Task {
-    settings: Settings,
+    settings: PanelSettings,
     to: Pose,
     /// In wheel counts at x1.
     counts: [i64; 6],
-    /// Where the body will be: `to` in whole steps of the unit.
+    /// Where the body will be: `to` in whole steps of the pendant.
     pub(crate) reached: Pose,
 }
 
 impl Task {
-    pub(crate) fn new(from: Pose, to: Pose, settings: &Settings) -> Result<Self> {
+    pub(crate) fn new(from: Pose, to: Pose, settings: &PanelSettings) -> Result<Self> {
         let names = ["x", "y", "z", "alpha", "beta", "gamma"];
         let mut change = PoseChange::ZERO;
         let mut counts = [0; 6];
@@ -55,7 +54,7 @@ impl Task {
             let steps = ((to - from) * units / f64::from(step)).round();
             ensure!(
                 steps.abs() * f64::from(step) <= f64::from(most),
-                "{name}: a change by {} is more than the unit can set, {}",
+                "{name}: a change by {} is more than the pendant can set, {}",
                 to - from,
                 f64::from(most) / units
             );
@@ -80,26 +79,26 @@ impl Task {
         })
     }
 
-    /// What the unit's steps leave of the target.
+    /// What the pendant's steps leave of the target.
     pub(crate) fn rounding_note(&self) -> Option<String> {
         let mut pairs = self.reached.iter().zip(&self.to);
         pairs
             .any(|(reached, to)| reached.total_cmp(to).is_ne())
             .then(|| {
                 format!(
-                    "the unit sets whole um and 0.00001 deg: the body goes to {:?}",
+                    "the pendant sets whole um and 0.00001 deg: the body goes to {:?}",
                     self.reached
                 )
             })
     }
 }
 
-/// Switches the unit on, jogs a locator there and back, sets the pose change, runs it.
+/// Switches the pendant on, jogs a locator there and back, sets the pose change, runs it.
 pub(crate) fn work<const N: usize>(world: &mut World<'_, N>, task: &Task) -> Result<()> {
     world.wait_ms(500)?;
-    world.unit.switch_on();
+    world.pendant.switch_on();
     world.wait_until("the first screen", 10, |it| {
-        it.unit.line(0).starts_with("SINGLE") && it.unit.line(1).starts_with(">LOCATOR  1")
+        it.pendant.line(0).starts_with("SINGLE") && it.pendant.line(1).starts_with(">LOCATOR  1")
     })?;
     world.switches(false, false)?;
     jog(world, task)?;
@@ -148,14 +147,14 @@ fn jog_counts(wheel: &WheelQuantiser, sign: i32) -> Result<Vec<i32>> {
 }
 
 /// The fastest multiplier, as a knob's position, with which the jog stays within the room in mm.
-fn multiplier_within(room: f64, counts: &[i32], settings: &Settings) -> u8 {
+fn multiplier_within(room: f64, counts: &[i32], settings: &PanelSettings) -> u8 {
     let share = |counts: &i32| settings.wheel.share(*counts, settings.full_jog_um_s);
     let um_s: i64 = counts.iter().map(share).sum();
     #[expect(clippy::cast_precision_loss, reason = "mm")]
-    let way = um_s.unsigned_abs() as f64 / 1000.0 * SAMPLE.as_secs_f64() * MARGIN;
+    let path_mm = um_s.unsigned_abs() as f64 / 1000.0 * SAMPLE.as_secs_f64() * MARGIN;
     match room {
-        room if way < room => 3,
-        room if way / 10.0 < room => 2,
+        room if path_mm < room => 3,
+        room if path_mm / 10.0 < room => 2,
         _ => 1,
     }
 }
@@ -183,7 +182,7 @@ fn adjust<const N: usize>(world: &mut World<'_, N>, task: &Task) -> Result<()> {
     enable(world)?;
     key(world, 4)?;
     world.wait_until("the motion's end", 1_000_000, |it| {
-        it.unit.line(7).starts_with("DONE")
+        it.pendant.line(7).starts_with("DONE")
     })?;
     world.switches(false, false)?;
     show(world, 0, "IDLE")
@@ -211,15 +210,15 @@ fn set<const N: usize>(world: &mut World<'_, N>, direction: u8, counts: i64) -> 
     Ok(())
 }
 
-/// Presses both switches; the lamp says when they count.
+/// Presses both switches; the LED says when they count.
 fn enable<const N: usize>(world: &mut World<'_, N>) -> Result<()> {
     world.switches(true, true)?;
-    world.wait_until("the lamp", 10, |it| it.unit.light() == Light::On)
+    world.wait_until("the LED", 10, |it| it.pendant.light() == Light::On)
 }
 
 fn knob<const N: usize>(world: &mut World<'_, N>, knob: Knob, position: u8) -> Result<()> {
     let position = Position::new(position)?;
-    if world.unit.position(knob) != position {
+    if world.pendant.position(knob) != position {
         world.turn(knob, position);
         world.wait_ms(PAUSE_MS)?;
     }
@@ -235,7 +234,7 @@ fn key<const N: usize>(world: &mut World<'_, N>, key: u8) -> Result<()> {
 
 /// Waits until a line of the display shows a text.
 fn show<const N: usize>(world: &mut World<'_, N>, line: usize, text: &str) -> Result<()> {
-    world.wait_until(text, 10, |it| it.unit.line(line).contains(text))
+    world.wait_until(text, 10, |it| it.pendant.line(line).contains(text))
 }
 
 /// As the display has it.

@@ -4,15 +4,11 @@ use thiserror::Error;
 
 /// A hand-held pendant; every panel at one arbiter has its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_structs, reason = "a name for a number")]
-pub struct UnitId(pub u8);
+pub struct PendantId(pub u8);
 
 /// What can be moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_enums, reason = "the platform has nothing else")]
 pub enum Target {
     /// One locator, counted from 0.
@@ -21,18 +17,17 @@ pub enum Target {
     Body,
 }
 
-/// Why a unit may not move something.
+/// Why a pendant may not move something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Refused {
-    /// Another unit moves it, or something that it hangs on.
-    #[error("unit {} moves {target:?}", owner.0)]
+    /// Another pendant moves it, or something that it hangs on.
+    #[error("pendant {} moves {target:?}", owner.0)]
     Owned {
         /// What the other moves.
         target: Target,
         /// The other.
-        owner: UnitId,
+        owner: PendantId,
     },
     /// There is no such locator.
     #[error("locator {index}, there are {locators}")]
@@ -50,8 +45,8 @@ pub enum Refused {
 /// nobody moves the body while another moves a locator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Arbiter<const N: usize> {
-    locators: [Option<UnitId>; N],
-    body: Option<UnitId>,
+    locators: [Option<PendantId>; N],
+    body: Option<PendantId>,
 }
 
 impl<const N: usize> Default for Arbiter<N> {
@@ -71,29 +66,29 @@ impl<const N: usize> Arbiter<N> {
         }
     }
 
-    /// Gives `target` to `unit`, which may have it already.
+    /// Gives `target` to `pendant`, which may have it already.
     ///
     /// # Errors
     /// [`Refused`]; nothing has changed then.
-    pub fn acquire(&mut self, target: Target, unit: UnitId) -> Result<(), Refused> {
-        if let Some((target, owner)) = self.hindrance(target, unit) {
+    pub fn acquire(&mut self, target: Target, pendant: PendantId) -> Result<(), Refused> {
+        if let Some((target, owner)) = self.hindrance(target, pendant) {
             return Err(Refused::Owned { target, owner });
         }
         match target {
-            Target::Body => self.body = Some(unit),
+            Target::Body => self.body = Some(pendant),
             Target::Locator(index) => {
                 let place = self.locators.get_mut(usize::from(index));
                 let locators = N;
-                *place.ok_or(Refused::NoSuchLocator { index, locators })? = Some(unit);
+                *place.ok_or(Refused::NoSuchLocator { index, locators })? = Some(pendant);
             }
         }
         Ok(())
     }
 
-    /// Takes everything from `unit`.
-    pub fn release(&mut self, unit: UnitId) {
+    /// Takes everything from `pendant`.
+    pub fn release(&mut self, pendant: PendantId) {
         for owner in self.locators.iter_mut().chain([&mut self.body]) {
-            if *owner == Some(unit) {
+            if *owner == Some(pendant) {
                 *owner = None;
             }
         }
@@ -101,7 +96,7 @@ impl<const N: usize> Arbiter<N> {
 
     /// Who moves `target`: a locator's owner, or that of the body it carries.
     #[must_use]
-    pub fn owner(&self, target: Target) -> Option<UnitId> {
+    pub fn owner(&self, target: Target) -> Option<PendantId> {
         match target {
             Target::Body => self.body,
             Target::Locator(index) => {
@@ -111,11 +106,11 @@ impl<const N: usize> Arbiter<N> {
         }
     }
 
-    /// What another unit moves that keeps `unit` from `target`.
-    fn hindrance(&self, target: Target, unit: UnitId) -> Option<(Target, UnitId)> {
-        let others = |(target, owner): (Target, &Option<UnitId>)| {
+    /// What another pendant moves that keeps `pendant` from `target`.
+    fn hindrance(&self, target: Target, pendant: PendantId) -> Option<(Target, PendantId)> {
+        let others = |(target, owner): (Target, &Option<PendantId>)| {
             owner
-                .filter(|&owner| owner != unit)
+                .filter(|&owner| owner != pendant)
                 .map(|owner| (target, owner))
         };
         let mut locators = (0_u8..).map(Target::Locator).zip(&self.locators);

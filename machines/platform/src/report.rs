@@ -1,22 +1,23 @@
 //! The numbers of a run, for programs and for people.
 
-use std::io::Write;
-use std::path::Path;
+use core::fmt;
 
-use anyhow::Result;
 use nalgebra::Isometry3;
-use pose2pulse::pose_pt::angle_between;
+use pose_pt::angle_between;
 use serde::Serialize;
 
-use crate::drives::Examination;
-use crate::line::Side;
-use crate::table::{Mode, Plan, Table};
+use crate::examination::Examination;
+use crate::mode::Mode;
+use crate::planner::Plan;
+use crate::table::Table;
 use crate::workstation::Telegrams;
 use crate::world::Course;
 
-/// `report.json`.
-#[derive(Serialize)]
-pub(crate) struct Report {
+/// `report.json`; displayed, a summary in lines.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Report {
+    #[serde(skip)]
+    mode: Mode,
     points: usize,
     duration_s: f64,
     /// Worst change of a distance between two locators, simulated.
@@ -37,7 +38,7 @@ pub(crate) struct Report {
 }
 
 /// What a speed computed from the table may be above 1 by rounding: places of 30 m are rounded
-/// to 4e-12 mm, and the unit's least move is 0.001 mm.
+/// to 4e-12 mm, and the pendant's least move is 0.001 mm.
 const ROUNDING: f64 = 1e-7;
 
 impl Report {
@@ -52,6 +53,7 @@ impl Report {
         let end = &examination.end.pose;
         let way = end.translation.vector - target.translation.vector;
         Self {
+            mode,
             points: table.points(),
             duration_s: table.duration_s(),
             max_strain_mm: examination.max_strain,
@@ -62,46 +64,43 @@ impl Report {
             pose_error_mm: way.norm(),
             pose_error_rad: angle_between(&end.rotation, &target.rotation),
             telegrams: course.telegrams,
-            line_bytes: course.line.bytes(Side::Control) + course.line.bytes(Side::Unit),
+            line_bytes: course.line_bytes,
         }
     }
 
     /// Whether the strain is within its bound, and no axis faster than it is rated.
-    pub(crate) fn is_within_bounds(&self) -> bool {
+    #[must_use]
+    pub fn is_within_bounds(&self) -> bool {
         self.max_strain_mm <= self.strain_bound_mm && self.max_speed_ratio <= 1.0 + ROUNDING
     }
+}
 
-    /// Writes what a person wants to know first.
-    pub(crate) fn write_summary(
-        &self,
-        mut out: impl Write,
-        mode: Mode,
-        folder: &Path,
-    ) -> Result<()> {
-        let table = mode.file();
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let table = self.mode.file();
         writeln!(
-            out,
-            "line: {} telegrams, {} bytes through a pseudo-terminal",
+            f,
+            "line: {} telegrams, {} bytes",
             self.telegrams.total(),
             self.line_bytes
         )?;
         writeln!(
-            out,
+            f,
             "{table}: {} points, {:.1} s, fastest axis at {:.1} % of its rated speed",
             self.points,
             self.duration_s,
             100.0 * self.max_speed_ratio
         )?;
-        if mode == Mode::Pt {
+        if self.mode == Mode::Pt {
             writeln!(
-                out,
+                f,
                 "{table} keeps speeds, not accelerations and jerks: an axis jumps by {:.1} mm/s at \
-                 once; --mode pvt keeps them",
+                 once; a PVT table keeps them",
                 self.max_speed_jump_mm_s
             )?;
         }
         writeln!(
-            out,
+            f,
             "strain, axis by axis: {:.3e} mm at most; bound {:.3e} mm: {}",
             self.max_strain_mm,
             self.strain_bound_mm,
@@ -112,15 +111,9 @@ impl Report {
             }
         )?;
         writeln!(
-            out,
+            f,
             "the body is {:.1e} mm and {:.1e} rad from its pose",
             self.pose_error_mm, self.pose_error_rad
-        )?;
-        writeln!(
-            out,
-            "in {}: line.log, {table}, jog.svg, align.svg, report.json",
-            folder.display()
-        )?;
-        Ok(())
+        )
     }
 }

@@ -1,0 +1,156 @@
+//! The table that goes to the controller of the axes: planned, and written.
+
+use core::fmt::Write as _;
+
+use anyhow::{Result, anyhow, ensure};
+use nalgebra::Vector3;
+use pose_pt::{Cut, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable};
+
+use crate::machine::isometry;
+use crate::mode::Mode;
+use crate::pose::Pose;
+use crate::settings::Settings;
+
+/// Most points that the controller has room for.
+const MOST_POINTS: usize = 1 << 16;
+
+/// Longest motion that is run here: each second is a thousand cycles of the drives.
+const MOST_S: f64 = 10_000.0;
+
+/// What the coordinates of a table may round off, as a share of the largest length.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// What every motion of the body is planned with.
+#[derive(Clone, Copy)]
+pub(crate) struct Planner<'a, const N: usize> {
+    pub(crate) platform: &'a Platform<N>,
+    settings: &'a Settings,
+    mode: Mode,
+}
+
+/// A planned motion.
+pub(crate) struct Plan {
+    /// The file that the controller gets, and nothing else.
+    pub(crate) csv: String,
+    pub(crate) strain_bound_mm: f64,
+}
+
+impl<'a, const N: usize> Planner<'a, N> {
+    pub(crate) const fn new(platform: &'a Platform<N>, settings: &'a Settings, mode: Mode) -> Self {
+        Self {
+            platform,
+            settings,
+            mode,
+        }
+    }
+
+    pub(crate) fn plan(&self, from: Pose, to: Pose) -> Result<Plan> {
+        let poses = [from, to].map(isometry);
+        let interpolation = self.settings.interpolation();
+        let path = Path::new(&poses, interpolation).map_err(|error| match error {
+            PathError::HalfTurn { angle, .. } => {
+                anyhow!(
+                    "the body would turn by {angle} rad, half a turn: both ways are the shorter one"
+                )
+            }
+            other => other.into(),
+        })?;
+        let strain_mm = self.settings.strain_mm();
+        let cut = Cut::strain(strain_mm);
+        let placed = |error: PlanError| match error {
+            PlanError::Limit { .. } => anyhow!(error),
+            _ => anyhow!("[path]: strain_mm = {strain_mm}: {error}"),
+        };
+        let mut csv = self.header();
+        let (points, strain_bound_mm) = match self.mode {
+            Mode::Pt => {
+                let table = PtTable::plan(self.platform, &path, cut).map_err(placed)?;
+                table.fits(MOST_POINTS).map_err(placed)?;
+                is_short(table.duration_s())?;
+                for point in table.points() {
+                    self.row(&mut csv, point.time_s, &point.axes, None)?;
+                }
+                (table.len(), table.strain_bound())
+            }
+            Mode::Pvt => {
+                let mut knots = vec![Knot::default(); MOST_POINTS];
+                let table = PvtTable::plan(self.platform, &path, cut, &mut knots);
+                let table = table.map_err(placed)?;
+                is_short(table.duration_s())?;
+                for point in table.points() {
+                    self.row(&mut csv, point.time_s, &point.axes, Some(&point.velocities))?;
+                }
+                (table.len(), table.strain_bound())
+            }
+        };
+        ensure!(points > 1, "from and to are the same pose: nothing moves");
+        let places = poses.iter().flat_map(|pose| self.platform.positions(pose));
+        let origins = self.platform.locators().iter().map(|it| it.origin);
+        let apart = self.platform.largest_anchor_distance();
+        let far = places
+            .chain(origins)
+            .map(|it| it.coords.amax())
+            .fold(apart, f64::max);
+        let rounding_mm = ROUNDING * far;
+        Ok(Plan {
+            csv,
+            strain_bound_mm: strain_bound_mm + rounding_mm,
+        })
+    }
+
+    fn header(&self) -> String {
+        let columns = |letter: char| {
+            (1..=N).flat_map(move |number| {
+                ["x", "y", "z"].map(|axis| format!(",{letter}{number}{axis}"))
+            })
+        };
+        let velocities = (self.mode == Mode::Pvt).then(|| columns('v'));
+        let columns = columns('p').chain(velocities.into_iter().flatten());
+        let header: String = columns.collect();
+        format!("time_s{header}\n")
+    }
+
+    /// World coordinates.
+    fn row(
+        &self,
+        csv: &mut String,
+        time_s: f64,
+        axes: &[Vector3<f64>; N],
+        velocities: Option<&[Vector3<f64>; N]>,
+    ) -> Result<()> {
+        number(csv, time_s)?;
+        let positions = self.platform.locator_positions(axes);
+        let locators = self.platform.locators().iter();
+        let speeds = locators
+            .zip(velocities.into_iter().flatten())
+            .map(|(locator, velocity)| locator.axes * velocity);
+        for vector in positions.iter().map(|it| it.coords).chain(speeds) {
+            for value in &vector {
+                csv.push(',');
+                number(csv, *value)?;
+            }
+        }
+        csv.push('\n');
+        Ok(())
+    }
+}
+
+fn is_short(duration_s: f64) -> Result<()> {
+    ensure!(
+        duration_s <= MOST_S,
+        "the motion would take {duration_s:.1e} s, {MOST_S} s are simulated at most"
+    );
+    Ok(())
+}
+
+/// With 15 significant digits at least, however small, and 15 decimals.
+fn number(csv: &mut String, value: f64) -> core::fmt::Result {
+    let size = value.abs();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a logarithm; 0 where the size is 0 or above 1"
+    )]
+    let zeros = if size > 0.0 { -size.log10() } else { 0.0 } as usize;
+    write!(csv, "{value:.*}", 15 + zeros)
+}
