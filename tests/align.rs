@@ -24,7 +24,7 @@ const PLATFORM: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/machines/platform/platform.toml"
 );
-/// Poses in mm and degrees, other than those of the platform file, in whole steps of the unit.
+/// Poses in mm and degrees, other than those of the platform file, in whole steps of the pendant.
 const FROM: &str = "-12 30.5 1185 -0.4 0.3 1";
 const TO: [f64; 6] = [41.25, -18.006, 1231.5, 1.1, -0.70001, -2.2];
 /// What coordinates of 4 m with 16 digits are rounded to, a few times over.
@@ -354,6 +354,8 @@ fn the_same_arguments_give_the_same_files() {
         let [a, b] = runs.each_ref().map(|run| run.read(name));
         assert!(a == b, "{name}");
     }
+    let picture = runs[0].read("align.svg");
+    assert!(picture.contains("The body's move is drawn 5 times as large as it is."));
 }
 
 /// One direction of the line. No payload on this line begins with a control character.
@@ -420,7 +422,7 @@ fn the_line_carries_3964r_in_order() {
     // One for STX and one for the block.
     assert_eq!(unit.acknowledgements, 2 * of(true).count());
     assert_eq!(control.acknowledgements, 2 * of(false).count());
-    // Nobody answers the first request: the unit has no power yet.
+    // Nobody answers the first request: the pendant has no power yet.
     assert_eq!((control.negative, unit.negative), (1, 0));
     assert_eq!(telegrams[0], (true, vec![0x23]));
     assert_eq!(telegrams[1], (false, vec![0x30, 0x41, 0x51]));

@@ -119,8 +119,8 @@ impl<const N: usize> Drives<N> {
                     .get_mut(*locator)
                     .and_then(|it| it.get_mut(*axis));
                 if let (Some(state), Some(acceleration)) = (state, acceleration) {
-                    let most = acceleration * CYCLE_S;
-                    let change = (speed - state.speed).clamp(-most, most);
+                    let max_change = acceleration * CYCLE_S;
+                    let change = (speed - state.speed).clamp(-max_change, max_change);
                     state.position += (state.speed + change / 2.0) * CYCLE_S;
                     state.speed += change;
                     if *speed != 0.0 || state.speed != 0.0 {

@@ -24,7 +24,7 @@ pub(crate) struct Moment<const N: usize> {
 pub(crate) struct Examination<const N: usize> {
     pub(crate) moments: Vec<Moment<N>>,
     pub(crate) max_strain: f64,
-    /// Largest share of its rated speed that an axis has.
+    /// Largest fraction of its rated speed that an axis has.
     pub(crate) max_speed_ratio: f64,
     /// Largest jump of an axis' speed from one segment to the next, from rest and to it, in mm
     /// per second: no motor can make it.

@@ -19,7 +19,7 @@ const JOG_PERCENT: [i32; 24] = [
 const PAUSE_MS: u64 = 163;
 /// Counts of a sample when a value is set, at most.
 const HAND_COUNTS: i64 = 100;
-/// How far a locator may be from its place after a jog there and back: what adding up rounds off.
+/// How far a locator may be from its position after a jog there and back: what adding up rounds off.
 const BACK_MM: f64 = 1e-6;
 
 /// Room for braking at the end of a jog.
@@ -47,16 +47,16 @@ impl Task {
         let values = translation_um.iter_mut().chain(rotation_udeg);
         let poses = from.into_iter().zip(to).zip(names).zip(&mut counts);
         for (index, ((((from, to), name), counts), value)) in poses.zip(values).enumerate() {
-            let (units, step, most) = match index {
-                0..3 => (1e3, STEP_UM, settings.most_um),
-                _ => (1e6, STEP_UDEG, settings.most_udeg),
+            let (units, step, max) = match index {
+                0..3 => (1e3, STEP_UM, settings.max_um),
+                _ => (1e6, STEP_UDEG, settings.max_udeg),
             };
             let steps = ((to - from) * units / f64::from(step)).round();
             ensure!(
-                steps.abs() * f64::from(step) <= f64::from(most),
+                steps.abs() * f64::from(step) <= f64::from(max),
                 "{name}: a change by {} is more than the pendant can set, {}",
                 to - from,
-                f64::from(most) / units
+                f64::from(max) / units
             );
             #[expect(clippy::cast_possible_truncation, reason = "checked")]
             let whole = steps as i64;
@@ -133,8 +133,11 @@ fn jog<const N: usize>(world: &mut World<'_, N>, task: &Task) -> Result<()> {
         show(world, 0, "LOCATOR  2 IDLE")?;
     }
     world.switches(false, false)?;
-    let pull = world.pull();
-    ensure!(pull < BACK_MM, "the locator is {pull} mm from where it was");
+    let residual_mm = world.largest_residual();
+    ensure!(
+        residual_mm < BACK_MM,
+        "the locator is {residual_mm} mm from where it was"
+    );
     key(world, 3)
 }
 

@@ -385,16 +385,16 @@ impl Panel {
         let Some((direction, multiplier)) = self.knobs(direction, multiplier) else {
             return;
         };
-        let (step, most) = self.settings.adjustment(direction, multiplier);
+        let (step, max) = self.settings.adjustment(direction, multiplier);
         if let Some(value) = self.change.value_mut(direction) {
             let wanted = i64::from(*value).saturating_add(step.saturating_mul(counts.into()));
-            let held = wanted.clamp(most.saturating_neg(), most);
+            let held = wanted.clamp(max.saturating_neg(), max);
             self.message = if held == wanted {
                 Message::None
             } else {
                 Message::Limit
             };
-            // Within `most`, which fits.
+            // Within `max`, which fits.
             *value = i32::try_from(held).unwrap_or(*value);
         }
     }

@@ -12,12 +12,12 @@ use crate::pose::Pose;
 use crate::settings::Settings;
 
 /// Most points that the controller has room for.
-const MOST_POINTS: usize = 1 << 16;
+const MAX_POINTS: usize = 1 << 16;
 
 /// Longest motion that is run here: each second is a thousand cycles of the drives.
-const MOST_S: f64 = 10_000.0;
+const MAX_S: f64 = 10_000.0;
 
-/// What the coordinates of a table may round off, as a share of the largest length.
+/// What the coordinates of a table may round off, as a fraction of the largest length.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// What every motion of the body is planned with.
@@ -65,7 +65,7 @@ impl<'a, const N: usize> Planner<'a, N> {
         let (points, strain_bound_mm) = match self.mode {
             Mode::Pt => {
                 let table = PtTable::plan(self.platform, &path, cut).map_err(placed)?;
-                table.fits(MOST_POINTS).map_err(placed)?;
+                table.fits(MAX_POINTS).map_err(placed)?;
                 is_short(table.duration_s())?;
                 for point in table.points() {
                     self.row(&mut csv, point.time_s, &point.axes, None)?;
@@ -73,7 +73,7 @@ impl<'a, const N: usize> Planner<'a, N> {
                 (table.len(), table.strain_bound())
             }
             Mode::Pvt => {
-                let mut knots = vec![Knot::default(); MOST_POINTS];
+                let mut knots = vec![Knot::default(); MAX_POINTS];
                 let table = PvtTable::plan(self.platform, &path, cut, &mut knots);
                 let table = table.map_err(placed)?;
                 is_short(table.duration_s())?;
@@ -137,8 +137,8 @@ impl<'a, const N: usize> Planner<'a, N> {
 
 fn is_short(duration_s: f64) -> Result<()> {
     ensure!(
-        duration_s <= MOST_S,
-        "the motion would take {duration_s:.1e} s, {MOST_S} s are simulated at most"
+        duration_s <= MAX_S,
+        "the motion would take {duration_s:.1e} s, {MAX_S} s are simulated at most"
     );
     Ok(())
 }

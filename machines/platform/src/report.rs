@@ -24,7 +24,7 @@ pub struct Report {
     max_strain_mm: f64,
     /// What the plan promises of it, with the rounding of coordinates.
     strain_bound_mm: f64,
-    /// Largest share of its rated speed that an axis has.
+    /// Largest fraction of its rated speed that an axis has.
     max_speed_ratio: f64,
     /// Largest jump of an axis' speed between two segments, from rest or to it.
     max_speed_jump_mm_s: f64,

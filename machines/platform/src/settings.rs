@@ -102,10 +102,10 @@ impl<const N: usize> Numbers<N> {
 }
 
 /// Largest length and angle that the pendant can set: as many digits as it shows.
-const MOST_UM: u32 = 2_000_000_000;
-const MOST_UDEG: u32 = 99_999_990;
+const MAX_UM: u32 = 2_000_000_000;
+const MAX_UDEG: u32 = 99_999_990;
 /// Counts of full speed, at most: what the operator turns beyond them still fits a sample.
-const MOST_COUNTS: u32 = 1_000_000_000;
+const MAX_COUNTS: u32 = 1_000_000_000;
 /// Steps of one wheel count at x1.
 pub(crate) const STEP_UM: u32 = 1;
 pub(crate) const STEP_UDEG: u32 = 10;
@@ -158,8 +158,8 @@ impl Settings {
             "[wheel]: full_jog_mm_s = {full_jog_mm_s} is not within 0.001..=2147483.647"
         );
         ensure!(
-            wheel.full_counts <= MOST_COUNTS,
-            "[wheel]: full_counts = {} is above {MOST_COUNTS}",
+            wheel.full_counts <= MAX_COUNTS,
+            "[wheel]: full_counts = {} is above {MAX_COUNTS}",
             wheel.full_counts
         );
         let quantiser = WheelQuantiser::new(wheel.full_counts, wheel.bins).context("[wheel]")?;
@@ -173,8 +173,8 @@ impl Settings {
             full_jog_um_s,
             step_um: STEP_UM,
             step_udeg: STEP_UDEG,
-            most_um: MOST_UM,
-            most_udeg: MOST_UDEG,
+            max_um: MAX_UM,
+            max_udeg: MAX_UDEG,
             ..PanelSettings::new(quantiser)
         })
     }

@@ -145,12 +145,12 @@ impl<'a, const N: usize> World<'a, N> {
     }
 
     /// How far the axes are from where they hold the body in its pose, in mm.
-    pub(crate) fn pull(&self) -> f64 {
+    pub(crate) fn largest_residual(&self) -> f64 {
         let pose = isometry(self.pose);
         let held = self.planner.platform.axes(&pose);
         let axes = self.drives.axes();
-        let pulls = held.iter().zip(&axes).map(|(held, is)| (held - is).norm());
-        pulls.fold(0.0, f64::max)
+        let residuals = held.iter().zip(&axes).map(|(held, is)| (held - is).norm());
+        residuals.fold(0.0, f64::max)
     }
 
     pub(crate) fn finish(mut self) -> Result<Course> {

@@ -28,7 +28,7 @@ pub enum Input {
     Wheel(i32),
     /// The link to the pendant is lost.
     Lost,
-    /// What this pendant moved is at rest: it stopped as told, or the pose is reached, or the axis
+    /// What this pendant moved is at rest: it stopped as commanded, or the pose is reached, or the axis
     /// ended its jog by itself. Only when it is: a panel at rest has nothing to stop.
     AtRest,
     /// The machine does not carry out this pendant's last action; nothing moves.

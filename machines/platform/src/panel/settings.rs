@@ -69,7 +69,7 @@ impl Multiplier {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::exhaustive_structs, reason = "plain settings")]
 pub struct PanelSettings {
-    /// From wheel counts to a share of the jog speed.
+    /// From wheel counts to a fraction of the jog speed.
     pub wheel: WheelQuantiser,
     /// Jog speed of a wheel at full speed with x100, in micrometres per second.
     pub full_jog_um_s: u32,
@@ -78,9 +78,9 @@ pub struct PanelSettings {
     /// Change of an angle by one wheel count with x1, in millionths of a degree.
     pub step_udeg: u32,
     /// Largest length of a pose change, in micrometres.
-    pub most_um: u32,
+    pub max_um: u32,
     /// Largest angle of a pose change, in millionths of a degree.
-    pub most_udeg: u32,
+    pub max_udeg: u32,
     /// The keys for page up, page down, enter and motion start.
     pub keys: [Key; 4],
     /// The right rotary switch, which chooses the direction; the other one is the multiplier.
@@ -117,8 +117,8 @@ impl PanelSettings {
             full_jog_um_s: 10_000,
             step_um: 1,
             step_udeg: 100,
-            most_um: 100_000,
-            most_udeg: 10_000_000,
+            max_um: 100_000,
+            max_udeg: 10_000_000,
             keys: KEYS,
             direction_knob: Knob::W2,
         }
@@ -136,8 +136,8 @@ impl PanelSettings {
             ("full_jog_um_s", self.full_jog_um_s),
             ("step_um", self.step_um),
             ("step_udeg", self.step_udeg),
-            ("most_um", self.most_um),
-            ("most_udeg", self.most_udeg),
+            ("max_um", self.max_um),
+            ("max_udeg", self.max_udeg),
         ] {
             if value == 0 || i32::try_from(value).is_err() {
                 return Err(PanelSettingsError::Range { name, value });
@@ -172,11 +172,11 @@ impl PanelSettings {
 
     /// Step of one count, and the largest value, in a direction of the pose change, 1 to 6.
     pub(crate) fn adjustment(&self, direction: u8, multiplier: Multiplier) -> (i64, i64) {
-        let (step, most) = match direction {
-            ..=3 => (self.step_um, self.most_um),
-            _ => (self.step_udeg, self.most_udeg),
+        let (step, max) = match direction {
+            ..=3 => (self.step_um, self.max_um),
+            _ => (self.step_udeg, self.max_udeg),
         };
         let step = i64::from(step).saturating_mul(multiplier.factor().into());
-        (step, most.into())
+        (step, max.into())
     }
 }

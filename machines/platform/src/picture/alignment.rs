@@ -182,3 +182,41 @@ fn round_down(max: f64) -> f64 {
     let step = steps.map(|step| step * decade).find(|step| *step <= max);
     step.unwrap_or(decade)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Locators;
+
+    #[test]
+    fn factors_are_round_and_never_below_one() {
+        let factors = [0.3, 1.0, 1.9, 4.9, 5.0, 73.0, 1e3, f64::INFINITY, f64::NAN].map(round_down);
+        let expected = [1.0, 1.0, 1.0, 2.0, 5.0, 50.0, 1e3, 1.0, 1.0];
+        assert_eq!(factors.map(f64::to_bits), expected.map(f64::to_bits));
+    }
+
+    /// What is drawn larger is the move; distances on the body stay what they are.
+    #[test]
+    fn the_drawn_body_is_rigid() {
+        let machine = Machine::parse(crate::PLATFORM).unwrap();
+        let Locators::Three(platform) = &machine.locators else {
+            panic!("three locators");
+        };
+        let from = [0.0, 0.0, 1200.0, 0.0, 0.0, 0.0];
+        let body = Body::new(
+            &machine,
+            platform,
+            [from, [35.0, -20.0, 1240.0, 1.2, -0.8, 2.5]],
+        );
+        assert_eq!(body.factor.to_bits(), 5.0_f64.to_bits());
+        let [before, after] = body.outlines.each_ref().map(|points| {
+            let next = points.iter().cycle().skip(1);
+            let lengths = points.iter().zip(next).map(|(a, b)| (b - a).norm());
+            lengths.collect::<Vec<_>>()
+        });
+        let differs = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-9;
+        assert!(!before.iter().zip(&after).any(differs));
+        let still = Body::new(&machine, platform, [from, from]);
+        assert_eq!(still.factor.to_bits(), 1.0_f64.to_bits());
+    }
+}
