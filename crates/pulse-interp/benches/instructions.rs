@@ -18,11 +18,11 @@ const ROUNDS: &str = "PULSE_INTERP_BENCH_ROUNDS";
 
 /// Name, and the most instructions per step on x86-64, the sum over the steps included.
 const CASES: [(&str, f64); 6] = [
-    ("line, textbook", 13.5),
-    ("line, centred", 13.5),
+    ("line, published", 13.5),
+    ("line, nearest", 13.5),
     ("line, bresenham", 13.5),
-    ("arc, textbook", 13.5),
-    ("arc, centred", 13.5),
+    ("arc, published", 13.5),
+    ("arc, nearest", 13.5),
     ("arc, midpoint", 15.0),
 ];
 
@@ -40,8 +40,8 @@ fn steps(case: &str) -> u64 {
     match case {
         "line, bresenham" => line().moves().remaining(),
         "arc, midpoint" => circle().moves().remaining(),
-        line_case if line_case.starts_with("line") => line().steps(Rule::Textbook).remaining(),
-        _ => circle().steps(Rule::Textbook).remaining(),
+        line_case if line_case.starts_with("line") => line().steps(Rule::Published).remaining(),
+        _ => circle().steps(Rule::Published).remaining(),
     }
 }
 
@@ -56,11 +56,11 @@ fn circle() -> Arc {
 fn run(case: &str, rounds: u32) {
     for _ in 0..rounds {
         let sum = match case {
-            "line, textbook" => sum(black_box(line().steps(Rule::Textbook))),
-            "line, centred" => sum(black_box(line().steps(Rule::Centred))),
+            "line, published" => sum(black_box(line().steps(Rule::Published))),
+            "line, nearest" => sum(black_box(line().steps(Rule::Nearest))),
             "line, bresenham" => sum(black_box(line().moves())),
-            "arc, textbook" => sum(black_box(circle().steps(Rule::Textbook))),
-            "arc, centred" => sum(black_box(circle().steps(Rule::Centred))),
+            "arc, published" => sum(black_box(circle().steps(Rule::Published))),
+            "arc, nearest" => sum(black_box(circle().steps(Rule::Nearest))),
             "arc, midpoint" => sum(black_box(circle().moves())),
             other => panic!("no case {other}"),
         };

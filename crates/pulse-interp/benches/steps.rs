@@ -14,7 +14,7 @@ fn lines(c: &mut Criterion) {
     let line = Line::new([61_803, -38_197]).expect("legal end");
     let mut group = c.benchmark_group("line");
     group.throughput(Throughput::Elements(100_000));
-    for (name, rule) in [("textbook", Rule::Textbook), ("centred", Rule::Centred)] {
+    for (name, rule) in [("published", Rule::Published), ("nearest", Rule::Nearest)] {
         group.bench_function(name, |b| {
             b.iter(|| black_box(&line).steps(rule).fold(0, fold));
         });
@@ -39,7 +39,7 @@ fn arcs(c: &mut Criterion) {
     let circle = Arc::new(start, start, Turn::CounterClockwise).expect("legal end");
     let mut group = c.benchmark_group("circle");
     group.throughput(Throughput::Elements(100_000));
-    for (name, rule) in [("textbook", Rule::Textbook), ("centred", Rule::Centred)] {
+    for (name, rule) in [("published", Rule::Published), ("nearest", Rule::Nearest)] {
         group.bench_function(name, |b| {
             b.iter(|| black_box(&circle).steps(rule).fold(0, fold));
         });

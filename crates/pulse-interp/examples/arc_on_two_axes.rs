@@ -1,7 +1,7 @@
 //! A quarter of a circle on two axes: the pulses of X and Y, when each is due, and the path.
 #![expect(clippy::print_stdout, reason = "that is what an example is for")]
 
-use pulse_interp::{Arc, Pace, Rule, Turn};
+use pulse_interp::{Arc, Rule, StepIntervals, Turn};
 
 /// Timer ticks per step at the feed wanted: 10 mm/s, 100 steps/mm, a timer of 1 MHz.
 const TICKS_PER_STEP: u32 = 1000;
@@ -9,8 +9,8 @@ const TICKS_PER_STEP: u32 = 1000;
 fn main() -> Result<(), pulse_interp::ArcError> {
     // Start and end in steps from the centre.
     let arc = Arc::new([16, 0], [0, 16], Turn::CounterClockwise)?;
-    let mut steps = arc.steps(Rule::Centred);
-    let mut pace = Pace::new(TICKS_PER_STEP);
+    let mut steps = arc.steps(Rule::Nearest);
+    let mut intervals = StepIntervals::new(TICKS_PER_STEP);
 
     println!("{} steps\n   ticks   x   y", steps.remaining());
     let [mut x, mut y] = arc.start();
@@ -20,7 +20,7 @@ fn main() -> Result<(), pulse_interp::ArcError> {
             *cell = '#';
         }
         // The interval before a step is read before the step is taken.
-        let interval = pace.interval(steps.factor());
+        let interval = intervals.next(steps.factor());
         let Some(step) = steps.next() else { break };
         ticks += interval;
         x += step.dx();

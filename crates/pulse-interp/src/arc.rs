@@ -67,7 +67,7 @@ pub enum ArcError {
 /// use pulse_interp::{Arc, Move, Rule, Turn};
 /// use Move::{Left, Up};
 /// let quarter = Arc::new([4, 0], [0, 4], Turn::CounterClockwise)?;
-/// let steps = quarter.steps(Rule::Textbook);
+/// let steps = quarter.steps(Rule::Published);
 /// assert!(steps.eq([Left, Up, Up, Up, Left, Up, Left, Left]));
 /// # Ok::<(), pulse_interp::ArcError>(())
 /// ```
@@ -162,7 +162,7 @@ impl Arc {
     /// The arc as single steps of one axis: in each quadrant as many as |dx| + |dy|, a full circle
     /// of whole radius 8 R.
     ///
-    /// At most 1 step off the circle by [`Rule::Textbook`], 0.7072 by [`Rule::Centred`].
+    /// At most 1 step off the circle by [`Rule::Published`], 0.7072 by [`Rule::Nearest`].
     pub fn steps(&self, rule: Rule) -> ArcSteps {
         ArcSteps::new(self, &self.sweep(), rule)
     }

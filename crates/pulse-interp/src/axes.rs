@@ -49,7 +49,7 @@ pub struct AxisStep {
     pub direction: Direction,
 }
 
-/// A line of N axes, one of which steps at a time: the centred rule for each pair of axes.
+/// A line of N axes, one of which steps at a time: the nearest rule for each pair of axes.
 ///
 /// ```text
 /// axis i makes its step p + 1 at the share (2 p + 1) / (2 n_i) of the way
@@ -57,10 +57,10 @@ pub struct AxisStep {
 /// ```
 /// Whenever an axis steps, every axis is within half a step of its place at that share, so the
 /// path is at most sqrt(N)/2 steps off the line: 0.7071 in a plane, where it is [`Line`]'s by
-/// [`Rule::Centred`], and 0.8661 in space.
+/// [`Rule::Nearest`], and 0.8661 in space.
 ///
 /// [`Line`]: crate::Line
-/// [`Rule::Centred`]: crate::Rule::Centred
+/// [`Rule::Nearest`]: crate::Rule::Nearest
 ///
 /// # Examples
 /// ```

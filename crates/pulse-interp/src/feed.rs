@@ -53,26 +53,26 @@ pub(crate) const fn length_q16(square: u64) -> u64 {
 ///
 /// # Examples
 /// ```
-/// use pulse_interp::{Line, Pace, Rule};
+/// use pulse_interp::{Line, Rule, StepIntervals};
 /// // 1000 ticks per step length, along a diagonal: 707 and 708 ticks a step.
 /// let line = Line::new([5000, 5000])?;
-/// let mut pace = Pace::new(1000);
+/// let mut intervals = StepIntervals::new(1000);
 /// let ticks: u64 = line
-///     .steps(Rule::Centred)
-///     .map(|_| pace.interval(line.step_factor()))
+///     .steps(Rule::Nearest)
+///     .map(|_| intervals.next(line.step_factor()))
 ///     .sum();
 /// assert!(ticks.abs_diff(7_071_068) < 100);
 /// # Ok::<(), pulse_interp::LineError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Pace {
+pub struct StepIntervals {
     unit_ticks: u32,
     // Of a tick, in 65536ths, below 65536.
     fraction: u32,
 }
 
-impl Pace {
-    /// A pace of `unit_ticks` ticks per step length of the path.
+impl StepIntervals {
+    /// Intervals of `unit_ticks` ticks per step length of the path.
     #[must_use]
     pub const fn new(unit_ticks: u32) -> Self {
         Self {
@@ -88,7 +88,7 @@ impl Pace {
     /// ```
     #[must_use = "the fraction has been carried on"]
     #[inline]
-    pub fn interval(&mut self, factor: Factor) -> u64 {
+    pub fn next(&mut self, factor: Factor) -> u64 {
         // (2^32 - 1)² + 2^16 is below 2^64.
         let exact = u64::from(self.unit_ticks)
             .wrapping_mul(u64::from(factor.0))

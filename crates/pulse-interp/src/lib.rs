@@ -24,7 +24,7 @@ mod switches;
 pub use arc::{Arc, ArcError, ArcMoves, ArcSteps};
 pub use axes::{AxesError, AxesLine, AxesSteps, AxisStep, Dda, DdaTicks};
 pub use closed_loop::{AxisLoop, LoopError, LoopSettings, LostSteps, ScaleRatio};
-pub use feed::{Factor, Pace};
+pub use feed::{Factor, StepIntervals};
 pub use homing::{Homing, HomingError, HomingOrder, HomingSettings, HomingSpeed};
 pub use line::{Line, LineError, LineMoves, LineSteps};
 pub use moves::{Direction, Move, Rule, Turn};

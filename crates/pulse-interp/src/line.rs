@@ -39,8 +39,8 @@ pub enum LineError {
 /// use pulse_interp::{Line, Move, Rule};
 /// let line = Line::new([-3, 1])?;
 /// use Move::{Left, Up};
-/// assert!(line.steps(Rule::Textbook).eq([Left, Up, Left, Left]));
-/// assert!(line.steps(Rule::Centred).eq([Left, Left, Up, Left]));
+/// assert!(line.steps(Rule::Published).eq([Left, Up, Left, Left]));
+/// assert!(line.steps(Rule::Nearest).eq([Left, Left, Up, Left]));
 /// assert!(line.moves().eq([Left, Move::UpLeft, Left]));
 /// # Ok::<(), pulse_interp::LineError>(())
 /// ```
@@ -73,7 +73,7 @@ impl Line {
 
     /// The line as single steps of one axis, |xe| + |ye| of them.
     ///
-    /// At most 1 step off the line by [`Rule::Textbook`], 0.7072 by [`Rule::Centred`].
+    /// At most 1 step off the line by [`Rule::Published`], 0.7072 by [`Rule::Nearest`].
     pub fn steps(&self, rule: Rule) -> LineSteps {
         LineSteps::new(self, rule)
     }

@@ -113,11 +113,11 @@ impl Move {
 pub enum Rule {
     /// The step against the sign of F, as published \[Stage\]: up to a whole step off the curve. On
     /// a line along Y, where the published rule leaves the line, the axis at its end stands still.
-    Textbook,
+    Published,
     /// The step after which |F| is smaller, of equals the outer one: as many steps to the same end,
     /// at most 0.7072 steps off the curve.
     #[default]
-    Centred,
+    Nearest,
 }
 
 /// The way around an arc's centre.

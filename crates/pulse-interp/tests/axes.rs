@@ -51,7 +51,7 @@ fn the_axis_with_the_least_share_steps() {
 }
 
 #[test]
-fn two_axes_are_the_centred_line() {
+fn two_axes_are_the_nearest_line() {
     for to in (-20..=20).flat_map(|x| (-20..=20).map(move |y| [x, y])) {
         let moves = AxesLine::new(to).unwrap().steps().map(|step| {
             match (step.axis, step.direction.sign()) {
@@ -62,7 +62,7 @@ fn two_axes_are_the_centred_line() {
             }
         });
         assert!(
-            moves.eq(Line::new(to).unwrap().steps(Rule::Centred)),
+            moves.eq(Line::new(to).unwrap().steps(Rule::Nearest)),
             "{to:?}"
         );
     }

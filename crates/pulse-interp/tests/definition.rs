@@ -41,7 +41,7 @@ fn line_by_definition(to: [i32; 2], rule: Rule) -> Vec<[i32; 2]> {
         let x_is_next = match rule {
             _ if at[0] == ends[0] => false,
             _ if at[1] == ends[1] => true,
-            Rule::Textbook => f(at) >= 0,
+            Rule::Published => f(at) >= 0,
             _ => f(x).abs() <= f(y).abs(),
         };
         at = if x_is_next { x } else { y };
@@ -66,15 +66,19 @@ fn lines_are_those_of_the_definition() {
     for to in (-LEN..=LEN).flat_map(|x| (-LEN..=LEN).map(move |y| [x, y])) {
         let line = Line::new(to).unwrap();
         let paths = [
-            line_by_definition(to, Rule::Textbook),
-            line_by_definition(to, Rule::Centred),
+            line_by_definition(to, Rule::Published),
+            line_by_definition(to, Rule::Nearest),
             bresenham_by_definition(to),
         ];
-        assert_eq!(path([0, 0], line.steps(Rule::Textbook)), paths[0], "{to:?}");
-        assert_eq!(path([0, 0], line.steps(Rule::Centred)), paths[1], "{to:?}");
+        assert_eq!(
+            path([0, 0], line.steps(Rule::Published)),
+            paths[0],
+            "{to:?}"
+        );
+        assert_eq!(path([0, 0], line.steps(Rule::Nearest)), paths[1], "{to:?}");
         assert_eq!(path([0, 0], line.moves()), paths[2], "{to:?}");
         assert_eq!(
-            line.steps(Rule::Centred).remaining(),
+            line.steps(Rule::Nearest).remaining(),
             paths[1].len() as u64 - 1
         );
         assert_eq!(line.moves().remaining(), paths[2].len() as u64 - 1);
@@ -126,7 +130,7 @@ fn circle_by_definition(start: [i32; 2], turn: Turn, rule: Rule) -> Vec<[i32; 2]
     loop {
         let [inward, outward] = moves_at(at, turn, last);
         let goes_in = match rule {
-            Rule::Textbook => f(at) >= 0,
+            Rule::Published => f(at) >= 0,
             _ => f(after(at, inward)).abs() < f(after(at, outward)).abs(),
         };
         at = after(at, if goes_in { inward } else { outward });
@@ -193,8 +197,8 @@ fn arcs_are_those_of_the_definition() {
             .flat_map(|p| [Turn::CounterClockwise, Turn::Clockwise].map(|turn| (*p, turn)))
         {
             let circles = [
-                circle_by_definition(start, turn, Rule::Textbook),
-                circle_by_definition(start, turn, Rule::Centred),
+                circle_by_definition(start, turn, Rule::Published),
+                circle_by_definition(start, turn, Rule::Nearest),
                 midpoint_by_definition(start, turn),
             ];
             let radius = f64::from(start[0]).hypot(f64::from(start[1]));
@@ -217,7 +221,7 @@ fn check_arc(arc: &Arc, circles: &[Vec<[i32; 2]>; 3]) {
         let len = circle.iter().skip(1).position(|at| *at == end).unwrap();
         circle[..len + 2].to_vec()
     };
-    for (rule, circle) in [Rule::Textbook, Rule::Centred].into_iter().zip(circles) {
+    for (rule, circle) in [Rule::Published, Rule::Nearest].into_iter().zip(circles) {
         let steps = arc.steps(rule);
         let wanted = up_to_end(circle);
         assert_eq!(
@@ -243,8 +247,8 @@ fn large_circles_stay_as_close() {
         let off =
             |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - f64::from(radius)).abs();
         let paths = [
-            path(start, circle.steps(Rule::Textbook)),
-            path(start, circle.steps(Rule::Centred)),
+            path(start, circle.steps(Rule::Published)),
+            path(start, circle.steps(Rule::Nearest)),
             path(start, circle.moves()),
         ];
         for (worst, path) in worst.iter_mut().zip(&paths) {
@@ -258,7 +262,7 @@ fn large_circles_stay_as_close() {
 fn full_circles_of_whole_radius_have_8_r_steps() {
     for radius in 1..=LEN {
         let arc = Arc::new([0, -radius], [0, -radius], Turn::Clockwise).unwrap();
-        for rule in [Rule::Textbook, Rule::Centred] {
+        for rule in [Rule::Published, Rule::Nearest] {
             let steps = u64::try_from(8 * radius).unwrap();
             assert_eq!(arc.steps(rule).remaining(), steps);
         }
@@ -285,13 +289,13 @@ fn check_near(arc: &Arc) {
     let radius = f64::from(start[0]).hypot(f64::from(start[1]));
     let off = |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - radius).abs();
     let paths = [
-        path(start, arc.steps(Rule::Textbook)),
-        path(start, arc.steps(Rule::Centred)),
+        path(start, arc.steps(Rule::Published)),
+        path(start, arc.steps(Rule::Nearest)),
         path(start, arc.moves()),
     ];
     let told = [
-        arc.steps(Rule::Textbook).remaining(),
-        arc.steps(Rule::Centred).remaining(),
+        arc.steps(Rule::Published).remaining(),
+        arc.steps(Rule::Nearest).remaining(),
         arc.moves().remaining(),
     ];
     for ((path, told), stated) in paths.iter().zip(told).zip(ARC) {

@@ -5,7 +5,8 @@
 use proptest::prelude::*;
 use pulse_interp::{
     Arc, ArcError, AxesError, AxesLine, AxisLoop, Dda, Direction, Homing, HomingOrder,
-    HomingSettings, Line, LoopSettings, Move, Pace, Rule, ScaleRatio, SwitchError, Switches, Turn,
+    HomingSettings, Line, LoopSettings, Move, Rule, ScaleRatio, StepIntervals, SwitchError,
+    Switches, Turn,
 };
 
 /// Steps looked at of a path that may have billions.
@@ -61,7 +62,7 @@ proptest! {
         let [width, height] = end.map(i128::abs);
         // |y xe - x ye| is the distance from the line times its length.
         let off = |[x, y]: [i128; 2]| (y * end[0] - x * end[1]).abs();
-        for (rule, bound) in [(Rule::Textbook, 1), (Rule::Centred, 2)] {
+        for (rule, bound) in [(Rule::Published, 1), (Rule::Nearest, 2)] {
             let steps = line.steps(rule);
             let count = width + height;
             prop_assert_eq!(i128::from(steps.remaining()), count);
@@ -79,10 +80,10 @@ proptest! {
         prop_assert!(2 * off(at) <= count);
         prop_assert!(count > 60 || at == end);
         for factor in [line.step_factor(), line.move_factor()] {
-            let mut pace = Pace::new(unit_ticks);
+            let mut intervals = StepIntervals::new(unit_ticks);
             let mut ticks = 0;
             for n in 1..9 {
-                ticks += u128::from(pace.interval(factor));
+                ticks += u128::from(intervals.next(factor));
                 let exact = u128::from(unit_ticks) * u128::from(factor.to_q16()) * n;
                 prop_assert_eq!(ticks, exact >> 16);
             }
@@ -109,8 +110,8 @@ proptest! {
             prop_assert!(off.abs() <= i128::from(tolerance) + 1);
             let allowed = off.abs() / 10 + 1;
             for (moves, remaining, hundredths) in [
-                (Box::new(arc.steps(Rule::Textbook)) as Box<dyn Iterator<Item = Move>>, arc.steps(Rule::Textbook).remaining(), 100),
-                (Box::new(arc.steps(Rule::Centred)), arc.steps(Rule::Centred).remaining(), 71),
+                (Box::new(arc.steps(Rule::Published)) as Box<dyn Iterator<Item = Move>>, arc.steps(Rule::Published).remaining(), 100),
+                (Box::new(arc.steps(Rule::Nearest)), arc.steps(Rule::Nearest).remaining(), 71),
                 (Box::new(arc.moves()), arc.moves().remaining(), 50),
             ] {
                 prop_assert!(remaining > 0);
@@ -122,7 +123,7 @@ proptest! {
                 prop_assert!(remaining > 60 || at == to);
             }
             // From 0.7071 to 1, and to 1.4142; a start near the centre is not far off either.
-            prop_assert!(arc.steps(Rule::Centred).factor().to_q16() <= 65_537);
+            prop_assert!(arc.steps(Rule::Nearest).factor().to_q16() <= 65_537);
             prop_assert!(arc.moves().factor().to_q16() <= 92_683);
         }
     }

@@ -1,7 +1,7 @@
 //! Path speed: the variation at a fixed pulse rate, and its cure.
 #![cfg(test)]
 
-use pulse_interp::{Arc, Factor, Line, Move, Pace, Rule, Turn};
+use pulse_interp::{Arc, Factor, Line, Move, Rule, StepIntervals, Turn};
 
 /// How far the speed may be off, as a share.
 const STEADY: f64 = 0.01;
@@ -45,16 +45,16 @@ fn a_fixed_rate_varies_by_41_percent_and_the_factor_cures_it() {
     const RADIUS: i32 = 20_000;
     let start = [RADIUS, 0];
     let circle = Arc::new(start, start, Turn::CounterClockwise).unwrap();
-    for rule in [Rule::Textbook, Rule::Centred] {
+    for rule in [Rule::Published, Rule::Nearest] {
         for (paced, wanted) in [
             (false, [core::f64::consts::FRAC_1_SQRT_2, 1.0]),
             (true, [1.0, 1.0]),
         ] {
             let mut steps = circle.steps(rule);
-            let (mut at, mut pace) = (start, Pace::new(UNIT_TICKS));
+            let (mut at, mut intervals) = (start, StepIntervals::new(UNIT_TICKS));
             let points = core::iter::from_fn(|| {
                 let factor = if paced { steps.factor() } else { Factor::ONE };
-                let ticks = pace.interval(factor);
+                let ticks = intervals.next(factor);
                 let step = steps.next()?;
                 at = [at[0] + step.dx(), at[1] + step.dy()];
                 Some((at, float(ticks) / f64::from(UNIT_TICKS)))
@@ -93,13 +93,14 @@ fn small_circles_last_as_long_as_they_are() {
     for radius in 50..60 {
         let start = [0, radius];
         let circle = Arc::new(start, start, Turn::Clockwise).unwrap();
-        let (mut steps, mut pace, mut ticks) = (circle.steps(Rule::Centred), Pace::new(1000), 0);
+        let (mut steps, mut intervals, mut ticks) =
+            (circle.steps(Rule::Nearest), StepIntervals::new(1000), 0);
         loop {
             let factor = steps.factor();
             if steps.next().is_none() {
                 break;
             }
-            ticks += pace.interval(factor);
+            ticks += intervals.next(factor);
         }
         let wanted = core::f64::consts::TAU * f64::from(radius) * 1000.0;
         assert!(
@@ -115,11 +116,11 @@ fn lines_last_as_long_as_they_are() {
         let line = Line::new(to).unwrap();
         let length = f64::from(to[0]).hypot(f64::from(to[1]));
         for (count, factor) in [
-            (line.steps(Rule::Textbook).remaining(), line.step_factor()),
+            (line.steps(Rule::Published).remaining(), line.step_factor()),
             (line.moves().remaining(), line.move_factor()),
         ] {
-            let mut pace = Pace::new(UNIT_TICKS);
-            let ticks: u64 = (0..count).map(|_| pace.interval(factor)).sum();
+            let mut intervals = StepIntervals::new(UNIT_TICKS);
+            let ticks: u64 = (0..count).map(|_| intervals.next(factor)).sum();
             let share = float(ticks) / (length * f64::from(UNIT_TICKS)) - 1.0;
             assert!(share.abs() < 1e-3, "{to:?}: {share}");
         }
@@ -140,20 +141,20 @@ fn factors_at_the_ends_of_their_range() {
     }
     // Back to an end outside that the rule has passed: a straight step.
     let arc = Arc::near([0, -10], [11, 1], Turn::CounterClockwise, 2000).unwrap();
-    let mut steps = arc.steps(Rule::Centred);
+    let mut steps = arc.steps(Rule::Nearest);
     let _ = steps
         .by_ref()
-        .take(arc.steps(Rule::Centred).count() - 1)
+        .take(arc.steps(Rule::Nearest).count() - 1)
         .last();
     assert_eq!(
         (steps.factor(), steps.next()),
         (Factor::ONE, Some(Move::Right))
     );
     let arc = Arc::near([0, -10], [13, 2], Turn::CounterClockwise, 4000).unwrap();
-    let mut steps = arc.steps(Rule::Centred);
+    let mut steps = arc.steps(Rule::Nearest);
     let _ = steps
         .by_ref()
-        .take(arc.steps(Rule::Centred).count() - 3)
+        .take(arc.steps(Rule::Nearest).count() - 3)
         .last();
     for left in [3, 2, 1] {
         let seen = (steps.remaining(), steps.factor(), steps.next());
@@ -161,7 +162,7 @@ fn factors_at_the_ends_of_their_range() {
     }
     // The one circle whose path passes the centre.
     let circle = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
-    let mut steps = circle.steps(Rule::Textbook);
+    let mut steps = circle.steps(Rule::Published);
     steps.next();
     assert_eq!(steps.factor(), Factor::ONE);
 }
@@ -169,9 +170,9 @@ fn factors_at_the_ends_of_their_range() {
 #[test]
 fn fractions_of_a_tick_are_carried() {
     let line = Line::new([1, 1]).unwrap();
-    let mut pace = Pace::new(3);
-    let ticks: Vec<u64> = (0..8).map(|_| pace.interval(line.step_factor())).collect();
+    let mut intervals = StepIntervals::new(3);
+    let ticks: Vec<u64> = (0..8).map(|_| intervals.next(line.step_factor())).collect();
     // 2.1213 ticks each.
     assert_eq!(ticks, [2, 2, 2, 2, 2, 2, 2, 2]);
-    assert_eq!(pace.interval(line.step_factor()), 3);
+    assert_eq!(intervals.next(line.step_factor()), 3);
 }

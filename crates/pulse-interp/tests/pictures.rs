@@ -14,14 +14,14 @@ fn line(to: [i32; 2]) -> Line {
 #[test]
 fn a_line_by_each_rule() {
     let line = line([9, 4]);
-    let textbook = grid![
+    let published = grid![
         ".......###",
         ".....###..",
         "...###....",
         ".###......",
         "##........",
     ];
-    let centred = grid![
+    let nearest = grid![
         "........##",
         "......###.",
         "...####...",
@@ -35,8 +35,8 @@ fn a_line_by_each_rule() {
         "..##......",
         "##........",
     ];
-    assert_eq!(Grid::of([0, 0], line.steps(Rule::Textbook)), textbook);
-    assert_eq!(Grid::of([0, 0], line.steps(Rule::Centred)), centred);
+    assert_eq!(Grid::of([0, 0], line.steps(Rule::Published)), published);
+    assert_eq!(Grid::of([0, 0], line.steps(Rule::Nearest)), nearest);
     assert_eq!(Grid::of([0, 0], line.moves()), bresenham);
 }
 
@@ -45,17 +45,17 @@ fn steep_and_upright_lines() {
     let down_left = grid!["...#", "..#.", "..#.", ".#..", ".#..", "#...", "#..."];
     assert_eq!(Grid::of([0, 0], line([-3, -6]).moves()), down_left);
     let up = grid!["#", "#", "#", "#"];
-    assert_eq!(Grid::of([0, 0], line([0, 3]).steps(Rule::Textbook)), up);
+    assert_eq!(Grid::of([0, 0], line([0, 3]).steps(Rule::Published)), up);
 }
 
 #[test]
 fn a_quarter_circle_by_each_rule() {
     let arc = Arc::new([7, 0], [0, 7], Turn::CounterClockwise).unwrap();
-    let textbook = grid![
+    let published = grid![
         "####....", "...##...", "....##..", ".....##.", "......#.", "......#.", "......#.",
         "+.....##",
     ];
-    let centred = grid![
+    let nearest = grid![
         "####....", "...##...", "....##..", ".....##.", "......##", ".......#", ".......#",
         "+......#",
     ];
@@ -63,16 +63,16 @@ fn a_quarter_circle_by_each_rule() {
         "###.....", "...##...", ".....#..", "......#.", "......#.", ".......#", ".......#",
         "+......#",
     ];
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Textbook)), textbook);
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Centred)), centred);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Published)), published);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Nearest)), nearest);
     assert_eq!(Grid::of(arc.start(), arc.moves()), midpoint);
 }
 
-/// The textbook rule goes in first: clockwise its circle leans the other way.
+/// The published rule goes in first: clockwise its circle leans the other way.
 #[test]
 fn a_circle_by_each_rule() {
     let arc = Arc::new([5, 0], [5, 0], Turn::Clockwise).unwrap();
-    let textbook = grid![
+    let published = grid![
         "...###.....",
         "..##.####..",
         ".##.....##.",
@@ -85,7 +85,7 @@ fn a_circle_by_each_rule() {
         "..####.##..",
         ".....###...",
     ];
-    let centred = grid![
+    let nearest = grid![
         "...#####...",
         ".###...###.",
         ".#.......#.",
@@ -111,8 +111,8 @@ fn a_circle_by_each_rule() {
         "..#.....#..",
         "...#####...",
     ];
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Textbook)), textbook);
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Centred)), centred);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Published)), published);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Nearest)), nearest);
     assert_eq!(Grid::of(arc.start(), arc.moves()), midpoint);
 }
 
@@ -120,20 +120,20 @@ fn a_circle_by_each_rule() {
 #[test]
 fn an_end_that_was_rounded_is_met() {
     let arc = Arc::near([0, 6], [5, 4], Turn::Clockwise, 1000).unwrap();
-    let centred = grid!["###...", "..###.", "....##"];
+    let nearest = grid!["###...", "..###.", "....##"];
     let midpoint = grid!["###...", "...#..", "....##"];
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Centred)), centred);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Nearest)), nearest);
     assert_eq!(Grid::of(arc.start(), arc.moves()), midpoint);
 }
 
-/// As published, the textbook rule passes the centre.
+/// The published rule passes the centre.
 #[test]
 fn the_smallest_circle() {
     let arc = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
-    let textbook = grid![".#.", "###", ".#."];
-    let centred = grid!["###", "#+#", "###"];
+    let published = grid![".#.", "###", ".#."];
+    let nearest = grid!["###", "#+#", "###"];
     let midpoint = grid![".#.", "#+#", ".#."];
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Textbook)), textbook);
-    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Centred)), centred);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Published)), published);
+    assert_eq!(Grid::of(arc.start(), arc.steps(Rule::Nearest)), nearest);
     assert_eq!(Grid::of(arc.start(), arc.moves()), midpoint);
 }

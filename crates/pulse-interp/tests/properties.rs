@@ -7,7 +7,7 @@ use pulse_interp::{Arc, ArcError, Line, Move, Rule, Turn};
 /// Steps looked at of a path that may have billions.
 const WINDOW: usize = 3000;
 
-const RULES: [Rule; 2] = [Rule::Textbook, Rule::Centred];
+const RULES: [Rule; 2] = [Rule::Published, Rule::Nearest];
 
 fn lengths() -> impl Strategy<Value = i32> {
     prop_oneof![-70..=70, -100_000..=100_000, -i32::MAX..=i32::MAX]
@@ -55,7 +55,7 @@ proptest! {
                 prop_assert!(!step.is_diagonal());
                 let f = y * xe - x * ye;
                 let x_is_next = match rule {
-                    Rule::Textbook => f >= 0 && x < xe,
+                    Rule::Published => f >= 0 && x < xe,
                     _ => y == ye || x < xe && 2 * f >= ye - xe,
                 };
                 prop_assert_eq!(step.dx() != 0, x_is_next);
@@ -96,7 +96,7 @@ proptest! {
                 return Ok(());
             }
         };
-        for (rule, hundredths) in [(Rule::Textbook, 100), (Rule::Centred, 71)] {
+        for (rule, hundredths) in [(Rule::Published, 100), (Rule::Nearest, 71)] {
             let steps = arc.steps(rule);
             let left = steps.remaining();
             prop_assert_eq!(left % 8, 0);
@@ -181,8 +181,8 @@ proptest! {
 fn the_largest_circle_crosses_axes_and_diagonals() {
     const R: i32 = 1 << 30;
     let circle = Arc::new([R, 0], [R, 0], Turn::CounterClockwise).unwrap();
-    assert_eq!(circle.steps(Rule::Centred).remaining(), 8 << 30);
-    assert_eq!(circle.steps(Rule::Textbook).remaining(), 8 << 30);
+    assert_eq!(circle.steps(Rule::Nearest).remaining(), 8 << 30);
+    assert_eq!(circle.steps(Rule::Published).remaining(), 8 << 30);
     // 4 sqrt(2) R moves, but for rounding.
     let moves = circle.moves().remaining();
     assert!(moves.abs_diff(6_074_000_999) < 8, "{moves}");
@@ -195,7 +195,7 @@ fn the_largest_circle_crosses_axes_and_diagonals() {
     ] {
         let arc = Arc::new(start, start, turn).unwrap();
         let mut at = start.map(i64::from);
-        for step in arc.steps(Rule::Textbook).take(100_000) {
+        for step in arc.steps(Rule::Published).take(100_000) {
             at = after(at, step);
             assert!(within(at, arc.radius_squared(), 100));
         }

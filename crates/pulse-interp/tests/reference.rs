@@ -51,11 +51,11 @@ fn largest(of: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn line(to: [i32; 2]) -> String {
-    text(Line::new(to).unwrap().steps(Rule::Textbook))
+    text(Line::new(to).unwrap().steps(Rule::Published))
 }
 
 fn arc(start: [i32; 2], end: [i32; 2], turn: Turn) -> String {
-    text(Arc::new(start, end, turn).unwrap().steps(Rule::Textbook))
+    text(Arc::new(start, end, turn).unwrap().steps(Rule::Published))
 }
 
 #[test]
@@ -78,10 +78,10 @@ fn radius_1() {
     assert_eq!(arc([1, 0], [0, 1], Turn::CounterClockwise), "LU");
     assert_eq!(arc([1, 0], [1, 0], Turn::CounterClockwise), "LUDLRDUR");
     assert_eq!(arc([0, 1], [0, -1], Turn::Clockwise), "DRLD");
-    let centred = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
-    assert_eq!(text(centred.steps(Rule::Centred)), "ULLDDRRU");
+    let nearest = Arc::new([1, 0], [1, 0], Turn::CounterClockwise).unwrap();
+    assert_eq!(text(nearest.steps(Rule::Nearest)), "ULLDDRRU");
     let diagonals = [Move::UpLeft, Move::DownLeft, Move::DownRight, Move::UpRight];
-    assert!(centred.moves().eq(diagonals));
+    assert!(nearest.moves().eq(diagonals));
 }
 
 /// Every row of `line4.csv`.
@@ -91,7 +91,7 @@ fn line_table() {
     for row in include_str!("data/line4.csv").lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
         let to = [cells[0], cells[1]].map(|cell| cell.parse::<i32>().unwrap());
-        let steps = Line::new(to).unwrap().steps(Rule::Textbook);
+        let steps = Line::new(to).unwrap().steps(Rule::Published);
         assert_eq!(steps.remaining(), cells[2].parse().unwrap(), "{row}");
         assert_eq!(text(steps.clone()), spelled_out(cells[3]), "{row}");
 
@@ -149,7 +149,7 @@ fn check_arc(row: &str) -> bool {
     let off = |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - radius).abs();
 
     // With end tests: the same path where it hits, else one as long that does.
-    let steps = arc.steps(Rule::Textbook);
+    let steps = arc.steps(Rule::Published);
     assert_eq!(steps.remaining(), wanted.len() as u64, "{row}");
     assert_eq!(text(steps.clone()) == wanted, hits, "{row}");
     let max_dev: f64 = cells[11].parse().unwrap();
@@ -162,7 +162,7 @@ fn check_arc(row: &str) -> bool {
     }
     for path in [
         walk(start, steps),
-        walk(start, arc.steps(Rule::Centred)),
+        walk(start, arc.steps(Rule::Nearest)),
         walk(start, arc.moves()),
     ] {
         assert_eq!(path.last(), Some(&end), "{row}");

@@ -32,9 +32,9 @@ fn settings_come_back() {
         homing
     );
 
-    let text = serde_json::to_string(&(Move::UpLeft, Rule::Centred)).unwrap();
+    let text = serde_json::to_string(&(Move::UpLeft, Rule::Nearest)).unwrap();
     let back: (Move, Rule) = serde_json::from_str(&text).unwrap();
-    assert_eq!(back, (Move::UpLeft, Rule::Centred));
+    assert_eq!(back, (Move::UpLeft, Rule::Nearest));
 }
 
 #[test]

@@ -142,7 +142,7 @@ impl Machine {
         Ok(self.delta.forward(self.angles(steps))?)
     }
 
-    pub(crate) fn pace(&self, feed_mm_s: f64) -> Result<SpeedLimits> {
+    pub(crate) fn speed_limits(&self, feed_mm_s: f64) -> Result<SpeedLimits> {
         Ok(SpeedLimits::new(feed_mm_s, [self.max_rate_rad_s; 3])?)
     }
 }

@@ -28,12 +28,15 @@ impl Plan {
         // The end first: a point that cannot be reached is the better reason.
         machine.delta.inverse(to)?;
         let line = Path::line(from, to)?;
-        let pace = machine.pace(feed_mm_s)?;
+        let speed_limits = machine.speed_limits(feed_mm_s)?;
         let min_step_s = machine.rad_per_step / machine.max_rate_rad_s;
         let mut trains = Vec::new();
         let mut last = machine.delta.inverse(from)?;
         let (mut end_s, mut now) = (0.0, 0);
-        for waypoint in machine.delta.follow(line, machine.tolerance_mm, pace)? {
+        for waypoint in machine
+            .delta
+            .follow(line, machine.tolerance_mm, speed_limits)?
+        {
             let feed_s = waypoint.length / feed_mm_s;
             if waypoint.duration_s > feed_s * (1.0 + f64::EPSILON) {
                 let (fastest, turn) = (waypoint.angles - last).abs().argmax();

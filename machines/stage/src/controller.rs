@@ -3,7 +3,8 @@
 use anyhow::{Context, Result, bail};
 use kurbo::Point;
 use pulse_interp::{
-    AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, Move, Pace, ScaleRatio,
+    AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, Move, ScaleRatio,
+    StepIntervals,
 };
 
 use crate::motion::Motion;
@@ -151,11 +152,11 @@ impl<'a> Controller<'a> {
             reason = "bounded"
         )]
         let unit = (TICKS_PER_S / (motion.feed_mm_s * STEPS_PER_MM)).round() as u32;
-        let mut pace = Pace::new(unit);
+        let mut intervals = StepIntervals::new(unit);
         let target = || format!("on the way to ({:.3}, {:.3}) mm", motion.to.x, motion.to.y);
         for path in paths::paths(motion, self.commanded, self.settings.rule)? {
             for (step, factor) in path {
-                self.ticks += pace.interval(factor);
+                self.ticks += intervals.next(factor);
                 self.step(step).with_context(target)?;
                 let by = [step.dx(), step.dy()];
                 (self.observer)(self.ticks, by)?;

@@ -139,8 +139,8 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
     let arc = Arc::near(about(from), about(end), turn, tolerance as u32);
     let arc = arc.with_context(|| format!("an arc of radius {radius:.4} mm"))?;
     let path = match rule {
-        PathRule::Published => Path::ArcSteps(arc.steps(Rule::Textbook)),
-        PathRule::Nearest => Path::ArcSteps(arc.steps(Rule::Centred)),
+        PathRule::Published => Path::ArcSteps(arc.steps(Rule::Published)),
+        PathRule::Nearest => Path::ArcSteps(arc.steps(Rule::Nearest)),
         PathRule::Bresenham => Path::ArcMoves(arc.moves()),
     };
     Ok(vec![path, line(end, to, rule)?])
@@ -163,8 +163,8 @@ fn grid_centre(centre: Point, radius: f64, from: [i32; 2]) -> [i32; 2] {
 fn line(from: [i32; 2], to: [i32; 2], rule: PathRule) -> Result<Path> {
     let line = Line::new([to[0] - from[0], to[1] - from[1]])?;
     Ok(match rule {
-        PathRule::Published => Path::LineSteps(line.steps(Rule::Textbook), line.step_factor()),
-        PathRule::Nearest => Path::LineSteps(line.steps(Rule::Centred), line.step_factor()),
+        PathRule::Published => Path::LineSteps(line.steps(Rule::Published), line.step_factor()),
+        PathRule::Nearest => Path::LineSteps(line.steps(Rule::Nearest), line.step_factor()),
         PathRule::Bresenham => Path::LineMoves(line.moves(), line.move_factor()),
     })
 }

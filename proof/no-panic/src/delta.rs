@@ -60,9 +60,9 @@ pub fn run() {
         black_box(chord_bound(delta, pose, pose));
     }
     let line = Path::line(point(), Point3::new(-50.0, 50.0, -300.0));
-    let pace = SpeedLimits::new(black_box(200.0), [3.0; 3]);
-    if let (Ok(line), Ok(pace)) = (line, pace)
-        && let Ok(follow) = delta.follow(line, 0.01, pace)
+    let speed_limits = SpeedLimits::new(black_box(200.0), [3.0; 3]);
+    if let (Ok(line), Ok(speed_limits)) = (line, speed_limits)
+        && let Ok(follow) = delta.follow(line, 0.01, speed_limits)
     {
         black_box(follow_next(&mut black_box(follow)));
     }

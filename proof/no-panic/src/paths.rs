@@ -6,7 +6,7 @@ use no_panic::no_panic;
 use pulse_interp::{
     Arc, ArcMoves, ArcSteps, AxesLine, AxesSteps, AxisLoop, AxisStep, Dda, DdaTicks, Direction,
     Factor, Homing, HomingError, HomingOrder, HomingSettings, Line, LineMoves, LineSteps,
-    LoopSettings, LostSteps, Move, Pace, Rule, ScaleRatio, SwitchError, Switches, Turn,
+    LoopSettings, LostSteps, Move, Rule, ScaleRatio, StepIntervals, SwitchError, Switches, Turn,
 };
 
 #[no_panic]
@@ -59,8 +59,8 @@ fn dda_tick(ticks: &mut DdaTicks<3>) -> Option<[i8; 3]> {
 
 #[no_panic]
 #[inline(never)]
-fn pace_interval(pace: &mut Pace, factor: Factor) -> u64 {
-    pace.interval(factor)
+fn next_interval(intervals: &mut StepIntervals, factor: Factor) -> u64 {
+    intervals.next(factor)
 }
 
 #[no_panic]
@@ -88,11 +88,11 @@ fn homing_next(homing: &mut Homing, closed: bool) -> Result<HomingOrder, HomingE
 }
 
 pub fn run() {
-    let mut pace = black_box(Pace::new(black_box(1000)));
+    let mut intervals = black_box(StepIntervals::new(black_box(1000)));
     if let Ok(line) = Line::new(black_box([30, -7])) {
-        black_box(line_step(&mut black_box(line.steps(Rule::Centred))));
+        black_box(line_step(&mut black_box(line.steps(Rule::Nearest))));
         black_box(line_move(&mut black_box(line.moves())));
-        black_box(pace_interval(&mut pace, black_box(line.step_factor())));
+        black_box(next_interval(&mut intervals, black_box(line.step_factor())));
     }
     let arc = Arc::near(
         black_box([30, -7]),
@@ -101,7 +101,7 @@ pub fn run() {
         900,
     );
     if let Ok(arc) = arc {
-        let mut steps = black_box(arc.steps(Rule::Textbook));
+        let mut steps = black_box(arc.steps(Rule::Published));
         black_box(arc_step(&mut steps));
         black_box(arc_step_factor(&steps));
         let mut moves = black_box(arc.moves());

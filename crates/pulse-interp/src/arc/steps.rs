@@ -14,7 +14,7 @@ use core::iter::FusedIterator;
 /// F >= 0: inward,  F -= 2 a - 1, a -= 1
 /// F <  0: outward, F += 2 b + 1, b += 1
 /// ```
-/// The centred rule runs the same on F - a + b with 2 a - 2 and 2 b + 2.
+/// The nearest rule runs the same on F - a + b with 2 a - 2 and 2 b + 2.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use = "iterators are lazy"]
 pub struct ArcSteps {
@@ -123,20 +123,20 @@ impl ArcSteps {
         let square = arc.radius_squared;
         let crossing = match rule {
             // F >= 0 at a = 1. At R = 1 the path goes through the centre, and from there out by 1.
-            Rule::Textbook => {
+            Rule::Published => {
                 let under = square.wrapping_sub(1);
                 let root = under.isqrt();
                 let up = root.wrapping_mul(root) < under;
                 signed(root.wrapping_add(u64::from(up))).max(1)
             }
             // F - a + b >= 0 at a = 1.
-            Rule::Centred => rounded_root(square),
+            Rule::Nearest => rounded_root(square),
         };
         let mut steps = Self {
             passage: Passage {
                 decision: match rule {
-                    Rule::Textbook => 0,
-                    Rule::Centred => sweep.start.b.wrapping_sub(sweep.start.a),
+                    Rule::Published => 0,
+                    Rule::Nearest => sweep.start.b.wrapping_sub(sweep.start.a),
                 },
                 inward: 0,
                 inward_end: 0,
@@ -165,8 +165,8 @@ impl ArcSteps {
         let ahead = &self.ahead;
         let to = ahead.target();
         let (inward, outward) = match ahead.rule {
-            Rule::Textbook => (-1, 1),
-            Rule::Centred => (-2, 2),
+            Rule::Published => (-1, 1),
+            Rule::Nearest => (-2, 2),
         };
         // Twice what is at most 2^31.
         let twice = |steps: i64| steps.wrapping_mul(2);
@@ -179,8 +179,8 @@ impl ArcSteps {
     /// Where the path stands, in its quadrant.
     fn place(&self) -> Place {
         let offset = match self.ahead.rule {
-            Rule::Textbook => 1,
-            Rule::Centred => 2,
+            Rule::Published => 1,
+            Rule::Nearest => 2,
         };
         Place {
             a: self.passage.inward.wrapping_add(offset) >> 1,
@@ -196,7 +196,7 @@ impl ArcSteps {
             self.passage.quadrant = self.passage.quadrant.next(self.ahead.turn);
             self.ahead.crossings = self.ahead.crossings.wrapping_sub(1);
             let from = Place { a: place.b, b: 0 };
-            if self.ahead.rule == Rule::Centred {
+            if self.ahead.rule == Rule::Nearest {
                 // F - a + b, at (0, b) before and at (b, 0) now.
                 self.passage.decision = self.passage.decision.wrapping_sub(place.b.wrapping_mul(2));
             }

@@ -11,7 +11,7 @@ use core::iter::FusedIterator;
 #[must_use = "iterators are lazy"]
 pub struct LineSteps {
     left: u32,
-    // F, moved by half its window for the centred rule: -y_len <= decision < x_len.
+    // F, moved by half its window for the nearest rule: -y_len <= decision < x_len.
     decision: i32,
     x_len: i32,
     y_len: i32,
@@ -24,7 +24,7 @@ impl LineSteps {
         let [(x_len, x_move), (y_len, y_move)] = line.axes();
         let decision = match rule {
             // F = 0 would step x first, and F would never fall: with nothing to do in x, y goes.
-            Rule::Textbook => {
+            Rule::Published => {
                 if x_len == 0 {
                     -1
                 } else {
@@ -32,7 +32,7 @@ impl LineSteps {
                 }
             }
             // |F - ye| <= |F + xe| is F >= (ye - xe) / 2.
-            Rule::Centred => x_len.wrapping_sub(y_len) >> 1,
+            Rule::Nearest => x_len.wrapping_sub(y_len) >> 1,
         };
         Self {
             // Below 2^32.

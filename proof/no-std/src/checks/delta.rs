@@ -25,8 +25,8 @@ pub fn delta() -> Option<()> {
             .is_err(),
     )?;
     let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
-    let pace = SpeedLimits::new(200.0, [3.0; 3]).ok()?;
-    let last = delta.follow(line, 0.01, pace).ok()?.last()?;
+    let speed_limits = SpeedLimits::new(200.0, [3.0; 3]).ok()?;
+    let last = delta.follow(line, 0.01, speed_limits).ok()?.last()?;
     holds((last.point - line.point_at(1.0)?).norm() < CLOSE_MM)?;
     let workspace = delta.workspace();
     let radius = workspace.largest_cylinder([-290.0, black_box(-260.0)], 2.0);

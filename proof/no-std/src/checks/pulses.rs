@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 
-use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Pace, Rule, ScaleRatio, Turn};
+use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Rule, ScaleRatio, StepIntervals, Turn};
 use stepper_sync::{
     Accumulation, JoinedSegments, LatchWrites, Latches, Phases, Position, PvtQuantiser, PvtSteps,
     Ramp, RampLimits, Rate, Segment, SpeedLaw, StepDirTiming, StepScale, Stepping, Timer, Trains,
@@ -96,19 +96,19 @@ pub fn dance() -> Option<()> {
 /// A line, and an arc that ends where it should, at constant speed.
 pub fn interpolation() -> Option<()> {
     let line = Line::new(black_box([30, -7])).ok()?;
-    holds(line.steps(Rule::Centred).remaining() == 37)?;
+    holds(line.steps(Rule::Nearest).remaining() == 37)?;
     let arc = Arc::new(black_box([500, 0]), [-300, 400], Turn::CounterClockwise).ok()?;
-    let (mut steps, mut pace) = (arc.steps(Rule::Centred), Pace::new(1000));
+    let (mut steps, mut intervals) = (arc.steps(Rule::Nearest), StepIntervals::new(1000));
     let (mut at, mut ticks) = ([500, 0], 0);
     loop {
         let factor = steps.factor();
         let Some(step) = steps.next() else { break };
         at = [at[0] + step.dx(), at[1] + step.dy()];
-        ticks += pace.interval(factor);
+        ticks += intervals.next(factor);
     }
     // 500 steps of radius by 2.2143 rad.
     holds(at == [-300, 400] && ticks.abs_diff(1_107_149) < 5000)?;
-    holds(arc.moves().remaining() < arc.steps(Rule::Textbook).remaining())
+    holds(arc.moves().remaining() < arc.steps(Rule::Published).remaining())
 }
 
 /// An axis that has lost two steps.
