@@ -457,7 +457,7 @@ fn the_line_carries_3964r_in_order() {
     let last: String = display[7].iter().collect();
     assert_eq!(last.trim_end(), "DONE");
 
-    let total = ["status_requests", "lamps", "display_blocks"];
+    let total = ["status_requests", "leds", "display_blocks"];
     let sent: f64 = total
         .map(|name| run.number(&format!("/telegrams/{name}")))
         .iter()

@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::command::{Command, Light, STATUS_REQUEST};
 use crate::lcd::LcdBlock;
 use crate::number::{Key, Led, Position};
-use crate::report::{DecodeError, Knob, LcdAnswer, Model, Report, Status};
+use crate::report::{DecodeError, LcdAnswer, Model, Report, RotarySwitch, Status};
 
 /// How long the driver waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -94,11 +94,11 @@ pub enum SubmitError {
 pub enum Event {
     /// A key went down, or all are released.
     Key(Option<Key>),
-    /// A knob was turned.
-    Knob(Knob, Position),
+    /// A rotary switch was turned.
+    RotarySwitch(RotarySwitch, Position),
     /// The status, asked for at start-up, after a failure, and to see whether the unit is there.
     Status {
-        /// Keys and knobs.
+        /// Keys and rotary switches.
         status: Status,
         /// The unit was not known to be there before. It may have lost its display and LEDs.
         connected: bool,
@@ -335,7 +335,9 @@ impl Driver {
         }
         match report {
             Report::Key(key) => self.report = Some(Event::Key(key)),
-            Report::Knob { knob, position } => self.report = Some(Event::Knob(knob, position)),
+            Report::RotarySwitch { switch, position } => {
+                self.report = Some(Event::RotarySwitch(switch, position));
+            }
             Report::Lcd(answer) => self.lcd_answer(answer, None),
             Report::Status(status) => self.status(now, status),
         }

@@ -18,6 +18,8 @@ pub use command::{Command, Light, MAX_COMMAND};
 pub use driver::{Driver, Event, Failure, Job, SubmitError, Timing};
 pub use lcd::{AreaEffect, Font, LcdBlock, LcdCommand, LcdCommands, LcdError, Place, Rect};
 pub use number::{AreaNumber, Column, Key, Led, Line, NumberError, Position, TextNumber};
-pub use report::{DecodeError, EncodeError, Knob, LcdAnswer, MAX_REPORT, Model, Report, Status};
+pub use report::{
+    DecodeError, EncodeError, LcdAnswer, MAX_REPORT, Model, Report, RotarySwitch, Status,
+};
 pub use text::{CharacterError, MAX_TEXT, Text};
 pub use wheel::{SAMPLE, WheelError, WheelQuantiser, WheelSampler};

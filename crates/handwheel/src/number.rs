@@ -100,7 +100,7 @@ number! {
     Key, "key", 1..=20
 }
 number! {
-    /// The position of a knob, 1 to 12.
+    /// The position of a rotary switch, 1 to 12.
     Position, "position", 1..=12
 }
 number! {

@@ -12,7 +12,7 @@ pub(crate) const LCD: u8 = 0x6C;
 const KEY_0: u8 = 0x30;
 const W1_0: u8 = 0x40;
 const W2_0: u8 = 0x50;
-/// Keys of the HBLS; the bytes behind theirs belong to the knobs.
+/// Keys of the HBLS; the bytes behind theirs belong to the rotary switches.
 const HBLS_KEYS: u8 = 12;
 
 /// Which unit: their telegrams share bytes, but not all meanings.
@@ -21,7 +21,7 @@ const HBLS_KEYS: u8 = 12;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Model {
-    /// 12 keys, two knobs, 12 LEDs; answers a display block by an own telegram.
+    /// 12 keys, two rotary switches, 12 LEDs; answers a display block by an own telegram.
     #[default]
     Hbls,
     /// 20 keys; its status reply says whether the last display block was right.
@@ -39,12 +39,12 @@ impl Model {
     }
 }
 
-/// One of the two knobs of the HBLS.
+/// One of the two rotary switches of the HBLS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_enums, reason = "the unit has two")]
-pub enum Knob {
+pub enum RotarySwitch {
     /// The first.
     W1,
     /// The second.
@@ -116,9 +116,9 @@ pub enum Status {
     Hbls {
         /// The key that is down.
         key: Option<Key>,
-        /// Where the first knob stands.
+        /// Where the first rotary switch stands.
         w1: Position,
-        /// Where the second knob stands.
+        /// Where the second rotary switch stands.
         w2: Position,
     },
     /// Of the HBAS, 2 bytes.
@@ -148,10 +148,10 @@ impl Status {
 pub enum Report {
     /// A key went down, or all are released. Of several keys the unit reports the first alone.
     Key(Option<Key>),
-    /// A knob was turned.
-    Knob {
+    /// A rotary switch was turned.
+    RotarySwitch {
         /// Which.
-        knob: Knob,
+        switch: RotarySwitch,
         /// To where.
         position: Position,
     },
@@ -236,10 +236,10 @@ impl Report {
         let foreign = EncodeError::Model { model };
         match (self, model) {
             (Self::Key(key), _) => put(buffer, &[encode_key(model, key)?]),
-            (Self::Knob { knob, position }, Model::Hbls) => {
-                let zero = match knob {
-                    Knob::W1 => W1_0,
-                    Knob::W2 => W2_0,
+            (Self::RotarySwitch { switch, position }, Model::Hbls) => {
+                let zero = match switch {
+                    RotarySwitch::W1 => W1_0,
+                    RotarySwitch::W2 => W2_0,
                 };
                 put(buffer, &[position.code(zero)])
             }
@@ -259,13 +259,13 @@ impl Report {
 }
 
 fn decode_byte(model: Model, byte: u8) -> Result<Report, DecodeError> {
-    let knob = |knob, zero| {
+    let switch = |switch, zero| {
         let position = decode_position(byte, 0, zero)?;
-        Ok(Report::Knob { knob, position })
+        Ok(Report::RotarySwitch { switch, position })
     };
     match (model, byte) {
-        (Model::Hbls, 0x41..=0x4C) => knob(Knob::W1, W1_0),
-        (Model::Hbls, 0x51..=0x5C) => knob(Knob::W2, W2_0),
+        (Model::Hbls, 0x41..=0x4C) => switch(RotarySwitch::W1, W1_0),
+        (Model::Hbls, 0x51..=0x5C) => switch(RotarySwitch::W2, W2_0),
         _ => decode_key(model, byte).map(Report::Key),
     }
 }

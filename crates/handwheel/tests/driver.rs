@@ -10,7 +10,7 @@ use handwheel::{
 use proptest::prelude::*;
 
 const STATUS: [u8; 1] = [0x23];
-/// Released, both knobs at 1.
+/// Released, both rotary switches at 1.
 const REPLY: [u8; 3] = [0x30, 0x41, 0x51];
 
 fn at(millis: u64) -> Duration {

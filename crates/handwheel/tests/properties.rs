@@ -4,8 +4,8 @@
 use core::time::Duration;
 
 use handwheel::{
-    AreaEffect, AreaNumber, Column, Command, Font, Key, Knob, LcdAnswer, LcdBlock, LcdCommand,
-    LcdError, Led, Light, Line, MAX_COMMAND, MAX_REPORT, Model, Place, Position, Rect, Report,
+    AreaEffect, AreaNumber, Column, Command, Font, Key, LcdAnswer, LcdBlock, LcdCommand, LcdError,
+    Led, Light, Line, MAX_COMMAND, MAX_REPORT, Model, Place, Position, Rect, Report, RotarySwitch,
     Status, Text, TextNumber, WheelError, WheelQuantiser, WheelSampler,
 };
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ fn model() -> impl Strategy<Value = Model> {
 fn report() -> impl Strategy<Value = (Model, Report)> {
     let keys = |most: u8| prop::option::of((1..=most).prop_map(|key| Key::new(key).unwrap()));
     let position = || (1u8..=12).prop_map(|position| Position::new(position).unwrap());
-    let knob = prop::sample::select(vec![Knob::W1, Knob::W2]);
+    let switch = prop::sample::select(vec![RotarySwitch::W1, RotarySwitch::W2]);
     let common = [
         LcdAnswer::Done,
         LcdAnswer::NoSuchText,
@@ -30,7 +30,8 @@ fn report() -> impl Strategy<Value = (Model, Report)> {
     let hbls =
         prop_oneof![
             keys(12).prop_map(Report::Key),
-            (knob, position()).prop_map(|(knob, position)| Report::Knob { knob, position }),
+            (switch, position())
+                .prop_map(|(switch, position)| Report::RotarySwitch { switch, position }),
             (keys(12), position(), position())
                 .prop_map(|(key, w1, w2)| Report::Status(Status::Hbls { key, w1, w2 })),
             answer.prop_map(Report::Lcd),

@@ -2,9 +2,9 @@
 #![cfg(test)]
 
 use handwheel::{
-    AreaEffect, AreaNumber, Column, Command, DecodeError, EncodeError, Font, Key, Knob, LcdAnswer,
+    AreaEffect, AreaNumber, Column, Command, DecodeError, EncodeError, Font, Key, LcdAnswer,
     LcdBlock, LcdCommand, LcdError, Led, Light, Line, MAX_COMMAND, MAX_REPORT, Model, Place,
-    Position, Rect, Report, Status, Text, TextNumber,
+    Position, Rect, Report, RotarySwitch, Status, Text, TextNumber,
 };
 use proto3964r::{Check, frame};
 
@@ -57,15 +57,15 @@ fn lamps_and_status_request() {
 }
 
 #[test]
-fn keys_knobs_and_status() {
+fn keys_switches_and_status() {
     let key = |number| Key::new(number).ok();
     let at = |number| Position::new(number).unwrap();
     let (w1, w2) = (at(1), at(1));
     assert_eq!(report(Report::Key(key(1))), [0x31, 0x10, 0x03, 0x22]);
     assert_eq!(report(Report::Key(key(11))), [0x3B, 0x10, 0x03, 0x28]);
     assert_eq!(report(Report::Key(None)), [0x30, 0x10, 0x03, 0x23]);
-    let (knob, position) = (Knob::W1, at(12));
-    let turned = report(Report::Knob { knob, position });
+    let (switch, position) = (RotarySwitch::W1, at(12));
+    let turned = report(Report::RotarySwitch { switch, position });
     assert_eq!(turned, [0x4C, 0x10, 0x03, 0x5F]);
     let status = Status::Hbls { key: None, w1, w2 };
     let reply = report(Report::Status(status));
@@ -171,8 +171,8 @@ fn hbas() {
     // The same byte, another meaning.
     let key = Report::Key(Key::new(17).ok());
     assert_eq!(Report::decode(Model::Hbas, &[0x41]), Ok(key));
-    let (knob, position) = (Knob::W1, Position::MIN);
-    let turned = Report::Knob { knob, position };
+    let (switch, position) = (RotarySwitch::W1, Position::MIN);
+    let turned = Report::RotarySwitch { switch, position };
     assert_eq!(Report::decode(Model::Hbls, &[0x41]), Ok(turned));
     let model = Model::Hbas;
     assert_eq!(

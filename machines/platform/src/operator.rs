@@ -1,7 +1,7 @@
 //! The operator: reads the display, turns, presses.
 
 use anyhow::{Context, Result, ensure};
-use handwheel::{Key, Knob, Light, Position, SAMPLE, WheelQuantiser};
+use handwheel::{Key, Light, Position, RotarySwitch, SAMPLE, WheelQuantiser};
 
 use crate::panel::{PanelSettings, PoseChange};
 use crate::pose::{Pose, changed};
@@ -9,8 +9,8 @@ use crate::settings::{STEP_UDEG, STEP_UM};
 use crate::world::World;
 
 /// The rotary switch for the direction and the one for the multiplier.
-const DIRECTION: Knob = Knob::W2;
-const MULTIPLIER: Knob = Knob::W1;
+const DIRECTION: RotarySwitch = RotarySwitch::W2;
+const MULTIPLIER: RotarySwitch = RotarySwitch::W1;
 /// Counts of the samples of a jog, parts of full speed in percent: away, and the same way back.
 const JOG_PERCENT: [i32; 24] = [
     3, 6, 12, 18, 27, 36, 44, 57, 63, 78, 85, 97, 104, 110, 93, 81, 72, 66, 48, 39, 31, 22, 14, 4,
@@ -118,8 +118,8 @@ fn jog<const N: usize>(world: &mut World<'_, N>, task: &Task) -> Result<()> {
     };
     let counts = jog_counts(&task.settings.wheel, sign)?;
     let multiplier = multiplier_within(room, &counts, &task.settings);
-    knob(world, MULTIPLIER, multiplier)?;
-    knob(world, DIRECTION, 2)?;
+    switch(world, MULTIPLIER, multiplier)?;
+    switch(world, DIRECTION, 2)?;
     key(world, 2)?;
     key(world, 3)?;
     show(world, 0, "LOCATOR  2 IDLE")?;
@@ -149,7 +149,8 @@ fn jog_counts(wheel: &WheelQuantiser, sign: i32) -> Result<Vec<i32>> {
     counts.collect()
 }
 
-/// The fastest multiplier, as a knob's position, with which the jog stays within the room in mm.
+/// The fastest multiplier, as the position of its rotary switch, with which the jog stays within the
+/// room in mm.
 fn multiplier_within(room: f64, counts: &[i32], settings: &PanelSettings) -> u8 {
     let share = |counts: &i32| settings.wheel.share(*counts, settings.full_jog_um_s);
     let um_s: i64 = counts.iter().map(share).sum();
@@ -193,7 +194,7 @@ fn adjust<const N: usize>(world: &mut World<'_, N>, task: &Task) -> Result<()> {
 
 /// Turns the wheel for one value, with each multiplier.
 fn set<const N: usize>(world: &mut World<'_, N>, direction: u8, counts: i64) -> Result<()> {
-    knob(world, DIRECTION, direction)?;
+    switch(world, DIRECTION, direction)?;
     for (multiplier, position) in [(100, 3), (10, 2), (1, 1)] {
         let mut turns = match multiplier {
             100 => counts / 100,
@@ -202,7 +203,7 @@ fn set<const N: usize>(world: &mut World<'_, N>, direction: u8, counts: i64) -> 
         if turns == 0 {
             continue;
         }
-        knob(world, MULTIPLIER, position)?;
+        switch(world, MULTIPLIER, position)?;
         world.wait_sample()?;
         while turns != 0 {
             let sample = turns.clamp(-HAND_COUNTS, HAND_COUNTS);
@@ -219,10 +220,14 @@ fn enable<const N: usize>(world: &mut World<'_, N>) -> Result<()> {
     world.wait_until("the LED", 10, |it| it.pendant.light() == Light::On)
 }
 
-fn knob<const N: usize>(world: &mut World<'_, N>, knob: Knob, position: u8) -> Result<()> {
+fn switch<const N: usize>(
+    world: &mut World<'_, N>,
+    switch: RotarySwitch,
+    position: u8,
+) -> Result<()> {
     let position = Position::new(position)?;
-    if world.pendant.position(knob) != position {
-        world.turn(knob, position);
+    if world.pendant.position(switch) != position {
+        world.turn(switch, position);
         world.wait_ms(PAUSE_MS)?;
     }
     Ok(())

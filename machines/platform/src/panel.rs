@@ -9,7 +9,7 @@ pub use settings::{PanelSettings, PanelSettingsError};
 
 use self::settings::{KeyRole, Multiplier};
 
-use handwheel::{Key, Knob, Light, Position, Status};
+use handwheel::{Key, Light, Position, RotarySwitch, Status};
 
 use crate::arbiter::{Arbiter, PendantId, Refused, Target};
 
@@ -153,7 +153,7 @@ impl Panel {
     ) -> Option<Action> {
         match input {
             Input::Key(key) => self.key(key, arbiter),
-            Input::Knob(knob, position) => self.knob(knob, position),
+            Input::RotarySwitch(switch, position) => self.switch(switch, position),
             Input::Status(status) => self.status(status),
             Input::Enable { left, right } => self.enable(left, right),
             Input::StopButton => self.stop(Message::Stopped),
@@ -236,8 +236,8 @@ impl Panel {
         Some(Action::Move(self.change))
     }
 
-    fn knob(&mut self, knob: Knob, position: Position) -> Option<Action> {
-        if knob == self.settings.direction_knob {
+    fn switch(&mut self, switch: RotarySwitch, position: Position) -> Option<Action> {
+        if switch == self.settings.direction_switch {
             self.set_direction(Some(position))
         } else {
             self.multiplier = Some(position);
@@ -265,9 +265,9 @@ impl Panel {
         let Status::Hbls { w1, w2, .. } = status else {
             return None;
         };
-        let (direction, multiplier) = match self.settings.direction_knob {
-            Knob::W1 => (w1, w2),
-            Knob::W2 => (w2, w1),
+        let (direction, multiplier) = match self.settings.direction_switch {
+            RotarySwitch::W1 => (w1, w2),
+            RotarySwitch::W2 => (w2, w1),
         };
         self.multiplier = Some(multiplier);
         if self.message == Message::Lost {
@@ -357,7 +357,7 @@ impl Panel {
         }
         let axis = self.direction.and_then(Axis::of_position);
         let multiplier = self.multiplier();
-        let Some((axis, multiplier)) = self.knobs(axis, multiplier) else {
+        let Some((axis, multiplier)) = self.switches(axis, multiplier) else {
             // Turned away during a jog.
             return self.stop(self.message);
         };
@@ -382,7 +382,7 @@ impl Panel {
         let direction = self.direction.map(Position::get);
         let direction = direction.filter(|&direction| direction <= PoseChange::DIRECTIONS);
         let multiplier = self.multiplier();
-        let Some((direction, multiplier)) = self.knobs(direction, multiplier) else {
+        let Some((direction, multiplier)) = self.switches(direction, multiplier) else {
             return;
         };
         let (step, max) = self.settings.adjustment(direction, multiplier);
@@ -400,7 +400,7 @@ impl Panel {
     }
 
     /// Both rotary switches, or a message which of them means nothing where it stands.
-    fn knobs<D, M>(&mut self, direction: Option<D>, multiplier: Option<M>) -> Option<(D, M)> {
+    fn switches<D, M>(&mut self, direction: Option<D>, multiplier: Option<M>) -> Option<(D, M)> {
         if direction.is_none() {
             self.message = Message::Direction;
         } else if multiplier.is_none() {

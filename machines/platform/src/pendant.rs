@@ -4,8 +4,8 @@ use alloc::collections::VecDeque;
 use core::time::Duration;
 
 use handwheel::{
-    Command, Key, Knob, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT, Model, Place,
-    Position, Report, Status,
+    Command, Key, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT, Model, Place, Position,
+    Report, RotarySwitch, Status,
 };
 use proto3964r::{Config, Event, Priority, Station};
 
@@ -70,19 +70,19 @@ impl Pendant {
         self.report(Report::Key(key));
     }
 
-    pub(crate) fn turn(&mut self, knob: Knob, position: Position) {
-        let place = match knob {
-            Knob::W1 => &mut self.w1,
-            Knob::W2 => &mut self.w2,
+    pub(crate) fn turn(&mut self, switch: RotarySwitch, position: Position) {
+        let place = match switch {
+            RotarySwitch::W1 => &mut self.w1,
+            RotarySwitch::W2 => &mut self.w2,
         };
         *place = position;
-        self.report(Report::Knob { knob, position });
+        self.report(Report::RotarySwitch { switch, position });
     }
 
-    pub(crate) const fn position(&self, knob: Knob) -> Position {
-        match knob {
-            Knob::W1 => self.w1,
-            Knob::W2 => self.w2,
+    pub(crate) const fn position(&self, switch: RotarySwitch) -> Position {
+        match switch {
+            RotarySwitch::W1 => self.w1,
+            RotarySwitch::W2 => self.w2,
         }
     }
 

@@ -17,10 +17,10 @@ const MODEL: Model = Model::Hbls;
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub(crate) struct Telegrams {
     status_requests: usize,
-    lamps: usize,
+    leds: usize,
     display_blocks: usize,
     keys: usize,
-    knobs: usize,
+    rotary_switches: usize,
     status_replies: usize,
     display_answers: usize,
     /// Sent, and not acknowledged in all attempts.
@@ -32,10 +32,10 @@ pub(crate) struct Telegrams {
 impl Telegrams {
     pub(crate) const fn total(&self) -> usize {
         self.status_requests
-            + self.lamps
+            + self.leds
             + self.display_blocks
             + self.keys
-            + self.knobs
+            + self.rotary_switches
             + self.status_replies
             + self.display_answers
     }
@@ -104,7 +104,7 @@ impl<const N: usize> Workstation<N> {
         let telegrams = &mut self.telegrams;
         match event {
             Event::Key(_) => telegrams.keys += 1,
-            Event::Knob(..) => telegrams.knobs += 1,
+            Event::RotarySwitch(..) => telegrams.rotary_switches += 1,
             Event::Status { connected, .. } => {
                 telegrams.status_replies += 1;
                 if *connected {
@@ -153,7 +153,7 @@ impl<const N: usize> Workstation<N> {
             let count = match Command::decode(MODEL, telegram)? {
                 Command::StatusRequest => &mut self.telegrams.status_requests,
                 Command::Lcd(_) => &mut self.telegrams.display_blocks,
-                _ => &mut self.telegrams.lamps,
+                _ => &mut self.telegrams.leds,
             };
             *count += 1;
             self.station.submit(now, telegram)?;

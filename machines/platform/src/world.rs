@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use anyhow::{Context as _, Result, ensure};
-use handwheel::{Key, Knob, Position, WheelSampler};
+use handwheel::{Key, Position, RotarySwitch, WheelSampler};
 use nalgebra::Vector3;
 use proto3964r::Transmit;
 
@@ -111,8 +111,8 @@ impl<'a, const N: usize> World<'a, N> {
         self.pendant.press(None);
     }
 
-    pub(crate) fn turn(&mut self, knob: Knob, position: Position) {
-        self.pendant.turn(knob, position);
+    pub(crate) fn turn(&mut self, switch: RotarySwitch, position: Position) {
+        self.pendant.turn(switch, position);
     }
 
     /// The enabling switches have their own wires.

@@ -1,7 +1,7 @@
 //! The panel as an operator and a machine see it.
 #![cfg(test)]
 
-use handwheel::{Event, Key, Knob, LcdAnswer, Light, Position, Status, WheelQuantiser};
+use handwheel::{Event, Key, LcdAnswer, Light, Position, RotarySwitch, Status, WheelQuantiser};
 use platform::{
     Action, Arbiter, Axis, Input, Panel, PanelSettings, PanelSettingsError, PendantId, PoseChange,
     Refusal, Refused, Target,
@@ -28,7 +28,7 @@ impl Desk {
             panels: (0..units).map(panel).collect(),
         };
         for unit in 0..units.into() {
-            desk.knobs(unit, 3, 1);
+            desk.rotary_switches(unit, 3, 1);
             desk.switches(unit, false, false);
         }
         desk
@@ -44,7 +44,7 @@ impl Desk {
         action
     }
 
-    fn knobs(&mut self, unit: usize, multiplier: u8, direction: u8) {
+    fn rotary_switches(&mut self, unit: usize, multiplier: u8, direction: u8) {
         let [w1, w2] = [multiplier, direction].map(|it| Position::new(it).unwrap());
         let status = Status::Hbls { key: None, w1, w2 };
         assert_eq!(self.on(unit, Input::Status(status)), None);
@@ -114,7 +114,7 @@ fn the_three_screens() {
     desk.press(0, DOWN);
     desk.press(0, ENTER);
     desk.on(0, Input::Wheel(-1005));
-    desk.knobs(0, 2, 6);
+    desk.rotary_switches(0, 2, 6);
     desk.on(0, Input::Wheel(12));
     let adjust = [
         "ADJUST x10  IDLE",
@@ -148,13 +148,13 @@ fn events_of_the_driver_are_inputs() {
     let key = Key::new(5).ok();
     let lcd = LcdAnswer::Done;
     let status = Status::Hbas { key, lcd };
-    let (knob, position) = (Knob::W2, Position::MAX);
+    let (switch, position) = (RotarySwitch::W2, Position::MAX);
     let connected = false;
     for (event, input) in [
         (Event::Key(key), Some(Input::Key(key))),
         (
-            Event::Knob(knob, position),
-            Some(Input::Knob(knob, position)),
+            Event::RotarySwitch(switch, position),
+            Some(Input::RotarySwitch(switch, position)),
         ),
         (
             Event::Status { status, connected },
@@ -211,14 +211,20 @@ fn a_jog_follows_the_wheel_and_stops() {
     desk.on(0, Input::AtRest);
     assert_eq!(desk.screen(0)[0], " LOCATOR  1 IDLE");
     // Another direction under way: stop.
-    desk.on(0, Input::Knob(Knob::W1, Position::MIN));
+    desk.on(0, Input::RotarySwitch(RotarySwitch::W1, Position::MIN));
     assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::X, 55));
     let third = Position::new(3).unwrap();
-    assert_eq!(desk.on(0, Input::Knob(Knob::W2, third)), stop);
+    assert_eq!(
+        desk.on(0, Input::RotarySwitch(RotarySwitch::W2, third)),
+        stop
+    );
     desk.on(0, Input::AtRest);
     assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::Z, 55));
     // The same direction once more changes nothing.
-    assert_eq!(desk.on(0, Input::Knob(Knob::W2, third)), None);
+    assert_eq!(
+        desk.on(0, Input::RotarySwitch(RotarySwitch::W2, third)),
+        None
+    );
     // Of the keys only enter stops, and the screen stays.
     assert_eq!(desk.press(0, DOWN), None);
     assert_eq!(desk.press(0, ENTER), stop);
@@ -227,7 +233,7 @@ fn a_jog_follows_the_wheel_and_stops() {
     assert_eq!(desk.message(0), "STOPPED");
     assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::Z, 55));
     // A multiplier that is none: stop, and say why.
-    desk.on(0, Input::Knob(Knob::W1, Position::MAX));
+    desk.on(0, Input::RotarySwitch(RotarySwitch::W1, Position::MAX));
     assert_eq!(desk.on(0, Input::Wheel(50)), stop);
     assert_eq!(desk.message(0), "MULTIPLIER?");
 }
@@ -243,7 +249,7 @@ fn a_pose_change_runs() {
     assert_eq!(desk.press(0, START), None);
     assert_eq!(desk.message(0), "NO CHANGE SET");
     desk.on(0, Input::Wheel(25));
-    desk.knobs(0, 1, 4);
+    desk.rotary_switches(0, 1, 4);
     desk.on(0, Input::Wheel(-7));
     desk.switches(0, false, true);
     assert_eq!(desk.press(0, START), None);
@@ -257,7 +263,10 @@ fn a_pose_change_runs() {
     assert_eq!(desk.press(0, START), None);
     assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
     // The body does not follow the rotary switches.
-    assert_eq!(desk.on(0, Input::Knob(Knob::W2, Position::MIN)), None);
+    assert_eq!(
+        desk.on(0, Input::RotarySwitch(RotarySwitch::W2, Position::MIN)),
+        None
+    );
     assert_eq!(desk.screen(0)[0], "ADJUST x1   BUSY");
     desk.on(0, Input::AtRest);
     assert_eq!(desk.message(0), "DONE");
@@ -276,7 +285,7 @@ fn a_pose_change_runs() {
     assert_eq!(desk.message(0), "STOPPED");
     assert_eq!(desk.panels[0].change(), PoseChange::ZERO);
 
-    desk.knobs(0, 3, 2);
+    desk.rotary_switches(0, 3, 2);
     desk.on(0, Input::Wheel(i32::MAX));
     assert_eq!(desk.message(0), "LIMIT");
     assert_eq!(desk.panels[0].change().translation_um[1], 100_000);
@@ -316,7 +325,7 @@ fn one_owner_at_a_time() {
     desk.on(0, Input::AtRest);
     assert!(desk.press(1, START).is_some());
     // Back again, with the switches held: nothing, until they were up.
-    desk.knobs(0, 3, 1);
+    desk.rotary_switches(0, 3, 1);
     desk.switches(0, true, true);
     assert_eq!(desk.on(0, Input::Wheel(50)), None);
     assert_eq!(desk.message(0), "ENABLE SWITCHES?");
@@ -363,10 +372,11 @@ fn settings_are_checked() {
 fn input() -> impl Strategy<Value = Input> {
     let key = || prop::option::of((1u8..=5).prop_map(|key| Key::new(key).unwrap()));
     let position = || (1u8..=7).prop_map(|position| Position::new(position).unwrap());
-    let knob = prop::sample::select(vec![Knob::W1, Knob::W2]);
+    let switch = prop::sample::select(vec![RotarySwitch::W1, RotarySwitch::W2]);
     prop_oneof![
         6 => key().prop_map(Input::Key),
-        2 => (knob, position()).prop_map(|(knob, position)| Input::Knob(knob, position)),
+        2 => (switch, position())
+            .prop_map(|(switch, position)| Input::RotarySwitch(switch, position)),
         2 => (key(), position(), position())
             .prop_map(|(key, w1, w2)| Input::Status(Status::Hbls { key, w1, w2 })),
         4 => (prop::bool::weighted(0.8), prop::bool::weighted(0.8))

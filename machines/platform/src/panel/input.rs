@@ -1,6 +1,6 @@
 //! What goes into a panel and what comes out.
 
-use handwheel::{Event, Key, Knob, Position, Status};
+use handwheel::{Event, Key, Position, RotarySwitch, Status};
 
 use crate::arbiter::Target;
 
@@ -11,7 +11,7 @@ pub enum Input {
     /// A key went down, or all are released.
     Key(Option<Key>),
     /// A rotary switch was turned.
-    Knob(Knob, Position),
+    RotarySwitch(RotarySwitch, Position),
     /// Where keys and rotary switches stand.
     Status(Status),
     /// The enabling switches, which have their own wires: true while down. Hand them in whenever one
@@ -41,7 +41,7 @@ impl Input {
     pub const fn of_event(event: &Event) -> Option<Self> {
         match *event {
             Event::Key(key) => Some(Self::Key(key)),
-            Event::Knob(knob, position) => Some(Self::Knob(knob, position)),
+            Event::RotarySwitch(switch, position) => Some(Self::RotarySwitch(switch, position)),
             Event::Status { status, .. }
             | Event::Lcd {
                 status: Some(status),

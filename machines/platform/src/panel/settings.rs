@@ -1,6 +1,6 @@
 //! What an installation chooses.
 
-use handwheel::{Key, Knob, Position, WheelQuantiser};
+use handwheel::{Key, Position, RotarySwitch, WheelQuantiser};
 use thiserror::Error;
 
 const KEYS: [Key; 4] = [key(1), key(2), key(3), key(4)];
@@ -84,7 +84,7 @@ pub struct PanelSettings {
     /// The keys for page up, page down, enter and motion start.
     pub keys: [Key; 4],
     /// The right rotary switch, which chooses the direction; the other one is the multiplier.
-    pub direction_knob: Knob,
+    pub direction_switch: RotarySwitch,
 }
 
 /// Why settings cannot work.
@@ -120,7 +120,7 @@ impl PanelSettings {
             max_um: 100_000,
             max_udeg: 10_000_000,
             keys: KEYS,
-            direction_knob: Knob::W2,
+            direction_switch: RotarySwitch::W2,
         }
     }
 
