@@ -272,7 +272,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--svg", &empty], "empty.svg: there is nothing to draw"),
         (
             &["--svg", &wide, "--placement", "1,0,0,1,500,0"],
-            "stroke 1 of 1: line 0 at 0 (500, 0): too far",
+            "stroke 1 of 1: at 0 of line 0, (500, 0): too far",
         ),
         (
             &["--machine", &short],
