@@ -150,7 +150,7 @@ fn placed(pose: [f64; 6], anchor: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// The largest change of a distance between two locators.
-fn strain(places: &[Vector3<f64>], locators: &[Locator]) -> f64 {
+fn distance_error(places: &[Vector3<f64>], locators: &[Locator]) -> f64 {
     let pairs = [(0, 1), (0, 2), (1, 2)];
     let changes = pairs.map(|(a, b)| {
         let apart = (locators[a].anchor - locators[b].anchor).norm();
@@ -204,16 +204,19 @@ fn check_table(mode: &str) {
             assert!((place - placed(pose, &locator.anchor)).norm() < ROUNDING_MM);
         }
     }
-    let (bound, reported) = (run.number("/strain_bound_mm"), run.number("/max_strain_mm"));
+    let (bound, reported) = (
+        run.number("/distance_error_bound_mm"),
+        run.number("/max_distance_error_mm"),
+    );
     let (mut worst, mut fastest) = (0.0_f64, 0.0_f64);
     for pair in rows.windows(2) {
         let [a, b] = pair else { unreachable!() };
         assert!(b.time > a.time);
-        assert!(strain(&a.places, &locators) < ROUNDING_MM);
+        assert!(distance_error(&a.places, &locators) < ROUNDING_MM);
         for step in 0..=40 {
             let s = f64::from(step) / 40.0;
             let states = [0, 1, 2].map(|locator| between(a, b, locator, s));
-            worst = worst.max(strain(&states.map(|it| it.0), &locators));
+            worst = worst.max(distance_error(&states.map(|it| it.0), &locators));
             for ((_, velocity), locator) in states.iter().zip(&locators) {
                 let axes = (locator.to_axes * velocity).component_div(&locator.speed);
                 fastest = fastest.max(axes.amax());
@@ -322,8 +325,12 @@ fn far_from_the_origin_the_bound_has_the_rounding_of_the_coordinates() {
     let platform = file.path().to_str().unwrap();
     let to = "35 -20 1200040 1.2 -0.8 2.5";
     let run = Run::of("pt", &["--platform", platform, "--to", to]);
-    let [strain, bound] = ["/max_strain_mm", "/strain_bound_mm"].map(|it| run.number(it));
-    assert!(strain <= bound && bound < 0.002 + 1e-8, "{strain} {bound}");
+    let [distance_error, bound] =
+        ["/max_distance_error_mm", "/distance_error_bound_mm"].map(|it| run.number(it));
+    assert!(
+        distance_error <= bound && bound < 0.002 + 1e-8,
+        "{distance_error} {bound}"
+    );
 }
 
 #[test]
@@ -486,6 +493,14 @@ fn show(display: &mut [[char; 16]; 8], mut commands: &[u8]) {
 }
 
 #[test]
+fn the_old_name_of_the_allowed_distance_error_is_read() {
+    let file = changed(&[("max_distance_error_mm = 0.002", "strain_mm = 0.02")]);
+    let run = Run::of("pt", &["--platform", file.path().to_str().unwrap()]);
+    let bound = run.number("/distance_error_bound_mm");
+    assert!(bound > 0.01 && bound < 0.02 + 1e-8, "{bound}");
+}
+
+#[test]
 fn bad_input_is_one_line_and_no_file() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
@@ -568,10 +583,13 @@ fn bad_input_is_one_line_and_no_file() {
         "[nan, -1500.0, 60.0]",
         r#"line 36, column 29: NaN is not a finite number: "[nan, -1500.0, 60.0]""#,
     );
-    let file = changed(&[("strain_mm = 0.002", "strain_mm = 0.0")]);
+    let file = changed(&[(
+        "max_distance_error_mm = 0.002",
+        "max_distance_error_mm = 0.0",
+    )]);
     refused(
         &["--platform", file.path().to_str().unwrap()],
-        "error: [path]: strain_mm = 0: cut by 0: not a positive finite number",
+        "error: [path]: max_distance_error_mm = 0: segmentation by 0: not a positive finite number",
     );
     let file = changed(&[
         ("[20.0, 20.0, 10.0]", "[0.001, 20.0, 10.0]"),

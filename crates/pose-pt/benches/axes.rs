@@ -141,7 +141,7 @@ fn others(c: &mut Criterion) {
     let first = poses.first().expect("there are poses").rotation;
     let mut group = c.benchmark_group("one call");
     group.throughput(Throughput::Elements(u64::from(POSES)));
-    group.bench_function("pose of nine axes, with strain", |b| {
+    group.bench_function("pose of nine axes, with distance error", |b| {
         b.iter(|| {
             for axes in black_box(&axes) {
                 let _ = black_box(platform.pose(axes));

@@ -8,8 +8,8 @@ use core::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Vector3};
 use pose_pt::{
-    Ahead, AxisLimits, Convention, Cut, Interpolation, Knot, Locator, Path, Platform, PtTable,
-    PvtTable,
+    Ahead, AxisLimits, Convention, Interpolation, Knot, Locator, Path, Platform, PtTable, PvtTable,
+    Segmentation,
 };
 
 const POINTS: u32 = 10_000;
@@ -59,7 +59,8 @@ fn pt(c: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(POINTS)));
     for (name, kind) in KINDS {
         let path = Path::new(&poses, kind).expect("poses are good");
-        let table = PtTable::plan(&platform, &path, Cut::parts(POINTS)).expect("plan is good");
+        let table =
+            PtTable::plan(&platform, &path, Segmentation::segments(POINTS)).expect("plan is good");
         group.bench_function(name, |b| {
             b.iter(|| {
                 for point in black_box(&table).points() {
@@ -81,25 +82,25 @@ fn pvt(c: &mut Criterion) {
         let path = Path::new(&poses, kind).expect("poses are good");
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
             b.iter(|| {
-                let cut = Cut::parts(POINTS);
-                PvtTable::plan(&platform, black_box(&path), cut, &mut knots)
+                let segmentation = Segmentation::segments(POINTS);
+                PvtTable::plan(&platform, black_box(&path), segmentation, &mut knots)
                     .expect("plan is good")
                     .duration_s()
             });
         });
     }
     let path = Path::new(&poses, Interpolation::Straight).expect("poses are good");
-    group.bench_function("straight, from a strain of 0.01", |b| {
+    group.bench_function("straight, from a distance error of 0.01", |b| {
         b.iter(|| {
-            let cut = Cut::strain(0.01);
-            PvtTable::plan(&platform, black_box(&path), cut, &mut knots)
+            let segmentation = Segmentation::max_distance_error(0.01);
+            PvtTable::plan(&platform, black_box(&path), segmentation, &mut knots)
                 .expect("plan is good")
                 .len()
         });
     });
     group.finish();
 
-    let table = PvtTable::plan(&platform, &path, Cut::parts(POINTS), &mut knots);
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(POINTS), &mut knots);
     let table = table.expect("plan is good");
     let mut ahead = vec![Ahead::default(); ROOM];
     let mut group = c.benchmark_group("PVT points");

@@ -3,7 +3,7 @@
 
 use core::error::Error;
 
-use pose_pt::{AxisLimits, Convention, Cut, Interpolation, Knot, Locator};
+use pose_pt::{AxisLimits, Convention, Interpolation, Knot, Locator, Segmentation};
 use pose_pt::{Path, Platform, PoseVector, PvtTable};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -22,7 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let poses = [rest, lifted].map(|vector| vector.to_isometry(Convention::ExtrinsicXyz));
     let path = Path::new(&poses, Interpolation::Straight)?;
     let mut knots = [Knot::default(); 65];
-    let table = PvtTable::plan(&platform, &path, Cut::strain(0.01), &mut knots)?;
+    let table = PvtTable::plan(
+        &platform,
+        &path,
+        Segmentation::max_distance_error(0.01),
+        &mut knots,
+    )?;
 
     for point in table.points() {
         print!("{:8.4} s", point.time_s);
@@ -37,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{} points, {:.3} s, distance error at most {:.1e} mm",
         table.len(),
         table.duration_s(),
-        table.strain_bound()
+        table.distance_error_bound()
     );
     Ok(())
 }

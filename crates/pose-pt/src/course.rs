@@ -56,7 +56,7 @@ pub(crate) fn is_still<const N: usize, T: RealField + Copy>(
     start == end && way <= far * epsilons(STILL_EPSILONS)
 }
 
-/// Where a course stands that is walked by equal parts.
+/// Where a course stands that is walked by equal segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Walk<T> {
     Turning(Sweep<1, T>),
@@ -98,14 +98,16 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
         }
     }
 
-    /// The start of a walk by `parts` equal parts.
-    pub(crate) fn walk(&self, parts: u32) -> Walk<T> {
+    /// The start of a walk by `segments` equal segments.
+    pub(crate) fn walk(&self, segments: u32) -> Walk<T> {
         match self {
-            Self::Turning(course) => Walk::Turning(Sweep::new([T::zero()], [course.angle], parts)),
+            Self::Turning(course) => {
+                Walk::Turning(Sweep::new([T::zero()], [course.angle], segments))
+            }
             Self::Vector(_, leg) => Walk::Vector(Sweep::new(
                 leg.from.angles().into(),
                 leg.angles_change().into(),
-                parts,
+                segments,
             )),
         }
     }

@@ -25,28 +25,26 @@ pub use angles::{Convention, PoseVector, Resolved};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
 pub use fit::{FitError, RigidFit, Side, rigid_fit};
 pub use locator::{Axis, AxisLimits, Locator};
-pub use platform::{BodyFit, LimitError, Platform, PlatformError, Strain};
+pub use platform::{BodyFit, DistanceError, LimitError, Platform, PlatformError};
 pub use rotation::{
     NotARotation, angle_between, from_matrix, from_rotation_vector, rotation_vector,
     rotation_vector_between, slerp, to_matrix,
 };
 
 mod course;
-mod cut;
-mod fifo;
+mod distance_error;
 mod path;
 mod plan_error;
 mod pt;
 mod pvt;
-mod strain;
+mod segmentation;
 mod turn;
 
-pub use cut::Cut;
-pub use fifo::{Fifo, FifoError, FifoState, Timed};
 pub use path_timing::{Ahead, FeedError, Knot};
+pub use segmentation::Segmentation;
 
+pub use distance_error::hermite_distance_error;
 pub use path::{Interpolation, Leg, Path, PathError};
 pub use plan_error::PlanError;
 pub use pt::{PtPoint, PtPoints, PtTable};
 pub use pvt::{PvtPoint, PvtPoints, PvtRun, PvtTable};
-pub use strain::hermite_strain;

@@ -22,18 +22,18 @@ pub enum PlanError<T: RealField + Copy = f64> {
         /// Locator, axis, value and by how much it is out.
         reason: LimitError<T>,
     },
-    /// A number of parts, a step or a strain that is not positive and finite.
-    #[error("cut by {}: not a positive finite number", short(.value))]
-    Cut {
+    /// A number of segments, a step or a distance error that is not positive and finite.
+    #[error("segmentation by {}: not a positive finite number", short(.value))]
+    Segmentation {
         /// The number given.
         value: T,
     },
-    /// A leg would have more parts than can be counted.
-    #[error("leg {leg} would be cut into more than {max} parts")]
+    /// A leg would have more segments than can be counted.
+    #[error("leg {leg} would be cut into more than {max} segments")]
     TooFine {
         /// The leg, from 0.
         leg: usize,
-        /// Most parts of a leg.
+        /// Most segments of a leg.
         max: u32,
     },
     /// The memory given holds fewer points than the table has.
@@ -44,12 +44,12 @@ pub enum PlanError<T: RealField + Copy = f64> {
         /// Points for which there is memory.
         available: usize,
     },
-    /// The allowed strain is below what the positions are rounded to.
-    #[error("strain {} is below {}, what positions round off", short(.allowed), short(.least))]
-    Strain {
-        /// The strain allowed.
+    /// The allowed distance error is below what the positions are rounded to.
+    #[error("distance error {} is below {}, what positions round off", short(.allowed), short(.least))]
+    DistanceError {
+        /// The distance error allowed.
         allowed: T,
-        /// The least strain that can be asked for.
+        /// The least distance error that can be asked for.
         least: T,
     },
     /// Two points of a leg cannot be told apart: so near are they, or so late, that the float
@@ -61,12 +61,12 @@ pub enum PlanError<T: RealField + Copy = f64> {
         /// The point of the leg, from 0.
         point: u32,
     },
-    /// A pace that is above 1, or so low that times leave the range of the crate.
-    #[error("a pace of {} is not within {}..=1", short(.pace), short(.min))]
-    Pace {
-        /// The pace given.
-        pace: T,
-        /// The lowest pace.
+    /// A speed scale that is above 1, or so low that times leave the range of the crate.
+    #[error("a speed scale of {} is not within {}..=1", short(.scale), short(.min))]
+    SpeedScale {
+        /// The speed scale given.
+        scale: T,
+        /// The lowest speed scale.
         min: T,
     },
     /// A highest feed that is beyond the range of the crate.
@@ -104,7 +104,7 @@ impl PlanError {
                 leg: number(leg),
                 point: knot,
             },
-            Timing::SpeedScale { scale, min } => Self::Pace { pace: scale, min },
+            Timing::SpeedScale { scale, min } => Self::SpeedScale { scale, min },
             Timing::Feed { feed, min, max } => Self::Feed { feed, min, max },
             other => Self::Timing(other),
         }

@@ -29,7 +29,7 @@ pub struct Platform<const N: usize, T: RealField = f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct Strain<T = f64> {
+pub struct DistanceError<T = f64> {
     /// The two locators, from 0.
     pub locators: [usize; 2],
     /// Distance between their anchors in the body.
@@ -38,18 +38,18 @@ pub struct Strain<T = f64> {
     pub change: T,
 }
 
-/// The pose of a body, and how the locators pull at it.
+/// The pose of a body, and how far the locators are from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BodyFit<const N: usize, T: RealField = f64> {
     /// The pose that is nearest to the locators, by least squares.
     pub pose: Isometry3<T>,
-    /// Where each locator is, less where the unstrained body wants it, in the world.
-    pub pulls: [Vector3<T>; N],
-    /// Root of the mean square of the pulls' lengths.
+    /// Where each locator is, less where the pose puts it, in the world.
+    pub residuals: [Vector3<T>; N],
+    /// Root of the mean square of the residuals' lengths.
     pub rms: T,
     /// Worst change of a distance between two locators.
-    pub strain: Strain<T>,
+    pub distance_error: DistanceError<T>,
 }
 
 impl<const N: usize, T: RealField + Copy> Platform<N, T> {
@@ -206,7 +206,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
         positions
     }
 
-    /// The pose of the body at these axis coordinates, and its strain.
+    /// The pose of the body at these axis coordinates, and its distance error.
     ///
     /// # Errors
     /// [`FitError`].
@@ -220,23 +220,23 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
     /// [`FitError`].
     pub fn pose_of_points(&self, points: &[Point3<T>; N]) -> Result<BodyFit<N, T>, FitError<T>> {
         let fit = rigid_fit(&self.anchors, points)?;
-        let mut pulls = [Vector3::zeros(); N];
-        for ((anchor, point), pull) in self.anchors.iter().zip(points).zip(&mut pulls) {
-            *pull = fit.residual(anchor, point);
+        let mut residuals = [Vector3::zeros(); N];
+        for ((anchor, point), residual) in self.anchors.iter().zip(points).zip(&mut residuals) {
+            *residual = fit.residual(anchor, point);
         }
         Ok(BodyFit {
             pose: fit.motion,
-            pulls,
+            residuals,
             rms: fit.rms,
-            strain: self.strain(points),
+            distance_error: self.distance_error(points),
         })
     }
 
     /// The two locators whose distance departs most from that of their anchors when they
     /// are at these points of the world. A point that is not finite gives a change that is not.
     #[must_use]
-    pub fn strain(&self, points: &[Point3<T>; N]) -> Strain<T> {
-        let mut worst = Strain {
+    pub fn distance_error(&self, points: &[Point3<T>; N]) -> DistanceError<T> {
+        let mut worst = DistanceError {
             locators: [0, 1],
             distance: T::zero(),
             change: T::zero(),
@@ -248,7 +248,7 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
                 let change = (point - other_point).norm() - distance;
                 let known = worst.change.abs();
                 if change.abs() >= known || (known.is_finite() && !change.is_finite()) {
-                    worst = Strain {
+                    worst = DistanceError {
                         locators: [first, second],
                         distance,
                         change,

@@ -5,10 +5,10 @@ use core::iter::FusedIterator;
 use nalgebra::{RealField, Vector3};
 
 use crate::course::{Course, Walk};
+use crate::distance_error::linear_distance_error;
 use crate::number::{larger, magnitude};
 use crate::path::{Leg, Path};
-use crate::strain::linear_strain;
-use crate::{Cut, Locator, PlanError, Platform};
+use crate::{Locator, PlanError, Platform, Segmentation};
 
 /// A line of a PT table: where every axis is at a time. Between two lines it moves linearly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ pub struct PtPoint<const N: usize, T = f64> {
 
 /// A checked position-time table [Alignment 2010].
 ///
-/// Each leg of the path is cut into equal parts; each part takes as long as its slowest axis
+/// Each leg of the path is cut into equal segments; each takes as long as its slowest axis
 /// does at its rated speed:
 ///
 /// ```text
@@ -39,7 +39,7 @@ pub struct PtPoint<const N: usize, T = f64> {
 pub struct PtTable<'a, const N: usize, T: RealField = f64> {
     platform: &'a Platform<N, T>,
     path: Path<'a, T>,
-    cut: Cut<T>,
+    segmentation: Segmentation<T>,
     points: usize,
     duration_s: T,
 }
@@ -53,15 +53,15 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     pub fn plan(
         platform: &'a Platform<N, T>,
         path: &Path<'a, T>,
-        cut: Cut<T>,
+        segmentation: Segmentation<T>,
     ) -> Result<Self, PlanError<T>> {
-        cut.check(platform)?;
+        segmentation.check(platform)?;
         let mut points = 1_usize;
         for number in 0..path.legs() {
-            let parts = cut.linear_parts(platform, path, number)?;
-            points = usize::try_from(parts)
+            let segments = segmentation.linear_segments(platform, path, number)?;
+            points = usize::try_from(segments)
                 .ok()
-                .and_then(|parts| points.checked_add(parts))
+                .and_then(|segments| points.checked_add(segments))
                 .ok_or(PlanError::TooManyPoints {
                     needed: usize::MAX,
                     available: usize::MAX,
@@ -70,7 +70,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         let table = Self {
             platform,
             path: *path,
-            cut,
+            segmentation,
             points,
             duration_s: T::zero(),
         };
@@ -134,37 +134,41 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     ///
     /// ```text
     /// |D₀ + τ (D₁ - D₀)|² = L² - 4 τ (1-τ) D⊥² sin²(δ/2)
-    /// strain = L - √(L² - D⊥² sin²(δ/2)) ≤ L (1 - cos(δ/2)) ≈ L δ² / 8
+    /// distance error = L - √(L² - D⊥² sin²(δ/2)) ≤ L (1 - cos(δ/2)) ≈ L δ² / 8
     /// ```
     ///
-    /// For straight and screw motion δ is the same in all parts, and fewer points cannot keep the
-    /// strain, however they are spread. Along pose vectors δ and n differ: the largest of all
-    /// parts is returned, and [`Cut::strain`] takes δ from the largest angular speed and D⊥ as L,
-    /// which may be more parts than the fewest.
+    /// For straight and screw motion δ is the same in all segments, and fewer points cannot
+    /// keep the distance error, however they are spread. Along pose vectors δ and n differ: the
+    /// largest of all segments is returned, and [`Segmentation::max_distance_error`] takes δ from
+    /// the largest angular speed and D⊥ as L, which may be more segments than the fewest.
     #[must_use]
-    pub fn strain_bound(&self) -> T {
+    pub fn distance_error_bound(&self) -> T {
         let legs = 0..self.path.legs();
         legs.fold(T::zero(), |worst, number| {
-            let strain = self
+            let distance_error = self
                 .path
                 .leg(number)
-                .map(|leg| self.leg_strain(number, &leg));
-            worst.max(strain.unwrap_or_else(T::zero))
+                .map(|leg| self.leg_distance_error(number, &leg));
+            worst.max(distance_error.unwrap_or_else(T::zero))
         })
     }
 
-    fn leg_strain(&self, number: usize, leg: &Leg<T>) -> T {
+    fn leg_distance_error(&self, number: usize, leg: &Leg<T>) -> T {
         let course = Course::new(self.platform, leg);
-        let parts = self.parts(number);
-        let looked_at = if leg.is_even() { parts.min(1) } else { parts };
-        let mut walk = course.walk(parts);
+        let segments = self.segments(number);
+        let looked_at = if leg.is_even() {
+            segments.min(1)
+        } else {
+            segments
+        };
+        let mut walk = course.walk(segments);
         let mut from = course.axes(&walk);
         (0..looked_at).fold(T::zero(), |worst, _| {
             walk.advance();
             let to = course.axes(&walk);
-            let strain = linear_strain(self.platform, &from, &to);
+            let distance_error = linear_distance_error(self.platform, &from, &to);
             from = to;
-            worst.max(strain)
+            worst.max(distance_error)
         })
     }
 
@@ -173,15 +177,15 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     pub fn axes(&self, number: usize) -> Option<[Vector3<T>; N]> {
         let mut number = number;
         for leg in 0..self.path.legs() {
-            let parts = self.parts(leg);
+            let segments = self.segments(leg);
             match u32::try_from(number) {
-                Ok(index) if index <= parts => {
+                Ok(index) if index <= segments => {
                     let course = Course::new(self.platform, &self.path.leg(leg)?);
-                    let mut walk = course.walk(parts);
+                    let mut walk = course.walk(segments);
                     walk.seek(index);
                     return Some(course.axes(&walk));
                 }
-                _ => number = number.saturating_sub(usize::try_from(parts).ok()?),
+                _ => number = number.saturating_sub(usize::try_from(segments).ok()?),
             }
         }
         None
@@ -194,7 +198,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
             table: *self,
             leg: 0,
             index: 0,
-            parts: 0,
+            segments: 0,
             course: None,
             axes: [Vector3::zeros(); N],
             clock: Clock::zero(),
@@ -202,10 +206,10 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         }
     }
 
-    fn parts(&self, leg: usize) -> u32 {
+    fn segments(&self, leg: usize) -> u32 {
         // The plan has found no error in any leg.
-        self.cut
-            .linear_parts(self.platform, &self.path, leg)
+        self.segmentation
+            .linear_segments(self.platform, &self.path, leg)
             .unwrap_or(0)
     }
 }
@@ -233,7 +237,7 @@ pub struct PtPoints<'a, const N: usize, T: RealField = f64> {
     /// The leg on which the last point lies, and its number there.
     leg: usize,
     index: u32,
-    parts: u32,
+    segments: u32,
     course: Option<(Course<'a, N, T>, Walk<T>)>,
     axes: [Vector3<T>; N],
     clock: Clock<T>,
@@ -269,14 +273,14 @@ impl<'a, const N: usize, T: RealField + Copy> PtPoints<'a, N, T> {
     /// Begins the next leg on which something moves.
     #[cold]
     fn begin(&mut self, mut leg: usize) -> Option<()> {
-        while self.table.parts(leg) == 0 && leg < self.table.path.legs() {
+        while self.table.segments(leg) == 0 && leg < self.table.path.legs() {
             leg = leg.saturating_add(1);
         }
-        self.parts = self.table.parts(leg);
+        self.segments = self.table.segments(leg);
         self.leg = leg;
         self.index = 0;
         let course = Course::new(self.table.platform, &self.table.path.leg(leg)?);
-        let walk = course.walk(self.parts);
+        let walk = course.walk(self.segments);
         self.course = Some((course, walk));
         Some(())
     }
@@ -310,7 +314,7 @@ impl<'a, const N: usize, T: RealField + Copy> Iterator for PtPoints<'a, N, T> {
                 axes: self.axes,
             });
         }
-        if self.index == self.parts {
+        if self.index == self.segments {
             self.begin(self.leg.saturating_add(1))?;
         }
         let (course, walk) = self.course.as_mut()?;

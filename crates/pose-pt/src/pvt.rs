@@ -9,11 +9,11 @@ use core::convert::Infallible;
 
 use path_timing::{AxisLimits, Knot, Table};
 
-use crate::cut::Rule;
+use crate::distance_error::hermite_distance_error;
 use crate::number::larger_or_nan;
 use crate::path::Path;
-use crate::strain::hermite_strain;
-use crate::{Cut, PlanError, Platform};
+use crate::segmentation::Rule;
+use crate::{PlanError, Platform, Segmentation};
 use moving::Moving;
 pub use points::{PvtPoint, PvtPoints};
 pub use run::PvtRun;
@@ -31,10 +31,11 @@ pub struct PvtTable<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> PvtTable<'a, N> {
-    /// Plans the table in memory of the caller: for each leg one knot more than parts.
+    /// Plans the table in memory of the caller: for each leg one knot more than segments.
     ///
-    /// With [`Cut::strain`] each leg has a number of parts that keeps the allowed strain while
-    /// one part fewer does not, by [`hermite_strain`]; it is found by bisection, and each trial
+    /// With [`Segmentation::max_distance_error`] each leg has a number of segments that keeps the
+    /// allowed distance error while one segment fewer does not, by [`hermite_distance_error`]; it
+    /// is found by bisection, and each trial
     /// is a plan.
     ///
     /// # Errors
@@ -42,26 +43,33 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     pub fn plan(
         platform: &'a Platform<N>,
         path: &Path<'a>,
-        cut: Cut,
+        segmentation: Segmentation,
         knots: &'a mut [Knot],
     ) -> Result<Self, PlanError> {
-        cut.check(platform)?;
+        segmentation.check(platform)?;
         let moving = Moving::new(platform, path);
         let limits = limits(platform);
-        let table = match cut.rule {
-            Rule::Strain(allowed) => {
-                let strain = |from: &_, to: &_| {
-                    hermite_strain(platform, &PvtPoint::new(from), &PvtPoint::new(to))
+        let table = match segmentation.rule {
+            Rule::DistanceError(allowed) => {
+                let distance_error = |from: &_, to: &_| {
+                    hermite_distance_error(platform, &PvtPoint::new(from), &PvtPoint::new(to))
                 };
-                Table::plan_within(moving, limits, cut.at_least, allowed, strain, knots)
+                Table::plan_within(
+                    moving,
+                    limits,
+                    segmentation.at_least,
+                    allowed,
+                    distance_error,
+                    knots,
+                )
             }
             _ => {
-                // More parts than can be counted are more than the planner takes.
-                let parts = |leg: &moving::Track<'_, N>| {
-                    let parts = cut.linear_parts(platform, path, leg.number);
-                    parts.unwrap_or(u32::MAX)
+                // More segments than can be counted are more than the planner takes.
+                let segments = |leg: &moving::Track<'_, N>| {
+                    let segments = segmentation.linear_segments(platform, path, leg.number);
+                    segments.unwrap_or(u32::MAX)
                 };
-                Table::plan(moving, limits, parts, knots)
+                Table::plan(moving, limits, segments, knots)
             }
         };
         let table = Self {
@@ -105,9 +113,9 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     /// 100 %.
     ///
     /// # Errors
-    /// [`PlanError::Pace`].
-    pub fn at_pace(self, pace: f64) -> Result<Self, PlanError> {
-        let table = self.table.at_speed(pace);
+    /// [`PlanError::SpeedScale`].
+    pub fn at_speed_scale(self, scale: f64) -> Result<Self, PlanError> {
+        let table = self.table.at_speed(scale);
         Ok(Self {
             table: table.map_err(|error| self.refused(error))?,
         })
@@ -133,17 +141,17 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     }
 
     /// The most by which the distance of two locators ever departs from that of their anchors:
-    /// the largest [`hermite_strain`] of all segments.
+    /// the largest [`hermite_distance_error`] of all segments.
     #[must_use]
-    pub fn strain_bound(&self) -> f64 {
+    pub fn distance_error_bound(&self) -> f64 {
         let mut points = self.points();
         let Some(mut from) = points.next() else {
             return 0.0;
         };
         points.fold(0.0, |worst, to| {
-            let strain = hermite_strain(self.platform(), &from, &to);
+            let distance_error = hermite_distance_error(self.platform(), &from, &to);
             from = to;
-            larger_or_nan(worst, strain)
+            larger_or_nan(worst, distance_error)
         })
     }
 

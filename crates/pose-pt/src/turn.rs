@@ -49,21 +49,21 @@ const RENEWAL: u32 = 64;
 pub(crate) struct Sweep<const K: usize, T> {
     from: [T; K],
     change: [T; K],
-    parts: T,
+    segments: T,
     step: [Turn<T>; K],
     now: [Turn<T>; K],
     index: u32,
 }
 
 impl<const K: usize, T: RealField + Copy> Sweep<K, T> {
-    /// Angles `from` that change by `change` in `parts` steps.
-    pub(crate) fn new(from: [T; K], change: [T; K], parts: u32) -> Self {
-        let parts = count(parts.max(1));
+    /// Angles `from` that change by `change` in `segments` steps.
+    pub(crate) fn new(from: [T; K], change: [T; K], segments: u32) -> Self {
+        let segments = count(segments.max(1));
         Self {
             from,
             change,
-            parts,
-            step: change.map(|change| Turn::of(change / parts)),
+            segments,
+            step: change.map(|change| Turn::of(change / segments)),
             now: from.map(Turn::of),
             index: 0,
         }
@@ -76,7 +76,7 @@ impl<const K: usize, T: RealField + Copy> Sweep<K, T> {
     /// The share of the way that lies behind.
     #[inline]
     pub(crate) fn share(&self) -> T {
-        count::<T>(self.index) / self.parts
+        count::<T>(self.index) / self.segments
     }
 
     /// Makes one step.
@@ -119,10 +119,10 @@ mod tests {
 
     #[test]
     fn steps_keep_the_angle() {
-        for (from, change, parts) in [(0.0, 3.0, 1000), (-2.0, 1e-3, 777), (1.0, -6.0, 129)] {
-            let mut sweep = Sweep::new([from], [change], parts);
-            for index in 0..=parts {
-                let angle = from + change * f64::from(index) / f64::from(parts);
+        for (from, change, segments) in [(0.0, 3.0, 1000), (-2.0, 1e-3, 777), (1.0, -6.0, 129)] {
+            let mut sweep = Sweep::new([from], [change], segments);
+            for index in 0..=segments {
+                let angle = from + change * f64::from(index) / f64::from(segments);
                 let [now] = *sweep.now();
                 assert!((now.sin - libm::sin(angle)).abs() < DRIFT, "{index}");
                 assert!((now.cos() - libm::cos(angle)).abs() < DRIFT, "{index}");

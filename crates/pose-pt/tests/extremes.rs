@@ -181,7 +181,8 @@ fn huge_angles_are_reduced_or_refused() {
     );
 }
 
-/// Places of what is a length, among the numbers of a platform, of two poses and of two cuts.
+/// Places of what is a length, among the numbers of a platform, of two poses and of two
+/// segmentations.
 fn is_length(place: usize) -> bool {
     match place {
         0..90 => !(6..15).contains(&(place % 30)),

@@ -1,4 +1,4 @@
-//! Platforms: limits, strain, calibration, and what is refused.
+//! Platforms: limits, distance error, calibration, and what is refused.
 #![cfg(test)]
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Vector3};
@@ -316,22 +316,22 @@ fn three_to_ten_locators() {
 }
 
 #[test]
-fn strain_names_the_two_locators_and_its_sign() {
+fn distance_error_names_the_two_locators_and_its_sign() {
     let platform = panel();
     let mut axes = [Vector3::zeros(); 3];
     axes[1].x = 0.3;
     let body = platform.pose(&axes).unwrap();
-    assert_eq!(body.strain.locators, [0, 1]);
+    assert_eq!(body.distance_error.locators, [0, 1]);
     // Pulled along a side that rises by 50 in 3000.
-    let pull = 0.3 * 3000.0 / 3000.0f64.hypot(50.0);
-    assert!((body.strain.change - pull).abs() < 1e-7);
-    assert!((body.strain.distance - 3000.0f64.hypot(50.0)).abs() < ROUNDING_MM);
+    let change = 0.3 * 3000.0 / 3000.0f64.hypot(50.0);
+    assert!((body.distance_error.change - change).abs() < 1e-7);
+    assert!((body.distance_error.distance - 3000.0f64.hypot(50.0)).abs() < ROUNDING_MM);
     // Half of it is on either side of the body, one outwards each.
-    assert!(body.pulls[1].x > 0.1 && body.pulls[0].x < -0.1);
-    let total: Vector3<f64> = body.pulls.iter().sum();
+    assert!(body.residuals[1].x > 0.1 && body.residuals[0].x < -0.1);
+    let total: Vector3<f64> = body.residuals.iter().sum();
     assert!(total.norm() < ROUNDING_MM);
     axes[1].x = -0.3;
-    assert!(platform.pose(&axes).unwrap().strain.change < -0.29);
+    assert!(platform.pose(&axes).unwrap().distance_error.change < -0.29);
 }
 
 #[test]

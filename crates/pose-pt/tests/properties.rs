@@ -148,8 +148,8 @@ proptest! {
                 prop_assert!(change.abs() <= 10_000.0 * ROUNDING, "{change:e}");
             }
         }
-        let strain = platform.strain(&at).change;
-        prop_assert!(strain.abs() <= 10_000.0 * ROUNDING, "{strain:e}");
+        let distance_error = platform.distance_error(&at).change;
+        prop_assert!(distance_error.abs() <= 10_000.0 * ROUNDING, "{distance_error:e}");
     }
 
     #[test]
@@ -163,7 +163,7 @@ proptest! {
         let way = body.pose.translation.vector - pose.translation.vector;
         prop_assert!(way.norm() <= 5000.0 * 2.0 * lever * ROUNDING, "{:e}", way.norm());
         prop_assert!(body.rms <= 2.0 * 10_000.0 * ROUNDING, "{:e}", body.rms);
-        prop_assert!(body.strain.change.abs() <= 4.0 * 10_000.0 * ROUNDING);
+        prop_assert!(body.distance_error.change.abs() <= 4.0 * 10_000.0 * ROUNDING);
     }
 
     #[test]

@@ -1,21 +1,21 @@
-//! PT tables: points, times, strain, errors.
+//! PT tables: points, times, distance error, errors.
 #![cfg(test)]
 
+#[path = "support/distance_error.rs"]
+mod distance_error;
 #[path = "support/moves.rs"]
 mod moves;
-#[path = "support/strain.rs"]
-mod strain;
 #[path = "support/platform.rs"]
 mod support;
 
+use distance_error::distance_error;
 use moves::{ALL, from_rest, poses};
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, Convention, Cut, Interpolation, LimitError, Locator, Path, PathError,
-    PlanError, Platform, PoseVector, PtPoint, PtTable,
+    Axis, AxisLimits, Convention, Interpolation, LimitError, Locator, Path, PathError, PlanError,
+    Platform, PoseVector, PtPoint, PtTable, Segmentation,
 };
 use proptest::prelude::*;
-use strain::strain;
 use support::{SPEED, panel, panel_with, pose, skewed};
 
 /// Rounding of coordinates of some metres.
@@ -26,10 +26,10 @@ const RIGID: f64 = 1e-13;
 
 /// Distances between locators, against those of the anchors.
 fn rigid<const N: usize>(platform: &Platform<N>, axes: &[Vector3<f64>; N]) -> f64 {
-    strain(platform, axes) / platform.largest_anchor_distance()
+    distance_error(platform, axes) / platform.largest_anchor_distance()
 }
 
-/// The largest strain between points, at 1000 places of each segment.
+/// The largest distance error between points, at 1000 places of each segment.
 fn measured<const N: usize>(platform: &Platform<N>, points: &[PtPoint<N>]) -> f64 {
     let mut worst = 0.0_f64;
     for pair in points.windows(2) {
@@ -39,7 +39,7 @@ fn measured<const N: usize>(platform: &Platform<N>, points: &[PtPoint<N>]) -> f6
             for (axes, to) in axes.iter_mut().zip(&pair[1].axes) {
                 *axes += (to - *axes) * share;
             }
-            worst = worst.max(strain(platform, &axes));
+            worst = worst.max(distance_error(platform, &axes));
         }
     }
     worst
@@ -55,7 +55,7 @@ fn all_kinds_meet_the_poses_and_keep_the_body_rigid() {
     for platform in [panel(), skewed()] {
         for kind in ALL {
             let path = Path::new(&poses, kind).unwrap();
-            let table = PtTable::plan(&platform, &path, Cut::parts(700)).unwrap();
+            let table = PtTable::plan(&platform, &path, Segmentation::segments(700)).unwrap();
             let points: Vec<_> = table.points().collect();
             assert_eq!(points.len(), 1401);
             assert_eq!(table.len(), 1401);
@@ -85,7 +85,7 @@ fn points_follow_the_leg() {
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
         let leg = path.leg(0).unwrap();
-        let table = PtTable::plan(&platform, &path, Cut::parts(333)).unwrap();
+        let table = PtTable::plan(&platform, &path, Segmentation::segments(333)).unwrap();
         for (number, point) in (0..).zip(table.points()) {
             let wanted = platform.axes(&leg.pose(f64::from(number) / 333.0));
             for (got, wanted) in point.axes.iter().zip(wanted) {
@@ -100,7 +100,7 @@ fn the_slowest_axis_runs_at_its_rated_speed() {
     for platform in [panel(), skewed()] {
         let poses = from_rest([30.0, -12.0, 7.0], [0.0, 0.02, 0.03]);
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
-        let table = PtTable::plan(&platform, &path, Cut::parts(100)).unwrap();
+        let table = PtTable::plan(&platform, &path, Segmentation::segments(100)).unwrap();
         let points: Vec<_> = table.points().collect();
         for pair in points.windows(2) {
             let [from, to] = pair else { unreachable!() };
@@ -124,26 +124,26 @@ fn steps_are_smaller_than_the_accuracy() {
     let platform = panel();
     let poses = from_rest([10.0, 0.0, 0.0], [0.0; 3]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
+    let table = PtTable::plan(&platform, &path, Segmentation::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 1002);
     assert!((table.duration_s() - 10.0 / SPEED).abs() < 1e-12);
     let poses = from_rest([0.1, 0.0, 0.0], [0.0, 0.0, 0.05]);
     let path = Path::new(&poses, Interpolation::Screw).unwrap();
-    let table = PtTable::plan(&platform, &path, Cut::steps(0.01, 1e-4)).unwrap();
+    let table = PtTable::plan(&platform, &path, Segmentation::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 502);
 }
 
 /// 4.27 m, 0.01 mm: 0.248° between points.
 #[test]
-fn strain_of_the_panel() {
+fn distance_error_of_the_panel() {
     let anchors_apart = 0.248_f64.to_radians();
     let platform = panel();
     let turn = 4.0 * anchors_apart;
     let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
+    let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).unwrap();
     let points: Vec<_> = table.points().collect();
-    let (bound, measured) = (table.strain_bound(), measured(&platform, &points));
+    let (bound, measured) = (table.distance_error_bound(), measured(&platform, &points));
     assert!(bound <= 0.01 && measured <= bound * (1.0 + 1e-9));
     assert!(measured > bound * 0.999);
     assert_eq!(table.len(), 5);
@@ -160,7 +160,7 @@ fn a_stroke_passed_between_the_ends_is_named() {
         PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, core::f64::consts::TAU),
     ];
     let path = Path::of_vectors(&poses, Convention::ExtrinsicXyz).unwrap();
-    let error = PtTable::plan(&platform, &path, Cut::parts(360)).unwrap_err();
+    let error = PtTable::plan(&platform, &path, Segmentation::segments(360)).unwrap_err();
     let PlanError::Limit {
         leg: 0,
         point,
@@ -208,22 +208,22 @@ fn wrong_input_is_named() {
     assert!(matches!(half, PathError::HalfTurn { pose: 0, .. }));
 
     let path = Path::new(&good, Interpolation::Straight).unwrap();
-    for cut in [
-        Cut::parts(0),
-        Cut::strain(0.0),
-        Cut::strain(f64::NAN),
-        Cut::steps(-1.0, 1.0),
-        Cut::steps(1.0, f64::INFINITY),
+    for segmentation in [
+        Segmentation::segments(0),
+        Segmentation::max_distance_error(0.0),
+        Segmentation::max_distance_error(f64::NAN),
+        Segmentation::steps(-1.0, 1.0),
+        Segmentation::steps(1.0, f64::INFINITY),
     ] {
-        let error = PtTable::plan(&platform, &path, cut).unwrap_err();
-        assert!(matches!(error, PlanError::Cut { .. }), "{error}");
+        let error = PtTable::plan(&platform, &path, segmentation).unwrap_err();
+        assert!(matches!(error, PlanError::Segmentation { .. }), "{error}");
     }
-    let error = PtTable::plan(&platform, &path, Cut::steps(1e-12, 1.0)).unwrap_err();
+    let error = PtTable::plan(&platform, &path, Segmentation::steps(1e-12, 1.0)).unwrap_err();
     assert!(
         matches!(error, PlanError::TooFine { leg: 0, .. }),
         "{error}"
     );
-    let table = PtTable::plan(&platform, &path, Cut::parts(512)).unwrap();
+    let table = PtTable::plan(&platform, &path, Segmentation::segments(512)).unwrap();
     let error = PlanError::TooManyPoints {
         needed: 513,
         available: 512,
@@ -238,7 +238,8 @@ fn a_body_that_stays_is_one_point() {
     let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
     for kind in ALL {
         let path = Path::new(&still, kind).unwrap();
-        let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
+        let table =
+            PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).unwrap();
         assert_eq!(table.points().count(), 1);
         let moved = [
             still[0],
@@ -247,7 +248,7 @@ fn a_body_that_stays_is_one_point() {
             pose([2.0; 3], [0.1; 3]),
         ];
         let path = Path::new(&moved, kind).unwrap();
-        let table = PtTable::plan(&platform, &path, Cut::parts(3)).unwrap();
+        let table = PtTable::plan(&platform, &path, Segmentation::segments(3)).unwrap();
         assert_eq!(table.points().count(), 4);
         assert_eq!(table.len(), 4);
     }
@@ -268,14 +269,18 @@ fn single_precision_keeps_the_body_rigid() {
     ];
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
-        let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).unwrap();
-        assert!(table.len() > 2 && table.strain_bound() <= 0.01);
+        let table =
+            PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).unwrap();
+        assert!(table.len() > 2 && table.distance_error_bound() <= 0.01);
         for point in table.points() {
-            let strain = platform
-                .strain(&platform.locator_positions(&point.axes))
+            let distance_error = platform
+                .distance_error(&platform.locator_positions(&point.axes))
                 .change;
             // 16 roundings of coordinates of 420 mm.
-            assert!(strain.abs() < 420.0 * 16.0 * f32::EPSILON, "{strain}");
+            assert!(
+                distance_error.abs() < 420.0 * 16.0 * f32::EPSILON,
+                "{distance_error}"
+            );
         }
     }
 }
@@ -290,12 +295,12 @@ fn points_that_cannot_be_told_apart_are_refused() {
     ];
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     assert_eq!(
-        PtTable::plan(&platform, &path, Cut::parts(10))
+        PtTable::plan(&platform, &path, Segmentation::segments(10))
             .unwrap()
             .len(),
         11
     );
-    let error = PtTable::plan(&platform, &path, Cut::parts(1000)).unwrap_err();
+    let error = PtTable::plan(&platform, &path, Segmentation::segments(1000)).unwrap_err();
     assert!(
         matches!(error, PlanError::Indistinct { leg: 0, .. }),
         "{error}"
@@ -309,7 +314,7 @@ fn points_that_cannot_be_told_apart_are_refused() {
     let poses = [0.0, 1e-14, 1.0].map(|y| pose([0.0, y, 0.0], [0.0; 3]));
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     assert_eq!(
-        PtTable::plan(&platform, &path, Cut::parts(3))
+        PtTable::plan(&platform, &path, Segmentation::segments(3))
             .unwrap()
             .len(),
         4
@@ -328,11 +333,11 @@ fn times_lose_nothing_to_rounding() {
         Isometry3::translation(100.0, 30.0, -20.0),
     ];
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    let table = PtTable::plan(&platform, &path, Cut::parts(100_000)).unwrap();
+    let table = PtTable::plan(&platform, &path, Segmentation::segments(100_000)).unwrap();
     let exact: f64 = table.points().map(|point| f64::from(point.segment_s)).sum();
     let off = (f64::from(table.duration_s()) - exact).abs();
     assert!(off <= exact * f64::from(f32::EPSILON), "{off}");
-    let error = PtTable::plan(&platform, &path, Cut::parts(1 << 26)).unwrap_err();
+    let error = PtTable::plan(&platform, &path, Segmentation::segments(1 << 26)).unwrap_err();
     assert!(matches!(error, PlanError::Indistinct { .. }), "{error}");
 }
 
@@ -340,23 +345,25 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn the_strain_never_passes_the_allowed_one(
+    fn the_distance_error_never_passes_the_allowed_one(
         poses in poses(), kind in 0..4_usize, allowed in 0.001..0.5,
     ) {
         for platform in [panel(), skewed()] {
             let path = Path::new(&poses, ALL[kind]).unwrap();
-            let table = PtTable::plan(&platform, &path, Cut::strain(allowed)).unwrap();
+            let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(allowed))
+                .unwrap();
             let points: Vec<_> = table.points().collect();
-            let bound = table.strain_bound();
+            let bound = table.distance_error_bound();
             let measured = measured(&platform, &points);
             prop_assert!(bound <= allowed * (1.0 + 1e-12));
             prop_assert!(measured <= bound + ROUNDING, "{} {}", measured, bound);
             prop_assert!(bound <= 3.0 * measured + ROUNDING, "{} {}", measured, bound);
-            // One part fewer does not keep it.
-            let parts = u32::try_from(table.len() - 2).unwrap();
-            if parts > 0 && kind < 2 {
-                let coarse = PtTable::plan(&platform, &path, Cut::parts(parts)).unwrap();
-                prop_assert!(coarse.strain_bound() > allowed);
+            // One segment fewer does not keep it.
+            let segments = u32::try_from(table.len() - 2).unwrap();
+            if segments > 0 && kind < 2 {
+                let coarse = PtTable::plan(&platform, &path, Segmentation::segments(segments))
+                    .unwrap();
+                prop_assert!(coarse.distance_error_bound() > allowed);
             }
         }
     }

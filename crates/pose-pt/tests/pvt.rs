@@ -14,8 +14,8 @@ use cubic::between;
 use moves::{ALL, from_rest, poses};
 use pose_pt::nalgebra::{Point3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, Cut, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform,
-    PvtPoint, PvtTable,
+    Axis, AxisLimits, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform,
+    PvtPoint, PvtTable, Segmentation,
 };
 use proptest::prelude::*;
 use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
@@ -102,7 +102,8 @@ fn a_straight_move_takes_the_closed_form() {
         for kind in ALL {
             let path = Path::new(&poses, kind).unwrap();
             let mut knots = [Knot::default(); 257];
-            let table = PvtTable::plan(&platform, &path, Cut::parts(256), &mut knots).unwrap();
+            let table =
+                PvtTable::plan(&platform, &path, Segmentation::segments(256), &mut knots).unwrap();
             let share = table.duration_s() / seconds;
             println!("{way} mm: {share}");
             assert!((0.999_999..1.001).contains(&share), "{way}: {share}");
@@ -129,7 +130,8 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
         let poses = from_rest([0.0, way, 0.0], [0.0; 3]);
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 65];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(64), &mut knots).unwrap();
+        let table =
+            PvtTable::plan(&platform, &path, Segmentation::segments(64), &mut knots).unwrap();
         let share = table.duration_s() / seconds;
         println!("{way} mm: {share}");
         assert!((0.999_999..1.001).contains(&share), "{way}: {share}");
@@ -157,7 +159,8 @@ fn jerk_costs_a_turn_little() {
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 513];
         let mut plan = |platform: &Platform<3>| {
-            let table = PvtTable::plan(platform, &path, Cut::parts(512), &mut knots).unwrap();
+            let table =
+                PvtTable::plan(platform, &path, Segmentation::segments(512), &mut knots).unwrap();
             let points: Vec<_> = table.points().collect();
             let shares = shares(platform, &points);
             assert!(shares.iter().all(|share| *share < LIMIT), "{shares:?}");
@@ -201,7 +204,8 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
             let leg = path.leg(0).unwrap();
             let mut knots = vec![Knot::default(); 4001];
             let optimum = optimum::seconds(&platform, &leg, 40_000);
-            let table = PvtTable::plan(&platform, &path, Cut::parts(4000), &mut knots).unwrap();
+            let table =
+                PvtTable::plan(&platform, &path, Segmentation::segments(4000), &mut knots).unwrap();
             let share = table.duration_s() / optimum;
             println!("{name}, {kind:?}: {} s, {share}", table.duration_s());
             assert!((0.999..1.001).contains(&share), "{name}: {share}");
@@ -218,11 +222,17 @@ fn near_the_optimum_of_a_turn_of_126_degrees() {
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
         let optimum = optimum::seconds(&platform, &path.leg(0).unwrap(), 40_000);
-        for (parts, most) in [(1000, 1.0005), (16_000, 1.000_05)] {
+        for (segments, most) in [(1000, 1.0005), (16_000, 1.000_05)] {
             let mut knots = vec![Knot::default(); 16_001];
-            let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
+            let table = PvtTable::plan(
+                &platform,
+                &path,
+                Segmentation::segments(segments),
+                &mut knots,
+            )
+            .unwrap();
             let share = table.duration_s() / optimum;
-            println!("{kind:?}, {parts} parts: {share}");
+            println!("{kind:?}, {segments} segments: {share}");
             assert!((0.999..most).contains(&share), "{share}");
         }
     }
@@ -243,7 +253,8 @@ proptest! {
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let optimum = optimum::seconds(&platform, &path.leg(0).unwrap(), 8000);
         let mut knots = [Knot::default(); 1001];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(1000), &mut knots).unwrap();
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(1000), &mut knots)
+            .unwrap();
         let share = table.duration_s() / optimum;
         prop_assert!((0.999..1.001).contains(&share), "{share}");
     }
@@ -258,7 +269,7 @@ fn a_pure_turn_takes_the_closed_form() {
     let poses = from_rest([0.0; 3], [0.0, 0.0, angle]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(200), &mut knots).unwrap();
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(200), &mut knots).unwrap();
     let seconds = 4000.0 * angle / SPEED + SPEED / ACCELERATION;
     let share = table.duration_s() / seconds;
     assert!((0.999..1.001).contains(&share), "{share}");
@@ -276,7 +287,8 @@ fn poses_on_the_way_are_stops() {
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
         let mut knots = [Knot::default(); 202];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
+        let table =
+            PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots).unwrap();
         let points: Vec<_> = table.points().collect();
         assert_eq!((points.len(), table.len()), (201, 201));
         assert!(points[100].velocities.iter().all(|v| v.amax() == 0.0));
@@ -293,7 +305,7 @@ fn poses_on_the_way_are_stops() {
 }
 
 /// A swing by ±0.3 rad carries the first two locators out to 1000 mm in its middle, where three
-/// parts have no point: 989.5 mm are the next.
+/// segments have no point: 989.5 mm are the next.
 #[test]
 fn a_stroke_left_between_points_is_named() {
     let poses = [-0.3, 0.3].map(|turn| pose([0.0; 3], [0.0, 0.0, turn]));
@@ -307,8 +319,13 @@ fn a_stroke_left_between_points_is_named() {
                 .map(|anchor| Locator::new(anchor.into(), Point3::origin(), [limits, wide, wide])),
         );
         let mut knots = [Knot::default(); 4];
-        let table = PvtTable::plan(&platform.unwrap(), &path, Cut::parts(3), &mut knots)
-            .map(|table| table.len());
+        let table = PvtTable::plan(
+            &platform.unwrap(),
+            &path,
+            Segmentation::segments(3),
+            &mut knots,
+        )
+        .map(|table| table.len());
         table.map_err(|error| match error {
             PlanError::Limit {
                 leg: 0,
@@ -341,13 +358,14 @@ fn wrong_input_is_named() {
     let poses = from_rest([30.0, 0.0, 0.0], [0.0; 3]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 64];
-    let error = PvtTable::plan(&platform, &path, Cut::parts(64), &mut knots).unwrap_err();
+    let error =
+        PvtTable::plan(&platform, &path, Segmentation::segments(64), &mut knots).unwrap_err();
     let wanted = PlanError::TooManyPoints {
         needed: 65,
         available: 64,
     };
     assert_eq!(error, wanted);
-    let error = PvtTable::plan(&platform, &path, Cut::parts(2), &mut []).unwrap_err();
+    let error = PvtTable::plan(&platform, &path, Segmentation::segments(2), &mut []).unwrap_err();
     assert!(matches!(
         error,
         PlanError::TooManyPoints {
@@ -356,14 +374,26 @@ fn wrong_input_is_named() {
         }
     ));
 
-    let error = PvtTable::plan(&platform, &path, Cut::parts((1 << 24) + 1), &mut []).unwrap_err();
+    let error = PvtTable::plan(
+        &platform,
+        &path,
+        Segmentation::segments((1 << 24) + 1),
+        &mut [],
+    )
+    .unwrap_err();
     let max = 1 << 24;
     assert_eq!(error, PlanError::TooFine { leg: 0, max });
 
     let turning = from_rest([0.0; 3], [0.0, 0.0, 0.02]);
     let turning = Path::new(&turning, Interpolation::Straight).unwrap();
     let few = &mut knots[..9];
-    let error = PvtTable::plan(&platform, &turning, Cut::strain(1e-6), few).unwrap_err();
+    let error = PvtTable::plan(
+        &platform,
+        &turning,
+        Segmentation::max_distance_error(1e-6),
+        few,
+    )
+    .unwrap_err();
     let PlanError::TooManyPoints {
         needed,
         available: 9,
@@ -372,16 +402,29 @@ fn wrong_input_is_named() {
         panic!("{error}");
     };
     let mut enough = vec![Knot::default(); needed];
-    PvtTable::plan(&platform, &turning, Cut::strain(1e-6), &mut enough).unwrap();
-    let error = PvtTable::plan(&platform, &turning, Cut::strain(1e-14), &mut enough).unwrap_err();
+    PvtTable::plan(
+        &platform,
+        &turning,
+        Segmentation::max_distance_error(1e-6),
+        &mut enough,
+    )
+    .unwrap();
+    let error = PvtTable::plan(
+        &platform,
+        &turning,
+        Segmentation::max_distance_error(1e-14),
+        &mut enough,
+    )
+    .unwrap_err();
     assert!(
-        matches!(error, PlanError::Strain { allowed: 1e-14, .. }),
+        matches!(error, PlanError::DistanceError { allowed: 1e-14, .. }),
         "{error}"
     );
 
     let far = from_rest([0.0, 0.0, 130.0], [0.0; 3]);
     let far = Path::new(&far, Interpolation::Straight).unwrap();
-    let error = PvtTable::plan(&platform, &far, Cut::parts(20), &mut knots).unwrap_err();
+    let error =
+        PvtTable::plan(&platform, &far, Segmentation::segments(20), &mut knots).unwrap_err();
     let PlanError::Limit {
         leg: 0,
         point,
@@ -400,11 +443,14 @@ fn wrong_input_is_named() {
         }
     ));
 
-    let table = PvtTable::plan(&platform, &path, Cut::parts(8), &mut knots).unwrap();
-    for pace in [0.0, -1.0, 1.1, f64::NAN, 1e-310] {
-        assert!(matches!(table.at_pace(pace), Err(PlanError::Pace { .. })));
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(8), &mut knots).unwrap();
+    for scale in [0.0, -1.0, 1.1, f64::NAN, 1e-310] {
+        assert!(matches!(
+            table.at_speed_scale(scale),
+            Err(PlanError::SpeedScale { .. })
+        ));
     }
-    let slower = table.at_pace(0.5).unwrap();
+    let slower = table.at_speed_scale(0.5).unwrap();
     assert!((slower.points().last().unwrap().time_s - 2.0 * table.duration_s()).abs() < 1e-12);
 }
 
@@ -433,7 +479,9 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
             for kind in ALL {
                 let path = Path::new(&poses, kind).unwrap();
                 let mut knots = [Knot::default(); 33];
-                let table = PvtTable::plan(&platform, &path, Cut::parts(32), &mut knots).unwrap();
+                let table =
+                    PvtTable::plan(&platform, &path, Segmentation::segments(32), &mut knots)
+                        .unwrap();
                 let mut last = 0.0;
                 for point in table.points().skip(1) {
                     assert!(
@@ -458,7 +506,8 @@ proptest! {
 
     #[test]
     fn limits_are_never_passed(
-        poses in poses(), kind in 0..4_usize, parts in 7..120_u32, jerk in prop::option::of(20.0..2000.0),
+        poses in poses(), kind in 0..4_usize, segments in 7..120_u32,
+        jerk in prop::option::of(20.0..2000.0),
         speed in 1.0..1000.0, skew in any::<bool>(),
     ) {
         let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
@@ -466,7 +515,8 @@ proptest! {
         let platform = if skew { skewed() } else { panel_with(limits) };
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let mut knots = [Knot::default(); 121];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
         let points: Vec<_> = table.points().collect();
         prop_assert_eq!(points.len(), table.len());
         let shares = shares(&platform, &points);

@@ -10,7 +10,7 @@ mod support;
 
 use exact::Exact;
 use moves::{ALL, from_rest, poses};
-use pose_pt::{Ahead, AxisLimits, Cut, Knot, Path, Platform, PvtPoint, PvtTable};
+use pose_pt::{Ahead, AxisLimits, Knot, Path, Platform, PvtPoint, PvtTable, Segmentation};
 use proptest::prelude::*;
 use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
 
@@ -32,12 +32,17 @@ fn limits_hold_to_the_last_digit() {
             &from_rest([0.01, 0.0, 0.0], [0.0; 3]),
             &[by(0.0), by(0.01), by(-0.03)],
         ] {
-            for (parts, kind) in [(40, 0), (1024, 1), (8192, 2), (20_000, 3)] {
+            for (segments, kind) in [(40, 0), (1024, 1), (8192, 2), (20_000, 3)] {
                 let path = Path::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
-                let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots);
+                let table = PvtTable::plan(
+                    &platform,
+                    &path,
+                    Segmentation::segments(segments),
+                    &mut knots,
+                );
                 let table = table.unwrap();
-                let slower = table.at_pace(1.0 - f64::EPSILON).unwrap();
+                let slower = table.at_speed_scale(1.0 - f64::EPSILON).unwrap();
                 let mut ahead = vec![Ahead::default(); table.len()];
                 let run = slower.run(1.0, &mut ahead).unwrap();
                 let excess = [
@@ -47,7 +52,7 @@ fn limits_hold_to_the_last_digit() {
                 ];
                 assert!(
                     excess.iter().all(|of| *of <= 0.0),
-                    "{name}, {parts}: {excess:?}"
+                    "{name}, {segments}: {excess:?}"
                 );
             }
         }
@@ -93,8 +98,8 @@ proptest! {
 
     #[test]
     fn limits_hold_to_the_last_digit_on_any_way(
-        first in poses(), second in poses(), kind in 0..4_usize, parts in 7..400_u32,
-        jerk in prop::option::of(20.0..2000.0), speed in 1.0..1000.0, pace in 0.1..1.0,
+        first in poses(), second in poses(), kind in 0..4_usize, segments in 7..400_u32,
+        jerk in prop::option::of(20.0..2000.0), speed in 1.0..1000.0, scale in 0.1..1.0,
     ) {
         let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
         limits.jerk = jerk;
@@ -102,8 +107,9 @@ proptest! {
         let poses = [first, second].concat();
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let mut knots = vec![Knot::default(); 1203];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
-        let table = table.at_pace(pace).unwrap();
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
+        let table = table.at_speed_scale(scale).unwrap();
         let excess = exact_excess(&platform, table.points());
         prop_assert!(excess <= 0.0, "{excess:e}");
     }

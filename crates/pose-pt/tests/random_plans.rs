@@ -1,6 +1,7 @@
 //! Tables of random bodies, ways, limits and units, checked by themselves: each limit by the
-//! extremes of the cubics that a controller runs, in 32 digits; the strain at many places; and
-//! nothing but an error where a number is none. `PLANS` makes it longer, `PLANS_SEED` another one:
+//! extremes of the cubics that a controller runs, in 32 digits; the distance error at many
+//! places; and nothing but an error where a number is none. `PLANS` makes it longer,
+//! `PLANS_SEED` another one:
 //!
 //! ```sh
 //! PLANS=200000 cargo test --release -p pose-pt --test random_plans -- --nocapture
@@ -67,18 +68,18 @@ fn plan(scene: &Scene<f64>, draw: &mut Draw, counts: &mut Counts) {
         Err(error) => return counts.refuse(&error),
     };
     let mut knots = vec![Knot::default(); ROOM];
-    let table = match PvtTable::plan(&platform, &path, scene.cut, &mut knots) {
+    let table = match PvtTable::plan(&platform, &path, scene.segmentation, &mut knots) {
         Ok(table) => table,
         Err(error) => return counts.refuse(&error),
     };
     counts.planned += 1;
     check_table(scene, &table);
-    let pace = if draw.one_in(2) {
+    let scale = if draw.one_in(2) {
         1.0
     } else {
         draw.size(-2.0, 0.0)
     };
-    let table = table.at_pace(pace).unwrap();
+    let table = table.at_speed_scale(scale).unwrap();
     let mut ahead = vec![Ahead::default(); ROOM];
     let max = draw.size(-1.0, 1.0);
     let run = table.run(max, &mut ahead).unwrap();

@@ -9,8 +9,8 @@ mod support;
 use cubic::between;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    Ahead, AxisLimits, Cut, FeedError, Fifo, FifoError, Interpolation, Knot, Path, PlanError,
-    Platform, PvtPoint, PvtTable,
+    Ahead, AxisLimits, FeedError, Interpolation, Knot, Path, PlanError, Platform, PvtPoint,
+    PvtTable, Segmentation,
 };
 use proptest::prelude::*;
 use support::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
@@ -51,7 +51,8 @@ fn at_full_feed_it_is_the_table() {
         let poses = poses();
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 101];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
+        let table =
+            PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots).unwrap();
         let mut ahead = [Ahead::default(); 101];
         let run = table.run(1.5, &mut ahead).unwrap();
         assert_eq!(run.size_hint(), (0, Some(101)));
@@ -76,8 +77,8 @@ fn a_table_at_its_limits_cannot_go_faster_and_one_below_can() {
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(200), &mut knots).unwrap();
-    let slow = table.at_pace(0.5).unwrap();
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(200), &mut knots).unwrap();
+    let slow = table.at_speed_scale(0.5).unwrap();
     for (table, feed, expected) in [(table, 1.5, 1.0), (slow, 1.5, 2.0 / 1.5), (slow, 0.5, 4.0)] {
         let mut ahead = [Ahead::default(); 201];
         let mut run = table.run(1.5, &mut ahead).unwrap();
@@ -96,7 +97,7 @@ fn a_stop_is_on_the_path_and_can_go_on() {
     let poses = [pose([0.0; 3], [0.0; 3]), pose([100.0, 0.0, 0.0], [0.0; 3])];
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 401];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(400), &mut knots).unwrap();
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(400), &mut knots).unwrap();
     let mut ahead = [Ahead::default(); 401];
     let mut run = table.run(1.5, &mut ahead).unwrap();
     let mut points: Vec<_> = run.by_ref().take(200).collect();
@@ -130,7 +131,7 @@ fn no_stop_crawls() {
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 51];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(50), &mut knots).unwrap();
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(50), &mut knots).unwrap();
     for moving in 2..50 {
         let mut ahead = [Ahead::default(); 51];
         let mut run = table.run(1.0, &mut ahead).unwrap();
@@ -151,7 +152,7 @@ fn wrong_feeds_and_memory_are_named() {
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 11];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(10), &mut knots).unwrap();
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(10), &mut knots).unwrap();
     let mut ahead = [Ahead::default(); 11];
     let error = table.run(1.5, &mut ahead[..10]).unwrap_err();
     assert_eq!(
@@ -180,71 +181,6 @@ fn wrong_feeds_and_memory_are_named() {
     }
 }
 
-/// A sender that polls every 100 ms keeps a buffer of 16 points filled.
-#[test]
-fn the_buffer_is_kept_filled_to_the_end() {
-    let platform = panel();
-    let poses = poses();
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    let mut knots = [Knot::default(); 101];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
-    let mut fifo = Fifo::<16>::new();
-    let (mut points, mut sent) = (table.points(), 0);
-    let mut now = 1000.0;
-    while !fifo.is_done() {
-        while fifo.next(now, &mut points).unwrap().is_some() {
-            sent += 1;
-        }
-        if sent == 17 {
-            fifo.start(now).unwrap();
-        }
-        let state = fifo.state(now).unwrap();
-        assert_eq!(state.filled + state.free, 16);
-        now += 0.1;
-    }
-    assert_eq!(sent, 101);
-    assert!((now - 1000.0 - table.duration_s()).abs() < 0.21);
-}
-
-#[test]
-fn an_underrun_is_reported_with_its_time() {
-    let platform = panel();
-    let poses = poses();
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
-    let mut knots = [Knot::default(); 101];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(100), &mut knots).unwrap();
-    let mut points = table.points();
-    let mut fifo = Fifo::<512>::new();
-    assert_eq!(fifo.start(0.0), Err(FifoError::Empty));
-    let mut last = 0.0;
-    for _ in 0..5 {
-        last = fifo.next(0.0, &mut points).unwrap().unwrap().time_s;
-    }
-    fifo.start(2.0).unwrap();
-    let state = fifo.state(2.0).unwrap();
-    assert_eq!((state.filled, state.free), (4, 508));
-    assert!((state.until_underrun_s - last).abs() < 1e-12);
-    let before = fifo.state(2.0 + last - 1e-6).unwrap();
-    assert_eq!(before.filled, 1);
-    let error = fifo.next(2.0 + last + 0.25, &mut points).unwrap_err();
-    let FifoError::Underrun {
-        at_s,
-        late_s,
-        points: handed,
-    } = error
-    else {
-        panic!("{error}");
-    };
-    assert!((at_s - 2.0 - last).abs() < 1e-9 && (late_s - 0.25).abs() < 1e-9);
-    assert_eq!((handed, points.len()), (5, 96));
-    assert!(matches!(
-        fifo.state(1.0),
-        Err(FifoError::Time { now_s: 1.0, .. })
-    ));
-    fifo.restart();
-    assert_eq!(fifo.state(9.0).unwrap().free, 512);
-}
-
 /// The sizes that docs/body.md states, for three locators in f64 on 64 bits.
 #[cfg(target_pointer_width = "64")]
 #[test]
@@ -257,7 +193,6 @@ fn memory_is_fixed() {
     assert_eq!(size_of::<PvtPoints<'_, 3>>(), 760);
     assert_eq!(size_of::<PvtRun<'_, 3>>(), 1416);
     assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
-    assert_eq!(size_of::<Fifo<512>>(), 512 * 8 + 72);
 }
 
 proptest! {
@@ -268,14 +203,15 @@ proptest! {
     fn more_feed_never_takes_longer(
         translation in prop::array::uniform3(-300.0..300.0), turn in prop::array::uniform3(-1.5..1.5),
         on in prop::array::uniform3(-300.0..300.0), on_turn in prop::array::uniform3(-1.5..1.5),
-        parts in 2..30_u32, pace in 0.3..1.0, feed in 1.0..3.0, speed in 5.0..1e4,
+        segments in 2..30_u32, scale in 0.3..1.0, feed in 1.0..3.0, speed in 5.0..1e4,
     ) {
         let platform = panel_with(AxisLimits::new(-1e5, 1e5, speed, ACCELERATION));
         let poses = [pose([0.0; 3], [0.0; 3]), pose(translation, turn), pose(on, on_turn)];
         let Ok(path) = Path::new(&poses, Interpolation::Screw) else { return Ok(()) };
         let mut knots = [Knot::default(); 62];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
-        let table = table.at_pace(pace).unwrap();
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
+        let table = table.at_speed_scale(scale).unwrap();
         let mut ahead = [Ahead::default(); 61];
         let mut run = table.run(feed, &mut ahead).unwrap();
         run.set_feed(feed).unwrap();
@@ -289,7 +225,7 @@ proptest! {
     #[test]
     fn limits_hold_under_any_feed(
         feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
-        parts in 10..150_u32, pace in 0.3..1.0, skew in any::<bool>(), speed in 5.0..500.0,
+        segments in 10..150_u32, scale in 0.3..1.0, skew in any::<bool>(), speed in 5.0..500.0,
     ) {
         let platform = if skew {
             skewed()
@@ -299,8 +235,9 @@ proptest! {
         let poses = poses();
         let path = Path::new(&poses, Interpolation::Screw).unwrap();
         let mut knots = [Knot::default(); 151];
-        let table = PvtTable::plan(&platform, &path, Cut::parts(parts), &mut knots).unwrap();
-        let table = table.at_pace(pace).unwrap();
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
+        let table = table.at_speed_scale(scale).unwrap();
         let mut ahead = [Ahead::default(); 151];
         let mut run = table.run(1.5, &mut ahead).unwrap();
         let mut points = Vec::new();

@@ -4,21 +4,21 @@
 
 #[path = "support/cubic.rs"]
 mod cubic;
+#[path = "support/distance_error.rs"]
+mod distance_error;
 #[path = "support/moves.rs"]
 mod moves;
 #[path = "units/scene.rs"]
 mod scene;
-#[path = "support/strain.rs"]
-mod strain;
 #[path = "support/platform.rs"]
 mod support;
 
 use cubic::between;
+use distance_error::distance_error;
 use moves::{from_rest, poses};
-use pose_pt::{Cut, Interpolation, Knot, Path, PvtTable};
+use pose_pt::{Interpolation, Knot, Path, PvtTable, Segmentation};
 use proptest::prelude::*;
 use scene::{Number, Scene, scaled_platform, scaled_pose};
-use strain::strain;
 use support::panel;
 
 /// Lengths that are not powers of two are rounded when their unit changes, and the bisections
@@ -34,10 +34,10 @@ const SPAN: f64 = 4000.0;
 fn scenes() -> impl Strategy<Value = Scene> {
     let jerk = prop::option::of(20.0..2000.0);
     (poses(), 0..4_usize, 2..40_u32, jerk, any::<bool>()).prop_map(
-        |(poses, kind, parts, jerk, is_skewed)| Scene {
+        |(poses, kind, segments, jerk, is_skewed)| Scene {
             poses,
             kind,
-            parts,
+            segments,
             jerk,
             is_skewed,
         },
@@ -54,7 +54,7 @@ fn pairs(scene: &Scene, unit: f64) -> impl Iterator<Item = (Number, Number)> {
 /// Locators 4 m, 0.3, 0.1 and 0.01 of a unit apart: a bound that takes a length for its square is
 /// too small below a half.
 #[test]
-fn the_bound_on_the_strain_holds_in_every_unit() {
+fn the_bound_on_the_distance_error_holds_in_every_unit() {
     let poses = from_rest([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]);
     for apart in [SPAN, 0.3, 0.1, 0.01] {
         let unit = apart / SPAN;
@@ -63,16 +63,22 @@ fn the_bound_on_the_strain_holds_in_every_unit() {
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let allowed = 1e-6 * apart;
         let mut knots = [Knot::default(); 100];
-        let table = PvtTable::plan(&platform, &path, Cut::strain(allowed), &mut knots).unwrap();
+        let table = PvtTable::plan(
+            &platform,
+            &path,
+            Segmentation::max_distance_error(allowed),
+            &mut knots,
+        )
+        .unwrap();
         let points: Vec<_> = table.points().collect();
         let mut measured = 0.0_f64;
         for pair in points.windows(2) {
             for place in 0..=1000 {
                 let [axes, ..] = between(&pair[0], &pair[1], f64::from(place) / 1000.0);
-                measured = measured.max(strain(&platform, &axes));
+                measured = measured.max(distance_error(&platform, &axes));
             }
         }
-        let bound = table.strain_bound();
+        let bound = table.distance_error_bound();
         println!("{apart}: {measured}, bound {bound}, allowed {allowed}");
         assert!(
             measured <= bound && bound <= allowed,

@@ -58,7 +58,7 @@ impl Run {
         &self.jog
     }
 
-    /// The pose change: axes, strain, and the body before and after.
+    /// The pose change: axes, distance error, and the body before and after.
     #[must_use]
     pub const fn align_picture(&self) -> &Figure {
         &self.align
@@ -132,7 +132,7 @@ fn align<const N: usize>(
             platform,
             &examination,
             [from, task.reached],
-            plan.strain_bound_mm,
+            plan.distance_error_bound_mm,
         ),
         report,
         note: task.rounding_note(),

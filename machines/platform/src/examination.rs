@@ -6,7 +6,7 @@ use pose_pt::{BodyFit, Platform};
 use crate::table::{AxisState, States, Table, positions};
 
 /// Places of a segment that are looked at, in a short table and in a long one; the middle, where
-/// the strain of a line is largest, is one of them.
+/// the distance error of a line is largest, is one of them.
 const PLACES: u32 = 32;
 const PLACES_OF_MANY: u32 = 2;
 /// Points of a long table.
@@ -17,13 +17,13 @@ pub(crate) struct Moment<const N: usize> {
     pub(crate) time_s: f64,
     pub(crate) states: States<N>,
     /// Worst change of a distance between two locators, in mm.
-    pub(crate) strain: f64,
+    pub(crate) distance_error: f64,
 }
 
 /// What a table does to axes and body.
 pub(crate) struct Examination<const N: usize> {
     pub(crate) moments: Vec<Moment<N>>,
-    pub(crate) max_strain: f64,
+    pub(crate) max_distance_error: f64,
     /// Largest fraction of its rated speed that an axis has.
     pub(crate) max_speed_ratio: f64,
     /// Largest jump of an axis' speed from one segment to the next, from rest and to it, in mm
@@ -37,7 +37,7 @@ impl<const N: usize> Examination<N> {
     /// Runs all axes through all segments.
     pub(crate) fn of(table: &Table<N>, platform: &Platform<N>) -> Result<Self> {
         let mut moments = Vec::new();
-        let (mut max_strain, mut max_speed_ratio) = (0.0_f64, 0.0_f64);
+        let (mut max_distance_error, mut max_speed_ratio) = (0.0_f64, 0.0_f64);
         let mut max_speed_jump = 0.0_f64;
         let rest = [[AxisState::default(); 3]; N];
         let mut before = rest;
@@ -55,8 +55,8 @@ impl<const N: usize> Examination<N> {
                 }
                 before = states;
                 let anchors = platform.locator_positions(&positions(&states));
-                let strain = platform.strain(&anchors).change;
-                max_strain = max_strain.max(strain.abs());
+                let distance_error = platform.distance_error(&anchors).change;
+                max_distance_error = max_distance_error.max(distance_error.abs());
                 for (locator, states) in platform.locators().iter().zip(&states) {
                     for (limits, state) in locator.limits.iter().zip(states) {
                         max_speed_ratio = max_speed_ratio.max(state.speed.abs() / limits.speed);
@@ -65,13 +65,13 @@ impl<const N: usize> Examination<N> {
                 moments.push(Moment {
                     time_s: start + s * (end - start),
                     states,
-                    strain,
+                    distance_error,
                 });
             }
         }
         let last = moments.last().context("a table without a segment")?;
         Ok(Self {
-            max_strain,
+            max_distance_error,
             max_speed_ratio,
             max_speed_jump: max_speed_jump.max(speed_jump(&before, &rest)),
             end: platform.pose(&positions(&last.states))?,

@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use anyhow::{Result, anyhow, ensure};
 use nalgebra::Vector3;
-use pose_pt::{Cut, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable};
+use pose_pt::{Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable, Segmentation};
 
 use crate::machine::isometry;
 use crate::mode::Mode;
@@ -32,7 +32,7 @@ pub(crate) struct Planner<'a, const N: usize> {
 pub(crate) struct Plan {
     /// The file that the controller gets, and nothing else.
     pub(crate) csv: String,
-    pub(crate) strain_bound_mm: f64,
+    pub(crate) distance_error_bound_mm: f64,
 }
 
 impl<'a, const N: usize> Planner<'a, N> {
@@ -55,32 +55,32 @@ impl<'a, const N: usize> Planner<'a, N> {
             }
             other => other.into(),
         })?;
-        let strain_mm = self.settings.strain_mm();
-        let cut = Cut::strain(strain_mm);
+        let max_distance_error_mm = self.settings.max_distance_error_mm();
+        let segmentation = Segmentation::max_distance_error(max_distance_error_mm);
         let placed = |error: PlanError| match error {
             PlanError::Limit { .. } => anyhow!(error),
-            _ => anyhow!("[path]: strain_mm = {strain_mm}: {error}"),
+            _ => anyhow!("[path]: max_distance_error_mm = {max_distance_error_mm}: {error}"),
         };
         let mut csv = self.header();
-        let (points, strain_bound_mm) = match self.mode {
+        let (points, distance_error_bound_mm) = match self.mode {
             Mode::Pt => {
-                let table = PtTable::plan(self.platform, &path, cut).map_err(placed)?;
+                let table = PtTable::plan(self.platform, &path, segmentation).map_err(placed)?;
                 table.fits(MAX_POINTS).map_err(placed)?;
                 is_short(table.duration_s())?;
                 for point in table.points() {
                     self.row(&mut csv, point.time_s, &point.axes, None)?;
                 }
-                (table.len(), table.strain_bound())
+                (table.len(), table.distance_error_bound())
             }
             Mode::Pvt => {
                 let mut knots = vec![Knot::default(); MAX_POINTS];
-                let table = PvtTable::plan(self.platform, &path, cut, &mut knots);
+                let table = PvtTable::plan(self.platform, &path, segmentation, &mut knots);
                 let table = table.map_err(placed)?;
                 is_short(table.duration_s())?;
                 for point in table.points() {
                     self.row(&mut csv, point.time_s, &point.axes, Some(&point.velocities))?;
                 }
-                (table.len(), table.strain_bound())
+                (table.len(), table.distance_error_bound())
             }
         };
         ensure!(points > 1, "from and to are the same pose: nothing moves");
@@ -94,7 +94,7 @@ impl<'a, const N: usize> Planner<'a, N> {
         let rounding_mm = ROUNDING * far;
         Ok(Plan {
             csv,
-            strain_bound_mm: strain_bound_mm + rounding_mm,
+            distance_error_bound_mm: distance_error_bound_mm + rounding_mm,
         })
     }
 

@@ -21,9 +21,9 @@ pub struct Report {
     points: usize,
     duration_s: f64,
     /// Worst change of a distance between two locators, simulated.
-    max_strain_mm: f64,
+    max_distance_error_mm: f64,
     /// What the plan promises of it, with the rounding of coordinates.
-    strain_bound_mm: f64,
+    distance_error_bound_mm: f64,
     /// Largest fraction of its rated speed that an axis has.
     max_speed_ratio: f64,
     /// Largest jump of an axis' speed between two segments, from rest or to it.
@@ -56,8 +56,8 @@ impl Report {
             mode,
             points: table.points(),
             duration_s: table.duration_s(),
-            max_strain_mm: examination.max_strain,
-            strain_bound_mm: plan.strain_bound_mm,
+            max_distance_error_mm: examination.max_distance_error,
+            distance_error_bound_mm: plan.distance_error_bound_mm,
             max_speed_ratio: examination.max_speed_ratio,
             max_speed_jump_mm_s: examination.max_speed_jump,
             keeps: mode.keeps(),
@@ -68,10 +68,11 @@ impl Report {
         }
     }
 
-    /// Whether the strain is within its bound, and no axis faster than it is rated.
+    /// Whether the distance error is within its bound, and no axis faster than it is rated.
     #[must_use]
     pub fn is_within_bounds(&self) -> bool {
-        self.max_strain_mm <= self.strain_bound_mm && self.max_speed_ratio <= 1.0 + ROUNDING
+        self.max_distance_error_mm <= self.distance_error_bound_mm
+            && self.max_speed_ratio <= 1.0 + ROUNDING
     }
 }
 
@@ -101,9 +102,9 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "strain, axis by axis: {:.3e} mm at most; bound {:.3e} mm: {}",
-            self.max_strain_mm,
-            self.strain_bound_mm,
+            "distance error, axis by axis: {:.3e} mm at most; bound {:.3e} mm: {}",
+            self.max_distance_error_mm,
+            self.distance_error_bound_mm,
             if self.is_within_bounds() {
                 "kept"
             } else {

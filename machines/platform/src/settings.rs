@@ -45,7 +45,8 @@ struct PathSettings {
     from: Numbers<6>,
     to: Numbers<6>,
     interpolation: InterpolationName,
-    strain_mm: Finite,
+    #[serde(alias = "strain_mm")]
+    max_distance_error_mm: Finite,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -116,9 +117,9 @@ impl Settings {
         [self.path.from.values(), self.path.to.values()]
     }
 
-    /// What two locators may pull or squeeze the body by.
-    pub(crate) const fn strain_mm(&self) -> f64 {
-        self.path.strain_mm.0
+    /// What the distance of two locators may depart by from that of their anchors.
+    pub(crate) const fn max_distance_error_mm(&self) -> f64 {
+        self.path.max_distance_error_mm.0
     }
 
     pub(crate) fn locators(&self) -> Vec<Locator> {

@@ -5,17 +5,21 @@ use std::hint::black_box;
 use no_panic::no_panic;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    Ahead, AxisLimits, Convention, Cut, Fifo, FifoError, Interpolation, Knot, Locator, Path,
-    PlanError, Platform, PoseVector, PtPoint, PtPoints, PtTable, PvtPoint, PvtPoints, PvtRun,
-    PvtTable, hermite_strain,
+    Ahead, AxisLimits, Convention, Interpolation, Knot, Locator, Path, PlanError, Platform,
+    PoseVector, PtPoint, PtPoints, PtTable, PvtPoint, PvtPoints, PvtRun, PvtTable, Segmentation,
+    hermite_distance_error,
 };
 
 type Planned<T> = Result<T, PlanError>;
 
 #[no_panic]
 #[inline(never)]
-fn pt_plan<'a>(platform: &'a Platform<3>, path: &Path<'a>, cut: Cut) -> Planned<PtTable<'a, 3>> {
-    PtTable::plan(platform, path, cut)
+fn pt_plan<'a>(
+    platform: &'a Platform<3>,
+    path: &Path<'a>,
+    segmentation: Segmentation,
+) -> Planned<PtTable<'a, 3>> {
+    PtTable::plan(platform, path, segmentation)
 }
 
 #[no_panic]
@@ -29,10 +33,10 @@ fn pt_next(points: &mut PtPoints<'_, 3>) -> Option<PtPoint<3>> {
 fn pvt_plan<'a>(
     platform: &'a Platform<3>,
     path: &Path<'a>,
-    cut: Cut,
+    segmentation: Segmentation,
     knots: &'a mut [Knot],
 ) -> Planned<PvtTable<'a, 3>> {
-    PvtTable::plan(platform, path, cut, knots)
+    PvtTable::plan(platform, path, segmentation, knots)
 }
 
 #[no_panic]
@@ -43,24 +47,14 @@ fn pvt_next(points: &mut PvtPoints<'_, 3>) -> Option<PvtPoint<3>> {
 
 #[no_panic]
 #[inline(never)]
-fn strain(platform: &Platform<3>, from: &PvtPoint<3>, to: &PvtPoint<3>) -> f64 {
-    hermite_strain(platform, from, to)
+fn distance_error(platform: &Platform<3>, from: &PvtPoint<3>, to: &PvtPoint<3>) -> f64 {
+    hermite_distance_error(platform, from, to)
 }
 
 #[no_panic]
 #[inline(never)]
 fn run_next(run: &mut PvtRun<'_, 3>) -> Option<PvtPoint<3>> {
     run.next_point()
-}
-
-#[no_panic]
-#[inline(never)]
-fn fifo_next(
-    fifo: &mut Fifo<512>,
-    now_s: f64,
-    points: &mut PtPoints<'_, 3>,
-) -> Result<Option<PtPoint<3>>, FifoError> {
-    fifo.next(now_s, points)
 }
 
 pub fn run() {
@@ -84,20 +78,23 @@ pub fn run() {
     let Ok(path) = Path::new(black_box(poses.as_slice()), kind) else {
         return;
     };
-    let cut = || black_box(Cut::strain(0.01));
-    if let Ok(table) = pt_plan(platform, black_box(&path), cut()) {
+    let segmentation = || black_box(Segmentation::max_distance_error(0.01));
+    if let Ok(table) = pt_plan(platform, black_box(&path), segmentation()) {
         let mut points = black_box(table).points();
         black_box(pt_next(&mut points));
-        let mut fifo = black_box(Fifo::new());
-        let _ = black_box(fifo_next(&mut fifo, black_box(0.0), &mut points));
     }
     let mut knots = black_box([Knot::default(); 64]);
-    let Ok(table) = pvt_plan(platform, black_box(&path), cut(), black_box(&mut knots)) else {
+    let Ok(table) = pvt_plan(
+        platform,
+        black_box(&path),
+        segmentation(),
+        black_box(&mut knots),
+    ) else {
         return;
     };
     let mut points = black_box(table).points();
     if let (Some(from), Some(to)) = (pvt_next(&mut points), pvt_next(&mut points)) {
-        black_box(strain(platform, &from, &to));
+        black_box(distance_error(platform, &from, &to));
     }
     let mut ahead = black_box([Ahead::default(); 64]);
     if let Ok(mut run) = table.run(black_box(1.5), black_box(&mut ahead)) {

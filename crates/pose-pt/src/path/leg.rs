@@ -105,7 +105,7 @@ impl<T: RealField + Copy> Leg<T> {
         }
     }
 
-    /// Whether all equal parts of the leg turn the body alike.
+    /// Whether all equal segments of the leg turn the body alike.
     pub(crate) const fn is_even(&self) -> bool {
         matches!(self.shape, Shape::Turning(_))
     }

@@ -10,7 +10,8 @@ use crate::{PlanError, PvtPoint};
 ///
 /// How the feed goes towards the wanted one, and how it stops: see [`path_timing::Run`]. The body
 /// stays on its path at any feed; a change of it also changes the speed within a segment and with it
-/// the strain: [`hermite_strain`](crate::hermite_strain) of two points handed out bounds it.
+/// the distance error: [`hermite_distance_error`](crate::hermite_distance_error) of two points
+/// handed out bounds it.
 #[derive(Debug, Clone)]
 pub struct PvtRun<'a, const N: usize> {
     run: Run<'a, Moving<'a, N>>,

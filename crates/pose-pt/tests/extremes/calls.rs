@@ -4,9 +4,9 @@ use pose_pt::nalgebra::{
     Isometry3, Matrix3, Point3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3,
 };
 use pose_pt::{
-    AxisLimits, Convention, Cut, Interpolation, Locator, Path, Platform, PoseVector, PtTable,
-    angle_between, calibrate, from_matrix, from_rotation_vector, rigid_fit, rotation_vector,
-    rotation_vector_between, slerp, to_matrix,
+    AxisLimits, Convention, Interpolation, Locator, Path, Platform, PoseVector, PtTable,
+    Segmentation, angle_between, calibrate, from_matrix, from_rotation_vector, rigid_fit,
+    rotation_vector, rotation_vector_between, slerp, to_matrix,
 };
 
 /// All numbers that came out, or the message of the error.
@@ -286,18 +286,24 @@ pub(crate) fn all<T: RealField + Copy>() -> Vec<Call<T>> {
                 platform.check_axes(&axes).map_err(message)?;
                 let body = platform.pose(&axes).map_err(message)?;
                 let mut all = of_pose(&body.pose);
-                all.extend(flat(&body.pulls));
-                all.extend([body.rms, body.strain.distance, body.strain.change]);
+                all.extend(flat(&body.residuals));
+                all.extend([
+                    body.rms,
+                    body.distance_error.distance,
+                    body.distance_error.change,
+                ]);
                 Ok(all)
             },
         ),
         call("Platform of points", &[&ANCHORS.concat()], |x| {
             let (platform, points) = (good_platform::<T>(), x.points::<3>());
             let body = platform.pose_of_points(&points).map_err(message)?;
-            Ok([of_pose(&body.pose), vec![body.strain.change]].concat())
+            Ok([of_pose(&body.pose), vec![body.distance_error.change]].concat())
         }),
-        call("Platform::strain", &[&ANCHORS.concat()], |x| {
-            Ok(vec![good_platform::<T>().strain(&x.points()).change])
+        call("Platform::distance_error", &[&ANCHORS.concat()], |x| {
+            Ok(vec![
+                good_platform::<T>().distance_error(&x.points()).change,
+            ])
         }),
         call("Platform::locator_positions", &[&ANCHORS.concat()], |x| {
             Ok(flat_points(
@@ -340,13 +346,17 @@ pub(crate) fn all<T: RealField + Copy>() -> Vec<Call<T>> {
             &[platform, &two_poses(), &[0.5, 0.1, 0.05]],
             |x| {
                 let (platform, poses) = (x.platform()?, [x.pose(), x.pose()]);
-                let cuts = [Cut::steps(x.next(), x.next()), Cut::strain(x.next())];
+                let segmentations = [
+                    Segmentation::steps(x.next(), x.next()),
+                    Segmentation::max_distance_error(x.next()),
+                ];
                 let mut all = Vec::new();
                 for kind in KINDS {
                     let path = Path::new(&poses, kind).map_err(message)?;
-                    for cut in cuts {
-                        let table = PtTable::plan(&platform, &path, cut).map_err(message)?;
-                        all.extend([table.duration_s(), table.strain_bound()]);
+                    for segmentation in segmentations {
+                        let table =
+                            PtTable::plan(&platform, &path, segmentation).map_err(message)?;
+                        all.extend([table.duration_s(), table.distance_error_bound()]);
                         for point in table.points() {
                             all.extend([point.time_s, point.segment_s]);
                             all.extend(flat(&point.axes));

@@ -1,6 +1,6 @@
 //! The functions of PVT tables as functions of numbers.
 
-use pose_pt::{Ahead, Cut, Fifo, Interpolation, Knot, Path, PvtTable, hermite_strain};
+use pose_pt::{Ahead, Interpolation, Knot, Path, PvtTable, Segmentation, hermite_distance_error};
 
 use crate::calls::{Call, Outcome, flat, message, platform, two_poses};
 
@@ -15,13 +15,17 @@ pub(crate) fn all() -> Vec<Call<f64>> {
     vec![
         call("PvtTable", &[platform, poses, &[0.5, 0.1, 0.05]], |x| {
             let (platform, poses) = (x.platform()?, [x.pose(), x.pose()]);
-            let cuts = [Cut::steps(x.next(), x.next()), Cut::strain(x.next())];
+            let segmentations = [
+                Segmentation::steps(x.next(), x.next()),
+                Segmentation::max_distance_error(x.next()),
+            ];
             let mut all = Vec::new();
-            for cut in cuts {
+            for segmentation in segmentations {
                 let path = Path::new(&poses, Interpolation::Screw).map_err(message)?;
                 let mut knots = [Knot::default(); 200];
-                let table = PvtTable::plan(&platform, &path, cut, &mut knots).map_err(message)?;
-                all.extend([table.duration_s(), table.strain_bound()]);
+                let table =
+                    PvtTable::plan(&platform, &path, segmentation, &mut knots).map_err(message)?;
+                all.extend([table.duration_s(), table.distance_error_bound()]);
                 for point in table.points() {
                     all.extend([point.time_s, point.segment_s]);
                     all.extend(flat(&point.axes));
@@ -32,7 +36,7 @@ pub(crate) fn all() -> Vec<Call<f64>> {
         }),
         call("PvtRun", &[&[0.75, 1.25, 0.5, 1.125]], |x| {
             with_table(|table| {
-                let table = table.at_pace(x.next()).map_err(message)?;
+                let table = table.at_speed_scale(x.next()).map_err(message)?;
                 let mut ahead = [Ahead::default(); 21];
                 let mut run = table.run(x.next(), &mut ahead).map_err(message)?;
                 let mut all = Vec::new();
@@ -47,7 +51,7 @@ pub(crate) fn all() -> Vec<Call<f64>> {
                 Ok(all)
             })
         }),
-        call("hermite_strain", &[&[0.01; 36], &[0.25]], |x| {
+        call("hermite_distance_error", &[&[0.01; 36], &[0.25]], |x| {
             with_table(|table| {
                 let mut points = table.points();
                 let (mut from, mut to) = (points.next().unwrap(), points.next().unwrap());
@@ -58,30 +62,21 @@ pub(crate) fn all() -> Vec<Call<f64>> {
                     }
                 }
                 to.segment_s = x.next();
-                Ok(vec![hermite_strain(table.platform(), &from, &to)])
-            })
-        }),
-        call("Fifo", &[&[1.0, 2.0, 2.25]], |x| {
-            with_table(|table| {
-                let (mut fifo, mut points) = (Fifo::<16>::new(), table.points());
-                let mut all = Vec::new();
-                let start = x.next();
-                while fifo.next(start, &mut points).map_err(message)?.is_some() {}
-                fifo.start(x.next()).map_err(message)?;
-                let state = fifo.state(x.next()).map_err(message)?;
-                all.push(state.until_underrun_s);
-                Ok(all)
+                Ok(vec![hermite_distance_error(table.platform(), &from, &to)])
             })
         }),
     ]
 }
 
-/// A table of 20 parts on the good platform.
+/// A table of 20 segments on the good platform.
 fn with_table(run: impl FnOnce(PvtTable<'_, 3>) -> Outcome<f64>) -> Outcome<f64> {
     let numbers = [platform(), two_poses()].concat();
     let mut inputs = crate::calls::Inputs::new(&numbers);
     let (platform, poses) = (inputs.platform()?, [inputs.pose(), inputs.pose()]);
     let path = Path::new(&poses, Interpolation::Straight).map_err(message)?;
     let mut knots = [Knot::default(); 21];
-    run(PvtTable::plan(&platform, &path, Cut::parts(20), &mut knots).map_err(message)?)
+    run(
+        PvtTable::plan(&platform, &path, Segmentation::segments(20), &mut knots)
+            .map_err(message)?,
+    )
 }

@@ -6,7 +6,7 @@ use pose_pt::{AxisLimits, Platform, PvtPoint, PvtRun, PvtTable};
 use crate::exact::Exact;
 use crate::scene::{Draw, Scene};
 
-/// Places of a segment at which the strain is looked at.
+/// Places of a segment at which the distance error is looked at.
 const PLACES: u32 = 24;
 
 /// What positions round off, in parts of the lengths that are added.
@@ -129,22 +129,30 @@ fn size(platform: &Platform<3>, points: &[PvtPoint<3>]) -> f64 {
     origins.chain(axes).fold(0.0, f64::max)
 }
 
-fn strain(platform: &Platform<3>, axes: &[Vector3<f64>; 3]) -> f64 {
+fn distance_error(platform: &Platform<3>, axes: &[Vector3<f64>; 3]) -> f64 {
     platform
-        .strain(&platform.locator_positions(axes))
+        .distance_error(&platform.locator_positions(axes))
         .change
         .abs()
 }
 
-/// The strain between two points is within the bound.
-fn check_strain(platform: &Platform<3>, pair: [&PvtPoint<3>; 2], bound: f64, rounding: f64) {
+/// The distance error between two points is within the bound.
+fn check_distance_error(
+    platform: &Platform<3>,
+    pair: [&PvtPoint<3>; 2],
+    bound: f64,
+    rounding: f64,
+) {
     let [from, to] = pair;
     for place in 0..=PLACES {
         let share = f64::from(place) / f64::from(PLACES);
         let mut places = cubics(platform, from, to).map(|(cubic, _)| cubic.position(share));
         let axes = [(); 3].map(|()| Vector3::from_fn(|_, _| places.next().unwrap()));
-        let strain = strain(platform, &axes);
-        assert!(strain <= bound + rounding, "strain {strain}, bound {bound}");
+        let distance_error = distance_error(platform, &axes);
+        assert!(
+            distance_error <= bound + rounding,
+            "distance error {distance_error}, bound {bound}"
+        );
     }
 }
 
@@ -153,7 +161,7 @@ pub(crate) fn check_table(scene: &Scene<f64>, table: &PvtTable<'_, 3>) {
     let points: Vec<_> = table.points().collect();
     assert_eq!(points.len(), table.len());
     let rounding = ROUNDING * size(platform, &points);
-    let bound = table.strain_bound();
+    let bound = table.distance_error_bound();
     if let Some(allowed) = scene.allowed {
         assert!(bound <= allowed, "bound {bound}, allowed {allowed}");
     }
@@ -169,7 +177,7 @@ pub(crate) fn check_table(scene: &Scene<f64>, table: &PvtTable<'_, 3>) {
                 assert!(out <= rounding, "{place} is {out} out of its stroke");
             }
         }
-        check_strain(platform, [from, to], bound, rounding);
+        check_distance_error(platform, [from, to], bound, rounding);
     }
     let last = points.last().unwrap();
     assert!(last.velocities.iter().all(|v| v.amax() == 0.0));

@@ -5,7 +5,7 @@ use pose_pt::{Path, Platform, PtTable};
 
 use crate::scene::Scene;
 
-/// Places of a segment at which the strain is looked at.
+/// Places of a segment at which the distance error is looked at.
 const PLACES: u32 = 8;
 
 /// Most points that are looked at.
@@ -22,7 +22,7 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
     let Ok(path) = Path::new(&scene.poses, scene.kind) else {
         return false;
     };
-    let table = match PtTable::plan(&platform, &path, scene.cut) {
+    let table = match PtTable::plan(&platform, &path, scene.segmentation) {
         Ok(table) if table.len() <= MOST => table,
         _ => return false,
     };
@@ -38,7 +38,7 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
         .flat_map(|point| point.axes.map(|axes| axes.amax()));
     let size = lengths.chain(axes).fold(T::zero(), |a, b| a.max(b));
     let rounding = epsilons * size;
-    let bound = table.strain_bound();
+    let bound = table.distance_error_bound();
     if let Some(allowed) = scene.allowed {
         assert!(
             bound <= allowed + rounding,
@@ -68,10 +68,12 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
                 let way: Vector3<T> = to - *axes;
                 *axes += way * share;
             }
-            let strain = platform.strain(&platform.locator_positions(&axes)).change;
+            let distance_error = platform
+                .distance_error(&platform.locator_positions(&axes))
+                .change;
             assert!(
-                strain.abs() <= bound + rounding,
-                "strain {strain}, bound {bound}"
+                distance_error.abs() <= bound + rounding,
+                "distance error {distance_error}, bound {bound}"
             );
         }
     }

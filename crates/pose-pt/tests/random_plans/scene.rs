@@ -1,7 +1,7 @@
 //! A random body on random locators, its way, limits and unit; now and then a number that is none.
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, RealField, UnitQuaternion, Vector3};
-use pose_pt::{AxisLimits, Convention, Cut, Interpolation, Locator, Platform};
+use pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platform, Segmentation};
 
 use crate::random::Random;
 
@@ -65,11 +65,11 @@ pub(crate) struct Scene<T: RealField> {
     pub(crate) locators: [Locator<T>; 3],
     pub(crate) poses: Vec<Isometry3<T>>,
     pub(crate) kind: Interpolation,
-    pub(crate) cut: Cut<T>,
-    /// The strain that the cut allows.
+    pub(crate) segmentation: Segmentation<T>,
+    /// The distance error that the segmentation allows.
     pub(crate) allowed: Option<T>,
     /// Of the same in f32.
-    single: Cut<f32>,
+    single: Segmentation<f32>,
 }
 
 const KINDS: [Interpolation; 4] = [
@@ -87,13 +87,13 @@ impl Scene<f64> {
         let mut locators = locators(draw, unit, reach);
         let poses = poses(draw, unit);
         tighten(draw, &mut locators, &poses);
-        let (cut, single, allowed) = cut(draw, unit);
+        let (segmentation, single, allowed) = segmentation(draw, unit);
         let kind = KINDS[usize::try_from(draw.0.bits() % 4).unwrap()];
         let mut scene = Self {
             locators,
             poses,
             kind,
-            cut,
+            segmentation,
             allowed,
             single,
         };
@@ -120,8 +120,8 @@ impl Scene<f64> {
             7 => limits.jerk = Some(value),
             8 => self.poses[1].translation.vector[axis] = value,
             _ => {
-                self.cut = Cut::strain(value);
-                self.single = Cut::strain(rounded(value));
+                self.segmentation = Segmentation::max_distance_error(value);
+                self.single = Segmentation::max_distance_error(rounded(value));
                 self.allowed = Some(value);
             }
         }
@@ -147,7 +147,7 @@ impl Scene<f64> {
             locators,
             poses: self.poses.iter().map(|pose| pose.cast()).collect(),
             kind: self.kind,
-            cut: self.single,
+            segmentation: self.single,
             allowed: self.allowed.map(rounded),
             single: self.single,
         }
@@ -241,26 +241,30 @@ fn tighten(draw: &mut Draw, locators: &mut [Locator<f64>; 3], poses: &[Isometry3
     }
 }
 
-fn cut(draw: &mut Draw, unit: f64) -> (Cut<f64>, Cut<f32>, Option<f64>) {
+fn segmentation(draw: &mut Draw, unit: f64) -> (Segmentation<f64>, Segmentation<f32>, Option<f64>) {
     let least = draw.count(100.0);
     match draw.0.bits() % 4 {
         0 => {
-            let strain = unit * draw.size(-12.0, 0.0);
-            let cut = Cut::strain(strain).at_least(least);
+            let distance_error = unit * draw.size(-12.0, 0.0);
+            let segmentation = Segmentation::max_distance_error(distance_error).at_least(least);
             (
-                cut,
-                Cut::strain(rounded(strain)).at_least(least),
-                Some(strain),
+                segmentation,
+                Segmentation::max_distance_error(rounded(distance_error)).at_least(least),
+                Some(distance_error),
             )
         }
         1 => {
             let (slide, turn) = (unit * draw.size(-3.0, 1.0), draw.size(-2.0, 1.0));
-            let single = Cut::steps(rounded(slide), rounded(turn));
-            (Cut::steps(slide, turn), single, None)
+            let single = Segmentation::steps(rounded(slide), rounded(turn));
+            (Segmentation::steps(slide, turn), single, None)
         }
         _ => {
-            let parts = draw.count(130.0);
-            (Cut::parts(parts), Cut::parts(parts), None)
+            let segments = draw.count(130.0);
+            (
+                Segmentation::segments(segments),
+                Segmentation::segments(segments),
+                None,
+            )
         }
     }
 }

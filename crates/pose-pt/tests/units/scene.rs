@@ -2,8 +2,9 @@
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose_pt::{
-    Ahead, AxisLimits, Cut, FitError, Knot, LimitError, Locator, Path, PlanError, Platform,
-    PlatformError, PoseVector, PtTable, PvtPoint, PvtTable, calibrate, hermite_strain, rigid_fit,
+    Ahead, AxisLimits, FitError, Knot, LimitError, Locator, Path, PlanError, Platform,
+    PlatformError, PoseVector, PtTable, PvtPoint, PvtTable, Segmentation, calibrate,
+    hermite_distance_error, rigid_fit,
 };
 
 use crate::moves::ALL;
@@ -22,7 +23,7 @@ pub(crate) struct Number {
 pub(crate) struct Scene {
     pub(crate) poses: [Isometry3<f64>; 2],
     pub(crate) kind: usize,
-    pub(crate) parts: u32,
+    pub(crate) segments: u32,
     pub(crate) jerk: Option<f64>,
     pub(crate) is_skewed: bool,
 }
@@ -44,7 +45,7 @@ impl Scene {
         numbers.measured(unit);
         numbers.refused(&platform, unit);
         let path = Path::new(&poses, ALL[self.kind]).unwrap();
-        numbers.tables(&platform, &path, self.parts, unit);
+        numbers.tables(&platform, &path, self.segments, unit);
         numbers.0
     }
 }
@@ -105,9 +106,13 @@ impl Numbers {
         let body = platform.pose(&axes).unwrap();
         self.put("place", 1, body.pose.translation.vector.iter().copied());
         self.put("turn", 0, body.pose.rotation.coords.iter().copied());
-        self.vectors("pulls", &body.pulls);
-        let strain = body.strain;
-        self.put("strain", 1, [body.rms, strain.distance, strain.change]);
+        self.vectors("residuals", &body.residuals);
+        let distance_error = body.distance_error;
+        self.put(
+            "distance error",
+            1,
+            [body.rms, distance_error.distance, distance_error.change],
+        );
         let fit = rigid_fit(platform.anchors(), &points).unwrap();
         self.put("residual", 1, [fit.rms, fit.max_residual]);
         self.put("gap", 2, [fit.eigenvalue_gap]);
@@ -173,14 +178,20 @@ impl Numbers {
             Isometry3::translation(unit, 0.0, 0.0),
         ];
         let path = Path::new(&poses, ALL[0]).unwrap();
-        match PtTable::plan(platform, &path, Cut::strain(1e-15 * unit)) {
-            Err(PlanError::Strain { allowed, least }) => self.put("least", 1, [allowed, least]),
+        match PtTable::plan(
+            platform,
+            &path,
+            Segmentation::max_distance_error(1e-15 * unit),
+        ) {
+            Err(PlanError::DistanceError { allowed, least }) => {
+                self.put("least", 1, [allowed, least]);
+            }
             other => panic!("{other:?}"),
         }
     }
 
     /// Paths, tables, runs.
-    fn tables(&mut self, platform: &Platform<3>, path: &Path<'_>, parts: u32, unit: f64) {
+    fn tables(&mut self, platform: &Platform<3>, path: &Path<'_>, segments: u32, unit: f64) {
         let leg = path.leg(0).unwrap();
         self.put("way", 1, [leg.length()]);
         self.put("leg's turn", 0, [leg.turn()]);
@@ -190,25 +201,29 @@ impl Numbers {
             leg.pose(0.5).translation.vector.iter().copied(),
         );
         let mut knots = vec![Knot::default(); 2000];
-        for cut in [
-            Cut::parts(parts.max(7)),
-            Cut::steps(3.3 * unit, 0.013),
-            Cut::strain(0.003_7 * unit),
+        for segmentation in [
+            Segmentation::segments(segments.max(7)),
+            Segmentation::steps(3.3 * unit, 0.013),
+            Segmentation::max_distance_error(0.003_7 * unit),
         ] {
-            let table = PtTable::plan(platform, path, cut).unwrap();
-            self.put("PT strain", 1, [table.strain_bound()]);
+            let table = PtTable::plan(platform, path, segmentation).unwrap();
+            self.put("PT distance error", 1, [table.distance_error_bound()]);
             self.put("PT time", 0, [table.duration_s()]);
             for point in table.points() {
                 self.vectors("PT axes", &point.axes);
                 self.put("PT segment", 0, [point.segment_s]);
             }
-            let table = PvtTable::plan(platform, path, cut, &mut knots).unwrap();
-            self.put("PVT strain", 1, [table.strain_bound()]);
+            let table = PvtTable::plan(platform, path, segmentation, &mut knots).unwrap();
+            self.put("PVT distance error", 1, [table.distance_error_bound()]);
             self.put("PVT time", 0, [table.duration_s()]);
             let points: Vec<_> = table.points().collect();
             self.segments(platform, &points);
             let mut ahead = vec![Ahead::default(); table.len()];
-            let mut run = table.at_pace(0.7).unwrap().run(1.3, &mut ahead).unwrap();
+            let mut run = table
+                .at_speed_scale(0.7)
+                .unwrap()
+                .run(1.3, &mut ahead)
+                .unwrap();
             run.set_feed(1.2).unwrap();
             self.segments(platform, &run.collect::<Vec<_>>());
         }
@@ -219,8 +234,8 @@ impl Numbers {
             self.vectors("PVT axes", &pair[1].axes);
             self.vectors("PVT speeds", &pair[1].velocities);
             self.put("PVT segment", 0, [pair[1].segment_s]);
-            let strain = hermite_strain(platform, &pair[0], &pair[1]);
-            self.put("strain between", 1, [strain]);
+            let distance_error = hermite_distance_error(platform, &pair[0], &pair[1]);
+            self.put("distance error between", 1, [distance_error]);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The motion of the body: axis by axis, its strain, and before and after.
+//! The motion of the body: axis by axis, its distance error, and before and after.
 
 use machine_sim::{Axis, Colour, Figure, Mark, Plot, Stroke};
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
@@ -17,7 +17,7 @@ const MAX_TURN_RAD: f64 = 0.5;
 const BEFORE: Colour = Colour::rgb(90, 90, 90);
 const AFTER: Colour = Colour::rgb(140, 29, 24);
 
-/// Body before and after, axis positions and speeds, strain.
+/// Body before and after, axis positions and speeds, distance error.
 pub(crate) fn align<const N: usize>(
     machine: &Machine,
     platform: &Platform<N>,
@@ -44,7 +44,7 @@ pub(crate) fn align<const N: usize>(
             axes(examination, locator, end_s, "speed", "mm/s", |it| it.speed),
         ]);
     }
-    figure.with_row([strain(examination, end_s, bound_mm)])
+    figure.with_row([distance_error(examination, end_s, bound_mm)])
 }
 
 /// The three axes of a locator over time.
@@ -72,16 +72,16 @@ fn axes<const N: usize>(
     })
 }
 
-fn strain<const N: usize>(examination: &Examination<N>, end_s: f64, bound_mm: f64) -> Plot {
+fn distance_error<const N: usize>(examination: &Examination<N>, end_s: f64, bound_mm: f64) -> Plot {
     const UM_PER_MM: f64 = 1000.0;
     let moments = &examination.moments;
     // Of many moments the worst of each group.
     let groups = moments.chunks(moments.len().div_ceil(CURVE).max(1));
     let worst = groups.filter_map(|group| {
-        let size = |moment: &&Moment<N>| moment.strain.abs();
+        let size = |moment: &&Moment<N>| moment.distance_error.abs();
         group.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
     });
-    let points = worst.map(|it| [it.time_s, it.strain * UM_PER_MM]);
+    let points = worst.map(|it| [it.time_s, it.distance_error * UM_PER_MM]);
     let bound = bound_mm * UM_PER_MM;
     let bounds = [bound, -bound].map(|bound| [[0.0, bound], [end_s, bound]]);
     let time = Axis::new("time in s").over(0.0..=end_s);

@@ -3,8 +3,8 @@
 use core::hint::black_box;
 
 use pose_pt::{
-    AxisLimits, Convention, Cut, Interpolation, Knot, Locator, Path, Platform, PoseVector, PtTable,
-    PvtTable,
+    AxisLimits, Convention, Interpolation, Knot, Locator, Path, Platform, PoseVector, PtTable,
+    PvtTable, Segmentation,
 };
 
 use super::{CLOSE_MM, holds};
@@ -20,7 +20,7 @@ fn platform() -> Option<Platform<3>> {
     Platform::new(held).ok()
 }
 
-/// Pose to axes and back, with what the locators pull.
+/// Pose to axes and back, with the distance error of the locators.
 pub fn pose() -> Option<()> {
     let platform = platform()?;
     let vector = PoseVector::new(black_box(10.0), -20.0, 100.0, 0.01, 0.02, -0.03);
@@ -30,24 +30,24 @@ pub fn pose() -> Option<()> {
     let back = PoseVector::from_isometry(&body.pose, Convention::IntrinsicXyz).vector;
     holds((back.position() - vector.position()).norm() < CLOSE_MM)?;
     holds((back.angles() - vector.angles()).norm() < CLOSE_MM)?;
-    holds(body.strain.change.abs() < CLOSE_MM)?;
+    holds(body.distance_error.change.abs() < CLOSE_MM)?;
     axes.last_mut()?.y += black_box(0.5);
-    holds(platform.pose(&axes).ok()?.strain.change > 0.4)?;
+    holds(platform.pose(&axes).ok()?.distance_error.change > 0.4)?;
     axes.last_mut()?.y = 301.0;
     holds(platform.check_axes(&axes).is_err())
 }
 
-/// A way as PT and PVT tables within a strain.
+/// A way as PT and PVT tables within a distance error.
 pub fn tables() -> Option<()> {
     let platform = platform()?;
     let poses = [0.0, black_box(0.02)].map(|gamma| {
         PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::ExtrinsicXyz)
     });
     let path = Path::new(&poses, Interpolation::Straight).ok()?;
-    let table = PtTable::plan(&platform, &path, Cut::strain(0.01)).ok()?;
-    holds(table.points().count() == 5 && table.strain_bound() <= 0.01)?;
+    let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).ok()?;
+    holds(table.points().count() == 5 && table.distance_error_bound() <= 0.01)?;
     let mut knots = [Knot::default(); 33];
-    let table = PvtTable::plan(&platform, &path, Cut::parts(32), &mut knots).ok()?;
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(32), &mut knots).ok()?;
     let last = table.points().last()?;
     holds((last.time_s - table.duration_s()).abs() < CLOSE_MM)?;
     holds(

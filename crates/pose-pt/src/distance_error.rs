@@ -43,7 +43,7 @@ fn numbers<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
 
 /// By how much a distance shrinks at most while the axes move linearly from one point to the
 /// next: at half way |D|² is L² less a quarter of the squared way from D₀ to D₁.
-pub(crate) fn linear_strain<const N: usize, T: RealField + Copy>(
+pub(crate) fn linear_distance_error<const N: usize, T: RealField + Copy>(
     platform: &Platform<N, T>,
     from: &[Vector3<T>; N],
     to: &[Vector3<T>; N],
@@ -100,7 +100,7 @@ fn departure<T: RealField + Copy>(length: T, change: T) -> T {
 ///
 /// The fourth-order figure alone does not hold where the speed changes.
 #[must_use]
-pub fn hermite_strain<const N: usize>(
+pub fn hermite_distance_error<const N: usize>(
     platform: &Platform<N>,
     from: &PvtPoint<N>,
     to: &PvtPoint<N>,
@@ -122,14 +122,14 @@ pub fn hermite_strain<const N: usize>(
         for (_, (other_start, other_end)) in both().take(number) {
             let from = (start.0 - other_start.0, start.1 - other_start.1);
             let to = (end.0 - other_end.0, end.1 - other_end.1);
-            worst = larger_or_nan(worst, pair_strain([from, to], duration));
+            worst = larger_or_nan(worst, pair_distance_error([from, to], duration));
         }
     }
     worst
 }
 
 /// The bound for one pair from the vector between them and its derivative at both ends.
-fn pair_strain(ends: [(Vector3<f64>, Vector3<f64>); 2], duration: f64) -> f64 {
+fn pair_distance_error(ends: [(Vector3<f64>, Vector3<f64>); 2], duration: f64) -> f64 {
     let [(b0, from), (b3, to)] = ends;
     let third = duration / 3.0;
     // Differences from the ends: B₀·B₀ = L² is taken out before anything is rounded.
@@ -165,7 +165,7 @@ mod tests {
         .unwrap()
     }
 
-    /// A turn by `turn` in which the speed changes by the share `change`, and the strain at
+    /// A turn by `turn` in which the speed changes by the share `change`, and the distance error at
     /// 1000 places of it.
     fn bound_and_measured(turn: f64, change: f64) -> (f64, f64) {
         let platform = flat();
@@ -196,10 +196,10 @@ mod tests {
                     + to.axes[i] * (u * u * (3.0 - 2.0 * u))
                     - to.velocities[i] * (u * u * v);
             }
-            let strain = platform.strain(&platform.locator_positions(&axes));
-            worst.max(strain.change.abs())
+            let distance_error = platform.distance_error(&platform.locator_positions(&axes));
+            worst.max(distance_error.change.abs())
         });
-        (hermite_strain(&platform, &from, &to), measured)
+        (hermite_distance_error(&platform, &from, &to), measured)
     }
 
     #[test]
