@@ -35,8 +35,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     ///
     /// With [`Segmentation::max_distance_error`] each leg has a number of segments that keeps the
     /// allowed distance error while one segment fewer does not, by [`hermite_distance_error`]; it
-    /// is found by bisection, and each trial
-    /// is a plan.
+    /// is found by bisection, and each trial is a plan.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
