@@ -1,3 +1,5 @@
+//! Timers by the vendors' formulas.
+
 use super::*;
 
 const CRYSTAL_HZ: u32 = 11_059_200;
