@@ -3,6 +3,7 @@
 
 mod arguments;
 mod artefacts;
+mod cable;
 mod input;
 mod progress;
 mod pseudo_terminal;
@@ -10,6 +11,7 @@ mod terminal;
 
 pub use arguments::{arguments, fraction, print_notes, print_summary, run};
 pub use artefacts::{Artefacts, write_json};
+pub use cable::{Cable, Port};
 pub use input::{read, read_bytes};
 pub use progress::Progress;
 pub use pseudo_terminal::PseudoTerminal;

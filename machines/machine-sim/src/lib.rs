@@ -2,12 +2,15 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+extern crate alloc;
+
 mod figure;
 #[cfg(feature = "input")]
 pub mod input;
 mod profile;
 mod random;
 mod scale;
+pub mod serial_line;
 mod stepper;
 mod vcd;
 
