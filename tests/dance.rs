@@ -325,7 +325,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (
             score.replace("45", "450"),
             &[][..],
-            "own.toml: line 4, move 1: \"arm\": frame 1 of 5 needs a speed of 300, 127 is the most",
+            "own.toml: line 4, move 1: \"arm\": frame 1 of 5 needs a speed of 300, max 127",
         ),
         (
             score.replace("at_s", "start_s"),
@@ -365,7 +365,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (
             format!("frame_ticks = 400000000\nlength_s = 400000\n{MOTOR}"),
             &[],
-            "data.h: 400000000 ticks, 268435456 are the most",
+            "data.h: 400000000 ticks, max 268435456",
         ),
         (
             String::new(),

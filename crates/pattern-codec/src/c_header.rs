@@ -18,7 +18,7 @@
 //! | `... name[8] = {`, `... name[][8] = {` | [`Item::Array`], its words in any order |
 //! | a number in an array: decimal, `0x`, `0b`, octal with a leading 0; sign, `U` and `L`, round brackets | [`Item::Value`] |
 //! | `{` and `}` around a row of `name[][8]` | nothing; the row must have its 8 values |
-//! | `}` behind the values | [`Item::End`]; a declared length must be met |
+//! | `}` after the values | [`Item::End`]; a declared length must be met |
 //! | another declaration: a function, a structure, a variable | nothing |
 //!
 //! Every error names line and column, both counted from 1; a column is one character.
@@ -30,7 +30,7 @@ mod scan;
 mod style;
 mod write;
 
-pub use error::{HeaderError, HeaderErrorKind, Place};
+pub use error::{HeaderError, HeaderErrorKind, Location};
 pub use items::{Item, Items, items};
 pub use style::{Dialect, Name, NameError};
 pub use write::{TableHeader, WriteError};

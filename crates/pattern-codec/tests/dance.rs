@@ -94,7 +94,7 @@ proptest! {
         for text in [format!("char a[]={{1,{text}"), text] {
             if let Err(error) = Data::<2>::read(&text) {
                 let lines = u32::try_from(text.split(['\n', '\r']).count()).unwrap();
-                prop_assert!(error.place.line <= lines && error.place.column > 0, "{error}");
+                prop_assert!(error.location.line <= lines && error.location.column > 0, "{error}");
             }
         }
     }
@@ -346,7 +346,7 @@ fn tables_that_no_firmware_holds_are_not_written() {
     assert_eq!(error, "a table of 65544 bytes, an 8051 addresses 65536");
     assert!(write(8192).is_ok());
     let error = Threshold::new(127).unwrap_err();
-    assert_eq!(error.to_string(), "a threshold of 127, 128 is the least");
+    assert_eq!(error.to_string(), "a threshold of 127, min 128");
     for (name, wanted) in [
         ("", "the name of a table is empty"),
         ("xdata", "a table cannot have a keyword"),
@@ -354,7 +354,7 @@ fn tables_that_no_firmware_holds_are_not_written() {
         ("a b", "' ' cannot stand in the name"),
         (
             "abcdefghijklmnopqrstuvwxyz_abcdef",
-            "a table's name of 33 characters, 31 are the most",
+            "a table's name of 33 characters, max 31",
         ),
     ] {
         let error = Name::new(name).unwrap_err().to_string();

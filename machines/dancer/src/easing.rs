@@ -29,7 +29,7 @@ pub enum Easing {
 }
 
 impl Easing {
-    /// The speeds of so many frames with the highest of them given.
+    /// The speeds of `frames` frames, the highest of them given.
     ///
     /// ```
     /// use dancer::Easing;

@@ -43,7 +43,7 @@ struct OtherLaw {
 }
 
 impl<'a> Report<'a> {
-    /// The numbers of a run, for a firmware of so many bytes beside the frames.
+    /// The numbers of a run, for a firmware with `code_bytes` beside the frames.
     #[must_use]
     pub fn new(
         score: &'a Score,

@@ -51,7 +51,7 @@ pub use error::{ScoreError, ScoreErrorKind, ScorePart};
 /// | `length_s` | length of the dance | end of the last move |
 /// | `[[motor]]` | one per byte of the frame, in this order | the other bytes rest |
 /// | `name` | what moves call it | |
-/// | `half_step_deg` | angle of one half step, behind the gear | |
+/// | `half_step_deg` | angle of one half step, after the gear | |
 /// | `max_speed` | highest speed, 1..=127 | 127 |
 /// | `[[move]]` | | |
 /// | `motor` | whose | |

@@ -12,7 +12,7 @@ use crate::MOTORS;
 use crate::bus_log::BusLog;
 use crate::law::Law;
 
-/// The most ticks that are simulated: three days of 1 ms, some seconds of a PC.
+/// Highest number of ticks that are simulated: three days of 1 ms, some seconds of a PC.
 const MAX_TICKS: u64 = 1 << 28;
 
 /// What the motors did.
@@ -130,10 +130,7 @@ pub fn simulate(
 ) -> Result<Run> {
     let (timing, frames) = (data.timing(), data.frame_count());
     let ticks = frames.saturating_mul(timing.frame_ticks().into());
-    ensure!(
-        ticks <= MAX_TICKS,
-        "data.h: {ticks} ticks, {MAX_TICKS} are the most"
-    );
+    ensure!(ticks <= MAX_TICKS, "data.h: {ticks} ticks, max {MAX_TICKS}");
     let mut firmware = Firmware::new(data, law)?;
     let mut log = BusLog::new(vcd, timing)?;
     let phases = firmware.phases;

@@ -1,4 +1,4 @@
-//! Turns: the speeds of the frames that bring a motor by so many half steps.
+//! Turns: the speeds of the frames that turn a motor by a number of half steps.
 
 mod reset;
 
@@ -9,8 +9,8 @@ use crate::law::Law;
 use crate::motor::{Motor, ticks_to};
 
 impl Motor {
-    /// The speeds that turn the motor by so many half steps in so many frames, from where it is and
-    /// with what its accumulator holds.
+    /// The speeds that turn the motor by `half_steps` in `frames`, from where it is and with what its
+    /// accumulator holds.
     ///
     /// ```
     /// use dancer::{Easing, Law, Motor};
@@ -35,7 +35,7 @@ impl Motor {
     /// Under [`Law::Reset`] each frame takes the one of the distinct speeds that ends nearest to
     /// where the easing has it, half steps and what the accumulator holds of the next; the last
     /// three are searched together for the end nearest to what was asked, at first from where the
-    /// easing has it, then from up to 8 half steps ahead or behind. What would be refused then is
+    /// easing has it, then from up to 8 half steps before or after. What would be refused then is
     /// searched once more, among all speeds of the last 3 to 12 frames, as many as 2 million tries
     /// reach: a turn of so few frames is refused only where no speeds make it.
     ///
@@ -69,7 +69,7 @@ impl Motor {
         Ok(speeds)
     }
 
-    /// The smallest sum of speeds that makes so many half steps without loss, or the one below
+    /// The smallest sum of speeds that makes the half steps without loss, or the one below
     /// where it ends nearer.
     fn smallest_sum(&self, half_steps: i32) -> u64 {
         let ticks_per_frame = self.frame_ticks();
@@ -114,7 +114,7 @@ impl Motor {
 #[non_exhaustive]
 pub enum TurnError {
     /// A frame needs more than the highest speed.
-    #[error("frame {frame} of {frames} needs a speed of {speed}, {max} is the most")]
+    #[error("frame {frame} of {frames} needs a speed of {speed}, max {max}")]
     TooFast {
         /// The frame, from 1.
         frame: u16,

@@ -202,7 +202,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
         (
             "to_deg = 45",
             "speed = -128",
-            "line 11, move 1: speed = -128, 127 is the most",
+            "line 11, move 1: speed = -128, max 127",
         ),
         (
             "to_deg = 45",
@@ -243,7 +243,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
         (
             "to_deg = 45",
             "to_deg = 99",
-            "line 11, move 1: \"arm\": frame 1 of 5 needs a speed of 132, 127 is the most",
+            "line 11, move 1: \"arm\": frame 1 of 5 needs a speed of 132, max 127",
         ),
         (
             "to_deg = 45",
@@ -253,7 +253,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
         (
             "to_deg = 45",
             "to_deg = 45\n[[move]]\nmotor = 'wheel'\nat_s = 3\nfor_s = 1\nspeed = 101",
-            "line 16, move 2: speed = 101, 100 is the most",
+            "line 16, move 2: speed = 101, max 100",
         ),
         (
             "to_deg = 45",
@@ -299,10 +299,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
             "tick_us = 0",
             "line 1: a frame of 200 ticks of 0 us has no length",
         ),
-        (
-            "threshold = 127",
-            "line 1: a threshold of 127, 128 is the least",
-        ),
+        ("threshold = 127", "line 1: a threshold of 127, min 128"),
         ("tempo = 3", "line 1: unknown field `tempo`"),
         (
             "title = 'Gavotte'\nlength_s = -1",
@@ -310,7 +307,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
         ),
         (
             "length_s = 5\n\nthreshold = 1",
-            "line 3: a threshold of 1, 128 is the least",
+            "line 3: a threshold of 1, min 128",
         ),
         (
             "tick_us = 500\nframe_ticks = 0",

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use no_panic::no_panic;
-use pattern_codec::c_header::{HeaderError, Item, Items, Place, items};
+use pattern_codec::c_header::{HeaderError, Item, Items, Location, items};
 use pattern_codec::dance::{Data, DecodeError, Decoded, Encoded, Packing};
 use pattern_codec::engraving::{Format, PatternData, ReloadData};
 
@@ -24,7 +24,7 @@ fn decoded_next(decoded: &mut Decoded<Bytes<'_>, 8>) -> Option<Result<[i8; 8], D
 
 #[no_panic]
 #[inline(never)]
-fn item_next<'a>(items: &mut Items<'a>) -> Option<Result<(Place, Item<'a>), HeaderError>> {
+fn item_next<'a>(items: &mut Items<'a>) -> Option<Result<(Location, Item<'a>), HeaderError>> {
     items.next()
 }
 

@@ -4,26 +4,29 @@ use core::fmt;
 
 use thiserror::Error;
 
-/// A place in a text, line and column counted from 1.
+/// A location in a text, line and column counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct Place {
+pub struct Location {
     /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,
 }
 
-impl Place {
+impl Location {
     pub(super) const START: Self = Self { line: 1, column: 1 };
 
     pub(crate) const fn error(self, kind: HeaderErrorKind) -> HeaderError {
-        HeaderError { place: self, kind }
+        HeaderError {
+            location: self,
+            kind,
+        }
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { line, column } = self;
         write!(f, "line {line}, column {column}")
@@ -33,11 +36,11 @@ impl fmt::Display for Place {
 /// Why a header cannot be read, and where.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("{place}: {kind}")]
+#[error("{location}: {kind}")]
 #[non_exhaustive]
 pub struct HeaderError {
     /// Where.
-    pub place: Place,
+    pub location: Location,
     /// Why.
     pub kind: HeaderErrorKind,
 }
@@ -52,16 +55,16 @@ pub enum HeaderErrorKind {
     Unexpected {
         /// The character.
         found: char,
-        /// What the place needs.
+        /// What the location needs.
         wanted: &'static str,
     },
     /// The text ends too early.
     #[error("the text ends where {wanted} must stand")]
     UnexpectedEnd {
-        /// What the place needs.
+        /// What the location needs.
         wanted: &'static str,
     },
-    /// A comment without end; the place is its start.
+    /// A comment without end; the location is its start.
     #[error("this comment has no end")]
     OpenComment,
     /// Digits and letters that are no number.
@@ -76,7 +79,7 @@ pub enum HeaderErrorKind {
     /// Row brackets in an array without row length.
     #[error("a row in an array that is not declared as name[][n]")]
     Row,
-    /// A row shorter or longer than declared; the place is its end.
+    /// A row shorter or longer than declared; the location is its end.
     #[error("a row of {values} values, declared are {declared}")]
     RowLength {
         /// Values in the row.
@@ -84,7 +87,7 @@ pub enum HeaderErrorKind {
         /// The declared row length.
         declared: u32,
     },
-    /// An array shorter or longer than declared; the place is its end.
+    /// An array shorter or longer than declared; the location is its end.
     #[error("an array of {values} values, declared are {declared}")]
     ArrayLength {
         /// Values in the array.
@@ -92,7 +95,7 @@ pub enum HeaderErrorKind {
         /// The product of its declared dimensions; for toggles, the bytes that the reloads need.
         declared: u32,
     },
-    /// No array, or none of the wanted name; the place is the end of the text.
+    /// No array, or none of the wanted name; the location is the end of the text.
     #[error("the text ends without the array")]
     NoArray,
     /// A second array where only one can be meant.
@@ -103,9 +106,9 @@ pub enum HeaderErrorKind {
     Range {
         /// The value.
         value: i64,
-        /// The least that fits.
+        /// The lowest that fits.
         min: i64,
-        /// The most that fits.
+        /// The highest that fits.
         max: i64,
     },
     /// A `#define` that contradicts the caller or the table.
@@ -118,13 +121,13 @@ pub enum HeaderErrorKind {
         /// The value that fits.
         wanted: i64,
     },
-    /// Bytes that are no frames; the place is that of the last value read, or the end.
+    /// Bytes that are no frames; the location is that of the last value read, or the end.
     #[error(transparent)]
     Frames(crate::dance::DecodeErrorKind),
-    /// Bytes that are no records; the place is that of the last value read, or the end.
+    /// Bytes that are no records; the location is that of the last value read, or the end.
     #[error(transparent)]
     Records(crate::engraving::DecodeError),
-    /// Axis codes that are no permutation of 0..=3; the place is the start of the table.
+    /// Axis codes that are no permutation of 0..=3; the location is the start of the table.
     #[error(transparent)]
     AxisCodes(crate::engraving::AxisCodeError),
 }

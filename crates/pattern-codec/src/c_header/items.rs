@@ -3,7 +3,7 @@
 use core::iter::FusedIterator;
 
 use super::scan::{Reach, Scanner, Token};
-use super::{HeaderError, HeaderErrorKind, Place};
+use super::{HeaderError, HeaderErrorKind, Location};
 
 /// What a header has to say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,7 @@ pub fn items(text: &str) -> Items<'_> {
     }
 }
 
-/// Iterator over the [`items`] of a header, each with its place. It ends after the first error.
+/// Iterator over the [`items`] of a header, each with its location. It ends after the first error.
 #[derive(Debug, Clone)]
 #[must_use = "iterators are lazy"]
 pub struct Items<'a> {
@@ -86,7 +86,7 @@ struct Dimensions {
 const NUMBER: &str = "a number";
 
 impl<'a> Iterator for Items<'a> {
-    type Item = Result<(Place, Item<'a>), HeaderError>;
+    type Item = Result<(Location, Item<'a>), HeaderError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let item = match self.state {
@@ -104,8 +104,8 @@ impl<'a> Iterator for Items<'a> {
 impl FusedIterator for Items<'_> {}
 
 impl<'a> Items<'a> {
-    /// The place of the next token, or the end.
-    pub(super) fn place(mut self) -> Result<Place, HeaderError> {
+    /// The location of the next token, or the end.
+    pub(super) fn location(mut self) -> Result<Location, HeaderError> {
         Ok(self.scanner.token(Reach::Text)?.0)
     }
 
@@ -115,30 +115,30 @@ impl<'a> Items<'a> {
     }
 
     /// Up to the next definition or array.
-    fn outside(&mut self) -> Result<Option<(Place, Item<'a>)>, HeaderError> {
+    fn outside(&mut self) -> Result<Option<(Location, Item<'a>)>, HeaderError> {
         let mut name = None;
         let mut dimensions = Dimensions::default();
         let mut assigned = false;
         loop {
-            let (place, token) = self.scanner.token(Reach::Text)?;
+            let (location, token) = self.scanner.token(Reach::Text)?;
             match token {
                 Token::Directive => {
                     if let Some((name, value)) = directive(&mut self.scanner)? {
-                        return Ok(Some((place, Item::Define { name, value })));
+                        return Ok(Some((location, Item::Define { name, value })));
                     }
                 }
                 Token::Word(word) if dimensions.count == 0 => name = Some(word),
-                Token::Mark('[') => self.dimension(place, &mut dimensions)?,
+                Token::Mark('[') => self.dimension(location, &mut dimensions)?,
                 Token::Mark('=') => assigned = true,
                 Token::Mark('{') if assigned && dimensions.count > 0 => {
-                    let name = name.ok_or_else(|| unexpected(place, '{', "the array's name"))?;
+                    let name = name.ok_or_else(|| unexpected(location, '{', "the array's name"))?;
                     self.state = State::Inside(Inside {
                         dimensions,
                         values: 0,
                         row: None,
                         comma_due: false,
                     });
-                    return Ok(Some((place, Item::Array { name })));
+                    return Ok(Some((location, Item::Array { name })));
                 }
                 Token::Mark(open @ ('(' | '{')) => self.skip_brackets(open)?,
                 Token::Mark(';' | ',') => {
@@ -151,13 +151,13 @@ impl<'a> Items<'a> {
         }
     }
 
-    fn dimension(&mut self, at: Place, dimensions: &mut Dimensions) -> Result<(), HeaderError> {
-        let (place, token) = self.scanner.token(Reach::Text)?;
+    fn dimension(&mut self, at: Location, dimensions: &mut Dimensions) -> Result<(), HeaderError> {
+        let (location, token) = self.scanner.token(Reach::Text)?;
         let length = if token == Token::Mark(']') {
             None
         } else {
-            let length = self.value(place, token)?;
-            let length = u32::try_from(length).map_err(|_| out_of_range(place, length))?;
+            let length = self.value(location, token)?;
+            let length = u32::try_from(length).map_err(|_| out_of_range(location, length))?;
             self.expect(']', "]")?;
             Some(length)
         };
@@ -171,52 +171,52 @@ impl<'a> Items<'a> {
     }
 
     /// Up to the next value or the end of the array.
-    fn inside(&mut self, mut inside: Inside) -> Result<(Place, Item<'a>), HeaderError> {
+    fn inside(&mut self, mut inside: Inside) -> Result<(Location, Item<'a>), HeaderError> {
         loop {
-            let (place, token) = self.scanner.token(Reach::Text)?;
+            let (location, token) = self.scanner.token(Reach::Text)?;
             match token {
                 Token::Mark('}') => match inside.row.take() {
                     Some(values) => {
-                        inside.dimensions.check_row(place, values)?;
+                        inside.dimensions.check_row(location, values)?;
                         inside.comma_due = true;
                     }
                     None => {
-                        inside.dimensions.check(place, inside.values)?;
+                        inside.dimensions.check(location, inside.values)?;
                         self.state = State::Outside;
-                        return Ok((place, Item::End));
+                        return Ok((location, Item::End));
                     }
                 },
                 Token::Mark(',') if inside.comma_due => inside.comma_due = false,
-                _ if inside.comma_due => return Err(wrong(place, token, ", or }")),
+                _ if inside.comma_due => return Err(wrong(location, token, ", or }")),
                 Token::Mark('{') if inside.row.is_none() => {
                     if inside.dimensions.count < 2 {
-                        return Err(place.error(HeaderErrorKind::Row));
+                        return Err(location.error(HeaderErrorKind::Row));
                     }
                     inside.row = Some(0);
                 }
                 _ => {
-                    let value = self.value(place, token)?;
+                    let value = self.value(location, token)?;
                     inside.values = inside.values.saturating_add(1);
                     inside.row = inside.row.map(|values| values.saturating_add(1));
                     inside.comma_due = true;
                     self.state = State::Inside(inside);
-                    return Ok((place, Item::Value(value)));
+                    return Ok((location, Item::Value(value)));
                 }
             }
         }
     }
 
     /// A number that begins with a token, or a name that is defined further up.
-    fn value(&mut self, place: Place, token: Token<'a>) -> Result<i64, HeaderError> {
+    fn value(&mut self, location: Location, token: Token<'a>) -> Result<i64, HeaderError> {
         let (text, left) = (self.text, self.scanner.left());
         let defined = |name: &str| defined(text, left, name);
-        value(&mut self.scanner, (place, token), Reach::Text, defined)
+        value(&mut self.scanner, (location, token), Reach::Text, defined)
     }
 
     fn expect(&mut self, mark: char, wanted: &'static str) -> Result<(), HeaderError> {
         match self.scanner.token(Reach::Text)? {
             (_, Token::Mark(found)) if found == mark => Ok(()),
-            (place, token) => Err(wrong(place, token, wanted)),
+            (location, token) => Err(wrong(location, token, wanted)),
         }
     }
 
@@ -231,7 +231,7 @@ impl<'a> Items<'a> {
             match self.scanner.token(Reach::Text)? {
                 (_, Token::Mark(mark)) if mark == open => depth = depth.saturating_add(1),
                 (_, Token::Mark(mark)) if mark == close => depth = depth.saturating_sub(1),
-                (place, Token::End) => return Err(wrong(place, Token::End, wanted)),
+                (location, Token::End) => return Err(wrong(location, Token::End, wanted)),
                 _ => {}
             }
         }
@@ -240,16 +240,16 @@ impl<'a> Items<'a> {
 }
 
 impl Dimensions {
-    fn check_row(self, place: Place, values: u32) -> Result<(), HeaderError> {
+    fn check_row(self, location: Location, values: u32) -> Result<(), HeaderError> {
         match self.second {
             Some(declared) if declared != values => {
-                Err(place.error(HeaderErrorKind::RowLength { values, declared }))
+                Err(location.error(HeaderErrorKind::RowLength { values, declared }))
             }
             _ => Ok(()),
         }
     }
 
-    fn check(self, place: Place, values: u32) -> Result<(), HeaderError> {
+    fn check(self, location: Location, values: u32) -> Result<(), HeaderError> {
         let declared = match (self.count, self.first, self.second) {
             (1, first, _) => first,
             (_, Some(first), Some(second)) => Some(first.saturating_mul(second)),
@@ -257,7 +257,7 @@ impl Dimensions {
         };
         match declared {
             Some(declared) if declared != values => {
-                Err(place.error(HeaderErrorKind::ArrayLength { values, declared }))
+                Err(location.error(HeaderErrorKind::ArrayLength { values, declared }))
             }
             _ => Ok(()),
         }
@@ -301,7 +301,7 @@ fn defined(text: &str, left: usize, wanted: &str) -> Option<i64> {
 /// A number, perhaps by its name, with any signs and round brackets, from its first token on.
 fn value<'a>(
     scanner: &mut Scanner<'a>,
-    (mut place, mut token): (Place, Token<'a>),
+    (mut location, mut token): (Location, Token<'a>),
     reach: Reach,
     defined: impl Fn(&str) -> Option<i64>,
 ) -> Result<i64, HeaderError> {
@@ -317,14 +317,14 @@ fn value<'a>(
             (None, Token::Mark('-')) => negative = !negative,
             (None, Token::Mark('+')) => {}
             (None, Token::Mark('(')) => depth = depth.saturating_add(1),
-            _ => return Err(wrong(place, token, NUMBER)),
+            _ => return Err(wrong(location, token, NUMBER)),
         }
-        (place, token) = scanner.token(reach)?;
+        (location, token) = scanner.token(reach)?;
     };
     for _ in 0..depth {
         match scanner.token(reach)? {
             (_, Token::Mark(')')) => {}
-            (place, token) => return Err(wrong(place, token, ")")),
+            (location, token) => return Err(wrong(location, token, ")")),
         }
     }
     // Within 33 bits.
@@ -335,22 +335,22 @@ fn value<'a>(
     })
 }
 
-fn wrong(place: Place, token: Token<'_>, wanted: &'static str) -> HeaderError {
+fn wrong(location: Location, token: Token<'_>, wanted: &'static str) -> HeaderError {
     let found = match token {
-        Token::End => return place.error(HeaderErrorKind::UnexpectedEnd { wanted }),
+        Token::End => return location.error(HeaderErrorKind::UnexpectedEnd { wanted }),
         Token::Directive => '#',
         Token::Mark(mark) => mark,
         Token::Word(word) => word.chars().next().unwrap_or(' '),
         Token::Number(_, digit) => digit,
     };
-    unexpected(place, found, wanted)
+    unexpected(location, found, wanted)
 }
 
-const fn unexpected(place: Place, found: char, wanted: &'static str) -> HeaderError {
-    place.error(HeaderErrorKind::Unexpected { found, wanted })
+const fn unexpected(location: Location, found: char, wanted: &'static str) -> HeaderError {
+    location.error(HeaderErrorKind::Unexpected { found, wanted })
 }
 
-const fn out_of_range(place: Place, value: i64) -> HeaderError {
+const fn out_of_range(location: Location, value: i64) -> HeaderError {
     let (min, max) = (0, u32::MAX as i64);
-    place.error(HeaderErrorKind::Range { value, min, max })
+    location.error(HeaderErrorKind::Range { value, min, max })
 }

@@ -3,7 +3,7 @@
 
 use core::iter::FusedIterator;
 
-use super::{HeaderError, HeaderErrorKind, Item, Items, Place, items};
+use super::{HeaderError, HeaderErrorKind, Item, Items, Location, items};
 use crate::size_hint::size_of_rest;
 
 /// A text, and the name of the table in it that counts.
@@ -42,10 +42,10 @@ impl<'t> Source<'t> {
     }
 
     /// The value of the `#define` whose name is the table's in upper case, `_` and `end`.
-    fn define(&self, end: &str) -> Option<(Place, i64)> {
+    fn define(&self, end: &str) -> Option<(Location, i64)> {
         items(self.text).find_map(|item| match item {
-            Ok((place, Item::Define { name, value })) if self.is_define(name, end) => {
-                Some((place, value))
+            Ok((location, Item::Define { name, value })) if self.is_define(name, end) => {
+                Some((location, value))
             }
             _ => None,
         })
@@ -61,7 +61,7 @@ impl<'t> Source<'t> {
 
     /// Refuses a `#define` that has another value than the table itself.
     pub(crate) fn agree(&self, end: &'static str, wanted: u64) -> Result<(), HeaderError> {
-        let Some((place, value)) = self.define(end) else {
+        let Some((location, value)) = self.define(end) else {
             return Ok(());
         };
         if u64::try_from(value) == Ok(wanted) {
@@ -69,7 +69,7 @@ impl<'t> Source<'t> {
         }
         let wanted = i64::try_from(wanted).unwrap_or(i64::MAX);
         let name = end;
-        Err(place.error(HeaderErrorKind::Define {
+        Err(location.error(HeaderErrorKind::Define {
             name,
             value,
             wanted,
@@ -87,10 +87,10 @@ impl<'t> Source<'t> {
         (min, max): (i64, i64),
         parse: impl Fn(i64) -> Option<T>,
     ) -> Result<T, HeaderError> {
-        let Some((place, value)) = self.define(end) else {
+        let Some((location, value)) = self.define(end) else {
             return Ok(default);
         };
-        parse(value).ok_or_else(|| place.error(HeaderErrorKind::Range { value, min, max }))
+        parse(value).ok_or_else(|| location.error(HeaderErrorKind::Range { value, min, max }))
     }
 }
 
@@ -103,21 +103,21 @@ fn array<'t>(
     let mut items = items(text);
     let mut found = None;
     while let Some(item) = items.next() {
-        if let (place, Item::Array { name }) = item?
+        if let (location, Item::Array { name }) = item?
             && is_wanted(name)
         {
             let values = ArrayValues {
                 items: items.clone(),
-                place,
+                location,
                 range,
                 error: None,
             };
             if found.replace((name, values)).is_some() {
-                return Err(place.error(HeaderErrorKind::SecondArray));
+                return Err(location.error(HeaderErrorKind::SecondArray));
             }
         }
     }
-    let end = items.place()?;
+    let end = items.location()?;
     found.ok_or_else(|| end.error(HeaderErrorKind::NoArray))
 }
 
@@ -127,7 +127,7 @@ pub(crate) struct ArrayValues<'t> {
     items: Items<'t>,
     range: (i64, i64),
     /// Of the array, then of the last value, at last of the end.
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     error: Option<HeaderError>,
 }
 
@@ -152,17 +152,17 @@ impl Iterator for ArrayValues<'_> {
             return None;
         }
         match self.items.next()? {
-            Ok((place, Item::Value(value))) => {
-                self.place = place;
+            Ok((location, Item::Value(value))) => {
+                self.location = location;
                 let (min, max) = self.range;
                 if (min..=max).contains(&value) {
                     return Some(value);
                 }
                 let kind = HeaderErrorKind::Range { value, min, max };
-                self.error = Some(place.error(kind));
+                self.error = Some(location.error(kind));
             }
-            Ok((place, _)) => {
-                self.place = place;
+            Ok((location, _)) => {
+                self.location = location;
                 // Another array may follow.
                 self.items.stop();
             }
@@ -191,7 +191,7 @@ impl Iterator for Bytes<'_> {
     }
 }
 
-/// Items decoded from an array, so many of which are known to come without error.
+/// Items decoded from an array, of which a known number comes without error.
 #[derive(Debug, Clone)]
 pub(crate) struct Checked<I> {
     items: I,
@@ -199,7 +199,7 @@ pub(crate) struct Checked<I> {
 }
 
 impl<I> Checked<I> {
-    /// Items of which so many have been gone through.
+    /// Items of which `left` have been gone through.
     pub(crate) const fn known(items: I, left: u64) -> Self {
         Self { items, left }
     }
@@ -230,7 +230,7 @@ where
             let values = values(&all);
             match (values.error, item) {
                 (Some(error), _) => return Err(error),
-                (None, Some(Err(error))) => return Err(values.place.error(kind(error))),
+                (None, Some(Err(error))) => return Err(values.location.error(kind(error))),
                 (None, Some(Ok(_))) => left = left.saturating_add(1),
                 (None, None) => return Ok((Self { items, left }, all)),
             }

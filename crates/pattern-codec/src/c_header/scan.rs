@@ -3,7 +3,7 @@
 use core::num::IntErrorKind;
 use core::str::Chars;
 
-use super::{HeaderError, HeaderErrorKind, Place};
+use super::{HeaderError, HeaderErrorKind, Location};
 
 /// A piece of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub(super) enum Reach {
 #[derive(Debug, Clone)]
 pub(super) struct Scanner<'a> {
     chars: Chars<'a>,
-    place: Place,
+    location: Location,
     /// Nothing but blanks since the line began.
     at_line_start: bool,
 }
@@ -39,7 +39,7 @@ impl<'a> Scanner<'a> {
     pub(super) fn new(text: &'a str) -> Self {
         Self {
             chars: text.strip_prefix('\u{FEFF}').unwrap_or(text).chars(),
-            place: Place::START,
+            location: Location::START,
             at_line_start: true,
         }
     }
@@ -49,9 +49,9 @@ impl<'a> Scanner<'a> {
         self.rest().len()
     }
 
-    pub(super) fn token(&mut self, reach: Reach) -> Result<(Place, Token<'a>), HeaderError> {
+    pub(super) fn token(&mut self, reach: Reach) -> Result<(Location, Token<'a>), HeaderError> {
         self.skip_blanks(reach)?;
-        let place = self.place;
+        let location = self.location;
         let at_line_start = core::mem::replace(&mut self.at_line_start, false);
         let token = match self.peek() {
             None => Token::End,
@@ -62,7 +62,7 @@ impl<'a> Scanner<'a> {
                 Token::Directive
             }
             Some(c) if c.is_ascii_digit() => {
-                Token::Number(number(self.word()).map_err(|kind| place.error(kind))?, c)
+                Token::Number(number(self.word()).map_err(|kind| location.error(kind))?, c)
             }
             Some(c) if c.is_alphabetic() || c == '_' => Token::Word(self.word()),
             Some(quote @ ('"' | '\'')) => {
@@ -74,7 +74,7 @@ impl<'a> Scanner<'a> {
                 Token::Mark(mark)
             }
         };
-        Ok((place, token))
+        Ok((location, token))
     }
 
     /// Skips the rest of a directive.
@@ -97,15 +97,15 @@ impl<'a> Scanner<'a> {
     }
 
     fn bump(&mut self) {
-        let Place { line, column } = self.place;
-        self.place = match self.chars.next() {
+        let Location { line, column } = self.location;
+        self.location = match self.chars.next() {
             None => return,
             Some('\r') if self.rest().starts_with('\n') => return,
-            Some('\n' | '\r') => Place {
+            Some('\n' | '\r') => Location {
                 line: line.saturating_add(1),
                 column: 1,
             },
-            Some(_) => Place {
+            Some(_) => Location {
                 line,
                 column: column.saturating_add(1),
             },
@@ -146,7 +146,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Skips a backslash and the line end behind it, if they come next.
+    /// Skips a backslash and the line end after it, if they come next.
     fn skip_continuation(&mut self) -> bool {
         let continues = ["\\\n", "\\\r"]
             .iter()
@@ -162,7 +162,7 @@ impl<'a> Scanner<'a> {
     }
 
     fn skip_comment(&mut self) -> Result<(), HeaderError> {
-        let start = self.place;
+        let start = self.location;
         self.bump();
         self.bump();
         while !self.rest().starts_with("*/") {
@@ -183,7 +183,7 @@ impl<'a> Scanner<'a> {
                 None | Some('\n' | '\r') => {
                     let wanted = "the closing quote";
                     let kind = HeaderErrorKind::UnexpectedEnd { wanted };
-                    return Err(self.place.error(kind));
+                    return Err(self.location.error(kind));
                 }
                 Some('\\') => self.bump(),
                 Some(c) if c == quote => {
@@ -200,10 +200,10 @@ impl<'a> Scanner<'a> {
 /// The value of a C integer constant.
 fn number(word: &str) -> Result<u32, HeaderErrorKind> {
     let digits = word.trim_end_matches(['u', 'U', 'l', 'L']);
-    let behind = |prefixes: [&str; 2]| prefixes.iter().find_map(|p| digits.strip_prefix(p));
-    let value = if let Some(hex) = behind(["0x", "0X"]) {
+    let after = |prefixes: [&str; 2]| prefixes.iter().find_map(|p| digits.strip_prefix(p));
+    let value = if let Some(hex) = after(["0x", "0X"]) {
         u32::from_str_radix(hex, 16)
-    } else if let Some(binary) = behind(["0b", "0B"]) {
+    } else if let Some(binary) = after(["0b", "0B"]) {
         u32::from_str_radix(binary, 2)
     } else if digits.starts_with('0') {
         u32::from_str_radix(digits, 8)

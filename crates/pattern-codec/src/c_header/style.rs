@@ -23,7 +23,7 @@ pub enum Dialect {
 pub struct Name<'n>(&'n str);
 
 impl<'n> Name<'n> {
-    /// The most characters.
+    /// Highest number of characters.
     pub const MAX_LEN: usize = 31;
 
     /// Checks a name.
@@ -85,10 +85,7 @@ pub enum NameError {
     #[error("a table cannot have a keyword of the compiler as its name")]
     Keyword,
     /// Too many characters.
-    #[error(
-        "a table's name of {length} characters, {} are the most",
-        Name::MAX_LEN
-    )]
+    #[error("a table's name of {length} characters, max {}", Name::MAX_LEN)]
     TooLong {
         /// Its length.
         length: usize,

@@ -38,7 +38,7 @@ impl<'n, F: Copy> TableHeader<'n, F> {
         Self { dialect, ..self }
     }
 
-    /// A header of so many bytes of tables: what the comment says of them, the ends and values of
+    /// A header with tables of `bytes` bytes: what the comment says of them, the ends and values of
     /// the `#define`s, and the tables.
     pub(crate) fn write_parts<W: Write>(
         &self,
@@ -74,7 +74,7 @@ pub enum WriteError {
     TooLong {
         /// Bytes of the table.
         bytes: u64,
-        /// The most.
+        /// The highest number of them.
         limit: u64,
     },
     /// The writer refused.
@@ -91,7 +91,7 @@ impl From<fmt::Error> for WriteError {
 /// Code memory that an 8051 addresses, in bytes.
 const CODE_SPACE: u64 = 65_536;
 
-/// Refuses a table of so many bytes that no firmware can hold.
+/// Refuses a table of a size that no firmware can hold.
 const fn check_size(bytes: u64) -> Result<(), WriteError> {
     match bytes {
         0 => Err(WriteError::Empty),
@@ -162,7 +162,7 @@ impl<W: Write> Layout<'_, '_, W> {
         self.out.write_char('\n')
     }
 
-    /// An array of so many elements, with the end of its name. Some of its values begin a row.
+    /// An array of `length` elements, with the end of its name. Some of its values begin a row.
     pub(crate) fn table(
         &mut self,
         element: Element,

@@ -25,7 +25,7 @@ use crate::c_header::{
 /// assert!(data.frames().eq(frames));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-/// The `#define`s, each behind the name of the table in upper case: `MOTORS`, `FRAMES`,
+/// The `#define`s, each after the name of the table in upper case: `MOTORS`, `FRAMES`,
 /// `FRAME_TICKS`, `TICK_US`, `THRESHOLD`, `PACKING` (0 raw, 1 runs, 2 masked runs) and `BYTES`.
 ///
 /// Raw frames are `signed char` in decimal numbers, eight a row for eight motors; runs are
@@ -208,7 +208,7 @@ impl<'t, const N: usize> Data<'t, N> {
     /// Reads a header with one array.
     ///
     /// # Errors
-    /// [`HeaderError`] names a place and what is wrong there.
+    /// [`HeaderError`] names a location and what is wrong there.
     pub fn read(text: &'t str) -> Result<Self, HeaderError> {
         Self::find(text, None)
     }

@@ -6,9 +6,9 @@ use core::iter::FusedIterator;
 ///
 /// ```text
 /// Raw         N speeds, frame after frame
-/// Runs        count 1..=255, N speeds: so many equal frames
+/// Runs        count 1..=255, N speeds: count equal frames
 /// MaskedRuns  count 1..=255, mask of ceil(N/8) bytes, the speeds of the set bits in the order of
-///             the motors: so many equal frames, in which the other motors keep their speed
+///             the motors: count equal frames, in which the other motors keep their speed
 /// ```
 /// Bit k of mask byte j is motor 8 j + k. Before the first frame every motor rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -104,7 +104,7 @@ impl<I: FusedIterator<Item = [i8; N]>, const N: usize> FusedIterator for Encoded
 pub(super) struct Rows<I, const N: usize> {
     packing: Packing,
     frames: I,
-    /// The frame behind the last run.
+    /// The frame after the last run.
     ahead: Option<[i8; N]>,
     /// The frame of the last run.
     before: [i8; N],

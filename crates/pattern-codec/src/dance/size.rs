@@ -97,7 +97,7 @@ impl ProgramMemory {
     /// 8 KiB.
     pub const AT89C52: Self = Self { bytes: 8192 };
 
-    /// Whether so many bytes of data fit beside so many of code.
+    /// Whether the memory holds data and code, both in bytes.
     #[must_use]
     pub const fn fit(self, data_bytes: u64, code_bytes: u64) -> Fit {
         Fit {

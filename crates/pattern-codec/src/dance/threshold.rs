@@ -41,7 +41,7 @@ impl Default for Threshold {
 /// A threshold at which the highest speed would need more than one half step per tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("a threshold of {threshold}, {} is the least", Threshold::MIN.0)]
+#[error("a threshold of {threshold}, min {}", Threshold::MIN.0)]
 #[non_exhaustive]
 pub struct ThresholdTooLow {
     /// The threshold.

@@ -60,7 +60,7 @@ impl Format {
                 bytes,
                 record,
             }),
-            Err(error) => Err(error.behind(offset)),
+            Err(error) => Err(error.after(offset)),
         }
     }
 }
@@ -142,12 +142,12 @@ impl Iterator for Records<'_> {
 
     /// Exact in [`Mode::Lenient`]; in [`Mode::Strict`] an error may end the records early.
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let most = self.rest.chunks(RECORD_LEN).len();
-        let least = match self.format.mode {
-            Mode::Strict => most.min(1),
-            Mode::Lenient => most,
+        let max = self.rest.chunks(RECORD_LEN).len();
+        let min = match self.format.mode {
+            Mode::Strict => max.min(1),
+            Mode::Lenient => max,
         };
-        (least, Some(most))
+        (min, Some(max))
     }
 }
 
@@ -303,7 +303,7 @@ pub struct DecodeError {
 impl DecodeError {
     /// The same error in a record that starts at `start`.
     #[inline]
-    const fn behind(self, start: u64) -> Self {
+    const fn after(self, start: u64) -> Self {
         Self {
             offset: start.wrapping_add(self.offset),
             kind: self.kind,

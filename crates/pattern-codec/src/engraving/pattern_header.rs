@@ -27,7 +27,7 @@ use crate::c_header::{
 /// assert!(data.records().eq(records));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-/// The `#define`s, each behind the name of the table in upper case: `RECORDS` and `BYTES`; the axis
+/// The `#define`s, each after the name of the table in upper case: `RECORDS` and `BYTES`; the axis
 /// codes `THETA1_CODE`, `THETA2_CODE`, `THETA3_CODE`, `VERTICAL_CODE`; `HIGH_BYTE_FIRST`, 1 or 0.
 /// One record a row.
 pub type PatternHeader<'n> = TableHeader<'n, Format>;
@@ -118,7 +118,7 @@ impl<'t> PatternData<'t> {
     /// mode, are those of `format`.
     ///
     /// # Errors
-    /// [`HeaderError`] names a place and what is wrong there.
+    /// [`HeaderError`] names a location and what is wrong there.
     pub fn read(text: &'t str, format: Format) -> Result<Self, HeaderError> {
         Self::find(text, None, format)
     }
@@ -191,7 +191,7 @@ fn read_format(
             u8::try_from(value).ok().filter(|code| *code <= 3)
         })?;
     }
-    let start = table.place;
+    let start = table.location;
     let codes =
         AxisCodes::new(codes).map_err(|error| start.error(HeaderErrorKind::AxisCodes(error)))?;
     let order = |value| match value {

@@ -104,7 +104,7 @@ pub struct Fast {
 }
 
 impl Fast {
-    /// The most pulses of one record, either way.
+    /// Highest number of pulses of one record, either way.
     pub const MAX: i32 = 65_535;
 
     /// Checks the pulses; [`Builder::fast`](super::Builder::fast) splits what is too long.
@@ -182,7 +182,7 @@ pub struct Slow {
 }
 
 impl Slow {
-    /// The most pulses of one axis in one record, either way; 31 marks a FAST record.
+    /// Highest number of pulses of one axis in one record, either way; 31 marks a FAST record.
     pub const MAX: i32 = 30;
 
     /// Checks the pulses; [`Builder::slow`](super::Builder::slow) splits what is too long.
@@ -292,6 +292,6 @@ pub struct PulsesError {
     pub axis: Axis,
     /// Its signed pulses.
     pub pulses: i32,
-    /// The most that the kind of record holds.
+    /// The highest number that the kind of record holds.
     pub max: i32,
 }

@@ -39,7 +39,7 @@ pub struct TimerPeriod {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 /// Bit k of byte j of the second table says whether the pin toggles after period 8 j + k. `COUNT`
-/// behind the name in upper case is the number of periods.
+/// after the name in upper case is the number of periods.
 pub type ReloadHeader<'n> = TableHeader<'n, ReloadFormat>;
 
 /// What a [`ReloadHeader`] holds: nothing to choose.
@@ -132,7 +132,7 @@ impl<'t> ReloadData<'t> {
     /// Reads the array of that name, and the one of that name and `_toggles`.
     ///
     /// # Errors
-    /// [`HeaderError`] names a place and what is wrong there.
+    /// [`HeaderError`] names a location and what is wrong there.
     pub fn read(text: &'t str, name: &str) -> Result<Self, HeaderError> {
         let (source, reloads) = Source::find(text, Some(name), WORD)?;
         let count = reloads.clone().count_all()?;
@@ -176,7 +176,7 @@ fn check_toggles(mut toggles: ArrayValues<'_>, wanted: u64) -> Result<(), Header
         return Ok(());
     }
     let shorten = |count| u32::try_from(count).unwrap_or(u32::MAX);
-    Err(toggles.place.error(HeaderErrorKind::ArrayLength {
+    Err(toggles.location.error(HeaderErrorKind::ArrayLength {
         values: shorten(bytes),
         declared: shorten(wanted),
     }))

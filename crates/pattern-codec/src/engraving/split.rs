@@ -84,11 +84,11 @@ impl SlowRecords {
             theta2,
             theta3,
         } = pulses;
-        let most = theta1
+        let max = theta1
             .unsigned_abs()
             .max(theta2.unsigned_abs())
             .max(theta3.unsigned_abs());
-        let parts = most.div_ceil(Slow::MAX.unsigned_abs());
+        let parts = max.div_ceil(Slow::MAX.unsigned_abs());
         Self {
             theta1: Share::new(theta1, parts),
             theta2: Share::new(theta2, parts),

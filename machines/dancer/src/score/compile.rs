@@ -55,7 +55,7 @@ impl Score {
                 part: ScorePart::Head,
                 kind: ScoreErrorKind::TooManyMotors {
                     motors: self.motors.len(),
-                    most: N,
+                    max: N,
                 },
             });
         }

@@ -65,12 +65,12 @@ pub enum ScoreErrorKind {
     #[error("there is no frame: no [[move]] and no length_s")]
     NoFrames,
     /// More motors than a frame has bytes.
-    #[error("{motors} motors, a frame has {most}")]
+    #[error("{motors} motors, a frame has {max}")]
     TooManyMotors {
         /// Motors of the score.
         motors: usize,
         /// Bytes of a frame.
-        most: usize,
+        max: usize,
     },
     /// Two motors of one name.
     #[error("the name {name:?} is taken by motor {first}")]
@@ -116,7 +116,7 @@ pub enum ScoreErrorKind {
     #[error("repeat and every_s go together")]
     Repeat,
     /// A speed above the highest of the motor.
-    #[error("speed = {speed}, {max} is the most")]
+    #[error("speed = {speed}, max {max}")]
     Speed {
         /// The speed.
         speed: i64,
@@ -135,7 +135,7 @@ pub enum ScoreErrorKind {
         /// Its end, in s.
         end_s: f64,
     },
-    /// A move behind the end of the longest dance.
+    /// A move after the end of the longest dance.
     #[error("it ends at {end_s} s, the longest dance at {most_s} s")]
     TooLong {
         /// End of the move, in s.

@@ -10,10 +10,10 @@ use toml::Spanned;
 use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart, approximate};
 use crate::easing::Easing;
 
-/// The most frames of a dance: 3.6 hours at 200 ms.
-const MOST_FRAMES: u32 = 65_535;
+/// Highest number of frames of a dance: 3.6 hours at 200 ms.
+const MAX_FRAMES: u32 = 65_535;
 
-const WITHIN_MOST_FRAMES: &str = "within 65535 frames";
+const WITHIN_MAX_FRAMES: &str = "within 65535 frames";
 
 /// How far from a whole number of frames a time in decimal digits may be by its binary rounding.
 const WHOLE: f64 = 1e-6;
@@ -113,7 +113,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
             return Err(overlap(&first, &nth(1), &motors, clock));
         }
         for again in (0..times).map(nth) {
-            if again.end() > MOST_FRAMES {
+            if again.end() > MAX_FRAMES {
                 return Err(at(clock.too_long(&again)));
             }
             if let Some(busy) = busy.get_mut(again.motor) {
@@ -121,7 +121,7 @@ pub(super) fn read(text: &str) -> Result<Score, ScoreError> {
             }
             moves.push(again);
         }
-        if busy.get(first.motor) > Some(&MOST_FRAMES.into()) {
+        if busy.get(first.motor) > Some(&MAX_FRAMES.into()) {
             // They overlap, which is said below; more of them need not be counted out.
             break;
         }
@@ -217,7 +217,7 @@ impl MoveText {
         let frames = u16::try_from(frames).map_err(|_| ScoreErrorKind::Value {
             key: "for_s",
             value: self.for_s,
-            wanted: WITHIN_MOST_FRAMES,
+            wanted: WITHIN_MAX_FRAMES,
         })?;
         let (every, times) = match (self.every_s, self.repeat) {
             (None, None) => (0, 1),
@@ -338,8 +338,8 @@ impl Clock {
     /// The frames of a dance whose last move ends at a frame.
     fn length(self, length_s: f64, end: u32) -> Result<u32, ScoreErrorKind> {
         let frames = self.frames("length_s", length_s)?;
-        let wanted = if frames > MOST_FRAMES {
-            WITHIN_MOST_FRAMES
+        let wanted = if frames > MAX_FRAMES {
+            WITHIN_MAX_FRAMES
         } else if frames < end {
             "at or after the end of the last move"
         } else {
@@ -355,7 +355,7 @@ impl Clock {
     fn too_long(self, one: &Move) -> ScoreErrorKind {
         ScoreErrorKind::TooLong {
             end_s: self.seconds(one.end()),
-            most_s: self.seconds(MOST_FRAMES),
+            most_s: self.seconds(MAX_FRAMES),
         }
     }
 }

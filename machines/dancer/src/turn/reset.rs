@@ -8,12 +8,12 @@ use crate::motor::{Motor, ticks_to};
 /// Frames at the end of a turn whose speeds are searched together.
 const ENDING: u16 = 3;
 
-/// By how many half steps the frames before may run ahead of the easing or stay behind it, so that
-/// the last ones find their end: the widest gap between the half steps that one frame makes at a
+/// By how many half steps the frames before may run ahead of the easing or lag, so that the last
+/// ones find their end: the widest gap between the half steps that one frame makes at a
 /// threshold of 600, 33 to 40, and one more.
 const MAX_AHEAD: i64 = 8;
 
-/// The magnitudes of the plan that ends nearest to so many half steps, not 0, in frames, not 0.
+/// The magnitudes of the plan that ends nearest to `half_steps`, not 0, in `frames`, not 0.
 pub(super) fn magnitudes(motor: Motor, half_steps: i32, frames: u16, easing: Easing) -> Vec<u8> {
     let direction = if half_steps < 0 { -1 } else { 1 };
     let mut plan = Plan {
@@ -221,7 +221,7 @@ impl Plan {
         best
     }
 
-    /// The most half steps from a frame to the end.
+    /// Upper bound of the half steps from a frame to the end.
     fn reach(&self, frame: u16) -> i64 {
         let max_speed = i64::from(self.start.max_speed());
         if max_speed == 0 {

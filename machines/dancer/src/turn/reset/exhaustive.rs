@@ -6,10 +6,10 @@ use std::collections::HashMap;
 use super::{ENDING, Plan};
 use crate::motor::Motor;
 
-/// The most frames at the end of a turn whose speeds are searched.
+/// Highest number of frames at the end of a turn whose speeds are searched.
 const MAX_ENDING: u16 = 12;
 
-/// The most frames that are tried out: some tens of milliseconds on a PC.
+/// Highest number of frames that are tried out: some tens of milliseconds on a PC.
 const MAX_TRIED: u32 = 1 << 21;
 
 /// Position and accumulator.
