@@ -32,7 +32,8 @@ const CAPACITY: usize = MAX_COUNT as usize;
 /// The steps of [`AxisSegments`] with finer times wait here until they are 1024, turn round or are
 /// [`finish`](Self::finish)ed; then the longest run of them that one cubic meets becomes a segment.
 /// Each step is tried, so that the ticks are as near to the cubics of the rows as those of
-/// [`AxisSegments`]: less than a tick. 8 KiB of memory, and some 20 trials a step: for the PC
+/// [`AxisSegments`]: less than a tick; a step that waits for the driver comes within 2 ticks of the
+/// end of its wait. 8 KiB of memory, and some 20 trials a step: for the PC
 /// that sends, not the microcontroller that plays.
 ///
 /// # Examples
