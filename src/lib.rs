@@ -1,4 +1,11 @@
-#![doc = include_str!("../README.md")]
+#![cfg_attr(
+    all(feature = "scara-kin", feature = "stepper-sync"),
+    doc = include_str!("../README.md")
+)]
+#![cfg_attr(
+    not(all(feature = "scara-kin", feature = "stepper-sync")),
+    doc = "The facade of pose2pulse: each crate of the family under a feature of its name."
+)]
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
