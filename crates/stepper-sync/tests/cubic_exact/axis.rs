@@ -1,16 +1,4 @@
-//! Random rows of a PVT table: every step against the exact cubic, in 256-bit integers.
-//!
-//! `CUBIC_ROWS=10000000 cargo test --release -p stepper-sync --test cubic_exact -- --nocapture`
-//! for a long run.
-#![cfg(test)]
-#![expect(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "exact numbers are compared as integers, statistics as floats"
-)]
-
-extern crate alloc;
+//! An axis whose steps are checked, each by itself and as joined segments.
 
 use alloc::{collections::VecDeque, rc::Rc};
 
@@ -20,121 +8,9 @@ use stepper_sync::{
     SegmentPlayer,
 };
 
-const STEP: i128 = 1 << 56;
-
-/// `SplitMix64`.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// 0 to 1.
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Of all magnitudes.
-    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    fn sign(&mut self) -> f64 {
-        if self.below(2) == 0 { 1.0 } else { -1.0 }
-    }
-}
-
-/// The exact cubic of a row, times T³, in 2^-56 steps.
-struct Exact {
-    ticks: i128,
-    q: [I256; 4],
-    /// u of the documentation: what the axis moves in a tick at least where times can be said.
-    standstill: i128,
-}
-
-impl Exact {
-    fn new(from: PvtKnot, to: PvtKnot, ticks: u32) -> Self {
-        let ticks = i128::from(ticks);
-        let (p0, p1) = (
-            i128::from(from.position) << 24,
-            i128::from(to.position) << 24,
-        );
-        let (v0, v1) = (
-            i128::from(from.velocity) * ticks,
-            i128::from(to.velocity) * ticks,
-        );
-        let way = p1 - p0;
-        let reach = way.abs().max(v0.abs()).max(v1.abs());
-        Self {
-            ticks,
-            standstill: (STEP >> 40).max(reach >> 47),
-            q: [p0, v0, 3 * way - 2 * v0 - v1, v0 + v1 - 2 * way].map(I256::from),
-        }
-    }
-
-    fn cube(&self) -> I256 {
-        let t = I256::from(self.ticks);
-        t * t * t
-    }
-
-    /// u T³.
-    fn standstill(&self) -> I256 {
-        I256::from(self.standstill) * self.cube()
-    }
-
-    /// (q(n) - place) T³.
-    fn past_place(&self, n: i128, place: i128) -> I256 {
-        let (t, n) = (I256::from(self.ticks), I256::from(n));
-        let [q0, q1, q2, q3] = self.q;
-        (((q0 - I256::from(place)) * t + q1 * n) * t + q2 * n * n) * t + q3 * n * n * n
-    }
-
-    /// q'(n) T³ per tick.
-    fn velocity(&self, n: i128) -> I256 {
-        let (t, n) = (I256::from(self.ticks), I256::from(n));
-        let [_, q1, q2, q3] = self.q;
-        (q1 * t + I256::from(2) * q2 * n) * t + I256::from(3) * q3 * n * n
-    }
-
-    /// The greatest |q'| within a tick of n, times T³.
-    fn speed_near(&self, n: i128) -> I256 {
-        let ends = [n - 1, n, n + 1].map(|n| self.velocity(n).abs());
-        // q' is a parabola: between them it is above by less than their spread.
-        let [a, b, c] = ends;
-        let most = a.max(b).max(c);
-        most + (most - a.min(b).min(c))
-    }
-}
-
-#[derive(Debug, Default)]
-struct Statistics {
-    rows: u64,
-    too_fast: u64,
-    too_quick: u64,
-    steps: u64,
-    segments: u64,
-    /// Steps where only the place can be said.
-    by_place: u64,
-    due_or_late: u64,
-    worst_ticks: f64,
-    worst_place: f64,
-    joined_segments: u64,
-    joined_bytes: u64,
-    joined_worst_ticks: f64,
-}
+use crate::exact::{Exact, turns};
+use crate::rows::Random;
+use crate::{STEP, Statistics};
 
 /// A step that joined segments have to make.
 struct Wanted {
@@ -192,7 +68,7 @@ impl Wanted {
     }
 }
 
-struct Axis {
+pub(crate) struct Axis {
     emitter: AxisSegments,
     joined: JoinedSegments,
     wanted: VecDeque<Wanted>,
@@ -200,8 +76,8 @@ struct Axis {
     /// Steps of a row that are tried.
     max_steps: usize,
     /// A row of more than these: it is the last one.
-    cut: bool,
-    knot: PvtKnot,
+    pub(crate) cut: bool,
+    pub(crate) knot: PvtKnot,
     row_start: u64,
     steps: i64,
     last: Option<(u64, Direction)>,
@@ -209,7 +85,7 @@ struct Axis {
 }
 
 impl Axis {
-    fn new(knot: PvtKnot, least: MinIntervals, max_steps: usize) -> Self {
+    pub(crate) fn new(knot: PvtKnot, least: MinIntervals, max_steps: usize) -> Self {
         let joined = JoinedSegments::new(knot, least);
         // As joined segments ask of their rows.
         let least = MinIntervals {
@@ -233,7 +109,12 @@ impl Axis {
     }
 
     /// Pushes a row and checks all of its steps.
-    fn row(&mut self, ticks: u32, to: PvtKnot, seen: &mut Statistics) -> Result<(), RowError> {
+    pub(crate) fn row(
+        &mut self,
+        ticks: u32,
+        to: PvtKnot,
+        seen: &mut Statistics,
+    ) -> Result<(), RowError> {
         let before = self.emitter.clone();
         if let Err(error) = self.emitter.push(ticks, to) {
             assert!(self.emitter == before, "a refused row changes nothing");
@@ -439,7 +320,7 @@ impl Axis {
         }
     }
 
-    fn finish(mut self, seen: &mut Statistics) {
+    pub(crate) fn finish(mut self, seen: &mut Statistics) {
         if self.cut {
             return;
         }
@@ -480,189 +361,4 @@ impl Axis {
         }
         check(ticks);
     }
-}
-
-/// Ticks near which q' is zero.
-fn turns(exact: &Exact) -> Vec<i128> {
-    let [_, a, b, c] = exact.q.map(|q| q.as_f64());
-    let (b, c) = (2.0 * b, 3.0 * c);
-    let root = (b * b - 4.0 * a * c).sqrt();
-    [(-b + root) / (2.0 * c), (-b - root) / (2.0 * c), -a / b]
-        .into_iter()
-        .filter(|s| (0.0..=1.0).contains(s))
-        .map(|s| (s * exact.ticks as f64) as i128)
-        .collect()
-}
-
-fn knot(position: f64, velocity: f64) -> PvtKnot {
-    PvtKnot {
-        position: (position * 32_f64.exp2()) as i64,
-        velocity: (velocity * 56_f64.exp2()) as i64,
-    }
-}
-
-/// A next knot: rows of all kinds.
-fn next_row(random: &mut Random, from: PvtKnot, least: MinIntervals) -> (u32, PvtKnot) {
-    let max = 1.0 / (least.step_ticks + 2) as f64;
-    let q0 = from.position as f64 / 32_f64.exp2();
-    let v0 = from.velocity as f64 / 56_f64.exp2();
-    let ticks = match random.below(8) {
-        0 => random.magnitude(1.0, 40.0),
-        1 => random.magnitude(1.0, 4e9),
-        _ => random.magnitude(100.0, 1e7),
-    };
-    // Most rows of some hundred steps at most: a step costs the test more than the emitter.
-    let t = ticks.min(300.0 / v0.abs()).floor().max(1.0);
-    let fast = match random.below(256) {
-        0 => 1e4 / t,
-        1..=16 => random.magnitude(1e-15, 1e3 / t),
-        17..=20 => 3e3 / t,
-        21..=60 => random.magnitude(1.0, 1e3) / t,
-        _ => random.magnitude(0.1, 100.0) / t,
-    }
-    .min(max);
-    let v1 = match random.below(6) {
-        0 => 0.0,
-        1 => random.sign() * fast,
-        2 => (v0 * random.between(0.5, 1.5)).clamp(-fast, fast),
-        3 => v0.clamp(-fast, fast),
-        _ => random.sign() * fast * random.unit(),
-    };
-    let way = match random.below(8) {
-        // As with constant acceleration.
-        0..=3 => (v0 + v1) / 2.0 * t,
-        // Whatever.
-        4 => random.between(-1.0, 1.0) * (max * t).min(100.0),
-        5 => random.between(-1.0, 1.0) * fast * t,
-        // Some acceleration more at one end than at the other.
-        6 => ((v0 + v1) / 2.0 + random.between(-0.2, 0.2) * (v0.abs() + v1.abs())) * t,
-        _ => random.between(-3.0, 3.0),
-    };
-    let mut q1 = q0 + way;
-    match random.below(16) {
-        0..=3 => q1 = q1.round(),
-        // On the place of a step, or next to it.
-        4 => q1 = q1.floor() + 0.5,
-        5 => q1 = q1.floor() + 0.5 + random.sign() * random.magnitude(1e-9, 1e-2),
-        6 => q1 = q0,
-        _ => {}
-    }
-    if q1.abs() > 2e9 {
-        q1 = 0.0;
-    }
-    (t as u32, knot(q1, v1))
-}
-
-/// Numbers of every size, most of them at an end of one.
-fn any_u64(random: &mut Random) -> u64 {
-    let power = 1_u64 << random.below(64);
-    match random.below(8) {
-        0 => 0,
-        1 => u64::MAX - random.below(3),
-        2 | 3 => (power - 1).wrapping_add(random.below(3)),
-        _ => random.next() >> random.below(64),
-    }
-}
-
-fn any_i64(random: &mut Random) -> i64 {
-    let number = any_u64(random).cast_signed();
-    if random.below(2) == 0 {
-        number
-    } else {
-        number.wrapping_neg()
-    }
-}
-
-/// A row of anything, most of them not too fast.
-fn any_row(random: &mut Random, from: PvtKnot, least: MinIntervals) -> (u32, PvtKnot) {
-    let ticks = any_u64(random) as u32;
-    let mut to = PvtKnot {
-        position: any_i64(random),
-        velocity: any_i64(random),
-    };
-    let limit = (1_u64 << 56) / least.step_ticks.saturating_add(2);
-    if random.below(8) > 0 {
-        to.velocity %= limit.cast_signed() + 1;
-    }
-    if random.below(8) > 0 {
-        // 2^-56 to 2^-32; two thirds of it leave room for the velocities at the ends.
-        let most = (i128::from(limit) * i128::from(ticks)) >> 24;
-        let way = i128::from(to.position) % (most * 2 / 3 + 1);
-        to.position = i64::try_from(i128::from(from.position) + way).unwrap_or(to.position);
-    }
-    match random.below(8) {
-        0 => to.position = from.position,
-        1 => to.position = (to.position >> 31 | 1) << 31,
-        2 => to.velocity = from.velocity.wrapping_neg(),
-        _ => {}
-    }
-    (ticks, to)
-}
-
-fn setting(name: &str, default: u64) -> u64 {
-    std::env::var(name).map_or(default, |value| value.parse().unwrap())
-}
-
-impl Statistics {
-    fn print(&self) {
-        println!("{self:#?}");
-        let a_segment = |segments| self.steps as f64 / segments as f64;
-        println!("steps a segment: {}", a_segment(self.segments));
-        println!(
-            "joined: {} steps a segment, {} bytes a step",
-            a_segment(self.joined_segments),
-            self.joined_bytes as f64 / self.steps as f64
-        );
-    }
-}
-
-#[test]
-fn every_step_of_random_rows_is_in_its_place() {
-    let rows = setting("CUBIC_ROWS", 10_000);
-    let mut random = Random(setting("CUBIC_SEED", 1));
-    let mut seen = Statistics::default();
-    while seen.rows < rows {
-        let least = MinIntervals {
-            step_ticks: [1, 2, 10, 100, 1000][random.below(5) as usize],
-            reversal_ticks: [1, 4, 30, 200, 2000][random.below(5) as usize],
-        };
-        let start = knot(random.between(-1e3, 1e3), 0.0);
-        let mut axis = Axis::new(start, least, usize::MAX);
-        for _ in 0..50 {
-            let (ticks, to) = next_row(&mut random, axis.knot, least);
-            // Refused: another one.
-            let _ = axis.row(ticks, to, &mut seen);
-        }
-        axis.finish(&mut seen);
-    }
-    seen.print();
-    assert!(seen.worst_ticks < 1.0 && seen.joined_worst_ticks < 1.0);
-}
-
-#[test]
-fn every_step_of_any_rows_is_in_its_place() {
-    let rows = setting("CUBIC_ROWS", 10_000);
-    let mut random = Random(setting("CUBIC_SEED", 1));
-    let mut seen = Statistics::default();
-    while seen.rows < rows {
-        let least = MinIntervals {
-            step_ticks: any_u64(&mut random),
-            reversal_ticks: any_u64(&mut random),
-        };
-        let start = PvtKnot {
-            position: any_i64(&mut random),
-            velocity: any_i64(&mut random),
-        };
-        let mut axis = Axis::new(start, least, 2000);
-        for _ in 0..50 {
-            let (ticks, to) = any_row(&mut random, axis.knot, least);
-            let _ = axis.row(ticks, to, &mut seen);
-            if axis.cut {
-                break;
-            }
-        }
-        axis.finish(&mut seen);
-    }
-    seen.print();
-    assert!(seen.worst_ticks < 1.0 && seen.joined_worst_ticks < 1.0);
 }
