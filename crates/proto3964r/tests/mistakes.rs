@@ -1,6 +1,9 @@
 //! Mistakes of earlier implementations of 3964R, one test for each.
 #![cfg(test)]
 
+#[path = "common/low_side.rs"]
+mod low_side;
+
 use core::time::Duration;
 
 use proto3964r::{
@@ -8,32 +11,7 @@ use proto3964r::{
     Side, Station, SubmitError, Transmit, Verdict, frame::FrameError,
 };
 
-const STX: u8 = 0x02;
-const DLE: u8 = 0x10;
-const NAK: u8 = 0x15;
-
-fn low() -> Config {
-    Config {
-        nak_at_startup: false,
-        ..Config::siemens_3964r(Priority::Low, Line::Instant)
-    }
-}
-
-fn ms(millis: u64) -> Duration {
-    Duration::from_millis(millis)
-}
-
-/// Takes all characters; telegrams in them wait to be polled.
-fn hear<const N: usize, const T: usize>(
-    station: &mut Station<N, T>,
-    now: Duration,
-    characters: &[u8],
-) {
-    let mut rest = characters;
-    while !rest.is_empty() {
-        rest = &rest[station.handle_bytes(now, rest)..];
-    }
-}
+use low_side::{DLE, NAK, STX, hear, low, ms};
 
 /// What the station sends now, with the discards dropped.
 fn sent<const N: usize, const T: usize>(station: &mut Station<N, T>, now: Duration) -> Vec<u8> {

@@ -1,40 +1,19 @@
 //! Rules that the documentation states and that neither the vectors nor the mistakes touch.
 #![cfg(test)]
 
+#[path = "common/low_side.rs"]
+mod low_side;
+
 use core::time::Duration;
 
 use proto3964r::{
     Abandoned, Cause, Config, Event, Failure, Line, Phase, Priority, Rejection, Station, Transmit,
 };
 
-const STX: u8 = 0x02;
-const DLE: u8 = 0x10;
-const NAK: u8 = 0x15;
+use low_side::{DLE, NAK, STX, hear, low, ms};
+
 /// Of 11 bits at 9600 bit/s.
 const CHARACTER: Duration = Duration::from_nanos(1_145_833);
-
-fn low() -> Config {
-    Config {
-        nak_at_startup: false,
-        ..Config::siemens_3964r(Priority::Low, Line::Instant)
-    }
-}
-
-fn ms(millis: u64) -> Duration {
-    Duration::from_millis(millis)
-}
-
-/// Takes all characters; telegrams in them wait to be polled.
-fn hear<const N: usize, const T: usize>(
-    station: &mut Station<N, T>,
-    now: Duration,
-    characters: &[u8],
-) {
-    let mut rest = characters;
-    while !rest.is_empty() {
-        rest = &rest[station.handle_bytes(now, rest)..];
-    }
-}
 
 fn sent(station: &mut Station<16>, now: Duration) -> Vec<u8> {
     core::iter::from_fn(|| station.poll_transmit_byte(now)).collect()

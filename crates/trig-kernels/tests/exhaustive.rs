@@ -65,7 +65,7 @@ fn in_threads<const N: usize>(
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `.ci/nightly` runs it"]
 fn every_angle_of_f32() {
     const STEP: u32 = 1 << 20;
     // The sign is tested by symmetry, bit by bit.
@@ -91,7 +91,7 @@ fn every_angle_of_f32() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `.ci/nightly` runs it"]
 fn ten_thousand_million_vectors_of_f32() {
     const PARTS: u32 = 1 << 13;
     // By eights.
@@ -111,7 +111,7 @@ fn ten_thousand_million_vectors_of_f32() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `.ci/nightly` runs it"]
 fn a_hundred_million_angles_of_f64() {
     const PARTS: u32 = 1 << 10;
     const EACH: u32 = 100_000_000_u32.div_ceil(PARTS);
@@ -135,7 +135,7 @@ fn a_hundred_million_angles_of_f64() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `.ci/nightly` runs it"]
 fn a_hundred_million_vectors_of_f64() {
     const PARTS: u32 = 1 << 10;
     const EACH: u32 = 100_000_000_u32.div_ceil(PARTS);
@@ -158,7 +158,7 @@ fn a_hundred_million_vectors_of_f64() {
 
 /// Where sine and arc tangent rise and the cosine falls, no neighbour goes the other way.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `.ci/nightly` runs it"]
 fn slopes_of_f32() {
     const STEP: u32 = 1 << 20;
     let places = |bits: u32| {

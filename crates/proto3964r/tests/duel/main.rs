@@ -3,10 +3,13 @@
 #![cfg(test)]
 
 mod line;
+#[path = "../common/random.rs"]
+mod random;
 mod scripts;
 
-use line::{ADAPTER, Duel, Habits, Noise, Random, Tally};
+use line::{ADAPTER, Duel, Habits, Noise, Tally};
 use proto3964r::{Config, IdleNoise, IllegalDle, Line, Priority};
+use random::Random;
 
 /// Telegrams of both sides together.
 const TELEGRAMS: usize = 480;

@@ -7,7 +7,8 @@ use core::time::Duration;
 
 use proto3964r::{Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock};
 
-use super::line::{Duel, Habits, Noise, Random, Tally, Wire};
+use super::line::{Duel, Habits, Noise, Tally, Wire};
+use super::random::Random;
 
 /// Longest payload: its block is shorter than the distance of two damages.
 const LONGEST: u32 = 24;

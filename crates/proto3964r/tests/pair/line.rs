@@ -7,6 +7,8 @@ use core::time::Duration;
 
 use proto3964r::{Config, Event, Failure, Line, Monitor, Observation, Side, Station, Transmit};
 
+use crate::random::Random;
+
 /// Longest block on these lines.
 pub(crate) const BLOCK: usize = 48;
 
@@ -23,28 +25,6 @@ pub(crate) struct Faults {
     pub(crate) delay: u32,
     /// Damage never makes a DLE of another character, and leaves so many characters between faults.
     pub(crate) gentle_gap: Option<u32>,
-}
-
-/// A small generator of numbers, the same on every machine (xorshift64*).
-#[derive(Clone, Debug)]
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed | 1)
-    }
-
-    pub(crate) fn below(&mut self, end: u32) -> u32 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let high = u32::try_from(self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 32).unwrap();
-        u32::try_from((u64::from(high) * u64::from(end)) >> 32).unwrap()
-    }
-
-    fn byte(&mut self) -> u8 {
-        u8::try_from(self.below(256)).unwrap()
-    }
 }
 
 /// In microseconds, rounded up.

@@ -2,13 +2,16 @@
 #![cfg(test)]
 
 mod line;
+#[path = "../common/random.rs"]
+mod random;
 
-use line::{Faults, Outcome, Pair, Random};
+use line::{Faults, Outcome, Pair};
 use proptest::prelude::*;
 use proto3964r::{
     Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock, Verdict,
     frame::{encode, max_encoded_len},
 };
+use random::Random;
 
 /// A generous end for any run: no run here needs half of it.
 const HOUR_US: u64 = 3_600_000_000;
@@ -18,7 +21,7 @@ const HOUR_US: u64 = 3_600_000_000;
 /// `harmless` ones are without 00h, which the XOR does not feel, and without 03h, in front of
 /// which one wrong or missing character can end the block early.
 fn jobs(seed: u64, count: u8, harmless: bool) -> Vec<Vec<u8>> {
-    let mut random = Random::new(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let mut random = Random::new(seed);
     (1..=count)
         .map(|number| {
             let mut byte = || match random.below(8) {
