@@ -21,7 +21,9 @@ fn main() -> Result<(), pulse_interp::ArcError> {
         }
         // The interval before a step is read before the step is taken.
         let interval = intervals.next(steps.factor());
-        let Some(step) = steps.next() else { break };
+        let (Some(interval), Some(step)) = (interval, steps.next()) else {
+            break;
+        };
         ticks += interval;
         x += step.dx();
         y += step.dy();

@@ -1,4 +1,6 @@
-//! Constant speed along the path.
+//! Speed along the path: constant, or by a profile.
+
+use core::iter::{Repeat, repeat};
 
 /// A factor of the interval between steps, in 65536ths.
 ///
@@ -49,7 +51,15 @@ pub(crate) const fn length_q16(square: u64) -> u64 {
     (root as u64).wrapping_add(up as u64)
 }
 
-/// Intervals in whole ticks from factors; what is rounded off is carried to the next.
+/// Intervals in whole ticks from factors, at a constant speed or along a speed profile; what is
+/// rounded off is carried to the next.
+///
+/// A unit is the time in which the path advances one step length. Within each the speed is
+/// constant, so that
+/// ```text
+/// sum of n intervals = floor(T(sum of n factors))
+/// T(p) = sum of the first floor(p) units + (p - floor(p)) * the next one
+/// ```
 ///
 /// # Examples
 /// ```
@@ -57,43 +67,73 @@ pub(crate) const fn length_q16(square: u64) -> u64 {
 /// // 1000 ticks per step length, along a diagonal: 707 and 708 ticks a step.
 /// let line = Line::new([5000, 5000])?;
 /// let mut intervals = StepIntervals::new(1000);
-/// let ticks: u64 = line
+/// let ticks = line
 ///     .steps(Rule::Nearest)
-///     .map(|_| intervals.next(line.step_factor()))
-///     .sum();
-/// assert!(ticks.abs_diff(7_071_068) < 100);
+///     .try_fold(0, |sum, _| Some(sum + intervals.next(line.step_factor())?));
+/// assert!(ticks.is_some_and(|ticks| ticks.abs_diff(7_071_068) < 100));
 /// # Ok::<(), pulse_interp::LineError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct StepIntervals {
+/// Faster and faster, by units that a ramp of the path's length would have:
+/// ```
+/// use pulse_interp::{Line, Rule, StepIntervals};
+/// let line = Line::new([2, 2])?;
+/// let mut intervals = StepIntervals::from_units([900, 500, 300]);
+/// let ticks = line.steps(Rule::Nearest).map(|_| intervals.next(line.step_factor()));
+/// // At 0.707, 1.414, 2.121 and 2.828 step lengths.
+/// assert!(ticks.eq([Some(636), Some(471), Some(329), Some(212)]));
+/// # Ok::<(), pulse_interp::LineError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StepIntervals<U = Repeat<u32>> {
+    units: U,
     unit_ticks: u32,
-    // Of a tick, in 65536ths, below 65536.
+    /// What the path has not gone of the unit in hand, in 65536ths of a step length.
+    left_q16: u32,
+    /// Of a tick, in 65536ths, below 65536.
     fraction: u32,
 }
 
 impl StepIntervals {
-    /// Intervals of `unit_ticks` ticks per step length of the path.
+    /// Intervals of `unit_ticks` ticks per step length of the path: a constant speed.
     #[must_use]
-    pub const fn new(unit_ticks: u32) -> Self {
+    pub fn new(unit_ticks: u32) -> Self {
+        Self::from_units(repeat(unit_ticks))
+    }
+}
+
+impl<U: Iterator<Item = u32>> StepIntervals<U> {
+    /// Intervals of the ticks that each step length of the path takes, one after the other: those
+    /// between the steps of an axis that goes as far as the path is long.
+    pub fn from_units(units: impl IntoIterator<IntoIter = U>) -> Self {
         Self {
-            unit_ticks,
+            units: units.into_iter(),
+            unit_ticks: 0,
+            left_q16: 0,
             fraction: 0,
         }
     }
 
-    /// The ticks until the next step.
-    ///
-    /// ```text
-    /// sum of n intervals = floor(unit_ticks * sum of n factors)
-    /// ```
+    /// The ticks until the next step; `None` where the units end before it.
     #[must_use = "the fraction has been carried on"]
     #[inline]
-    pub fn next(&mut self, factor: Factor) -> u64 {
-        // (2^32 - 1)² + 2^16 is below 2^64.
-        let exact = u64::from(self.unit_ticks)
-            .wrapping_mul(u64::from(factor.0))
-            .wrapping_add(u64::from(self.fraction));
-        self.fraction = u32::from(u16::try_from(exact & 0xFFFF).unwrap_or(0));
-        exact >> 16
+    pub fn next(&mut self, factor: Factor) -> Option<u64> {
+        // In 65536ths of a tick, in all below (2^32 - 1)² + 2^16.
+        let mut exact = u64::from(self.fraction);
+        let mut length = factor.0;
+        while length > self.left_q16 {
+            exact = exact.wrapping_add(self.ticks_q16(self.left_q16));
+            length = length.wrapping_sub(self.left_q16);
+            self.unit_ticks = self.units.next()?;
+            self.left_q16 = Factor::ONE.0;
+        }
+        exact = exact.wrapping_add(self.ticks_q16(length));
+        self.left_q16 = self.left_q16.wrapping_sub(length);
+        self.fraction = (exact & 0xFFFF) as u32;
+        Some(exact >> 16)
+    }
+
+    /// The time of a part of the unit in hand, in 65536ths of a tick.
+    fn ticks_q16(&self, length_q16: u32) -> u64 {
+        u64::from(self.unit_ticks).wrapping_mul(u64::from(length_q16))
     }
 }

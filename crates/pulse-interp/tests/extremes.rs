@@ -83,7 +83,7 @@ proptest! {
             let mut intervals = StepIntervals::new(unit_ticks);
             let mut ticks = 0;
             for n in 1..9 {
-                ticks += u128::from(intervals.next(factor));
+                ticks += u128::from(intervals.next(factor).unwrap());
                 let exact = u128::from(unit_ticks) * u128::from(factor.to_q16()) * n;
                 prop_assert_eq!(ticks, exact >> 16);
             }

@@ -156,7 +156,7 @@ impl<'a> Controller<'a> {
         let target = || format!("on the way to ({:.3}, {:.3}) mm", motion.to.x, motion.to.y);
         for path in paths::paths(motion, self.commanded, self.settings.rule)? {
             for (step, factor) in path {
-                self.ticks += intervals.next(factor);
+                self.ticks += intervals.next(factor).context("no speed")?;
                 self.step(step).with_context(target)?;
                 let by = [step.dx(), step.dy()];
                 (self.observer)(self.ticks, by)?;

@@ -59,7 +59,7 @@ fn dda_tick(ticks: &mut DdaTicks<3>) -> Option<[i8; 3]> {
 
 #[no_panic]
 #[inline(never)]
-fn next_interval(intervals: &mut StepIntervals, factor: Factor) -> u64 {
+fn next_interval(intervals: &mut StepIntervals, factor: Factor) -> Option<u64> {
     intervals.next(factor)
 }
 

@@ -104,7 +104,7 @@ pub fn interpolation() -> Option<()> {
         let factor = steps.factor();
         let Some(step) = steps.next() else { break };
         at = [at[0] + step.dx(), at[1] + step.dy()];
-        ticks += intervals.next(factor);
+        ticks += intervals.next(factor)?;
     }
     // 500 steps of radius by 2.2143 rad.
     holds(at == [-300, 400] && ticks.abs_diff(1_107_149) < 5000)?;
