@@ -2,7 +2,7 @@
 
 use crate::leg::Leg;
 use crate::number::{cube_root, sqrt};
-use crate::table::rows_of_leg;
+use crate::table::spans_of_leg;
 use crate::{Axes, AxisLimits, Cubic, Knot, Path, PlanError, Row, ToolLimits};
 
 /// An axis at the end of a segment.
@@ -38,8 +38,8 @@ impl<A: Axes> Demand<A> {
         knots: &[Knot],
     ) -> Result<Self, PlanError<P::Error>> {
         let mut demand = Self::at_rest();
-        for rows in rows_of_leg(leg, knots) {
-            let [from, to] = rows?;
+        for span in spans_of_leg(leg, knots) {
+            let [from, to] = span?.rows;
             demand.add(limits, &from, &to);
         }
         demand.stop(limits);

@@ -38,6 +38,11 @@ impl<P: Path> Leg<P> {
         self.tool.as_ref()
     }
 
+    /// The parameter at a share of the length.
+    pub(crate) fn parameter(&self, share: f64) -> f64 {
+        share * self.length
+    }
+
     /// Whether its length and the limits of its tool are ones that the crate computes with.
     pub(crate) fn check(&self) -> Result<(), PlanError<P::Error>> {
         let (leg, length) = (self.number, self.length);
@@ -58,7 +63,7 @@ impl<P: Path> Leg<P> {
 
     /// Positions, and slopes by the share, at a share 0..=1 of the length.
     pub(crate) fn place(&self, share: f64) -> Result<Place<P::Axes>, P::Error> {
-        let Place { position, slope } = self.path.place(share * self.length)?;
+        let Place { position, slope } = self.path.place(self.parameter(share))?;
         Ok(Place {
             position,
             slope: slope.scaled(self.length),
@@ -67,7 +72,7 @@ impl<P: Path> Leg<P> {
 
     /// The same, refused by name where the machine cannot be there.
     pub(crate) fn checked_place(&self, share: f64) -> Result<Place<P::Axes>, PlanError<P::Error>> {
-        let (leg, s) = (self.number, share * self.length);
+        let (leg, s) = (self.number, self.parameter(share));
         let place = self
             .place(share)
             .map_err(|reason| PlanError::Path { leg, s, reason })?;

@@ -8,6 +8,7 @@ extern crate std;
 
 mod axes;
 mod cubic;
+mod curve;
 mod demand;
 mod error;
 mod leg;
@@ -21,14 +22,17 @@ mod run;
 mod segment;
 mod short;
 mod smooth;
+mod span;
 mod table;
 
 pub use axes::{Axes, AxisLimits, ToolLimits};
 pub use cubic::Cubic;
+pub use curve::{Curve, CurveError, CurveMotion, CurvePoint, Rounded, TurnMotion};
 pub use error::PlanError;
 pub use path::{Legs, Path, PathFn, Place};
 pub use row::Row;
 pub use rows::Rows;
 pub use run::{Ahead, FeedError, Run};
 pub use short::SixDigits;
+pub use span::Span;
 pub use table::{Knot, Table};

@@ -4,8 +4,8 @@ use crate::demand::Demand;
 use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST, larger_or_nan, sqrt};
 use crate::segment::Reciprocals;
-use crate::table::rows_of_leg;
-use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Row, profile, smooth};
+use crate::table::spans_of_leg;
+use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Span, profile, smooth};
 
 /// What all legs are planned with.
 pub(crate) struct Planner<A: Axes> {
@@ -137,7 +137,7 @@ impl<A: Axes> Planner<A> {
         free: &mut [Knot],
         at_least: u32,
         allowed: f64,
-        departure: &impl Fn(&Row<A>, &Row<A>) -> f64,
+        departure: &impl Fn(&P, &Span<A>) -> f64,
     ) -> Result<u32, PlanError<P::Error>> {
         let least = self.bounded(leg.number, at_least)?;
         let room = u32::try_from(free.len().saturating_sub(1)).unwrap_or(u32::MAX);
@@ -220,13 +220,12 @@ fn too_coarse<E>(leg: usize, excess: f64, segments: u32, used: usize, room: u32)
 }
 
 /// The largest departure of a leg's segments.
-fn bound_of_leg<P: Path>(
+pub(crate) fn bound_of_leg<P: Path>(
     leg: &Leg<P>,
     knots: &[Knot],
-    departure: &impl Fn(&Row<P::Axes>, &Row<P::Axes>) -> f64,
+    departure: &impl Fn(&P, &Span<P::Axes>) -> f64,
 ) -> Result<f64, PlanError<P::Error>> {
-    rows_of_leg(leg, knots).try_fold(0.0, |worst, rows| {
-        let [from, to] = rows?;
-        Ok(larger_or_nan(worst, departure(&from, &to)))
+    spans_of_leg(leg, knots).try_fold(0.0, |worst, span| {
+        Ok(larger_or_nan(worst, departure(leg.path(), &span?)))
     })
 }

@@ -1,11 +1,11 @@
 //! Position-velocity-time tables along paths.
 
 use crate::leg::Leg;
-use crate::number::SMALLEST;
-use crate::planner::Planner;
+use crate::number::{SMALLEST, larger_or_nan};
+use crate::planner::{Planner, bound_of_leg};
 use crate::rows::Rows;
 use crate::segment::Reciprocals;
-use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row};
+use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row, Span};
 
 /// Memory for one row of a [`Table`] while it is planned and as long as it lives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -65,9 +65,9 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     /// Plans the table with a number of segments of each leg that keeps a departure within
     /// `allowed` while one fewer does not.
     ///
-    /// `departure` is a bound on what a controller departs by from one row to the next, in any
-    /// unit; it should fall with the number of segments. The number is found by bisection, and each
-    /// trial is a plan.
+    /// `departure` is a bound on what a controller departs by on a segment of a leg, in any unit; it
+    /// should fall with the number of segments. The number is found by bisection, and each trial is
+    /// a plan.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -76,7 +76,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         limits: A::Of<AxisLimits>,
         at_least: u32,
         allowed: f64,
-        departure: impl Fn(&Row<A>, &Row<A>) -> f64,
+        departure: impl Fn(&L::Leg, &Span<A>) -> f64,
         knots: &'a mut [Knot],
     ) -> Result<Self, PlanError<L::Error>> {
         if !(allowed > 0.0 && allowed.is_finite()) {
@@ -166,6 +166,28 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         self.duration_s
     }
 
+    /// The largest of a bound of the departure over all segments, as given to
+    /// [`plan_within`](Self::plan_within).
+    ///
+    /// # Errors
+    /// Where the path refuses a place that it has given while the table was planned.
+    pub fn departure(
+        &self,
+        departure: impl Fn(&L::Leg, &Span<A>) -> f64,
+    ) -> Result<f64, PlanError<L::Error>> {
+        let mut knots = self.knots;
+        (0..)
+            .zip(self.legs.clone())
+            .try_fold(0.0, |worst, (number, path)| {
+                let end = knots.iter().position(|knot| knot.s >= 1.0);
+                let count = end.map_or(knots.len(), |end| end.saturating_add(1));
+                let own = knots.get(..count).unwrap_or_default();
+                knots = knots.get(count..).unwrap_or_default();
+                let bound = bound_of_leg(&Leg::new(number, path), own, &departure)?;
+                Ok(larger_or_nan(worst, bound))
+            })
+    }
+
     /// The rows in their order.
     #[must_use]
     pub fn rows(&self) -> Rows<'a, L> {
@@ -173,21 +195,26 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     }
 }
 
-/// Both ends of each segment of a leg.
-pub(crate) fn rows_of_leg<P: Path>(
+/// The segments of a leg.
+pub(crate) fn spans_of_leg<P: Path>(
     leg: &Leg<P>,
     knots: &[Knot],
-) -> impl Iterator<Item = Result<[Row<P::Axes>; 2], PlanError<P::Error>>> {
-    let mut from: Option<Row<P::Axes>> = None;
+) -> impl Iterator<Item = Result<Span<P::Axes>, PlanError<P::Error>>> {
+    let mut from: Option<(f64, Row<P::Axes>)> = None;
     let mut duration_s = 0.0;
     let rows = knots.iter().map(move |knot| {
         let place = leg.checked_place(knot.s)?;
         let row = Row::new(&place, knot.speed, 0.0, duration_s);
         duration_s = knot.duration_s;
-        Ok(row)
+        Ok((leg.parameter(knot.s), row))
     });
     rows.filter_map(move |row| match row {
-        Ok(to) => from.replace(to).map(|from| Ok([from, to])),
+        Ok((s, to)) => from.replace((s, to)).map(|(before, from)| {
+            Ok(Span {
+                s: [before, s],
+                rows: [from, to],
+            })
+        }),
         Err(error) => Some(Err(error)),
     })
 }

@@ -10,7 +10,7 @@ use core::convert::Infallible;
 
 use limited::check_limits;
 use machine::{Line, limits};
-use path_timing::{Ahead, Knot, Path, PathFn, Place, PlanError, Row, Table, ToolLimits};
+use path_timing::{Ahead, Knot, Path, PathFn, Place, PlanError, Row, Span, Table, ToolLimits};
 use proptest::prelude::*;
 
 /// Of sums of some hundred times and positions.
@@ -99,7 +99,7 @@ fn the_fewest_segments_within_a_departure() {
     };
     let limits = [limits(2.0, 20.0, None), limits(300.0, 2000.0, None)];
     let mut knots = [Knot::default(); 500];
-    let longest = |_: &Row<_>, to: &Row<_>| to.duration_s;
+    let longest = |_: &Line, span: &Span<_>| span.rows[1].duration_s;
     let table = Table::plan_within([line], limits, 2, 0.02, longest, &mut knots).unwrap();
     let segments = u32::try_from(table.len() - 1).unwrap();
     let worst = |rows: Vec<Row<[f64; 2]>>| rows.iter().fold(0.0_f64, |w, r| w.max(r.duration_s));

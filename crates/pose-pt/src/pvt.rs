@@ -7,7 +7,7 @@ mod strokes;
 
 use core::convert::Infallible;
 
-use path_timing::{AxisLimits, Knot, Table};
+use path_timing::{AxisLimits, Knot, Span, Table};
 
 use crate::distance_error::hermite_distance_error;
 use crate::number::larger_or_nan;
@@ -50,8 +50,9 @@ impl<'a, const N: usize> PvtTable<'a, N> {
         let limits = limits(platform);
         let table = match segmentation.rule {
             Rule::DistanceError(allowed) => {
-                let distance_error = |from: &_, to: &_| {
-                    hermite_distance_error(platform, &PvtPoint::new(from), &PvtPoint::new(to))
+                let distance_error = |_: &_, span: &Span<_>| {
+                    let [from, to] = span.rows.each_ref().map(PvtPoint::new);
+                    hermite_distance_error(platform, &from, &to)
                 };
                 Table::plan_within(
                     moving,

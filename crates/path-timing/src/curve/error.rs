@@ -1,0 +1,31 @@
+//! Why there is no such curve.
+
+use crate::short::short;
+
+/// Why there is no such curve.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum CurveError {
+    /// A coordinate, an angle or a length is not a finite number.
+    #[error("a coordinate, angle or length of the curve is not a finite number")]
+    NotFinite,
+    /// The curve has no length, or so little that rounding hides its direction.
+    #[error("the curve has no length")]
+    NoLength,
+    /// The direction of an arc is along its radius.
+    #[error("the direction of the arc is along its radius")]
+    NoDirection,
+    /// The curve turns round at once, or nearly: its derivative vanishes.
+    #[error("the curve has a cusp near its parameter {}", short(.parameter))]
+    Cusp {
+        /// The parameter of the Bézier curve, 0..=1.
+        parameter: f64,
+    },
+    /// A tolerance of a corner that is not a positive finite number.
+    #[error("a corner tolerance of {} is not a positive finite number", short(.tolerance))]
+    Tolerance {
+        /// The tolerance given.
+        tolerance: f64,
+    },
+}
