@@ -19,9 +19,9 @@ fn swing<const N: usize>(s: f64) -> Result<Place<[f64; N]>, Infallible> {
     };
     let axes = place.position.iter_mut().zip(&mut place.slope);
     for (number, (position, slope)) in (1..).zip(axes) {
-        let share = f64::from(number) / 10.0;
-        *position = share * sin + s;
-        *slope = share * cos * 1.5 + 1.0;
+        let amplitude = f64::from(number) / 10.0;
+        *position = amplitude * sin + s;
+        *slope = amplitude * cos * 1.5 + 1.0;
     }
     Ok(place)
 }

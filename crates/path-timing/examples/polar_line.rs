@@ -1,4 +1,4 @@
-//! A polar arm along a line: rows of time, positions and velocities, with a hold on the way.
+//! A polar arm along a line: rows of time, positions and velocities, with a hold in between.
 
 use core::convert::Infallible;
 use core::error::Error;

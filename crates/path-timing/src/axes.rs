@@ -1,4 +1,4 @@
-//! The axes of a machine: one number for each, and what each may do.
+//! The axes of a machine: one number for each, and the limits of each.
 
 use core::fmt::Debug;
 
@@ -97,7 +97,7 @@ impl<const G: usize, const N: usize> Axes for [[f64; G]; N] {
     }
 }
 
-/// What one axis may do, in its unit (mm, rad) and seconds.
+/// Limits of one axis, in its unit (mm, rad) and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -118,7 +118,7 @@ pub struct AxisLimits {
     pub jerk: Option<f64>,
 }
 
-/// What the tool may do along a path whose parameter is the tool's way, in its unit and seconds.
+/// Limits of the tool along a path whose parameter is its arc length, in its unit and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",

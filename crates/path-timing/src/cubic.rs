@@ -74,16 +74,16 @@ impl Cubic {
         ends.max((self.v0 + a0 * time * 0.5).abs())
     }
 
-    /// The position at a share 0..=1 of the duration.
+    /// The position at a fraction 0..=1 of the duration.
     #[must_use]
-    pub fn position(&self, share: f64) -> f64 {
-        let rest = 1.0 - share;
+    pub fn position(&self, fraction: f64) -> f64 {
+        let rest = 1.0 - fraction;
         let [_, b1, b2, _] = self.control_points();
-        let outer = self.q0 * rest * rest * rest + self.q1 * share * share * share;
-        outer + 3.0 * share * rest * (b1 * rest + b2 * share)
+        let outer = self.q0 * rest * rest * rest + self.q1 * fraction * fraction * fraction;
+        outer + 3.0 * fraction * rest * (b1 * rest + b2 * fraction)
     }
 
-    /// The control points of its Bézier form: the cubic stays between the least and the greatest.
+    /// The control points of its Bézier form: the cubic stays between the smallest and the largest.
     #[must_use]
     pub fn control_points(&self) -> [f64; 4] {
         let third = self.duration_s / 3.0;
@@ -100,7 +100,7 @@ impl Cubic {
     pub fn extent(&self) -> [f64; 2] {
         let (mut low, mut high) = (self.q0.min(self.q1), self.q0.max(self.q1));
         let [a0, a1] = self.accelerations();
-        // v₀ + a₀ t + (a₁ - a₀) t² / 2T = 0, as shares of the duration.
+        // v₀ + a₀ t + (a₁ - a₀) t² / 2T = 0, as fractions of the duration.
         let (a, b) = (
             (a1 - a0) * self.duration_s * 0.5,
             a0 * self.duration_s * 0.5,
@@ -108,9 +108,9 @@ impl Cubic {
         let square = b * b - a * self.v0;
         if square >= 0.0 {
             let sum = -(b + sqrt(square).copysign(b));
-            for share in [sum / a, self.v0 / sum] {
-                if share > 0.0 && share < 1.0 {
-                    let position = self.position(share);
+            for fraction in [sum / a, self.v0 / sum] {
+                if fraction > 0.0 && fraction < 1.0 {
+                    let position = self.position(fraction);
                     (low, high) = (low.min(position), high.max(position));
                 }
             }
@@ -123,8 +123,8 @@ impl Cubic {
 mod tests {
     use super::Cubic;
 
-    /// Places at which a cubic is looked at; between them it rises by less than `BETWEEN`.
-    const PLACES: u32 = 2000;
+    /// Samples of a cubic; between them it rises by less than `BETWEEN`.
+    const SAMPLES: u32 = 2000;
     const BETWEEN: f64 = 1e-4;
     const ROUNDING: f64 = 1e-12;
 
@@ -144,9 +144,9 @@ mod tests {
     }
 
     /// Position and speed by time.
-    fn motion(cubic: &Cubic, share: f64) -> [f64; 2] {
+    fn motion(cubic: &Cubic, fraction: f64) -> [f64; 2] {
         let [a0, a1] = cubic.accelerations();
-        let time = share * cubic.duration_s;
+        let time = fraction * cubic.duration_s;
         let jerk = (a1 - a0) / cubic.duration_s;
         [
             cubic.q0 + (cubic.v0 + (a0 / 2.0 + jerk * time / 6.0) * time) * time,
@@ -155,27 +155,21 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_reaches_as_far_and_as_fast_as_its_places() {
+    fn a_cubic_reaches_as_far_and_as_fast_as_its_samples() {
         for cubic in cubics() {
-            let shares = (0..=PLACES).map(|place| f64::from(place) / f64::from(PLACES));
-            let (mut least, mut most, mut fastest) = (f64::MAX, f64::MIN, 0.0_f64);
-            for share in shares {
-                let [place, speed] = motion(&cubic, share);
-                assert!((cubic.position(share) - place).abs() < ROUNDING);
-                (least, most) = (least.min(place), most.max(place));
+            let fractions = (0..=SAMPLES).map(|sample| f64::from(sample) / f64::from(SAMPLES));
+            let (mut min, mut max, mut fastest) = (f64::MAX, f64::MIN, 0.0_f64);
+            for fraction in fractions {
+                let [position, speed] = motion(&cubic, fraction);
+                assert!((cubic.position(fraction) - position).abs() < ROUNDING);
+                (min, max) = (min.min(position), max.max(position));
                 fastest = fastest.max(speed.abs());
             }
             let [end, speed] = motion(&cubic, 1.0);
             assert!((end - cubic.q1).abs() < ROUNDING && (speed - cubic.v1).abs() < ROUNDING);
             let [low, high] = cubic.extent();
-            assert!(
-                low <= least + ROUNDING && low > least - BETWEEN,
-                "{cubic:?}"
-            );
-            assert!(
-                high >= most - ROUNDING && high < most + BETWEEN,
-                "{cubic:?}"
-            );
+            assert!(low <= min + ROUNDING && low > min - BETWEEN, "{cubic:?}");
+            assert!(high >= max - ROUNDING && high < max + BETWEEN, "{cubic:?}");
             let peak = cubic.peak_speed();
             assert!(
                 peak >= fastest - ROUNDING && peak < fastest + BETWEEN,

@@ -1,4 +1,4 @@
-//! What a leg asks of the axes, found on the cubics that the controller will run.
+//! Utilisation of the limits by a leg, found on the cubics that the controller will run.
 
 use crate::leg::Leg;
 use crate::number::{cube_root, sqrt};
@@ -19,7 +19,7 @@ impl End {
     };
 }
 
-/// The largest shares of the limits that a run of segments asks for.
+/// The largest utilisation of each kind of limit over consecutive segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Demand<A: Axes> {
     speed: f64,
@@ -61,7 +61,7 @@ impl<A: Axes> Demand<A> {
         }
     }
 
-    /// By what the time may be multiplied at the least so that all limits are kept.
+    /// The smallest factor of the time with which all limits are kept.
     pub(crate) fn stretch(&self) -> f64 {
         self.speed
             .max(sqrt(self.acceleration))
@@ -95,17 +95,17 @@ impl<A: Axes> Demand<A> {
 
     /// Takes the tool's motion from one knot to the next into account.
     fn add_tool(&mut self, tool: &ToolLimits, from: &Knot, to: &Knot) {
-        let way = Cubic {
+        let tool_motion = Cubic {
             q0: from.s,
             q1: to.s,
             v0: from.speed,
             v1: to.speed,
             duration_s: from.duration_s,
         };
-        self.speed = self.speed.max(way.peak_speed() / tool.feed);
+        self.speed = self.speed.max(tool_motion.peak_speed() / tool.feed);
         if let Some(limit) = tool.acceleration {
-            let [a0, a1] = way.accelerations().map(f64::abs);
-            let hardest = a0.max(a1) + way.noise();
+            let [a0, a1] = tool_motion.accelerations().map(f64::abs);
+            let hardest = a0.max(a1) + tool_motion.noise();
             self.acceleration = self.acceleration.max(hardest / limit);
         }
     }
@@ -161,7 +161,7 @@ mod tests {
         assert!(off.fold(0.0, f64::max) < ROUNDING, "{jerks:?}");
         assert!((demand.speed - 2.0 / 4.0).abs() < ROUNDING);
         assert!((demand.acceleration - 2.0 / 5.0).abs() < ROUNDING);
-        // The jerk asks for the most: 0.79 against 0.63 and 0.5.
+        // The jerk dominates: 0.79 against 0.63 and 0.5.
         assert!((demand.stretch() - 0.5_f64.cbrt()).abs() < ROUNDING);
     }
 }

@@ -35,7 +35,17 @@ pub enum PlanError<E> {
         /// Largest value.
         max: f64,
     },
-    /// The machine cannot be at a place of the path.
+    /// A start-stop speed of a corner is neither 0 nor a number within the range of the crate.
+    #[error("leg {leg}, axis {axis}: a start-stop speed of {} is not within the range of numbers", short(.speed))]
+    StartStopSpeed {
+        /// The leg before the corner, from 0.
+        leg: usize,
+        /// The axis, from 0.
+        axis: usize,
+        /// The speed given.
+        speed: f64,
+    },
+    /// The machine cannot be at a point of the path.
     #[error("leg {leg}, at {}: {reason}", short(.s))]
     Path {
         /// The leg, from 0.
@@ -76,7 +86,7 @@ pub enum PlanError<E> {
     TooFine {
         /// The leg, from 0.
         leg: usize,
-        /// Most segments of a leg.
+        /// Largest number of segments of a leg.
         max: u32,
     },
     /// The memory given is too small.

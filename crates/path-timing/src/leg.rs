@@ -1,55 +1,78 @@
-//! One path among several, its parameter as a share of its length.
+//! One path among several, and its joint to the next.
 
+use crate::joint::Joint;
 use crate::number::{LARGEST, SMALLEST, range};
-use crate::{Axes as _, Path, Place, PlanError, ToolLimits};
+use crate::segment::Reciprocals;
+use crate::{Axes, Corner, Legs, Path, Place, PlanError, ToolLimits};
 
-/// A leg: a path, and which of all it is.
+/// A leg: a path, which of all it is, and how the next one follows.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Leg<P> {
+pub(crate) struct Leg<P: Path> {
     /// From 0.
     pub(crate) number: usize,
     path: P,
     length: f64,
-    /// By the share.
     tool: Option<ToolLimits>,
+    joint: Joint<P::Axes>,
 }
 
 impl<P: Path> Leg<P> {
-    pub(crate) fn new(number: usize, path: P) -> Self {
-        let length = path.length();
-        let tool = path.tool().map(|tool| ToolLimits {
-            feed: tool.feed / length,
-            acceleration: tool.acceleration.map(|limit| limit / length),
-        });
-        Self {
+    /// The path with its joint to the `next`.
+    pub(crate) fn new(
+        number: usize,
+        path: P,
+        next: Option<&P>,
+        limits: &Reciprocals<P::Axes>,
+    ) -> Result<Self, P::Error> {
+        let (length, tool) = (path.length(), path.tool());
+        let joint = match (path.corner(), next) {
+            (Corner::Stop, _) | (_, None) => Joint::Stop,
+            (corner, Some(next)) => {
+                let (before, after) = (path.place(length)?, next.place(0.0)?);
+                Joint::new(limits, &corner, &before.slope, &after.slope)
+            }
+        };
+        Ok(Self {
             number,
             path,
             length,
             tool,
-        }
+            joint,
+        })
     }
 
     pub(crate) const fn path(&self) -> &P {
         &self.path
     }
 
-    /// What the tool may do, by the share.
+    pub(crate) const fn length(&self) -> f64 {
+        self.length
+    }
+
     pub(crate) const fn tool(&self) -> Option<&ToolLimits> {
         self.tool.as_ref()
     }
 
-    /// The parameter at a share of the length.
-    pub(crate) fn parameter(&self, share: f64) -> f64 {
-        share * self.length
+    pub(crate) const fn joint(&self) -> &Joint<P::Axes> {
+        &self.joint
     }
 
-    /// Whether its length and the limits of its tool are ones that the crate computes with.
+    /// Whether its length, the limits of its tool and its corner have numbers that the crate
+    /// computes with.
     pub(crate) fn check(&self) -> Result<(), PlanError<P::Error>> {
         let (leg, length) = (self.number, self.length);
         if !range().contains(&length) {
             return Err(PlanError::Length { leg, length });
         }
-        match self.path.tool().and_then(|tool| tool.outside()) {
+        if let Corner::Jump(speeds) = self.path.corner() {
+            let mut speeds = speeds.as_slice().iter().enumerate();
+            let outside = |speed: &f64| *speed != 0.0 && !range().contains(speed);
+            if let Some((axis, speed)) = speeds.find(|(_, speed)| outside(speed)) {
+                let speed = *speed;
+                return Err(PlanError::StartStopSpeed { leg, axis, speed });
+            }
+        }
+        match self.tool.and_then(|tool| tool.outside()) {
             Some((name, value)) => Err(PlanError::Tool {
                 leg,
                 name,
@@ -61,20 +84,20 @@ impl<P: Path> Leg<P> {
         }
     }
 
-    /// Positions, and slopes by the share, at a share 0..=1 of the length.
-    pub(crate) fn place(&self, share: f64) -> Result<Place<P::Axes>, P::Error> {
-        let Place { position, slope } = self.path.place(self.parameter(share))?;
-        Ok(Place {
-            position,
-            slope: slope.scaled(self.length),
-        })
+    /// Positions and slopes at the parameter `s`; at the end those of the joint.
+    pub(crate) fn place(&self, s: f64) -> Result<Place<P::Axes>, P::Error> {
+        let mut place = self.path.place(s)?;
+        if let (Joint::Smooth(slope), true) = (&self.joint, s >= self.length) {
+            place.slope = *slope;
+        }
+        Ok(place)
     }
 
     /// The same, refused by name where the machine cannot be there.
-    pub(crate) fn checked_place(&self, share: f64) -> Result<Place<P::Axes>, PlanError<P::Error>> {
-        let (leg, s) = (self.number, self.parameter(share));
+    pub(crate) fn checked_place(&self, s: f64) -> Result<Place<P::Axes>, PlanError<P::Error>> {
+        let leg = self.number;
         let place = self
-            .place(share)
+            .place(s)
             .map_err(|reason| PlanError::Path { leg, s, reason })?;
         let mut numbers = (place.position.as_slice().iter()).chain(place.slope.as_slice());
         if numbers.all(|number| number.is_finite()) {
@@ -82,4 +105,45 @@ impl<P: Path> Leg<P> {
         }
         Err(PlanError::NotFinite { leg, s })
     }
+}
+
+/// All legs in their order.
+pub(crate) fn forward<'a, L: Legs>(
+    legs: &L,
+    limits: &'a Reciprocals<L::Axes>,
+) -> impl Iterator<Item = Result<Leg<L::Leg>, PlanError<L::Error>>> + use<'a, L> {
+    let mut later = legs.clone();
+    later.next();
+    legs.clone().enumerate().map(move |(number, path)| {
+        let next = later.next();
+        named(number, path, next.as_ref(), limits)
+    })
+}
+
+/// All legs from the last to the first.
+pub(crate) fn backward<'a, L: Legs>(
+    legs: &L,
+    limits: &'a Reciprocals<L::Axes>,
+) -> impl Iterator<Item = Result<Leg<L::Leg>, PlanError<L::Error>>> + use<'a, L> {
+    let count = legs.clone().count();
+    let mut next: Option<L::Leg> = None;
+    (0..count)
+        .rev()
+        .zip(legs.clone().rev())
+        .map(move |(number, path)| {
+            let leg = named(number, path.clone(), next.as_ref(), limits);
+            next = Some(path);
+            leg
+        })
+}
+
+/// A leg, or where the path refuses one of the two ends at its joint.
+fn named<P: Path>(
+    leg: usize,
+    path: P,
+    next: Option<&P>,
+    limits: &Reciprocals<P::Axes>,
+) -> Result<Leg<P>, PlanError<P::Error>> {
+    let s = path.length();
+    Leg::new(leg, path, next, limits).map_err(|reason| PlanError::Path { leg, s, reason })
 }

@@ -1,12 +1,12 @@
-//! Paths: where all axes are at a parameter, and which way they go there.
+//! Paths: positions and slopes of all axes at a parameter.
 
 use core::fmt::{self, Debug};
 
-use crate::{Axes, ToolLimits};
+use crate::{Axes, Corner, ToolLimits};
 
-/// Axes at a place of a path.
+/// Positions and slopes of all axes at a point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::exhaustive_structs, reason = "a place has no more to it")]
+#[expect(clippy::exhaustive_structs, reason = "a point has no more to it")]
 pub struct Place<A: Axes> {
     /// Position q of each axis, in its unit.
     pub position: A,
@@ -17,11 +17,13 @@ pub struct Place<A: Axes> {
 /// Positions of all axes as a smooth function of a parameter s.
 ///
 /// The slope must be the derivative of the position, and continuous. The parameter may be anything
-/// that grows along the path; where it is the tool's way, a speed along the path is the feed.
+/// that grows along the path; where it is the arc length of the tool's path, the speed of the
+/// parameter is the feed. Where one path goes on to the next without a stop, the parameters of both
+/// run at the same speed.
 pub trait Path {
     /// `[f64; N]` for N axes.
     type Axes: Axes;
-    /// Why the machine cannot be at a place.
+    /// Why the machine cannot be at a point.
     type Error;
 
     /// The parameter at the end of the path; it is 0 at the start.
@@ -33,10 +35,15 @@ pub trait Path {
     /// Why the machine cannot be there.
     fn place(&self, s: f64) -> Result<Place<Self::Axes>, Self::Error>;
 
-    /// What the tool may do along the path, where the parameter is its way: the feed. Nothing but
-    /// the axes limits it otherwise.
+    /// Feed and acceleration of the tool along the path, where the parameter is its arc length.
+    /// Nothing but the axes limits it otherwise.
     fn tool(&self) -> Option<ToolLimits> {
         None
+    }
+
+    /// How the machine goes on to the next path at the end of this one.
+    fn corner(&self) -> Corner<Self::Axes> {
+        Corner::Stop
     }
 }
 
@@ -55,23 +62,29 @@ impl<P: Path> Path for &P {
     fn tool(&self) -> Option<ToolLimits> {
         (**self).tool()
     }
+
+    fn corner(&self) -> Corner<P::Axes> {
+        (**self).corner()
+    }
 }
 
 /// A path by a function.
 #[derive(Clone, Copy)]
-pub struct PathFn<F> {
+pub struct PathFn<F, A> {
     length: f64,
     place: F,
     tool: Option<ToolLimits>,
+    corner: Corner<A>,
 }
 
-impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> PathFn<F> {
+impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> PathFn<F, A> {
     /// The path of `place` from 0 to `length`.
     pub const fn new(length: f64, place: F) -> Self {
         Self {
             length,
             place,
             tool: None,
+            corner: Corner::Stop,
         }
     }
 
@@ -83,9 +96,15 @@ impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> PathFn<F> {
             ..self
         }
     }
+
+    /// The path with another corner than a stop at its end.
+    #[must_use]
+    pub fn with_corner(self, corner: Corner<A>) -> Self {
+        Self { corner, ..self }
+    }
 }
 
-impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> Path for PathFn<F> {
+impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> Path for PathFn<F, A> {
     type Axes = A;
     type Error = E;
 
@@ -100,9 +119,13 @@ impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> Path for PathFn<F> {
     fn tool(&self) -> Option<ToolLimits> {
         self.tool
     }
+
+    fn corner(&self) -> Corner<A> {
+        self.corner
+    }
 }
 
-impl<F> Debug for PathFn<F> {
+impl<F, A> Debug for PathFn<F, A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("PathFn")
             .field("length", &self.length)
@@ -110,14 +133,14 @@ impl<F> Debug for PathFn<F> {
     }
 }
 
-/// Paths one after the other, from rest to rest each: any iterator over [`Path`]s that can be
-/// cloned and run backwards. Each begins at the very position at which the one before ends.
+/// Paths one after the other: any iterator over [`Path`]s that can be cloned and run backwards.
+/// Each begins at the very position at which the one before ends.
 pub trait Legs: DoubleEndedIterator<Item = Self::Leg> + Clone {
     /// One of the paths.
     type Leg: Path<Axes = Self::Axes, Error = Self::Error> + Clone + Debug;
     /// `[f64; N]` for N axes.
     type Axes: Axes;
-    /// Why the machine cannot be at a place.
+    /// Why the machine cannot be at a point.
     type Error;
 }
 

@@ -1,7 +1,7 @@
 //! The knots of a table: how many, at which speeds, and whether they can be told apart.
 
 use crate::demand::Demand;
-use crate::leg::Leg;
+use crate::leg::{self, Leg};
 use crate::number::{LARGEST, SMALLEST, larger_or_nan, sqrt};
 use crate::segment::Reciprocals;
 use crate::table::spans_of_leg;
@@ -11,19 +11,18 @@ use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Span, profile, smooth
 pub(crate) struct Planner<A: Axes> {
     limits: A::Of<AxisLimits>,
     reciprocals: Reciprocals<A>,
-    has_jerk: bool,
 }
 
 /// Fewest segments of a leg: it starts and stops.
 pub(crate) const MIN_SEGMENTS: u32 = 2;
 
-/// Most segments of a leg: 12 machine epsilons of the way from its last knot but one to its end.
+/// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
 
 /// Segments beyond which rounding is all that is left of a departure.
 const FINEST: u32 = 1 << 20;
 
-/// What a stretched leg rounds off.
+/// Relative rounding of a stretched leg.
 const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 impl<A: Axes> Planner<A> {
@@ -42,7 +41,6 @@ impl<A: Axes> Planner<A> {
         }
         Ok(Self {
             reciprocals: Reciprocals::new(&limits),
-            has_jerk: A::each(&limits).iter().any(|limits| limits.jerk.is_some()),
             limits,
         })
     }
@@ -54,7 +52,7 @@ impl<A: Axes> Planner<A> {
     /// A number of segments that a leg can have; more than asked for where each phase of an
     /// S-curve needs one.
     pub(crate) fn bounded<E>(&self, leg: usize, segments: u32) -> Result<u32, PlanError<E>> {
-        let least = if self.has_jerk {
+        let least = if self.reciprocals.has_jerk() {
             smooth::PHASES
         } else {
             MIN_SEGMENTS
@@ -67,23 +65,24 @@ impl<A: Axes> Planner<A> {
         }
     }
 
-    /// Looks at the legs and at the memory for the least that they need, before anything is
+    /// Checks the legs and the memory for the smallest number of knots that they need, before anything is
     /// planned.
     pub(crate) fn check_legs<L: Legs<Axes = A>>(
         &self,
-        legs: L,
+        legs: &L,
         least: impl Fn(&L::Leg) -> u32,
         available: usize,
     ) -> Result<(), PlanError<L::Error>> {
         let mut needed = 0_usize;
         let mut last: Option<A> = None;
-        for (number, path) in legs.enumerate() {
-            let leg = Leg::new(number, path);
+        for leg in leg::forward(legs, &self.reciprocals) {
+            let leg = leg?;
             leg.check()?;
+            let (number, start) = (leg.number, leg.checked_place(0.0)?.position);
             if let Some(last) = last {
-                check_joint(number, &last, &leg.checked_place(0.0)?.position)?;
+                check_joint(number, &last, &start)?;
             }
-            last = Some(leg.checked_place(1.0)?.position);
+            last = Some(leg.checked_place(leg.length())?.position);
             needed = needed.saturating_add(knots_of(self.bounded(number, least(leg.path()))?));
         }
         if needed <= available {
@@ -92,8 +91,47 @@ impl<A: Axes> Planner<A> {
         Err(PlanError::Memory { needed, available })
     }
 
-    /// Plans a leg in the first of the free knots; those that it takes.
-    pub(crate) fn plan_leg<'k, P: Path<Axes = A>>(
+    /// Spreads a leg's knots over the first of the free ones; those that it takes.
+    pub(crate) fn lay_leg<'k, P: Path<Axes = A>>(
+        &self,
+        leg: &Leg<P>,
+        starts_at_rest: bool,
+        free: &'k mut [Knot],
+        segments: u32,
+    ) -> Result<&'k mut [Knot], PlanError<P::Error>> {
+        let (needed, available) = (knots_of(segments), free.len());
+        let own = free
+            .get_mut(..needed)
+            .ok_or(PlanError::Memory { needed, available })?;
+        profile::spread(own, leg.length(), [starts_at_rest, leg.joint().is_stop()]);
+        Ok(own)
+    }
+
+    /// Plans all legs whose knots are spread. Seconds from the first knot to the last.
+    pub(crate) fn plan_legs<L: Legs<Axes = A>>(
+        &self,
+        legs: &L,
+        knots: &mut [Knot],
+    ) -> Result<f64, PlanError<L::Error>> {
+        if !self.reciprocals.has_jerk() {
+            profile::fastest_of_all(&self.reciprocals, legs, knots)?;
+        }
+        let (mut later, mut time_s) = (knots, 0.0);
+        for leg in leg::forward(legs, &self.reciprocals) {
+            let leg = leg?;
+            let (own, rest) = profile::split(later, profile::first_leg(later));
+            if self.reciprocals.has_jerk() {
+                smooth::smooth(&self.limits, &leg, own)?;
+                self.stretch_to_limits(&leg, own)?;
+            }
+            time_s = check_times(leg.number, own, time_s)?;
+            later = rest;
+        }
+        Ok(time_s)
+    }
+
+    /// Plans a leg from rest to rest in the first of the free knots; those that it takes.
+    fn plan_leg<'k, P: Path<Axes = A>>(
         &self,
         leg: &Leg<P>,
         free: &'k mut [Knot],
@@ -103,7 +141,7 @@ impl<A: Axes> Planner<A> {
         let own = free
             .get_mut(..needed)
             .ok_or(PlanError::Memory { needed, available })?;
-        if self.has_jerk {
+        if self.reciprocals.has_jerk() {
             smooth::smooth(&self.limits, leg, own)?;
         } else {
             profile::fastest(&self.reciprocals, leg, own)?;
@@ -112,21 +150,18 @@ impl<A: Axes> Planner<A> {
     }
 
     /// Stretches the time of a leg with jerk so that it just keeps all limits; the fastest motion
-    /// keeps them by its making. The time at its last knot.
-    pub(crate) fn finish<P: Path<Axes = A>>(
+    /// keeps them by its making.
+    fn stretch_to_limits<P: Path<Axes = A>>(
         &self,
         leg: &Leg<P>,
         knots: &mut [Knot],
-        time_s: f64,
-    ) -> Result<f64, PlanError<P::Error>> {
-        if self.has_jerk {
-            let stretch = Demand::of(&self.limits, leg, knots)?.stretch() * STRETCHED;
-            for knot in &mut *knots {
-                knot.speed /= stretch;
-                knot.duration_s *= stretch;
-            }
+    ) -> Result<(), PlanError<P::Error>> {
+        let stretch = Demand::of(&self.limits, leg, knots)?.stretch() * STRETCHED;
+        for knot in knots {
+            knot.speed /= stretch;
+            knot.duration_s *= stretch;
         }
-        check_times(leg.number, knots, time_s)
+        Ok(())
     }
 
     /// A number of segments that keeps the allowed departure, while one fewer does not.
@@ -173,7 +208,7 @@ impl<A: Axes> Planner<A> {
     }
 }
 
-/// Knots of a leg with so many segments.
+/// The number of knots of a leg with this number of segments.
 pub(crate) fn knots_of(segments: u32) -> usize {
     usize::try_from(segments).map_or(usize::MAX, |segments| segments.saturating_add(1))
 }

@@ -1,98 +1,154 @@
-//! The fastest speeds along one leg, from rest to rest.
+//! The fastest speeds along legs, from stop to stop.
 
-use crate::leg::Leg;
+use crate::leg::{self, Leg};
 use crate::number::LARGEST;
 use crate::segment::{Reciprocals, Segment};
-use crate::{Knot, Path, PlanError};
+use crate::{Knot, Legs, Path, PlanError};
 
-/// Fills the knots of a leg, one more than segments, with the fastest motion.
+/// Fills the knots of a leg, one more than segments, with the fastest motion from rest to rest.
 pub(crate) fn fastest<P: Path>(
     limits: &Reciprocals<P::Axes>,
     leg: &Leg<P>,
     knots: &mut [Knot],
 ) -> Result<(), PlanError<P::Error>> {
-    spread(knots);
-    backward(limits, leg, knots)?;
-    forward(limits, leg, knots)
+    spread(knots, leg.length(), [true; 2]);
+    backward(limits, leg, knots, 0.0)?;
+    forward(limits, leg, knots, 0.0)?;
+    Ok(())
 }
 
-/// Spreads the knots as u² (3 - 2u), dense where the leg starts and stops: there the speed
+/// Gives the knots of all legs, spread already, the speeds and times of the fastest motion.
+pub(crate) fn fastest_of_all<L: Legs>(
+    limits: &Reciprocals<L::Axes>,
+    legs: &L,
+    knots: &mut [Knot],
+) -> Result<(), PlanError<L::Error>> {
+    let (mut earlier, mut speed) = (&mut *knots, 0.0);
+    for leg in leg::backward(legs, limits) {
+        let leg = leg?;
+        let (rest, own) = split(earlier, last_leg(earlier));
+        speed = backward(limits, &leg, own, leg.joint().speed().min(speed))?;
+        earlier = rest;
+    }
+    let (mut later, mut speed) = (knots, 0.0);
+    for leg in leg::forward(legs, limits) {
+        let (own, rest) = split(later, first_leg(later));
+        speed = forward(limits, &leg?, own, speed)?;
+        later = rest;
+    }
+    Ok(())
+}
+
+/// Both parts of the knots; the second has none where there are fewer.
+pub(crate) fn split(knots: &mut [Knot], at: usize) -> (&mut [Knot], &mut [Knot]) {
+    let at = at.min(knots.len());
+    knots.split_at_mut(at)
+}
+
+/// Where the knots of the last leg begin.
+pub(crate) fn last_leg(knots: &[Knot]) -> usize {
+    let first = knots.iter().rposition(|knot| knot.s <= 0.0);
+    first.unwrap_or(0)
+}
+
+/// Where the knots of the first leg end.
+pub(crate) fn first_leg(knots: &[Knot]) -> usize {
+    let mut starts = knots.iter().enumerate().skip(1);
+    let next = starts.find(|(_, knot)| knot.s <= 0.0);
+    next.map_or(knots.len(), |(index, _)| index)
+}
+
+/// Spreads the knots over a length, dense at an end where the machine rests: there the speed
 /// changes most from knot to knot, and with it the cubic's departure from the path.
-fn spread(knots: &mut [Knot]) {
-    let segments = u32::try_from(knots.len().saturating_sub(1)).unwrap_or(u32::MAX);
-    for (index, knot) in (0..=segments).zip(knots) {
+pub(crate) fn spread(knots: &mut [Knot], length: f64, rests: [bool; 2]) {
+    let segments = f64::from(u32::try_from(knots.len()).map_or(u32::MAX, |n| n.saturating_sub(1)));
+    for (index, knot) in (0_u32..).zip(knots) {
         *knot = Knot {
-            s: share(index, segments),
+            s: length * fraction(f64::from(index) / segments, rests),
             ..Knot::default()
         };
     }
 }
 
-/// Where a knot stands, as a share of the leg.
-fn share(index: u32, segments: u32) -> f64 {
-    let u = f64::from(index) / f64::from(segments);
-    u * u * (3.0 - 2.0 * u)
+/// Where a knot stands, as a fraction of the leg.
+fn fraction(u: f64, rests: [bool; 2]) -> f64 {
+    let from_rest = |u: f64| u * u * (3.0 - u) * 0.5;
+    match rests {
+        [true, true] => u * u * (3.0 - 2.0 * u),
+        [true, false] => from_rest(u),
+        [false, true] => 1.0 - from_rest(1.0 - u),
+        [false, false] => u,
+    }
 }
 
-/// From the end at rest: the highest speed at each knot from which the rest can be run, and the
-/// speed after it that goes with it.
+/// From the last knot, passed at `speed`: the highest speed at each from which the rest can be
+/// run, and the speed after it that goes with it. The speed at the first knot.
 fn backward<P: Path>(
     limits: &Reciprocals<P::Axes>,
     leg: &Leg<P>,
     knots: &mut [Knot],
-) -> Result<(), PlanError<P::Error>> {
+    speed: f64,
+) -> Result<f64, PlanError<P::Error>> {
     let mut before = knots.iter_mut().rev();
     let Some(mut to) = before.next() else {
-        return Ok(());
+        return Ok(speed);
     };
+    to.speed = speed;
     let mut end = leg.checked_place(to.s)?;
     for from in before {
         let start = leg.checked_place(from.s)?;
-        let way = to.s - from.s;
-        let segment = Segment::new(limits, &start, &end, way).with_tool(leg.tool(), way);
+        let ds = to.s - from.s;
+        let segment = Segment::new(limits, &start, &end, ds).with_tool(leg.tool(), ds);
         (from.speed, from.after) = segment.begin(to.speed, LARGEST);
         (to, end) = (from, start);
     }
-    Ok(())
+    Ok(to.speed)
 }
 
-/// From the start at rest: as fast as each segment and what is left allow.
+/// From the first knot, passed at `speed`: as fast as each segment and what is left allow. The
+/// speed at the last knot.
 fn forward<P: Path>(
     limits: &Reciprocals<P::Axes>,
     leg: &Leg<P>,
     knots: &mut [Knot],
-) -> Result<(), PlanError<P::Error>> {
+    speed: f64,
+) -> Result<f64, PlanError<P::Error>> {
     let mut rest = knots.iter_mut();
     let Some(mut from) = rest.next() else {
-        return Ok(());
+        return Ok(speed);
     };
     let mut start = leg.checked_place(from.s)?;
     let mut ratio = from.after / from.speed;
-    from.speed = 0.0;
+    from.speed = speed;
     for to in rest {
         let end = leg.checked_place(to.s)?;
-        let way = to.s - from.s;
-        let segment = Segment::new(limits, &start, &end, way).with_tool(leg.tool(), way);
+        let ds = to.s - from.s;
+        let segment = Segment::new(limits, &start, &end, ds).with_tool(leg.tool(), ds);
         let next_ratio = to.after / to.speed;
         // What holds for the highest speed here holds slower at the same ratio.
         to.speed = segment.end(from.speed, to.speed, from.speed * ratio);
-        from.duration_s = 2.0 * way / (from.speed + to.speed);
+        from.duration_s = 2.0 * ds / (from.speed + to.speed);
         (from, start, ratio) = (to, end, next_ratio);
     }
-    Ok(())
+    Ok(from.speed)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::share;
+    use super::fraction;
     use crate::planner::MAX_SEGMENTS;
 
     #[test]
     fn knots_of_the_finest_leg_are_apart() {
-        for segments in [MAX_SEGMENTS, MAX_SEGMENTS - 1, MAX_SEGMENTS - 12_345, 1000] {
+        let ends = [[true, true], [true, false], [false, true], [false, false]];
+        for (segments, rests) in [MAX_SEGMENTS, MAX_SEGMENTS - 1, MAX_SEGMENTS - 12_345, 1000]
+            .into_iter()
+            .flat_map(|segments| ends.map(|rests| (segments, rests)))
+        {
+            let at = |index| fraction(f64::from(index) / f64::from(segments), rests);
             let mut ends = (0..500).chain(segments - 500..segments);
-            assert!(ends.all(|index| share(index, segments) < share(index + 1, segments)));
-            assert!((share(segments, segments) - 1.0).abs() < f64::MIN_POSITIVE);
+            assert!(ends.all(|index| at(index) < at(index + 1)), "{rests:?}");
+            assert!(at(0).to_bits() == 0 && (at(segments) - 1.0).abs() < f64::MIN_POSITIVE);
         }
     }
 }

@@ -3,15 +3,27 @@
 use core::iter::FusedIterator;
 
 use crate::leg::Leg;
+use crate::segment::Reciprocals;
 use crate::{Axes, Knot, Legs, Place, Row, Table};
 
-/// A knot as a place of its path.
+/// A knot as a point of its path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node<A: Axes> {
-    /// Slopes by time: velocities.
+    /// Slopes by time: velocities on arrival.
     pub(crate) place: Place<A>,
+    /// Velocities with which the next segment begins, where they jump.
+    pub(crate) jump: Option<A>,
     /// Time to the next node.
     pub(crate) duration_s: f64,
+}
+
+impl<A: Axes> Node<A> {
+    /// The start of the next segment.
+    pub(crate) fn departure(&self) -> Place<A> {
+        let position = self.place.position;
+        self.jump
+            .map_or(self.place, |slope| Place { position, slope })
+    }
 }
 
 /// The knots of a table one after the other; the last of a leg and the first of the next are one.
@@ -19,22 +31,22 @@ pub(crate) struct Node<A: Axes> {
 pub(crate) struct Nodes<'a, L: Legs> {
     /// Those that are still to come.
     legs: L,
-    knots: &'a [Knot],
     /// The one that the next knot is on.
     leg: Option<Leg<L::Leg>>,
+    knots: &'a [Knot],
+    limits: Reciprocals<L::Axes>,
     stretch: f64,
 }
 
 impl<'a, L: Legs> Nodes<'a, L> {
     pub(crate) fn new(table: &Table<'a, L, L::Axes>) -> Self {
-        let mut nodes = Self {
+        Self {
             legs: table.legs.clone(),
-            knots: table.knots,
             leg: None,
+            knots: table.knots,
+            limits: table.limits,
             stretch: table.stretch,
-        };
-        nodes.begin();
-        nodes
+        }
     }
 
     /// The leg that the next knot is on, from 0.
@@ -43,40 +55,54 @@ impl<'a, L: Legs> Nodes<'a, L> {
     }
 
     /// Begins the next leg.
-    fn begin(&mut self) {
+    fn begin(&mut self) -> Result<(), L::Error> {
         let number = self
             .leg
             .as_ref()
             .map_or(0, |leg| leg.number.saturating_add(1));
-        self.leg = self.legs.next().map(|path| Leg::new(number, path));
+        let path = self.legs.next();
+        let next = self.legs.clone().next();
+        let leg = path.map(|path| Leg::new(number, path, next.as_ref(), &self.limits));
+        self.leg = leg.transpose()?;
+        Ok(())
     }
 
     pub(crate) fn next(&mut self) -> Result<Option<Node<L::Axes>>, L::Error> {
+        if self.leg.is_none() {
+            self.begin()?;
+        }
         let (Some((knot, later)), Some(leg)) = (self.knots.split_first(), &self.leg) else {
             return Ok(None);
         };
         let mut place = leg.place(knot.s)?;
         let speed = knot.speed / self.stretch;
         place.slope = place.slope.scaled(speed);
-        let mut duration_s = knot.duration_s;
+        let (mut duration_s, mut jump) = (knot.duration_s, None);
         self.knots = later;
-        if let (true, Some((first, rest))) = (knot.s >= 1.0, later.split_first()) {
+        if let (true, Some((first, rest))) = (knot.s >= leg.length(), later.split_first()) {
+            let jumps = leg.joint().is_jump();
             duration_s = first.duration_s;
             self.knots = rest;
-            self.begin();
+            self.begin()?;
+            if let (true, Some(leg)) = (jumps, &self.leg) {
+                jump = Some(leg.place(0.0)?.slope.scaled(speed));
+            }
         }
         Ok(Some(Node {
             place,
+            jump,
             duration_s: duration_s * self.stretch,
         }))
     }
 }
 
-/// The rows of a [`Table`]. A row is an error only where the path refuses a place that it has
+/// The rows of a [`Table`]. A row is an error only where the path refuses a point that it has
 /// given while the table was planned.
 #[derive(Debug, Clone)]
 pub struct Rows<'a, L: Legs> {
     nodes: Nodes<'a, L>,
+    /// The second row of a corner where velocities jump.
+    jump: Option<Row<L::Axes>>,
     time_s: f64,
     /// Of the segment before the next row.
     duration_s: f64,
@@ -87,6 +113,7 @@ impl<'a, L: Legs> Rows<'a, L> {
     pub(crate) fn new(table: &Table<'a, L, L::Axes>) -> Self {
         Self {
             nodes: Nodes::new(table),
+            jump: None,
             time_s: 0.0,
             duration_s: 0.0,
             remaining: table.len(),
@@ -105,6 +132,9 @@ impl<L: Legs> Iterator for Rows<'_, L> {
 
     fn next(&mut self) -> Option<Self::Item> {
         self.remaining = self.remaining.checked_sub(1)?;
+        if let Some(row) = self.jump.take() {
+            return Some(Ok(row));
+        }
         let node = match self.nodes.next() {
             Ok(node) => node?,
             Err(error) => return Some(Err(error)),
@@ -117,6 +147,7 @@ impl<L: Legs> Iterator for Rows<'_, L> {
             velocity: node.place.slope,
         };
         self.duration_s = node.duration_s;
+        self.jump = node.jump.map(|velocity| row.with_jump(velocity));
         Some(Ok(row))
     }
 

@@ -1,22 +1,22 @@
 //! A table that runs under a feed override and can stop on its path.
 
-use crate::leg::Leg;
+use crate::leg::{self, Leg};
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::rows::{Node, Nodes};
 use crate::segment::{Reciprocals, Segment};
 use crate::short::short;
-use crate::{Axes, Knot, Legs, Place, PlanError, Row, Table};
+use crate::{Axes, Knot, Legs, Place, PlanError, Row, Table, profile};
 
-/// Memory for one row of a table that runs: what the rows ahead still allow.
+/// Memory for one row of a table that runs: the highest feed from which the rest can be run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ahead {
     /// The highest feed at this row from which the rest can be run.
     ceiling: f64,
-    /// The feed at the next row that goes with it, as a share.
+    /// The feed at the next row that goes with it, as a ratio to this one.
     after: f64,
 }
 
-/// A share that the feed override cannot take.
+/// A feed that the override cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[error("feed {} is neither 0 nor within {}..={}", short(.feed), short(.min), short(.max))]
@@ -30,7 +30,7 @@ pub struct FeedError {
     pub max: f64,
 }
 
-/// A [`Table`] on the way to the controller, at a feed that may change from row to row.
+/// A [`Table`] that is handed out row by row, at a feed that may change from row to row.
 ///
 /// Each row is handed out with the time that the present feed makes of its segment, so that the
 /// machine stays on its path at any feed. From one row to the next the feed goes as far towards
@@ -44,7 +44,7 @@ pub struct FeedError {
 /// ```
 ///
 /// Where the feed changes, the cubic between two rows is not the table's and may turn back some
-/// 4 % of its way later: at the ends of the strokes leave that room. More feed does not make a table
+/// 4 % of its length later: at the ends of the strokes leave that room. More feed does not make a table
 /// take longer than at 1; of 100,000 random tables none did.
 ///
 /// The tool's feed along a path is what is overridden: above 1 it goes beyond that of the path, and
@@ -58,6 +58,8 @@ pub struct Run<'a, L: Legs> {
     here: Option<Node<L::Axes>>,
     next: Option<Node<L::Axes>>,
     after_next: Option<Node<L::Axes>>,
+    /// The second row of a corner where velocities jump.
+    jump: Option<Row<L::Axes>>,
     /// From the row handed out last on.
     ahead: &'a [Ahead],
     limits: Reciprocals<L::Axes>,
@@ -75,7 +77,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     ///
     /// # Errors
     /// [`PlanError::Feed`] for a `max` that is beyond the range of the crate,
-    /// [`PlanError::Memory`] for too little memory, and where the path refuses a place.
+    /// [`PlanError::Memory`] for too little memory, and where the path refuses a point.
     pub fn run(&self, max: f64, ahead: &'a mut [Ahead]) -> Result<Run<'a, L>, PlanError<L::Error>> {
         if !range().contains(&max) {
             return Err(PlanError::Feed {
@@ -88,12 +90,14 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         let ahead = ahead
             .get_mut(..needed)
             .ok_or(PlanError::Memory { needed, available })?;
+        let (ahead, _) = ahead.split_at_mut(self.nodes.min(needed));
         self.look_ahead(max, ahead)?;
         Ok(Run {
             nodes: Nodes::new(self),
             here: None,
             next: None,
             after_next: None,
+            jump: None,
             ahead,
             limits: self.limits,
             max,
@@ -107,38 +111,42 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     /// From the end: the highest feed at each row from which the rest can be run.
     fn look_ahead(&self, max: f64, ahead: &mut [Ahead]) -> Result<(), PlanError<L::Error>> {
         let mut slots = ahead.iter_mut().rev();
-        let Some(last) = slots.next() else {
+        let Some(mut later) = slots.next() else {
             return Ok(());
         };
-        *last = Ahead {
+        *later = Ahead {
             ceiling: max,
             after: 1.0,
         };
-        let (mut later, mut knots) = (max, self.knots);
-        let count = self.legs.clone().count();
-        for (number, path) in (0..count).rev().zip(self.legs.clone().rev()) {
-            let leg = Leg::new(number, path);
-            // A leg begins at 0.
-            let first = knots.iter().rposition(|knot| knot.s <= 0.0);
-            let (rest, own) = knots
-                .split_at_checked(first.unwrap_or(0))
-                .unwrap_or_default();
-            knots = rest;
+        let mut earlier = self.knots;
+        for leg in leg::backward(&self.legs, &self.limits) {
+            let leg = leg?;
+            let (rest, own) = earlier.split_at(profile::last_leg(earlier).min(earlier.len()));
+            earlier = rest;
             let mut own = own.iter().rev();
             let Some(last) = own.next() else { continue };
+            later.ceiling = later.ceiling.min(self.corner_feed(&leg, last.speed));
             let mut end = self.velocities(&leg, last)?;
             for (knot, slot) in own.zip(&mut slots) {
                 let start = self.velocities(&leg, knot)?;
                 let duration_s = knot.duration_s * self.stretch;
                 let segment = Segment::new(&self.limits, &start, &end, duration_s);
-                *slot = look_back(&segment, [&start, &end], later, max);
-                (end, later) = (start, slot.ceiling);
+                *slot = look_back(&segment, [&start, &end], later.ceiling, max);
+                (end, later) = (start, slot);
             }
         }
         Ok(())
     }
 
-    /// A knot's place, slopes by time.
+    /// The highest feed at which the velocities may jump at the end of a leg; 1 at least.
+    fn corner_feed(&self, leg: &Leg<L::Leg>, speed: f64) -> f64 {
+        if leg.joint().is_jump() {
+            return (leg.joint().speed() * self.stretch / speed).max(1.0);
+        }
+        f64::INFINITY
+    }
+
+    /// A knot's point, slopes by time.
     fn velocities(&self, leg: &Leg<L::Leg>, knot: &Knot) -> Result<Place<A>, PlanError<L::Error>> {
         let mut place = leg.checked_place(knot.s)?;
         place.slope = place.slope.scaled(knot.speed / self.stretch);
@@ -214,12 +222,19 @@ impl<L: Legs> Run<'_, L> {
     /// another is wanted.
     ///
     /// # Errors
-    /// Where the path refuses a place that it has given while the table was planned.
+    /// Where the path refuses a point that it has given while the table was planned.
     pub fn next_row(&mut self) -> Result<Option<Row<L::Axes>>, L::Error> {
         let Some(from) = self.here else {
             return self.first_row();
         };
-        let (Some(to), [here, there, ..]) = (self.next, self.ahead) else {
+        if let Some(row) = self.jump.take() {
+            self.remaining = self.remaining.saturating_sub(1);
+            return Ok(Some(row));
+        }
+        let (Some(to), [here, later @ ..]) = (self.next, self.ahead) else {
+            return Ok(None);
+        };
+        let [there, ..] = later else {
             return Ok(None);
         };
         let feed = self.next_feed(&from, &to, *here, *there);
@@ -232,9 +247,11 @@ impl<L: Legs> Run<'_, L> {
         self.time_s += duration_s;
         self.feed = feed;
         (self.here, self.next, self.after_next) = (self.next, self.after_next, after_next);
-        self.ahead = self.ahead.get(1..).unwrap_or_default();
+        self.ahead = later;
         self.remaining = self.remaining.saturating_sub(1);
-        Ok(Some(Row::new(&to.place, feed, self.time_s, duration_s)))
+        let row = Row::new(&to.place, feed, self.time_s, duration_s);
+        self.jump = to.jump.map(|velocity| row.with_jump(velocity.scaled(feed)));
+        Ok(Some(row))
     }
 
     /// The first row, at rest.
@@ -258,7 +275,7 @@ impl<L: Legs> Run<'_, L> {
         there: Ahead,
     ) -> f64 {
         let wanted = self.wanted.min(there.ceiling);
-        let segment = Segment::new(&self.limits, &from.place, &to.place, from.duration_s);
+        let segment = Segment::new(&self.limits, &from.departure(), &to.place, from.duration_s);
         if is_rest(&from.place) {
             self.feed = wanted.min(segment.even().max(1.0));
         }
@@ -292,7 +309,12 @@ impl<L: Legs> Run<'_, L> {
         let Some(after) = &self.after_next else {
             return 0.0;
         };
-        let segment = Segment::new(&self.limits, &next.place, &after.place, next.duration_s);
+        let segment = Segment::new(
+            &self.limits,
+            &next.departure(),
+            &after.place,
+            next.duration_s,
+        );
         if is_rest(&after.place) {
             return highest.min(segment.even().max(1.0));
         }

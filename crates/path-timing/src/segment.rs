@@ -12,7 +12,10 @@ struct Reciprocal {
 
 /// The reciprocals of all axes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reciprocals<A: Axes>(A::Of<Reciprocal>);
+pub(crate) struct Reciprocals<A: Axes> {
+    axes: A::Of<Reciprocal>,
+    has_jerk: bool,
+}
 
 impl<A: Axes> Reciprocals<A> {
     pub(crate) fn new(limits: &A::Of<AxisLimits>) -> Self {
@@ -29,7 +32,20 @@ impl<A: Axes> Reciprocals<A> {
                 acceleration: MARGIN / limits.acceleration,
             };
         }
-        Self(reciprocals)
+        Self {
+            axes: reciprocals,
+            has_jerk: A::each(limits).iter().any(|limits| limits.jerk.is_some()),
+        }
+    }
+
+    /// Whether any axis has a limit of jerk.
+    pub(crate) const fn has_jerk(&self) -> bool {
+        self.has_jerk
+    }
+
+    /// One over the speed limit of each axis.
+    pub(crate) fn speeds(&self) -> impl Iterator<Item = f64> {
+        A::each(&self.axes).iter().map(|limits| limits.speed)
     }
 }
 
@@ -40,7 +56,7 @@ pub(crate) enum End {
     To,
 }
 
-/// Shares of the limits of one axis, in the speeds w₀ and w₁.
+/// Utilisation of the limits of one axis, as a function of the speeds w₀ and w₁.
 #[derive(Debug, Clone, Copy)]
 struct AxisLoad {
     /// Accelerations at the start and at the end: coefficients of y and z.
@@ -53,7 +69,7 @@ struct AxisLoad {
 
 /// All limits of one cubic segment, in the speeds w₀ and w₁ of the parameter at its ends.
 ///
-/// With Δs the way, m = Δq/Δs, p₀ and p₁ the slopes dq/ds at the ends, and the duration
+/// With the length Δs, m = Δq/Δs, p₀ and p₁ the slopes dq/ds at the ends, and the duration
 /// T = 2 Δs / (w₀ + w₁), the cubic that a controller runs has the accelerations
 ///
 /// ```text
@@ -62,7 +78,7 @@ struct AxisLoad {
 /// ```
 ///
 /// at its ends, and between them no larger ones. Its speed has the Bernstein coefficients
-/// p₀ w₀, (3m/2 - p₀) w₀ + (3m/2 - p₁) w₁ and p₁ w₁: no larger value is passed on the way.
+/// p₀ w₀, (3m/2 - p₀) w₀ + (3m/2 - p₁) w₁ and p₁ w₁: no larger value is reached between.
 /// All of it scales with the speeds: what holds for a pair holds for each slower pair of the
 /// same ratio.
 ///
@@ -72,7 +88,7 @@ struct AxisLoad {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Segment<A: Axes> {
     axes: A::Of<AxisLoad>,
-    /// Largest share of a speed limit per w₀, and per w₁.
+    /// Largest utilisation of a speed limit per w₀, and per w₁.
     ends: [f64; 2],
     /// Acceleration of the tool: coefficient of z.
     tool: f64,
@@ -81,14 +97,14 @@ pub(crate) struct Segment<A: Axes> {
 /// By how much limits are taken lower: what a dozen products round off.
 const MARGIN: f64 = 1.0 + 64.0 * f64::EPSILON;
 
-/// What the terms of an acceleration round off, from the places on to the numbers that a
+/// Relative rounding of the terms of an acceleration, from the positions on to the numbers that a
 /// controller gets, with those of a feed.
 pub(crate) const NOISE: f64 = 128.0 * f64::EPSILON;
 
 /// What a root may be off by; less than the margin.
 const ROOT: f64 = 1.0 + 32.0 * f64::EPSILON;
 
-/// The share of the noise that is left where a root has its own.
+/// The part of the noise that is left where a root has its own.
 const ROOT_NOISE: f64 = 0.75;
 
 /// Limits that a search goes down by, one after the other.
@@ -106,19 +122,19 @@ impl AxisLoad {
 
     fn new(limit: &Reciprocal, [q0, q1]: [f64; 2], [p0, p1]: [f64; 2], inverse: f64) -> Self {
         let mean = (q1 - q0) * inverse;
-        let share = inverse * limit.acceleration;
+        let scale = inverse * limit.acceleration;
         Self {
             accelerations: [
                 [
-                    (6.0 * mean - 4.0 * p0 - 2.0 * p1) * share,
-                    (4.0 * p0 - 2.0 * p1) * share,
+                    (6.0 * mean - 4.0 * p0 - 2.0 * p1) * scale,
+                    (4.0 * p0 - 2.0 * p1) * scale,
                 ],
                 [
-                    (2.0 * p0 + 4.0 * p1 - 6.0 * mean) * share,
-                    (4.0 * p1 - 2.0 * p0) * share,
+                    (2.0 * p0 + 4.0 * p1 - 6.0 * mean) * scale,
+                    (4.0 * p1 - 2.0 * p0) * scale,
                 ],
             ],
-            noise: NOISE * (mean.abs() + p0.abs() + p1.abs()) * share,
+            noise: NOISE * (mean.abs() + p0.abs() + p1.abs()) * scale,
             middle: [
                 (1.5 * mean - p0) * limit.speed,
                 (1.5 * mean - p1) * limit.speed,
@@ -128,8 +144,8 @@ impl AxisLoad {
 }
 
 impl<A: Axes> Segment<A> {
-    pub(crate) fn new(limits: &Reciprocals<A>, from: &Place<A>, to: &Place<A>, way: f64) -> Self {
-        let inverse = 1.0 / way;
+    pub(crate) fn new(limits: &Reciprocals<A>, from: &Place<A>, to: &Place<A>, ds: f64) -> Self {
+        let inverse = 1.0 / ds;
         let mut segment = Self {
             axes: A::filled(AxisLoad::NONE),
             ends: [0.0; 2],
@@ -140,7 +156,7 @@ impl<A: Axes> Segment<A> {
         let slopes = (from.slope.as_slice().iter()).zip(to.slope.as_slice());
         let all = (A::each_mut(&mut segment.axes)
             .iter_mut()
-            .zip(A::each(&limits.0)))
+            .zip(A::each(&limits.axes)))
         .zip(positions.zip(slopes));
         for ((load, limit), ((q0, q1), (p0, p1))) in all {
             *load = AxisLoad::new(limit, [*q0, *q1], [*p0, *p1], inverse);
@@ -150,24 +166,24 @@ impl<A: Axes> Segment<A> {
         segment
     }
 
-    /// The segment with the limits of the tool: its way is the parameter, p₀ = p₁ = m = 1.
+    /// The segment with the limits of the tool: it moves by the parameter, p₀ = p₁ = m = 1.
     ///
     /// ```text
     /// speeds w₀, w₁     acceleration 2 z / Δs = (w₁² - w₀²) / 2Δs
     /// ```
-    pub(crate) fn with_tool(mut self, tool: Option<&ToolLimits>, way: f64) -> Self {
+    pub(crate) fn with_tool(mut self, tool: Option<&ToolLimits>, ds: f64) -> Self {
         if let Some(tool) = tool {
             for end in &mut self.ends {
                 *end = end.max(MARGIN / tool.feed);
             }
             if let Some(acceleration) = tool.acceleration {
-                self.tool = 2.0 * MARGIN / (way * acceleration);
+                self.tool = 2.0 * MARGIN / (ds * acceleration);
             }
         }
         self
     }
 
-    /// The largest share of a limit that these speeds ask for, squared where it is a speed:
+    /// The largest utilisation of a limit at these speeds, squared where it is a speed:
     /// at most 1 where all hold, and growing with the square of both speeds.
     #[inline]
     pub(crate) fn load(&self, w0: f64, w1: f64) -> f64 {
@@ -196,10 +212,10 @@ impl<A: Axes> Segment<A> {
     /// not hold: the caller looks.
     pub(crate) fn highest(&self, end: End, other: f64, cap: f64) -> f64 {
         let [from, to] = self.ends;
-        let share = if end == End::From { from } else { to };
+        let scale = if end == End::From { from } else { to };
         let mut speed = cap;
-        if share * speed > 1.0 {
-            speed = 1.0 / share;
+        if scale * speed > 1.0 {
+            speed = 1.0 / scale;
         }
         for axis in A::each(&self.axes) {
             let [e, f] = axis.middle;
@@ -240,7 +256,7 @@ impl<A: Axes> Segment<A> {
     /// `ceiling`, and the speed at its end that goes with it.
     ///
     /// What can be begun at a speed can be begun at each lower one, ending slower by the same
-    /// share: from a speed that holds, steps that grow find one that does not, and halvings the
+    /// factor: from a speed that holds, steps that grow find one that does not, and halvings the
     /// highest between.
     pub(crate) fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
         let fast = self.highest(End::From, ceiling, cap);
@@ -334,7 +350,7 @@ impl<A: Axes> Segment<A> {
     }
 
     /// The speed at the end that is nearest to `wanted` after the speed `w0`: the highest below it,
-    /// or where none is, one above it on the way from `known`, which holds.
+    /// or where none is, one above it towards `known`, which holds.
     pub(crate) fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
         if self.holds(w0, wanted) {
             return wanted;
@@ -359,7 +375,7 @@ impl<A: Axes> Segment<A> {
     }
 }
 
-/// Relative gap at which the search for a beginning stops: it costs that share of the time.
+/// Relative gap at which the search for a beginning stops: it costs that fraction of the time.
 const CLOSE: f64 = 1e-5;
 
 /// y and z of the two speeds.

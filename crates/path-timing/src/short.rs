@@ -22,7 +22,7 @@ impl fmt::Display for SixDigits {
         let Self(value) = *self;
         let mut text = Text::default();
         write!(text, "{value:.5e}")?;
-        let Some((mantissa, exponent)) = text.as_str().split_once('e') else {
+        let Some((mantissa, exponent)) = text.as_str()?.split_once('e') else {
             // Infinite, or not a number.
             return write!(f, "{value}");
         };
@@ -33,7 +33,7 @@ impl fmt::Display for SixDigits {
         let decimals = usize::try_from(5 - power).map_err(|_| fmt::Error)?;
         let mut text = Text::default();
         write!(text, "{value:.decimals$}")?;
-        f.write_str(without_zeros(text.as_str()))
+        f.write_str(without_zeros(text.as_str()?))
     }
 }
 
@@ -54,9 +54,9 @@ struct Text {
 }
 
 impl Text {
-    fn as_str(&self) -> &str {
-        let bytes = self.bytes.get(..self.length).unwrap_or_default();
-        str::from_utf8(bytes).unwrap_or_default()
+    fn as_str(&self) -> Result<&str, fmt::Error> {
+        let bytes = self.bytes.get(..self.length).ok_or(fmt::Error)?;
+        str::from_utf8(bytes).map_err(|_| fmt::Error)
     }
 }
 

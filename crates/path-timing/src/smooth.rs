@@ -11,7 +11,7 @@ use crate::profile;
 use crate::segment::Reciprocals;
 use crate::{Axes, AxisLimits, Knot, Path, PlanError, ToolLimits};
 pub(crate) use scurve::PHASES;
-use scurve::{SCurve, share};
+use scurve::{SCurve, part};
 
 /// Something of each axis of a path.
 type EachAxis<P, T> = <<P as Path>::Axes as Axes>::Of<T>;
@@ -22,8 +22,8 @@ type LimitsOf<P> = EachAxis<P, AxisLimits>;
 /// Fills the knots of a leg, one more than segments, with the faster of an S-curve along the path
 /// and the fastest motion without a limit of jerk, averaged over a window of time.
 ///
-/// The S-curve is the shortest motion on a straight way; where the axes turn far, its one
-/// speed is that of the hardest place. The average over a time w lasts w longer than what it
+/// The S-curve is the shortest motion on a straight path; where the axes turn far, its one
+/// speed is that of the hardest point. The average over a time w lasts w longer than what it
 /// is taken of, and a step of the acceleration by a becomes a jerk of a / w. Whatever either
 /// asks of the axes besides is made up for by stretching its time.
 pub(crate) fn smooth<P: Path>(
@@ -92,14 +92,14 @@ enum Easing {
     },
 }
 
-fn lay_curve(curve: &SCurve, knots: &mut [Knot]) {
+fn lay_curve(curve: &SCurve, knots: &mut [Knot], length: f64) {
     let segments = segments_of(knots);
     let mut rest = knots.iter_mut();
     curve.knots(segments, |motion, duration_s| {
         if let Some(knot) = rest.next() {
             *knot = Knot {
-                s: motion.way,
-                speed: motion.speed,
+                s: length * motion.fraction,
+                speed: length * motion.speed,
                 duration_s,
                 after: 0.0,
             };
@@ -122,18 +122,23 @@ impl<P: Path> Trial<'_, P> {
         let segments = self.segments;
         match easing {
             Easing::Curve(curve) => {
-                lay_curve(curve, first(self.knots, segments));
+                lay_curve(curve, first(self.knots, segments), self.leg.length());
                 Ok(())
             }
             Easing::Average {
                 fastest_s,
                 window_s,
             } => {
-                let late = share(segments, *window_s / (*fastest_s + *window_s));
+                let late = part(segments, *window_s / (*fastest_s + *window_s));
                 let late = late.min(segments.saturating_sub(MIN_SEGMENTS)).max(1);
                 let moving = first(self.knots, segments.saturating_sub(late));
                 profile::fastest(&self.eased, self.leg, moving)?;
-                average::average(first(self.knots, segments), late, *window_s);
+                average::average(
+                    first(self.knots, segments),
+                    late,
+                    *window_s,
+                    self.leg.length(),
+                );
                 Ok(())
             }
         }
@@ -183,7 +188,7 @@ impl<P: Path> Trial<'_, P> {
 
 /// The first knots, one more than segments.
 fn first(knots: &mut [Knot], segments: u32) -> &mut [Knot] {
-    knots.get_mut(..knots_of(segments)).unwrap_or_default()
+    profile::split(knots, knots_of(segments)).0
 }
 
 /// Seconds of a leg's segments; the last knot has none.
@@ -225,8 +230,8 @@ fn s_curve<P: Path>(limits: &LimitsOf<P>, leg: &Leg<P>) -> Result<SCurve, PlanEr
             .min((limits.acceleration - *p2 * speed * speed) / *p1)
             .min(jerk / (9.0 * *p2 * speed))
     });
-    // Without an axis that limits it: a thousandth of the time that the way takes.
-    let jerk = acceleration * sqrt(acceleration) * 1e3;
+    // Without an axis that limits it: a thousandth of the time that the path takes.
+    let jerk = acceleration * sqrt(acceleration / leg.length()) * 1e3;
     let jerk = all().fold(jerk, |least, (limits, [p1, p2, p3])| match limits.jerk {
         Some(jerk) => {
             let used = *p3 * speed * speed * speed + 3.0 * *p2 * speed * acceleration;
@@ -234,10 +239,11 @@ fn s_curve<P: Path>(limits: &LimitsOf<P>, leg: &Leg<P>) -> Result<SCurve, PlanEr
         }
         None => least,
     });
+    let [speed, acceleration, jerk] = [speed, acceleration, jerk].map(|limit| limit / leg.length());
     Ok(SCurve::new(speed, acceleration, jerk))
 }
 
-/// Derivatives of the tool's way by itself.
+/// Derivatives of the tool's arc length by itself.
 const STRAIGHT: [f64; 3] = [1.0, 1.0 / LARGEST, 1.0 / LARGEST];
 
 /// The tool as an axis that moves by the parameter.
@@ -252,18 +258,18 @@ fn as_axis(tool: &ToolLimits) -> AxisLimits {
 /// The largest |q'|, |q″| and |q‴| of each axis, the latter two by differences; at least a
 /// number that can be divided by.
 fn derivatives<P: Path>(leg: &Leg<P>) -> Result<EachAxis<P, [f64; 3]>, PlanError<P::Error>> {
-    let samples = f64::from(SAMPLES);
+    let step = leg.length() / f64::from(SAMPLES);
     let mut largest = P::Axes::filled([1.0 / LARGEST; 3]);
-    let slope = |index: u32| Ok(leg.checked_place(f64::from(index) / samples)?.slope);
+    let slope = |index: u32| Ok(leg.checked_place(f64::from(index) * step)?.slope);
     let (mut first, mut second) = (slope(0)?, slope(1)?);
     for index in 2..=SAMPLES {
         let third = slope(index)?;
         let slopes = (first.as_slice().iter()).zip(second.as_slice().iter().zip(third.as_slice()));
         for ([p1, p2, p3], (a, (b, c))) in P::Axes::each_mut(&mut largest).iter_mut().zip(slopes) {
-            let [before, after] = [*b - *a, *c - *b].map(|change| change * samples);
+            let [before, after] = [*b - *a, *c - *b].map(|change| change / step);
             *p1 = p1.max(a.abs()).max(b.abs()).max(c.abs());
             *p2 = p2.max(before.abs()).max(after.abs());
-            *p3 = p3.max(((after - before) * samples).abs());
+            *p3 = p3.max(((after - before) / step).abs());
         }
         (first, second) = (second, third);
     }

@@ -1,18 +1,18 @@
 //! Position-velocity-time tables along paths.
 
-use crate::leg::Leg;
+use crate::leg::{self, Leg};
 use crate::number::{SMALLEST, larger_or_nan};
 use crate::planner::{Planner, bound_of_leg};
 use crate::rows::Rows;
 use crate::segment::Reciprocals;
-use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row, Span};
+use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row, Span, profile};
 
 /// Memory for one row of a [`Table`] while it is planned and as long as it lives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Knot {
-    /// Where it stands, as a share of its leg: 0 at the first knot of each.
+    /// Parameter of its leg: 0 at the first knot of each, the length at the last.
     pub(crate) s: f64,
-    /// Speed of the share.
+    /// Speed of the parameter.
     pub(crate) speed: f64,
     /// Time to the next knot; none at the last of a leg.
     pub(crate) duration_s: f64,
@@ -23,12 +23,13 @@ pub struct Knot {
 /// A position-velocity-time table along one path or several: every axis runs a cubic from each row
 /// to the next, with the positions and slopes of the path at the rows.
 ///
-/// Along each leg it is the fastest such table that keeps the limits of all axes, found by a
-/// backward and a forward pass over the knots. What is limited is the cubic itself: its peak speed
-/// inside, its acceleration at both ends. The machine stops at the end of each leg.
+/// It is the fastest such table that keeps the limits of all axes, found by a backward and a
+/// forward pass over the knots. What is limited is the cubic itself: its peak speed inside, its
+/// acceleration at both ends. At the end of each path the machine does what that path's
+/// [`corner`](Path::corner) says.
 ///
 /// Where an axis has a limit of jerk, each leg is one S-curve along the path, which is the
-/// shortest motion on a straight way, or the fastest motion without the limit averaged over a
+/// shortest motion on a straight path, or the fastest motion without the limit averaged over a
 /// window of time, whichever takes less.
 /// Between rows a cubic has one jerk; at a row its acceleration steps, which counts as a jerk over
 /// the time between the middles of the segments.
@@ -39,13 +40,15 @@ pub struct Table<'a, L, A: Axes> {
     pub(crate) limits: Reciprocals<A>,
     /// By what all times are multiplied.
     pub(crate) stretch: f64,
+    /// Rows with two velocities at a corner counted once.
+    pub(crate) nodes: usize,
     rows: usize,
     duration_s: f64,
 }
 
 impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     /// Plans the table in memory of the caller: for each leg one knot more than segments.
-    /// `segments` says how many a leg has; it gets 2 at the least, with jerk 7.
+    /// `segments` says how many a leg has; at least 2, with jerk 7.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -101,31 +104,36 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         ) -> Result<u32, PlanError<L::Error>>,
         knots: &'a mut [Knot],
     ) -> Result<Self, PlanError<L::Error>> {
-        planner.check_legs(legs.clone(), least, knots.len())?;
-        let (mut used, mut rows, mut duration_s) = (0_usize, 0_usize, 0.0);
-        for (number, path) in legs.clone().enumerate() {
-            let leg = Leg::new(number, path);
-            let free = knots.get_mut(used..).unwrap_or_default();
+        planner.check_legs(&legs, least, knots.len())?;
+        let (mut used, mut nodes, mut jumps) = (0_usize, 0_usize, 0_usize);
+        let mut starts_at_rest = true;
+        for leg in leg::forward(&legs, planner.reciprocals()) {
+            let leg = leg?;
+            let (_, free) = profile::split(knots, used);
             let segments = choose(planner, &leg, used, free)?;
-            let own = planner.plan_leg(&leg, free, segments)?;
-            duration_s = planner.finish(&leg, own, duration_s)?;
-            // The last row of a leg is the first of the next.
-            rows = rows
-                .saturating_add(own.len())
-                .saturating_sub(usize::from(number > 0));
+            let own = planner.lay_leg(&leg, starts_at_rest, free, segments)?;
             used = used.saturating_add(own.len());
+            // The last knot of a leg is the first of the next.
+            nodes = nodes
+                .saturating_add(own.len())
+                .saturating_sub(usize::from(nodes > 0));
+            jumps = jumps.saturating_add(usize::from(leg.joint().is_jump()));
+            starts_at_rest = leg.joint().is_stop();
         }
+        let (knots, _) = profile::split(knots, used);
+        let duration_s = planner.plan_legs(&legs, knots)?;
         Ok(Self {
             legs,
-            knots: knots.get(..used).unwrap_or_default(),
+            knots,
             limits: *planner.reciprocals(),
             stretch: 1.0,
-            rows,
+            nodes,
+            rows: nodes.saturating_add(jumps),
             duration_s,
         })
     }
 
-    /// The same motion at a share of its speed, above 0 and at most 1: room for a feed above
+    /// The same motion at a fraction of its speed, above 0 and at most 1: room for a feed above
     /// 100 %.
     ///
     /// # Errors
@@ -175,17 +183,13 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         &self,
         departure: impl Fn(&L::Leg, &Span<A>) -> f64,
     ) -> Result<f64, PlanError<L::Error>> {
-        let mut knots = self.knots;
-        (0..)
-            .zip(self.legs.clone())
-            .try_fold(0.0, |worst, (number, path)| {
-                let end = knots.iter().position(|knot| knot.s >= 1.0);
-                let count = end.map_or(knots.len(), |end| end.saturating_add(1));
-                let own = knots.get(..count).unwrap_or_default();
-                knots = knots.get(count..).unwrap_or_default();
-                let bound = bound_of_leg(&Leg::new(number, path), own, &departure)?;
-                Ok(larger_or_nan(worst, bound))
-            })
+        let mut later = self.knots;
+        leg::forward(&self.legs, &self.limits).try_fold(0.0, |worst, leg| {
+            let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
+            later = rest;
+            let bound = bound_of_leg(&leg?, own, &departure)?;
+            Ok(larger_or_nan(worst, bound))
+        })
     }
 
     /// The rows in their order.
@@ -206,7 +210,7 @@ pub(crate) fn spans_of_leg<P: Path>(
         let place = leg.checked_place(knot.s)?;
         let row = Row::new(&place, knot.speed, 0.0, duration_s);
         duration_s = knot.duration_s;
-        Ok((leg.parameter(knot.s), row))
+        Ok((knot.s, row))
     });
     rows.filter_map(move |row| match row {
         Ok((s, to)) => from.replace((s, to)).map(|(before, from)| {

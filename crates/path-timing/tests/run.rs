@@ -63,7 +63,7 @@ fn a_stop_rests_on_the_path_and_goes_on() {
         assert!(stop_s < 0.3, "{moving}: {stop_s}");
         run.set_feed(1.0).unwrap();
         rows.extend(run.map(Result::unwrap));
-        check_limits(&LIMITS, &rows);
+        check_limits(&LIMITS, None, &rows);
         assert_eq!(rows.len(), table.len());
         for (row, planned) in rows.iter().zip(table.rows()) {
             assert_eq!(bits(row), bits(&planned.unwrap()));
@@ -93,7 +93,7 @@ proptest! {
         rows.extend(run.by_ref().map(Result::unwrap));
         prop_assert!(run.is_finished());
         prop_assert_eq!(rows.len(), table.len());
-        check_limits(&LIMITS, &rows);
+        check_limits(&LIMITS, None, &rows);
         for (row, planned) in rows.iter().zip(table.rows()) {
             prop_assert_eq!(bits(row), bits(&planned.unwrap()));
         }

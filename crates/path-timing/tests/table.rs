@@ -41,7 +41,7 @@ fn a_straight_way_takes_the_closed_form() {
         let shortest = 100.0 / peak + peak / acceleration;
         let share = table.duration_s() / shortest;
         assert!((1.0 - ROUNDING..1.002).contains(&share), "{share}");
-        check_limits(&limits, &rows(table.rows()));
+        check_limits(&limits, None, &rows(table.rows()));
     }
 }
 
@@ -74,7 +74,7 @@ fn legs_join_at_rest() {
     let table = Table::plan(&legs, limits, segments, &mut knots).unwrap();
     let all = rows(table.rows());
     assert_eq!((table.len(), all.len()), (91, 91));
-    check_limits(&limits, &all);
+    check_limits(&limits, None, &all);
     for row in [0, 40, 80, 90] {
         assert!(all[row].velocity.iter().all(|v| *v == 0.0), "{row}");
     }
@@ -228,7 +228,7 @@ fn the_tool_keeps_its_feed_and_acceleration() {
         let share = table.duration_s() / (100.0 / 10.0 + 10.0 / 25.0);
         assert!((1.0 - ROUNDING..1.002).contains(&share), "{share}");
         let as_axis = [machine::limits(10.0, 25.0, None)];
-        check_limits(&as_axis, &rows(table.rows()));
+        check_limits(&as_axis, None, &rows(table.rows()));
         let mut ahead = [Ahead::default(); 257];
         let mut run = table.run(1.5, &mut ahead).unwrap();
         run.set_feed(1.5).unwrap();
@@ -254,7 +254,7 @@ fn the_tool_on_a_line_is_as_fast_as_its_feed() {
         let limits = [limits(2.0, 20.0, jerk), limits(300.0, 2000.0, None)];
         let table = Table::plan([&path], limits, |_| 200, &mut knots).unwrap();
         let all = rows(table.rows());
-        check_limits(&limits, &all);
+        check_limits(&limits, None, &all);
         let speeds = all.iter().map(|row| {
             let [angle, reach] = row.velocity;
             reach.hypot(angle * row.position[1])
@@ -301,7 +301,7 @@ proptest! {
         let mut knots = [Knot::default(); 201];
         let table = Table::plan([line], limits, |_| segments, &mut knots).unwrap();
         let all = rows(table.rows());
-        check_limits(&limits, &all);
+        check_limits(&limits, None, &all);
         prop_assert!(all.windows(2).all(|pair| pair[1].time_s > pair[0].time_s));
         let last = all.last().unwrap();
         prop_assert!(last.velocity.iter().all(|v| *v == 0.0));

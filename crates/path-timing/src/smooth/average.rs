@@ -9,33 +9,34 @@ use crate::Knot;
 /// s̄(t) = 1/w ∫ s(u) du,  u = t - w..t      ds̄/dt = (s(t) - s(t - w)) / w
 /// ```
 ///
-/// Before the motion s is 0, after it 1. The mean at t needs nothing later than t: from the end
+/// Before the motion s is 0, after it the length. The mean at t needs nothing later than t: from the end
 /// to the start it is taken in place. The integral is kept as that of s(t) - s(u), which has the
-/// digits of near places.
-pub(crate) fn average(knots: &mut [Knot], late: u32, window_s: f64) {
+/// digits of near positions.
+pub(crate) fn average(knots: &mut [Knot], late: u32, window_s: f64, length: f64) {
     let late_knots = usize::try_from(late).unwrap_or(usize::MAX);
     let end = knots.len().saturating_sub(1);
     let last = end.saturating_sub(late_knots);
     let Some(mut now) = knots.get(last).copied() else {
         return;
     };
-    let mut behind = Behind::new(last, now);
+    let mut tail = Tail::new(last, now);
     let mut lag = 0.0;
     for index in (0..end).rev() {
-        let (mut before, mut gained) = (now, 0.0);
-        before.duration_s = window_s / f64::from(late);
-        if index < last {
-            before = knots.get(index).copied().unwrap_or(now);
-            gained = lag_of_segment(&before, &now);
-        }
+        let (before, gained) = match knots.get(index) {
+            Some(before) if index < last => (*before, lag_of_segment(before, &now)),
+            _ => {
+                let duration_s = window_s / f64::from(late);
+                (Knot { duration_s, ..now }, 0.0)
+            }
+        };
         let time = before.duration_s;
         lag -= gained + (now.s - before.s) * (window_s - time);
-        lag += behind.back(knots, time, before.s);
+        lag += tail.back(knots, time, before.s);
         now = before;
         if let Some(knot) = knots.get_mut(index) {
             *knot = Knot {
                 s: now.s - lag / window_s,
-                speed: (now.s - behind.s()) / window_s,
+                speed: (now.s - tail.s()) / window_s,
                 duration_s: time,
                 after: 0.0,
             };
@@ -43,7 +44,7 @@ pub(crate) fn average(knots: &mut [Knot], late: u32, window_s: f64) {
     }
     if let Some(knot) = knots.last_mut() {
         *knot = Knot {
-            s: 1.0,
+            s: length,
             ..Knot::default()
         };
     }
@@ -58,8 +59,8 @@ fn lag_of_segment(from: &Knot, to: &Knot) -> f64 {
     (from.speed + to.speed + to.speed) * time * time / 6.0
 }
 
-/// Where the window begins, on its way back along the motion.
-struct Behind {
+/// Where the window begins, moving back along the motion.
+struct Tail {
     /// Knots before the segment.
     index: usize,
     /// The segment's first knot; at rest at 0 before the motion.
@@ -69,7 +70,7 @@ struct Behind {
     offset_s: f64,
 }
 
-impl Behind {
+impl Tail {
     /// At a knot.
     fn new(index: usize, knot: Knot) -> Self {
         Self {
@@ -132,10 +133,10 @@ mod tests {
     const SPEEDS: [f64; 7] = [0.0, 0.9, 0.6, 0.75, 0.75, 0.2, 0.0];
     /// Of the sum that stands for an integral.
     const SLICES: u32 = 20_000;
-    /// What the sum is off by, and a way that is 1 but for the last digits of its times.
+    /// What the sum is off by, and a length that is 1 but for the last digits of its times.
     const TOLERANCE: f64 = 1e-8;
 
-    /// Place and speed at a time, from the numbers above alone.
+    /// Position and speed at a time, from the numbers above alone.
     fn motion(time: f64, scale: f64) -> [f64; 2] {
         let (mut s, mut left) = (0.0, time);
         if left <= 0.0 {
@@ -176,7 +177,7 @@ mod tests {
         for (late, window) in [(1, 0.01), (2, 0.35), (3, 1.1), (5, 1.75), (4, 9.0)] {
             let mut knots = knots(scale);
             let knots = &mut knots[..1 + (SEGMENTS + late) as usize];
-            average(knots, late, window);
+            average(knots, late, window, 1.0);
             let knots = knots.iter();
             let mut time = 0.0;
             for knot in knots.clone() {

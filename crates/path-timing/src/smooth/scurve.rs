@@ -2,22 +2,23 @@
 
 use crate::number::{cube_root, sqrt};
 
-/// Seven phases of constant jerk over a way of 1.
+/// Seven phases of constant jerk over a length of 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SCurve {
     /// Duration and jerk of each phase.
     phases: [(f64, f64); 7],
 }
 
-/// State of the motion: way, speed, acceleration.
+/// State of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Motion {
-    pub(crate) way: f64,
+    /// Of the length.
+    pub(crate) fraction: f64,
     pub(crate) speed: f64,
     acceleration: f64,
 }
 
-/// Share of a ramp's time below which a phase is left out.
+/// Fraction of a ramp's time below which a phase is left out.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Most segments that are needed for seven phases.
@@ -26,7 +27,7 @@ pub(crate) const PHASES: u32 = 7;
 impl SCurve {
     /// The shortest motion with these limits, in 1/s, 1/s² and 1/s³.
     pub(crate) fn new(speed: f64, acceleration: f64, jerk: f64) -> Self {
-        let top = speed.min(Self::top_of_short_way(acceleration, jerk));
+        let top = speed.min(Self::top_of_short_path(acceleration, jerk));
         // Whether the acceleration is reached before the speed.
         let (rise, hold) = if top * jerk > acceleration * acceleration {
             let rise = acceleration / jerk;
@@ -34,7 +35,7 @@ impl SCurve {
         } else {
             (sqrt(top / jerk), 0.0)
         };
-        // Both ramps together make the way top · (2 rise + hold).
+        // Both ramps together take the length top · (2 rise + hold).
         let ramps = top * (2.0 * rise + hold);
         let cruise = (1.0 - ramps) / top;
         // Next to nothing would be a segment of its own.
@@ -52,9 +53,9 @@ impl SCurve {
                 (rise, jerk),
             ],
         };
-        let way = curve.end().way;
+        let length = curve.end().fraction;
         for (_, jerk) in &mut curve.phases {
-            *jerk /= way;
+            *jerk /= length;
         }
         curve
     }
@@ -66,13 +67,13 @@ impl SCurve {
         })
     }
 
-    /// The top speed with which both ramps together make the whole way.
+    /// The top speed with which both ramps together take the whole length.
     ///
     /// ```text
     /// v (v/A + A/J) = 1      where A is reached,  v J ≥ A²
     /// v · 2 √(v/J) = 1       else
     /// ```
-    fn top_of_short_way(acceleration: f64, jerk: f64) -> f64 {
+    fn top_of_short_path(acceleration: f64, jerk: f64) -> f64 {
         let rise = acceleration / jerk;
         let root = sqrt(rise * rise + 4.0 / acceleration);
         // A (√(rise² + 4/A) - rise) / 2, without cancellation.
@@ -84,22 +85,22 @@ impl SCurve {
         }
     }
 
-    /// Calls `knot` with the state and the time to the next for so many segments, each within a
+    /// Calls `knot` with the state and the time to the next for each of `segments` segments, each within a
     /// phase, and with the end.
     pub(crate) fn knots(&self, segments: u32, mut knot: impl FnMut(Motion, f64)) {
         let total = self.phases.iter().fold(0.0, |sum, (time, _)| sum + *time);
         let used = self.phases.iter().filter(|(time, _)| *time > 0.0);
-        let mut phases_left = used.count().try_into().unwrap_or(PHASES);
+        let mut phases_left = used.fold(0_u32, |count, _| count.saturating_add(1));
         let (mut segments_left, mut time_left) = (segments, total);
         let mut state = Motion::rest();
         for (time, jerk) in self.phases {
             if time <= 0.0 {
                 continue;
             }
-            phases_left = u32::saturating_sub(phases_left, 1);
+            phases_left = phases_left.saturating_sub(1);
             // One segment at least, and one for each phase to come.
             let free = segments_left.saturating_sub(phases_left).max(1);
-            let segments = share(free, time / time_left).min(free).max(1);
+            let segments = part(free, time / time_left).min(free).max(1);
             let segments = if phases_left == 0 {
                 segments_left
             } else {
@@ -114,28 +115,28 @@ impl SCurve {
             time_left -= time;
         }
         let end = Motion {
-            way: 1.0,
+            fraction: 1.0,
             ..Motion::rest()
         };
         knot(end, 0.0);
     }
 }
 
-/// The share of a count, rounded.
-pub(crate) fn share(whole: u32, share: f64) -> u32 {
+/// A fraction of a count, rounded.
+pub(crate) fn part(whole: u32, fraction: f64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a share of a u32; a cast saturates"
+        reason = "a fraction of a u32; a cast saturates"
     )]
-    let rounded = (f64::from(whole) * share + 0.5) as u32;
+    let rounded = (f64::from(whole) * fraction + 0.5) as u32;
     rounded
 }
 
 impl Motion {
     fn rest() -> Self {
         Self {
-            way: 0.0,
+            fraction: 0.0,
             speed: 0.0,
             acceleration: 0.0,
         }
@@ -143,9 +144,9 @@ impl Motion {
 
     fn after(self, time: f64, jerk: f64) -> Self {
         let speeding = self.acceleration + jerk * time * 0.5;
-        let way = self.speed + (self.acceleration + jerk * time / 3.0) * time * 0.5;
+        let mean = self.speed + (self.acceleration + jerk * time / 3.0) * time * 0.5;
         Self {
-            way: self.way + way * time,
+            fraction: self.fraction + mean * time,
             speed: self.speed + speeding * time,
             acceleration: self.acceleration + jerk * time,
         }
