@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .with_range(JointRange::new(-FRAC_PI_2, 0.52)?);
     println!(
         "a cylinder of radius {:.0} mm between z = -300 and -240 is all reached\n",
-        delta.workspace().largest_cylinder([-300.0, -240.0], 1.0)?
+        delta.largest_cylinder([-300.0, -240.0], 1.0)?
     );
 
     let (pick, place) = (

@@ -108,9 +108,9 @@ pub(crate) fn zip<A, B>([a1, a2, a3]: [A; 3], [b1, b2, b3]: [B; 3]) -> [(A, B); 
     [(a1, b1), (a2, b2), (a3, b3)]
 }
 
-/// The arm with the least value; of equals the first.
-pub(crate) fn least<T: RealField + Copy>(values: [T; 3]) -> (Arm, T) {
+/// The arm with the smallest value; of equals the first.
+pub(crate) fn smallest<T: RealField + Copy>(values: [T; 3]) -> (Arm, T) {
     let [first, second, third] = zip(Arm::ALL, values);
-    let least = |a: (Arm, T), b: (Arm, T)| if b.1 < a.1 { b } else { a };
-    least(least(first, second), third)
+    let smaller = |a: (Arm, T), b: (Arm, T)| if b.1 < a.1 { b } else { a };
+    smaller(smaller(first, second), third)
 }

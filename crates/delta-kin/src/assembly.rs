@@ -6,10 +6,10 @@ use nalgebra::{RealField, Vector3};
 use trig_kernels::Trig;
 
 use crate::arm::zip;
-use crate::scale::{half, two};
+use crate::range::{half, two};
 use crate::{Delta, InverseError, ZAxis};
 
-/// Which of the two places where the lower arms meet the platform takes.
+/// Which of the two points where the lower arms meet the platform takes.
 ///
 /// They are mirror images in the plane of the elbows (each moved inward by the platform's radius),
 /// and the platform comes from one to the other only where the rods lie in that plane, a parallel
@@ -52,7 +52,7 @@ impl fmt::Display for AssemblyMode {
 
 /// The platform above the plane of the spheres' centres.
 struct Tripod<T> {
-    /// Square to the plane, twice the area of the centres' triangle long.
+    /// Perpendicular to the plane, twice the area of the centres' triangle long.
     normal: Vector3<T>,
     /// Square of a side of the triangle, not much shorter than the longest.
     side2: T,
@@ -92,9 +92,9 @@ impl<T: RealField + Trig> Delta<T> {
         volume > self.tolerance() * span * span * two() * two()
     }
 
-    /// Whether `forward` of these angles is the platform's place, or why it is not.
+    /// Whether `forward` of these angles is the platform's position, or why it is not.
     ///
-    /// A place as far beyond the singular surface as a change of the rods' lengths by a quarter
+    /// A point as far beyond the singular surface as a change of the rods' lengths by a quarter
     /// of the [`tolerance`](Self::tolerance), the rounding of `forward` and `inverse` together,
     /// moves it counts as on it:
     ///
@@ -122,7 +122,7 @@ impl<T: RealField + Trig> Delta<T> {
         Err(InverseError::OtherAssembly { assembly_mode, z })
     }
 
-    /// The other direction of z, where a place on the far side of the base plane would be in the
+    /// The other direction of z, where a point on the far side of the base plane would be in the
     /// machine's modes with it.
     pub(crate) fn other_z(&self, local: &Vector3<T>) -> Option<ZAxis> {
         let is_across = match self.assembly_mode() {

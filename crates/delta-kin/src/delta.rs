@@ -6,7 +6,7 @@ use trig_kernels::{Trig, sin_cos_lanes};
 use crate::arm::zip;
 use crate::geometry::{checked_span, order};
 use crate::prepared::PreparedArm;
-use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange, Workspace};
+use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
@@ -173,7 +173,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// The machine with ball joints that let the rods swivel by `max_swivel` radians.
     ///
     /// The studs of the balls lie along the motor's axis, at elbow and wrist alike, and a rod
-    /// swings about them freely; out of the plane square to them it swivels by at most this
+    /// swings about them freely; out of the plane perpendicular to them it swivels by at most this
     /// angle: the cone that the joint's housing leaves.
     ///
     /// # Errors
@@ -267,12 +267,6 @@ impl<T: RealField + Trig> Delta<T> {
     #[must_use]
     pub const fn tolerance(&self) -> T {
         self.tolerance
-    }
-
-    /// What the machine can reach.
-    #[must_use]
-    pub const fn workspace(&self) -> Workspace<T> {
-        Workspace::new(*self)
     }
 
     /// Sign of (P - c1) · (c2 - c1) × (c3 - c1) for a platform P in the machine's assembly mode, c

@@ -11,13 +11,13 @@ use core::iter::FusedIterator;
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::Trig;
 
+use crate::range::largest_rate;
 use crate::rounded::Rounded;
-use crate::scale::fastest;
 use crate::{Arm, Delta, InverseError};
 pub use path::{Path, PathError};
 use walk::Walk;
 
-/// A place on the way, and how long the way to it takes.
+/// A point of the path with the angles that reach it, and the time of the move to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Waypoint<T: RealField = f64> {
@@ -25,7 +25,7 @@ pub struct Waypoint<T: RealField = f64> {
     pub angles: Vector3<T>,
     /// The platform's centre, on the path.
     pub point: Point3<T>,
-    /// Share of the path that lies behind, 0..=1.
+    /// The fraction of the path up to there, 0..=1.
     pub fraction: T,
     /// Length of the path since the waypoint before.
     pub length: T,
@@ -43,7 +43,7 @@ pub struct SpeedLimits<T = f64> {
 }
 
 impl<T: RealField + Copy> SpeedLimits<T> {
-    /// A feed of the platform in length per second, and the greatest rate of each arm in rad/s.
+    /// A feed of the platform in length per second, and the largest rate of each arm in rad/s.
     ///
     /// # Errors
     /// [`FollowError::SpeedLimits`] unless all are within 1/h²..=h², h the fourth root of the largest
@@ -56,7 +56,7 @@ impl<T: RealField + Copy> SpeedLimits<T> {
             ("rate of arm 2", second),
             ("rate of arm 3", third),
         ] {
-            let max = fastest::<T>();
+            let max = largest_rate::<T>();
             let min = max.recip();
             // Written so that NaN is refused too.
             if !(value >= min && value <= max) {
@@ -72,9 +72,10 @@ impl<T: RealField + Copy> SpeedLimits<T> {
     }
 
     /// The time that a straight joint move along a path of `length` needs, in seconds.
-    fn duration_s(&self, length: T, way: Vector3<T>) -> T {
+    fn duration_s(&self, length: T, change: Vector3<T>) -> T {
         let rates = Vector3::from(self.max_rates);
-        way.abs()
+        change
+            .abs()
             .component_div(&rates)
             .max()
             .max(length / self.feed)
@@ -100,17 +101,17 @@ pub enum FollowError<T: RealField + Copy = f64> {
         name: &'static str,
         /// The value given.
         value: T,
-        /// The least allowed.
+        /// The smallest allowed.
         min: T,
-        /// The greatest allowed.
+        /// The largest allowed.
         max: T,
     },
-    /// The platform cannot be at a place of the path.
+    /// The platform cannot be at a point of the path.
     #[error("{}: {reason}", At(*.fraction, *.point))]
     Unreachable {
-        /// Share of the path before it.
+        /// The fraction of the path up to there.
         fraction: T,
-        /// The first such place.
+        /// The first such point.
         point: Point3<T>,
         /// Why.
         reason: InverseError<T>,
@@ -118,9 +119,9 @@ pub enum FollowError<T: RealField + Copy = f64> {
     /// No step is short enough: the path leads through a singularity.
     #[error("{}: singular", At(*.fraction, *.point))]
     Singular {
-        /// Share of the path before it.
+        /// The fraction of the path up to there.
         fraction: T,
-        /// The place.
+        /// The point.
         point: Point3<T>,
     },
     /// An arm would have to jump by a whole turn: at π from straight down, or from one end of a
@@ -128,28 +129,28 @@ pub enum FollowError<T: RealField + Copy = f64> {
     /// path avoids it.
     #[error("{}: {arm} would have to jump by a whole turn", At(*.fraction, *.point))]
     Turn {
-        /// Share of the path before it.
+        /// The fraction of the path up to there.
         fraction: T,
-        /// The place.
+        /// The point.
         point: Point3<T>,
         /// The arm.
         arm: Arm,
     },
 }
 
-/// A place of a path.
+/// A point of a path.
 struct At<T: RealField>(T, Point3<T>);
 
 impl<T: RealField + Copy> fmt::Display for At<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.1.coords.into();
-        let [share, x, y, z] = [self.0, x, y, z].map(Rounded);
-        write!(f, "at {share} of the path, ({x}, {y}, {z})")
+        let [fraction, x, y, z] = [self.0, x, y, z].map(Rounded);
+        write!(f, "at {fraction} of the path, ({x}, {y}, {z})")
     }
 }
 
-/// The least tolerance, in those of the machine: the rounding of three rods, times conditioning.
-const LEAST_TOLERANCE: f64 = 64.0;
+/// The smallest tolerance, in those of the machine: the rounding of three rods, times conditioning.
+const SMALLEST_TOLERANCE: f64 = 64.0;
 
 impl<T: RealField + Trig> Delta<T> {
     /// Joint waypoints along `path`, in the machine's modes, such that the straight joint move from
@@ -158,24 +159,24 @@ impl<T: RealField + Trig> Delta<T> {
     ///
     /// The tolerance is a guarantee: a step is taken when its
     /// [`chord_bound`](Self::chord_bound), which is proven and not sampled, plus the height of
-    /// its arc keeps it, and is halved until it does. The place on the path and the platform are
-    /// that near at every share of the step, so this holds from the platform to the path and from
+    /// its arc keeps it, and is halved until it does. Point of the path and platform are
+    /// that near at every fraction of the step, so this holds from the platform to the path and from
     /// the path to the platform. Between two waypoints the arms turn at constant rates, so none
     /// is faster than its limit; ranges are kept since they hold both ends, ball joints but for
-    /// the tolerance. The working mode is kept at each waypoint, the assembly mode all the way.
+    /// the tolerance. The working mode is kept at each waypoint, the assembly mode between them too.
     ///
     /// The path is walked once before anything is handed out, so that an error comes first
     /// and the number of waypoints is known: [`Follow::remaining`]. Memory does not grow with the path.
     ///
     /// # Errors
-    /// [`FollowError`]; the place named is the first along the path.
+    /// [`FollowError`]; the point named is the first along the path.
     pub fn follow(
         &self,
         path: Path<T>,
         tolerance: T,
         limits: SpeedLimits<T>,
     ) -> Result<Follow<T>, FollowError<T>> {
-        let rounding = self.tolerance() * nalgebra::convert(LEAST_TOLERANCE);
+        let rounding = self.tolerance() * nalgebra::convert(SMALLEST_TOLERANCE);
         if !(tolerance.is_finite() && tolerance > rounding) {
             return Err(FollowError::Tolerance {
                 tolerance,

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix2, Point3, RealField, Vector2, Vector3};
 use trig_kernels::Trig;
 
-use crate::arm::{least, zip};
+use crate::arm::{smallest, zip};
+use crate::range::{half, is_within, largest_angle};
 use crate::rounded::Rounded;
-use crate::scale::{half, is_within, widest};
 use crate::{Arm, Delta};
 
 /// Why no platform position belongs to the angles.
@@ -20,7 +20,7 @@ pub enum ForwardError<T: RealField + Copy = f64> {
         arm: Arm,
         /// The angle given.
         angle: T,
-        /// The greatest angle from straight down, either way: 1/√ε.
+        /// The largest angle from straight down, either way: 1/√ε.
         largest: T,
     },
     /// The elbows are so far apart that the lower arms cannot meet.
@@ -40,7 +40,7 @@ pub enum ForwardError<T: RealField + Copy = f64> {
 
 /// Where three spheres could meet, in the plane of their centres and seen from the first.
 struct Foot<T> {
-    /// To the second centre; across it, to the third; square to both.
+    /// To the second centre; across it, to the third; perpendicular to both.
     axes: [Vector3<T>; 3],
     x: T,
     y: T,
@@ -56,7 +56,7 @@ impl<T: RealField + Copy> Foot<T> {
         let (d2, d3) = (c2 - c1, c3 - c1);
         let second = d2.norm();
         let along = d2 / second;
-        // Twice, so that the axes are square to each other also where the triangle is thin.
+        // Twice, so that the axes are perpendicular to each other also where the triangle is thin.
         let rest = d3 - along * along.dot(&d3);
         let rest = rest - along * along.dot(&rest);
         let across = rest / rest.norm();
@@ -75,7 +75,7 @@ impl<T: RealField + Copy> Foot<T> {
         }
     }
 
-    /// Height of the centres' triangle, about the least; not a number where two are one.
+    /// Height of the centres' triangle, about the smallest; not a number where two are one.
     fn height(&self) -> T {
         let [along, across] = self.third;
         self.second * across / self.second.max(along.abs()).max(across)
@@ -142,11 +142,13 @@ impl<T: RealField + Trig> Delta<T> {
     pub fn forward(&self, angles: Vector3<T>) -> Result<Point3<T>, ForwardError<T>> {
         let thetas = self.thetas(angles);
         let lowers = self.prepared().each_ref().map(|prepared| prepared.lower);
-        let (shortest, _) = least(lowers);
+        let (shortest, _) = smallest(lowers);
         let centres = turned(self.centres_at(thetas), shortest);
         let lowers = turned(lowers, shortest);
         let foot = Foot::new(centres, lowers);
-        let are_angles = thetas.iter().all(|theta| is_within(*theta, widest()));
+        let are_angles = thetas
+            .iter()
+            .all(|theta| is_within(*theta, largest_angle()));
         // Not if it is not a number.
         let is_plane = foot.height() > self.tolerance();
         let [x, y, up] = if are_angles & is_plane & (foot.squared > T::zero()) {
@@ -166,13 +168,13 @@ impl<T: RealField + Trig> Delta<T> {
             [v.x, v.y, T::zero()]
         };
         let [along, across, normal] = foot.axes;
-        let place = centres[0] + along * x + across * y + normal * (up * self.side());
-        Ok(Point3::from(self.flip(place)))
+        let local = centres[0] + along * x + across * y + normal * (up * self.side());
+        Ok(Point3::from(self.flip(local)))
     }
 
     #[cold]
     fn check_angles(&self, angles: Vector3<T>, thetas: [T; 3]) -> Result<(), ForwardError<T>> {
-        let largest = widest();
+        let largest = largest_angle();
         for (arm, (angle, theta)) in zip(Arm::ALL, zip(angles.into(), thetas)) {
             if !is_within(theta, largest) {
                 return Err(ForwardError::Angle {

@@ -4,8 +4,10 @@ use nalgebra::RealField;
 use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
+use crate::range::{
+    half, is_within, largest_angle, largest_length, smallest_length, smallest_ratio,
+};
 use crate::rounded::Rounded;
-use crate::scale::{half, is_within, least_share, longest, shortest, widest};
 use crate::{Arm, ArmGeometry};
 
 /// Why a geometry is refused.
@@ -25,9 +27,9 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         name: &'static str,
         /// The length given.
         length: T,
-        /// Least length allowed.
+        /// Smallest length allowed.
         min: T,
-        /// Greatest length allowed.
+        /// Largest length allowed.
         max: T,
     },
     /// An angle is not a number of the stated size.
@@ -39,7 +41,7 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         name: &'static str,
         /// The angle given.
         angle: T,
-        /// Greatest angle allowed, either way.
+        /// Largest angle allowed, either way.
         largest: T,
     },
     /// Two arms stand at one azimuth: their elbows have no order round the axis, and so the
@@ -61,7 +63,7 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         min: T,
         /// Upper end given, in radians.
         max: T,
-        /// The greatest angle, either way.
+        /// The largest angle, either way.
         largest: T,
     },
     /// A ball joint's limit is not an angle that means something.
@@ -76,11 +78,11 @@ pub enum GeometryError<T: RealField + Copy = f64> {
 pub(crate) fn checked_span<T: RealField + Copy>(
     arms: &[ArmGeometry<T>; 3],
 ) -> Result<T, GeometryError<T>> {
-    check_lengths(arms, shortest())?;
+    check_lengths(arms, smallest_length())?;
     check_angles(arms)?;
     let [first, second, third] = arms.map(|arm| arm.base + arm.platform + arm.upper + arm.lower);
     let span = first.max(second).max(third);
-    check_lengths(arms, span * least_share())?;
+    check_lengths(arms, span * smallest_ratio())?;
     Ok(span)
 }
 
@@ -88,7 +90,7 @@ fn check_lengths<T: RealField + Copy>(
     arms: &[ArmGeometry<T>; 3],
     least_arm: T,
 ) -> Result<(), GeometryError<T>> {
-    let max = longest();
+    let max = largest_length();
     for (arm, geometry) in zip(Arm::ALL, *arms) {
         for (name, length, min) in [
             ("base radius", geometry.base, T::zero()),
@@ -112,7 +114,7 @@ fn check_lengths<T: RealField + Copy>(
 }
 
 fn check_angles<T: RealField + Copy>(arms: &[ArmGeometry<T>; 3]) -> Result<(), GeometryError<T>> {
-    let largest = widest();
+    let largest = largest_angle();
     for (arm, geometry) in zip(Arm::ALL, *arms) {
         for (name, angle) in [("azimuth", geometry.azimuth), ("zero", geometry.zero)] {
             if !is_within(angle, largest) {

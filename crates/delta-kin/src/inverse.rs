@@ -5,15 +5,15 @@ use core::fmt;
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, atan2};
 
-use crate::arm::{least, zip};
+use crate::arm::{smallest, zip};
 use crate::prepared::{PreparedArm, Triangle, middle, thetas};
+use crate::range::max_value;
 use crate::rounded::Rounded;
-use crate::scale::max_value;
 use crate::{Arm, AssemblyMode, Delta, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
-/// Where more than one thing is wrong the first of this list is told, and of several arms the one
+/// Where more than one thing is wrong the first of this list is reported, and of several arms the one
 /// that misses by most.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -29,7 +29,7 @@ pub enum InverseError<T: RealField + Copy = f64> {
         /// Z as given.
         z: T,
     },
-    /// Wherever the arm turns, its lower arm ends before the platform.
+    /// Wherever the arm turns, its lower arm ends short of the platform.
     #[error("out of reach: {arm} is {} too short", Rounded(*.by))]
     TooFar {
         /// The arm.
@@ -37,7 +37,7 @@ pub enum InverseError<T: RealField + Copy = f64> {
         /// By how much the lower arm is too short, in the unit of length.
         by: T,
     },
-    /// Wherever the arm turns, its lower arm ends behind the platform.
+    /// Wherever the arm turns, its lower arm ends past the platform.
     #[error("out of reach: {arm} is {} too long", Rounded(*.by))]
     TooNear {
         /// The arm.
@@ -137,7 +137,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// elbow in:  θ = atan2(k p + m z, k z - m p)
     /// ```
     ///
-    /// Nothing is divided by what can vanish, and the two solutions never change places. Where a
+    /// Nothing is divided by what can vanish, and the two solutions are never swapped. Where a
     /// bracket is negative the point is out of reach. What [`forward`](Self::forward) made in the same modes is
     /// never refused: up to [`tolerance`](Self::tolerance) past an edge counts as on it, for
     /// limits too.
@@ -225,8 +225,8 @@ impl<T: RealField + Trig> Delta<T> {
     fn missed(&self, local: &Vector3<T>, angles: Vector3<T>) -> InverseError<T> {
         let misses = zip(self.prepared().each_ref(), self.thetas(angles))
             .map(|(prepared, theta)| prepared.stretch(local, theta));
-        let (arm, most) = least(misses.map(|miss| -miss.abs()));
-        let by = -most;
+        let (arm, negative) = smallest(misses.map(|miss| -miss.abs()));
+        let by = -negative;
         let [first, second, third] = misses;
         if first.max(second).max(third) >= by {
             InverseError::TooFar { arm, by }

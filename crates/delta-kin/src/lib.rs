@@ -17,8 +17,8 @@ mod inverse;
 mod limits;
 mod pose;
 mod prepared;
+mod range;
 mod rounded;
-mod scale;
 #[cfg(feature = "serde")]
 mod serde;
 mod workspace;
@@ -36,4 +36,4 @@ pub use geometry::GeometryError;
 pub use inverse::InverseError;
 pub use limits::JointRange;
 pub use pose::{Pose, PoseError};
-pub use workspace::{Outline, Workspace, WorkspaceError};
+pub use workspace::WorkspaceError;

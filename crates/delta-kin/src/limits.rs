@@ -3,7 +3,7 @@
 use nalgebra::RealField;
 
 use crate::GeometryError;
-use crate::scale::{is_within, max_value, widest};
+use crate::range::{is_within, largest_angle, max_value};
 
 /// The closed range of one arm's angle, in radians, at most a whole turn wide.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,11 +19,11 @@ impl<T: RealField + Copy> JointRange<T> {
     /// # Errors
     /// [`GeometryError::JointRange`] unless both are within ±1/√ε and `min < max <= min + 2π`.
     pub fn new(min: T, max: T) -> Result<Self, GeometryError<T>> {
-        let are_angles = is_within(min, widest()) && is_within(max, widest());
+        let are_angles = is_within(min, largest_angle()) && is_within(max, largest_angle());
         if are_angles && min < max && max - min <= T::two_pi() {
             Ok(Self { min, max })
         } else {
-            let largest = widest();
+            let largest = largest_angle();
             Err(GeometryError::JointRange { min, max, largest })
         }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
-use crate::arm::{least, zip};
+use crate::arm::{smallest, zip};
 use crate::rounded::Rounded;
 use crate::{Arm, Delta, ForwardError, InverseError};
 
@@ -24,7 +24,7 @@ pub enum PoseError<T: RealField + Copy = f64> {
         /// Its third component.
         z: T,
     },
-    /// An arm is stretched or folded, its upper arm in line with the rods as seen square to its
+    /// An arm is stretched or folded, its upper arm in line with the rods as seen perpendicular to its
     /// plane: turning it does not move the platform along the rods.
     #[error("{arm} is stretched or folded: its lever is {}", Rounded(*.lever))]
     Serial {
@@ -36,13 +36,13 @@ pub enum PoseError<T: RealField + Copy = f64> {
     /// The three rods lie in a plane: the platform can move although no arm does.
     #[error("the three lower arms lie in a plane: the sine between them is {}", Rounded(*.sine))]
     Parallel {
-        /// The sine of the least angle between a rod and the plane of the others, within rounding
+        /// The sine of the smallest angle between a rod and the plane of the others, within rounding
         /// of zero.
         sine: T,
     },
 }
 
-/// The machine in one pose: both the angles and the place of the platform.
+/// The machine in one pose: the angles and the position of the platform.
 ///
 /// For each arm, with e the unit vector along its rods, E its elbow, v the platform's speed and
 /// ω the arm's rate:
@@ -140,14 +140,14 @@ impl<T: RealField + Trig> Pose<T> {
     /// radian: the distance from a serial singularity, where the bracket on the right vanishes.
     #[must_use]
     pub fn serial_distance(&self) -> (Arm, T) {
-        least(self.levers.map(|lever| lever.abs()))
+        smallest(self.levers.map(|lever| lever.abs()))
     }
 
-    /// The sine of the least angle between a rod and the plane of the other two, 0..=1: the
+    /// The sine of the smallest angle between a rod and the plane of the other two, 0..=1: the
     /// distance from a parallel singularity, where the three rods lie in a plane.
     #[must_use]
     pub fn parallel_distance(&self) -> T {
-        least_sine(&self.rods)
+        smallest_sine(&self.rods)
     }
 
     /// The platform's speed per rate of each arm: columns arm 1, 2, 3, in length per radian.
@@ -195,14 +195,14 @@ impl<T: RealField + Trig> Pose<T> {
     }
 
     /// The torques that hold the platform against a force on its centre, in force times length:
-    /// positive the way the angles grow. The weight of the arms is not in it.
+    /// positive in the direction in which the angles grow. The weight of the arms is not in it.
     ///
     /// ```text
     /// τ = -Jᵀ F
     /// ```
     ///
     /// # Errors
-    /// [`PoseError::Parallel`]: no torque holds a force square to the rods' plane.
+    /// [`PoseError::Parallel`]: no torque holds a force perpendicular to the rods' plane.
     /// [`PoseError::NotFinite`].
     pub fn holding_torques(&self, force: Vector3<T>) -> Result<Vector3<T>, PoseError<T>> {
         finite("force", force)?;
@@ -245,8 +245,8 @@ pub(crate) fn invert_rods<T: RealField + Copy>([a, b, c]: &[Vector3<T>; 3]) -> [
     ]
 }
 
-/// The sine of the least angle between one of three unit vectors and the plane of the other two.
-pub(crate) fn least_sine<T: RealField + Copy>([a, b, c]: &[Vector3<T>; 3]) -> T {
+/// The sine of the smallest angle between one of three unit vectors and the plane of the other two.
+pub(crate) fn smallest_sine<T: RealField + Copy>([a, b, c]: &[Vector3<T>; 3]) -> T {
     let volume = a.dot(&b.cross(c)).abs();
     let widest = b.cross(c).norm().max(c.cross(a).norm());
     let widest = widest.max(a.cross(b).norm());

@@ -3,7 +3,7 @@
 use nalgebra::{RealField, Vector3};
 use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
 
-use crate::scale::{half, max_value, two};
+use crate::range::{half, max_value, two};
 use crate::{ArmGeometry, Elbow, JointRange, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
@@ -18,7 +18,7 @@ pub(crate) struct PreparedArm<T> {
     zero: T,
     /// 1 where angles grow outward, else -1.
     pub(crate) turn: T,
-    /// Least and greatest angle as it reads.
+    /// Smallest and largest angle as it reads.
     pub(crate) min: T,
     pub(crate) max: T,
     /// The same as theta.
@@ -28,7 +28,7 @@ pub(crate) struct PreparedArm<T> {
     pub(crate) max_side: T,
 }
 
-/// The shoulder, the wrist and what lies between, as seen square to the arm's plane.
+/// The shoulder, the wrist and what lies between, as seen perpendicular to the arm's plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Triangle<T> {
     /// From the wrist inward to the shoulder.
@@ -39,9 +39,9 @@ pub(crate) struct Triangle<T> {
     /// Distance between shoulder and wrist in the plane, and its square.
     pub(crate) h: T,
     h2: T,
-    /// La² less the square of the wrist's distance from the nearest place of the elbow.
+    /// La² less the square of the wrist's distance from the nearest point of the elbow's circle.
     past_near: T,
-    /// Square of the wrist's distance from the farthest place of the elbow, less La².
+    /// Square of the wrist's distance from the farthest point of the elbow's circle, less La².
     short_of_far: T,
 }
 
@@ -102,7 +102,7 @@ impl<T: RealField + Trig> PreparedArm<T> {
         } else {
             T::zero()
         };
-        // Half an epsilon for each arm, two arms in each sphere's place, once here and once there.
+        // Half an epsilon for each arm, two arms in each sphere's centre, once here and once there.
         self.upper * (self.zero.abs() + reading) * two()
     }
 
@@ -160,7 +160,7 @@ impl<T: RealField + Trig> PreparedArm<T> {
         self.in_plane(self.upper * cos, self.upper * sin)
     }
 
-    /// Square to the arm's plane.
+    /// Perpendicular to the arm's plane.
     pub(crate) fn sideways(&self) -> Vector3<T> {
         Vector3::new(-self.sin, self.cos, T::zero())
     }
@@ -176,7 +176,7 @@ impl<T: RealField + Trig> PreparedArm<T> {
         (point - self.centre(sin_cos(theta))).norm() - self.lower
     }
 
-    /// How far the nearest and the farthest place of the elbow are from the wrist.
+    /// How far the nearest and the farthest point of the elbow's circle are from the wrist.
     pub(crate) fn elbow_distances(&self, triangle: &Triangle<T>) -> (T, T) {
         let h = triangle.inward.hypot(triangle.z);
         let near = (h - self.upper).hypot(triangle.side);

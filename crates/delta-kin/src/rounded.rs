@@ -10,7 +10,7 @@ pub(crate) struct Rounded<T>(pub(crate) T);
 
 impl<T: RealField> fmt::Display for Rounded<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value: f64 = nalgebra::try_convert(self.0.clone()).unwrap_or(f64::NAN);
+        let value: f64 = nalgebra::convert_unchecked(self.0.clone());
         let size = value.abs();
         if size > 0.0 && !(1e-4..1e7).contains(&size) {
             return write!(f, "{value:.4e}");

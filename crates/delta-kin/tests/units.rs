@@ -137,7 +137,7 @@ impl Case {
             match delta.pose_at(point) {
                 Ok(pose) if is_clear(&pose) => {
                     answers.numbers("inverse", &pose.angles(), 0);
-                    answers.number("clearance", delta.workspace().clearance(point), 1);
+                    answers.number("clearance", delta.clearance(point), 1);
                 }
                 Ok(_) => {}
                 Err(error) => answers.refusal(&error),
@@ -214,19 +214,16 @@ fn slow_answers(delta: &Delta, unit: f64) -> Answers {
         Err(FollowError::Tolerance { rounding, .. }) => answers.number("rounding", rounding, 1),
         other => panic!("{other:?}"),
     }
-    let workspace = delta.workspace();
     let heights = [-290.0 * unit, -230.0 * unit];
-    let radius = workspace.largest_cylinder(heights, 4.0 * unit).unwrap();
+    let radius = delta.largest_cylinder(heights, 4.0 * unit).unwrap();
     answers.number("cylinder", radius, 1);
-    match workspace.largest_cylinder(heights, 0.0) {
+    match delta.largest_cylinder(heights, 0.0) {
         Err(WorkspaceError::Resolution { min, .. }) => answers.number("resolution", min, 1),
         other => panic!("{other:?}"),
     }
-    let slices = [
-        workspace.horizontal_slice(-260.0 * unit, 7).unwrap(),
-        workspace.vertical_slice(0.4, -260.0 * unit, 7).unwrap(),
-    ];
-    for point in slices.into_iter().flatten() {
+    let flat = delta.horizontal_slice(-260.0 * unit, 7).unwrap();
+    let upright = delta.vertical_slice(0.4, -260.0 * unit, 7).unwrap();
+    for point in flat.chain(upright) {
         answers.numbers("outline", &point.coords, 1);
     }
     calibration_answers(delta, unit, &mut answers);

@@ -31,24 +31,23 @@ fn directions() -> impl Iterator<Item = Vector3<f64>> {
 fn the_ball_of_a_clearance_is_reached() {
     let stiff = delta().with_ball_joints(0.3).unwrap();
     for delta in [delta(), limited(), stiff] {
-        let workspace = delta.workspace();
         let mut seen = 0;
         for k in 0..400u32 {
             let (sin, cos) = (f64::from(k) * 2.4).sin_cos();
             let radius = 9.0 * f64::from(k).sqrt();
             let z = -140.0 - f64::from(k * 37 % 230);
             let point = Point3::new(radius * cos, radius * sin, z);
-            let clearance = workspace.clearance(point);
-            assert_eq!(clearance > 0.0, workspace.contains(point));
+            let clearance = delta.clearance(point);
+            assert_eq!(clearance > 0.0, delta.is_reachable(point));
             let hangs = delta.inverse(point).is_ok_and(|angles| {
                 let lower = delta.forward(angles).unwrap();
                 (lower - point).norm() < 1e-9
             });
-            assert_eq!(hangs, workspace.contains(point), "{point}");
+            assert_eq!(hangs, delta.is_reachable(point), "{point}");
             seen += u32::from(clearance > 1.0);
             for direction in directions() {
                 let inside = point + direction * (clearance * 0.999);
-                assert!(clearance == 0.0 || workspace.contains(inside), "{inside}");
+                assert!(clearance == 0.0 || delta.is_reachable(inside), "{inside}");
             }
         }
         assert!(seen > 50, "{seen}");
@@ -58,34 +57,34 @@ fn the_ball_of_a_clearance_is_reached() {
 #[test]
 fn solids_are_as_large_as_may_be() {
     let heights = [-290.0, -230.0];
-    for workspace in [delta().workspace(), limited().workspace()] {
+    for delta in [delta(), limited()] {
         let resolution = 0.25;
-        let radius = workspace.largest_cylinder(heights, resolution).unwrap();
+        let radius = delta.largest_cylinder(heights, resolution).unwrap();
         let leaves = |radius: f64| {
             (0..720).any(|k| {
                 let (sin, cos) = (f64::from(k) * 0.5f64.to_radians()).sin_cos();
                 heights
                     .iter()
-                    .any(|z| !workspace.contains(Point3::new(radius * cos, radius * sin, *z)))
+                    .any(|z| !delta.is_reachable(Point3::new(radius * cos, radius * sin, *z)))
             })
         };
         assert!(!leaves(radius));
         assert!(leaves(radius + 4.0 * resolution), "{radius}");
     }
-    let workspace = delta().workspace();
+    let delta = delta();
     assert_eq!(
-        workspace.largest_cylinder([-400.0, -380.0], 1.0),
+        delta.largest_cylinder([-400.0, -380.0], 1.0),
         Err(WorkspaceError::NoCylinder { resolution: 1.0 })
     );
     for z in [f64::NAN, f64::NEG_INFINITY, -500.0] {
         assert!(matches!(
-            workspace.largest_cylinder([z, -380.0], 1.0),
+            delta.largest_cylinder([z, -380.0], 1.0),
             Err(WorkspaceError::Height { .. })
         ));
     }
     for resolution in [f64::NAN, 0.0, -1.0, 0.1, 500.0] {
         assert!(matches!(
-            workspace.largest_cylinder([-290.0, -230.0], resolution),
+            delta.largest_cylinder([-290.0, -230.0], resolution),
             Err(WorkspaceError::Resolution { .. })
         ));
     }
@@ -94,18 +93,18 @@ fn solids_are_as_large_as_may_be() {
 #[test]
 fn outlines_are_on_the_edge() {
     let near = 1e-6 * delta().span();
-    for workspace in [delta().workspace(), limited().workspace()] {
+    for delta in [delta(), limited()] {
         let edge = |point: Point3<f64>| {
             let out = (point - Point3::new(0.0, 0.0, -260.0)).normalize();
             // The ray may meet the edge at a flat angle.
-            let is_near = workspace.clearance(point) <= near;
-            workspace.contains(point)
-                && (is_near || !workspace.contains(point + out * (3.0 * near)))
+            let is_near = delta.clearance(point) <= near;
+            delta.is_reachable(point)
+                && (is_near || !delta.is_reachable(point + out * (3.0 * near)))
         };
-        let flat = workspace.horizontal_slice(-260.0, 90).unwrap();
-        assert_eq!(flat.remaining(), 90);
+        let flat = delta.horizontal_slice(-260.0, 90).unwrap();
+        assert_eq!(flat.len(), 90);
         let flat: Vec<_> = flat.collect();
-        let upright: Vec<_> = workspace.vertical_slice(0.5, -260.0, 90).unwrap().collect();
+        let upright: Vec<_> = delta.vertical_slice(0.5, -260.0, 90).unwrap().collect();
         assert_eq!((flat.len(), upright.len()), (90, 90));
         for (k, (flat, upright)) in (0..90).zip(flat.into_iter().zip(upright)) {
             // Where the rays of 4 degrees to one another lead.
@@ -124,11 +123,11 @@ fn outlines_are_on_the_edge() {
             assert!(edge(upright), "{upright}");
         }
         assert!(matches!(
-            workspace.horizontal_slice(-500.0, 90),
+            delta.horizontal_slice(-500.0, 90),
             Err(WorkspaceError::Outside { .. })
         ));
         assert!(matches!(
-            workspace.vertical_slice(f64::NAN, -260.0, 90),
+            delta.vertical_slice(f64::NAN, -260.0, 90),
             Err(WorkspaceError::Azimuth { .. })
         ));
     }

@@ -1,6 +1,7 @@
 //! The pose vector x, y, z, α, β, γ and its two conventions.
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3};
+use trig_kernels::{Trig, atan2, sin_cos};
 
 use crate::number::{epsilons, half, largest_angle};
 use crate::rotation::zero_if_finite;
@@ -66,7 +67,7 @@ pub struct Resolved<T = f64> {
 /// is nothing but what the products of `to_quaternion` round off.
 const LOCK_EPSILONS: f64 = 2.0;
 
-impl<T: RealField + Copy> PoseVector<T> {
+impl<T: RealField + Trig> PoseVector<T> {
     /// A pose vector: position in any unit of length, angles in radians.
     #[must_use]
     pub const fn new(x: T, y: T, z: T, alpha: T, beta: T, gamma: T) -> Self {
@@ -95,9 +96,9 @@ impl<T: RealField + Copy> PoseVector<T> {
     /// The rotation as a quaternion; finite angles give a finite one.
     #[must_use]
     pub fn to_quaternion(&self, convention: Convention) -> UnitQuaternion<T> {
-        let (sa, ca) = (self.alpha * half()).sin_cos();
-        let (sb, cb) = (self.beta * half()).sin_cos();
-        let (sc, cc) = (self.gamma * half()).sin_cos();
+        let (sa, ca) = sin_cos(self.alpha * half());
+        let (sb, cb) = sin_cos(self.beta * half());
+        let (sc, cc) = sin_cos(self.gamma * half());
         // The two orders differ in the sign of every product of the second kind.
         let s = match convention {
             Convention::ExtrinsicXyz => T::one(),
@@ -115,7 +116,7 @@ impl<T: RealField + Copy> PoseVector<T> {
     #[must_use]
     pub fn to_rotation(&self, convention: Convention) -> Rotation3<T> {
         let angles = [self.alpha, self.beta, self.gamma];
-        Self::rotation_of_sines(angles.map(T::sin_cos), convention)
+        Self::rotation_of_sines(angles.map(sin_cos), convention)
     }
 
     /// The rotation by the sines and cosines of α, β, γ.
@@ -205,7 +206,7 @@ struct Angles<T> {
     sign: T,
 }
 
-impl<T: RealField + Copy> Angles<T> {
+impl<T: RealField + Trig> Angles<T> {
     fn new(rotation: &UnitQuaternion<T>, convention: Convention) -> Self {
         // Arc tangents would make angles of what is infinite.
         let q = rotation.quaternion() * (T::one() + zero_if_finite(rotation.as_vector()));
@@ -218,8 +219,8 @@ impl<T: RealField + Copy> Angles<T> {
         let (a, b, c, d) = (w - y, x + z, w + y, x - z);
         let products = w * y - x * z;
         Self {
-            half_sum: b.atan2(a),
-            half_difference: d.atan2(c),
+            half_sum: atan2(b, a),
+            half_difference: atan2(d, c),
             sum_weight: a.hypot(b),
             difference_weight: c.hypot(d),
             sin_beta: products + products,
@@ -251,7 +252,7 @@ impl<T: RealField + Copy> Angles<T> {
                 y: position.y,
                 z: position.z,
                 alpha: nearest_turn(self.sign * alpha, T::zero()),
-                beta: self.sign * self.sin_beta.atan2(cos_beta),
+                beta: self.sign * atan2(self.sin_beta, cos_beta),
                 gamma: nearest_turn(self.sign * gamma, T::zero()),
             },
             cos_beta,

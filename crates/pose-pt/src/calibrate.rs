@@ -1,6 +1,7 @@
 //! The frame of a locator from measured points.
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
+use trig_kernels::{Trig, atan2};
 
 use crate::fit::{longest, mean, rms_and_largest};
 use crate::number::{first_beyond, largest, smallest};
@@ -14,7 +15,7 @@ use crate::svd::Svd;
 pub struct Calibration<T: RealField = f64> {
     /// Where the held point is when the axes are at zero.
     pub origin: Point3<T>,
-    /// Columns: the way of the held point per unit of each axis.
+    /// Columns: the displacement of the held point per unit of each axis.
     pub axes: Matrix3<T>,
     /// Root of the mean square of the residuals' lengths.
     pub rms: T,
@@ -22,7 +23,7 @@ pub struct Calibration<T: RealField = f64> {
     pub max_residual: T,
 }
 
-impl<T: RealField + Copy> Calibration<T> {
+impl<T: RealField + Trig> Calibration<T> {
     /// Travel of the held point per unit of each axis: 1 where the scale is right.
     #[must_use]
     pub fn scales(&self) -> Vector3<T> {
@@ -35,7 +36,7 @@ impl<T: RealField + Copy> Calibration<T> {
     #[must_use]
     pub fn squareness_errors(&self) -> Vector3<T> {
         let [x, y, z] = self.columns();
-        let error = |a: Vector3<T>, b: Vector3<T>| -a.dot(&b).atan2(a.cross(&b).norm());
+        let error = |a: Vector3<T>, b: Vector3<T>| -atan2(a.dot(&b), a.cross(&b).norm());
         Vector3::new(error(y, z), error(z, x), error(x, y))
     }
 
@@ -89,10 +90,10 @@ pub enum CalibrationError<T: RealField + Copy = f64> {
     },
 }
 
-/// Least extent across against the largest, in roots of the machine epsilon.
+/// Smallest extent across against the largest, in roots of the machine epsilon.
 const WIDTH_ROOTS: f64 = 16.0;
 
-/// The frame of a locator from axis positions and the places in the world where its held
+/// The frame of a locator from axis positions and the points of the world where its held
 /// point was measured, by least squares.
 ///
 /// ```text
@@ -121,8 +122,8 @@ pub fn calibrate<T: RealField + Copy>(
         });
     }
     let max = largest::<T>();
-    for (point, (position, place)) in positions.iter().zip(points).enumerate() {
-        if let Some(value) = first_beyond(position.iter().chain(place.iter()), max) {
+    for (point, (position, met)) in positions.iter().zip(points).enumerate() {
+        if let Some(value) = first_beyond(position.iter().chain(met.iter()), max) {
             return Err(CalibrationError::Coordinate { point, value, max });
         }
     }
@@ -134,7 +135,7 @@ pub fn calibrate<T: RealField + Copy>(
             .zip(points)
             .map(|(position, point)| (position - mean_axes, point.coords - mean_point))
     };
-    // In parts of the longest, so that no square of a square leaves the range.
+    // In units of the longest, so that no square of a square leaves the range.
     let extent = longest(arms().map(|(position, _)| position)).norm();
     if extent < smallest() {
         return Err(CalibrationError::Rank {

@@ -1,6 +1,6 @@
 //! A leg as the axes of a platform see it.
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::Vector3;
 
 use crate::number::{epsilons, larger};
 use crate::path::leg::{Shape, Turning, VectorLeg};
@@ -11,60 +11,60 @@ use crate::{Platform, PoseVector};
 
 /// Axis coordinates and their derivative by the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place<const N: usize, T> {
-    pub(crate) axes: [Vector3<T>; N],
-    pub(crate) slope: [Vector3<T>; N],
+pub(crate) struct Place<const N: usize> {
+    pub(crate) axes: [Vector3<f64>; N],
+    pub(crate) slope: [Vector3<f64>; N],
 }
 
 /// Axis coordinates as a function of the leg's parameter s, 0..=1.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Course<'a, const N: usize, T: RealField> {
-    Turning(TurningCourse<N, T>),
-    Vector(&'a Platform<N, T>, VectorLeg<T>),
+pub(crate) enum Course<'a, const N: usize> {
+    Turning(TurningCourse<N>),
+    Vector(&'a Platform<N>, VectorLeg),
 }
 
 /// Every axis is start + s slide + sin θ sine + (1 - cos θ) versine, θ = s · angle.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TurningCourse<const N: usize, T> {
-    start: [Vector3<T>; N],
-    slide: [Vector3<T>; N],
-    sine: [Vector3<T>; N],
-    versine: [Vector3<T>; N],
-    angle: T,
+pub(crate) struct TurningCourse<const N: usize> {
+    start: [Vector3<f64>; N],
+    slide: [Vector3<f64>; N],
+    sine: [Vector3<f64>; N],
+    versine: [Vector3<f64>; N],
+    angle: f64,
 }
 
-/// By how much more than its way an axis may move where the three of a locator are least
+/// By how much more than the body an axis may move where the three of a locator are least
 /// independent, and what positions round off besides.
 const STILL_EPSILONS: f64 = 64.0;
 
 /// Whether the body stays where it is on leg `number`, or moves by so little that no axis sees
 /// it.
-pub(crate) fn is_still<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    path: &Path<'_, T>,
+pub(crate) fn is_still<const N: usize>(
+    platform: &Platform<N>,
+    path: &Path<'_>,
     number: usize,
 ) -> bool {
     let ends = path
         .axes(platform, number)
         .zip(path.axes(platform, number.saturating_add(1)));
     let Some((leg, (start, end))) = path.leg(number).zip(ends) else {
-        return true;
+        return false;
     };
     let arms = platform.anchors().iter().map(|anchor| anchor.coords.norm());
-    let way = leg.length() + leg.turn() * arms.fold(T::zero(), larger);
-    let far = start.iter().map(Vector3::amax).fold(T::zero(), larger);
-    start == end && way <= far * epsilons(STILL_EPSILONS)
+    let travel = leg.length() + leg.turn() * arms.fold(0.0, larger);
+    let far = start.iter().map(Vector3::amax).fold(0.0, larger);
+    start == end && travel <= far * epsilons::<f64>(STILL_EPSILONS)
 }
 
-/// Where a course stands that is walked by equal segments.
+/// The state of a walk along a course by equal segments.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Walk<T> {
-    Turning(Sweep<1, T>),
-    Vector(Sweep<3, T>),
+pub(crate) enum Walk {
+    Turning(Sweep<1>),
+    Vector(Sweep<3>),
 }
 
-impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
-    pub(crate) fn new(platform: &'a Platform<N, T>, leg: &Leg<T>) -> Self {
+impl<'a, const N: usize> Course<'a, N> {
+    pub(crate) fn new(platform: &'a Platform<N>, leg: &Leg) -> Self {
         match &leg.shape {
             Shape::Turning(leg) => Self::Turning(TurningCourse::new(platform, leg)),
             Shape::Vector(leg) => Self::Vector(platform, *leg),
@@ -72,7 +72,7 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
     }
 
     /// Axes and slopes at a parameter.
-    pub(crate) fn place(&self, s: T) -> Place<N, T> {
+    pub(crate) fn place(&self, s: f64) -> Place<N> {
         match self {
             Self::Turning(course) => {
                 let turn = Turn::of(course.angle * s);
@@ -99,11 +99,9 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
     }
 
     /// The start of a walk by `segments` equal segments.
-    pub(crate) fn walk(&self, segments: u32) -> Walk<T> {
+    pub(crate) fn walk(&self, segments: u32) -> Walk {
         match self {
-            Self::Turning(course) => {
-                Walk::Turning(Sweep::new([T::zero()], [course.angle], segments))
-            }
+            Self::Turning(course) => Walk::Turning(Sweep::new([0.0], [course.angle], segments)),
             Self::Vector(_, leg) => Walk::Vector(Sweep::new(
                 leg.from.angles().into(),
                 leg.angles_change().into(),
@@ -112,18 +110,18 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
         }
     }
 
-    /// Axes where a walk stands.
+    /// Axes at the present point of a walk.
     #[inline]
-    pub(crate) fn axes(&self, walk: &Walk<T>) -> [Vector3<T>; N] {
+    pub(crate) fn axes(&self, walk: &Walk) -> [Vector3<f64>; N] {
         match (self, walk) {
             (Self::Turning(course), Walk::Turning(sweep)) => {
                 let [turn] = *sweep.now();
-                course.axes(sweep.share(), turn)
+                course.axes(sweep.fraction(), turn)
             }
             (Self::Vector(platform, leg), Walk::Vector(sweep)) => {
                 let [alpha, beta, gamma] = sweep.now().map(|turn| (turn.sin, turn.cos()));
                 let rotation = PoseVector::rotation_of_sines([alpha, beta, gamma], leg.convention);
-                let position = leg.from.position() + leg.slide() * sweep.share();
+                let position = leg.from.position() + leg.slide() * sweep.fraction();
                 platform.axes_at(&rotation, &position)
             }
             // A walk belongs to its course.
@@ -132,7 +130,7 @@ impl<'a, const N: usize, T: RealField + Copy> Course<'a, N, T> {
     }
 }
 
-impl<T: RealField + Copy> Walk<T> {
+impl Walk {
     #[inline]
     pub(crate) fn advance(&mut self) {
         match self {
@@ -149,8 +147,8 @@ impl<T: RealField + Copy> Walk<T> {
     }
 }
 
-impl<const N: usize, T: RealField + Copy> TurningCourse<N, T> {
-    fn new(platform: &Platform<N, T>, leg: &Turning<T>) -> Self {
+impl<const N: usize> TurningCourse<N> {
+    fn new(platform: &Platform<N>, leg: &Turning) -> Self {
         let rotation = to_matrix(&leg.rotation);
         let arms = platform.anchors().map(|anchor| rotation * anchor.coords);
         let across = arms.map(|arm| leg.axis.cross(&arm));
@@ -164,7 +162,7 @@ impl<const N: usize, T: RealField + Copy> TurningCourse<N, T> {
     }
 
     #[inline]
-    fn axes(&self, s: T, turn: Turn<T>) -> [Vector3<T>; N] {
+    fn axes(&self, s: f64, turn: Turn) -> [Vector3<f64>; N] {
         let mut axes = self.start;
         let parts = self.slide.iter().zip(&self.sine).zip(&self.versine);
         for (axes, ((slide, sine), versine)) in axes.iter_mut().zip(parts) {
@@ -173,7 +171,7 @@ impl<const N: usize, T: RealField + Copy> TurningCourse<N, T> {
         axes
     }
 
-    fn slope(&self, turn: Turn<T>) -> [Vector3<T>; N] {
+    fn slope(&self, turn: Turn) -> [Vector3<f64>; N] {
         let mut slope = self.slide;
         for (slope, (sine, versine)) in slope.iter_mut().zip(self.sine.iter().zip(&self.versine)) {
             *slope += (sine * turn.cos() + versine * turn.sin) * self.angle;

@@ -1,6 +1,6 @@
 //! How far the distances between locators depart from those of their anchors between points.
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::Vector3;
 
 use crate::number::{larger_or_nan, sqrt};
 use crate::path::Leg;
@@ -8,18 +8,18 @@ use crate::path::leg::Shape;
 use crate::{Platform, PvtPoint};
 
 /// Two locators.
-pub(crate) struct Pair<T> {
+pub(crate) struct Pair {
     /// Their distance.
-    pub(crate) length: T,
-    /// Its part across the axis of the turn; all of it where the axis is not constant.
-    pub(crate) across: T,
+    pub(crate) length: f64,
+    /// Its component perpendicular to the axis of the turn; all of it where the axis is not constant.
+    pub(crate) across: f64,
 }
 
 /// All pairs of locators on a leg.
-pub(crate) fn pairs<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    leg: &Leg<T>,
-) -> impl Iterator<Item = Pair<T>> {
+pub(crate) fn pairs<const N: usize>(
+    platform: &Platform<N>,
+    leg: &Leg,
+) -> impl Iterator<Item = Pair> {
     let anchors = *platform.anchors();
     let turning = match leg.shape {
         Shape::Turning(leg) => Some((leg.axis, leg.rotation)),
@@ -42,20 +42,20 @@ fn numbers<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// By how much a distance shrinks at most while the axes move linearly from one point to the
-/// next: at half way |D|² is L² less a quarter of the squared way from D₀ to D₁.
-pub(crate) fn linear_distance_error<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    from: &[Vector3<T>; N],
-    to: &[Vector3<T>; N],
-) -> T {
+/// next: at half way |D|² is L² less a quarter of |D₁ - D₀|².
+pub(crate) fn linear_distance_error<const N: usize>(
+    platform: &Platform<N>,
+    from: &[Vector3<f64>; N],
+    to: &[Vector3<f64>; N],
+) -> f64 {
     let ends = [from, to].map(|axes| platform.locator_positions(axes));
-    numbers::<N>().fold(T::zero(), |worst, (first, second)| {
+    numbers::<N>().fold(0.0, |worst, (first, second)| {
         let [from, to] = ends
             .each_ref()
             .map(|points| Some(points.get(first)? - points.get(second)?));
         match (from, to) {
             (Some(from), Some(to)) => {
-                let lost = (to - from).norm_squared() * nalgebra::convert(0.25);
+                let lost = (to - from).norm_squared() * 0.25;
                 worst.max(departure(from.norm(), -lost))
             }
             _ => worst,
@@ -64,15 +64,15 @@ pub(crate) fn linear_distance_error<const N: usize, T: RealField + Copy>(
 }
 
 /// |√(L² + change) - L|, without cancellation; L where the square would be negative.
-fn departure<T: RealField + Copy>(length: T, change: T) -> T {
+fn departure(length: f64, change: f64) -> f64 {
     let square = length * length + change;
-    if square <= T::zero() {
+    if square <= 0.0 {
         return length;
     }
-    change.abs() / (length + square.sqrt())
+    change.abs() / (length + sqrt(square))
 }
 
-/// The most by which the distance of any two locators departs from that of their anchors
+/// A bound on how far the distance of any two locators departs from that of their anchors
 /// while every axis runs the cubic from one point of a PVT table to the next.
 ///
 /// Proof. The axes are linear in the positions, so the vector D between two locators is a
@@ -90,7 +90,7 @@ fn departure<T: RealField + Copy>(length: T, change: T) -> T {
 /// τ² (1-τ)² is at most 1/16, and the bracket a mean of 3 e₂, 2 e₃ and 3 e₄. Hence |D|² departs
 /// from L² by at most a sixteenth of the largest of them, to either side.
 ///
-/// For a turn by δ about a constant axis across D while the speed changes by the share
+/// For a turn by δ about a constant axis across D while the speed changes by the fraction
 /// r = (w₁ - w₀)/(w₁ + w₀), that is
 ///
 /// ```text
@@ -165,8 +165,8 @@ mod tests {
         .unwrap()
     }
 
-    /// A turn by `turn` in which the speed changes by the share `change`, and the distance error at
-    /// 1000 places of it.
+    /// A turn by `turn` in which the speed changes by the fraction `change`, and the distance error at
+    /// 1000 times of it.
     fn bound_and_measured(turn: f64, change: f64) -> (f64, f64) {
         let platform = flat();
         let poses = [
@@ -186,8 +186,8 @@ mod tests {
             }
         };
         let (from, to) = (point(0.0, 1.0 - change), point(1.0, 1.0 + change));
-        let measured = (0..=1000).fold(0.0_f64, |worst, place| {
-            let u = f64::from(place) / 1000.0;
+        let measured = (0..=1000).fold(0.0_f64, |worst, index| {
+            let u = f64::from(index) / 1000.0;
             let v = 1.0 - u;
             let mut axes = from.axes;
             for (i, axes) in axes.iter_mut().enumerate() {

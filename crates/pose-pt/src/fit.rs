@@ -127,7 +127,7 @@ impl<T: RealField + Copy> RigidFit<T> {
 /// epsilons of the largest coordinate: a set that is narrower has no width.
 const ROUNDING_EPSILONS: f64 = 64.0;
 
-/// Least eigenvalue gap against the second singular value, in machine epsilons.
+/// Smallest eigenvalue gap against the second singular value, in machine epsilons.
 const GAP_EPSILONS: f64 = 64.0;
 
 /// Mean and shape of a set of points.
@@ -193,8 +193,8 @@ fn largest_coordinate<T: RealField + Copy>(
     side: Side,
 ) -> Result<T, FitError<T>> {
     let (max, mut far) = (largest::<T>(), T::zero());
-    for (point, place) in points.iter().enumerate() {
-        if let Some(value) = first_beyond(place.iter(), max) {
+    for (point, position) in points.iter().enumerate() {
+        if let Some(value) = first_beyond(position.iter(), max) {
             return Err(FitError::Coordinate {
                 side,
                 point,
@@ -202,7 +202,7 @@ fn largest_coordinate<T: RealField + Copy>(
                 max,
             });
         }
-        far = far.max(place.coords.amax());
+        far = far.max(position.coords.amax());
     }
     Ok(far)
 }

@@ -20,6 +20,7 @@ mod svd;
 
 pub use nalgebra;
 pub use path_timing;
+pub use trig_kernels::Trig;
 
 pub use angles::{Convention, PoseVector, Resolved};
 pub use calibrate::{Calibration, CalibrationError, calibrate};

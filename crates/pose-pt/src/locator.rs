@@ -104,7 +104,7 @@ pub struct Locator<T: RealField = f64> {
     pub anchor: Point3<T>,
     /// Where the held point is in the world when the three axes are at zero.
     pub origin: Point3<T>,
-    /// Columns: the way of the held point in the world per unit of each axis; unit
+    /// Columns: the displacement of the held point in the world per unit of each axis; unit
     /// vectors but for errors of scale, not necessarily orthogonal.
     #[cfg_attr(feature = "serde", serde(default = "Matrix3::identity"))]
     pub axes: Matrix3<T>,

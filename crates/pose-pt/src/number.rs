@@ -1,11 +1,6 @@
 //! Numbers of any float type, and the range of those that the crate computes with.
 
-use nalgebra::RealField;
-
-/// A count as a number of `T`.
-pub(crate) fn count<T: RealField>(count: u32) -> T {
-    nalgebra::convert(f64::from(count))
-}
+use nalgebra::{ComplexField, RealField};
 
 /// A constant as a number of `T`.
 pub(crate) fn constant<T: RealField>(value: f64) -> T {
@@ -70,6 +65,16 @@ pub(crate) fn first_beyond<'a, T: RealField + Copy>(
     values.find(|value| !value.is_finite() || value.abs() > max)
 }
 
+/// The largest finite number.
+pub(crate) fn max_value<T: RealField>() -> T {
+    let largest = constant::<T>(f64::MAX);
+    if largest.is_finite() {
+        largest
+    } else {
+        constant(f64::from(f32::MAX))
+    }
+}
+
 /// The larger of two numbers; a comparison where `RealField::max` is a call of a library.
 #[inline]
 pub(crate) fn larger<T: RealField + Copy>(a: T, b: T) -> T {
@@ -87,7 +92,22 @@ pub(crate) fn larger_or_nan(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }
 
-/// The square root: the same bits on a PC and on a microcontroller.
+/// The square root, of `core` alone.
 pub(crate) fn sqrt(x: f64) -> f64 {
-    nalgebra::ComplexField::sqrt(x)
+    ComplexField::sqrt(x)
+}
+
+/// √(x² + y²), of `core` alone.
+pub(crate) fn hypot(x: f64, y: f64) -> f64 {
+    ComplexField::hypot(x, y)
+}
+
+/// The whole number below or at `x`, of `core` alone.
+pub(crate) fn floor(x: f64) -> f64 {
+    ComplexField::floor(x)
+}
+
+/// The whole number above or at `x`, of `core` alone.
+pub(crate) fn ceil(x: f64) -> f64 {
+    ComplexField::ceil(x)
 }

@@ -1,12 +1,14 @@
-//! The way of a body through poses.
+//! The path of a body through poses.
 
 pub(crate) mod leg;
 
-use nalgebra::{Isometry3, RealField, UnitQuaternion, Vector3};
+use core::f64::consts::PI;
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 pub use leg::Leg;
 
-use crate::number::{constant, epsilons, first_beyond, largest, largest_angle};
+use crate::number::{epsilons, first_beyond, largest, largest_angle};
 use crate::short::short;
 use crate::{Convention, Platform, PoseVector};
 
@@ -31,7 +33,7 @@ pub enum Interpolation {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PathError<T: RealField + Copy = f64> {
+pub enum PathError {
     /// A path has at least a first and a last pose.
     #[error("{poses} poses do not make a path, at least 2 do")]
     TooFew {
@@ -44,9 +46,9 @@ pub enum PathError<T: RealField + Copy = f64> {
         /// The pose, from 0.
         pose: usize,
         /// Its coordinate.
-        value: T,
+        value: f64,
         /// Largest coordinate.
-        max: T,
+        max: f64,
     },
     /// An angle of a pose vector is not finite, or so large that its rounding counts.
     #[error("angle {} of pose {pose} is not within ±{} rad", short(.value), short(.max))]
@@ -54,9 +56,9 @@ pub enum PathError<T: RealField + Copy = f64> {
         /// The pose, from 0.
         pose: usize,
         /// Its angle, in radians.
-        value: T,
+        value: f64,
         /// Largest angle, in radians.
-        max: T,
+        max: f64,
     },
     /// The quaternion of a pose is no rotation.
     #[error("the rotation of pose {pose} is a quaternion of length {}, not 1", short(.length))]
@@ -64,9 +66,9 @@ pub enum PathError<T: RealField + Copy = f64> {
         /// The pose, from 0.
         pose: usize,
         /// Length of its quaternion.
-        length: T,
+        length: f64,
     },
-    /// The turn between two poses is half a turn: both ways round are the shorter one.
+    /// The turn between two poses is half a turn: both directions are as short.
     #[error(
         "the turn from pose {pose} to the next is {} rad, half a turn: name a pose between",
         short(.angle)
@@ -75,7 +77,7 @@ pub enum PathError<T: RealField + Copy = f64> {
         /// The first of the two poses, from 0.
         pose: usize,
         /// The angle between them, in radians.
-        angle: T,
+        angle: f64,
     },
 }
 
@@ -87,26 +89,26 @@ const HALF_TURN_EPSILONS: f64 = 64.0;
 
 /// Poses that the caller keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Stations<'a, T: RealField> {
-    Poses(&'a [Isometry3<T>], Interpolation),
-    Vectors(&'a [PoseVector<T>], Convention),
+enum Stations<'a> {
+    Poses(&'a [Isometry3<f64>], Interpolation),
+    Vectors(&'a [PoseVector], Convention),
 }
 
-/// A checked path: a first pose, any number of poses on the way, a last pose.
+/// A checked path: a first pose, any number of poses between, a last pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Path<'a, T: RealField = f64> {
-    stations: Stations<'a, T>,
+pub struct Path<'a> {
+    stations: Stations<'a>,
 }
 
-impl<'a, T: RealField + Copy> Path<'a, T> {
+impl<'a> Path<'a> {
     /// A path through poses, each leg by the same `interpolation`.
     ///
     /// # Errors
     /// [`PathError`].
     pub fn new(
-        poses: &'a [Isometry3<T>],
+        poses: &'a [Isometry3<f64>],
         interpolation: Interpolation,
-    ) -> Result<Self, PathError<T>> {
+    ) -> Result<Self, PathError> {
         check(poses, |number, pose| {
             check_position(number, &pose.translation.vector)?;
             check_rotation(number, &pose.rotation)
@@ -126,9 +128,9 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
     /// # Errors
     /// [`PathError`].
     pub fn of_vectors(
-        vectors: &'a [PoseVector<T>],
+        vectors: &'a [PoseVector],
         convention: Convention,
-    ) -> Result<Self, PathError<T>> {
+    ) -> Result<Self, PathError> {
         check(vectors, |number, vector| {
             check_position(number, &vector.position())?;
             check_angles(number, &vector.angles())
@@ -150,7 +152,7 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
 
     /// The leg from pose `number` to the next; `None` past the last.
     #[must_use]
-    pub fn leg(&self, number: usize) -> Option<Leg<T>> {
+    pub fn leg(&self, number: usize) -> Option<Leg> {
         let next = number.checked_add(1)?;
         Some(match self.stations {
             Stations::Poses(poses, interpolation) => {
@@ -162,12 +164,17 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
         })
     }
 
+    /// All legs with their numbers, from 0.
+    pub(crate) fn numbered_legs(&self) -> impl Iterator<Item = (usize, Leg)> {
+        (0..self.legs()).filter_map(|number| Some((number, self.leg(number)?)))
+    }
+
     /// Where the axes are at pose `number`; `None` past the last.
     pub(crate) fn axes<const N: usize>(
         &self,
-        platform: &Platform<N, T>,
+        platform: &Platform<N>,
         number: usize,
-    ) -> Option<[Vector3<T>; N]> {
+    ) -> Option<[Vector3<f64>; N]> {
         Some(match self.stations {
             Stations::Poses(poses, _) => platform.axes(poses.get(number)?),
             Stations::Vectors(vectors, convention) => {
@@ -177,10 +184,10 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
         })
     }
 
-    fn check_turns(&self) -> Result<(), PathError<T>> {
-        for pose in 0..self.legs() {
-            let angle = self.leg(pose).map_or(T::zero(), |leg| leg.turn());
-            if angle >= T::pi() * (T::one() - epsilons(HALF_TURN_EPSILONS)) {
+    fn check_turns(&self) -> Result<(), PathError> {
+        for (pose, leg) in self.numbered_legs() {
+            let angle = leg.turn();
+            if angle >= PI * (1.0 - epsilons::<f64>(HALF_TURN_EPSILONS)) {
                 return Err(PathError::HalfTurn { pose, angle });
             }
         }
@@ -188,10 +195,10 @@ impl<'a, T: RealField + Copy> Path<'a, T> {
     }
 }
 
-fn check<S, T: RealField + Copy>(
+fn check<S>(
     stations: &[S],
-    check: impl Fn(usize, &S) -> Result<(), PathError<T>>,
-) -> Result<(), PathError<T>> {
+    check: impl Fn(usize, &S) -> Result<(), PathError>,
+) -> Result<(), PathError> {
     if stations.len() < 2 {
         return Err(PathError::TooFew {
             poses: stations.len(),
@@ -201,27 +208,21 @@ fn check<S, T: RealField + Copy>(
     numbered.try_for_each(|(number, station)| check(number, station))
 }
 
-fn check_position<T: RealField + Copy>(
-    pose: usize,
-    position: &Vector3<T>,
-) -> Result<(), PathError<T>> {
+fn check_position(pose: usize, position: &Vector3<f64>) -> Result<(), PathError> {
     let max = largest();
     first_beyond(position, max).map_or(Ok(()), |value| {
         Err(PathError::Coordinate { pose, value, max })
     })
 }
 
-fn check_angles<T: RealField + Copy>(pose: usize, angles: &Vector3<T>) -> Result<(), PathError<T>> {
+fn check_angles(pose: usize, angles: &Vector3<f64>) -> Result<(), PathError> {
     let max = largest_angle();
     first_beyond(angles, max).map_or(Ok(()), |value| Err(PathError::Angle { pose, value, max }))
 }
 
-fn check_rotation<T: RealField + Copy>(
-    pose: usize,
-    rotation: &UnitQuaternion<T>,
-) -> Result<(), PathError<T>> {
+fn check_rotation(pose: usize, rotation: &UnitQuaternion<f64>) -> Result<(), PathError> {
     let length = rotation.as_vector().norm();
-    let [min, max] = ROTATION_LENGTH.map(constant::<T>);
+    let [min, max] = ROTATION_LENGTH;
     if length >= min && length <= max {
         return Ok(());
     }

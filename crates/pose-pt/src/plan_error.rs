@@ -2,8 +2,6 @@
 
 use core::convert::Infallible;
 
-use nalgebra::RealField;
-
 use crate::LimitError;
 use crate::short::short;
 
@@ -11,8 +9,8 @@ use crate::short::short;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PlanError<T: RealField + Copy = f64> {
-    /// An axis would leave its stroke on the way; the first such point.
+pub enum PlanError {
+    /// An axis would leave its stroke between two poses; the first such point.
     #[error("leg {leg}, point {point}: {reason}")]
     Limit {
         /// The leg, from 0.
@@ -20,20 +18,20 @@ pub enum PlanError<T: RealField + Copy = f64> {
         /// The point of the leg, or the end of the segment, from 0.
         point: u32,
         /// Locator, axis, value and by how much it is out.
-        reason: LimitError<T>,
+        reason: LimitError,
     },
     /// A number of segments, a step or a distance error that is not positive and finite.
     #[error("segmentation by {}: not a positive finite number", short(.value))]
     Segmentation {
         /// The number given.
-        value: T,
+        value: f64,
     },
     /// A leg would have more segments than can be counted.
-    #[error("leg {leg} would be cut into more than {max} segments")]
+    #[error("leg {leg} would be divided into more than {max} segments")]
     TooFine {
         /// The leg, from 0.
         leg: usize,
-        /// Most segments of a leg.
+        /// Largest number of segments of a leg.
         max: u32,
     },
     /// The memory given holds fewer points than the table has.
@@ -45,12 +43,12 @@ pub enum PlanError<T: RealField + Copy = f64> {
         available: usize,
     },
     /// The allowed distance error is below what the positions are rounded to.
-    #[error("distance error {} is below {}, what positions round off", short(.allowed), short(.least))]
+    #[error("distance error {} is below {}, what positions round off", short(.allowed), short(.min))]
     DistanceError {
         /// The distance error allowed.
-        allowed: T,
-        /// The least distance error that can be asked for.
-        least: T,
+        allowed: f64,
+        /// The smallest distance error that can be asked for.
+        min: f64,
     },
     /// Two points of a leg cannot be told apart: so near are they, or so late, that the float
     /// type has the same numbers for both.
@@ -65,19 +63,19 @@ pub enum PlanError<T: RealField + Copy = f64> {
     #[error("a speed scale of {} is not within {}..=1", short(.scale), short(.min))]
     SpeedScale {
         /// The speed scale given.
-        scale: T,
+        scale: f64,
         /// The lowest speed scale.
-        min: T,
+        min: f64,
     },
     /// A highest feed that is beyond the range of the crate.
     #[error("a highest feed of {} is not within {}..={}", short(.feed), short(.min), short(.max))]
     Feed {
         /// The feed given.
-        feed: T,
+        feed: f64,
         /// The lowest.
-        min: T,
+        min: f64,
         /// The highest.
-        max: T,
+        max: f64,
     },
     /// Whatever else the planner of `path-timing` refuses.
     #[error("{0}")]
@@ -85,15 +83,14 @@ pub enum PlanError<T: RealField + Copy = f64> {
 }
 
 impl PlanError {
-    /// What `path-timing` refuses, in the words of a platform; `numbers` are those of the legs that
-    /// it was given.
+    /// What `path-timing` refuses, as an error of a platform; `number` is that of a leg
+    /// that it was given.
     pub(crate) fn of_timing(
         error: path_timing::PlanError<Infallible>,
-        mut numbers: impl Iterator<Item = usize>,
+        number: impl Fn(usize) -> usize,
     ) -> Self {
         use path_timing::PlanError as Timing;
 
-        let mut number = |leg| numbers.nth(leg).unwrap_or(leg);
         match error {
             Timing::TooFine { leg, max } => Self::TooFine {
                 leg: number(leg),

@@ -114,28 +114,28 @@ impl<const N: usize, T: RealField + Copy> Platform<N, T> {
     }
 
     /// Axis coordinates of a pose whose rotation is at hand as a matrix, as from
-    /// [`PoseVector::to_rotation`](crate::PoseVector::to_rotation): the fastest way.
+    /// [`PoseVector::to_rotation`](crate::PoseVector::to_rotation), which is fastest.
     #[must_use]
     #[inline]
     pub fn axes_at(&self, rotation: &Rotation3<T>, translation: &Vector3<T>) -> [Vector3<T>; N] {
         let m = rotation.matrix();
         // Each sum from both ends: half as long a chain of additions.
         let moved = |p: &Point3<T>, origin: &Vector3<T>| {
-            let way = translation - origin;
+            let shift = translation - origin;
             Vector3::new(
-                m.m11 * p.x + m.m12 * p.y + (m.m13 * p.z + way.x),
-                m.m21 * p.x + m.m22 * p.y + (m.m23 * p.z + way.y),
-                m.m31 * p.x + m.m32 * p.y + (m.m33 * p.z + way.z),
+                m.m11 * p.x + m.m12 * p.y + (m.m13 * p.z + shift.x),
+                m.m21 * p.x + m.m22 * p.y + (m.m23 * p.z + shift.y),
+                m.m31 * p.x + m.m32 * p.y + (m.m33 * p.z + shift.z),
             )
         };
         let mut axes = [Vector3::zeros(); N];
-        let places = self.anchors.iter().zip(&self.origins).zip(&mut axes);
+        let locators = self.anchors.iter().zip(&self.origins).zip(&mut axes);
         if self.parallel {
-            for ((anchor, origin), axes) in places {
+            for ((anchor, origin), axes) in locators {
                 *axes = moved(anchor, origin);
             }
         } else {
-            for (((anchor, origin), axes), to_axes) in places.zip(&self.to_axes) {
+            for (((anchor, origin), axes), to_axes) in locators.zip(&self.to_axes) {
                 *axes = to_axes * moved(anchor, origin);
             }
         }

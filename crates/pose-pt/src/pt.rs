@@ -2,7 +2,7 @@
 
 use core::iter::FusedIterator;
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::Vector3;
 
 use crate::course::{Course, Walk};
 use crate::distance_error::linear_distance_error;
@@ -14,51 +14,51 @@ use crate::{Locator, PlanError, Platform, Segmentation};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct PtPoint<const N: usize, T = f64> {
+pub struct PtPoint<const N: usize> {
     /// Seconds since the start.
-    pub time_s: T,
+    pub time_s: f64,
     /// Seconds since the point before; zero at the first.
-    pub segment_s: T,
+    pub segment_s: f64,
     /// Coordinates of each locator's three axes.
-    pub axes: [Vector3<T>; N],
+    pub axes: [Vector3<f64>; N],
 }
 
 /// A checked position-time table [Alignment 2010].
 ///
-/// Each leg of the path is cut into equal segments; each takes as long as its slowest axis
+/// Each leg of the path is divided into equal segments; each takes as long as its slowest axis
 /// does at its rated speed:
 ///
 /// ```text
 /// segment time = max over the axes of |Δq| / rated speed
 /// ```
 ///
-/// Poses on the way are passed without a stop: speeds step at every point of a PT table, and
+/// Poses between the first and the last are passed without a stop: speeds step at every point of a PT table, and
 /// no acceleration limit is looked at. [`PvtTable`](crate::PvtTable) is for controllers that
 /// can do better.
 #[derive(Debug, Clone, Copy)]
-pub struct PtTable<'a, const N: usize, T: RealField = f64> {
-    platform: &'a Platform<N, T>,
-    path: Path<'a, T>,
-    segmentation: Segmentation<T>,
+pub struct PtTable<'a, const N: usize> {
+    platform: &'a Platform<N>,
+    path: Path<'a>,
+    segmentation: Segmentation,
     points: usize,
-    duration_s: T,
+    duration_s: f64,
 }
 
-impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
+impl<'a, const N: usize> PtTable<'a, N> {
     /// Plans the table and walks it once: every point is within all strokes, and so is
-    /// every place between, where the axes move linearly.
+    /// every position between, where the axes move linearly.
     ///
     /// # Errors
     /// [`PlanError`].
     pub fn plan(
-        platform: &'a Platform<N, T>,
-        path: &Path<'a, T>,
-        segmentation: Segmentation<T>,
-    ) -> Result<Self, PlanError<T>> {
+        platform: &'a Platform<N>,
+        path: &Path<'a>,
+        segmentation: Segmentation,
+    ) -> Result<Self, PlanError> {
         segmentation.check(platform)?;
         let mut points = 1_usize;
         for number in 0..path.legs() {
-            let segments = segmentation.linear_segments(platform, path, number)?;
+            let segments = segmentation.checked_segments(platform, path, number)?;
             points = usize::try_from(segments)
                 .ok()
                 .and_then(|segments| points.checked_add(segments))
@@ -72,7 +72,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
             path: *path,
             segmentation,
             points,
-            duration_s: T::zero(),
+            duration_s: 0.0,
         };
         let mut walk = table.points();
         let mut last_s = None;
@@ -86,7 +86,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
             platform
                 .check_axes(&axes)
                 .map_err(|reason| PlanError::Limit { leg, point, reason })?;
-            let takes_time = |last_s| segment_s > T::zero() && time_s > last_s;
+            let takes_time = |last_s| segment_s > 0.0 && time_s > last_s;
             if last_s.is_some_and(|last_s| !takes_time(last_s)) {
                 return Err(PlanError::Indistinct { leg, point });
             }
@@ -109,7 +109,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     ///
     /// # Errors
     /// [`PlanError::TooManyPoints`].
-    pub const fn fits(&self, available: usize) -> Result<(), PlanError<T>> {
+    pub const fn fits(&self, available: usize) -> Result<(), PlanError> {
         if self.points <= available {
             return Ok(());
         }
@@ -121,16 +121,16 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
 
     /// Seconds from the first point to the last.
     #[must_use]
-    pub const fn duration_s(&self) -> T {
+    pub const fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
-    /// The most by which two locators come closer than their anchors are, between any two
+    /// A bound on how much two locators come closer than their anchors are, between any two
     /// points of the table.
     ///
     /// Proof. Between two points the vector from one locator to the other runs along the
-    /// chord from D₀ to D₁. These differ by a turn δ about an axis n; with D⊥ the part of D
-    /// across n, the square of the distance is
+    /// chord from D₀ to D₁. These differ by a turn δ about an axis n; with D⊥ the component of D
+    /// perpendicular to n, the square of the distance is
     ///
     /// ```text
     /// |D₀ + τ (D₁ - D₀)|² = L² - 4 τ (1-τ) D⊥² sin²(δ/2)
@@ -142,18 +142,14 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     /// largest of all segments is returned, and [`Segmentation::max_distance_error`] takes δ from
     /// the largest angular speed and D⊥ as L, which may be more segments than the fewest.
     #[must_use]
-    pub fn distance_error_bound(&self) -> T {
-        let legs = 0..self.path.legs();
-        legs.fold(T::zero(), |worst, number| {
-            let distance_error = self
-                .path
-                .leg(number)
-                .map(|leg| self.leg_distance_error(number, &leg));
-            worst.max(distance_error.unwrap_or_else(T::zero))
-        })
+    pub fn distance_error_bound(&self) -> f64 {
+        self.path
+            .numbered_legs()
+            .map(|(number, leg)| self.leg_distance_error(number, &leg))
+            .fold(0.0, f64::max)
     }
 
-    fn leg_distance_error(&self, number: usize, leg: &Leg<T>) -> T {
+    fn leg_distance_error(&self, number: usize, leg: &Leg) -> f64 {
         let course = Course::new(self.platform, leg);
         let segments = self.segments(number);
         let looked_at = if leg.is_even() {
@@ -163,7 +159,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
         };
         let mut walk = course.walk(segments);
         let mut from = course.axes(&walk);
-        (0..looked_at).fold(T::zero(), |worst, _| {
+        (0..looked_at).fold(0.0, |worst, _| {
             walk.advance();
             let to = course.axes(&walk);
             let distance_error = linear_distance_error(self.platform, &from, &to);
@@ -174,7 +170,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
 
     /// Axes of the point `number`, with the bits that the iterator gives.
     #[must_use]
-    pub fn axes(&self, number: usize) -> Option<[Vector3<T>; N]> {
+    pub fn axes(&self, number: usize) -> Option<[Vector3<f64>; N]> {
         let mut number = number;
         for leg in 0..self.path.legs() {
             let segments = self.segments(leg);
@@ -193,7 +189,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
 
     /// The points in their order.
     #[must_use]
-    pub fn points(&self) -> PtPoints<'a, N, T> {
+    pub fn points(&self) -> PtPoints<'a, N> {
         PtPoints {
             table: *self,
             leg: 0,
@@ -207,21 +203,19 @@ impl<'a, const N: usize, T: RealField + Copy> PtTable<'a, N, T> {
     }
 
     fn segments(&self, leg: usize) -> u32 {
-        // The plan has found no error in any leg.
         self.segmentation
             .linear_segments(self.platform, &self.path, leg)
-            .unwrap_or(0)
     }
 }
 
 /// Seconds that the slowest axis needs at its rated speed.
 #[inline]
-fn slowest<const N: usize, T: RealField + Copy>(
-    locators: &[Locator<T>; N],
-    from: &[Vector3<T>; N],
-    to: &[Vector3<T>; N],
-) -> T {
-    let mut longest = T::zero();
+fn slowest<const N: usize>(
+    locators: &[Locator; N],
+    from: &[Vector3<f64>; N],
+    to: &[Vector3<f64>; N],
+) -> f64 {
+    let mut longest = 0.0;
     for (locator, (from, to)) in locators.iter().zip(from.iter().zip(to)) {
         for (limits, (from, to)) in locator.limits.iter().zip(from.iter().zip(to.iter())) {
             longest = larger(longest, magnitude(*to - *from) / limits.speed);
@@ -232,36 +226,36 @@ fn slowest<const N: usize, T: RealField + Copy>(
 
 /// The points of a [`PtTable`].
 #[derive(Debug, Clone)]
-pub struct PtPoints<'a, const N: usize, T: RealField = f64> {
-    table: PtTable<'a, N, T>,
+pub struct PtPoints<'a, const N: usize> {
+    table: PtTable<'a, N>,
     /// The leg on which the last point lies, and its number there.
     leg: usize,
     index: u32,
     segments: u32,
-    course: Option<(Course<'a, N, T>, Walk<T>)>,
-    axes: [Vector3<T>; N],
-    clock: Clock<T>,
+    course: Option<(Course<'a, N>, Walk)>,
+    axes: [Vector3<f64>; N],
+    clock: Clock,
     remaining: usize,
 }
 
 /// A sum of times that loses nothing to rounding, however many there are (Kahan).
 #[derive(Debug, Clone, Copy)]
-struct Clock<T> {
-    time_s: T,
+struct Clock {
+    time_s: f64,
     /// What the sum has too much.
-    excess_s: T,
+    excess_s: f64,
 }
 
-impl<T: RealField + Copy> Clock<T> {
+impl Clock {
     fn zero() -> Self {
         Self {
-            time_s: T::zero(),
-            excess_s: T::zero(),
+            time_s: 0.0,
+            excess_s: 0.0,
         }
     }
 
     #[inline]
-    fn advance(&mut self, segment_s: T) {
+    fn advance(&mut self, segment_s: f64) {
         let step_s = segment_s - self.excess_s;
         let time_s = self.time_s + step_s;
         self.excess_s = (time_s - self.time_s) - step_s;
@@ -269,7 +263,7 @@ impl<T: RealField + Copy> Clock<T> {
     }
 }
 
-impl<'a, const N: usize, T: RealField + Copy> PtPoints<'a, N, T> {
+impl<'a, const N: usize> PtPoints<'a, N> {
     /// Begins the next leg on which something moves.
     #[cold]
     fn begin(&mut self, mut leg: usize) -> Option<()> {
@@ -287,7 +281,7 @@ impl<'a, const N: usize, T: RealField + Copy> PtPoints<'a, N, T> {
 
     /// The first point of all.
     #[cold]
-    fn first(&mut self) -> Option<[Vector3<T>; N]> {
+    fn first(&mut self) -> Option<[Vector3<f64>; N]> {
         if self.begin(0).is_none() {
             // Nothing moves anywhere: the first pose is the whole table.
             self.leg = 0;
@@ -300,17 +294,17 @@ impl<'a, const N: usize, T: RealField + Copy> PtPoints<'a, N, T> {
     }
 }
 
-impl<'a, const N: usize, T: RealField + Copy> Iterator for PtPoints<'a, N, T> {
-    type Item = PtPoint<N, T>;
+impl<'a, const N: usize> Iterator for PtPoints<'a, N> {
+    type Item = PtPoint<N>;
 
     #[inline]
-    fn next(&mut self) -> Option<PtPoint<N, T>> {
+    fn next(&mut self) -> Option<PtPoint<N>> {
         self.remaining = self.remaining.checked_sub(1)?;
         if self.course.is_none() {
             self.axes = self.first()?;
             return Some(PtPoint {
                 time_s: self.clock.time_s,
-                segment_s: T::zero(),
+                segment_s: 0.0,
                 axes: self.axes,
             });
         }
@@ -336,6 +330,6 @@ impl<'a, const N: usize, T: RealField + Copy> Iterator for PtPoints<'a, N, T> {
     }
 }
 
-impl<const N: usize, T: RealField + Copy> ExactSizeIterator for PtPoints<'_, N, T> {}
+impl<const N: usize> ExactSizeIterator for PtPoints<'_, N> {}
 
-impl<const N: usize, T: RealField + Copy> FusedIterator for PtPoints<'_, N, T> {}
+impl<const N: usize> FusedIterator for PtPoints<'_, N> {}

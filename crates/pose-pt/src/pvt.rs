@@ -22,8 +22,8 @@ pub use run::PvtRun;
 /// with the positions and velocities of the body's own motion at the points.
 ///
 /// Along each leg it is the fastest such table that keeps the limits of all axes: see
-/// [`path_timing::Table`]. The machine stops at every pose on the way, where the direction changes;
-/// a pose to be passed without a stop has no place in a path.
+/// [`path_timing::Table`]. The machine stops at every pose, where the direction changes;
+/// a pose to be passed without a stop does not belong to a path.
 #[derive(Debug, Clone, Copy)]
 pub struct PvtTable<'a, const N: usize> {
     /// Without a row where nothing moves.
@@ -64,16 +64,14 @@ impl<'a, const N: usize> PvtTable<'a, N> {
                 )
             }
             _ => {
-                // More segments than can be counted are more than the planner takes.
                 let segments = |leg: &moving::Track<'_, N>| {
-                    let segments = segmentation.linear_segments(platform, path, leg.number);
-                    segments.unwrap_or(u32::MAX)
+                    segmentation.linear_segments(platform, path, leg.number)
                 };
                 Table::plan(moving, limits, segments, knots)
             }
         };
         let table = Self {
-            table: table.map_err(|error| PlanError::of_timing(error, moving.numbers()))?,
+            table: table.map_err(|error| PlanError::of_timing(error, |leg| moving.number(leg)))?,
         };
         table.check_strokes()?;
         Ok(table)
@@ -101,7 +99,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
             };
             leg = next_leg;
             strokes::check(platform, &from, &to).map_err(|reason| PlanError::Limit {
-                leg: self.table.legs().numbers().nth(leg).unwrap_or(leg),
+                leg: self.table.legs().number(leg),
                 point,
                 reason,
             })?;
@@ -109,7 +107,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
         }
     }
 
-    /// The same motion at a share of its speed, above 0 and at most 1: room for a feed above
+    /// The same motion at a fraction of its speed, above 0 and at most 1: room for a feed above
     /// 100 %.
     ///
     /// # Errors
@@ -140,7 +138,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
         self.table.legs().platform
     }
 
-    /// The most by which the distance of two locators ever departs from that of their anchors:
+    /// A bound on how far the distance of two locators ever departs from that of their anchors:
     /// the largest [`hermite_distance_error`] of all segments.
     #[must_use]
     pub fn distance_error_bound(&self) -> f64 {
@@ -162,7 +160,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     }
 
     fn refused(&self, error: path_timing::PlanError<Infallible>) -> PlanError {
-        PlanError::of_timing(error, self.table.legs().numbers())
+        PlanError::of_timing(error, |leg| self.table.legs().number(leg))
     }
 
     /// The only point of a table where nothing moves.

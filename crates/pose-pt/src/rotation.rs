@@ -1,8 +1,9 @@
 //! Rotations, accurate also where they are close to each other.
 
 use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, Vector4};
+use trig_kernels::{Trig, atan2, sin_cos};
 
-use crate::number::{epsilons, half, two};
+use crate::number::{epsilons, half, max_value, two};
 use crate::short::short;
 use crate::svd::Svd;
 
@@ -42,16 +43,16 @@ fn shorter<T: RealField + Copy>(
     }
 }
 
-/// Scalar and vector part of b a*, the rotation from `a` to `b`.
+/// Scalar and vector of b a*, the rotation from `a` to `b`.
 ///
 /// ```text
 /// vec(b a*) = vec((b - a) a*)
 /// ```
 ///
 /// The difference of close quaternions is exact; their product would round to an epsilon.
-fn way<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> (T, Vector3<T>) {
-    let way = Quaternion::from(b - a) * Quaternion::from(*a).conjugate();
-    (a.dot(b), way.vector().into_owned())
+fn between<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> (T, Vector3<T>) {
+    let product = Quaternion::from(b - a) * Quaternion::from(*a).conjugate();
+    (a.dot(b), product.vector().into_owned())
 }
 
 /// The angle between two rotations, in radians, 0..=π.
@@ -62,22 +63,23 @@ fn way<T: RealField + Copy>(a: &Vector4<T>, b: &Vector4<T>) -> (T, Vector3<T>) {
 ///
 /// Accurate for close rotations too, where an arc cosine is off by 1e-8.
 #[must_use]
-pub fn angle_between<T: RealField + Copy>(a: &UnitQuaternion<T>, b: &UnitQuaternion<T>) -> T {
+pub fn angle_between<T: RealField + Trig>(a: &UnitQuaternion<T>, b: &UnitQuaternion<T>) -> T {
     rotation_vector_between(a, b).norm()
 }
 
-/// The rotation a part `t` of the way from `a` to `b`, on the shorter arc at constant speed.
+/// The rotation at the fraction `t` of the turn from `a` to `b`, on the shorter arc at constant
+/// speed.
 ///
 /// ```text
 /// (sin((1 - t) φ) a + sin(t φ) b) / sin φ,   φ the angle between the quaternions
 /// ```
 ///
 /// `t` = 0 gives `a` and 1 gives `b` to the last bit (up to the sign of the quaternion);
-/// the way from `b` to `a` at 1 - `t` is the same. Other values go on beyond the ends, to the
+/// the turn from `b` to `a` at 1 - `t` is the same. Other values go on beyond the ends, to the
 /// angle between both times `t` as it is rounded.
 /// Of two arcs of π, that of the quaternions as they are is taken.
 #[must_use]
-pub fn slerp<T: RealField + Copy>(
+pub fn slerp<T: RealField + Trig>(
     a: &UnitQuaternion<T>,
     b: &UnitQuaternion<T>,
     t: T,
@@ -86,13 +88,14 @@ pub fn slerp<T: RealField + Copy>(
         return from_rotation_vector(&(rotation_vector_between(a, b) * t)) * a;
     }
     let (a, b) = shorter(a, b);
-    // The same from both ends, unlike the products of `way`; the weights of close rotations
+    // The same from both ends, unlike the products of `between`; the weights of close rotations
     // do not depend on the last digits of the angle.
-    let angle = two::<T>() * (a - b).norm().atan2((a + b).norm());
-    let sin = angle.sin();
+    let angle = two::<T>() * atan2((a - b).norm(), (a + b).norm());
+    let sin = |angle| sin_cos(angle).0;
+    let whole = sin(angle);
     let rest = T::one() - t;
-    let (from, to) = if sin > T::zero() {
-        ((rest * angle).sin() / sin, (t * angle).sin() / sin)
+    let (from, to) = if whole > T::zero() {
+        (sin(rest * angle) / whole, sin(t * angle) / whole)
     } else {
         (rest, t)
     };
@@ -105,7 +108,7 @@ pub fn slerp<T: RealField + Copy>(
 /// 2 atan2(|v|, w) v / |v|   of the quaternion w + v with w ≥ 0
 /// ```
 #[must_use]
-pub fn rotation_vector<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Vector3<T> {
+pub fn rotation_vector<T: RealField + Trig>(rotation: &UnitQuaternion<T>) -> Vector3<T> {
     log(rotation.w, rotation.vector().into_owned())
 }
 
@@ -113,20 +116,20 @@ pub fn rotation_vector<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Vec
 ///
 /// Divided by a time it is the angular velocity of [`slerp`].
 #[must_use]
-pub fn rotation_vector_between<T: RealField + Copy>(
+pub fn rotation_vector_between<T: RealField + Trig>(
     a: &UnitQuaternion<T>,
     b: &UnitQuaternion<T>,
 ) -> Vector3<T> {
     let (a, b) = shorter(a, b);
-    let (w, v) = way(&a, &b);
+    let (w, v) = between(&a, &b);
     log(w, v)
 }
 
-fn log<T: RealField + Copy>(w: T, v: Vector3<T>) -> Vector3<T> {
+fn log<T: RealField + Trig>(w: T, v: Vector3<T>) -> Vector3<T> {
     let (w, v) = if w < T::zero() { (-w, -v) } else { (w, v) };
     let sin = v.norm();
     let scale = if sin > T::zero() {
-        two::<T>() * sin.atan2(w) / sin
+        two::<T>() * atan2(sin, w) / sin
     } else {
         two()
     };
@@ -135,9 +138,9 @@ fn log<T: RealField + Copy>(w: T, v: Vector3<T>) -> Vector3<T> {
 
 /// The rotation about `vector` by its length in radians.
 #[must_use]
-pub fn from_rotation_vector<T: RealField + Copy>(vector: &Vector3<T>) -> UnitQuaternion<T> {
+pub fn from_rotation_vector<T: RealField + Trig>(vector: &Vector3<T>) -> UnitQuaternion<T> {
     let angle = vector.norm();
-    let (sin, cos) = (angle * half()).sin_cos();
+    let (sin, cos) = sin_cos(angle * half());
     let scale = if angle > T::zero() {
         sin / angle
     } else {
@@ -188,7 +191,7 @@ pub fn from_matrix<T: RealField + Copy>(
     };
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return Err(NotARotation {
-            departure: T::max_value().unwrap_or_else(T::one),
+            departure: max_value(),
             allowed,
             determinant: T::zero(),
         });
@@ -205,7 +208,7 @@ pub fn from_matrix<T: RealField + Copy>(
         return Ok(quaternion(&svd.rotation()));
     }
     Err(NotARotation {
-        departure: departure.min(T::max_value().unwrap_or_else(T::one)),
+        departure: departure.min(max_value()),
         allowed,
         determinant: matrix.determinant(),
     })

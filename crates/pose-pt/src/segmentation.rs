@@ -1,38 +1,38 @@
 //! Into how many equal segments a leg is divided.
 
-use nalgebra::RealField;
+use trig_kernels::atan2;
 
 use crate::course::is_still;
 use crate::distance_error::pairs;
-use crate::number::{count, epsilons, two};
+use crate::number::{ceil, epsilons, floor, sqrt};
 use crate::path::{Leg, Path};
 use crate::{PlanError, Platform};
 
-/// Into how many segments the way from one pose to the next is divided.
+/// Into how many segments the leg from one pose to the next is divided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Segmentation<T = f64> {
-    pub(crate) rule: Rule<T>,
+pub struct Segmentation {
+    pub(crate) rule: Rule,
     pub(crate) at_least: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) enum Rule<T> {
+pub(crate) enum Rule {
     Segments(u32),
-    Steps { translation: T, rotation_rad: T },
-    DistanceError(T),
+    Steps { translation: f64, rotation_rad: f64 },
+    DistanceError(f64),
 }
 
-/// Least distance error against the largest distance of two anchors, in machine epsilons.
+/// Smallest distance error against the largest distance of two anchors, in machine epsilons.
 const DISTANCE_ERROR_EPSILONS: f64 = 64.0;
 
-/// Most segments of a leg.
+/// Largest number of segments of a leg.
 const MAX_SEGMENTS: u32 = 1 << 30;
 
-impl<T: RealField + Copy> Segmentation<T> {
+impl Segmentation {
     /// Every leg in `segments` equal segments.
     #[must_use]
     pub const fn segments(segments: u32) -> Self {
@@ -46,7 +46,7 @@ impl<T: RealField + Copy> Segmentation<T> {
     /// by less than `rotation_rad`: the adjustment accuracy of [Alignment 2010]. The fewest
     /// equal segments that are smaller, not as large: 10 mm at 0.01 mm are 1001.
     #[must_use]
-    pub const fn steps(translation: T, rotation_rad: T) -> Self {
+    pub const fn steps(translation: f64, rotation_rad: f64) -> Self {
         Self {
             rule: Rule::Steps {
                 translation,
@@ -60,7 +60,7 @@ impl<T: RealField + Copy> Segmentation<T> {
     /// that of their anchors by more than `allowed`, in the unit of length; along pose vectors
     /// perhaps some more.
     #[must_use]
-    pub const fn max_distance_error(allowed: T) -> Self {
+    pub const fn max_distance_error(allowed: f64) -> Self {
         Self {
             rule: Rule::DistanceError(allowed),
             at_least: 1,
@@ -76,13 +76,10 @@ impl<T: RealField + Copy> Segmentation<T> {
     }
 
     /// Whether the numbers make sense.
-    pub(crate) fn check<const N: usize>(
-        &self,
-        platform: &Platform<N, T>,
-    ) -> Result<(), PlanError<T>> {
-        let positive = |value: T| value > T::zero() && value.is_finite();
+    pub(crate) fn check<const N: usize>(&self, platform: &Platform<N>) -> Result<(), PlanError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
         let bad = match self.rule {
-            Rule::Segments(0) => Some(T::zero()),
+            Rule::Segments(0) => Some(0.0),
             Rule::Segments(_) => None,
             Rule::Steps {
                 translation,
@@ -95,101 +92,97 @@ impl<T: RealField + Copy> Segmentation<T> {
         if let Some(value) = bad {
             return Err(PlanError::Segmentation { value });
         }
-        let least = platform.largest_anchor_distance() * epsilons(DISTANCE_ERROR_EPSILONS);
+        let min = platform.largest_anchor_distance() * epsilons::<f64>(DISTANCE_ERROR_EPSILONS);
         match self.rule {
-            Rule::DistanceError(allowed) if allowed < least => {
-                Err(PlanError::DistanceError { allowed, least })
+            Rule::DistanceError(allowed) if allowed < min => {
+                Err(PlanError::DistanceError { allowed, min })
             }
             _ => Ok(()),
         }
     }
 
-    /// Segments of a leg between whose points the axes move linearly; none where nothing moves.
+    /// Segments of a leg between whose points the axes move linearly; none where nothing moves, and
+    /// `u32::MAX` where they would be more than can be counted.
     pub(crate) fn linear_segments<const N: usize>(
         &self,
-        platform: &Platform<N, T>,
-        path: &Path<'_, T>,
+        platform: &Platform<N>,
+        path: &Path<'_>,
         number: usize,
-    ) -> Result<u32, PlanError<T>> {
+    ) -> u32 {
         let leg = match path.leg(number) {
             Some(leg) if !is_still(platform, path, number) => leg,
-            _ => return Ok(0),
+            _ => return 0,
         };
         let segments = match self.rule {
-            Rule::Segments(segments) => Some(segments),
+            Rule::Segments(segments) => segments,
             Rule::Steps {
                 translation,
                 rotation_rad,
-            } => segments_below(leg.length(), translation)
-                .zip(segments_below(leg.turn(), rotation_rad))
-                .map(|(moves, turns)| moves.max(turns)),
+            } => {
+                let moves = segments_below(leg.length(), translation);
+                moves.max(segments_below(leg.turn(), rotation_rad))
+            }
             Rule::DistanceError(allowed) => {
                 segments_within(leg.turn(), largest_turn(platform, &leg, allowed))
             }
         };
-        within_max(
-            segments.map(|segments| segments.max(self.at_least)),
-            number,
-            MAX_SEGMENTS,
-        )
+        segments.max(self.at_least).max(1)
     }
-}
 
-/// Refuses more segments than a leg can have.
-pub(crate) fn within_max<T: RealField + Copy>(
-    segments: Option<u32>,
-    leg: usize,
-    max: u32,
-) -> Result<u32, PlanError<T>> {
-    match segments {
-        Some(segments) if segments <= max => Ok(segments.max(1)),
-        _ => Err(PlanError::TooFine { leg, max }),
+    /// The same, if a leg can have that number.
+    pub(crate) fn checked_segments<const N: usize>(
+        &self,
+        platform: &Platform<N>,
+        path: &Path<'_>,
+        number: usize,
+    ) -> Result<u32, PlanError> {
+        match self.linear_segments(platform, path, number) {
+            segments if segments <= MAX_SEGMENTS => Ok(segments),
+            _ => Err(PlanError::TooFine {
+                leg: number,
+                max: MAX_SEGMENTS,
+            }),
+        }
     }
 }
 
 /// The largest turn between two points for which no two locators come closer by more than
 /// `allowed`, at most half a turn: see
 /// [`PtTable::distance_error_bound`](crate::PtTable::distance_error_bound).
-fn largest_turn<const N: usize, T: RealField + Copy>(
-    platform: &Platform<N, T>,
-    leg: &Leg<T>,
-    allowed: T,
-) -> T {
-    let mut sine = T::one();
+fn largest_turn<const N: usize>(platform: &Platform<N>, leg: &Leg, allowed: f64) -> f64 {
+    let mut sine = 1.0;
     for pair in pairs(platform, leg) {
         if allowed < pair.length {
             // across² sin²(δ/2) = L² - (L - allowed)²
-            let most = (allowed * (two::<T>() * pair.length - allowed)).sqrt();
-            if most < sine * pair.across {
-                sine = most / pair.across;
+            let root = sqrt(allowed * (2.0 * pair.length - allowed));
+            if root < sine * pair.across {
+                sine = root / pair.across;
             }
         }
     }
-    let cos = ((T::one() - sine) * (T::one() + sine)).sqrt();
-    two::<T>() * sine.atan2(cos)
+    let cos = sqrt((1.0 - sine) * (1.0 + sine));
+    2.0 * atan2(sine, cos)
 }
 
 /// The fewest equal segments of `whole` that are at most `segment`.
-pub(crate) fn segments_within<T: RealField + Copy>(whole: T, segment: T) -> Option<u32> {
+fn segments_within(whole: f64, segment: f64) -> u32 {
     // A quotient that rounding has put past a whole number is that number.
-    whole_number((whole / segment * (T::one() - epsilons(4.0))).ceil())
+    saturated(ceil(whole / segment * (1.0 - epsilons::<f64>(4.0))))
 }
 
 /// The fewest equal segments of `whole` that are smaller than `segment`.
-fn segments_below<T: RealField + Copy>(whole: T, segment: T) -> Option<u32> {
-    let segments = whole_number((whole / segment).floor())?.checked_add(1)?;
-    let is_below = whole / count(segments) < segment;
-    segments.checked_add(u32::from(!is_below))
+fn segments_below(whole: f64, segment: f64) -> u32 {
+    let segments = saturated(floor(whole / segment)).saturating_add(1);
+    let is_below = whole / f64::from(segments) < segment;
+    segments.saturating_add(u32::from(!is_below))
 }
 
-fn whole_number<T: RealField + Copy>(value: T) -> Option<u32> {
-    let value: f64 = nalgebra::try_convert(value)?;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "checked"
-    )]
-    (0.0..f64::from(u32::MAX))
-        .contains(&value)
-        .then_some(value as u32)
+/// A whole number; `u32::MAX` where it is larger.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "such a conversion saturates"
+)]
+const fn saturated(value: f64) -> u32 {
+    value as u32
 }

@@ -1,7 +1,5 @@
 //! Serialised form of a platform: its locators, checked when they are read.
 
-use core::array;
-
 use nalgebra::RealField;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
@@ -43,17 +41,14 @@ where
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
-        let mut read: [Option<Locator<T>>; N] = [None; N];
-        for (number, place) in read.iter_mut().enumerate() {
-            *place = Some(
-                sequence
-                    .next_element()?
-                    .ok_or_else(|| A::Error::invalid_length(number, &self))?,
-            );
+        let mut next = |number| {
+            let locator = sequence.next_element()?;
+            locator.ok_or_else(|| A::Error::invalid_length(number, &self))
+        };
+        let mut locators = [next(0)?; N];
+        for (number, locator) in locators.iter_mut().enumerate().skip(1) {
+            *locator = next(number)?;
         }
-        let first = read.first().copied().flatten();
-        let first = first.ok_or_else(|| A::Error::invalid_length(0, &self))?;
-        let mut read = read.into_iter().flatten();
-        Ok(array::from_fn(|_| read.next().unwrap_or(first)))
+        Ok(locators)
     }
 }

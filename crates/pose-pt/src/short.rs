@@ -6,5 +6,5 @@ use path_timing::SixDigits;
 /// The number as it stands in a message.
 pub(crate) fn short<T: RealField + Copy>(value: &T) -> SixDigits {
     // Each float type has its numbers in f64.
-    SixDigits(nalgebra::try_convert(*value).unwrap_or(f64::NAN))
+    SixDigits(nalgebra::convert_unchecked(*value))
 }

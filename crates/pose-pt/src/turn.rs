@@ -1,30 +1,28 @@
 //! Sine and versine of an angle that grows by equal steps.
 
-use nalgebra::RealField;
-
-use crate::number::{count, half, two};
+use trig_kernels::sin_cos;
 
 /// sin θ and 1 - cos θ; the versine keeps its digits where the angle is small.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Turn<T> {
-    pub(crate) sin: T,
-    pub(crate) versine: T,
+pub(crate) struct Turn {
+    pub(crate) sin: f64,
+    pub(crate) versine: f64,
 }
 
-impl<T: RealField + Copy> Turn<T> {
-    pub(crate) fn of(angle: T) -> Self {
-        let (sin, cos) = (angle * half()).sin_cos();
+impl Turn {
+    pub(crate) fn of(angle: f64) -> Self {
+        let (sin, cos) = sin_cos(angle / 2.0);
         Self {
-            sin: two::<T>() * sin * cos,
-            versine: two::<T>() * sin * sin,
+            sin: 2.0 * sin * cos,
+            versine: 2.0 * sin * sin,
         }
     }
 
-    pub(crate) fn cos(self) -> T {
-        T::one() - self.versine
+    pub(crate) fn cos(self) -> f64 {
+        1.0 - self.versine
     }
 
-    /// The turn by the sum of both angles, by additions to both parts:
+    /// The turn by the sum of both angles, by additions to sine and versine:
     ///
     /// ```text
     /// sin(θ + δ) = sin θ + (cos θ sin δ - sin θ vers δ)
@@ -46,19 +44,19 @@ const RENEWAL: u32 = 64;
 
 /// `K` angles that run from zero or another start by equal steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sweep<const K: usize, T> {
-    from: [T; K],
-    change: [T; K],
-    segments: T,
-    step: [Turn<T>; K],
-    now: [Turn<T>; K],
+pub(crate) struct Sweep<const K: usize> {
+    from: [f64; K],
+    change: [f64; K],
+    segments: f64,
+    step: [Turn; K],
+    now: [Turn; K],
     index: u32,
 }
 
-impl<const K: usize, T: RealField + Copy> Sweep<K, T> {
+impl<const K: usize> Sweep<K> {
     /// Angles `from` that change by `change` in `segments` steps.
-    pub(crate) fn new(from: [T; K], change: [T; K], segments: u32) -> Self {
-        let segments = count(segments.max(1));
+    pub(crate) fn new(from: [f64; K], change: [f64; K], segments: u32) -> Self {
+        let segments = f64::from(segments.max(1));
         Self {
             from,
             change,
@@ -69,14 +67,14 @@ impl<const K: usize, T: RealField + Copy> Sweep<K, T> {
         }
     }
 
-    pub(crate) const fn now(&self) -> &[Turn<T>; K] {
+    pub(crate) const fn now(&self) -> &[Turn; K] {
         &self.now
     }
 
-    /// The share of the way that lies behind.
+    /// The fraction of the change up to now.
     #[inline]
-    pub(crate) fn share(&self) -> T {
-        count::<T>(self.index) / self.segments
+    pub(crate) fn fraction(&self) -> f64 {
+        f64::from(self.index) / self.segments
     }
 
     /// Makes one step.
@@ -103,9 +101,9 @@ impl<const K: usize, T: RealField + Copy> Sweep<K, T> {
 
     #[cold]
     fn renew(&mut self) {
-        let share = self.share();
+        let fraction = self.fraction();
         for ((now, from), change) in self.now.iter_mut().zip(self.from).zip(self.change) {
-            *now = Turn::of(from + change * share);
+            *now = Turn::of(from + change * fraction);
         }
     }
 }

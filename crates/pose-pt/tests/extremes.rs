@@ -4,17 +4,19 @@
 
 #[path = "extremes/calls.rs"]
 mod calls;
+#[path = "extremes/paths.rs"]
+mod paths;
 #[path = "extremes/pvt.rs"]
 mod pvt;
 
 use calls::{Call, Inputs, Outcome};
 use pose_pt::nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3};
-use pose_pt::{Convention, Path, PoseVector, slerp, to_matrix};
+use pose_pt::{Convention, Path, PoseVector, Trig, slerp, to_matrix};
 
 /// Of numbers that a tiny one is added to: what cancels in a fit or a plan.
 const ROUNDING: f64 = 1e-5;
 
-impl<T: RealField + Copy> Call<T> {
+impl<T: RealField + Trig> Call<T> {
     /// The outcome with one of the numbers replaced.
     fn with(&self, place: usize, value: T) -> Outcome<T> {
         let mut numbers = self.good.clone();
@@ -30,12 +32,20 @@ impl<T: RealField + Copy> Call<T> {
     }
 }
 
-fn is_finite<T: RealField + Copy>(numbers: &[T]) -> bool {
+/// All calls in f64.
+fn double() -> Vec<Call<f64>> {
+    let mut calls = calls::all();
+    calls.extend(paths::all());
+    calls.extend(pvt::all());
+    calls
+}
+
+fn is_finite<T: RealField + Trig>(numbers: &[T]) -> bool {
     numbers.iter().all(|number| number.is_finite())
 }
 
 /// Whether each number is the same but for rounding.
-fn are_close<T: RealField + Copy>(a: &[T], b: &[T]) -> bool {
+fn are_close<T: RealField + Trig>(a: &[T], b: &[T]) -> bool {
     let rounding: T = T::from_subset(&ROUNDING);
     let size = b.iter().fold(T::one(), |size, b| size.max(b.abs()));
     a.len() == b.len()
@@ -44,7 +54,7 @@ fn are_close<T: RealField + Copy>(a: &[T], b: &[T]) -> bool {
             .all(|(a, b)| (*a - *b).abs() <= size * rounding)
 }
 
-fn check_not_finite<T: RealField + Copy>(calls: &[Call<T>], bad: [T; 3]) {
+fn check_not_finite<T: RealField + Trig>(calls: &[Call<T>], bad: [T; 3]) {
     for call in calls {
         for place in 0..call.good.len() {
             for bad in bad {
@@ -57,7 +67,7 @@ fn check_not_finite<T: RealField + Copy>(calls: &[Call<T>], bad: [T; 3]) {
     }
 }
 
-fn check_good<T: RealField + Copy>(calls: &[Call<T>]) {
+fn check_good<T: RealField + Trig>(calls: &[Call<T>]) {
     for call in calls {
         let numbers = call.with(0, call.good[0]);
         let good = numbers.as_ref().is_ok_and(|numbers| is_finite(numbers));
@@ -67,18 +77,16 @@ fn check_good<T: RealField + Copy>(calls: &[Call<T>]) {
 
 #[test]
 fn what_is_no_number_is_no_answer() {
-    let (double, single, pvt) = (calls::all::<f64>(), calls::all::<f32>(), pvt::all());
+    let (double, single) = (double(), calls::all::<f32>());
     check_good(&double);
     check_good(&single);
-    check_good(&pvt);
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
     check_not_finite(&double, bad);
-    check_not_finite(&pvt, bad);
     check_not_finite(&single, [f32::NAN, f32::INFINITY, f32::NEG_INFINITY]);
 }
 
 /// A number that is far below all others is refused, or does what zero does.
-fn check_tiny<T: RealField + Copy>(calls: &[Call<T>], tiny: &[T]) {
+fn check_tiny<T: RealField + Trig>(calls: &[Call<T>], tiny: &[T]) {
     for call in calls {
         for place in 0..call.good.len() {
             let zero = call.with(place, T::zero());
@@ -100,14 +108,13 @@ fn check_tiny<T: RealField + Copy>(calls: &[Call<T>], tiny: &[T]) {
 #[test]
 fn tiny_numbers_do_what_zero_does() {
     let tiny = [5e-324, 1e-310, 1e-300, 1e-161];
-    check_tiny(&calls::all::<f64>(), &tiny);
-    check_tiny(&pvt::all(), &tiny);
+    check_tiny(&double(), &tiny);
     check_tiny(&calls::all::<f32>(), &[1e-45, 1e-40, 1e-37, 1e-25]);
 }
 
 /// A number that is far above all others is refused, or overflows, or changes what it is itself
 /// by its own factor and nothing else.
-fn check_huge<T: RealField + Copy>(calls: &[Call<T>], large: T, huge: T) {
+fn check_huge<T: RealField + Trig>(calls: &[Call<T>], large: T, huge: T) {
     // Sines of huge angles, and quaternions that are no rotations, see below.
     let other = ["PoseVector::to_*", "slerp", "Path of vectors"];
     let factor = huge / large;
@@ -134,8 +141,7 @@ fn check_huge<T: RealField + Copy>(calls: &[Call<T>], large: T, huge: T) {
 #[test]
 fn huge_numbers_are_refused_or_taken_as_they_are() {
     for (large, huge) in [(1e40, 1e300), (-1e40, -1e300)] {
-        check_huge(&calls::all::<f64>(), large, huge);
-        check_huge(&pvt::all(), large, huge);
+        check_huge(&double(), large, huge);
     }
     for (large, huge) in [(1e8, 1e37), (-1e8, -1e37)] {
         check_huge(&calls::all::<f32>(), large, huge);
@@ -192,7 +198,7 @@ fn is_length(place: usize) -> bool {
 }
 
 /// The lengths in another unit: refused, or right to the last digit.
-fn check_unit<T: RealField + Copy>(call: &Call<T>, unit: T, is_in_range: bool) {
+fn check_unit<T: RealField + Trig>(call: &Call<T>, unit: T, is_in_range: bool) {
     let is_fit = call.name == "rigid_fit";
     let numbers = call.good.iter().enumerate();
     let scaled: Vec<T> = numbers
@@ -219,7 +225,7 @@ fn check_unit<T: RealField + Copy>(call: &Call<T>, unit: T, is_in_range: bool) {
     }
 }
 
-fn check_units<T: RealField + Copy>(calls: &[Call<T>], exponents: [i32; 2], range: [i32; 2]) {
+fn check_units<T: RealField + Trig>(calls: &[Call<T>], exponents: [i32; 2], range: [i32; 2]) {
     let names = ["Platform of poses", "rigid_fit", "PtTable", "PvtTable"];
     for call in calls.iter().filter(|call| names.contains(&call.name)) {
         for exponent in (exponents[0]..exponents[1]).step_by(5) {
@@ -234,7 +240,6 @@ fn check_units<T: RealField + Copy>(calls: &[Call<T>], exponents: [i32; 2], rang
 /// by no digit wrong beyond.
 #[test]
 fn a_body_of_any_size_is_right_or_refused() {
-    check_units(&calls::all::<f64>(), [-1070, 1020], [-160, 160]);
-    check_units(&pvt::all(), [-1070, 1020], [-160, 160]);
+    check_units(&double(), [-1070, 1020], [-160, 160]);
     check_units(&calls::all::<f32>(), [-148, 126], [-24, 24]);
 }

@@ -8,10 +8,10 @@ use nalgebra::RealField;
 /// exponent where it would be long: `264`, `0.00012`, `6.71089e7`.
 pub(crate) struct Digits<T>(pub(crate) T);
 
-/// Digits behind the first one.
+/// Digits after the first one.
 const REST: i16 = 5;
-/// Decimals at most; what would have more gets an exponent.
-const MOST_DECIMALS: i16 = 2 * REST;
+/// Largest number of decimals; what would have more gets an exponent.
+const MAX_DECIMALS: i16 = 2 * REST;
 
 impl<T: RealField + Copy> Display for Digits<T> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
@@ -22,7 +22,7 @@ impl<T: RealField + Copy> Display for Digits<T> {
         let (mantissa, exponent) = scientific(number);
         let decimals = REST - exponent;
         let mut text = Text::default();
-        if (0..=MOST_DECIMALS).contains(&decimals) {
+        if (0..=MAX_DECIMALS).contains(&decimals) {
             let decimals = usize::from(decimals.unsigned_abs());
             write!(text, "{number:.decimals$}")?;
             f.write_str(text.without_zeros()?)
@@ -38,13 +38,13 @@ impl<T: RealField + Copy> Display for Digits<T> {
 fn scientific<T: RealField + Copy>(number: T) -> (T, i16) {
     let ten: T = nalgebra::convert(10.0);
     // What is more is rounded to ten.
-    let most: T = nalgebra::convert(9.999_995);
+    let max: T = nalgebra::convert(9.999_995);
     let (mut mantissa, mut exponent) = (number, 0);
-    while mantissa.abs() >= most {
+    while mantissa.abs() >= max {
         mantissa /= ten;
         exponent += 1;
     }
-    while mantissa != T::zero() && (mantissa * ten).abs() < most {
+    while mantissa != T::zero() && (mantissa * ten).abs() < max {
         mantissa *= ten;
         exponent -= 1;
     }

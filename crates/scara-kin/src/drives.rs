@@ -1,4 +1,4 @@
-//! From joint angles to the angles of the drives behind them, and back.
+//! From joint angles to the angles of the drives that turn them, and back.
 
 use nalgebra::RealField;
 
@@ -89,7 +89,7 @@ impl<T: RealField + Copy> Drives<T> {
         self
     }
 
-    /// The share of the shoulder's turning that the forearm's drive sees, within ±1/√ε.
+    /// The fraction of the shoulder's turning that the forearm's drive sees, within ±1/√ε.
     ///
     /// # Errors
     /// [`GeometryError::OutOfRange`].
@@ -111,7 +111,7 @@ impl<T: RealField + Copy> Drives<T> {
         (self.shoulder, self.elbow)
     }
 
-    /// The share of the shoulder's turning that the forearm's drive sees.
+    /// The fraction of the shoulder's turning that the forearm's drive sees.
     #[must_use]
     pub const fn coupling(&self) -> T {
         self.coupling

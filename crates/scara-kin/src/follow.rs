@@ -46,7 +46,7 @@ impl<T: RealField + Trig> Arm<T> {
     /// again when cloned.
     ///
     /// # Errors
-    /// [`FollowError`]; the place named is the first along the curve.
+    /// [`FollowError`]; the point named is the first along the curve.
     pub fn follow<I>(
         &self,
         points: I,
@@ -64,7 +64,7 @@ impl<T: RealField + Trig> Arm<T> {
     /// `previous`.
     ///
     /// # Errors
-    /// [`FollowError`]; the place named is the first along the curve.
+    /// [`FollowError`]; the point named is the first along the curve.
     pub fn follow_from<I>(
         &self,
         points: I,

@@ -1,5 +1,7 @@
 //! Joint angles, and the names of an arm's two joints and two elbows.
 
+use core::ops::Sub;
+
 use nalgebra::{RealField, Vector2};
 use trig_kernels::{Trig, sin_cos};
 
@@ -36,15 +38,18 @@ impl<T> Joints<T> {
 }
 
 impl<T: RealField + Copy> Joints<T> {
-    /// The way from `self` to `to`, joint by joint: (shoulder, elbow) in radians.
-    #[must_use]
-    pub fn way_to(&self, to: Self) -> Vector2<T> {
-        Vector2::new(to.shoulder - self.shoulder, to.elbow - self.elbow)
-    }
-
     /// Whether both angles are within the range of angles.
     pub(crate) fn are_angles(&self) -> bool {
         is_angle(self.shoulder) && is_angle(self.elbow)
+    }
+}
+
+impl<T: RealField + Copy> Sub for Joints<T> {
+    type Output = Vector2<T>;
+
+    /// The joint displacement from `from` to `self`: (shoulder, elbow) in radians.
+    fn sub(self, from: Self) -> Vector2<T> {
+        Vector2::new(self.shoulder - from.shoulder, self.elbow - from.elbow)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The range of numbers that the crate computes with, in one place.
+//! The range of numbers that the crate computes with.
 
 use nalgebra::RealField;
 
@@ -48,7 +48,12 @@ pub(crate) fn within<T: RealField + Copy>(
     }
 }
 
-/// The largest finite number; every `RealField` of machine floats has one.
+/// The largest finite number.
 pub(crate) fn max_value<T: RealField>() -> T {
-    T::max_value().unwrap_or_else(T::one)
+    let largest = nalgebra::convert::<f64, T>(f64::MAX);
+    if largest.is_finite() {
+        largest
+    } else {
+        nalgebra::convert(f64::from(f32::MAX))
+    }
 }

@@ -71,7 +71,7 @@ impl<T: RealField + Trig> Arm<T> {
     }
 
     /// Distance from a singular pose: the smaller singular value of the Jacobian, the
-    /// least tool speed that one radian per second of joint speed gives, in length
+    /// smallest tool speed that one radian per second of joint speed gives, in length
     /// per radian.
     ///
     /// ```text
@@ -80,7 +80,7 @@ impl<T: RealField + Trig> Arm<T> {
     #[must_use]
     pub fn singularity_distance(&self, joints: Joints<T>) -> T {
         let j = self.jacobian(joints);
-        // For det J < 0 sum and difference change places.
+        // For det J < 0 sum and difference are swapped.
         let sum = (j.m11 + j.m22).hypot(j.m12 - j.m21);
         let difference = (j.m11 - j.m22).hypot(j.m12 + j.m21);
         self.manipulability(joints) * two() / (sum + difference)

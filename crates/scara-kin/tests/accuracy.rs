@@ -34,8 +34,8 @@ impl Random {
 
     #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
     fn within(&mut self, low: f64, high: f64) -> f64 {
-        let share = (self.bits() >> 11) as f64 / (1u64 << 53) as f64;
-        low + (high - low) * share
+        let fraction = (self.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        low + (high - low) * fraction
     }
 
     /// 10^low to 10^high.
@@ -49,8 +49,8 @@ impl Random {
 struct Case {
     upper: f64,
     fore: f64,
-    /// Distance from the base: share of the way from the inner to the outer rim.
-    share: f64,
+    /// Distance from the base: fraction of the distance from the inner to the outer rim.
+    fraction: f64,
     heading: f64,
     base: [f64; 3],
     elbow: Elbow,
@@ -65,7 +65,7 @@ impl Case {
             1 => upper * random.size(-0.5, 0.5),
             _ => upper * random.size(-3.0, 3.0),
         };
-        let share = match random.below(4) {
+        let fraction = match random.below(4) {
             0 => random.size(-17.0, 0.0),
             1 => 1.0 - random.size(-17.0, 0.0),
             _ => random.within(0.0, 1.0),
@@ -76,7 +76,7 @@ impl Case {
         Self {
             upper,
             fore,
-            share,
+            fraction,
             heading: random.within(-PI, PI),
             base: if is_placed { base } else { [0.0; 3] },
             elbow: if random.below(2) == 0 {
@@ -97,7 +97,7 @@ impl Case {
         Self {
             upper,
             fore: if is_equal { upper } else { moved(self.fore) },
-            share: moved(self.share).min(1.0),
+            fraction: moved(self.fraction).min(1.0),
             heading: moved(self.heading),
             base: self.base.map(moved),
             ..self
@@ -117,7 +117,7 @@ impl Case {
     fn errors<T: RealField + Trig>(&self, is_wound: bool) -> Option<[f64; 3]> {
         let arm = self.arm::<T>();
         let (inner, outer) = (double(arm.inner_reach()), double(arm.reach()));
-        let r = inner + (outer - inner) * self.share;
+        let r = inner + (outer - inner) * self.fraction;
         let from_base = Vector2::new(r * self.heading.cos(), r * self.heading.sin());
         let point = arm.base() * Point2::from(from_base.map(nalgebra::convert::<_, T>));
         let exact = point.map(|coordinate| TwoFloat::from(double(coordinate)));

@@ -83,7 +83,7 @@ fn leaving_the_reach_names_the_place() {
     assert!(matches!(reason, InverseError::TooFar { .. }));
 }
 
-/// Both ends are within reach; the way between them is not.
+/// Both ends are within reach; the line between them is not.
 #[test]
 fn dipping_into_the_inner_circle_names_the_place() {
     let unequal = Arm::new(200.0, 125.0).unwrap();
@@ -223,5 +223,5 @@ fn a_closed_circle_ends_where_it_began() {
     });
     let waypoints: Vec<_> = arm.follow(circle, Elbow::Right, 0.02).unwrap().collect();
     let (first, last) = (waypoints.first().unwrap(), waypoints.last().unwrap());
-    assert!(first.joints.way_to(last.joints).amax() < 1e-12);
+    assert!((last.joints - first.joints).amax() < 1e-12);
 }

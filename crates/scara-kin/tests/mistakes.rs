@@ -34,13 +34,13 @@ fn elbow_of_a_pose_leads_back_to_the_pose() {
     for joints in poses().filter(inner) {
         let elbow = Elbow::of(&joints).unwrap();
         let back = arm.inverse_elbow(arm.forward(joints), elbow).unwrap();
-        let way = joints.way_to(back);
-        let turns = (way.x / (2.0 * PI)).round();
+        let change = back - joints;
+        let turns = (change.x / (2.0 * PI)).round();
         assert!(
-            (way.x - turns * 2.0 * PI).abs() < ANGLE_ERROR,
+            (change.x - turns * 2.0 * PI).abs() < ANGLE_ERROR,
             "{joints:?}: {back:?}"
         );
-        assert!(way.y.abs() < ANGLE_ERROR, "{joints:?}: {back:?}");
+        assert!(change.y.abs() < ANGLE_ERROR, "{joints:?}: {back:?}");
     }
 }
 
@@ -200,7 +200,7 @@ fn nearest_solution_counts_whole_turns() {
     let wound = Joints::new(3.0 - 4.0 * PI, 1.1 + 2.0 * PI);
     let (elbow, joints) = arm.inverse_nearest(point, wound).unwrap();
     assert_eq!(elbow, Elbow::Right);
-    assert!(wound.way_to(joints).amax() < 0.2);
+    assert!((joints - wound).amax() < 0.2);
 
     let limited = arm.with_limits(Limits {
         shoulder: JointRange::new(-1.5 * PI, 1.5 * PI).unwrap(),

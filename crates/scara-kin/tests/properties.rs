@@ -28,8 +28,8 @@ fn equal_arms() -> impl Strategy<Value = Arm> {
     (0.0..4.0f64).prop_map(|size| Arm::new(10f64.powf(size), 10f64.powf(size)).unwrap())
 }
 
-/// Shares of the way from the inner to the outer rim, crowded at both.
-fn shares() -> impl Strategy<Value = f64> {
+/// Fractions of the distance from the inner to the outer rim, crowded at both.
+fn fractions() -> impl Strategy<Value = f64> {
     prop_oneof![
         0.0..=1.0f64,
         (-17.0..0.0f64).prop_map(|e| 10f64.powf(e)),
@@ -39,9 +39,9 @@ fn shares() -> impl Strategy<Value = f64> {
     ]
 }
 
-fn at(arm: &Arm, share: f64, heading: f64) -> Point2<f64> {
+fn at(arm: &Arm, fraction: f64, heading: f64) -> Point2<f64> {
     let (inner, outer) = (arm.inner_reach(), arm.reach());
-    let r = inner + share * (outer - inner);
+    let r = inner + fraction * (outer - inner);
     Point2::new(r * heading.cos(), r * heading.sin())
 }
 
@@ -64,10 +64,10 @@ proptest! {
     #[test]
     fn forward_undoes_inverse(
         arm in prop_oneof![arms(), equal_arms()],
-        share in shares(),
+        fraction in fractions(),
         heading in -PI..PI,
     ) {
-        let point = at(&arm, share, heading);
+        let point = at(&arm, fraction, heading);
         match arm.inverse(point) {
             Ok(solutions) => for (elbow, joints) in solutions.iter() {
                 prop_assert!(Elbow::of(&joints) == Some(elbow) || joints.elbow.sin().abs() < 1e-15);
@@ -79,9 +79,9 @@ proptest! {
     }
 
     #[test]
-    fn forward_undoes_inverse_in_f32(share in 0.0..=1.0f32, heading in -3.1..3.1f32) {
+    fn forward_undoes_inverse_in_f32(fraction in 0.0..=1.0f32, heading in -3.1..3.1f32) {
         let arm = Arm::new(132.0f32, 132.0).unwrap();
-        let r = share * arm.reach();
+        let r = fraction * arm.reach();
         let point = Point2::new(r * heading.cos(), r * heading.sin());
         prop_assume!(r > 0.0);
         for (_, joints) in arm.inverse(point).unwrap().iter() {
@@ -93,13 +93,13 @@ proptest! {
     #[test]
     fn forward_undoes_inverse_on_a_base(
         arm in arms(),
-        share in shares(),
+        fraction in fractions(),
         heading in -PI..PI,
         (x, y, turn) in (-1e4..1e4f64, -1e4..1e4f64, -PI..PI),
     ) {
         let base = Isometry2::new(Vector2::new(x, y), turn);
         let placed = arm.with_base(base).unwrap();
-        let point = base * at(&arm, share, heading);
+        let point = base * at(&arm, fraction, heading);
         let span = arm.reach() + base.translation.vector.norm();
         for (_, joints) in placed.inverse(point).unwrap().iter() {
             let miss = (placed.forward(joints) - point).norm() / span;
@@ -126,15 +126,15 @@ proptest! {
     fn own_points_within_limits_are_never_refused(
         arm in prop_oneof![arms(), equal_arms()],
         (low1, wide1, low2, wide2) in (-4.0..3.0f64, 0.1..7.0f64, -4.0..3.0f64, 0.1..7.0f64),
-        (share1, share2) in (0.0..=1.0f64, shares()),
+        (fraction1, fraction2) in (0.0..=1.0f64, fractions()),
     ) {
         let limits = Limits {
             shoulder: JointRange::new(low1, low1 + wide1).unwrap(),
             elbow: JointRange::new(low2, low2 + wide2).unwrap(),
         };
         let inside = Joints::new(
-            (low1 + share1 * wide1).min(limits.shoulder.max()),
-            (low2 + share2 * wide2).min(limits.elbow.max()),
+            (low1 + fraction1 * wide1).min(limits.shoulder.max()),
+            (low2 + fraction2 * wide2).min(limits.elbow.max()),
         );
         let arm = arm.with_limits(limits);
         let tip = arm.forward(inside);
@@ -160,11 +160,11 @@ proptest! {
     #[test]
     fn nearest_is_nearest(
         arm in prop_oneof![arms(), equal_arms()],
-        (share, heading) in (0.01..1.0f64, -PI..PI),
+        (fraction, heading) in (0.01..1.0f64, -PI..PI),
         (shoulder, elbow) in (-10.0..10.0f64, -10.0..10.0f64),
     ) {
         let previous = Joints::new(shoulder, elbow);
-        let point = at(&arm, share, heading);
+        let point = at(&arm, fraction, heading);
         let solutions = arm.inverse(point).unwrap();
         let (_, nearest) = arm.inverse_nearest(point, previous).unwrap();
         let best = solutions
@@ -175,9 +175,9 @@ proptest! {
                     j.elbow + f64::from(b) * 2.0 * PI,
                 )
             })))
-            .map(|j| previous.way_to(j).amax())
+            .map(|j| (j - previous).amax())
             .fold(f64::INFINITY, f64::min);
-        prop_assert!((previous.way_to(nearest).amax() - best).abs() < ANGLE);
+        prop_assert!(((nearest - previous).amax() - best).abs() < ANGLE);
     }
 
     #[test]
@@ -213,8 +213,8 @@ proptest! {
         let arm = Arm::new(132.0, 97.0).unwrap();
         let (rates, bent) = (Vector2::new(rates.0, rates.1), Vector2::new(bent.0, bent.1));
         let after = |t: f64| {
-            let way = rates * t + bent * (t * t / 2.0);
-            arm.forward(Joints::new(joints.shoulder + way.x, joints.elbow + way.y))
+            let change = rates * t + bent * (t * t / 2.0);
+            arm.forward(Joints::new(joints.shoulder + change.x, joints.elbow + change.y))
         };
         let velocity = (after(H) - after(-H)) / (2.0 * H);
         prop_assert!((velocity - arm.tool_velocity(joints, rates)).norm() < SLOPE);
@@ -260,14 +260,14 @@ proptest! {
 
     #[test]
     fn following_keeps_the_tolerance(
-        (share_a, share_b) in (0.02..1.0f64, 0.02..1.0f64),
+        (fraction_a, fraction_b) in (0.02..1.0f64, 0.02..1.0f64),
         (heading_a, heading_b) in (-PI..PI, -PI..PI),
         right in any::<bool>(),
         tolerance in -3.0..0.0f64,
     ) {
         let arm = Arm::new(132.0, 132.0).unwrap();
         let tolerance = 10f64.powf(tolerance);
-        let (a, b) = (at(&arm, share_a, heading_a), at(&arm, share_b, heading_b));
+        let (a, b) = (at(&arm, fraction_a, heading_a), at(&arm, fraction_b, heading_b));
         let elbow = if right { Elbow::Right } else { Elbow::Left };
         let waypoints = arm.follow([a, b], elbow, tolerance).unwrap();
         prop_assert_eq!(waypoints.remaining(), waypoints.clone().count() as u64);
@@ -279,12 +279,12 @@ proptest! {
             last = arm.forward(waypoint.joints);
             prop_assert!((last - waypoint.point).norm() <= arm.tolerance());
             if let Some(from) = before {
-                let way = from.way_to(waypoint.joints);
+                let change = waypoint.joints - from;
                 for k in 0..=50 {
                     let t = f64::from(k) / 50.0;
                     let tool = arm.forward(Joints::new(
-                        from.shoulder + way.x * t,
-                        from.elbow + way.y * t,
+                        from.shoulder + change.x * t,
+                        from.elbow + change.y * t,
                     ));
                     let off = distance_to_line(tool, a, b);
                     prop_assert!(off <= tolerance, "{off} > {tolerance}");
@@ -308,7 +308,7 @@ proptest! {
             .with_directions(sense(reverse1), sense(reverse2))
             .with_coupling(coupling).unwrap();
         let back = drives.to_joints(drives.from_joints(joints));
-        prop_assert!(joints.way_to(back).amax() < ANGLE);
+        prop_assert!((back - joints).amax() < ANGLE);
     }
 
     #[test]
@@ -331,11 +331,11 @@ proptest! {
 }
 
 fn distance_to_line(p: Point2<f64>, a: Point2<f64>, b: Point2<f64>) -> f64 {
-    let way = b - a;
-    let share = if way.norm_squared() > 0.0 {
-        ((p - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
+    let change = b - a;
+    let fraction = if change.norm_squared() > 0.0 {
+        ((p - a).dot(&change) / change.norm_squared()).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    (p - (a + way * share)).norm()
+    (p - (a + change * fraction)).norm()
 }

@@ -20,8 +20,8 @@ fn poses<T: RealField + Trig>() -> impl Iterator<Item = Joints<T>> {
 }
 
 fn turned<T: RealField + Trig>(joints: Joints<T>, turns: i32) -> Joints<T> {
-    let way: T = convert(f64::from(turns) * TAU);
-    Joints::new(joints.shoulder + way, joints.elbow - way)
+    let change: T = convert(f64::from(turns) * TAU);
+    Joints::new(joints.shoulder + change, joints.elbow - change)
 }
 
 /// What rounding may move the tool by: of lengths or, many turns from zero, of angles.
@@ -49,7 +49,7 @@ fn reaches_its_own_points<T: RealField + Trig>(least_elbow: T) {
             let tip = arm.forward(pose);
             let back = arm.inverse_elbow_near(tip, Elbow::of(&pose).unwrap(), pose);
             let back = back.unwrap_or_else(|error| panic!("{turns} turns, {pose:?}: {error}"));
-            assert!(pose.way_to(back).amax() < T::one(), "{pose:?}: {back:?}");
+            assert!((back - pose).amax() < T::one(), "{pose:?}: {back:?}");
             assert!(
                 (arm.forward(back) - tip).norm() <= rounding(arm, pose),
                 "{pose:?}: {back:?}"
@@ -113,7 +113,7 @@ fn own_poses_at_the_ends_of_ranges_are_reached() {
                     .unwrap();
                 assert!(arm.limits().contains(&back), "{pose:?}: {back:?}");
                 // Beside a straight arm the angles follow from the point to half the digits.
-                assert!(pose.way_to(back).amax() < 1e-6, "{pose:?}: {back:?}");
+                assert!((back - pose).amax() < 1e-6, "{pose:?}: {back:?}");
                 assert!((arm.forward(back) - tip).norm() <= rounding(&arm, pose));
             }
         }
@@ -134,7 +134,7 @@ fn curves_wind_round_the_base() {
         let waypoints = arm.follow(points, Elbow::Left, 0.01).unwrap();
         let first = waypoints.clone().next().unwrap().joints;
         let last = waypoints.last().unwrap().joints;
-        let wound = first.way_to(last).x - f64::from(TURNS) * TAU * sense;
+        let wound = (last - first).x - f64::from(TURNS) * TAU * sense;
         assert!(wound.abs() < 1e-12, "{wound}");
     }
 }

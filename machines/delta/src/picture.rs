@@ -68,9 +68,9 @@ fn maps(run: &Run<'_>) -> Result<[Plot; 2]> {
     let home = run.machine.point([0; 3])?.z;
     let lowest = run.trains.path.iter().fold(home, |z, point| z.min(point.z));
     let centre = f64::midpoint(home, lowest);
-    let workspace = run.machine.delta.workspace();
-    let flat = workspace.horizontal_slice(centre, OUTLINE)?.collect();
-    let upright = workspace.vertical_slice(0.0, centre, OUTLINE)?.collect();
+    let delta = run.machine.delta;
+    let flat = delta.horizontal_slice(centre, OUTLINE)?.collect();
+    let upright = delta.vertical_slice(0.0, centre, OUTLINE)?.collect();
     let [x, y, z] = ["x in mm", "y in mm", "z in mm"];
     let map = |across: &str, up: &str| Plot::map(Axis::new(across), Axis::new(up));
     let above = map(x, y).with_title("Seen from above");

@@ -259,7 +259,7 @@ impl Planner<'_> {
                 self.write(records);
                 continue;
             }
-            let half = from.way_to(to) / 2.0;
+            let half = (to - from) / 2.0;
             let middle = Joints::new(from.shoulder + half.x, from.elbow + half.y);
             left.push((middle, to, depth + 1));
             left.push((from, middle, depth + 1));

@@ -1,35 +1,39 @@
 //! Levenberg-Marquardt for N parameters and any number of residuals, in fixed memory.
+#![expect(
+    clippy::indexing_slicing,
+    reason = "indices run over the N parameters of N × N matrices"
+)]
 
-use nalgebra::{RealField, SMatrix, SVector};
-use trig_kernels::Trig;
+use nalgebra::{SMatrix, SVector};
 
 use super::Problem;
 use crate::Delta;
+use crate::range::{hypot, sqrt};
 
 /// Rounding errors of a row's making and rotating, in machine epsilons.
 pub(super) const ROUNDINGS: f64 = 16.0;
 
 /// A least-squares problem `R x = q`, triangularised row by row.
 #[derive(Debug, Clone)]
-pub(super) struct LeastSquares<const N: usize, T: RealField> {
+pub(super) struct LeastSquares<const N: usize> {
     /// Upper triangle.
-    pub(super) r: SMatrix<T, N, N>,
-    q: SVector<T, N>,
+    pub(super) r: SMatrix<f64, N, N>,
+    q: SVector<f64, N>,
 }
 
 /// What [`minimise`] has found.
-pub(super) struct Fit<const N: usize, T: RealField> {
-    pub(super) changes: [T; N],
+pub(super) struct Fit<const N: usize> {
+    pub(super) changes: [f64; N],
     /// The machine with these changes.
-    pub(super) delta: Delta<T>,
-    pub(super) system: LeastSquares<N, T>,
+    pub(super) delta: Delta,
+    pub(super) system: LeastSquares<N>,
     /// Sum of the squares that is left.
-    pub(super) sum: T,
+    pub(super) sum: f64,
     pub(super) iterations: u32,
     pub(super) is_converged: bool,
 }
 
-impl<const N: usize, T: RealField + Trig> LeastSquares<N, T> {
+impl<const N: usize> LeastSquares<N> {
     pub(super) fn new() -> Self {
         Self {
             r: SMatrix::zeros(),
@@ -38,73 +42,53 @@ impl<const N: usize, T: RealField + Trig> LeastSquares<N, T> {
     }
 
     /// Takes in one row, by a Givens rotation against each row of R that meets it.
-    pub(super) fn add(&mut self, row: [T; N], value: T) {
-        let (mut row, mut value) = (SVector::from(row), value);
+    pub(super) fn add(&mut self, mut row: [f64; N], mut value: f64) {
         for pivot in 0..N {
-            let (Some(&below), Some(&above)) = (row.get(pivot), self.r.get((pivot, pivot))) else {
-                return;
-            };
-            if below == T::zero() {
+            if row[pivot] == 0.0 {
                 continue;
             }
-            let length = above.hypot(below);
-            let (cos, sin) = (above / length, below / length);
-            let rotate = |a: &mut T, b: &mut T| {
+            let length = hypot(self.r[(pivot, pivot)], row[pivot]);
+            let (cos, sin) = (self.r[(pivot, pivot)] / length, row[pivot] / length);
+            let rotate = |a: &mut f64, b: &mut f64| {
                 (*a, *b) = (cos * *a + sin * *b, cos * *b - sin * *a);
             };
             for column in pivot..N {
-                if let (Some(a), Some(b)) = (self.r.get_mut((pivot, column)), row.get_mut(column)) {
-                    rotate(a, b);
-                }
+                rotate(&mut self.r[(pivot, column)], &mut row[column]);
             }
-            if let Some(a) = self.q.get_mut(pivot) {
-                rotate(a, &mut value);
-            }
+            rotate(&mut self.q[pivot], &mut value);
         }
     }
 
     /// The lengths of the Jacobian's columns; zero for a parameter whose influence is rounding.
-    pub(super) fn scales(&self) -> SVector<T, N> {
+    pub(super) fn scales(&self) -> SVector<f64, N> {
         let lengths =
-            SVector::<T, N>::from_iterator(self.r.column_iter().map(|column| column.norm()));
-        let rounding = lengths.max() * T::default_epsilon() * nalgebra::convert(ROUNDINGS);
-        lengths.map(
-            |length: T| {
-                if length > rounding { length } else { T::zero() }
-            },
-        )
+            SVector::<f64, N>::from_iterator(self.r.column_iter().map(|column| column.norm()));
+        let rounding = lengths.max() * f64::EPSILON * ROUNDINGS;
+        lengths.map(|length| if length > rounding { length } else { 0.0 })
     }
 
     /// The step that reduces residuals and `√damping · scales · step` together.
-    fn step(&self, damping: T, scales: &SVector<T, N>) -> SVector<T, N> {
+    fn step(&self, damping: f64, scales: &SVector<f64, N>) -> SVector<f64, N> {
         let mut damped = self.clone();
-        let root = damping.sqrt();
-        for (place, scale) in scales.iter().enumerate() {
+        for parameter in 0..N {
+            let mut row = [0.0; N];
             // What has no influence is held.
-            let weight = if *scale > T::zero() {
-                root * *scale
+            row[parameter] = if scales[parameter] > 0.0 {
+                sqrt(damping) * scales[parameter]
             } else {
                 scales.max()
             };
-            let mut row = [T::zero(); N];
-            if let Some(entry) = row.get_mut(place) {
-                *entry = weight;
-            }
-            damped.add(row, T::zero());
+            damped.add(row, 0.0);
         }
         damped.back()
     }
 
     /// Back substitution; a parameter without influence is left alone.
-    fn back(&self) -> SVector<T, N> {
-        let mut x = SVector::<T, N>::zeros();
-        for place in (0..N).rev() {
-            let row = self.r.row(place);
-            let known = row.tr_dot(&x);
-            let entry = row.get(place).copied().unwrap_or(T::zero());
-            let value = self.q.get(place).copied().unwrap_or(T::zero());
-            if let Some(x) = x.get_mut(place).filter(|_| entry != T::zero()) {
-                *x = (value - known) / entry;
+    fn back(&self) -> SVector<f64, N> {
+        let mut x = SVector::<f64, N>::zeros();
+        for i in (0..N).rev() {
+            if self.r[(i, i)] != 0.0 {
+                x[i] = (self.q[i] - self.r.row(i).tr_dot(&x)) / self.r[(i, i)];
             }
         }
         x
@@ -113,22 +97,21 @@ impl<const N: usize, T: RealField + Trig> LeastSquares<N, T> {
 
 /// Damping at the start, and where no damping helps any more, in units of the columns' squares.
 const FIRST_DAMPING: f64 = 1e-3;
-const MOST_DAMPING: f64 = 1e12;
+const MAX_DAMPING: f64 = 1e12;
 
-pub(super) fn minimise<const N: usize, T: RealField + Trig>(
-    problem: &Problem<'_, N, T>,
-    most: u32,
-) -> Fit<N, T> {
-    let ten: T = nalgebra::convert(10.0);
-    let mut changes = SVector::<T, N>::zeros();
+/// Relative decrease of the sum below which another iteration is not worth its time.
+const SMALL_DECREASE: f64 = 1e-9;
+
+pub(super) fn minimise<const N: usize>(problem: &Problem<'_, N>, max_iterations: u32) -> Fit<N> {
+    let mut changes = SVector::<f64, N>::zeros();
     let mut delta = problem.start;
-    let mut scales = SVector::<T, N>::zeros();
-    let mut damping: T = nalgebra::convert(FIRST_DAMPING);
+    let mut scales = SVector::<f64, N>::zeros();
+    let mut damping = FIRST_DAMPING;
     let mut system = LeastSquares::new();
     let mut is_converged = false;
     let mut iterations = 0;
-    let mut sum = T::zero();
-    while iterations < most && !is_converged {
+    let mut sum = 0.0;
+    while iterations < max_iterations && !is_converged {
         let Some(now) = problem.system(&delta) else {
             break;
         };
@@ -141,20 +124,18 @@ pub(super) fn minimise<const N: usize, T: RealField + Trig>(
         if sum <= problem.rounding() {
             break;
         }
-        while damping <= nalgebra::convert(MOST_DAMPING) {
-            let step = system.step(damping, &scales);
-            let next = changes + step;
+        while damping <= MAX_DAMPING {
+            let next = changes + system.step(damping, &scales);
             let tried = problem
                 .machine(&next.into())
                 .and_then(|delta| Some((delta, problem.sum(&delta)?)));
             if let Some((better, left)) = tried.filter(|(_, left)| *left < sum) {
-                // Less than a thousandth of a millionth is not worth another iteration.
-                is_converged = sum - left <= sum * nalgebra::convert(1e-9);
+                is_converged = sum - left <= sum * SMALL_DECREASE;
                 (changes, delta, sum) = (next, better, left);
-                damping /= ten;
+                damping /= 10.0;
                 break;
             }
-            damping *= ten;
+            damping *= 10.0;
         }
     }
     Fit {

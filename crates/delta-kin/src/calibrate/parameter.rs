@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use nalgebra::{RealField, Vector3};
-use trig_kernels::{Trig, sin_cos};
+use nalgebra::Vector3;
+use trig_kernels::sin_cos;
 
 use crate::arm::zip;
 use crate::{Arm, ArmGeometry, Delta, Pose};
@@ -65,14 +65,14 @@ impl Parameter {
     }
 
     /// What a change of 1 is in a calibration: the machine's span, or a radian.
-    pub(super) fn unit<T: RealField + Copy>(self, span: T) -> T {
+    pub(super) fn unit(self, span: f64) -> f64 {
         match self.quantity {
-            Quantity::Azimuth | Quantity::Zero => T::one(),
+            Quantity::Azimuth | Quantity::Zero => 1.0,
             Quantity::Base | Quantity::Platform | Quantity::Upper | Quantity::Lower => span,
         }
     }
 
-    pub(super) fn add<T: RealField + Copy>(self, arms: &mut [ArmGeometry<T>; 3], change: T) {
+    pub(super) fn add(self, arms: &mut [ArmGeometry; 3], change: f64) {
         for (arm, geometry) in zip(Arm::ALL, arms.each_mut()) {
             if self.is_of(arm) {
                 *match self.quantity {
@@ -94,12 +94,12 @@ impl Parameter {
     /// ```
     ///
     /// for each arm, e along its rods and C the centre of its sphere.
-    pub(super) fn influence<T: RealField + Trig>(
+    pub(super) fn influence(
         self,
-        delta: &Delta<T>,
-        pose: &Pose<T>,
-        inverse: &[Vector3<T>; 3],
-    ) -> Vector3<T> {
+        delta: &Delta,
+        pose: &Pose,
+        inverse: &[Vector3<f64>; 3],
+    ) -> Vector3<f64> {
         let prepared = zip(delta.prepared().each_ref(), delta.thetas(pose.angles()));
         let rods = zip(pose.rods().map(|rod| delta.flip(rod)), *inverse);
         zip(Arm::ALL, zip(prepared, rods))
@@ -112,10 +112,10 @@ impl Parameter {
                         let centre = prepared.centre(theta);
                         Vector3::z().cross(&centre).dot(&rod)
                     }
-                    Quantity::Base => prepared.in_plane(T::one(), T::zero()).dot(&rod),
-                    Quantity::Platform => -prepared.in_plane(T::one(), T::zero()).dot(&rod),
+                    Quantity::Base => prepared.in_plane(1.0, 0.0).dot(&rod),
+                    Quantity::Platform => -prepared.in_plane(1.0, 0.0).dot(&rod),
                     Quantity::Upper => prepared.spoke(theta).dot(&rod) / prepared.upper,
-                    Quantity::Lower => T::one(),
+                    Quantity::Lower => 1.0,
                     Quantity::Zero => prepared.tangent(theta).dot(&rod),
                 };
                 column * along

@@ -1,155 +1,141 @@
 //! What a least-squares problem determines: its singular values and directions.
+#![expect(
+    clippy::indexing_slicing,
+    reason = "indices run over the N parameters of N × N matrices"
+)]
 
-use nalgebra::{RealField, SMatrix, SVector};
-use trig_kernels::Trig;
+use core::array::from_fn;
+
+use nalgebra::{SMatrix, SVector};
 
 use super::least_squares::{LeastSquares, ROUNDINGS};
+use crate::range::{hypot, sqrt};
 
 /// The singular value decomposition of the Jacobian with its columns scaled to length 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rank<const N: usize, T: RealField> {
+pub(super) struct Rank<const N: usize> {
     /// Right singular vectors.
-    v: SMatrix<T, N, N>,
-    sigma: SVector<T, N>,
+    v: SMatrix<f64, N, N>,
+    sigma: SVector<f64, N>,
     /// Column lengths over the parameters' units: parameters times these are pure numbers.
-    scales: SVector<T, N>,
+    scales: SVector<f64, N>,
     /// Singular values up to this are rounding.
-    least: T,
+    rounding: f64,
     /// Variance of one residual.
-    variance: T,
+    variance: f64,
 }
 
 /// One-sided Jacobi needs about log N sweeps; what has not converged then is rounding.
-const MOST_SWEEPS: usize = 40;
+const MAX_SWEEPS: usize = 40;
 
-/// A parameter counts as undetermined where its part of a null direction of length 1 is above this.
-const PART: f64 = 1e-4;
+/// A parameter counts as undetermined where its component of a null direction of length 1 is above
+/// this.
+const UNDETERMINED: f64 = 1e-4;
 
-impl<const N: usize, T: RealField + Trig> Rank<N, T> {
-    pub(super) fn new(system: &LeastSquares<N, T>, sum: T, rows: usize, units: &[T; N]) -> Self {
+impl<const N: usize> Rank<N> {
+    /// Of a triangularised system of `rows` rows, `sum` the sum of its squared residuals.
+    pub(super) fn new(system: &LeastSquares<N>, sum: f64, rows: usize, units: &[f64; N]) -> Self {
         let scales = system.scales();
         let mut u = system.r;
         for (mut column, scale) in u.column_iter_mut().zip(&scales) {
-            if *scale > T::zero() {
+            if *scale > 0.0 {
                 column /= *scale;
             } else {
-                column.fill(T::zero());
+                column.fill(0.0);
             }
         }
         let mut v = SMatrix::identity();
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             if !sweep(&mut u, &mut v) {
                 break;
             }
         }
         let sigma = SVector::from_iterator(u.column_iter().map(|column| column.norm()));
-        let rows_: T = count(rows);
-        let free = rows.saturating_sub(N);
-        let variance = sum / count::<T>(free.max(1));
+        let free = rows.saturating_sub(N).max(1);
         Self {
             v,
             sigma,
             scales: scales.component_div(&SVector::from(*units)),
-            least: sigma.max() * rows_ * T::default_epsilon() * nalgebra::convert(ROUNDINGS),
-            variance,
+            rounding: sigma.max() * count(rows) * f64::EPSILON * ROUNDINGS,
+            variance: sum / count(free),
         }
     }
 
     pub(super) fn rank(&self) -> usize {
-        self.sigma
-            .iter()
-            .filter(|sigma| **sigma > self.least)
-            .count()
+        (0..N).filter(|k| self.is_determined(*k)).count()
     }
 
-    pub(super) fn conditioning(&self) -> T {
-        let greatest = self.sigma.max();
-        if greatest > T::zero() {
-            self.sigma.min() / greatest
+    fn is_determined(&self, k: usize) -> bool {
+        self.sigma[k] > self.rounding
+    }
+
+    pub(super) fn conditioning(&self) -> f64 {
+        let largest = self.sigma.max();
+        if largest > 0.0 {
+            self.sigma.min() / largest
         } else {
-            T::zero()
+            0.0
         }
     }
 
     /// Directions that the residuals do not feel, in scaled parameters.
-    fn null_columns(&self) -> impl Iterator<Item = SVector<T, N>> + use<N, T> {
+    fn null_columns(&self) -> impl Iterator<Item = SVector<f64, N>> + use<N> {
         let this = *self;
-        (0..N).filter_map(move |place| {
-            let sigma = this.sigma.get(place)?;
-            (*sigma <= this.least).then(|| this.v.column(place).into_owned())
-        })
+        (0..N)
+            .filter(move |k| !this.is_determined(*k))
+            .map(move |k| this.v.column(k).into_owned())
     }
 
-    pub(super) fn null_space(&self) -> impl Iterator<Item = [T; N]> + use<N, T> {
+    pub(super) fn null_space(&self) -> impl Iterator<Item = [f64; N]> + use<N> {
         let scales = self.scales;
+        let unscaled = |value, scale| if scale > 0.0 { value / scale } else { value };
         self.null_columns()
             .map(move |column| column.zip_map(&scales, unscaled).into())
     }
 
     /// For each parameter, whether it is part of the null space.
     pub(super) fn free(&self) -> [bool; N] {
-        let part: T = nalgebra::convert(PART);
-        let mut share = SVector::<T, N>::zeros();
-        for column in self.null_columns() {
-            share = share.sup(&column.abs());
-        }
-        share.map(|share| share > part).into()
+        let zero = SVector::<f64, N>::zeros();
+        let components = self
+            .null_columns()
+            .fold(zero, |largest, column| largest.sup(&column.abs()));
+        components.map(|component| component > UNDETERMINED).into()
     }
 
-    pub(super) fn deviations(&self) -> [Option<T>; N] {
+    pub(super) fn deviations(&self) -> [Option<f64>; N] {
         let free = self.free();
-        core::array::from_fn(|parameter| {
-            let is_free = free.get(parameter).copied().unwrap_or(true);
-            let scale = self.scales.get(parameter).copied()?;
-            if is_free || scale == T::zero() {
+        from_fn(|i| {
+            if free[i] || self.scales[i] == 0.0 {
                 return None;
             }
-            let sum = self
-                .v
-                .row(parameter)
-                .iter()
-                .zip(&self.sigma)
-                .filter(|(_, sigma)| **sigma > self.least)
-                .fold(T::zero(), |sum, (v, sigma)| {
-                    sum + (*v / *sigma) * (*v / *sigma)
-                });
-            Some((sum * self.variance).sqrt() / scale)
+            let sum: f64 = (0..N)
+                .filter(|k| self.is_determined(*k))
+                .map(|k| self.v[(i, k)] / self.sigma[k])
+                .map(|quotient| quotient * quotient)
+                .sum();
+            Some(sqrt(sum * self.variance) / self.scales[i])
         })
     }
 }
 
-fn unscaled<T: RealField + Copy>(value: T, scale: T) -> T {
-    if scale > T::zero() {
-        value / scale
-    } else {
-        value
-    }
-}
-
-/// Makes each pair of columns square to each other once; false where all were.
-fn sweep<const N: usize, T: RealField + Copy>(
-    u: &mut SMatrix<T, N, N>,
-    v: &mut SMatrix<T, N, N>,
-) -> bool {
+/// Makes each pair of columns orthogonal once; false where all were.
+fn sweep<const N: usize>(u: &mut SMatrix<f64, N, N>, v: &mut SMatrix<f64, N, N>) -> bool {
     let mut has_turned = false;
     for first in 0..N {
         for second in first + 1..N {
             let (a, b) = (u.column(first), u.column(second));
             let (alpha, beta, gamma) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
-            let rounding = T::default_epsilon() * (alpha * beta).sqrt();
-            if gamma.abs() <= rounding {
+            if gamma.abs() <= f64::EPSILON * sqrt(alpha * beta) {
                 continue;
             }
             has_turned = true;
-            let zeta = (beta - alpha) / (gamma + gamma);
-            let t = T::one().copysign(zeta) / (zeta.abs() + T::one().hypot(zeta));
-            let cos = T::one().hypot(t).recip();
-            let sin = cos * t;
+            let zeta = (beta - alpha) / (2.0 * gamma);
+            let tan = 1_f64.copysign(zeta) / (zeta.abs() + hypot(1.0, zeta));
+            let cos = 1.0 / hypot(1.0, tan);
+            let sin = cos * tan;
             for matrix in [&mut *u, &mut *v] {
-                let (a, b) = (
-                    matrix.column(first).into_owned(),
-                    matrix.column(second).into_owned(),
-                );
+                let a = matrix.column(first).into_owned();
+                let b = matrix.column(second).into_owned();
                 matrix.set_column(first, &(a * cos - b * sin));
                 matrix.set_column(second, &(a * sin + b * cos));
             }
@@ -158,7 +144,7 @@ fn sweep<const N: usize, T: RealField + Copy>(
     has_turned
 }
 
-/// A count as a number of the field, exact up to 2^32.
-fn count<T: RealField>(count: usize) -> T {
-    nalgebra::convert(f64::from(u32::try_from(count).unwrap_or(u32::MAX)))
+#[expect(clippy::cast_precision_loss, reason = "2^53 rows fit in no memory")]
+fn count(count: usize) -> f64 {
+    count as f64
 }

@@ -2,43 +2,43 @@
 
 use nalgebra::RealField;
 
-/// Most halvings. A step of 2⁻³⁰ of a path that still is too long means that the angles jump.
-const DEEPEST: u32 = 30;
+/// Largest number of halvings. A step of 2⁻³⁰ of a path that still is too long means that the angles jump.
+const MAX_DEPTH: u32 = 30;
 
 /// A walk along 0..=1 in steps of 2^-depth that start at multiples of their length.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Bisection {
     depth: u32,
-    /// Steps of the present length that lie behind.
-    behind: u32,
+    /// Steps of the present length taken so far.
+    taken: u32,
 }
 
 impl Bisection {
     /// Where the next step ends.
     pub(super) fn target<T: RealField + Copy>(&self) -> T {
         let whole = f64::from(1u32 << self.depth);
-        nalgebra::convert(f64::from(self.behind + 1) / whole)
+        nalgebra::convert(f64::from(self.taken + 1) / whole)
     }
 
     /// Makes the next step half as long; false where it is as short as may be.
     pub(super) const fn halve(&mut self) -> bool {
-        if self.depth == DEEPEST {
+        if self.depth == MAX_DEPTH {
             return false;
         }
         self.depth += 1;
-        self.behind *= 2;
+        self.taken *= 2;
         true
     }
 
-    /// Takes the step, and makes the next one as long as its place allows; false at 1.
+    /// Takes the step, and makes the next one as long as its start allows; false at 1.
     pub(super) const fn advance(&mut self) -> bool {
-        self.behind += 1;
-        if self.behind == 1 << self.depth {
+        self.taken += 1;
+        if self.taken == 1 << self.depth {
             return false;
         }
-        let longer = self.behind.trailing_zeros();
+        let longer = self.taken.trailing_zeros();
         self.depth -= longer;
-        self.behind >>= longer;
+        self.taken >>= longer;
         true
     }
 }
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_as_long_as_their_place_allows() {
+    fn steps_are_as_long_as_their_start_allows() {
         assert_eq!(ends(|_, _| true), [0.0, 1.0]);
         let even = ends(|from, to| to - from <= 0.3);
         assert_eq!(even, [0.0, 0.25, 0.5, 0.75, 1.0]);

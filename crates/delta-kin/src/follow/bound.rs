@@ -4,26 +4,26 @@ use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
-use crate::pose::{invert_rods, least_sine};
+use crate::pose::{invert_rods, smallest_sine};
 use crate::prepared::PreparedArm;
-use crate::scale::{half, two};
+use crate::range::{half, two};
 use crate::{Delta, Pose};
 
 /// One arm during a move of unit time.
 struct Swing<T> {
     /// Unit vector along the rods, halfway.
     rod: Vector3<T>,
-    /// Most by which the rod would have to be longer or shorter on the line.
+    /// Largest amount by which the rod would have to be longer or shorter on the line.
     miss: T,
-    /// Most by which the rod's direction differs from that halfway.
+    /// Largest amount by which the rod's direction differs from that halfway.
     turn: T,
 }
 
 impl<T: RealField + Trig> Delta<T> {
-    /// The most by which the platform leaves the straight line between two poses of this machine
+    /// A bound on how far the platform leaves the straight line between two poses of this machine
     /// while all arms turn linearly from one to the other, in the unit of length; `None` where
     /// the move is too long to tell, or a pose is another machine's. The platform stays in its
-    /// assembly mode on the way.
+    /// assembly mode throughout.
     ///
     /// Proof. Let the platform be on the line, P(s) = P0 + s V over s = 0..=1, and the elbows where
     /// the arms have them, C(s), so that |C'| = Lb |ω|, |C"| = Lb ω², |C‴| = Lb |ω|³. The square
@@ -47,8 +47,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// δ = 2 κ' e / (1 + √(1 - x)),   x = 4 √3 κ'² e / La,   e = √(ε1² + ε2² + ε3²)
     /// ```
     ///
-    /// into itself and contracts there if x ≤ 1: it holds one place where all rods have
-    /// their lengths. That place moves continuously from one pose to the other, so it is the
+    /// into itself and contracts there if x ≤ 1: it holds one point where all rods have
+    /// their lengths. That point moves continuously from one pose to the other, so it is the
     /// platform, and δ is the bound. A is invertible in the whole ball, so its determinant keeps
     /// its sign, which is the assembly mode. For short steps δ is the true departure times at
     /// most κ.
@@ -87,7 +87,7 @@ impl<T: RealField + Trig> Delta<T> {
 
         let rods = swings.each_ref().map(|swing| swing.rod);
         // Nearer to a parallel singularity half the digits of κ would be lost.
-        if least_sine(&rods) <= T::default_epsilon().sqrt() {
+        if smallest_sine(&rods) <= T::default_epsilon().sqrt() {
             return None;
         }
         let [a, b, c] = invert_rods(&rods);
@@ -133,14 +133,14 @@ impl<T: RealField + Trig> Swing<T> {
         let l = length + a * half();
         let curved = two::<T>() * (relative.norm_squared() - rod.dot(&inward)).abs();
         let largest = curved + (two::<T>() + T::one()) * a * b + l * c;
-        // Between unit vectors: twice the way over the sum of the lengths, which is at least
-        // 2 |P - C|(½) less the way.
-        let way = a * half();
-        let least = length + (length - way);
-        (least > T::zero()).then(|| Self {
+        // Between unit vectors: twice the distance over the sum of the lengths, which is at least
+        // 2 |P - C|(½) less the distance.
+        let distance = a * half();
+        let sum = length + (length - distance);
+        (sum > T::zero()).then(|| Self {
             rod: rod / length,
             miss: largest / (prepared.lower * nalgebra::convert(8.0)) + rounding,
-            turn: two::<T>() * way / least,
+            turn: two::<T>() * distance / sum,
         })
     }
 }

@@ -3,10 +3,10 @@
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
+use crate::range::{is_within, largest_angle, largest_coordinate, two};
 use crate::rounded::Rounded;
-use crate::scale::{farthest, is_within, two, widest};
 
-/// A way of the platform's centre in space.
+/// A path of the platform's centre in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path<T: RealField = f64> {
     shape: Shape<T>,
@@ -40,7 +40,7 @@ pub enum PathError<T: RealField + Copy = f64> {
         name: &'static str,
         /// The value given, in the unit of length or in radians.
         value: T,
-        /// The greatest allowed, either way.
+        /// The largest allowed, either way.
         largest: T,
     },
     /// The arc starts at its centre.
@@ -49,7 +49,7 @@ pub enum PathError<T: RealField + Copy = f64> {
     /// The axis has no direction.
     #[error("the arc's axis has no direction")]
     NoAxis,
-    /// The start does not lie in the plane through the centre square to the axis.
+    /// The start does not lie in the plane through the centre perpendicular to the axis.
     #[error("the arc's start is {} out of the plane of its centre", Rounded(*.by))]
     Helix {
         /// How far it is from that plane, in the unit of length.
@@ -68,8 +68,8 @@ impl<T: RealField + Trig> Path<T> {
     /// # Errors
     /// [`PathError::OutOfRange`].
     pub fn line(from: Point3<T>, to: Point3<T>) -> Result<Self, PathError<T>> {
-        within("coordinate", from.coords, farthest())?;
-        within("coordinate", to.coords, farthest())?;
+        within("coordinate", from.coords, largest_coordinate())?;
+        within("coordinate", to.coords, largest_coordinate())?;
         Ok(Self {
             shape: Shape::Line { from, to },
         })
@@ -87,10 +87,10 @@ impl<T: RealField + Trig> Path<T> {
         axis: Vector3<T>,
         angle: T,
     ) -> Result<Self, PathError<T>> {
-        within("coordinate", start.coords, farthest())?;
-        within("coordinate", centre.coords, farthest())?;
-        within("axis component", axis, farthest())?;
-        let largest = widest();
+        within("coordinate", start.coords, largest_coordinate())?;
+        within("coordinate", centre.coords, largest_coordinate())?;
+        within("axis component", axis, largest_coordinate())?;
+        let largest = largest_angle();
         if !is_within(angle, largest) {
             let name = "angle";
             let value = angle;
@@ -135,13 +135,13 @@ impl<T: RealField + Trig> Path<T> {
         }
     }
 
-    /// The place after a share of the path; `None` unless that is within 0..=1.
+    /// The point after a fraction of the path; `None` unless that is within 0..=1.
     #[must_use]
     pub fn point_at(&self, fraction: T) -> Option<Point3<T>> {
-        (fraction >= T::zero() && fraction <= T::one()).then(|| self.place(fraction))
+        (fraction >= T::zero() && fraction <= T::one()).then(|| self.at(fraction))
     }
 
-    pub(super) fn place(&self, fraction: T) -> Point3<T> {
+    pub(super) fn at(&self, fraction: T) -> Point3<T> {
         match &self.shape {
             // From the nearer end, so that both are met exactly.
             Shape::Line { from, to } if fraction * two() < T::one() => {
@@ -160,13 +160,13 @@ impl<T: RealField + Trig> Path<T> {
         }
     }
 
-    /// How far a share of the path departs from the straight line between its ends; none for
+    /// How far a fraction of the path departs from the straight line between its ends; none for
     /// more than half a turn.
-    pub(super) fn height(&self, share: T) -> Option<T> {
+    pub(super) fn height(&self, fraction: T) -> Option<T> {
         match &self.shape {
             Shape::Line { .. } => Some(T::zero()),
             Shape::Arc { start, angle, .. } => {
-                let turn = (*angle * share).abs();
+                let turn = (*angle * fraction).abs();
                 // r (1 - cos(turn/2)) without its cancellation.
                 let (sin, _) = sin_cos(turn / (two::<T>() * two()));
                 (turn <= T::pi()).then(|| length(start) * two() * sin * sin)
@@ -192,7 +192,7 @@ fn within<T: RealField + Copy>(
     Ok(())
 }
 
-/// The length of a vector, also of one whose squares are below the least number.
+/// The length of a vector, also of one whose squares are below the smallest number.
 fn length<T: RealField + Copy>(vector: &Vector3<T>) -> T {
     let largest = vector.amax();
     if largest > T::zero() {

@@ -1,4 +1,4 @@
-//! The way along a path, waypoint by waypoint, each step as long as the tolerance allows.
+//! A path, waypoint by waypoint, each step as long as the tolerance allows.
 
 use nalgebra::{Point3, RealField};
 use trig_kernels::Trig;
@@ -44,7 +44,7 @@ impl<T: RealField + Trig> Walk<T> {
     }
 
     fn start(&mut self) -> Step<T> {
-        let point = self.path.place(T::zero());
+        let point = self.path.at(T::zero());
         let fraction = T::zero();
         let first = Waypoint {
             angles: self.inverse(fraction, point)?,
@@ -84,7 +84,7 @@ impl<T: RealField + Trig> Walk<T> {
                     }
                     return Ok(next);
                 }
-                // Shorter steps lead up to the first place that is out of reach.
+                // Shorter steps lead up to the first point that is out of reach.
                 Err(refused) => {
                     if !steps.halve() {
                         return Err(refused);
@@ -95,7 +95,7 @@ impl<T: RealField + Trig> Walk<T> {
     }
 
     fn try_step(&self, last: &Waypoint<T>, fraction: T) -> Step<T> {
-        let point = self.path.place(fraction);
+        let point = self.path.at(fraction);
         let angles = self.inverse(fraction, point)?;
         let turned = zip(Arm::ALL, (angles - last.angles).into());
         for (arm, turned) in turned {
@@ -107,8 +107,8 @@ impl<T: RealField + Trig> Walk<T> {
                 });
             }
         }
-        let share = fraction - last.fraction;
-        let departure = self.path.height(share).and_then(|height| {
+        let step = fraction - last.fraction;
+        let departure = self.path.height(step).and_then(|height| {
             let bound = self
                 .delta
                 .bound((last.angles, last.point), (angles, point))?;
@@ -117,7 +117,7 @@ impl<T: RealField + Trig> Walk<T> {
         if !departure.is_some_and(|departure| departure <= self.tolerance) {
             return Err(FollowError::Singular { fraction, point });
         }
-        let length = self.path.length() * share;
+        let length = self.path.length() * step;
         Ok(Waypoint {
             angles,
             point,

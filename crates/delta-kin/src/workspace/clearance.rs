@@ -3,23 +3,22 @@
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
-use super::Workspace;
 use crate::arm::zip;
 use crate::pose::invert_rods;
 use crate::prepared::PreparedArm;
-use crate::scale::two;
+use crate::range::two;
 use crate::{Delta, Elbow, Pose};
 
-impl<T: RealField + Trig> Workspace<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// How far the platform can be moved from `point` in any direction, in the unit of length: the
     /// whole ball round it is in the workspace. Zero where `point` itself is not.
     ///
-    /// It is the least of the distances to what limits each arm, less the
-    /// [`tolerance`](Delta::tolerance), and of a distance within which the rods cannot come to lie
+    /// It is the smallest of the distances to what limits each arm, less the
+    /// [`tolerance`](Self::tolerance), and of a distance within which the rods cannot come to lie
     /// in a plane:
     ///
     /// ```text
-    /// reach:    La - |P - nearest place of the elbow|,  |P - farthest place of the elbow| - La
+    /// reach:    La - |P - nearest point of the elbow's circle|,  |P - farthest point of it| - La
     /// ranges:   ||P - elbow at the end of the range| - La|
     /// balls:    La sin(max swivel) - |w|
     /// assembly: see below
@@ -29,7 +28,7 @@ impl<T: RealField + Trig> Workspace<T> {
     /// leaves its range inside the ball. The last is a lower bound: more may be free.
     ///
     /// Proof. Let the platform move by d, |d| ≤ δ, and an elbow by a chord of length y. With e along
-    /// the rod, t and s along the elbow's way and the upper arm, λ = |e · t|, σ = |e · s|, the
+    /// the rod, t and s along the elbow's path and the upper arm, λ = |e · t|, σ = |e · s|, the
     /// length of the rod is kept if
     ///
     /// ```text
@@ -46,16 +45,14 @@ impl<T: RealField + Trig> Workspace<T> {
     /// of the rods' matrix none comes into the plane of the others while κ √(η1² + η2² + η3²) < 1.
     #[must_use]
     pub fn clearance(&self, point: Point3<T>) -> T {
-        let Ok(pose) = self.delta.pose_at(point) else {
+        let Ok(pose) = self.pose_at(point) else {
             return T::zero();
         };
-        let local = self.delta.flip(point.coords);
-        zip(self.delta.prepared().each_ref(), self.delta.working_mode())
-            .map(|(prepared, elbow)| {
-                arm_clearance(prepared, elbow, &local) - self.delta.tolerance()
-            })
+        let local = self.flip(point.coords);
+        zip(self.prepared().each_ref(), self.working_mode())
+            .map(|(prepared, elbow)| arm_clearance(prepared, elbow, &local) - self.tolerance())
             .into_iter()
-            .fold(steady(&self.delta, &pose), T::min)
+            .fold(assembly_clearance(self, &pose), T::min)
             .max(T::zero())
     }
 }
@@ -71,7 +68,7 @@ fn arm_clearance<T: RealField + Trig>(
         return clearance;
     }
     let end = |theta: T| {
-        // The elbow at an end may also be behind the other solution: then the wrist's distance
+        // The elbow at an end may also belong to the other solution: then the wrist's distance
         // from the upper arm's line at that end holds it off.
         let direction = sin_cos(theta);
         let shoulder = prepared.centre(direction) - prepared.spoke(direction);
@@ -86,7 +83,7 @@ fn arm_clearance<T: RealField + Trig>(
 }
 
 /// How far the platform can move from a pose before its rods could lie in a plane.
-fn steady<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> T {
+fn assembly_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     if pose.rod_inverse().is_err() {
         return T::zero();
     }
@@ -96,7 +93,7 @@ fn steady<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     let prepared = zip(delta.prepared().each_ref(), pose.levers().into());
     let [first, second, third] = prepared.map(|(prepared, lever)| {
         let along = (lever / prepared.upper).abs();
-        // λ + σ is the most with the rod in the arm's plane.
+        // λ + σ is largest with the rod in the arm's plane.
         let both = along
             + ((T::one() - along) * (T::one() + along))
                 .max(T::zero())
@@ -111,6 +108,6 @@ fn steady<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> T {
     // There rods that are longer or shorter by the tolerance decide whether they meet at all: at
     // a height d over the elbows' plane with d²/(2 La) up to the tolerance.
     let rounding = (pose.rounding() * two()).sqrt() * two();
-    let share: T = nalgebra::convert(1.0 - 1e-3);
-    held.min((kappa.recip() - rounding) / turn) * share
+    let margin: T = nalgebra::convert(1.0 - 1e-3);
+    held.min((kappa.recip() - rounding) / turn) * margin
 }

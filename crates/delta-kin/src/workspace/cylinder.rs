@@ -3,13 +3,14 @@
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::Trig;
 
-use super::{Workspace, WorkspaceError};
-use crate::scale::{half, is_within};
+use super::WorkspaceError;
+use crate::Delta;
+use crate::range::{half, is_within};
 
 /// How many resolutions the span may have.
 const FINEST: f64 = 4096.0;
 
-impl<T: RealField + Trig> Workspace<T> {
+impl<T: RealField + Trig> Delta<T> {
     /// Radius of the largest cylinder round the base's axis between two heights, every point of
     /// which is reached in the machine's modes and within its limits.
     ///
@@ -20,7 +21,7 @@ impl<T: RealField + Trig> Workspace<T> {
     /// # Errors
     /// [`WorkspaceError::Height`], [`WorkspaceError::Resolution`], [`WorkspaceError::NoCylinder`].
     pub fn largest_cylinder(&self, heights: [T; 2], resolution: T) -> Result<T, WorkspaceError<T>> {
-        let span = self.delta.span();
+        let span = self.span();
         for z in heights {
             if !is_within(z, span) {
                 return Err(WorkspaceError::Height { z, largest: span });
@@ -53,7 +54,7 @@ impl<T: RealField + Trig> Workspace<T> {
     /// Whether every point of the cylinder is known to be reached.
     fn covers(&self, radius: T, [one, other]: [T; 2], resolution: T) -> bool {
         let cylinder = Cylinder {
-            workspace: self,
+            delta: self,
             radius,
             resolution,
         };
@@ -65,7 +66,7 @@ impl<T: RealField + Trig> Workspace<T> {
 
 /// A cylinder round the base's axis.
 struct Cylinder<'a, T: RealField> {
-    workspace: &'a Workspace<T>,
+    delta: &'a Delta<T>,
     radius: T,
     /// Boxes smaller than this are not halved.
     resolution: T,
@@ -73,13 +74,13 @@ struct Cylinder<'a, T: RealField> {
 
 impl<T: RealField + Trig> Cylinder<'_, T> {
     /// Whether what a box has of the cylinder is reached. Each level halves the longest side, so
-    /// that 3 log2(4096) levels are the most.
+    /// that there are at most 3 log2(4096) levels.
     fn holds(&self, middle: Point3<T>, reach: Vector3<T>) -> bool {
         if !self.meets(middle, reach) {
             return true;
         }
         let size = reach.norm();
-        if size <= self.workspace.clearance(middle) {
+        if size <= self.delta.clearance(middle) {
             return true;
         }
         if size <= self.resolution {

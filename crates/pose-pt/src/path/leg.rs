@@ -1,23 +1,26 @@
 //! The motion from one pose to the next.
 
-use nalgebra::{Isometry3, RealField, Translation3, UnitQuaternion, Vector3};
+use core::f64::consts::{FRAC_PI_2, TAU};
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use trig_kernels::sin_cos;
 
 use super::Interpolation;
-use crate::number::{epsilons, two};
+use crate::number::{ceil, epsilons, hypot, sqrt};
 use crate::rotation::{from_rotation_vector, rotation_vector_between};
 use crate::turn::Turn;
 use crate::{Convention, PoseVector};
 
 /// The motion from one pose to the next over a parameter 0..=1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Leg<T: RealField = f64> {
-    pub(crate) shape: Shape<T>,
+pub struct Leg {
+    pub(crate) shape: Shape,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Shape<T: RealField> {
-    Turning(Turning<T>),
-    Vector(VectorLeg<T>),
+pub(crate) enum Shape {
+    Turning(Turning),
+    Vector(VectorLeg),
 }
 
 /// A turn at constant speed about a constant direction, with θ = s · angle:
@@ -26,29 +29,29 @@ pub(crate) enum Shape<T: RealField> {
 /// translation(s) = start + s slide + sin θ sine + (1 - cos θ) versine
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Turning<T: RealField> {
-    pub(crate) start: Vector3<T>,
-    pub(crate) rotation: UnitQuaternion<T>,
+pub(crate) struct Turning {
+    pub(crate) start: Vector3<f64>,
+    pub(crate) rotation: UnitQuaternion<f64>,
     /// Unit direction of the axis in the world; zero without a turn.
-    pub(crate) axis: Vector3<T>,
-    pub(crate) angle: T,
-    pub(crate) slide: Vector3<T>,
-    pub(crate) sine: Vector3<T>,
-    pub(crate) versine: Vector3<T>,
+    pub(crate) axis: Vector3<f64>,
+    pub(crate) angle: f64,
+    pub(crate) slide: Vector3<f64>,
+    pub(crate) sine: Vector3<f64>,
+    pub(crate) versine: Vector3<f64>,
 }
 
 /// Six numbers linear in s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct VectorLeg<T> {
-    pub(crate) from: PoseVector<T>,
-    pub(crate) to: PoseVector<T>,
+pub(crate) struct VectorLeg {
+    pub(crate) from: PoseVector,
+    pub(crate) to: PoseVector,
     pub(crate) convention: Convention,
 }
 
-impl<T: RealField + Copy> Leg<T> {
+impl Leg {
     pub(super) fn new(
-        from: &Isometry3<T>,
-        to: &Isometry3<T>,
+        from: &Isometry3<f64>,
+        to: &Isometry3<f64>,
         interpolation: Interpolation,
     ) -> Self {
         let shape = match interpolation {
@@ -64,8 +67,8 @@ impl<T: RealField + Copy> Leg<T> {
     }
 
     pub(super) const fn of_vectors(
-        from: &PoseVector<T>,
-        to: &PoseVector<T>,
+        from: &PoseVector,
+        to: &PoseVector,
         convention: Convention,
     ) -> Self {
         Self {
@@ -79,28 +82,28 @@ impl<T: RealField + Copy> Leg<T> {
 
     /// The pose at the parameter `s`, 0..=1.
     #[must_use]
-    pub fn pose(&self, s: T) -> Isometry3<T> {
+    pub fn pose(&self, s: f64) -> Isometry3<f64> {
         match &self.shape {
             Shape::Turning(leg) => leg.pose(s),
             Shape::Vector(leg) => leg.at(s).to_isometry(leg.convention),
         }
     }
 
-    /// The most that the body turns over the leg, in radians: the angle itself for straight
+    /// A bound on the turn of the body over the leg, in radians: the angle itself for straight
     /// and screw motion, for pose vectors the largest angular speed per unit of s.
     #[must_use]
-    pub fn turn(&self) -> T {
+    pub fn turn(&self) -> f64 {
         match &self.shape {
             Shape::Turning(leg) => leg.angle,
             Shape::Vector(leg) => leg.fastest_turn(),
         }
     }
 
-    /// The length of the reference point's way.
+    /// The length of the reference point's path.
     #[must_use]
-    pub fn length(&self) -> T {
+    pub fn length(&self) -> f64 {
         match &self.shape {
-            Shape::Turning(leg) => leg.slide.norm().hypot(leg.sine.norm() * leg.angle),
+            Shape::Turning(leg) => hypot(leg.slide.norm(), leg.sine.norm() * leg.angle),
             Shape::Vector(leg) => leg.slide().norm(),
         }
     }
@@ -111,8 +114,8 @@ impl<T: RealField + Copy> Leg<T> {
     }
 }
 
-impl<T: RealField + Copy> Turning<T> {
-    fn straight(from: &Isometry3<T>, to: &Isometry3<T>) -> Self {
+impl Turning {
+    fn straight(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Self {
         let turn = rotation_vector_between(&from.rotation, &to.rotation);
         let angle = turn.norm();
         // A smaller turn is below the rounding of the poses, and its axis is noise.
@@ -125,14 +128,14 @@ impl<T: RealField + Copy> Turning<T> {
             } else {
                 Vector3::zeros()
             },
-            angle: if turns { angle } else { T::zero() },
+            angle: if turns { angle } else { 0.0 },
             slide: to.translation.vector - from.translation.vector,
             sine: Vector3::zeros(),
             versine: Vector3::zeros(),
         }
     }
 
-    /// The screw with the same ends. Its velocity v at the start is found from the way d
+    /// The screw with the same ends. Its velocity v at the start is found from the displacement d
     /// across the axis n, with θ the whole angle:
     ///
     /// ```text
@@ -140,14 +143,14 @@ impl<T: RealField + Copy> Turning<T> {
     /// v / θ = (sin θ d - (1 - cos θ) n × d) / (2 (1 - cos θ))
     /// ```
     fn into_screw(self) -> Self {
-        if self.angle == T::zero() {
+        if self.angle == 0.0 {
             return self;
         }
         let along = self.axis * self.axis.dot(&self.slide);
         let across = self.slide - along;
         let turn = Turn::of(self.angle);
         let sideways = self.axis.cross(&across);
-        let sine = (across * (turn.sin / turn.versine) - sideways) / two::<T>();
+        let sine = (across * (turn.sin / turn.versine) - sideways) / 2.0;
         Self {
             slide: along,
             sine,
@@ -156,7 +159,7 @@ impl<T: RealField + Copy> Turning<T> {
         }
     }
 
-    fn pose(&self, s: T) -> Isometry3<T> {
+    fn pose(&self, s: f64) -> Isometry3<f64> {
         let turn = Turn::of(self.angle * s);
         let translation =
             self.start + self.slide * s + self.sine * turn.sin + self.versine * turn.versine;
@@ -165,16 +168,16 @@ impl<T: RealField + Copy> Turning<T> {
     }
 }
 
-impl<T: RealField + Copy> VectorLeg<T> {
-    pub(crate) fn slide(&self) -> Vector3<T> {
+impl VectorLeg {
+    pub(crate) fn slide(&self) -> Vector3<f64> {
         self.to.position() - self.from.position()
     }
 
-    pub(crate) fn angles_change(&self) -> Vector3<T> {
+    pub(crate) fn angles_change(&self) -> Vector3<f64> {
         self.to.angles() - self.from.angles()
     }
 
-    pub(crate) fn at(&self, s: T) -> PoseVector<T> {
+    pub(crate) fn at(&self, s: f64) -> PoseVector {
         let position = self.from.position() + self.slide() * s;
         let angles = self.from.angles() + self.angles_change() * s;
         PoseVector::new(
@@ -188,12 +191,12 @@ impl<T: RealField + Copy> VectorLeg<T> {
     /// R = Rz(γ) Ry(β) Rx(α)   ω = γ' ẑ + Rz (β' ŷ + Ry α' x̂)
     /// R = Rx(α) Ry(β) Rz(γ)   ω = α' x̂ + Rx (β' ŷ + Ry γ' ẑ)
     /// ```
-    pub(crate) fn angular(&self, angles: &Vector3<T>) -> Vector3<T> {
+    pub(crate) fn angular(&self, angles: &Vector3<f64>) -> Vector3<f64> {
         let rate = self.angles_change();
-        let (sb, cb) = angles.y.sin_cos();
+        let (sb, cb) = sin_cos(angles.y);
         match self.convention {
             Convention::ExtrinsicXyz => {
-                let (sg, cg) = angles.z.sin_cos();
+                let (sg, cg) = sin_cos(angles.z);
                 let across = cb * rate.x;
                 Vector3::new(
                     cg * across - sg * rate.y,
@@ -202,7 +205,7 @@ impl<T: RealField + Copy> VectorLeg<T> {
                 )
             }
             Convention::IntrinsicXyz => {
-                let (sa, ca) = angles.x.sin_cos();
+                let (sa, ca) = sin_cos(angles.x);
                 let across = cb * rate.z;
                 Vector3::new(
                     rate.x + sb * rate.z,
@@ -215,38 +218,30 @@ impl<T: RealField + Copy> VectorLeg<T> {
 
     /// The largest |ω| on the leg. |ω|² = α'² + β'² + γ'² ∓ 2 α' γ' sin β, so that it is
     /// found where sin β is largest or smallest.
-    fn fastest_turn(&self) -> T {
+    fn fastest_turn(&self) -> f64 {
         let rate = self.angles_change();
         let (low, high) = sine_range(self.from.beta, self.to.beta);
-        let product = two::<T>() * rate.x * rate.z;
+        let product = 2.0 * rate.x * rate.z;
         let product = match self.convention {
             Convention::ExtrinsicXyz => -product,
             Convention::IntrinsicXyz => product,
         };
-        let most = (product * low).max(product * high);
-        (rate.norm_squared() + most).max(T::zero()).sqrt()
+        let largest = (product * low).max(product * high);
+        sqrt((rate.norm_squared() + largest).max(0.0))
     }
 }
 
-/// The least and the largest sine of the angles from `a` to `b`.
-fn sine_range<T: RealField + Copy>(a: T, b: T) -> (T, T) {
+/// The smallest and the largest sine of the angles from `a` to `b`.
+fn sine_range(a: f64, b: f64) -> (f64, f64) {
     let (from, to) = (a.min(b), a.max(b));
     // Whether a whole turn past `peak` lies between.
-    let passes = |peak: T| {
-        let turns = ((from - peak) / T::two_pi()).ceil();
-        peak + turns * T::two_pi() <= to
+    let passes = |peak: f64| {
+        let turns = ceil((from - peak) / TAU);
+        peak + turns * TAU <= to
     };
-    let (sa, sb) = (a.sin(), b.sin());
-    let low = if passes(-T::frac_pi_2()) {
-        -T::one()
-    } else {
-        sa.min(sb)
-    };
-    let high = if passes(T::frac_pi_2()) {
-        T::one()
-    } else {
-        sa.max(sb)
-    };
+    let (sa, sb) = (sin_cos(a).0, sin_cos(b).0);
+    let low = if passes(-FRAC_PI_2) { -1.0 } else { sa.min(sb) };
+    let high = if passes(FRAC_PI_2) { 1.0 } else { sa.max(sb) };
     (low, high)
 }
 
@@ -256,24 +251,24 @@ mod tests {
 
     #[test]
     fn sines_of_several_turns() {
-        // Between places of a thousandth of the way a sine passes its peak by less than this.
+        // Between samples a thousandth of the range apart a sine passes its peak by less than this.
         const BETWEEN: f64 = 1e-3;
         const ROUNDING: f64 = 1e-13;
         for number in 0..2000 {
             let spread = |step: f64| ((f64::from(number) * step).fract() * 2.0 - 1.0) * 20.0;
             let (a, b) = (spread(0.618_034), spread(0.414_214));
-            let places = (0..=1000).map(|place| (a + (b - a) * f64::from(place) / 1e3).sin());
-            let (least, most) = places.fold((1.0_f64, -1.0_f64), |(least, most), sine| {
-                (least.min(sine), most.max(sine))
+            let samples = (0..=1000).map(|index| (a + (b - a) * f64::from(index) / 1e3).sin());
+            let (min, max) = samples.fold((1.0_f64, -1.0_f64), |(min, max), sine| {
+                (min.min(sine), max.max(sine))
             });
             let (low, high) = sine_range(a, b);
             assert!(
-                low <= least + ROUNDING && low > least - BETWEEN,
-                "{a} {b}: {low} {least}"
+                low <= min + ROUNDING && low > min - BETWEEN,
+                "{a} {b}: {low} {min}"
             );
             assert!(
-                high >= most - ROUNDING && high < most + BETWEEN,
-                "{a} {b}: {high} {most}"
+                high >= max - ROUNDING && high < max + BETWEEN,
+                "{a} {b}: {high} {max}"
             );
         }
     }

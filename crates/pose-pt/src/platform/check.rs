@@ -12,7 +12,7 @@ const MAX_AXES: usize = 32;
 /// Errors of scale of an axis.
 const AXIS_LENGTH: [f64; 2] = [0.5, 2.0];
 
-/// Least volume of the unit directions: axes 6° from a plane.
+/// Smallest volume of the unit directions: axes 6° from a plane.
 const MIN_VOLUME: f64 = 0.1;
 
 /// Distance of two anchors against the largest coordinate, in machine epsilons.
@@ -98,13 +98,13 @@ fn directions<T: RealField + Copy>(
         product *= length;
     }
     let volume = axes.determinant().abs() / product;
-    let least = nalgebra::convert(MIN_VOLUME);
+    let min = nalgebra::convert(MIN_VOLUME);
     let dependent = PlatformError::DependentAxes {
         locator: number,
         volume,
-        min: least,
+        min,
     };
-    if volume < least {
+    if volume < min {
         return Err(dependent);
     }
     axes.try_inverse().ok_or(dependent)
@@ -181,7 +181,7 @@ pub(super) fn strokes<T: RealField + Copy>(
             let by = (limits.min - value).max(value - limits.max);
             if by > T::zero()
                 && by > rounding(locator, coordinates)
-                && worst.is_none_or(|(most, _)| by > most)
+                && worst.is_none_or(|(largest, _)| by > largest)
             {
                 let (min, max) = (limits.min, limits.max);
                 let error = LimitError::Stroke {

@@ -15,7 +15,7 @@ use crate::{Platform, PvtPoint};
 pub(super) struct Track<'a, const N: usize> {
     /// The leg of the path, from 0.
     pub(super) number: usize,
-    course: Course<'a, N, f64>,
+    course: Course<'a, N>,
     ends: [[Vector3<f64>; N]; 2],
 }
 
@@ -65,8 +65,19 @@ impl<'a, const N: usize> Moving<'a, N> {
     }
 
     /// The legs' numbers in the path.
-    pub(super) fn numbers(self) -> impl Iterator<Item = usize> {
+    fn numbers(self) -> impl DoubleEndedIterator<Item = usize> {
         (self.first..self.end).filter(move |number| !self.is_still(*number))
+    }
+
+    /// The number in the path of leg `leg` of these.
+    pub(super) fn number(&self, leg: usize) -> usize {
+        let mut number = self.first;
+        let mut before = leg;
+        while before > 0 || self.is_still(number) {
+            before = before.saturating_sub(usize::from(!self.is_still(number)));
+            number = number.saturating_add(1);
+        }
+        number
     }
 
     /// At the first pose, at rest.
@@ -106,8 +117,7 @@ impl<'a, const N: usize> Iterator for Moving<'a, N> {
 
 impl<const N: usize> DoubleEndedIterator for Moving<'_, N> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        let mut numbers = (self.first..self.end).rev();
-        let number = numbers.find(|number| !self.is_still(*number))?;
+        let number = self.numbers().next_back()?;
         self.end = number;
         self.track(number)
     }

@@ -6,7 +6,7 @@ use super::PvtTable;
 use super::moving::Moving;
 use crate::{PlanError, PvtPoint};
 
-/// A [`PvtTable`] on the way to the controller, at a feed that may change from point to point.
+/// A [`PvtTable`] as it goes to the controller, at a feed that may change from point to point.
 ///
 /// How the feed goes towards the wanted one, and how it stops: see [`path_timing::Run`]. The body
 /// stays on its path at any feed; a change of it also changes the speed within a segment and with it

@@ -1,12 +1,13 @@
-//! Every public function of the crate as one of numbers, in f64 and in f32.
+//! Every public function of the crate but those of paths and tables as one of numbers, in f64 and in
+//! f32.
 
 use pose_pt::nalgebra::{
     Isometry3, Matrix3, Point3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3,
 };
 use pose_pt::{
-    AxisLimits, Convention, Interpolation, Locator, Path, Platform, PoseVector, PtTable,
-    Segmentation, angle_between, calibrate, from_matrix, from_rotation_vector, rigid_fit,
-    rotation_vector, rotation_vector_between, slerp, to_matrix,
+    AxisLimits, Convention, Locator, Platform, PoseVector, Trig, angle_between, calibrate,
+    from_matrix, from_rotation_vector, rigid_fit, rotation_vector, rotation_vector_between, slerp,
+    to_matrix,
 };
 
 /// All numbers that came out, or the message of the error.
@@ -22,7 +23,7 @@ pub(crate) struct Call<T> {
 /// Numbers that are taken one after the other.
 pub(crate) struct Inputs<'a, T>(core::slice::Iter<'a, T>);
 
-impl<'a, T: RealField + Copy> Inputs<'a, T> {
+impl<'a, T: RealField + Trig> Inputs<'a, T> {
     pub(crate) fn new(numbers: &'a [T]) -> Self {
         Self(numbers.iter())
     }
@@ -65,7 +66,7 @@ impl<'a, T: RealField + Copy> Inputs<'a, T> {
         Isometry3::from_parts(self.vector().into(), self.rotation())
     }
 
-    fn pose_vector(&mut self) -> PoseVector<T> {
+    pub(crate) fn pose_vector(&mut self) -> PoseVector<T> {
         let (p, a) = (self.vector(), self.vector());
         PoseVector::new(p.x, p.y, p.z, a.x, a.y, a.z)
     }
@@ -89,19 +90,19 @@ pub(crate) fn message(error: impl core::fmt::Display) -> String {
     error.to_string()
 }
 
-pub(crate) fn flat<const N: usize, T: RealField + Copy>(vectors: &[Vector3<T>; N]) -> Vec<T> {
+pub(crate) fn flat<const N: usize, T: RealField + Trig>(vectors: &[Vector3<T>; N]) -> Vec<T> {
     vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect()
 }
 
-fn flat_points<const N: usize, T: RealField + Copy>(points: &[Point3<T>; N]) -> Vec<T> {
+fn flat_points<const N: usize, T: RealField + Trig>(points: &[Point3<T>; N]) -> Vec<T> {
     flat(&points.map(|point| point.coords))
 }
 
-fn of_rotation<T: RealField + Copy>(rotation: &UnitQuaternion<T>) -> Vec<T> {
+fn of_rotation<T: RealField + Trig>(rotation: &UnitQuaternion<T>) -> Vec<T> {
     rotation.coords.iter().copied().collect()
 }
 
-fn of_pose<T: RealField + Copy>(pose: &Isometry3<T>) -> Vec<T> {
+pub(crate) fn of_pose<T: RealField + Trig>(pose: &Isometry3<T>) -> Vec<T> {
     [
         pose.translation.vector.as_slice(),
         pose.rotation.coords.as_slice(),
@@ -109,24 +110,18 @@ fn of_pose<T: RealField + Copy>(pose: &Isometry3<T>) -> Vec<T> {
     .concat()
 }
 
-fn of_vector<T: RealField + Copy>(vector: &PoseVector<T>) -> Vec<T> {
+fn of_vector<T: RealField + Trig>(vector: &PoseVector<T>) -> Vec<T> {
     [vector.position().as_slice(), vector.angles().as_slice()].concat()
 }
 
-const CONVENTIONS: [Convention; 2] = [Convention::ExtrinsicXyz, Convention::IntrinsicXyz];
-
-const KINDS: [Interpolation; 4] = [
-    Interpolation::Straight,
-    Interpolation::Screw,
-    Interpolation::Vector(Convention::ExtrinsicXyz),
-    Interpolation::Vector(Convention::IntrinsicXyz),
-];
+pub(crate) const CONVENTIONS: [Convention; 2] =
+    [Convention::ExtrinsicXyz, Convention::IntrinsicXyz];
 
 const ANCHORS: [[f64; 3]; 3] = [[-15.0, -10.0, 1.0], [15.0, -11.0, 0.5], [2.0, 10.0, -0.7]];
 const QUATERNION: [f64; 4] = [0.8, 0.48, -0.288, 0.216];
 const OTHER: [f64; 4] = [0.96, -0.168, 0.1792, 0.134_4];
-const TRANSLATION: [f64; 3] = [1.5, -0.25, 0.75];
-const ANGLES: [f64; 3] = [0.3, -0.2, 0.7];
+pub(crate) const TRANSLATION: [f64; 3] = [1.5, -0.25, 0.75];
+pub(crate) const ANGLES: [f64; 3] = [0.3, -0.2, 0.7];
 
 /// A good platform of 90 numbers.
 pub(crate) fn platform() -> Vec<f64> {
@@ -145,8 +140,8 @@ pub(crate) fn two_poses() -> Vec<f64> {
     [&TRANSLATION[..], &QUATERNION, &[-0.5, 0.5, 0.25], &OTHER].concat()
 }
 
-/// All functions but those of PVT tables.
-pub(crate) fn all<T: RealField + Copy>() -> Vec<Call<T>> {
+/// All functions but those of paths and tables.
+pub(crate) fn all<T: RealField + Trig>() -> Vec<Call<T>> {
     let call = |name, good: &[&[f64]], run| Call {
         name,
         good: good.concat().iter().map(|x| T::from_subset(x)).collect(),
@@ -310,66 +305,10 @@ pub(crate) fn all<T: RealField + Copy>() -> Vec<Call<T>> {
                 &good_platform::<T>().locator_positions(&x.vectors()),
             ))
         }),
-        call("Path of poses", &[&two_poses(), &[0.375]], |x| {
-            let (poses, s) = ([x.pose(), x.pose()], x.next());
-            let mut all = Vec::new();
-            for kind in KINDS {
-                let leg = Path::new(&poses, kind).map_err(message)?.leg(0).unwrap();
-                all.extend(of_pose(&leg.pose(s)));
-                all.extend([leg.turn(), leg.length()]);
-            }
-            Ok(all)
-        }),
-        call(
-            "Path of vectors",
-            &[
-                &TRANSLATION,
-                &ANGLES,
-                &[0.5, 0.25, 1.0],
-                &[1.0, -2.0, 9.0],
-                &[0.375],
-            ],
-            |x| {
-                let (vectors, s) = ([x.pose_vector(), x.pose_vector()], x.next());
-                let mut all = Vec::new();
-                for convention in CONVENTIONS {
-                    let path = Path::of_vectors(&vectors, convention).map_err(message)?;
-                    let leg = path.leg(0).unwrap();
-                    all.extend(of_pose(&leg.pose(s)));
-                    all.extend([leg.turn(), leg.length()]);
-                }
-                Ok(all)
-            },
-        ),
-        call(
-            "PtTable",
-            &[platform, &two_poses(), &[0.5, 0.1, 0.05]],
-            |x| {
-                let (platform, poses) = (x.platform()?, [x.pose(), x.pose()]);
-                let segmentations = [
-                    Segmentation::steps(x.next(), x.next()),
-                    Segmentation::max_distance_error(x.next()),
-                ];
-                let mut all = Vec::new();
-                for kind in KINDS {
-                    let path = Path::new(&poses, kind).map_err(message)?;
-                    for segmentation in segmentations {
-                        let table =
-                            PtTable::plan(&platform, &path, segmentation).map_err(message)?;
-                        all.extend([table.duration_s(), table.distance_error_bound()]);
-                        for point in table.points() {
-                            all.extend([point.time_s, point.segment_s]);
-                            all.extend(flat(&point.axes));
-                        }
-                    }
-                }
-                Ok(all)
-            },
-        ),
     ]
 }
 
-fn good_platform<T: RealField + Copy>() -> Platform<3, T> {
+fn good_platform<T: RealField + Trig>() -> Platform<3, T> {
     let numbers: Vec<T> = platform().iter().map(|x| T::from_subset(x)).collect();
     Inputs::new(&numbers).platform().unwrap()
 }

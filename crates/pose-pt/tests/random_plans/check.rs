@@ -156,7 +156,7 @@ fn check_distance_error(
     }
 }
 
-pub(crate) fn check_table(scene: &Scene<f64>, table: &PvtTable<'_, 3>) {
+pub(crate) fn check_table(scene: &Scene, table: &PvtTable<'_, 3>) {
     let platform = table.platform();
     let points: Vec<_> = table.points().collect();
     assert_eq!(points.len(), table.len());

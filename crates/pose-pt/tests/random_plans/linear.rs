@@ -1,21 +1,21 @@
-//! What a PT table promises, in both float types.
+//! What a PT table promises.
 
-use pose_pt::nalgebra::{RealField, Vector3};
+use pose_pt::nalgebra::Vector3;
 use pose_pt::{Path, Platform, PtTable};
 
 use crate::scene::Scene;
 
-/// Places of a segment at which the distance error is looked at.
-const PLACES: u32 = 8;
+/// Positions in a segment at which the distance error is looked at.
+const POSITIONS: u32 = 8;
 
-/// Most points that are looked at.
-const MOST: usize = 2000;
+/// Largest number of points that are looked at.
+const MAX_POINTS: usize = 2000;
 
 /// What positions, and times that are sums of many, round off.
 const ROUNDING: f64 = 64.0;
 
 /// Whether there is a table; if so it is within all limits.
-pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Scene<T>) -> bool {
+pub(crate) fn check_linear(scene: &Scene) -> bool {
     let Ok(platform) = Platform::new(scene.locators) else {
         return false;
     };
@@ -23,10 +23,10 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
         return false;
     };
     let table = match PtTable::plan(&platform, &path, scene.segmentation) {
-        Ok(table) if table.len() <= MOST => table,
+        Ok(table) if table.len() <= MAX_POINTS => table,
         _ => return false,
     };
-    let epsilons = T::default_epsilon() * number(ROUNDING);
+    let epsilons = f64::EPSILON * ROUNDING;
     let points: Vec<_> = table.points().collect();
     assert_eq!(points.len(), table.len());
     let lengths = platform
@@ -36,7 +36,7 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
     let axes = points
         .iter()
         .flat_map(|point| point.axes.map(|axes| axes.amax()));
-    let size = lengths.chain(axes).fold(T::zero(), |a, b| a.max(b));
+    let size = lengths.chain(axes).fold(0.0, f64::max);
     let rounding = epsilons * size;
     let bound = table.distance_error_bound();
     if let Some(allowed) = scene.allowed {
@@ -53,20 +53,17 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
                 let place = to.axes[index][axis];
                 let out = (limits.min - place).max(place - limits.max);
                 assert!(out <= rounding, "{place} is {out} out of its stroke");
-                let way = (place - from.axes[index][axis]).abs();
-                let speed = way / to.segment_s;
-                assert!(
-                    speed <= limits.speed * (T::one() + epsilons),
-                    "speed {speed}"
-                );
+                let travel = (place - from.axes[index][axis]).abs();
+                let speed = travel / to.segment_s;
+                assert!(speed <= limits.speed * (1.0 + epsilons), "speed {speed}");
             }
         }
-        for place in 0..=PLACES {
-            let share: T = number(f64::from(place) / f64::from(PLACES));
+        for place in 0..=POSITIONS {
+            let fraction = f64::from(place) / f64::from(POSITIONS);
             let mut axes = from.axes;
             for (axes, to) in axes.iter_mut().zip(&to.axes) {
-                let way: Vector3<T> = to - *axes;
-                *axes += way * share;
+                let change: Vector3<f64> = to - *axes;
+                *axes += change * fraction;
             }
             let distance_error = platform
                 .distance_error(&platform.locator_positions(&axes))
@@ -80,8 +77,4 @@ pub(crate) fn check_linear<T: RealField + Copy + core::fmt::LowerExp>(scene: &Sc
     let last = points.last().unwrap().time_s;
     assert!((last - table.duration_s()).abs() <= epsilons * last);
     true
-}
-
-fn number<T: RealField>(value: f64) -> T {
-    T::from_subset(&value)
 }

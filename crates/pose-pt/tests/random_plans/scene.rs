@@ -1,6 +1,6 @@
 //! A random body on random locators, its way, limits and unit; now and then a number that is none.
 
-use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, RealField, UnitQuaternion, Vector3};
+use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, Vector3};
 use pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platform, Segmentation};
 
 use crate::random::Random;
@@ -61,15 +61,13 @@ impl Draw {
 
 /// All that a table is planned from.
 #[derive(Debug, Clone)]
-pub(crate) struct Scene<T: RealField> {
-    pub(crate) locators: [Locator<T>; 3],
-    pub(crate) poses: Vec<Isometry3<T>>,
+pub(crate) struct Scene {
+    pub(crate) locators: [Locator; 3],
+    pub(crate) poses: Vec<Isometry3<f64>>,
     pub(crate) kind: Interpolation,
-    pub(crate) segmentation: Segmentation<T>,
+    pub(crate) segmentation: Segmentation,
     /// The distance error that the segmentation allows.
-    pub(crate) allowed: Option<T>,
-    /// Of the same in f32.
-    single: Segmentation<f32>,
+    pub(crate) allowed: Option<f64>,
 }
 
 const KINDS: [Interpolation; 4] = [
@@ -79,7 +77,7 @@ const KINDS: [Interpolation; 4] = [
     Interpolation::Vector(Convention::IntrinsicXyz),
 ];
 
-impl Scene<f64> {
+impl Scene {
     pub(crate) fn new(draw: &mut Draw) -> Self {
         // One in eight far beyond any machine.
         let reach = if draw.one_in(8) { 60.0 } else { 6.0 };
@@ -87,7 +85,7 @@ impl Scene<f64> {
         let mut locators = locators(draw, unit, reach);
         let poses = poses(draw, unit);
         tighten(draw, &mut locators, &poses);
-        let (segmentation, single, allowed) = segmentation(draw, unit);
+        let (segmentation, allowed) = segmentation(draw, unit);
         let kind = KINDS[usize::try_from(draw.0.bits() % 4).unwrap()];
         let mut scene = Self {
             locators,
@@ -95,7 +93,6 @@ impl Scene<f64> {
             kind,
             segmentation,
             allowed,
-            single,
         };
         if draw.one_in(12) {
             scene.poison(draw);
@@ -121,45 +118,10 @@ impl Scene<f64> {
             8 => self.poses[1].translation.vector[axis] = value,
             _ => {
                 self.segmentation = Segmentation::max_distance_error(value);
-                self.single = Segmentation::max_distance_error(rounded(value));
                 self.allowed = Some(value);
             }
         }
     }
-
-    pub(crate) fn single(&self) -> Scene<f32> {
-        let locators = self.locators.map(|locator| {
-            let limits = locator.limits.map(|limits| {
-                let single = |value: f64| rounded(value);
-                let mut cast = AxisLimits::new(
-                    single(limits.min),
-                    single(limits.max),
-                    single(limits.speed),
-                    single(limits.acceleration),
-                );
-                cast.jerk = limits.jerk.map(single);
-                cast
-            });
-            Locator::new(locator.anchor.cast(), locator.origin.cast(), limits)
-                .with_axes(locator.axes.cast())
-        });
-        Scene {
-            locators,
-            poses: self.poses.iter().map(|pose| pose.cast()).collect(),
-            kind: self.kind,
-            segmentation: self.single,
-            allowed: self.allowed.map(rounded),
-            single: self.single,
-        }
-    }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "what overflows is infinite"
-)]
-fn rounded(value: f64) -> f32 {
-    value as f32
 }
 
 fn locators(draw: &mut Draw, unit: f64, reach: f64) -> [Locator<f64>; 3] {
@@ -241,30 +203,18 @@ fn tighten(draw: &mut Draw, locators: &mut [Locator<f64>; 3], poses: &[Isometry3
     }
 }
 
-fn segmentation(draw: &mut Draw, unit: f64) -> (Segmentation<f64>, Segmentation<f32>, Option<f64>) {
-    let least = draw.count(100.0);
+fn segmentation(draw: &mut Draw, unit: f64) -> (Segmentation, Option<f64>) {
+    let at_least = draw.count(100.0);
     match draw.0.bits() % 4 {
         0 => {
             let distance_error = unit * draw.size(-12.0, 0.0);
-            let segmentation = Segmentation::max_distance_error(distance_error).at_least(least);
-            (
-                segmentation,
-                Segmentation::max_distance_error(rounded(distance_error)).at_least(least),
-                Some(distance_error),
-            )
+            let segmentation = Segmentation::max_distance_error(distance_error);
+            (segmentation.at_least(at_least), Some(distance_error))
         }
         1 => {
             let (slide, turn) = (unit * draw.size(-3.0, 1.0), draw.size(-2.0, 1.0));
-            let single = Segmentation::steps(rounded(slide), rounded(turn));
-            (Segmentation::steps(slide, turn), single, None)
+            (Segmentation::steps(slide, turn), None)
         }
-        _ => {
-            let segments = draw.count(130.0);
-            (
-                Segmentation::segments(segments),
-                Segmentation::segments(segments),
-                None,
-            )
-        }
+        _ => (Segmentation::segments(draw.count(130.0)), None),
     }
 }

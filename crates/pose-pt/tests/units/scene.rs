@@ -183,8 +183,8 @@ impl Numbers {
             &path,
             Segmentation::max_distance_error(1e-15 * unit),
         ) {
-            Err(PlanError::DistanceError { allowed, least }) => {
-                self.put("least", 1, [allowed, least]);
+            Err(PlanError::DistanceError { allowed, min }) => {
+                self.put("min", 1, [allowed, min]);
             }
             other => panic!("{other:?}"),
         }

@@ -2,65 +2,65 @@
 
 use nalgebra::RealField;
 
-/// Most halvings of a line. A step of a line's 2⁻³⁰ that still is too long means that
+/// Largest number of halvings of a line. A step of a line's 2⁻³⁰ that still is too long means that
 /// the angles jump.
-const DEEPEST: u32 = 30;
+const MAX_DEPTH: u32 = 30;
 
 /// A walk along 0..=1 whose steps are of length 2^-depth and start at multiples of
 /// their length, as a recursive bisection's are.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Bisection {
     depth: u32,
-    /// Steps of the present length that lie behind.
-    behind: u32,
+    /// Steps of the present length taken so far.
+    taken: u32,
 }
 
 impl Bisection {
-    /// Where the walk stands.
+    /// Where the next step starts.
     pub(super) fn position<T: RealField + Copy>(&self) -> T {
-        share(self.behind, self.depth)
+        fraction(self.taken, self.depth)
     }
 
     /// Where the next step ends.
     pub(super) fn target<T: RealField + Copy>(&self) -> T {
-        share(self.behind + 1, self.depth)
+        fraction(self.taken + 1, self.depth)
     }
 
     /// Whether the next step ends at 1.
     pub(super) const fn is_last(&self) -> bool {
-        self.behind + 1 == 1 << self.depth
+        self.taken + 1 == 1 << self.depth
     }
 
     /// Makes the next step half as long; false where it is as short as may be.
     pub(super) const fn halve(&mut self) -> bool {
-        if self.depth == DEEPEST {
+        if self.depth == MAX_DEPTH {
             return false;
         }
         self.depth += 1;
-        self.behind *= 2;
+        self.taken *= 2;
         true
     }
 
-    /// Takes the step, and makes the next one as long as its place allows; false at 1.
+    /// Takes the step, and makes the next one as long as its start allows; false at 1.
     pub(super) const fn advance(&mut self) -> bool {
         if self.is_last() {
             return false;
         }
-        self.behind += 1;
-        let longer = self.behind.trailing_zeros();
+        self.taken += 1;
+        let longer = self.taken.trailing_zeros();
         let longer = if longer < self.depth {
             longer
         } else {
             self.depth
         };
         self.depth -= longer;
-        self.behind >>= longer;
+        self.taken >>= longer;
         true
     }
 }
 
 /// count / 2^depth, exact.
-fn share<T: RealField + Copy>(count: u32, depth: u32) -> T {
+fn fraction<T: RealField + Copy>(count: u32, depth: u32) -> T {
     let whole = f64::from(1u32 << depth);
     nalgebra::convert(f64::from(count) / whole)
 }
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_as_long_as_their_place_allows() {
+    fn steps_are_as_long_as_their_start_allows() {
         assert_eq!(ends(|from, to| from >= 0.5 || to <= 0.5), [0.5, 1.0]);
         assert_eq!(ends(|from, to| to - from <= 0.3), [0.25, 0.5, 0.75, 1.0]);
         // Short only in the first eighth.

@@ -7,7 +7,7 @@ use crate::limits::two;
 use crate::{Arm, Joints};
 
 impl<T: RealField + Trig> Arm<T> {
-    /// The most by which the tool leaves the straight line between two poses while both
+    /// A bound on how far the tool leaves the straight line between two poses while both
     /// joints move linearly from one to the other, in the unit of length.
     ///
     /// Proof. Let the shoulder move by a and the forearm, in the base's frame, by
@@ -22,12 +22,12 @@ impl<T: RealField + Trig> Arm<T> {
     /// that M = max |w| and N = max |w'| are found at the ends of the move.
     ///
     /// A function departs from the straight line between its ends by at most an eighth
-    /// of its largest second derivative: M/8, point by point at the same share of the way.
+    /// of its largest second derivative: M/8, at each time t on its own.
     ///
-    /// Across the line only the part of w along its normal n counts, which is at most
+    /// Across the line only the component of w along its normal n counts, which is at most
     /// |n · w(½)| + N/2. Along the line the speed departs from its mean, the distance c
     /// between the ends, by at most M/2; where M ≤ 2c the tool never turns back, each
-    /// place on the path has its foot on the line and the other way round. Hence
+    /// point of the path has its foot on the line, and each point of the line is such a foot. Hence
     ///
     /// ```text
     /// bound = min(M, |n · w(½)| + N/2) / 8   where M ≤ 2c,   M/8 elsewhere
@@ -71,16 +71,16 @@ struct Turns<T> {
 
 impl<T: RealField + Trig> Turns<T> {
     fn new(from: Joints<T>, to: Joints<T>) -> Self {
-        let way = from.way_to(to);
+        let change = to - from;
         let halves = [from, to].map(|joints| sin_cos(joints.elbow / two()));
         // Half the sines of the elbow angles.
         let [from, to] = halves.map(|(sin, cos)| sin * cos);
         let changes_sign = from.min(to) < T::zero() && from.max(to) > T::zero();
         Self {
-            upper: way.x,
-            fore: way.x + way.y,
+            upper: change.x,
+            fore: change.x + change.y,
             halves,
-            is_singular: changes_sign || way.y.abs() >= T::pi(),
+            is_singular: changes_sign || change.y.abs() >= T::pi(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! The way along a polyline, waypoint by waypoint, each step as long as the tolerance allows.
+//! A polyline, waypoint by waypoint, each step as long as the tolerance allows.
 
 use nalgebra::{Point2, RealField};
 use trig_kernels::Trig;
@@ -32,13 +32,13 @@ enum State<T: RealField> {
 
 /// A point of the curve.
 #[derive(Clone, Copy)]
-struct Place<T: RealField> {
+struct PathPoint<T: RealField> {
     line: usize,
     fraction: T,
     point: Point2<T>,
 }
 
-impl<T: RealField + Copy> Place<T> {
+impl<T: RealField + Copy> PathPoint<T> {
     fn unreachable(self, reason: InverseError<T>) -> FollowError<T> {
         FollowError::Unreachable {
             line: self.line,
@@ -61,13 +61,13 @@ struct Line<T: RealField> {
 }
 
 impl<T: RealField + Trig> Line<T> {
-    fn place(&self, fraction: T) -> Place<T> {
+    fn at(&self, fraction: T) -> PathPoint<T> {
         let point = if fraction == T::one() {
             self.to
         } else {
             self.from + (self.to - self.from) * fraction
         };
-        Place {
+        PathPoint {
             line: self.line,
             fraction,
             point,
@@ -75,10 +75,10 @@ impl<T: RealField + Trig> Line<T> {
     }
 
     /// The dip, if the next step would jump over it.
-    fn dip_ahead(&self) -> Option<Place<T>> {
+    fn dip_ahead(&self) -> Option<PathPoint<T>> {
         let dip = self.dip?;
         let ahead = self.steps.position::<T>() < dip && dip < self.steps.target();
-        ahead.then(|| self.place(dip))
+        ahead.then(|| self.at(dip))
     }
 }
 
@@ -108,15 +108,13 @@ where
 
     fn start(&mut self) -> Option<Step<T>> {
         let point = self.points.next()?;
-        let place = Place {
+        let at = PathPoint {
             line: 0,
             fraction: T::zero(),
             point,
         };
         self.state = State::Corner { line: 0, point };
-        let step = self
-            .joints_at(place)
-            .map(|joints| self.arrive(joints, place));
+        let step = self.joints_at(at).map(|joints| self.arrive(joints, at));
         Some(step)
     }
 
@@ -143,9 +141,9 @@ where
     /// between two waypoints it could dip in there unseen.
     fn dip(&self, from: Point2<T>, to: Point2<T>) -> Option<T> {
         let centre = Point2::from(self.arm.base().translation.vector);
-        let way = to - from;
-        let fraction = (centre - from).dot(&way) / way.norm_squared();
-        let distance = (from + way * fraction - centre).norm();
+        let line = to - from;
+        let fraction = (centre - from).dot(&line) / line.norm_squared();
+        let distance = (from + line * fraction - centre).norm();
         let inside = distance < self.arm.inner_reach() - self.arm.tolerance();
         (inside && fraction > T::zero() && fraction < T::one()).then_some(fraction)
     }
@@ -153,8 +151,8 @@ where
     /// The longest next step on the line that keeps the tolerance and the workspace.
     fn step(&mut self, mut line: Line<T>) -> Step<T> {
         loop {
-            let place = line.place(line.steps.target());
-            let refused = match self.try_step(&line, place) {
+            let at = line.at(line.steps.target());
+            let refused = match self.try_step(&line, at) {
                 Ok(joints) => {
                     self.state = if line.steps.advance() {
                         State::On(line)
@@ -163,27 +161,27 @@ where
                         let line = line.line.saturating_add(1);
                         State::Corner { line, point }
                     };
-                    return Ok(self.arrive(joints, place));
+                    return Ok(self.arrive(joints, at));
                 }
                 Err(refused) => refused,
             };
-            // Shorter steps lead up to the first place that is out of reach.
+            // Shorter steps lead up to the first point that is out of reach.
             if !line.steps.halve() {
                 return Err(refused);
             }
         }
     }
 
-    fn try_step(&self, line: &Line<T>, place: Place<T>) -> Result<Joints<T>, FollowError<T>> {
-        if let Some(place) = line.dip_ahead() {
+    fn try_step(&self, line: &Line<T>, at: PathPoint<T>) -> Result<Joints<T>, FollowError<T>> {
+        if let Some(at) = line.dip_ahead() {
             let centre = Point2::from(self.arm.base().translation.vector);
             let reason = InverseError::TooNear {
-                distance: (place.point - centre).norm(),
+                distance: (at.point - centre).norm(),
                 reach: self.arm.inner_reach(),
             };
-            return Err(place.unreachable(reason));
+            return Err(at.unreachable(reason));
         }
-        let joints = self.joints_at(place)?;
+        let joints = self.joints_at(at)?;
         let rounding = self
             .arm
             .rounding(self.joints)
@@ -191,15 +189,15 @@ where
         if self.arm.chord_bound(self.joints, joints) + rounding <= self.tolerance {
             return Ok(joints);
         }
-        let way = self.joints.way_to(joints);
-        for (joint, way, angle) in [
-            (Joint::Shoulder, way.x, joints.shoulder),
-            (Joint::Elbow, way.y, joints.elbow),
+        let change = joints - self.joints;
+        for (joint, change, angle) in [
+            (Joint::Shoulder, change.x, joints.shoulder),
+            (Joint::Elbow, change.y, joints.elbow),
         ] {
             // Where the nearer whole turn is out of range, that is the reason.
-            let angle = angle - T::two_pi().copysign(way);
+            let angle = angle - T::two_pi().copysign(change);
             let range = self.arm.limits().range(joint);
-            if way.abs() > T::pi() && !range.contains(angle) {
+            if change.abs() > T::pi() && !range.contains(angle) {
                 let reason = InverseError::JointLimit {
                     elbow: self.elbow,
                     joint,
@@ -207,22 +205,22 @@ where
                     min: range.min(),
                     max: range.max(),
                 };
-                return Err(place.unreachable(reason));
+                return Err(at.unreachable(reason));
             }
         }
         Err(FollowError::Singular {
-            line: place.line,
-            fraction: place.fraction,
-            point: place.point,
+            line: at.line,
+            fraction: at.fraction,
+            point: at.point,
         })
     }
 
-    /// Joint angles at a place, at the whole turn nearest to those before.
-    fn joints_at(&self, place: Place<T>) -> Result<Joints<T>, FollowError<T>> {
+    /// Joint angles at a point of the path, at the whole turn nearest to those before.
+    fn joints_at(&self, at: PathPoint<T>) -> Result<Joints<T>, FollowError<T>> {
         let joints = self
             .arm
-            .inverse_elbow_near(place.point, self.elbow, self.joints)
-            .map_err(|reason| place.unreachable(reason))?;
+            .inverse_elbow_near(at.point, self.elbow, self.joints)
+            .map_err(|reason| at.unreachable(reason))?;
         let (tolerance, rounding) = (self.tolerance, self.arm.rounding(joints));
         // Written so that NaN is refused too.
         if tolerance > rounding && tolerance.is_finite() {
@@ -235,13 +233,13 @@ where
         }
     }
 
-    fn arrive(&mut self, joints: Joints<T>, place: Place<T>) -> Waypoint<T> {
+    fn arrive(&mut self, joints: Joints<T>, at: PathPoint<T>) -> Waypoint<T> {
         self.joints = joints;
         Waypoint {
             joints,
-            point: place.point,
-            line: place.line,
-            fraction: place.fraction,
+            point: at.point,
+            line: at.line,
+            fraction: at.fraction,
         }
     }
 }

@@ -34,7 +34,7 @@ impl<T: RealField + Trig> Arm<T> {
     ) -> Result<Joints<T>, Miss<T>> {
         let shoulders = self.limits().shoulder.fit(joints.shoulder, near.shoulder);
         let elbows = self.limits().elbow.fit(joints.elbow, near.elbow);
-        let travel = |joints: Joints<T>| near.way_to(joints).amax();
+        let travel = |joints: Joints<T>| (joints - near).amax();
         let mut nearest = None;
         let mut consider = |candidate| {
             if nearest.is_none_or(|nearest| travel(candidate) < travel(nearest)) {
@@ -64,10 +64,10 @@ impl<T: RealField + Trig> Arm<T> {
         let limits = self.limits();
         let elbows = limits
             .elbow
-            .fit(self.elbow_behind(shoulder, tool), near.elbow);
+            .fit(self.elbow_towards(shoulder, tool), near.elbow);
         let shoulders = limits
             .shoulder
-            .fit(self.shoulder_before(elbow, tool), near.shoulder);
+            .fit(self.shoulder_towards(elbow, tool), near.shoulder);
         let [a, b] = elbows.map(|elbow| Joints::new(shoulder, elbow.angle));
         let [c, d] = shoulders.map(|shoulder| Joints::new(shoulder.angle, elbow));
         [fitted, a, b, c, d]
@@ -89,7 +89,7 @@ impl<T: RealField + Trig> Arm<T> {
         (is_same_side || is_straight_or_folded) && (self.tip(candidate) - tool).norm() <= rounding
     }
 
-    /// How far from its place rounding alone may put the tool, in the unit of length: the
+    /// How far rounding alone may displace the tool, in the unit of length: the
     /// tolerance or, many turns from zero, the rounding of the angles.
     pub(crate) fn rounding(&self, joints: Joints<T>) -> T {
         let (shoulder, elbow) = (joints.shoulder.abs(), joints.elbow.abs());
@@ -98,7 +98,7 @@ impl<T: RealField + Trig> Arm<T> {
     }
 
     /// The elbow that points the forearm at `tool` with the shoulder as given.
-    fn elbow_behind(&self, shoulder: T, tool: Vector2<T>) -> T {
+    fn elbow_towards(&self, shoulder: T, tool: Vector2<T>) -> T {
         let (sin, cos) = sin_cos(shoulder);
         let along = cos * tool.x + sin * tool.y - self.upper();
         let across = cos * tool.y - sin * tool.x;
@@ -106,7 +106,7 @@ impl<T: RealField + Trig> Arm<T> {
     }
 
     /// The shoulder that points the arm at `tool` with the elbow as given.
-    fn shoulder_before(&self, elbow: T, tool: Vector2<T>) -> T {
+    fn shoulder_towards(&self, elbow: T, tool: Vector2<T>) -> T {
         let tip = self.tip(Joints::new(T::zero(), elbow));
         atan2(tip.perp(&tool), tip.dot(&tool))
     }

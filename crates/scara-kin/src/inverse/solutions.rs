@@ -82,10 +82,10 @@ impl<T: RealField + Trig> Solutions<T> {
             .filter_map(move |elbow| Some((elbow, solutions.get(elbow)?)))
     }
 
-    /// The solution of least joint travel, as it stands; of two equal ones the right one.
+    /// The solution of least joint travel; of two equal ones the right one.
     pub(super) fn nearest_to(&self, previous: Joints<T>) -> (Elbow, Joints<T>) {
         let (right, left) = ((Elbow::Right, self.right), (Elbow::Left, self.left));
-        let travel = |joints| previous.way_to(joints).amax();
+        let travel = |joints: Joints<T>| (joints - previous).amax();
         match self.allowed {
             Allowed::Only(Elbow::Right) => right,
             Allowed::Only(Elbow::Left) => left,

@@ -15,13 +15,13 @@ const SAMPLES: u32 = 32;
 /// The most by which the tool is seen to leave the straight line between two poses.
 fn departure<T: RealField + Trig>(arm: &Arm<T>, from: Joints<T>, to: Joints<T>) -> f64 {
     let (a, b) = (arm.forward(from), arm.forward(to));
-    let way = from.way_to(to);
+    let change = to - from;
     (0..=SAMPLES)
         .map(|k| {
             let t: T = single(f64::from(k) / f64::from(SAMPLES));
             let tool = arm.forward(Joints::new(
-                from.shoulder + way.x * t,
-                from.elbow + way.y * t,
+                from.shoulder + change.x * t,
+                from.elbow + change.y * t,
             ));
             distance_to_line(tool, a, b)
         })
@@ -37,12 +37,12 @@ fn distance_to_line<T: RealField + Trig>(tool: Point2<T>, a: Point2<T>, b: Point
     }
     let (along, off) = (along / size, off / size);
     let square = along.norm_squared();
-    let share = if square > 0.0 {
+    let fraction = if square > 0.0 {
         (off.dot(&along) / square).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    (off - along * share).norm() * size
+    (off - along * fraction).norm() * size
 }
 
 fn bound<T: RealField + Trig>(recipe: Recipe, [a, b, c, d]: [f64; 4]) -> TestCaseResult {

@@ -53,8 +53,8 @@ fn tangent<T: RealField + Trig>(
                 let base = double(base.im).atan2(double(base.re));
                 let off = angles.into_iter().sum::<f64>() + base - heading;
                 prop_assert!((off / 2.0).sin().abs() <= rounding, "{off}");
-                let way = theta3 - double(before.theta3());
-                prop_assert!(way.abs() <= PI + rounding, "{way}");
+                let change = theta3 - double(before.theta3());
+                prop_assert!(change.abs() <= PI + rounding, "{change}");
                 let corner = turn.corner.map_or(0.0, double);
                 prop_assert!(corner.abs() <= PI + rounding, "{corner}");
             }
@@ -103,7 +103,7 @@ fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCase
         prop_assert!(!double(shoulder).is_finite() || !double(elbow).is_finite());
     } else if double(back.elbow).is_finite() {
         let rounding = 4.0 * epsilon::<T>() * size + smallest::<T>();
-        let off = joints.way_to(back).map(double).amax();
+        let off = (back - joints).map(double).amax();
         prop_assert!(off <= rounding, "{off} {rounding}");
         let direct = double(shoulder).mul_add(double(coupling), double(elbow)) - double(zero2);
         let off = double(angles.elbow) - direct;

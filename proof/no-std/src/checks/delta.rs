@@ -28,14 +28,13 @@ pub fn delta() -> Option<()> {
     let speed_limits = SpeedLimits::new(200.0, [3.0; 3]).ok()?;
     let last = delta.follow(line, 0.01, speed_limits).ok()?.last()?;
     holds((last.point - line.point_at(1.0)?).norm() < CLOSE_MM)?;
-    let workspace = delta.workspace();
-    let radius = workspace.largest_cylinder([-290.0, black_box(-260.0)], 2.0);
+    let radius = delta.largest_cylinder([-290.0, black_box(-260.0)], 2.0);
     holds(radius.ok()? > 60.0)?;
     holds(
-        workspace
+        delta
             .horizontal_slice(-260.0, 8)
             .ok()?
-            .all(|edge| workspace.contains(edge)),
+            .all(|edge| delta.is_reachable(edge)),
     )
 }
 

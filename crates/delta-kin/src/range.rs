@@ -13,36 +13,36 @@
 //! overflow nor lose digits. In an arm shorter than ε^¼ of the span rounding would turn the rods
 //! by more than ε^¾; an angle beyond 1/√ε has fewer than half its digits after the point.
 
-use nalgebra::RealField;
+use nalgebra::{ComplexField, RealField};
 
-/// h: the greatest length of an arm.
-pub(crate) fn longest<T: RealField + Copy>() -> T {
+/// h: the largest length of an arm.
+pub(crate) fn largest_length<T: RealField + Copy>() -> T {
     max_value::<T>().sqrt().sqrt() / nalgebra::convert(32.0)
 }
 
-/// The least length of an upper or lower arm.
-pub(crate) fn shortest<T: RealField + Copy>() -> T {
-    longest::<T>().sqrt().recip()
+/// The smallest length of an upper or lower arm.
+pub(crate) fn smallest_length<T: RealField + Copy>() -> T {
+    largest_length::<T>().sqrt().recip()
 }
 
-/// The least upper or lower arm of a machine, in units of its span.
-pub(crate) fn least_share<T: RealField + Copy>() -> T {
+/// The smallest upper or lower arm of a machine, in units of its span.
+pub(crate) fn smallest_ratio<T: RealField + Copy>() -> T {
     T::default_epsilon().sqrt().sqrt()
 }
 
-/// The greatest coordinate of a path or a measured point, either way.
-pub(crate) fn farthest<T: RealField + Copy>() -> T {
-    longest::<T>() * nalgebra::convert(4.0)
+/// The largest coordinate of a path or a measured point, either way.
+pub(crate) fn largest_coordinate<T: RealField + Copy>() -> T {
+    largest_length::<T>() * nalgebra::convert(4.0)
 }
 
-/// The greatest angle, either way, in radians.
-pub(crate) fn widest<T: RealField + Copy>() -> T {
+/// The largest angle, either way, in radians.
+pub(crate) fn largest_angle<T: RealField + Copy>() -> T {
     T::default_epsilon().sqrt().recip()
 }
 
-/// The greatest feed and rate; the least is its reciprocal.
-pub(crate) fn fastest<T: RealField + Copy>() -> T {
-    longest::<T>() * longest::<T>()
+/// The largest feed and rate; the smallest is its reciprocal.
+pub(crate) fn largest_rate<T: RealField + Copy>() -> T {
+    largest_length::<T>() * largest_length::<T>()
 }
 
 /// Whether `value` is a number within ±`max`.
@@ -50,9 +50,14 @@ pub(crate) fn is_within<T: RealField + Copy>(value: T, max: T) -> bool {
     value.abs() <= max
 }
 
-/// The largest finite number; every `RealField` of machine floats has one.
+/// The largest finite number.
 pub(crate) fn max_value<T: RealField>() -> T {
-    T::max_value().unwrap_or_else(T::one)
+    let largest = nalgebra::convert::<f64, T>(f64::MAX);
+    if largest.is_finite() {
+        largest
+    } else {
+        nalgebra::convert(f64::from(f32::MAX))
+    }
 }
 
 pub(crate) fn two<T: RealField>() -> T {
@@ -61,4 +66,14 @@ pub(crate) fn two<T: RealField>() -> T {
 
 pub(crate) fn half<T: RealField>() -> T {
     nalgebra::convert(0.5)
+}
+
+/// The square root, of `core` alone.
+pub(crate) fn sqrt(x: f64) -> f64 {
+    ComplexField::sqrt(x)
+}
+
+/// √(x² + y²), of `core` alone.
+pub(crate) fn hypot(x: f64, y: f64) -> f64 {
+    ComplexField::hypot(x, y)
 }
