@@ -52,8 +52,8 @@ impl<const N: usize> LeastSquares<N> {
             let rotate = |a: &mut f64, b: &mut f64| {
                 (*a, *b) = (cos * *a + sin * *b, cos * *b - sin * *a);
             };
-            for column in pivot..N {
-                rotate(&mut self.r[(pivot, column)], &mut row[column]);
+            for (column, below) in row.iter_mut().enumerate().skip(pivot) {
+                rotate(&mut self.r[(pivot, column)], below);
             }
             rotate(&mut self.q[pivot], &mut value);
         }
