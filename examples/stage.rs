@@ -8,7 +8,7 @@
 //! ```
 //! The simulated stage gets nothing but the pulses. Beside it runs one without corrections.
 //!
-//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--lose-steps P] [--seed N] [--out DIR]`
+//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--profile PROFILE] [--lose-steps P] [--seed N] [--out DIR]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::Parser;
 use command_line::{Artefacts, Terminal, fraction, print_notes, print_summary, read_bytes};
-use stage::{PathRule, Program, Run, Session, Settings, StepLog, StepObserver};
+use stage::{PathRule, Program, Run, Session, Settings, SpeedProfile, StepLog, StepObserver};
 
 /// Of the terminal.
 const BAUD: u32 = 9600;
@@ -39,6 +39,10 @@ struct Args {
     /// both where due, `bresenham`.
     #[arg(long, default_value_t)]
     rule: PathRule,
+    /// Of the speed along the path: `trapezoidal` between corners that the motors can take, or
+    /// `constant`, as published.
+    #[arg(long, default_value_t)]
+    profile: SpeedProfile,
     /// The fraction of steps that the motors lose, as 0.001 or 0.1%.
     #[arg(long, value_name = "P", default_value = "0", value_parser = fraction, allow_negative_numbers = true)]
     lose_steps: f64,
@@ -63,6 +67,7 @@ enum Source {
 fn stage(args: &Args) -> Result<ExitCode> {
     let settings = Settings {
         rule: args.rule,
+        profile: args.profile,
         lose_steps: args.lose_steps,
         seed: args.seed,
     };

@@ -7,6 +7,8 @@ mod artefacts;
 mod example;
 #[path = "stage/programs.rs"]
 mod programs;
+#[path = "stage/ramps.rs"]
+mod ramps;
 #[path = "stage/run.rs"]
 mod run;
 

@@ -37,7 +37,6 @@ mod picture;
 mod plan;
 mod record;
 mod report;
-mod sampler;
 mod session;
 mod simulation;
 mod step_log;

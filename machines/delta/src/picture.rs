@@ -30,7 +30,7 @@ pub(crate) fn picture(run: &Run<'_>) -> Result<Figure> {
         off(run.ticked.max_path_error_mm),
         f64::from(run.ticks) * run.machine.tick_s
     );
-    let window = format!("mean over {:.0} ms", run.motion.window_s * 1000.0);
+    let window = format!("mean over {:.0} ms", run.motion.window_s() * 1000.0);
     let time = || Axis::new("time in s").over(0.0..=duration_s);
     let speed = Plot::chart(time(), Axis::new("speed in mm/s").including(0.0))
         .with_title("Speed of the platform")

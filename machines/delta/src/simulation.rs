@@ -4,7 +4,7 @@
 use std::io::BufRead;
 
 use anyhow::Result;
-use machine_sim::Figure;
+use machine_sim::{Figure, MotionSampler};
 use nalgebra::Point3;
 
 use crate::control_tick;
@@ -13,7 +13,6 @@ use crate::picture;
 use crate::plan::seconds;
 use crate::record::{Move, Record};
 use crate::report::Report;
-use crate::sampler::Sampler;
 use crate::step_log;
 
 /// Between two points of a picture's path, in mm.
@@ -27,7 +26,7 @@ pub struct Run<'a> {
     pub(crate) trains: Driven,
     pub(crate) ticked: Driven,
     pub(crate) ticks: u32,
-    pub(crate) motion: Sampler,
+    pub(crate) motion: MotionSampler<3>,
 }
 
 /// What the simulated machine did in one of both.
@@ -68,9 +67,9 @@ pub fn simulate<'a>(
     steps: impl BufRead,
 ) -> Result<Run<'a>> {
     let duration_s = seconds(record.duration_ticks());
-    let mut motion = Sampler::new(duration_s, machine.point([0; 3])?);
+    let mut motion = MotionSampler::new(machine.point([0; 3])?.into());
     let trains = follow(machine, &record.moves, step_log::read(steps), |t_s, at| {
-        motion.add(t_s, at);
+        motion.add(t_s, at.into());
     })?;
     motion.end(duration_s);
     let mut ticks = 0;

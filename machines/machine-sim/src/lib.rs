@@ -4,9 +4,12 @@
 
 extern crate alloc;
 
+mod edge_motion;
 mod figure;
 #[cfg(feature = "input")]
 pub mod input;
+mod motion_sampler;
+mod motor;
 mod profile;
 mod random;
 mod scale;
@@ -14,7 +17,10 @@ pub mod serial_line;
 mod stepper;
 mod vcd;
 
+pub use self::edge_motion::{EdgeLog, EdgeMotion, Measured};
 pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
+pub use self::motion_sampler::MotionSampler;
+pub use self::motor::{Motor, Rotor};
 pub use self::profile::Profile;
 pub use self::scale::{LimitSwitches, Scale};
 pub use self::stepper::Stepper;

@@ -8,9 +8,11 @@ use pulse_interp::{
 };
 
 use crate::motion::Motion;
+use crate::motors::Followed;
 use crate::paths::{self, PathRule, STEPS_PER_MM, to_mm};
 use crate::record::Record;
 use crate::run::Run;
+use crate::speeds::{SpeedProfile, Units};
 use crate::stage::{COUNTS_PER_STEP, SWITCHES, Stage};
 
 /// A step's counts are more, a count or two of noise less.
@@ -24,12 +26,22 @@ const LOOKS_AT_END: u32 = 1000;
 
 const AXES: [&str; 2] = ["X", "Y"];
 
+/// When the steps of a chain of motions come.
+pub(crate) enum Clock {
+    /// Each motion at its feed.
+    Constant,
+    /// Ramps that begin at a tick.
+    Ramps(Box<StepIntervals<Units>>, u64),
+}
+
 /// How the simulated stage is driven, and what it does wrong.
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(clippy::exhaustive_structs, reason = "settings, set by their names")]
 pub struct Settings {
     /// Which axis steps next.
     pub rule: PathRule,
+    /// How the speed along the path changes.
+    pub profile: SpeedProfile,
     /// The probability with which a step is lost, within 0..=1.
     pub lose_steps: f64,
     /// Which steps are lost.
@@ -50,6 +62,8 @@ pub(crate) struct Controller<'a> {
     uncorrected: Stage,
     observer: StepObserver<'a>,
     ticks: u64,
+    /// From the last step to the end of its ramp.
+    rest_ticks: u64,
     record: Record,
     /// Of the last motion, in mm.
     end: Point,
@@ -89,6 +103,7 @@ impl<'a> Controller<'a> {
             stage,
             observer,
             ticks: 0,
+            rest_ticks: 0,
             record: Record::default(),
             end: Point::ORIGIN,
         };
@@ -130,13 +145,22 @@ impl<'a> Controller<'a> {
         Point::new(mm(x, x_zero), mm(y, y_zero))
     }
 
+    /// Plans a chain of motions from rest to rest, from where the stage was last commanded to.
+    ///
+    /// # Errors
+    /// There is no path of steps for one of them.
+    pub(crate) fn plan<'m>(&self, motions: impl Iterator<Item = &'m Motion>) -> Result<Clock> {
+        let start = self.ticks + self.rest_ticks;
+        Clock::plan(&self.settings, (start, self.commanded), motions)
+    }
+
     /// Makes a motion's steps; on an error the stage stands where it was last commanded to.
     ///
     /// # Errors
     /// A limit switch is closed, more steps are lost than the loop corrects, or the observer's.
-    pub(crate) fn run(&mut self, motion: &Motion) -> Result<()> {
+    pub(crate) fn run(&mut self, motion: &Motion, clock: &mut Clock) -> Result<()> {
         self.record.begin(motion, self.at_mm());
-        let run = self.make(motion);
+        let run = self.make(motion, clock);
         self.end = match run {
             Ok(()) => motion.to,
             Err(_) => self.commanded_mm(),
@@ -144,27 +168,38 @@ impl<'a> Controller<'a> {
         run
     }
 
-    fn make(&mut self, motion: &Motion) -> Result<()> {
-        // Rates are bounded by the parser: 100 to 60 million ticks.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "bounded"
-        )]
-        let unit = (TICKS_PER_S / (motion.feed_mm_s * STEPS_PER_MM)).round() as u32;
-        let mut intervals = StepIntervals::new(unit);
+    /// A chain of one motion.
+    ///
+    /// # Errors
+    /// As [`Self::plan`] and [`Self::run`].
+    pub(crate) fn run_alone(&mut self, motion: &Motion) -> Result<()> {
+        let mut clock = self.plan([motion].into_iter())?;
+        self.run(motion, &mut clock)?;
+        self.rest(clock);
+        Ok(())
+    }
+
+    fn make(&mut self, motion: &Motion, clock: &mut Clock) -> Result<()> {
         let target = || format!("on the way to ({:.3}, {:.3}) mm", motion.to.x, motion.to.y);
-        for path in paths::paths(motion, self.commanded, self.settings.rule)? {
-            for (step, factor) in path {
-                self.ticks += intervals.next(factor).context("no speed")?;
-                self.step(step).with_context(target)?;
-                let by = [step.dx(), step.dy()];
-                (self.observer)(self.ticks, by)?;
-                self.record.step(self.ticks, by, self.at_mm());
-                self.correct().with_context(target)?;
-            }
+        self.ticks += core::mem::take(&mut self.rest_ticks);
+        for timed in clock.steps(motion, self.commanded, self.settings.rule)? {
+            let (ticks, step) = timed?;
+            self.ticks += ticks;
+            self.step(step).with_context(target)?;
+            let by = [step.dx(), step.dy()];
+            (self.observer)(self.ticks, by)?;
+            self.record.step(self.ticks, by, self.at_mm());
+            self.correct().with_context(target)?;
         }
         Ok(())
+    }
+
+    /// The end of a chain: it takes the time that is left to come to rest before the next one.
+    pub(crate) fn rest(&mut self, clock: Clock) {
+        if let Clock::Ramps(intervals, start) = clock {
+            let end = start + intervals.into_units().end_ticks();
+            self.rest_ticks = end.saturating_sub(self.ticks);
+        }
     }
 
     /// One step of the path, if no switch forbids it.
@@ -226,6 +261,7 @@ impl<'a> Controller<'a> {
     pub(crate) fn finish(mut self) -> Result<Run> {
         self.settle()?;
         self.record.end(self.at_mm());
+        let motors = core::mem::take(&mut self.record.motors);
         let stages = [&self.stage, &self.uncorrected];
         Ok(Run {
             settings: self.settings,
@@ -233,8 +269,59 @@ impl<'a> Controller<'a> {
             duration_s: seconds(self.ticks),
             closing_mm: stages.map(|stage| stage.at_mm().distance(self.end)),
             lost: stages.map(Stage::lost),
+            followed: motors.finish(),
+            constant: Followed::at_constant_speed(&self.record.programmed, self.settings.rule)?,
             record: self.record,
         })
+    }
+}
+
+impl Clock {
+    /// Plans a chain of motions from rest to rest, from a tick and a point on.
+    ///
+    /// # Errors
+    /// There is no path of steps for one of them.
+    pub(crate) fn plan<'m>(
+        settings: &Settings,
+        (start, mut from): (u64, [i32; 2]),
+        motions: impl Iterator<Item = &'m Motion>,
+    ) -> Result<Self> {
+        if settings.profile == SpeedProfile::Constant {
+            return Ok(Self::Constant);
+        }
+        let mut legs = Vec::new();
+        for motion in motions {
+            legs.push((motion, paths::length_q16(motion, from, settings.rule)?));
+            from = paths::to_steps(motion.to);
+        }
+        let units = Units::plan(legs.into_iter())?;
+        let intervals = Box::new(StepIntervals::from_units(units));
+        Ok(Self::Ramps(intervals, start))
+    }
+
+    /// The steps of a motion of the chain, and the ticks before each.
+    pub(crate) fn steps<'c>(
+        &'c mut self,
+        motion: &Motion,
+        from: [i32; 2],
+        rule: PathRule,
+    ) -> Result<impl Iterator<Item = Result<(u64, Move)>> + 'c> {
+        // Rates are bounded by the parser: 100 to 60 million ticks.
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "bounded"
+        )]
+        let unit = (TICKS_PER_S / (motion.feed_mm_s * STEPS_PER_MM)).round() as u32;
+        let mut constant = StepIntervals::new(unit);
+        let steps = paths::paths(motion, from, rule)?.into_iter().flatten();
+        Ok(steps.map(move |(step, factor)| {
+            let ticks = match self {
+                Self::Constant => constant.next(factor),
+                Self::Ramps(intervals, _) => intervals.next(factor),
+            };
+            Ok((ticks.context("the path is longer than its plan")?, step))
+        }))
     }
 }
 

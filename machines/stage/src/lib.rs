@@ -28,12 +28,14 @@
 mod controller;
 mod gcode;
 mod motion;
+mod motors;
 mod paths;
 mod picture;
 mod record;
 mod report;
 mod run;
 mod session;
+mod speeds;
 mod stage;
 mod step_log;
 
@@ -43,6 +45,7 @@ pub use self::paths::PathRule;
 pub use self::report::Report;
 pub use self::run::{Run, run};
 pub use self::session::Session;
+pub use self::speeds::SpeedProfile;
 pub use self::step_log::StepLog;
 
 /// The test path of the source: rectangle, diagonal, circle.

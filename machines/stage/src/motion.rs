@@ -65,6 +65,20 @@ impl Motion {
         }
     }
 
+    /// Unit vectors along the curve at both ends.
+    pub(crate) fn directions(&self) -> [Vec2; 2] {
+        match self.shape {
+            Shape::Line => [unit(self.to - self.from); 2],
+            Shape::Arc { centre, turn, .. } => [self.from, self.to].map(|at| {
+                let Vec2 { x, y } = unit(at - centre);
+                match turn {
+                    Turn::CounterClockwise => Vec2::new(-y, x),
+                    Turn::Clockwise => Vec2::new(y, -x),
+                }
+            }),
+        }
+    }
+
     /// Points of the curve, near enough for a picture.
     pub(crate) fn points(&self) -> Vec<Point> {
         /// Between two points of an arc.
@@ -89,5 +103,15 @@ impl Motion {
             .map(|angle| centre + Vec2::from_angle(begin + sign * angle) * radius)
             .chain([self.to])
             .collect()
+    }
+}
+
+/// A vector's direction; along X where it has none.
+fn unit(vector: Vec2) -> Vec2 {
+    let length = vector.hypot();
+    if length > 0.0 {
+        vector / length
+    } else {
+        Vec2::new(1.0, 0.0)
     }
 }

@@ -146,6 +146,12 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
     Ok(vec![path, line(end, to, rule)?])
 }
 
+/// The length of a motion's path as its intervals count it, in 65536ths of a step length.
+pub(crate) fn length_q16(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<u64> {
+    let steps = paths(motion, from, rule)?.into_iter().flatten();
+    Ok(steps.map(|(_, factor)| u64::from(factor.to_q16())).sum())
+}
+
 /// The grid point about which the circle through the grid point `from` is nearest to that
 /// programmed, of those around the centre. In mm, but for `from`.
 fn grid_centre(centre: Point, radius: f64, from: [i32; 2]) -> [i32; 2] {

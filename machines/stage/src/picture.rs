@@ -5,9 +5,11 @@ use kurbo::Point;
 use machine_sim::{Axis, Colour, Figure, Mark, Plot, Profile, Stroke};
 
 use crate::controller::seconds;
+use crate::motors::Followed;
 use crate::paths::STEPS_PER_MM;
 use crate::record::{Leg, Seen};
 use crate::run::Run;
+use crate::speeds::ACCELERATION_MM_S2;
 use crate::stage::SWITCHES;
 
 const UM_PER_MM: f64 = 1000.0;
@@ -29,8 +31,14 @@ pub(crate) fn picture(run: &Run) -> Figure {
     );
     let figure = Figure::new(title).with_note(measured("Closed loop", &record.closed, closed_mm));
     let closed = deviations(run, "closed loop", Stroke::ACTUAL, &record.closed);
+    let [speed, acceleration] = motion(run);
     if !is_lossy(run) {
-        return figure.with_row(maps(run)).with_row([closed]);
+        return figure
+            .with_note(motors(run))
+            .with_row(maps(run))
+            .with_row([speed])
+            .with_row([acceleration])
+            .with_row([closed]);
     }
     let open = deviations(run, "open loop", Stroke::OTHER, &record.open);
     let [closed_lost, open_lost] = run.lost;
@@ -42,8 +50,38 @@ pub(crate) fn picture(run: &Run) -> Figure {
         .with_note(measured("Open loop", &record.open, open_mm))
         .with_note(lost)
         .with_row(maps(run))
+        .with_note(motors(run))
+        .with_row([speed])
+        .with_row([acceleration])
         .with_row([closed, open])
         .with_row([corrections(run)])
+}
+
+fn motors(run: &Run) -> String {
+    let lost = |followed: &Followed| {
+        let (s, lost) = (followed.duration_s, followed.lost_steps());
+        format!("{lost} steps in {s:.1} s")
+    };
+    format!(
+        "Lost by a simulated motor of limited torque: {}; with the feed from the first step on: {}.",
+        lost(&run.followed),
+        lost(&run.constant)
+    )
+}
+
+/// Speed and acceleration along the path, by the steps.
+fn motion(run: &Run) -> [Plot; 2] {
+    let motion = &run.followed.motion;
+    let window = format!("mean over {:.0} ms", motion.window_s() * 1000.0);
+    let limit = [0.0, run.duration_s].map(|t| [t, ACCELERATION_MM_S2]);
+    let speed = time_chart(run, "speed in mm/s")
+        .with_title("Speed along the path")
+        .line(&window, Stroke::ACTUAL, motion.speeds());
+    let acceleration = time_chart(run, "acceleration in mm/s²")
+        .with_title("Acceleration")
+        .line("limit of an axis", Stroke::LIMIT, limit)
+        .line(&window, Stroke::ACTUAL, motion.accelerations());
+    [speed, acceleration]
 }
 
 fn is_lossy(run: &Run) -> bool {

@@ -4,6 +4,7 @@ use kurbo::Point;
 use machine_sim::Profile;
 
 use crate::motion::Motion;
+use crate::motors::Motors;
 
 /// From one point of a picture to the next.
 const PICTURE_MM: f64 = 0.05;
@@ -69,6 +70,8 @@ pub(crate) struct Seen {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Record {
     pub(crate) programmed: Vec<Motion>,
+    /// They get the steps of the path.
+    pub(crate) motors: Motors,
     /// Of each axis, either way; corrections are counted apart.
     pub(crate) steps: [u64; 2],
     pub(crate) corrected: u64,
@@ -96,6 +99,7 @@ impl Record {
 
     /// A step is made, the stages are at a point each.
     pub(crate) fn step(&mut self, ticks: u64, by: [i32; 2], [closed, open]: [Point; 2]) {
+        self.motors.step(ticks, by);
         for (made, by) in self.steps.iter_mut().zip(by) {
             *made += u64::from(by.unsigned_abs());
         }

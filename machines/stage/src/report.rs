@@ -4,13 +4,16 @@ use core::fmt;
 
 use serde::Serialize;
 
+use crate::motors::Followed;
 use crate::run::Run;
+use crate::speeds::SpeedProfile;
 
 /// `report.json`; displayed, a summary in lines. Steps are those of the path, as in `steps.csv`;
 /// corrections are counted apart.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     rule: &'static str,
+    profile: &'static str,
     /// Either way.
     steps_x: u64,
     /// Either way.
@@ -25,6 +28,11 @@ pub struct Report {
     corrected_steps: u64,
     duration_s: f64,
     open_loop: OpenLoop,
+    /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
+    /// given them loses steps where torque or inertia are overrun.
+    motors: Followed,
+    /// The same motions without ramps.
+    constant_speed: Followed,
     lose_steps: f64,
     seed: u64,
     /// What the program asked for that was left out or done otherwise.
@@ -46,6 +54,7 @@ impl Report {
         let [closed_lost, open_lost] = run.lost;
         Self {
             rule: run.settings.rule.name(),
+            profile: run.settings.profile.name(),
             steps_x,
             steps_y,
             end_steps: run.commanded,
@@ -59,6 +68,8 @@ impl Report {
                 closing_error_mm: open_mm,
                 lost_steps: open_lost,
             },
+            motors: run.followed.clone(),
+            constant_speed: run.constant.clone(),
             lose_steps: run.settings.lose_steps,
             seed: run.settings.seed,
             notes: Vec::new(),
@@ -90,6 +101,23 @@ impl fmt::Display for Report {
             f,
             "open loop:   {} steps lost; {:.3} mm off the curve at most, {:.3} mm at the end",
             open.lost_steps, open.max_deviation_mm, open.closing_error_mm
-        )
+        )?;
+        let ramps = |name: &str, followed: &Followed| {
+            format!(
+                "{name} speed: {:.1} s, at least {:.0} mm/s², {} steps lost by torque and inertia",
+                followed.duration_s,
+                followed.max_acceleration_mm_s2(),
+                followed.lost_steps()
+            )
+        };
+        writeln!(f, "{}", ramps(self.profile, &self.motors))?;
+        if self.profile != SpeedProfile::Constant.name() {
+            writeln!(
+                f,
+                "{}",
+                ramps(SpeedProfile::Constant.name(), &self.constant_speed)
+            )?;
+        }
+        Ok(())
     }
 }

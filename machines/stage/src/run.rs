@@ -5,6 +5,7 @@ use machine_sim::Figure;
 
 use crate::controller::{Controller, Settings, StepObserver};
 use crate::gcode::Program;
+use crate::motors::Followed;
 use crate::picture;
 use crate::record::Record;
 use crate::report::Report;
@@ -18,6 +19,9 @@ pub struct Run {
     /// From the programmed end: in a closed loop, and without.
     pub(crate) closing_mm: [f64; 2],
     pub(crate) lost: [u64; 2],
+    pub(crate) followed: Followed,
+    /// The same motions at constant speed.
+    pub(crate) constant: Followed,
     pub(crate) record: Record,
 }
 
@@ -42,9 +46,11 @@ impl Run {
 /// program; or the observer's.
 pub fn run(program: &Program, settings: &Settings, observer: StepObserver<'_>) -> Result<Run> {
     let mut controller = Controller::homed(settings, observer)?;
+    let mut clock = controller.plan(program.lines.iter().map(|line| &line.motion))?;
     for line in &program.lines {
-        let ran = controller.run(&line.motion);
+        let ran = controller.run(&line.motion, &mut clock);
         ran.with_context(|| format!("line {}", line.number))?;
     }
+    controller.rest(clock);
     controller.finish()
 }

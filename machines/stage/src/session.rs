@@ -136,7 +136,7 @@ impl<'a> Session<'a> {
 
     /// Makes a motion; where it breaks off, the program goes on from there.
     fn run(&mut self, motion: &Motion) -> Result<()> {
-        let run = self.controller.run(motion);
+        let run = self.controller.run_alone(motion);
         if run.is_err() {
             self.interpreter.stands_at(self.controller.commanded_mm());
         }

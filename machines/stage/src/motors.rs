@@ -1,0 +1,144 @@
+//! What the emitted edges ask of the motors, and whether they follow.
+
+use anyhow::Result;
+use machine_sim::{EdgeLog, Measured, MotionSampler, Motor, Rotor};
+use serde::Serialize;
+
+use crate::controller::{Clock, seconds};
+use crate::motion::Motion;
+use crate::paths::{self, PathRule, STEPS_PER_MM};
+
+/// 0.4 N m on each axis. At the motor: the rotor 5.4, a screw of 12 mm by 200 mm 3.2, 5 kg of table
+/// on 4 mm of pitch 2.0, in 1e-6 kg m²; friction of a preloaded nut.
+const MOTOR: Motor = Motor {
+    holding_torque_nm: 0.4,
+    corner_speed_hz: 1000.0,
+    inertia_kg_m2: 10.6e-6,
+    friction_nm: 0.03,
+    damping_ratio: 0.02,
+    full_steps_per_turn: 200,
+    microsteps: 2,
+};
+/// What a step may be off its place on the programmed motion: 1 step off the curve, half along it.
+const DEVIATION_STEPS: f64 = 1.5;
+
+/// Both motors.
+#[derive(Debug, Clone)]
+pub(crate) struct Motors {
+    axes: [Axis; 2],
+    ticks: u64,
+    at: [i32; 2],
+    motion: MotionSampler<2>,
+}
+
+#[derive(Debug, Clone)]
+struct Axis {
+    edges: EdgeLog,
+    rotor: Rotor,
+}
+
+impl Default for Motors {
+    fn default() -> Self {
+        let axis = || Axis {
+            edges: EdgeLog::new(),
+            rotor: Rotor::new(MOTOR),
+        };
+        Self {
+            axes: [axis(), axis()],
+            ticks: 0,
+            at: [0; 2],
+            motion: MotionSampler::new([0.0; 2]),
+        }
+    }
+}
+
+impl Motors {
+    /// A step of the path.
+    pub(crate) fn step(&mut self, ticks: u64, by: [i32; 2]) {
+        self.ticks = ticks;
+        for ((axis, at), by) in self.axes.iter_mut().zip(&mut self.at).zip(by) {
+            *at += by;
+            if by != 0 {
+                axis.edges.step(seconds(ticks), by);
+                axis.rotor.step(seconds(ticks), by);
+            }
+        }
+        let at = paths::to_mm(self.at);
+        self.motion.add(seconds(ticks), [at.x, at.y]);
+    }
+
+    /// What was seen of them, when they have come to rest.
+    pub(crate) fn finish(mut self) -> Followed {
+        self.motion.end(seconds(self.ticks));
+        let [x, y] = self.axes.map(FollowedAxis::new);
+        Followed {
+            duration_s: seconds(self.ticks),
+            x,
+            y,
+            motion: self.motion,
+        }
+    }
+}
+
+/// What both motors were asked for, and what they lost.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Followed {
+    pub(crate) duration_s: f64,
+    pub(crate) x: FollowedAxis,
+    pub(crate) y: FollowedAxis,
+    /// Of the path, in mm.
+    #[serde(skip)]
+    pub(crate) motion: MotionSampler<2>,
+}
+
+/// By the edges alone, and by a simulated motor.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct FollowedAxis {
+    pub(crate) max_start_speed_mm_s: Measured,
+    pub(crate) max_speed_jump_mm_s: Measured,
+    pub(crate) max_acceleration_mm_s2: Measured,
+    pub(crate) lost_steps: u64,
+    /// At 2 it loses steps.
+    pub(crate) max_lag_full_steps: f64,
+}
+
+impl Followed {
+    /// What the same motions ask for without ramps.
+    pub(crate) fn at_constant_speed(motions: &[Motion], rule: PathRule) -> Result<Self> {
+        let (mut motors, mut now) = (Motors::default(), 0);
+        let mut clock = Clock::Constant;
+        for motion in motions {
+            for timed in clock.steps(motion, paths::to_steps(motion.from), rule)? {
+                let (ticks, step) = timed?;
+                now += ticks;
+                motors.step(now, [step.dx(), step.dy()]);
+            }
+        }
+        Ok(motors.finish())
+    }
+
+    pub(crate) const fn lost_steps(&self) -> u64 {
+        self.x.lost_steps + self.y.lost_steps
+    }
+
+    /// Proven of either axis.
+    pub(crate) fn max_acceleration_mm_s2(&self) -> f64 {
+        let [x, y] = [self.x, self.y].map(|axis| axis.max_acceleration_mm_s2.proven());
+        x.max(y)
+    }
+}
+
+impl FollowedAxis {
+    fn new(mut axis: Axis) -> Self {
+        axis.rotor.settle();
+        let motion = axis.edges.motion(DEVIATION_STEPS);
+        let mm = |measured: Measured| measured.times(STEPS_PER_MM.recip());
+        Self {
+            max_start_speed_mm_s: mm(motion.start_speed),
+            max_speed_jump_mm_s: mm(motion.speed_jump),
+            max_acceleration_mm_s2: mm(motion.acceleration),
+            lost_steps: axis.rotor.lost_steps(),
+            max_lag_full_steps: axis.rotor.max_lag_full_steps(),
+        }
+    }
+}
