@@ -1,4 +1,4 @@
-//! Any characters at any time on both sides of a line, in front of the monitor.
+//! Any characters at any time on both sides of a line, in front of the monitor and the diagnosis.
 #![no_main]
 
 use std::time::Duration;
@@ -6,12 +6,12 @@ use std::time::Duration;
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use proto3964r::frame::{encode, max_encoded_len};
-use proto3964r::{Check, Observation, Observations, Side};
+use proto3964r::{Character, Check, Observation, Observations, Side, diagnose};
 
 /// Longest payload that is kept.
 const LONGEST: usize = 24;
 /// The most that one character means.
-const MOST_OBSERVATIONS: usize = 5;
+const MOST_OBSERVATIONS: usize = 6;
 
 type Monitor = proto3964r::Monitor<LONGEST>;
 
@@ -24,6 +24,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
     let mut monitor = Monitor::new(config);
     let mut now = Duration::ZERO;
     let mut spoken = [Vec::new(), Vec::new()];
+    let mut record = Vec::new();
     while !u.is_empty() {
         let event: u8 = u.arbitrary()?;
         let side = if event & 1 == 0 { Side::A } else { Side::B };
@@ -33,6 +34,14 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
             2 | 3 => 0x10,
             4 => 0x15,
             _ => u.arbitrary()?,
+        };
+        let mut hear = |at, error| {
+            record.push(Character {
+                at,
+                side,
+                byte,
+                error,
+            });
         };
         let heard = &mut spoken[usize::from(event & 1)];
         match event >> 1 & 15 {
@@ -46,6 +55,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
             1 => {
                 heard.push(byte);
                 let error = pose2pulse_fuzz::line_error(u)?;
+                hear(now, Some(error));
                 check(
                     monitor.handle_damaged(now, side, byte, error),
                     &spoken,
@@ -55,11 +65,12 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
             step => {
                 now += Duration::from_millis(u64::from(step / 4));
                 heard.push(byte);
+                hear(now, None);
                 check(monitor.handle_byte(now, side, byte), &spoken, config.check);
             }
         }
-        assert!(!monitor.verdict().to_string().is_empty());
     }
+    assert!(!diagnose(&record, &config).to_string().is_empty());
     if let Some(due) = monitor.poll_timeout() {
         let due = due.max(now);
         monitor.handle_timeout(due).for_each(drop);

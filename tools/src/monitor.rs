@@ -1,6 +1,6 @@
 //! A listener on both directions of a line.
 
-use core::time::Duration;
+use core::{mem, time::Duration};
 use std::{
     fs,
     io::{self, IsTerminal as _, Read as _, Write as _},
@@ -12,7 +12,9 @@ use std::{
 
 use anyhow::{Context as _, Result, anyhow, bail, ensure};
 use clap::Args;
-use proto3964r::{Config, Line, Monitor, Observation, Priority, Side};
+use proto3964r::{
+    Character, Config, Diagnosis, Line, Monitor, Observation, Priority, Side, diagnose,
+};
 
 use crate::{port::Frame, preset::Preset, text};
 
@@ -22,7 +24,15 @@ const BLOCK: usize = 4096;
 /// A port that hears nothing for so long is asked again.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
-type Tap = Monitor<BLOCK>;
+/// What the verdict of a live tap looks back on.
+const RECENT: Duration = Duration::from_secs(60);
+
+/// How often the verdict of a live tap is looked for, at most.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// What a live tap keeps for its last verdict, in characters: a quarter of an hour of both
+/// directions of a 9600-baud line that never rests.
+const KEPT: usize = 1 << 21;
 
 /// Tells what happens on a line, and at the end why it does not work.
 ///
@@ -67,7 +77,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
 /// Prints the conversation of a capture file and the verdict.
 fn replay(path: &str, config: Config) -> Result<()> {
     let text = fs::read_to_string(path).with_context(|| path.to_owned())?;
-    let mut monitor = Tap::new(config);
+    let mut tap = Tap::new(config);
     let mut before = Duration::ZERO;
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -83,11 +93,48 @@ fn replay(path: &str, config: Config) -> Result<()> {
             seconds(before)
         );
         before = now;
-        for byte in bytes {
-            show(now, monitor.handle_byte(now, side, byte))?;
+        tap.hear(now, side, &bytes)?;
+    }
+    conclude(&diagnose(&tap.record, &config))
+}
+
+/// A monitor and all that it has heard.
+struct Tap {
+    monitor: Monitor<BLOCK>,
+    record: Vec<Character>,
+}
+
+impl Tap {
+    fn new(config: Config) -> Self {
+        Self {
+            monitor: Monitor::new(config),
+            record: Vec::new(),
         }
     }
-    conclude(&monitor)
+
+    /// Prints what the characters mean.
+    fn hear(&mut self, at: Duration, side: Side, bytes: &[u8]) -> Result<()> {
+        if self.record.len() >= KEPT {
+            self.record.drain(..KEPT / 2);
+        }
+        for &byte in bytes {
+            self.record.push(Character {
+                at,
+                side,
+                byte,
+                error: None,
+            });
+            show(at, self.monitor.handle_byte(at, side, byte))?;
+        }
+        Ok(())
+    }
+
+    /// The verdict on the last minute.
+    fn recent(&self, now: Duration, config: &Config) -> Diagnosis {
+        let from = now.saturating_sub(RECENT);
+        let begin = self.record.partition_point(|heard| heard.at < from);
+        diagnose(self.record.get(begin..).unwrap_or_default(), config)
+    }
 }
 
 fn parse(line: &str) -> Result<(Duration, Side, Vec<u8>), String> {
@@ -121,29 +168,33 @@ fn listen(options: &Options, config: Config) -> Result<()> {
         let sender = sender.clone();
         thread::spawn(move || hear(port, side, &sender));
     }
-    let mut monitor = Tap::new(config);
-    let mut verdict = monitor.verdict();
+    let mut tap = Tap::new(config);
+    let mut verdict = None;
+    let mut due = PAUSE;
     while options.seconds.is_none_or(|end| begin.elapsed() < end) {
         match receiver.recv_timeout(Duration::from_millis(20)) {
             Ok(heard) => {
                 let (at, side, bytes) = heard?;
-                let now = at - begin;
-                for byte in bytes {
-                    show(now, monitor.handle_byte(now, side, byte))?;
-                }
+                tap.hear(at - begin, side, &bytes)?;
             }
             Err(RecvTimeoutError::Timeout) => {
                 let now = begin.elapsed();
-                show(now, monitor.handle_timeout(now))?;
+                show(now, tap.monitor.handle_timeout(now))?;
             }
             Err(RecvTimeoutError::Disconnected) => break,
         }
-        if monitor.verdict() != verdict {
-            verdict = monitor.verdict();
-            conclude(&monitor)?;
+        let now = begin.elapsed();
+        if now < due {
+            continue;
+        }
+        due = now + PAUSE;
+        // Its numbers change all the time.
+        let recent = tap.recent(now, &config).verdict;
+        if verdict.replace(mem::discriminant(&recent)) != Some(mem::discriminant(&recent)) {
+            print(&format!("{} verdict: {recent}", seconds(now)), "1")?;
         }
     }
-    conclude(&monitor)
+    conclude(&diagnose(&tap.record, &config))
 }
 
 /// Reads a port until it or the monitor ends.
@@ -181,8 +232,8 @@ fn seconds(time: Duration) -> String {
     format!("{}.{:06}s", time.as_secs(), time.subsec_micros())
 }
 
-fn conclude(monitor: &Tap) -> Result<()> {
-    print(&format!("verdict: {}", monitor.verdict()), "1")
+fn conclude(diagnosis: &Diagnosis) -> Result<()> {
+    print(&format!("verdict: {diagnosis}"), "1")
 }
 
 /// The terminal's code: green for what goes well, red for what does not, plain for the rest.

@@ -10,6 +10,7 @@ extern crate std;
 
 mod ascii;
 mod config;
+mod diagnosis;
 #[cfg(feature = "embedded-io")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
 pub mod embedded_io;
@@ -31,7 +32,8 @@ pub mod serialport;
 mod station;
 
 pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
+pub use diagnosis::{Diagnosis, Formula, Totals, Verdict, diagnose};
 pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
-pub use monitor::{Monitor, Observation, Observations, Side, Verdict};
+pub use monitor::{Character, Monitor, Observation, Observations, Side};
 pub use station::{Station, SubmitError, Transmit};

@@ -7,7 +7,7 @@ use no_panic::no_panic;
 use proto3964r::frame::{self, Check, DecodeError, EncodeError, FrameError};
 use proto3964r::{
     Config, Event, Line, LineError, Observation, Observations, Priority, Side, SubmitError,
-    Transmit, Verdict,
+    Transmit,
 };
 
 type Station = proto3964r::Station<128>;
@@ -155,12 +155,6 @@ fn monitor_due(monitor: &Monitor) -> Option<Duration> {
     monitor.poll_timeout()
 }
 
-#[no_panic]
-#[inline(never)]
-fn verdict(monitor: &Monitor) -> Verdict {
-    monitor.verdict()
-}
-
 pub fn run() {
     let now = black_box(Duration::from_millis(5));
     let bytes = black_box([0x02, 0x41, 0x10, 0x03, 0x52].as_slice());
@@ -204,5 +198,4 @@ pub fn run() {
     let mut observations = black_box(monitor_timeout(black_box(monitor), now));
     black_box(observations_next(&mut observations));
     black_box(monitor_due(black_box(monitor)));
-    black_box(verdict(black_box(monitor)));
 }

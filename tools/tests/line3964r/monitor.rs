@@ -1,9 +1,11 @@
 //! `monitor` on capture files and on two ports.
 
+use core::time::Duration;
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::PathBuf;
 use std::process::Stdio;
+use std::thread;
 
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
@@ -54,6 +56,8 @@ fn good_conversation() {
             "0.205000s B block of 0: ",
             "0.207500s A DLE, accepted, 2.500 ms",
             "verdict: the line works",
+            "A to B: 1 telegrams, 0 repeats, 0 rejected, 0 conflicts, worst answer to STX 3.000 ms, worst acknowledgement 7.800 ms",
+            "B to A: 1 telegrams, 0 repeats, 0 rejected, 0 conflicts, worst answer to STX 4.000 ms, worst acknowledgement 2.500 ms",
         ]
     );
 }
@@ -81,7 +85,9 @@ fn wrong_bcc_and_its_repeat() {
             "1.011000s B DLE, ready to receive, 2.000 ms",
             "1.012000s A block of 1: 41",
             "1.017000s B DLE, accepted, 5.000 ms",
-            "verdict: the line works",
+            "verdict: the line works, but 1 of 2 blocks of A had to be repeated; 1 arrived damaged",
+            "A to B: 1 telegrams, 1 repeats (50.0 %), 1 rejected (50.0 %), 0 conflicts, worst answer to STX 2.000 ms, worst acknowledgement 5.000 ms",
+            "B to A: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts",
         ]
     );
 }
@@ -102,6 +108,8 @@ fn nak_to_stx_is_the_verdict() {
             "0.401000s A STX, attempt 2",
             "0.801000s B NAK to STX, 400.000 ms",
             "verdict: B answers NAK to STX: no receive buffer",
+            "A to B: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts",
+            "B to A: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts",
         ]
     );
 }
@@ -113,11 +121,14 @@ fn the_times_are_those_of_the_preset() {
         replay(&["--preset", "siemens-3964"], text),
         [
             "0.000000s A STX, attempt 1",
-            "0.600000s B does not answer, QVZ exceeded: 600.000 ms",
+            "0.600000s B does not answer, waited 600.000 ms",
             "0.600000s B DLE, ready to receive, 600.000 ms",
+            "1.300000s A sends no block after DLE, 700.000 ms",
             "1.300000s A pauses in the block, ZVZ exceeded: 700.000 ms",
             "1.300000s A block of 1: 41",
-            "verdict: B answers later than QVZ",
+            "verdict: B answers 600.000 ms after the question, later than A waits (QVZ, 550.000 ms): too late by 50.000 ms",
+            "A to B: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts, worst answer to STX 600.000 ms, longest gap 700.000 ms",
+            "B to A: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts",
         ]
     );
 }
@@ -137,7 +148,7 @@ fn two_ports() {
     // Each step waits for the one before; the times are those of the day.
     let mut see = |line: &mut TTYPort, bytes: &[u8], expected: &str| {
         line.write_all(bytes).unwrap();
-        let seen = lines.by_ref().find(|line| !line.starts_with("verdict"));
+        let seen = lines.by_ref().find(|line| !line.contains("verdict"));
         let seen = seen.unwrap();
         assert!(seen.contains(expected), "{seen}");
     };
@@ -147,12 +158,19 @@ fn two_ports() {
     see(&mut from_b, &[0x10], "s B DLE, accepted, ");
     see(&mut from_b, &[0x02], "s B STX, attempt 1");
     // Nothing comes: the time alone makes the next line.
-    see(&mut from_a, &[], "s A does not answer, QVZ exceeded: ");
-    let verdict = lines.last().unwrap();
+    see(&mut from_a, &[], "s A does not answer, waited ");
+    see(&mut from_b, &[0x02], "s B STX, attempt 2");
+    for expected in ["s B STX, attempt 3", "s B STX, attempt 4"] {
+        thread::sleep(Duration::from_millis(200));
+        see(&mut from_b, &[0x02], "s A does not answer, waited ");
+        see(&mut from_b, &[], expected);
+    }
+    let verdict = lines.find(|line| line.starts_with("verdict")).unwrap();
     assert!(
-        verdict.starts_with("verdict: A does not answer STX"),
+        verdict.starts_with("verdict: A does not answer STX any more"),
         "{verdict}"
     );
+    assert_eq!(lines.count(), 3);
     assert!(monitor.wait().unwrap().success());
 }
 

@@ -176,6 +176,16 @@ impl Progress {
         usize::from(self.len)
     }
 
+    /// Whether a payload byte stands in the buffer; the next one goes in its place.
+    pub(crate) fn take_stored(&mut self) -> bool {
+        mem::take(&mut self.len) > 0
+    }
+
+    /// The XOR of the characters so far.
+    pub(crate) const fn bcc(&self) -> u8 {
+        self.bcc
+    }
+
     /// Whether nothing but the BCC is missing.
     pub(crate) fn awaits_bcc(&self) -> bool {
         self.next == Next::Bcc

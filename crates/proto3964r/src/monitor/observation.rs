@@ -2,45 +2,8 @@
 
 use core::{fmt, iter::FusedIterator, time::Duration};
 
+use super::side::Side;
 use crate::{event::LineError, frame::FrameError};
-
-/// One of the two stations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "the line is point to point")]
-pub enum Side {
-    /// The first one.
-    A,
-    /// The second one.
-    B,
-}
-
-impl Side {
-    /// The other one.
-    pub(super) const fn other(self) -> Self {
-        match self {
-            Self::A => Self::B,
-            Self::B => Self::A,
-        }
-    }
-
-    pub(super) const fn index(self) -> usize {
-        match self {
-            Self::A => 0,
-            Self::B => 1,
-        }
-    }
-}
-
-impl fmt::Display for Side {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::A => "A",
-            Self::B => "B",
-        })
-    }
-}
 
 /// One step of the conversation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +18,15 @@ pub enum Observation<'a> {
     },
     /// Both sides sent STX.
     Conflict,
+    /// STX although the other side's STX has had no answer and came too long ago to cross.
+    RequestUnanswered {
+        /// Who should have answered.
+        side: Side,
+        /// Since the other side's STX.
+        delay: Duration,
+    },
+    /// Both sides answered the other's STX with DLE, and neither sends.
+    BothGaveWay,
     /// DLE to STX: ready to receive.
     Connected {
         /// The receiver.
@@ -88,10 +60,23 @@ pub enum Observation<'a> {
         /// What is wrong with it.
         error: FrameError,
     },
-    /// The answer came where the BCC was expected: the sender speaks 3964 without BCC.
+    /// A block ends with DLE ETX: the sender speaks 3964 without BCC.
     NoBcc {
         /// The sender.
         by: Side,
+    },
+    /// The answer came before the BCC, which came all the same: the receiver speaks 3964 without
+    /// BCC.
+    BccNotAwaited {
+        /// The receiver.
+        by: Side,
+    },
+    /// No block after DLE.
+    NoBlock {
+        /// Who should send it.
+        by: Side,
+        /// Since the DLE.
+        waited: Duration,
     },
     /// DLE to a block.
     Accepted {
@@ -107,9 +92,21 @@ pub enum Observation<'a> {
         /// Since the end of the block.
         delay: Duration,
     },
+    /// STX in place of the answer to a block.
+    RequestForAnswer {
+        /// The receiver.
+        by: Side,
+        /// Since the end of the block.
+        delay: Duration,
+    },
     /// NAK into a block.
     Aborted {
         /// The receiver.
+        by: Side,
+    },
+    /// The sender left its block unfinished.
+    BrokenOff {
+        /// The sender.
         by: Side,
     },
     /// NAK without a question: start-up, after noise, or the end of the last attempt.
@@ -154,6 +151,10 @@ impl fmt::Display for Observation<'_> {
         match *self {
             Self::Request { side, attempt } => write!(f, "{side} STX, attempt {attempt}"),
             Self::Conflict => f.write_str("initialization conflict: both sent STX"),
+            Self::RequestUnanswered { side, delay } => {
+                write!(f, "{side} did not answer STX, {}", Millis(delay))
+            }
+            Self::BothGaveWay => f.write_str("both answered DLE and neither sends"),
             Self::Connected { by, delay } => {
                 write!(f, "{by} DLE, ready to receive, {}", Millis(delay))
             }
@@ -164,15 +165,21 @@ impl fmt::Display for Observation<'_> {
             }
             Self::BadBlock { by, error } => write!(f, "{by} bad block: {error}"),
             Self::NoBcc { by } => write!(f, "{by} block without BCC"),
+            Self::BccNotAwaited { by } => write!(f, "{by} did not wait for the BCC"),
+            Self::NoBlock { by, waited } => {
+                write!(f, "{by} sends no block after DLE, {}", Millis(waited))
+            }
+            Self::RequestForAnswer { by, delay } => {
+                write!(f, "{by} STX in place of the answer, {}", Millis(delay))
+            }
+            Self::BrokenOff { by } => write!(f, "{by} leaves its block unfinished"),
             Self::Accepted { by, delay } => write!(f, "{by} DLE, accepted, {}", Millis(delay)),
             Self::Rejected { by, delay } => write!(f, "{by} NAK, rejected, {}", Millis(delay)),
             Self::Aborted { by } => write!(f, "{by} NAK into the block"),
             Self::Reset { side } => write!(f, "{side} NAK without a question"),
-            Self::NoAnswer { silent, waited } => write!(
-                f,
-                "{silent} does not answer, QVZ exceeded: {}",
-                Millis(waited)
-            ),
+            Self::NoAnswer { silent, waited } => {
+                write!(f, "{silent} does not answer, waited {}", Millis(waited))
+            }
             Self::Gap { by, gap } => {
                 write!(f, "{by} pauses in the block, ZVZ exceeded: {}", Millis(gap))
             }
@@ -183,7 +190,7 @@ impl fmt::Display for Observation<'_> {
 }
 
 /// `2.000 ms`.
-struct Millis(Duration);
+pub(crate) struct Millis(pub(crate) Duration);
 
 impl fmt::Display for Millis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -207,17 +214,25 @@ impl fmt::Display for Hex<'_> {
 
 /// An [`Observation`] whose payload is still in the buffer.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Mark {
-    Block { by: Side, len: usize },
+pub(crate) enum Mark {
+    Block { by: Side, len: u32 },
     Other(Observation<'static>),
 }
 
-/// Marks of one character: the wait before it, its damage, and at most three steps.
+/// Most marks of one character.
+const MARKS: usize = 6;
+
+/// Marks of one character: the wait before it, its damage, the end of what was open, and at most
+/// three steps.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Marks([Option<Mark>; 5]);
+pub(crate) struct Marks([Option<Mark>; MARKS]);
 
 impl Marks {
-    pub(super) fn push(&mut self, mark: Mark) {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Mark> {
+        self.0.into_iter().flatten()
+    }
+
+    pub(crate) fn push(&mut self, mark: Mark) {
         if let Some(free) = self.0.iter_mut().find(|slot| slot.is_none()) {
             *free = Some(mark);
         }
@@ -228,16 +243,23 @@ impl Marks {
 #[derive(Clone, Debug)]
 #[must_use = "a monitor does nothing but observe"]
 pub struct Observations<'a> {
-    marks: core::array::IntoIter<Option<Mark>, 5>,
+    marks: core::array::IntoIter<Option<Mark>, MARKS>,
     buffer: &'a [u8],
 }
 
 impl<'a> Observations<'a> {
-    pub(super) fn new(marks: Marks, buffer: &'a [u8]) -> Self {
+    pub(crate) fn new(marks: Marks, buffer: &'a [u8]) -> Self {
         Self {
             marks: marks.0.into_iter(),
             buffer,
         }
+    }
+}
+
+impl Observations<'_> {
+    /// What the buffer holds: at most 65535 bytes.
+    fn capacity(&self) -> u16 {
+        u16::try_from(self.buffer.len()).map_or(u16::MAX, |len| len)
     }
 }
 
@@ -247,10 +269,20 @@ impl<'a> Iterator for Observations<'a> {
     fn next(&mut self) -> Option<Observation<'a>> {
         Some(match self.marks.next()?? {
             Mark::Other(observation) => observation,
-            Mark::Block { by, len } => Observation::Block {
-                by,
-                payload: self.buffer.get(..len).unwrap_or_default(),
-            },
+            Mark::Block { by, len } => {
+                let payload = usize::try_from(len)
+                    .ok()
+                    .and_then(|len| self.buffer.get(..len));
+                match payload {
+                    Some(payload) => Observation::Block { by, payload },
+                    None => Observation::BadBlock {
+                        by,
+                        error: FrameError::TooLong {
+                            capacity: self.capacity(),
+                        },
+                    },
+                }
+            }
         })
     }
 

@@ -5,7 +5,9 @@ extern crate alloc;
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
-use proto3964r::{Config, Event, Failure, Line, Monitor, Observation, Side, Station, Transmit};
+use proto3964r::{
+    Character, Config, Event, Failure, Line, Monitor, Observation, Side, Station, Transmit,
+};
 
 use crate::random::Random;
 
@@ -134,6 +136,8 @@ pub(crate) struct Pair {
     pub(crate) monitor: Monitor<BLOCK>,
     /// Telegrams that the monitor saw, by sender.
     pub(crate) overheard: [Vec<Vec<u8>>; 2],
+    /// All that was heard there.
+    pub(crate) record: Vec<Character>,
     faults: Faults,
     character_us: u64,
     random: Random,
@@ -159,6 +163,7 @@ impl Pair {
             now: 0,
             monitor: Monitor::new(a),
             overheard: [Vec::new(), Vec::new()],
+            record: Vec::new(),
             faults,
             character_us: u64::from(character_us),
             random: Random::new(seed),
@@ -217,6 +222,12 @@ impl Pair {
     fn carry(&mut self, to: usize, byte: u8) {
         let mut arrival = self.now + self.character_us;
         let side = if to == 1 { Side::A } else { Side::B };
+        self.record.push(Character {
+            at: Duration::from_micros(arrival),
+            side,
+            byte,
+            error: None,
+        });
         for observation in self
             .monitor
             .handle_byte(Duration::from_micros(arrival), side, byte)

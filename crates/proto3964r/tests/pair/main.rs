@@ -9,6 +9,7 @@ use line::{Faults, Outcome, Pair};
 use proptest::prelude::*;
 use proto3964r::{
     Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock, Verdict,
+    diagnose,
     frame::{encode, max_encoded_len},
 };
 use random::Random;
@@ -71,7 +72,9 @@ fn a_clean_line_carries_everything_once() {
             assert_eq!(pair.ends[side].same_priority, 0);
             assert_eq!(pair.overheard[side], work[side]);
         }
-        assert_eq!(pair.monitor.verdict(), Verdict::Works);
+        let diagnosis = diagnose(&pair.record, &configs()[0]);
+        assert_eq!(diagnosis.verdict, Verdict::Works);
+        assert_eq!((diagnosis.a.telegrams, diagnosis.b.telegrams), (40, 40));
     }
 }
 

@@ -1,0 +1,121 @@
+//! Why a line does not work: a verdict over a record of both directions.
+
+mod delay;
+mod echo;
+mod evidence;
+mod formula;
+mod judge;
+mod totals;
+mod verdict;
+
+use core::{fmt, time::Duration};
+
+use crate::{
+    config::Config,
+    monitor::{Character, PerSide, Side},
+};
+
+pub use formula::Formula;
+pub use totals::Totals;
+pub use verdict::Verdict;
+
+use delay::{delay_of, patience_of};
+use echo::Echo;
+use evidence::Evidence;
+use judge::Case;
+
+/// Answers that come later than so many acknowledgement delay times are none.
+const LATEST: u32 = 4;
+
+/// What is to be said of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Diagnosis {
+    /// Why the line does not work, or that it does.
+    pub verdict: Verdict,
+    /// What looks the same in this record; [`Verdict::measurement`] tells the two apart.
+    pub or: Option<Verdict>,
+    /// Telegrams from A to B.
+    pub a: Totals,
+    /// Telegrams from B to A.
+    pub b: Totals,
+}
+
+impl fmt::Display for Diagnosis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.verdict)?;
+        if let Some(or) = self.or {
+            write!(f, "; or {or}")?;
+        }
+        if let Some(measurement) = self.verdict.measurement() {
+            write!(f, "\nto be sure: {measurement}")?;
+        }
+        write!(f, "\nA to B: {}\nB to A: {}", self.a, self.b)
+    }
+}
+
+/// How long the sides take and how long they wait.
+#[derive(Clone, Copy, Debug)]
+struct Delays {
+    answer: PerSide<Option<Duration>>,
+    patience: PerSide<Duration>,
+}
+
+impl Delays {
+    fn of(record: &[Character], config: &Config) -> Self {
+        let mut delays = Self {
+            answer: PerSide::both(None),
+            patience: PerSide::both(config.qvz()),
+        };
+        for side in Side::BOTH {
+            if let Some(patience) = patience_of(record, side) {
+                delays.patience[side] = patience;
+            }
+        }
+        for side in Side::BOTH {
+            let latest = delays.patience[side.other()].max(config.qvz());
+            let found = delay_of(record, side, latest.saturating_mul(LATEST));
+            delays.answer[side] = found.map(|found| found.delay);
+        }
+        delays
+    }
+}
+
+/// Tells from what was heard on both directions of a line why it does not work, with totals.
+///
+/// The record is in the order of time. Times and check that are expected come from a [`Config`];
+/// its other settings do not matter. Over a whole capture this is the verdict; over the last
+/// minute of a live tap it is the state of the line. It takes no memory of its own, and time that
+/// grows with the length of the record.
+///
+/// # Examples
+/// ```
+/// use core::time::Duration;
+/// use proto3964r::{Character, Config, Line, Priority, Side, Verdict, diagnose};
+///
+/// let record = [(0, Side::A, 0x02), (3, Side::B, 0x15), (6, Side::A, 0x02), (9, Side::B, 0x15)]
+///     .map(|(ms, side, byte)| Character { at: Duration::from_millis(ms), side, byte, error: None });
+/// let config = Config::siemens_3964r(Priority::Low, Line::Instant);
+/// let diagnosis = diagnose(&record, &config);
+/// assert_eq!(diagnosis.verdict, Verdict::NoReceiveBuffer { refuser: Side::B });
+/// assert_eq!(diagnosis.verdict.to_string(), "B answers NAK to STX: no receive buffer");
+/// ```
+#[must_use]
+pub fn diagnose(record: &[Character], config: &Config) -> Diagnosis {
+    let evidence = Evidence::of(record, config);
+    let case = Case {
+        evidence: &evidence,
+        echo: Echo::of(record),
+        delays: Delays::of(record, config),
+        check: config.check,
+    };
+    let (verdict, or) = case.verdict();
+    Diagnosis {
+        verdict,
+        or,
+        a: Totals::of(&evidence, Side::A),
+        b: Totals::of(&evidence, Side::B),
+    }
+}

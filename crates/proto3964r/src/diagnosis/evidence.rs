@@ -1,0 +1,346 @@
+//! What speaks for and against each fault, counted over a record.
+
+use core::time::Duration;
+
+use super::formula::Formulas;
+use crate::{
+    ascii::{DLE, NAK, STX},
+    config::Config,
+    frame::Check,
+    monitor::{Character, Conversation, Mark, Observation, PerSide, Side, since},
+};
+
+/// What one side did, as the sender of its telegrams and as the receiver of the other's.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Conduct {
+    pub(super) characters: u32,
+    /// The last one.
+    pub(super) last: Duration,
+    /// Outside of blocks: STX, DLE and NAK, and all else.
+    pub(super) control: u32,
+    pub(super) garbage: u32,
+    /// In blocks: all, and those that read 00h or came in damaged.
+    pub(super) in_blocks: u32,
+    pub(super) unreadable: u32,
+
+    pub(super) requests: u32,
+    pub(super) refused: u32,
+    pub(super) unanswered: u32,
+    /// In a row, up to the end.
+    pub(super) unanswered_at_end: u32,
+    pub(super) conflicts: u32,
+    /// Sent on without an answer, with DLE or with something else.
+    pub(super) answered_itself: u32,
+    pub(super) did_not_wait: u32,
+
+    /// Blocks that came to their end, or did not.
+    pub(super) good: u32,
+    pub(super) bad: u32,
+    pub(super) without_bcc: u32,
+    pub(super) unfinished: u32,
+    /// Answers to them.
+    pub(super) accepted: u32,
+    pub(super) rejected: u32,
+    pub(super) good_rejected: u32,
+    pub(super) bad_accepted: u32,
+    pub(super) unacknowledged: u32,
+    pub(super) broken_off: u32,
+    pub(super) gaps: u32,
+    pub(super) longest_gap: Duration,
+    pub(super) longest_accepted: u32,
+    pub(super) shortest_rejected: Option<u32>,
+    pub(super) formulas: Formulas,
+
+    /// As the receiver: reactions to the other, and moments in which one was missing.
+    pub(super) reacted: u32,
+    pub(super) ignored: u32,
+    pub(super) bcc_not_awaited: u32,
+    /// NAK by itself a while after DLE to a block.
+    pub(super) nak_after_dle: u32,
+    pub(super) requests_for_answers: u32,
+    pub(super) longest_request_for_answer: Duration,
+    pub(super) worst_answer: Option<Duration>,
+    pub(super) worst_acknowledgement: Option<Duration>,
+}
+
+impl Conduct {
+    /// Blocks, whatever became of them.
+    pub(super) const fn blocks(&self) -> u32 {
+        self.good
+            .saturating_add(self.bad)
+            .saturating_add(self.without_bcc)
+            .saturating_add(self.unfinished)
+    }
+}
+
+/// The last block, as long as it waits for its answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Block {
+    Good { len: u32 },
+    Bad,
+    WithoutBcc,
+}
+
+/// Counts of a record.
+#[derive(Clone, Debug)]
+pub(super) struct Evidence {
+    pub(super) sides: PerSide<Conduct>,
+    /// Conflicts that no DLE ended.
+    pub(super) stalemates: u32,
+    pub(super) both_gave_way: u32,
+    conflict_is_open: bool,
+    /// The one before has not ended.
+    conflict_goes_on: bool,
+    block: Option<Block>,
+    /// A character of the block came in damaged.
+    is_damaged: bool,
+    /// Who may send, as long as nothing of the block has come.
+    invited: Option<Side>,
+    last_in_block: Option<Duration>,
+    /// Who acknowledged the last block and when, until something else is said.
+    accepted: Option<(Side, Duration)>,
+    zvz: Duration,
+}
+
+impl Evidence {
+    pub(super) fn of(record: &[Character], config: &Config) -> Self {
+        let mut evidence = Self {
+            sides: PerSide::both(Conduct::default()),
+            stalemates: 0,
+            both_gave_way: 0,
+            conflict_is_open: false,
+            conflict_goes_on: false,
+            block: None,
+            is_damaged: false,
+            invited: None,
+            last_in_block: None,
+            accepted: None,
+            zvz: config.zvz(),
+        };
+        // With this rule a block without BCC shows as such; with the other a BCC shows as noise.
+        let mut conversation = Conversation::new(config, Check::Bcc);
+        for &heard in record {
+            conversation.take(heard);
+            for mark in conversation.marks().iter() {
+                if let Mark::Other(Observation::Connected { .. } | Observation::DidNotWait { .. }) =
+                    mark
+                {
+                    evidence.is_damaged = false;
+                    evidence.last_in_block = None;
+                }
+            }
+            evidence.character(heard, &conversation);
+            for mark in conversation.marks().iter() {
+                match mark {
+                    Mark::Block { by, len } => evidence.end_of_block(by, Some(len), &conversation),
+                    Mark::Other(Observation::BadBlock { by, .. }) => {
+                        evidence.end_of_block(by, None, &conversation);
+                    }
+                    Mark::Other(observation) => evidence.observe(heard, observation),
+                }
+            }
+        }
+        evidence
+    }
+
+    fn character(&mut self, heard: Character, conversation: &Conversation) {
+        let Character { at, side, byte, .. } = heard;
+        let conduct = &mut self.sides[side];
+        count(&mut conduct.characters);
+        conduct.last = at;
+        if conversation.took_for_block() {
+            count(&mut conduct.in_blocks);
+            if heard.error.is_some() || byte == 0 {
+                count(&mut conduct.unreadable);
+            }
+            if let Some(before) = self.last_in_block.replace(at) {
+                conduct.longest_gap = conduct.longest_gap.max(since(before, at));
+            }
+            self.is_damaged |= heard.error.is_some();
+            if self.invited.take() == Some(side) {
+                count(&mut conduct.reacted);
+            }
+        } else if matches!(heard.intact(), Some(STX | DLE | NAK)) {
+            count(&mut conduct.control);
+        }
+    }
+
+    fn end_of_block(&mut self, by: Side, len: Option<u32>, conversation: &Conversation) {
+        let conduct = &mut self.sides[by];
+        self.block = Some(match len {
+            Some(len) if !self.is_damaged => {
+                count(&mut conduct.good);
+                Block::Good { len }
+            }
+            _ => {
+                count(&mut conduct.bad);
+                Block::Bad
+            }
+        });
+        if let Some(bcc) = conversation.scan().bcc().filter(|_| !self.is_damaged) {
+            conduct.formulas.note(bcc);
+        }
+    }
+
+    fn observe(&mut self, heard: Character, observation: Observation<'_>) {
+        match observation {
+            Observation::Request { side, .. } => self.request(side),
+            Observation::Conflict => {
+                count(&mut self.sides[heard.side].conflicts);
+                if !self.conflict_goes_on {
+                    count(&mut self.sides[heard.side.other()].conflicts);
+                }
+                self.conflict_is_open = true;
+                self.conflict_goes_on = true;
+            }
+            Observation::RequestUnanswered { side, .. } => count(&mut self.sides[side].ignored),
+            Observation::BothGaveWay => {
+                count(&mut self.both_gave_way);
+                self.invited = None;
+            }
+            Observation::Connected { by, delay } => {
+                self.answered(by);
+                longest(&mut self.sides[by].worst_answer, delay);
+                (self.conflict_is_open, self.conflict_goes_on) = (false, false);
+                self.invited = Some(by.other());
+                self.block = None;
+            }
+            Observation::Refused { by, .. } => {
+                self.answered(by);
+                count(&mut self.sides[by.other()].refused);
+            }
+            Observation::DidNotWait { side } => {
+                let conduct = &mut self.sides[side];
+                if heard.byte == DLE {
+                    count(&mut conduct.answered_itself);
+                } else {
+                    count(&mut conduct.did_not_wait);
+                }
+            }
+            Observation::Reset { side } => self.reset(heard.at, side),
+            Observation::NoAnswer { silent, .. } => self.no_answer(silent),
+            Observation::Stray { side, byte } => {
+                if heard.error.is_some() || !matches!(byte, STX | DLE | NAK) {
+                    count(&mut self.sides[side].garbage);
+                }
+            }
+            _ => self.observe_block(observation),
+        }
+    }
+
+    fn observe_block(&mut self, observation: Observation<'_>) {
+        match observation {
+            Observation::NoBlock { by, .. } => count(&mut self.sides[by].ignored),
+            Observation::NoBcc { by } => {
+                count(&mut self.sides[by].without_bcc);
+                self.block = Some(Block::WithoutBcc);
+            }
+            Observation::BccNotAwaited { by } => {
+                count(&mut self.sides[by.other()].good);
+                count(&mut self.sides[by].bcc_not_awaited);
+            }
+            Observation::Accepted { by, delay } => self.accept(by, delay),
+            Observation::Rejected { by, .. } => self.reject(by),
+            Observation::Aborted { by } => {
+                count(&mut self.sides[by.other()].unfinished);
+                count(&mut self.sides[by].reacted);
+            }
+            Observation::BrokenOff { by } => {
+                let conduct = &mut self.sides[by];
+                count(&mut conduct.broken_off);
+                count(&mut conduct.unfinished);
+            }
+            Observation::Gap { by, gap } => {
+                let conduct = &mut self.sides[by];
+                count(&mut conduct.gaps);
+                conduct.longest_gap = conduct.longest_gap.max(gap);
+            }
+            Observation::RequestForAnswer { by, delay } => {
+                let conduct = &mut self.sides[by];
+                count(&mut conduct.requests_for_answers);
+                conduct.longest_request_for_answer = conduct.longest_request_for_answer.max(delay);
+            }
+            _ => {}
+        }
+    }
+
+    /// DLE to a block.
+    fn accept(&mut self, by: Side, delay: Duration) {
+        let receiver = &mut self.sides[by];
+        count(&mut receiver.reacted);
+        longest(&mut receiver.worst_acknowledgement, delay);
+        let sender = &mut self.sides[by.other()];
+        count(&mut sender.accepted);
+        match self.block.take() {
+            Some(Block::Good { len }) => sender.longest_accepted = sender.longest_accepted.max(len),
+            Some(Block::Bad) => count(&mut sender.bad_accepted),
+            Some(Block::WithoutBcc) | None => {}
+        }
+        self.accepted = Some((by, self.sides[by].last));
+    }
+
+    /// NAK to a block.
+    fn reject(&mut self, by: Side) {
+        count(&mut self.sides[by].reacted);
+        let sender = &mut self.sides[by.other()];
+        count(&mut sender.rejected);
+        if let Some(Block::Good { len }) = self.block.take() {
+            count(&mut sender.good_rejected);
+            let shortest = sender
+                .shortest_rejected
+                .map_or(len, |shortest| shortest.min(len));
+            sender.shortest_rejected = Some(shortest);
+        }
+    }
+
+    fn request(&mut self, side: Side) {
+        count(&mut self.sides[side].requests);
+        self.accepted = None;
+        self.block = None;
+        self.invited = None;
+        if core::mem::take(&mut self.conflict_is_open) {
+            count(&mut self.stalemates);
+        }
+    }
+
+    /// DLE or NAK to STX.
+    fn answered(&mut self, by: Side) {
+        let conduct = &mut self.sides[by];
+        count(&mut conduct.reacted);
+        conduct.unanswered_at_end = 0;
+    }
+
+    fn no_answer(&mut self, silent: Side) {
+        match self.block.take() {
+            Some(_) => {
+                let sender = &mut self.sides[silent.other()];
+                count(&mut sender.unacknowledged);
+            }
+            None => {
+                let conduct = &mut self.sides[silent];
+                count(&mut conduct.unanswered);
+                count(&mut conduct.unanswered_at_end);
+            }
+        }
+    }
+
+    /// A NAK that answers nothing.
+    fn reset(&mut self, now: Duration, side: Side) {
+        // A BCC that came as noise is answered after ZVZ of silence; half of it, as the partner's
+        // ZVZ may be shorter than the one given here.
+        let after = |&(by, at): &(Side, Duration)| {
+            by == side && since(at, now) >= self.zvz / 2 && since(at, now) <= self.zvz * 4
+        };
+        if self.accepted.take().filter(after).is_some() {
+            count(&mut self.sides[side].nak_after_dle);
+        }
+    }
+}
+
+fn count(counter: &mut u32) {
+    *counter = counter.saturating_add(1);
+}
+
+fn longest(worst: &mut Option<Duration>, time: Duration) {
+    *worst = Some(worst.map_or(time, |worst| worst.max(time)));
+}

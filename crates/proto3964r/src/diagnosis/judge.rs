@@ -1,0 +1,357 @@
+//! From the evidence to a verdict: the rules, in the order in which one fault shows as another.
+
+use super::{
+    Delays,
+    echo::Echo,
+    evidence::{Conduct, Evidence},
+    verdict::Verdict,
+};
+use crate::{config::Priority, frame::Check, monitor::Side};
+
+/// So many characters that nobody can read are no accident.
+const GARBAGE: u32 = 3;
+
+/// STX in a row without an answer, at the end of a record in which the line had worked.
+const SILENT_AT_THE_END: u32 = 3;
+
+/// What the rules look at.
+#[derive(Debug)]
+pub(super) struct Case<'c> {
+    pub(super) evidence: &'c Evidence,
+    pub(super) echo: Echo,
+    pub(super) delays: Delays,
+    pub(super) check: Check,
+}
+
+/// At least half of them, and one.
+const fn most(part: u32, all: u32) -> bool {
+    part > 0 && part.saturating_mul(2) >= all
+}
+
+/// A rule for one side.
+type Rule<'c> = fn(&Case<'c>, Side) -> Option<Verdict>;
+
+impl<'c> Case<'c> {
+    /// What can be said of one side, after what concerns both.
+    const RULES: [Rule<'c>; 16] = [
+        Self::late,
+        Self::not_heard,
+        Self::no_answer,
+        Self::no_longer_answers,
+        Self::without_bcc,
+        Self::other_bcc,
+        Self::no_receive_buffer,
+        Self::own_echo,
+        Self::long_blocks_rejected,
+        Self::good_blocks_rejected,
+        Self::bad_blocks_accepted,
+        Self::request_for_answer,
+        Self::no_acknowledgement,
+        Self::gaps,
+        Self::bad_blocks,
+        Self::garbage,
+    ];
+
+    /// The verdict, and the other cause where the sentence alone cannot tell.
+    pub(super) fn verdict(&self) -> (Verdict, Option<Verdict>) {
+        let (a, b) = (self.side(Side::A), self.side(Side::B));
+        if a.characters == 0 && b.characters == 0 {
+            return (Verdict::Silent, None);
+        }
+        if self.echo.is_everywhere() && self.echo.has_data() {
+            return (Verdict::Echo, None);
+        }
+        let (unreadable_a, unreadable_b) =
+            (self.is_unreadable(Side::A), self.is_unreadable(Side::B));
+        match (unreadable_a, unreadable_b) {
+            (true, true) => return (Verdict::BothGarbage, None),
+            (true, false) => return (Verdict::Garbage { side: Side::A }, None),
+            (false, true) => return (Verdict::Garbage { side: Side::B }, None),
+            (false, false) => {}
+        }
+        if let Some(verdict) = self.tap() {
+            return (verdict, None);
+        }
+        if let Some(priority) = self.same_priority() {
+            let or_echo = self.echo.is_everywhere().then_some(Verdict::Echo);
+            return (Verdict::SamePriority { priority }, or_echo);
+        }
+        if Side::BOTH.into_iter().all(|side| self.is_deaf(side)) {
+            return (Verdict::NeitherHears, None);
+        }
+        if let Some(verdict) = self.same_setting() {
+            return (verdict, None);
+        }
+        for rule in Self::RULES {
+            for side in Side::BOTH {
+                if let Some(verdict) = rule(self, side) {
+                    return (verdict, self.other_cause(verdict));
+                }
+            }
+        }
+        (self.works(), None)
+    }
+
+    fn side(&self, side: Side) -> &Conduct {
+        &self.evidence.sides[side]
+    }
+
+    /// What else a capture may show that looks like this.
+    fn other_cause(&self, verdict: Verdict) -> Option<Verdict> {
+        match verdict {
+            Verdict::NoAnswer { silent } if self.side(silent).characters > 0 => {
+                Some(Verdict::NotHeard {
+                    speaker: silent.other(),
+                    listener: silent,
+                })
+            }
+            _ => None,
+        }
+    }
+
+    /// Nothing of what this side sends makes sense.
+    fn is_unreadable(&self, side: Side) -> bool {
+        let Conduct {
+            good,
+            garbage,
+            control,
+            in_blocks,
+            unreadable,
+            without_bcc,
+            ..
+        } = *self.side(side);
+        let outside = garbage >= GARBAGE && garbage >= control;
+        let inside = unreadable >= GARBAGE && most(unreadable, in_blocks);
+        good == 0 && without_bcc == 0 && (outside || inside)
+    }
+
+    /// One side answers what the other, which is never heard, must have said.
+    fn tap(&self) -> Option<Verdict> {
+        Side::BOTH.into_iter().find_map(|speaker| {
+            let unheard = speaker.other();
+            if self.side(unheard).characters > 0 {
+                return None;
+            }
+            let Conduct {
+                answered_itself,
+                did_not_wait,
+                ..
+            } = *self.side(speaker);
+            if answered_itself > 0 {
+                Some(Verdict::OneInput { side: speaker })
+            } else if did_not_wait > 0 {
+                Some(Verdict::TapDeaf { speaker, unheard })
+            } else {
+                None
+            }
+        })
+    }
+
+    /// It never reacts to the other, although it should have.
+    fn is_deaf(&self, side: Side) -> bool {
+        let Conduct {
+            ignored, reacted, ..
+        } = *self.side(side);
+        ignored > reacted.saturating_mul(4)
+    }
+
+    fn same_priority(&self) -> Option<Priority> {
+        if Side::BOTH.into_iter().any(|side| self.is_deaf(side)) {
+            return None;
+        }
+        let Evidence {
+            both_gave_way,
+            stalemates,
+            ..
+        } = *self.evidence;
+        let conflicts = self.side(Side::A).conflicts;
+        if both_gave_way > 0 && most(both_gave_way, conflicts / 2) {
+            Some(Priority::Low)
+        } else if stalemates > 1 && most(stalemates, conflicts) {
+            Some(Priority::High)
+        } else {
+            None
+        }
+    }
+
+    /// Both sides agree, but not with what was expected of them.
+    fn same_setting(&self) -> Option<Verdict> {
+        let (a, b) = (self.side(Side::A), self.side(Side::B));
+        let good = a.good.saturating_add(b.good);
+        let without = a.without_bcc.saturating_add(b.without_bcc);
+        let accepted = a.accepted.saturating_add(b.accepted);
+        match self.check {
+            Check::Bcc if without > good && most(accepted, without) => {
+                Some(Verdict::BothWithoutBcc)
+            }
+            Check::None if good > without && most(accepted, good) => Some(Verdict::BothWithBcc),
+            _ => None,
+        }
+    }
+
+    fn late(&self, side: Side) -> Option<Verdict> {
+        let sender = self.side(side.other());
+        if sender.accepted > sender.rejected && sender.unanswered < sender.accepted {
+            return None;
+        }
+        let (delay, qvz) = (
+            self.delays.answer[side]?,
+            self.delays.patience[side.other()],
+        );
+        (delay > qvz).then_some(Verdict::Late { side, delay, qvz })
+    }
+
+    fn not_heard(&self, listener: Side) -> Option<Verdict> {
+        self.is_deaf(listener).then_some(Verdict::NotHeard {
+            speaker: listener.other(),
+            listener,
+        })
+    }
+
+    fn no_answer(&self, silent: Side) -> Option<Verdict> {
+        let requests = self.side(silent.other()).requests;
+        let Conduct {
+            unanswered,
+            reacted,
+            ..
+        } = *self.side(silent);
+        (reacted == 0 && most(unanswered, requests)).then_some(Verdict::NoAnswer { silent })
+    }
+
+    fn no_longer_answers(&self, silent: Side) -> Option<Verdict> {
+        let Conduct {
+            unanswered_at_end,
+            last,
+            ..
+        } = *self.side(silent);
+        (unanswered_at_end >= SILENT_AT_THE_END)
+            .then_some(Verdict::NoLongerAnswers { silent, last })
+    }
+
+    fn without_bcc(&self, side: Side) -> Option<Verdict> {
+        let own = self.side(side);
+        let as_sender = most(own.without_bcc, own.blocks());
+        let noticed = own.bcc_not_awaited.max(own.nak_after_dle);
+        let as_receiver = most(noticed, self.side(side.other()).blocks());
+        (as_sender || as_receiver).then_some(Verdict::WithoutBcc { side })
+    }
+
+    fn other_bcc(&self, sender: Side) -> Option<Verdict> {
+        let formula = self.side(sender).formulas.rule()?;
+        Some(Verdict::OtherBcc { sender, formula })
+    }
+
+    fn no_receive_buffer(&self, refuser: Side) -> Option<Verdict> {
+        let Conduct {
+            refused, requests, ..
+        } = *self.side(refuser.other());
+        most(refused, requests).then_some(Verdict::NoReceiveBuffer { refuser })
+    }
+
+    fn own_echo(&self, side: Side) -> Option<Verdict> {
+        let own = self.side(side);
+        most(own.broken_off, own.blocks()).then_some(Verdict::OwnEcho { side })
+    }
+
+    fn long_blocks_rejected(&self, refuser: Side) -> Option<Verdict> {
+        let Conduct {
+            good_rejected,
+            longest_accepted: accepted,
+            shortest_rejected,
+            ..
+        } = *self.side(refuser.other());
+        let rejected = shortest_rejected?;
+        (good_rejected > 1 && accepted > 0 && rejected > accepted).then_some(
+            Verdict::LongBlocksRejected {
+                refuser,
+                accepted,
+                rejected,
+            },
+        )
+    }
+
+    fn good_blocks_rejected(&self, refuser: Side) -> Option<Verdict> {
+        let sender = self.side(refuser.other());
+        let (rejected, blocks) = (sender.good_rejected, sender.blocks());
+        most(rejected, blocks).then_some(Verdict::GoodBlocksRejected {
+            refuser,
+            rejected,
+            blocks,
+        })
+    }
+
+    fn bad_blocks_accepted(&self, receiver: Side) -> Option<Verdict> {
+        let Conduct {
+            bad_accepted, bad, ..
+        } = *self.side(receiver.other());
+        most(bad_accepted, bad).then_some(Verdict::BadBlocksAccepted { receiver })
+    }
+
+    fn request_for_answer(&self, side: Side) -> Option<Verdict> {
+        let Conduct {
+            requests_for_answers,
+            longest_request_for_answer: delay,
+            ..
+        } = *self.side(side);
+        let blocks = self.side(side.other()).blocks();
+        most(requests_for_answers, blocks).then_some(Verdict::RequestForAnswer { side, delay })
+    }
+
+    fn no_acknowledgement(&self, silent: Side) -> Option<Verdict> {
+        let sender = self.side(silent.other());
+        most(sender.unacknowledged, sender.blocks())
+            .then_some(Verdict::NoAcknowledgement { silent })
+    }
+
+    fn gaps(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        most(own.gaps, own.blocks()).then_some(Verdict::Gaps {
+            sender,
+            longest: own.longest_gap,
+        })
+    }
+
+    fn bad_blocks(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        let bad = own.bad.saturating_add(own.unfinished);
+        (bad > own.accepted).then_some(Verdict::BadBlocks {
+            sender,
+            bad,
+            blocks: own.blocks(),
+        })
+    }
+
+    /// Less than would make it unreadable, and nothing else is known.
+    fn garbage(&self, side: Side) -> Option<Verdict> {
+        let nothing = Side::BOTH
+            .into_iter()
+            .all(|side| self.side(side).blocks() == 0 && self.side(side).requests == 0);
+        let own = self.side(side);
+        (nothing && own.garbage > 0).then_some(Verdict::Garbage { side })
+    }
+
+    /// Nothing is wrong for good.
+    fn works(&self) -> Verdict {
+        let repeated = |side| {
+            let own = self.side(side);
+            own.blocks().saturating_sub(own.accepted)
+        };
+        let sender = if repeated(Side::A) >= repeated(Side::B) {
+            Side::A
+        } else {
+            Side::B
+        };
+        let Conduct { bad: damaged, .. } = *self.side(sender);
+        let mut accepted = Side::BOTH.into_iter().map(|side| self.side(side).accepted);
+        match repeated(sender) {
+            _ if accepted.all(|accepted| accepted == 0) => Verdict::Open,
+            0 => Verdict::Works,
+            repeated => Verdict::WorksWithRepeats {
+                sender,
+                repeated,
+                damaged,
+                blocks: self.side(sender).blocks(),
+            },
+        }
+    }
+}
