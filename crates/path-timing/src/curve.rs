@@ -12,13 +12,14 @@ pub use error::CurveError;
 pub use motion::{CurveMotion, TurnMotion};
 pub use rounded::Rounded;
 
-use crate::{Path, Place, Span, ToolLimits};
+use crate::{Corner, Cubic, Path, Place, Span, ToolLimits};
 use polynomial::Polynomial;
 use vector::{all_finite, along, difference, dot, norm, scaled};
 
 /// A curve of the tool in `D` dimensions, in any unit of length, by its arc length s.
 ///
-/// As a [`Path`] it is that of a Cartesian machine, whose axes are the coordinates.
+/// As a [`Path`] it is that of a Cartesian machine, whose axes are the coordinates; it goes on to the
+/// next without a stop where their directions agree ([`Corner::Smooth`]).
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve, Knot, Table};
@@ -75,6 +76,9 @@ pub struct CurvePoint<const D: usize> {
 /// Derivatives 0 to 5 by the curve's own parameter.
 pub(crate) type Jet<const D: usize> = [[f64; D]; 6];
 
+/// Most that an arc turns by, in radians: some 16 times round.
+const MAX_ANGLE: f64 = 100.0;
+
 /// Least length, as a fraction of the coordinates, in which rounding leaves a direction 6 digits.
 const LEAST_LENGTH: f64 = 1e-10;
 
@@ -97,11 +101,12 @@ impl<const D: usize> Curve<D> {
     }
 
     /// The arc of a circle by `angle` > 0 radians from `start` round `centre`, leaving the start in
-    /// `direction`, of which only the part perpendicular to the radius counts. 2π and more go round.
+    /// `direction`, of which only the part perpendicular to the radius counts. 2π and more go round, up
+    /// to 100 rad.
     ///
     /// # Errors
-    /// [`CurveError::NotFinite`], [`CurveError::NoLength`], [`CurveError::NoDirection`] where the
-    /// direction is along the radius.
+    /// [`CurveError::NotFinite`], [`CurveError::NoLength`], [`CurveError::Angle`],
+    /// [`CurveError::NoDirection`] where the direction is along the radius.
     pub fn arc(
         start: [f64; D],
         centre: [f64; D],
@@ -115,6 +120,12 @@ impl<const D: usize> Curve<D> {
         let radius = norm(&out);
         if !(angle > 0.0 && radius > 0.0) {
             return Err(CurveError::NoLength);
+        }
+        if angle > MAX_ANGLE {
+            return Err(CurveError::Angle {
+                angle,
+                max: MAX_ANGLE,
+            });
         }
         let across = along(&direction, -dot(&direction, &out) / (radius * radius), &out);
         let width = norm(&across);
@@ -150,10 +161,16 @@ impl<const D: usize> Curve<D> {
         Self::polynomial(Polynomial::new(control_points)?, [start, end])
     }
 
-    /// The quintic Bézier curve of six control points.
-    pub(crate) fn quintic(control_points: [[f64; D]; 6]) -> Result<Self, CurveError> {
-        let [start, .., end] = control_points;
-        Self::polynomial(Polynomial::new(control_points)?, [start, end])
+    /// The quintic Bézier curve of six control points, given from `origin`, so that its derivatives
+    /// have all digits of these differences; its first point is `start` to the last bit.
+    pub(crate) fn quintic(
+        start: [f64; D],
+        origin: &[f64; D],
+        control_points: [[f64; D]; 6],
+    ) -> Result<Self, CurveError> {
+        let [.., end] = control_points.map(|point| along(origin, 1.0, &point));
+        let polynomial = Polynomial::new(control_points)?.moved(origin);
+        Self::polynomial(polynomial, [start, end])
     }
 
     fn polynomial(polynomial: Polynomial<D>, ends: [[f64; D]; 2]) -> Result<Self, CurveError> {
@@ -289,11 +306,11 @@ impl<const D: usize> Curve<D> {
         }
     }
 
-    /// The longest that derivatives 1 to 5 are within `half` of where the jet was taken.
-    fn longest(&self, jet: &Jet<D>, half: f64) -> [f64; 5] {
+    /// The longest that derivatives 1 to 4 are within `half` of where the jet was taken.
+    fn longest(&self, jet: &Jet<D>, half: f64) -> [f64; 4] {
         match &self.shape {
-            Shape::Line { .. } => [1.0, 0.0, 0.0, 0.0, 0.0],
-            Shape::Arc { radius, .. } => [*radius; 5],
+            Shape::Line { .. } => [1.0, 0.0, 0.0, 0.0],
+            Shape::Arc { radius, .. } => [*radius; 4],
             Shape::Polynomial(_) => polynomial::longest(jet, half),
         }
     }
@@ -301,13 +318,19 @@ impl<const D: usize> Curve<D> {
     /// The most by which a Cartesian machine departs from the curve on a segment of a table: for
     /// [`Table::plan_within`](crate::Table::plan_within). 0 on a line.
     ///
-    /// Proof: [`CurveMotion`], whose fourth derivative is all there is, since that of the axes is
-    /// zero.
+    /// Proof: [`CurveMotion`]; the fourth derivative of the axes is zero.
     #[must_use]
     pub fn departure(&self, span: &Span<[f64; D]>) -> f64 {
         let [from, to] = &span.rows;
         let motion = CurveMotion::new(self, span.s, [&from.velocity, &to.velocity], to.duration_s);
-        motion.departure(|_| [0.0; D], 0.0)
+        let place = |tau| {
+            let mut place = from.position;
+            for (place, cubic) in place.iter_mut().zip(Cubic::between(from, to)) {
+                *place = cubic.position(tau);
+            }
+            place
+        };
+        motion.departure(place, 0.0)
     }
 }
 
@@ -329,5 +352,9 @@ impl<const D: usize> Path for Curve<D> {
 
     fn tool(&self) -> Option<ToolLimits> {
         self.tool()
+    }
+
+    fn corner(&self) -> Corner<[f64; D]> {
+        Corner::Smooth
     }
 }

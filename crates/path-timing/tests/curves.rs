@@ -126,6 +126,10 @@ fn what_is_no_curve_is_refused() {
         arc([0.0, 0.0], [0.0, 0.0], 1.0),
         Err(CurveError::NoDirection)
     );
+    assert!(matches!(
+        arc([0.0, 0.0], [0.0, 1.0], 101.0),
+        Err(CurveError::Angle { .. })
+    ));
     assert_eq!(Curve::bezier([[1.0, 2.0]; 4]), Err(CurveError::NoLength));
     assert_eq!(Curve::bezier([[nan, 2.0]; 4]), Err(CurveError::NotFinite));
     // There and back: the derivative vanishes at 1/2.
@@ -201,6 +205,9 @@ fn blends_share_short_lines_and_leave_out_what_is_straight_or_sharp() {
         assert_eq!(bits(pair[0].end()), bits(pair[1].start()));
         let (before, after) = (pair[0].at(pair[0].length()), pair[1].at(0.0));
         assert!(norm(sub(before.tangent, after.tangent)) < ROUNDING);
+        // The ends to the last bit are those of the curve between them, to rounding.
+        let inside = pair[1].at(pair[1].length() * 1e-15).point;
+        assert!(norm(sub(inside, pair[1].start())) < ROUNDING);
     }
     assert_eq!(bits(curves.last().unwrap().end()), bits(zigzag[8]));
     assert!(curves.len() <= 10, "{}", curves.len());

@@ -14,6 +14,8 @@ mod forward;
 mod inverse;
 mod joints;
 mod limits;
+#[cfg(feature = "path-timing")]
+mod path;
 mod range;
 #[cfg(feature = "serde")]
 mod serde;
@@ -29,5 +31,7 @@ pub use follow::{Follow, FollowError, Waypoint};
 pub use inverse::{InverseError, Solutions};
 pub use joints::{Elbow, Joint, Joints};
 pub use limits::{JointRange, Limits};
+#[cfg(feature = "path-timing")]
+pub use path::{ArmPath, ArmPathError, DiscPath};
 pub use tangent::{TangentError, TangentTool, ToolTurn};
 pub use velocity::RatesError;

@@ -16,6 +16,14 @@ pub enum CurveError {
     /// The direction of an arc is along its radius.
     #[error("the direction of the arc is along its radius")]
     NoDirection,
+    /// An arc goes round too often.
+    #[error("the arc turns by {} rad, more than {} rad", short(.angle), short(.max))]
+    Angle {
+        /// The angle given, in radians.
+        angle: f64,
+        /// Largest angle, in radians.
+        max: f64,
+    },
     /// The curve turns round at once, or nearly: its derivative vanishes.
     #[error("the curve has a cusp near its parameter {}", short(.parameter))]
     Cusp {

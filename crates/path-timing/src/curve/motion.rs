@@ -1,7 +1,7 @@
-//! A point that runs along a curve while axes run their cubics, to the fifth derivative.
+//! A point that runs along a curve while axes run their cubics, and how far a tool is from it.
 
-use super::vector::{along, difference, dot, norm, scaled};
-use super::{Curve, Jet};
+use super::Curve;
+use super::vector::{along, difference, dot, norm};
 use crate::Cubic;
 use crate::number::larger_or_nan;
 
@@ -9,31 +9,33 @@ use crate::number::larger_or_nan;
 ///
 /// It says how far a tool can depart from the curve on that segment. Both the tool's motion and
 /// this one have the same place and velocity at both ends, so that their difference e and its first
-/// derivative vanish there. With the time as the fraction τ = 0..=1 of the segment
+/// derivative vanish there: e is the error of its own cubic Hermite interpolant, which is zero. With
+/// the time as the fraction τ = 0..=1 of the segment and M the longest that e⁗ can be, known from the
+/// derivatives of tool and curve,
 ///
 /// ```text
-/// |e(τ)| ≤ τ² (1 - τ)² / 24 · max |e⁗|  ≤  max |e⁗| / 384
-/// max |e⁗| ≤ max over τ = 1/6, 1/2, 5/6 of |e⁗(τ)| + max |e⁗'| / 6
+/// |e| ≤ M/384    |e"| ≤ M/12
 /// ```
+///
+/// (Birkhoff and Priver, Hermite interpolation errors for derivatives, 1967). From one node
+/// τ = k/8 to the next e is linear but for h²/8 · M/12 = M/6144, so that its largest value at the
+/// nodes and this are a bound E of |e| everywhere.
 ///
 /// Of e only the part across the curve counts: where the tool is ahead by a, the curve there is
-/// within κ a²/2 of its tangent. The direction across turns on the segment by at most ψ from
-/// halfway, and κ is the largest curvature. With E the bound of |e| and N that of its part across
-/// the tangent halfway, the tool is within
+/// within κ a²/2 of its tangent, κ its largest curvature. The tangent turns by at most ψ to the next
+/// node. With N the largest part of e across the tangent at a node the tool is within
 ///
 /// ```text
-/// N + ψ E + κ E² / 2
+/// N + ψ E + κ E²/2 + M/6144
 /// ```
 ///
-/// of the curve, where the tool ahead is still on the segment: the parameter has come at least
-/// τ²/2 of its way, so 32 E must be within the way.
+/// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the way
+/// is done and (1 - τ)²/2 left, and |e| ≤ M τ² (1 - τ)²/24, so 12 times the way must be M or more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveMotion<'a, const D: usize> {
     curve: &'a Curve<D>,
     parameter: Parameter,
-    longest: [f64; 5],
-    /// Unit tangent halfway.
-    tangent: [f64; D],
+    longest: [f64; 4],
     /// ψ, in radians.
     turn: f64,
     /// κ
@@ -42,9 +44,14 @@ pub struct CurveMotion<'a, const D: usize> {
     way: f64,
 }
 
-/// Where the fourth derivative is looked at, and how far from there the segment reaches.
-const LOOKS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
-const REACH: f64 = 1.0 / 6.0;
+/// Nodes between the ends of a segment.
+const NODES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
+
+/// From a node to the next.
+const NODE: f64 = 0.125;
+
+/// What is left between nodes, as a fraction of M.
+const BETWEEN: f64 = 1.0 / 6144.0;
 
 /// A cubic of the time, by the fraction of the segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,16 +82,6 @@ impl Parameter {
         c0 + tau * (c1 + tau * (c2 + tau * c3))
     }
 
-    /// Derivatives 1 to 3.
-    fn derivatives(&self, tau: f64) -> [f64; 3] {
-        let [_, c1, c2, c3] = self.coefficients;
-        [
-            c1 + tau * (2.0 * c2 + tau * 3.0 * c3),
-            2.0 * c2 + 6.0 * c3 * tau,
-            6.0 * c3,
-        ]
-    }
-
     /// Whether at each τ at least τ²/2 of the way is done, and at least (1 - τ)²/2 left: where the
     /// speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has 2.
     fn comes_forward(cubic: &Cubic) -> bool {
@@ -94,49 +91,17 @@ impl Parameter {
     }
 }
 
-/// What derivatives 1 to 5 of C(u(τ)) have of those of C, one row each, by Faà di Bruno; u⁗ = 0.
-fn weights([u1, u2, u3]: [f64; 3]) -> [[f64; 5]; 5] {
+/// The longest that derivatives 1 to 4 of C(u(τ)) can be, from those of C and the largest of u, by Faà
+/// di Bruno.
+fn composed(longest: [f64; 4], [u1, u2, u3]: [f64; 3]) -> [f64; 4] {
+    let [c1, c2, c3, c4] = longest;
     let square = u1 * u1;
     [
-        [u1, 0.0, 0.0, 0.0, 0.0],
-        [u2, square, 0.0, 0.0, 0.0],
-        [u3, 3.0 * u1 * u2, square * u1, 0.0, 0.0],
-        [
-            0.0,
-            3.0 * u2 * u2 + 4.0 * u1 * u3,
-            6.0 * square * u2,
-            square * square,
-            0.0,
-        ],
-        [
-            0.0,
-            10.0 * u2 * u3,
-            15.0 * u1 * u2 * u2 + 10.0 * square * u3,
-            10.0 * square * u1 * u2,
-            square * square * u1,
-        ],
+        c1 * u1,
+        c2 * square + c1 * u2,
+        c3 * square * u1 + 3.0 * c2 * u1 * u2 + c1 * u3,
+        c4 * square * square + 6.0 * c3 * square * u2 + c2 * (3.0 * u2 * u2 + 4.0 * u1 * u3),
     ]
-}
-
-/// The derivatives of C(u(τ)).
-fn composed<const D: usize>(jet: &Jet<D>, derivatives: [f64; 3]) -> Jet<D> {
-    let [point, rest @ ..] = jet;
-    let mut result = [*point; 6];
-    for (result, weights) in result.iter_mut().skip(1).zip(weights(derivatives)) {
-        let terms = rest.iter().zip(weights);
-        *result = terms.fold([0.0; D], |sum, (derivative, weight)| {
-            along(&sum, weight, derivative)
-        });
-    }
-    result
-}
-
-/// The longest that the derivatives of C(u(τ)) can be.
-fn composed_longest(longest: [f64; 5], largest: [f64; 3]) -> [f64; 5] {
-    weights(largest).map(|weights| {
-        let terms = longest.iter().zip(weights);
-        terms.map(|(longest, weight)| longest * weight).sum()
-    })
 }
 
 impl<'a, const D: usize> CurveMotion<'a, D> {
@@ -169,57 +134,57 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         let half = fastest * 0.5;
         let longest = curve.longest(&jet, half);
         let ([_, first, ..], [_, second, ..]) = (&jet, longest);
-        let speed = norm(first);
-        let slowest = speed - half * second;
+        let slowest = norm(first) - half * second;
         let (turn, curvature, way) = if slowest > 0.0 && Parameter::comes_forward(&cubic) {
             let way = (q1 - q0) * slowest;
-            (half * second / slowest, second / (slowest * slowest), way)
+            let turn = fastest * NODE * second / slowest;
+            (turn, second / (slowest * slowest), way)
         } else {
             (0.0, 0.0, 0.0)
         };
         Self {
             curve,
             parameter,
-            longest: composed_longest(longest, parameter.largest),
-            tangent: scaled(first, 1.0 / speed),
+            longest: composed(longest, parameter.largest),
             turn,
             curvature,
             way,
         }
     }
 
-    /// The place on the curve at τ, and its derivatives 1 to 5 by τ.
+    /// The place on the curve at τ.
     #[must_use]
-    pub fn at(&self, tau: f64) -> [[f64; D]; 6] {
-        let jet = self.curve.jet(self.parameter.at(tau));
-        composed(&jet, self.parameter.derivatives(tau))
+    pub fn at(&self, tau: f64) -> [f64; D] {
+        let [point, ..] = self.curve.jet(self.parameter.at(tau));
+        point
     }
 
-    /// The longest that derivatives 1 to 5 by τ are on the segment.
+    /// The longest that derivatives 1 to 4 by τ are on the segment.
     #[must_use]
-    pub const fn longest(&self) -> &[f64; 5] {
+    pub const fn longest(&self) -> &[f64; 4] {
         &self.longest
     }
 
-    /// The most by which a tool departs from the curve on the segment, from the fourth derivative of
-    /// its place by τ, a function of τ, and the longest that its fifth can be; see [`CurveMotion`].
+    /// The most by which a tool departs from the curve on the segment, from its place, a function
+    /// of τ, and the longest that its fourth derivative by τ can be; see [`CurveMotion`].
     #[must_use]
-    pub fn departure(&self, fourth: impl Fn(f64) -> [f64; D], longest_fifth: f64) -> f64 {
-        let [.., own_fifth] = self.longest;
-        let change = (own_fifth + longest_fifth) * REACH;
+    pub fn departure(&self, tool: impl Fn(f64) -> [f64; D], longest_fourth: f64) -> f64 {
+        let [.., own_fourth] = self.longest;
+        let fourth = own_fourth + longest_fourth;
         let (mut all, mut across) = (0.0_f64, 0.0_f64);
-        for tau in LOOKS {
-            let [.., own_fourth, _] = self.at(tau);
-            let apart = difference(&fourth(tau), &own_fourth);
-            let ahead = dot(&apart, &self.tangent);
+        for tau in NODES {
+            let [point, first, ..] = self.curve.jet(self.parameter.at(tau));
+            let apart = difference(&tool(tau), &point);
+            let ahead = dot(&apart, &first) / dot(&first, &first);
             all = larger_or_nan(all, norm(&apart));
-            across = larger_or_nan(across, norm(&along(&apart, -ahead, &self.tangent)));
+            across = larger_or_nan(across, norm(&along(&apart, -ahead, &first)));
         }
-        let [all, across] = [all, across].map(|fourth| (fourth + change) / 384.0);
+        let between = fourth * BETWEEN;
+        let all = all + between;
         // Written so that NaN stays.
-        let is_known = 32.0 * all <= self.way;
+        let is_known = fourth <= 12.0 * self.way;
         if is_known {
-            all.min(across + self.turn * all + 0.5 * self.curvature * all * all)
+            all.min(across + between + self.turn * all + 0.5 * self.curvature * all * all)
         } else {
             all
         }
@@ -242,19 +207,16 @@ impl TurnMotion {
         }
     }
 
-    /// The vector and its derivatives 1 to 5 by τ, the fraction of the segment's time.
+    /// Cosine and sine of the angle at τ, the fraction of the segment's time.
     #[must_use]
-    pub fn at(&self, tau: f64) -> [[f64; 2]; 6] {
+    pub fn at(&self, tau: f64) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.parameter.at(tau));
-        let (out, forward) = ([cos, sin], [-sin, cos]);
-        let (inward, back) = (scaled(&out, -1.0), scaled(&forward, -1.0));
-        let jet = [out, forward, inward, back, out, forward];
-        composed(&jet, self.parameter.derivatives(tau))
+        [cos, sin]
     }
 
-    /// The longest that derivatives 1 to 5 by τ are on the segment.
+    /// The longest that derivatives 1 to 4 by τ are on the segment.
     #[must_use]
-    pub fn longest(&self) -> [f64; 5] {
-        composed_longest([1.0; 5], self.parameter.largest)
+    pub fn longest(&self) -> [f64; 4] {
+        composed([1.0; 4], self.parameter.largest)
     }
 }

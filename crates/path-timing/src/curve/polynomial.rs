@@ -90,6 +90,13 @@ impl<const D: usize> Polynomial<D> {
         }
     }
 
+    /// The curve elsewhere.
+    pub(super) fn moved(mut self, by: &[f64; D]) -> Self {
+        let [start, ..] = &mut self.coefficients;
+        *start = along(start, 1.0, by);
+        self
+    }
+
     pub(super) fn length(&self) -> f64 {
         let [.., last] = self.lengths;
         last
@@ -221,10 +228,10 @@ fn hermite([a0, a1, a2]: [f64; 3], [b0, b1, b2]: [f64; 3], x: f64) -> [f64; 3] {
     ]
 }
 
-/// The longest that derivatives 1 to 5 are within `half` of where the jet was taken: the sum of the
+/// The longest that derivatives 1 to 4 are within `half` of where the jet was taken: the sum of the
 /// lengths of Taylor's terms, of which there are no more.
-pub(super) fn longest<const D: usize>(jet: &Jet<D>, half: f64) -> [f64; 5] {
-    let mut result = [0.0; 5];
+pub(super) fn longest<const D: usize>(jet: &Jet<D>, half: f64) -> [f64; 4] {
+    let mut result = [0.0; 4];
     for (first, longest) in (1..).zip(&mut result) {
         let mut power = 1.0;
         for (derivative, factorial) in jet.iter().skip(first).zip(FACTORIALS) {

@@ -130,21 +130,24 @@ impl<const D: usize, I: Iterator<Item = [f64; D]>> Rounded<I, D> {
         // What is left of the line is what the blend before has left of it: at least half.
         let most = length.min(next_length * 0.5);
         let l = most.min(self.tolerance / (DEPTH * sine));
-        let on = |direction: &[f64; D], distance: f64| along(&corner, distance * l, direction);
-        let start = if length - l <= length * LEAST_LINE {
-            from
+        let (first, start) = if length - l <= length * LEAST_LINE {
+            (length, from)
         } else {
-            on(&before, -1.0)
+            (l, along(&corner, -l, &before))
         };
-        Curve::quintic([
+        let blend = Curve::quintic(
             start,
-            on(&before, -NEAR),
-            on(&before, -NEAREST),
-            on(&after, NEAREST),
-            on(&after, NEAR),
-            on(&after, 1.0),
-        ])
-        .map(Some)
+            &corner,
+            [
+                scaled(&before, -first),
+                scaled(&before, -NEAR * l),
+                scaled(&before, -NEAREST * l),
+                scaled(&after, NEAREST * l),
+                scaled(&after, NEAR * l),
+                scaled(&after, l),
+            ],
+        );
+        blend.map(Some)
     }
 }
 

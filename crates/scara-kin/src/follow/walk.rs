@@ -5,7 +5,7 @@ use trig_kernels::Trig;
 
 use super::bisect::Bisection;
 use super::{FollowError, Waypoint};
-use crate::{Arm, Elbow, InverseError, Joint, Joints};
+use crate::{Arm, Elbow, InverseError, Joints};
 
 /// Yields each waypoint or the reason why there is none; ends after an error.
 #[derive(Debug, Clone)]
@@ -189,24 +189,8 @@ where
         if self.arm.chord_bound(self.joints, joints) + rounding <= self.tolerance {
             return Ok(joints);
         }
-        let change = joints - self.joints;
-        for (joint, change, angle) in [
-            (Joint::Shoulder, change.x, joints.shoulder),
-            (Joint::Elbow, change.y, joints.elbow),
-        ] {
-            // Where the nearer whole turn is out of range, that is the reason.
-            let angle = angle - T::two_pi().copysign(change);
-            let range = self.arm.limits().range(joint);
-            if change.abs() > T::pi() && !range.contains(angle) {
-                let reason = InverseError::JointLimit {
-                    elbow: self.elbow,
-                    joint,
-                    angle,
-                    min: range.min(),
-                    max: range.max(),
-                };
-                return Err(at.unreachable(reason));
-            }
+        if let Some(reason) = self.arm.forced_turn(self.elbow, self.joints, joints) {
+            return Err(at.unreachable(reason));
         }
         Err(FollowError::Singular {
             line: at.line,

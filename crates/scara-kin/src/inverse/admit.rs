@@ -97,6 +97,33 @@ impl<T: RealField + Trig> Arm<T> {
         self.tolerance().max(angles * T::default_epsilon())
     }
 
+    /// Why a joint turns by more than half a turn on the way to `to`: the nearer whole turn is out of
+    /// range.
+    pub(crate) fn forced_turn(
+        &self,
+        elbow: Elbow,
+        from: Joints<T>,
+        to: Joints<T>,
+    ) -> Option<InverseError<T>> {
+        let change = to - from;
+        let joints = [
+            (Joint::Shoulder, change.x, to.shoulder),
+            (Joint::Elbow, change.y, to.elbow),
+        ];
+        joints.into_iter().find_map(|(joint, change, angle)| {
+            let angle = angle - T::two_pi().copysign(change);
+            let range = self.limits().range(joint);
+            let is_forced = change.abs() > T::pi() && !range.contains(angle);
+            is_forced.then(|| InverseError::JointLimit {
+                elbow,
+                joint,
+                angle,
+                min: range.min(),
+                max: range.max(),
+            })
+        })
+    }
+
     /// The elbow that points the forearm at `tool` with the shoulder as given.
     fn elbow_towards(&self, shoulder: T, tool: Vector2<T>) -> T {
         let (sin, cos) = sin_cos(shoulder);

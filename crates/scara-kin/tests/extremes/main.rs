@@ -6,6 +6,8 @@ mod curves;
 mod inverse;
 mod machine;
 mod names;
+#[cfg(feature = "path-timing")]
+mod paths;
 mod rates;
 mod tools;
 

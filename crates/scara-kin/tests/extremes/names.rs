@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-const TESTS: [&str; 5] = [
+const TESTS: [&str; 6] = [
     include_str!("curves.rs"),
     include_str!("inverse.rs"),
     include_str!("machine.rs"),
+    include_str!("paths.rs"),
     include_str!("rates.rs"),
     include_str!("tools.rs"),
 ];

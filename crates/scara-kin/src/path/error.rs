@@ -1,0 +1,78 @@
+//! Why a curve is no path of the joints.
+
+use core::fmt::{Display, Formatter};
+
+use nalgebra::Point2;
+
+use crate::digits::Digits;
+use crate::{InverseError, TangentError};
+
+/// Why a curve is no path of the joints; nothing of it has been handed out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ArmPathError {
+    /// The tool cannot be at a place of the curve.
+    Unreachable {
+        /// Arc length up to there.
+        s: f64,
+        /// The first such point.
+        point: Point2<f64>,
+        /// Why.
+        reason: InverseError,
+    },
+    /// The tool comes nearer to the edge of the workspace than a millionth of the reach: there the
+    /// arm is straight or folded, so that a joint would turn without end, or its keep-out disc
+    /// begins.
+    Edge {
+        /// Arc length up to there.
+        s: f64,
+        /// The point.
+        point: Point2<f64>,
+        /// Distance from the edge, in the unit of length.
+        distance: f64,
+    },
+    /// The shoulder or the disc turns by more than three times on one curve.
+    Turns {
+        /// Arc length up to there.
+        s: f64,
+    },
+    /// The disc has no angle.
+    Disc {
+        /// Arc length up to there.
+        s: f64,
+        /// Why.
+        reason: TangentError,
+    },
+}
+
+impl Display for ArmPathError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Unreachable { s, point, reason } => write!(f, "{}: {reason}", At(*s, *point)),
+            Self::Edge { s, point, distance } => write!(
+                f,
+                "{}: {} from the edge of the workspace, where the arm is straight or folded or its keep-out disc begins",
+                At(*s, *point),
+                Digits(*distance)
+            ),
+            Self::Turns { s } => write!(
+                f,
+                "at {} of the curve: a joint has turned more than three times",
+                Digits(*s)
+            ),
+            Self::Disc { s, reason } => write!(f, "at {} of the curve: {reason}", Digits(*s)),
+        }
+    }
+}
+
+impl core::error::Error for ArmPathError {}
+
+/// A place of a curve.
+struct At(f64, Point2<f64>);
+
+impl Display for At {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        let [s, x, y] = [self.0, self.1.x, self.1.y].map(Digits);
+        write!(f, "at {s} of the curve, ({x}, {y})")
+    }
+}
