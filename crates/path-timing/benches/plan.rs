@@ -5,7 +5,7 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use path_timing::{Ahead, AxisLimits, Knot, PathFn, Place, Table};
+use path_timing::{Ahead, AxisLimits, Knot, LookAhead, PathFn, Place, Slot, Table};
 
 /// Segments of the path.
 const SEGMENTS: u32 = 1000;
@@ -61,9 +61,38 @@ fn measure<const N: usize>(criterion: &mut Criterion) {
     });
 }
 
+/// The same path over and over, back and forth, as a stream.
+fn measure_stream<const N: usize>(criterion: &mut Criterion) {
+    let limits = [AxisLimits {
+        speed: 1.0,
+        acceleration: 3.0,
+        jerk: None,
+    }; N];
+    let back = |s: f64| {
+        let mut place = swing::<N>(4.0 - s)?;
+        for slope in &mut place.slope {
+            *slope = -*slope;
+        }
+        Ok(place)
+    };
+    let mut group = criterion.benchmark_group(format!("{N} axes, {SEGMENTS} segments"));
+    group.bench_function("look ahead, 64 slots", |bencher| {
+        let mut window = [Slot::default(); 64];
+        bencher.iter(|| {
+            let paths = [swing::<N> as fn(f64) -> _, back].map(|place| PathFn::new(4.0, place));
+            let segments = |_: &_| SEGMENTS / 2;
+            let motion = LookAhead::new(&paths, limits, segments, black_box(&mut window));
+            let motion = motion.expect("window is long enough");
+            motion.filter(|row| black_box(row).is_ok()).count()
+        });
+    });
+}
+
 fn benches(criterion: &mut Criterion) {
     measure::<3>(criterion);
     measure::<9>(criterion);
+    measure_stream::<3>(criterion);
+    measure_stream::<9>(criterion);
 }
 
 criterion_group!(all, benches);

@@ -35,6 +35,9 @@ pub enum PlanError<E> {
         /// Largest value.
         max: f64,
     },
+    /// An axis has a limit of jerk where only speeds and accelerations are kept.
+    #[error("a limit of jerk takes a table: no window of fixed size has the path to the next stop")]
+    Jerk,
     /// A start-stop speed of a corner is neither 0 nor a number within the range of the crate.
     #[error("leg {leg}, axis {axis}: a start-stop speed of {} is not within the range of numbers", short(.speed))]
     StartStopSpeed {

@@ -42,8 +42,8 @@ pub(crate) enum Joint<A> {
 /// speed limit.
 const SMOOTH: f64 = 1e-9;
 
-/// What the two velocities at a corner round off.
-const ROUNDING: f64 = 1.0 - 16.0 * f64::EPSILON;
+/// Relative rounding of each of the two velocities at a corner.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl<A: Axes> Joint<A> {
     /// The joint between two paths with these slopes at their ends.
@@ -68,7 +68,7 @@ impl<A: Axes> Joint<A> {
         }
         let speed = allowed.as_slice().iter().zip(slopes());
         let speed = speed.fold(f64::INFINITY, |speed, (allowed, (p0, p1))| {
-            speed.min(allowed * ROUNDING / (p1 - p0).abs())
+            speed.min(allowed / ((p1 - p0).abs() + ROUNDING * (p0.abs() + p1.abs())))
         });
         if speed < SMALLEST {
             return Self::Stop;

@@ -17,6 +17,17 @@ pub(crate) struct Leg<P: Path> {
 }
 
 impl<P: Path> Leg<P> {
+    /// The path with no other after it.
+    pub(crate) fn last(number: usize, path: P) -> Self {
+        Self {
+            number,
+            length: path.length(),
+            tool: path.tool(),
+            path,
+            joint: Joint::Stop,
+        }
+    }
+
     /// The path with its joint to the `next`.
     pub(crate) fn new(
         number: usize,
@@ -24,21 +35,13 @@ impl<P: Path> Leg<P> {
         next: Option<&P>,
         limits: &Reciprocals<P::Axes>,
     ) -> Result<Self, P::Error> {
-        let (length, tool) = (path.length(), path.tool());
-        let joint = match (path.corner(), next) {
-            (Corner::Stop, _) | (_, None) => Joint::Stop,
-            (corner, Some(next)) => {
-                let (before, after) = (path.place(length)?, next.place(0.0)?);
-                Joint::new(limits, &corner, &before.slope, &after.slope)
-            }
-        };
-        Ok(Self {
-            number,
-            path,
-            length,
-            tool,
-            joint,
-        })
+        let mut leg = Self::last(number, path);
+        if let (corner @ (Corner::Smooth | Corner::Jump(_)), Some(next)) = (leg.path.corner(), next)
+        {
+            let (before, after) = (leg.path.place(leg.length)?, next.place(0.0)?);
+            leg.joint = Joint::new(limits, &corner, &before.slope, &after.slope);
+        }
+        Ok(leg)
     }
 
     pub(crate) const fn path(&self) -> &P {

@@ -2,7 +2,7 @@
 
 use crate::demand::Demand;
 use crate::leg::{self, Leg};
-use crate::number::{LARGEST, SMALLEST, larger_or_nan, sqrt};
+use crate::number::{larger_or_nan, sqrt};
 use crate::segment::Reciprocals;
 use crate::table::spans_of_leg;
 use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Span, profile, smooth};
@@ -28,19 +28,8 @@ const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
 impl<A: Axes> Planner<A> {
     /// The planner for axes with limits within the range of the crate.
     pub(crate) fn new<E>(limits: A::Of<AxisLimits>) -> Result<Self, PlanError<E>> {
-        for (axis, limits) in A::each(&limits).iter().enumerate() {
-            if let Some((name, value)) = limits.outside() {
-                return Err(PlanError::Limit {
-                    axis,
-                    name,
-                    value,
-                    min: SMALLEST,
-                    max: LARGEST,
-                });
-            }
-        }
         Ok(Self {
-            reciprocals: Reciprocals::new(&limits),
+            reciprocals: Reciprocals::checked(&limits)?,
             limits,
         })
     }
@@ -214,7 +203,7 @@ pub(crate) fn knots_of(segments: u32) -> usize {
 }
 
 /// Refuses a leg that begins elsewhere than the one before ends.
-fn check_joint<A: Axes, E>(leg: usize, end: &A, start: &A) -> Result<(), PlanError<E>> {
+pub(crate) fn check_joint<A: Axes, E>(leg: usize, end: &A, start: &A) -> Result<(), PlanError<E>> {
     let axes = start.as_slice().iter().zip(end.as_slice());
     let mut apart = axes.map(|(start, end)| start - end).enumerate();
     apart

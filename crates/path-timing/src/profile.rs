@@ -71,7 +71,7 @@ pub(crate) fn spread(knots: &mut [Knot], length: f64, rests: [bool; 2]) {
 }
 
 /// Where a knot stands, as a fraction of the leg.
-fn fraction(u: f64, rests: [bool; 2]) -> f64 {
+pub(crate) fn fraction(u: f64, rests: [bool; 2]) -> f64 {
     let from_rest = |u: f64| u * u * (3.0 - u) * 0.5;
     match rests {
         [true, true] => u * u * (3.0 - 2.0 * u),

@@ -1,7 +1,7 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
-use crate::number::{larger, sqrt};
-use crate::{Axes, AxisLimits, Place, ToolLimits};
+use crate::number::{LARGEST, SMALLEST, larger, sqrt};
+use crate::{Axes, AxisLimits, Place, PlanError, ToolLimits};
 
 /// One over the limits of speed and acceleration of an axis, a margin included.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +36,58 @@ impl<A: Axes> Reciprocals<A> {
             axes: reciprocals,
             has_jerk: A::each(limits).iter().any(|limits| limits.jerk.is_some()),
         }
+    }
+
+    /// The reciprocals of limits within the range of the crate.
+    pub(crate) fn checked<E>(limits: &A::Of<AxisLimits>) -> Result<Self, PlanError<E>> {
+        for (axis, limits) in A::each(limits).iter().enumerate() {
+            if let Some((name, value)) = limits.outside() {
+                return Err(PlanError::Limit {
+                    axis,
+                    name,
+                    value,
+                    min: SMALLEST,
+                    max: LARGEST,
+                });
+            }
+        }
+        Ok(Self::new(limits))
+    }
+
+    /// The reciprocals with a fraction of each speed limit.
+    pub(crate) fn at_feed(&self, feed: f64) -> Self {
+        let mut slower = *self;
+        for limits in A::each_mut(&mut slower.axes) {
+            limits.speed /= feed;
+        }
+        slower
+    }
+
+    /// The shortest time of a segment that starts and ends at rest.
+    ///
+    /// ```text
+    /// speed 3Δq / 2T   acceleration 6Δq / T²
+    /// ```
+    pub(crate) fn rest_to_rest_s(
+        &self,
+        start: &A,
+        end: &A,
+        tool: Option<&ToolLimits>,
+        ds: f64,
+    ) -> f64 {
+        let distances = start.as_slice().iter().zip(end.as_slice());
+        let distances = distances.map(|(q0, q1)| (q1 - q0).abs());
+        let of_axes = (A::each(&self.axes).iter().zip(distances))
+            .map(|(limits, distance)| (distance * limits.speed, distance * limits.acceleration));
+        let of_tool = tool.map(|tool| {
+            let acceleration = tool.acceleration.map_or(0.0, |limit| MARGIN * ds / limit);
+            (MARGIN * ds / tool.feed, acceleration)
+        });
+        of_axes
+            .chain(of_tool)
+            .fold(0.0, |time_s: f64, (speed, acceleration)| {
+                time_s.max(1.5 * speed).max(sqrt(6.0 * acceleration))
+            })
     }
 
     /// Whether any axis has a limit of jerk.

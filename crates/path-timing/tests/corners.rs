@@ -5,43 +5,19 @@
 mod limited;
 #[path = "support/machine.rs"]
 mod machine;
+#[path = "support/polyline.rs"]
+mod polyline;
 
 use limited::check_limits;
-use machine::{Line, limits};
-use path_timing::{
-    Ahead, AxisLimits, Corner, Knot, Path, PathFn, Place, PlanError, Row, Table, ToolLimits,
-};
+use machine::limits;
+use path_timing::{Ahead, AxisLimits, Corner, Knot, PathFn, Place, PlanError, Row, Table};
+use polyline::lines;
 use proptest::prelude::*;
 
 const LIMITS: [AxisLimits; 2] = [limits(2.0, 20.0, None), limits(300.0, 2000.0, None)];
 
 /// Of sums of some hundred times.
 const ROUNDING: f64 = 1e-9;
-
-/// Lines through all points, with the same corner at each end.
-fn lines<'a>(
-    points: &'a [[f64; 2]],
-    corner: Corner<[f64; 2]>,
-    feed: Option<f64>,
-) -> Vec<
-    impl Path<Axes = [f64; 2], Error = core::convert::Infallible> + Clone + core::fmt::Debug + use<'a>,
-> {
-    let line = |ends: &[[f64; 2]]| {
-        let line = Line {
-            from: ends[0],
-            to: ends[1],
-        };
-        let path = PathFn::new(line.length(), move |s| line.place(s)).with_corner(corner);
-        match feed {
-            Some(feed) => path.with_tool(ToolLimits {
-                feed,
-                acceleration: None,
-            }),
-            None => path,
-        }
-    };
-    points.windows(2).map(line).collect()
-}
 
 fn planned(
     points: &[[f64; 2]],

@@ -3,9 +3,12 @@
 use core::convert::Infallible;
 use std::array::IntoIter;
 use std::hint::black_box;
+use std::iter::{Repeat, repeat};
 
 use no_panic::no_panic;
-use path_timing::{Ahead, AxisLimits, Knot, Path, Place, PlanError, Row, Rows, Run, Table};
+use path_timing::{
+    Ahead, AxisLimits, Knot, LookAhead, Path, Place, PlanError, Row, Rows, Run, Slot, Table,
+};
 
 /// A parabola, one axis by the square of the other.
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +64,26 @@ fn run_next(run: &mut Run<'_, Legs>) -> Result<Option<Row<[f64; 2]>>, Infallible
     run.next_row()
 }
 
+type Stream = Repeat<Parabola>;
+
+#[no_panic]
+#[inline(never)]
+fn look_ahead<F: FnMut(&Parabola) -> u32>(
+    limits: [AxisLimits; 2],
+    segments: F,
+    window: &mut [Slot<[f64; 2]>],
+) -> Result<LookAhead<'_, Parabola, Stream, F>, PlanError<Infallible>> {
+    LookAhead::new(repeat(Parabola), limits, segments, window)
+}
+
+#[no_panic]
+#[inline(never)]
+fn look_ahead_next(
+    motion: &mut LookAhead<'_, Parabola, Stream, impl FnMut(&Parabola) -> u32>,
+) -> Result<Option<Row<[f64; 2]>>, PlanError<Infallible>> {
+    motion.next_row()
+}
+
 pub fn run() {
     let limits = AxisLimits {
         speed: 1.0,
@@ -75,5 +98,17 @@ pub fn run() {
     let mut ahead = black_box([Ahead::default(); 64]);
     if let Ok(mut run) = run_table(&table, black_box(1.5), black_box(&mut ahead)) {
         black_box(run_next(&mut run).is_ok());
+    }
+    let limits = AxisLimits {
+        jerk: None,
+        ..limits
+    };
+    let mut window = black_box([Slot::default(); 16]);
+    if let Ok(mut motion) = look_ahead(
+        black_box([limits; 2]),
+        |_| black_box(7),
+        black_box(&mut window),
+    ) {
+        black_box(look_ahead_next(&mut motion).is_ok());
     }
 }

@@ -1,0 +1,303 @@
+//! Rows along an endless stream of paths, planned in a window of fixed size.
+
+mod window;
+
+use core::fmt::{self, Debug};
+
+use crate::joint::Joint;
+use crate::leg::Leg;
+use crate::number::{LARGEST, SMALLEST, range};
+use crate::planner::{MAX_SEGMENTS, MIN_SEGMENTS, check_joint};
+use crate::profile::fraction;
+use crate::segment::Reciprocals;
+use crate::{Axes, AxisLimits, Corner, FeedError, Path, PlanError, Row};
+pub use window::Slot;
+use window::{Feed, Window};
+
+/// Fewest slots of a window: a knot between two at rest.
+const MIN_SLOTS: usize = 3;
+
+/// The rows along a stream of paths that need not end, planned in a window of the caller's memory.
+///
+/// Each call of [`next_row`](Self::next_row) hands out one row, which is never revised. What
+/// follows the window's end is unknown, so the machine can always stop there: the last speed in the
+/// window is 0, and rises when the stream goes on. The rows are as fast as those of a
+/// [`Table`](crate::Table) where half of the window is longer than the braking distance v²/2a; a
+/// shorter window costs time, never a limit.
+///
+/// When half of the window has been handed out, it is filled up and its speeds are computed from its
+/// end: at most two backward evaluations and one forward for each knot, two more backward at a feed
+/// below the highest. Where the stream has no path for now, the machine comes to rest at the end of
+/// the last one and goes on when there is one.
+///
+/// ```
+/// use path_timing::{AxisLimits, Curve, LookAhead, Slot};
+///
+/// // Sides of a staircase that never ends, in mm.
+/// let point = |n: u32| [f64::from(n / 2) * 20.0, f64::from(n.div_ceil(2)) * 20.0];
+/// let sides = (0..).map_while(|n| Curve::line(point(n), point(n + 1)).ok());
+/// let axis = AxisLimits { speed: 200.0, acceleration: 2000.0, jerk: None };
+/// let mut window = [Slot::default(); 32];
+/// let mut motion = LookAhead::new(sides, [axis; 2], |_| 8, &mut window)?;
+/// for row in motion.by_ref().take(1000) {
+///     let row = row?; // `row.duration_s` after the row before: `row.position`, `row.velocity`
+/// }
+/// motion.stop();
+/// let last = motion.last().unwrap()?; // at rest on the path
+/// # assert_eq!(last.velocity, [0.0; 2]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct LookAhead<'w, P: Path, I, F> {
+    paths: I,
+    segments: F,
+    /// The path whose knots enter the window, and how they are spread on it.
+    entering: Option<Entering<P>>,
+    /// Paths that have begun.
+    count: usize,
+    /// Whether a path was refused: the stream ends there.
+    is_refused: bool,
+    /// The number and the corner of the path before, with its end in the window.
+    joint: Option<(usize, Corner<P::Axes>)>,
+    window: Window<'w, P::Axes>,
+    limits: Reciprocals<P::Axes>,
+    max: f64,
+    wanted: f64,
+    /// Path speed at the row handed out last; none before the first.
+    speed: Option<f64>,
+    time_s: f64,
+    /// The second row of a corner where velocities jump.
+    jump: Option<Row<P::Axes>>,
+}
+
+/// A path on its way into the window.
+#[derive(Debug, Clone)]
+struct Entering<P: Path> {
+    leg: Leg<P>,
+    rests: [bool; 2],
+    segments: u32,
+    /// Of the next knot.
+    index: u32,
+    s: f64,
+}
+
+impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> u32> LookAhead<'w, P, I, F> {
+    /// The rows along `paths`, each cut into as many `segments` as the function says, at least 2.
+    ///
+    /// # Errors
+    /// [`PlanError::Limit`]; [`PlanError::Jerk`] where an axis has a limit of jerk, which takes a
+    /// [`Table`](crate::Table); [`PlanError::Memory`] for a window of fewer than 3 slots.
+    pub fn new(
+        paths: impl IntoIterator<IntoIter = I>,
+        limits: <P::Axes as Axes>::Of<AxisLimits>,
+        segments: F,
+        window: &'w mut [Slot<P::Axes>],
+    ) -> Result<Self, PlanError<P::Error>> {
+        let limits = Reciprocals::checked(&limits)?;
+        if limits.has_jerk() {
+            return Err(PlanError::Jerk);
+        }
+        if window.len() < MIN_SLOTS {
+            return Err(PlanError::Memory {
+                needed: MIN_SLOTS,
+                available: window.len(),
+            });
+        }
+        Ok(Self {
+            paths: paths.into_iter(),
+            segments,
+            entering: None,
+            count: 0,
+            is_refused: false,
+            joint: None,
+            window: Window::new(window),
+            limits,
+            max: 1.0,
+            wanted: 1.0,
+            speed: None,
+            time_s: 0.0,
+            jump: None,
+        })
+    }
+
+    /// With feeds of up to `max`, 2 for 200 %, before the first row. It looks further ahead for the
+    /// higher feed.
+    ///
+    /// # Errors
+    /// [`PlanError::Feed`].
+    pub fn with_max_feed(mut self, max: f64) -> Result<Self, PlanError<P::Error>> {
+        if !range().contains(&max) {
+            return Err(PlanError::Feed {
+                feed: max,
+                min: SMALLEST,
+                max: LARGEST,
+            });
+        }
+        (self.max, self.wanted) = (max, self.wanted.min(max));
+        Ok(self)
+    }
+
+    /// Wants a feed, 1 for 100 %; 0 holds. The speed goes there as fast as the accelerations allow.
+    ///
+    /// The tool's feed is multiplied by it, and below 1 the speed limits of the axes too;
+    /// accelerations stay as they are.
+    ///
+    /// # Errors
+    /// [`FeedError`]; the wanted feed stays.
+    pub fn set_feed(&mut self, feed: f64) -> Result<(), FeedError> {
+        let (min, max) = (SMALLEST, self.max);
+        if feed == 0.0 || (feed >= min && feed <= max) {
+            self.wanted = feed;
+            return Ok(());
+        }
+        Err(FeedError { feed, min, max })
+    }
+
+    /// Holds: comes to rest at a knot as soon as the accelerations allow.
+    /// [`set_feed`](Self::set_feed) goes on.
+    pub const fn stop(&mut self) {
+        self.wanted = 0.0;
+    }
+
+    /// Whether the machine rests at the row handed out last.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.speed.is_none_or(|speed| speed <= 0.0)
+    }
+
+    /// The next row; `None` where the machine rests: held, or at the end of the last path for now.
+    ///
+    /// # Errors
+    /// [`PlanError`] with the place, once, when a path is refused; no other path is taken then. It
+    /// comes a window before the machine is there: further calls hand out the rows to a rest at the
+    /// last knot before that place.
+    pub fn next_row(&mut self) -> Result<Option<Row<P::Axes>>, PlanError<P::Error>> {
+        if let Some(row) = self.jump.take() {
+            return Ok(Some(row));
+        }
+        let filled = self.fill();
+        let feed = Feed {
+            max: self.max,
+            wanted: self.wanted,
+        };
+        self.window.look_back(&self.limits, feed);
+        filled?;
+        let Some(speed) = self.speed else {
+            return Ok(self.first_row());
+        };
+        let Some(step) = self.window.step(&self.limits, feed, speed) else {
+            return Ok(None);
+        };
+        self.speed = Some(step.speed);
+        self.time_s += step.duration_s;
+        let row = Row::new(&step.place, step.speed, self.time_s, step.duration_s);
+        self.jump = step
+            .jump
+            .map(|slope| row.with_jump(slope.scaled(step.speed)));
+        Ok(Some(row))
+    }
+
+    /// The first row, at rest.
+    fn first_row(&mut self) -> Option<Row<P::Axes>> {
+        let first = self.window.first()?;
+        self.speed = Some(0.0);
+        Some(Row::new(first, 0.0, 0.0, 0.0))
+    }
+
+    /// Fills the window when half of it is free.
+    fn fill(&mut self) -> Result<(), PlanError<P::Error>> {
+        if self.is_refused || !self.window.make_room() {
+            return Ok(());
+        }
+        let filled = self.push_knots();
+        if filled.is_err() {
+            self.is_refused = true;
+        }
+        filled
+    }
+
+    fn push_knots(&mut self) -> Result<(), PlanError<P::Error>> {
+        while self.window.has_room() {
+            if self.entering.is_none() {
+                let Some(path) = self.paths.next() else {
+                    return Ok(());
+                };
+                self.entering = Some(self.begin(path)?);
+            }
+            let Some(entering) = &mut self.entering else {
+                return Ok(());
+            };
+            let s = entering.next_s();
+            let place = entering.leg.checked_place(s)?;
+            let tool = entering.leg.tool().copied();
+            self.window.push(s - entering.s, tool, place);
+            entering.s = s;
+            if entering.index > entering.segments {
+                self.joint = Some((entering.leg.number, entering.leg.path().corner()));
+                self.entering = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins a path: its first knot is the last of the path before.
+    fn begin(&mut self, path: P) -> Result<Entering<P>, PlanError<P::Error>> {
+        let number = self.count;
+        self.count = number.wrapping_add(1);
+        let segments = (self.segments)(&path);
+        if segments > MAX_SEGMENTS {
+            let max = MAX_SEGMENTS;
+            return Err(PlanError::TooFine { leg: number, max });
+        }
+        let leg = Leg::last(number, path);
+        leg.check()?;
+        let start = leg.checked_place(0.0)?;
+        let ends_at_rest = matches!(leg.path().corner(), Corner::Stop);
+        let starts_at_rest = match (self.joint.take(), self.window.last()) {
+            (Some((_, corner)), Some(end)) => {
+                check_joint(number, &end.position, &start.position)?;
+                let joint = Joint::new(&self.limits, &corner, &end.slope, &start.slope);
+                self.window.join(&joint, &start.slope);
+                joint.is_stop()
+            }
+            _ => {
+                self.window.push(0.0, None, start);
+                true
+            }
+        };
+        Ok(Entering {
+            leg,
+            rests: [starts_at_rest, ends_at_rest],
+            segments: segments.max(MIN_SEGMENTS),
+            index: 1,
+            s: 0.0,
+        })
+    }
+}
+
+impl<P: Path> Entering<P> {
+    /// The parameter of the next knot.
+    fn next_s(&mut self) -> f64 {
+        let u = f64::from(self.index) / f64::from(self.segments);
+        self.index = self.index.saturating_add(1);
+        self.leg.length() * fraction(u, self.rests)
+    }
+}
+
+impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> u32> Iterator for LookAhead<'_, P, I, F> {
+    type Item = Result<Row<P::Axes>, PlanError<P::Error>>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.next_row().transpose()
+    }
+}
+
+impl<P: Path, I, F> Debug for LookAhead<'_, P, I, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LookAhead")
+            .field("paths", &self.count)
+            .field("time_s", &self.time_s)
+            .field("speed", &self.speed)
+            .field("wanted", &self.wanted)
+            .finish_non_exhaustive()
+    }
+}
