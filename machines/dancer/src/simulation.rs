@@ -30,6 +30,18 @@ pub struct Run {
 }
 
 impl Run {
+    /// Half steps from the start at the end of every frame, before the first one too.
+    #[must_use]
+    pub fn positions(&self) -> &[[i32; MOTORS]] {
+        &self.positions
+    }
+
+    /// The same for the same frames under the law to compare with.
+    #[must_use]
+    pub fn other_positions(&self) -> &[[i32; MOTORS]] {
+        &self.other
+    }
+
     /// Length of a frame.
     pub(crate) fn frame_s(&self) -> f64 {
         let frames = u32::try_from(self.positions.len() - 1).map_or(f64::INFINITY, f64::from);

@@ -25,6 +25,7 @@
 mod controller;
 mod drawing;
 mod gauge;
+mod header;
 mod machine;
 mod order;
 mod picture;
@@ -35,9 +36,11 @@ mod report;
 mod simulation;
 mod tool_speed;
 mod track;
+mod view;
 
 pub use self::controller::Wires;
 pub use self::drawing::Drawing;
+pub use self::header::header;
 pub use self::machine::Machine;
 pub use self::placement::{Bed, Placement};
 pub use self::plan::{Plan, PlanSettings, Reference, Tolerance};

@@ -65,11 +65,9 @@ fn drawn(run: &Run, plot: Plot, is_explained: bool) -> Plot {
 
 /// How far the path is from the drawing, over time.
 fn profile(run: &Run) -> Plot {
-    #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
-    let seconds = |ticks: u64| ticks as f64 * run.tick_s;
-    let parts = run.deviation.profile.parts();
     // The line is broken where the tool is lifted.
-    let points = parts.map(|(ticks, max)| [seconds(ticks), max.unwrap_or(f64::NAN)]);
+    let points = run.deviation_over_time();
+    let points = points.map(|(seconds, max)| [seconds, max.unwrap_or(f64::NAN)]);
     let (bound, end) = (run.bound_mm, run.duration_s);
     Plot::chart(
         Axis::new("time in s").over(0.0..=end),

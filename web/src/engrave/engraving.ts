@@ -1,0 +1,122 @@
+// What the machine made of a drawing, ready to be asked for any time.
+import type { Answer } from '../shared/machine';
+
+export const AXES = ['theta1', 'theta2', 'theta3', 'vertical'] as const;
+export type Axis = (typeof AXES)[number];
+type Joints = Record<'theta1' | 'theta2' | 'theta3', number>;
+
+/** The JSON of the operation; the report is that of the command line. */
+export interface Result {
+  summary: string;
+  isWithinBound: boolean;
+  report: {
+    notes: string[];
+    duration_s: number;
+    bound_mm: number;
+    machine: {
+      upper_mm: number;
+      fore_mm: number;
+      rad_per_pulse: Joints;
+      home_rad: Joints;
+      settings: { bed: { x_mm: number; y_mm: number; width_mm: number; height_mm: number } };
+    };
+  };
+}
+
+/** The step pin of an axis: edges in seconds, low to high first, and where the motor is after each. */
+export interface Pin {
+  edges: Float64Array;
+  /** Of each pulse. */
+  steps: Int8Array;
+  /** Before the first pulse, and after each. */
+  positions: Int32Array;
+}
+
+/** The arm in the plane, in mm and radians. */
+export interface Pose {
+  elbow: [number, number];
+  tool: [number, number];
+  disc: number;
+}
+
+/** How many numbers of an ascending list are at most a value. */
+export function countUntil(list: Float64Array, value: number, stride = 1): number {
+  let [low, high] = [0, list.length / stride];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((list[middle * stride] ?? Number.POSITIVE_INFINITY) <= value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Seconds, x, y and height of each point of the path. */
+export const PATH_STRIDE = 4;
+
+export class Engraving {
+  readonly result: Result;
+  readonly pins: Record<Axis, Pin>;
+  /** x and y of the drawing's lines, in mm; no number between two lines. */
+  readonly outlines: Float64Array;
+  readonly path: Float64Array;
+  /** Seconds, and the largest distance around them in mm, if the tool is in the glass. */
+  readonly deviation: [number[], (number | null)[]];
+
+  constructor({ value, blobs }: Answer<Result>) {
+    const numbers = (name: string) => new Float64Array(blobs[name] ?? new ArrayBuffer(0));
+    this.result = value;
+    const pin = (axis: Axis) => [axis, makePin(numbers(`${axis} edges`), blobs[`${axis} steps`])];
+    this.pins = Object.fromEntries(AXES.map(pin)) as Record<Axis, Pin>;
+    this.outlines = numbers('outlines');
+    this.path = numbers('path');
+    const pairs = numbers('deviation');
+    const each = <T>(take: (index: number) => T) =>
+      Array.from({ length: pairs.length / 2 }, (_, index) => take(2 * index));
+    this.deviation = [
+      each((index) => pairs[index] ?? 0),
+      each((index) => {
+        const mm = pairs[index + 1] ?? Number.NaN;
+        return Number.isNaN(mm) ? null : mm;
+      }),
+    ];
+  }
+
+  /** Steps of a motor from home at a time. */
+  position(axis: Axis, seconds: number): number {
+    const { edges, positions } = this.pins[axis];
+    const pulses = Math.ceil(countUntil(edges, seconds) / 2);
+    return positions[pulses] ?? 0;
+  }
+
+  pose(seconds: number): Pose {
+    const { upper_mm, fore_mm, home_rad, rad_per_pulse } = this.result.report.machine;
+    const angle = (axis: keyof Joints) =>
+      home_rad[axis] + this.position(axis, seconds) * rad_per_pulse[axis];
+    const upper = angle('theta2');
+    const fore = upper + angle('theta1');
+    const elbow: [number, number] = [upper_mm * Math.cos(upper), upper_mm * Math.sin(upper)];
+    const tool: [number, number] = [
+      elbow[0] + fore_mm * Math.cos(fore),
+      elbow[1] + fore_mm * Math.sin(fore),
+    ];
+    return { elbow, tool, disc: fore + angle('theta3') };
+  }
+
+  /** The distance of the tool from the drawing around a time, in mm. */
+  deviationAt(seconds: number): number {
+    const [times, distances] = this.deviation;
+    const part = (times[1] ?? 1) - (times[0] ?? 0);
+    const index = Math.min(
+      Math.max(Math.floor((seconds - (times[0] ?? 0)) / part + 0.5), 0),
+      times.length - 1,
+    );
+    return distances[index] ?? 0;
+  }
+}
+
+function makePin(edges: Float64Array, steps: ArrayBuffer | undefined): Pin {
+  const by = new Int8Array(steps ?? new ArrayBuffer(0));
+  const positions = new Int32Array(by.length + 1);
+  for (const [index, step] of by.entries()) positions[index + 1] = (positions[index] ?? 0) + step;
+  return { edges, steps: by, positions };
+}

@@ -1,0 +1,177 @@
+// The step pins over time: how many pulses where there are many, single edges where there is room.
+import { Picture, takeGestures } from '../shared/canvas';
+import { colour, onColours } from '../shared/dom';
+import { AXES, type Axis, countUntil, type Engraving } from './engraving';
+
+const NAMES: Record<Axis, string> = {
+  theta1: 'theta1, forearm',
+  theta2: 'theta2, upper arm',
+  theta3: 'theta3, disc',
+  vertical: 'vertical, lift',
+};
+const LABEL_PX = 16;
+const AXIS_PX = 20;
+/** Edges closer than this are drawn as a density. */
+const SINGLE_PX = 3;
+/** The least that is shown: some ticks of the timer. */
+const MIN_SPAN_S = 2e-5;
+
+export class Lanes {
+  readonly #picture: Picture;
+  readonly #note: HTMLElement;
+  #engraving: Engraving | undefined;
+  #from = 0;
+  #span = 1;
+  #seconds = 0;
+  #seek: (seconds: number) => void = () => undefined;
+
+  constructor(canvas: HTMLCanvasElement, note: HTMLElement) {
+    this.#note = note;
+    this.#picture = new Picture(canvas, (context, width, height) =>
+      this.#draw(context, width, height),
+    );
+    takeGestures(canvas, {
+      pan: (dx) => this.#window(this.#from - (dx / this.#picture.width) * this.#span, this.#span),
+      zoom: (factor, x) => {
+        const span = Math.max(this.#span / factor, MIN_SPAN_S);
+        const at = this.#from + (x / this.#picture.width) * this.#span;
+        this.#window(at - (x / this.#picture.width) * span, span);
+      },
+      reset: () => this.#window(0, this.#duration),
+      // The time that the pictures show, while it is in sight.
+      focus: () => {
+        const part = (this.#seconds - this.#from) / this.#span;
+        return [(part >= 0 && part <= 1 ? part : 0.5) * this.#picture.width, 0];
+      },
+    });
+    canvas.addEventListener('click', (event) => {
+      this.#seek(this.#from + (event.offsetX / this.#picture.width) * this.#span);
+    });
+    onColours(() => this.#picture.redraw());
+  }
+
+  onSeek(seek: (seconds: number) => void): void {
+    this.#seek = seek;
+  }
+
+  show(engraving: Engraving): void {
+    this.#engraving = engraving;
+    this.#window(0, this.#duration);
+  }
+
+  at(seconds: number): void {
+    this.#seconds = seconds;
+    this.#picture.redraw();
+  }
+
+  get #duration(): number {
+    return this.#engraving?.result.report.duration_s ?? 1;
+  }
+
+  #window(from: number, span: number): void {
+    this.#span = Math.min(span, this.#duration);
+    this.#from = Math.min(Math.max(from, 0), this.#duration - this.#span);
+    const digits = Math.max(0, 3 - Math.floor(Math.log10(this.#span)));
+    const [low, high] = [this.#from, this.#from + this.#span].map((it) =>
+      it.toFixed(Math.min(digits, 7)),
+    );
+    this.#note.textContent = `${low} s to ${high} s. Drag to move; zoom with Ctrl and the wheel, two fingers, or + and -; a click sets the time.`;
+    this.#picture.redraw();
+  }
+
+  #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
+    const engraving = this.#engraving;
+    if (!engraving) return;
+    const lane = (height - AXIS_PX) / AXES.length;
+    context.font = '12px system-ui, sans-serif';
+    const x = (seconds: number) => ((seconds - this.#from) / this.#span) * width;
+    for (const [index, axis] of AXES.entries()) {
+      const top = index * lane;
+      context.fillStyle = colour('quiet');
+      const position = engraving.position(axis, this.#seconds);
+      context.fillText(`${NAMES[axis]}: ${position} steps from home`, 6, top + 12);
+      context.strokeStyle = colour(`series-${index + 1}`);
+      context.fillStyle = colour(`series-${index + 1}`);
+      this.#drawPin(context, engraving, axis, [top + LABEL_PX + 2, top + lane - 4], width);
+    }
+    this.#drawTimes(context, width, height, x);
+    context.strokeStyle = colour('now');
+    context.lineWidth = 1;
+    context.beginPath();
+    context.moveTo(x(this.#seconds), 0);
+    context.lineTo(x(this.#seconds), height);
+    context.stroke();
+  }
+
+  #drawPin(
+    context: CanvasRenderingContext2D,
+    engraving: Engraving,
+    axis: Axis,
+    [high, low]: [number, number],
+    width: number,
+  ): void {
+    const { edges } = engraving.pins[axis];
+    const first = countUntil(edges, this.#from);
+    const last = countUntil(edges, this.#from + this.#span);
+    const perPx = this.#span / width;
+    if (last - first > width / SINGLE_PX) {
+      // In each pixel, how much of the time pulses follow each other as fast as anywhere in sight.
+      const counts = Array.from({ length: Math.ceil(width) }, (_, px) => {
+        const from = this.#from + px * perPx;
+        return countUntil(edges, from + perPx) - countUntil(edges, from);
+      });
+      const most = Math.max(...counts, 1);
+      for (const [px, count] of counts.entries()) {
+        context.globalAlpha = 0.25 + (0.75 * count) / most;
+        if (count > 0)
+          context.fillRect(
+            px,
+            low - ((low - high) * count) / most,
+            1,
+            ((low - high) * count) / most,
+          );
+      }
+      context.globalAlpha = 1;
+      return;
+    }
+    context.lineWidth = 1.5;
+    context.beginPath();
+    // An even number of edges leaves the pin low.
+    let level = first % 2 === 0 ? low : high;
+    context.moveTo(0, level);
+    for (let edge = first; edge < last; edge += 1) {
+      const x = ((edges[edge] ?? 0) - this.#from) / perPx;
+      context.lineTo(x, level);
+      level = edge % 2 === 0 ? high : low;
+      context.lineTo(x, level);
+    }
+    context.lineTo(width, level);
+    context.stroke();
+  }
+
+  #drawTimes(
+    context: CanvasRenderingContext2D,
+    width: number,
+    height: number,
+    x: (seconds: number) => number,
+  ): void {
+    const about = this.#span / Math.max(width / 110, 2);
+    const power = 10 ** Math.floor(Math.log10(about));
+    const step = [1, 2, 5, 10].map((it) => it * power).find((it) => it >= about) ?? about;
+    const digits = Math.max(0, -Math.floor(Math.log10(step)));
+    context.fillStyle = colour('quiet');
+    context.strokeStyle = colour('line');
+    context.lineWidth = 1;
+    for (
+      let time = Math.ceil(this.#from / step) * step;
+      time < this.#from + this.#span;
+      time += step
+    ) {
+      context.beginPath();
+      context.moveTo(x(time), 0);
+      context.lineTo(x(time), height - AXIS_PX + 4);
+      context.stroke();
+      context.fillText(`${time.toFixed(digits)} s`, x(time) + 3, height - 6);
+    }
+  }
+}

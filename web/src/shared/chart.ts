@@ -1,0 +1,97 @@
+// Charts over time in the colours of the page.
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+import { colour, onColours } from './dom';
+
+export interface Line {
+  label: string;
+  colour: string;
+  dash?: number[];
+}
+
+/** A chart of lines over seconds; a click on it is a time. */
+export class Chart {
+  readonly #target: HTMLElement;
+  readonly #unit: string;
+  readonly #height: number;
+  readonly #seek: (seconds: number) => void;
+  #plot: uPlot | undefined;
+  #lines: Line[] = [];
+  #data: uPlot.AlignedData = [[]];
+  #now = 0;
+
+  constructor(target: HTMLElement, unit: string, height: number, seek: (seconds: number) => void) {
+    this.#target = target;
+    this.#unit = unit;
+    this.#height = height;
+    this.#seek = seek;
+    new ResizeObserver(() => {
+      this.#plot?.setSize({ width: target.clientWidth, height });
+    }).observe(target);
+    onColours(() => this.#make());
+  }
+
+  /** Other lines: seconds first, then the values of each. */
+  show(lines: Line[], data: uPlot.AlignedData): void {
+    this.#lines = lines;
+    this.#data = data;
+    this.#make();
+  }
+
+  /** The time that the pictures show. */
+  at(seconds: number): void {
+    this.#now = seconds;
+    this.#plot?.redraw(false);
+  }
+
+  #make(): void {
+    this.#plot?.destroy();
+    const axis = {
+      stroke: colour('text'),
+      grid: { stroke: colour('line'), width: 1 },
+      ticks: { show: false },
+    };
+    this.#plot = new uPlot(
+      {
+        width: this.#target.clientWidth,
+        height: this.#height,
+        scales: { x: { time: false } },
+        axes: [
+          { ...axis, label: 'time in s', labelSize: 18, size: 30 },
+          { ...axis, label: this.#unit, labelSize: 18, size: 56 },
+        ],
+        series: [
+          { label: 's', value: (_, it) => it?.toFixed(2) ?? '' },
+          ...this.#lines.map((line) => ({
+            label: line.label,
+            stroke: colour(line.colour),
+            width: 1.5,
+            ...(line.dash ? { dash: line.dash } : {}),
+            value: (_: uPlot, it: number | null) => (it === null ? '' : it.toPrecision(4)),
+          })),
+        ],
+        hooks: { draw: [(plot) => this.#drawNow(plot)] },
+      },
+      this.#data,
+      this.#target,
+    );
+    const over = this.#plot.over;
+    over.addEventListener('click', () => {
+      const left = this.#plot?.cursor.left;
+      if (left !== undefined && left >= 0) this.#seek(this.#plot?.posToVal(left, 'x') ?? 0);
+    });
+  }
+
+  #drawNow(plot: uPlot): void {
+    const x = plot.valToPos(this.#now, 'x', true);
+    plot.ctx.save();
+    plot.ctx.strokeStyle = colour('now');
+    plot.ctx.lineWidth = devicePixelRatio;
+    plot.ctx.setLineDash([]);
+    plot.ctx.beginPath();
+    plot.ctx.moveTo(x, plot.bbox.top);
+    plot.ctx.lineTo(x, plot.bbox.top + plot.bbox.height);
+    plot.ctx.stroke();
+    plot.ctx.restore();
+  }
+}

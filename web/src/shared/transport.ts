@@ -1,0 +1,63 @@
+// Time on the machine: played at a multiple of real time, or set by hand.
+import { element } from './dom';
+
+/** The buttons and the slider under a picture; tells the time whenever it changes. */
+export class Transport {
+  readonly #play = element('play', HTMLButtonElement);
+  readonly #speed = element('speed', HTMLSelectElement);
+  readonly #slider = element('time', HTMLInputElement);
+  readonly #shown = element('shown-time', HTMLOutputElement);
+  readonly #show: (seconds: number) => void;
+  #seconds = 0;
+  #duration = 0;
+  #frame = 0;
+  #before = 0;
+
+  constructor(show: (seconds: number) => void) {
+    this.#show = show;
+    this.#play.addEventListener('click', () => (this.#frame ? this.pause() : this.play()));
+    this.#slider.addEventListener('input', () => this.set(Number(this.#slider.value)));
+  }
+
+  get seconds(): number {
+    return this.#seconds;
+  }
+
+  /** A new run of a duration; the time stands at its end, where all of it is seen. */
+  begin(duration: number): void {
+    this.#duration = duration;
+    this.#slider.max = String(duration);
+    this.#slider.step = String(Math.max(duration / 10_000, 0.001));
+    this.set(duration);
+  }
+
+  set(seconds: number): void {
+    this.#seconds = Math.min(Math.max(seconds, 0), this.#duration);
+    this.#slider.value = String(this.#seconds);
+    const shown = `${this.#seconds.toFixed(2)} s of ${this.#duration.toFixed(1)} s`;
+    this.#slider.setAttribute('aria-valuetext', shown);
+    this.#shown.value = shown;
+    this.#show(this.#seconds);
+  }
+
+  play(): void {
+    if (this.#seconds >= this.#duration) this.set(0);
+    this.#play.textContent = 'Pause';
+    this.#before = performance.now();
+    this.#frame = requestAnimationFrame((now) => this.#advance(now));
+  }
+
+  pause(): void {
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    this.#play.textContent = 'Play';
+  }
+
+  #advance(now: number): void {
+    const by = ((now - this.#before) / 1000) * Number(this.#speed.value);
+    this.#before = now;
+    this.set(this.#seconds + Math.max(by, 0));
+    if (this.#seconds >= this.#duration) this.pause();
+    else this.#frame = requestAnimationFrame((next) => this.#advance(next));
+  }
+}

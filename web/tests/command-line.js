@@ -1,0 +1,25 @@
+// The command lines of the machines, which the page is compared with.
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { ROOT } from './browser.js';
+
+export const DRAWINGS = join(ROOT, 'machines/engraver/drawings');
+
+/** Any profile gives the same bytes. */
+const PROFILE = process.env.PAGE_TEST_PROFILE ?? 'release';
+
+/**
+ * Runs a machine; tells where its files are, what it printed and its exit status.
+ * @param {string} example
+ * @param {string[]} args
+ */
+export function commandLine(example, args) {
+  const folder = mkdtempSync(join(tmpdir(), `${example}-`));
+  const cargo = ['run', '--quiet', '--profile', PROFILE, '--example', example, '--'];
+  const all = [...cargo, ...args, '--out', folder];
+  const run = spawnSync('cargo', all, { cwd: ROOT, encoding: 'utf8' });
+  if (run.error) throw run.error;
+  return { folder, status: run.status, text: run.stdout + run.stderr };
+}

@@ -1,0 +1,159 @@
+// The engraver in the browser: the same bytes as from the command line, and a page that lives on.
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { assertAccessible, open, saved, shoot } from './browser.js';
+import { commandLine, DRAWINGS } from './command-line.js';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let browser;
+before(async () => {
+  browser = await open();
+});
+after(() => browser.close());
+
+/** @param {import('playwright-core').Page} page */
+async function engraved(page) {
+  await page.getByRole('status').filter({ hasText: 'Engraved in' }).waitFor();
+}
+
+/**
+ * Waits for a refusal and gives its words.
+ * @param {import('playwright-core').Page} page
+ * @param {string} part
+ */
+async function refusal(page, part) {
+  const status = page.locator('#status.bad').filter({ hasText: part });
+  await status.waitFor();
+  return (await status.textContent()) ?? '';
+}
+
+test('the rosette leaves the files of the command line, byte for byte', async () => {
+  const { page, done } = await browser.visit('index.html');
+  await engraved(page);
+  const { folder, text } = commandLine('engrave', []);
+  for (const name of ['pattern.bin', 'pulses.vcd', 'engraved.svg', 'report.json']) {
+    const bytes = await saved(page, name);
+    assert(bytes.equals(readFileSync(join(folder, name))), `${name} differs`);
+  }
+  const summary = (await page.locator('#summary').textContent()) ?? '';
+  assert(text.startsWith(`rosette.svg: ${summary}`), text);
+  const header = (await saved(page, 'pattern.h')).toString();
+  assert.match(header, /unsigned char code pattern\[6\d{3}\]/);
+  await done();
+});
+
+test('settings change the plan as the options of the command line do, and stay in the address', async () => {
+  const address =
+    'index.html?drawing=star&tolerance=0.02&order=file&placement=0.4,0,0,-0.4,-40,160';
+  const { page, done } = await browser.visit(address);
+  await engraved(page);
+  const placement = ['--placement', '0.4,0,0,-0.4,-40,160'];
+  const star = ['--svg', join(DRAWINGS, 'star.svg')];
+  const { folder } = commandLine('engrave', [
+    ...star,
+    '--tolerance',
+    '0.02',
+    '--keep-order',
+    ...placement,
+  ]);
+  assert((await saved(page, 'pattern.bin')).equals(readFileSync(join(folder, 'pattern.bin'))));
+  await page.getByLabel('Tolerance').fill('0.1');
+  await page.waitForURL(/tolerance=0\.1/);
+  await done();
+});
+
+test('what is refused is said as on the command line, and the page lives on', async () => {
+  const { page, done } = await browser.visit('index.html');
+  await engraved(page);
+  const rosette = join(DRAWINGS, 'rosette.svg');
+
+  await page.getByLabel('Placement').fill('1,0,0,1,900,0');
+  const far = commandLine('engrave', ['--svg', rosette, '--placement', '1,0,0,1,900,0']);
+  const said = await refusal(page, 'stroke');
+  assert.equal(far.status, 1);
+  assert(far.text.trim().endsWith(said.replace('rosette.svg', rosette)), `${said}\n${far.text}`);
+  assert(await page.getByRole('button', { name: 'pattern.bin' }).isDisabled());
+  await page.getByLabel('Placement').fill('');
+  await engraved(page);
+
+  await page.getByLabel('Tolerance').fill('0');
+  const zero = commandLine('engrave', ['--tolerance', '0']);
+  assert(zero.text.trim().endsWith(await refusal(page, 'tolerance')));
+  await page.getByLabel('Tolerance').fill('0.05');
+  await engraved(page);
+
+  const broken = join(mkdtempSync(join(tmpdir(), 'page-')), 'broken.svg');
+  writeFileSync(broken, '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0"></svg>');
+  await page.locator('#file').setInputFiles(broken);
+  const unread = commandLine('engrave', ['--svg', broken]);
+  const why = await refusal(page, 'broken.svg');
+  assert(unread.text.trim().endsWith(why.replace('broken.svg', broken)), `${why}\n${unread.text}`);
+  await page.getByLabel('Shipped drawing').selectOption('lettering');
+  await engraved(page);
+  await done();
+});
+
+test('the machine has its settings as fields; they are kept until it is as shipped again', async () => {
+  const { page, done } = await browser.visit('index.html');
+  await engraved(page);
+  await page.getByText('Machine', { exact: true }).click();
+  await page.getByLabel('upper mm').fill('-1');
+  assert.match(await refusal(page, 'machine.toml'), /\[arm\].*-1/);
+  await page.getByLabel('upper mm').fill('140');
+  await engraved(page);
+  const machine = join(mkdtempSync(join(tmpdir(), 'page-')), 'machine.toml');
+  writeFileSync(machine, await saved(page, 'Save machine.toml'));
+  const { folder } = commandLine('engrave', ['--machine', machine]);
+  const pattern = readFileSync(join(folder, 'pattern.bin'));
+  await page.reload();
+  await engraved(page);
+  assert((await saved(page, 'pattern.bin')).equals(pattern));
+  await page.getByText('Machine', { exact: true }).click();
+  await page.getByRole('button', { name: 'As shipped' }).click();
+  await engraved(page);
+  assert(!(await saved(page, 'pattern.bin')).equals(pattern));
+  await done();
+});
+
+test('time is played, set and zoomed by keys alone', async () => {
+  const { page, done } = await browser.visit('index.html');
+  await engraved(page);
+  const shown = async () =>
+    Number.parseFloat((await page.locator('#shown-time').textContent()) ?? '');
+  await page.getByRole('button', { name: 'Play' }).press('Enter');
+  await page.waitForFunction("parseFloat(document.getElementById('shown-time').textContent) > 2");
+  await page.getByRole('button', { name: 'Pause' }).press('Enter');
+  const before = await shown();
+  assert(before < 300, `${before}`);
+  await page.getByLabel('Time', { exact: true }).press('PageUp');
+  assert((await shown()) > before);
+  const lanes = page.locator('#lanes');
+  for (let press = 0; press < 40; press += 1) await lanes.press('+');
+  await shoot(page, 'engrave-edges');
+  assert.match((await page.locator('#lanes-note').textContent()) ?? '', /^\d+\.\d{5,} s/);
+  await lanes.press('0');
+  assert.match((await page.locator('#lanes-note').textContent()) ?? '', /^0\.\d+ s to 339/);
+  await done();
+});
+
+for (const scheme of /** @type {const} */ (['light', 'dark'])) {
+  for (const [size, viewport] of Object.entries({
+    wide: { width: 1280, height: 1000 },
+    phone: { width: 390, height: 844 },
+  })) {
+    test(`it is readable: ${scheme}, ${size}`, async () => {
+      const { page, done } = await browser.visit('index.html', { viewport, colorScheme: scheme });
+      await engraved(page);
+      await page.getByLabel('Time', { exact: true }).fill('150');
+      await page.getByText('Machine', { exact: true }).click();
+      await assertAccessible(page);
+      await page.getByText('Machine', { exact: true }).click();
+      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+      await shoot(page, `engrave-${scheme}-${size}`);
+      await done();
+    });
+  }
+}

@@ -1,0 +1,61 @@
+// Every machine is a page of its own; all addresses are relative, so that any folder of any web
+// server will do.
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { defineConfig, type Plugin } from 'vite';
+
+const pages = readdirSync(import.meta.dirname).filter((name) => name.endsWith('.html'));
+
+/** Puts the common head and header into each page. */
+function frame(): Plugin {
+  const part = (name: string) =>
+    readFileSync(resolve(import.meta.dirname, 'src/shared', name), 'utf8');
+  return {
+    name: 'frame',
+    transformIndexHtml: {
+      order: 'pre',
+      handler: (html, { filename }) => {
+        const page = filename.slice(filename.lastIndexOf('/') + 1);
+        const header = part('header.part').replace(
+          `href="./${page}"`,
+          `href="./${page}" aria-current="page"`,
+        );
+        return html.replace('<!-- head -->', part('head.part')).replace('<!-- header -->', header);
+      },
+    },
+  };
+}
+
+/** Writes the list of all files into the service worker, which keeps them for use without a network. */
+function offline(): Plugin {
+  let folder = '';
+  return {
+    name: 'offline',
+    apply: 'build',
+    configResolved: (config) => {
+      folder = resolve(config.root, config.build.outDir);
+    },
+    closeBundle: () => {
+      const files = readdirSync(folder, { recursive: true, withFileTypes: true })
+        .filter((entry) => entry.isFile() && entry.name !== 'offline.js')
+        .map((entry) => join(entry.parentPath, entry.name).slice(folder.length + 1));
+      const file = join(folder, 'offline.js');
+      // The names of the assets change with what is in them, and the list with these.
+      writeFileSync(
+        file,
+        readFileSync(file, 'utf8').replace('[/* files */]', JSON.stringify(files)),
+      );
+    },
+  };
+}
+
+export default defineConfig({
+  base: './',
+  plugins: [frame(), offline()],
+  build: {
+    target: 'es2022',
+    assetsInlineLimit: 0,
+    rolldownOptions: { input: pages.map((page) => resolve(import.meta.dirname, page)) },
+  },
+  worker: { format: 'es' },
+});

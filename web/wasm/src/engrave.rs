@@ -1,0 +1,128 @@
+//! The glass engraver: a drawing planned and engraved, and the files that this leaves.
+
+mod recorder;
+
+use std::cell::RefCell;
+
+use anyhow::{Context, Result, bail};
+use engraver::{Drawing, Machine, Plan, PlanSettings, PulseLog, Report, Run, Tolerance, simulate};
+use serde::Deserialize;
+use serde_json::json;
+
+use self::recorder::Recorder;
+use crate::answer::{self, Answer};
+use crate::boundary::Request;
+use crate::progress;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    /// What the drawing is called in messages.
+    name: String,
+    svg: String,
+    machine: String,
+    tolerance_mm: f64,
+    /// `a,b,c,d,e,f`, or fitted into the bed.
+    placement: Option<String>,
+    keep_order: bool,
+}
+
+/// What was engraved last: the files are written from it when they are asked for.
+struct Engraved {
+    machine: Machine,
+    drawing: Drawing,
+    plan: Plan,
+    run: Run,
+}
+
+thread_local!(static LAST: RefCell<Option<Engraved>> = const { RefCell::new(None) });
+
+/// Plans a drawing, engraves it, and gives what the page shows of it.
+pub(crate) fn engrave(request: &Request) -> Result<Answer> {
+    let parameters: Parameters = request.parameters()?;
+    let placement = parameters.placement.map(|text| text.parse());
+    let settings = PlanSettings {
+        tolerance: Tolerance::from_mm(parameters.tolerance_mm).context("tolerance")?,
+        placement: placement.transpose().context("placement")?,
+        keep_order: parameters.keep_order,
+    };
+    let machine = Machine::parse(&parameters.machine).context("machine.toml")?;
+    let place = || parameters.name.clone();
+    let drawing = Drawing::parse(&parameters.svg).with_context(place)?;
+    let plan = Plan::new(&machine, &drawing, &settings, progress::teller(0));
+    let plan = plan.with_context(place)?;
+    let mut recorder = Recorder::new(&machine);
+    let (pattern, reference) = (plan.pattern(), plan.reference());
+    let told = progress::teller(1);
+    let run = simulate(&machine, pattern, reference, &mut recorder, told)?;
+    let recorded = recorder.finish(run.ticks());
+    let engraved = Engraved {
+        machine,
+        drawing,
+        plan,
+        run,
+    };
+    let answer = recorded.add_to(engraved.answer()?);
+    LAST.set(Some(engraved));
+    Ok(answer)
+}
+
+impl Engraved {
+    fn report(&self) -> Report<'_> {
+        Report::new(&self.machine, &self.drawing, &self.plan, &self.run)
+    }
+
+    fn answer(&self) -> Result<Answer> {
+        let report = self.report();
+        let value = json!({
+            "summary": report.to_string(),
+            "report": report,
+            "isWithinBound": self.run.is_within_bound(),
+        });
+        let mut outlines = Vec::new();
+        for outline in self.run.drawing() {
+            outlines.extend(outline.iter().flat_map(|point| [point.x, point.y]));
+            outlines.extend([f64::NAN; 2]);
+        }
+        let deviation = self.run.deviation_over_time();
+        let deviation = deviation.flat_map(|(s, mm)| [s, mm.unwrap_or(f64::NAN)]);
+        Ok(Answer::new(value)?
+            .with_bytes("pattern", self.plan.pattern())
+            .with_numbers("outlines", outlines.into_iter().map(f64::to_le_bytes))
+            .with_numbers("deviation", deviation.map(f64::to_le_bytes)))
+    }
+}
+
+/// A file of what was engraved last, by its name.
+pub(crate) fn file(request: &Request) -> Result<Answer> {
+    let name: String = request.parameters()?;
+    LAST.with_borrow(|last| {
+        let last = last.as_ref().context("nothing has been engraved yet")?;
+        match &*name {
+            "pattern.bin" => answer::file(last.plan.pattern()),
+            "pattern.h" => answer::file(engraver::header(&last.machine, &last.plan)?),
+            "engraved.svg" => answer::file(last.run.picture().to_string()),
+            "report.json" => answer::json_file(&last.report()),
+            "pulses.vcd" => answer::file(last.pulses()?),
+            _ => bail!("there is no file {name:?}"),
+        }
+    })
+}
+
+impl Engraved {
+    /// The pins over time: the pattern is played once more.
+    fn pulses(&self) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let mut log = PulseLog::new(&mut bytes, &self.machine)?;
+        let (pattern, reference) = (self.plan.pattern(), self.plan.reference());
+        simulate(
+            &self.machine,
+            pattern,
+            reference,
+            &mut log,
+            progress::teller(1),
+        )?;
+        log.finish(self.run.ticks())?;
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,33 @@
+//! The machines behind plain exports for a page in a browser: a call names an operation and brings
+//! its input as JSON and bytes; its result is JSON and named bytes, or one line for a person, the
+//! same that the command line prints.
+
+mod answer;
+mod boundary;
+#[cfg(feature = "dance")]
+mod dance;
+#[cfg(feature = "engrave")]
+mod engrave;
+mod progress;
+
+use anyhow::{Result, bail};
+
+use crate::answer::Answer;
+use crate::boundary::Request;
+
+/// What the page can ask for.
+fn perform(request: &Request) -> Result<Answer> {
+    match request.operation()? {
+        #[cfg(feature = "engrave")]
+        "engrave" => engrave::engrave(request),
+        #[cfg(feature = "engrave")]
+        "engrave.file" => engrave::file(request),
+        #[cfg(feature = "dance")]
+        "dance" => dance::dance(request),
+        #[cfg(feature = "dance")]
+        "dance.read" => dance::read(request),
+        #[cfg(feature = "dance")]
+        "dance.file" => dance::file(request),
+        other => bail!("there is no operation {other:?}"),
+    }
+}
