@@ -38,7 +38,7 @@ fn packing_of(number: u8) -> Packing {
     Packing::ALL[usize::from(number) % 3]
 }
 
-/// Bytes that are accepted are frames that the shortest spelling means, too.
+/// Bytes that are accepted are frames that the shortest form means, too.
 fn packed(packing: Packing, bytes: &[u8]) {
     let frames: Result<Vec<_>, _> = packing.decode::<9, _>(bytes.iter().copied()).collect();
     let Ok(frames) = frames else {
@@ -59,9 +59,11 @@ fn packed(packing: Packing, bytes: &[u8]) {
 /// What is written is read.
 fn written(packing: Packing, sdcc: bool, frames: &[[i8; 9]]) {
     let dialect = if sdcc { Dialect::Sdcc } else { Dialect::C51 };
-    let header = DataHeader::new()
-        .with_dialect(dialect)
-        .with_packing(packing);
+    let header = DataHeader {
+        dialect,
+        packing,
+        ..DataHeader::DEFAULT
+    };
     let mut text = String::new();
     if header.write(frames.iter().copied(), &mut text).is_err() {
         assert!(frames.is_empty() || frames.len() > 5461);

@@ -41,13 +41,14 @@ fn frames() -> Vec<Frame> {
 fn header(frames: &[Frame], packing: Packing, threshold: u16) -> String {
     let timing = Timing::new(1000, FRAME_TICKS).unwrap();
     let mut text = String::new();
-    DataHeader::new()
-        .with_dialect(Dialect::Sdcc)
-        .with_packing(packing)
-        .with_timing(timing)
-        .with_threshold(Threshold::new(threshold).unwrap())
-        .write(frames.iter().copied(), &mut text)
-        .unwrap();
+    let header = DataHeader {
+        dialect: Dialect::Sdcc,
+        packing,
+        timing,
+        threshold: Threshold::new(threshold).unwrap(),
+        ..DataHeader::DEFAULT
+    };
+    header.write(frames.iter().copied(), &mut text).unwrap();
     text
 }
 

@@ -102,10 +102,11 @@ pub(super) fn played(trace: &[Write]) -> Vec<Played> {
 
 fn engrave(records: &[Record], format: Format, defines: &[&str]) -> Option<Vec<Played>> {
     let mut text = String::new();
-    PatternHeader::new(format)
-        .with_dialect(Dialect::Sdcc)
-        .write(records.iter().copied(), &mut text)
-        .unwrap();
+    let header = PatternHeader {
+        dialect: Dialect::Sdcc,
+        ..PatternHeader::new(format)
+    };
+    header.write(records.iter().copied(), &mut text).unwrap();
     let trace = simulate("engrave.c", ("pattern.h", &text), defines)?;
     Some(played(&trace))
 }

@@ -33,7 +33,10 @@ fn every_edge_of_a_table_of_periods_is_where_the_train_has_it() {
     });
     let periods: Vec<_> = periods.collect();
     let mut text = String::new();
-    let header = ReloadHeader::new().with_dialect(Dialect::Sdcc);
+    let header = ReloadHeader {
+        dialect: Dialect::Sdcc,
+        ..ReloadHeader::DEFAULT
+    };
     header.write(periods.iter().copied(), &mut text).unwrap();
     let read = ReloadData::read(&text, "reloads").unwrap();
     assert!(read.periods().eq(periods.iter().copied()));

@@ -2,9 +2,7 @@
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use handwheel::{
-    Command, LcdBlock, LcdCommand, LcdError, Line, Model, Place, Text, WheelQuantiser,
-};
+use handwheel::{Cell, Command, LcdBlock, LcdCommand, LcdError, Line, Model, Text, WheelQuantiser};
 
 /// Six lines of 16 characters, as many as a block has room for.
 fn block(text: &str) -> Result<LcdBlock, LcdError> {
@@ -14,7 +12,7 @@ fn block(text: &str) -> Result<LcdBlock, LcdError> {
             continue;
         };
         let column = handwheel::Column::MIN;
-        block.push(LcdCommand::Goto(Place { line, column }))?;
+        block.push(LcdCommand::Goto(Cell { line, column }))?;
         block.push(LcdCommand::Text(text))?;
     }
     Ok(block)
@@ -36,7 +34,7 @@ fn telegrams(c: &mut Criterion) {
     }
     if let Ok(wheel) = WheelQuantiser::new(100, 10) {
         c.bench_function("quantise one sample", |b| {
-            b.iter(|| wheel.share(black_box(57), black_box(10_000)));
+            b.iter(|| wheel.speed(black_box(57), black_box(10_000)));
         });
     }
 }

@@ -14,7 +14,7 @@ pub(crate) const STATUS_REQUEST: u8 = 0x23;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_enums, reason = "the unit knows these three")]
-pub enum Light {
+pub enum LedState {
     /// 30h + number.
     On,
     /// 40h + number.
@@ -23,7 +23,7 @@ pub enum Light {
     Flashing,
 }
 
-impl Light {
+impl LedState {
     const fn zero(self) -> u8 {
         match self {
             Self::On => 0x30,
@@ -44,7 +44,7 @@ pub enum Command<'a> {
         /// Which; `None` all of them, which is inferred from the printed ranges.
         led: Option<Led>,
         /// What it does.
-        light: Light,
+        state: LedState,
     },
     /// 6Ch and commands for the display, which are checked as they are read.
     Lcd(LcdCommands<'a>),
@@ -77,8 +77,8 @@ impl<'a> Command<'a> {
     pub fn encode(self, model: Model, buffer: &mut [u8]) -> Result<&[u8], EncodeError> {
         match self {
             Self::StatusRequest => put(buffer, &[STATUS_REQUEST]),
-            Self::Led { led, light } if model == Model::Hbls => {
-                let code = led.map_or(light.zero(), |led| led.code(light.zero()));
+            Self::Led { led, state } if model == Model::Hbls => {
+                let code = led.map_or(state.zero(), |led| led.code(state.zero()));
                 put(buffer, &[code])
             }
             Self::Led { .. } => Err(EncodeError::Model { model }),
@@ -89,27 +89,24 @@ impl<'a> Command<'a> {
                 }
                 let capacity = buffer.len();
                 let no_room = EncodeError::NoRoom { len, capacity };
-                let place = buffer.get_mut(..len).ok_or(no_room)?;
-                for (to, from) in place
-                    .iter_mut()
-                    .zip([LCD].iter().chain(commands.as_bytes()))
-                {
+                let head = buffer.get_mut(..len).ok_or(no_room)?;
+                for (to, from) in head.iter_mut().zip([LCD].iter().chain(commands.as_bytes())) {
                     *to = *from;
                 }
-                Ok(place)
+                Ok(head)
             }
         }
     }
 }
 
 fn decode_led(byte: u8) -> Option<Command<'static>> {
-    [Light::On, Light::Off, Light::Flashing]
+    [LedState::On, LedState::Off, LedState::Flashing]
         .into_iter()
-        .find_map(|light| {
-            let led = match byte == light.zero() {
+        .find_map(|state| {
+            let led = match byte == state.zero() {
                 true => None,
-                false => Some(Led::from_code(byte, light.zero()).ok()?),
+                false => Some(Led::from_code(byte, state.zero()).ok()?),
             };
-            Some(Command::Led { led, light })
+            Some(Command::Led { led, state })
         })
 }

@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use thiserror::Error;
 
-use crate::command::{Command, Light, STATUS_REQUEST};
+use crate::command::{Command, LedState, STATUS_REQUEST};
 use crate::lcd::LcdBlock;
 use crate::number::{Key, Led, Position};
 use crate::report::{DecodeError, LcdAnswer, Model, Report, RotarySwitch, Status};
@@ -51,7 +51,7 @@ pub enum Job {
         /// Which; `None` for all of them.
         led: Option<Led>,
         /// What it does.
-        light: Light,
+        state: LedState,
     },
     /// A display block.
     Lcd(LcdBlock),
@@ -237,9 +237,9 @@ impl Driver {
         }
         let model = self.model;
         self.pending = Some(match job {
-            Job::Led { led, light } => {
+            Job::Led { led, state } => {
                 let mut telegram = [0; 1];
-                Command::Led { led, light }
+                Command::Led { led, state }
                     .encode(model, &mut telegram)
                     .map_err(|_| SubmitError::Model { model })?;
                 Pending::Led(telegram)

@@ -10,13 +10,13 @@ pub use commands::LcdCommands;
 
 use crate::number::{AreaNumber, Column, Line, NumberError, TextNumber};
 use crate::report::Model;
-use crate::text::{MAX_TEXT, Text};
+use crate::text::Text;
 
 /// A character cell of the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_structs, reason = "a cell has these two, no more")]
-pub struct Place {
+pub struct Cell {
     /// From the top.
     pub line: Line,
     /// From the left.
@@ -32,12 +32,12 @@ pub struct Place {
 )]
 pub struct Rect {
     /// The upper left corner.
-    pub start: Place,
+    pub start: Cell,
     /// The lower right corner.
-    pub end: Place,
+    pub end: Cell,
 }
 
-/// The size of a text that the HBAS keeps.
+/// The size of a text that the HBAS stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "the unit has two")]
@@ -68,7 +68,7 @@ pub enum LcdCommand<'a> {
     /// 26h: to column 0.
     LineStart,
     /// 27h: to a cell.
-    Goto(Place),
+    Goto(Cell),
     /// 28h: clears the cell under the cursor.
     Delete,
     /// 29h: clears to the end of the line.
@@ -83,65 +83,41 @@ pub enum LcdCommand<'a> {
     Inverse(bool),
     /// 42h on, 43h off: what follows flashes.
     Flash(bool),
-    /// 48h: the unit keeps a text of up to [`MAX_TEXT`] characters.
+    /// 48h: stores a text of up to [`MAX_TEXT`](Self::MAX_TEXT) characters in the unit.
     DefineText {
         /// Its number.
         number: TextNumber,
         /// Its size; on the HBAS alone, and always there.
         font: Option<Font>,
-        /// Where it will stand.
-        place: Place,
+        /// Where it begins.
+        cell: Cell,
         /// The characters.
         text: Text<'a>,
     },
-    /// 49h: shows a kept text.
+    /// 49h: shows a stored text.
     ShowText(TextNumber),
-    /// 4Ah: the unit keeps an area.
+    /// 4Ah: stores an area in the unit.
     DefineArea {
         /// Its number.
         number: AreaNumber,
         /// Its cells.
         rect: Rect,
     },
-    /// 4Bh to 4Fh: does something with a kept area.
-    Area(AreaNumber, AreaEffect),
+    /// 4Bh: clears a stored area.
+    ClearArea(AreaNumber),
+    /// 4Ch: shows a stored area inverse.
+    InverseArea(AreaNumber),
+    /// 4Dh: flashes a stored area.
+    FlashArea(AreaNumber),
+    /// 4Eh: shows a stored area inverse and flashing.
+    InverseFlashArea(AreaNumber),
+    /// 4Fh: shows a stored area as it was.
+    NormalArea(AreaNumber),
 }
 
-/// What happens to an area that the unit keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "the unit knows these five")]
-pub enum AreaEffect {
-    /// 4Bh.
-    Clear,
-    /// 4Ch.
-    Inverse,
-    /// 4Dh.
-    Flash,
-    /// 4Eh.
-    InverseFlash,
-    /// 4Fh.
-    Normal,
-}
-
-impl AreaEffect {
-    const ALL: [Self; 5] = [
-        Self::Clear,
-        Self::Inverse,
-        Self::Flash,
-        Self::InverseFlash,
-        Self::Normal,
-    ];
-
-    const fn code(self) -> u8 {
-        match self {
-            Self::Clear => 0x4B,
-            Self::Inverse => 0x4C,
-            Self::Flash => 0x4D,
-            Self::InverseFlash => 0x4E,
-            Self::Normal => 0x4F,
-        }
-    }
+impl LcdCommand<'_> {
+    /// Characters of a text that the unit stores, at most.
+    pub const MAX_TEXT: usize = 30;
 }
 
 /// Why a display command cannot be written or read.
@@ -157,8 +133,19 @@ pub enum LcdError {
         /// Bytes that the unit takes.
         max: usize,
     },
-    /// A text that the unit does not keep.
-    #[error("the text has {len} characters, the unit keeps {MAX_TEXT}")]
+    /// A character that the display cannot show.
+    #[error("byte {index} of the text, {byte:02X}h, is not printable ASCII")]
+    Character {
+        /// Its index.
+        index: usize,
+        /// The byte.
+        byte: u8,
+    },
+    /// A text longer than the unit stores.
+    #[error(
+        "the text has {len} characters, the unit stores {}",
+        LcdCommand::MAX_TEXT
+    )]
     TextTooLong {
         /// Characters.
         len: usize,

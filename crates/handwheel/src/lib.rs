@@ -14,12 +14,12 @@ mod report;
 mod text;
 mod wheel;
 
-pub use command::{Command, Light, MAX_COMMAND};
+pub use command::{Command, LedState, MAX_COMMAND};
 pub use driver::{Driver, Event, Failure, Job, SubmitError, Timing};
-pub use lcd::{AreaEffect, Font, LcdBlock, LcdCommand, LcdCommands, LcdError, Place, Rect};
+pub use lcd::{Cell, Font, LcdBlock, LcdCommand, LcdCommands, LcdError, Rect};
 pub use number::{AreaNumber, Column, Key, Led, Line, NumberError, Position, TextNumber};
 pub use report::{
     DecodeError, EncodeError, LcdAnswer, MAX_REPORT, Model, Report, RotarySwitch, Status,
 };
-pub use text::{CharacterError, MAX_TEXT, Text};
-pub use wheel::{SAMPLE, WheelError, WheelQuantiser, WheelSampler};
+pub use text::Text;
+pub use wheel::{WheelError, WheelQuantiser, WheelSampler};

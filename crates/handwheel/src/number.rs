@@ -14,9 +14,9 @@ pub struct NumberError {
     pub what: &'static str,
     /// The value refused; of a received byte that lies below the first code, the negative offset.
     pub value: i16,
-    /// The least.
+    /// The lowest.
     pub min: u8,
-    /// The greatest.
+    /// The highest.
     pub max: u8,
 }
 
@@ -30,9 +30,9 @@ macro_rules! number {
         pub struct $name(u8);
 
         impl $name {
-            /// The least number.
+            /// The lowest number.
             pub const MIN: Self = Self($min);
-            /// The greatest number.
+            /// The highest number.
             pub const MAX: Self = Self($max);
 
             #[doc = concat!("Checks the range, ", stringify!($min..=$max), ".")]
@@ -116,10 +116,10 @@ number! {
     Column, "column", 0..=15
 }
 number! {
-    /// A text that the unit keeps, 1 to 200.
+    /// A text that the unit stores, 1 to 200.
     TextNumber, "text", 1..=200
 }
 number! {
-    /// An area of the display that the unit keeps, 1 to 32.
+    /// An area of the display that the unit stores, 1 to 32.
     AreaNumber, "area", 1..=32
 }

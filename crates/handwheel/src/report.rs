@@ -12,7 +12,7 @@ pub(crate) const LCD: u8 = 0x6C;
 const KEY_0: u8 = 0x30;
 const W1_0: u8 = 0x40;
 const W2_0: u8 = 0x50;
-/// Keys of the HBLS; the bytes behind theirs belong to the rotary switches.
+/// Keys of the HBLS; the bytes after theirs belong to the rotary switches.
 const HBLS_KEYS: u8 = 12;
 
 /// Which unit: their telegrams share bytes, but not all meanings.
@@ -172,7 +172,7 @@ pub enum DecodeError {
         /// Bytes received.
         len: usize,
     },
-    /// A byte that stands for nothing in this place.
+    /// A byte that means nothing at this index.
     #[error("byte {index}: {byte:02X}h means nothing there")]
     Unknown {
         /// Its index.
@@ -306,9 +306,9 @@ fn has_key(model: Model, key: Key) -> Result<(), NumberError> {
 /// Copies a telegram into the head of a buffer.
 pub(crate) fn put<'b>(buffer: &'b mut [u8], telegram: &[u8]) -> Result<&'b [u8], EncodeError> {
     let (len, capacity) = (telegram.len(), buffer.len());
-    let place = buffer
+    let head = buffer
         .get_mut(..len)
         .ok_or(EncodeError::NoRoom { len, capacity })?;
-    place.copy_from_slice(telegram);
-    Ok(place)
+    head.copy_from_slice(telegram);
+    Ok(head)
 }

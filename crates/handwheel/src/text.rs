@@ -2,28 +2,13 @@
 
 use core::fmt;
 
-use thiserror::Error;
-
-/// Characters of a text that the unit keeps, at most.
-pub const MAX_TEXT: usize = 30;
+use crate::lcd::LcdError;
 
 /// Display code of a character less its ASCII code: inferred from the manual's examples, whose
 /// eleven letters all fit.
 const ABOVE_ASCII: u8 = 0x60;
 /// The space.
 const FIRST_CODE: u8 = 0x80;
-
-/// A character that the display cannot show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("byte {index} of the text, {byte:02X}h, is not printable ASCII")]
-#[non_exhaustive]
-pub struct CharacterError {
-    /// Its index.
-    pub index: usize,
-    /// The byte.
-    pub byte: u8,
-}
 
 /// A text for the display, or from a telegram.
 ///
@@ -42,33 +27,29 @@ impl<'a> Text<'a> {
     /// From printable ASCII.
     ///
     /// # Errors
-    /// [`CharacterError`] for anything else.
-    pub fn new(text: &'a str) -> Result<Self, CharacterError> {
+    /// [`LcdError::Character`] for anything else.
+    pub fn new(text: &'a str) -> Result<Self, LcdError> {
         Self::from_ascii(text.as_bytes())
     }
 
     /// From the bytes of printable ASCII.
     ///
     /// # Errors
-    /// [`CharacterError`] for anything else.
-    pub fn from_ascii(bytes: &'a [u8]) -> Result<Self, CharacterError> {
+    /// [`LcdError::Character`] for anything else.
+    pub fn from_ascii(bytes: &'a [u8]) -> Result<Self, LcdError> {
         let offset = ABOVE_ASCII;
         let checked = Self { bytes, offset };
-        match bytes.iter().position(|&byte| !is_printable(byte)) {
+        match (0..).zip(bytes).find(|&(_, &byte)| !is_printable(byte)) {
             None => Ok(checked),
-            Some(index) => Err(CharacterError {
-                index,
-                byte: bytes.get(index).copied().unwrap_or_default(),
-            }),
+            Some((index, &byte)) => Err(LcdError::Character { index, byte }),
         }
     }
 
     /// As many display codes as `bytes` begin with, and the rest.
     pub(crate) fn split_codes(bytes: &'a [u8]) -> (Self, &'a [u8]) {
         let end = bytes.iter().position(|&byte| byte < FIRST_CODE);
-        let (bytes, rest) = bytes
-            .split_at_checked(end.unwrap_or(bytes.len()))
-            .unwrap_or((bytes, &[]));
+        let split = end.and_then(|end| bytes.split_at_checked(end));
+        let (bytes, rest) = split.unwrap_or((bytes, &[])); // without an end all are codes
         (Self { bytes, offset: 0 }, rest)
     }
 

@@ -1,11 +1,9 @@
 //! From wheel pulses to an even speed.
 
+use core::num::{NonZeroU16, NonZeroU32, NonZeroU64};
 use core::time::Duration;
 
 use thiserror::Error;
-
-/// Time in which the pulses of one sample are counted [Alignment 2010].
-pub const SAMPLE: Duration = Duration::from_millis(200);
 
 /// Bins for the counts of a sample: whoever turns the wheel about evenly gets an even speed.
 ///
@@ -24,8 +22,8 @@ pub const SAMPLE: Duration = Duration::from_millis(200);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WheelQuantiser {
-    max: u32,
-    bins: u16,
+    max: NonZeroU32,
+    bins: NonZeroU16,
 }
 
 /// Why a quantiser cannot be.
@@ -52,25 +50,26 @@ impl WheelQuantiser {
     /// # Errors
     /// [`WheelError`] unless `1 <= bins <= max`.
     pub const fn new(max: u32, bins: u16) -> Result<Self, WheelError> {
-        if max == 0 {
-            return Err(WheelError::NoRange);
+        match (NonZeroU32::new(max), NonZeroU16::new(bins)) {
+            (None, _) => Err(WheelError::NoRange),
+            (Some(most), Some(count)) if bins as u32 <= max => Ok(Self {
+                max: most,
+                bins: count,
+            }),
+            _ => Err(WheelError::Bins { bins, max }),
         }
-        if bins == 0 || bins as u32 > max {
-            return Err(WheelError::Bins { bins, max });
-        }
-        Ok(Self { max, bins })
     }
 
     /// Counts of full speed.
     #[must_use]
     pub const fn max(&self) -> u32 {
-        self.max
+        self.max.get()
     }
 
     /// Bins between 0 and full speed.
     #[must_use]
     pub const fn bins(&self) -> u16 {
-        self.bins
+        self.bins.get()
     }
 
     /// `f(n)` in half bins: 0, an odd number of either sign, or `2 bins` at full speed.
@@ -79,61 +78,47 @@ impl WheelQuantiser {
     /// level = 2 f(n) m / max
     /// ```
     #[must_use]
-    pub fn level(&self, counts: i32) -> i32 {
-        let size = counts.unsigned_abs();
-        if size == 0 {
-            return 0;
-        }
-        let full = i32::from(self.bins).saturating_mul(2);
-        let level = if size >= self.max {
-            full
-        } else {
-            let scaled = u64::from(size).saturating_mul(self.bins.into());
-            let bin = scaled.checked_div(self.max.into()).unwrap_or_default();
-            // Below `bins`, which has 16 bits.
-            i32::try_from(bin)
-                .unwrap_or(full)
-                .saturating_mul(2)
-                .saturating_add(1)
+    pub fn level(&self, counts: i32) -> i64 {
+        let bins = u64::from(self.bins());
+        let level = match counts.unsigned_abs() {
+            0 => 0,
+            size if size >= self.max() => bins * 2,
+            // The bin is below `bins`.
+            size => u64::from(size) * bins / NonZeroU64::from(self.max) * 2 + 1,
         };
-        if counts < 0 {
-            level.saturating_neg()
-        } else {
-            level
-        }
+        signed(level, counts)
     }
 
-    /// The part of `full` that the counts stand for, `full f(n) / max`, to the nearest unit,
-    /// halves towards zero. In whatever unit `full` is.
+    /// The speed that the counts ask for, in the unit of `full_speed`: to the nearest whole
+    /// number, halves towards zero.
+    ///
+    /// ```text
+    /// speed = full_speed f(n) / max
+    /// ```
     #[must_use]
-    pub fn share(&self, counts: i32, full: u32) -> i64 {
-        let level = self.level(counts);
-        let halves = u64::from(self.bins).saturating_mul(2);
+    pub fn speed(&self, counts: i32, full_speed: u32) -> i64 {
+        let bins = NonZeroU64::from(self.bins);
         // At most 2^17 * 2^32.
-        let scaled = u64::from(level.unsigned_abs()).saturating_mul(full.into());
-        let rounding = u64::from(self.bins).saturating_sub(1);
-        let nearest = scaled
-            .saturating_add(rounding)
-            .checked_div(halves)
-            .unwrap_or_default();
-        // At most `full`.
-        let share = i64::try_from(nearest).unwrap_or(i64::MAX);
-        if counts < 0 {
-            share.saturating_neg()
-        } else {
-            share
-        }
+        let half_bins = self.level(counts).unsigned_abs() * u64::from(full_speed);
+        let nearest = (half_bins + bins.get() - 1) / bins / 2;
+        signed(nearest, counts)
     }
 
     /// `f(n)` in counts, to the nearest whole one, halves towards zero. A second time it changes
     /// nothing.
     #[must_use]
     pub fn counts(&self, counts: i32) -> i64 {
-        self.share(counts, self.max)
+        self.speed(counts, self.max())
     }
 }
 
-/// Makes samples of [`SAMPLE`] out of a counter that is read whenever there is time.
+/// A magnitude of at most 33 bits with the sign of the counts.
+const fn signed(magnitude: u64, counts: i32) -> i64 {
+    let magnitude = magnitude.cast_signed();
+    if counts < 0 { -magnitude } else { magnitude }
+}
+
+/// Makes samples of one [`PERIOD`](Self::PERIOD) out of a counter that is read whenever there is time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelSampler {
     since: Duration,
@@ -141,6 +126,9 @@ pub struct WheelSampler {
 }
 
 impl WheelSampler {
+    /// Time in which the pulses of one sample are counted [Alignment 2010].
+    pub const PERIOD: Duration = Duration::from_millis(200);
+
     /// Begins with the counter as it stands.
     #[must_use]
     pub const fn new(now: Duration, counter: u32) -> Self {
@@ -150,21 +138,21 @@ impl WheelSampler {
         }
     }
 
-    /// The counts per [`SAMPLE`] since the last sample; `None` while it is not over.
+    /// The counts per [`PERIOD`](Self::PERIOD) since the last sample; `None` while it is not over.
     ///
     /// `counter` is the quadrature counter, which may wrap. Read late, the counts are those of the
     /// mean speed since, to the nearest towards zero: a stall of the caller is no jump of the
     /// speed.
     #[must_use]
     pub fn sample(&mut self, now: Duration, counter: u32) -> Option<i32> {
-        // In whole nanoseconds: `Duration`'s own subtraction has a way to a panic.
+        // In whole nanoseconds: `Duration`'s own subtraction can panic.
         let elapsed = now.as_nanos().saturating_sub(self.since.as_nanos());
-        if elapsed < SAMPLE.as_nanos() {
+        if elapsed < Self::PERIOD.as_nanos() {
             return None;
         }
         let moved = counter.wrapping_sub(self.counter).cast_signed();
         *self = Self::new(now, counter);
-        let scaled = i64::from(moved).saturating_mul(SAMPLE.subsec_nanos().into());
+        let scaled = i64::from(moved).saturating_mul(Self::PERIOD.subsec_nanos().into());
         // After some 292 years nothing is left of any count.
         let elapsed = i64::try_from(elapsed).unwrap_or(i64::MAX);
         let mean = scaled.checked_div(elapsed)?;
@@ -174,6 +162,6 @@ impl WheelSampler {
     /// When the sample is over.
     #[must_use]
     pub fn due(&self) -> Duration {
-        self.since.saturating_add(SAMPLE)
+        self.since.saturating_add(Self::PERIOD)
     }
 }

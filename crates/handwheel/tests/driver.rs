@@ -4,7 +4,7 @@
 use core::time::Duration;
 
 use handwheel::{
-    DecodeError, Driver, Event, Failure, Job, Key, LcdAnswer, LcdBlock, LcdCommand, Led, Light,
+    DecodeError, Driver, Event, Failure, Job, Key, LcdAnswer, LcdBlock, LcdCommand, Led, LedState,
     Model, Position, Status, SubmitError, Timing,
 };
 use proptest::prelude::*;
@@ -23,9 +23,9 @@ fn home(model: Model) -> LcdBlock {
     block
 }
 
-fn led(light: Light) -> Job {
+fn led(state: LedState) -> Job {
     let led = Led::new(1).ok();
-    Job::Led { led, light }
+    Job::Led { led, state }
 }
 
 fn sent(driver: &mut Driver, now: Duration) -> Vec<u8> {
@@ -81,7 +81,7 @@ fn online(model: Model) -> Driver {
 #[test]
 fn the_unit_is_dead_until_its_status_is_asked_for() {
     let mut driver = Driver::new(Model::Hbls, Timing::DEFAULT);
-    driver.submit(led(Light::On)).unwrap();
+    driver.submit(led(LedState::On)).unwrap();
     assert_eq!(sent(&mut driver, at(0)), STATUS);
     assert_eq!(failed(&mut driver, at(400)), None);
     // Not at once: nobody may be there.
@@ -192,7 +192,7 @@ fn silence_is_looked_into_and_foreign_things_are_refused() {
     let model = Model::Hbls;
     let foreign = SubmitError::Model { model };
     assert_eq!(driver.submit(Job::Lcd(home(Model::Hbas))), Err(foreign));
-    assert!(online(Model::Hbas).submit(led(Light::Off)).is_err());
+    assert!(online(Model::Hbas).submit(led(LedState::Off)).is_err());
     let mut driver = online(Model::Hbls);
     driver.submit(Job::Lcd(home(Model::Hbls))).unwrap();
     assert_eq!(sent(&mut driver, at(0)), [0x6C, 0x25]);
@@ -281,7 +281,7 @@ proptest! {
                     None
                 }
                 _ => {
-                    seen.jobs += i32::from(driver.submit(Job::Led { led: None, light: Light::On }).is_ok());
+                    seen.jobs += i32::from(driver.submit(Job::Led { led: None, state: LedState::On }).is_ok());
                     None
                 }
             };

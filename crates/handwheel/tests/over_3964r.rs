@@ -5,8 +5,8 @@
 use core::time::Duration;
 
 use handwheel::{
-    Column, Command, Driver, Event, Job, LcdAnswer, LcdBlock, LcdCommand, Line as Row, MAX_COMMAND,
-    Model, Place, Position, Report, Status, Text, Timing,
+    Cell, Column, Command, Driver, Event, Job, LcdAnswer, LcdBlock, LcdCommand, Line as Row,
+    MAX_COMMAND, Model, Position, Report, Status, Text, Timing,
 };
 use proptest::prelude::*;
 use proto3964r::{Config, Line, Priority, Station, Transmit};
@@ -103,9 +103,7 @@ fn blocks(rows: &[String]) -> [LcdBlock; 2] {
         let block = &mut blocks[usize::from(number >= 6)];
         let line = Row::new(u8::try_from(number).unwrap()).unwrap();
         let column = Column::MIN;
-        block
-            .push(LcdCommand::Goto(Place { line, column }))
-            .unwrap();
+        block.push(LcdCommand::Goto(Cell { line, column })).unwrap();
         block
             .push(LcdCommand::Text(Text::new(row).unwrap()))
             .unwrap();

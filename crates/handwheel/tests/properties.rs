@@ -4,9 +4,9 @@
 use core::time::Duration;
 
 use handwheel::{
-    AreaEffect, AreaNumber, Column, Command, Font, Key, LcdAnswer, LcdBlock, LcdCommand, LcdError,
-    Led, Light, Line, MAX_COMMAND, MAX_REPORT, Model, Place, Position, Rect, Report, RotarySwitch,
-    Status, Text, TextNumber, WheelError, WheelQuantiser, WheelSampler,
+    AreaNumber, Cell, Column, Command, Font, Key, LcdAnswer, LcdBlock, LcdCommand, LcdError, Led,
+    LedState, Line, MAX_COMMAND, MAX_REPORT, Model, Position, Rect, Report, RotarySwitch, Status,
+    Text, TextNumber, WheelError, WheelQuantiser, WheelSampler,
 };
 use proptest::prelude::*;
 
@@ -46,20 +46,20 @@ fn report() -> impl Strategy<Value = (Model, Report)> {
     ]
 }
 
-fn place() -> impl Strategy<Value = Place> {
-    (0u8..8, 0u8..16).prop_map(|(line, column)| Place {
+fn cell() -> impl Strategy<Value = Cell> {
+    (0u8..8, 0u8..16).prop_map(|(line, column)| Cell {
         line: Line::new(line).unwrap(),
         column: Column::new(column).unwrap(),
     })
 }
 
 fn rect() -> impl Strategy<Value = Rect> {
-    (place(), place()).prop_map(|(a, b)| Rect {
-        start: Place {
+    (cell(), cell()).prop_map(|(a, b)| Rect {
+        start: Cell {
             line: a.line.min(b.line),
             column: a.column.min(b.column),
         },
-        end: Place {
+        end: Cell {
             line: a.line.max(b.line),
             column: a.column.max(b.column),
         },
@@ -88,11 +88,11 @@ fn lcd_command(model: Model) -> impl Strategy<Value = LcdCommand<'static>> {
         C::Flash(false),
     ];
     let effects = [
-        AreaEffect::Clear,
-        AreaEffect::Inverse,
-        AreaEffect::Flash,
-        AreaEffect::InverseFlash,
-        AreaEffect::Normal,
+        C::ClearArea,
+        C::InverseArea,
+        C::FlashArea,
+        C::InverseFlashArea,
+        C::NormalArea,
     ];
     let text = |most: usize| {
         (0..LETTERS.len(), 1..=most).prop_map(|(from, len)| {
@@ -105,17 +105,17 @@ fn lcd_command(model: Model) -> impl Strategy<Value = LcdCommand<'static>> {
     let font = (model == Model::Hbas).then_some(Font::Small);
     prop_oneof![
         prop::sample::select(plain.to_vec()),
-        place().prop_map(C::Goto),
+        cell().prop_map(C::Goto),
         rect().prop_map(C::DeleteRect),
         number().prop_map(C::ShowText),
         text(40).prop_map(C::Text),
         (area(), prop::sample::select(effects.to_vec()))
-            .prop_map(|(number, effect)| C::Area(number, effect)),
+            .prop_map(|(number, effect)| effect(number)),
         (area(), rect()).prop_map(|(number, rect)| C::DefineArea { number, rect }),
-        (number(), place(), text(30)).prop_map(move |(number, place, text)| C::DefineText {
+        (number(), cell(), text(30)).prop_map(move |(number, cell, text)| C::DefineText {
             number,
             font,
-            place,
+            cell,
             text
         }),
     ]
@@ -142,10 +142,10 @@ proptest! {
     }
 
     #[test]
-    fn lamps_round_trip(led in prop::option::of(1u8..=12), light in 0usize..3) {
-        let light = [Light::On, Light::Off, Light::Flashing][light];
+    fn leds_round_trip(led in prop::option::of(1u8..=12), state in 0usize..3) {
+        let state = [LedState::On, LedState::Off, LedState::Flashing][state];
         let led = led.map(|led| Led::new(led).unwrap());
-        let command = Command::Led { led, light };
+        let command = Command::Led { led, state };
         let mut buffer = [0; 1];
         let telegram = command.clone().encode(Model::Hbls, &mut buffer).unwrap();
         prop_assert_eq!(Command::decode(Model::Hbls, telegram), Ok(command));
@@ -222,11 +222,11 @@ proptest! {
             if let Some(opposite) = n.checked_neg() {
                 prop_assert_eq!(wheel.level(opposite), -level);
                 prop_assert_eq!(wheel.counts(opposite), -counts);
-                prop_assert_eq!(wheel.share(opposite, full), -wheel.share(n, full));
+                prop_assert_eq!(wheel.speed(opposite, full), -wheel.speed(n, full));
             }
-            prop_assert!(level.unsigned_abs() <= 2 * u32::from(bins));
+            prop_assert!(level.unsigned_abs() <= 2 * u64::from(bins));
             prop_assert!(counts.unsigned_abs() <= u64::from(max));
-            prop_assert!(wheel.share(n, full).unsigned_abs() <= u64::from(full));
+            prop_assert!(wheel.speed(n, full).unsigned_abs() <= u64::from(full));
             prop_assert_eq!(wheel.counts(i32::try_from(counts).unwrap()), counts);
             prop_assert_eq!(wheel.level(i32::try_from(counts).unwrap()), level);
             // The formula itself, in exact fractions: 2 m f(n) / max.
@@ -241,7 +241,7 @@ proptest! {
         }
         let (low, high) = (a.min(b), a.max(b));
         prop_assert!(wheel.level(low) <= wheel.level(high));
-        prop_assert!(wheel.share(low, full) <= wheel.share(high, full));
+        prop_assert!(wheel.speed(low, full) <= wheel.speed(high, full));
     }
 }
 

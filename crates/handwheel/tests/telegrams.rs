@@ -2,9 +2,9 @@
 #![cfg(test)]
 
 use handwheel::{
-    AreaEffect, AreaNumber, Column, Command, DecodeError, EncodeError, Font, Key, LcdAnswer,
-    LcdBlock, LcdCommand, LcdError, Led, Light, Line, MAX_COMMAND, MAX_REPORT, Model, Place,
-    Position, Rect, Report, RotarySwitch, Status, Text, TextNumber,
+    AreaNumber, Cell, Column, Command, DecodeError, EncodeError, Font, Key, LcdAnswer, LcdBlock,
+    LcdCommand, LcdError, Led, LedState, Line, MAX_COMMAND, MAX_REPORT, Model, Position, Rect,
+    Report, RotarySwitch, Status, Text, TextNumber,
 };
 use proto3964r::{Check, frame};
 
@@ -38,20 +38,20 @@ fn lcd(commands: &[LcdCommand<'_>]) -> Vec<u8> {
     on_the_line(block.as_bytes())
 }
 
-fn place(line: u8, column: u8) -> Place {
+fn cell(line: u8, column: u8) -> Cell {
     let (line, column) = (Line::new(line).unwrap(), Column::new(column).unwrap());
-    Place { line, column }
+    Cell { line, column }
 }
 
 #[test]
 fn lamps_and_status_request() {
-    let led = |led, light| command(Command::Led { led, light });
+    let led = |led, state| command(Command::Led { led, state });
     let seven = Led::new(7).ok();
     // Printed, with its BCC.
-    assert_eq!(led(seven, Light::On), [0x37, 0x10, 0x03, 0x24]);
-    assert_eq!(led(seven, Light::Off), [0x47, 0x10, 0x03, 0x54]);
-    assert_eq!(led(seven, Light::Flashing), [0x57, 0x10, 0x03, 0x44]);
-    assert_eq!(led(None, Light::Off)[0], 0x40);
+    assert_eq!(led(seven, LedState::On), [0x37, 0x10, 0x03, 0x24]);
+    assert_eq!(led(seven, LedState::Off), [0x47, 0x10, 0x03, 0x54]);
+    assert_eq!(led(seven, LedState::Flashing), [0x57, 0x10, 0x03, 0x44]);
+    assert_eq!(led(None, LedState::Off)[0], 0x40);
     let request = command(Command::StatusRequest);
     assert_eq!(request, [0x23, 0x10, 0x03, 0x30]);
 }
@@ -93,7 +93,7 @@ fn display_blocks() {
     let define = LcdCommand::DefineText {
         number: five,
         font: None,
-        place: place(4, 0),
+        cell: cell(4, 0),
         text: euchner,
     };
     let kept = [&[0x6C, 0x48, 0x35, 0x34, 0x30][..], &codes, &[0x0A]].concat();
@@ -108,15 +108,15 @@ fn display_blocks() {
     let shown = with_bcc(&[0x6C, 0x42, 0x49, 0x35, 0x43], 0x02);
     assert_eq!(lcd(&flashing), shown);
     let number = AreaNumber::new(22).unwrap();
-    let (start, end) = (place(4, 0), place(6, 10));
+    let (start, end) = (cell(4, 0), cell(6, 10));
     let rect = Rect { start, end };
     let area = with_bcc(&[0x6C, 0x4A, 0x46, 0x34, 0x30, 0x36, 0x3A], 0x7B);
     assert_eq!(lcd(&[LcdCommand::DefineArea { number, rect }]), area);
     // Line first, whatever the words around the example say.
-    let (start, end) = (place(2, 3), place(3, 6));
+    let (start, end) = (cell(2, 3), cell(3, 6));
     let delete = lcd(&[LcdCommand::DeleteRect(Rect { start, end })]);
     assert_eq!(delete[1..6], [0x2C, 0x32, 0x33, 0x33, 0x36]);
-    let effects = [AreaEffect::Clear, AreaEffect::Normal].map(|it| LcdCommand::Area(number, it));
+    let effects = [LcdCommand::ClearArea, LcdCommand::NormalArea].map(|effect| effect(number));
     assert_eq!(lcd(&effects)[1..5], [0x4B, 0x46, 0x4F, 0x46]);
 }
 
@@ -124,7 +124,7 @@ fn display_blocks() {
 fn last_numbers() {
     let show = LcdCommand::ShowText(TextNumber::MAX);
     assert_eq!(lcd(&[show])[2], 0xF8);
-    let clear = LcdCommand::Area(AreaNumber::MAX, AreaEffect::Clear);
+    let clear = LcdCommand::ClearArea(AreaNumber::MAX);
     assert_eq!(lcd(&[clear])[2], 0x50);
     let error = TextNumber::new(201).unwrap_err();
     assert_eq!(error.to_string(), "text 201 is not within 1..=200");
@@ -185,7 +185,7 @@ fn hbas() {
     let define = |font| LcdCommand::DefineText {
         number: TextNumber::MIN,
         font,
-        place: place(0, 0),
+        cell: cell(0, 0),
         text: Text::new("A").unwrap(),
     };
     assert_eq!(block.push(define(None)), Err(LcdError::Font { model }));

@@ -48,7 +48,10 @@ fn bytes(c: &mut Criterion) {
 fn header(c: &mut Criterion) {
     let frames = dance();
     let mut text = String::new();
-    let header = DataHeader::new().with_packing(Packing::MaskedRuns);
+    let header = DataHeader {
+        packing: Packing::MaskedRuns,
+        ..DataHeader::DEFAULT
+    };
     header.write(frames.iter().copied(), &mut text).unwrap();
     let mut group = c.benchmark_group("dance header");
     group.throughput(Throughput::Bytes(text.len().try_into().unwrap()));

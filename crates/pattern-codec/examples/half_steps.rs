@@ -51,7 +51,10 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     // Two wheels at +61 and -61: a turn on the spot.
     let frames = [[0, 0, 0, 0, 0, 0, 61, -61]; 5];
     let mut header = String::new();
-    let packed = DataHeader::new().with_packing(Packing::MaskedRuns);
+    let packed = DataHeader {
+        packing: Packing::MaskedRuns,
+        ..DataHeader::DEFAULT
+    };
     packed.write(frames, &mut header)?;
     print!("{header}");
     Ok(play(&header)?)

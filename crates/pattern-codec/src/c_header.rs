@@ -31,9 +31,9 @@ mod style;
 mod write;
 
 pub use error::{HeaderError, HeaderErrorKind, Location};
-pub use items::{Item, Items, items};
-pub use style::{Dialect, Name, NameError};
-pub use write::{TableHeader, WriteError};
+pub use items::{Item, items};
+pub use style::Dialect;
+pub use write::WriteError;
 
 pub(crate) use read::{ArrayValues, BYTE, Bytes, Checked, Source, WORD};
-pub(crate) use write::{Element, Layout, Value};
+pub(crate) use write::{Element, Layout, Table, Value};

@@ -22,8 +22,8 @@ mod threshold;
 mod timing;
 mod unpacking;
 
-pub use data_header::{Data, DataHeader, FrameFormat};
-pub use packing::{Encoded, Packing};
+pub use data_header::{Data, DataHeader};
+pub use packing::Packing;
 pub use size::{Fit, ProgramMemory, Sizes};
 pub use threshold::{Threshold, ThresholdTooLow};
 pub use timing::{Timing, ZeroPeriod};

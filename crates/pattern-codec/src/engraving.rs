@@ -15,7 +15,7 @@
 //! | case | decoded | encoded |
 //! |---|---|---|
 //! | low five bits of a record's first byte all ones | the record is FAST | |
-//! | low five bits all ones in the theta1 or theta2 place | error | cannot be built |
+//! | low five bits all ones in the theta1 or theta2 byte | error | cannot be built |
 //! | D7 set | negative direction | the same |
 //! | D7 set on a zero count | zero; [`Located::is_canonical`] is `false` | D7 clear |
 //! | D6 or D5 set in a SLOW byte | strict: error; lenient: ignored | both clear |
@@ -38,14 +38,10 @@ mod split;
 mod statistics;
 
 pub use axis::{Axis, PerAxis};
-pub use build::{Builder, HomeRecords, PositionError, RepeatedAxis};
+pub use build::{Builder, PositionError, RepeatedAxis};
 pub use decode::{DecodeError, DecodeErrorKind, Decoder, Located, Records};
 pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Mode};
 pub use pattern_header::{PatternData, PatternHeader};
 pub use record::{Fast, JointPulses, PulsesError, Record, Slow};
-pub use reload_header::{ReloadData, ReloadFormat, ReloadHeader, TimerPeriod};
-pub use split::{FastRecords, SlowRecords};
-pub use statistics::{HalfPeriods, Statistics};
-
-/// Length of every record in bytes.
-pub const RECORD_LEN: usize = 3;
+pub use reload_header::{ReloadData, ReloadHeader, TimerPeriod};
+pub use statistics::Statistics;

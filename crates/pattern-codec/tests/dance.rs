@@ -1,7 +1,7 @@
 //! Dance frames: packings, headers, and what is refused.
 #![cfg(test)]
 
-use pattern_codec::c_header::{Dialect, Name};
+use pattern_codec::c_header::Dialect;
 use pattern_codec::dance::{
     Data, DataHeader, DecodeError, Packing, ProgramMemory, Sizes, Threshold, Timing,
 };
@@ -63,8 +63,8 @@ proptest! {
         let all: Result<Vec<_>, _> = packing.decode::<9, _>(bytes.iter().copied()).collect();
         if let Ok(all) = all {
             prop_assert_eq!(&all, &frames);
-            let shortest = packing.encode(frames.iter().copied());
-            prop_assert!(shortest.clone().count() <= bytes.len());
+            let shortest: Vec<_> = packing.encode(frames.iter().copied()).collect();
+            prop_assert!(shortest.len() <= bytes.len());
             prop_assert!(packing.decode(shortest).map(Result::unwrap).eq(frames.iter().copied()));
         }
     }
@@ -72,12 +72,13 @@ proptest! {
     #[test]
     fn what_is_written_is_read(packing in packings(), frames in frames::<8>(), sdcc: bool, tick_us in 1..=u32::MAX, frame_ticks in 1..=u32::MAX, threshold in 128..=u16::MAX) {
         let timing = Timing::new(tick_us, frame_ticks).unwrap();
-        let header = DataHeader::new()
-            .with_name(Name::new("Waltz_3").unwrap())
-            .with_dialect(if sdcc { Dialect::Sdcc } else { Dialect::C51 })
-            .with_timing(timing)
-            .with_threshold(Threshold::new(threshold).unwrap())
-            .with_packing(packing);
+        let header = DataHeader {
+            name: "Waltz_3",
+            dialect: if sdcc { Dialect::Sdcc } else { Dialect::C51 },
+            timing,
+            threshold: Threshold::new(threshold).unwrap(),
+            packing,
+        };
         let mut text = String::new();
         header.write(frames.iter().copied(), &mut text).unwrap();
         for text in [loosened(&text), text] {
@@ -118,7 +119,10 @@ fn the_turn_on_the_spot() {
     // [Dancer]: wheels at +60 and -60 for 25 frames, 5000 ms.
     let frames = [[0, 0, 0, 0, 0, 0, 60, -60]; 25];
     let mut text = String::new();
-    let header = DataHeader::new().with_packing(Packing::MaskedRuns);
+    let header = DataHeader {
+        packing: Packing::MaskedRuns,
+        ..DataHeader::DEFAULT
+    };
     header.write(frames, &mut text).unwrap();
     let wanted = "\
 /* dance: 25 frames of 8 motors, 5000 ms.
@@ -340,7 +344,7 @@ fn wrong_headers_are_refused_with_line_and_column() {
 
 #[test]
 fn tables_that_no_firmware_holds_are_not_written() {
-    let write = |count| DataHeader::new().write(vec![[0; 8]; count], &mut String::new());
+    let write = |count| DataHeader::DEFAULT.write(vec![[0; 8]; count], &mut String::new());
     assert_eq!(write(0).unwrap_err().to_string(), "a table without values");
     let error = write(8193).unwrap_err().to_string();
     assert_eq!(error, "a table of 65544 bytes, an 8051 addresses 65536");
@@ -357,7 +361,12 @@ fn tables_that_no_firmware_holds_are_not_written() {
             "a table's name of 33 characters, max 31",
         ),
     ] {
-        let error = Name::new(name).unwrap_err().to_string();
+        let header = DataHeader {
+            name,
+            ..DataHeader::DEFAULT
+        };
+        let error = header.write([[0; 8]], &mut String::new()).unwrap_err();
+        let error = error.to_string();
         assert!(error.starts_with(wanted), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! C headers of engraving records and timer reloads, and the items of any header.
 #![cfg(test)]
 
-use pattern_codec::c_header::{Dialect, Item, Name, items};
+use pattern_codec::c_header::{Dialect, Item, items};
 use pattern_codec::engraving::{
     Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, Mode, PatternData, PatternHeader,
     PerAxis, Record, ReloadData, ReloadHeader, Slow, TimerPeriod,
@@ -50,8 +50,7 @@ fn dialect(sdcc: bool) -> Dialect {
 proptest! {
     #[test]
     fn records_are_read_as_written(records in prop::collection::vec(records(), 1..60), format in formats(), other in formats(), sdcc: bool) {
-        let name = Name::new("rosette").unwrap();
-        let header = PatternHeader::new(format).with_name(name).with_dialect(dialect(sdcc));
+        let header = PatternHeader { name: "rosette", dialect: dialect(sdcc), format };
         let mut text = String::new();
         header.write(records.iter().copied(), &mut text).unwrap();
         // What the header says counts, not what the reader expects.
@@ -64,8 +63,7 @@ proptest! {
     #[test]
     fn reloads_are_read_as_written(periods in prop::collection::vec((any::<u16>(), any::<bool>()), 1..60), sdcc: bool) {
         let periods = periods.into_iter().map(|(reload, toggles)| TimerPeriod { reload, toggles });
-        let name = Name::new("theta1").unwrap();
-        let header = ReloadHeader::new().with_name(name).with_dialect(dialect(sdcc));
+        let header = ReloadHeader { name: "theta1", dialect: dialect(sdcc) };
         let mut text = String::new();
         header.write(periods.clone(), &mut text).unwrap();
         let data = ReloadData::read(&text, "theta1").unwrap();
@@ -94,7 +92,10 @@ fn a_pattern_looks_like_this() {
         Slow::new(slow).unwrap().into(),
     ];
     let mut text = String::new();
-    let header = PatternHeader::new(Format::new()).with_dialect(Dialect::Sdcc);
+    let header = PatternHeader {
+        dialect: Dialect::Sdcc,
+        ..PatternHeader::new(Format::new())
+    };
     header.write(records, &mut text).unwrap();
     let wanted = "\
 /* pattern: 2 records, 1 FAST and 1 SLOW, 6 bytes.
@@ -127,7 +128,7 @@ fn reloads_look_like_this() {
         toggles: k != 2,
     });
     let mut text = String::new();
-    ReloadHeader::new().write(periods, &mut text).unwrap();
+    ReloadHeader::DEFAULT.write(periods, &mut text).unwrap();
     let wanted = "\
 /* reloads: 9 timer periods, 8 edges, 20 bytes. */
 #ifndef RELOADS_H
@@ -178,7 +179,7 @@ fn wrong_patterns_are_refused_with_line_and_column() {
     for (text, wanted) in [
         (
             "char p[] = {2, 0x1F, 1};",
-            "line 1, column 22: pattern byte 1: 0x1F has 31 pulses in the theta1 place",
+            "line 1, column 22: pattern byte 1: 0x1F has 31 pulses for theta1 in a SLOW record",
         ),
         (
             "char p[] = {2, 1, 1,\n0x20, 0, 0};",
@@ -222,7 +223,7 @@ fn reloads_stand_eight_in_a_row() {
         toggles: true,
     };
     let mut text = String::new();
-    let header = ReloadHeader::new();
+    let header = ReloadHeader::DEFAULT;
     header.write((0..17).map(period), &mut text).unwrap();
     let rows: Vec<_> = text
         .lines()

@@ -160,7 +160,7 @@ mod properties {
             let mut builder = Builder::new();
             let records = builder.fast(axis, pulses).unwrap();
             let parts = pulses.unsigned_abs().div_ceil(65_535);
-            prop_assert_eq!(records.remaining(), u64::from(parts));
+            prop_assert_eq!(records.size_hint().0, parts as usize);
             let mut arm = Builder::new();
             for record in records {
                 prop_assert!(record.pulses() != PerAxis::default());
@@ -177,7 +177,7 @@ mod properties {
             let totals = builder.position();
             let most = Axis::ALL.map(|axis| totals.get(axis).unsigned_abs()).into_iter().max();
             let parts = most.unwrap().div_ceil(30);
-            prop_assert_eq!(records.remaining(), u64::from(parts));
+            prop_assert_eq!(records.size_hint().0, parts as usize);
             let (n, mut k) = (i64::from(parts), 0);
             let mut arm = Builder::new();
             for record in records {
@@ -190,8 +190,8 @@ mod properties {
                     let off_times_n = n * i64::from(*arm.position().get(axis)) - ideal_times_n;
                     prop_assert!(2 * off_times_n.abs() <= n, "{axis} part {k} of {n}");
                     let part = i64::from(*record.pulses().get(axis)).abs();
-                    let share = total.abs() / n;
-                    prop_assert!(part == share || part == share + 1);
+                    let floor = total.abs() / n;
+                    prop_assert!(part == floor || part == floor + 1);
                 }
             }
             prop_assert_eq!(k, n);
@@ -207,7 +207,8 @@ mod properties {
             let start = PerAxis { theta1, theta2, theta3, vertical };
             let mut builder = Builder::at(start);
             let records = builder.home(order).unwrap();
-            prop_assert_eq!(records.clone().count() as u64, records.remaining());
+            let count = records.clone().count();
+            prop_assert_eq!(records.size_hint(), (count, Some(count)));
             let mut arm = Builder::at(start);
             let mut moved = Vec::new();
             for record in records {

@@ -149,7 +149,7 @@ mod records {
             );
             assert_eq!(
                 error.to_string(),
-                "pattern byte 4: 0x9F has 31 pulses in the theta1 place of a SLOW record, which holds at most 30"
+                "pattern byte 4: 0x9F has 31 pulses for theta1 in a SLOW record, which holds at most 30"
             );
         }
         // A FAST record may hold any bytes behind its mark.
@@ -254,7 +254,7 @@ mod records {
         }
         assert_eq!(
             STRICT.decode([0x05, 0x06, 0x47]).unwrap_err().to_string(),
-            "pattern byte 2: 0x47 has D6 or D5 set in the theta2 place of a SLOW record"
+            "pattern byte 2: 0x47, the byte of theta2 in a SLOW record, has D6 or D5 set"
         );
     }
 

@@ -10,8 +10,8 @@ use crate::{
     station::{Station, SubmitError, Transmit},
 };
 
-/// Characters that are handed to the port at a time: so many can no longer be called back when
-/// the partner interrupts the block.
+/// Characters that are handed to the port at a time: these can no longer be taken back when the
+/// partner interrupts the block.
 const OUTPUT: usize = 8;
 const INPUT: usize = 32;
 

@@ -19,7 +19,7 @@ use crate::{
 const OUTPUT: usize = 16;
 const INPUT: usize = 32;
 
-/// The time, and a way to wait for it.
+/// A clock, and how to wait for a time of it.
 pub trait Timer {
     /// The time since any epoch.
     fn now(&mut self) -> Duration;
@@ -157,12 +157,11 @@ where
     /// Fetches the next piece when the port has taken the last one, or when that one is void.
     fn refill(&mut self, now: Duration) {
         let mut piece = [0; OUTPUT];
-        let room = if self.output.waiting().is_empty() {
-            OUTPUT
+        let free: &mut [u8] = if self.output.waiting().is_empty() {
+            &mut piece
         } else {
-            0
+            &mut []
         };
-        let free = piece.get_mut(..room).unwrap_or_default();
         match self.station.poll_transmit(now, free) {
             Some(Transmit::Discard) => {
                 self.output = Piece::EMPTY;

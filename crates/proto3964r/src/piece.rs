@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use crate::station::Station;
 
-/// Some characters on their way, of which the first go first.
+/// Characters in a buffer, first in, first out.
 #[derive(Debug)]
 pub(crate) struct Piece<const LEN: usize> {
     bytes: [u8; LEN],
@@ -35,18 +35,18 @@ impl<const LEN: usize> Piece<LEN> {
         self.bytes.get(self.begin..self.end).unwrap_or_default()
     }
 
-    /// The place for the next characters; those that wait are lost.
+    /// The buffer for the next characters; those that wait are lost.
     pub(crate) fn room(&mut self) -> &mut [u8] {
         (self.begin, self.end) = (0, 0);
         &mut self.bytes
     }
 
-    /// So many characters are in the room.
+    /// `count` characters are in the buffer.
     pub(crate) fn filled(&mut self, count: usize) {
         self.end = count.min(LEN);
     }
 
-    /// So many of those that wait have gone.
+    /// The first `count` of those that wait are done.
     pub(crate) fn gone(&mut self, count: usize) {
         self.begin += count;
     }

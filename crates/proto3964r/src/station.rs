@@ -346,7 +346,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         match note {
             Note::Received { len } => {
                 self.holds_telegram = false;
-                Event::Received(self.rx.get(..usize::from(len)).unwrap_or_default())
+                Event::Received(head(&self.rx, len))
             }
             Note::Sent => {
                 self.job.state = JobState::None;
@@ -380,4 +380,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.resume(now);
         }
     }
+}
+
+/// The first `len` bytes of a buffer that holds at least as many.
+fn head(buffer: &[u8], len: u16) -> &[u8] {
+    buffer.get(..usize::from(len)).unwrap_or_default()
 }

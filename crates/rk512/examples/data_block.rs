@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// In place of the line: every block arrives at once.
+/// Instead of a line: every block arrives at once.
 fn exchange(client: &mut Client<256>, plc: &mut Memory<'_, 1>) {
     let (now, mut server) = (Duration::ZERO, Server::new(Config::DEFAULT));
     while let Some(command) = client.poll_transmit(now) {

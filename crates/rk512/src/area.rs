@@ -137,7 +137,7 @@ pub struct AreaError {
     pub number: u8,
 }
 
-/// A place in the partner's memory: kind, number, first unit (bytes 4 to 6 of a FETCH command).
+/// An address in the partner's memory: kind, number, first unit (bytes 4 to 6 of a FETCH command).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -152,7 +152,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// A place of any kind.
+    /// An address of any kind.
     ///
     /// # Errors
     /// [`AreaError`] if `number` is not 0 and the kind has none.

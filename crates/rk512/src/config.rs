@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-/// Times that a client or server keeps.
+/// Times of a client or server.
 ///
 /// Begin with the defaults, change what differs:
 /// ```

@@ -118,7 +118,7 @@ impl<'a, const B: usize> Memory<'a, B> {
     }
 
     /// What stands `offset` bytes after the start of the job.
-    fn place(
+    fn bytes_of(
         &mut self,
         command: &Command,
         offset: usize,
@@ -156,7 +156,7 @@ impl<const B: usize> DataSource for Memory<'_, B> {
         offset: usize,
         data: &mut [u8],
     ) -> Result<(), ReactionError> {
-        data.copy_from_slice(self.place(command, offset, data.len())?);
+        data.copy_from_slice(self.bytes_of(command, offset, data.len())?);
         Ok(())
     }
 
@@ -166,7 +166,7 @@ impl<const B: usize> DataSource for Memory<'_, B> {
         offset: usize,
         data: &[u8],
     ) -> Result<(), ReactionError> {
-        self.place(command, offset, data.len())?
+        self.bytes_of(command, offset, data.len())?
             .copy_from_slice(data);
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::reaction::ReactionError;
 
-/// The memory behind a [`Server`](crate::Server): the caller's, or a ready [`Memory`](crate::Memory).
+/// The memory that a [`Server`](crate::Server) reads and writes: the caller's, or a ready [`Memory`](crate::Memory).
 ///
 /// For each command the server calls [`size`](Self::size), then [`open`](Self::open); after an
 /// `open` that succeeded, [`read`](Self::read) or [`write`](Self::write) once for each telegram,
@@ -42,10 +42,10 @@ pub trait DataSource {
         data: &mut [u8],
     ) -> Result<(), ReactionError>;
 
-    /// Takes `data` for the place `offset` bytes after the start of the job.
+    /// Stores `data` at `offset` bytes after the start of the job.
     ///
     /// A job of more than 128 bytes comes in several calls: a source that must not show half of it
-    /// keeps them until [`close`](Self::close).
+    /// holds them until [`close`](Self::close).
     ///
     /// # Errors
     /// Any; the job ends.

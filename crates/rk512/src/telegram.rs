@@ -69,6 +69,7 @@ pub enum EncodeError {
 #[derive(Clone, Copy)]
 pub struct Telegram {
     bytes: [u8; MAX_TELEGRAM],
+    /// At most [`MAX_TELEGRAM`].
     len: u8,
 }
 
@@ -79,8 +80,11 @@ impl Telegram {
         for (to, from) in bytes.iter_mut().zip(header) {
             *to = from;
         }
-        let len = H + data_len.min(MAX_DATA);
-        let len = u8::try_from(len).unwrap_or(u8::MAX);
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a telegram has at most 138 bytes"
+        )]
+        let len = (H + data_len.min(MAX_DATA)) as u8;
         Self { bytes, len }
     }
 

@@ -12,10 +12,12 @@ use crate::score::{Choreography, Score};
 /// More bytes than an 8051 addresses.
 pub fn header(score: &Score, dance: &Choreography<MOTORS>) -> Result<String> {
     let frames = || dance.frames.iter().copied();
-    let header = DataHeader::new()
-        .with_timing(score.timing())
-        .with_threshold(score.threshold())
-        .with_packing(Sizes::of(frames()).smallest());
+    let header = DataHeader {
+        timing: score.timing(),
+        threshold: score.threshold(),
+        packing: Sizes::of(frames()).smallest(),
+        ..DataHeader::DEFAULT
+    };
     let mut text = String::new();
     header.write(frames(), &mut text)?;
     Ok(text)

@@ -1,7 +1,7 @@
 //! The operator: reads the display, turns, presses.
 
 use anyhow::{Context, Result, ensure};
-use handwheel::{Key, Light, Position, RotarySwitch, SAMPLE, WheelQuantiser};
+use handwheel::{Key, LedState, Position, RotarySwitch, WheelQuantiser, WheelSampler};
 
 use crate::panel::{PanelSettings, PoseChange};
 use crate::pose::{Pose, changed};
@@ -152,10 +152,10 @@ fn jog_counts(wheel: &WheelQuantiser, sign: i32) -> Result<Vec<i32>> {
 /// The fastest multiplier, as the position of its rotary switch, with which the jog stays within the
 /// room in mm.
 fn multiplier_within(room: f64, counts: &[i32], settings: &PanelSettings) -> u8 {
-    let share = |counts: &i32| settings.wheel.share(*counts, settings.full_jog_um_s);
-    let um_s: i64 = counts.iter().map(share).sum();
+    let speed = |counts: &i32| settings.wheel.speed(*counts, settings.full_jog_um_s);
+    let um_s: i64 = counts.iter().map(speed).sum();
     #[expect(clippy::cast_precision_loss, reason = "mm")]
-    let path_mm = um_s.unsigned_abs() as f64 / 1000.0 * SAMPLE.as_secs_f64() * MARGIN;
+    let path_mm = um_s.unsigned_abs() as f64 / 1000.0 * WheelSampler::PERIOD.as_secs_f64() * MARGIN;
     match room {
         room if path_mm < room => 3,
         room if path_mm / 10.0 < room => 2,
@@ -217,7 +217,7 @@ fn set<const N: usize>(world: &mut World<'_, N>, direction: u8, counts: i64) -> 
 /// Presses both switches; the LED says when they count.
 fn enable<const N: usize>(world: &mut World<'_, N>) -> Result<()> {
     world.switches(true, true)?;
-    world.wait_until("the LED", 10, |it| it.pendant.light() == Light::On)
+    world.wait_until("the LED", 10, |it| it.pendant.led() == LedState::On)
 }
 
 fn switch<const N: usize>(

@@ -9,7 +9,7 @@ pub use settings::{PanelSettings, PanelSettingsError};
 
 use self::settings::{KeyRole, Multiplier};
 
-use handwheel::{Key, Light, Position, RotarySwitch, Status};
+use handwheel::{Key, LedState, Position, RotarySwitch, Status};
 
 use crate::arbiter::{Arbiter, PendantId, Refused, Target};
 
@@ -135,13 +135,13 @@ impl Panel {
 
     /// For an LED: flashing while something moves, on while both switches enable it.
     #[must_use]
-    pub const fn light(&self) -> Light {
+    pub const fn led(&self) -> LedState {
         if self.is_moving() {
-            Light::Flashing
+            LedState::Flashing
         } else if self.is_enabled() {
-            Light::On
+            LedState::On
         } else {
-            Light::Off
+            LedState::Off
         }
     }
 

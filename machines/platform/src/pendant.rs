@@ -4,7 +4,7 @@ use alloc::collections::VecDeque;
 use core::time::Duration;
 
 use handwheel::{
-    Command, Key, LcdAnswer, LcdCommand, LcdCommands, Light, MAX_REPORT, Model, Place, Position,
+    Cell, Command, Key, LcdAnswer, LcdCommand, LcdCommands, LedState, MAX_REPORT, Model, Position,
     Report, RotarySwitch, Status,
 };
 use proto3964r::{Config, Event, Priority, Station};
@@ -24,7 +24,7 @@ pub(crate) struct Pendant {
     key: Option<Key>,
     w1: Position,
     w2: Position,
-    light: Light,
+    led: LedState,
     cells: [[char; COLUMNS]; LINES],
     cursor: (usize, usize),
     reports: VecDeque<Report>,
@@ -46,7 +46,7 @@ impl Pendant {
             key: None,
             w1: Position::MIN,
             w2: Position::MIN,
-            light: Light::Off,
+            led: LedState::Off,
             cells: [[' '; COLUMNS]; LINES],
             cursor: (0, 0),
             reports: VecDeque::new(),
@@ -91,8 +91,8 @@ impl Pendant {
         self.cells.get(line).into_iter().flatten().collect()
     }
 
-    pub(crate) const fn light(&self) -> Light {
-        self.light
+    pub(crate) const fn led(&self) -> LedState {
+        self.led
     }
 
     /// Whether there is nothing left to say.
@@ -128,7 +128,7 @@ impl Pendant {
                     let status = Status::Hbls { key, w1, w2 };
                     self.reports.push_front(Report::Status(status));
                 }
-                Ok(Command::Led { light, .. }) => self.light = light,
+                Ok(Command::Led { state, .. }) => self.led = state,
                 Ok(Command::Lcd(commands)) => {
                     let answer = self.show(commands);
                     self.reports.push_back(Report::Lcd(answer));
@@ -148,11 +148,11 @@ impl Pendant {
         }
     }
 
-    /// Cursor, characters and clearing; kept texts and areas are not simulated.
+    /// Cursor, characters and clearing; stored texts and areas are not simulated.
     fn show(&mut self, commands: LcdCommands<'_>) -> LcdAnswer {
         for command in commands {
             match command {
-                Ok(LcdCommand::Goto(Place { line, column })) => {
+                Ok(LcdCommand::Goto(Cell { line, column })) => {
                     self.cursor = (line.get().into(), column.get().into());
                 }
                 Ok(LcdCommand::Text(text)) => {
@@ -163,7 +163,13 @@ impl Pendant {
                 Ok(LcdCommand::Home) => self.cursor = (0, 0),
                 Ok(LcdCommand::DeleteAll) => self.cells = [[' '; COLUMNS]; LINES],
                 Ok(LcdCommand::ShowText(_)) => return LcdAnswer::NoSuchText,
-                Ok(LcdCommand::Area(..)) => return LcdAnswer::NoSuchArea,
+                Ok(
+                    LcdCommand::ClearArea(_)
+                    | LcdCommand::InverseArea(_)
+                    | LcdCommand::FlashArea(_)
+                    | LcdCommand::InverseFlashArea(_)
+                    | LcdCommand::NormalArea(_),
+                ) => return LcdAnswer::NoSuchArea,
                 _ => return LcdAnswer::BadParameter,
             }
         }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use handwheel::{Column, LcdBlock, LcdCommand, Line, Model, Place, Text};
+use handwheel::{Cell, Column, LcdBlock, LcdCommand, Line, Model, Text};
 
 /// Lines of the display. Printed for the HBAS (small font); the HBLS is taken to have as many.
 pub(crate) const LINES: usize = 8;
@@ -152,6 +152,6 @@ fn push(block: &mut LcdBlock, line: u8, column: usize, bytes: &[u8]) -> Option<(
     let line = Line::new(line).ok()?;
     let column = Column::new(u8::try_from(column).ok()?).ok()?;
     let text = Text::from_ascii(bytes).ok()?;
-    block.push(LcdCommand::Goto(Place { line, column })).ok()?;
+    block.push(LcdCommand::Goto(Cell { line, column })).ok()?;
     block.push(LcdCommand::Text(text)).ok()
 }

@@ -2,7 +2,9 @@
 
 use core::time::Duration;
 
-use handwheel::{Command, Driver, Event, Job, LcdAnswer, Led, Light, MAX_COMMAND, Model, Timing};
+use handwheel::{
+    Command, Driver, Event, Job, LcdAnswer, Led, LedState, MAX_COMMAND, Model, Timing,
+};
 use proto3964r::{Config, Station};
 use serde::Serialize;
 
@@ -48,7 +50,7 @@ pub(crate) struct Workstation<const N: usize> {
     arbiter: Arbiter<N>,
     shown: Shown,
     /// The LED as it was last set.
-    light: Option<Light>,
+    led: Option<LedState>,
     pub(crate) telegrams: Telegrams,
 }
 
@@ -60,7 +62,7 @@ impl<const N: usize> Workstation<N> {
             panel: Panel::new(PendantId(1), settings)?,
             arbiter: Arbiter::new(),
             shown: Shown::UNKNOWN,
-            light: None,
+            led: None,
             telegrams: Telegrams::default(),
         })
     }
@@ -109,7 +111,7 @@ impl<const N: usize> Workstation<N> {
                 telegrams.status_replies += 1;
                 if *connected {
                     self.shown = Shown::UNKNOWN;
-                    self.light = None;
+                    self.led = None;
                 }
             }
             Event::Lcd { answer, .. } => {
@@ -120,7 +122,7 @@ impl<const N: usize> Workstation<N> {
             }
             Event::Failed(..) => {
                 self.shown = Shown::UNKNOWN;
-                self.light = None;
+                self.led = None;
             }
             Event::Unreadable(_) => telegrams.rejected += 1,
             _ => {}
@@ -136,12 +138,12 @@ impl<const N: usize> Workstation<N> {
         positions_um: &[[i32; 3]; N],
     ) -> anyhow::Result<()> {
         if self.driver.is_online() && !self.driver.is_busy() {
-            let light = self.panel.light();
+            let state = self.panel.led();
             let screen = self.panel.screen(&self.arbiter, positions_um);
-            if self.light != Some(light) {
+            if self.led != Some(state) {
                 let led = Some(Led::MIN);
-                self.driver.submit(Job::Led { led, light })?;
-                self.light = Some(light);
+                self.driver.submit(Job::Led { led, state })?;
+                self.led = Some(state);
             } else if let Some(block) = self.shown.update(&screen, MODEL) {
                 self.driver.submit(Job::Lcd(block))?;
             }

@@ -1,7 +1,7 @@
 //! The panel as an operator and a machine see it.
 #![cfg(test)]
 
-use handwheel::{Event, Key, LcdAnswer, Light, Position, RotarySwitch, Status, WheelQuantiser};
+use handwheel::{Event, Key, LcdAnswer, LedState, Position, RotarySwitch, Status, WheelQuantiser};
 use platform::{
     Action, Arbiter, Axis, Input, Panel, PanelSettings, PanelSettingsError, PendantId, PoseChange,
     Refusal, Refused, Target,
@@ -198,10 +198,10 @@ fn a_jog_follows_the_wheel_and_stops() {
     assert_eq!(desk.switches(0, true, false), None);
     assert_eq!(desk.on(0, Input::Wheel(10)), None);
     assert_eq!(desk.switches(0, true, true), None);
-    assert_eq!(desk.panels[0].light(), Light::On);
+    assert_eq!(desk.panels[0].led(), LedState::On);
     assert_eq!(desk.on(0, Input::Wheel(10)), jog(0, Axis::X, 1500));
     assert_eq!(desk.on(0, Input::Wheel(-100)), jog(0, Axis::X, -10_000));
-    assert_eq!(desk.panels[0].light(), Light::Flashing);
+    assert_eq!(desk.panels[0].led(), LedState::Flashing);
     assert_eq!(desk.screen(0)[0], " LOCATOR  1 BUSY");
     // The wheel stands: stop, and nothing until the axis is at rest.
     let stop = Some(Action::Stop(Target::Locator(0)));

@@ -1,7 +1,7 @@
 //! Display blocks bring a pendant to show a screen.
 #![cfg(test)]
 
-use handwheel::{LcdCommand, Model, Place};
+use handwheel::{Cell, LcdCommand, Model};
 use platform::{Screen, Shown};
 use proptest::prelude::*;
 
@@ -25,7 +25,7 @@ proptest! {
                 let mut at = (0, 0);
                 for command in block.commands() {
                     match command.unwrap() {
-                        LcdCommand::Goto(Place { line, column }) => {
+                        LcdCommand::Goto(Cell { line, column }) => {
                             at = (usize::from(line.get()), usize::from(column.get()));
                         }
                         LcdCommand::Text(text) => for character in text.chars() {

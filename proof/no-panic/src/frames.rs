@@ -3,18 +3,11 @@
 use std::hint::black_box;
 
 use no_panic::no_panic;
-use pattern_codec::c_header::{HeaderError, Item, Items, Location, items};
-use pattern_codec::dance::{Data, DecodeError, Decoded, Encoded, Packing};
+use pattern_codec::c_header::{HeaderError, items};
+use pattern_codec::dance::{Data, DecodeError, Decoded, Packing};
 use pattern_codec::engraving::{Format, PatternData, ReloadData};
 
 type Bytes<'a> = std::iter::Copied<std::slice::Iter<'a, u8>>;
-type Eight<'a> = std::iter::Copied<std::slice::Iter<'a, [i8; 8]>>;
-
-#[no_panic]
-#[inline(never)]
-fn encoded_next(encoded: &mut Encoded<Eight<'_>, 8>) -> Option<u8> {
-    encoded.next()
-}
 
 #[no_panic]
 #[inline(never)]
@@ -24,20 +17,14 @@ fn decoded_next(decoded: &mut Decoded<Bytes<'_>, 8>) -> Option<Result<[i8; 8], D
 
 #[no_panic]
 #[inline(never)]
-fn item_next<'a>(items: &mut Items<'a>) -> Option<Result<(Location, Item<'a>), HeaderError>> {
-    items.next()
-}
-
-#[no_panic]
-#[inline(never)]
 fn data_read(text: &str) -> Result<Data<'_, 8>, HeaderError> {
     Data::read(text)
 }
 
-/// Frames, records and timer periods of a header.
+/// Bytes of frames, items of a header, its frames, records and timer periods.
 #[no_panic]
 #[inline(never)]
-fn table_next<I: Iterator>(items: &mut I) -> Option<I::Item> {
+fn any_next<I: Iterator>(items: &mut I) -> Option<I::Item> {
     items.next()
 }
 
@@ -59,18 +46,18 @@ pub fn run() {
     let text = black_box("#define P_PACKING 1\nchar p[] = {1, 60, 0, 0, 0, 0, 0, 0, 0};");
     for packing in black_box(Packing::ALL) {
         let encoded = packing.encode(frames.iter().copied());
-        black_box(encoded_next(&mut black_box(encoded)));
+        black_box(any_next(&mut black_box(encoded)));
         let decoded = packing.decode(bytes.iter().copied());
         let _ = black_box(decoded_next(&mut black_box(decoded)));
     }
-    let _ = black_box(item_next(&mut black_box(items(text))));
+    let _ = black_box(any_next(&mut black_box(items(text))));
     if let Ok(data) = data_read(text) {
-        black_box(table_next(&mut black_box(data.frames())));
+        black_box(any_next(&mut black_box(data.frames())));
     }
     if let Ok(data) = pattern_read(text, black_box(Format::new())) {
-        black_box(table_next(&mut black_box(data.records())));
+        black_box(any_next(&mut black_box(data.records())));
     }
     if let Ok(data) = reloads_read(text, black_box("p")) {
-        black_box(table_next(&mut black_box(data.periods())));
+        black_box(any_next(&mut black_box(data.periods())));
     }
 }

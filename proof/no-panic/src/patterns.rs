@@ -4,8 +4,8 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use pattern_codec::engraving::{
-    Axis, Builder, DecodeError, Decoder, FastRecords, Format, HomeRecords, JointPulses, Located,
-    PositionError, RECORD_LEN, Record, Records, SlowRecords,
+    Axis, Builder, DecodeError, Decoder, Format, JointPulses, Located, PositionError, Record,
+    Records,
 };
 
 #[no_panic]
@@ -28,7 +28,7 @@ fn decoder_finish(decoder: Decoder) -> Result<u64, DecodeError> {
 
 #[no_panic]
 #[inline(never)]
-fn encode(record: Record, format: &Format) -> [u8; RECORD_LEN] {
+fn encode(record: Record, format: &Format) -> [u8; Record::LEN] {
     record.encode(format)
 }
 
@@ -38,21 +38,10 @@ fn track(builder: &mut Builder, record: Record) -> Result<(), PositionError> {
     builder.track(record)
 }
 
+/// Records of a rapid, a cutting and a homing motion.
 #[no_panic]
 #[inline(never)]
-fn fast_next(records: &mut FastRecords) -> Option<Record> {
-    records.next()
-}
-
-#[no_panic]
-#[inline(never)]
-fn slow_next(records: &mut SlowRecords) -> Option<Record> {
-    records.next()
-}
-
-#[no_panic]
-#[inline(never)]
-fn home_next(records: &mut HomeRecords) -> Option<Record> {
+fn motion_next(records: &mut impl Iterator<Item = Record>) -> Option<Record> {
     records.next()
 }
 
@@ -70,14 +59,14 @@ pub fn run() {
         theta3: 6,
     };
     let fast = builder.fast(black_box(Axis::Vertical), black_box(-70_000));
-    if let Some(record) = fast.ok().and_then(|fast| fast_next(&mut black_box(fast))) {
+    if let Some(record) = fast.ok().and_then(|fast| motion_next(&mut black_box(fast))) {
         black_box(encode(black_box(record), &format));
         let _ = black_box(track(&mut builder, black_box(record)));
     }
     if let Ok(slow) = builder.slow(black_box(pulses)) {
-        black_box(slow_next(&mut black_box(slow)));
+        black_box(motion_next(&mut black_box(slow)));
     }
     if let Ok(home) = builder.home(black_box(Axis::ALL)) {
-        black_box(home_next(&mut black_box(home)));
+        black_box(motion_next(&mut black_box(home)));
     }
 }

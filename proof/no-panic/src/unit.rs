@@ -91,7 +91,7 @@ fn driver_timeout(driver: &mut Driver, now: Duration) {
 #[no_panic]
 #[inline(never)]
 fn wheel_share(wheel: &WheelQuantiser, counts: i32, full: u32) -> i64 {
-    wheel.share(counts, full)
+    wheel.speed(counts, full)
 }
 
 #[no_panic]

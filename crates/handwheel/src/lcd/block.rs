@@ -2,14 +2,14 @@
 
 use core::fmt;
 
-use super::{Font, LcdCommand, LcdCommands, LcdError, Place, Rect};
+use super::{Cell, Font, LcdCommand, LcdCommands, LcdError, Rect};
 use crate::command::MAX_COMMAND;
 use crate::report::{LCD, Model};
-use crate::text::{MAX_TEXT, Text};
+use crate::text::Text;
 
-/// First code of numbered things and places.
+/// Code of number, line and column 0.
 pub(super) const ZERO: u8 = 0x30;
-/// End of a kept text of the HBLS.
+/// End of a stored text of the HBLS.
 pub(super) const TEXT_END: u8 = 0x0A;
 
 /// One telegram of display commands, built up command by command.
@@ -86,9 +86,9 @@ impl LcdBlock {
             LcdCommand::Up => self.bytes(&[0x24]),
             LcdCommand::Home => self.bytes(&[0x25]),
             LcdCommand::LineStart => self.bytes(&[0x26]),
-            LcdCommand::Goto(place) => {
+            LcdCommand::Goto(cell) => {
                 self.bytes(&[0x27])?;
-                self.place(place)
+                self.cell(cell)
             }
             LcdCommand::Delete => self.bytes(&[0x28]),
             LcdCommand::DeleteToLineEnd => self.bytes(&[0x29]),
@@ -103,16 +103,16 @@ impl LcdBlock {
             LcdCommand::DefineText {
                 number,
                 font,
-                place,
+                cell,
                 text,
             } => {
                 let len = text.len();
-                if len > MAX_TEXT {
+                if len > LcdCommand::MAX_TEXT {
                     return Err(LcdError::TextTooLong { len });
                 }
                 self.bytes(&[0x48, number.code(ZERO)])?;
                 self.font(font)?;
-                self.place(place)?;
+                self.cell(cell)?;
                 self.text(text)?;
                 match self.model {
                     Model::Hbls => self.bytes(&[TEXT_END]),
@@ -124,7 +124,11 @@ impl LcdBlock {
                 self.bytes(&[0x4A, number.code(ZERO)])?;
                 self.rect(rect)
             }
-            LcdCommand::Area(number, effect) => self.bytes(&[effect.code(), number.code(ZERO)]),
+            LcdCommand::ClearArea(number) => self.bytes(&[0x4B, number.code(ZERO)]),
+            LcdCommand::InverseArea(number) => self.bytes(&[0x4C, number.code(ZERO)]),
+            LcdCommand::FlashArea(number) => self.bytes(&[0x4D, number.code(ZERO)]),
+            LcdCommand::InverseFlashArea(number) => self.bytes(&[0x4E, number.code(ZERO)]),
+            LcdCommand::NormalArea(number) => self.bytes(&[0x4F, number.code(ZERO)]),
         }
     }
 
@@ -137,14 +141,14 @@ impl LcdBlock {
         }
     }
 
-    fn place(&mut self, place: Place) -> Result<(), LcdError> {
-        self.bytes(&[place.line.code(ZERO), place.column.code(ZERO)])
+    fn cell(&mut self, cell: Cell) -> Result<(), LcdError> {
+        self.bytes(&[cell.line.code(ZERO), cell.column.code(ZERO)])
     }
 
     fn rect(&mut self, rect: Rect) -> Result<(), LcdError> {
         let Rect { start, end } = rect.check()?;
-        self.place(start)?;
-        self.place(end)
+        self.cell(start)?;
+        self.cell(end)
     }
 
     fn bytes(&mut self, bytes: &[u8]) -> Result<(), LcdError> {
@@ -160,11 +164,11 @@ impl LcdBlock {
         let from = usize::from(self.len);
         let len = from.saturating_add(bytes.len());
         let full = LcdError::Full { len, max };
-        let place = self.bytes.get_mut(from..len).ok_or(full)?;
+        let free = self.bytes.get_mut(from..len).ok_or(full)?;
         if len > max {
             return Err(full);
         }
-        for (to, byte) in place.iter_mut().zip(bytes) {
+        for (to, byte) in free.iter_mut().zip(bytes) {
             *to = byte;
         }
         self.len = u8::try_from(len).map_err(|_| full)?;

@@ -3,10 +3,10 @@
 use core::iter::FusedIterator;
 
 use super::block::{TEXT_END, ZERO};
-use super::{AreaEffect, Font, LcdCommand, LcdError, Place, Rect};
+use super::{Cell, Font, LcdCommand, LcdError, Rect};
 use crate::number::{AreaNumber, Column, Line, NumberError, TextNumber};
 use crate::report::Model;
-use crate::text::{MAX_TEXT, Text};
+use crate::text::Text;
 
 /// The commands of a display block, one after the other; an error ends them.
 ///
@@ -20,7 +20,7 @@ pub struct LcdCommands<'a> {
 }
 
 impl<'a> LcdCommands<'a> {
-    /// The commands behind the 6Ch.
+    /// The commands after the 6Ch.
     pub(crate) const fn new(model: Model, bytes: &'a [u8]) -> Self {
         let len = bytes.len().saturating_add(1);
         Self {
@@ -67,14 +67,14 @@ impl<'a> LcdCommands<'a> {
         text
     }
 
-    fn place(&mut self) -> Result<Place, LcdError> {
+    fn cell(&mut self) -> Result<Cell, LcdError> {
         let line = self.number(Line::from_code)?;
         let column = self.number(Column::from_code)?;
-        Ok(Place { line, column })
+        Ok(Cell { line, column })
     }
 
     fn rect(&mut self) -> Result<Rect, LcdError> {
-        let (start, end) = (self.place()?, self.place()?);
+        let (start, end) = (self.cell()?, self.cell()?);
         Rect { start, end }.check()
     }
 
@@ -93,10 +93,10 @@ impl<'a> LcdCommands<'a> {
     fn define_text(&mut self) -> Result<LcdCommand<'a>, LcdError> {
         let number = self.number(TextNumber::from_code)?;
         let font = self.font()?;
-        let place = self.place()?;
+        let cell = self.cell()?;
         let text = self.text();
         let len = text.len();
-        if len > MAX_TEXT {
+        if len > LcdCommand::MAX_TEXT {
             return Err(LcdError::TextTooLong { len });
         }
         if self.model == Model::Hbls {
@@ -109,7 +109,7 @@ impl<'a> LcdCommands<'a> {
         Ok(LcdCommand::DefineText {
             number,
             font,
-            place,
+            cell,
             text,
         })
     }
@@ -128,7 +128,7 @@ impl<'a> LcdCommands<'a> {
             0x24 => LcdCommand::Up,
             0x25 => LcdCommand::Home,
             0x26 => LcdCommand::LineStart,
-            0x27 => LcdCommand::Goto(self.place()?),
+            0x27 => LcdCommand::Goto(self.cell()?),
             0x28 => LcdCommand::Delete,
             0x29 => LcdCommand::DeleteToLineEnd,
             0x2A => LcdCommand::DeleteToDisplayEnd,
@@ -142,11 +142,12 @@ impl<'a> LcdCommands<'a> {
                 number: self.number(AreaNumber::from_code)?,
                 rect: self.rect()?,
             },
-            _ => {
-                let effect = AreaEffect::ALL.into_iter().find(|e| e.code() == byte);
-                let effect = effect.ok_or(LcdError::NoCommand { index, byte })?;
-                LcdCommand::Area(self.number(AreaNumber::from_code)?, effect)
-            }
+            0x4B => LcdCommand::ClearArea(self.number(AreaNumber::from_code)?),
+            0x4C => LcdCommand::InverseArea(self.number(AreaNumber::from_code)?),
+            0x4D => LcdCommand::FlashArea(self.number(AreaNumber::from_code)?),
+            0x4E => LcdCommand::InverseFlashArea(self.number(AreaNumber::from_code)?),
+            0x4F => LcdCommand::NormalArea(self.number(AreaNumber::from_code)?),
+            _ => return Err(LcdError::NoCommand { index, byte }),
         })
     }
 }

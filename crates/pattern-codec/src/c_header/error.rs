@@ -91,9 +91,9 @@ pub enum HeaderErrorKind {
     #[error("an array of {values} values, declared are {declared}")]
     ArrayLength {
         /// Values in the array.
-        values: u32,
+        values: u64,
         /// The product of its declared dimensions; for toggles, the bytes that the reloads need.
-        declared: u32,
+        declared: u64,
     },
     /// No array, or none of the wanted name; the location is the end of the text.
     #[error("the text ends without the array")]
@@ -119,7 +119,7 @@ pub enum HeaderErrorKind {
         /// Its value.
         value: i64,
         /// The value that fits.
-        wanted: i64,
+        wanted: u64,
     },
     /// Bytes that are no frames; the location is that of the last value read, or the end.
     #[error(transparent)]

@@ -1,5 +1,6 @@
 //! The items of any C header, one after the other: `#define`s, arrays and their values.
 
+use core::fmt;
 use core::iter::FusedIterator;
 
 use super::scan::{Reach, Scanner, Token};
@@ -28,7 +29,7 @@ pub enum Item<'a> {
     End,
 }
 
-/// The items of a header.
+/// The items of a header, each with its location. The iterator ends after the first error.
 ///
 /// ```
 /// use pattern_codec::c_header::{Item, items};
@@ -40,18 +41,16 @@ pub enum Item<'a> {
 /// assert_eq!(items[2..5], [Item::Value(16), Item::Value(-2), Item::Value(0)]);
 /// # Ok::<(), pattern_codec::c_header::HeaderError>(())
 /// ```
-pub fn items(text: &str) -> Items<'_> {
-    Items {
-        text,
-        scanner: Scanner::new(text),
-        state: State::Outside,
-    }
+#[must_use]
+pub fn items(
+    text: &str,
+) -> impl FusedIterator<Item = Result<(Location, Item<'_>), HeaderError>> + Clone + fmt::Debug {
+    Items::new(text)
 }
 
-/// Iterator over the [`items`] of a header, each with its location. It ends after the first error.
+/// Iterator over the [`items`] of a header.
 #[derive(Debug, Clone)]
-#[must_use = "iterators are lazy"]
-pub struct Items<'a> {
+pub(super) struct Items<'a> {
     text: &'a str,
     scanner: Scanner<'a>,
     state: State,
@@ -104,6 +103,14 @@ impl<'a> Iterator for Items<'a> {
 impl FusedIterator for Items<'_> {}
 
 impl<'a> Items<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            scanner: Scanner::new(text),
+            state: State::Outside,
+        }
+    }
+
     /// The location of the next token, or the end.
     pub(super) fn location(mut self) -> Result<Location, HeaderError> {
         Ok(self.scanner.token(Reach::Text)?.0)
@@ -127,7 +134,7 @@ impl<'a> Items<'a> {
                         return Ok(Some((location, Item::Define { name, value })));
                     }
                 }
-                Token::Word(word) if dimensions.count == 0 => name = Some(word),
+                Token::Word { word, .. } if dimensions.count == 0 => name = Some(word),
                 Token::Mark('[') => self.dimension(location, &mut dimensions)?,
                 Token::Mark('=') => assigned = true,
                 Token::Mark('{') if assigned && dimensions.count > 0 => {
@@ -146,7 +153,7 @@ impl<'a> Items<'a> {
                     assigned = false;
                 }
                 Token::End => return Ok(None),
-                Token::Word(_) | Token::Number(..) | Token::Mark(_) => {}
+                Token::Word { .. } | Token::Number { .. } | Token::Mark(_) => {}
             }
         }
     }
@@ -251,10 +258,11 @@ impl Dimensions {
 
     fn check(self, location: Location, values: u32) -> Result<(), HeaderError> {
         let declared = match (self.count, self.first, self.second) {
-            (1, first, _) => first,
-            (_, Some(first), Some(second)) => Some(first.saturating_mul(second)),
+            (1, first, _) => first.map(u64::from),
+            (_, Some(first), Some(second)) => Some(u64::from(first).saturating_mul(second.into())),
             _ => None,
         };
+        let values = u64::from(values);
         match declared {
             Some(declared) if declared != values => {
                 Err(location.error(HeaderErrorKind::ArrayLength { values, declared }))
@@ -269,8 +277,8 @@ fn directive<'a>(scanner: &mut Scanner<'a>) -> Result<Option<(&'a str, i64)>, He
     let line = Reach::Line;
     let mut defined = None;
     // What is no number is not ours to understand.
-    if let Ok((_, Token::Word("define"))) = scanner.token(line)
-        && let Ok((_, Token::Word(name))) = scanner.token(line)
+    if let Ok((_, Token::Word { word: "define", .. })) = scanner.token(line)
+        && let Ok((_, Token::Word { word: name, .. })) = scanner.token(line)
     {
         let mut ahead = scanner.clone();
         if let Ok(first) = ahead.token(line)
@@ -308,8 +316,8 @@ fn value<'a>(
     let (mut negative, mut depth) = (false, 0_u32);
     let value = loop {
         let value = match token {
-            Token::Number(magnitude, _) => Some(i64::from(magnitude)),
-            Token::Word(name) => defined(name),
+            Token::Number { value, .. } => Some(i64::from(value)),
+            Token::Word { word, .. } => defined(word),
             _ => None,
         };
         match (value, token) {
@@ -340,8 +348,7 @@ fn wrong(location: Location, token: Token<'_>, wanted: &'static str) -> HeaderEr
         Token::End => return location.error(HeaderErrorKind::UnexpectedEnd { wanted }),
         Token::Directive => '#',
         Token::Mark(mark) => mark,
-        Token::Word(word) => word.chars().next().unwrap_or(' '),
-        Token::Number(_, digit) => digit,
+        Token::Word { first, .. } | Token::Number { first, .. } => first,
     };
     unexpected(location, found, wanted)
 }

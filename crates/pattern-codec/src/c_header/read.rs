@@ -3,7 +3,8 @@
 
 use core::iter::FusedIterator;
 
-use super::{HeaderError, HeaderErrorKind, Item, Items, Location, items};
+use super::items::Items;
+use super::{HeaderError, HeaderErrorKind, Item, Location, items};
 use crate::size_hint::size_of_rest;
 
 /// A text, and the name of the table in it that counts.
@@ -67,7 +68,6 @@ impl<'t> Source<'t> {
         if u64::try_from(value) == Ok(wanted) {
             return Ok(());
         }
-        let wanted = i64::try_from(wanted).unwrap_or(i64::MAX);
         let name = end;
         Err(location.error(HeaderErrorKind::Define {
             name,
@@ -100,7 +100,7 @@ fn array<'t>(
     is_wanted: impl Fn(&str) -> bool,
     range: (i64, i64),
 ) -> Result<(&'t str, ArrayValues<'t>), HeaderError> {
-    let mut items = items(text);
+    let mut items = Items::new(text);
     let mut found = None;
     while let Some(item) = items.next() {
         if let (location, Item::Array { name }) = item?

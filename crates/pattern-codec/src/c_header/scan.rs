@@ -8,9 +8,14 @@ use super::{HeaderError, HeaderErrorKind, Location};
 /// A piece of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Token<'a> {
-    Word(&'a str),
-    /// Its value and its first digit.
-    Number(u32, char),
+    Word {
+        word: &'a str,
+        first: char,
+    },
+    Number {
+        value: u32,
+        first: char,
+    },
     /// Any other character; a string or character constant is its first quote.
     Mark(char),
     /// `#` first on its line.
@@ -61,10 +66,14 @@ impl<'a> Scanner<'a> {
                 self.bump();
                 Token::Directive
             }
-            Some(c) if c.is_ascii_digit() => {
-                Token::Number(number(self.word()).map_err(|kind| location.error(kind))?, c)
+            Some(first) if first.is_ascii_digit() => {
+                let value = number(self.word()).map_err(|kind| location.error(kind))?;
+                Token::Number { value, first }
             }
-            Some(c) if c.is_alphabetic() || c == '_' => Token::Word(self.word()),
+            Some(first) if first.is_alphabetic() || first == '_' => {
+                let word = self.word();
+                Token::Word { word, first }
+            }
             Some(quote @ ('"' | '\'')) => {
                 self.skip_quoted(quote)?;
                 Token::Mark(quote)
@@ -113,12 +122,12 @@ impl<'a> Scanner<'a> {
     }
 
     fn word(&mut self) -> &'a str {
-        let word = self.rest();
-        while self.peek().is_some_and(|c| c.is_alphanumeric() || c == '_') {
+        let is_end = |c: char| !c.is_alphanumeric() && c != '_';
+        let rest = self.rest();
+        while self.peek().is_some_and(|c| !is_end(c)) {
             self.bump();
         }
-        let length = word.len().saturating_sub(self.left());
-        word.get(..length).unwrap_or("")
+        rest.split_once(is_end).map_or(rest, |(word, _)| word)
     }
 
     fn skip_blanks(&mut self, reach: Reach) -> Result<(), HeaderError> {

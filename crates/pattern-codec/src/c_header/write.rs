@@ -4,52 +4,31 @@ use core::fmt::{self, Write};
 
 use thiserror::Error;
 
-use super::{Dialect, Name};
+use super::Dialect;
+use super::style::{MAX_NAME, check_name};
 
-/// Writes a table as a C header; what the table holds is a format of
-/// [`dance`](crate::dance::DataHeader) or of [`engraving`](crate::engraving::PatternHeader).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct TableHeader<'n, F> {
-    name: Name<'n>,
-    dialect: Dialect,
-    pub(crate) format: F,
+/// Name and compiler of a table; in upper case the name starts those of the include guard and the
+/// `#define`s.
+#[derive(Clone, Copy)]
+pub(crate) struct Table<'n> {
+    pub(crate) name: &'n str,
+    pub(crate) dialect: Dialect,
 }
 
-impl<'n, F: Copy> TableHeader<'n, F> {
-    /// For C51, with the name that tables of this kind have unless told otherwise.
-    pub(crate) const fn of(name: &'static str, format: F) -> Self {
-        Self {
-            name: Name::fixed(name),
-            dialect: Dialect::C51,
-            format,
-        }
-    }
-
-    /// With another name of the table.
-    #[must_use]
-    pub const fn with_name(self, name: Name<'n>) -> Self {
-        Self { name, ..self }
-    }
-
-    /// For another compiler.
-    #[must_use]
-    pub const fn with_dialect(self, dialect: Dialect) -> Self {
-        Self { dialect, ..self }
-    }
-
+impl Table<'_> {
     /// A header with tables of `bytes` bytes: what the comment says of them, the ends and values of
     /// the `#define`s, and the tables.
-    pub(crate) fn write_parts<W: Write>(
-        &self,
+    pub(crate) fn write<W: Write>(
+        self,
         bytes: u64,
         comment: fmt::Arguments<'_>,
         defines: &[(&str, u64)],
         tables: impl FnOnce(&mut Layout<'_, '_, W>) -> fmt::Result,
         out: &mut W,
     ) -> Result<(), WriteError> {
+        let Self { name, dialect } = self;
+        check_name(name)?;
         check_size(bytes)?;
-        let (name, dialect) = (self.name.as_str(), self.dialect);
         let upper = Upper(name);
         writeln!(out, "/* {name}: {comment} */")?;
         write!(out, "#ifndef {upper}_H\n#define {upper}_H\n\n")?;
@@ -66,6 +45,24 @@ impl<'n, F: Copy> TableHeader<'n, F> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum WriteError {
+    /// A name without a character.
+    #[error("the name of a table is empty")]
+    NameEmpty,
+    /// A character that C does not allow there.
+    #[error("{character:?} cannot stand in the name of a table, or not first")]
+    NameCharacter {
+        /// The first such character.
+        character: char,
+    },
+    /// A word that means something else in C.
+    #[error("a table cannot have a keyword of the compiler as its name")]
+    NameKeyword,
+    /// Too many characters.
+    #[error("a table's name of {length} characters, max {MAX_NAME}")]
+    NameTooLong {
+        /// Its length.
+        length: usize,
+    },
     /// Nothing to write: C has no empty arrays.
     #[error("a table without values")]
     Empty,

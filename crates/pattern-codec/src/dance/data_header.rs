@@ -3,10 +3,11 @@
 use core::fmt::{self, Write};
 use core::iter::FusedIterator;
 use core::num::NonZeroU32;
+use core::time::Duration;
 
 use super::{Decoded, Packing, Sizes, Threshold, Timing};
 use crate::c_header::{
-    BYTE, Bytes, Checked, Element, HeaderError, HeaderErrorKind, Layout, Source, TableHeader,
+    BYTE, Bytes, Checked, Dialect, Element, HeaderError, HeaderErrorKind, Layout, Source, Table,
     Value, WriteError,
 };
 
@@ -17,7 +18,7 @@ use crate::c_header::{
 ///
 /// let frames = [[60, -60, 0]; 25].into_iter().chain([[0; 3]]);
 /// let mut text = String::new();
-/// let header = DataHeader::new().with_packing(Packing::Runs);
+/// let header = DataHeader { packing: Packing::Runs, ..DataHeader::DEFAULT };
 /// header.write(frames.clone(), &mut text)?;
 /// assert!(text.contains("unsigned char code dance[8] = {\n  25, 0x3C, 0xC4, 0x00,\n"));
 ///
@@ -31,81 +32,69 @@ use crate::c_header::{
 /// Raw frames are `signed char` in decimal numbers, eight a row for eight motors; runs are
 /// `unsigned char`: the count in decimal, masks and speeds as two's complement in hex, one run a
 /// row.
-pub type DataHeader<'n> = TableHeader<'n, FrameFormat>;
-
-/// What a [`DataHeader`] says of its frames.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct FrameFormat {
-    timing: Timing,
-    threshold: Threshold,
-    packing: Packing,
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "plain settings, to be written as a literal on top of the default"
+)]
+pub struct DataHeader<'n> {
+    /// Name of the table, a C identifier of at most 31 characters.
+    pub name: &'n str,
+    /// The compiler that reads it.
+    pub dialect: Dialect,
+    /// Tick and period of a frame.
+    pub timing: Timing,
+    /// Threshold of the accumulators.
+    pub threshold: Threshold,
+    /// How the frames are stored.
+    pub packing: Packing,
 }
 
 impl Default for DataHeader<'_> {
     fn default() -> Self {
-        Self::new()
+        Self::DEFAULT
     }
 }
 
 impl DataHeader<'_> {
     /// The table `dance` for C51, raw frames of 200 ms, for a threshold of 600.
-    #[must_use]
-    pub const fn new() -> Self {
-        let format = FrameFormat {
-            timing: Timing::DEFAULT,
-            threshold: Threshold::DEFAULT,
-            packing: Packing::Raw,
-        };
-        Self::of("dance", format)
-    }
-
-    /// With another tick or frame.
-    #[must_use]
-    pub const fn with_timing(mut self, timing: Timing) -> Self {
-        self.format.timing = timing;
-        self
-    }
-
-    /// For another threshold of the accumulators.
-    #[must_use]
-    pub const fn with_threshold(mut self, threshold: Threshold) -> Self {
-        self.format.threshold = threshold;
-        self
-    }
-
-    /// With another packing.
-    #[must_use]
-    pub const fn with_packing(mut self, packing: Packing) -> Self {
-        self.format.packing = packing;
-        self
-    }
+    pub const DEFAULT: Self = Self {
+        name: "dance",
+        dialect: Dialect::C51,
+        timing: Timing::DEFAULT,
+        threshold: Threshold::DEFAULT,
+        packing: Packing::Raw,
+    };
 
     /// Writes the header. The frames are gone through several times, because the totals stand
     /// first.
     ///
     /// # Errors
-    /// [`WriteError`]: no frames, more bytes than an 8051 addresses, or the writer's error.
+    /// [`WriteError`]: a name that C does not take, no frames, more bytes than an 8051 addresses,
+    /// or the writer's error.
     pub fn write<const N: usize, I, W>(&self, frames: I, out: &mut W) -> Result<(), WriteError>
     where
         I: IntoIterator<Item = [i8; N]>,
         I::IntoIter: Clone,
         W: Write,
     {
-        let FrameFormat {
+        let Self {
+            name,
+            dialect,
             timing,
             threshold,
             packing,
-        } = self.format;
+        } = *self;
         let frames = frames.into_iter();
         let sizes = Sizes::of(frames.clone());
         let (count, bytes) = (sizes.frames(), sizes.bytes(packing));
-        let us = timing.frame_us().saturating_mul(count);
-        let ms = us.checked_div(1000).unwrap_or(0);
+        let duration = Duration::from_micros(timing.frame_us().saturating_mul(count));
         let [raw, runs, masked] = Packing::ALL.map(|packing| sizes.bytes(packing));
         let comment = format_args!(
-            "{count} frames of {N} motors, {ms} ms.\n   \
+            "{count} frames of {N} motors, {} ms.\n   \
              Bytes: {raw} raw, {runs} as runs, {masked} as masked runs; here {}.",
+            duration.as_millis(),
             packing.name()
         );
         let defines = [
@@ -126,9 +115,9 @@ impl DataHeader<'_> {
             ),
         };
         let values = packing.rows(frames).flat_map(|row| {
-            row.enumerate().map(move |(place, byte)| match packing {
-                Packing::Raw => (place == 0, Value::Signed(byte.cast_signed())),
-                _ if place == 0 => (true, Value::Count(byte)),
+            row.enumerate().map(move |(index, byte)| match packing {
+                Packing::Raw => (index == 0, Value::Signed(byte.cast_signed())),
+                _ if index == 0 => (true, Value::Count(byte)),
                 _ => (false, Value::Byte(byte)),
             })
         });
@@ -136,7 +125,7 @@ impl DataHeader<'_> {
             layout.comment(format_args!("Each row: {each_row}."))?;
             layout.table(element, "", bytes, values)
         };
-        self.write_parts(bytes, comment, &defines, table, out)
+        Table { name, dialect }.write(bytes, comment, &defines, table, out)
     }
 }
 
@@ -146,6 +135,14 @@ const fn number(packing: Packing) -> u64 {
         Packing::Runs => 1,
         Packing::MaskedRuns => 2,
     }
+}
+
+/// What the `#define`s of a header say of its frames.
+#[derive(Debug, Clone, Copy)]
+struct FrameFormat {
+    timing: Timing,
+    threshold: Threshold,
+    packing: Packing,
 }
 
 impl FrameFormat {

@@ -1,7 +1,5 @@
 //! Frames to bytes: raw, as runs, and as runs with masks.
 
-use core::iter::FusedIterator;
-
 /// How frames stand in memory.
 ///
 /// ```text
@@ -51,14 +49,11 @@ impl Packing {
     /// let masked: Vec<u8> = Packing::MaskedRuns.encode(frames).collect();
     /// assert_eq!(masked, [25, 0b011, 60, 0xC4]);
     /// ```
-    pub fn encode<const N: usize, I>(self, frames: I) -> Encoded<I::IntoIter, N>
+    pub fn encode<const N: usize, I>(self, frames: I) -> impl Iterator<Item = u8>
     where
         I: IntoIterator<Item = [i8; N]>,
     {
-        Encoded {
-            rows: self.rows(frames),
-            row: None,
-        }
+        self.rows(frames).flatten()
     }
 
     /// The bytes of frames, run by run.
@@ -75,29 +70,6 @@ impl Packing {
         }
     }
 }
-
-/// The bytes of frames, made by [`Packing::encode`].
-#[derive(Debug, Clone)]
-#[must_use = "iterators are lazy"]
-pub struct Encoded<I, const N: usize> {
-    rows: Rows<I, N>,
-    row: Option<Row<N>>,
-}
-
-impl<I: Iterator<Item = [i8; N]>, const N: usize> Iterator for Encoded<I, N> {
-    type Item = u8;
-
-    fn next(&mut self) -> Option<u8> {
-        loop {
-            if let Some(byte) = self.row.as_mut().and_then(Iterator::next) {
-                return Some(byte);
-            }
-            self.row = Some(self.rows.next()?);
-        }
-    }
-}
-
-impl<I: FusedIterator<Item = [i8; N]>, const N: usize> FusedIterator for Encoded<I, N> {}
 
 /// The runs of a sequence of frames; single frames where they are stored raw.
 #[derive(Debug, Clone)]
@@ -155,9 +127,9 @@ pub(super) struct Row<const N: usize> {
 #[derive(Debug, Clone, Copy)]
 enum Part {
     Count,
-    /// The mask of the motors from here on.
+    /// The mask of eight motors, from this one on.
     Mask(usize),
-    /// The speed of the next motor from here on.
+    /// The next speed, of this motor or a later one.
     Speed(usize),
 }
 

@@ -69,10 +69,8 @@ impl Sizes {
     /// The packing of the fewest bytes, the simplest of them.
     #[must_use]
     pub fn smallest(&self) -> Packing {
-        let smallest = Packing::ALL
-            .into_iter()
-            .min_by_key(|packing| self.bytes(*packing));
-        smallest.unwrap_or_default()
+        let shorter = |a, b| if self.bytes(b) < self.bytes(a) { b } else { a };
+        shorter(shorter(Packing::Raw, Packing::Runs), Packing::MaskedRuns)
     }
 }
 

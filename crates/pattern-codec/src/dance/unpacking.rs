@@ -9,8 +9,8 @@ use super::Packing;
 impl Packing {
     /// The frames of bytes.
     ///
-    /// What [`Packing::encode`] would write in another way is read all the same: runs that could be
-    /// one, speeds that do not change.
+    /// Longer forms than [`Packing::encode`] writes are read as well: runs that could be one, speeds
+    /// that do not change.
     ///
     /// ```
     /// use pattern_codec::dance::Packing;
@@ -35,6 +35,9 @@ impl Packing {
         }
     }
 }
+
+/// The masks of runs that have the speed of every motor.
+const ALL: [u8; 32] = [0xFF; 32];
 
 /// The frames of bytes, made by [`Packing::decode`]. It ends after the first error.
 #[derive(Debug, Clone)]
@@ -66,17 +69,13 @@ impl<I: Iterator<Item = u8>, const N: usize> Decoded<I, N> {
         };
         match self.packing {
             Packing::Raw => {
-                self.speeds(Some(first), |_| true)?;
+                self.speeds(Some(first), ALL)?;
                 return Ok(Some(1));
             }
-            Packing::Runs => self.speeds(None, |_| true)?,
+            Packing::Runs => self.speeds(None, ALL)?,
             Packing::MaskedRuns => {
                 let masks = self.masks()?;
-                let in_mask = |motor: usize| {
-                    let mask = masks.get(motor >> 3).copied().unwrap_or(0);
-                    mask >> (motor & 7) & 1 == 1
-                };
-                self.speeds(None, in_mask)?;
+                self.speeds(None, masks)?;
             }
         }
         match first {
@@ -99,19 +98,19 @@ impl<I: Iterator<Item = u8>, const N: usize> Decoded<I, N> {
         Ok(masks)
     }
 
-    /// The speeds of the motors that have one in the run, the first of them perhaps read already.
-    fn speeds(
-        &mut self,
-        mut first: Option<u8>,
-        has_one: impl Fn(usize) -> bool,
-    ) -> Result<(), DecodeErrorKind> {
-        for motor in (0..N).filter(|motor| has_one(*motor)) {
-            let byte = first.take().or_else(|| self.byte());
-            let byte = byte.ok_or(DecodeErrorKind::Truncated)?;
-            if let Some(speed) = self.frame.get_mut(motor) {
-                *speed = byte.cast_signed();
+    /// The speeds of the motors in the masks, the first of them perhaps read already.
+    fn speeds(&mut self, mut first: Option<u8>, masks: [u8; 32]) -> Result<(), DecodeErrorKind> {
+        let mut frame = self.frame;
+        for (speeds, mask) in frame.chunks_mut(8).zip(masks) {
+            for (bit, speed) in (0..8).zip(speeds) {
+                if mask >> bit & 1 == 1 {
+                    let byte = first.take().or_else(|| self.byte());
+                    let byte = byte.ok_or(DecodeErrorKind::Truncated)?;
+                    *speed = byte.cast_signed();
+                }
             }
         }
+        self.frame = frame;
         Ok(())
     }
 

@@ -34,7 +34,7 @@ impl Axis {
         }
     }
 
-    /// Place in [`Axis::ALL`], 0..=3.
+    /// Index in [`Axis::ALL`], 0..=3.
     pub(super) const fn index(self) -> u8 {
         match self {
             Self::Theta1 => 0,
@@ -44,7 +44,7 @@ impl Axis {
         }
     }
 
-    /// The axis at a place in [`Axis::ALL`]; only the low two bits count.
+    /// The axis at an index of [`Axis::ALL`]; only the low two bits count.
     #[inline]
     pub(super) const fn from_index(index: u8) -> Self {
         match index & 3 {

@@ -1,9 +1,12 @@
 //! Motions of any length to records, and where the axes are after them.
 
+use core::fmt;
 use core::iter::FusedIterator;
+
 use thiserror::Error;
 
-use super::{Axis, FastRecords, JointPulses, PerAxis, Record, SlowRecords};
+use super::split::{FastRecords, SlowRecords};
+use super::{Axis, JointPulses, PerAxis, Record};
 use crate::size_hint::size_of_rest;
 
 /// Makes the records of motions of any length and tracks where the axes are.
@@ -45,17 +48,37 @@ impl Builder {
     ///
     /// # Errors
     /// [`PositionError`] when the position would leave the range of `i32`; it stays as it was.
-    pub fn fast(&mut self, axis: Axis, pulses: i32) -> Result<FastRecords, PositionError> {
+    pub fn fast(
+        &mut self,
+        axis: Axis,
+        pulses: i32,
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionError> {
         self.advance(axis, pulses)?;
         Ok(FastRecords::new(axis, pulses < 0, pulses.unsigned_abs()))
     }
 
     /// Cutting motion: as few records as 30 pulses each allow, all with the ratio of the joints as
-    /// even as whole numbers can be; see [`SlowRecords`]. No pulses, no records.
+    /// even as whole numbers can be. No pulses, no records.
+    ///
+    /// The motion T of each axis is cut into n equal parts, rounded in sum, not part by part:
+    /// ```text
+    /// n = ceil(max |T| / 30)
+    /// position of the axis after part k:  sign(T) floor((k |T| + floor(n/2)) / n)
+    /// ```
+    /// So every part has floor or ceil of |T|/n pulses, never more than 30; at the end of every part
+    /// each axis is within half a pulse of the straight line between start and end, which no other
+    /// whole numbers do better; and the parts sum to T exactly.
+    ///
+    /// Splitting changes the path a little: within each record theta3 moves first and alone, so a split
+    /// motion turns the disc in n small turns, where one record would make the whole turn
+    /// before the arms start.
     ///
     /// # Errors
     /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
-    pub fn slow(&mut self, pulses: JointPulses) -> Result<SlowRecords, PositionError> {
+    pub fn slow(
+        &mut self,
+        pulses: JointPulses,
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionError> {
         let mut next = *self;
         next.advance(Axis::Theta3, pulses.theta3)?;
         next.advance(Axis::Theta1, pulses.theta1)?;
@@ -93,8 +116,11 @@ impl Builder {
     /// lifted tool at vertical 0, [`Axis::Vertical`].
     ///
     /// # Errors
-    /// [`RepeatedAxis`] when an axis stands twice in `order`, and so another one not at all.
-    pub fn home(&mut self, order: [Axis; 4]) -> Result<HomeRecords, RepeatedAxis> {
+    /// [`RepeatedAxis`] when an axis comes twice in `order`, and so another one not at all.
+    pub fn home(
+        &mut self,
+        order: [Axis; 4],
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, RepeatedAxis> {
         let mut seen = PerAxis::<bool>::default();
         for axis in order {
             if core::mem::replace(seen.get_mut(axis), true) {
@@ -120,21 +146,10 @@ impl Builder {
     }
 }
 
-/// FAST records that bring all axes home, made by [`Builder::home`].
+/// FAST records that bring all axes home.
 #[derive(Debug, Clone)]
-#[must_use = "the builder counts these records as sent"]
-pub struct HomeRecords {
+struct HomeRecords {
     runs: [FastRecords; 4],
-}
-
-impl HomeRecords {
-    /// Records still to come.
-    #[must_use]
-    pub fn remaining(&self) -> u64 {
-        let records = self.runs.iter().map(FastRecords::remaining);
-        // At most 32,769 each.
-        records.fold(0, u64::wrapping_add)
-    }
 }
 
 impl Iterator for HomeRecords {
@@ -145,7 +160,9 @@ impl Iterator for HomeRecords {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(self.remaining())
+        let records = self.runs.iter().map(FastRecords::remaining);
+        // At most 32,769 each.
+        size_of_rest(records.fold(0, u64::wrapping_add))
     }
 }
 
@@ -165,10 +182,10 @@ pub struct PositionError {
     pub pulses: i32,
 }
 
-/// An axis that stands twice in a homing order.
+/// An axis that comes twice in a homing order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("{axis} stands twice in the homing order")]
+#[error("{axis} comes twice in the homing order")]
 #[non_exhaustive]
 pub struct RepeatedAxis {
     /// The axis.

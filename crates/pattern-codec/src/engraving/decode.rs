@@ -4,16 +4,15 @@ use core::iter::FusedIterator;
 use thiserror::Error;
 
 use super::record::{AXIS_BITS, COUNT_BITS, NEGATIVE};
-use super::{Axis, ByteOrder, Fast, Format, Mode, RECORD_LEN, Record, Slow};
+use super::{Axis, ByteOrder, Fast, Format, Mode, Record, Slow};
 
 impl Format {
     /// The record of three bytes.
     ///
     /// # Errors
-    /// [`DecodeError`] with an offset of 0..=2: 31 pulses in the theta1 or theta2 place of a SLOW
-    /// record; D6 or D5 set in a SLOW byte in [`Mode::Strict`].
+    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of theta1 or theta2 in a SLOW record; D6 or D5 set in a SLOW byte in [`Mode::Strict`].
     #[inline]
-    pub fn decode(&self, bytes: [u8; RECORD_LEN]) -> Result<Record, DecodeError> {
+    pub fn decode(&self, bytes: [u8; Record::LEN]) -> Result<Record, DecodeError> {
         let [first, second, third] = bytes;
         if first & COUNT_BITS == COUNT_BITS {
             let axis = self.axis_codes.axis(first >> 5);
@@ -39,11 +38,11 @@ impl Format {
     ///
     /// # Errors
     /// As [`Format::decode`].
-    pub fn canonical(&self, bytes: [u8; RECORD_LEN]) -> Result<[u8; RECORD_LEN], DecodeError> {
+    pub fn canonical(&self, bytes: [u8; Record::LEN]) -> Result<[u8; Record::LEN], DecodeError> {
         Ok(self.decode(bytes)?.encode(self))
     }
 
-    /// The records of a slice, each with its place.
+    /// The records of a slice, each with its offset.
     pub const fn records<'a>(&self, bytes: &'a [u8]) -> Records<'a> {
         Records {
             format: *self,
@@ -53,7 +52,7 @@ impl Format {
     }
 
     #[inline]
-    fn decode_at(&self, offset: u64, bytes: [u8; RECORD_LEN]) -> Result<Located, DecodeError> {
+    fn decode_at(&self, offset: u64, bytes: [u8; Record::LEN]) -> Result<Located, DecodeError> {
         match self.decode(bytes) {
             Ok(record) => Ok(Located {
                 offset,
@@ -67,7 +66,7 @@ impl Format {
 
 /// The first error of a SLOW record.
 #[cold]
-fn slow_error(mode: Mode, [theta3, theta1, theta2]: [u8; RECORD_LEN]) -> Option<DecodeError> {
+fn slow_error(mode: Mode, [theta3, theta1, theta2]: [u8; Record::LEN]) -> Option<DecodeError> {
     [
         (0, Axis::Theta3, theta3),
         (1, Axis::Theta1, theta1),
@@ -86,7 +85,7 @@ fn slow_error(mode: Mode, [theta3, theta1, theta2]: [u8; RECORD_LEN]) -> Option<
     })
 }
 
-/// A record, its bytes as they were, and their place.
+/// A record, its bytes as they were, and their offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -94,7 +93,7 @@ pub struct Located {
     /// Offset of the first byte.
     pub offset: u64,
     /// The bytes as they were, in whatever spelling.
-    pub bytes: [u8; RECORD_LEN],
+    pub bytes: [u8; Record::LEN],
     /// What they mean.
     pub record: Record,
 }
@@ -142,7 +141,7 @@ impl Iterator for Records<'_> {
 
     /// Exact in [`Mode::Lenient`]; in [`Mode::Strict`] an error may end the records early.
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let max = self.rest.chunks(RECORD_LEN).len();
+        let max = self.rest.chunks(Record::LEN).len();
         let min = match self.format.mode {
             Mode::Strict => max.min(1),
             Mode::Lenient => max,
@@ -238,7 +237,7 @@ enum Held {
 }
 
 impl Held {
-    /// What the end of a slice leaves behind; of more than two bytes only the first two.
+    /// What the end of a slice leaves over; of more than two bytes only the first two.
     const fn of(bytes: &[u8]) -> Self {
         match *bytes {
             [] => Self::None,
@@ -249,7 +248,7 @@ impl Held {
 
     /// The next record, if `input` completes it.
     #[inline]
-    fn complete(&mut self, input: &mut &[u8]) -> Option<[u8; RECORD_LEN]> {
+    fn complete(&mut self, input: &mut &[u8]) -> Option<[u8; Record::LEN]> {
         let (record, rest) = match (*self, *input) {
             (Self::None, &[first, second, third, ref rest @ ..])
             | (Self::One(first), &[second, third, ref rest @ ..])
@@ -316,20 +315,18 @@ impl DecodeError {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
-    /// The mark of a FAST record, 31 pulses, in the theta1 or theta2 place of a SLOW record.
-    #[error(
-        "{byte:#04X} has 31 pulses in the {axis} place of a SLOW record, which holds at most 30"
-    )]
+    /// The mark of a FAST record, 31 pulses, as the count of theta1 or theta2 in a SLOW record.
+    #[error("{byte:#04X} has 31 pulses for {axis} in a SLOW record, which holds at most 30")]
     SlowCount {
-        /// The axis of the place.
+        /// The axis of the byte.
         axis: Axis,
         /// The byte.
         byte: u8,
     },
     /// D6 or D5 set in a SLOW byte, [`Mode::Strict`] only.
-    #[error("{byte:#04X} has D6 or D5 set in the {axis} place of a SLOW record")]
+    #[error("{byte:#04X}, the byte of {axis} in a SLOW record, has D6 or D5 set")]
     SlowAxisBits {
-        /// The axis of the place.
+        /// The axis of the byte.
         axis: Axis,
         /// The byte.
         byte: u8,

@@ -77,9 +77,9 @@ impl AxisCodes {
     }
 }
 
-/// Where the two bits of a place start, 0..=6.
-const fn shift(place: u8) -> u8 {
-    (place & 3) << 1
+/// The lower of the two bits of an index 0..=3: 0, 2, 4 or 6.
+const fn shift(index: u8) -> u8 {
+    (index & 3) << 1
 }
 
 impl Default for AxisCodes {

@@ -4,12 +4,11 @@ use core::fmt::{self, Write};
 use core::iter::FusedIterator;
 
 use super::{
-    Axis, AxisCodes, ByteOrder, DecodeError, Decoder, Format, PerAxis, RECORD_LEN, Record,
-    Statistics,
+    Axis, AxisCodes, ByteOrder, DecodeError, Decoder, Format, PerAxis, Record, Statistics,
 };
 use crate::c_header::{
-    ArrayValues, BYTE, Bytes, Checked, Element, HeaderError, HeaderErrorKind, Layout, Source,
-    TableHeader, Value, WriteError,
+    ArrayValues, BYTE, Bytes, Checked, Dialect, Element, HeaderError, HeaderErrorKind, Layout,
+    Source, Table, Value, WriteError,
 };
 
 /// Writes records as a C header.
@@ -30,7 +29,20 @@ use crate::c_header::{
 /// The `#define`s, each after the name of the table in upper case: `RECORDS` and `BYTES`; the axis
 /// codes `THETA1_CODE`, `THETA2_CODE`, `THETA3_CODE`, `VERTICAL_CODE`; `HIGH_BYTE_FIRST`, 1 or 0.
 /// One record a row.
-pub type PatternHeader<'n> = TableHeader<'n, Format>;
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "plain settings, to be written as a literal on top of the default"
+)]
+pub struct PatternHeader<'n> {
+    /// Name of the table, a C identifier of at most 31 characters.
+    pub name: &'n str,
+    /// The compiler that reads it.
+    pub dialect: Dialect,
+    /// The format of the records.
+    pub format: Format,
+}
 
 /// Ends of the names of the axis codes.
 const CODES: PerAxis<&str> = PerAxis {
@@ -44,13 +56,18 @@ impl PatternHeader<'_> {
     /// The table `pattern` for C51, in a format.
     #[must_use]
     pub const fn new(format: Format) -> Self {
-        Self::of("pattern", format)
+        Self {
+            name: "pattern",
+            dialect: Dialect::C51,
+            format,
+        }
     }
 
     /// Writes the header. The records are gone through twice, because the totals stand first.
     ///
     /// # Errors
-    /// [`WriteError`]: no records, more bytes than an 8051 addresses, or the writer's error.
+    /// [`WriteError`]: a name that C does not take, no records, more bytes than an 8051 addresses,
+    /// or the writer's error.
     pub fn write<I, W>(&self, records: I, out: &mut W) -> Result<(), WriteError>
     where
         I: IntoIterator<Item = Record>,
@@ -98,7 +115,8 @@ impl PatternHeader<'_> {
             layout.empty_line()?;
             layout.table(Element::UnsignedChar, "", bytes, values)
         };
-        self.write_parts(bytes, comment, &defines, table, out)
+        let Self { name, dialect, .. } = *self;
+        Table { name, dialect }.write(bytes, comment, &defines, table, out)
     }
 }
 
@@ -145,7 +163,7 @@ impl<'t> PatternData<'t> {
         )?;
         let count = records.left();
         source.agree("RECORDS", count)?;
-        source.agree("BYTES", count.saturating_mul(RECORD_LEN as u64))?;
+        source.agree("BYTES", count.saturating_mul(Record::LEN as u64))?;
         Ok(Self {
             name: source.name,
             format,

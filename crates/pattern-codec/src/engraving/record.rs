@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{Axis, ByteOrder, Format, PerAxis, RECORD_LEN};
+use super::{Axis, ByteOrder, Format, PerAxis};
 
 /// D7 of the first byte of FAST and of every byte of SLOW: negative direction.
 pub(super) const NEGATIVE: u8 = 0x80;
@@ -28,10 +28,13 @@ pub enum Record {
 }
 
 impl Record {
+    /// Length of every record in bytes.
+    pub const LEN: usize = 3;
+
     /// The three bytes of the record, in canonical form: a zero count has no direction bit.
     #[must_use]
     #[inline]
-    pub const fn encode(self, format: &Format) -> [u8; RECORD_LEN] {
+    pub const fn encode(self, format: &Format) -> [u8; Self::LEN] {
         match self {
             Self::Fast(Fast { axis, pulses }) => {
                 // |pulses| <= 65535: the upper two bytes are zero.
@@ -104,7 +107,7 @@ pub struct Fast {
 }
 
 impl Fast {
-    /// Highest number of pulses of one record, either way.
+    /// Highest number of pulses of one record, in either direction.
     pub const MAX: i32 = 65_535;
 
     /// Checks the pulses; [`Builder::fast`](super::Builder::fast) splits what is too long.
@@ -182,7 +185,7 @@ pub struct Slow {
 }
 
 impl Slow {
-    /// Highest number of pulses of one axis in one record, either way; 31 marks a FAST record.
+    /// Highest number of pulses of one axis in one record, in either direction; 31 marks a FAST record.
     pub const MAX: i32 = 30;
 
     /// Checks the pulses; [`Builder::slow`](super::Builder::slow) splits what is too long.
@@ -211,7 +214,7 @@ impl Slow {
 
     /// From the three bytes of a SLOW record whose counts are at most 30; D6 and D5 are ignored.
     #[inline]
-    pub(super) const fn from_bytes([theta3, theta1, theta2]: [u8; RECORD_LEN]) -> Self {
+    pub(super) const fn from_bytes([theta3, theta1, theta2]: [u8; Record::LEN]) -> Self {
         Self {
             theta1: signed(theta1),
             theta2: signed(theta2),
@@ -285,7 +288,9 @@ pub struct JointPulses {
 /// More pulses than one record holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("{axis}: {pulses} pulses do not fit into one record, which holds at most {max} either way")]
+#[error(
+    "{axis}: {pulses} pulses do not fit into one record, which holds at most {max} in either direction"
+)]
 #[non_exhaustive]
 pub struct PulsesError {
     /// The axis.

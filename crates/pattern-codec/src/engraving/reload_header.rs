@@ -5,11 +5,11 @@ use core::fmt::{self, Write};
 use core::iter::FusedIterator;
 
 use crate::c_header::{
-    ArrayValues, BYTE, Bytes, Checked, Element, HeaderError, HeaderErrorKind, Layout, Source,
-    TableHeader, Value, WORD, WriteError,
+    ArrayValues, BYTE, Bytes, Checked, Dialect, Element, HeaderError, HeaderErrorKind, Layout,
+    Source, Table, Value, WORD, WriteError,
 };
 
-/// One period of a 16-bit timer on the way to an edge of a pulse train.
+/// One period of a 16-bit timer; the last of those before an edge of a pulse train toggles the pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -30,7 +30,7 @@ pub struct TimerPeriod {
 /// let periods = [(0xF00B, true), (0x1000, false), (0x1000, true)];
 /// let periods = periods.map(|(reload, toggles)| TimerPeriod { reload, toggles });
 /// let mut text = String::new();
-/// ReloadHeader::new().write(periods, &mut text)?;
+/// ReloadHeader::DEFAULT.write(periods, &mut text)?;
 /// assert!(text.contains("unsigned int code reloads[3] = {\n  0xF00B, 0x1000, 0x1000\n};"));
 /// assert!(text.contains("unsigned char code reloads_toggles[1] = {\n  0x05\n};"));
 ///
@@ -40,35 +40,41 @@ pub struct TimerPeriod {
 /// ```
 /// Bit k of byte j of the second table says whether the pin toggles after period 8 j + k. `COUNT`
 /// after the name in upper case is the number of periods.
-pub type ReloadHeader<'n> = TableHeader<'n, ReloadFormat>;
-
-/// What a [`ReloadHeader`] holds: nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub struct ReloadFormat;
+#[expect(
+    clippy::exhaustive_structs,
+    reason = "plain settings, to be written as a literal on top of the default"
+)]
+pub struct ReloadHeader<'n> {
+    /// Name of the table, a C identifier of at most 31 characters.
+    pub name: &'n str,
+    /// The compiler that reads it.
+    pub dialect: Dialect,
+}
 
 /// End of the name of the second table.
 const TOGGLES: &str = "_toggles";
 
 impl Default for ReloadHeader<'_> {
     fn default() -> Self {
-        Self::new()
+        Self::DEFAULT
     }
 }
 
 impl ReloadHeader<'_> {
     /// The table `reloads` for C51.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self::of("reloads", ReloadFormat)
-    }
+    pub const DEFAULT: Self = Self {
+        name: "reloads",
+        dialect: Dialect::C51,
+    };
 
     /// Writes the header. The periods are gone through several times, because the totals stand
     /// first.
     ///
     /// # Errors
-    /// [`WriteError`]: no periods, more bytes than an 8051 addresses, or the writer's error.
+    /// [`WriteError`]: a name that C does not take, no periods, more bytes than an 8051 addresses,
+    /// or the writer's error.
     pub fn write<I, W>(&self, periods: I, out: &mut W) -> Result<(), WriteError>
     where
         I: IntoIterator<Item = TimerPeriod>,
@@ -94,14 +100,15 @@ impl ReloadHeader<'_> {
             ))?;
             layout.table(Element::UnsignedChar, TOGGLES, toggle_bytes, rows(toggles))
         };
-        self.write_parts(bytes, comment, &[("COUNT", count)], tables, out)
+        let Self { name, dialect } = *self;
+        Table { name, dialect }.write(bytes, comment, &[("COUNT", count)], tables, out)
     }
 }
 
 /// Values, eight a row.
 fn rows(values: impl Iterator<Item = Value>) -> impl Iterator<Item = (bool, Value)> {
     let numbered = values.enumerate();
-    numbered.map(|(place, value)| (place & 7 == 0, value))
+    numbered.map(|(index, value)| (index & 7 == 0, value))
 }
 
 /// The second table.
@@ -175,10 +182,9 @@ fn check_toggles(mut toggles: ArrayValues<'_>, wanted: u64) -> Result<(), Header
     if bytes == wanted {
         return Ok(());
     }
-    let shorten = |count| u32::try_from(count).unwrap_or(u32::MAX);
     Err(toggles.location.error(HeaderErrorKind::ArrayLength {
-        values: shorten(bytes),
-        declared: shorten(wanted),
+        values: bytes,
+        declared: wanted,
     }))
 }
 

@@ -6,11 +6,9 @@ use super::record::NEGATIVE;
 use super::{Axis, Fast, JointPulses, Record, Slow};
 use crate::size_hint::size_of_rest;
 
-/// FAST records that together make one rapid motion, made by
-/// [`Builder::fast`](super::Builder::fast): full records, then the rest.
+/// FAST records that together make one rapid motion: full records, then the rest.
 #[derive(Debug, Clone)]
-#[must_use = "the builder counts these records as sent"]
-pub struct FastRecords {
+pub(super) struct FastRecords {
     axis: Axis,
     negative: bool,
     /// Pulses still to go.
@@ -27,8 +25,7 @@ impl FastRecords {
     }
 
     /// Records still to come.
-    #[must_use]
-    pub fn remaining(&self) -> u64 {
+    pub(super) fn remaining(&self) -> u64 {
         self.pulses.div_ceil(Fast::MAX.unsigned_abs()).into()
     }
 }
@@ -40,7 +37,8 @@ impl Iterator for FastRecords {
         if self.pulses == 0 {
             return None;
         }
-        let count = u16::try_from(self.pulses).unwrap_or(u16::MAX);
+        let full = u16::MAX;
+        let count = u16::try_from(self.pulses).unwrap_or(full);
         self.pulses = self.pulses.saturating_sub(u32::from(count));
         Some(Fast::from_count(self.axis, self.negative, count).into())
     }
@@ -52,27 +50,13 @@ impl Iterator for FastRecords {
 
 impl FusedIterator for FastRecords {}
 
-/// SLOW records that together make one cutting motion, made by
+/// SLOW records that together make one cutting motion; how it is split, tells
 /// [`Builder::slow`](super::Builder::slow).
-///
-/// The motion T of each axis is cut into n equal parts, rounded on the way, not part by part:
-/// ```text
-/// n = ceil(max |T| / 30)
-/// position of the axis after part k:  sign(T) floor((k |T| + floor(n/2)) / n)
-/// ```
-/// So every part has floor or ceil of |T|/n pulses, never more than 30; at the end of every part
-/// each axis stands within half a pulse of the straight line between start and end, which no other
-/// whole numbers do better; and the parts sum to T exactly.
-///
-/// Splitting changes the path a little: within each record theta3 moves first and alone, so a split
-/// motion turns the disc in n small turns on the way, where one record would make the whole turn
-/// before the arms start.
 #[derive(Debug, Clone)]
-#[must_use = "the builder counts these records as sent"]
-pub struct SlowRecords {
-    theta1: Share,
-    theta2: Share,
-    theta3: Share,
+pub(super) struct SlowRecords {
+    theta1: Distribution,
+    theta2: Distribution,
+    theta3: Distribution,
     parts: u32,
     left: u32,
 }
@@ -90,20 +74,12 @@ impl SlowRecords {
             .max(theta3.unsigned_abs());
         let parts = max.div_ceil(Slow::MAX.unsigned_abs());
         Self {
-            theta1: Share::new(theta1, parts),
-            theta2: Share::new(theta2, parts),
-            theta3: Share::new(theta3, parts),
+            theta1: Distribution::new(theta1, parts),
+            theta2: Distribution::new(theta2, parts),
+            theta3: Distribution::new(theta3, parts),
             parts,
             left: parts,
         }
-    }
-}
-
-impl SlowRecords {
-    /// Records still to come.
-    #[must_use]
-    pub fn remaining(&self) -> u64 {
-        self.left.into()
     }
 }
 
@@ -119,15 +95,15 @@ impl Iterator for SlowRecords {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        size_of_rest(self.remaining())
+        size_of_rest(self.left.into())
     }
 }
 
 impl FusedIterator for SlowRecords {}
 
-/// The even distribution of one axis over the parts, without division on the way.
+/// The even distribution of one axis over the parts, without a division for each.
 #[derive(Debug, Clone, Copy)]
-struct Share {
+struct Distribution {
     sign: u8,
     /// floor(|T|/n)
     quotient: u32,
@@ -137,7 +113,7 @@ struct Share {
     carry: u32,
 }
 
-impl Share {
+impl Distribution {
     const fn new(pulses: i32, parts: u32) -> Self {
         let magnitude = pulses.unsigned_abs();
         let (quotient, remainder) =

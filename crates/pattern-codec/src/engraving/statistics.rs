@@ -1,11 +1,11 @@
-//! Records, bytes, pulses and duration of a sequence of records.
+//! Records, bytes, pulses and pulse periods of a sequence of records.
 
-use super::{PerAxis, RECORD_LEN, Record};
+use super::{PerAxis, Record};
 
 /// What a sequence of records amounts to, in constant memory.
 ///
 /// ```
-/// use pattern_codec::engraving::{Format, HalfPeriods, Statistics};
+/// use pattern_codec::engraving::{Format, Statistics};
 ///
 /// let bytes = [0x7F, 0x01, 0x00, 0x00, 0x8A, 0x1E];
 /// let mut statistics = Statistics::default();
@@ -14,12 +14,14 @@ use super::{PerAxis, RECORD_LEN, Record};
 /// }
 /// assert_eq!(statistics.records(), 2);
 /// assert_eq!(statistics.pulses.vertical, 256);
-/// let half_periods = HalfPeriods { fast_ticks: 1000, slow_ticks: 4096 };
-/// assert_eq!(statistics.duration_ticks(half_periods), 2 * (256 * 1000 + 30 * 4096));
+/// // Half periods of 1000 and 4096 ticks of the timer.
+/// let ticks = 2 * (statistics.fast_periods * 1000 + statistics.slow_periods * 4096);
+/// assert_eq!(ticks, 2 * (256 * 1000 + 30 * 4096));
 /// # Ok::<(), pattern_codec::engraving::DecodeError>(())
 /// ```
 ///
-/// All counts are `u64` and saturate, which no sequence of fewer than 2^48 records reaches.
+/// A pulse period is two half periods of the train. Ramps and the time that the reader spends
+/// between records are not part of it. All counts are `u64` and saturate, which no sequence of fewer than 2^48 records reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -33,10 +35,10 @@ pub struct Statistics {
     pub idle_records: u64,
     /// Pulses of each axis, both directions together.
     pub pulses: PerAxis<u64>,
-    /// Pulses during which FAST records take their time.
+    /// Pulse periods that FAST records take.
     pub fast_periods: u64,
-    /// Pulses during which SLOW records take their time: those of theta3, then those of the faster
-    /// arm.
+    /// Pulse periods that SLOW records take: those of theta3, then those of the arm with more
+    /// pulses, for which the other waits.
     pub slow_periods: u64,
 }
 
@@ -75,30 +77,7 @@ impl Statistics {
     /// Length in bytes, three for each record.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        self.records().saturating_mul(RECORD_LEN as u64)
-    }
-
-    /// Time that the pulses take, in ticks of the timer.
-    ///
-    /// ```text
-    /// 2 (fast_periods T_fast + slow_periods T_slow)
-    /// ```
-    /// A pulse is two half periods. The arm with fewer pulses waits for the other, so it costs no
-    /// time of its own; a record without motion takes none. Ramps and the time that the reader
-    /// spends between records are not part of it.
-    #[must_use]
-    pub fn duration_ticks(&self, half_periods: HalfPeriods) -> u128 {
-        let HalfPeriods {
-            fast_ticks,
-            slow_ticks,
-        } = half_periods;
-        let part = |periods: u64, ticks: u32| {
-            // Below 2^97.
-            u128::from(periods)
-                .saturating_mul(u128::from(ticks))
-                .saturating_mul(2)
-        };
-        part(self.fast_periods, fast_ticks).saturating_add(part(self.slow_periods, slow_ticks))
+        self.records().saturating_mul(Record::LEN as u64)
     }
 }
 
@@ -121,16 +100,4 @@ impl FromIterator<Record> for Statistics {
 #[inline]
 fn add_to(sum: &mut u64, value: u64) {
     *sum = sum.saturating_add(value);
-}
-
-/// Time between two edges of a pulse train, for each kind of record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_structs, reason = "there are two kinds of record")]
-pub struct HalfPeriods {
-    /// Half period of FAST records, in ticks.
-    pub fast_ticks: u32,
-    /// Half period of SLOW records, of theta3 and of the arm with more pulses, in ticks.
-    pub slow_ticks: u32,
 }

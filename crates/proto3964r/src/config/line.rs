@@ -9,13 +9,13 @@ use core::time::Duration;
 ///
 /// | line | examples | the station's guarantee |
 /// |---|---|---|
-/// | [`Instant`](Self::Instant) | pseudo-terminal, two stations in one program | what the procedure itself gives: whatever stands in place of an answer is one |
+/// | [`Instant`](Self::Instant) | pseudo-terminal, two stations in one program | what the procedure itself gives: whatever comes instead of an answer is one |
 /// | [`Paced`](Self::Paced) | a UART, with or without the driver's buffer | besides: nothing that comes too soon is taken for an answer, and the rest of a block that was broken off does not reach the partner |
 /// | [`Buffered`](Self::Buffered) | USB adapter, TCP serial server | besides: nothing that comes too soon is taken for an answer; after a block that was broken off the station waits until its rest has left and the line is silent. The partner may receive that block whole, and then once more |
 ///
 /// "Too soon" is less than one and a half characters after STX was handed out, and for the
 /// acknowledgement of a block less than half a character after its end, less 1/32 of the block. So
-/// the times that a station on a paced or buffered line is told must resolve a third of a
+/// the times given to a station on a paced or buffered line must resolve a third of a
 /// character, and the character time must be that of the line within 3 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -66,10 +66,9 @@ impl Line {
         }
     }
 
-    /// Time of so many characters.
+    /// Time of `count` characters.
     pub(crate) fn characters(self, count: usize) -> Duration {
-        let count = u64::try_from(count).unwrap_or(u64::MAX);
-        Duration::from_nanos(u64::from(self.character_ns()).saturating_mul(count))
+        Duration::from_nanos(u64::from(self.character_ns()).saturating_mul(count as u64))
     }
 
     /// Whether what was handed out and has not left can still be dropped.

@@ -127,7 +127,7 @@ impl Decoder {
 /// As much of a buffer as a block can fill.
 fn bounded(buffer: &mut [u8]) -> &mut [u8] {
     let len = buffer.len().min(usize::from(u16::MAX));
-    buffer.get_mut(..len).unwrap_or_default()
+    buffer.split_at_mut(len).0
 }
 
 /// What a decoder is set to.
@@ -262,6 +262,7 @@ impl Progress {
         if self.next != Next::Data {
             return 0;
         }
+        // None is free in a full buffer.
         let free = buffer.get_mut(usize::from(self.len)..).unwrap_or_default();
         let mut slots = free.iter_mut();
         let (mut len, mut bcc, mut is_too_long) = (self.len, self.bcc, false);

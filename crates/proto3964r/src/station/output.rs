@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use super::{Station, Transmit, queue::Reply, state::State};
+use super::{Station, Transmit, head, queue::Reply, state::State};
 use crate::ascii::STX;
 
 impl<const N: usize, const T: usize> Station<N, T> {
@@ -66,7 +66,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     fn take_discard(&mut self, now: Duration) -> bool {
         let discard = core::mem::take(&mut self.discard);
         if discard {
-            // One character at most is on its way.
+            // One character at most is leaving.
             self.leaving_at = self.leaving_at.map(|at| at.min(now));
         }
         discard
@@ -113,7 +113,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let State::Sending { block, .. } = &mut self.state else {
             return 0;
         };
-        let payload = self.tx.get(..usize::from(self.tx_len)).unwrap_or_default();
+        let payload = head(&self.tx, self.tx_len);
         let written = block.fill(self.config.check, payload, out);
         let done = block.is_done();
         if written > 0 {
@@ -127,7 +127,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         written
     }
 
-    /// So many more characters are on their way, one after the other.
+    /// `count` more characters leave, one after the other.
     fn handed_out(&mut self, now: Duration, count: usize) {
         let others = self.config.line.characters(count.saturating_sub(1));
         let first_leaves_at = self.end_of_output().max(now);
@@ -143,6 +143,6 @@ impl<const N: usize, const T: usize> Station<N, T> {
 
     /// The payload of the job.
     pub(super) fn payload(&self) -> &[u8] {
-        self.tx.get(..usize::from(self.tx_len)).unwrap_or_default()
+        head(&self.tx, self.tx_len)
     }
 }

@@ -34,7 +34,7 @@ impl<T: Copy, const SLOTS: usize> Queue<T, SLOTS> {
     }
 }
 
-/// What the partner is told.
+/// What goes to the partner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Reply {
     Dle,

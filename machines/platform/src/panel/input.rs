@@ -24,7 +24,7 @@ pub enum Input {
     },
     /// The stop button, which has its own wires too.
     StopButton,
-    /// Wheel counts of one [`SAMPLE`](handwheel::SAMPLE); zero when the wheel stood still.
+    /// Wheel counts of one [`WheelSampler::PERIOD`](handwheel::WheelSampler::PERIOD); zero when the wheel stood still.
     Wheel(i32),
     /// The link to the pendant is lost.
     Lost,

@@ -164,8 +164,8 @@ impl PanelSettings {
     /// The jog speed that the counts of a sample stand for.
     pub(crate) fn jog_um_s(&self, counts: i32, multiplier: Multiplier) -> i32 {
         let hundredths = i64::from(multiplier.factor());
-        let share = self.wheel.share(counts, self.full_jog_um_s);
-        let speed = share.saturating_mul(hundredths) / 100;
+        let full = self.wheel.speed(counts, self.full_jog_um_s);
+        let speed = full.saturating_mul(hundredths) / 100;
         // At most `full_jog_um_s`, which fits.
         i32::try_from(speed).unwrap_or_default()
     }

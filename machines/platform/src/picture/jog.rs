@@ -1,6 +1,6 @@
 //! The staircase of the wheel, and the speeds it becomes.
 
-use handwheel::SAMPLE;
+use handwheel::WheelSampler;
 use machine_sim::{Axis, Figure, Plot, Stroke};
 
 use crate::panel::PanelSettings;
@@ -23,14 +23,15 @@ pub(crate) fn jog(jog: &Jog, settings: &PanelSettings) -> Figure {
     let is_seen = |t: f64| (start..=end).contains(&t);
 
     // Counts of a sample belong to the time before its end.
-    let sample_s = SAMPLE.as_secs_f64();
+    let sample_s = WheelSampler::PERIOD.as_secs_f64();
     let samples = jog.samples.iter().filter(|(t, _)| is_seen(*t));
     let counted = samples.map(|(t, n)| (t - sample_s, *n));
     let wheel = settings.wheel;
     let half_bin = f64::from(wheel.max()) / f64::from(2 * u32::from(wheel.bins()));
+    #[expect(clippy::cast_precision_loss, reason = "at most 2^17 half bins")]
     let quantised = counted
         .clone()
-        .map(|(t, n)| [t, f64::from(wheel.level(n)) * half_bin]);
+        .map(|(t, n)| [t, wheel.level(n) as f64 * half_bin]);
     let counted = counted.map(|(t, n)| [t, f64::from(n)]);
     let counts = Plot::chart(time(), Axis::new("counts").including(0.0))
         .with_title("Wheel: counts in 200 ms")

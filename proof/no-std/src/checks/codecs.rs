@@ -39,7 +39,10 @@ pub fn dance_header() -> Option<()> {
         bytes: [0; 1024],
         len: 0,
     };
-    let header = DataHeader::new().with_packing(Packing::MaskedRuns);
+    let header = DataHeader {
+        packing: Packing::MaskedRuns,
+        ..DataHeader::DEFAULT
+    };
     let frames = [0, 12, 60, 60, -60].map(|speed| [black_box(speed), 0, 7]);
     header.write(frames, &mut text).ok()?;
     let data = Data::<3>::read(core::str::from_utf8(text.bytes.get(..text.len)?).ok()?).ok()?;

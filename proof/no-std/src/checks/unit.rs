@@ -40,5 +40,5 @@ pub fn unit_telegrams() -> Option<()> {
 /// 57 counts lie in the bin around 55.
 pub fn wheel() -> Option<()> {
     let wheel = WheelQuantiser::new(black_box(100), 10).ok()?;
-    holds(wheel.share(black_box(-57), 10_000) == -5500)
+    holds(wheel.speed(black_box(-57), 10_000) == -5500)
 }
