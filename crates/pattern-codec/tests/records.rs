@@ -254,7 +254,7 @@ mod records {
         }
         assert_eq!(
             STRICT.decode([0x05, 0x06, 0x47]).unwrap_err().to_string(),
-            "pattern byte 2: 0x47, the byte of theta2 in a SLOW record, has D6 or D5 set"
+            "pattern byte 2: 0x47 has D6 or D5 set for theta2 in a SLOW record"
         );
     }
 

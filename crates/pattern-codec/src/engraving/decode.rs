@@ -324,7 +324,7 @@ pub enum DecodeErrorKind {
         byte: u8,
     },
     /// D6 or D5 set in a SLOW byte, [`Mode::Strict`] only.
-    #[error("{byte:#04X}, the byte of {axis} in a SLOW record, has D6 or D5 set")]
+    #[error("{byte:#04X} has D6 or D5 set for {axis} in a SLOW record")]
     SlowAxisBits {
         /// The axis of the byte.
         axis: Axis,
