@@ -128,7 +128,7 @@ mod records {
         let error = Fast::new(Axis::Vertical, -70_000).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "vertical: -70000 pulses do not fit into one record, which holds at most 65535 either way"
+            "vertical: -70000 pulses do not fit into one record, which holds at most 65535 in either direction"
         );
     }
 
