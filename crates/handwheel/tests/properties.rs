@@ -237,7 +237,7 @@ proptest! {
                 _ if size >= most => 2 * m,
                 _ => 2 * (size * m / most) + 1,
             };
-            prop_assert_eq!(u64::from(level.unsigned_abs()), expected);
+            prop_assert_eq!(level.unsigned_abs(), expected);
         }
         let (low, high) = (a.min(b), a.max(b));
         prop_assert!(wheel.level(low) <= wheel.level(high));
