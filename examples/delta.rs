@@ -2,7 +2,7 @@
 //! machine: the command line of `machines/delta`.
 //!
 //! ```text
-//! x y z [feed] -> line -> joint waypoints -> pulse trains -> steps.csv
+//! x y z [feed] -> lines, rounded corners -> PVT rows -> steps.csv
 //!                 steps.csv -> simulated arms -> path of the platform
 //! ```
 //!
@@ -11,7 +11,7 @@
 //! the machine stays where it is, which is said, and the exit status is 1. `#` begins a comment,
 //! `end` ends the input.
 //!
-//! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--port PATH] [--out DIR]`
+//! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--motion MOTION] [--port PATH] [--out DIR]`
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::Parser;
 use command_line::{Artefacts, Terminal, print_notes, print_summary, read};
-use delta::{Machine, Record, Session, StepLog, simulate};
+use delta::{Machine, Motion, Record, Session, StepLog, simulate};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/machines/delta");
 
@@ -34,6 +34,10 @@ struct Args {
     /// The machine, as in machines/delta/machine.toml.
     #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("machine.toml"))]
     geometry: PathBuf,
+    /// How it goes along the lines: `rounded` corners from rest to rest within the limits of all
+    /// motors, or `trains`, each line at its feed from the first step to the last.
+    #[arg(long, default_value_t)]
+    motion: Motion,
     /// A serial port or pseudo-terminal that brings the lines and takes the answers.
     #[arg(long, value_name = "PATH")]
     port: Option<String>,
@@ -56,7 +60,11 @@ fn run(args: &Args) -> Result<ExitCode> {
         None => Terminal::open_file(&args.input)?,
     };
     let mut artefacts = Artefacts::new(&args.out)?;
-    let record = serve(terminal, &machine, artefacts.create("steps.csv")?)?;
+    let record = serve(
+        terminal,
+        (&machine, args.motion),
+        artefacts.create("steps.csv")?,
+    )?;
     let run = simulate(&machine, &record, artefacts.reopen("steps.csv")?)?;
     artefacts.write("delta.svg", run.picture()?.to_string())?;
     let report = run.report();
@@ -68,10 +76,14 @@ fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// Answers line after line and writes the steps of those that can be done.
-fn serve(mut terminal: Terminal, machine: &Machine, csv: impl Write) -> Result<Record> {
+fn serve(
+    mut terminal: Terminal,
+    (machine, motion): (&Machine, Motion),
+    csv: impl Write,
+) -> Result<Record> {
     let mut log = StepLog::new(csv)?;
     let mut observer = |ticks, steps| log.step(ticks, steps);
-    let mut session = Session::new(machine, &mut observer)?;
+    let mut session = Session::new(machine, motion, &mut observer)?;
     // In a file, what comes after the end is noted.
     while !session.is_over() || terminal.is_file() {
         let byte = terminal.read_byte()?;
@@ -86,7 +98,7 @@ fn serve(mut terminal: Terminal, machine: &Machine, csv: impl Write) -> Result<R
             break;
         }
     }
-    let record = session.finish();
+    let record = session.finish()?;
     log.finish()?;
     Ok(record)
 }

@@ -2,7 +2,7 @@
 //! a simulated machine.
 //!
 //! ```text
-//! x y z [feed] -> line -> joint waypoints -> pulse trains -> steps.csv
+//! x y z [feed] -> lines, rounded corners -> PVT rows -> steps.csv
 //!                 steps.csv -> simulated arms -> path of the platform
 //! ```
 //!
@@ -10,18 +10,18 @@
 //! files, no printing.
 //!
 //! ```
-//! use delta::{Machine, Session, StepLog, simulate};
+//! use delta::{Machine, Motion, Session, StepLog, simulate};
 //!
 //! let machine = Machine::parse(delta::MACHINE)?;
 //! let mut log = StepLog::new(Vec::new())?;
 //! let mut observer = |ticks, steps| log.step(ticks, steps);
-//! let mut session = Session::new(&machine, &mut observer)?;
+//! let mut session = Session::new(&machine, Motion::Rounded, &mut observer)?;
 //! for byte in "50 50 -300\n60 300 -280\n".bytes() {
 //!     if let Some(answer) = session.handle_byte(byte)? {
 //!         println!("{answer}"); // ok -7799 -12831 -14361, then error: line 2: ...
 //!     }
 //! }
-//! let record = session.finish();
+//! let record = session.finish()?;
 //! let run = simulate(&machine, &record, &*log.finish()?)?;
 //! println!("{}", run.report());
 //! assert!(run.picture()?.to_string().contains("<svg"));
@@ -33,15 +33,19 @@ mod command;
 mod control_tick;
 mod line_reader;
 mod machine;
+mod motion;
+mod motors;
 mod picture;
 mod plan;
 mod record;
 mod report;
+mod rounded;
 mod session;
 mod simulation;
 mod step_log;
 
 pub use self::machine::Machine;
+pub use self::motion::Motion;
 pub use self::record::Record;
 pub use self::report::Report;
 pub use self::session::{Session, StepObserver};

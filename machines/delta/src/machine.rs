@@ -4,6 +4,7 @@ use anyhow::{Context, Result, ensure};
 use delta_kin::{Arm, ArmGeometry, Delta, JointRange, SpeedLimits};
 use machine_sim::input::parse_settings;
 use nalgebra::{Point3, Vector3};
+use path_timing::AxisLimits;
 use serde::Deserialize;
 use stepper_sync::StepScale;
 
@@ -33,14 +34,36 @@ struct Motor {
     min_deg: f64,
     max_deg: f64,
     max_rate_deg_s: f64,
+    #[serde(default = "Motor::default_acceleration_deg_s2")]
+    max_acceleration_deg_s2: f64,
+}
+
+impl Motor {
+    const fn default_acceleration_deg_s2() -> f64 {
+        3000.0
+    }
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PathSettings {
     feed_mm_s: f64,
+    #[serde(default = "PathSettings::default_acceleration_mm_s2")]
+    acceleration_mm_s2: f64,
+    #[serde(default = "PathSettings::default_corner_mm")]
+    corner_mm: f64,
     tolerance_mm: f64,
     tick_ms: f64,
+}
+
+impl PathSettings {
+    const fn default_acceleration_mm_s2() -> f64 {
+        3000.0
+    }
+
+    const fn default_corner_mm() -> f64 {
+        1.0
+    }
 }
 
 /// What an arm differs by from the drawing.
@@ -60,9 +83,14 @@ struct Deviation {
 pub struct Machine {
     pub(crate) delta: Delta,
     pub(crate) rad_per_step: f64,
-    scale: StepScale,
+    pub(crate) scale: StepScale,
+    pub(crate) microsteps: u32,
     pub(crate) max_rate_rad_s: f64,
+    pub(crate) max_acceleration_rad_s2: f64,
     pub(crate) feed_mm_s: f64,
+    pub(crate) acceleration_mm_s2: f64,
+    /// By what corners may be rounded.
+    pub(crate) corner_mm: f64,
     pub(crate) tolerance_mm: f64,
     pub(crate) tick_s: f64,
 }
@@ -83,7 +111,10 @@ impl Machine {
             ("step_deg", motor.step_deg),
             ("gear_ratio", motor.gear_ratio),
             ("max_rate_deg_s", motor.max_rate_deg_s),
+            ("max_acceleration_deg_s2", motor.max_acceleration_deg_s2),
             ("feed_mm_s", path.feed_mm_s),
+            ("acceleration_mm_s2", path.acceleration_mm_s2),
+            ("corner_mm", path.corner_mm),
             ("tolerance_mm", path.tolerance_mm),
             ("tick_ms", path.tick_ms),
         ] {
@@ -99,8 +130,12 @@ impl Machine {
             delta: settings.delta()?,
             rad_per_step,
             scale: StepScale::new(rad_per_step.recip())?,
+            microsteps: motor.microsteps,
             max_rate_rad_s: motor.max_rate_deg_s.to_radians(),
+            max_acceleration_rad_s2: motor.max_acceleration_deg_s2.to_radians(),
             feed_mm_s: path.feed_mm_s,
+            acceleration_mm_s2: path.acceleration_mm_s2,
+            corner_mm: path.corner_mm,
             tolerance_mm: path.tolerance_mm,
             tick_s: path.tick_ms / 1000.0,
         };
@@ -140,6 +175,15 @@ impl Machine {
     /// Where the platform is.
     pub(crate) fn point(&self, steps: [i32; 3]) -> Result<Point3<f64>> {
         Ok(self.delta.forward(self.angles(steps))?)
+    }
+
+    /// Of each arm, in rad and s.
+    pub(crate) const fn axis_limits(&self) -> [AxisLimits; 3] {
+        [AxisLimits {
+            speed: self.max_rate_rad_s,
+            acceleration: self.max_acceleration_rad_s2,
+            jerk: None,
+        }; 3]
     }
 
     pub(crate) fn speed_limits(&self, feed_mm_s: f64) -> Result<SpeedLimits> {

@@ -5,8 +5,9 @@ use anyhow::Result;
 use machine_sim::{Axis, Figure, Plot, Stroke};
 use nalgebra::{Point3, Vector3};
 
+use crate::motion::Motion;
 use crate::plan::seconds;
-use crate::simulation::Run;
+use crate::simulation::{Driven, Run};
 
 /// Points of an outline.
 const OUTLINE: u32 = 240;
@@ -20,16 +21,20 @@ pub(crate) fn picture(run: &Run<'_>) -> Result<Figure> {
     let title = format!(
         "Delta: {} moves, {} steps in {duration_s:.1} s",
         run.record.moves.len(),
-        run.trains.steps
+        run.driven.steps
     );
-    let off = |max_mm: f64| format!("at most {max_mm:.4} mm off the lines");
-    let note = format!(
-        "Driven by the trains {}; by the {:.0} ms control tick {}, in {:.1} s.",
-        off(run.trains.max_path_error_mm),
-        run.machine.tick_s * 1000.0,
-        off(run.ticked.max_path_error_mm),
-        f64::from(run.ticks) * run.machine.tick_s
-    );
+    let note = |name: &str, driven: &Driven| {
+        let lost: u64 = driven.motors.iter().map(|motor| motor.lost_steps).sum();
+        format!(
+            "{name}: {:.1} s, at most {:.4} mm off the lines; a simulated motor loses {lost} steps.",
+            driven.duration_s, driven.max_path_error_mm
+        )
+    };
+    let tick = format!("By the {:.0} ms control tick", run.machine.tick_s * 1000.0);
+    let motion = match run.record.motion {
+        Motion::Rounded => "Round the corners, from rest to rest",
+        Motion::Trains => "Each line at its feed, without ramps",
+    };
     let window = format!("mean over {:.0} ms", run.motion.window_s() * 1000.0);
     let time = || Axis::new("time in s").over(0.0..=duration_s);
     let speed = Plot::chart(time(), Axis::new("speed in mm/s").including(0.0))
@@ -40,8 +45,9 @@ pub(crate) fn picture(run: &Run<'_>) -> Result<Figure> {
         .with_title("Acceleration of the platform")
         .line(&window, Stroke::ACTUAL, accelerations(run));
     Ok(Figure::new(title)
-        .with_note(note)
-        .with_note("There are no ramps: each line begins and ends at its feed.")
+        .with_note(note(motion, &run.driven))
+        .with_note(note("By trains at the feed", &run.trains))
+        .with_note(note(&tick, &run.ticked))
         .with_row(maps(run)?)
         .with_row([speed])
         .with_row([acceleration]))
@@ -66,7 +72,7 @@ fn accelerations(run: &Run<'_>) -> impl Iterator<Item = [f64; 2]> {
 /// From above and from the front.
 fn maps(run: &Run<'_>) -> Result<[Plot; 2]> {
     let home = run.machine.point([0; 3])?.z;
-    let lowest = run.trains.path.iter().fold(home, |z, point| z.min(point.z));
+    let lowest = run.driven.path.iter().fold(home, |z, point| z.min(point.z));
     let centre = f64::midpoint(home, lowest);
     let delta = run.machine.delta;
     let flat = delta.horizontal_slice(centre, OUTLINE)?.collect();
@@ -110,8 +116,12 @@ fn drawn(
         )
         .lines("lines", Stroke::COMMANDED, asked)
         .line("control tick", Stroke::OTHER, seen(&run.ticked.path))
-        .line("trains", Stroke::ACTUAL, seen(&run.trains.path));
-    Ok(match run.trains.path.first() {
+        .line(
+            run.record.motion.name(),
+            Stroke::ACTUAL,
+            seen(&run.driven.path),
+        );
+    Ok(match run.driven.path.first() {
         Some(start) => plot.start(view(start)),
         None => plot,
     })
@@ -120,7 +130,7 @@ fn drawn(
 /// Base, arms and platform where the steps ended.
 fn mechanism(run: &Run<'_>) -> Result<Vec<Line>> {
     let machine = run.machine;
-    let pose = machine.delta.pose_of(machine.angles(run.trains.end))?;
+    let pose = machine.delta.pose_of(machine.angles(run.driven.end))?;
     let platform = pose.point();
     let (mut shoulders, mut wrists, mut parts) = (Vec::new(), Vec::new(), Vec::new());
     for (geometry, elbow) in machine.delta.arms().iter().zip(pose.elbows()) {

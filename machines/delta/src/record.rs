@@ -4,6 +4,8 @@ use machine_sim::input::Notes;
 use nalgebra::Point3;
 use serde::Serialize;
 
+use crate::motion::Motion;
+
 /// A line that has been answered with `ok`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Move {
@@ -25,14 +27,24 @@ pub(crate) struct Refusal {
 }
 
 /// What came of the lines: moves, refusals, and what else was not done.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Record {
+    pub(crate) motion: Motion,
     pub(crate) moves: Vec<Move>,
     pub(crate) refusals: Vec<Refusal>,
     pub(crate) notes: Notes,
 }
 
 impl Record {
+    pub(crate) fn new(motion: Motion) -> Self {
+        Self {
+            motion,
+            moves: Vec::new(),
+            refusals: Vec::new(),
+            notes: Notes::default(),
+        }
+    }
+
     /// What else was not done, one line for each kind.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {

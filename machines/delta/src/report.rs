@@ -5,9 +5,10 @@ use core::fmt;
 use anyhow::{Result, bail};
 use serde::Serialize;
 
-use crate::plan::seconds;
+use crate::motion::Motion;
+use crate::motors::FollowedArm;
 use crate::record::Refusal;
-use crate::simulation::Run;
+use crate::simulation::{Driven, Run};
 
 /// `report.json`; displayed, a summary in lines.
 #[derive(Debug, Clone, Serialize)]
@@ -19,7 +20,9 @@ pub struct Report {
     refusals: Vec<Refusal>,
     /// What else was not done.
     notes: Vec<String>,
-    /// Farthest that the simulated platform was from the lines asked for, driven by the trains.
+    /// `rounded` or `trains`.
+    motion: &'static str,
+    /// Farthest that the simulated platform was from the lines asked for.
     max_path_error_mm: f64,
     duration_s: f64,
     /// Of all motors, either way.
@@ -29,15 +32,37 @@ pub struct Report {
     home_rad: [f64; 3],
     /// Steps from home at the end.
     end: [i32; 3],
+    /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
+    /// given them loses steps where torque or inertia are overrun.
+    motors: [FollowedArm; 3],
+    /// The same moves, each line at its feed from the first step to the last.
+    trains: Comparison,
     /// The same moves driven by the thesis' control tick.
     tick: Tick,
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct Tick {
-    tick_s: f64,
+struct Comparison {
     max_path_error_mm: f64,
     duration_s: f64,
+    motors: [FollowedArm; 3],
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct Tick {
+    tick_s: f64,
+    #[serde(flatten)]
+    comparison: Comparison,
+}
+
+impl Comparison {
+    const fn new(driven: &Driven) -> Self {
+        Self {
+            max_path_error_mm: driven.max_path_error_mm,
+            duration_s: driven.duration_s,
+            motors: driven.motors,
+        }
+    }
 }
 
 impl Report {
@@ -48,16 +73,18 @@ impl Report {
             refused: record.refusals.len(),
             refusals: record.refusals.clone(),
             notes: record.notes(),
-            max_path_error_mm: run.trains.max_path_error_mm,
-            duration_s: seconds(record.duration_ticks()),
-            steps: run.trains.steps,
+            motion: record.motion.name(),
+            max_path_error_mm: run.driven.max_path_error_mm,
+            duration_s: run.driven.duration_s,
+            steps: run.driven.steps,
             rad_per_step: machine.rad_per_step,
             home_rad: machine.home_rad(),
-            end: run.trains.end,
+            end: run.driven.end,
+            motors: run.driven.motors,
+            trains: Comparison::new(&run.trains),
             tick: Tick {
                 tick_s: machine.tick_s,
-                max_path_error_mm: run.ticked.max_path_error_mm,
-                duration_s: f64::from(run.ticks) * machine.tick_s,
+                comparison: Comparison::new(&run.ticked),
             },
         }
     }
@@ -86,17 +113,27 @@ impl fmt::Display for Report {
             "{} moves, {} refused, {} steps",
             self.moves, self.refused, self.steps
         )?;
-        writeln!(
-            f,
-            "trains:    {:.3} s, at most {:.4} mm off the lines",
-            self.duration_s, self.max_path_error_mm
-        )?;
-        writeln!(
-            f,
-            "{:.0} ms tick: {:.3} s, at most {:.4} mm off the lines",
-            self.tick.tick_s * 1000.0,
-            self.tick.duration_s,
-            self.tick.max_path_error_mm
-        )
+        let line = |driven: &Comparison| {
+            let motors = driven.motors.iter();
+            let lost: u64 = motors.clone().map(|motor| motor.lost_steps).sum();
+            let accelerations = motors.map(|motor| motor.max_acceleration_deg_s2.proven());
+            format!(
+                "{:.3} s, at most {:.4} mm off the lines, at least {:.0} deg/s², {lost} steps lost",
+                driven.duration_s,
+                driven.max_path_error_mm,
+                accelerations.fold(0.0, f64::max)
+            )
+        };
+        if self.motion == Motion::Rounded.name() {
+            let rounded = Comparison {
+                max_path_error_mm: self.max_path_error_mm,
+                duration_s: self.duration_s,
+                motors: self.motors,
+            };
+            writeln!(f, "rounded:   {}", line(&rounded))?;
+        }
+        writeln!(f, "trains:    {}", line(&self.trains))?;
+        let tick_ms = self.tick.tick_s * 1000.0;
+        writeln!(f, "{tick_ms:.0} ms tick: {}", line(&self.tick.comparison))
     }
 }

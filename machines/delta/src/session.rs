@@ -6,8 +6,10 @@ use nalgebra::Point3;
 use crate::command::{self, Command};
 use crate::line_reader::LineReader;
 use crate::machine::Machine;
+use crate::motion::Motion;
 use crate::plan::Plan;
 use crate::record::{Move, Record, Refusal};
+use crate::rounded;
 
 /// Takes the steps: ticks of 0.1 microseconds from the start, and the position of the three motors
 /// after the step, in steps from home.
@@ -19,9 +21,11 @@ pub type StepObserver<'a> = &'a mut dyn FnMut(u64, [i32; 3]) -> Result<()>;
 /// 50 50 -300       ok -7799 -12831 -14361
 /// 50 50 100        error: line 2: 50 50 100: out of reach: ...; the next move starts at 50 50 -300
 /// ```
-/// A line that is refused changes nothing.
+/// A line that is refused changes nothing. With rounded corners, the machine runs when all lines are
+/// known.
 pub struct Session<'a> {
     machine: &'a Machine,
+    motion: Motion,
     observer: StepObserver<'a>,
     reader: LineReader,
     lines: usize,
@@ -47,17 +51,18 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// There is no such platform.
-    pub fn new(machine: &'a Machine, observer: StepObserver<'a>) -> Result<Self> {
+    pub fn new(machine: &'a Machine, motion: Motion, observer: StepObserver<'a>) -> Result<Self> {
         let position = [0; 3];
         Ok(Self {
             machine,
+            motion,
             observer,
             reader: LineReader::default(),
             lines: 0,
             is_over: false,
             point: machine.point(position)?,
             position,
-            record: Record::default(),
+            record: Record::new(motion),
         })
     }
 
@@ -89,10 +94,15 @@ impl<'a> Session<'a> {
         self.is_over
     }
 
-    /// What came of the lines.
-    #[must_use]
-    pub fn finish(self) -> Record {
-        self.record
+    /// No more lines come: what came of them. With rounded corners this is when the machine runs.
+    ///
+    /// # Errors
+    /// A corner cannot be rounded where the machine can be, or the observer's.
+    pub fn finish(mut self) -> Result<Record> {
+        if self.motion == Motion::Rounded {
+            rounded::run(self.machine, &mut self.record.moves, &mut *self.observer)?;
+        }
+        Ok(self.record)
     }
 
     /// Takes a line, or why it could not be read.
@@ -126,10 +136,13 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Makes the steps of a move.
+    /// Makes the steps of a move, or leaves that to the end.
     fn run(&mut self, plan: &Plan, to: Point3<f64>, feed_mm_s: f64) -> Result<String> {
         let start = self.record.duration_ticks();
-        let end_ticks = plan.run(self.position, start, &mut *self.observer)?;
+        let end_ticks = match self.motion {
+            Motion::Rounded => start,
+            Motion::Trains => plan.run(self.position, start, &mut *self.observer)?,
+        };
         self.record.moves.push(Move {
             from: self.point,
             to,

@@ -9,34 +9,43 @@ use nalgebra::Point3;
 
 use crate::control_tick;
 use crate::machine::Machine;
+use crate::motion::Motion;
+use crate::motors::{FollowedArm, Motors};
 use crate::picture;
-use crate::plan::seconds;
+use crate::plan::{Plan, seconds};
 use crate::record::{Move, Record};
 use crate::report::Report;
 use crate::step_log;
 
+/// What steps may be off their places: those of cubics by a tick, those of trains by the rounding of
+/// joint waypoints to whole steps.
+const CUBIC_STEPS: f64 = 0.01;
+const TRAINS_STEPS: f64 = 1.0;
 /// Between two points of a picture's path, in mm.
 const SPACING_MM: f64 = 0.5;
 
-/// What the simulated machine did, driven by the steps, and by the thesis' control tick.
+/// What the simulated machine did, driven by the steps, and for comparison by trains at the feed and
+/// by the thesis' control tick.
 #[derive(Debug, Clone)]
 pub struct Run<'a> {
     pub(crate) machine: &'a Machine,
     pub(crate) record: &'a Record,
+    pub(crate) driven: Driven,
     pub(crate) trains: Driven,
     pub(crate) ticked: Driven,
-    pub(crate) ticks: u32,
     pub(crate) motion: MotionSampler<3>,
 }
 
-/// What the simulated machine did in one of both.
-#[derive(Debug, Clone, Default)]
+/// What the simulated machine did in one of these ways.
+#[derive(Debug, Clone)]
 pub(crate) struct Driven {
     pub(crate) max_path_error_mm: f64,
+    pub(crate) duration_s: f64,
     /// Of all motors, either way.
     pub(crate) steps: u64,
     /// Steps from home at the end.
     pub(crate) end: [i32; 3],
+    pub(crate) motors: [FollowedArm; 3],
     /// The platform's path, thinned for a picture.
     pub(crate) path: Vec<Point3<f64>>,
 }
@@ -68,68 +77,143 @@ pub fn simulate<'a>(
 ) -> Result<Run<'a>> {
     let duration_s = seconds(record.duration_ticks());
     let mut motion = MotionSampler::new(machine.point([0; 3])?.into());
-    let trains = follow(machine, &record.moves, step_log::read(steps), |t_s, at| {
-        motion.add(t_s, at.into());
-    })?;
+    let mut follower = Follower::new(machine, &record.moves, record.motion)?;
+    for position in step_log::read(steps) {
+        let (t_s, position) = position?;
+        motion.add(t_s, follower.follow(t_s, position)?.into());
+    }
     motion.end(duration_s);
-    let mut ticks = 0;
-    let ends = record.moves.iter().map(|it| it.end);
-    let after_ticks = control_tick::positions(ends).inspect(|_| ticks += 1);
-    let after_ticks = core::iter::once([0; 3]).chain(after_ticks);
-    // The controller's time is the number of its ticks.
-    let positions = after_ticks.map(|position| Ok((0.0, position)));
-    let ticked = follow(machine, &record.moves, positions, |_, _| {})?;
+    let deviation_steps = match record.motion {
+        Motion::Rounded => CUBIC_STEPS,
+        Motion::Trains => TRAINS_STEPS,
+    };
     Ok(Run {
         machine,
         record,
-        trains,
-        ticked,
-        ticks,
+        driven: follower.finish(duration_s, deviation_steps)?,
+        trains: by_trains(machine, &record.moves)?,
+        ticked: by_ticks(machine, &record.moves)?,
         motion,
     })
 }
 
-/// Follows times in s and positions from home on.
-fn follow(
-    machine: &Machine,
-    moves: &[Move],
-    positions: impl Iterator<Item = Result<(f64, [i32; 3])>>,
-    mut observe: impl FnMut(f64, Point3<f64>),
-) -> Result<Driven> {
-    let mut driven = Driven::default();
-    driven.path.push(machine.point([0; 3])?);
-    let mut moves = moves.iter();
-    let mut line = moves.next();
-    for position in positions {
-        let (t_s, position) = position?;
-        let moved = position.iter().zip(driven.end);
-        driven.steps += moved.map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>();
-        driven.end = position;
-        let point = machine.point(position)?;
-        observe(t_s, point);
-        while let Some(now) = line {
+/// Each line at its feed from the first step to the last.
+fn by_trains(machine: &Machine, moves: &[Move]) -> Result<Driven> {
+    let mut follower = Follower::new(machine, moves, Motion::Trains)?;
+    let (mut position, mut now) = ([0; 3], 0);
+    for line in moves {
+        let plan = Plan::new(machine, (line.from, position), line.to, line.feed_mm_s)?;
+        now = plan.run(position, now, |ticks, position| {
+            follower.follow(seconds(ticks), position).map(drop)
+        })?;
+        position = plan.end();
+    }
+    follower.finish(seconds(now), TRAINS_STEPS)
+}
+
+/// The thesis' controller.
+fn by_ticks(machine: &Machine, moves: &[Move]) -> Result<Driven> {
+    let mut follower = Follower::new(machine, moves, Motion::Trains)?;
+    let mut now_s = 0.0;
+    for position in control_tick::positions(moves.iter().map(|it| it.end)) {
+        now_s += machine.tick_s;
+        follower.follow(now_s, position)?;
+    }
+    follower.finish(now_s, TRAINS_STEPS)
+}
+
+/// The simulated machine on its way along the lines.
+struct Follower<'a> {
+    machine: &'a Machine,
+    motion: Motion,
+    /// That which it is on, and those after it.
+    lines: &'a [Move],
+    motors: Motors,
+    max_path_error_mm: f64,
+    steps: u64,
+    end: [i32; 3],
+    path: Vec<Point3<f64>>,
+}
+
+impl<'a> Follower<'a> {
+    fn new(machine: &'a Machine, lines: &'a [Move], motion: Motion) -> Result<Self> {
+        Ok(Self {
+            machine,
+            motion,
+            lines,
+            motors: Motors::new(machine),
+            max_path_error_mm: 0.0,
+            steps: 0,
+            end: [0; 3],
+            path: vec![machine.point([0; 3])?],
+        })
+    }
+
+    /// Takes it to a position at a time; returns where the platform is.
+    fn follow(&mut self, t_s: f64, position: [i32; 3]) -> Result<Point3<f64>> {
+        let moved = position.iter().zip(self.end);
+        self.steps += moved.map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>();
+        self.end = position;
+        self.motors.follow(t_s, position);
+        let point = self.machine.point(position)?;
+        match self.motion {
+            Motion::Rounded => self.follow_rounded(t_s, point),
+            Motion::Trains => self.follow_lines(position, point),
+        }
+        let last = self.path.last();
+        if last.is_none_or(|last| (point - last).norm() > SPACING_MM) {
+            self.path.push(point);
+        }
+        Ok(point)
+    }
+
+    /// The nearer of the line that it is on by the time, and the next one.
+    fn follow_rounded(&mut self, t_s: f64, point: Point3<f64>) {
+        while let [now, rest @ ..] = self.lines
+            && !rest.is_empty()
+            && t_s > seconds(now.end_ticks)
+        {
+            self.lines = rest;
+        }
+        let near = self.lines.iter().take(2);
+        let off = near.map(|line| distance(point, line.from, line.to));
+        let off = off.fold(f64::INFINITY, f64::min);
+        if off.is_finite() {
+            self.max_path_error_mm = self.max_path_error_mm.max(off);
+        }
+    }
+
+    /// Each line to its very end.
+    fn follow_lines(&mut self, position: [i32; 3], point: Point3<f64>) {
+        while let [now, rest @ ..] = self.lines {
             let off = distance(point, now.from, now.to);
-            driven.max_path_error_mm = driven.max_path_error_mm.max(off);
+            self.max_path_error_mm = self.max_path_error_mm.max(off);
             if position != now.end {
                 break;
             }
-            line = moves.next();
+            self.lines = rest;
             // A line that asks for no step ends where the one before did.
-            if line.is_none_or(|next| next.end != position) {
+            if rest.first().is_none_or(|next| next.end != position) {
                 break;
             }
         }
-        let last = driven.path.last();
-        if last.is_none_or(|last| (point - last).norm() > SPACING_MM) {
-            driven.path.push(point);
-        }
     }
-    driven.path.push(machine.point(driven.end)?);
-    Ok(driven)
+
+    fn finish(mut self, duration_s: f64, deviation_steps: f64) -> Result<Driven> {
+        self.path.push(self.machine.point(self.end)?);
+        Ok(Driven {
+            max_path_error_mm: self.max_path_error_mm,
+            duration_s,
+            steps: self.steps,
+            end: self.end,
+            motors: self.motors.finish(self.machine, deviation_steps),
+            path: self.path,
+        })
+    }
 }
 
 /// Distance of a point from the straight line between two others.
-fn distance(point: Point3<f64>, from: Point3<f64>, to: Point3<f64>) -> f64 {
+pub(crate) fn distance(point: Point3<f64>, from: Point3<f64>, to: Point3<f64>) -> f64 {
     let line = to - from;
     let square = line.norm_squared();
     let fraction = if square > 0.0 {

@@ -4,6 +4,7 @@
 
 extern crate alloc;
 
+mod driven;
 mod edge_motion;
 mod figure;
 #[cfg(feature = "input")]
@@ -17,6 +18,7 @@ pub mod serial_line;
 mod stepper;
 mod vcd;
 
+pub use self::driven::{DrivenAxis, Followed};
 pub use self::edge_motion::{EdgeLog, EdgeMotion, Measured};
 pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
 pub use self::motion_sampler::MotionSampler;

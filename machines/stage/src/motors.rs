@@ -1,7 +1,7 @@
 //! What the emitted edges ask of the motors, and whether they follow.
 
 use anyhow::Result;
-use machine_sim::{EdgeLog, Measured, MotionSampler, Motor, Rotor};
+use machine_sim::{DrivenAxis, Measured, MotionSampler, Motor};
 use serde::Serialize;
 
 use crate::controller::{Clock, seconds};
@@ -25,26 +25,16 @@ const DEVIATION_STEPS: f64 = 1.5;
 /// Both motors.
 #[derive(Debug, Clone)]
 pub(crate) struct Motors {
-    axes: [Axis; 2],
+    axes: [DrivenAxis; 2],
     ticks: u64,
     at: [i32; 2],
     motion: MotionSampler<2>,
 }
 
-#[derive(Debug, Clone)]
-struct Axis {
-    edges: EdgeLog,
-    rotor: Rotor,
-}
-
 impl Default for Motors {
     fn default() -> Self {
-        let axis = || Axis {
-            edges: EdgeLog::new(),
-            rotor: Rotor::new(MOTOR),
-        };
         Self {
-            axes: [axis(), axis()],
+            axes: [MOTOR; 2].map(DrivenAxis::new),
             ticks: 0,
             at: [0; 2],
             motion: MotionSampler::new([0.0; 2]),
@@ -59,8 +49,7 @@ impl Motors {
         for ((axis, at), by) in self.axes.iter_mut().zip(&mut self.at).zip(by) {
             *at += by;
             if by != 0 {
-                axis.edges.step(seconds(ticks), by);
-                axis.rotor.step(seconds(ticks), by);
+                axis.step(seconds(ticks), by);
             }
         }
         let at = paths::to_mm(self.at);
@@ -129,16 +118,16 @@ impl Followed {
 }
 
 impl FollowedAxis {
-    fn new(mut axis: Axis) -> Self {
-        axis.rotor.settle();
-        let motion = axis.edges.motion(DEVIATION_STEPS);
+    fn new(axis: DrivenAxis) -> Self {
+        let followed = axis.finish(DEVIATION_STEPS);
+        let motion = followed.motion;
         let mm = |measured: Measured| measured.times(STEPS_PER_MM.recip());
         Self {
             max_start_speed_mm_s: mm(motion.start_speed),
             max_speed_jump_mm_s: mm(motion.speed_jump),
             max_acceleration_mm_s2: mm(motion.acceleration),
-            lost_steps: axis.rotor.lost_steps(),
-            max_lag_full_steps: axis.rotor.max_lag_full_steps(),
+            lost_steps: followed.lost_steps,
+            max_lag_full_steps: followed.max_lag_full_steps,
         }
     }
 }

@@ -1,0 +1,80 @@
+//! What the emitted edges ask of the motors, and whether they follow.
+
+use machine_sim::{DrivenAxis, Measured, Motor};
+use serde::Serialize;
+
+use crate::machine::Machine;
+
+/// 0.4 N m on each arm. At the motor, through 27:1: the rotor 5.4, the gear 2.0, an arm of 60 g and
+/// its share of rods and platform, 80 g at 120 mm, 2.0, in 1e-6 kg m².
+const MOTOR: Motor = Motor {
+    holding_torque_nm: 0.4,
+    corner_speed_hz: 1000.0,
+    inertia_kg_m2: 9.4e-6,
+    friction_nm: 0.03,
+    damping_ratio: 0.02,
+    full_steps_per_turn: 200,
+    microsteps: 1,
+};
+
+/// The three motors.
+#[derive(Debug, Clone)]
+pub(crate) struct Motors {
+    axes: [DrivenAxis; 3],
+    position: [i32; 3],
+}
+
+impl Motors {
+    /// Motors at home.
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let motor = Motor {
+            microsteps: machine.microsteps,
+            ..MOTOR
+        };
+        Self {
+            axes: [motor; 3].map(DrivenAxis::new),
+            position: [0; 3],
+        }
+    }
+
+    /// They are commanded to a position at a time.
+    pub(crate) fn follow(&mut self, time_s: f64, position: [i32; 3]) {
+        let last = core::mem::replace(&mut self.position, position);
+        let axes = self.axes.iter_mut().zip(position.into_iter().zip(last));
+        for (axis, (to, from)) in axes {
+            if to != from {
+                axis.step(time_s, to - from);
+            }
+        }
+    }
+
+    /// What was seen of each, in degrees of the arms; each edge is at most `deviation_steps` off
+    /// its place.
+    pub(crate) fn finish(self, machine: &Machine, deviation_steps: f64) -> [FollowedArm; 3] {
+        let deg_per_step = machine.rad_per_step.to_degrees();
+        self.axes.map(|axis| {
+            let followed = axis.finish(deviation_steps);
+            let deg = |measured: Measured| measured.times(deg_per_step);
+            FollowedArm {
+                max_start_speed_deg_s: deg(followed.motion.start_speed),
+                max_speed_deg_s: deg(followed.motion.speed),
+                max_speed_jump_deg_s: deg(followed.motion.speed_jump),
+                max_acceleration_deg_s2: deg(followed.motion.acceleration),
+                lost_steps: followed.lost_steps,
+                max_lag_full_steps: followed.max_lag_full_steps,
+            }
+        })
+    }
+}
+
+/// What an arm's motor was asked for, by the edges alone, and what it lost.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct FollowedArm {
+    pub(crate) max_start_speed_deg_s: Measured,
+    pub(crate) max_speed_deg_s: Measured,
+    pub(crate) max_speed_jump_deg_s: Measured,
+    pub(crate) max_acceleration_deg_s2: Measured,
+    pub(crate) lost_steps: u64,
+    /// At 2 it loses steps.
+    pub(crate) max_lag_full_steps: f64,
+}
