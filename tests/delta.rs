@@ -7,6 +7,8 @@ mod artefacts;
 mod command;
 #[path = "tools/example.rs"]
 mod example;
+#[path = "delta/rounded.rs"]
+mod rounded;
 
 use core::time::Duration;
 use std::fs;
@@ -219,7 +221,8 @@ fn asked(text: &str, answers: &[String]) -> Vec<([f64; 3], [i32; 3])> {
 fn shipped_inputs_follow_their_lines() {
     for name in ["pick-and-place", "spiral"] {
         let file = shipped(&format!("inputs/{name}.txt"));
-        let run = Run::of(&["--input", file.to_str().unwrap()], "");
+        let arguments = ["--motion", "trains", "--input", file.to_str().unwrap()];
+        let run = Run::of(&arguments, "");
         let asked = asked(&fs::read_to_string(&file).unwrap(), &run.answers);
         assert_eq!(run.report["moves"], asked.len());
         assert_eq!(run.report["refused"], run.answers.len() - asked.len());
@@ -333,7 +336,7 @@ fn bad_lines_are_answered_and_the_next_is_served() {
 #[test]
 fn after_a_refusal_the_next_line_starts_where_the_machine_is() {
     let run = Run::of(
-        &["--input", "-"],
+        &["--motion", "trains", "--input", "-"],
         "60 0 -280\n60 300 -280\nhello\n-60 0 -280\n",
     );
     let stays = "; the next move starts at 60 0 -280";

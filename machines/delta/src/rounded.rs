@@ -97,6 +97,7 @@ fn position(cubic: &Cubic, tau: f64) -> f64 {
 
 /// Runs the lines of moves, from rest to rest: calls `step` with the time and the position after
 /// each step, and sets the times at which the moves end, or round their corners.
+#[expect(clippy::float_cmp, reason = "the very numbers of the same path")]
 pub(crate) fn run(
     machine: &Machine,
     moves: &mut [Move],
