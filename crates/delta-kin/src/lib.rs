@@ -15,6 +15,8 @@ mod forward;
 mod geometry;
 mod inverse;
 mod limits;
+#[cfg(feature = "path-timing")]
+mod path;
 mod pose;
 mod prepared;
 mod range;
@@ -35,5 +37,7 @@ pub use forward::ForwardError;
 pub use geometry::GeometryError;
 pub use inverse::InverseError;
 pub use limits::JointRange;
+#[cfg(feature = "path-timing")]
+pub use path::{DeltaPath, DeltaPathError};
 pub use pose::{Pose, PoseError};
 pub use workspace::WorkspaceError;

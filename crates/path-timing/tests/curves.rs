@@ -259,7 +259,7 @@ fn span<const D: usize>(curve: &Curve<D>, s: [f64; 2], speeds: [f64; 2]) -> Span
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The bound holds for any speeds at the ends of any piece of a curve.
     #[test]

@@ -174,7 +174,7 @@ fn singularities_that_can_be_passed_are_passed() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Whatever the speeds at the ends of a segment, as after a change of the feed or a hold: the bound
     /// holds.

@@ -1,7 +1,7 @@
 //! A point that runs along a curve while axes run their cubics, and how far a tool is from it.
 
 use super::Curve;
-use super::vector::{along, difference, dot, norm};
+use super::vector::{along, difference, dot, norm, scaled};
 use crate::Cubic;
 use crate::number::larger_or_nan;
 
@@ -18,7 +18,7 @@ use crate::number::larger_or_nan;
 /// ```
 ///
 /// (Birkhoff and Priver, Hermite interpolation errors for derivatives, 1967). From one node
-/// τ = k/8 to the next e is linear but for h²/8 · M/12 = M/6144, so that its largest value at the
+/// τ = k/16 to the next e is linear but for h²/8 · M/12 = M/24576, so that its largest value at the
 /// nodes and this are a bound E of |e| everywhere.
 ///
 /// Of e only the part across the curve counts: where the tool is ahead by a, the curve there is
@@ -26,7 +26,7 @@ use crate::number::larger_or_nan;
 /// node. With N the largest part of e across the tangent at a node the tool is within
 ///
 /// ```text
-/// N + ψ E + κ E²/2 + M/6144
+/// N + ψ E + κ E²/2 + M/24576
 /// ```
 ///
 /// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the way
@@ -45,13 +45,16 @@ pub struct CurveMotion<'a, const D: usize> {
 }
 
 /// Nodes between the ends of a segment.
-const NODES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
+const NODES: [f64; 15] = [
+    0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.6875, 0.75, 0.8125,
+    0.875, 0.9375,
+];
 
 /// From a node to the next.
-const NODE: f64 = 0.125;
+const NODE: f64 = 0.0625;
 
 /// What is left between nodes, as a fraction of M.
-const BETWEEN: f64 = 1.0 / 6144.0;
+const BETWEEN: f64 = 1.0 / 24_576.0;
 
 /// A cubic of the time, by the fraction of the segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +85,15 @@ impl Parameter {
         c0 + tau * (c1 + tau * (c2 + tau * c3))
     }
 
+    /// The first two derivatives.
+    fn derivatives(&self, tau: f64) -> [f64; 2] {
+        let [_, c1, c2, c3] = self.coefficients;
+        [
+            c1 + tau * (2.0 * c2 + tau * 3.0 * c3),
+            2.0 * c2 + 6.0 * c3 * tau,
+        ]
+    }
+
     /// Whether at each τ at least τ²/2 of the way is done, and at least (1 - τ)²/2 left: where the
     /// speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has 2.
     fn comes_forward(cubic: &Cubic) -> bool {
@@ -93,7 +105,7 @@ impl Parameter {
 
 /// The longest that derivatives 1 to 4 of C(u(τ)) can be, from those of C and the largest of u, by Faà
 /// di Bruno.
-fn composed(longest: [f64; 4], [u1, u2, u3]: [f64; 3]) -> [f64; 4] {
+fn longest_composed(longest: [f64; 4], [u1, u2, u3]: [f64; 3]) -> [f64; 4] {
     let [c1, c2, c3, c4] = longest;
     let square = u1 * u1;
     [
@@ -101,6 +113,18 @@ fn composed(longest: [f64; 4], [u1, u2, u3]: [f64; 3]) -> [f64; 4] {
         c2 * square + c1 * u2,
         c3 * square * u1 + 3.0 * c2 * u1 * u2 + c1 * u3,
         c4 * square * square + 6.0 * c3 * square * u2 + c2 * (3.0 * u2 * u2 + 4.0 * u1 * u3),
+    ]
+}
+
+/// The first two derivatives of C(u(τ)) from those of C.
+fn composed<const D: usize>(
+    first: &[f64; D],
+    second: &[f64; D],
+    [u1, u2]: [f64; 2],
+) -> [[f64; D]; 2] {
+    [
+        scaled(first, u1),
+        along(&scaled(second, u1 * u1), u2, first),
     ]
 }
 
@@ -145,7 +169,7 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         Self {
             curve,
             parameter,
-            longest: composed(longest, parameter.largest),
+            longest: longest_composed(longest, parameter.largest),
             turn,
             curvature,
             way,
@@ -157,6 +181,13 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     pub fn at(&self, tau: f64) -> [f64; D] {
         let [point, ..] = self.curve.jet(self.parameter.at(tau));
         point
+    }
+
+    /// The first two derivatives of the place by τ.
+    #[must_use]
+    pub fn derivatives(&self, tau: f64) -> [[f64; D]; 2] {
+        let [_, first, second, ..] = self.curve.jet(self.parameter.at(tau));
+        composed(&first, &second, self.parameter.derivatives(tau))
     }
 
     /// The longest that derivatives 1 to 4 by τ are on the segment.
@@ -171,6 +202,19 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     pub fn departure(&self, tool: impl Fn(f64) -> [f64; D], longest_fourth: f64) -> f64 {
         let [.., own_fourth] = self.longest;
         let fourth = own_fourth + longest_fourth;
+        self.departure_between(tool, fourth, fourth * BETWEEN)
+    }
+
+    /// The same where other things are known of the difference e of tool and curve: M, which may be
+    /// any number for which |e| ≤ M τ² (1 - τ)²/24, and how far e is at most from linear between the
+    /// nodes τ = k/16.
+    #[must_use]
+    pub fn departure_between(
+        &self,
+        tool: impl Fn(f64) -> [f64; D],
+        fourth: f64,
+        between: f64,
+    ) -> f64 {
         let (mut all, mut across) = (0.0_f64, 0.0_f64);
         for tau in NODES {
             let [point, first, ..] = self.curve.jet(self.parameter.at(tau));
@@ -179,7 +223,6 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
             all = larger_or_nan(all, norm(&apart));
             across = larger_or_nan(across, norm(&along(&apart, -ahead, &first)));
         }
-        let between = fourth * BETWEEN;
         let all = all + between;
         // Written so that NaN stays.
         let is_known = fourth <= 12.0 * self.way;
@@ -189,6 +232,13 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
             all
         }
     }
+
+    /// Where a tool is compared with the curve, besides the ends of the segment: τ = k/16.
+    pub const NODES: [f64; 15] = NODES;
+
+    /// What is left between nodes of a function that is zero at both ends with its first derivative,
+    /// as a fraction of the largest of its fourth.
+    pub const BETWEEN: f64 = BETWEEN;
 }
 
 /// A unit vector of the plane that turns while its angle runs a cubic: what a link of an arm does,
@@ -214,9 +264,16 @@ impl TurnMotion {
         [cos, sin]
     }
 
+    /// The first two derivatives of cosine and sine by τ.
+    #[must_use]
+    pub fn derivatives(&self, tau: f64) -> [[f64; 2]; 2] {
+        let [cos, sin] = self.at(tau);
+        composed(&[-sin, cos], &[-cos, -sin], self.parameter.derivatives(tau))
+    }
+
     /// The longest that derivatives 1 to 4 by τ are on the segment.
     #[must_use]
     pub fn longest(&self) -> [f64; 4] {
-        composed([1.0; 4], self.parameter.largest)
+        longest_composed([1.0; 4], self.parameter.largest)
     }
 }

@@ -1,0 +1,166 @@
+//! Curves of the platform as paths of the three arms, to be timed by `path-timing`.
+
+mod bound;
+mod error;
+mod pick;
+
+use nalgebra::{Point3, Vector3};
+use path_timing::{Corner, Curve, Place, ToolLimits};
+
+pub use error::DeltaPathError;
+
+use crate::arm::zip;
+use crate::{Arm, Delta, Pose, PoseError};
+
+/// A curve of the platform's centre as a path of the three arms, in radians, by the curve's arc
+/// length: what [`path_timing::Table`] plans.
+///
+/// It is made by [`Delta::path`], which has looked at all of it. The next one goes on from it without
+/// a stop where the directions of their curves agree, as those of a line and a blend do.
+///
+/// ```
+/// use delta_kin::{Delta, DeltaPath};
+/// use path_timing::{AxisLimits, Curve, Knot, Table};
+///
+/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+/// let line = Curve::line([50.0, 50.0, -300.0], [-50.0, 50.0, -300.0])?;
+/// let path = delta.path(line)?;
+/// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s
+/// let mut knots = [Knot::default(); 100];
+/// let table = Table::plan_within([path], [arm; 3], 8, 0.01, DeltaPath::departure, &mut knots)?;
+/// for row in table.rows() {
+///     let row = row?;
+///     println!("{:?} rad after {} s", row.position, row.duration_s);
+/// }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeltaPath {
+    delta: Delta,
+    curve: Curve<3>,
+}
+
+/// Nearest to the edge of the workspace, as a fraction of the span, that a path may come.
+const EDGE: f64 = 1e-6;
+
+/// Shortest step along the curve, as a fraction of it.
+const LEAST_STEP: f64 = 1e-12;
+
+impl Delta {
+    /// The path of the arms that brings the platform's centre along `curve`, in the machine's modes.
+    ///
+    /// All of the curve is looked at before anything is handed out: from each place it goes on by no
+    /// more than the [`clearance`](Self::clearance) there, so that nothing between is out of reach,
+    /// beyond a joint range or a ball joint, or singular.
+    ///
+    /// # Errors
+    /// [`DeltaPathError`]; the place named is the first along the curve.
+    pub fn path(&self, curve: Curve<3>) -> Result<DeltaPath, DeltaPathError> {
+        let path = DeltaPath {
+            delta: *self,
+            curve,
+        };
+        let (mut s, mut angles) = (0.0, path.free_angles(0.0)?);
+        while s < curve.length() {
+            (s, angles) = path.go_on(s, angles)?;
+        }
+        Ok(path)
+    }
+}
+
+impl DeltaPath {
+    /// The curve of the platform's centre.
+    #[must_use]
+    pub const fn curve(&self) -> &Curve<3> {
+        &self.curve
+    }
+
+    fn point(&self, s: f64) -> Point3<f64> {
+        self.curve.at(s).point.into()
+    }
+
+    fn clearance(&self, s: f64) -> f64 {
+        self.delta.clearance(self.point(s))
+    }
+
+    /// The angles at a place that is not on the edge of the workspace.
+    fn free_angles(&self, s: f64) -> Result<Vector3<f64>, DeltaPathError> {
+        let point = self.point(s);
+        let angles = self.delta.inverse(point);
+        let angles = angles.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })?;
+        let clearance = self.clearance(s);
+        if clearance > self.delta.span() * EDGE {
+            Ok(angles)
+        } else {
+            Err(DeltaPathError::Edge {
+                s,
+                point,
+                clearance,
+            })
+        }
+    }
+
+    /// The next place to be looked at. Shorter steps lead up to the first place that is refused.
+    fn go_on(&self, s: f64, angles: Vector3<f64>) -> Result<(f64, Vector3<f64>), DeltaPathError> {
+        let mut step = self.clearance(s) / (1.0 + self.curve.speed_error());
+        loop {
+            let next = (s + step).min(self.curve.length());
+            let refused = match self.free_angles(next) {
+                Ok(there) => match jumping(there - angles) {
+                    None => return Ok((next, there)),
+                    Some(arm) => DeltaPathError::Turn {
+                        s: next,
+                        point: self.point(next),
+                        arm,
+                    },
+                },
+                Err(error) => error,
+            };
+            if step <= self.curve.length() * LEAST_STEP {
+                return Err(refused);
+            }
+            step *= 0.5;
+        }
+    }
+
+    fn pose(&self, s: f64) -> Result<Pose, DeltaPathError> {
+        let point = self.point(s);
+        let pose = self.delta.pose_at(point);
+        pose.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })
+    }
+}
+
+/// The arm whose angle jumps by a whole turn.
+fn jumping(change: Vector3<f64>) -> Option<Arm> {
+    let arms = zip(Arm::ALL, change.into());
+    arms.into_iter()
+        .find(|(_, change)| change.abs() > core::f64::consts::PI)
+        .map(|(arm, _)| arm)
+}
+
+impl path_timing::Path for DeltaPath {
+    type Axes = [f64; 3];
+    type Error = DeltaPathError;
+
+    fn length(&self) -> f64 {
+        self.curve.length()
+    }
+
+    fn place(&self, s: f64) -> Result<Place<[f64; 3]>, DeltaPathError> {
+        let pose = self.pose(s)?;
+        let slopes = pose.joint_rates(self.curve.at(s).tangent.into());
+        let slopes = slopes.map_err(|reason: PoseError| DeltaPathError::Singular { s, reason })?;
+        Ok(Place {
+            position: pose.angles().into(),
+            slope: slopes.into(),
+        })
+    }
+
+    fn tool(&self) -> Option<ToolLimits> {
+        self.curve.tool()
+    }
+
+    fn corner(&self) -> Corner<[f64; 3]> {
+        Corner::Smooth
+    }
+}

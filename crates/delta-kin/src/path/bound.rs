@@ -1,0 +1,200 @@
+//! How far the platform leaves its curve while the arms run the cubics of a table.
+
+use nalgebra::Vector3;
+use path_timing::{Cubic, CurveMotion, Row, Span, TurnMotion};
+use trig_kernels::sin_cos;
+
+use super::{DeltaPath, jumping};
+use crate::arm::zip;
+use crate::pose::{invert_rods, smallest_sine};
+use crate::prepared::PreparedArm;
+use crate::range::sqrt;
+use crate::{JointRange, Pose};
+
+/// By how much an arm may pass an end of its range between two rows, in radians: rounding, and a path
+/// that touches it.
+const TOUCH: f64 = 1e-9;
+
+/// √3, upwards.
+const ROOT3: f64 = 1.732_050_807_568_877_4;
+
+/// One arm on a segment.
+struct Swing<'a> {
+    prepared: &'a PreparedArm<f64>,
+    angle: Cubic,
+    /// The longest that D' can be, as a fraction of La.
+    rate: f64,
+    /// The largest that g⁗ / 2La can be.
+    fourth: f64,
+}
+
+impl<'a> Swing<'a> {
+    /// `flip` brings the curve's vectors into the machine's frame.
+    fn new(
+        prepared: &'a PreparedArm<f64>,
+        angle: Cubic,
+        motion: &CurveMotion<'_, 3>,
+        flip: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> Self {
+        let theta = Cubic {
+            q0: prepared.theta(angle.q0),
+            q1: prepared.theta(angle.q1),
+            v0: prepared.turn * angle.v0,
+            v1: prepared.turn * angle.v1,
+            ..angle
+        };
+        let (turn, upper) = (TurnMotion::new(&theta), prepared.upper);
+        let (curve, arm) = (motion.derivatives(0.5), turn.derivatives(0.5));
+        let [_, _, p3, p4] = *motion.longest();
+        let [_, _, k3, k4] = turn.longest();
+        let (d3, d4) = (p3 + upper * k3, p4 + upper * k4);
+        // The first two are known halfway, and change by the next from there.
+        let [curve_first, curve_second] = curve;
+        let [arm_first, arm_second] = arm;
+        let pairs = [(curve_first, arm_first), (curve_second, arm_second)];
+        let [first, second] = pairs.map(|(curve, [cos, sin])| {
+            let arm = prepared.in_plane(sin * upper, -cos * upper);
+            (flip(curve.into()) - arm).norm()
+        });
+        let d2 = second + d3 * 0.5;
+        let d1 = first + d2 * 0.5;
+        let swing = Self {
+            prepared,
+            angle: theta,
+            rate: d1 / prepared.lower,
+            fourth: 0.0,
+        };
+        let place = flip(motion.at(0.5).into());
+        let longest = swing.rod(0.5, &place).norm() + d1 * 0.5;
+        let fourth = longest * d4 + 4.0 * d1 * d3 + 3.0 * d2 * d2;
+        Self {
+            fourth: fourth / prepared.lower,
+            ..swing
+        }
+    }
+
+    /// D = P - K, the rod as the platform on its curve would have it.
+    fn rod(&self, tau: f64, place: &Vector3<f64>) -> Vector3<f64> {
+        place - self.prepared.centre(sin_cos(self.angle.position(tau)))
+    }
+
+    /// g / 2La = (|D|² - La²) / 2La
+    fn miss(&self, tau: f64, place: &Vector3<f64>) -> f64 {
+        let (length, lower) = (self.rod(tau, place).norm(), self.prepared.lower);
+        (length - lower) * (length + lower) / (2.0 * lower)
+    }
+}
+
+impl DeltaPath {
+    /// The most by which the platform's centre leaves the curve on a segment of a table, in the unit
+    /// of length; infinite where the segment is too long to tell or an arm passes its range there. For
+    /// [`Table::plan_within`](path_timing::Table::plan_within).
+    ///
+    /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], K the centres of the rods' spheres as
+    /// the arms' cubics have them, D = P - K, and e the platform's distance from P. With
+    /// g = |D|² - La², n = g/2La and B the matrix whose rows are D/La, the rods have their lengths where
+    ///
+    /// ```text
+    /// B e = -(n + q)    |qᵢ| ≤ |e|² / 2La
+    /// ```
+    ///
+    /// At both ends g and g' vanish, so |n| ≤ M τ² (1 - τ)²/24, and between nodes τ = k/16 n is linear but
+    /// for M/24576, with
+    ///
+    /// ```text
+    /// g⁗ = 2 (D · D⁗ + 4 D' · D‴ + 3 D" · D")    M ≥ max |g⁗| / 2La
+    /// ```
+    ///
+    /// from the derivatives of P and K, the first two as they are halfway. B changes by at most β dτ, β the norm
+    /// of all |D'|/La; with κ the Frobenius norm of its inverse halfway that of the inverse is at
+    /// most κ' = κ / (1 - κ β/2) everywhere. With ν the largest norm of n, e, which begins at zero and
+    /// is continuous, stays within
+    ///
+    /// ```text
+    /// E = 2 κ' ν / (1 + √(1 - x))    x = 2 √3 κ'² ν / La ≤ 1
+    /// ```
+    ///
+    /// where B + e/La is invertible, so that the assembly mode stays. At the nodes e is known by
+    /// [`forward`](crate::Delta::forward). Between them, put in from both sides, it is linear but for
+    ///
+    /// ```text
+    /// κ' (M/24576 + β E/32 + √3 E²/La)
+    /// ```
+    #[must_use]
+    pub fn departure(&self, span: &Span<[f64; 3]>) -> f64 {
+        self.known_departure(span).unwrap_or(f64::INFINITY)
+    }
+
+    /// None where it cannot be told.
+    fn known_departure(&self, span: &Span<[f64; 3]>) -> Option<f64> {
+        let (delta, [from, to]) = (&self.delta, &span.rows);
+        let mut cubics = Cubic::between(from, to);
+        let cubics = [cubics.next()?, cubics.next()?, cubics.next()?];
+        let ranges = zip(cubics, *delta.ranges());
+        let change = Vector3::from(to.position) - Vector3::from(from.position);
+        if jumping(change).is_some() || ranges.iter().any(|(cubic, range)| passes(range, cubic)) {
+            return None;
+        }
+        let velocity = |s, row: &Row<[f64; 3]>| {
+            let pose = Pose::new(delta, row.position.into(), self.point(s));
+            let velocity = pose.platform_velocity(row.velocity.into()).ok()?;
+            Some(<[f64; 3]>::from(velocity))
+        };
+        let [start, end] = span.s;
+        let (before, after) = (velocity(start, from)?, velocity(end, to)?);
+        let motion = CurveMotion::new(&self.curve, span.s, [&before, &after], to.duration_s);
+        let place = |tau| delta.flip(Vector3::from(motion.at(tau)));
+        let halfway = place(0.5);
+        let [first, second, third] = zip(delta.prepared().each_ref(), cubics);
+        let swings = [first, second, third].map(|(prepared, cubic)| {
+            Swing::new(prepared, cubic, &motion, |vector| delta.flip(vector))
+        });
+        let norm = |of: fn(&Swing<'_>) -> f64| Vector3::from(swings.each_ref().map(of)).norm();
+        let (rate, fourth) = (norm(|swing| swing.rate), norm(|swing| swing.fourth));
+
+        let rods = swings
+            .each_ref()
+            .map(|swing| swing.rod(0.5, &halfway) / swing.prepared.lower);
+        // Nearer to a parallel singularity half the digits of κ would be lost.
+        if smallest_sine(&rods.map(|rod| rod.normalize())) <= sqrt(f64::EPSILON) {
+            return None;
+        }
+        let [a, b, c] = invert_rods(&rods);
+        let kappa = sqrt(a.norm_squared() + b.norm_squared() + c.norm_squared());
+        let rest = 1.0 - kappa * rate * 0.5;
+        if rest <= 0.0 {
+            return None;
+        }
+        let kappa = kappa / rest;
+        let between = fourth * CurveMotion::<3>::BETWEEN;
+        let misses = CurveMotion::<3>::NODES.map(|tau| {
+            let place = place(tau);
+            Vector3::from(swings.each_ref().map(|swing| swing.miss(tau, &place))).norm()
+        });
+        let miss = misses.into_iter().fold(0.0, f64::max) + between;
+        let [l1, l2, l3] = delta.prepared().each_ref().map(|prepared| prepared.lower);
+        let lower = l1.min(l2).min(l3);
+        let x = 2.0 * ROOT3 * kappa * kappa * miss / lower;
+        // Written so that NaN is none.
+        let is_near = x <= 1.0;
+        if !is_near {
+            return None;
+        }
+        let all = 2.0 * kappa * miss / (1.0 + sqrt(1.0 - x));
+        let between = kappa * (between + rate * all / 32.0 + ROOT3 * all * all / lower);
+        let platform = |tau| {
+            let angles = Vector3::from(cubics.map(|cubic| cubic.position(tau)));
+            let point = delta.forward(angles);
+            point.map_or([f64::NAN; 3], |point| point.coords.into())
+        };
+        let departure = motion.departure_between(platform, 2.0 * kappa * fourth, between);
+        let rounding = 2.0 * ROOT3 * kappa * delta.tolerance();
+        (!departure.is_nan()).then_some(departure + rounding)
+    }
+}
+
+/// Whether an arm passes an end of its range on the way.
+fn passes(range: &JointRange, cubic: &Cubic) -> bool {
+    let [low, high] = cubic.extent();
+    low < range.min() - TOUCH || high > range.max() + TOUCH
+}

@@ -1,0 +1,69 @@
+//! Why a curve is no path of the arms.
+
+use core::fmt;
+
+use nalgebra::Point3;
+use path_timing::CurveError;
+
+use crate::rounded::Rounded;
+use crate::{Arm, InverseError, PoseError};
+
+/// Why a curve is no path of the arms; nothing of it has been handed out.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DeltaPathError {
+    /// There is no such curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// The platform cannot be at a place of the curve.
+    #[error("{}: {reason}", At(*.s, *.point))]
+    Unreachable {
+        /// Arc length up to there.
+        s: f64,
+        /// The first such point.
+        point: Point3<f64>,
+        /// Why.
+        reason: InverseError,
+    },
+    /// The platform comes nearer to the edge of the workspace or to a singularity than a millionth
+    /// of the machine's span.
+    #[error("{}: clearance {}", At(*.s, *.point), Rounded(*.clearance))]
+    Edge {
+        /// Arc length up to there.
+        s: f64,
+        /// The first such point.
+        point: Point3<f64>,
+        /// The clearance there, in the unit of length.
+        clearance: f64,
+    },
+    /// An arm would have to jump by a whole turn: at π from straight down, or from one end of a
+    /// range of a whole turn to the other.
+    #[error("{}: {arm} would have to jump by a whole turn", At(*.s, *.point))]
+    Turn {
+        /// Arc length up to there.
+        s: f64,
+        /// The point.
+        point: Point3<f64>,
+        /// The arm.
+        arm: Arm,
+    },
+    /// The arms' rates do not follow from the platform's.
+    #[error("at {} of the curve: {reason}", Rounded(*.s))]
+    Singular {
+        /// Arc length up to there.
+        s: f64,
+        /// Why.
+        reason: PoseError,
+    },
+}
+
+/// A place of a curve.
+struct At(f64, Point3<f64>);
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.1.coords.into();
+        let [s, x, y, z] = [self.0, x, y, z].map(Rounded);
+        write!(f, "at {s} of the curve, ({x}, {y}, {z})")
+    }
+}

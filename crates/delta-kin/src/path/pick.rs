@@ -1,0 +1,53 @@
+//! Up, over, down: from one place to another, round what stands between.
+
+use path_timing::{Curve, CurveError, Rounded, ToolLimits};
+
+use super::{DeltaPath, DeltaPathError};
+use crate::Delta;
+
+/// Largest tolerance of a corner, as a fraction of the shorter line: a blend then takes four tenths
+/// of each line.
+const CORNER: f64 = 0.125;
+
+impl Delta {
+    /// The paths from one place straight to the height `z`, over, and straight down to another, in one
+    /// go: three lines and two blends, which pass within `tolerance` of the corners, at most an
+    /// eighth of the shorter line.
+    ///
+    /// ```
+    /// use delta_kin::{Delta, DeltaPath};
+    /// use path_timing::{AxisLimits, Knot, Table};
+    ///
+    /// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+    /// let moves = delta.pick_and_place([80.0, 0.0, -300.0], [-60.0, 40.0, -290.0], -270.0, 3.0, None)?;
+    /// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s
+    /// let mut knots = [Knot::default(); 300];
+    /// let table = Table::plan_within(moves, [arm; 3], 4, 0.05, DeltaPath::departure, &mut knots)?;
+    /// assert!(table.duration_s() < 0.5);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`DeltaPathError`]; [`DeltaPathError::Curve`] also where one place is above the other or at
+    /// the height itself.
+    pub fn pick_and_place(
+        &self,
+        from: [f64; 3],
+        to: [f64; 3],
+        z: f64,
+        tolerance: f64,
+        tool: Option<ToolLimits>,
+    ) -> Result<[DeltaPath; 5], DeltaPathError> {
+        let [above, above_there] = [from, to].map(|[x, y, _]| [x, y, z]);
+        let lengths = [(from, above), (above, above_there), (above_there, to)]
+            .map(|(from, to)| Curve::line(from, to).map(|line| line.length()));
+        let [up, over, down] = lengths;
+        let largest = up?.min(over?).min(down?) * CORNER;
+        let mut curves = Rounded::new([from, above, above_there, to], tolerance.min(largest))?;
+        let mut next = || {
+            let curve = curves.next().ok_or(CurveError::NoLength)??;
+            self.path(tool.map_or(curve, |tool| curve.with_tool(tool)))
+        };
+        Ok([next()?, next()?, next()?, next()?, next()?])
+    }
+}
