@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Point3, RealField, Vector2, Vector3};
 use trig_kernels::Trig;
 
 use crate::arm::{smallest, zip};
-use crate::range::{half, is_within, largest_angle};
+use crate::range::{half, is_within, largest_angle, length};
 use crate::rounded::Rounded;
 use crate::{Arm, Delta};
 
@@ -162,7 +162,7 @@ impl<T: RealField + Trig> Delta<T> {
             // Half is left for `inverse`.
             let is_met = miss <= self.tolerance() * half();
             if !is_met {
-                let by = foot.x.hypot(foot.y) - lowers[0];
+                let by = length(&Vector2::new(foot.x, foot.y)) - lowers[0];
                 return Err(ForwardError::Apart { arm: shortest, by });
             }
             [v.x, v.y, T::zero()]

@@ -3,13 +3,13 @@
 use core::fmt;
 
 use nalgebra::{Point3, RealField, Vector3};
-use trig_kernels::{Trig, atan2};
+use trig_kernels::Trig;
 
 use crate::arm::{smallest, zip};
 use crate::prepared::{PreparedArm, Triangle, middle, thetas};
 use crate::range::max_value;
 use crate::rounded::Rounded;
-use crate::{Arm, AssemblyMode, Delta, ZAxis};
+use crate::{Arm, AssemblyMode, Delta, Elbow, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
@@ -182,18 +182,17 @@ impl<T: RealField + Trig> Delta<T> {
             let (x, y, z) = (point.x, point.y, point.z);
             return Err(InverseError::NotFinite { x, y, z });
         }
+        // Each of these once for all arms, out of line: what is rare should be small.
         let arms = zip(Arm::ALL, self.prepared().each_ref())
-            .map(|(arm, prepared)| (arm, prepared, prepared.triangle(&local)));
+            .map(|(arm, prepared)| (arm, prepared, triangle(prepared, &local)));
         worst(arms.map(|(arm, prepared, triangle)| self.out_of_reach(arm, prepared, &triangle)))?;
         for (arm, _, triangle) in arms {
             if triangle.h <= self.tolerance() {
                 return Err(InverseError::AnyAngle { arm });
             }
         }
-        let thetas = thetas(
-            zip(arms, self.working_mode())
-                .map(|((_, _, triangle), elbow)| triangle.at_edge().heading(elbow)),
-        );
+        let thetas = zip(arms, self.working_mode())
+            .map(|((_, _, triangle), elbow)| theta(&triangle.at_edge(), elbow));
         self.check_assembly(&local, thetas)?;
         worst(arms.map(|(arm, prepared, triangle)| self.swivelling(arm, prepared, &triangle)))?;
         let fitted = zip(arms, thetas).map(|((arm, prepared, _), theta)| {
@@ -236,6 +235,7 @@ impl<T: RealField + Trig> Delta<T> {
     }
 
     /// By how much the rod cannot be where the wrist is.
+    #[inline(never)]
     fn out_of_reach(
         &self,
         arm: Arm,
@@ -253,6 +253,7 @@ impl<T: RealField + Trig> Delta<T> {
     }
 
     /// By how much the rods swivel too far.
+    #[inline(never)]
     fn swivelling(
         &self,
         arm: Arm,
@@ -274,6 +275,7 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// `angle` at the whole turn within the range, or on an end that it misses by rounding alone;
     /// and by how much it misses the range.
+    #[inline(never)]
     fn fit(&self, prepared: &PreparedArm<T>, local: &Vector3<T>, angle: T) -> (T, T) {
         let (min, max) = (prepared.min, prepared.max);
         let holds = |angle: T| min <= angle && angle <= max;
@@ -307,7 +309,24 @@ impl<T: RealField + Trig> PreparedArm<T> {
     }
 }
 
+#[inline(never)]
+fn triangle<T: RealField + Trig>(prepared: &PreparedArm<T>, local: &Vector3<T>) -> Triangle<T> {
+    prepared.triangle(local)
+}
+
+#[inline(never)]
+fn theta<T: RealField + Trig>(triangle: &Triangle<T>, elbow: Elbow) -> T {
+    let heading = triangle.heading(elbow);
+    atan2(heading.sin, heading.cos)
+}
+
+#[inline(never)]
+fn atan2<T: Trig>(y: T, x: T) -> T {
+    trig_kernels::atan2(y, x)
+}
+
 /// The error of the arm that misses by most.
+#[inline(never)]
 fn worst<T: RealField + Copy>(
     misses: [Option<(T, InverseError<T>)>; 3],
 ) -> Result<(), InverseError<T>> {

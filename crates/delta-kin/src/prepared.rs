@@ -1,9 +1,9 @@
 //! One arm with all that follows from its geometry, in the frame of [Delta thesis].
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::{RealField, Vector2, Vector3};
 use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
 
-use crate::range::{half, max_value, two};
+use crate::range::{half, length, max_value, two};
 use crate::{ArmGeometry, Elbow, JointRange, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
@@ -48,8 +48,8 @@ pub(crate) struct Triangle<T> {
 /// An upper arm's direction, sin θ and cos θ times 4 Lb h².
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Heading<T> {
-    sin: T,
-    cos: T,
+    pub(crate) sin: T,
+    pub(crate) cos: T,
 }
 
 impl<T: RealField + Trig> PreparedArm<T> {
@@ -172,15 +172,17 @@ impl<T: RealField + Trig> PreparedArm<T> {
     }
 
     /// By how much the rod would be too short if the elbow were at `theta`.
+    #[inline(never)]
     pub(crate) fn stretch(&self, point: &Vector3<T>, theta: T) -> T {
         (point - self.centre(sin_cos(theta))).norm() - self.lower
     }
 
     /// How far the nearest and the farthest point of the elbow's circle are from the wrist.
     pub(crate) fn elbow_distances(&self, triangle: &Triangle<T>) -> (T, T) {
-        let h = triangle.inward.hypot(triangle.z);
-        let near = (h - self.upper).hypot(triangle.side);
-        let far = (h + self.upper).hypot(triangle.side);
+        let length = |x, y| length(&Vector2::new(x, y));
+        let h = length(triangle.inward, triangle.z);
+        let near = length(h - self.upper, triangle.side);
+        let far = length(h + self.upper, triangle.side);
         (near, far)
     }
 }

@@ -13,7 +13,7 @@
 //! overflow nor lose digits. In an arm shorter than ε^¼ of the span rounding would turn the rods
 //! by more than ε^¾; an angle beyond 1/√ε has fewer than half its digits after the point.
 
-use nalgebra::{ComplexField, RealField};
+use nalgebra::{ComplexField, RealField, SVector};
 
 /// h: the largest length of an arm.
 pub(crate) fn largest_length<T: RealField + Copy>() -> T {
@@ -76,4 +76,15 @@ pub(crate) fn sqrt(x: f64) -> f64 {
 /// √(x² + y²), of `core` alone.
 pub(crate) fn hypot(x: f64, y: f64) -> f64 {
     ComplexField::hypot(x, y)
+}
+
+/// The length of a vector whose squares may overflow or vanish. In `T` alone, as `hypot` of `f32` is
+/// not.
+pub(crate) fn length<T: RealField + Copy, const N: usize>(vector: &SVector<T, N>) -> T {
+    let largest = vector.amax();
+    if largest > T::zero() && largest.is_finite() {
+        (vector / largest).norm() * largest
+    } else {
+        vector.norm()
+    }
 }

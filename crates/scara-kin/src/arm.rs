@@ -2,14 +2,14 @@
 
 mod error;
 
-use nalgebra::{Isometry2, RealField};
+use nalgebra::{Isometry2, RealField, Vector2};
 use trig_kernels::Trig;
 
 pub use error::GeometryError;
 
 use crate::Limits;
 use crate::limits::two;
-use crate::range::{largest_ratio, link_lengths, within};
+use crate::range::{largest_ratio, length, link_lengths, within};
 
 /// A two-link arm with parallel joint axes, in any unit of length, the same throughout.
 ///
@@ -103,7 +103,7 @@ impl<T: RealField + Trig> Arm<T> {
         within(farthest, "base x", base.translation.x)?;
         within(farthest, "base y", base.translation.y)?;
         let (re, im) = (base.rotation.re, base.rotation.im);
-        let length = re.hypot(im);
+        let length = length(Vector2::new(re, im));
         let drift = (length - T::one()).abs();
         let is_rotation = drift <= T::default_epsilon().sqrt();
         if !is_rotation {

@@ -10,7 +10,7 @@ use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
 pub use error::InverseError;
 pub use solutions::Solutions;
 
-use crate::range::{largest_angle, max_value};
+use crate::range::{largest_angle, length, max_value};
 use crate::{Arm, Elbow, Joints};
 
 /// The triangle base, elbow, tool of a reachable point, in the base's frame.
@@ -198,7 +198,7 @@ impl<T: RealField + Trig> Arm<T> {
     fn outside(point: Point2<T>, tool: Vector2<T>, reach: T) -> InverseError<T> {
         if point.x.is_finite() && point.y.is_finite() {
             // Near the largest number the distance overflows.
-            let distance = tool.x.hypot(tool.y).min(max_value());
+            let distance = length(tool).min(max_value());
             InverseError::TooFar { distance, reach }
         } else {
             let (x, y) = (point.x, point.y);

@@ -66,6 +66,7 @@ impl<T: RealField + Copy> JointRange<T> {
 
     /// `angle` at its whole turn nearest to `near`, and at the next one towards the range
     /// where that one is beyond an end.
+    #[inline(never)]
     pub(crate) fn fit(&self, angle: T, near: T) -> [Fitted<T>; 2] {
         let near = near.max(self.min).min(self.max);
         let turns = ((near - angle) / T::two_pi()).round();

@@ -1,6 +1,6 @@
 //! The range of numbers that the crate computes with.
 
-use nalgebra::RealField;
+use nalgebra::{RealField, Vector2};
 
 use crate::GeometryError;
 
@@ -45,6 +45,16 @@ pub(crate) fn within<T: RealField + Copy>(
             value,
             largest,
         })
+    }
+}
+
+/// The length of a vector whose squares may overflow. In `T` alone, as `hypot` of `f32` is not.
+pub(crate) fn length<T: RealField + Copy>(vector: Vector2<T>) -> T {
+    let largest = vector.amax();
+    if largest > T::zero() && largest.is_finite() {
+        (vector / largest).norm() * largest
+    } else {
+        vector.norm()
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
-use crate::range::{is_within, largest_angle, largest_coordinate, two};
+use crate::range::{is_within, largest_angle, largest_coordinate, length, two};
 use crate::rounded::Rounded;
 
 /// A path of the platform's centre in space.
@@ -190,14 +190,4 @@ fn within<T: RealField + Copy>(
         }
     }
     Ok(())
-}
-
-/// The length of a vector, also of one whose squares are below the smallest number.
-fn length<T: RealField + Copy>(vector: &Vector3<T>) -> T {
-    let largest = vector.amax();
-    if largest > T::zero() {
-        (vector / largest).norm() * largest
-    } else {
-        T::zero()
-    }
 }

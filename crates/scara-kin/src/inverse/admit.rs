@@ -1,7 +1,7 @@
 //! Whole turns and limits: from the angles of a triangle to those of a machine.
 
 use nalgebra::{RealField, Vector2};
-use trig_kernels::{Trig, atan2, sin_cos};
+use trig_kernels::Trig;
 
 use super::InverseError;
 use crate::limits::Fitted;
@@ -202,4 +202,16 @@ fn nearer<T: RealField + Trig>([a, b]: [Fitted<T>; 2]) -> Fitted<T> {
     } else {
         a
     }
+}
+
+/// Sine and cosine out of line: what is rare should be small.
+#[inline(never)]
+fn sin_cos<T: Trig>(angle: T) -> (T, T) {
+    trig_kernels::sin_cos(angle)
+}
+
+/// As [`sin_cos`].
+#[inline(never)]
+fn atan2<T: Trig>(y: T, x: T) -> T {
+    trig_kernels::atan2(y, x)
 }
