@@ -4,13 +4,14 @@
 #![no_std]
 #![no_main]
 
-mod checks;
 #[cfg(any(feature = "control-alloc", feature = "control-std"))]
 mod controls;
 mod memory;
 
 use core::arch::{asm, global_asm};
 use core::panic::PanicInfo;
+
+use no_std_proof::checks;
 
 #[cfg(not(all(target_arch = "x86_64", target_os = "linux")))]
 compile_error!("entry and exit are written for Linux on x86-64");

@@ -1,0 +1,47 @@
+//! On a board: every check of `proof/no-std`, and the hashes. On a PC: the hashes, to compare.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use cortex_m_firmware::{kinematics_bits, motion_bits};
+
+#[cfg(target_os = "none")]
+use cortex_m_semihosting::hprintln as println;
+
+fn say_hashes() {
+    let mut say = |name: &str, kind: &str, hash: cortex_m_firmware::Hash| {
+        println!("{}, {}: {:016x}", name, kind, hash.value());
+    };
+    kinematics_bits::hashes(&mut say);
+    motion_bits::hashes(&mut say);
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    say_hashes();
+}
+
+#[cfg(target_os = "none")]
+mod start {
+    use core::panic::PanicInfo;
+
+    use cortex_m_semihosting::{debug, hprintln};
+    use no_std_proof::checks;
+
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        for (number, check) in (1..).zip(checks::ALL) {
+            assert!(check().is_some(), "check {number}");
+        }
+        super::say_hashes();
+        loop {
+            debug::exit(debug::EXIT_SUCCESS);
+        }
+    }
+
+    #[panic_handler]
+    fn panic(info: &PanicInfo<'_>) -> ! {
+        hprintln!("{}", info);
+        loop {
+            debug::exit(debug::EXIT_FAILURE);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What the programs use of the boards MPS2 with AN385 (Cortex-M3) or AN386 (M4F): timers.
+//!
+//! Arm, *Cortex-M System Design Kit*, Technical Reference Manual (ARM DDI 0479), chapters 4.3 and 4.4.
+
+use core::ptr::{read_volatile, write_volatile};
+
+/// The timers' clock.
+pub const CLOCK_HZ: u32 = 25_000_000;
+
+/// A clock that counts down.
+#[derive(Debug)]
+pub struct Clock {
+    registers: Registers,
+}
+
+/// One of two timers that share interrupt 10. What it counts next can be set while it counts.
+#[derive(Debug)]
+pub struct StepTimer {
+    registers: Registers,
+}
+
+#[derive(Debug)]
+struct Registers(*mut u32);
+
+/// The interrupt of both step timers.
+pub const STEP_INTERRUPT: u16 = 10;
+
+const ENABLE_CLOCK: u32 = 1;
+/// Of 32 bits, again and again, with interrupts.
+const ENABLE_STEPS: u32 = 1 << 7 | 1 << 6 | 1 << 5 | 1 << 1;
+
+impl Registers {
+    fn write(&self, number: usize, value: u32) {
+        // SAFETY: registers of a timer, which the boards have there.
+        unsafe { write_volatile(self.0.add(number), value) }
+    }
+
+    fn read(&self, number: usize) -> u32 {
+        // SAFETY: as above.
+        unsafe { read_volatile(self.0.add(number)) }
+    }
+}
+
+impl Clock {
+    const CTRL: usize = 0;
+    const VALUE: usize = 1;
+    const RELOAD: usize = 2;
+
+    /// Timer 0, started: down from the largest number, again and again.
+    #[must_use]
+    pub fn start() -> Self {
+        let clock = Self::started();
+        clock.registers.write(Self::RELOAD, u32::MAX);
+        clock.registers.write(Self::CTRL, ENABLE_CLOCK);
+        clock
+    }
+
+    /// The same again, where it was started before.
+    #[must_use]
+    pub const fn started() -> Self {
+        Self {
+            registers: Registers(0x4000_0000 as *mut u32),
+        }
+    }
+
+    #[inline]
+    pub fn value(&self) -> u32 {
+        self.registers.read(Self::VALUE)
+    }
+}
+
+impl StepTimer {
+    const LOAD: usize = 0;
+    const CONTROL: usize = 2;
+    const CLEAR_INTERRUPT: usize = 3;
+    const MASKED_INTERRUPT: usize = 5;
+    const NEXT_LOAD: usize = 6;
+
+    /// Both parts of the dual timer.
+    pub const BOTH: [Self; 2] = [
+        Self {
+            registers: Registers(0x4000_2000 as *mut u32),
+        },
+        Self {
+            registers: Registers(0x4000_2020 as *mut u32),
+        },
+    ];
+
+    /// Counts `first` ticks, then `second`; an interrupt after each.
+    pub fn start(&self, first: u32, second: u32) {
+        self.registers.write(Self::LOAD, first - 1);
+        self.registers.write(Self::NEXT_LOAD, second - 1);
+        self.registers.write(Self::CONTROL, ENABLE_STEPS);
+    }
+
+    /// The ticks after those that it counts now.
+    #[inline]
+    pub fn set_next(&self, ticks: u32) {
+        self.registers.write(Self::NEXT_LOAD, ticks - 1);
+    }
+
+    #[inline]
+    pub fn is_due(&self) -> bool {
+        self.registers.read(Self::MASKED_INTERRUPT) != 0
+    }
+
+    #[inline]
+    pub fn clear_interrupt(&self) {
+        self.registers.write(Self::CLEAR_INTERRUPT, 1);
+    }
+
+    #[inline]
+    pub fn stop(&self) {
+        self.registers.write(Self::CONTROL, 0);
+    }
+}
