@@ -8,7 +8,7 @@ mod judge;
 mod totals;
 mod verdict;
 
-use core::{fmt, time::Duration};
+use core::fmt;
 
 use crate::{
     config::Config,
@@ -22,7 +22,7 @@ pub use verdict::Verdict;
 use delay::{delay_of, patience_of};
 use echo::Echo;
 use evidence::Evidence;
-use judge::Case;
+use judge::{Case, Late};
 
 /// Answers that come later than so many acknowledgement delay times are none.
 const LATEST: u32 = 4;
@@ -56,31 +56,23 @@ impl fmt::Display for Diagnosis {
     }
 }
 
-/// How long the sides take and how long they wait.
-#[derive(Clone, Copy, Debug)]
-struct Delays {
-    answer: PerSide<Option<Duration>>,
-    patience: PerSide<Duration>,
-}
-
-impl Delays {
-    fn of(record: &[Character], config: &Config) -> Self {
-        let mut delays = Self {
-            answer: PerSide::both(None),
-            patience: PerSide::both(config.qvz()),
-        };
-        for side in Side::BOTH {
-            if let Some(patience) = patience_of(record, side) {
-                delays.patience[side] = patience;
-            }
-        }
-        for side in Side::BOTH {
-            let latest = delays.patience[side.other()].max(config.qvz());
-            let found = delay_of(record, side, latest.saturating_mul(LATEST));
-            delays.answer[side] = found.map(|found| found.delay);
-        }
-        delays
+/// How long each side takes, and how long the other waits for it.
+fn delays(record: &[Character], config: &Config) -> PerSide<Option<Late>> {
+    let mut delays = PerSide::both(None);
+    for side in Side::BOTH {
+        let measured = patience_of(record, side.other());
+        let latest = measured.unwrap_or_default().max(config.qvz());
+        delays[side] = delay_of(record, side, latest.saturating_mul(LATEST)).map(|found| Late {
+            delay: found.delay,
+            is_overtaken: found.overtaken * 2 >= found.answers,
+            qvz: match measured {
+                Some(measured) => measured,
+                None if found.overtaken * 2 >= found.answers => found.waited,
+                None => config.qvz(),
+            },
+        });
     }
+    delays
 }
 
 /// Tells from what was heard on both directions of a line why it does not work, with totals.
@@ -108,7 +100,7 @@ pub fn diagnose(record: &[Character], config: &Config) -> Diagnosis {
     let case = Case {
         evidence: &evidence,
         echo: Echo::of(record),
-        delays: Delays::of(record, config),
+        delays: delays(record, config),
         check: config.check,
     };
     let (verdict, or) = case.verdict();

@@ -1,5 +1,6 @@
 //! A listener on both directions of a line.
 
+mod character;
 mod conversation;
 mod observation;
 mod scan;
@@ -11,11 +12,12 @@ use core::time::Duration;
 
 use crate::{config::Config, event::LineError};
 
-pub use conversation::Character;
+pub use character::Character;
 pub use observation::{Observation, Observations};
 pub use side::Side;
 
-pub(crate) use conversation::{Conversation, since};
+pub(crate) use character::since;
+pub(crate) use conversation::Conversation;
 pub(crate) use observation::{Mark, Millis};
 pub(crate) use scan::BccSeen;
 pub(crate) use side::PerSide;

@@ -8,8 +8,7 @@ use crate::{
     monitor::{Character, Side, since},
 };
 
-/// A character stands alone, and a block has ended, if nothing of the same side comes within this
-/// time.
+/// Characters of one side that follow each other within this time are one burst.
 const ALONE: Duration = Duration::from_millis(20);
 
 /// An STX without any character before it for so long is no reaction to one.
@@ -25,91 +24,131 @@ pub(super) struct Delay {
     pub(super) delay: Duration,
     /// How many of the answers it explains.
     pub(super) explained: usize,
+    /// How many of them to the millisecond.
+    exactly: usize,
     pub(super) answers: usize,
-    /// How many STX after silence it answers.
+    /// How many of them come after the next STX of the other side, and how long that had waited.
+    pub(super) overtaken: usize,
+    pub(super) waited: Duration,
+    /// STX after silence, and how many of them it answers.
     first: usize,
+    first_answered: usize,
 }
 
-/// The smallest delay at which four fifths of the DLE of `by` follow a question of the other
-/// side; a longer one if it answers the first STX after silence more often. Never above `limit`.
-pub(super) fn delay_of(record: &[Character], by: Side, limit: Duration) -> Option<Delay> {
-    let mut best: Option<Delay> = None;
-    for (at, answer) in answers(record, by).take(ANSWERS) {
-        let before = record.get(..at).unwrap_or_default();
-        let questions = before.iter().enumerate().rev();
-        let questions = questions.filter(|&(at, _)| is_question(record, at, by.other()));
-        for (_, question) in questions.take(QUESTIONS) {
-            let delay = since(question.at, answer.at);
-            if delay > limit {
-                break;
-            }
-            let tried = judge(record, by, delay);
-            if tried.explained * 5 < tried.answers * 4 {
-                continue;
-            }
-            let is_better = best.is_none_or(|best| {
-                if tried.delay < best.delay {
-                    best.first < tried.first + 2
-                } else {
-                    tried.first >= best.first + 2
-                }
-            });
-            if is_better {
-                best = Some(tried);
-            }
+impl Delay {
+    /// What is explained to the millisecond counts three times.
+    const fn score(&self) -> usize {
+        self.explained + 2 * self.exactly
+    }
+
+    /// The same delay more exactly, or the shorter one, unless that leaves the STX after silence
+    /// without an answer.
+    fn is_better_than(&self, other: &Self) -> bool {
+        if self.delay.abs_diff(other.delay) <= tolerance(self.delay) {
+            self.exactly > other.exactly
+        } else if self.delay < other.delay {
+            !other.is_clearly_first(self)
+        } else {
+            self.is_clearly_first(other)
         }
     }
-    best
+
+    /// Answers half of the STX after silence, of which the other answers next to none.
+    const fn is_clearly_first(&self, other: &Self) -> bool {
+        self.first_answered * 2 >= self.first
+            && other.first_answered * 5 <= other.first
+            && self.first > 0
+    }
 }
 
-/// How long `side` waits for an answer: the shortest time between two STX of it with nothing
-/// between them.
-pub(super) fn patience_of(record: &[Character], side: Side) -> Option<Duration> {
-    let pairs = record.windows(2).filter_map(|pair| match pair {
-        [first, second] => Some((first, second)),
-        _ => None,
-    });
-    pairs
-        .filter(|(first, second)| {
-            [first, second]
-                .iter()
-                .all(|heard| heard.side == side && heard.intact() == Some(STX))
+/// The delay at which most DLE of `by` follow a question of the other side, and half of them at
+/// least; among such as explain nearly as many the smallest, unless only a longer one answers the
+/// STX after silence. Never above `limit`.
+pub(super) fn delay_of(record: &[Character], by: Side, limit: Duration) -> Option<Delay> {
+    let most = candidates(record, by, limit)
+        .map(|tried| tried.score())
+        .max()?;
+    let good = candidates(record, by, limit)
+        .filter(|tried| tried.score() * 8 >= most * 7 && tried.explained * 2 >= tried.answers);
+    good.reduce(|best, tried| {
+        if tried.is_better_than(&best) {
+            tried
+        } else {
+            best
+        }
+    })
+}
+
+/// From each of the first answers back to the questions before it.
+fn candidates(record: &[Character], by: Side, limit: Duration) -> impl Iterator<Item = Delay> {
+    answers(record, by)
+        .take(ANSWERS)
+        .flat_map(move |(at, answer)| {
+            let before = record.get(..at).unwrap_or_default();
+            let questions = before.iter().enumerate().rev();
+            questions
+                .filter(move |&(at, _)| is_question(record, at, by.other()))
+                .take(QUESTIONS)
+                .map(move |(_, question)| since(question.at, answer.at))
+                .take_while(move |&delay| delay <= limit)
+                .map(move |delay| judge(record, by, delay))
         })
-        .map(|(first, second)| since(first.at, second.at))
-        .filter(|&wait| wait > ALONE)
-        .min()
+}
+
+/// How long `side` waits for an answer: the shortest time from an STX of it to its next one, or to
+/// the NAK with which it gives up, with nothing between them.
+pub(super) fn patience_of(record: &[Character], side: Side) -> Option<Duration> {
+    let waits = record.windows(2).enumerate().filter_map(|(at, pair)| {
+        let [first, second] = pair else { return None };
+        let goes_on = is_request(record, at)
+            && [first.side, second.side] == [side; 2]
+            && matches!(second.intact(), Some(STX | NAK));
+        goes_on.then(|| since(first.at, second.at))
+    });
+    waits.filter(|&wait| wait > ALONE).min()
+}
+
+/// Stations look at their line in steps, and taps have their latency.
+fn tolerance(delay: Duration) -> Duration {
+    Duration::from_millis(3).saturating_add(delay / 100)
 }
 
 fn judge(record: &[Character], by: Side, delay: Duration) -> Delay {
-    // Stations look at their line in steps, and taps have their latency.
-    let tolerance = Duration::from_millis(3).saturating_add(delay / 50);
-    let shortest = since(tolerance, delay);
-    let longest = delay.saturating_add(tolerance);
+    let shortest = since(tolerance(delay), delay);
+    let longest = delay.saturating_add(tolerance(delay));
     let mut tried = Delay {
         delay,
         explained: 0,
+        exactly: 0,
+        overtaken: 0,
+        waited: Duration::ZERO,
         answers: 0,
         first: 0,
+        first_answered: 0,
     };
-    let mut total = Duration::ZERO;
-    for (_, answer) in answers(record, by) {
+    for (at, answer) in answers(record, by) {
         tried.answers += 1;
         let asked = within(
             record,
             since(longest, answer.at),
             since(shortest, answer.at),
         );
-        let mut asked = asked.filter(|&at| is_question(record, at, by.other()));
-        if let Some(question) = asked.next().and_then(|at| record.get(at)) {
-            tried.explained += 1;
-            total = total.saturating_add(since(question.at, answer.at));
+        let asked = asked.filter(|&at| is_question(record, at, by.other()));
+        let nearest = asked.filter_map(|at| Some((at, since(record.get(at)?.at, answer.at))));
+        let Some((question, took)) = nearest.min_by_key(|(_, took)| took.abs_diff(delay)) else {
+            continue;
+        };
+        tried.explained += 1;
+        tried.exactly += usize::from(took.abs_diff(delay) <= Duration::from_millis(1));
+        let until = record.get(question..at).unwrap_or_default();
+        let mut between = until.iter().enumerate().skip(1);
+        let again = between.find(|&(after, heard)| {
+            heard.intact() == Some(STX) && is_question(record, question + after, by.other())
+        });
+        if let (Some(first), Some((_, again))) = (until.first(), again) {
+            tried.overtaken += 1;
+            tried.waited = tried.waited.max(since(first.at, again.at));
         }
-    }
-    if let Some(mean) = u32::try_from(tried.explained)
-        .ok()
-        .and_then(|n| total.checked_div(n))
-    {
-        tried.delay = mean;
     }
     for (at, question) in record.iter().enumerate() {
         if question.side == by || question.intact() != Some(STX) || !is_after_silence(record, at) {
@@ -117,7 +156,8 @@ fn judge(record: &[Character], by: Side, delay: Duration) -> Delay {
         }
         let due = question.at.saturating_add(shortest);
         let mut answered = within(record, due, question.at.saturating_add(longest));
-        tried.first += usize::from(answered.any(|at| is_lone_dle(record, at, by)));
+        tried.first += 1;
+        tried.first_answered += usize::from(answered.any(|at| is_lone_dle(record, at, by)));
     }
     tried
 }
@@ -138,60 +178,58 @@ fn answers(record: &[Character], by: Side) -> impl Iterator<Item = (usize, &Char
     all.filter(move |&(at, _)| is_lone_dle(record, at, by))
 }
 
-/// The next character of the same side, and the one before.
-fn is_followed(record: &[Character], at: usize) -> bool {
-    let Some((heard, after)) = record.get(at..).and_then(<[_]>::split_first) else {
-        return false;
-    };
-    let near = after
-        .iter()
-        .take_while(|next| since(heard.at, next.at) <= ALONE);
-    near.into_iter().any(|next| next.side == heard.side)
+/// Whether these two follow each other within one burst of a side.
+fn is_burst(earlier: &Character, later: &Character) -> bool {
+    earlier.side == later.side && since(earlier.at, later.at) <= ALONE
 }
 
 fn is_preceded(record: &[Character], at: usize) -> bool {
-    let Some((heard, before)) = record.get(..=at).and_then(<[_]>::split_last) else {
-        return false;
-    };
-    let near = before
-        .iter()
-        .rev()
-        .take_while(|last| since(last.at, heard.at) <= ALONE);
-    near.into_iter().any(|last| last.side == heard.side)
+    match (before(record, at), record.get(at)) {
+        (Some(before), Some(heard)) => is_burst(before, heard),
+        _ => false,
+    }
+}
+
+fn is_followed(record: &[Character], at: usize) -> bool {
+    match (record.get(at), record.get(at.saturating_add(1))) {
+        (Some(heard), Some(after)) => is_burst(heard, after),
+        _ => false,
+    }
+}
+
+fn before(record: &[Character], at: usize) -> Option<&Character> {
+    record.get(at.checked_sub(1)?)
 }
 
 fn is_lone_dle(record: &[Character], at: usize, by: Side) -> bool {
-    record
-        .get(at)
-        .is_some_and(|heard| heard.side == by && heard.intact() == Some(DLE))
+    let heard = record.get(at);
+    heard.is_some_and(|heard| heard.side == by && heard.intact() == Some(DLE))
         && !is_followed(record, at)
         && !is_preceded(record, at)
 }
 
 /// STX, or the end of a block.
 fn is_question(record: &[Character], at: usize, side: Side) -> bool {
-    record.get(at).is_some_and(|heard| {
-        heard.side == side
-            && (heard.byte == STX && !is_preceded_by_data(record, at)
-                || heard.byte != NAK && is_preceded(record, at))
-    }) && !is_followed(record, at)
+    let Some(heard) = record.get(at).filter(|heard| heard.side == side) else {
+        return false;
+    };
+    let is_end = heard.byte != NAK && is_preceded(record, at);
+    (is_request(record, at) || is_end) && !is_followed(record, at)
 }
 
-/// A character just before, other than the NAK that a new STX may follow at once.
-fn is_preceded_by_data(record: &[Character], at: usize) -> bool {
-    is_preceded(record, at)
-        && record.get(..at).is_some_and(|before| {
-            let side = record.get(at).map(|heard| heard.side);
-            let last = before.iter().rev().find(|last| Some(last.side) == side);
-            last.is_some_and(|last| last.byte != NAK)
-        })
+/// STX that stands alone or just after a NAK.
+fn is_request(record: &[Character], at: usize) -> bool {
+    record.get(at).and_then(|heard| heard.intact()) == Some(STX)
+        && (!is_preceded(record, at) || before(record, at).is_some_and(|last| last.byte == NAK))
 }
 
+/// Whether nothing comes just before it, and it repeats no STX.
 fn is_after_silence(record: &[Character], at: usize) -> bool {
-    match record.get(..=at).and_then(<[_]>::split_last) {
-        Some((heard, before)) => before
-            .last()
-            .is_none_or(|last| since(last.at, heard.at) >= QUIET),
-        None => false,
+    match (before(record, at), record.get(at)) {
+        (Some(before), Some(heard)) => {
+            let repeats = before.side == heard.side && before.intact() == Some(STX);
+            !repeats && since(before.at, heard.at) >= QUIET
+        }
+        _ => true,
     }
 }

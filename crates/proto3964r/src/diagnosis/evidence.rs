@@ -10,6 +10,9 @@ use crate::{
     monitor::{Character, Conversation, Mark, Observation, PerSide, Side, since},
 };
 
+/// Two timers of the same length end within this time.
+const TOGETHER: Duration = Duration::from_millis(30);
+
 /// What one side did, as the sender of its telegrams and as the receiver of the other's.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Conduct {
@@ -85,8 +88,9 @@ enum Block {
 #[derive(Clone, Debug)]
 pub(super) struct Evidence {
     pub(super) sides: PerSide<Conduct>,
-    /// Conflicts that no DLE ended.
+    /// Conflicts that no DLE ended, and those that one did.
     pub(super) stalemates: u32,
+    pub(super) resolved: u32,
     pub(super) both_gave_way: u32,
     conflict_is_open: bool,
     /// The one before has not ended.
@@ -99,6 +103,8 @@ pub(super) struct Evidence {
     last_in_block: Option<Duration>,
     /// Who acknowledged the last block and when, until something else is said.
     accepted: Option<(Side, Duration)>,
+    /// Whose block paused, and when the other answered that with NAK.
+    paused: Option<(Side, Option<Duration>)>,
     zvz: Duration,
 }
 
@@ -107,6 +113,7 @@ impl Evidence {
         let mut evidence = Self {
             sides: PerSide::both(Conduct::default()),
             stalemates: 0,
+            resolved: 0,
             both_gave_way: 0,
             conflict_is_open: false,
             conflict_goes_on: false,
@@ -115,6 +122,7 @@ impl Evidence {
             invited: None,
             last_in_block: None,
             accepted: None,
+            paused: None,
             zvz: config.zvz(),
         };
         // With this rule a block without BCC shows as such; with the other a BCC shows as noise.
@@ -196,12 +204,16 @@ impl Evidence {
             Observation::RequestUnanswered { side, .. } => count(&mut self.sides[side].ignored),
             Observation::BothGaveWay => {
                 count(&mut self.both_gave_way);
+                self.resolved = self.resolved.saturating_sub(1);
                 self.invited = None;
             }
             Observation::Connected { by, delay } => {
                 self.answered(by);
                 longest(&mut self.sides[by].worst_answer, delay);
-                (self.conflict_is_open, self.conflict_goes_on) = (false, false);
+                if core::mem::take(&mut self.conflict_is_open) {
+                    count(&mut self.resolved);
+                }
+                self.conflict_goes_on = false;
                 self.invited = Some(by.other());
                 self.block = None;
             }
@@ -224,11 +236,11 @@ impl Evidence {
                     count(&mut self.sides[side].garbage);
                 }
             }
-            _ => self.observe_block(observation),
+            _ => self.observe_block(heard, observation),
         }
     }
 
-    fn observe_block(&mut self, observation: Observation<'_>) {
+    fn observe_block(&mut self, heard: Character, observation: Observation<'_>) {
         match observation {
             Observation::NoBlock { by, .. } => count(&mut self.sides[by].ignored),
             Observation::NoBcc { by } => {
@@ -243,17 +255,23 @@ impl Evidence {
             Observation::Rejected { by, .. } => self.reject(by),
             Observation::Aborted { by } => {
                 count(&mut self.sides[by.other()].unfinished);
+                if let Some((_, answered)) = &mut self.paused {
+                    *answered = Some(heard.at);
+                }
                 count(&mut self.sides[by].reacted);
             }
             Observation::BrokenOff { by } => {
                 let conduct = &mut self.sides[by];
-                count(&mut conduct.broken_off);
                 count(&mut conduct.unfinished);
+                count(&mut conduct.broken_off);
+                conduct.gaps = conduct.gaps.saturating_sub(1);
+                self.paused = None;
             }
             Observation::Gap { by, gap } => {
                 let conduct = &mut self.sides[by];
                 count(&mut conduct.gaps);
                 conduct.longest_gap = conduct.longest_gap.max(gap);
+                self.paused = Some((by, None));
             }
             Observation::RequestForAnswer { by, delay } => {
                 let conduct = &mut self.sides[by];
@@ -297,6 +315,7 @@ impl Evidence {
         count(&mut self.sides[side].requests);
         self.accepted = None;
         self.block = None;
+        self.paused = None;
         self.invited = None;
         if core::mem::take(&mut self.conflict_is_open) {
             count(&mut self.stalemates);
@@ -326,6 +345,15 @@ impl Evidence {
 
     /// A NAK that answers nothing.
     fn reset(&mut self, now: Duration, side: Side) {
+        // Sender and receiver send NAK after the same silence: the sender has stopped for itself.
+        if let Some((by, Some(answered))) = self.paused.take()
+            && by == side
+            && since(answered, now) <= TOGETHER
+        {
+            let conduct = &mut self.sides[side];
+            count(&mut conduct.broken_off);
+            conduct.gaps = conduct.gaps.saturating_sub(1);
+        }
         // A BCC that came as noise is answered after ZVZ of silence; half of it, as the partner's
         // ZVZ may be shorter than the one given here.
         let after = |&(by, at): &(Side, Duration)| {

@@ -1,12 +1,19 @@
 //! From the evidence to a verdict: the rules, in the order in which one fault shows as another.
 
+mod blocks;
+
+use core::time::Duration;
+
 use super::{
-    Delays,
     echo::Echo,
     evidence::{Conduct, Evidence},
     verdict::Verdict,
 };
-use crate::{config::Priority, frame::Check, monitor::Side};
+use crate::{
+    config::Priority,
+    frame::Check,
+    monitor::{PerSide, Side},
+};
 
 /// So many characters that nobody can read are no accident.
 const GARBAGE: u32 = 3;
@@ -14,12 +21,21 @@ const GARBAGE: u32 = 3;
 /// STX in a row without an answer, at the end of a record in which the line had worked.
 const SILENT_AT_THE_END: u32 = 3;
 
+/// How long a side takes to answer, and how long the other waits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Late {
+    pub(super) delay: Duration,
+    pub(super) qvz: Duration,
+    /// Most answers come after the next question.
+    pub(super) is_overtaken: bool,
+}
+
 /// What the rules look at.
 #[derive(Debug)]
 pub(super) struct Case<'c> {
     pub(super) evidence: &'c Evidence,
     pub(super) echo: Echo,
-    pub(super) delays: Delays,
+    pub(super) delays: PerSide<Option<Late>>,
     pub(super) check: Check,
 }
 
@@ -33,7 +49,7 @@ type Rule<'c> = fn(&Case<'c>, Side) -> Option<Verdict>;
 
 impl<'c> Case<'c> {
     /// What can be said of one side, after what concerns both.
-    const RULES: [Rule<'c>; 16] = [
+    const RULES: [Rule<'c>; 15] = [
         Self::late,
         Self::not_heard,
         Self::no_answer,
@@ -41,7 +57,6 @@ impl<'c> Case<'c> {
         Self::without_bcc,
         Self::other_bcc,
         Self::no_receive_buffer,
-        Self::own_echo,
         Self::long_blocks_rejected,
         Self::good_blocks_rejected,
         Self::bad_blocks_accepted,
@@ -72,9 +87,12 @@ impl<'c> Case<'c> {
         if let Some(verdict) = self.tap() {
             return (verdict, None);
         }
+        if let Some(verdict) = Side::BOTH.into_iter().find_map(|side| self.own_echo(side)) {
+            return (verdict, None);
+        }
         if let Some(priority) = self.same_priority() {
-            let or_echo = self.echo.is_everywhere().then_some(Verdict::Echo);
-            return (Verdict::SamePriority { priority }, or_echo);
+            let verdict = Verdict::SamePriority { priority };
+            return (verdict, self.other_cause(verdict));
         }
         if Side::BOTH.into_iter().all(|side| self.is_deaf(side)) {
             return (Verdict::NeitherHears, None);
@@ -98,12 +116,42 @@ impl<'c> Case<'c> {
 
     /// What else a capture may show that looks like this.
     fn other_cause(&self, verdict: Verdict) -> Option<Verdict> {
+        let never_reacted = |side: &Side| self.side(*side).reacted == 0;
         match verdict {
+            Verdict::SamePriority {
+                priority: Priority::Low,
+            } => self.echo.is_everywhere().then_some(Verdict::Echo),
+            // Two that insist, and two that do not hear, do the same.
+            Verdict::SamePriority { .. } if Side::BOTH.iter().all(never_reacted) => {
+                Some(Verdict::NeitherHears)
+            }
+            Verdict::SamePriority { .. } => {
+                Side::BOTH
+                    .into_iter()
+                    .find(never_reacted)
+                    .map(|listener| Verdict::NotHeard {
+                        speaker: listener.other(),
+                        listener,
+                    })
+            }
             Verdict::NoAnswer { silent } if self.side(silent).characters > 0 => {
                 Some(Verdict::NotHeard {
                     speaker: silent.other(),
                     listener: silent,
                 })
+            }
+            // Long blocks have more places for an error.
+            Verdict::LongBlocksRejected { refuser, .. } => {
+                let sender = self.side(refuser.other());
+                Some(Verdict::GoodBlocksRejected {
+                    refuser,
+                    rejected: sender.good_rejected,
+                    blocks: sender.blocks(),
+                })
+            }
+            // Whether the speaker hears it does not show either.
+            Verdict::NotHeard { speaker, .. } if self.side(speaker).reacted == 0 => {
+                Some(Verdict::NeitherHears)
             }
             _ => None,
         }
@@ -162,12 +210,16 @@ impl<'c> Case<'c> {
         let Evidence {
             both_gave_way,
             stalemates,
+            resolved,
             ..
         } = *self.evidence;
         let conflicts = self.side(Side::A).conflicts;
         if both_gave_way > 0 && most(both_gave_way, conflicts / 2) {
             Some(Priority::Low)
-        } else if stalemates > 1 && most(stalemates, conflicts) {
+        } else if stalemates > 1
+            && most(stalemates, conflicts)
+            && resolved.saturating_mul(4) <= stalemates
+        {
             Some(Priority::High)
         } else {
             None
@@ -176,28 +228,35 @@ impl<'c> Case<'c> {
 
     /// Both sides agree, but not with what was expected of them.
     fn same_setting(&self) -> Option<Verdict> {
-        let (a, b) = (self.side(Side::A), self.side(Side::B));
-        let good = a.good.saturating_add(b.good);
-        let without = a.without_bcc.saturating_add(b.without_bcc);
-        let accepted = a.accepted.saturating_add(b.accepted);
+        let all = |is: fn(&Conduct) -> bool| Side::BOTH.into_iter().all(|side| is(self.side(side)));
+        if all(|own| own.accepted == 0) {
+            return None;
+        }
         match self.check {
-            Check::Bcc if without > good && most(accepted, without) => {
-                Some(Verdict::BothWithoutBcc)
+            Check::Bcc if all(|own| own.good == 0 && own.without_bcc <= own.accepted) => {
+                all(|own| own.bad == 0).then_some(Verdict::BothWithoutBcc)
             }
-            Check::None if good > without && most(accepted, good) => Some(Verdict::BothWithBcc),
+            Check::None
+                if all(|own| own.without_bcc == 0 && own.good <= own.accepted)
+                    && all(|own| own.bcc_not_awaited == 0 && own.nak_after_dle == 0) =>
+            {
+                Some(Verdict::BothWithBcc)
+            }
             _ => None,
         }
     }
 
     fn late(&self, side: Side) -> Option<Verdict> {
         let sender = self.side(side.other());
-        if sender.accepted > sender.rejected && sender.unanswered < sender.accepted {
+        let Late {
+            delay,
+            qvz,
+            is_overtaken,
+        } = self.delays[side]?;
+        let works = sender.accepted > sender.rejected && sender.unanswered < sender.accepted;
+        if works && !is_overtaken {
             return None;
         }
-        let (delay, qvz) = (
-            self.delays.answer[side]?,
-            self.delays.patience[side.other()],
-        );
         (delay > qvz).then_some(Verdict::Late { side, delay, qvz })
     }
 
@@ -226,99 +285,6 @@ impl<'c> Case<'c> {
         } = *self.side(silent);
         (unanswered_at_end >= SILENT_AT_THE_END)
             .then_some(Verdict::NoLongerAnswers { silent, last })
-    }
-
-    fn without_bcc(&self, side: Side) -> Option<Verdict> {
-        let own = self.side(side);
-        let as_sender = most(own.without_bcc, own.blocks());
-        let noticed = own.bcc_not_awaited.max(own.nak_after_dle);
-        let as_receiver = most(noticed, self.side(side.other()).blocks());
-        (as_sender || as_receiver).then_some(Verdict::WithoutBcc { side })
-    }
-
-    fn other_bcc(&self, sender: Side) -> Option<Verdict> {
-        let formula = self.side(sender).formulas.rule()?;
-        Some(Verdict::OtherBcc { sender, formula })
-    }
-
-    fn no_receive_buffer(&self, refuser: Side) -> Option<Verdict> {
-        let Conduct {
-            refused, requests, ..
-        } = *self.side(refuser.other());
-        most(refused, requests).then_some(Verdict::NoReceiveBuffer { refuser })
-    }
-
-    fn own_echo(&self, side: Side) -> Option<Verdict> {
-        let own = self.side(side);
-        most(own.broken_off, own.blocks()).then_some(Verdict::OwnEcho { side })
-    }
-
-    fn long_blocks_rejected(&self, refuser: Side) -> Option<Verdict> {
-        let Conduct {
-            good_rejected,
-            longest_accepted: accepted,
-            shortest_rejected,
-            ..
-        } = *self.side(refuser.other());
-        let rejected = shortest_rejected?;
-        (good_rejected > 1 && accepted > 0 && rejected > accepted).then_some(
-            Verdict::LongBlocksRejected {
-                refuser,
-                accepted,
-                rejected,
-            },
-        )
-    }
-
-    fn good_blocks_rejected(&self, refuser: Side) -> Option<Verdict> {
-        let sender = self.side(refuser.other());
-        let (rejected, blocks) = (sender.good_rejected, sender.blocks());
-        most(rejected, blocks).then_some(Verdict::GoodBlocksRejected {
-            refuser,
-            rejected,
-            blocks,
-        })
-    }
-
-    fn bad_blocks_accepted(&self, receiver: Side) -> Option<Verdict> {
-        let Conduct {
-            bad_accepted, bad, ..
-        } = *self.side(receiver.other());
-        most(bad_accepted, bad).then_some(Verdict::BadBlocksAccepted { receiver })
-    }
-
-    fn request_for_answer(&self, side: Side) -> Option<Verdict> {
-        let Conduct {
-            requests_for_answers,
-            longest_request_for_answer: delay,
-            ..
-        } = *self.side(side);
-        let blocks = self.side(side.other()).blocks();
-        most(requests_for_answers, blocks).then_some(Verdict::RequestForAnswer { side, delay })
-    }
-
-    fn no_acknowledgement(&self, silent: Side) -> Option<Verdict> {
-        let sender = self.side(silent.other());
-        most(sender.unacknowledged, sender.blocks())
-            .then_some(Verdict::NoAcknowledgement { silent })
-    }
-
-    fn gaps(&self, sender: Side) -> Option<Verdict> {
-        let own = self.side(sender);
-        most(own.gaps, own.blocks()).then_some(Verdict::Gaps {
-            sender,
-            longest: own.longest_gap,
-        })
-    }
-
-    fn bad_blocks(&self, sender: Side) -> Option<Verdict> {
-        let own = self.side(sender);
-        let bad = own.bad.saturating_add(own.unfinished);
-        (bad > own.accepted).then_some(Verdict::BadBlocks {
-            sender,
-            bad,
-            blocks: own.blocks(),
-        })
     }
 
     /// Less than would make it unreadable, and nothing else is known.

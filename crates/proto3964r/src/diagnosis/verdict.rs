@@ -252,6 +252,9 @@ impl Verdict {
             Self::GoodBlocksRejected { .. } => {
                 "tap at the connector of the one that rejects: if the blocks are good there, its settings or its receiver are at fault"
             }
+            Self::LongBlocksRejected { .. } => {
+                "send the shortest rejected telegram ten times: a set length rejects all of them"
+            }
             Self::NoAcknowledgement { .. } | Self::RequestForAnswer { .. } => {
                 "send the shortest telegram: if it is answered, the block length or a character in the longer ones is the cause"
             }

@@ -2,7 +2,10 @@
 
 use core::time::Duration;
 
+mod waits;
+
 use super::{
+    character::{Character, since},
     observation::{Mark, Marks, Observation},
     scan::Scan,
     side::{PerSide, Side},
@@ -10,42 +13,12 @@ use super::{
 use crate::{
     ascii::{DLE, NAK, STX},
     config::Config,
-    event::LineError,
     frame::Check,
 };
-
-/// What is longer than a limit is so by this much at least.
-const RESOLUTION: Duration = Duration::from_micros(1);
 
 /// Two STX cross if they come within this time: several characters at any baud rate from 1200
 /// upwards, and the latency of a USB adapter.
 const CROSSING: Duration = Duration::from_millis(50);
-
-/// One character on the line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(
-    clippy::exhaustive_structs,
-    reason = "what a tap can know of a character"
-)]
-pub struct Character {
-    /// When it was heard, since an epoch of the caller.
-    pub at: Duration,
-    /// Who sent it.
-    pub side: Side,
-    /// What was read.
-    pub byte: u8,
-    /// What the receiver circuit says.
-    pub error: Option<LineError>,
-}
-
-impl Character {
-    /// The character, unless it is damaged: then it answers nothing.
-    pub(crate) fn intact(self) -> Option<u8> {
-        self.error.is_none().then_some(self.byte)
-    }
-}
 
 /// Where a line stands, without the payloads.
 #[derive(Clone, Debug)]
@@ -60,6 +33,10 @@ pub(crate) struct Conversation {
     overdue: bool,
     /// When each side sent STX, until something comes of it.
     waiting: PerSide<Option<Duration>>,
+    /// The last STX of each side.
+    asked: PerSide<Option<Duration>>,
+    /// The other side's STX that each side has not answered, although nothing kept it from it.
+    owing: PerSide<Option<Duration>>,
     /// STX in a row without a connection.
     attempts: PerSide<u8>,
     scan: Scan,
@@ -101,6 +78,8 @@ impl Conversation {
             last: Duration::ZERO,
             overdue: false,
             waiting: PerSide::both(None),
+            asked: PerSide::both(None),
+            owing: PerSide::both(None),
             attempts: PerSide::both(0),
             scan: Scan::START,
             in_block: false,
@@ -123,16 +102,6 @@ impl Conversation {
         self.in_block
     }
 
-    pub(super) fn poll_timeout(&self) -> Option<Duration> {
-        let limit = self.limit()?.saturating_add(RESOLUTION);
-        (!self.overdue).then(|| self.last.saturating_add(limit))
-    }
-
-    pub(super) fn handle_timeout(&mut self, now: Duration) {
-        self.marks = Marks::default();
-        self.check_wait(now);
-    }
-
     pub(crate) fn take(&mut self, heard: Character) {
         self.marks = Marks::default();
         self.in_block = false;
@@ -153,49 +122,6 @@ impl Conversation {
             Phase::AwaitAck { by } if heard.side == by => self.after_own_block(heard),
             Phase::AwaitAck { .. } => self.answer_to_block(heard),
             Phase::AnsweredEarly { by, bcc } => self.after_early_answer(heard, by, bcc),
-        }
-    }
-
-    /// The longest wait in this phase.
-    const fn limit(&self) -> Option<Duration> {
-        match self.phase {
-            Phase::Idle => None,
-            Phase::Block { .. } | Phase::AnsweredEarly { .. } => Some(self.zvz),
-            Phase::Requested { .. } | Phase::Conflict | Phase::AwaitAck { .. } => Some(self.qvz),
-        }
-    }
-
-    /// Reports, once per wait, that the limit has passed.
-    fn check_wait(&mut self, now: Duration) {
-        while self.poll_timeout().is_some_and(|due| due <= now) {
-            self.overdue = true;
-            let waited = self.since_last(now);
-            match self.phase {
-                Phase::Idle | Phase::Conflict => {}
-                Phase::Requested { by } | Phase::AwaitAck { by } => {
-                    self.no_answer(by.other(), waited);
-                }
-                Phase::Block { by, in_conflict } => self.pause(by, in_conflict, waited),
-                Phase::AnsweredEarly { by, .. } => {
-                    self.see(Observation::NoBcc { by });
-                    self.phase = Phase::Idle;
-                }
-            }
-        }
-    }
-
-    /// ZVZ has run out in a block, or the receiver says so.
-    fn pause(&mut self, by: Side, in_conflict: bool, waited: Duration) {
-        if self.scan.is_empty() {
-            self.see(Observation::NoBlock { by, waited });
-        } else if in_conflict && self.scan.is_lone_dle() {
-            self.see(Observation::BothGaveWay);
-        } else if self.scan.awaits_bcc() {
-            self.see(Observation::NoBcc { by });
-            self.phase = Phase::AwaitAck { by };
-            self.overdue = false;
-        } else {
-            self.see(Observation::Gap { by, gap: waited });
         }
     }
 
@@ -246,6 +172,7 @@ impl Conversation {
         let side = heard.side;
         self.see(Observation::Reset { side });
         self.waiting[side] = None;
+        self.owing = PerSide::both(None);
         self.attempts[side] = 0;
         match self.waiting[side.other()] {
             Some(since) => self.enter(since, Phase::Requested { by: side.other() }),
@@ -257,34 +184,44 @@ impl Conversation {
         self.attempts[side] = self.attempts[side].saturating_add(1);
         let attempt = self.attempts[side];
         self.see(Observation::Request { side, attempt });
-        let was_waiting = self.waiting[side].replace(now).is_some();
+        self.waiting[side] = Some(now);
+        self.asked[side] = Some(now);
         // A side that gave up without a NAK waits no more.
         let patience = self.qvz.saturating_mul(2);
         let other = self.waiting[side.other()].map(|other| since(other, now));
-        match other.filter(|&delay| delay <= patience) {
-            None => {
-                self.waiting[side.other()] = None;
-                self.enter(now, Phase::Requested { by: side });
-            }
-            Some(delay) => {
-                self.see(if was_waiting || delay <= CROSSING {
-                    Observation::Conflict
-                } else {
-                    Observation::RequestUnanswered { side, delay }
-                });
-                self.enter(now, Phase::Conflict);
-            }
+        if other.is_none_or(|delay| delay > patience) {
+            self.waiting[side.other()] = None;
+            self.owing[side.other()] = Some(now);
+            self.enter(now, Phase::Requested { by: side });
+            return;
         }
+        let owing = self.owing[side].take().map(|asked| since(asked, now));
+        self.see(match owing {
+            Some(delay) if delay > CROSSING => Observation::RequestUnanswered { side, delay },
+            _ => Observation::Conflict,
+        });
+        self.enter(now, Phase::Conflict);
     }
 
     /// The side that sent STX speaks on.
     fn after_own_request(&mut self, heard: Character) {
-        if !matches!(heard.intact(), Some(STX | NAK)) {
-            // It did not wait for the answer.
-            self.see(Observation::DidNotWait { side: heard.side });
-            self.begin_block(heard.at, heard.side, false);
-            self.block_character(heard, false);
-            return;
+        let by = heard.side;
+        let crossing = self.asked[by.other()].map(|asked| since(asked, heard.at));
+        match (heard.intact(), crossing.filter(|&delay| delay <= CROSSING)) {
+            (Some(STX | NAK), _) => {}
+            // The other's STX came while this side gave up its job and began the next.
+            (Some(DLE), Some(delay)) => {
+                self.see(Observation::Connected { by, delay });
+                self.begin_block(heard.at, by.other(), true);
+                return;
+            }
+            _ => {
+                // It did not wait for the answer.
+                self.see(Observation::DidNotWait { side: by });
+                self.begin_block(heard.at, by, false);
+                self.block_character(heard, false);
+                return;
+            }
         }
         self.gave_up_waiting(heard);
         self.in_idle(heard);
@@ -300,6 +237,7 @@ impl Conversation {
             Some(NAK) => {
                 self.see(Observation::Refused { by, delay });
                 self.waiting[by.other()] = None;
+                self.owing[by] = None;
                 self.enter(heard.at, Phase::Idle);
             }
             Some(STX) => self.request(heard.at, by),
@@ -325,6 +263,7 @@ impl Conversation {
         self.scan = Scan::START;
         // Until its block comes, the sender may not have heard the answer, and wait on.
         self.waiting[by.other()] = None;
+        self.owing = PerSide::both(None);
         self.attempts = PerSide::both(0);
         self.enter(now, Phase::Block { by, in_conflict });
     }
@@ -425,15 +364,5 @@ impl Conversation {
             }
             _ => self.stray(heard),
         }
-    }
-}
-
-/// Time from one to the other, zero if it runs backwards. `Duration`'s own subtraction has a way
-/// to a panic.
-pub(crate) fn since(earlier: Duration, later: Duration) -> Duration {
-    let nanos = later.as_nanos().saturating_sub(earlier.as_nanos());
-    match u64::try_from(nanos) {
-        Ok(nanos) => Duration::from_nanos(nanos),
-        Err(_) => Duration::MAX,
     }
 }

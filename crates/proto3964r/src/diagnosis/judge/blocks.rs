@@ -1,0 +1,108 @@
+//! The rules about blocks and the answers to them.
+
+use super::{Case, most};
+use crate::{
+    diagnosis::{evidence::Conduct, verdict::Verdict},
+    monitor::Side,
+};
+
+impl Case<'_> {
+    pub(super) fn without_bcc(&self, side: Side) -> Option<Verdict> {
+        let own = self.side(side);
+        let as_sender = most(own.without_bcc, own.blocks());
+        let noticed = own.bcc_not_awaited.max(own.nak_after_dle);
+        let as_receiver = most(noticed, self.side(side.other()).blocks());
+        (as_sender || as_receiver).then_some(Verdict::WithoutBcc { side })
+    }
+
+    pub(super) fn other_bcc(&self, sender: Side) -> Option<Verdict> {
+        let formula = self.side(sender).formulas.rule()?;
+        Some(Verdict::OtherBcc { sender, formula })
+    }
+
+    pub(super) fn no_receive_buffer(&self, refuser: Side) -> Option<Verdict> {
+        let Conduct {
+            refused, requests, ..
+        } = *self.side(refuser.other());
+        most(refused, requests).then_some(Verdict::NoReceiveBuffer { refuser })
+    }
+
+    pub(super) fn own_echo(&self, side: Side) -> Option<Verdict> {
+        let own = self.side(side);
+        let alone = own.broken_off.saturating_add(own.answered_itself);
+        most(alone, own.blocks()).then_some(Verdict::OwnEcho { side })
+    }
+
+    pub(super) fn long_blocks_rejected(&self, refuser: Side) -> Option<Verdict> {
+        let Conduct {
+            good_rejected,
+            longest_accepted: accepted,
+            shortest_rejected,
+            ..
+        } = *self.side(refuser.other());
+        let rejected = shortest_rejected?;
+        (good_rejected > 1 && accepted > 0 && rejected > accepted).then_some(
+            Verdict::LongBlocksRejected {
+                refuser,
+                accepted,
+                rejected,
+            },
+        )
+    }
+
+    pub(super) fn good_blocks_rejected(&self, refuser: Side) -> Option<Verdict> {
+        let sender = self.side(refuser.other());
+        let (rejected, blocks) = (sender.good_rejected, sender.blocks());
+        most(rejected, blocks).then_some(Verdict::GoodBlocksRejected {
+            refuser,
+            rejected,
+            blocks,
+        })
+    }
+
+    pub(super) fn bad_blocks_accepted(&self, receiver: Side) -> Option<Verdict> {
+        let Conduct {
+            bad_accepted, bad, ..
+        } = *self.side(receiver.other());
+        most(bad_accepted, bad).then_some(Verdict::BadBlocksAccepted { receiver })
+    }
+
+    pub(super) fn request_for_answer(&self, side: Side) -> Option<Verdict> {
+        let Conduct {
+            requests_for_answers,
+            longest_request_for_answer: delay,
+            ..
+        } = *self.side(side);
+        let blocks = self.side(side.other()).blocks();
+        most(requests_for_answers, blocks).then_some(Verdict::RequestForAnswer { side, delay })
+    }
+
+    pub(super) fn no_acknowledgement(&self, silent: Side) -> Option<Verdict> {
+        let sender = self.side(silent.other());
+        most(sender.unacknowledged, sender.blocks())
+            .then_some(Verdict::NoAcknowledgement { silent })
+    }
+
+    pub(super) fn gaps(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        let blocks = own.blocks();
+        let repeats = blocks.saturating_sub(own.accepted);
+        // Also where the repeats get through.
+        let is_cause =
+            own.gaps > 1 && most(own.gaps, repeats) && own.gaps.saturating_mul(10) > blocks;
+        (is_cause || most(own.gaps, blocks)).then_some(Verdict::Gaps {
+            sender,
+            longest: own.longest_gap,
+        })
+    }
+
+    pub(super) fn bad_blocks(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        let bad = own.bad.saturating_add(own.unfinished);
+        (bad > own.accepted).then_some(Verdict::BadBlocks {
+            sender,
+            bad,
+            blocks: own.blocks(),
+        })
+    }
+}
