@@ -2,8 +2,9 @@
 
 use crate::leg::Leg;
 use crate::number::{cube_root, sqrt};
+use crate::segment::Reciprocals;
 use crate::table::spans_of_leg;
-use crate::{Axes, AxisLimits, Cubic, Knot, Path, PlanError, Row, ToolLimits};
+use crate::{Axes, Cubic, Knot, Path, PlanError, Row, ToolLimits};
 
 /// An axis at the end of a segment.
 #[derive(Debug, Clone, Copy)]
@@ -31,9 +32,24 @@ pub(crate) struct Demand<A: Axes> {
 }
 
 impl<A: Axes> Demand<A> {
-    /// What a leg's knots ask for, from rest to rest.
+    /// What a leg's knots ask of the axes and of the tool, from rest to rest.
     pub(crate) fn of<P: Path<Axes = A>>(
-        limits: &A::Of<AxisLimits>,
+        limits: &Reciprocals<A>,
+        leg: &Leg<P>,
+        knots: &[Knot],
+    ) -> Result<Self, PlanError<P::Error>> {
+        let mut demand = Self::of_axes(limits, leg, knots)?;
+        for pair in knots.windows(2) {
+            if let (Some(tool), [from, to]) = (leg.tool(), pair) {
+                demand.add_tool(tool, from, to);
+            }
+        }
+        Ok(demand)
+    }
+
+    /// What a leg's knots ask of the axes, from rest to rest.
+    pub(crate) fn of_axes<P: Path<Axes = A>>(
+        limits: &Reciprocals<A>,
         leg: &Leg<P>,
         knots: &[Knot],
     ) -> Result<Self, PlanError<P::Error>> {
@@ -43,15 +59,10 @@ impl<A: Axes> Demand<A> {
             demand.add(limits, &from, &to);
         }
         demand.stop(limits);
-        for pair in knots.windows(2) {
-            if let (Some(tool), [from, to]) = (leg.tool(), pair) {
-                demand.add_tool(tool, from, to);
-            }
-        }
         Ok(demand)
     }
 
-    fn at_rest() -> Self {
+    pub(crate) fn at_rest() -> Self {
         Self {
             speed: 0.0,
             acceleration: 0.0,
@@ -72,19 +83,17 @@ impl<A: Axes> Demand<A> {
     ///
     /// A cubic has one jerk. At a row the acceleration steps: that counts as a jerk over the
     /// time between the middles of the two segments.
-    fn add(&mut self, limits: &A::Of<AxisLimits>, from: &Row<A>, to: &Row<A>) {
+    pub(crate) fn add(&mut self, limits: &Reciprocals<A>, from: &Row<A>, to: &Row<A>) {
         let mean_s = (self.duration_s + to.duration_s) * 0.5;
-        let axes = A::each(limits).iter().zip(A::each_mut(&mut self.before));
+        let axes = limits.axes().iter().zip(A::each_mut(&mut self.before));
         for (cubic, (limits, before)) in Cubic::between(from, to).zip(axes) {
             let ([a0, a1], noise) = (cubic.accelerations(), cubic.noise());
             let hardest = a0.abs().max(a1.abs()) + noise;
-            self.speed = self.speed.max(cubic.peak_speed() / limits.speed);
-            self.acceleration = self.acceleration.max(hardest / limits.acceleration);
-            if let Some(limit) = limits.jerk {
-                let inside = ((a1 - a0).abs() + 2.0 * noise) / to.duration_s;
-                let step = ((a0 - before.acceleration).abs() + noise + before.noise) / mean_s;
-                self.jerk = self.jerk.max(inside.max(step) / limit);
-            }
+            self.speed = self.speed.max(cubic.peak_speed() * limits.speed);
+            self.acceleration = self.acceleration.max(hardest * limits.acceleration);
+            let inside = ((a1 - a0).abs() + 2.0 * noise) / to.duration_s;
+            let step = ((a0 - before.acceleration).abs() + noise + before.noise) / mean_s;
+            self.jerk = self.jerk.max(inside.max(step) * limits.jerk);
             *before = End {
                 acceleration: a1,
                 noise,
@@ -111,13 +120,21 @@ impl<A: Axes> Demand<A> {
     }
 
     /// Takes the standstill after the last segment into account.
-    fn stop(&mut self, limits: &A::Of<AxisLimits>) {
+    pub(crate) fn stop(&mut self, limits: &Reciprocals<A>) {
         let mean_s = self.duration_s * 0.5;
-        for (limits, before) in A::each(limits).iter().zip(A::each(&self.before)) {
-            if let Some(limit) = limits.jerk {
-                let step = (before.acceleration.abs() + before.noise) / mean_s;
-                self.jerk = self.jerk.max(step / limit);
-            }
+        for (limits, before) in limits.axes().iter().zip(A::each(&self.before)) {
+            let step = (before.acceleration.abs() + before.noise) / mean_s;
+            self.jerk = self.jerk.max(step * limits.jerk);
+        }
+    }
+
+    /// The state at the end of the last segment, with nothing asked for yet.
+    pub(crate) fn fresh(&self) -> Self {
+        Self {
+            speed: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+            ..*self
         }
     }
 }
@@ -125,6 +142,7 @@ impl<A: Axes> Demand<A> {
 #[cfg(test)]
 mod tests {
     use super::Demand;
+    use crate::segment::Reciprocals;
     use crate::{AxisLimits, Row};
 
     const ROUNDING: f64 = 1e-12;
@@ -133,11 +151,11 @@ mod tests {
     /// 2 mm/s² over half of 2 s, half of 3 s, half of 1 s.
     #[test]
     fn steps_of_the_acceleration_are_jerks() {
-        let limits = [AxisLimits {
+        let limits = Reciprocals::new(&[AxisLimits {
             speed: 4.0,
             acceleration: 5.0,
             jerk: Some(8.0),
-        }];
+        }]);
         let row = |duration_s, position, velocity| Row {
             time_s: 0.0,
             duration_s,

@@ -54,7 +54,13 @@ impl<A: Axes> Joint<A> {
             Corner::Jump(allowed) => *allowed,
         };
         let slopes = || before.as_slice().iter().zip(after.as_slice());
-        let speeds = || limits.speeds().zip(slopes());
+        let speeds = || {
+            limits
+                .axes()
+                .iter()
+                .map(|limits| limits.speed)
+                .zip(slopes())
+        };
         let steepest = speeds().fold(0.0_f64, |steepest, (limit, (p0, p1))| {
             steepest.max(p0.abs() * limit).max(p1.abs() * limit)
         });

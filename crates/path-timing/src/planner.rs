@@ -110,7 +110,7 @@ impl<A: Axes> Planner<A> {
             let leg = leg?;
             let (own, rest) = profile::split(later, profile::first_leg(later));
             if self.reciprocals.has_jerk() {
-                smooth::smooth(&self.limits, &leg, own)?;
+                smooth::smooth(&self.limits, &self.reciprocals, &leg, own)?;
                 self.stretch_to_limits(&leg, own)?;
             }
             time_s = check_times(leg.number, own, time_s)?;
@@ -131,7 +131,7 @@ impl<A: Axes> Planner<A> {
             .get_mut(..needed)
             .ok_or(PlanError::Memory { needed, available })?;
         if self.reciprocals.has_jerk() {
-            smooth::smooth(&self.limits, leg, own)?;
+            smooth::smooth(&self.limits, &self.reciprocals, leg, own)?;
         } else {
             profile::fastest(&self.reciprocals, leg, own)?;
         }
@@ -145,7 +145,7 @@ impl<A: Axes> Planner<A> {
         leg: &Leg<P>,
         knots: &mut [Knot],
     ) -> Result<(), PlanError<P::Error>> {
-        let stretch = Demand::of(&self.limits, leg, knots)?.stretch() * STRETCHED;
+        let stretch = Demand::of(&self.reciprocals, leg, knots)?.stretch() * STRETCHED;
         for knot in knots {
             knot.speed /= stretch;
             knot.duration_s *= stretch;

@@ -1,11 +1,15 @@
 //! A table that runs under a feed override and can stop on its path.
 
+mod warp;
+
+use crate::demand::Demand;
 use crate::leg::{self, Leg};
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::rows::{Node, Nodes};
 use crate::segment::{Reciprocals, Segment};
 use crate::short::short;
 use crate::{Axes, Knot, Legs, Place, PlanError, Row, Table, profile};
+use warp::{Start, Warp};
 
 /// Memory for one row of a table that runs: the highest feed from which the rest can be run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -48,9 +52,14 @@ pub struct FeedError {
 /// take longer than at 1; of 100,000 random tables none did.
 ///
 /// The tool's feed along a path is what is overridden: above 1 it goes beyond that of the path, and
-/// only the axes limit it. A limit of jerk is kept at a constant feed of at most 1; a change of the feed looks at speed and
-/// acceleration alone. It also changes the speed within a segment and with it the departure from
-/// the path.
+/// only the axes limit it. A change of the feed also changes the speed within a segment and with it
+/// the departure from the path.
+///
+/// With a limit of jerk a change is smooth and takes as many rows as it needs: of changes over 1, 2,
+/// 3, 5, 8 .. segments the first whose cubics keep speed, acceleration and jerk of all axes, and that
+/// leaves a constant feed possible; where none does before the next stop of the table, it is tried
+/// again a row later. It is short where the table leaves room: [`Table::at_speed`] with 0.978 leaves
+/// a sixteenth of the jerk. Above 1 the feed goes up to what the axes allow from end to end.
 #[derive(Debug, Clone)]
 pub struct Run<'a, L: Legs> {
     nodes: Nodes<'a, L>,
@@ -63,6 +72,11 @@ pub struct Run<'a, L: Legs> {
     /// From the row handed out last on.
     ahead: &'a [Ahead],
     limits: Reciprocals<L::Axes>,
+    /// With a limit of jerk: the feed that the table can be run at from end to end, the motion up
+    /// to the row handed out last, and the change of the feed that goes on there.
+    full: f64,
+    demand: Demand<L::Axes>,
+    warp: Option<Warp>,
     max: f64,
     wanted: f64,
     /// Feed at the row handed out last.
@@ -91,7 +105,12 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
             .get_mut(..needed)
             .ok_or(PlanError::Memory { needed, available })?;
         let (ahead, _) = ahead.split_at_mut(self.nodes.min(needed));
-        self.look_ahead(max, ahead)?;
+        let mut full = max;
+        if self.limits.has_jerk() {
+            full = self.full_feed()?;
+        } else {
+            self.look_ahead(max, ahead)?;
+        }
         Ok(Run {
             nodes: Nodes::new(self),
             here: None,
@@ -100,6 +119,9 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
             jump: None,
             ahead,
             limits: self.limits,
+            full,
+            demand: Demand::at_rest(),
+            warp: None,
             max,
             wanted: max.min(1.0),
             feed: 0.0,
@@ -136,6 +158,17 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
             }
         }
         Ok(())
+    }
+
+    /// The highest constant feed that the axes allow from end to end.
+    fn full_feed(&self) -> Result<f64, PlanError<L::Error>> {
+        let mut later = self.knots;
+        leg::forward(&self.legs, &self.limits).try_fold(LARGEST, |full, leg| {
+            let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
+            later = rest;
+            let demand = Demand::of_axes(&self.limits, &leg?, own)?;
+            Ok(full.min(self.stretch / demand.stretch()))
+        })
     }
 
     /// The highest feed at which the velocities may jump at the end of a leg; 1 at least.
@@ -237,13 +270,18 @@ impl<L: Legs> Run<'_, L> {
         let [there, ..] = later else {
             return Ok(None);
         };
-        let feed = self.next_feed(&from, &to, *here, *there);
-        let both = self.feed + feed;
-        if both <= 0.0 {
+        let step = if self.limits.has_jerk() {
+            self.next_feed_with_jerk(&from)?
+        } else {
+            let feed = self.next_feed(&from, &to, *here, *there);
+            let both = self.feed + feed;
+            (both > 0.0).then(|| (feed, 2.0 * from.duration_s / both))
+        };
+        let Some((feed, duration_s)) = step else {
             return Ok(None);
-        }
+        };
         let after_next = self.nodes.next()?;
-        let duration_s = 2.0 * from.duration_s / both;
+        let feed_before = self.feed;
         self.time_s += duration_s;
         self.feed = feed;
         (self.here, self.next, self.after_next) = (self.next, self.after_next, after_next);
@@ -251,7 +289,50 @@ impl<L: Legs> Run<'_, L> {
         self.remaining = self.remaining.saturating_sub(1);
         let row = Row::new(&to.place, feed, self.time_s, duration_s);
         self.jump = to.jump.map(|velocity| row.with_jump(velocity.scaled(feed)));
+        if self.limits.has_jerk() {
+            let start = Row::new(&from.place, feed_before, 0.0, 0.0);
+            self.demand.add(&self.limits, &start, &row);
+        }
         Ok(Some(row))
+    }
+
+    /// The feed at the next row and the time to it; none where the machine stays at rest.
+    #[expect(clippy::float_cmp, reason = "the same number")]
+    fn next_feed_with_jerk(
+        &mut self,
+        from: &Node<L::Axes>,
+    ) -> Result<Option<(f64, f64)>, L::Error> {
+        let wanted = self.wanted.min(self.full);
+        if is_rest(&from.place) {
+            (self.feed, self.warp) = (wanted, None);
+        }
+        if is_rest(&from.place) || self.feed <= 0.0 {
+            self.demand = Demand::at_rest();
+        }
+        if self.warp.map_or(self.feed, |warp| warp.to) != wanted {
+            let start = Start {
+                limits: &self.limits,
+                demand: &self.demand,
+                feed: self.feed,
+                fetched: [self.here, self.next, self.after_next],
+                nodes: &self.nodes,
+            };
+            let change = if self.feed > 0.0 {
+                start.change(wanted)?
+            } else {
+                start.resume(wanted)?
+            };
+            self.warp = change.or(self.warp);
+        }
+        let Some(warp) = &mut self.warp else {
+            let duration_s = from.duration_s / self.feed;
+            return Ok((self.feed > 0.0).then_some((self.feed, duration_s)));
+        };
+        let step = warp.step(from.duration_s);
+        if warp.left == 0 {
+            self.warp = None;
+        }
+        Ok(Some(step))
     }
 
     /// The first row, at rest.

@@ -3,11 +3,13 @@
 use crate::number::{LARGEST, SMALLEST, larger, sqrt};
 use crate::{Axes, AxisLimits, Place, PlanError, ToolLimits};
 
-/// One over the limits of speed and acceleration of an axis, a margin included.
+/// One over the limits of an axis, a margin included.
 #[derive(Debug, Clone, Copy)]
-struct Reciprocal {
-    speed: f64,
-    acceleration: f64,
+pub(crate) struct Reciprocal {
+    pub(crate) speed: f64,
+    pub(crate) acceleration: f64,
+    /// 0 without such a limit.
+    pub(crate) jerk: f64,
 }
 
 /// The reciprocals of all axes.
@@ -22,6 +24,7 @@ impl<A: Axes> Reciprocals<A> {
         let mut reciprocals = A::filled(Reciprocal {
             speed: 0.0,
             acceleration: 0.0,
+            jerk: 0.0,
         });
         for (reciprocal, limits) in A::each_mut(&mut reciprocals)
             .iter_mut()
@@ -30,6 +33,7 @@ impl<A: Axes> Reciprocals<A> {
             *reciprocal = Reciprocal {
                 speed: MARGIN / limits.speed,
                 acceleration: MARGIN / limits.acceleration,
+                jerk: limits.jerk.map_or(0.0, |jerk| MARGIN / jerk),
             };
         }
         Self {
@@ -95,9 +99,9 @@ impl<A: Axes> Reciprocals<A> {
         self.has_jerk
     }
 
-    /// One over the speed limit of each axis.
-    pub(crate) fn speeds(&self) -> impl Iterator<Item = f64> {
-        A::each(&self.axes).iter().map(|limits| limits.speed)
+    /// Those of each axis.
+    pub(crate) fn axes(&self) -> &[Reciprocal] {
+        A::each(&self.axes)
     }
 }
 

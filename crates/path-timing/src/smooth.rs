@@ -28,13 +28,14 @@ type LimitsOf<P> = EachAxis<P, AxisLimits>;
 /// asks of the axes besides is made up for by stretching its time.
 pub(crate) fn smooth<P: Path>(
     limits: &LimitsOf<P>,
+    reciprocals: &Reciprocals<P::Axes>,
     leg: &Leg<P>,
     knots: &mut [Knot],
 ) -> Result<(), PlanError<P::Error>> {
     let curve = Easing::Curve(s_curve(limits, leg)?);
     let segments = segments_of(knots);
     let mut trial = Trial {
-        limits,
+        limits: reciprocals,
         eased: Reciprocals::new(&eased::<P>(limits)),
         leg,
         segments: segments.min(TRIAL_SEGMENTS),
@@ -109,7 +110,7 @@ fn lay_curve(curve: &SCurve, knots: &mut [Knot], length: f64) {
 
 /// A leg on which motions are compared.
 struct Trial<'a, P: Path> {
-    limits: &'a LimitsOf<P>,
+    limits: &'a Reciprocals<P::Axes>,
     eased: Reciprocals<P::Axes>,
     leg: &'a Leg<P>,
     /// As many of the knots, and one, are laid.

@@ -189,9 +189,9 @@ fn memory_is_fixed() {
 
     assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
     assert_eq!(size_of::<PtPoints<'_, 3>>(), 664);
-    assert_eq!(size_of::<PvtTable<'_, 3>>(), 248);
-    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 1160);
-    assert_eq!(size_of::<PvtRun<'_, 3>>(), 2040);
+    assert_eq!(size_of::<PvtTable<'_, 3>>(), 320);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 1232);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 2416);
     assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
 }
 

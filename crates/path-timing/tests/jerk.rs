@@ -1,0 +1,124 @@
+//! Limits of jerk under feed changes, holds and resumes.
+#![cfg(test)]
+
+#[path = "support/limits.rs"]
+mod limited;
+#[path = "support/machine.rs"]
+mod machine;
+#[path = "support/polyline.rs"]
+mod polyline;
+
+use limited::check_limits;
+use machine::limits;
+use path_timing::{Ahead, AxisLimits, Corner, Cubic, Knot, Row, Table};
+use polyline::lines;
+use proptest::prelude::*;
+
+const LIMITS: [AxisLimits; 2] = [
+    limits(2.0, 20.0, Some(400.0)),
+    limits(300.0, 2000.0, Some(40_000.0)),
+];
+const POINTS: [[f64; 2]; 3] = [[-100.0, 80.0], [0.0, 150.0], [90.0, 60.0]];
+
+/// Of what is recomputed from rounded rows.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
+/// A speed that leaves a sixteenth of the jerk: ∛(15/16).
+const WITH_ROOM: f64 = 0.978;
+
+/// The jerk inside of each cubic, and the steps of the acceleration at rows over the time between
+/// the middles of their segments; at rest the acceleration is zero.
+fn check_jerk(rows: &[Row<[f64; 2]>]) {
+    check_limits(&LIMITS, None, rows);
+    for (axis, limits) in LIMITS.iter().enumerate() {
+        let jerk = limits.jerk.unwrap() * ROUNDING;
+        let (mut before, mut before_s) = (0.0_f64, 0.0);
+        for pair in rows.windows(2) {
+            let cubic = Cubic::between(&pair[0], &pair[1]).nth(axis).unwrap();
+            let [a0, a1] = cubic.accelerations();
+            let time_s = cubic.duration_s;
+            if pair[0].velocity.iter().all(|v| *v == 0.0) {
+                assert!(before.abs() <= jerk * before_s * 0.5, "to rest: {before}");
+                (before, before_s) = (0.0, 0.0);
+            }
+            assert!((a1 - a0).abs() <= jerk * time_s, "{cubic:?}");
+            let step = (a0 - before).abs() / ((time_s + before_s) * 0.5);
+            assert!(step <= jerk, "{} at {}", step / jerk, pair[0].time_s);
+            (before, before_s) = (a1, time_s);
+        }
+        assert!(
+            before.abs() <= jerk * before_s * 0.5,
+            "to the end: {before}"
+        );
+    }
+}
+
+/// How long a hold takes from each row on, and that the run goes on to its exact end.
+#[test]
+fn a_hold_keeps_the_jerk_and_goes_on() {
+    let mut knots = [Knot::default(); 183];
+    let paths = lines(&POINTS, Corner::Stop, None);
+    let table = Table::plan(&paths, LIMITS, |_| 60, &mut knots).unwrap();
+    let table = table.at_speed(WITH_ROOM).unwrap();
+    let mut slowest = (0.0_f64, 0);
+    let (mut total_s, mut count) = (0.0, 0);
+    for moving in 2..table.len() {
+        let mut ahead = [Ahead::default(); 181];
+        let mut run = table.run(1.0, &mut ahead).unwrap();
+        let mut rows: Vec<_> = run.by_ref().take(moving).map(Result::unwrap).collect();
+        run.stop();
+        rows.extend(run.by_ref().map(Result::unwrap));
+        let rest = rows.last().unwrap();
+        assert!(rest.velocity.iter().all(|v| *v == 0.0));
+        let stop_s = rest.time_s - rows[moving - 1].time_s;
+        (total_s, count) = (total_s + stop_s, count + 1);
+        if stop_s > slowest.0 {
+            slowest = (stop_s, moving);
+        }
+        run.set_feed(1.0).unwrap();
+        rows.extend(run.map(Result::unwrap));
+        check_jerk(&rows);
+        assert_eq!(rows.len(), table.len());
+        for (row, planned) in rows.iter().zip(table.rows()) {
+            let bits = |row: &Row<[f64; 2]>| row.position.map(f64::to_bits);
+            assert_eq!(bits(row), bits(&planned.unwrap()));
+        }
+    }
+    let mean_s = total_s / f64::from(count);
+    println!("a hold takes {mean_s:.3} s, at most {:.3} s", slowest.0);
+    // From rest to full speed a line takes 0.3 s, from end to end 0.67 s.
+    assert!(mean_s < 0.25 && slowest.0 < 0.67, "{mean_s}, {slowest:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn jerk_is_kept_under_any_feeds(
+        points in prop::collection::vec((-200.0..200.0_f64, 20.0..200.0_f64), 2..5),
+        feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
+        segments in 7..60_u32, scale in 0.5..1.0_f64,
+    ) {
+        prop_assume!(points.windows(2).all(|pair| pair[0] != pair[1]));
+        let points: Vec<_> = points.into_iter().map(|(x, y)| [x, y]).collect();
+        let paths = lines(&points, Corner::Stop, None);
+        let mut knots = [Knot::default(); 250];
+        let table = Table::plan(&paths, LIMITS, |_| segments, &mut knots).unwrap();
+        let table = table.at_speed(scale).unwrap();
+        let mut ahead = [Ahead::default(); 250];
+        let mut run = table.run(1.5, &mut ahead).unwrap();
+        let mut rows = Vec::new();
+        for (feed, count) in feeds {
+            run.set_feed(if feed < 0.3 { 0.0 } else { feed }).unwrap();
+            rows.extend(run.by_ref().take(count).map(Result::unwrap));
+        }
+        run.set_feed(1.0).unwrap();
+        rows.extend(run.by_ref().map(Result::unwrap));
+        prop_assert!(run.is_finished());
+        prop_assert_eq!(rows.len(), table.len());
+        check_jerk(&rows);
+        let end = table.rows().last().unwrap().unwrap();
+        let bits = |row: &Row<[f64; 2]>| row.position.map(f64::to_bits);
+        prop_assert_eq!(bits(rows.last().unwrap()), bits(&end));
+    }
+}
