@@ -132,13 +132,14 @@ where
         Ok(self.station.event(note))
     }
 
-    /// Waits for whatever comes first and tells the station.
-    async fn round(&mut self) -> Result<(), R::Error> {
+    /// Waits for whatever comes first and tells the station. May be dropped and called again.
+    pub(crate) async fn round(&mut self) -> Result<(), R::Error> {
         let now = self.timer.now();
         self.station.handle_timeout(now);
         if !self.input.waiting().is_empty() {
-            // The rest of what came with a telegram, which has been polled meanwhile.
-            self.input.hand_to(&mut self.station, now);
+            // What came after a telegram. That has been polled meanwhile, or the partner must wait.
+            let taken = self.station.handle_bytes(now, self.input.waiting());
+            self.input.gone(taken);
             return Ok(());
         }
         self.refill(now);

@@ -172,3 +172,22 @@ pub enum Abandoned {
     #[error("given up by the partner")]
     ByPartner,
 }
+
+#[cfg(feature = "log")]
+impl Event<'_> {
+    /// Writes the event to `log`: what went well at level debug, everything else at level warn.
+    pub(crate) fn log(&self) {
+        match self {
+            Self::Received(telegram) => log::debug!("received {} bytes", telegram.len()),
+            Self::Sent { len } => log::debug!("sent {len} bytes"),
+            Self::Failed(failure) => log::warn!("{failure}"),
+            Self::Rejected(rejection) => log::warn!("rejected: {rejection}"),
+            Self::Abandoned(abandoned) => log::warn!("abandoned: {abandoned}"),
+            Self::Conflict { in_a_row } => {
+                log::warn!("initialization conflict, {in_a_row} in a row");
+            }
+            Self::SamePriority => log::warn!("both stations seem to have the same priority"),
+            Self::Break => log::warn!("BREAK on the line"),
+        }
+    }
+}

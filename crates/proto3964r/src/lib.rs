@@ -3,12 +3,15 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
-#[cfg(test)]
+#[cfg(any(test, feature = "serialport", feature = "tokio"))]
 extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
 mod ascii;
+#[cfg(feature = "std")]
+#[cfg_attr(docsrs, doc(cfg(feature = "std")))]
+pub mod blocking;
 mod config;
 mod diagnosis;
 #[cfg(feature = "embedded-io")]
@@ -23,13 +26,16 @@ mod monitor;
 #[cfg(any(
     feature = "embedded-io",
     feature = "embedded-io-async",
-    feature = "serialport"
+    feature = "std"
 ))]
 mod piece;
 #[cfg(feature = "serialport")]
 #[cfg_attr(docsrs, doc(cfg(feature = "serialport")))]
 pub mod serialport;
 mod station;
+#[cfg(feature = "tokio")]
+#[cfg_attr(docsrs, doc(cfg(feature = "tokio")))]
+pub mod tokio;
 
 pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
 pub use diagnosis::{Diagnosis, Formula, Totals, Verdict, diagnose};

@@ -330,7 +330,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     #[cfg(any(
         feature = "embedded-io",
         feature = "embedded-io-async",
-        feature = "serialport"
+        feature = "std"
     ))]
     pub(crate) fn holds_telegram(&self) -> bool {
         self.holds_telegram
@@ -343,7 +343,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
 
     /// The second half.
     pub(crate) fn event(&mut self, note: Note) -> Event<'_> {
-        match note {
+        let event = match note {
             Note::Received { len } => {
                 self.holds_telegram = false;
                 Event::Received(head(&self.rx, len))
@@ -362,7 +362,10 @@ impl<const N: usize, const T: usize> Station<N, T> {
             Note::Conflict(in_a_row) => Event::Conflict { in_a_row },
             Note::SamePriority => Event::SamePriority,
             Note::Break => Event::Break,
-        }
+        };
+        #[cfg(feature = "log")]
+        event.log();
+        event
     }
 
     const fn rules(&self) -> Rules {

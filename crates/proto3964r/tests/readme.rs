@@ -7,7 +7,7 @@ const README: &str = include_str!("../README.md");
 fn the_programs_in_the_readme_are_the_examples() {
     for example in [
         include_str!("../examples/one_telegram.rs"),
-        include_str!("../examples/serial.rs"),
+        include_str!("../examples/two_links.rs"),
     ] {
         let (_, program) = example.split_once("\n\n").unwrap();
         let shown = README.contains(&format!("\n{program}```\n"));

@@ -3,10 +3,15 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+#[cfg(any(feature = "blocking", feature = "tokio"))]
+extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
 mod area;
+#[cfg(feature = "blocking")]
+#[cfg_attr(docsrs, doc(cfg(feature = "blocking")))]
+pub mod blocking;
 mod client;
 mod command;
 mod config;
@@ -16,8 +21,13 @@ mod memory;
 mod message;
 mod reaction;
 mod server;
+#[cfg(any(feature = "blocking", feature = "tokio"))]
+mod session;
 mod source;
 mod telegram;
+#[cfg(feature = "tokio")]
+#[cfg_attr(docsrs, doc(cfg(feature = "tokio")))]
+pub mod tokio;
 
 pub use area::{Area, AreaError, AreaKind};
 pub use client::{Client, JobError, Outcome, SubmitError};
@@ -29,5 +39,8 @@ pub use memory::{DataBlock, Memory};
 pub use message::{DecodeError, Message};
 pub use reaction::{Reaction, ReactionError, ReactionFault};
 pub use server::{AbandonCause, Server, ServerEvent};
+#[cfg(any(feature = "blocking", feature = "tokio"))]
+#[cfg_attr(docsrs, doc(cfg(any(feature = "blocking", feature = "tokio"))))]
+pub use session::CallError;
 pub use source::DataSource;
 pub use telegram::{EncodeError, MAX_DATA, MAX_TELEGRAM, Part, Telegram};

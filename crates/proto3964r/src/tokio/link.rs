@@ -1,0 +1,172 @@
+//! What a program holds of a line.
+
+use alloc::vec::Vec;
+use std::io;
+
+use ::tokio::{
+    io::{AsyncRead, AsyncWrite},
+    sync::{Mutex, mpsc},
+};
+use thiserror::Error;
+
+use super::{Caller, Lost, StreamDriver, Task, driver, tcp};
+use crate::{
+    config::Config,
+    event::{Event, Failure},
+    station::SubmitError,
+};
+
+/// One end of a line, whose station works in a task of its own: it answers the partner at any time,
+/// whatever the program does.
+///
+/// All methods take `&self`: a program may send and receive at once. Telegrams that were received
+/// and not fetched wait; when [`QUEUE`](Self::QUEUE) of them do, the partner is made to wait, and
+/// the outcomes of jobs after them, too. Dropping the link ends the task and closes the stream.
+///
+/// A lost connection is final: every call reports it as [`Lost`], and whether and when to connect
+/// again is the caller's decision.
+///
+/// # Examples
+/// ```
+/// use proto3964r::{Config, Line, Priority, tokio::Link};
+///
+/// # #[tokio::main(flavor = "current_thread")]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // Or `Link::connect("tcp://192.168.0.7:4001", config)`, `Line::buffered(9600, 11)`.
+/// let (here, there) = tokio::io::duplex(64);
+/// let plc = Link::new(here, Config::siemens_3964r(Priority::High, Line::Instant));
+/// let scale = Link::new(there, Config::siemens_3964r(Priority::Low, Line::Instant));
+///
+/// plc.send(b"tare").await?;
+/// assert_eq!(scale.receive().await?, b"tare");
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Link {
+    task: Task<Job>,
+    telegrams: Mutex<mpsc::Receiver<Vec<u8>>>,
+}
+
+/// Why a telegram was not sent.
+#[derive(Clone, Debug, Error)]
+#[non_exhaustive]
+pub enum SendError {
+    /// The station does not take such a telegram.
+    #[error(transparent)]
+    Refused(#[from] SubmitError),
+    /// The station gave it up; the partner may have received it all the same.
+    #[error(transparent)]
+    Failed(#[from] Failure),
+    /// The connection is lost.
+    #[error(transparent)]
+    Lost(#[from] Lost),
+}
+
+impl Link {
+    /// The longest telegram, in both directions.
+    pub const MAX_TELEGRAM: usize = 4096;
+
+    /// Telegrams that wait to be fetched, at most.
+    pub const QUEUE: usize = 64;
+
+    /// Puts a station on a stream. Must be called within a runtime of tokio with time and io.
+    #[must_use]
+    pub fn new<S>(stream: S, config: Config) -> Self
+    where
+        S: AsyncRead + AsyncWrite + Send + 'static,
+    {
+        let (received, telegrams) = mpsc::channel(Self::QUEUE);
+        let driver = driver::<{ Self::MAX_TELEGRAM }>(stream, config);
+        Self {
+            task: Task::spawn(|jobs| work(driver, jobs, received)),
+            telegrams: Mutex::new(telegrams),
+        }
+    }
+
+    /// Connects to a serial server in raw TCP mode and puts a station on the connection; the
+    /// address is `tcp://HOST:PORT`.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::InvalidInput`] for another address; those of the connection.
+    pub async fn connect(address: &str, config: Config) -> io::Result<Self> {
+        Ok(Self::new(tcp(address).await?, config))
+    }
+
+    /// Sends a telegram and waits until the partner has acknowledged it.
+    ///
+    /// Several at once go out in the order of their calls. Dropping the future gives the telegram
+    /// up; as with every failure, the partner may have received it all the same.
+    ///
+    /// # Errors
+    /// [`SendError`].
+    pub async fn send(&self, telegram: &[u8]) -> Result<(), SendError> {
+        let payload = telegram.to_vec();
+        self.task.ask(|caller| Job { payload, caller }).await?
+    }
+
+    /// The next telegram of the partner. Dropping the future loses none.
+    ///
+    /// # Errors
+    /// [`Lost`], after the last telegram that had come before.
+    pub async fn receive(&self) -> Result<Vec<u8>, Lost> {
+        let telegram = self.telegrams.lock().await.recv().await;
+        match telegram {
+            Some(telegram) => Ok(telegram),
+            None => Err(self.task.lost().await),
+        }
+    }
+}
+
+/// A telegram to send.
+#[derive(Debug)]
+struct Job {
+    payload: Vec<u8>,
+    caller: Caller<Result<(), SendError>>,
+}
+
+/// Works until the link is dropped.
+///
+/// # Errors
+/// Those of the stream.
+async fn work<const N: usize>(
+    mut driver: StreamDriver<N>,
+    mut jobs: mpsc::Receiver<Job>,
+    telegrams: mpsc::Sender<Vec<u8>>,
+) -> io::Result<()> {
+    let mut caller = Caller::NONE;
+    loop {
+        // While the queue is full a telegram stays in the station, which makes the partner wait.
+        let station = driver.station_mut();
+        while !(station.holds_telegram() && telegrams.capacity() == 0)
+            && let Some(event) = station.poll_event()
+        {
+            match event {
+                // The queue has room, and is closed only when the link is dropped.
+                Event::Received(telegram) => drop(telegrams.try_send(telegram.to_vec())),
+                Event::Sent { .. } => caller.tell(Ok(())),
+                Event::Failed(failure) => caller.tell(Err(failure.into())),
+                _ => {}
+            }
+        }
+        let queue_is_full = station.holds_telegram();
+        let is_idle = !driver.is_busy();
+        ::tokio::select! {
+            done = driver.round() => done?,
+            job = jobs.recv(), if is_idle => {
+                let Some(job) = job else {
+                    return Ok(());
+                };
+                let payload = job.payload;
+                caller = job.caller;
+                if let Err(error) = driver.submit(&payload) {
+                    caller.tell(Err(error.into()));
+                }
+            }
+            () = caller.gone() => {
+                driver.cancel();
+            }
+            permit = telegrams.reserve(), if queue_is_full => drop(permit),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The task of a client.
+
+use core::{future::pending, time::Duration};
+use std::io;
+
+use ::tokio::{
+    sync::mpsc,
+    time::{Instant, sleep_until},
+};
+use proto3964r::tokio::{Caller, StreamDriver};
+
+use super::Job;
+use crate::{
+    session::{Session, Transport},
+    telegram::MAX_TELEGRAM,
+};
+
+type LineDriver = StreamDriver<MAX_TELEGRAM>;
+
+/// Works until the client is dropped.
+///
+/// # Errors
+/// Those of the stream.
+pub(super) async fn work(
+    mut line: LineDriver,
+    mut jobs: mpsc::Receiver<Job>,
+    mut session: Session,
+) -> io::Result<()> {
+    let epoch = Instant::now();
+    let mut caller = Caller::NONE;
+    loop {
+        if let Some(outcome) = session.step(epoch.elapsed(), &mut line)? {
+            caller.tell(outcome);
+        }
+        let (due, is_idle) = (session.poll_timeout(), !session.is_busy());
+        ::tokio::select! {
+            event = line.wait() => session.handle(epoch.elapsed(), event?),
+            job = jobs.recv(), if is_idle => {
+                let Some(job) = job else {
+                    return Ok(());
+                };
+                caller = job.caller;
+                if let Err(error) = session.submit(job.command, &job.data) {
+                    caller.tell(Err(error.into()));
+                }
+            }
+            () = caller.gone() => session.cancel(epoch.elapsed()),
+            () = sleep(epoch, due) => {}
+        }
+    }
+}
+
+/// Returns when it is `due`, never without a time.
+async fn sleep(epoch: Instant, due: Option<Duration>) {
+    match due.and_then(|due| epoch.checked_add(due)) {
+        Some(instant) => sleep_until(instant).await,
+        None => pending().await,
+    }
+}
+
+impl Transport for LineDriver {
+    fn is_busy(&self) -> bool {
+        self.is_busy()
+    }
+
+    fn submit(&mut self, telegram: &[u8]) -> Result<(), proto3964r::SubmitError> {
+        self.submit(telegram)
+    }
+
+    fn cancel(&mut self) {
+        self.cancel();
+    }
+}
