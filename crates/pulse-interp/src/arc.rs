@@ -147,7 +147,7 @@ impl Arc {
         self.end
     }
 
-    /// The way around the centre.
+    /// The direction around the centre.
     #[must_use]
     pub const fn turn(&self) -> Turn {
         self.turn

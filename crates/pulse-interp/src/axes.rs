@@ -41,21 +41,21 @@ pub enum AxesError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_structs, reason = "which axis, and which way")]
+#[expect(clippy::exhaustive_structs, reason = "an axis and its direction")]
 pub struct AxisStep {
     /// Index of the axis.
     pub axis: usize,
-    /// The way it steps.
+    /// The direction of the step.
     pub direction: Direction,
 }
 
 /// A line of N axes, one of which steps at a time: the nearest rule for each pair of axes.
 ///
 /// ```text
-/// axis i makes its step p + 1 at the share (2 p + 1) / (2 n_i) of the way
+/// axis i makes its step p + 1 at the fraction (2 p + 1) / (2 n_i) of the line
 /// before axis j where F_ij = (2 p_i + 1) n_j - (2 p_j + 1) n_i <= 0
 /// ```
-/// Whenever an axis steps, every axis is within half a step of its place at that share, so the
+/// Whenever an axis steps, every axis is within half a step of its point at that fraction, so the
 /// path is at most sqrt(N)/2 steps off the line: 0.7071 in a plane, where it is [`Line`]'s by
 /// [`Rule::Nearest`], and 0.8661 in space.
 ///
@@ -108,7 +108,7 @@ fn check(to: &[i32]) -> Result<(), AxesError> {
     }
 }
 
-/// The way of an axis with these steps.
+/// The direction of an axis with these steps.
 const fn direction(steps: i32) -> Direction {
     if steps < 0 {
         Direction::Negative

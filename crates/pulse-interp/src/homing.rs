@@ -9,7 +9,7 @@ use thiserror::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_structs, reason = "every setting is needed")]
 pub struct HomingSettings {
-    /// The way to the switch.
+    /// The direction to the switch.
     pub direction: Direction,
     /// The most steps of any of the three ways, more than the travel.
     pub most_steps: u32,
@@ -25,7 +25,7 @@ pub struct HomingSettings {
 pub enum HomingOrder {
     /// One step, then look at the switch and ask again.
     Step {
-        /// The way.
+        /// Its direction.
         direction: Direction,
         /// How fast.
         speed: HomingSpeed,
@@ -43,9 +43,9 @@ pub enum HomingOrder {
     reason = "two speeds are what homing is about"
 )]
 pub enum HomingSpeed {
-    /// On the way to the switch and back from it.
+    /// Towards the switch and back from it.
     Fast,
-    /// On the way to the place where it closes.
+    /// Towards the position where it closes.
     Slow,
 }
 
@@ -54,13 +54,13 @@ pub enum HomingSpeed {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum HomingError {
-    /// No switch closed on the way to it.
+    /// The switch did not close.
     #[error("the switch has not closed within {steps} steps")]
     NeverClosed {
         /// Steps made.
         steps: u32,
     },
-    /// The switch did not open, or not for long enough, on the way back.
+    /// The switch did not open, or not for long enough, while the axis backed off.
     #[error("the switch has not stayed open within {steps} steps back")]
     NeverOpened {
         /// Steps made.

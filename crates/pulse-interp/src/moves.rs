@@ -91,6 +91,11 @@ impl Move {
         }
     }
 
+    /// Turned by 180 degrees.
+    pub(crate) const fn reversed(self) -> Self {
+        self.turned().turned()
+    }
+
     /// Mirrored on the line x = y.
     pub(crate) const fn mirrored(self) -> Self {
         match self {
@@ -120,11 +125,11 @@ pub enum Rule {
     Nearest,
 }
 
-/// The way around an arc's centre.
+/// The direction around an arc's centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "one way around or the other")]
+#[expect(clippy::exhaustive_enums, reason = "there are two directions around")]
 pub enum Turn {
     /// From +X towards +Y.
     CounterClockwise,
@@ -132,11 +137,11 @@ pub enum Turn {
     Clockwise,
 }
 
-/// The way along one axis.
+/// The direction along one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "an axis goes one way or the other")]
+#[expect(clippy::exhaustive_enums, reason = "an axis has two directions")]
 pub enum Direction {
     /// Steps count up.
     Positive,
@@ -154,7 +159,7 @@ impl Direction {
         }
     }
 
-    /// The other way.
+    /// The opposite direction.
     #[must_use]
     pub const fn reversed(self) -> Self {
         match self {

@@ -10,6 +10,7 @@ mod run;
 mod segment;
 mod series;
 mod steps;
+mod too_fast;
 mod wire;
 
 pub use axis::AxisSegments;

@@ -105,19 +105,23 @@ impl Axis {
         }
     }
 
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "within the limits, of 32 bits"
+    )]
     fn moved(self, axis: usize, steps: i32) -> Result<Self, PositionError> {
         // The sum of two i32 fits.
         let position = i64::from(self.steps).wrapping_add(i64::from(steps));
-        match (self.limit_passed(position), i32::try_from(position)) {
-            (None, Ok(position)) => Ok(Self {
-                steps: position,
+        match self.limit_passed(position) {
+            None => Ok(Self {
+                steps: position as i32,
                 ..self
             }),
-            (limit, _) => Err(PositionError::LimitPassed {
+            Some(limit) => Err(PositionError::LimitPassed {
                 axis,
                 position: self.steps,
                 steps,
-                limit: limit.unwrap_or(self.max),
+                limit,
             }),
         }
     }

@@ -96,7 +96,9 @@ impl AxisTrain {
     /// `pulses` pulses over `half_ticks` ticks, made twice: edge k at floor(k `half_ticks` / `pulses`).
     #[expect(
         clippy::arithmetic_side_effects,
-        reason = "once per move; the divisor is not zero; 2 pulses <= 2 i32::MAX"
+        clippy::cast_possible_truncation,
+        reason = "once per move; the divisor is not zero; 2 pulses <= 2 i32::MAX; a remainder is \
+                  below its divisor"
     )]
     fn new(pulses: u32, half_ticks: u64) -> Self {
         let (whole_ticks, remainder) = match core::num::NonZeroU64::new(u64::from(pulses)) {
@@ -107,7 +109,7 @@ impl AxisTrain {
             edges_left: pulses * 2,
             pulses,
             whole_ticks,
-            remainder: u32::try_from(remainder).unwrap_or(0),
+            remainder: remainder as u32,
             to_next_long: pulses.saturating_sub(1),
         }
     }

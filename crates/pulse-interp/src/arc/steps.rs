@@ -214,8 +214,8 @@ impl ArcSteps {
             b: place.b.wrapping_sub(end.b),
         };
         self.passage.quadrant = Quadrant {
-            inward: self.passage.quadrant.of_signs(1, 0).unwrap_or(Move::Right),
-            outward: self.passage.quadrant.of_signs(0, -1).unwrap_or(Move::Down),
+            inward: self.passage.quadrant.inward.reversed(),
+            outward: self.passage.quadrant.outward.reversed(),
         };
         self.ahead.is_back = true;
         self.ahead.steps = 0;

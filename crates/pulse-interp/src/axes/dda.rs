@@ -10,7 +10,7 @@ use core::iter::FusedIterator;
 /// ```text
 /// after tick k of K, axis i has made round(k n_i / K) steps, halves up
 /// ```
-/// Each axis is within half a step of its place at every tick. With as many ticks as the longest
+/// Each axis is within half a step of its point of the line at every tick. With as many ticks as the longest
 /// axis has steps, this is Bresenham's line for N axes: at most sqrt(N - 1)/2 steps off the line.
 ///
 /// # Examples
@@ -25,7 +25,8 @@ use core::iter::FusedIterator;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dda<const N: usize> {
     to: [i32; N],
-    ticks: u32,
+    /// Not negative.
+    ticks: i32,
 }
 
 impl<const N: usize> Dda<N> {
@@ -45,15 +46,15 @@ impl<const N: usize> Dda<N> {
     /// [`AxesError`].
     pub fn over(to: [i32; N], ticks: u32) -> Result<Self, AxesError> {
         check(&to)?;
-        let (least, limit) = (longest(&to), i32::MAX.unsigned_abs());
-        if ticks < least || ticks > limit {
-            return Err(AxesError::Ticks {
+        let least = longest(&to);
+        match i32::try_from(ticks) {
+            Ok(ticks) if ticks >= least => Ok(Self { to, ticks }),
+            _ => Err(AxesError::Ticks {
                 ticks,
-                least,
-                limit,
-            });
+                least: least.unsigned_abs(),
+                limit: i32::MAX.unsigned_abs(),
+            }),
         }
-        Ok(Self { to, ticks })
     }
 
     /// The end, in steps from the start.
@@ -64,10 +65,9 @@ impl<const N: usize> Dda<N> {
 
     /// What each axis does at each tick: -1, 0 or 1 step.
     pub fn ticks(&self) -> DdaTicks<N> {
-        // At most 2^31 - 1.
-        let ticks = i32::try_from(self.ticks).unwrap_or(i32::MAX);
+        let ticks = self.ticks;
         DdaTicks {
-            left: self.ticks,
+            left: ticks.unsigned_abs(),
             ticks,
             axes: self.to.map(|steps| Axis {
                 // A half is rounded up.
@@ -82,9 +82,10 @@ impl<const N: usize> Dda<N> {
     }
 }
 
-fn longest(to: &[i32]) -> u32 {
-    let lengths = to.iter().map(|steps| steps.unsigned_abs());
-    lengths.max().unwrap_or(0)
+/// Steps of the longest of axes that are checked; 0 without axes.
+fn longest(to: &[i32]) -> i32 {
+    to.iter()
+        .fold(0, |most, steps| steps.wrapping_abs().max(most))
 }
 
 /// The ticks of a [`Dda`]: an iterator of the steps of all axes.

@@ -56,7 +56,7 @@ impl<const N: usize> Iterator for AxesSteps<N> {
     #[inline]
     fn next(&mut self) -> Option<AxisStep> {
         self.left = self.left.checked_sub(1)?;
-        // An axis with all its steps made is at a share above 1, behind each that has some left.
+        // An axis with all its steps made is at a fraction above 1, after each that has some left.
         let is_next = |axis: &Axis<N>| axis.against.iter().all(|f| *f <= 0);
         let next = self.axes.iter().position(is_next)?;
         let twice = self.axes.map(|axis| axis.twice);

@@ -2,7 +2,6 @@
 #![expect(
     clippy::arithmetic_side_effects,
     clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
     reason = "ticks of rows below 2^32, of the move below 2^64"
 )]
 
@@ -12,8 +11,8 @@ use super::row::PvtKnot;
 use super::run::{Back, Batch, Fit, Run};
 use super::segment::Segment;
 use super::series::time_of;
+use super::too_fast::{TooFast, max_velocity};
 use crate::Direction;
-use crate::fixed::{Inverse, quotient};
 
 /// What the series of a segment may leave out, in 2^-32 ticks: 7/16 tick. The differences of a
 /// segment add 0.0463 ticks and the whole ticks 1/2.
@@ -352,42 +351,6 @@ impl Iterator for AxisSegments {
 pub(super) struct Start {
     run: Run,
     batch: Batch,
-}
-
-/// Where a row is too fast.
-struct TooFast {
-    tick: u32,
-    /// Ticks of a step there, rounded down.
-    interval_ticks: u64,
-}
-
-impl TooFast {
-    fn at_knot(tick: u32, knot: PvtKnot) -> Self {
-        Self::new(tick, knot.velocity, 1, PvtKnot::VELOCITY_BITS)
-    }
-
-    /// At `velocity` in 2^-bits steps per `ticks` ticks.
-    fn new(tick: u32, velocity: i64, ticks: u32, bits: u32) -> Self {
-        let inverse = Inverse::of(velocity.unsigned_abs());
-        let interval_ticks = inverse.map_or(0, |inverse| {
-            inverse.quotient(u64::from(ticks) << 31, bits as i32 - 31)
-        });
-        Self {
-            tick,
-            interval_ticks,
-        }
-    }
-}
-
-/// The greatest velocity: one step in `step_ticks` + 2 ticks, in 2^-56 steps a tick.
-///
-/// Two steps that far apart, each off by less than 0.9995 ticks, are `step_ticks` apart.
-const fn max_velocity(step_ticks: u64) -> i64 {
-    // At most a half.
-    let velocity = quotient(1 << PvtKnot::VELOCITY_BITS, step_ticks.saturating_add(2));
-    // Rounded up where that costs less than 2^-11 ticks a step: exactly that velocity is allowed.
-    let more = step_ticks < 1 << 22;
-    velocity as i64 + more as i64
 }
 
 /// A share in ticks, to the nearest.

@@ -62,9 +62,8 @@ impl<const N: usize> PvtSteps<N> {
         for ((axis, knot), start) in self.axes.iter_mut().zip(row.knots).zip(starts) {
             axis.begin(row.ticks, knot, start);
         }
-        for axis in 0..N {
-            let last = self.last_ticks.get(axis).copied();
-            self.load(axis, last.unwrap_or(0));
+        for (axis, last) in self.last_ticks.into_iter().enumerate() {
+            self.load(axis, last);
         }
         Ok(())
     }

@@ -1,0 +1,353 @@
+//! From a curve of the tool to the last edge: a two-link arm and a rotary Delta at 72 MHz.
+//!
+//! Path, plan and edges on one core: steps a second, the best of several rounds, and instructions a
+//! step by callgrind, for which the bench runs itself under valgrind where there is one. The curves
+//! are lines of 100 to 190 mm from rest to rest at 300 mm/s, 0.01 mm off at most.
+
+use core::hint::black_box;
+use std::env;
+use std::process::Command;
+use std::time::Instant;
+
+use delta_kin::Delta;
+use delta_kin::nalgebra::{Point3, Vector3};
+use path_timing::{AxisLimits, Cubic, Curve, Knot, Path, Place, Row, Span, Table, ToolLimits};
+use scara_kin::{Arm, ArmPath, Elbow};
+use stepper_sync::{
+    AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, Rate, SegmentPlayer, StepDirTiming, StepScale,
+};
+
+const CASE: &str = "PIPELINE_CASE";
+const ROUNDS: &str = "PIPELINE_ROUNDS";
+
+const TOLERANCE_MM: f64 = 0.01;
+/// So that a line takes hardly longer than it has to.
+const LEAST_SEGMENTS: u32 = 32;
+const TOOL: ToolLimits = ToolLimits {
+    feed: 300.0,
+    acceleration: Some(5000.0),
+};
+
+/// Steps of a turn: of an arm's joint by fine and coarse microsteps, of a Delta's of 16 and of full
+/// steps through 27:1.
+const ARM_STEPS: [f64; 2] = [32_000.0, 3200.0];
+const DELTA_STEPS: [f64; 2] = [86_400.0, 5400.0];
+
+/// Of a joint, in rad and s.
+const LIMITS: AxisLimits = AxisLimits {
+    speed: 4.0,
+    acceleration: 60.0,
+    jerk: None,
+};
+
+/// How the edges come out.
+#[derive(Clone, Copy)]
+enum Edges {
+    /// All axes in time order.
+    Merged,
+    /// Each axis for its own timer.
+    EachAxis,
+}
+
+/// Takes rows, counts steps.
+struct Emitter<const N: usize> {
+    rows: PvtQuantiser<N>,
+    merged: PvtSteps<N>,
+    axes: [AxisSegments; N],
+    players: [SegmentPlayer; N],
+    edges: Edges,
+    steps: u64,
+    /// So that nothing is left out.
+    ticks: u64,
+}
+
+impl<const N: usize> Emitter<N> {
+    fn new(start: [f64; N], case: Case) -> Self {
+        let rate = Rate::from_hz(72_000_000).expect("not zero");
+        let scale = StepScale::new(case.steps_per_turn / core::f64::consts::TAU).expect("in range");
+        let rows = PvtQuantiser::new(rate, [scale; N], start).expect("in range");
+        let least = StepDirTiming::DRV8825.min_intervals(rate);
+        Self {
+            merged: PvtSteps::new(rows.knots(), least),
+            axes: rows
+                .knots()
+                .map(|knot: PvtKnot| AxisSegments::new(knot, least)),
+            players: [const { SegmentPlayer::new() }; N],
+            rows,
+            edges: case.edges,
+            steps: 0,
+            ticks: 0,
+        }
+    }
+
+    fn row(&mut self, row: &Row<[f64; N]>) {
+        let row = self.rows.row(row.time_s, row.position, row.velocity);
+        let row = row.expect("slow enough");
+        match self.edges {
+            Edges::Merged => {
+                self.merged.push(&row).expect("slow enough");
+                for step in &mut self.merged {
+                    self.steps += 1;
+                    self.ticks ^= step.ticks;
+                }
+            }
+            Edges::EachAxis => {
+                let axes = self.axes.iter_mut().zip(&mut self.players);
+                for ((axis, player), knot) in axes.zip(row.knots) {
+                    axis.push(row.ticks, knot).expect("slow enough");
+                    for segment in axis.by_ref() {
+                        self.steps += u64::from(segment.count());
+                        self.ticks += player.load(&segment);
+                        for interval in player.by_ref() {
+                            self.ticks += u64::from(interval);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Plans a path and makes its edges; returns steps and segments.
+fn run<
+    P: Path<Axes = [f64; N], Error: core::fmt::Debug> + Clone + core::fmt::Debug,
+    const N: usize,
+>(
+    path: &P,
+    segments: u32,
+    case: Case,
+    knots: &mut [Knot],
+) -> u64 {
+    let limits = [LIMITS; N];
+    let table = Table::plan([path], limits, |_| segments, knots).expect("within limits");
+    let mut rows = table.rows().map(|row| row.expect("on the path"));
+    let start = rows.next().expect("a row");
+    let mut emitter = Emitter::new(start.position, case);
+    for row in rows {
+        emitter.row(&row);
+    }
+    black_box(emitter.ticks);
+    emitter.steps
+}
+
+/// A line of an arm, and the segments that keep it within the tolerance.
+fn arm_lines() -> Vec<(Curve<2>, u32)> {
+    let arm = arm();
+    let mut knots = vec![Knot::default(); 400];
+    let ends = (0..12_u32).map(|k| {
+        let k = f64::from(k);
+        [[-90.0 + 4.0 * k, 90.0 + 9.0 * k], [95.0, 190.0 - 9.0 * k]]
+    });
+    ends.map(|[from, to]| {
+        let curve = Curve::line(from, to).expect("a line").with_tool(TOOL);
+        let path = arm.path(curve, Elbow::Right).expect("in reach");
+        let limits = [LIMITS; 2];
+        let table = Table::plan_within(
+            [path],
+            limits,
+            LEAST_SEGMENTS,
+            TOLERANCE_MM,
+            ArmPath::departure,
+            &mut knots,
+        );
+        (curve, table.expect("within limits").len() as u32 - 1)
+    })
+    .collect()
+}
+
+fn arm() -> Arm {
+    Arm::new(black_box(132.0), black_box(132.0)).expect("lengths")
+}
+
+fn arm_steps(lines: &[(Curve<2>, u32)], case: Case, knots: &mut [Knot]) -> u64 {
+    let arm = arm();
+    let lines = lines.iter().map(|(curve, segments)| {
+        let path = arm.path(black_box(*curve), Elbow::Right).expect("in reach");
+        run(&path, *segments, case, knots)
+    });
+    lines.sum()
+}
+
+/// A line of a Delta as a path of its arms.
+#[derive(Debug, Clone)]
+struct DeltaPath<'a>(&'a Delta, Curve<3>);
+
+impl Path for DeltaPath<'_> {
+    type Axes = [f64; 3];
+    type Error = String;
+
+    fn length(&self) -> f64 {
+        self.1.length()
+    }
+
+    fn place(&self, s: f64) -> Result<Place<[f64; 3]>, String> {
+        let at = self.1.at(s);
+        let pose = self
+            .0
+            .pose_at(Point3::from(at.point))
+            .map_err(|error| error.to_string())?;
+        let slope = pose
+            .joint_rates(Vector3::from(at.tangent))
+            .map_err(|error| error.to_string())?;
+        Ok(Place {
+            position: pose.angles().into(),
+            slope: slope.into(),
+        })
+    }
+
+    fn tool(&self) -> Option<ToolLimits> {
+        self.1.tool()
+    }
+}
+
+/// A line of a Delta, and the segments that keep it within the tolerance, halfway and at the
+/// quarters of each.
+fn delta_lines() -> Vec<(Curve<3>, u32)> {
+    let delta = delta();
+    let mut knots = vec![Knot::default(); 400];
+    let lines = (0..12_u32).map(|k| {
+        let k = f64::from(k);
+        let from = [-80.0 + 3.0 * k, -40.0 + 5.0 * k, -260.0];
+        let to = [80.0, 40.0 - 5.0 * k, -285.0 + 2.0 * k];
+        Curve::line(from, to).expect("a line").with_tool(TOOL)
+    });
+    lines
+        .map(|curve| {
+            let path = DeltaPath(&delta, curve);
+            let limits = [LIMITS; 3];
+            let table = Table::plan_within(
+                [path],
+                limits,
+                LEAST_SEGMENTS,
+                TOLERANCE_MM,
+                off,
+                &mut knots,
+            );
+            (curve, table.expect("within limits").len() as u32 - 1)
+        })
+        .collect()
+}
+
+fn delta() -> Delta {
+    Delta::new(black_box(42.0), 18.0, 120.0, 243.0).expect("lengths")
+}
+
+/// How far the platform is off its line at the quarters of a segment.
+fn off(path: &DeltaPath<'_>, span: &Span<[f64; 3]>) -> f64 {
+    let [from, to] = &span.rows;
+    let start = Vector3::from(path.1.start());
+    let along = Vector3::from(path.1.at(0.0).tangent);
+    let quarters = [0.25, 0.5, 0.75].map(|tau: f64| {
+        let mut angles = Vector3::zeros();
+        for (angle, cubic) in angles.iter_mut().zip(Cubic::between(from, to)) {
+            let (change, t) = (cubic.q1 - cubic.q0, cubic.duration_s);
+            let (second, third) = (
+                3.0 * change - (2.0 * cubic.v0 + cubic.v1) * t,
+                (cubic.v0 + cubic.v1) * t - 2.0 * change,
+            );
+            *angle = cubic.q0 + tau * (cubic.v0 * t + tau * (second + tau * third));
+        }
+        let at = path.0.forward(angles).expect("in reach").coords - start;
+        (at - along * at.dot(&along)).norm()
+    });
+    quarters.into_iter().fold(0.0, f64::max)
+}
+
+fn delta_steps(lines: &[(Curve<3>, u32)], case: Case, knots: &mut [Knot]) -> u64 {
+    let delta = delta();
+    let lines = lines.iter().map(|(curve, segments)| {
+        let path = DeltaPath(&delta, black_box(*curve));
+        run(&path, *segments, case, knots)
+    });
+    lines.sum()
+}
+
+/// What is run.
+#[derive(Clone, Copy)]
+struct Case {
+    is_arm: bool,
+    steps_per_turn: f64,
+    edges: Edges,
+}
+
+fn cases() -> impl Iterator<Item = (String, Case)> {
+    let machines = [("arm", true, ARM_STEPS), ("delta", false, DELTA_STEPS)];
+    let fine = machines.into_iter().flat_map(|(name, is_arm, steps)| {
+        steps.map(|steps_per_turn| (name, is_arm, steps_per_turn))
+    });
+    fine.flat_map(|(name, is_arm, steps_per_turn)| {
+        [
+            ("in time order", Edges::Merged),
+            ("each axis", Edges::EachAxis),
+        ]
+        .map(|(how, edges)| {
+            let case = Case {
+                is_arm,
+                steps_per_turn,
+                edges,
+            };
+            (
+                format!("{name}, {steps_per_turn} steps a turn, {how}"),
+                case,
+            )
+        })
+    })
+}
+
+/// Rounds of a case: steps of all of them, segments of one, and the seconds of the fastest.
+fn rounds(case: Case, rounds: u32) -> (u64, u32, f64) {
+    let mut knots = vec![Knot::default(); 400];
+    let (mut steps, mut fastest_s) = (0, f64::INFINITY);
+    let (arm, delta) = match case.is_arm {
+        true => (arm_lines(), Vec::new()),
+        false => (Vec::new(), delta_lines()),
+    };
+    for _ in 0..rounds {
+        let start = Instant::now();
+        steps += arm_steps(&arm, case, &mut knots) + delta_steps(&delta, case, &mut knots);
+        fastest_s = fastest_s.min(start.elapsed().as_secs_f64());
+    }
+    let segments = arm
+        .iter()
+        .map(|line| line.1)
+        .chain(delta.iter().map(|line| line.1));
+    (steps, segments.sum(), fastest_s)
+}
+
+/// Instructions of a whole run, from callgrind's report.
+fn instructions(case: &str, count: u32) -> Option<f64> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(env::current_exe().ok()?)
+        .env(CASE, case)
+        .env(ROUNDS, count.to_string())
+        .output()
+        .ok()?;
+    let report = String::from_utf8_lossy(&output.stderr).into_owned();
+    let collected = report
+        .lines()
+        .find_map(|line| line.split("Collected :").nth(1))?;
+    collected.trim().parse().ok()
+}
+
+fn main() {
+    if let (Ok(name), Ok(count)) = (env::var(CASE), env::var(ROUNDS)) {
+        let (_, case) = cases().find(|it| it.0 == name).expect("a case");
+        rounds(case, count.parse().expect("a number"));
+        return;
+    }
+    const FEW: u32 = 2;
+    const MANY: u32 = 12;
+    for (name, case) in cases() {
+        let (steps, segments, fastest_s) = rounds(case, 30);
+        let steps = steps as f64 / 30.0;
+        let millions = steps / fastest_s / 1e6;
+        let a_segment = steps / f64::from(segments);
+        let counted = instructions(&name, MANY).zip(instructions(&name, FEW));
+        let counted = counted.map_or("no valgrind".to_owned(), |(many, few)| {
+            let a_step = (many - few) / f64::from(MANY - FEW) / steps;
+            format!("{a_step:.0} instructions a step")
+        });
+        println!("{name}: {millions:.0} million steps/s, {counted}, {a_segment:.0} a segment");
+    }
+}
