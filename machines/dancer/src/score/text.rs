@@ -1,22 +1,19 @@
 //! A score from its text.
 
+mod clock;
+mod lines;
+
 use std::collections::HashMap;
 
 use pattern_codec::dance::{Threshold, Timing};
 use serde::Deserialize;
-use serde::de::IgnoredAny;
 use toml::Spanned;
+
+use self::clock::{Clock, MAX_FRAMES, WITHIN_MAX_FRAMES};
+use self::lines::{Lines, text_error};
 
 use super::{Action, Move, Performer, Score, ScoreError, ScoreErrorKind, ScorePart, approximate};
 use crate::easing::Easing;
-
-/// Highest number of frames of a dance: 3.6 hours at 200 ms.
-const MAX_FRAMES: u32 = 65_535;
-
-const WITHIN_MAX_FRAMES: &str = "within 65535 frames";
-
-/// How far from a whole number of frames a time in decimal digits may be by its binary rounding.
-const WHOLE: f64 = 1e-6;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -294,137 +291,5 @@ fn overlap(before: &Move, after: &Move, motors: &[Performer], clock: Clock) -> S
             other: before.number,
             end_s: clock.seconds(before.end()),
         },
-    }
-}
-
-/// Seconds and frames.
-#[derive(Clone, Copy)]
-struct Clock {
-    timing: Timing,
-}
-
-impl Clock {
-    fn frame_s(self) -> f64 {
-        f64::from(self.timing.tick_us()) * f64::from(self.timing.frame_ticks()) / 1e6
-    }
-
-    fn seconds(self, frames: u32) -> f64 {
-        // To a thousandth of a microsecond, so that 0.2 times 3 is 0.6.
-        (f64::from(frames) * self.frame_s() * 1e9).round() / 1e9
-    }
-
-    fn frames(self, key: &'static str, value: f64) -> Result<u32, ScoreErrorKind> {
-        let frames = value / self.frame_s();
-        let whole = frames.round();
-        if !(0.0..=f64::from(u32::MAX)).contains(&whole) {
-            let wanted = "within 0 s and the longest dance";
-            return Err(ScoreErrorKind::Value { key, value, wanted });
-        }
-        if (frames - whole).abs() > WHOLE {
-            return Err(ScoreErrorKind::NotWhole {
-                key,
-                value,
-                frame_s: self.frame_s(),
-            });
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "whole and within u32"
-        )]
-        Ok(whole as u32)
-    }
-
-    /// The frames of a dance whose last move ends at a frame.
-    fn length(self, length_s: f64, end: u32) -> Result<u32, ScoreErrorKind> {
-        let frames = self.frames("length_s", length_s)?;
-        let wanted = if frames > MAX_FRAMES {
-            WITHIN_MAX_FRAMES
-        } else if frames < end {
-            "at or after the end of the last move"
-        } else {
-            return Ok(frames);
-        };
-        Err(ScoreErrorKind::Value {
-            key: "length_s",
-            value: length_s,
-            wanted,
-        })
-    }
-
-    fn too_long(self, one: &Move) -> ScoreErrorKind {
-        ScoreErrorKind::TooLong {
-            end_s: self.seconds(one.end()),
-            most_s: self.seconds(MAX_FRAMES),
-        }
-    }
-}
-
-/// Where the lines of a text end: looked for once, not again for each part.
-struct Lines {
-    ends: Vec<usize>,
-}
-
-impl Lines {
-    fn of(text: &str) -> Self {
-        let ends = text.match_indices('\n').map(|(end, _)| end);
-        Self {
-            ends: ends.collect(),
-        }
-    }
-
-    /// Line of an offset, from 1.
-    fn line(&self, offset: usize) -> u32 {
-        let before = self.ends.partition_point(|end| *end < offset);
-        u32::try_from(before).unwrap_or(u32::MAX).saturating_add(1)
-    }
-}
-
-/// The TOML reader's message, with line and part of the score.
-fn text_error(text: &str, error: &toml::de::Error) -> ScoreError {
-    let offset = error.span().map_or(0, |span| span.start);
-    let kind = ScoreErrorKind::Text {
-        message: error.message().replace('\n', ", "),
-    };
-    ScoreError {
-        line: Lines::of(text).line(offset),
-        part: part(text, offset),
-        kind,
-    }
-}
-
-/// The places of the parts, whatever is in them.
-#[derive(Deserialize)]
-struct Outline {
-    #[serde(default)]
-    motor: Vec<Spanned<IgnoredAny>>,
-    #[serde(default, rename = "move")]
-    moves: Vec<Spanned<IgnoredAny>>,
-}
-
-/// The part that an offset is in: the last one that starts before. In a text that is no TOML only
-/// the parts under a header of their own are seen.
-fn part(text: &str, offset: usize) -> ScorePart {
-    let starts = match toml::from_str::<Outline>(text) {
-        Ok(Outline { motor, moves }) => {
-            let starts = |parts: Vec<Spanned<IgnoredAny>>| -> Vec<usize> {
-                parts.iter().map(|part| part.span().start).collect()
-            };
-            [starts(motor), starts(moves)]
-        }
-        Err(_) => ["[[motor]]", "[[move]]"].map(|header| {
-            let headers = text.match_indices(header);
-            headers.map(|(start, _)| start).collect()
-        }),
-    };
-    let [motor, last_move] = starts.map(|starts| {
-        let before = (1..).zip(starts).take_while(|(_, start)| *start <= offset);
-        before.last()
-    });
-    match (motor, last_move) {
-        (Some((_, motor)), Some((number, start))) if start > motor => ScorePart::Move(number),
-        (None, Some((number, _))) => ScorePart::Move(number),
-        (Some((number, _)), _) => ScorePart::Motor(number),
-        (None, None) => ScorePart::Head,
     }
 }

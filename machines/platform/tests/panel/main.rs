@@ -1,6 +1,9 @@
 //! The panel as an operator and a machine see it.
 #![cfg(test)]
 
+mod any_course;
+mod screens;
+
 use handwheel::{Event, Key, LcdAnswer, LedState, Position, RotarySwitch, Status, WheelQuantiser};
 use platform::{
     Action, Arbiter, Axis, Input, Panel, PanelSettings, PanelSettingsError, PendantId, PoseChange,
@@ -77,60 +80,6 @@ fn jog(locator: u8, axis: Axis, speed_um_s: i32) -> Option<Action> {
 }
 
 #[test]
-fn the_three_screens() {
-    let mut desk = Desk::new(1);
-    let single = [
-        "SINGLE",
-        ">LOCATOR  1 IDLE",
-        " LOCATOR  2 IDLE",
-        " LOCATOR  3 IDLE",
-        " ADJUST     IDLE",
-        "",
-        "",
-        "",
-    ];
-    assert_eq!(desk.screen(0), single);
-    desk.press(0, ENTER);
-    let locator = [
-        " LOCATOR  1 IDLE",
-        "",
-        ">X  +1234.567 mm",
-        " Y     -0.001 mm",
-        " Z     +0.000 mm",
-        "",
-        " SPEED      x100",
-        "",
-    ];
-    assert_eq!(desk.screen(0), locator);
-    desk.press(0, DOWN);
-    desk.press(0, DOWN);
-    // 2147483.648 does not fit.
-    assert_eq!(desk.screen(0)[2], ">X ********** mm");
-    desk.press(0, UP);
-    assert_eq!(desk.screen(0)[0], " LOCATOR  2 IDLE");
-    desk.press(0, ENTER);
-    assert_eq!(desk.screen(0)[2], ">LOCATOR  2 IDLE");
-    desk.press(0, DOWN);
-    desk.press(0, DOWN);
-    desk.press(0, ENTER);
-    desk.on(0, Input::Wheel(-1005));
-    desk.rotary_switches(0, 2, 6);
-    desk.on(0, Input::Wheel(12));
-    let adjust = [
-        "ADJUST x10  IDLE",
-        " dX  -100.000 mm",
-        " dY    +0.000 mm",
-        " dZ    +0.000 mm",
-        " da +0.000000deg",
-        " db +0.000000deg",
-        ">dg +0.012000deg",
-        "",
-    ];
-    assert_eq!(desk.screen(0), adjust);
-    assert!(desk.screen(0).iter().all(|line| line.len() <= 16));
-}
-
-#[test]
 fn a_key_that_went_down_unseen_does_nothing() {
     let mut desk = Desk::new(1);
     let key = Key::new(ENTER).ok();
@@ -172,21 +121,6 @@ fn events_of_the_driver_are_inputs() {
     ] {
         assert_eq!(Input::of_event(&event), input);
     }
-}
-
-#[test]
-fn the_list_scrolls() {
-    let settings = PanelSettings::new(WheelQuantiser::new(100, 10).unwrap());
-    let mut panel = Panel::new(PendantId(0), settings).unwrap();
-    let mut arbiter = Arbiter::<10>::new();
-    for _ in 0..12 {
-        panel.handle(Input::Key(Key::new(DOWN).ok()), &mut arbiter);
-        panel.handle(Input::Key(None), &mut arbiter);
-    }
-    let screen = panel.screen(&arbiter, &[[0; 3]; 10]);
-    let lines: Vec<_> = screen.lines().collect();
-    assert_eq!(lines[1], " LOCATOR  6 IDLE");
-    assert_eq!(lines[6], ">ADJUST     IDLE");
 }
 
 #[test]
@@ -367,89 +301,4 @@ fn settings_are_checked() {
         Panel::new(PendantId(0), same),
         Err(PanelSettingsError::SameKey { key })
     );
-}
-
-fn input() -> impl Strategy<Value = Input> {
-    let key = || prop::option::of((1u8..=5).prop_map(|key| Key::new(key).unwrap()));
-    let position = || (1u8..=7).prop_map(|position| Position::new(position).unwrap());
-    let switch = prop::sample::select(vec![RotarySwitch::W1, RotarySwitch::W2]);
-    prop_oneof![
-        6 => key().prop_map(Input::Key),
-        2 => (switch, position())
-            .prop_map(|(switch, position)| Input::RotarySwitch(switch, position)),
-        2 => (key(), position(), position())
-            .prop_map(|(key, w1, w2)| Input::Status(Status::Hbls { key, w1, w2 })),
-        4 => (prop::bool::weighted(0.8), prop::bool::weighted(0.8))
-            .prop_map(|(left, right)| Input::Enable { left, right }),
-        1 => Just(Input::Enable { left: false, right: false }),
-        6 => (-300..300i32).prop_map(Input::Wheel),
-        1 => any::<i32>().prop_map(Input::Wheel),
-        1 => Just(Input::Wheel(0)),
-        1 => Just(Input::StopButton),
-        1 => Just(Input::Lost),
-        3 => Just(Input::AtRest),
-        1 => Just(Input::Refused(Refusal::NotReady)),
-    ]
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
-
-    /// Any course of inputs at two pendants: nothing moves unless both switches of its pendant are down
-    /// and have been up before; a stop follows at once when one comes up, or the link or the
-    /// stop button says so; nothing is moved by two; and every screen can be shown.
-    #[test]
-    fn any_course_is_safe(inputs in prop::collection::vec((0usize..2, input()), 1..150)) {
-        let mut desk = Desk::new(2);
-        let mut down = [false; 2];
-        let mut armed = [true; 2];
-        let mut moving = [None; 2];
-        for (unit, input) in inputs {
-            match input {
-                Input::Enable { left, right } => {
-                    down[unit] = left && right;
-                    armed[unit] |= !left && !right;
-                }
-                Input::Lost => armed[unit] = false,
-                Input::AtRest | Input::Refused(_) => moving[unit] = None,
-                _ => {}
-            }
-            let action = desk.on(unit, input);
-            let enabled = down[unit] && armed[unit];
-            prop_assert_eq!(desk.panels[unit].is_enabled(), enabled);
-            let target = match action {
-                Some(Action::Jog { locator, speed_um_s, .. }) => {
-                    prop_assert!(speed_um_s != 0 && speed_um_s.unsigned_abs() <= 10_000);
-                    Some(Target::Locator(locator))
-                }
-                Some(Action::Move(change)) => {
-                    prop_assert!(change != PoseChange::ZERO);
-                    Some(Target::Body)
-                }
-                Some(Action::Stop(target)) => {
-                    prop_assert_eq!(moving[unit], Some((target, true)));
-                    moving[unit] = Some((target, false));
-                    None
-                }
-                _ => None,
-            };
-            if let Some(target) = target {
-                prop_assert!(enabled);
-                prop_assert!(moving[unit].is_none_or(|it| it == (target, true)));
-                moving[unit] = Some((target, true));
-            }
-            let must_stop = !enabled || input == Input::StopButton;
-            prop_assert!(!must_stop || moving[unit].is_none_or(|(_, runs)| !runs));
-            if let [Some((a, _)), Some((b, _))] = moving {
-                prop_assert!(a != b && a != Target::Body && b != Target::Body);
-            }
-            for (unit, panel) in (0u8..).zip(&desk.panels) {
-                prop_assert_eq!(panel.is_moving(), moving[usize::from(unit)].is_some());
-                let owns = [0, 1, 2].map(Target::Locator).into_iter().chain([Target::Body])
-                    .any(|it| desk.arbiter.owner(it) == Some(PendantId(unit)));
-                prop_assert_eq!(owns, panel.is_moving());
-            }
-            prop_assert!(desk.screen(unit).iter().all(|line| line.len() <= 16));
-        }
-    }
 }
