@@ -76,6 +76,7 @@ fn arms_keep_their_limits_and_corners_their_tolerance() {
             (worst - run.number("/max_path_error_mm")).abs() < 0.01,
             "{worst}"
         );
+        assert!(run.number("/departure_bound_mm") <= 0.01);
         // A turn back is met, and so is the end.
         let (to, steps) = asked.last().unwrap();
         assert_eq!(run.steps.last().unwrap().1, *steps);

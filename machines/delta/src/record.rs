@@ -31,6 +31,8 @@ pub(crate) struct Refusal {
 pub struct Record {
     pub(crate) motion: Motion,
     pub(crate) moves: Vec<Move>,
+    /// Of lines with rounded corners.
+    pub(crate) departure_bound_mm: Option<f64>,
     pub(crate) refusals: Vec<Refusal>,
     pub(crate) notes: Notes,
 }
@@ -40,6 +42,7 @@ impl Record {
         Self {
             motion,
             moves: Vec::new(),
+            departure_bound_mm: None,
             refusals: Vec::new(),
             notes: Notes::default(),
         }

@@ -24,6 +24,9 @@ pub struct Report {
     motion: &'static str,
     /// Farthest that the simulated platform was from the lines asked for.
     max_path_error_mm: f64,
+    /// With rounded corners, a proven bound on how far the platform leaves the rounded lines, whole
+    /// steps not counted.
+    departure_bound_mm: Option<f64>,
     duration_s: f64,
     /// Of all motors, either way.
     steps: u64,
@@ -75,6 +78,7 @@ impl Report {
             notes: record.notes(),
             motion: record.motion.name(),
             max_path_error_mm: run.driven.max_path_error_mm,
+            departure_bound_mm: record.departure_bound_mm,
             duration_s: run.driven.duration_s,
             steps: run.driven.steps,
             rad_per_step: machine.rad_per_step,

@@ -100,7 +100,9 @@ impl<'a> Session<'a> {
     /// A corner cannot be rounded where the machine can be, or the observer's.
     pub fn finish(mut self) -> Result<Record> {
         if self.motion == Motion::Rounded {
-            rounded::run(self.machine, &mut self.record.moves, &mut *self.observer)?;
+            let moves = &mut self.record.moves;
+            let bound_mm = rounded::run(self.machine, moves, &mut *self.observer)?;
+            self.record.departure_bound_mm = Some(bound_mm);
         }
         Ok(self.record)
     }
@@ -126,7 +128,12 @@ impl<'a> Session<'a> {
             Ok(Some(Command::Move { to, feed_mm_s })) => {
                 let feed_mm_s = feed_mm_s.unwrap_or(self.machine.feed_mm_s);
                 let start = (self.point, self.position);
-                let plan = Plan::new(self.machine, start, to, feed_mm_s);
+                let plan = Plan::new(self.machine, start, to, feed_mm_s).and_then(|plan| {
+                    if self.motion == Motion::Rounded {
+                        rounded::check(self.machine, self.point, to)?;
+                    }
+                    Ok(plan)
+                });
                 match plan.with_context(|| format!("{} {} {}", to.x, to.y, to.z)) {
                     Ok(plan) => self.run(&plan, to, feed_mm_s).map(Some),
                     Err(error) => Ok(Some(self.refuse(&error))),
