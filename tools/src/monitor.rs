@@ -15,6 +15,7 @@ use clap::Args;
 use proto3964r::{
     Character, Config, Diagnosis, Line, Monitor, Observation, Priority, Side, diagnose,
 };
+use serde::Serialize;
 
 use crate::{port::Frame, preset::Preset, text};
 
@@ -59,6 +60,9 @@ pub(crate) struct Options {
     preset: Preset,
     #[command(flatten)]
     frame: Frame,
+    /// Print verdicts as JSON, one a line, and nothing else.
+    #[arg(long)]
+    json: bool,
     /// End after so many seconds; without it, ports are heard for ever.
     #[arg(long, requires = "port", value_parser = text::seconds, allow_hyphen_values = true)]
     seconds: Option<Duration>,
@@ -68,16 +72,15 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     // A listener has no priority and sends nothing.
     let config = options.preset.config(Priority::Low, Line::Instant);
     match &options.capture {
-        Some(path) => replay(path, config)?,
-        None => listen(options, config)?,
+        Some(path) => replay(path, Tap::new(config, options.json))?,
+        None => listen(options, Tap::new(config, options.json))?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the conversation of a capture file and the verdict.
-fn replay(path: &str, config: Config) -> Result<()> {
+fn replay(path: &str, mut tap: Tap) -> Result<()> {
     let text = fs::read_to_string(path).with_context(|| path.to_owned())?;
-    let mut tap = Tap::new(config);
     let mut before = Duration::ZERO;
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -95,20 +98,24 @@ fn replay(path: &str, config: Config) -> Result<()> {
         before = now;
         tap.hear(now, side, &bytes)?;
     }
-    conclude(&diagnose(&tap.record, &config))
+    tap.conclude()
 }
 
-/// A monitor and all that it has heard.
+/// A monitor, all that it has heard, and how it is told.
 struct Tap {
+    config: Config,
     monitor: Monitor<BLOCK>,
     record: Vec<Character>,
+    json: bool,
 }
 
 impl Tap {
-    fn new(config: Config) -> Self {
+    fn new(config: Config, json: bool) -> Self {
         Self {
+            config,
             monitor: Monitor::new(config),
             record: Vec::new(),
+            json,
         }
     }
 
@@ -124,17 +131,69 @@ impl Tap {
                 byte,
                 error: None,
             });
-            show(at, self.monitor.handle_byte(at, side, byte))?;
+            show(at, self.monitor.handle_byte(at, side, byte), self.json)?;
         }
         Ok(())
     }
 
+    /// Nothing has come up to now.
+    fn wait(&mut self, now: Duration) -> Result<()> {
+        show(now, self.monitor.handle_timeout(now), self.json)
+    }
+
     /// The verdict on the last minute.
-    fn recent(&self, now: Duration, config: &Config) -> Diagnosis {
+    fn recent(&self, now: Duration) -> Diagnosis {
         let from = now.saturating_sub(RECENT);
         let begin = self.record.partition_point(|heard| heard.at < from);
-        diagnose(self.record.get(begin..).unwrap_or_default(), config)
+        diagnose(self.record.get(begin..).unwrap_or_default(), &self.config)
     }
+
+    /// Prints a verdict on the last minute.
+    fn report(&self, now: Duration, recent: &Diagnosis) -> Result<()> {
+        if self.json {
+            print_json(Some(now), recent)
+        } else {
+            print(
+                &format!("{} verdict: {}", seconds(now), recent.verdict),
+                "1",
+            )
+        }
+    }
+
+    /// Prints the verdict on all.
+    fn conclude(&self) -> Result<()> {
+        let diagnosis = diagnose(&self.record, &self.config);
+        if self.json {
+            print_json(None, &diagnosis)
+        } else {
+            print(&format!("verdict: {diagnosis}"), "1")
+        }
+    }
+}
+
+/// A verdict for programs.
+#[derive(Serialize)]
+struct Report<'d> {
+    /// When, for a verdict on the last minute.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at_s: Option<f64>,
+    /// As a person reads it.
+    sentence: String,
+    /// What tells the causes apart.
+    measurement: Option<&'static str>,
+    #[serde(flatten)]
+    diagnosis: &'d Diagnosis,
+}
+
+fn print_json(now: Option<Duration>, diagnosis: &Diagnosis) -> Result<()> {
+    let report = Report {
+        at_s: now.map(|now| now.as_secs_f64()),
+        sentence: diagnosis.verdict.to_string(),
+        measurement: diagnosis.verdict.measurement(),
+        diagnosis,
+    };
+    let line = serde_json::to_string(&report).context("JSON")?;
+    writeln!(io::stdout(), "{line}").context("standard output")
 }
 
 fn parse(line: &str) -> Result<(Duration, Side, Vec<u8>), String> {
@@ -157,7 +216,7 @@ fn parse(line: &str) -> Result<(Duration, Side, Vec<u8>), String> {
 type Heard = io::Result<(Instant, Side, Vec<u8>)>;
 
 /// Prints what two ports hear, and the verdict at the end.
-fn listen(options: &Options, config: Config) -> Result<()> {
+fn listen(options: &Options, mut tap: Tap) -> Result<()> {
     let [a, b] = &options.port[..] else {
         bail!("two ports are needed, one for each direction");
     };
@@ -168,7 +227,6 @@ fn listen(options: &Options, config: Config) -> Result<()> {
         let sender = sender.clone();
         thread::spawn(move || hear(port, side, &sender));
     }
-    let mut tap = Tap::new(config);
     let mut verdict = None;
     let mut due = PAUSE;
     while options.seconds.is_none_or(|end| begin.elapsed() < end) {
@@ -177,10 +235,7 @@ fn listen(options: &Options, config: Config) -> Result<()> {
                 let (at, side, bytes) = heard?;
                 tap.hear(at - begin, side, &bytes)?;
             }
-            Err(RecvTimeoutError::Timeout) => {
-                let now = begin.elapsed();
-                show(now, tap.monitor.handle_timeout(now))?;
-            }
+            Err(RecvTimeoutError::Timeout) => tap.wait(begin.elapsed())?,
             Err(RecvTimeoutError::Disconnected) => break,
         }
         let now = begin.elapsed();
@@ -189,12 +244,13 @@ fn listen(options: &Options, config: Config) -> Result<()> {
         }
         due = now + PAUSE;
         // Its numbers change all the time.
-        let recent = tap.recent(now, &config).verdict;
-        if verdict.replace(mem::discriminant(&recent)) != Some(mem::discriminant(&recent)) {
-            print(&format!("{} verdict: {recent}", seconds(now)), "1")?;
+        let recent = tap.recent(now);
+        let kind = mem::discriminant(&recent.verdict);
+        if verdict.replace(kind) != Some(kind) {
+            tap.report(now, &recent)?;
         }
     }
-    conclude(&diagnose(&tap.record, &config))
+    tap.conclude()
 }
 
 /// Reads a port until it or the monitor ends.
@@ -217,7 +273,14 @@ fn hear(mut port: Box<dyn serialport::SerialPort>, side: Side, sender: &Sender<H
     }
 }
 
-fn show<'a>(now: Duration, observations: impl Iterator<Item = Observation<'a>>) -> Result<()> {
+fn show<'a>(
+    now: Duration,
+    observations: impl Iterator<Item = Observation<'a>>,
+    json: bool,
+) -> Result<()> {
+    if json {
+        return Ok(());
+    }
     for observation in observations {
         print(
             &format!("{} {observation}", seconds(now)),
@@ -230,10 +293,6 @@ fn show<'a>(now: Duration, observations: impl Iterator<Item = Observation<'a>>) 
 /// A time as the captures have it.
 fn seconds(time: Duration) -> String {
     format!("{}.{:06}s", time.as_secs(), time.subsec_micros())
-}
-
-fn conclude(diagnosis: &Diagnosis) -> Result<()> {
-    print(&format!("verdict: {diagnosis}"), "1")
 }
 
 /// The terminal's code: green for what goes well, red for what does not, plain for the rest.

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::process::Stdio;
 use std::thread;
 
+use serde_json::{Value, json};
 use serialport::{SerialPort as _, TTYPort};
 use tempfile::TempDir;
 
@@ -90,6 +91,25 @@ fn wrong_bcc_and_its_repeat() {
             "B to A: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts",
         ]
     );
+}
+
+#[test]
+fn json() {
+    let text = "0.0 > 02\n0.4 < 15\n0.401 > 02\n0.801 < 15\n";
+    let printed = replay(&["--json"], text);
+    assert_eq!(printed.len(), 1);
+    let report: Value = serde_json::from_str(&printed[0]).unwrap();
+    assert_eq!(
+        report["verdict"],
+        json!({ "NoReceiveBuffer": { "refuser": "B" } })
+    );
+    assert_eq!(
+        report["sentence"],
+        "B answers NAK to STX: no receive buffer"
+    );
+    assert_eq!(report["or"], Value::Null);
+    assert_eq!(report["a"]["requests"], 2);
+    assert_eq!(report["b"]["telegrams"], 0);
 }
 
 #[test]

@@ -95,14 +95,14 @@ fn candidates(record: &[Character], by: Side, limit: Duration) -> impl Iterator<
         })
 }
 
-/// How long `side` waits for an answer: the shortest time from an STX of it to its next one, or to
-/// the NAK with which it gives up, with nothing between them.
+/// How long `side` waits for an answer: the shortest time between two STX of it with nothing between
+/// them.
 pub(super) fn patience_of(record: &[Character], side: Side) -> Option<Duration> {
     let waits = record.windows(2).enumerate().filter_map(|(at, pair)| {
         let [first, second] = pair else { return None };
         let goes_on = is_request(record, at)
             && [first.side, second.side] == [side; 2]
-            && matches!(second.intact(), Some(STX | NAK));
+            && second.intact() == Some(STX);
         goes_on.then(|| since(first.at, second.at))
     });
     waits.filter(|&wait| wait > ALONE).min()

@@ -29,7 +29,7 @@ pub(super) struct Conduct {
     pub(super) requests: u32,
     pub(super) refused: u32,
     pub(super) unanswered: u32,
-    /// In a row, up to the end.
+    /// In a row and without any character of this side, up to the end.
     pub(super) unanswered_at_end: u32,
     pub(super) conflicts: u32,
     /// Sent on without an answer, with DLE or with something else.
@@ -156,6 +156,7 @@ impl Evidence {
         let conduct = &mut self.sides[side];
         count(&mut conduct.characters);
         conduct.last = at;
+        conduct.unanswered_at_end = 0;
         if conversation.took_for_block() {
             count(&mut conduct.in_blocks);
             if heard.error.is_some() || byte == 0 {
@@ -324,9 +325,7 @@ impl Evidence {
 
     /// DLE or NAK to STX.
     fn answered(&mut self, by: Side) {
-        let conduct = &mut self.sides[by];
-        count(&mut conduct.reacted);
-        conduct.unanswered_at_end = 0;
+        count(&mut self.sides[by].reacted);
     }
 
     fn no_answer(&mut self, silent: Side) {

@@ -49,11 +49,10 @@ type Rule<'c> = fn(&Case<'c>, Side) -> Option<Verdict>;
 
 impl<'c> Case<'c> {
     /// What can be said of one side, after what concerns both.
-    const RULES: [Rule<'c>; 15] = [
+    const RULES: [Rule<'c>; 14] = [
         Self::late,
         Self::not_heard,
         Self::no_answer,
-        Self::no_longer_answers,
         Self::without_bcc,
         Self::other_bcc,
         Self::no_receive_buffer,
@@ -88,6 +87,13 @@ impl<'c> Case<'c> {
             return (verdict, None);
         }
         if let Some(verdict) = Side::BOTH.into_iter().find_map(|side| self.own_echo(side)) {
+            return (verdict, None);
+        }
+        // A side that died in a conflict leaves it open.
+        if let Some(verdict) = Side::BOTH
+            .into_iter()
+            .find_map(|side| self.no_longer_answers(side))
+        {
             return (verdict, None);
         }
         if let Some(priority) = self.same_priority() {
@@ -280,11 +286,12 @@ impl<'c> Case<'c> {
     fn no_longer_answers(&self, silent: Side) -> Option<Verdict> {
         let Conduct {
             unanswered_at_end,
+            reacted,
             last,
             ..
         } = *self.side(silent);
-        (unanswered_at_end >= SILENT_AT_THE_END)
-            .then_some(Verdict::NoLongerAnswers { silent, last })
+        let has_died = reacted > 0 && unanswered_at_end >= SILENT_AT_THE_END;
+        has_died.then_some(Verdict::NoLongerAnswers { silent, last })
     }
 
     /// Less than would make it unreadable, and nothing else is known.
