@@ -89,9 +89,8 @@ fn some_blocks_are_damaged() {
 
 #[test]
 fn characters_of_one_side_cannot_be_read() {
-    for name in ["01a_parity_B_8N1.txt", "02b_baud_B_4800.txt"] {
-        check(name, |_, b| Verdict::Garbage { side: b });
-    }
+    check("01a_parity_B_8N1.txt", |_, b| Verdict::NoParity { side: b });
+    check("02b_baud_B_4800.txt", |_, b| Verdict::Garbage { side: b });
 }
 
 #[test]

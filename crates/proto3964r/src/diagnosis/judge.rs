@@ -75,13 +75,10 @@ impl<'c> Case<'c> {
         if self.echo.is_everywhere() && self.echo.has_data() {
             return (Verdict::Echo, None);
         }
-        let (unreadable_a, unreadable_b) =
-            (self.is_unreadable(Side::A), self.is_unreadable(Side::B));
-        match (unreadable_a, unreadable_b) {
-            (true, true) => return (Verdict::BothGarbage, None),
-            (true, false) => return (Verdict::Garbage { side: Side::A }, None),
-            (false, true) => return (Verdict::Garbage { side: Side::B }, None),
-            (false, false) => {}
+        match Side::BOTH.map(|side| self.unreadable(side)) {
+            [Some(_), Some(_)] => return (Verdict::BothGarbage, None),
+            [Some(verdict), None] | [None, Some(verdict)] => return (verdict, None),
+            [None, None] => {}
         }
         if let Some(verdict) = self.tap() {
             return (verdict, None);
@@ -164,9 +161,11 @@ impl<'c> Case<'c> {
     }
 
     /// Nothing of what this side sends makes sense.
-    fn is_unreadable(&self, side: Side) -> bool {
+    fn unreadable(&self, side: Side) -> Option<Verdict> {
         let Conduct {
             good,
+            bad,
+            unfinished,
             garbage,
             control,
             in_blocks,
@@ -175,8 +174,19 @@ impl<'c> Case<'c> {
             ..
         } = *self.side(side);
         let outside = garbage >= GARBAGE && garbage >= control;
-        let inside = unreadable >= GARBAGE && most(unreadable, in_blocks);
-        good == 0 && without_bcc == 0 && (outside || inside)
+        // Data may be full of 00h: then the blocks come to their end.
+        let inside = unreadable >= GARBAGE && most(unreadable, in_blocks) && bad <= unfinished;
+        if good > 0 || without_bcc > 0 || !(outside || inside) {
+            return None;
+        }
+        // STX, DLE and NAK have an odd number of ones: a stop bit looks like their parity bit.
+        Some(
+            if inside && control >= GARBAGE && control.saturating_mul(8) >= garbage {
+                Verdict::NoParity { side }
+            } else {
+                Verdict::Garbage { side }
+            },
+        )
     }
 
     /// One side answers what the other, which is never heard, must have said.

@@ -214,6 +214,14 @@ pub enum Verdict {
         /// Who sends them.
         side: Side,
     },
+    /// Blocks that cannot be read, where STX, DLE and NAK can.
+    #[error(
+        "{side} sends another parity, most likely none (8N1 in place of 8E1): its STX, DLE and NAK can be read, its blocks cannot"
+    )]
+    NoParity {
+        /// Who sends them.
+        side: Side,
+    },
     /// Characters of both sides cannot be read.
     #[error("neither side can be read: parity or baud rate of the tap, or of the line, is another")]
     BothGarbage,

@@ -161,7 +161,12 @@ proptest! {
         let [mut faulty, partner] = case.plans();
         faulty.setting = setting;
         let found = case.diagnose([faulty, partner]);
-        prop_assert_eq!(found.verdict, Verdict::Garbage { side: case.faulty }, "{}", found);
+        let side = case.faulty;
+        // A missing parity bit shows as such where STX, DLE and NAK mostly stand alone.
+        let is_named = found.verdict == Verdict::Garbage { side }
+            || found.verdict == Verdict::NoParity { side }
+                && setting == (Setting { parity: Parity::None, ..USUAL });
+        prop_assert!(is_named, "{}", found);
     }
 
     #[test]
