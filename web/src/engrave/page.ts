@@ -8,9 +8,10 @@ import star from '../../../machines/engraver/drawings/star.svg?raw';
 import shipped from '../../../machines/engraver/machine.toml?raw';
 import wasm from '../../built/engrave.wasm?url';
 import { Chart } from '../shared/chart';
-import { create, element, save, settled, takeFiles } from '../shared/dom';
+import { element, save, settled, takeFiles } from '../shared/dom';
 import { Machine, Superseded } from '../shared/machine';
 import { SettingsForm } from '../shared/settings';
+import { FileButtons, Status } from '../shared/result';
 import { fromAddress, keep, kept, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { Engraving, type Result } from './engraving';
@@ -18,18 +19,18 @@ import { Lanes } from './lanes';
 import { Scene } from './scene';
 
 const DRAWINGS: Record<string, string> = { rosette, star, lettering };
-const FILES = ['pattern.bin', 'pattern.h', 'pulses.vcd', 'engraved.svg', 'report.json'];
 
 const STAGES = ['Planning', 'Engraving'] as const;
 
 const machine = new Machine(wasm);
-const status = element('status', HTMLElement);
+const status = new Status();
 const progress = element('progress', HTMLProgressElement);
 const drawing = element('drawing', HTMLSelectElement);
 const tolerance = element('tolerance', HTMLInputElement);
 const placement = element('placement', HTMLInputElement);
 const keepOrder = element('keep-order', HTMLInputElement);
-const files = element('files', HTMLElement);
+const names = ['pattern.bin', 'pattern.h', 'pulses.vcd', 'engraved.svg', 'report.json'];
+const files = new FileButtons(machine, 'engrave.file', names, status);
 
 const scene = new Scene(element('scene', HTMLCanvasElement));
 const lanes = new Lanes(element('lanes', HTMLCanvasElement), element('lanes-note', HTMLElement));
@@ -52,18 +53,9 @@ const replan = settled(150, engrave);
 
 /** What is shown is outdated as soon as something is typed. */
 function changed(): void {
-  allowFiles(false);
-  say(STAGES[0]);
+  files.allow(false);
+  status.say(STAGES[0]);
   replan();
-}
-
-function allowFiles(isAllowed: boolean): void {
-  for (const button of files.querySelectorAll('button')) button.disabled = !isAllowed;
-}
-
-function say(text: string, isBad = false): void {
-  status.textContent = text;
-  status.classList.toggle('bad', isBad);
 }
 
 function svg(): { name: string; svg: string } {
@@ -95,19 +87,18 @@ async function engrave(): Promise<void> {
   try {
     const answer = await machine.call<Result>('engrave', parameters, (stage, fraction) => {
       progress.value = (stage + fraction) / STAGES.length;
-      say(STAGES[stage] ?? '');
+      status.say(STAGES[stage] ?? '');
     });
     show(new Engraving(answer));
   } catch (error) {
-    if (!(error instanceof Superseded))
-      refuse(error instanceof Error ? error.message : String(error));
+    if (!(error instanceof Superseded)) refuse(error);
   }
 }
 
-function refuse(message: string): void {
+function refuse(error: unknown): void {
   progress.hidden = true;
-  say(message, true);
-  allowFiles(false);
+  status.refuse('', error);
+  files.allow(false);
 }
 
 function show(engraving: Engraving): void {
@@ -117,9 +108,9 @@ function show(engraving: Engraving): void {
   const verdict = isWithinBound
     ? `Engraved in ${report.duration_s.toFixed(0)} s of the machine's time, within ${report.bound_mm.toFixed(3)} mm`
     : 'The tool left the drawing by more than the bound';
-  say([verdict, ...notes].join('\n'), !isWithinBound);
+  status.say([verdict, ...notes].join('\n'), !isWithinBound);
   element('summary', HTMLElement).textContent = summary;
-  allowFiles(true);
+  files.allow(true);
   scene.show(engraving);
   lanes.show(engraving);
   const [seconds, distance] = engraving.deviation;
@@ -134,15 +125,6 @@ function show(engraving: Engraving): void {
   transport.pause();
   transport.begin(report.duration_s);
   element('main', HTMLElement).dataset.ready = '';
-}
-
-async function saveFile(name: string): Promise<void> {
-  try {
-    const { blobs } = await machine.call('engrave.file', name);
-    if (blobs.file) save(name, blobs.file);
-  } catch (error) {
-    if (error instanceof Error) say(`${name}: ${error.message}`, true);
-  }
 }
 
 async function own(file: File): Promise<void> {
@@ -185,11 +167,6 @@ function begin(): void {
   element('save-machine', HTMLButtonElement).addEventListener('click', () =>
     save('machine.toml', settings.text),
   );
-  for (const name of FILES) {
-    const button = create('button', { type: 'button', textContent: name, disabled: true });
-    button.addEventListener('click', () => saveFile(name));
-    files.append(button);
-  }
   engrave();
 }
 

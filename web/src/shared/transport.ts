@@ -8,13 +8,19 @@ export class Transport {
   readonly #slider = element('time', HTMLInputElement);
   readonly #shown = element('shown-time', HTMLOutputElement);
   readonly #show: (seconds: number) => void;
+  readonly #playing: (isPlaying: boolean, seconds: number, rate: number) => void;
   #seconds = 0;
   #duration = 0;
   #frame = 0;
   #before = 0;
 
-  constructor(show: (seconds: number) => void) {
+  /** `playing` is told when it begins and ends to play, and at which multiple of real time. */
+  constructor(
+    show: (seconds: number) => void,
+    playing: (isPlaying: boolean, seconds: number, rate: number) => void = () => undefined,
+  ) {
     this.#show = show;
+    this.#playing = playing;
     this.#play.addEventListener('click', () => (this.#frame ? this.pause() : this.play()));
     this.#slider.addEventListener('input', () => this.set(Number(this.#slider.value)));
   }
@@ -45,12 +51,14 @@ export class Transport {
     this.#play.textContent = 'Pause';
     this.#before = performance.now();
     this.#frame = requestAnimationFrame((now) => this.#advance(now));
+    this.#playing(true, this.#seconds, Number(this.#speed.value));
   }
 
   pause(): void {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
     this.#play.textContent = 'Play';
+    this.#playing(false, this.#seconds, 0);
   }
 
   #advance(now: number): void {

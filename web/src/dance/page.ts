@@ -1,0 +1,263 @@
+// The page of the dancer: the score in the middle, what the robot makes of it above.
+import '../shared/style.css';
+import './dance.css';
+import '../shared/offline';
+import shipped from '../../../machines/dancer/score.toml?raw';
+import wasm from '../../built/dance.wasm?url';
+import { Chart } from '../shared/chart';
+import { element, save, settled, takeFiles } from '../shared/dom';
+import { Machine, Superseded } from '../shared/machine';
+import { FileButtons, Status } from '../shared/result';
+import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { Transport } from '../shared/transport';
+import { Dance, type Result } from './dance';
+import { Inspector } from './inspector';
+import { Music } from './music';
+import { Robot } from './robot';
+import { type Move, type Score, snap, toText } from './score';
+import { Timeline } from './timeline';
+
+interface Refused {
+  refused: { message: string; move: number | null };
+}
+
+/** Of an AT89C52. */
+const MEMORY_BYTES = 8192;
+
+const machine = new Machine(wasm);
+const status = new Status();
+const names = ['data.h', 'dance.svg', 'dance.vcd', 'report.json'];
+const files = new FileButtons(machine, 'dance.file', names, status);
+const law = element('law', HTMLSelectElement);
+const code = element('code', HTMLInputElement);
+
+let text = shipped;
+let score: Score = { motor: [] };
+let selected: number | undefined;
+/** The move that is refused. */
+let bad: number | undefined;
+let dance: Dance | undefined;
+/** Texts that can be taken back to. */
+const before: string[] = [];
+
+const music = new Music();
+const robot = new Robot(element('robot', HTMLCanvasElement));
+const transport = new Transport(
+  (seconds) => {
+    robot.at(seconds);
+    timeline.at(seconds);
+    chart.at(seconds);
+    apart.at(seconds);
+  },
+  (isPlaying, seconds, rate) => (isPlaying ? music.play(seconds, rate) : music.pause()),
+);
+const seek = (seconds: number) => transport.set(seconds);
+const chart = new Chart(element('angles', HTMLElement), '°', 200, seek);
+const apart = new Chart(element('apart', HTMLElement), '°', 140, seek);
+const timeline = new Timeline(element('timeline', HTMLElement), music.canvas, {
+  select: (index) => {
+    selected = index;
+    draw();
+  },
+  change: (index, change) => edit((moves) => Object.assign(moves[index] ?? {}, change), index),
+  copy,
+  remove,
+  seek,
+});
+const inspector = new Inspector((move) => {
+  const index = selected;
+  if (index !== undefined) edit((moves) => moves.splice(index, 1, move), index);
+});
+const perform = settled(100, run);
+
+function draw(): void {
+  timeline.show(score, selected, bad);
+  music.stretch(timeline.zoom);
+  inspector.show(score, selected);
+  showAngles();
+  for (const id of ['copy', 'delete']) {
+    element(id, HTMLButtonElement).disabled = selected === undefined;
+  }
+  element('undo', HTMLButtonElement).disabled = before.length === 0;
+}
+
+/** Changes the moves; what was before can be taken back. */
+function edit(change: (moves: Move[]) => void, then: number | undefined): void {
+  before.push(text);
+  score.move ??= [];
+  change(score.move);
+  text = toText(score);
+  selected = then;
+  changed();
+}
+
+function changed(): void {
+  keep('dance score', text === shipped ? null : text);
+  bad = undefined;
+  files.allow(false);
+  status.say('Dancing');
+  draw();
+  perform();
+}
+
+/** The same move again, right after it and its repetitions. */
+function copy(index: number): void {
+  const move = score.move?.[index];
+  if (!move) return;
+  const last = move.at_s + ((move.repeat ?? 1) - 1) * (move.every_s ?? 0);
+  const again = { ...move, at_s: snap(score, last + move.for_s) };
+  edit((moves) => moves.splice(index + 1, 0, again), index + 1);
+  timeline.focus(index + 1);
+}
+
+function remove(index: number): void {
+  edit((moves) => moves.splice(index, 1), undefined);
+  element('timeline', HTMLElement).focus();
+}
+
+function add(): void {
+  const motor = score.move?.[selected ?? 0]?.motor ?? score.motor[0]?.name ?? '';
+  const at_s = snap(score, transport.seconds);
+  const index = score.move?.length ?? 0;
+  edit((moves) => moves.push({ motor, at_s, for_s: 2, turn_deg: 45, easing: 'smooth' }), index);
+  timeline.focus(index);
+}
+
+async function takeBack(): Promise<void> {
+  const last = before.pop();
+  if (last !== undefined) await read(last, 'score.toml');
+}
+
+/** Takes a text as the score, if it is one. */
+async function read(given: string, name: string): Promise<boolean> {
+  try {
+    const { value } = await machine.call<Score>('dance.read', given);
+    text = given;
+    score = value;
+    selected = undefined;
+    changed();
+    return true;
+  } catch (error) {
+    status.refuse(name, error);
+    return false;
+  }
+}
+
+/** Another score, by hand. */
+async function open(given: string, name: string): Promise<void> {
+  const last = text;
+  if (!(await read(given, name))) return;
+  before.push(last);
+  draw();
+}
+
+async function run(): Promise<void> {
+  toAddress({
+    law: law.value === 'reset' ? null : law.value,
+    code: code.value === '589' ? null : code.value,
+  });
+  const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber || 0 };
+  machine.stop();
+  try {
+    const { value, blobs } = await machine.call<Result | Refused>('dance', parameters);
+    if ('refused' in value) {
+      const { message, move } = value.refused;
+      bad = move === null ? undefined : move - 1;
+      draw();
+      status.refuse('score.toml', message);
+    } else {
+      show(new Dance({ value, blobs }));
+    }
+  } catch (error) {
+    if (!(error instanceof Superseded)) status.refuse('score.toml', error);
+  }
+}
+
+function show(danced: Dance): void {
+  const isFirst = dance === undefined;
+  dance = danced;
+  const { report, summary, isAsAsked } = danced.result;
+  status.say(
+    isAsAsked
+      ? `Danced: ${report.frames} frames in ${report.duration_s} s, ${report.bytes_packed} bytes`
+      : 'A turn ends more than a half step from what was asked',
+    !isAsAsked,
+  );
+  element('summary', HTMLElement).textContent = summary;
+  const used = report.bytes_packed + report.code_bytes;
+  element('memory', HTMLMeterElement).value = used;
+  element('memory-note', HTMLElement).textContent =
+    `${used} of ${MEMORY_BYTES} bytes: ${report.fits_at89c52 ? 'fits' : 'does not fit'}`;
+  files.allow(true);
+  robot.show(danced);
+  const now = isFirst ? 0 : transport.seconds;
+  transport.begin(report.duration_s);
+  transport.set(now);
+  draw();
+  element('main', HTMLElement).dataset.ready = '';
+}
+
+/** The angle of the chosen move's motor, and how far off it were under the other law. */
+function showAngles(): void {
+  if (!dance) return;
+  const { frames, frameS, result } = dance;
+  const danced = dance;
+  const name = score.move?.[selected ?? 0]?.motor;
+  const found = result.motors.findIndex((it) => it.name === name);
+  const motor = Math.max(found, 0);
+  element('chart-title', HTMLElement).textContent = `Angle: ${result.motors[motor]?.name}`;
+  const each = (value: (frame: number) => number) =>
+    Array.from({ length: frames + 1 }, (_, frame) => value(frame));
+  const times = each((frame) => frame * frameS);
+  const { law: here, other_law: there } = result.report;
+  const angle = { label: `angle under the law ${here}`, colour: 'series-1' };
+  chart.show([angle], [times, each((frame) => danced.angle(motor, frame))]);
+  const away = { label: `the same frames under ${there.law}: how far away`, colour: 'series-2' };
+  const off = (frame: number) => danced.otherAngle(motor, frame) - danced.angle(motor, frame);
+  apart.show([away], [times, each(off)]);
+}
+
+async function openMusic(file: File): Promise<void> {
+  try {
+    await music.open(file);
+    music.stretch(timeline.zoom);
+  } catch {
+    status.refuse(file.name, 'this browser cannot decode it');
+  }
+}
+
+function on(id: string, act: () => void): void {
+  element(id, HTMLButtonElement).addEventListener('click', act);
+}
+
+function begin(): void {
+  law.value = fromAddress('law') ?? 'reset';
+  if (law.selectedIndex < 0) law.value = 'reset';
+  code.value = fromAddress('code') ?? '589';
+  for (const input of [law, code]) input.addEventListener('input', changed);
+  const zoom = element('zoom', HTMLInputElement);
+  zoom.addEventListener('input', () => {
+    timeline.zoom = Number(zoom.value);
+    music.stretch(timeline.zoom);
+  });
+  on('add', add);
+  on('copy', () => selected !== undefined && copy(selected));
+  on('delete', () => selected !== undefined && remove(selected));
+  on('undo', takeBack);
+  on('save-score', () => save('score.toml', text));
+  on('shipped', () => open(shipped, 'score.toml'));
+  document.addEventListener('keydown', (event) => {
+    const isUndo = (event.ctrlKey || event.metaKey) && event.key === 'z';
+    if (!isUndo || event.target instanceof HTMLInputElement) return;
+    event.preventDefault();
+    takeBack();
+  });
+  takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) => {
+    if (file.type.startsWith('audio/')) openMusic(file);
+    else open(await file.text(), file.name);
+  });
+  takeFiles(element('robot', HTMLElement), element('music', HTMLInputElement), openMusic);
+  read(kept('dance score') ?? shipped, 'score.toml');
+}
+
+begin();

@@ -1,0 +1,45 @@
+// What a machine says of a run, and the files that it leaves.
+import { create, element, save } from './dom';
+import type { Machine } from './machine';
+
+/** The line that tells how it went, read aloud as it changes. */
+export class Status {
+  readonly #line = element('status', HTMLElement);
+
+  say(text: string, isBad = false): void {
+    this.#line.textContent = text;
+    this.#line.classList.toggle('bad', isBad);
+  }
+
+  /** As a command line says it: where, and what is wrong. */
+  refuse(where: string, error: unknown): void {
+    const what = error instanceof Error ? error.message : String(error);
+    this.say(where === '' ? what : `${where}: ${what}`, true);
+  }
+}
+
+/** A button for each file, which asks the machine for it. */
+export class FileButtons {
+  readonly #buttons: HTMLButtonElement[];
+
+  constructor(machine: Machine, operation: string, names: string[], status: Status) {
+    this.#buttons = names.map((name) => {
+      const button = create('button', { type: 'button', textContent: name, disabled: true });
+      button.addEventListener('click', async () => {
+        try {
+          const { blobs } = await machine.call(operation, name);
+          if (blobs.file) save(name, blobs.file);
+        } catch (error) {
+          status.refuse(name, error);
+        }
+      });
+      return button;
+    });
+    element('files', HTMLElement).append(...this.#buttons);
+  }
+
+  /** Not while they are of an input that has changed. */
+  allow(isAllowed: boolean): void {
+    for (const button of this.#buttons) button.disabled = !isAllowed;
+  }
+}

@@ -1,0 +1,205 @@
+// The dancer in the browser: edited by hand, and the same bytes as from the command line.
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { assertAccessible, open, saved, shoot } from './browser.js';
+import { commandLine } from './command-line.js';
+
+/** @type {Awaited<ReturnType<typeof open>>} */
+let browser;
+before(async () => {
+  browser = await open();
+});
+after(() => browser.close());
+
+/** @param {import('playwright-core').Page} page */
+async function danced(page) {
+  await page.getByRole('status').filter({ hasText: 'Danced' }).waitFor();
+}
+
+/**
+ * A file in a folder of its own.
+ * @param {string} name
+ * @param {string | Buffer} contents
+ */
+function file(name, contents) {
+  const path = join(mkdtempSync(join(tmpdir(), 'page-')), name);
+  writeFileSync(path, contents);
+  return path;
+}
+
+test('the shipped score leaves the files of the command line, byte for byte', async () => {
+  const { page, done } = await browser.visit('dance.html');
+  await danced(page);
+  const { folder, text } = commandLine('dance', []);
+  for (const name of ['data.h', 'dance.svg', 'dance.vcd', 'report.json']) {
+    const bytes = await saved(page, name);
+    assert(bytes.equals(readFileSync(join(folder, name))), `${name} differs`);
+  }
+  const summary = (await page.locator('#summary').textContent()) ?? '';
+  assert(text.startsWith(`score.toml: ${summary}`), text);
+  await done();
+});
+
+test('an edited score is the same to the command line, under another law too', async () => {
+  const { page, done } = await browser.visit('dance.html?law=carry&code=4000');
+  await danced(page);
+  const bow = page.getByRole('button', { name: 'waist, to -25°, smooth, at 2 s' });
+
+  // By keys: a frame later, a frame longer, a copy, another motor, and one move less.
+  await bow.press('ArrowRight');
+  await page.getByRole('button', { name: 'at 2.2 s for 3 s' }).press('Shift+ArrowRight');
+  await page.getByRole('button', { name: 'at 2.2 s for 3.2 s' }).press('c');
+  const copy = page.getByRole('button', { name: 'at 5.4 s for 3.2 s' });
+  await page.locator('#status.bad').filter({ hasText: 'before move' }).waitFor();
+  assert(await page.locator('.move.bad').count());
+  await copy.press('Delete');
+  await danced(page);
+
+  // By a pointer: dragged, and stretched at its end.
+  await page.getByRole('slider', { name: 'Zoom' }).fill('20');
+  /**
+   * Drags a block by a place in it.
+   * @param {string} name
+   * @param {(width: number) => number} from
+   * @param {number} by
+   */
+  async function drag(name, from, by) {
+    const box = await page.getByRole('button', { name }).boundingBox();
+    assert(box);
+    const x = box.x + from(box.width);
+    await page.mouse.move(x, box.y + 10);
+    await page.mouse.down();
+    await page.mouse.move(x + by, box.y + 10, { steps: 4 });
+    await page.mouse.up();
+  }
+  await drag('at 2.2 s for 3.2 s', () => 10, -20);
+  await drag('at 1.2 s for 3.2 s', (width) => width - 3, 20);
+  await page.getByRole('button', { name: 'at 1.2 s for 4.2 s' }).click();
+
+  // By the fields.
+  await page.getByLabel('Value', { exact: true }).fill('-30');
+  await page.getByLabel('Value', { exact: true }).press('Tab');
+  await page.getByRole('button', { name: 'waist, to -30°' }).waitFor();
+  await page.getByRole('button', { name: 'Add a move' }).click();
+  await page.locator('#action').selectOption('speed');
+  await danced(page);
+  const score = file('score.toml', await saved(page, 'Save score.toml'));
+  const { folder } = commandLine('dance', [
+    '--score',
+    score,
+    '--law',
+    'carry',
+    '--code-bytes',
+    '4000',
+  ]);
+  for (const name of ['data.h', 'report.json']) {
+    assert((await saved(page, name)).equals(readFileSync(join(folder, name))), `${name} differs`);
+  }
+
+  // Kept, and taken back.
+  await page.reload();
+  await page.getByRole('button', { name: 'waist, to -30°' }).waitFor();
+  await page.getByRole('button', { name: 'As shipped' }).click();
+  await page.getByRole('button', { name: 'waist, to -25°, smooth, at 2 s' }).waitFor();
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.getByRole('button', { name: 'waist, to -30°' }).waitFor();
+  await danced(page);
+  await done();
+});
+
+test('what is refused is said as on the command line, and the page lives on', async () => {
+  const { page, done } = await browser.visit('dance.html');
+  await danced(page);
+  for (const text of [
+    'title = "no motor"\n',
+    'motor = [{ name = "a", half_step_deg = 0.9 }]\nmove = [\n{ motor = "b", at_s = 0, for_s = 1, speed = 9 }]\n',
+    'motor = [\n',
+  ]) {
+    const score = file('broken.toml', text);
+    await page.locator('#file').setInputFiles(score);
+    const status = page.locator('#status.bad').filter({ hasText: 'broken.toml' });
+    await status.waitFor();
+    const said = (await status.textContent()) ?? '';
+    const printed = commandLine('dance', ['--score', score]).text.trim();
+    assert(printed.endsWith(said.replace('broken.toml', score)), `${said}\n${printed}`);
+    await page.getByRole('button', { name: 'As shipped' }).click();
+    await danced(page);
+  }
+  const fast = page.getByRole('button', { name: 'waist, to -25°, smooth, at 2 s' });
+  await fast.click();
+  await page.getByLabel('Length in s').fill('0.2');
+  await page.getByLabel('Length in s').press('Tab');
+  const status = page.locator('#status.bad').filter({ hasText: 'needs a speed' });
+  await status.waitFor();
+  const score = file('score.toml', await saved(page, 'Save score.toml'));
+  const printed = commandLine('dance', ['--score', score]).text.trim();
+  const said = (await status.textContent()) ?? '';
+  assert(printed.endsWith(said.replace('score.toml', score)), `${said}\n${printed}`);
+  await page.keyboard.press('Control+z');
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await danced(page);
+  await done();
+});
+
+test('music lies under the lanes; what is no music is refused', async () => {
+  const { page, done } = await browser.visit('dance.html');
+  await danced(page);
+  await page.locator('#music').setInputFiles(file('tone.wav', tone(2)));
+  await page.locator('canvas.wave').waitFor();
+  assert.equal(await page.locator('canvas.wave').evaluate((it) => it.style.width), '12px');
+  await page.locator('#music').setInputFiles(file('no.wav', 'no music'));
+  await page.locator('#status.bad').filter({ hasText: 'no.wav' }).waitFor();
+  await done();
+});
+
+/**
+ * A tone as a WAV file.
+ * @param {number} seconds
+ */
+function tone(seconds) {
+  const samples = 8000 * seconds;
+  const bytes = Buffer.alloc(44 + samples, 128);
+  bytes.write('RIFF', 0);
+  bytes.writeUInt32LE(36 + samples, 4);
+  bytes.write('WAVEfmt ', 8);
+  for (const [offset, value] of /** @type {const} */ ([
+    [16, 16],
+    [24, 8000],
+    [28, 8000],
+    [40, samples],
+  ])) {
+    bytes.writeUInt32LE(value, offset);
+  }
+  for (const [offset, value] of /** @type {const} */ ([
+    [20, 1],
+    [22, 1],
+    [32, 1],
+    [34, 8],
+  ])) {
+    bytes.writeUInt16LE(value, offset);
+  }
+  bytes.write('data', 36);
+  for (let index = 0; index < samples; index += 1) bytes[44 + index] = 128 + 100 * Math.sin(index);
+  return bytes;
+}
+
+for (const scheme of /** @type {const} */ (['light', 'dark'])) {
+  for (const [size, viewport] of Object.entries({
+    wide: { width: 1280, height: 1000 },
+    phone: { width: 390, height: 844 },
+  })) {
+    test(`it is readable: ${scheme}, ${size}`, async () => {
+      const { page, done } = await browser.visit('dance.html', { viewport, colorScheme: scheme });
+      await danced(page);
+      await page.getByLabel('Time', { exact: true }).fill('24.6');
+      await page.getByRole('button', { name: 'left arm, to 80°' }).click();
+      await assertAccessible(page);
+      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+      await shoot(page, `dance-${scheme}-${size}`);
+      await done();
+    });
+  }
+}
