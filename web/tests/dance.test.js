@@ -84,6 +84,8 @@ test('an edited score is the same to the command line, under another law too', a
   await page.getByLabel('Value', { exact: true }).press('Tab');
   await page.getByRole('button', { name: 'waist, to -30°' }).waitFor();
   await page.getByRole('button', { name: 'Add a move' }).click();
+  await page.getByLabel('Start in s').fill('20');
+  await page.getByLabel('Start in s').press('Tab');
   await page.locator('#action').selectOption('speed');
   await danced(page);
   const score = file('score.toml', await saved(page, 'Save score.toml'));
