@@ -63,8 +63,10 @@ pub async fn connect(address: &str) -> io::Result<Client> {
 }
 
 impl Client {
-    /// Puts a client and its station on a stream. Must be called within a runtime of tokio with
-    /// time and io.
+    /// Puts a client and its station on a stream.
+    ///
+    /// # Panics
+    /// Outside of a runtime of tokio.
     #[must_use]
     pub fn new<S>(stream: S, line: proto3964r::Config, config: Config) -> Self
     where

@@ -70,7 +70,10 @@ impl Link {
     /// Telegrams that wait to be fetched, at most.
     pub const QUEUE: usize = 64;
 
-    /// Puts a station on a stream. Must be called within a runtime of tokio with time and io.
+    /// Puts a station on a stream.
+    ///
+    /// # Panics
+    /// Outside of a runtime of tokio.
     #[must_use]
     pub fn new<S>(stream: S, config: Config) -> Self
     where

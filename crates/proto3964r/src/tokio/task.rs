@@ -40,8 +40,10 @@ pub struct Task<J> {
 }
 
 impl<J: Send> Task<J> {
-    /// Starts `work`, which takes its jobs from the receiver and ends when that is closed. Must be
-    /// called within a runtime of tokio.
+    /// Starts `work`, which takes its jobs from the receiver and ends when that is closed.
+    ///
+    /// # Panics
+    /// Outside of a runtime of tokio.
     pub fn spawn<W>(work: impl FnOnce(mpsc::Receiver<J>) -> W) -> Self
     where
         W: Future<Output = io::Result<()>> + Send + 'static,
