@@ -8,22 +8,33 @@
 //!
 //! The second line reads nothing but the bytes of the first.
 //!
-//! `cargo run --release --example engrave -- [--svg FILE] [--machine FILE] [--tolerance MM] [--out DIR]`
+//! `cargo run --release --example engrave -- [--svg FILE] [--machine FILE] [--tolerance MM]
+//! [--controller pattern|timed] [--out DIR]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use command_line::{Artefacts, Progress, print_notes, print_summary, read};
 use engraver::{
-    Drawing, Machine, Placement, Plan, PlanSettings, PulseLog, Report, Tolerance, simulate,
+    Drawing, Machine, Placement, Plan, PlanSettings, PulseLog, Report, Run, TimedPlan, Tolerance,
+    Wires, simulate, simulate_timed,
 };
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/machines/engraver");
 
 /// Above it, `pulses.vcd` is written on demand only: 36 bytes a pulse make 18 MB.
 const MAX_LOGGED_PULSES: u64 = 500_000;
+
+/// What drives the motors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ControllerKind {
+    /// The source's, which gets nothing but the pattern bytes.
+    Pattern,
+    /// One that runs the joints' cubics: the tool at its feed wherever joints and disc allow.
+    Timed,
+}
 
 /// Engraves an SVG drawing with a simulated two-link arm that gets nothing but the
 /// pattern bytes.
@@ -48,6 +59,9 @@ struct Args {
     /// Without it the drawing is fitted into the machine's bed.
     #[arg(long, value_name = "MATRIX", allow_hyphen_values = true)]
     placement: Option<Placement>,
+    /// What drives the motors; with `timed` the pattern is played too, and the report compares both.
+    #[arg(long, value_enum, default_value_t = ControllerKind::Pattern)]
+    controller: ControllerKind,
     /// Engraves the strokes in the order and direction of the file; without it, the nearest next.
     #[arg(long)]
     keep_order: bool,
@@ -90,17 +104,39 @@ fn engrave(args: &Args) -> Result<ExitCode> {
     } else {
         artefacts.leave_out("pulses.vcd");
     }
+    let is_timed = args.controller == ControllerKind::Timed;
     let progress = Progress::new("engraving");
     let (pattern, reference) = (plan.pattern(), plan.reference());
-    let run = simulate(&machine, pattern, reference, &mut pulses, |done, all| {
-        progress.at(done, all);
-    })?;
+    let mut of_pattern = pulses.take_if(|_| !is_timed);
+    let run = simulate(
+        &machine,
+        pattern,
+        reference,
+        &mut of_pattern,
+        |done, all| {
+            progress.at(done, all);
+        },
+    )?;
     drop(progress);
-    if let Some(pulses) = pulses {
-        pulses.finish(run.ticks())?;
+    let timed = match is_timed {
+        true => Some(engrave_timed(
+            args,
+            &machine,
+            &drawing,
+            &settings,
+            &mut pulses,
+        )?),
+        false => None,
+    };
+    let shown = timed.as_ref().unwrap_or(&run);
+    if let Some(pulses) = pulses.or(of_pattern) {
+        pulses.finish(shown.ticks())?;
     }
-    artefacts.write("engraved.svg", run.picture().to_string())?;
-    let report = Report::new(&machine, &drawing, &plan, &run);
+    artefacts.write("engraved.svg", shown.picture().to_string())?;
+    let mut report = Report::new(&machine, &drawing, &plan, &run);
+    if let Some(timed) = &timed {
+        report = report.with_timed(timed);
+    }
     artefacts.write_json("report.json", &report)?;
     let names = artefacts.keep()?;
 
@@ -112,8 +148,27 @@ fn engrave(args: &Args) -> Result<ExitCode> {
         summary += &format!("pulses.vcd: some {megabytes} MB, written with --vcd only\n");
     }
     print_summary(format!("{summary}in {}: {names}\n", args.out.display()))?;
-    Ok(match run.is_within_bound() {
+    let is_timed_kept = timed.as_ref().is_none_or(Run::is_within_bound);
+    Ok(match run.is_within_bound() && is_timed_kept {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(2),
     })
+}
+
+/// Plans and plays timed strokes.
+fn engrave_timed(
+    args: &Args,
+    machine: &Machine,
+    drawing: &Drawing,
+    settings: &PlanSettings,
+    pulses: &mut impl Wires,
+) -> Result<Run> {
+    let progress = Progress::new("timing");
+    let plan = TimedPlan::new(machine, drawing, settings, |done, all| {
+        progress.at(done, all);
+    });
+    let plan = plan.with_context(|| args.svg.display().to_string())?;
+    let run = simulate_timed(machine, &plan, pulses, |_, _| ())?;
+    drop(progress);
+    Ok(run)
 }

@@ -14,6 +14,8 @@ mod example;
 mod left_out;
 #[path = "engrave/pace.rs"]
 mod pace;
+#[path = "engrave/timed.rs"]
+mod timed;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -67,6 +67,16 @@ impl Controller {
         }
     }
 
+    /// The end of what has been played, in ticks.
+    pub(crate) const fn now(&self) -> u64 {
+        self.now
+    }
+
+    /// Goes on at a time, in ticks, that is not before the end of what has been played.
+    pub(crate) fn wait_until(&mut self, ticks: u64) {
+        self.now = self.now.max(ticks);
+    }
+
     /// Plays a record; returns the time of its end.
     pub(crate) fn play(&mut self, record: Record, wires: &mut impl Wires) -> Result<u64> {
         match record {

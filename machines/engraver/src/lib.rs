@@ -6,7 +6,8 @@
 //!        pattern bytes -> records -> pulse trains -> simulated arm -> tool path
 //! ```
 //!
-//! The second line reads nothing but the bytes of the first. Text and bytes in, values out: no
+//! The second line reads nothing but the bytes of the first. Beside it, [`TimedPlan`] brings the same
+//! drawing to the motors without a pattern: its curves, timed by `path-timing`, as edges. Text and bytes in, values out: no
 //! files, no printing.
 //!
 //! ```
@@ -34,6 +35,7 @@ mod plan;
 mod pulse_log;
 mod report;
 mod simulation;
+mod timed;
 mod tool_speed;
 mod track;
 mod view;
@@ -47,6 +49,7 @@ pub use self::plan::{Plan, PlanSettings, Reference, Tolerance};
 pub use self::pulse_log::PulseLog;
 pub use self::report::Report;
 pub use self::simulation::{Run, simulate};
+pub use self::timed::{TimedPlan, simulate_timed};
 
 /// The machine of the source, in TOML.
 pub const MACHINE: &str = include_str!("../machine.toml");

@@ -4,12 +4,15 @@ mod settings;
 
 use anyhow::{Context, Result, ensure};
 use nalgebra::Point2;
+use path_timing::ToolLimits;
 use pattern_codec::engraving::{Format, PerAxis};
 use scara_kin::{Arm, JointRange, Joints, Limits, TangentTool};
 use stepper_sync::{Ramp, RampLimits, Rate, StepScale, Timer};
 
 pub(crate) use self::settings::Settings;
-use self::settings::{DiscSettings, JointSettings, RapidSettings, TimerSettings, VerticalSettings};
+use self::settings::{
+    DiscSettings, JointSettings, RapidSettings, TimedSettings, TimerSettings, VerticalSettings,
+};
 use crate::placement::Bed;
 
 /// The two joints of the arm as the steppers see them.
@@ -38,6 +41,11 @@ impl JointScale {
         Ok(self.scale.to_steps(angle_rad - self.home_rad)?)
     }
 
+    /// Pulses of a radian.
+    pub(crate) const fn scale(self) -> StepScale {
+        self.scale
+    }
+
     /// The angle at a step.
     pub(crate) fn to_rad(self, pulses: i32) -> f64 {
         self.home_rad + f64::from(pulses) * self.rad_per_pulse
@@ -60,6 +68,7 @@ pub struct Machine {
     pub(crate) half_period_ticks: u64,
     pub(crate) rapid: RampLimits,
     pub(crate) bed: Bed,
+    tool: ToolLimits,
 }
 
 impl Machine {
@@ -94,6 +103,7 @@ impl Machine {
             rapid,
             pattern,
             bed,
+            timed,
         } = &settings;
         let limits = Limits {
             shoulder: range(theta2).context("[theta2]")?,
@@ -117,8 +127,19 @@ impl Machine {
             half_period_ticks: timing.1,
             rapid: ramp(rapid, timing.0).context("[rapid]")?,
             bed: bed.check().context("[bed]")?,
+            tool: tool(timed).context("[timed]")?,
             settings,
         })
+    }
+
+    /// Sharper corners are passed with the disc lifted, in radians.
+    pub(crate) const fn corner_rad(&self) -> f64 {
+        self.settings.corner_rad()
+    }
+
+    /// Feed and acceleration of the tool in timed strokes.
+    pub(crate) const fn tool_limits(&self) -> ToolLimits {
+        self.tool
     }
 
     /// A tick of the timer, in seconds.
@@ -179,6 +200,15 @@ fn lift(settings: &VerticalSettings) -> Result<i32> {
         settings.lift_mm
     );
     Ok(pulses)
+}
+
+fn tool(settings: &TimedSettings) -> Result<ToolLimits> {
+    positive("feed_mm_s", settings.feed_mm_s)?;
+    positive("accel_mm_s2", settings.accel_mm_s2)?;
+    Ok(ToolLimits {
+        feed: settings.feed_mm_s,
+        acceleration: Some(settings.accel_mm_s2),
+    })
 }
 
 fn timing(settings: &TimerSettings) -> Result<(Timer, u64)> {

@@ -37,6 +37,11 @@ impl Tolerance {
         ensure!(mm >= Self::MIN_MM, "{mm:e} is below {:e} mm", Self::MIN_MM);
         Ok(Self { mm })
     }
+
+    /// In mm.
+    pub(crate) const fn mm(self) -> f64 {
+        self.mm
+    }
 }
 
 impl fmt::Display for Tolerance {

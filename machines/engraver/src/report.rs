@@ -9,6 +9,7 @@ use crate::drawing::Drawing;
 use crate::machine::{Machine, Settings};
 use crate::plan::Plan;
 use crate::simulation::Run;
+use crate::tool_speed::Spread;
 
 /// `report.json`; displayed, a summary in lines.
 #[derive(Debug, Clone, Serialize)]
@@ -40,11 +41,31 @@ pub struct Report<'a> {
     dwell_s: f64,
     /// Min and max mean speed of the tool in a record that moves the arms.
     tool_speed_mm_s: Option<[f64; 2]>,
+    /// The tool's over each 4 mm of its path in the glass, the disc's turns included.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    speed_over_4_mm: Option<Spread>,
     tolerance_mm: f64,
     max_deviation_mm: f64,
     rms_deviation_mm: f64,
     path_to_drawing_mm: f64,
     drawing_to_path_mm: f64,
+    missing_mm: f64,
+    bound_mm: f64,
+    /// The same drawing by timed strokes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timed: Option<TimedReport>,
+}
+
+/// What timed strokes made of the drawing.
+#[derive(Debug, Clone, Serialize)]
+struct TimedReport {
+    pulses: PerAxis<u64>,
+    end_position: PerAxis<i32>,
+    duration_s: f64,
+    in_glass_s: f64,
+    speed_over_4_mm: Option<Spread>,
+    max_deviation_mm: f64,
+    rms_deviation_mm: f64,
     missing_mm: f64,
     bound_mm: f64,
 }
@@ -98,6 +119,7 @@ impl<'a> Report<'a> {
             in_glass_s: run.tool_speed.in_glass_s,
             dwell_s: run.tool_speed.dwell_s,
             tool_speed_mm_s: run.tool_speed.range_mm_s,
+            speed_over_4_mm: run.spread,
             tolerance_mm: plan.reference().tolerance_mm,
             max_deviation_mm: run.max_deviation_mm(),
             rms_deviation_mm: deviation.rms_mm,
@@ -105,7 +127,50 @@ impl<'a> Report<'a> {
             drawing_to_path_mm: deviation.drawing_to_path_mm,
             missing_mm: deviation.missing_mm,
             bound_mm: plan.reference().bound_mm(),
+            timed: None,
         }
+    }
+
+    /// The report with the same drawing by timed strokes.
+    #[must_use]
+    pub fn with_timed(mut self, run: &Run) -> Self {
+        self.timed = Some(TimedReport {
+            pulses: run.pulses,
+            end_position: run.end,
+            duration_s: run.duration_s,
+            in_glass_s: run.tool_speed.in_glass_s,
+            speed_over_4_mm: run.spread,
+            max_deviation_mm: run.max_deviation_mm(),
+            rms_deviation_mm: run.deviation.rms_mm,
+            missing_mm: run.deviation.missing_mm,
+            bound_mm: run.bound_mm,
+        });
+        self
+    }
+
+    /// Both ways to engrave beside each other.
+    fn write_comparison(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(timed) = &self.timed else {
+            return Ok(());
+        };
+        writeln!(f, "pattern and timed strokes:")?;
+        let mut line = |name: &str, pattern: f64, timed: f64, unit: &str| {
+            writeln!(f, "  {name:<28} {pattern:>8.3} {timed:>8.3} {unit}")
+        };
+        line("whole time", self.duration_s, timed.duration_s, "s")?;
+        line("in the glass", self.in_glass_s, timed.in_glass_s, "s")?;
+        if let (Some(a), Some(b)) = (self.speed_over_4_mm, timed.speed_over_4_mm) {
+            line("speed over 4 mm, mean", a.mean_mm_s, b.mean_mm_s, "mm/s")?;
+            line("least", a.min_mm_s, b.min_mm_s, "mm/s")?;
+            line("most", a.max_mm_s, b.max_mm_s, "mm/s")?;
+            let (a, b) = (a.deviation_mm_s, b.deviation_mm_s);
+            line("standard deviation", a, b, "mm/s")?;
+        }
+        let (a, b) = (self.max_deviation_mm, timed.max_deviation_mm);
+        line("deviation, most", a, b, "mm")?;
+        let (a, b) = (self.rms_deviation_mm, timed.rms_deviation_mm);
+        line("deviation, rms", a, b, "mm")?;
+        line("bound", self.bound_mm, timed.bound_mm, "mm")
     }
 }
 
@@ -157,7 +222,7 @@ impl fmt::Display for Report<'_> {
         if self.missing_mm > 0.0 {
             writeln!(f, "not engraved: {:.1} mm of the drawing", self.missing_mm)?;
         }
-        Ok(())
+        self.write_comparison(f)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::drawing::flatten;
 use crate::gauge::{Deviation, Gauge};
 use crate::machine::Machine;
 use crate::plan::Reference;
-use crate::tool_speed::{Meter, ToolSpeed};
+use crate::tool_speed::{Meter, Pace, Spread, ToolSpeed};
 use crate::track::Track;
 
 /// How far around the tool the drawing is looked for, in bounds.
@@ -35,6 +35,7 @@ pub struct Run {
     /// Where the steppers ended, counted from home.
     pub(crate) end: PerAxis<i32>,
     pub(crate) tool_speed: ToolSpeed,
+    pub(crate) spread: Option<Spread>,
     pub(crate) track: Track,
     /// The placed drawing as lines.
     pub(crate) drawing: Vec<Vec<Point2<f64>>>,
@@ -98,11 +99,12 @@ pub fn simulate(
 
 /// Steppers that count their step pins' rising edges, an arm that follows at once, a tool that
 /// engraves while it is down.
-struct Simulation<'a, P> {
+pub(crate) struct Simulation<'a, P> {
     machine: &'a Machine,
     probe: &'a mut P,
     gauge: Gauge,
     meter: Meter,
+    pace: Pace,
     track: Track,
     now: u64,
     position: PerAxis<i32>,
@@ -112,11 +114,13 @@ struct Simulation<'a, P> {
     /// Where the tool is in the glass.
     engraving: Option<Point2<f64>>,
     has_moved: bool,
+    /// The disc turns while the arms move, not before.
+    turns_while_moving: bool,
 }
 
 impl<'a, P: Wires> Simulation<'a, P> {
     /// A machine at home.
-    fn new(machine: &'a Machine, reference: &Reference, probe: &'a mut P) -> Self {
+    pub(crate) fn new(machine: &'a Machine, reference: &Reference, probe: &'a mut P) -> Self {
         let position = PerAxis::default();
         let home = machine.arm.forward(machine.joints(position));
         let reach = reference.bound_mm * REACH;
@@ -125,6 +129,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             probe,
             gauge: Gauge::new(&reference.outlines, reference.tolerance_mm, reach),
             meter: Meter::default(),
+            pace: Pace::default(),
             track: Track::new(home, reference.bound_mm * PICTURE_SPACING),
             now: 0,
             position,
@@ -133,7 +138,13 @@ impl<'a, P: Wires> Simulation<'a, P> {
             records: 0,
             engraving: None,
             has_moved: false,
+            turns_while_moving: false,
         }
+    }
+
+    /// Whether the disc turns while the arms move from now on, and not before.
+    pub(crate) const fn turns_while_moving(&mut self, does: bool) {
+        self.turns_while_moving = does;
     }
 
     fn tool(&self) -> Point2<f64> {
@@ -150,10 +161,12 @@ impl<'a, P: Wires> Simulation<'a, P> {
         self.track.at(tool, in_glass);
         if !in_glass {
             self.engraving = None;
+            self.pace.lifted();
             return;
         }
         // A dot has no length, but is engraved.
         let before = self.engraving.replace(tool).unwrap_or(tool);
+        self.pace.at(self.now, tool);
         self.gauge.engraved(before, tool, self.now);
     }
 
@@ -165,7 +178,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
     }
 
     /// A record is done.
-    fn record(&mut self, ticks: u64) {
+    pub(crate) fn record(&mut self, ticks: u64) {
         self.advance(ticks);
         self.settle();
         let speed = self.meter.record(ticks, self.engraving);
@@ -174,7 +187,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
         self.records += 1;
     }
 
-    fn finish(mut self, reference: &Reference) -> Result<Run> {
+    pub(crate) fn finish(mut self, reference: &Reference) -> Result<Run> {
         self.settle();
         self.track.finish(self.tool());
         let ns = self.machine.timer.ticks_to_ns(self.now);
@@ -190,6 +203,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             duration_s: core::time::Duration::from_nanos(ns).as_secs_f64(),
             end: self.position,
             tool_speed: self.meter.finish(self.machine.tick_s()),
+            spread: self.pace.finish(self.machine.tick_s()),
             track: self.track,
             drawing: drawing
                 .map(|outline| flatten(outline, PICTURE_MM))
@@ -216,7 +230,7 @@ impl<P: Wires> Wires for Simulation<'_, P> {
             *self.pulses.get_mut(axis) += 1;
             self.has_moved = true;
         }
-        if axis == Axis::Theta3 {
+        if axis == Axis::Theta3 && !self.turns_while_moving {
             self.meter.disc_edge(ticks);
         }
         self.probe.step(ticks, axis, level)

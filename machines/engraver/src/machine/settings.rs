@@ -19,6 +19,8 @@ pub(crate) struct Settings {
     #[serde(default)]
     pub(super) pattern: PatternSettings,
     pub(super) bed: Bed,
+    #[serde(default)]
+    pub(super) timed: TimedSettings,
 }
 
 #[derive(Debug, Clone, Deserialize, Serialize)]
@@ -78,7 +80,29 @@ pub(super) struct PatternSettings {
     pub(super) byte_order: ByteOrder,
 }
 
+/// Strokes by `--controller timed`; joints and disc keep the limits of the rapid moves.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct TimedSettings {
+    pub(super) feed_mm_s: f64,
+    pub(super) accel_mm_s2: f64,
+}
+
+impl Default for TimedSettings {
+    /// The feed of the source's machine, and some 0.1 g.
+    fn default() -> Self {
+        Self {
+            feed_mm_s: 15.0,
+            accel_mm_s2: 1000.0,
+        }
+    }
+}
+
 impl Settings {
+    pub(super) const fn corner_rad(&self) -> f64 {
+        self.theta3.corner_deg.to_radians()
+    }
+
     pub(crate) const fn mm_per_vertical_pulse(&self) -> f64 {
         self.vertical.mm_per_pulse
     }

@@ -1,0 +1,274 @@
+//! The drawing by `path-timing`: the tool at its feed wherever joints and disc allow, from the
+//! drawing's own curves to edges, without a pattern between.
+
+mod curves;
+mod leg;
+mod player;
+
+use anyhow::{Context, Result, bail};
+use nalgebra::Point2;
+use path_timing::{AxisLimits, Curve, Knot, Path as _, PlanError, Row, Table};
+use pattern_codec::engraving::Axis;
+use scara_kin::{Elbow, Joints};
+
+use self::curves::{curves_of, kink_rad};
+use self::leg::Leg;
+pub use self::player::simulate_timed;
+use crate::drawing::{Drawing, flatten};
+use crate::machine::Machine;
+use crate::order::{Stroke, nearest_first};
+use crate::plan::{PlanSettings, Reference};
+
+/// Largest kink between two curves that is passed without a stop, in radians: what drawing programs
+/// round off. The disc takes it in along the next curve.
+const KINK_RAD: f64 = 0.035;
+
+/// Fewest segments of a curve.
+const MIN_SEGMENTS: u32 = 4;
+
+/// Rows for which there is memory at first, and at most.
+const ROWS: [usize; 2] = [1 << 12, 1 << 22];
+
+/// A drawing as rapid moves and timed strokes, from home and back.
+#[derive(Debug, Clone)]
+pub struct TimedPlan {
+    moves: Vec<Move>,
+    reference: Reference,
+}
+
+/// A move of the machine.
+#[derive(Debug, Clone)]
+enum Move {
+    /// One axis to a position in pulses from home, by its own ramp.
+    Rapid { axis: Axis, to: i32 },
+    /// Shoulder, elbow and disc along these rows, in radians and seconds, from rest to rest.
+    Stroke(Vec<Row<[f64; 3]>>),
+}
+
+impl TimedPlan {
+    /// Plans the moves that engrave a drawing; `progress` is told how many strokes are done, of how
+    /// many.
+    ///
+    /// A quarter of the tolerance each is for blends of corners between lines, and for the departure
+    /// of the joints' cubics.
+    ///
+    /// # Errors
+    /// A stroke leaves the workspace, and where.
+    pub fn new(
+        machine: &Machine,
+        drawing: &Drawing,
+        settings: &PlanSettings,
+        mut progress: impl FnMut(u64, u64),
+    ) -> Result<Self> {
+        let placement = settings.placement;
+        let placement = placement.unwrap_or_else(|| machine.bed.fit(drawing.bounds()));
+        let outlines = drawing.placed(placement);
+        let tolerance_mm = settings.tolerance.mm();
+        let drawn = (1..).zip(&outlines).map(|(number, outline)| Stroke {
+            number,
+            points: flatten(outline, tolerance_mm / 4.0),
+        });
+        let mut strokes: Vec<_> = drawn.clone().collect();
+        let drawn: Vec<_> = drawn.collect();
+        let home = machine.joints_at_home();
+        if !settings.keep_order {
+            strokes = nearest_first(strokes, machine.arm.forward(home));
+        }
+        let mut planner = Planner {
+            machine,
+            tolerance_mm: tolerance_mm / 4.0,
+            joints: home,
+            disc_rad: machine.theta3.to_rad(0),
+            moves: Vec::new(),
+            bound_mm: 0.0,
+        };
+        let total = strokes.len();
+        for (done, stroke) in strokes.iter().enumerate() {
+            let index = stroke.number - 1;
+            let outline = outlines.get(index).context("strokes are numbered from 1")?;
+            let is_reversed = drawn.get(index) != Some(stroke);
+            let curves = curves_of(
+                outline,
+                is_reversed,
+                tolerance_mm / 4.0,
+                machine.corner_rad(),
+            );
+            let planned = curves.and_then(|curves| planner.stroke(&curves, stroke));
+            planned.with_context(|| format!("stroke {} of {total}", stroke.number))?;
+            progress(done as u64 + 1, total as u64);
+        }
+        for axis in [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2] {
+            planner.moves.push(Move::Rapid { axis, to: 0 });
+        }
+        Ok(Self {
+            moves: planner.moves,
+            reference: Reference {
+                outlines,
+                tolerance_mm,
+                bound_mm: planner.bound_mm + tolerance_mm,
+            },
+        })
+    }
+}
+
+struct Planner<'a> {
+    machine: &'a Machine,
+    tolerance_mm: f64,
+    /// Where the strokes so far have brought joints and disc.
+    joints: Joints,
+    disc_rad: f64,
+    moves: Vec<Move>,
+    /// Half a step of each joint where that moves the tool most.
+    bound_mm: f64,
+}
+
+/// Curves that are run without a stop.
+type Run = Vec<Leg>;
+
+impl Planner<'_> {
+    fn stroke(&mut self, curves: &[Curve<2>], stroke: &Stroke) -> Result<()> {
+        let elbow = Elbow::of(&self.joints).context("the joints are not finite")?;
+        let first = stroke.points.first();
+        let Some(first) = first.copied() else {
+            return Ok(());
+        };
+        self.note_bound(first);
+        if curves.is_empty() {
+            return self.dot(first);
+        }
+        let runs = self.runs(curves, elbow);
+        let runs = runs.or_else(|error| self.runs(curves, elbow.other()).map_err(|_| error))?;
+        for (number, run) in runs.iter().enumerate() {
+            let rows = self.rows(run)?;
+            let (Some(start), Some(end)) = (rows.first(), rows.last()) else {
+                bail!("a run has no rows");
+            };
+            let [shoulder, elbow, disc] = start.position;
+            let disc = self.machine.theta3.to_pulses(disc)?;
+            if number == 0 {
+                self.rapid(Axis::Theta3, disc);
+                self.travel(Joints::new(shoulder, elbow))?;
+                self.rapid(Axis::Vertical, -self.machine.lift_pulses);
+            } else if run.first().is_some_and(Leg::is_corner) {
+                self.rapid(Axis::Vertical, 0);
+                self.rapid(Axis::Theta3, disc);
+                self.rapid(Axis::Vertical, -self.machine.lift_pulses);
+            } else {
+                self.rapid(Axis::Theta3, disc);
+            }
+            let [shoulder, elbow, disc] = end.position;
+            (self.joints, self.disc_rad) = (Joints::new(shoulder, elbow), disc);
+            self.moves.push(Move::Stroke(rows));
+        }
+        for curve in curves {
+            for share in [0.25, 0.5, 0.75, 1.0] {
+                self.note_bound(curve.at(curve.length() * share).point.into());
+            }
+        }
+        self.rapid(Axis::Vertical, 0);
+        Ok(())
+    }
+
+    /// A stroke without length.
+    fn dot(&mut self, at: Point2<f64>) -> Result<()> {
+        let (_, joints) = self.machine.arm.inverse_nearest(at, self.joints)?;
+        self.joints = joints;
+        self.travel(joints)?;
+        self.rapid(Axis::Vertical, -self.machine.lift_pulses);
+        self.rapid(Axis::Vertical, 0);
+        Ok(())
+    }
+
+    /// The curves with one elbow, cut where the tool has to stop: at kinks that the disc cannot take
+    /// in on the way.
+    fn runs(&self, curves: &[Curve<2>], elbow: Elbow) -> Result<Vec<Run>> {
+        let (machine, mut joints, mut disc_rad) = (self.machine, self.joints, self.disc_rad);
+        let mut runs: Vec<Run> = Vec::new();
+        let mut before: Option<&Curve<2>> = None;
+        for curve in curves {
+            let fed = curve.with_tool(machine.tool_limits());
+            let path = machine.arm.path_from(fed, elbow, joints)?;
+            let path = path.with_disc(disc_rad)?;
+            let kink = before.map(|before| kink_rad(before, curve).abs());
+            let goes_on = kink.filter(|kink| *kink <= KINK_RAD);
+            let is_corner = kink.is_some_and(|kink| kink > machine.corner_rad());
+            let leg = if goes_on.is_some() {
+                Leg::going_on(path, disc_rad, machine.start_speeds())?
+            } else {
+                Leg::from_rest(path, is_corner, machine.start_speeds())
+            };
+            let [shoulder, elbow_rad, disc] = leg.place(leg.length())?.position;
+            (joints, disc_rad) = (Joints::new(shoulder, elbow_rad), disc);
+            match runs.last_mut().filter(|_| goes_on.is_some()) {
+                Some(run) => run.push(leg),
+                None => runs.push(vec![leg]),
+            }
+            before = Some(curve);
+        }
+        Ok(runs)
+    }
+
+    fn rows(&self, run: &Run) -> Result<Vec<Row<[f64; 3]>>> {
+        let [mut room, most] = ROWS;
+        loop {
+            let mut knots = vec![Knot::default(); room];
+            let table = Table::plan_within(
+                run.iter(),
+                self.machine.joint_limits(),
+                MIN_SEGMENTS,
+                self.tolerance_mm,
+                |leg: &&Leg, span: &_| leg.departure(span),
+                &mut knots,
+            );
+            match table {
+                Ok(table) => return Ok(table.rows().collect::<Result<_, _>>()?),
+                Err(PlanError::Memory { .. }) if room < most => room *= 4,
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    fn travel(&mut self, to: Joints) -> Result<()> {
+        let machine = self.machine;
+        self.rapid(Axis::Theta2, machine.theta2.to_pulses(to.shoulder)?);
+        self.rapid(Axis::Theta1, machine.theta1.to_pulses(to.elbow)?);
+        Ok(())
+    }
+
+    fn rapid(&mut self, axis: Axis, to: i32) {
+        self.moves.push(Move::Rapid { axis, to });
+    }
+
+    fn note_bound(&mut self, tool: Point2<f64>) {
+        self.bound_mm = self.bound_mm.max(self.machine.half_step_mm(tool));
+    }
+}
+
+impl Machine {
+    fn joints_at_home(&self) -> Joints {
+        Joints::new(self.theta2.to_rad(0), self.theta1.to_rad(0))
+    }
+
+    /// A rate in pulses a second for shoulder, elbow and disc, in radians a second.
+    fn rates(&self, hz: f64) -> [f64; 3] {
+        [self.theta2, self.theta1, self.theta3].map(|joint| hz * joint.rad_per_pulse)
+    }
+
+    /// What the motors of shoulder, elbow and disc start and stop with, in rad/s.
+    fn start_speeds(&self) -> [f64; 3] {
+        self.rates(f64::from(self.rapid.start_millihertz) / 1000.0)
+    }
+
+    /// Those of the rapid moves.
+    fn joint_limits(&self) -> [AxisLimits; 3] {
+        let speeds = self.rates(f64::from(self.rapid.max_millihertz) / 1000.0);
+        let accelerations = self.rates(f64::from(self.rapid.accel_steps_per_s2));
+        let [shoulder, elbow, disc] = speeds;
+        let [a0, a1, a2] = accelerations;
+        [(shoulder, a0), (elbow, a1), (disc, a2)].map(|(speed, acceleration)| AxisLimits {
+            speed,
+            acceleration,
+            jerk: None,
+        })
+    }
+}
