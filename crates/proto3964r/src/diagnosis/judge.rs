@@ -50,10 +50,10 @@ type Rule<'c> = fn(&Case<'c>, Side) -> Option<Verdict>;
 impl<'c> Case<'c> {
     /// What can be said of one side, after what concerns both.
     const RULES: [Rule<'c>; 14] = [
+        Self::without_bcc,
         Self::late,
         Self::not_heard,
         Self::no_answer,
-        Self::without_bcc,
         Self::other_bcc,
         Self::no_receive_buffer,
         Self::long_blocks_rejected,
