@@ -1,10 +1,13 @@
-//! Platforms: limits, distance error, calibration, and what is refused.
+//! Platforms: limits, distance error, fits, and what is refused.
 #![cfg(test)]
 
-use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Vector3};
+#[path = "platform/fits.rs"]
+mod fits;
+
+use pose_pt::nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, CalibrationError, Convention, FitError, LimitError, Locator, Platform,
-    PlatformError, PoseVector, Side, angle_between, calibrate, rigid_fit,
+    Axis, AxisLimits, Convention, FitError, LimitError, Locator, Platform, PlatformError,
+    PoseVector, Side,
 };
 
 /// Lengths of some metres in f64, after a fit: mm.
@@ -42,76 +45,6 @@ fn a_lift_moves_all_third_axes() {
         assert!((axes - Vector3::new(1.0, 2.0, 3.0)).norm() < ROUNDING_MM);
     }
     assert!((panel().largest_anchor_distance() - 3000.0f64.hypot(50.0)).abs() < ROUNDING_MM);
-}
-
-/// The printed matrix and the words beside it are two conventions.
-#[test]
-fn the_two_conventions_differ() {
-    let angle = |degrees: [f64; 3]| {
-        let [alpha, beta, gamma] = degrees.map(f64::to_radians);
-        let vector = PoseVector::new(0.0, 0.0, 0.0, alpha, beta, gamma);
-        let [fixed, moving] = [Convention::ExtrinsicXyz, Convention::IntrinsicXyz]
-            .map(|convention| vector.to_quaternion(convention));
-        angle_between(&fixed, &moving)
-    };
-    assert!((angle([30.0, 20.0, 45.0]).to_degrees() - 28.75).abs() < 0.005);
-    // A point 3 m from the axis of the difference.
-    let way_mm = 3000.0 * angle([0.1, 0.1, 0.1]);
-    assert!((way_mm - 0.016).abs() < 0.0005, "{way_mm}");
-    assert_eq!(Convention::default(), Convention::ExtrinsicXyz);
-}
-
-/// [Alignment 2010], row by row.
-#[test]
-fn the_printed_matrix() {
-    let (alpha, beta, gamma) = (0.3f64, -0.5f64, 1.1f64);
-    let [(sa, ca), (sb, cb), (sg, cg)] = [alpha, beta, gamma].map(f64::sin_cos);
-    let printed = Matrix3::new(
-        cg * cb,
-        -sg * ca + cg * sb * sa,
-        sg * sa + cg * sb * ca,
-        sg * cb,
-        cg * ca + sg * sb * sa,
-        -cg * sa + sg * sb * ca,
-        -sb,
-        cb * sa,
-        cb * ca,
-    );
-    let vector = PoseVector::new(0.0, 0.0, 0.0, alpha, beta, gamma);
-    let about = |axis, angle| Rotation3::from_axis_angle(&axis, angle);
-    let (x, y, z) = (
-        about(Vector3::x_axis(), alpha),
-        about(Vector3::y_axis(), beta),
-        about(Vector3::z_axis(), gamma),
-    );
-    for (convention, wanted) in [
-        (Convention::ExtrinsicXyz, z * y * x),
-        (Convention::IntrinsicXyz, x * y * z),
-    ] {
-        let matrix = vector.to_rotation(convention);
-        assert!((matrix.matrix() - wanted.matrix()).amax() < 1e-15);
-    }
-    let matrix = vector.to_rotation(Convention::ExtrinsicXyz);
-    assert!((matrix.matrix() - printed).amax() < 1e-15);
-}
-
-#[test]
-fn gimbal_lock_is_reported_and_the_free_angle_chosen() {
-    for convention in [Convention::ExtrinsicXyz, Convention::IntrinsicXyz] {
-        for beta in [90.0f64, -90.0].map(f64::to_radians) {
-            let vector = PoseVector::new(0.0, 0.0, 0.0, 0.3, beta, 0.2);
-            let pose = vector.to_isometry(convention);
-            let found = PoseVector::from_isometry(&pose, convention);
-            assert!(found.locked);
-            assert!(found.cos_beta < 1e-15);
-            assert_eq!(found.vector.alpha.to_bits(), 0.0f64.to_bits());
-            let near = PoseVector::from_isometry_near(&pose, convention, &vector);
-            assert!(near.locked);
-            assert!((near.vector.angles() - vector.angles()).amax() < 1e-15);
-        }
-    }
-    let free = PoseVector::new(0.0, 0.0, 0.0, 0.3, 1.5, 0.2).to_isometry(Convention::ExtrinsicXyz);
-    assert!(!PoseVector::from_isometry(&free, Convention::ExtrinsicXyz).locked);
 }
 
 #[test]
@@ -332,125 +265,6 @@ fn distance_error_names_the_two_locators_and_its_sign() {
     assert!(total.norm() < ROUNDING_MM);
     axes[1].x = -0.3;
     assert!(platform.pose(&axes).unwrap().distance_error.change < -0.29);
-}
-
-#[test]
-fn points_that_determine_no_motion_are_refused() {
-    let line = [0.0, 1.0, 3.0].map(|x| Point3::new(x * 1000.0, x * 200.0, 7.0));
-    let plane = locators().map(|locator| locator.anchor);
-    let fit = |a: &[Point3<f64>], b: &[Point3<f64>]| rigid_fit(a, b).unwrap_err();
-    let side =
-        |wanted| move |error| matches!(error, FitError::Collinear { side, .. } if side == wanted);
-    assert!(side(Side::From)(fit(&line, &plane)));
-    assert!(side(Side::To)(fit(&plane, &line)));
-    for (error, words) in [
-        (fit(&line, &plane), "the moved points are on a line: "),
-        (fit(&plane, &line), "the met points are on a line: "),
-    ] {
-        assert!(error.to_string().starts_with(words), "{error}");
-    }
-    let same = [Point3::new(1.0, 2.0, 3.0); 3];
-    assert!(matches!(
-        fit(&same, &plane),
-        FitError::Coincident {
-            side: Side::From,
-            ..
-        }
-    ));
-    assert_eq!(fit(&plane, &plane[..2]), FitError::Count { from: 3, to: 2 });
-    assert_eq!(fit(&plane[..2], &plane[..2]), FitError::TooFew { count: 2 });
-    // A regular tetrahedron and its mirror image: many rotations fit equally well.
-    let corners = [
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ];
-    let mirrored = corners.map(|[x, y, z]| Point3::new(-x, y, z));
-    assert!(matches!(
-        fit(&corners.map(Point3::from), &mirrored),
-        FitError::Ambiguous { .. }
-    ));
-    assert_eq!(rigid_fit(&plane, &plane).unwrap().rank, 2);
-    let solid = corners.map(Point3::from);
-    assert_eq!(rigid_fit(&solid, &solid).unwrap().rank, 3);
-}
-
-/// An oblique frame with errors of scale, as a laser tracker would find it.
-fn oblique() -> Locator {
-    let axes = Matrix3::new(1.0001, 0.002, 0.0, -0.001, 0.9998, 0.003, 0.0005, 0.0, 1.0);
-    let origin = Point3::new(1200.0, -300.0, 800.0);
-    Locator::new(Point3::origin(), origin, limits()).with_axes(axes)
-}
-
-#[test]
-fn a_frame_is_found_from_measured_points() {
-    let locator = oblique();
-    let positions = [
-        [0.0, 0.0, 0.0],
-        [250.0, 0.0, 0.0],
-        [0.0, 250.0, 0.0],
-        [0.0, 0.0, 250.0],
-        [-100.0, 200.0, 30.0],
-    ]
-    .map(Vector3::from);
-    let points = positions.map(|axes| locator.position(&axes));
-    let frame = calibrate(&positions, &points).unwrap();
-    assert!((frame.axes - locator.axes).amax() < 1e-14);
-    assert!((frame.origin - locator.origin).norm() < ROUNDING_MM);
-    assert!(frame.max_residual < ROUNDING_MM);
-    let placed =
-        Locator::new(Point3::origin(), Point3::origin(), limits()).with_calibration(&frame);
-    assert_eq!((placed.axes, placed.origin), (frame.axes, frame.origin));
-    let x = Vector3::new(1.0001f64, -0.001, 0.0005).norm();
-    assert!((frame.scales().x - x).abs() < 1e-14);
-    // X and Y: 0.002 · 1.0001 - 0.001 · 0.9998 more than square to each other.
-    let dot: f64 = 1.0001 * 0.002 - 0.001 * 0.9998;
-    assert!((frame.squareness_errors().z + dot).abs() < 1e-6);
-
-    // One point 0.1 mm off is seen.
-    let mut wrong = points;
-    wrong[4].y += 0.1;
-    let frame = calibrate(&positions, &wrong).unwrap();
-    assert!(frame.max_residual > 0.01 && frame.rms < frame.max_residual);
-}
-
-#[test]
-fn axes_that_were_not_moved_are_missed() {
-    let locator = oblique();
-    let rank = |positions: [[f64; 3]; 5]| {
-        let positions = positions.map(Vector3::from);
-        let points = positions.map(|axes| locator.position(&axes));
-        match calibrate(&positions, &points) {
-            Err(CalibrationError::Rank {
-                rank,
-                width,
-                needed,
-            }) => {
-                assert!(width <= needed);
-                rank
-            }
-            other => panic!("{other:?}"),
-        }
-    };
-    let [a, b, c] = [[100.0, 0.0, 5.0], [0.0, 70.0, 5.0], [30.0, 20.0, 5.0]];
-    assert_eq!(rank([a, b, c, a, b]), 2);
-    assert_eq!(rank([a, b, a, b, a]), 1);
-    assert_eq!(rank([a; 5]), 0);
-    let (few, points) = ([Vector3::<f64>::zeros(); 3], [Point3::origin(); 3]);
-    assert_eq!(
-        calibrate(&few, &points),
-        Err(CalibrationError::TooFew { count: 3 })
-    );
-    assert!(matches!(
-        calibrate(&few, &points[..2]),
-        Err(CalibrationError::Count { .. })
-    ));
-    let bad = [Vector3::new(0.0, f64::NAN, 0.0); 4];
-    assert!(matches!(
-        calibrate(&bad, &[Point3::origin(); 4]),
-        Err(CalibrationError::Coordinate { point: 0, .. })
-    ));
 }
 
 #[test]
