@@ -43,6 +43,13 @@ fn inverse(c: &mut Criterion) {
             });
         });
     }
+    group.bench_function("Arm::inverse_each", |b| {
+        b.iter(|| {
+            arm.inverse_each(black_box(&points)).for_each(|found| {
+                let _ = black_box(found);
+            });
+        });
+    });
     group.finish();
 }
 
@@ -63,6 +70,14 @@ fn others(c: &mut Criterion) {
             for p in &points {
                 black_box(arm.forward(black_box(Joints::new(p.x, p.y))));
             }
+        });
+    });
+    let poses: Vec<_> = points.iter().map(|p| Joints::new(p.x, p.y)).collect();
+    group.bench_function("forward_each", |b| {
+        b.iter(|| {
+            arm.forward_each(black_box(&poses)).for_each(|point| {
+                black_box(point);
+            });
         });
     });
     group.finish();

@@ -45,7 +45,13 @@ impl<T: RealField + Trig> Arm<T> {
     /// The tool in the base's frame.
     #[inline]
     pub(crate) fn tip(&self, joints: Joints<T>) -> Vector2<T> {
-        let ([sin1, sin2], [cos1, cos2]) = sin_cos_lanes([joints.shoulder, joints.elbow]);
+        let (sines, cosines) = sin_cos_lanes([joints.shoulder, joints.elbow]);
+        self.tip_of(sines, cosines)
+    }
+
+    /// The tool in the base's frame, from sines and cosines of shoulder and elbow.
+    #[inline]
+    pub(crate) fn tip_of(&self, [sin1, sin2]: [T; 2], [cos1, cos2]: [T; 2]) -> Vector2<T> {
         let along = self.upper() + self.fore() * cos2;
         let across = self.fore() * sin2;
         Vector2::new(cos1 * along - sin1 * across, sin1 * along + cos1 * across)

@@ -14,8 +14,9 @@ use crate::range::{largest_angle, length, max_value};
 use crate::{Arm, Elbow, Joints};
 
 /// The triangle base, elbow, tool of a reachable point, in the base's frame.
-struct Triangle<T> {
-    tool: Vector2<T>,
+#[derive(Clone, Copy)]
+pub(crate) struct Triangle<T> {
+    pub(crate) tool: Vector2<T>,
     /// Four times the triangle's area.
     s: T,
     /// r² + l1² - l2²
@@ -38,10 +39,27 @@ impl<T: RealField + Trig> Triangle<T> {
 
     #[inline]
     fn both(&self) -> [Joints<T>; 2] {
-        let (right, left) = (self.shoulder(self.s), self.shoulder(-self.s));
-        let elbow = atan2(self.s, self.k2);
+        let (right, left) = (self.right_shoulder(), self.left_shoulder());
+        let (sin, cos) = self.elbow();
+        let elbow = atan2(sin, cos);
         let [right, left] = atan2_lanes([right.0, left.0], [right.1, left.1]);
         [Joints::new(right, elbow), Joints::new(left, -elbow)]
+    }
+
+    /// Sine and cosine of the right elbow, times some area, as the next two.
+    #[inline(always)]
+    pub(crate) fn elbow(&self) -> (T, T) {
+        (self.s, self.k2)
+    }
+
+    #[inline(always)]
+    pub(crate) fn right_shoulder(&self) -> (T, T) {
+        self.shoulder(self.s)
+    }
+
+    #[inline(always)]
+    pub(crate) fn left_shoulder(&self) -> (T, T) {
+        self.shoulder(-self.s)
     }
 
     /// Sine and cosine of the shoulder, times some length, for the area `s` with the elbow's sign.
@@ -164,7 +182,7 @@ impl<T: RealField + Trig> Arm<T> {
 
     // Handed on in registers: as a call it costs a third of the whole.
     #[inline(always)]
-    fn triangle(&self, point: Point2<T>) -> Result<Triangle<T>, InverseError<T>> {
+    pub(crate) fn triangle(&self, point: Point2<T>) -> Result<Triangle<T>, InverseError<T>> {
         let tool = self.base().inverse_transform_point(&point).coords;
         let (l1, l2) = (self.upper(), self.fore());
         // A square that overflows is out of reach; one that vanishes is at the centre

@@ -9,6 +9,7 @@ extern crate std;
 mod arm;
 mod digits;
 mod drives;
+mod each;
 mod follow;
 mod forward;
 mod inverse;

@@ -25,7 +25,7 @@ enum Allowed {
 
 impl<T: RealField + Trig> Solutions<T> {
     #[inline]
-    pub(super) fn new(
+    pub(crate) fn new(
         arm: &Arm<T>,
         [right, left]: [Joints<T>; 2],
         tool: Vector2<T>,
