@@ -1,9 +1,10 @@
 //! A leg as the axes of a platform see it.
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use crate::number::{epsilons, larger};
-use crate::path::leg::{Shape, Turning, VectorLeg};
+use crate::path::blend::Motion;
+use crate::path::leg::{Shape, Turning, VectorLeg, angular_velocity};
 use crate::path::{Leg, Path};
 use crate::rotation::to_matrix;
 use crate::turn::{Sweep, Turn};
@@ -14,6 +15,19 @@ use crate::{Platform, PoseVector};
 pub(crate) struct Place<const N: usize> {
     pub(crate) axes: [Vector3<f64>; N],
     pub(crate) slope: [Vector3<f64>; N],
+}
+
+impl<const N: usize> Place<N> {
+    /// The axes of a body that moves.
+    pub(crate) fn of(platform: &Platform<N>, motion: &Motion) -> Self {
+        let velocity = |anchor: Point3<f64>| {
+            motion.linear + motion.angular.cross(&(motion.rotation * anchor.coords))
+        };
+        Self {
+            axes: platform.axes_at(&motion.rotation, &motion.position),
+            slope: platform.in_axes(platform.anchors().map(velocity)),
+        }
+    }
 }
 
 /// Axis coordinates as a function of the leg's parameter s, 0..=1.
@@ -50,10 +64,15 @@ pub(crate) fn is_still<const N: usize>(
     let Some((leg, (start, end))) = path.leg(number).zip(ends) else {
         return false;
     };
-    let arms = platform.anchors().iter().map(|anchor| anchor.coords.norm());
-    let travel = leg.length() + leg.turn() * arms.fold(0.0, larger);
     let far = start.iter().map(Vector3::amax).fold(0.0, larger);
-    start == end && travel <= far * epsilons::<f64>(STILL_EPSILONS)
+    start == end && travel(platform, &leg) <= far * epsilons::<f64>(STILL_EPSILONS)
+}
+
+/// A bound on how far a point of the body that is no farther from the reference point than an anchor
+/// moves on a leg.
+pub(crate) fn travel<const N: usize>(platform: &Platform<N>, leg: &Leg) -> f64 {
+    let arms = platform.anchors().iter().map(|anchor| anchor.coords.norm());
+    leg.length() + leg.turn() * arms.fold(0.0, larger)
 }
 
 /// The state of a walk along a course by equal segments.
@@ -84,16 +103,18 @@ impl<'a, const N: usize> Course<'a, N> {
             Self::Vector(platform, leg) => {
                 let vector = leg.at(s);
                 let rotation = vector.to_rotation(leg.convention);
-                let angular = leg.angular(&vector.angles());
-                let slide = leg.slide();
-                Place {
-                    axes: platform.axes_at(&rotation, &vector.position()),
-                    slope: platform.in_axes(
-                        platform
-                            .anchors()
-                            .map(|anchor| slide + angular.cross(&(rotation * anchor.coords))),
-                    ),
-                }
+                let angular =
+                    angular_velocity(leg.convention, &vector.angles(), &leg.angles_change());
+                let (position, linear) = (vector.position(), leg.slide());
+                Place::of(
+                    platform,
+                    &Motion {
+                        rotation,
+                        position,
+                        linear,
+                        angular,
+                    },
+                )
             }
         }
     }

@@ -45,7 +45,7 @@ pub use path_timing::{Ahead, FeedError, Knot};
 pub use segmentation::Segmentation;
 
 pub use distance_error::hermite_distance_error;
-pub use path::{Interpolation, Leg, Path, PathError};
+pub use path::{Blend, Interpolation, Leg, Path, PathError};
 pub use plan_error::PlanError;
 pub use pt::{PtPoint, PtPoints, PtTable};
 pub use pvt::{PvtPoint, PvtPoints, PvtRun, PvtTable};

@@ -1,11 +1,14 @@
 //! The path of a body through poses.
 
+pub(crate) mod blend;
 pub(crate) mod leg;
 
 use core::f64::consts::PI;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
+pub use blend::Blend;
+use blend::Rounding;
 pub use leg::Leg;
 
 use crate::number::{epsilons, first_beyond, largest, largest_angle};
@@ -79,6 +82,25 @@ pub enum PathError {
         /// The angle between them, in radians.
         angle: f64,
     },
+    /// Not one blend for each pose between the first and the last.
+    #[error("{given} blends for {poses} poses between the first and the last")]
+    Blends {
+        /// Blends given.
+        given: usize,
+        /// Poses between the first and the last.
+        poses: usize,
+    },
+    /// A tolerance of a blend is negative or not finite.
+    #[error("tolerance {} of the blend at pose {pose} is not a number from 0", short(.value))]
+    Blend {
+        /// The pose, from 0.
+        pose: usize,
+        /// The tolerance given.
+        value: f64,
+    },
+    /// Screw motions have no blends.
+    #[error("screw motions have no blends")]
+    ScrewBlend,
 }
 
 /// Lengths of a quaternion that is a rotation, errors of scale aside: they do no harm.
@@ -98,6 +120,8 @@ enum Stations<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path<'a> {
     stations: Stations<'a>,
+    /// For each pose between the first and the last, or none for stops.
+    blends: &'a [Blend],
 }
 
 impl<'a> Path<'a> {
@@ -115,6 +139,7 @@ impl<'a> Path<'a> {
         })?;
         let path = Self {
             stations: Stations::Poses(poses, interpolation),
+            blends: &[],
         };
         if !matches!(interpolation, Interpolation::Vector(_)) {
             path.check_turns()?;
@@ -137,7 +162,55 @@ impl<'a> Path<'a> {
         })?;
         Ok(Self {
             stations: Stations::Vectors(vectors, convention),
+            blends: &[],
         })
+    }
+
+    /// The path rounded at the poses between the first and the last, one tolerance for each: a
+    /// [`PvtTable`](crate::PvtTable) then passes them without a stop where its platform has no limit
+    /// of jerk. A [`PtTable`](crate::PtTable) and [`leg`](Self::leg) stay unrounded.
+    ///
+    /// # Errors
+    /// [`PathError::Blends`], [`PathError::Blend`], [`PathError::ScrewBlend`].
+    pub fn with_blends(self, blends: &'a [Blend]) -> Result<Self, PathError> {
+        let poses = self.legs().saturating_sub(1);
+        if blends.len() != poses {
+            let given = blends.len();
+            return Err(PathError::Blends { given, poses });
+        }
+        if matches!(self.stations, Stations::Poses(_, Interpolation::Screw)) {
+            return Err(PathError::ScrewBlend);
+        }
+        for (number, blend) in blends.iter().enumerate() {
+            for value in [blend.distance, blend.rotation_rad] {
+                if !(value >= 0.0 && value.is_finite()) {
+                    let pose = number.saturating_add(1);
+                    return Err(PathError::Blend { pose, value });
+                }
+            }
+        }
+        Ok(Self { blends, ..self })
+    }
+
+    /// The same path with a stop at each pose.
+    pub(crate) const fn without_blends(self) -> Self {
+        Self {
+            blends: &[],
+            ..self
+        }
+    }
+
+    /// Whether there may be a pose without a stop.
+    pub(crate) const fn has_blends(&self) -> bool {
+        !self.blends.is_empty()
+    }
+
+    /// The rounding of the pose after leg `number`, `size` what the common parameter takes to run a
+    /// leg.
+    pub(crate) fn rounding(&self, number: usize, size: impl Fn(&Leg) -> f64) -> Option<Rounding> {
+        let blend = self.blends.get(number)?;
+        let (before, after) = (self.leg(number)?, self.leg(number.checked_add(1)?)?);
+        Rounding::new(blend, [&before, &after], [size(&before), size(&after)])
     }
 
     /// The number of legs: one fewer than poses.

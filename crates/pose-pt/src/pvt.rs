@@ -22,8 +22,8 @@ pub use run::PvtRun;
 /// with the positions and velocities of the body's own motion at the points.
 ///
 /// Along each leg it is the fastest such table that keeps the limits of all axes: see
-/// [`path_timing::Table`]. The machine stops at every pose, where the direction changes;
-/// a pose to be passed without a stop does not belong to a path.
+/// [`path_timing::Table`]. The machine stops at every pose, where the direction changes, except where
+/// the path may be rounded: see [`Path::with_blends`].
 #[derive(Debug, Clone, Copy)]
 pub struct PvtTable<'a, const N: usize> {
     /// Without a row where nothing moves.
@@ -31,9 +31,10 @@ pub struct PvtTable<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> PvtTable<'a, N> {
-    /// Plans the table in memory of the caller: for each leg one knot more than segments.
+    /// Plans the table in memory of the caller: for each leg, and for each blend, one knot
+    /// more than segments.
     ///
-    /// With [`Segmentation::max_distance_error`] each leg has a number of segments that keeps the
+    /// With [`Segmentation::max_distance_error`] each leg and each blend has a number of segments that keeps the
     /// allowed distance error while one segment fewer does not, by [`hermite_distance_error`]; it
     /// is found by bisection, and each trial is a plan.
     ///
@@ -64,9 +65,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
                 )
             }
             _ => {
-                let segments = |leg: &moving::Track<'_, N>| {
-                    segmentation.linear_segments(platform, path, leg.number)
-                };
+                let segments = |leg: &moving::Track<'_, N>| segmentation.segments_over(leg.travel);
                 Table::plan(moving, limits, segments, knots)
             }
         };

@@ -113,19 +113,31 @@ impl Segmentation {
             Some(leg) if !is_still(platform, path, number) => leg,
             _ => return 0,
         };
-        let segments = match self.rule {
+        match self.rule {
+            Rule::DistanceError(allowed) => {
+                let turn = largest_turn(platform, &leg, allowed);
+                self.raised(segments_within(leg.turn(), turn))
+            }
+            Rule::Segments(_) | Rule::Steps { .. } => {
+                self.segments_over([leg.length(), leg.turn()])
+            }
+        }
+    }
+
+    /// Segments of a motion by these bounds on the length of the reference point's path and on the
+    /// turn of the body; of a distance error the lowest number.
+    pub(crate) fn segments_over(&self, [length, turn]: [f64; 2]) -> u32 {
+        self.raised(match self.rule {
             Rule::Segments(segments) => segments,
             Rule::Steps {
                 translation,
                 rotation_rad,
-            } => {
-                let moves = segments_below(leg.length(), translation);
-                moves.max(segments_below(leg.turn(), rotation_rad))
-            }
-            Rule::DistanceError(allowed) => {
-                segments_within(leg.turn(), largest_turn(platform, &leg, allowed))
-            }
-        };
+            } => segments_below(length, translation).max(segments_below(turn, rotation_rad)),
+            Rule::DistanceError(_) => 1,
+        })
+    }
+
+    fn raised(&self, segments: u32) -> u32 {
         segments.max(self.at_least).max(1)
     }
 

@@ -1,6 +1,8 @@
 //! PVT tables: what the controller will run, checked from outside.
 #![cfg(test)]
 
+#[path = "pvt/blends.rs"]
+mod blends;
 #[path = "support/cubic.rs"]
 mod cubic;
 #[path = "support/moves.rs"]

@@ -185,37 +185,6 @@ impl VectorLeg {
         )
     }
 
-    /// Angular velocity in the world, per unit of s, while the angles are `angles`.
-    ///
-    /// ```text
-    /// R = Rz(γ) Ry(β) Rx(α)   ω = γ' ẑ + Rz (β' ŷ + Ry α' x̂)
-    /// R = Rx(α) Ry(β) Rz(γ)   ω = α' x̂ + Rx (β' ŷ + Ry γ' ẑ)
-    /// ```
-    pub(crate) fn angular(&self, angles: &Vector3<f64>) -> Vector3<f64> {
-        let rate = self.angles_change();
-        let (sb, cb) = sin_cos(angles.y);
-        match self.convention {
-            Convention::ExtrinsicXyz => {
-                let (sg, cg) = sin_cos(angles.z);
-                let across = cb * rate.x;
-                Vector3::new(
-                    cg * across - sg * rate.y,
-                    sg * across + cg * rate.y,
-                    rate.z - sb * rate.x,
-                )
-            }
-            Convention::IntrinsicXyz => {
-                let (sa, ca) = sin_cos(angles.x);
-                let across = cb * rate.z;
-                Vector3::new(
-                    rate.x + sb * rate.z,
-                    ca * rate.y - sa * across,
-                    sa * rate.y + ca * across,
-                )
-            }
-        }
-    }
-
     /// The largest |ω| on the leg. |ω|² = α'² + β'² + γ'² ∓ 2 α' γ' sin β, so that it is
     /// found where sin β is largest or smallest.
     fn fastest_turn(&self) -> f64 {
@@ -228,6 +197,40 @@ impl VectorLeg {
         };
         let largest = (product * low).max(product * high);
         sqrt((rate.norm_squared() + largest).max(0.0))
+    }
+}
+
+/// Angular velocity in the world of the rotation by `angles` that change at `rate`.
+///
+/// ```text
+/// R = Rz(γ) Ry(β) Rx(α)   ω = γ' ẑ + Rz (β' ŷ + Ry α' x̂)
+/// R = Rx(α) Ry(β) Rz(γ)   ω = α' x̂ + Rx (β' ŷ + Ry γ' ẑ)
+/// ```
+pub(crate) fn angular_velocity(
+    convention: Convention,
+    angles: &Vector3<f64>,
+    rate: &Vector3<f64>,
+) -> Vector3<f64> {
+    let (sb, cb) = sin_cos(angles.y);
+    match convention {
+        Convention::ExtrinsicXyz => {
+            let (sg, cg) = sin_cos(angles.z);
+            let across = cb * rate.x;
+            Vector3::new(
+                cg * across - sg * rate.y,
+                sg * across + cg * rate.y,
+                rate.z - sb * rate.x,
+            )
+        }
+        Convention::IntrinsicXyz => {
+            let (sa, ca) = sin_cos(angles.x);
+            let across = cb * rate.z;
+            Vector3::new(
+                rate.x + sb * rate.z,
+                ca * rate.y - sa * across,
+                sa * rate.y + ca * across,
+            )
+        }
     }
 }
 

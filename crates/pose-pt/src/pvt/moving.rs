@@ -1,22 +1,35 @@
-//! The legs of a path on which something moves, as the axes run them.
+//! The legs of a path on which something moves and the blends between them, as the axes run them.
 
 use core::convert::Infallible;
 
 use nalgebra::Vector3;
-use path_timing::Place;
+use path_timing::Corner;
 
-use crate::course::{Course, is_still};
-use crate::path::Path;
+use crate::course::{Course, Place, is_still, travel};
+use crate::number::larger;
+use crate::path::blend::Rounding;
+use crate::path::{Leg, Path};
 use crate::{Platform, PvtPoint};
 
-/// A leg with both ends exactly where its neighbours have them: a controller gets one position for
-/// the end of a leg and the start of the next, while each leg by itself would round it anew.
+/// A leg or a blend with both ends exactly where its neighbours have them: a controller gets one
+/// position for the end of one and the start of the next, while each by itself would round it anew.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track<'a, const N: usize> {
-    /// The leg of the path, from 0.
-    pub(super) number: usize,
-    course: Course<'a, N>,
+    piece: Piece<'a, N>,
+    /// In the parameter that is common to all.
+    length: f64,
     ends: [[Vector3<f64>; N]; 2],
+    /// Whether the next one is entered without a stop.
+    goes_on: bool,
+    /// Bounds on the length of the reference point's path and on the turn of the body.
+    pub(super) travel: [f64; 2],
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Piece<'a, const N: usize> {
+    /// The part of a leg between two of its parameters.
+    Leg(Course<'a, N>, [f64; 2]),
+    Blend(&'a Platform<N>, Rounding),
 }
 
 impl<const N: usize> path_timing::Path for Track<'_, N> {
@@ -24,60 +37,106 @@ impl<const N: usize> path_timing::Path for Track<'_, N> {
     type Error = Infallible;
 
     fn length(&self) -> f64 {
-        1.0
+        self.length
     }
 
-    fn place(&self, s: f64) -> Result<Place<[[f64; 3]; N]>, Infallible> {
-        let place = self.course.place(s);
+    fn place(&self, s: f64) -> Result<path_timing::Place<[[f64; 3]; N]>, Infallible> {
+        let place = match &self.piece {
+            Piece::Leg(course, [from, to]) => {
+                let rate = (to - from) / self.length;
+                let place = course.place(from + s * rate);
+                Place {
+                    slope: place.slope.map(|slope| slope * rate),
+                    ..place
+                }
+            }
+            Piece::Blend(platform, rounding) => Place::of(platform, &rounding.motion(s)),
+        };
         let [start, end] = self.ends;
         let axes = if s <= 0.0 {
             start
-        } else if s >= 1.0 {
+        } else if s >= self.length {
             end
         } else {
             place.axes
         };
-        Ok(Place {
+        Ok(path_timing::Place {
             position: axes.map(Into::into),
             slope: place.slope.map(Into::into),
         })
     }
+
+    fn corner(&self) -> Corner<[[f64; 3]; N]> {
+        if self.goes_on {
+            Corner::Smooth
+        } else {
+            Corner::Stop
+        }
+    }
 }
 
-/// The legs on which something moves, from either end.
+/// The legs on which something moves and the blends between them, from either end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moving<'a, const N: usize> {
     pub(super) platform: &'a Platform<N>,
     path: Path<'a>,
-    /// The legs that are still to come.
+    /// The longest travel of a leg, which the common parameter takes 1 to run.
+    longest: f64,
+    /// The pieces that are still to come: 2 n is leg n, 2 n + 1 the blend after it.
     first: usize,
     end: usize,
 }
 
 impl<'a, const N: usize> Moving<'a, N> {
-    pub(super) const fn new(platform: &'a Platform<N>, path: &Path<'a>) -> Self {
+    pub(super) fn new(platform: &'a Platform<N>, path: &Path<'a>) -> Self {
+        let limits = platform.locators().iter().flat_map(|it| &it.limits);
+        // With a limit of jerk each leg is planned from rest to rest.
+        let has_jerk = limits.into_iter().any(|limits| limits.jerk.is_some());
+        let path = if has_jerk {
+            path.without_blends()
+        } else {
+            *path
+        };
+        let travels = path.numbered_legs().map(|(_, leg)| travel(platform, &leg));
         Self {
             platform,
-            path: *path,
+            longest: travels.fold(0.0, larger),
+            path,
             first: 0,
-            end: path.legs(),
+            end: path.legs().saturating_mul(2),
         }
     }
 
-    /// The legs' numbers in the path.
-    fn numbers(self) -> impl DoubleEndedIterator<Item = usize> {
-        (self.first..self.end).filter(move |number| !self.is_still(*number))
+    /// What the common parameter takes to run a leg: 1 where there are only stops.
+    fn size(&self, leg: &Leg) -> f64 {
+        if self.path.has_blends() {
+            travel(self.platform, leg) / self.longest
+        } else {
+            1.0
+        }
     }
 
-    /// The number in the path of leg `leg` of these.
-    pub(super) fn number(&self, leg: usize) -> usize {
-        let mut number = self.first;
-        let mut before = leg;
-        while before > 0 || self.is_still(number) {
-            before = before.saturating_sub(usize::from(!self.is_still(number)));
-            number = number.saturating_add(1);
+    fn pieces(self) -> impl DoubleEndedIterator<Item = usize> {
+        (self.first..self.end).filter(move |piece| self.has(*piece))
+    }
+
+    fn has(&self, piece: usize) -> bool {
+        if piece.is_multiple_of(2) {
+            !self.is_still(piece / 2)
+        } else {
+            self.rounding(piece / 2).is_some()
         }
-        number
+    }
+
+    /// The number in the path of leg `index` of these; of a blend that of the leg before it.
+    pub(super) fn number(&self, index: usize) -> usize {
+        let mut piece = self.first;
+        let mut before = index;
+        while before > 0 || !self.has(piece) {
+            before = before.saturating_sub(usize::from(self.has(piece)));
+            piece = piece.saturating_add(1);
+        }
+        piece / 2
     }
 
     /// At the first pose, at rest.
@@ -95,12 +154,69 @@ impl<'a, const N: usize> Moving<'a, N> {
         is_still(self.platform, &self.path, number)
     }
 
-    fn track(&self, number: usize) -> Option<Track<'a, N>> {
-        let axes = |number| self.path.axes(self.platform, number);
+    /// The rounding of the pose after leg `number`.
+    fn rounding(&self, number: usize) -> Option<Rounding> {
+        let next = number.checked_add(1)?;
+        if !self.path.has_blends() || self.is_still(number) || self.is_still(next) {
+            return None;
+        }
+        self.path.rounding(number, |leg| self.size(leg))
+    }
+
+    /// The part of a leg that its blends leave, as two of its parameters.
+    fn rest(&self, number: usize, leg: &Leg) -> [f64; 2] {
+        let before = number.checked_sub(1);
+        let taken = |rounding: Option<Rounding>| {
+            rounding.map_or(0.0, |rounding| rounding.reach() / self.size(leg))
+        };
+        let start = before.and_then(|before| self.rounding(before));
+        [taken(start), 1.0 - taken(self.rounding(number))]
+    }
+
+    /// Axes at a parameter of a leg.
+    fn axes(&self, number: usize, s: f64) -> Option<[Vector3<f64>; N]> {
+        if s <= 0.0 {
+            self.path.axes(self.platform, number)
+        } else if s >= 1.0 {
+            self.path.axes(self.platform, number.checked_add(1)?)
+        } else {
+            let leg = self.path.leg(number)?;
+            Some(Course::new(self.platform, &leg).place(s).axes)
+        }
+    }
+
+    fn track(&self, piece: usize) -> Option<Track<'a, N>> {
+        let number = piece / 2;
+        if piece.is_multiple_of(2) {
+            self.leg(number)
+        } else {
+            self.blend(number)
+        }
+    }
+
+    fn leg(&self, number: usize) -> Option<Track<'a, N>> {
+        let leg = self.path.leg(number)?;
+        let [from, to] = self.rest(number, &leg);
         Some(Track {
-            number,
-            course: Course::new(self.platform, &self.path.leg(number)?),
-            ends: [axes(number)?, axes(number.checked_add(1)?)?],
+            piece: Piece::Leg(Course::new(self.platform, &leg), [from, to]),
+            length: (to - from) * self.size(&leg),
+            ends: [self.axes(number, from)?, self.axes(number, to)?],
+            goes_on: self.rounding(number).is_some(),
+            travel: [leg.length(), leg.turn()].map(|whole| whole * (to - from)),
+        })
+    }
+
+    fn blend(&self, number: usize) -> Option<Track<'a, N>> {
+        let rounding = self.rounding(number)?;
+        let next = number.checked_add(1)?;
+        let [_, from] = self.rest(number, &self.path.leg(number)?);
+        let [to, _] = self.rest(next, &self.path.leg(next)?);
+        Some(Track {
+            piece: Piece::Blend(self.platform, rounding),
+            length: 2.0 * rounding.reach(),
+            ends: [self.axes(number, from)?, self.axes(next, to)?],
+            goes_on: true,
+            travel: rounding.travel(),
         })
     }
 }
@@ -108,17 +224,17 @@ impl<'a, const N: usize> Moving<'a, N> {
 impl<'a, const N: usize> Iterator for Moving<'a, N> {
     type Item = Track<'a, N>;
 
-    fn next(&mut self) -> Option<Track<'a, N>> {
-        let number = self.numbers().next()?;
-        self.first = number.saturating_add(1);
-        self.track(number)
+    fn next(&mut self) -> Option<Self::Item> {
+        let piece = self.pieces().next()?;
+        self.first = piece.saturating_add(1);
+        self.track(piece)
     }
 }
 
 impl<const N: usize> DoubleEndedIterator for Moving<'_, N> {
     fn next_back(&mut self) -> Option<Self::Item> {
-        let number = self.numbers().next_back()?;
-        self.end = number;
-        self.track(number)
+        let piece = self.pieces().next_back()?;
+        self.end = piece;
+        self.track(piece)
     }
 }

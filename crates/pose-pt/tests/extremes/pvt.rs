@@ -1,8 +1,13 @@
 //! The functions of PVT tables as functions of numbers.
 
-use pose_pt::{Ahead, Interpolation, Knot, Path, PvtTable, Segmentation, hermite_distance_error};
+use pose_pt::{
+    Ahead, Blend, Interpolation, Knot, Path, PvtTable, Segmentation, hermite_distance_error,
+};
 
 use crate::calls::{Call, Outcome, flat, message, platform, two_poses};
+
+/// A third rotation.
+const THIRD: [f64; 4] = [0.96, 0.168, -0.1792, 0.134_4];
 
 /// All functions of PVT tables.
 pub(crate) fn all() -> Vec<Call<f64>> {
@@ -34,6 +39,30 @@ pub(crate) fn all() -> Vec<Call<f64>> {
             }
             Ok(all)
         }),
+        call(
+            "PvtTable with blends",
+            &[platform, poses, &[0.5, 1.0, -0.75], &THIRD, &[0.25, 0.05]],
+            |x| {
+                let (platform, poses) = (x.platform()?, [x.pose(), x.pose(), x.pose()]);
+                let blend = Blend {
+                    distance: x.next(),
+                    rotation_rad: x.next(),
+                };
+                let path = Path::new(&poses, Interpolation::Straight).map_err(message)?;
+                let blends = [blend];
+                let path = path.with_blends(&blends).map_err(message)?;
+                let mut knots = [Knot::default(); 40];
+                let table =
+                    PvtTable::plan(&platform, &path, Segmentation::segments(12), &mut knots)
+                        .map_err(message)?;
+                let mut all = vec![table.duration_s()];
+                for point in table.points() {
+                    all.extend(flat(&point.axes));
+                    all.extend(flat(&point.velocities));
+                }
+                Ok(all)
+            },
+        ),
         call("PvtRun", &[&[0.75, 1.25, 0.5, 1.125]], |x| {
             with_table(|table| {
                 let table = table.at_speed_scale(x.next()).map_err(message)?;
