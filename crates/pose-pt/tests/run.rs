@@ -187,11 +187,11 @@ fn wrong_feeds_and_memory_are_named() {
 fn memory_is_fixed() {
     use pose_pt::{PtPoints, PtTable, PvtPoints, PvtRun};
 
-    assert_eq!(size_of::<PtTable<'_, 3>>(), 80);
-    assert_eq!(size_of::<PtPoints<'_, 3>>(), 664);
-    assert_eq!(size_of::<PvtTable<'_, 3>>(), 320);
-    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 1232);
-    assert_eq!(size_of::<PvtRun<'_, 3>>(), 2416);
+    assert_eq!(size_of::<PtTable<'_, 3>>(), 96);
+    assert_eq!(size_of::<PtPoints<'_, 3>>(), 680);
+    assert_eq!(size_of::<PvtTable<'_, 3>>(), 344);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 1296);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 2480);
     assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
 }
 

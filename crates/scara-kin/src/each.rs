@@ -83,6 +83,7 @@ impl<T: RealField + Trig> Arm<T> {
     }
 }
 
+/// A call of its own: inlined, the compiler no longer makes vectors of the lanes.
 #[inline(never)]
 fn lanes<T: Trig>(y: &[T; LANES], x: &[T; LANES]) -> [T; LANES] {
     atan2_lanes(*y, *x)

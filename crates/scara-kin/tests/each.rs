@@ -6,11 +6,7 @@ use scara_kin::nalgebra::{Point2, RealField};
 use scara_kin::{Arm, JointRange, Joints, Limits, Trig};
 
 /// Machines with and without limits, and points within and out of reach, at the base, not finite.
-fn check<T: RealField + Trig>(
-    links: [T; 2],
-    limit: T,
-    points: &[Point2<T>],
-) -> Result<(), TestCaseError> {
+fn check<T: RealField + Trig>(links: [T; 2], limit: T, points: &[Point2<T>]) {
     let [upper, fore] = links;
     let free = Arm::new(upper, fore).unwrap();
     let range = JointRange::new(-limit, limit).unwrap();
@@ -22,14 +18,13 @@ fn check<T: RealField + Trig>(
         let each: Vec<_> = arm.inverse_each(points).collect();
         let single: Vec<_> = points.iter().map(|point| arm.inverse(*point)).collect();
         // As text, in which a NaN is like another one and a float has all its digits.
-        prop_assert_eq!(format!("{each:?}"), format!("{single:?}"));
+        assert_eq!(format!("{each:?}"), format!("{single:?}"));
 
         let poses: Vec<_> = points.iter().map(|p| Joints::new(p.x, p.y)).collect();
         let each: Vec<_> = arm.forward_each(&poses).collect();
         let single: Vec<_> = poses.iter().map(|joints| arm.forward(*joints)).collect();
-        prop_assert_eq!(format!("{each:?}"), format!("{single:?}"));
+        assert_eq!(format!("{each:?}"), format!("{single:?}"));
     }
-    Ok(())
 }
 
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -48,8 +43,8 @@ proptest! {
     ) {
         let double: Vec<_> = points.iter().map(|(x, y)| Point2::new(*x, *y)).collect();
         let single: Vec<Point2<f32>> = double.iter().map(|point| point.cast()).collect();
-        check([132.0, fore], limit, &double)?;
+        check([132.0, fore], limit, &double);
         let [fore, limit]: [f32; 2] = Point2::new(fore, limit).cast().coords.into();
-        check([132.0, fore], limit, &single)?;
+        check([132.0, fore], limit, &single);
     }
 }

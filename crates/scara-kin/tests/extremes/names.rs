@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-const TESTS: [&str; 6] = [
+const TESTS: [&str; 7] = [
     include_str!("curves.rs"),
     include_str!("inverse.rs"),
     include_str!("machine.rs"),
     include_str!("paths.rs"),
     include_str!("rates.rs"),
     include_str!("tools.rs"),
+    include_str!("../each.rs"),
 ];
 
 fn sources(folder: &Path, texts: &mut Vec<String>) {
