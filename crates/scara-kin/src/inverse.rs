@@ -74,17 +74,17 @@ impl<T: RealField + Trig> Arm<T> {
     /// Joint angles of both elbows that bring the tool to `point`.
     ///
     /// ```text
-    /// r  = |point - base|
-    /// s  = √((r - (l1 - l2)) (r + (l1 - l2)) ((l1 + l2) - r) ((l1 + l2) + r))
-    /// k1 = r² + (l1 - l2)(l1 + l2)         or (r - l2)(r + l2) + l1²   where l2 > l1
-    /// k2 = (r - l1)(r + l1) - l2²          or (r - l2)(r + l2) - l1²   where l2 > l1
+    /// r² = |point - base|²
+    /// s  = √((r² - (l1 - l2)²) ((l1 + l2)² - r²))
+    /// k1 = r² + (l1 - l2)(l1 + l2)         or r² - l2² + l1²   where l2 > l1
+    /// k2 = r² - l1² - l2²                  or r² - l2² - l1²   where l2 > l1
     /// q2 = ±atan2(s, k2)
     /// q1 = atan2(k1 y ∓ s x, k1 x ± s y)
     /// ```
     ///
-    /// The factors are exact differences, so nothing cancels at the rim, at the fold,
-    /// for equal links or for very unequal ones: `forward(inverse(p))` is within 8 machine
-    /// epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
+    /// What the differences round off is what a change of r² by its own last place would do, at
+    /// the rim, at the fold, for equal links and for very unequal ones: `forward(inverse(p))` is
+    /// within 8 machine epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
     /// made of allowed joints is never refused: up to [`tolerance`](Self::tolerance) past an
     /// edge counts as on it, for limits too.
     ///
@@ -188,26 +188,28 @@ impl<T: RealField + Trig> Arm<T> {
         // A square that overflows is out of reach; one that vanishes is at the centre
         // by more digits than the lengths have.
         let r2 = tool.norm_squared();
-        let r = r2.sqrt();
         let (folded, reach, tolerance) = (l1 - l2, self.reach(), self.tolerance());
-        if r > reach + tolerance || !r.is_finite() {
+        let (nearest, farthest) = (self.inner_reach() - tolerance, reach + tolerance);
+        // Written so that NaN is outside too.
+        let is_inside = r2 <= farthest * farthest;
+        if !is_inside {
             return Err(Self::outside(point, tool, reach));
         }
-        if r < self.inner_reach() - tolerance {
-            let reach = self.inner_reach();
-            return Err(InverseError::TooNear { distance: r, reach });
+        if nearest > T::zero() && r2 < nearest * nearest {
+            let (distance, reach) = (r2.sqrt(), self.inner_reach());
+            return Err(InverseError::TooNear { distance, reach });
         }
-        if r == T::zero() && folded == T::zero() {
+        if r2 == T::zero() && folded == T::zero() {
             return Err(InverseError::AnyAngle);
         }
-        let s2 = (r - folded) * (r + folded) * ((reach - r) * (reach + r));
+        let s2 = (r2 - folded * folded) * (reach * reach - r2);
         let s = s2.max(T::zero()).sqrt();
-        // r² less the longer link's square, as a product: it cancels where they are close.
-        let square = |longer| (r - longer) * (r + longer);
+        let (square1, square2) = (l1 * l1, l2 * l2);
+        // The longer link's square first: it cancels where the other link is short.
         let (k1, k2) = if l1 >= l2 {
-            (r2 + folded * reach, square(l1) - l2 * l2)
+            (r2 + folded * reach, r2 - square1 - square2)
         } else {
-            (square(l2) + l1 * l1, square(l2) - l1 * l1)
+            (r2 - square2 + square1, r2 - square2 - square1)
         };
         Ok(Triangle { tool, s, k1, k2 })
     }
