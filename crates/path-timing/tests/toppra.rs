@@ -1,4 +1,4 @@
-//! How near the tables come to the shortest time by another program: toppra, from PyPI.
+//! How near the tables come to the shortest time by another program, toppra.
 //!
 //! It runs where `python3` has it, and must where `PATH_TIMING_REQUIRE_TOPPRA` is set.
 #![cfg(test)]
@@ -6,7 +6,7 @@
 #[path = "support/machine.rs"]
 mod machine;
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -34,18 +34,17 @@ const LINES: [[f64; 4]; 8] = [
     [15.0, 80.0, -5.0, 220.0],
 ];
 
-/// The shortest times, or nothing where there is no toppra.
-fn durations_s() -> Option<Vec<f64>> {
-    let is_there = Command::new("python3")
+fn is_there() -> bool {
+    let mut python = Command::new("python3");
+    let status = python
         .args(["-c", "import toppra"])
         .stderr(Stdio::null())
-        .status()
-        .is_ok_and(|status| status.success());
-    if !is_there {
-        let is_required = std::env::var_os("PATH_TIMING_REQUIRE_TOPPRA").is_some();
-        assert!(!is_required, "python3 has no toppra");
-        return None;
-    }
+        .status();
+    status.is_ok_and(|status| status.success())
+}
+
+/// The shortest times of all lines.
+fn durations_s() -> Vec<f64> {
     let mut python = Command::new("python3")
         .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/toppra/duration.py"))
         .stdin(Stdio::piped())
@@ -63,15 +62,17 @@ fn durations_s() -> Option<Vec<f64>> {
     let output = python.wait_with_output().unwrap();
     assert!(output.status.success());
     let output = String::from_utf8(output.stdout).unwrap();
-    Some(output.lines().map(|line| line.parse().unwrap()).collect())
+    output.lines().map(|line| line.parse().unwrap()).collect()
 }
 
 #[test]
 fn time_above_that_of_toppra() {
-    let Some(shortest_s) = durations_s() else {
-        println!("python3 has no toppra: skipped");
+    if !is_there() {
+        let is_required = std::env::var_os("PATH_TIMING_REQUIRE_TOPPRA").is_some();
+        assert!(!is_required, "python3 has no toppra");
         return;
-    };
+    }
+    let shortest_s = durations_s();
     assert_eq!(shortest_s.len(), LINES.len());
     let limits = LIMITS.map(|[speed, acceleration]| limits(speed, acceleration, None));
     for ([x0, y0, x1, y1], shortest_s) in LINES.into_iter().zip(shortest_s) {
