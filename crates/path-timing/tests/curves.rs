@@ -1,6 +1,7 @@
 //! Curves: arc length, derivatives, blends, and how far cubics depart from them.
 #![cfg(test)]
 
+use core::cell::Cell;
 use core::f64::consts::PI;
 
 use path_timing::{
@@ -322,7 +323,7 @@ fn bounds_of_tables_are_near_to_what_is_measured() {
                 .unwrap();
                 let bound = table.departure(Curve::departure).unwrap();
                 assert!(bound <= tolerance);
-                let worst = core::cell::Cell::new(0.0_f64);
+                let worst = Cell::new(0.0_f64);
                 table
                     .departure(|curve, span| {
                         let off = measured(curve, span, 100);
@@ -356,4 +357,35 @@ fn lines_have_no_departure() {
     let arc = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 3.0).unwrap();
     let table = Table::plan_within([arc], [axis; 2], 2, 1e-9, Curve::departure, &mut knots);
     assert!(matches!(table, Err(PlanError::Memory { .. })));
+}
+
+/// The bound of a table of several curves is the largest of theirs.
+#[test]
+fn the_bound_of_several_curves_is_the_largest() {
+    let axis = AxisLimits {
+        speed: 100.0,
+        acceleration: 1500.0,
+        jerk: None,
+    };
+    let curves = rounded(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [60.0, 25.0]], 0.5);
+    let mut knots = [Knot::default(); 500];
+    let table = Table::plan_within(
+        curves.iter(),
+        [axis; 2],
+        4,
+        1e-3,
+        |curve: &&Curve<2>, span: &_| curve.departure(span),
+        &mut knots,
+    );
+    let table = table.unwrap();
+    let (spans, last) = (Cell::new(0), Cell::new(0.0));
+    let bound = table.departure(|curve, span| {
+        assert!(span.s[0] < span.s[1] && span.s[1] <= curve.length());
+        spans.set(spans.get() + 1);
+        last.set(span.s[1] / curve.length());
+        curve.departure(span)
+    });
+    assert!(bound.unwrap() > 1e-4 && bound.unwrap() <= 1e-3);
+    assert_eq!(spans.get(), table.len() - 1);
+    assert!((last.get() - 1.0_f64).abs() < ROUNDING);
 }
