@@ -15,7 +15,13 @@ export class Inspector {
   readonly #every = element('every', HTMLInputElement);
 
   constructor(change: (move: Move) => void) {
-    this.#all.addEventListener('change', () => change(this.#move()));
+    this.#all.addEventListener('change', () => {
+      // A field without a number waits for one.
+      const isWhole = [this.#at, this.#for, this.#value, this.#repeat].every(
+        (it) => it.value !== '',
+      );
+      if (isWhole) change(this.#move());
+    });
   }
 
   show(score: Score, index: number | undefined): void {

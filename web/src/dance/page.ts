@@ -156,7 +156,11 @@ async function run(): Promise<void> {
     law: law.value === 'reset' ? null : law.value,
     code: code.value === '589' ? null : code.value,
   });
-  const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber || 0 };
+  const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber };
+  if (Number.isNaN(parameters.code_bytes)) {
+    status.refuse('code', 'no number');
+    return;
+  }
   machine.stop();
   try {
     const { value, blobs } = await machine.call<Result | Refused>('dance', parameters);

@@ -31,7 +31,8 @@ export class Machine {
 
   /** Asks for an operation; the error is what the machine says against it, in one line. */
   async call<T>(operation: string, parameters: unknown, progress?: Progress): Promise<Answer<T>> {
-    this.#worker ??= this.#start(await this.#module);
+    const module = await this.#module;
+    this.#worker ??= this.#start(module);
     const worker = this.#worker;
     this.#calls += 1;
     const id = this.#calls;

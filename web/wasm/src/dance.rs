@@ -100,30 +100,18 @@ impl Danced {
     fn answer(&self) -> Result<Answer> {
         let motors = self.score.motors();
         let motors = motors.map(|(name, deg)| json!({ "name": name, "halfStepDeg": deg }));
-        let landings = self.dance.landings.iter();
-        let landings = landings.map(|landing| {
-            json!({
-                "move": landing.number,
-                "frame": landing.frame,
-                "off": landing.error_half_steps(),
-            })
-        });
-        let (motors, landings): (Vec<_>, Vec<_>) = (motors.collect(), landings.collect());
+        let motors: Vec<_> = motors.collect();
         let value = self.with_report(|report| {
             Ok(json!({
                 "summary": report.to_string(),
                 "report": report,
                 "isAsAsked": report.is_as_asked(),
                 "motors": motors,
-                "landings": landings,
             }))
         })?;
-        let speeds = self.dance.frames.as_flattened().iter();
         let positions = self.run.positions().as_flattened().iter();
         let other = self.run.other_positions().as_flattened().iter();
         Ok(Answer::new(value)?
-            .with_bytes("header", &*self.header)
-            .with_numbers("speeds", speeds.map(|it| it.to_le_bytes()))
             .with_numbers("positions", positions.map(|it| it.to_le_bytes()))
             .with_numbers("other", other.map(|it| it.to_le_bytes())))
     }

@@ -87,7 +87,6 @@ impl Engraved {
         let deviation = self.run.deviation_over_time();
         let deviation = deviation.flat_map(|(s, mm)| [s, mm.unwrap_or(f64::NAN)]);
         Ok(Answer::new(value)?
-            .with_bytes("pattern", self.plan.pattern())
             .with_numbers("outlines", outlines.into_iter().map(f64::to_le_bytes))
             .with_numbers("deviation", deviation.map(f64::to_le_bytes)))
     }
