@@ -80,7 +80,7 @@ fn measure_stream<const N: usize>(criterion: &mut Criterion) {
         let mut window = [Slot::default(); 64];
         bencher.iter(|| {
             let paths = [swing::<N> as fn(f64) -> _, back].map(|place| PathFn::new(4.0, place));
-            let segments = |_: &_| SEGMENTS / 2;
+            let segments = |_: &_| Ok(SEGMENTS / 2);
             let motion = LookAhead::new(&paths, limits, segments, black_box(&mut window));
             let motion = motion.expect("window is long enough");
             motion.filter(|row| black_box(row).is_ok()).count()

@@ -134,3 +134,26 @@ pub enum PlanError<E> {
         max: f64,
     },
 }
+
+impl<E> PlanError<E> {
+    /// The same error of another leg.
+    pub(crate) fn of_leg(mut self, number: usize) -> Self {
+        match &mut self {
+            Self::Tool { leg, .. }
+            | Self::StartStopSpeed { leg, .. }
+            | Self::Path { leg, .. }
+            | Self::NotFinite { leg, .. }
+            | Self::Length { leg, .. }
+            | Self::Gap { leg, .. }
+            | Self::TooFine { leg, .. }
+            | Self::Indistinct { leg, .. } => *leg = number,
+            Self::Limit { .. }
+            | Self::Jerk
+            | Self::Memory { .. }
+            | Self::Allowed { .. }
+            | Self::SpeedScale { .. }
+            | Self::Feed { .. } => {}
+        }
+        self
+    }
+}

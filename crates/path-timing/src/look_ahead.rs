@@ -38,7 +38,7 @@ const MIN_SLOTS: usize = 3;
 /// let sides = (0..).map_while(|n| Curve::line(point(n), point(n + 1)).ok());
 /// let axis = AxisLimits { speed: 200.0, acceleration: 2000.0, jerk: None };
 /// let mut window = [Slot::default(); 32];
-/// let mut motion = LookAhead::new(sides, [axis; 2], |_| 8, &mut window)?;
+/// let mut motion = LookAhead::new(sides, [axis; 2], |_| Ok(8), &mut window)?;
 /// for row in motion.by_ref().take(1000) {
 ///     let row = row?; // `row.duration_s` after the row before: `row.position`, `row.velocity`
 /// }
@@ -80,8 +80,11 @@ struct Entering<P: Path> {
     s: f64,
 }
 
-impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> u32> LookAhead<'w, P, I, F> {
-    /// The rows along `paths`, each cut into as many `segments` as the function says, at least 2.
+impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>>
+    LookAhead<'w, P, I, F>
+{
+    /// The rows along `paths`, each cut into as many `segments` as the function says, at least 2: a
+    /// fixed number, or what [`segments_within`](crate::segments_within) finds.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Jerk`] where an axis has a limit of jerk, which takes a
@@ -243,7 +246,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> u32> LookAhead<'w, P, I
     fn begin(&mut self, path: P) -> Result<Entering<P>, PlanError<P::Error>> {
         let number = self.count;
         self.count = number.wrapping_add(1);
-        let segments = (self.segments)(&path);
+        let segments = (self.segments)(&path).map_err(|error| error.of_leg(number))?;
         if segments > MAX_SEGMENTS {
             let max = MAX_SEGMENTS;
             return Err(PlanError::TooFine { leg: number, max });
@@ -283,7 +286,9 @@ impl<P: Path> Entering<P> {
     }
 }
 
-impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> u32> Iterator for LookAhead<'_, P, I, F> {
+impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>> Iterator
+    for LookAhead<'_, P, I, F>
+{
     type Item = Result<Row<P::Axes>, PlanError<P::Error>>;
 
     fn next(&mut self) -> Option<Self::Item> {

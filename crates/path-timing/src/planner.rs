@@ -1,8 +1,9 @@
 //! The knots of a table: how many, at which speeds, and whether they can be told apart.
 
 use crate::demand::Demand;
+use crate::departure::{FINEST, Speeds, bound_of_parameters, estimate, fewest, spread};
 use crate::leg::{self, Leg};
-use crate::number::{larger_or_nan, sqrt};
+use crate::number::larger_or_nan;
 use crate::segment::Reciprocals;
 use crate::table::spans_of_leg;
 use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Span, profile, smooth};
@@ -18,9 +19,6 @@ pub(crate) const MIN_SEGMENTS: u32 = 2;
 
 /// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
-
-/// Segments beyond which rounding is all that is left of a departure.
-const FINEST: u32 = 1 << 20;
 
 /// Relative rounding of a stretched leg.
 const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
@@ -157,44 +155,51 @@ impl<A: Axes> Planner<A> {
     pub(crate) fn fewest<P: Path<Axes = A>>(
         &self,
         leg: &Leg<P>,
-        used: usize,
-        free: &mut [Knot],
-        at_least: u32,
-        allowed: f64,
-        departure: &impl Fn(&P, &Span<A>) -> f64,
+        starts_at_rest: bool,
+        [used, free]: [usize; 2],
+        knots: &mut [Knot],
+        wanted: &Within<impl Fn(&P, &Span<A>) -> f64>,
     ) -> Result<u32, PlanError<P::Error>> {
-        let least = self.bounded(leg.number, at_least)?;
-        let room = u32::try_from(free.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let least = self.bounded(leg.number, wanted.at_least)?;
+        let room = u32::try_from(free.saturating_sub(1)).unwrap_or(u32::MAX);
         if room < least {
             return Err(PlanError::Memory {
                 needed: used.saturating_add(knots_of(least)),
-                available: used.saturating_add(free.len()),
+                available: used.saturating_add(free),
             });
         }
-        let mut bound_of = |segments| {
-            let knots = self.plan_leg(leg, free, segments)?;
-            bound_of_leg(leg, knots, departure)
+        let rests = [starts_at_rest, leg.joint().is_stop()];
+        let speeds = if wanted.any_feed {
+            Speeds::Run
+        } else {
+            Speeds::Passing
         };
-        let (mut too_few, mut enough) = (least.saturating_sub(1), least);
-        let mut bound = bound_of(enough)?;
-        while bound > allowed {
-            if enough >= room || enough >= FINEST {
-                return Err(too_coarse(leg.number, bound / allowed, enough, used, room));
-            }
-            too_few = enough;
-            enough = enough.saturating_mul(2).min(room).min(FINEST);
-            bound = bound_of(enough)?;
-        }
-        while enough.saturating_sub(too_few) > 1 {
-            let middle = too_few.midpoint(enough);
-            if bound_of(middle)? <= allowed {
-                enough = middle;
+        let bound_of = |segments| {
+            if wanted.any_feed && self.reciprocals.has_jerk() {
+                let knots = self.plan_leg(leg, knots, segments)?;
+                let parameters = knots.iter().map(|knot| knot.s);
+                bound_of_parameters(leg, parameters, speeds, &wanted.departure)
+            } else if wanted.any_feed || rests != [true; 2] {
+                let parameters = spread(leg, segments, rests);
+                bound_of_parameters(leg, parameters, speeds, &wanted.departure)
             } else {
-                too_few = middle;
+                let knots = self.plan_leg(leg, knots, segments)?;
+                bound_of_leg(leg, knots, &wanted.departure)
             }
-        }
-        Ok(enough)
+        };
+        let too_coarse =
+            |bound, segments| too_coarse(leg.number, bound / wanted.allowed, segments, used, room);
+        fewest(least, room, wanted.allowed, bound_of, too_coarse)
     }
+}
+
+/// A departure that segments have to keep.
+pub(crate) struct Within<D> {
+    pub(crate) at_least: u32,
+    pub(crate) allowed: f64,
+    /// Whether at any speeds, or at those of the table.
+    pub(crate) any_feed: bool,
+    pub(crate) departure: D,
 }
 
 /// The number of knots of a leg with this number of segments.
@@ -224,10 +229,9 @@ fn check_times<E>(leg: usize, knots: &[Knot], mut time_s: f64) -> Result<f64, Pl
     Ok(time_s)
 }
 
-/// Why no number of segments that there is room for keeps the departure. It shrinks with the
-/// square of the number; a tenth more is enough.
+/// Why no number of segments that there is room for keeps the departure.
 fn too_coarse<E>(leg: usize, excess: f64, segments: u32, used: usize, room: u32) -> PlanError<E> {
-    let estimate = f64::from(segments) * sqrt(excess) * 1.1;
+    let estimate = estimate(segments, excess);
     if segments < room || estimate > f64::from(FINEST) {
         return PlanError::TooFine { leg, max: FINEST };
     }

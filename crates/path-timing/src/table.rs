@@ -1,8 +1,9 @@
 //! Position-velocity-time tables along paths.
 
+use crate::departure::check_allowed;
 use crate::leg::{self, Leg};
 use crate::number::{SMALLEST, larger_or_nan};
-use crate::planner::{Planner, bound_of_leg};
+use crate::planner::{Planner, Within, bound_of_leg};
 use crate::rows::Rows;
 use crate::segment::Reciprocals;
 use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row, Span, profile};
@@ -59,7 +60,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         knots: &'a mut [Knot],
     ) -> Result<Self, PlanError<L::Error>> {
         let planner = Planner::new(limits)?;
-        let choose = |planner: &Planner<_>, leg: &Leg<_>, _, _: &mut [Knot]| {
+        let choose = |planner: &Planner<_>, leg: &Leg<_>, _, _, _: &mut [Knot]| {
             planner.bounded(leg.number, segments(leg.path()))
         };
         Self::plan_by(legs.into_iter(), &planner, &segments, choose, knots)
@@ -70,7 +71,8 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     ///
     /// `departure` is a bound on what a controller departs by on a segment of a leg, in any unit; it
     /// should fall with the number of segments. The number is found by bisection, and each trial is
-    /// a plan.
+    /// a plan. It holds at a constant feed; of a path that is passed without a stop at an end it holds
+    /// at any speeds, as [`plan_within_at_any_feed`](Self::plan_within_at_any_feed) makes it.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -82,14 +84,56 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         departure: impl Fn(&L::Leg, &Span<A>) -> f64,
         knots: &'a mut [Knot],
     ) -> Result<Self, PlanError<L::Error>> {
-        if !(allowed > 0.0 && allowed.is_finite()) {
-            return Err(PlanError::Allowed { allowed });
-        }
-        let planner = Planner::new(limits)?;
-        let choose = |planner: &Planner<_>, leg: &Leg<_>, used, free: &mut [Knot]| {
-            planner.fewest(leg, used, free, at_least, allowed, &departure)
+        let within = Within {
+            at_least,
+            allowed,
+            any_feed: false,
+            departure,
         };
-        Self::plan_by(legs.into_iter(), &planner, |_| at_least, choose, knots)
+        Self::plan_fewest(legs.into_iter(), limits, &within, knots)
+    }
+
+    /// Plans the table as [`plan_within`](Self::plan_within) does, with segments that keep the
+    /// departure at any speeds: also under feed changes, and where a [`Run`](crate::Run) is held at
+    /// any row and resumed. These are several times as many.
+    ///
+    /// `departure` is asked for each segment from rest, to rest and at three ratios of the speeds
+    /// between, and with an acceleration that starts or ends at zero; the last segment of a path also
+    /// from rest to rest. It must be largest at one of these, as a bound is that grows towards rest.
+    /// The speed of the table must not change more than threefold on a segment that does not start or
+    /// end at rest.
+    ///
+    /// # Errors
+    /// [`PlanError`]; also where `knots` are too few.
+    pub fn plan_within_at_any_feed(
+        legs: impl IntoIterator<IntoIter = L>,
+        limits: A::Of<AxisLimits>,
+        at_least: u32,
+        allowed: f64,
+        departure: impl Fn(&L::Leg, &Span<A>) -> f64,
+        knots: &'a mut [Knot],
+    ) -> Result<Self, PlanError<L::Error>> {
+        let within = Within {
+            at_least,
+            allowed,
+            any_feed: true,
+            departure,
+        };
+        Self::plan_fewest(legs.into_iter(), limits, &within, knots)
+    }
+
+    fn plan_fewest(
+        legs: L,
+        limits: A::Of<AxisLimits>,
+        within: &Within<impl Fn(&L::Leg, &Span<A>) -> f64>,
+        knots: &'a mut [Knot],
+    ) -> Result<Self, PlanError<L::Error>> {
+        check_allowed(within.allowed)?;
+        let planner = Planner::new(limits)?;
+        let choose = |planner: &Planner<_>, leg: &Leg<_>, rests, used, free: &mut [Knot]| {
+            planner.fewest(leg, rests, [used, free.len()], free, within)
+        };
+        Self::plan_by(legs, &planner, |_| within.at_least, choose, knots)
     }
 
     fn plan_by(
@@ -99,6 +143,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         choose: impl Fn(
             &Planner<A>,
             &Leg<L::Leg>,
+            bool,
             usize,
             &mut [Knot],
         ) -> Result<u32, PlanError<L::Error>>,
@@ -110,7 +155,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         for leg in leg::forward(&legs, planner.reciprocals()) {
             let leg = leg?;
             let (_, free) = profile::split(knots, used);
-            let segments = choose(planner, &leg, used, free)?;
+            let segments = choose(planner, &leg, starts_at_rest, used, free)?;
             let own = planner.lay_leg(&leg, starts_at_rest, free, segments)?;
             used = used.saturating_add(own.len());
             // The last knot of a leg is the first of the next.

@@ -53,7 +53,7 @@ fn a_long_window_is_a_table() {
             let table = Table::plan(&paths, LIMITS, |_| 20, &mut knots).unwrap();
             let table: Vec<_> = table.rows().map(Result::unwrap).collect();
             let mut window = slots(200);
-            let motion = LookAhead::new(&paths, LIMITS, |_| 20, &mut window).unwrap();
+            let motion = LookAhead::new(&paths, LIMITS, |_| Ok(20), &mut window).unwrap();
             let rows: Vec<_> = motion.map(Result::unwrap).collect();
             check_limits(&LIMITS, Some(&JUMP), &rows);
             let [time_s, least_s] = [&rows, &table].map(|rows| rows.last().unwrap().time_s);
@@ -84,7 +84,7 @@ fn a_window_shorter_than_the_braking_distance_costs_time_alone() {
     for (count, full_speed) in [(3, false), (5, false), (8, false), (12, true), (40, true)] {
         let paths = (0..50).map(|n| line(f64::from(n) * 10.0));
         let mut window = vec![Slot::default(); count];
-        let motion = LookAhead::new(paths, limits, |_| 10, &mut window).unwrap();
+        let motion = LookAhead::new(paths, limits, |_| Ok(10), &mut window).unwrap();
         let rows: Vec<_> = motion.map(Result::unwrap).collect();
         check_limits(&limits, None, &rows);
         let time_s = rows.last().unwrap().time_s;
@@ -121,7 +121,7 @@ fn a_stream_without_end_costs_the_same_for_each_knot() {
     let limits = [limits(50.0, 500.0, None); 2];
     // Its ends are joined to the last bit.
     let paths = (0..).map(line);
-    let motion = LookAhead::new(paths, limits, |_| 8, &mut window).unwrap();
+    let motion = LookAhead::new(paths, limits, |_| Ok(8), &mut window).unwrap();
     let rows: Vec<_> = motion.take(90_000).map(Result::unwrap).collect();
     check_limits(&limits, Some(&[1.0 + CLOSE; 2]), &rows);
     // Eight knots, two rows at the corner.
@@ -135,7 +135,7 @@ fn a_stream_that_pauses_rests_at_the_end_and_goes_on() {
     let source = core::iter::from_fn(|| queue.borrow_mut().pop_front());
     let late = queue.borrow_mut().split_off(2);
     let mut window = slots(50);
-    let mut motion = LookAhead::new(source, LIMITS, |_| 10, &mut window).unwrap();
+    let mut motion = LookAhead::new(source, LIMITS, |_| Ok(10), &mut window).unwrap();
     assert!(motion.is_at_rest());
     let mut rows: Vec<_> = motion.by_ref().map(Result::unwrap).collect();
     // The first corner is none.
@@ -164,7 +164,7 @@ fn a_refused_path_is_named_once_and_the_machine_stops_before_it() {
     };
     let limits = [limits(100.0, 1000.0, None)];
     let mut window = vec![Slot::default(); 16];
-    let mut motion = LookAhead::new((0..).map(line), limits, |_| 10, &mut window).unwrap();
+    let mut motion = LookAhead::new((0..).map(line), limits, |_| Ok(10), &mut window).unwrap();
     let (mut rows, mut errors) = (Vec::new(), Vec::new());
     while let Some(row) = motion.next_row().transpose() {
         match row {
@@ -183,30 +183,30 @@ fn what_cannot_be_planned_is_named() {
     let paths = || lines(&POINTS, Corner::Stop, None);
     let mut window = slots(20);
     let jerk = [limits(1.0, 1.0, Some(1.0)); 2];
-    let error = LookAhead::new(paths(), jerk, |_| 8, &mut window).unwrap_err();
+    let error = LookAhead::new(paths(), jerk, |_| Ok(8), &mut window).unwrap_err();
     assert_eq!(error, PlanError::Jerk);
-    let error = LookAhead::new(paths(), [limits(0.0, 1.0, None); 2], |_| 8, &mut window);
+    let error = LookAhead::new(paths(), [limits(0.0, 1.0, None); 2], |_| Ok(8), &mut window);
     assert!(matches!(
         error.unwrap_err(),
         PlanError::Limit { axis: 0, .. }
     ));
-    let error = LookAhead::new(paths(), LIMITS, |_| 8, &mut window[..2]).unwrap_err();
+    let error = LookAhead::new(paths(), LIMITS, |_| Ok(8), &mut window[..2]).unwrap_err();
     let (needed, available) = (3, 2);
     assert_eq!(error, PlanError::Memory { needed, available });
-    let mut motion = LookAhead::new(paths(), LIMITS, |_| u32::MAX, &mut window).unwrap();
+    let mut motion = LookAhead::new(paths(), LIMITS, |_| Ok(u32::MAX), &mut window).unwrap();
     assert!(matches!(
         motion.next_row(),
         Err(PlanError::TooFine { leg: 0, .. })
     ));
     assert!(motion.next_row().unwrap().is_none());
     for max in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let motion = LookAhead::new(paths(), LIMITS, |_| 8, &mut window).unwrap();
+        let motion = LookAhead::new(paths(), LIMITS, |_| Ok(8), &mut window).unwrap();
         assert!(matches!(
             motion.with_max_feed(max),
             Err(PlanError::Feed { .. })
         ));
     }
-    let motion = LookAhead::new(paths(), LIMITS, |_| 8, &mut window).unwrap();
+    let motion = LookAhead::new(paths(), LIMITS, |_| Ok(8), &mut window).unwrap();
     let mut motion = motion.with_max_feed(1.5).unwrap();
     for feed in [1.6, -0.1, f64::NAN, 1e-310] {
         assert!(motion.set_feed(feed).is_err());
@@ -216,7 +216,7 @@ fn what_cannot_be_planned_is_named() {
         Curve::line([0.0, 1.0], [1.0, 1.0]).unwrap(),
         Curve::line([1.0, 1.5], [2.0, 1.0]).unwrap(),
     ];
-    let mut motion = LookAhead::new(gap, LIMITS, |_| 8, &mut window).unwrap();
+    let mut motion = LookAhead::new(gap, LIMITS, |_| Ok(8), &mut window).unwrap();
     let (leg, axis, by) = (1, 1, 0.5);
     assert_eq!(motion.next_row(), Err(PlanError::Gap { leg, axis, by }));
 }
@@ -235,7 +235,7 @@ fn the_feed_is_multiplied() {
     };
     for feed in [0.5, 1.0, 2.0] {
         let mut window = slots(40);
-        let motion = LookAhead::new(&paths, LIMITS, |_| 50, &mut window).unwrap();
+        let motion = LookAhead::new(&paths, LIMITS, |_| Ok(50), &mut window).unwrap();
         let mut motion = motion.with_max_feed(2.0).unwrap();
         motion.set_feed(feed).unwrap();
         let rows: Vec<_> = motion.map(Result::unwrap).collect();
@@ -252,12 +252,12 @@ fn a_hold_rests_on_the_path_and_goes_on() {
     let paths = lines(&POINTS, Corner::Jump(jump), Some(250.0));
     let count = {
         let mut window = slots(40);
-        let motion = LookAhead::new(&paths, LIMITS, |_| 20, &mut window).unwrap();
+        let motion = LookAhead::new(&paths, LIMITS, |_| Ok(20), &mut window).unwrap();
         motion.count()
     };
     for moving in 1..count {
         let mut window = slots(40);
-        let mut motion = LookAhead::new(&paths, LIMITS, |_| 20, &mut window).unwrap();
+        let mut motion = LookAhead::new(&paths, LIMITS, |_| Ok(20), &mut window).unwrap();
         let mut rows: Vec<_> = motion.by_ref().take(moving).map(Result::unwrap).collect();
         motion.stop();
         rows.extend(motion.by_ref().map(Result::unwrap));
@@ -281,7 +281,7 @@ fn a_rounded_polyline_is_run_without_a_stop() {
     let curves = Rounded::new(points, 0.05).unwrap().map(Result::unwrap);
     let mut window = slots(64);
     let limits = [limits(100.0, 1000.0, None); 2];
-    let motion = LookAhead::new(curves, limits, |_| 12, &mut window).unwrap();
+    let motion = LookAhead::new(curves, limits, |_| Ok(12), &mut window).unwrap();
     let rows: Vec<_> = motion.map(Result::unwrap).collect();
     check_limits(&limits, None, &rows);
     let inside = &rows[1..rows.len() - 1];
@@ -317,7 +317,7 @@ proptest! {
         let corner = jump.map_or(Corner::Smooth, Corner::Jump);
         let paths = lines(&points, corner, feed);
         let mut window = slots(count);
-        let motion = LookAhead::new(&paths, LIMITS, |_| segments, &mut window).unwrap();
+        let motion = LookAhead::new(&paths, LIMITS, |_| Ok(segments), &mut window).unwrap();
         let mut motion = motion.with_max_feed(2.0).unwrap();
         let mut rows = Vec::new();
         for (wanted, count) in overrides {

@@ -68,7 +68,7 @@ type Stream = Repeat<Parabola>;
 
 #[no_panic]
 #[inline(never)]
-fn look_ahead<F: FnMut(&Parabola) -> u32>(
+fn look_ahead<F: FnMut(&Parabola) -> Result<u32, PlanError<Infallible>>>(
     limits: [AxisLimits; 2],
     segments: F,
     window: &mut [Slot<[f64; 2]>],
@@ -79,7 +79,12 @@ fn look_ahead<F: FnMut(&Parabola) -> u32>(
 #[no_panic]
 #[inline(never)]
 fn look_ahead_next(
-    motion: &mut LookAhead<'_, Parabola, Stream, impl FnMut(&Parabola) -> u32>,
+    motion: &mut LookAhead<
+        '_,
+        Parabola,
+        Stream,
+        impl FnMut(&Parabola) -> Result<u32, PlanError<Infallible>>,
+    >,
 ) -> Result<Option<Row<[f64; 2]>>, PlanError<Infallible>> {
     motion.next_row()
 }
@@ -106,7 +111,7 @@ pub fn run() {
     let mut window = black_box([Slot::default(); 16]);
     if let Ok(mut motion) = look_ahead(
         black_box([limits; 2]),
-        |_| black_box(7),
+        |_| Ok(black_box(7)),
         black_box(&mut window),
     ) {
         black_box(look_ahead_next(&mut motion).is_ok());
