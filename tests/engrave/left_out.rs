@@ -142,11 +142,11 @@ fn each_kind_is_said_with_its_first_place() {
         ),
         (
             "<path d='M5 5H9 L oops 9' stroke='red'/>",
-            "d=\"M5 5H9 L oops 9\": has an error, what is behind it is not engraved (1 time)",
+            "d=\"M5 5H9 L oops 9\": has an error, what follows it is not engraved (1 time)",
         ),
         (
             "<polyline points='5,5 9,5 20' stroke='red'/>",
-            "points=\"5,5 9,5 20\": has an error, what is behind it is not engraved (1 time)",
+            "points=\"5,5 9,5 20\": has an error, what follows it is not engraved (1 time)",
         ),
         (
             "<path d='M5 5H9' transform='rotate(45deg)' stroke='red'/>",

@@ -63,7 +63,7 @@ pub(crate) struct Options {
     /// Print verdicts as JSON, one a line, and nothing else.
     #[arg(long)]
     json: bool,
-    /// End after so many seconds; without it, ports are heard for ever.
+    /// End after this number of seconds; without it, ports are heard for ever.
     #[arg(long, requires = "port", value_parser = text::seconds, allow_hyphen_values = true)]
     seconds: Option<Duration>,
 }

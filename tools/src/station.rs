@@ -58,7 +58,7 @@ pub(crate) struct Options {
     /// carry them count only on an instant one.
     #[arg(long, default_value = "buffered")]
     line: LineName,
-    /// Stay so many seconds after the last outcome.
+    /// Stay this number of seconds after the last outcome.
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = text::seconds, allow_hyphen_values = true)]
     listen: Duration,
 }

@@ -1,4 +1,4 @@
-//! Fixed-point numbers in 64 bits: shares of a row and small ratios in 2^-62, and reciprocals.
+//! Fixed-point numbers in 64 bits: fractions of a row and small ratios in 2^-62, and reciprocals.
 #![expect(
     clippy::arithmetic_side_effects,
     clippy::cast_possible_wrap,
@@ -6,7 +6,7 @@
     reason = "each function states its ranges"
 )]
 
-/// Fraction bits of shares and ratios.
+/// Bits after the point of fractions and ratios.
 pub(crate) const RATIO_BITS: u32 = 62;
 /// The whole of a row.
 pub(crate) const ONE: u64 = 1 << RATIO_BITS;
@@ -22,8 +22,8 @@ pub(crate) const fn signed_high(a: i64, b: u64) -> i64 {
     high(a as u64, b).wrapping_sub(b & (a >> 63) as u64) as i64
 }
 
-/// a s rounded down, for a share s <= [`ONE`] and |a| < 2^62.
-pub(crate) const fn share(a: i64, s: u64) -> i64 {
+/// a s rounded down, for a fraction s <= [`ONE`] and |a| < 2^62.
+pub(crate) const fn fraction(a: i64, s: u64) -> i64 {
     signed_high(a << 1, s << 1)
 }
 
@@ -79,13 +79,17 @@ impl Inverse {
         })
     }
 
-    /// n / x as a share; `None` above [`ONE`].
-    pub(crate) const fn share(self, n: u64) -> Option<u64> {
+    /// n / x as a fraction; `None` above [`ONE`].
+    pub(crate) const fn fraction(self, n: u64) -> Option<u64> {
         if n.leading_zeros() < self.zeros {
             return None;
         }
-        let share = high(n << self.zeros, self.factor);
-        if share <= ONE { Some(share) } else { None }
+        let fraction = high(n << self.zeros, self.factor);
+        if fraction <= ONE {
+            Some(fraction)
+        } else {
+            None
+        }
     }
 
     /// n / x as a ratio, for |n| <= x / 2.
@@ -120,7 +124,7 @@ pub(crate) const fn quotient(n: u64, d: u64) -> u64 {
     quotient
 }
 
-/// The first share from `low` to `high` where `test` holds, when it holds from there on.
+/// The first fraction from `low` to `high` where `test` holds, when it holds from there on.
 pub(crate) fn first(mut low: u64, mut high: u64, test: impl Fn(u64) -> bool) -> u64 {
     while high - low > 1 {
         let middle = low + ((high - low) >> 1);
@@ -186,19 +190,19 @@ mod tests {
             let (a, b) = ((a >> 3) as i64, b & (ONE - 1));
             for a in [a, -a] {
                 let exact = (i128::from(a) * i128::from(b)) >> RATIO_BITS;
-                assert_eq!(i128::from(share(a, b)), exact);
+                assert_eq!(i128::from(fraction(a, b)), exact);
             }
-            assert_eq!(share(a, ONE), a);
+            assert_eq!(fraction(a, ONE), a);
         }
     }
 
     #[test]
     fn shares_and_ratios_of_small_numbers() {
         let third = Inverse::of(3).unwrap();
-        assert_eq!(third.share(4), None);
+        assert_eq!(third.fraction(4), None);
         let close = |a: u64, b: u64| assert!(a.abs_diff(b) <= 64, "{a} {b}");
-        close(third.share(3).unwrap(), ONE);
-        close(third.share(1).unwrap(), ONE / 3);
+        close(third.fraction(3).unwrap(), ONE);
+        close(third.fraction(1).unwrap(), ONE / 3);
         close(third.ratio(-1).unsigned_abs(), ONE / 3);
         close(third.quotient(1 << 62, -2), ONE / 12);
         assert_eq!(shifted(-5, -1), -3);

@@ -34,7 +34,7 @@ pub enum PositionError {
         /// The limit passed, in steps.
         limit: i32,
     },
-    /// The way to the target does not fit one move of ±(2^31 - 1) steps.
+    /// The distance to the target does not fit one move of ±(2^31 - 1) steps.
     #[error("axis {axis}: from {position} to {target} is more than 2147483647 steps")]
     MoveTooLong {
         /// Index of the axis.
@@ -69,7 +69,7 @@ pub enum PositionError {
 /// Positions of N axes: the sum of all signed steps since home.
 ///
 /// Every sum is checked against the limits of its axis, by default ±(2^31 - 1) steps, and nothing
-/// is moved when one axis fails. So the way home, the negative sum, always exists.
+/// is moved when one axis fails. So the move home, the negative sum, always exists.
 ///
 /// # Examples
 /// ```
@@ -126,7 +126,7 @@ impl Axis {
         }
     }
 
-    fn way_to(self, axis: usize, target: i32) -> Result<i32, PositionError> {
+    fn steps_to(self, axis: usize, target: i32) -> Result<i32, PositionError> {
         if let Some(limit) = self.limit_passed(i64::from(target)) {
             return Err(PositionError::TargetPastLimit {
                 axis,
@@ -232,10 +232,10 @@ impl<const N: usize> Position<N> {
     /// [`PositionError::TargetPastLimit`], [`PositionError::MoveTooLong`]; no axis is moved then.
     pub fn move_to(&mut self, targets: [i32; N]) -> Result<[i32; N], PositionError> {
         let mut moves = [0; N];
-        for (index, ((axis, target), way)) in
+        for (index, ((axis, target), steps)) in
             self.axes.iter().zip(targets).zip(&mut moves).enumerate()
         {
-            *way = axis.way_to(index, target)?;
+            *steps = axis.steps_to(index, target)?;
         }
         self.apply(moves)?;
         Ok(moves)

@@ -72,7 +72,7 @@ pub enum RampError {
         /// Highest rate given, in mHz.
         max_millihertz: u32,
     },
-    /// The way is too short for the change of the rate.
+    /// The move is too short for the change of the rate.
     #[error(
         "from {} to {} mHz in {steps} steps, fewer than the {needed} that it takes",
         ends.entry_millihertz,
@@ -127,7 +127,7 @@ pub enum RampError {
     },
 }
 
-/// A rapid move of N axes: trapezoidal speed of the leading axis, triangular when the way is too
+/// A rapid move of N axes: trapezoidal speed of the leading axis, triangular when the move is too
 /// short, the others in exact proportion, all ends on the same tick.
 ///
 /// With n steps of the leading axis, rates v0 and v1 at the start and the end, highest rate v,
@@ -136,8 +136,8 @@ pub enum RampError {
 /// n a >= v² - (v0² + v1²)/2:  D = F (n/v + ((v - v0)² + (v - v1)²) / (2 v a))
 /// otherwise:                  D = F (2 p - v0 - v1) / a,  p² = n a + (v0² + v1²)/2
 /// ```
-/// D and the ways up and down, F (v - v0)/a and F (v - v1)/a, are rounded to whole ticks; the speed
-/// between them follows from the way, so that speed and acceleration are off by one part in as
+/// D and the distances of speeding up and slowing down, F (v - v0)/a and F (v - v1)/a, are rounded to whole ticks; the speed
+/// between them follows from the distance, so that speed and acceleration are off by one part in as
 /// many as the move and its ramps have ticks. These phases are the [`rows`](Self::rows) of a PVT
 /// table, and the steps those of [`PvtSteps`](crate::PvtSteps): step i where the axis passes
 /// i - 1/2 steps, less than 2 ticks and 2^-28 steps from its place on the exact trapezoid.

@@ -6,7 +6,7 @@ use crate::{AxisTrain, CounterWidth};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "the two ways a program does it")]
+#[expect(clippy::exhaustive_enums, reason = "the two methods of programs")]
 pub enum Rounding {
     /// To the nearest tick, halves up.
     Nearest,

@@ -134,7 +134,7 @@ proptest! {
     }
 }
 
-/// Every number of half steps that some speeds make in so many frames, tick by tick.
+/// Every number of half steps that some speeds make in a number of frames, tick by tick.
 fn makeable(threshold: u16, frame_ticks: u32, frames: u16) -> HashSet<i64> {
     let mut reached = HashSet::from([(0, 0)]);
     for _ in 0..frames {

@@ -9,7 +9,7 @@ use crate::plan::Plan;
 /// `pattern.h`: the records of a plan in the machine's format.
 ///
 /// # Errors
-/// An 8051 does not address so many bytes.
+/// An 8051 does not address more bytes.
 pub fn header(machine: &Machine, plan: &Plan) -> Result<String> {
     let records = machine.format.records(plan.pattern());
     let records = records.map(|located| Ok(located?.record));

@@ -161,8 +161,8 @@ impl Planner<'_> {
             self.moves.push(Move::Stroke(rows));
         }
         for curve in curves {
-            for share in [0.25, 0.5, 0.75, 1.0] {
-                self.note_bound(curve.at(curve.length() * share).point.into());
+            for fraction in [0.25, 0.5, 0.75, 1.0] {
+                self.note_bound(curve.at(curve.length() * fraction).point.into());
             }
         }
         self.rapid(Axis::Vertical, 0);

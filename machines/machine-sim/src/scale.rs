@@ -15,7 +15,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A scale with so many counts per step, 0 at position 0.
+    /// a scale with a number of counts per step, 0 at position 0.
     #[must_use]
     pub const fn new(counts_per_step: u16) -> Self {
         Self {

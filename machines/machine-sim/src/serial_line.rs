@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use crate::random::Random;
 
-/// Damages one of so many bytes: it is flipped in one bit, lost or doubled.
+/// Damages one byte of a number of them: it is flipped in one bit, lost or doubled.
 ///
 /// Between two damaged bytes are `spacing` to `2 spacing - 1` sound ones. A spacing of the longest
 /// block damages at most one byte of a block, which is what a block check character is sure to see.
@@ -115,7 +115,7 @@ pub struct SerialLine {
 }
 
 impl SerialLine {
-    /// A line of so many bits per second (0 counts as 1), with the bits of a character on the line:
+    /// A line of a number of bits per second (0 counts as 1), with the bits of a character on the line:
     /// start, data, parity and stop.
     #[must_use]
     pub fn new(bits_per_second: u32, bits_per_character: u8, noise: Noise) -> Self {

@@ -51,7 +51,7 @@ impl Report {
         mode: Mode,
     ) -> Self {
         let end = &examination.end.pose;
-        let way = end.translation.vector - target.translation.vector;
+        let offset = end.translation.vector - target.translation.vector;
         Self {
             mode,
             points: table.points(),
@@ -61,7 +61,7 @@ impl Report {
             max_speed_ratio: examination.max_speed_ratio,
             max_speed_jump_mm_s: examination.max_speed_jump,
             keeps: mode.keeps(),
-            pose_error_mm: way.norm(),
+            pose_error_mm: offset.norm(),
             pose_error_rad: angle_between(&end.rotation, &target.rotation),
             telegrams: course.telegrams,
             line_bytes: course.line_bytes,

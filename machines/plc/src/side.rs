@@ -70,7 +70,7 @@ impl Side {
     /// The most rounds: each begins one word further on in the data blocks.
     pub const MAX_ROUNDS: u8 = 60;
 
-    /// A side with so many data blocks to write and to read back.
+    /// A side with a number of data blocks to write and to read back.
     ///
     /// # Errors
     /// More than [`Self::MAX_ROUNDS`].

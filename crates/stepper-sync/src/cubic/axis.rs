@@ -36,9 +36,9 @@ const TOLERANCE: u64 = 7 << 28;
 /// Each step comes less than a tick from the time at which the row's exact cubic passes its place,
 /// where the axis moves by u and more in a tick; elsewhere |q - (k + 1/2)| at the tick of the step
 /// is at most what the axis goes in a tick, and u. Here u is 2^-40 steps, or 2^-47 of the greatest
-/// of the row's way and its duration times its velocities, if that is more than 128 steps.
+/// of the row's travel and its duration times its velocities, if that is more than 128 steps.
 ///
-/// No root is searched for each step. Let s be the share of the row's time, and
+/// No root is searched for each step. Let s be the fraction of the row's time, and
 /// q = d0 + d1 σ + d2 σ² + d3 σ³ round a centre `s_c` = s - σ with d1 > 0. For the positions
 /// d0 + h x, |x| <= 1, put w = h / d1 and σ = w y:
 /// ```text
@@ -73,9 +73,9 @@ const TOLERANCE: u64 = 7 << 28;
 /// # Examples
 /// ```
 /// use stepper_sync::{AxisSegments, MinIntervals, PvtKnot};
-/// let least = MinIntervals { step_ticks: 100, reversal_ticks: 100 };
-/// let mut axis = AxisSegments::new(PvtKnot::at_rest(0), least);
-/// // From rest to rest, 3 steps in 10,000 ticks: 3 s² - 2 s³ of them at the share s of the time.
+/// let min_intervals = MinIntervals { step_ticks: 100, reversal_ticks: 100 };
+/// let mut axis = AxisSegments::new(PvtKnot::at_rest(0), min_intervals);
+/// // From rest to rest, 3 steps in 10,000 ticks: 3 s² - 2 s³ of them at the fraction s of the time.
 /// axis.push(10_000, PvtKnot::at_rest(3))?;
 /// let steps: u32 = axis.by_ref().map(|segment| u32::from(segment.count())).sum();
 /// assert_eq!((steps, axis.steps()), (3, 3));
@@ -83,7 +83,7 @@ const TOLERANCE: u64 = 7 << 28;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AxisSegments {
-    least: MinIntervals,
+    min_intervals: MinIntervals,
     /// Rows pushed.
     rows: u64,
     /// Start and end of the present row, in ticks since the start.
@@ -105,15 +105,15 @@ pub struct AxisSegments {
 impl AxisSegments {
     /// An axis at a knot; it counts from the whole step nearest to it, of two the upper one.
     #[must_use]
-    pub fn new(start: PvtKnot, least: MinIntervals) -> Self {
-        Self::within(TOLERANCE, start, least)
+    pub fn new(start: PvtKnot, min_intervals: MinIntervals) -> Self {
+        Self::within(TOLERANCE, start, min_intervals)
     }
 
     /// With series that leave out less than a tolerance in 2^-32 ticks.
-    pub(super) fn within(tolerance: u64, start: PvtKnot, least: MinIntervals) -> Self {
-        let max_velocity = max_velocity(least.step_ticks);
+    pub(super) fn within(tolerance: u64, start: PvtKnot, min_intervals: MinIntervals) -> Self {
+        let max_velocity = max_velocity(min_intervals.step_ticks);
         Self {
-            least,
+            min_intervals,
             rows: 0,
             row_start: 0,
             row_end: 0,
@@ -178,7 +178,7 @@ impl AxisSegments {
             axis,
             ticks: self.row_end + u64::from(fast.tick),
             interval_ticks: fast.interval_ticks,
-            least_ticks: self.least.step_ticks.saturating_add(2),
+            min_ticks: self.min_intervals.step_ticks.saturating_add(2),
         })?;
         let Some(cubic) = cubic else {
             return Ok(None);
@@ -188,7 +188,7 @@ impl AxisSegments {
                 row,
                 axis,
                 ticks: self.row_end + u64::from(tick),
-                least_ticks: self.least.reversal_ticks,
+                min_ticks: self.min_intervals.reversal_ticks,
             })
     }
 
@@ -230,7 +230,7 @@ impl AxisSegments {
         };
         let mut run = self.run_with(cubic, ticks, knot, turns);
         if let Some(turn) = run.first_turn()
-            && run.turns_within(self.least.reversal_ticks.saturating_add(2))
+            && run.turns_within(self.min_intervals.reversal_ticks.saturating_add(2))
         {
             return Err(whole_ticks(turn, ticks));
         }
@@ -238,7 +238,7 @@ impl AxisSegments {
             last,
             wait_ticks: self
                 .last_ticks
-                .saturating_add(self.least.reversal_ticks)
+                .saturating_add(self.min_intervals.reversal_ticks)
                 .saturating_sub(self.row_end),
         });
         let batch = run.first(back)?;
@@ -252,7 +252,7 @@ impl AxisSegments {
         Run::new(cubic, ticks, end, turns, self.fit)
     }
 
-    /// Begins a row that goes all one way, as all of its axis do, with velocities of up to half a
+    /// Begins a row that keeps its direction, as all of its axis do, with velocities of up to half a
     /// step a tick: it needs no check.
     pub(crate) fn push_one_way(&mut self, ticks: u32, knot: PvtKnot) {
         let direction = if knot.position < self.knot.position {
@@ -353,9 +353,9 @@ pub(super) struct Start {
     batch: Batch,
 }
 
-/// A share in ticks, to the nearest.
-fn whole_ticks(share: u64, ticks: u32) -> u32 {
-    (((time_of(share, ticks) >> 31) + 1) >> 1) as u32
+/// A fraction in ticks, to the nearest.
+fn whole_ticks(fraction: u64, ticks: u32) -> u32 {
+    (((time_of(fraction, ticks) >> 31) + 1) >> 1) as u32
 }
 
 /// The whole step nearest to a position, of two the upper one.

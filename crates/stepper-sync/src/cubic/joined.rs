@@ -39,8 +39,8 @@ const CAPACITY: usize = MAX_COUNT as usize;
 /// # Examples
 /// ```
 /// use stepper_sync::{JoinedSegments, MinIntervals, PvtKnot, Segment};
-/// let least = MinIntervals { step_ticks: 100, reversal_ticks: 100 };
-/// let mut axis = JoinedSegments::new(PvtKnot::at_rest(0), least);
+/// let min_intervals = MinIntervals { step_ticks: 100, reversal_ticks: 100 };
+/// let mut axis = JoinedSegments::new(PvtKnot::at_rest(0), min_intervals);
 /// let mut wire = Vec::new();
 /// let mut send = |segment: Segment| {
 ///     wire.extend_from_slice(segment.encode(&mut [0; Segment::MAX_ENCODED_LEN]));
@@ -107,15 +107,15 @@ impl Rest {
 impl JoinedSegments {
     /// An axis at a knot; it counts from the whole step nearest to it, of two the upper one.
     #[must_use]
-    pub fn new(start: PvtKnot, least: MinIntervals) -> Self {
+    pub fn new(start: PvtKnot, min_intervals: MinIntervals) -> Self {
         // Two steps may each be a tick nearer to the other than the rows have them; in one
         // direction the rows leave them 2 ticks, of which a late one may take a third.
-        let least = MinIntervals {
-            step_ticks: least.step_ticks.saturating_add(1),
-            reversal_ticks: least.reversal_ticks.saturating_add(2),
+        let min_intervals = MinIntervals {
+            step_ticks: min_intervals.step_ticks.saturating_add(1),
+            reversal_ticks: min_intervals.reversal_ticks.saturating_add(2),
         };
         Self {
-            axis: AxisSegments::within(TOLERANCE, start, least),
+            axis: AxisSegments::within(TOLERANCE, start, min_intervals),
             rest: None,
             direction: Direction::Positive,
             len: 0,
@@ -143,7 +143,7 @@ impl JoinedSegments {
         self.finishing = true;
     }
 
-    /// Takes steps of the row while there is room and they go the same way; whether some are left.
+    /// Takes steps of the row while there is room and they go in the same direction; whether some are left.
     fn fill(&mut self) -> bool {
         loop {
             let Some(rest) = self.rest.take().or_else(|| self.next_rest()) else {
@@ -289,7 +289,7 @@ impl Newton {
         let [p0, p1, p2, p3] = if last < 4 {
             [0, 1, 2, 3]
         } else {
-            SPREAD.map(|share| (share * last + 512) / 1024)
+            SPREAD.map(|fraction| (fraction * last + 512) / 1024)
         };
         let time = |place: usize| times.get(place).map(|&time| i128::from(time) << 20);
         let [i0, i1, i2, i3] = [p0, p1, p2, p3].map(|place| place as i128);

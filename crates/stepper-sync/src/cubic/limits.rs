@@ -41,7 +41,7 @@ pub enum RowError {
     /// Faster than the driver takes steps.
     #[error(
         "row {row}, axis {axis}, tick {ticks}: a step every {interval_ticks} ticks, \
-         fewer than {least_ticks}"
+         fewer than {min_ticks}"
     )]
     TooFast {
         /// Number of the row, from 0.
@@ -54,10 +54,10 @@ pub enum RowError {
         interval_ticks: u64,
         /// [`MinIntervals::step_ticks`] and 2 ticks for the rounding of both steps, 3 in
         /// [`JoinedSegments`](crate::JoinedSegments).
-        least_ticks: u64,
+        min_ticks: u64,
     },
     /// Two steps in opposite directions come too soon after each other.
-    #[error("row {row}, axis {axis}, tick {ticks}: steps back in fewer than {least_ticks} ticks")]
+    #[error("row {row}, axis {axis}, tick {ticks}: steps back in fewer than {min_ticks} ticks")]
     ReversalTooQuick {
         /// Number of the row, from 0.
         row: u64,
@@ -67,6 +67,6 @@ pub enum RowError {
         ticks: u64,
         /// [`MinIntervals::reversal_ticks`], and 2 ticks in
         /// [`JoinedSegments`](crate::JoinedSegments).
-        least_ticks: u64,
+        min_ticks: u64,
     },
 }

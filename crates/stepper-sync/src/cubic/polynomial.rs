@@ -7,17 +7,17 @@
 
 use super::row::PvtKnot;
 use crate::Direction;
-use crate::fixed::{ONE, first, share, shifted, signed_high};
+use crate::fixed::{ONE, first, fraction, shifted, signed_high};
 
 /// The most fraction bits of a position.
 const MAX_BITS: u32 = 50;
-/// Bits of a way or v T, at most, with those behind the point: sums of 24 of them stay below 2^62.
+/// Bits of a distance or v T, at most, with those behind the point: sums of 24 of them stay below 2^62.
 const WAY_BITS: u32 = 57;
 
-/// Fraction bits with which every way fits: half a step a tick for 2^32 ticks.
+/// Fraction bits with which every distance fits: half a step a tick for 2^32 ticks.
 const WHOLE_BITS: u32 = 31;
 
-/// q(s) = q0 + q1 s + q2 s² + q3 s³ for the share s of a row's time, in 2^-bits steps.
+/// q(s) = q0 + q1 s + q2 s² + q3 s³ for the fraction s of a row's time, in 2^-bits steps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Cubic {
     pub(super) bits: u32,
@@ -27,7 +27,7 @@ pub(super) struct Cubic {
     pub(super) q3: i64,
 }
 
-/// A cubic at one place, per share of the row.
+/// A cubic at one place, per fraction of the row.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derivatives {
     pub(super) position: i64,
@@ -40,12 +40,12 @@ pub(super) struct Derivatives {
 pub(super) struct Turns {
     /// Direction at the start.
     pub(super) direction: Direction,
-    /// Shares at which the direction changes, in order; [`ONE`] where there is none.
+    /// Fractions at which the direction changes, in order; [`ONE`] where there is none.
     pub(super) at: [u64; 2],
 }
 
 impl Turns {
-    /// All one way.
+    /// In one direction.
     pub(super) const fn none(direction: Direction) -> Self {
         Self {
             direction,
@@ -56,35 +56,35 @@ impl Turns {
 
 impl Cubic {
     /// From one knot to the next in `ticks` >= 1 ticks with velocities of at most half a step a
-    /// tick, positions counted from `origin` whole steps next to the first; `None` for a way of
+    /// tick, positions counted from `origin` whole steps next to the first; `None` for a travel of
     /// 2^31 steps and more.
     ///
-    /// With B the greatest of the way, v0 T and v1 T, |q2| and |q3| are at most 6 B, and the sums
+    /// With B the greatest of the distance, v0 T and v1 T, |q2| and |q3| are at most 6 B, and the sums
     /// below at most 24 B. That leaves 50 bits behind the point for 128 steps a row, and one less
     /// with each doubling. The coefficients are rounded to them, so that q is off by less than 8
     /// units.
     pub(super) fn new(from: PvtKnot, to: PvtKnot, ticks: u32, origin: i64) -> Option<Self> {
-        let way = to.position.checked_sub(from.position)?;
+        let travel = to.position.checked_sub(from.position)?;
         let scale = |knot: PvtKnot, bits: u32| distance(knot.velocity, ticks, bits);
-        let most = (way.unsigned_abs() >> (PvtKnot::POSITION_BITS - WHOLE_BITS))
+        let most = (travel.unsigned_abs() >> (PvtKnot::POSITION_BITS - WHOLE_BITS))
             .max(scale(from, WHOLE_BITS).unsigned_abs())
             .max(scale(to, WHOLE_BITS).unsigned_abs());
         let used = 64 - (most + 1).leading_zeros();
         let bits = (WAY_BITS + WHOLE_BITS - used).min(MAX_BITS);
         let more = bits as i32 - PvtKnot::POSITION_BITS as i32;
         let offset = from.position.wrapping_sub(origin << PvtKnot::POSITION_BITS);
-        let way = shifted(way, more);
+        let travel = shifted(travel, more);
         let (v0, v1) = (scale(from, bits), scale(to, bits));
         Some(Self {
             bits,
             q0: shifted(offset, more),
             q1: v0,
-            q2: 3 * way - 2 * v0 - v1,
-            q3: v0 + v1 - 2 * way,
+            q2: 3 * travel - 2 * v0 - v1,
+            q3: v0 + v1 - 2 * travel,
         })
     }
 
-    /// The same seen the other way round.
+    /// The same in reverse.
     pub(super) const fn reversed(&self) -> Self {
         Self {
             bits: self.bits,
@@ -100,13 +100,13 @@ impl Cubic {
         1 << self.bits
     }
 
-    /// q, q' and q'' / 2 at a share of the row.
+    /// q, q' and q'' / 2 at a fraction of the row.
     pub(super) const fn at(&self, s: u64) -> Derivatives {
-        let a = share(self.q3, s);
-        let b = share(self.q2 + a, s);
+        let a = fraction(self.q3, s);
+        let b = fraction(self.q2 + a, s);
         Derivatives {
-            position: self.q0 + share(self.q1 + b, s),
-            velocity: self.q1 + b + share(self.q2 + 2 * a, s),
+            position: self.q0 + fraction(self.q1 + b, s),
+            velocity: self.q1 + b + fraction(self.q2 + 2 * a, s),
             half_acceleration: self.q2 + 3 * a,
         }
     }

@@ -3,14 +3,14 @@
     clippy::arithmetic_side_effects,
     clippy::cast_possible_wrap,
     clippy::integer_division_remainder_used,
-    reason = "positions as in `Cubic`, shares at most 2^62, counts below 2^10; constant divisors"
+    reason = "positions as in `Cubic`, fractions at most 2^62, counts below 2^10; constant divisors"
 )]
 
 use super::polynomial::{Cubic, Turns};
 use super::row::PvtKnot;
 use super::series::{Centre, End, Series, Times, time_of};
 use crate::Direction;
-use crate::fixed::{Inverse, ONE, share};
+use crate::fixed::{Inverse, ONE, fraction};
 
 /// What an axis may pass a step's place by and turn round without making the step: 2^-8 steps, if
 /// it does not take more than a tick at its greatest velocity.
@@ -75,7 +75,7 @@ pub(super) struct Run {
     left: u64,
     /// Place of the next one.
     place: i64,
-    /// A share before the next one, in this piece.
+    /// A fraction before the next one, in this piece.
     low: u64,
     /// Where the next centre may be.
     guess: u64,
@@ -132,13 +132,13 @@ impl Run {
     /// Whether the axis may pass a step's place by more than the touch, turn round and be back in
     /// less than `ticks` ticks.
     ///
-    /// With |q''| <= 2 A per share² the way there takes at least the share sqrt(touch / A), and so
+    /// With |q''| <= 2 A per fraction² the way there takes at least the fraction sqrt(touch / A), and so
     /// does the way back.
     pub(super) fn turns_within(&self, ticks: u64) -> bool {
         let acceleration = self.cubic.max_acceleration();
         // Half of the ticks, or all of the row.
-        let half = self.share_of(ticks / 2 + 1).unwrap_or(ONE);
-        share(share(acceleration, half), half) + 2 > self.touch
+        let half = self.fraction_of(ticks / 2 + 1).unwrap_or(ONE);
+        fraction(fraction(acceleration, half), half) + 2 > self.touch
     }
 
     /// Counts the steps of the piece that begins at `low`, and looks for its first centre.
@@ -202,7 +202,7 @@ impl Run {
     /// A guess between `low` and `high`, or their middle.
     fn ahead(&self, high: u64, guess: Option<u64>) -> u64 {
         guess
-            .filter(|&share| self.low < share && share < high)
+            .filter(|&fraction| self.low < fraction && fraction < high)
             .unwrap_or(self.low + (high - self.low) / 2)
     }
 
@@ -230,12 +230,14 @@ impl Run {
         };
         let [end, ..] = self.ends;
         let wait = u32::try_from(back.wait_ticks).unwrap_or(u32::MAX);
-        let share = self.share_of(back.wait_ticks).filter(|&share| share <= end);
-        let Some(share) = share else {
+        let fraction = self
+            .fraction_of(back.wait_ticks)
+            .filter(|&fraction| fraction <= end);
+        let Some(fraction) = fraction else {
             return Err(wait.min(self.ticks));
         };
-        let past = self.cubic.at(share).position - self.place;
-        if share <= self.low || past < 0 {
+        let past = self.cubic.at(fraction).position - self.place;
+        if fraction <= self.low || past < 0 {
             return Ok(self.next());
         }
         if past > self.touch {
@@ -245,9 +247,9 @@ impl Run {
         Ok(Some(self.made(1, Times::single(u64::from(wait) << 32))))
     }
 
-    /// Ticks as a share of the row; `None` after its end.
-    fn share_of(&self, ticks: u64) -> Option<u64> {
-        Inverse::of(u64::from(self.ticks))?.share(ticks)
+    /// Ticks as a fraction of the row; `None` after its end.
+    fn fraction_of(&self, ticks: u64) -> Option<u64> {
+        Inverse::of(u64::from(self.ticks))?.fraction(ticks)
     }
 
     /// A piece with steps left.
@@ -274,15 +276,15 @@ impl Run {
     /// Centres until one has a series that is exact enough; at last the middle of half a tick.
     fn search(&mut self) -> Batch {
         let [mut high, ..] = self.ends;
-        let mut share = self.guess;
+        let mut fraction = self.guess;
         let mut round = 0;
         loop {
-            let centre = Centre::new(&self.cubic, self.ticks, share);
+            let centre = Centre::new(&self.cubic, self.ticks, fraction);
             let distance = self.place - centre.d0;
             if distance < 0 {
-                high = share;
+                high = fraction;
             } else {
-                self.low = share;
+                self.low = fraction;
             }
             match centre.series(distance.abs()) {
                 Some(series) if series.error <= self.tolerance => {
@@ -300,7 +302,7 @@ impl Run {
             } else {
                 None
             };
-            share = self.ahead(high, guess);
+            fraction = self.ahead(high, guess);
         }
         self.guess = high;
         let middle = self.low + (high - self.low) / 2;
@@ -325,7 +327,7 @@ impl Run {
             }
         };
         if centre.d0 <= self.place {
-            self.low = centre.share;
+            self.low = centre.fraction;
         }
         if self.left == 0 {
             return batch;

@@ -10,7 +10,7 @@
 
 use super::polynomial::Cubic;
 use super::segment::{MAX_COUNT, Units};
-use crate::fixed::{Inverse, ONE, high, share, shifted, signed_high, times};
+use crate::fixed::{Inverse, ONE, fraction, high, shifted, signed_high, times};
 
 /// The widest half width that is looked for, in half steps.
 const MAX_HALVES: i64 = MAX_COUNT as i64 - 32;
@@ -18,7 +18,7 @@ const MAX_HALVES: i64 = MAX_COUNT as i64 - 32;
 /// A place of a cubic and its derivatives there.
 #[derive(Clone, Debug)]
 pub(super) struct Centre {
-    pub(super) share: u64,
+    pub(super) fraction: u64,
     ticks: u32,
     /// Fraction bits of positions.
     bits: u32,
@@ -34,14 +34,14 @@ pub(super) struct Centre {
 /// The series round one centre for one half width.
 #[derive(Clone, Debug)]
 pub(super) struct Series {
-    centre_share: u64,
+    centre_fraction: u64,
     /// In 2^-32 ticks.
     centre_time: u64,
     bits: u32,
     /// h.
     half_width: i64,
     /// w.
-    share: u64,
+    fraction: u64,
     /// w in 2^-32 ticks.
     time: u64,
     /// Of the velocity at the centre.
@@ -85,16 +85,16 @@ impl Times {
     }
 }
 
-/// A share of a row in 2^-32 ticks, rounded down to even ones.
-pub(super) const fn time_of(share: u64, ticks: u32) -> u64 {
-    high(share << 1, (ticks as u64) << 32) << 1
+/// A fraction of a row in 2^-32 ticks, rounded down to even ones.
+pub(super) const fn time_of(fraction: u64, ticks: u32) -> u64 {
+    high(fraction << 1, (ticks as u64) << 32) << 1
 }
 
 impl Centre {
     pub(super) fn new(cubic: &Cubic, ticks: u32, s: u64) -> Self {
         let at = cubic.at(s);
         Self {
-            share: s,
+            fraction: s,
             ticks,
             bits: cubic.bits,
             d0: at.position,
@@ -109,9 +109,9 @@ impl Centre {
     /// where γ > 1/16.
     pub(super) fn series(&self, half_width: i64) -> Option<Series> {
         let inverse = self.inverse?;
-        let w = inverse.share(half_width as u64)?;
-        let n2 = share(self.d2, w);
-        let n3 = share(share(self.d3, w), w);
+        let w = inverse.fraction(half_width as u64)?;
+        let n2 = fraction(self.d2, w);
+        let n3 = fraction(fraction(self.d3, w), w);
         let wide = half_width >> (self.bits - 1) >= i64::from(MAX_COUNT);
         if wide || n2.abs() > self.d1 >> 4 || n3.abs() > self.d1 >> 8 {
             return None;
@@ -131,11 +131,11 @@ impl Centre {
         let left_out = (b4.abs() >> 3) + (b5.abs() >> 4) + b6 + rest + (1 << 33);
         let time = time_of(w, self.ticks);
         Some(Series {
-            centre_share: self.share,
-            centre_time: time_of(self.share, self.ticks),
+            centre_fraction: self.fraction,
+            centre_time: time_of(self.fraction, self.ticks),
             bits: self.bits,
             half_width,
-            share: w,
+            fraction: w,
             time,
             inverse,
             ticks: self.ticks,
@@ -151,16 +151,16 @@ impl Centre {
     /// or where it turns round before.
     pub(super) fn reach(&self, distance: i64) -> Option<u64> {
         let inverse = self.inverse?;
-        let w = inverse.share(distance.unsigned_abs())?;
-        let n2 = share(self.d2, w);
+        let w = inverse.fraction(distance.unsigned_abs())?;
+        let n2 = fraction(self.d2, w);
         if n2.abs() > self.d1 >> 1 {
             return None;
         }
-        let bend = share(inverse.ratio(n2), w);
+        let bend = fraction(inverse.ratio(n2), w);
         if distance < 0 {
-            self.share.checked_sub(w.checked_add_signed(bend)?)
+            self.fraction.checked_sub(w.checked_add_signed(bend)?)
         } else {
-            self.share.checked_add(w.checked_add_signed(-bend)?)
+            self.fraction.checked_add(w.checked_add_signed(-bend)?)
         }
     }
 }
@@ -273,7 +273,7 @@ impl Series {
         let y = p2 + ((8 * x * p3) >> 30);
         let y = p1 + ((8 * x * y) >> 30);
         let y = (p0 >> 3) + ((x * y) >> 30);
-        let away = signed_high(y << 32, self.share) << 5;
-        self.centre_share.checked_add_signed(away)
+        let away = signed_high(y << 32, self.fraction) << 5;
+        self.centre_fraction.checked_add_signed(away)
     }
 }

@@ -39,12 +39,12 @@ pub struct PvtSteps<const N: usize> {
 
 impl<const N: usize> PvtSteps<N> {
     /// N axes at their knots.
-    pub fn new(start: [PvtKnot; N], least: MinIntervals) -> Self {
+    pub fn new(start: [PvtKnot; N], min_intervals: MinIntervals) -> Self {
         Self {
             ticks: [NEVER; N],
             directions: [Direction::Positive; N],
             players: [const { SegmentPlayer::new() }; N],
-            axes: start.map(|knot| AxisSegments::new(knot, least)),
+            axes: start.map(|knot| AxisSegments::new(knot, min_intervals)),
             last_ticks: [0; N],
         }
     }

@@ -27,12 +27,12 @@ pub struct AxisRamp {
 impl AxisRamp {
     pub(super) fn new(rows: AxisRows, pulse_ticks: u64, steps: i32) -> Self {
         // A plan keeps the least intervals of any driver by itself.
-        let least = MinIntervals {
+        let min_intervals = MinIntervals {
             step_ticks: 0,
             reversal_ticks: 0,
         };
         Self {
-            segments: AxisSegments::new(rows.knot(), least),
+            segments: AxisSegments::new(rows.knot(), min_intervals),
             rows,
             player: SegmentPlayer::new(),
             pulse_ticks,

@@ -20,7 +20,7 @@ const END_BITS: u32 = 61;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
     /// Steps.
-    pub(super) most: u32,
+    pub(super) max_pulses: u32,
     pub(super) up_ticks: u64,
     pub(super) cruise_ticks: u64,
     pub(super) down_ticks: u64,
@@ -34,31 +34,31 @@ pub(super) struct Plan {
 
 impl Plan {
     /// With the formulas of [`Ramp`](super::Ramp). The phases are rounded to whole ticks, and the
-    /// velocity between them follows from the way.
+    /// velocity between them follows from the distance.
     pub(super) fn new(
-        most: u32,
+        max_pulses: u32,
         limits: &RampLimits,
         ends: RampEnds,
         tick_rate: Rate,
     ) -> Result<Self, RampError> {
         check(limits, ends, tick_rate)?;
         let needed = needed_steps(limits, ends);
-        if u64::from(most) < needed && most > 0 {
+        if u64::from(max_pulses) < needed && max_pulses > 0 {
             return Err(RampError::TooShort {
-                steps: most,
+                steps: max_pulses,
                 ends,
                 needed,
             });
         }
         let rate = |millihertz| Real::whole(millihertz).over(Real::whole(1000));
         let ticks = Real::whole(tick_rate.numerator()).over(Real::whole(tick_rate.denominator()));
-        let way = Real::whole(most);
+        let distance = Real::whole(max_pulses);
         let acceleration = Real::whole(limits.accel_steps_per_s2);
         let [v0, v1] = [ends.entry_millihertz, ends.exit_millihertz].map(rate);
         let highest = rate(limits.max_millihertz);
 
         let ground = v0.squared().plus(v1.squared()).half();
-        let square = acceleration.times(way).plus(ground);
+        let square = acceleration.times(distance).plus(ground);
         let triangular = square < highest.squared();
         let peak = if triangular { square.root() } else { highest };
         let (rise, fall) = (peak.minus(v0), peak.minus(v1));
@@ -66,9 +66,9 @@ impl Plan {
             rise.plus(fall).over(acceleration)
         } else {
             let lost = rise.squared().plus(fall.squared()).half();
-            way.plus(lost.over(acceleration)).over(peak)
+            distance.plus(lost.over(acceleration)).over(peak)
         };
-        let end = if most > 0 {
+        let end = if max_pulses > 0 {
             ticks.times(seconds).rounded()
         } else {
             Some(0)
@@ -76,7 +76,7 @@ impl Plan {
         let end = end
             .filter(|end| end >> END_BITS == 0)
             .ok_or(RampError::TooLong {
-                steps: most,
+                steps: max_pulses,
                 bits: END_BITS,
             })?;
 
@@ -90,11 +90,11 @@ impl Plan {
         } else {
             phase(fall, end - up)
         };
-        // Steps a tick: the ways of the three phases sum up to the whole one.
+        // Steps a tick: the distances of the three phases sum up to the whole one.
         let [v0, v1] = [v0, v1].map(|v| v.over(ticks));
         let [up_ticks, down_ticks] = [up, down].map(|phase| Real::scaled(phase, 0));
         let at_ends = v0.times(up_ticks).plus(v1.times(down_ticks));
-        let peak = way.plus(way).minus(at_ends);
+        let peak = distance.plus(distance).minus(at_ends);
         let peak = peak.over(Real::scaled(2 * end - up - down, 0));
         let half_period = Real::whole(1).over(v0.max(v1).max(peak)).half();
         let half_period = half_period.floor(0).unwrap_or(u64::MAX);
@@ -103,7 +103,7 @@ impl Plan {
             velocity.and_then(|v| i64::try_from(v).ok()).unwrap_or(0)
         };
         Ok(Self {
-            most,
+            max_pulses,
             up_ticks: up,
             cruise_ticks: end - up - down,
             down_ticks: down,
@@ -178,14 +178,14 @@ fn check(limits: &RampLimits, ends: RampEnds, tick_rate: Rate) -> Result<(), Ram
         });
     }
     // F v / 2^31.
-    let least = quotient_up(
+    let limit = quotient_up(
         ticks * u64::from(max_millihertz),
         (seconds * 1000) << RAMP_BITS,
     );
-    if u64::from(accel_steps_per_s2) < least {
+    if u64::from(accel_steps_per_s2) < limit {
         return Err(RampError::AccelerationTooLow {
             accel_steps_per_s2,
-            limit_steps_per_s2: least,
+            limit_steps_per_s2: limit,
             max_millihertz,
         });
     }

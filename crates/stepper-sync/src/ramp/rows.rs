@@ -7,7 +7,7 @@
 
 use super::plan::Plan;
 use crate::cubic::{PvtKnot, PvtRow, distance};
-use crate::fixed::{Inverse, ONE, share};
+use crate::fixed::{Inverse, ONE, fraction};
 
 /// Ticks of a row at constant speed, when there are more than [`MAX_TICKS`] left.
 const CHUNK_TICKS: u32 = 1 << 31;
@@ -27,7 +27,7 @@ pub(super) struct AxisRows {
     whole_cruise: Option<Inverse>,
     down_ticks: u64,
     peak: i64,
-    /// At the end of the way up, and of the way at constant speed, in 2^-32 steps.
+    /// At the end of the acceleration, and of the travel at constant speed, in 2^-32 steps.
     up_end: i64,
     cruise_end: i64,
     end: PvtKnot,
@@ -36,15 +36,15 @@ pub(super) struct AxisRows {
 impl AxisRows {
     /// An axis with `steps` steps, at most those of the leading axis.
     pub(super) fn new(plan: &Plan, steps: i32) -> Self {
-        let part = Inverse::of(u64::from(plan.most))
-            .and_then(|inverse| inverse.share(u64::from(steps.unsigned_abs())));
+        let part = Inverse::of(u64::from(plan.max_pulses))
+            .and_then(|inverse| inverse.fraction(u64::from(steps.unsigned_abs())));
         let part = match part {
-            _ if steps.unsigned_abs() == plan.most => ONE,
+            _ if steps.unsigned_abs() == plan.max_pulses => ONE,
             Some(part) => part,
             None => 0,
         };
         let [entry, peak, exit] =
-            [plan.entry, plan.peak, plan.exit].map(|velocity| share(velocity, part));
+            [plan.entry, plan.peak, plan.exit].map(|velocity| fraction(velocity, part));
         let end = i64::from(steps.unsigned_abs()) << PvtKnot::POSITION_BITS;
         // The mean of two velocities in 2^-32 steps is their sum in 2^-31.
         let phase = |sum: i64, ticks: u64| distance(sum, ticks as u32, PvtKnot::POSITION_BITS - 1);
@@ -108,13 +108,13 @@ impl AxisRows {
 }
 
 impl AxisRows {
-    /// What is left of the way at constant speed, in 2^-32 steps.
+    /// What is left of the travel at constant speed, in 2^-32 steps.
     fn cruise_left(&self) -> i64 {
         let part = self
             .whole_cruise
-            .and_then(|whole| whole.share(self.cruise_ticks));
-        let way = self.cruise_end - self.up_end;
-        part.map_or(0, |part| share(way >> 1, part) << 1)
+            .and_then(|whole| whole.fraction(self.cruise_ticks));
+        let travel = self.cruise_end - self.up_end;
+        part.map_or(0, |part| fraction(travel >> 1, part) << 1)
     }
 }
 
@@ -127,7 +127,7 @@ impl Iterator for AxisRows {
     }
 }
 
-/// The rows of a [`Ramp`](crate::Ramp), at most one for the way up, one for the way down and one
+/// The rows of a [`Ramp`](crate::Ramp), at most one for speeding up, one for slowing down and one
 /// for each 2^31 ticks between them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[must_use = "iterators are lazy"]

@@ -100,7 +100,7 @@ impl Timer {
         }
     }
 
-    /// The register value from which so many ticks are left.
+    /// The register value from which the given number of ticks is left.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the register has the low bits"

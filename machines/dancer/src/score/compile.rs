@@ -159,29 +159,29 @@ fn turn(
     one: &Move,
 ) -> Result<Vec<i8>, ScoreErrorKind> {
     let nearest = asked.round();
-    let way = nearest - approximate(motor.position());
-    if way.abs() > f64::from(i32::MAX) {
-        return Err(ScoreErrorKind::TooFar { half_steps: way });
+    let half_steps = nearest - approximate(motor.position());
+    if half_steps.abs() > f64::from(i32::MAX) {
+        return Err(ScoreErrorKind::TooFar { half_steps });
     }
     #[expect(clippy::cast_possible_truncation, reason = "whole and within i32")]
-    let way = way as i32;
-    let try_turn = |way: i32| {
-        let turn = motor.turn(way, one.frames, one.easing)?;
+    let half_steps = half_steps as i32;
+    let try_turn = |half_steps: i32| {
+        let turn = motor.turn(half_steps, one.frames, one.easing)?;
         let mut turned = *motor;
         turn.iter().for_each(|speed| turned.run(*speed));
         if (approximate(turned.position()) - asked).abs() <= 1.0 {
             return Ok(turn);
         }
         Err(TurnError::Unreachable {
-            half_steps: way,
+            half_steps,
             frames: one.frames,
             nearest: turned.position() - motor.position(),
         })
     };
     // One half step beside the nearest may be more than one beside what was asked: then the whole
     // number on the other side of that is tried, too.
-    let other = way.saturating_add(if asked < nearest { -1 } else { 1 });
-    let turn = try_turn(way).or_else(|refusal| try_turn(other).map_err(|_| refusal));
+    let other = half_steps.saturating_add(if asked < nearest { -1 } else { 1 });
+    let turn = try_turn(half_steps).or_else(|refusal| try_turn(other).map_err(|_| refusal));
     turn.map_err(|error| ScoreErrorKind::Turn {
         motor: performer.name.clone(),
         error,

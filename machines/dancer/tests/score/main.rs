@@ -150,9 +150,9 @@ proptest! {
         turns in prop::collection::vec((-1.0_f64..1.0, 4_u32..30, prop::sample::select(&["linear", "in", "out", "smooth"][..])), 1..12),
     ) {
         let (mut moves, mut start) = (String::new(), 0);
-        for (share, frames, easing) in &turns {
+        for (fraction, frames, easing) in &turns {
             // Up to 20 half steps of 0.45 deg in a frame.
-            let deg = share * 9.0 * f64::from(*frames);
+            let deg = fraction * 9.0 * f64::from(*frames);
             let (at_s, for_s) = (f64::from(start) * 0.2, f64::from(*frames) * 0.2);
             moves += &format!("[[move]]\nmotor = 'arm'\nat_s = {at_s}\nfor_s = {for_s}\nturn_deg = {deg}\neasing = '{easing}'\n");
             start += frames;
@@ -160,8 +160,8 @@ proptest! {
         let dance = compile(&moves, law);
         let mut asked = 0.0;
         prop_assert_eq!(dance.landings.len(), turns.len());
-        for (landing, (share, frames, _)) in dance.landings.iter().zip(&turns) {
-            asked += share * 9.0 * f64::from(*frames) / 0.45;
+        for (landing, (fraction, frames, _)) in dance.landings.iter().zip(&turns) {
+            asked += fraction * 9.0 * f64::from(*frames) / 0.45;
             prop_assert!((landing.asked_half_steps - asked).abs() < 1e-6);
             prop_assert!(landing.error_half_steps().abs() <= 1.0, "{:?}", landing);
             let there = usize::try_from(landing.frame).unwrap();

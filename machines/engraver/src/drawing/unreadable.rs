@@ -12,7 +12,7 @@ const TEXT: &str = "convert text to paths";
 const IMAGE: &str = "pictures cannot be engraved";
 const NO_SHAPE: &str = "no shape, not engraved";
 const MOVING: &str = "does not run, engraved as at the start";
-const CUT_SHORT: &str = "has an error, what is behind it is not engraved";
+const CUT_SHORT: &str = "has an error, what follows it is not engraved";
 const NOT_READ: &str = "cannot be read, engraved as if it were not there";
 const NO_CSS: &str = "styles that are not read, engraved as if they were not there";
 
