@@ -4,13 +4,13 @@
 //! ```text
 //! operator -> pendant -> 3964R on a pseudo-terminal -> driver -> panel -> jogs, pose change
 //!             pendant <- 3964R <- display blocks, LEDs <---------------+
-//!             pose change -> PT or PVT table -> locators, each axis for itself
+//!             pose change -> PVT or PT table -> locators, each axis for itself
 //! ```
 //!
 //! The locators get nothing but the table. Time is counted, not waited for: bytes take as long
 //! as at 9600 bit/s, and the same arguments give the same files.
 //!
-//! `cargo run --release --example align -- [--platform FILE] [--from POSE] [--to POSE] [--mode pt|pvt] [--out DIR]`
+//! `cargo run --release --example align -- [--platform FILE] [--from POSE] [--to POSE] [--mode pvt|pt] [--out DIR]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -38,8 +38,8 @@ struct Args {
     /// Where it goes, likewise.
     #[arg(long, value_name = "POSE", value_parser = parse_pose, allow_hyphen_values = true)]
     to: Option<Pose>,
-    /// Position-time table, or position-velocity-time.
-    #[arg(long, value_enum, default_value_t = Mode::Pt)]
+    /// Position-velocity-time table, or position-time.
+    #[arg(long, value_enum, default_value_t = Mode::Pvt)]
     mode: Mode,
     /// Where the artefacts go.
     #[arg(long, value_name = "DIR", default_value = "target/align")]

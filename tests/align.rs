@@ -95,6 +95,16 @@ fn a_small_move_keeps_its_digits() {
 }
 
 #[test]
+fn velocities_are_in_the_table_unless_told_not_to() {
+    let folder = TempDir::new().unwrap();
+    let output = run(example("align").arg("--out").arg(folder.path()), b"");
+    assert!(output.status.success());
+    let named = fs::read(folder.path().join("pvt.csv")).unwrap();
+    let table = Run::of("pvt", &[]).read("pvt.csv");
+    assert_eq!(String::from_utf8(named).unwrap(), table);
+}
+
+#[test]
 fn far_from_the_origin_the_bound_has_the_rounding_of_the_coordinates() {
     let far = [("1200.0", "1200000.0"), ("1450.0", "1200250.0")];
     let file = changed(&far);
@@ -246,7 +256,7 @@ fn bad_input_is_one_line_and_no_file() {
     ]);
     refused(
         &["--platform", file.path().to_str().unwrap()],
-        "error: the motion would take 8.8e4 s, 10000 s are simulated at most",
+        "error: the motion would take 1.0e5 s, 10000 s are simulated at most",
     );
     fs::create_dir_all(out.join("report.json")).unwrap();
     let mut command = example("align");

@@ -24,7 +24,7 @@ fn a_step_back_waits_for_the_driver() {
         row: 2,
         axis: 0,
         ticks: 80,
-        least_ticks: 30,
+        min_ticks: 30,
     };
     assert_eq!(axis.push(50, rows[2].1), Err(error));
     assert_eq!(axis, before);
@@ -53,7 +53,7 @@ fn what_is_too_fast_is_refused_with_its_place() {
         axis: 0,
         ticks,
         interval_ticks,
-        least_ticks: 12,
+        min_ticks: 12,
     };
     // At the end; in the middle: 150 steps in 1000 ticks from rest to rest peak at 0.225 a tick.
     let fast = knot(STEP, STEP_A_TICK / 11);
@@ -105,7 +105,7 @@ fn other_refusals_name_row_and_axis() {
             row: 0,
             axis: 0,
             ticks: 20,
-            least_ticks: 30
+            min_ticks: 30
         })
     );
 }

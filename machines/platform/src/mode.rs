@@ -9,9 +9,9 @@
 pub enum Mode {
     /// Positions: the axes move linearly between two points. Speeds are kept, accelerations and
     /// jerks are not.
-    #[default]
     Pt,
     /// Positions and velocities: the axes run cubics within speed, acceleration and jerk.
+    #[default]
     Pvt,
 }
 
