@@ -12,6 +12,8 @@ mod artefacts;
 mod example;
 #[path = "engrave/left_out.rs"]
 mod left_out;
+#[path = "engrave/motors.rs"]
+mod motors;
 #[path = "engrave/pace.rs"]
 mod pace;
 #[path = "engrave/timed.rs"]

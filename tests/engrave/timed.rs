@@ -9,7 +9,7 @@ const MAX_HZ: f64 = 800.0;
 const OFF_S: f64 = 1e-5;
 
 /// The pulses of an axis in a dump: seconds, and whether the direction is negative.
-fn pulses(dump: &str, axis: &str) -> Vec<(f64, bool)> {
+pub(super) fn pulses(dump: &str, axis: &str) -> Vec<(f64, bool)> {
     let (head, body) = dump.split_once("$enddefinitions").unwrap();
     let id = |name: String| {
         let declared = head.lines().find(|line| line.contains(&name)).unwrap();
@@ -32,7 +32,7 @@ fn pulses(dump: &str, axis: &str) -> Vec<(f64, bool)> {
     pulses
 }
 
-fn timed(drawing: &str) -> Run {
+pub(super) fn timed(drawing: &str) -> Run {
     let file = shipped(&format!("drawings/{drawing}.svg"));
     Run::of(&["--svg", file.to_str().unwrap(), "--controller", "timed"])
 }

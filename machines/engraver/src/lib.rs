@@ -28,6 +28,7 @@ mod drawing;
 mod gauge;
 mod header;
 mod machine;
+mod motors;
 mod order;
 mod picture;
 mod placement;

@@ -13,6 +13,7 @@ pub(crate) use self::settings::Settings;
 use self::settings::{
     DiscSettings, JointSettings, RapidSettings, TimedSettings, TimerSettings, VerticalSettings,
 };
+use crate::motors::FULL_STEP_DEG;
 use crate::placement::Bed;
 
 /// The two joints of the arm as the steppers see them.
@@ -20,6 +21,9 @@ use crate::placement::Bed;
 pub(crate) struct JointScale {
     pub(crate) rad_per_pulse: f64,
     pub(crate) home_rad: f64,
+    pub(crate) gear_ratio: f64,
+    /// Pulses of a full step of the motor.
+    pub(crate) microsteps: u32,
     scale: StepScale,
 }
 
@@ -28,10 +32,14 @@ impl JointScale {
         positive("step_deg", step_deg)?;
         positive("gear_ratio", gear_ratio)?;
         finite("home_deg", home_deg)?;
+        let microsteps = (FULL_STEP_DEG / step_deg).max(1.0);
         let rad_per_pulse = step_deg.to_radians() / gear_ratio;
         Ok(Self {
             rad_per_pulse,
             home_rad: home_deg.to_radians(),
+            gear_ratio,
+            microsteps: whole(microsteps)
+                .with_context(|| format!("step_deg = {step_deg} is too fine"))?,
             scale: StepScale::new(rad_per_pulse.recip())?,
         })
     }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::drawing::Drawing;
 use crate::machine::{Machine, Settings};
+use crate::motors::Followed;
 use crate::plan::Plan;
 use crate::simulation::Run;
 use crate::tool_speed::Spread;
@@ -51,6 +52,9 @@ pub struct Report<'a> {
     drawing_to_path_mm: f64,
     missing_mm: f64,
     bound_mm: f64,
+    /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
+    /// given them loses steps where torque or inertia are overrun.
+    motors: Followed,
     /// The same drawing by timed strokes.
     #[serde(skip_serializing_if = "Option::is_none")]
     timed: Option<TimedReport>,
@@ -68,6 +72,7 @@ struct TimedReport {
     rms_deviation_mm: f64,
     missing_mm: f64,
     bound_mm: f64,
+    motors: Followed,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -127,6 +132,7 @@ impl<'a> Report<'a> {
             drawing_to_path_mm: deviation.drawing_to_path_mm,
             missing_mm: deviation.missing_mm,
             bound_mm: plan.reference().bound_mm(),
+            motors: run.motors,
             timed: None,
         }
     }
@@ -144,6 +150,7 @@ impl<'a> Report<'a> {
             rms_deviation_mm: run.deviation.rms_mm,
             missing_mm: run.deviation.missing_mm,
             bound_mm: run.bound_mm,
+            motors: run.motors,
         });
         self
     }
@@ -170,7 +177,13 @@ impl<'a> Report<'a> {
         line("deviation, most", a, b, "mm")?;
         let (a, b) = (self.rms_deviation_mm, timed.rms_deviation_mm);
         line("deviation, rms", a, b, "mm")?;
-        line("bound", self.bound_mm, timed.bound_mm, "mm")
+        line("bound", self.bound_mm, timed.bound_mm, "mm")?;
+        let [a, b] = [&self.motors, &timed.motors].map(Followed::max_speed_jump_deg_s);
+        line("speed jump of a joint", a, b, "deg/s")?;
+        let [a, b] = [&self.motors, &timed.motors].map(Followed::max_acceleration_deg_s2);
+        line("acceleration of a joint", a, b, "deg/s²")?;
+        let [a, b] = [&self.motors, &timed.motors].map(Followed::lost_steps);
+        writeln!(f, "  {:<28} {a:>8} {b:>8}", "steps lost")
     }
 }
 
@@ -222,6 +235,12 @@ impl fmt::Display for Report<'_> {
         if self.missing_mm > 0.0 {
             writeln!(f, "not engraved: {:.1} mm of the drawing", self.missing_mm)?;
         }
+        writeln!(
+            f,
+            "motors: at least {:.1} deg/s of jump in a joint of the arm, {} steps lost",
+            self.motors.max_speed_jump_deg_s(),
+            self.motors.lost_steps()
+        )?;
         self.write_comparison(f)
     }
 }

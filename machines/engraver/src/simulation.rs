@@ -10,6 +10,7 @@ use crate::controller::{Controller, Wires};
 use crate::drawing::flatten;
 use crate::gauge::{Deviation, Gauge};
 use crate::machine::Machine;
+use crate::motors::{Followed, Motors};
 use crate::plan::Reference;
 use crate::tool_speed::{Meter, Pace, Spread, ToolSpeed};
 use crate::track::Track;
@@ -36,6 +37,7 @@ pub struct Run {
     pub(crate) end: PerAxis<i32>,
     pub(crate) tool_speed: ToolSpeed,
     pub(crate) spread: Option<Spread>,
+    pub(crate) motors: Followed,
     pub(crate) track: Track,
     /// The placed drawing as lines.
     pub(crate) drawing: Vec<Vec<Point2<f64>>>,
@@ -105,6 +107,7 @@ pub(crate) struct Simulation<'a, P> {
     gauge: Gauge,
     meter: Meter,
     pace: Pace,
+    motors: Motors,
     track: Track,
     now: u64,
     position: PerAxis<i32>,
@@ -130,6 +133,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             gauge: Gauge::new(&reference.outlines, reference.tolerance_mm, reach),
             meter: Meter::default(),
             pace: Pace::default(),
+            motors: Motors::new(machine),
             track: Track::new(home, reference.bound_mm * PICTURE_SPACING),
             now: 0,
             position,
@@ -204,6 +208,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             end: self.position,
             tool_speed: self.meter.finish(self.machine.tick_s()),
             spread: self.pace.finish(self.machine.tick_s()),
+            motors: self.motors.finish(self.machine),
             track: self.track,
             drawing: drawing
                 .map(|outline| flatten(outline, PICTURE_MM))
@@ -228,6 +233,7 @@ impl<P: Wires> Wires for Simulation<'_, P> {
                 .checked_add(step)
                 .with_context(|| format!("{axis} leaves 32 bits"))?;
             *self.pulses.get_mut(axis) += 1;
+            self.motors.step(ticks, axis, step);
             self.has_moved = true;
         }
         if axis == Axis::Theta3 && !self.turns_while_moving {

@@ -175,8 +175,10 @@ impl Rotor {
     }
 
     fn torque(&self, lag: f64) -> f64 {
-        let slower = (self.speed / self.motor.corner_speed_hz).hypot(1.0);
-        self.acceleration / slower * (lag * FRAC_PI_2).sin()
+        // The same bits on every target.
+        let share = self.speed / self.motor.corner_speed_hz;
+        let (sine, _) = trig_kernels::sin_cos(lag * FRAC_PI_2);
+        self.acceleration / (1.0 + share * share).sqrt() * sine
     }
 
     fn count_cycles(&mut self) {

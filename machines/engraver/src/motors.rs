@@ -1,0 +1,190 @@
+//! What the emitted edges ask of the motors, and whether they follow.
+
+use machine_sim::{DrivenAxis, Measured, Motor};
+use pattern_codec::engraving::{Axis, PerAxis};
+use serde::Serialize;
+
+use crate::machine::{JointScale, Machine};
+
+/// What a step may be off its place on a train, a ramp or a cubic: some ticks.
+const DEVIATION_STEPS: f64 = 0.01;
+
+/// The source prints pulses of 0.75 degrees; taken for half steps.
+pub(crate) const FULL_STEP_DEG: f64 = 1.5;
+/// The source prints no motors; these are assumed: 0.4 N m on each axis, with the inertia of rotor
+/// and gear.
+const MOTOR: Motor = Motor {
+    holding_torque_nm: 0.4,
+    corner_speed_hz: 1000.0,
+    inertia_kg_m2: 7.4e-6,
+    friction_nm: 0.03,
+    damping_ratio: 0.02,
+    full_steps_per_turn: 240,
+    microsteps: 2,
+};
+/// Each link of the arm, its mass evenly along it, and grinder with lift at the end of the forearm.
+const LINK_KG: f64 = 0.4;
+const TOOL_KG: f64 = 0.3;
+/// The fork of the disc.
+const FORK_KG_M2: f64 = 2e-6;
+/// A carriage of 1 kg on 6 mm of pitch, and the screw.
+const LIFT_KG_M2: f64 = 1.6e-6;
+
+/// Motors of all axes, which get edges and nothing else.
+#[derive(Debug, Clone)]
+pub(crate) struct Motors {
+    axes: PerAxis<DrivenAxis>,
+    tick_s: f64,
+}
+
+impl Motors {
+    /// Motors at home.
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let [upper_m, fore_m] = [machine.arm.upper(), machine.arm.fore()].map(|mm| mm / 1000.0);
+        // About each joint, the arm stretched: never more.
+        let stretched = upper_m + fore_m;
+        let centre = upper_m + fore_m / 2.0;
+        let fore_kg_m2 = fore_m * fore_m * (LINK_KG / 3.0 + TOOL_KG);
+        let arm_kg_m2 = LINK_KG * (upper_m * upper_m / 3.0 + fore_m * fore_m / 12.0)
+            + LINK_KG * centre * centre
+            + TOOL_KG * stretched * stretched;
+        let lift = Motor {
+            inertia_kg_m2: MOTOR.inertia_kg_m2 + LIFT_KG_M2,
+            ..MOTOR
+        };
+        let motors = PerAxis {
+            theta1: motor(machine.theta1, fore_kg_m2),
+            theta2: motor(machine.theta2, arm_kg_m2),
+            theta3: motor(machine.theta3, FORK_KG_M2),
+            vertical: lift,
+        };
+        Self {
+            axes: PerAxis {
+                theta1: DrivenAxis::new(motors.theta1),
+                theta2: DrivenAxis::new(motors.theta2),
+                theta3: DrivenAxis::new(motors.theta3),
+                vertical: DrivenAxis::new(motors.vertical),
+            },
+            tick_s: machine.tick_s(),
+        }
+    }
+
+    /// A step of an axis: up for a number above 0, down for one below.
+    pub(crate) fn step(&mut self, ticks: u64, axis: Axis, direction: i32) {
+        #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
+        let time_s = ticks as f64 * self.tick_s;
+        self.axes.get_mut(axis).step(time_s, direction);
+    }
+
+    /// What was seen of each when it has come to rest.
+    pub(crate) fn finish(self, machine: &Machine) -> Followed {
+        let joint = |axis: DrivenAxis, scale: JointScale| {
+            FollowedJoint::new(axis, scale.rad_per_pulse.to_degrees())
+        };
+        let PerAxis {
+            theta1,
+            theta2,
+            theta3,
+            vertical,
+        } = self.axes;
+        Followed {
+            theta1: joint(theta1, machine.theta1),
+            theta2: joint(theta2, machine.theta2),
+            theta3: joint(theta3, machine.theta3),
+            vertical: FollowedLift::new(vertical, machine.settings.mm_per_vertical_pulse()),
+        }
+    }
+}
+
+/// The motor of a joint with an inertia behind its gear.
+fn motor(joint: JointScale, load_kg_m2: f64) -> Motor {
+    let ratio = joint.gear_ratio;
+    Motor {
+        inertia_kg_m2: MOTOR.inertia_kg_m2 + load_kg_m2 / (ratio * ratio),
+        microsteps: joint.microsteps,
+        ..MOTOR
+    }
+}
+
+/// What all motors were asked for, and what they lost.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Followed {
+    theta1: FollowedJoint,
+    theta2: FollowedJoint,
+    theta3: FollowedJoint,
+    vertical: FollowedLift,
+}
+
+impl Followed {
+    /// Of all motors.
+    pub(crate) const fn lost_steps(&self) -> u64 {
+        let joints = self.theta1.lost_steps + self.theta2.lost_steps + self.theta3.lost_steps;
+        joints + self.vertical.lost_steps
+    }
+
+    /// Proven of either joint of the arm, in degrees a second.
+    pub(crate) fn max_speed_jump_deg_s(&self) -> f64 {
+        let [a, b] = [self.theta1, self.theta2].map(|joint| joint.max_speed_jump_deg_s.proven());
+        a.max(b)
+    }
+
+    /// Proven of either joint of the arm, in deg/s².
+    pub(crate) fn max_acceleration_deg_s2(&self) -> f64 {
+        let joints = [self.theta1, self.theta2];
+        let [a, b] = joints.map(|joint| joint.max_acceleration_deg_s2.proven());
+        a.max(b)
+    }
+}
+
+/// By the edges alone, and by a simulated motor; of the joint, behind the gear.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct FollowedJoint {
+    max_start_speed_deg_s: Measured,
+    max_speed_deg_s: Measured,
+    max_speed_jump_deg_s: Measured,
+    max_acceleration_deg_s2: Measured,
+    lost_steps: u64,
+    /// At 2 it loses steps.
+    max_lag_full_steps: f64,
+}
+
+impl FollowedJoint {
+    fn new(axis: DrivenAxis, deg_per_step: f64) -> Self {
+        let followed = axis.finish(DEVIATION_STEPS);
+        let deg = |measured: Measured| measured.times(deg_per_step);
+        Self {
+            max_start_speed_deg_s: deg(followed.motion.start_speed),
+            max_speed_deg_s: deg(followed.motion.speed),
+            max_speed_jump_deg_s: deg(followed.motion.speed_jump),
+            max_acceleration_deg_s2: deg(followed.motion.acceleration),
+            lost_steps: followed.lost_steps,
+            max_lag_full_steps: followed.max_lag_full_steps,
+        }
+    }
+}
+
+/// The same of the lift.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct FollowedLift {
+    max_start_speed_mm_s: Measured,
+    max_speed_mm_s: Measured,
+    max_speed_jump_mm_s: Measured,
+    max_acceleration_mm_s2: Measured,
+    lost_steps: u64,
+    max_lag_full_steps: f64,
+}
+
+impl FollowedLift {
+    fn new(axis: DrivenAxis, mm_per_step: f64) -> Self {
+        let followed = axis.finish(DEVIATION_STEPS);
+        let mm = |measured: Measured| measured.times(mm_per_step);
+        Self {
+            max_start_speed_mm_s: mm(followed.motion.start_speed),
+            max_speed_mm_s: mm(followed.motion.speed),
+            max_speed_jump_mm_s: mm(followed.motion.speed_jump),
+            max_acceleration_mm_s2: mm(followed.motion.acceleration),
+            lost_steps: followed.lost_steps,
+            max_lag_full_steps: followed.max_lag_full_steps,
+        }
+    }
+}
