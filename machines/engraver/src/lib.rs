@@ -27,6 +27,7 @@ mod controller;
 mod drawing;
 mod gauge;
 mod header;
+mod layout;
 mod machine;
 mod motors;
 mod order;

@@ -9,6 +9,8 @@ use rstar::primitives::GeomWithData;
 pub(crate) struct Stroke {
     /// In the drawing, from 1.
     pub(crate) number: usize,
+    /// It is engraved from its end in the drawing.
+    pub(crate) is_reversed: bool,
     pub(crate) points: Vec<Point2<f64>>,
 }
 
@@ -46,6 +48,8 @@ pub(crate) fn nearest_first(strokes: Vec<Stroke>, start: Point2<f64>) -> Vec<Str
         };
         if is_last {
             stroke.points.reverse();
+            // A dot has no direction.
+            stroke.is_reversed = stroke.points.len() > 1;
         }
         tool = stroke.points.last().copied().unwrap_or(tool);
         ordered.push(stroke);
@@ -69,7 +73,11 @@ mod tests {
 
     fn stroke(number: usize, points: &[[f64; 2]]) -> Stroke {
         let points = points.iter().copied().map(Point2::from).collect();
-        Stroke { number, points }
+        Stroke {
+            number,
+            is_reversed: false,
+            points,
+        }
     }
 
     #[test]
@@ -85,6 +93,7 @@ mod tests {
         let travel = 1.0 + 10_f64.sqrt() + 65_f64.sqrt() + 30.0;
         assert!((travel_mm(&ordered, start) - travel).abs() < 1e-12);
         far.points.reverse();
+        far.is_reversed = true;
         assert_eq!(ordered, [near, dot, far]);
     }
 }

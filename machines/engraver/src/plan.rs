@@ -9,10 +9,11 @@ use pattern_codec::engraving::{Axis, Builder, JointPulses, Record, Statistics};
 use scara_kin::{Elbow, Joints, TangentTool, Waypoint};
 use stepper_sync::{Level, Trains};
 
-use crate::drawing::{Drawing, flatten};
+use crate::drawing::Drawing;
 use crate::gauge::distance_to_segment;
+use crate::layout::Layout;
 use crate::machine::Machine;
-use crate::order::{Stroke, nearest_first, travel_mm};
+use crate::order::travel_mm;
 use crate::placement::Placement;
 
 /// Deepest halving of a straight move; by then every record is a single step.
@@ -110,20 +111,13 @@ impl Plan {
         settings: &PlanSettings,
         mut progress: impl FnMut(u64, u64),
     ) -> Result<Self> {
-        let placement = settings.placement;
-        let placement = placement.unwrap_or_else(|| machine.bed.fit(drawing.bounds()));
-        let outlines = drawing.placed(placement);
-        let tolerance_mm = settings.tolerance.mm;
-        let strokes = (1..).zip(&outlines).map(|(number, outline)| Stroke {
-            number,
-            points: flatten(outline, tolerance_mm / 4.0),
-        });
-        let mut strokes: Vec<_> = strokes.collect();
         let home = machine.joints(Builder::new().position());
         let start = machine.arm.forward(home);
-        if !settings.keep_order {
-            strokes = nearest_first(strokes, start);
-        }
+        let Layout {
+            placement,
+            outlines,
+            strokes,
+        } = Layout::new(machine, drawing, settings, start);
         let mut planner = Planner {
             machine,
             builder: Builder::new(),
@@ -135,7 +129,7 @@ impl Plan {
                 placement,
                 reference: Reference {
                     outlines,
-                    tolerance_mm,
+                    tolerance_mm: settings.tolerance.mm,
                     bound_mm: 0.0,
                 },
                 length_mm: 0.0,

@@ -14,9 +14,10 @@ use scara_kin::{Elbow, Joints};
 use self::curves::{curves_of, kink_rad};
 use self::leg::Leg;
 pub use self::player::simulate_timed;
-use crate::drawing::{Drawing, flatten};
+use crate::drawing::Drawing;
+use crate::layout::Layout;
 use crate::machine::Machine;
-use crate::order::{Stroke, nearest_first};
+use crate::order::Stroke;
 use crate::plan::{PlanSettings, Reference};
 
 /// Largest kink between two curves that is passed without a stop, in radians: what drawing programs
@@ -60,20 +61,12 @@ impl TimedPlan {
         settings: &PlanSettings,
         mut progress: impl FnMut(u64, u64),
     ) -> Result<Self> {
-        let placement = settings.placement;
-        let placement = placement.unwrap_or_else(|| machine.bed.fit(drawing.bounds()));
-        let outlines = drawing.placed(placement);
         let tolerance_mm = settings.tolerance.mm();
-        let drawn = (1..).zip(&outlines).map(|(number, outline)| Stroke {
-            number,
-            points: flatten(outline, tolerance_mm / 4.0),
-        });
-        let mut strokes: Vec<_> = drawn.clone().collect();
-        let drawn: Vec<_> = drawn.collect();
         let home = machine.joints_at_home();
-        if !settings.keep_order {
-            strokes = nearest_first(strokes, machine.arm.forward(home));
-        }
+        let start = machine.arm.forward(home);
+        let Layout {
+            outlines, strokes, ..
+        } = Layout::new(machine, drawing, settings, start);
         let mut planner = Planner {
             machine,
             tolerance_mm: tolerance_mm / 4.0,
@@ -86,10 +79,9 @@ impl TimedPlan {
         for (done, stroke) in strokes.iter().enumerate() {
             let index = stroke.number - 1;
             let outline = outlines.get(index).context("strokes are numbered from 1")?;
-            let is_reversed = drawn.get(index) != Some(stroke);
             let curves = curves_of(
                 outline,
-                is_reversed,
+                stroke.is_reversed,
                 tolerance_mm / 4.0,
                 machine.corner_rad(),
             );
