@@ -11,6 +11,7 @@ const DEVIATION_STEPS: f64 = 0.01;
 
 /// The source prints pulses of 0.75 degrees; taken for half steps.
 pub(crate) const FULL_STEP_DEG: f64 = 1.5;
+
 /// The source prints no motors; these are assumed: 0.4 N m on each axis, with the inertia of rotor
 /// and gear.
 const MOTOR: Motor = Motor {
@@ -41,7 +42,7 @@ impl Motors {
     /// Motors at home.
     pub(crate) fn new(machine: &Machine) -> Self {
         let [upper_m, fore_m] = [machine.arm.upper(), machine.arm.fore()].map(|mm| mm / 1000.0);
-        // About each joint, the arm stretched: never more.
+        // About each joint, the arm stretched: no pose has more.
         let stretched = upper_m + fore_m;
         let centre = upper_m + fore_m / 2.0;
         let fore_kg_m2 = fore_m * fore_m * (LINK_KG / 3.0 + TOOL_KG);
@@ -52,18 +53,12 @@ impl Motors {
             inertia_kg_m2: MOTOR.inertia_kg_m2 + LIFT_KG_M2,
             ..MOTOR
         };
-        let motors = PerAxis {
-            theta1: motor(machine.theta1, fore_kg_m2),
-            theta2: motor(machine.theta2, arm_kg_m2),
-            theta3: motor(machine.theta3, FORK_KG_M2),
-            vertical: lift,
-        };
         Self {
             axes: PerAxis {
-                theta1: DrivenAxis::new(motors.theta1),
-                theta2: DrivenAxis::new(motors.theta2),
-                theta3: DrivenAxis::new(motors.theta3),
-                vertical: DrivenAxis::new(motors.vertical),
+                theta1: DrivenAxis::new(motor(machine.theta1, fore_kg_m2)),
+                theta2: DrivenAxis::new(motor(machine.theta2, arm_kg_m2)),
+                theta3: DrivenAxis::new(motor(machine.theta3, FORK_KG_M2)),
+                vertical: DrivenAxis::new(lift),
             },
             tick_s: machine.tick_s(),
         }
