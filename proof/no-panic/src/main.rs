@@ -4,6 +4,7 @@
 //! All inputs and states pass through `black_box`, so that nothing is known of them but their
 //! types. Running the program proves nothing more; it must link.
 
+mod curves;
 mod delta;
 mod frames;
 mod jobs;
@@ -24,6 +25,7 @@ fn main() {
     poses::run();
     tables::run();
     timing::run();
+    curves::run();
     stepping::run();
     paths::run();
     patterns::run();

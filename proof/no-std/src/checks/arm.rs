@@ -2,8 +2,9 @@
 
 use core::hint::black_box;
 
+use path_timing::{AxisLimits, Curve, Knot, Table};
 use scara_kin::nalgebra::{Point2, Vector2};
-use scara_kin::{Arm, Elbow, Joints};
+use scara_kin::{Arm, DiscPath, Elbow, Joints};
 
 use super::{CLOSE_MM, holds};
 /// Inverse and forward kinematics, rates.
@@ -36,4 +37,23 @@ pub fn follow() -> Option<()> {
         last = Some(waypoint.joints);
     }
     holds((arm.forward(last?) - line[1]).norm() < CLOSE_MM)
+}
+
+/// An arc with a disc along it, timed within 0.01 mm.
+pub fn path() -> Option<()> {
+    let arm = Arm::new(black_box(132.0), 132.0).ok()?;
+    let arc = Curve::arc([60.0, 120.0], [0.0, 120.0], [0.0, 1.0], black_box(1.0)).ok()?;
+    let path = arm.path(arc, Elbow::Right).ok()?.with_disc(0.0).ok()?;
+    let joint = AxisLimits {
+        speed: 3.0,
+        acceleration: 30.0,
+        jerk: None,
+    };
+    let mut knots = [Knot::default(); 129];
+    let departure = DiscPath::departure;
+    let table = Table::plan_within([path], [joint; 3], 4, 0.01, departure, &mut knots).ok()?;
+    holds(table.departure(DiscPath::departure).ok()? <= 0.01)?;
+    let [shoulder, elbow, _] = table.rows().last()?.ok()?.position;
+    let tool = arm.forward(Joints::new(shoulder, elbow));
+    holds((tool - Point2::from(arc.end())).norm() < CLOSE_MM)
 }

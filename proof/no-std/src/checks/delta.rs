@@ -3,7 +3,8 @@
 use core::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, Measured, Parameter, Path, Quantity, SpeedLimits};
+use delta_kin::{Delta, DeltaPath, Measured, Parameter, Path, Quantity, SpeedLimits};
+use path_timing::{AxisLimits, Knot, Table};
 
 use super::{CLOSE_MM, holds};
 fn thesis() -> Option<Delta> {
@@ -58,4 +59,22 @@ pub fn calibration() -> Option<()> {
     let longer = Parameter::of(Quantity::Lower, delta_kin::Arm::Second);
     let found = drawn.calibrate([longer], &measured).ok()?;
     holds((found.changes()[0] - 0.5).abs() < CLOSE_MM && found.rank() == 1)
+}
+
+/// A pick and place, timed within 0.05 mm.
+pub fn path() -> Option<()> {
+    let delta = thesis()?;
+    let (from, to) = ([black_box(30.0), 0.0, -290.0], [-30.0, 10.0, -290.0]);
+    let paths = delta.pick_and_place(from, to, -270.0, 5.0, None).ok()?;
+    let arm = AxisLimits {
+        speed: 3.0,
+        acceleration: 30.0,
+        jerk: None,
+    };
+    let mut knots = [Knot::default(); 257];
+    let departure = DeltaPath::departure;
+    let table = Table::plan_within(paths, [arm; 3], 4, 0.05, departure, &mut knots).ok()?;
+    holds(table.departure(DeltaPath::departure).ok()? <= 0.05)?;
+    let angles = Vector3::from(table.rows().last()?.ok()?.position);
+    holds((delta.forward(angles).ok()? - Point3::from(to)).norm() < CLOSE_MM)
 }

@@ -1,9 +1,11 @@
-//! A table along a path.
+//! Tables along paths, a stream of paths.
 
 use core::convert::Infallible;
 use core::hint::black_box;
 
-use path_timing::{Ahead, AxisLimits, Knot, PathFn, Place, Table};
+use path_timing::{
+    Ahead, AxisLimits, Curve, Knot, LookAhead, PathFn, Place, Rounded, Slot, Table, segments_within,
+};
 
 use super::{CLOSE_MM, holds};
 
@@ -32,4 +34,46 @@ pub fn table() -> Option<()> {
     run.set_feed(0.5).ok()?;
     let last = run.last()?.ok()?;
     holds((last.time_s - 2.0 * table.duration_s()).abs() < CLOSE_MM)
+}
+
+/// Of a machine's axes, in mm and s.
+const AXIS: AxisLimits = AxisLimits {
+    speed: 50.0,
+    acceleration: 500.0,
+    jerk: None,
+};
+/// Allowed departures from a curve, in mm.
+const ALLOWED_MM: f64 = 0.01;
+
+/// A Bézier curve within a hundredth of a millimetre, and its bound.
+pub fn curve() -> Option<()> {
+    let limits = black_box([AXIS; 2]);
+    let curve = Curve::bezier([[0.0, 0.0], [10.0, 0.0], [20.0, 10.0], [20.0, 20.0]]).ok()?;
+    let mut knots = [Knot::default(); 65];
+    let bound = Curve::departure;
+    let table = Table::plan_within([curve], limits, 4, ALLOWED_MM, bound, &mut knots).ok()?;
+    let departure = table.departure(Curve::departure).ok()?;
+    holds(departure > 0.0 && departure <= ALLOWED_MM)?;
+    let last = table.rows().last()?.ok()?;
+    holds(last.position == [20.0, 20.0] && last.velocity == [0.0; 2])
+}
+
+/// Two sides of a square with a rounded corner in a window, held on the way.
+pub fn stream() -> Option<()> {
+    let limits = black_box([AXIS; 2]);
+    let corners = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0]];
+    let curves = Rounded::new(corners, ALLOWED_MM).ok()?;
+    let segments = |curve: &Curve<2>| segments_within(curve, 4, ALLOWED_MM, Curve::departure);
+    let mut window = [Slot::default(); 16];
+    let curves = curves.map_while(Result::ok);
+    let mut motion = LookAhead::new(curves, limits, segments, &mut window).ok()?;
+    for _ in 0..6 {
+        motion.next_row().ok()??;
+    }
+    motion.stop();
+    let held = motion.by_ref().last()?.ok()?;
+    holds(held.velocity == [0.0; 2] && held.position != [20.0, 20.0])?;
+    motion.set_feed(1.0).ok()?;
+    let last = motion.last()?.ok()?;
+    holds(last.velocity == [0.0; 2] && last.position == [20.0, 20.0])
 }

@@ -1,0 +1,218 @@
+//! Curves of a tool, and the paths of an arm's joints and a Delta's arms along them.
+
+use core::convert::Infallible;
+use std::array::IntoIter;
+use std::hint::black_box;
+use std::iter::Flatten;
+
+use delta_kin::{Delta, DeltaPath, DeltaPathError};
+use no_panic::no_panic;
+use path_timing::{
+    AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, Place, PlanError, Rounded,
+    Row, Slot, Span, Table, segments_within,
+};
+use scara_kin::{Arm, ArmPath, ArmPathError, DiscPath, Elbow};
+
+#[no_panic]
+#[inline(never)]
+fn line(from: [f64; 3], to: [f64; 3]) -> Result<Curve<3>, CurveError> {
+    Curve::line(from, to)
+}
+
+#[no_panic]
+#[inline(never)]
+fn arc(points: [[f64; 2]; 3], angle: f64) -> Result<Curve<2>, CurveError> {
+    let [start, centre, direction] = points;
+    Curve::arc(start, centre, direction, angle)
+}
+
+#[no_panic]
+#[inline(never)]
+fn bezier(control_points: [[f64; 2]; 4]) -> Result<Curve<2>, CurveError> {
+    Curve::bezier(control_points)
+}
+
+#[no_panic]
+#[inline(never)]
+fn curve_at(curve: &Curve<2>, s: f64) -> CurvePoint<2> {
+    curve.at(s)
+}
+
+#[no_panic]
+#[inline(never)]
+fn curve_departure(curve: &Curve<2>, span: &Span<[f64; 2]>) -> f64 {
+    curve.departure(span)
+}
+
+type Corners = IntoIter<[f64; 2], 4>;
+
+#[no_panic]
+#[inline(never)]
+fn rounded_next(rounded: &mut Rounded<Corners, 2>) -> Option<Result<Curve<2>, CurveError>> {
+    rounded.next()
+}
+
+type Stream = Flatten<Rounded<Corners, 2>>;
+
+#[no_panic]
+#[inline(never)]
+fn stream_next(
+    motion: &mut LookAhead<'_, Curve<2>, Stream, impl FnMut(&Curve<2>) -> Segments>,
+) -> Result<Option<Row<[f64; 2]>>, PlanError<Infallible>> {
+    motion.next_row()
+}
+
+#[no_panic]
+#[inline(never)]
+fn plan_within(
+    curve: Curve<2>,
+    limits: [AxisLimits; 2],
+    knots: &mut [Knot],
+) -> Result<Table<'_, IntoIter<Curve<2>, 1>, [f64; 2]>, PlanError<Infallible>> {
+    Table::plan_within([curve], limits, 4, 0.01, Curve::departure, knots)
+}
+
+type Segments = Result<u32, PlanError<Infallible>>;
+
+#[no_panic]
+#[inline(never)]
+fn segments_of(curve: &Curve<2>) -> Segments {
+    segments_within(curve, 4, 0.01, Curve::departure)
+}
+
+#[no_panic]
+#[inline(never)]
+fn arm_path(arm: &Arm, curve: Curve<2>, elbow: Elbow) -> Result<ArmPath, ArmPathError> {
+    arm.path(curve, elbow)
+}
+
+#[no_panic]
+#[inline(never)]
+fn arm_place(path: &ArmPath, s: f64) -> Result<Place<[f64; 2]>, ArmPathError> {
+    path.place(s)
+}
+
+#[no_panic]
+#[inline(never)]
+fn arm_departure(path: &ArmPath, span: &Span<[f64; 2]>) -> f64 {
+    path.departure(span)
+}
+
+#[no_panic]
+#[inline(never)]
+fn with_disc(path: ArmPath, theta3: f64) -> Result<DiscPath, ArmPathError> {
+    path.with_disc(theta3)
+}
+
+#[no_panic]
+#[inline(never)]
+fn disc_place(path: &DiscPath, s: f64) -> Result<Place<[f64; 3]>, ArmPathError> {
+    path.place(s)
+}
+
+#[no_panic]
+#[inline(never)]
+fn disc_departure(path: &DiscPath, span: &Span<[f64; 3]>) -> f64 {
+    path.departure(span)
+}
+
+#[no_panic]
+#[inline(never)]
+fn delta_path(delta: &Delta, curve: Curve<3>) -> Result<DeltaPath, DeltaPathError> {
+    delta.path(curve)
+}
+
+#[no_panic]
+#[inline(never)]
+fn pick_and_place(
+    delta: &Delta,
+    [from, to]: [[f64; 3]; 2],
+    z: f64,
+) -> Result<[DeltaPath; 5], DeltaPathError> {
+    delta.pick_and_place(from, to, z, 5.0, None)
+}
+
+#[no_panic]
+#[inline(never)]
+fn delta_place(path: &DeltaPath, s: f64) -> Result<Place<[f64; 3]>, DeltaPathError> {
+    path.place(s)
+}
+
+#[no_panic]
+#[inline(never)]
+fn delta_departure(path: &DeltaPath, span: &Span<[f64; 3]>) -> f64 {
+    path.departure(span)
+}
+
+fn span<const N: usize>() -> Span<[f64; N]> {
+    let row = Row {
+        time_s: 1.0,
+        duration_s: 0.1,
+        position: [0.5; N],
+        velocity: [0.1; N],
+    };
+    black_box(Span {
+        s: [1.0, 2.0],
+        rows: [row; 2],
+    })
+}
+
+pub fn run() {
+    let limits = black_box(AxisLimits {
+        speed: 100.0,
+        acceleration: 1000.0,
+        jerk: None,
+    });
+    let _ = black_box(arc(
+        black_box([[100.0, 100.0], [90.0, 100.0], [0.0, 1.0]]),
+        black_box(2.0),
+    ));
+    let corners = black_box([[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]]);
+    if let Ok(rounded) = Rounded::new(corners, black_box(0.05)) {
+        black_box(rounded_next(&mut black_box(rounded.clone())).is_some());
+        let mut window = black_box([Slot::default(); 16]);
+        let curves = black_box(rounded).flatten();
+        if let Ok(mut motion) = LookAhead::new(curves, [limits; 2], segments_of, &mut window) {
+            black_box(stream_next(black_box(&mut motion)).is_ok());
+        }
+    }
+    let drawn = black_box([[100.0, 100.0], [80.0, 130.0], [0.0, 120.0], [-90.0, 90.0]]);
+    if let Ok(curve) = bezier(drawn) {
+        run_curve(&black_box(curve), limits);
+    }
+    let ends = black_box([[50.0, 50.0, -300.0], [-50.0, 50.0, -300.0]]);
+    let Ok(delta) = Delta::new(black_box(42.0), 18.0, 120.0, 243.0) else {
+        return;
+    };
+    let delta = black_box(delta);
+    black_box(pick_and_place(&delta, ends, black_box(-280.0)).is_ok());
+    if let Ok(line) = line(ends[0], ends[1])
+        && let Ok(path) = delta_path(&delta, black_box(line))
+    {
+        let path = black_box(path);
+        black_box(delta_place(&path, black_box(3.0)).is_ok());
+        black_box(delta_departure(&path, &span()));
+    }
+}
+
+fn run_curve(curve: &Curve<2>, limits: AxisLimits) {
+    black_box(curve_at(curve, black_box(3.0)));
+    black_box(curve_departure(curve, &span()));
+    black_box(segments_of(curve).is_ok());
+    let mut knots = black_box([Knot::default(); 64]);
+    black_box(plan_within(*curve, [limits; 2], &mut knots).is_ok());
+    let Ok(arm) = Arm::new(black_box(132.0), 132.0) else {
+        return;
+    };
+    let Ok(path) = arm_path(&black_box(arm), *curve, black_box(Elbow::Right)) else {
+        return;
+    };
+    let path = black_box(path);
+    black_box(arm_place(&path, black_box(3.0)).is_ok());
+    black_box(arm_departure(&path, &span()));
+    if let Ok(path) = with_disc(path, black_box(0.3)) {
+        let path = black_box(path);
+        black_box(disc_place(&path, black_box(3.0)).is_ok());
+        black_box(disc_departure(&path, &span()));
+    }
+}
