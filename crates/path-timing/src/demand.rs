@@ -2,7 +2,7 @@
 
 use crate::leg::Leg;
 use crate::number::{cube_root, sqrt};
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 use crate::table::spans_of_leg;
 use crate::{Axes, Cubic, Knot, Path, PlanError, Row, ToolLimits};
 
@@ -142,7 +142,7 @@ impl<A: Axes> Demand<A> {
 #[cfg(test)]
 mod tests {
     use super::Demand;
-    use crate::segment::Reciprocals;
+    use crate::reciprocals::Reciprocals;
     use crate::{AxisLimits, Row};
 
     const ROUNDING: f64 = 1e-12;

@@ -2,7 +2,7 @@
 
 use crate::Axes;
 use crate::number::SMALLEST;
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 
 /// How the machine passes the end of a path, where its motion goes on with the next one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -2,7 +2,7 @@
 
 use crate::joint::Joint;
 use crate::number::{LARGEST, SMALLEST, range};
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 use crate::{Axes, Corner, Legs, Path, Place, PlanError, ToolLimits};
 
 /// A leg: a path, which of all it is, and how the next one follows.

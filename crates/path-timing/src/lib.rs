@@ -19,6 +19,7 @@ mod number;
 mod path;
 mod planner;
 mod profile;
+mod reciprocals;
 mod row;
 mod rows;
 mod run;

@@ -9,7 +9,7 @@ use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::planner::{MAX_SEGMENTS, MIN_SEGMENTS, check_joint};
 use crate::profile::fraction;
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, Corner, FeedError, Path, PlanError, Row};
 pub use window::Slot;
 use window::{Feed, Window};

@@ -4,7 +4,7 @@ use crate::demand::Demand;
 use crate::departure::{FINEST, Speeds, bound_of_parameters, estimate, fewest, spread};
 use crate::leg::{self, Leg};
 use crate::number::larger_or_nan;
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 use crate::table::spans_of_leg;
 use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Span, profile, smooth};
 

@@ -2,7 +2,8 @@
 
 use crate::leg::{self, Leg};
 use crate::number::LARGEST;
-use crate::segment::{Reciprocals, Segment};
+use crate::reciprocals::Reciprocals;
+use crate::segment::Segment;
 use crate::{Knot, Legs, Path, PlanError};
 
 /// Fills the knots of a leg, one more than segments, with the fastest motion from rest to rest.

@@ -3,7 +3,7 @@
 use core::iter::FusedIterator;
 
 use crate::leg::Leg;
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, Legs, Place, Row, Table};
 
 /// A knot as a point of its path.

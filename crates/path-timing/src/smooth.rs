@@ -8,7 +8,7 @@ use crate::leg::Leg;
 use crate::number::{LARGEST, cube_root, sqrt};
 use crate::planner::{MIN_SEGMENTS, knots_of};
 use crate::profile;
-use crate::segment::Reciprocals;
+use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, Knot, Path, PlanError, ToolLimits};
 pub(crate) use scurve::PHASES;
 use scurve::{SCurve, part};

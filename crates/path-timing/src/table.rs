@@ -4,8 +4,8 @@ use crate::departure::check_allowed;
 use crate::leg::{self, Leg};
 use crate::number::{SMALLEST, larger_or_nan};
 use crate::planner::{Planner, Within, bound_of_leg};
+use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
-use crate::segment::Reciprocals;
 use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row, Span, profile};
 
 /// Memory for one row of a [`Table`] while it is planned and as long as it lives.

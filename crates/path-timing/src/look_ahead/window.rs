@@ -2,7 +2,8 @@
 
 use crate::joint::Joint;
 use crate::number::LARGEST;
-use crate::segment::{Reciprocals, Segment};
+use crate::reciprocals::Reciprocals;
+use crate::segment::Segment;
 use crate::{Axes, Place, ToolLimits};
 
 /// Memory for one knot of a [`LookAhead`](super::LookAhead).

@@ -2,8 +2,8 @@
 
 use super::is_rest;
 use crate::demand::Demand;
+use crate::reciprocals::Reciprocals;
 use crate::rows::{Node, Nodes};
-use crate::segment::Reciprocals;
 use crate::{Legs, Row};
 
 /// A change of the feed over the segments up to a later row: smooth in time, slow where the feed is
