@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::{Parser, ValueEnum};
-use command_line::{Artefacts, PseudoTerminal, print_summary, read};
+use command_line::{Artefacts, PseudoTerminal, exit_code, print_summary, read};
 use platform::{Alignment, Machine, Pose, Side, parse_pose};
 
 const PLATFORM: &str = concat!(
@@ -85,9 +85,5 @@ fn align(args: &Args) -> Result<ExitCode> {
         run.report(),
         args.out.display()
     ))?;
-    Ok(if run.report().is_within_bounds() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(2)
-    })
+    Ok(exit_code(run.report().is_within_bounds()))
 }

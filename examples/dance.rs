@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use anyhow::{Context as _, Result};
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser as _};
-use command_line::{Artefacts, Progress, print_summary, read};
+use command_line::{Artefacts, Progress, exit_code, print_summary, read};
 use dancer::{Law, MOTORS, Report, Score, picture, simulate};
 use pose2pulse::pattern_codec::dance::Data;
 
@@ -71,10 +71,8 @@ fn dance(args: &Args) -> Result<ExitCode> {
     artefacts.write("data.h", &header)?;
     let data = Data::<MOTORS>::read(&header).context("data.h")?;
 
-    let progress = Progress::new("dancing");
     let vcd = artefacts.create("dance.vcd")?;
-    let run = simulate(&data, args.law, vcd, |done, all| progress.at(done, all))?;
-    drop(progress);
+    let run = Progress::during("dancing", |at| simulate(&data, args.law, vcd, at))?;
 
     let report = Report::new(&score, &dance, &data, &run, args.code_bytes);
     artefacts.write("dance.svg", picture(&score, &run).to_string())?;
@@ -83,8 +81,5 @@ fn dance(args: &Args) -> Result<ExitCode> {
     let name = args.score.file_name().unwrap_or(args.score.as_os_str());
     let (name, out) = (name.display(), args.out.display());
     print_summary(format!("{name}: {report}in {out}: {names}\n"))?;
-    Ok(match report.is_as_asked() {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::from(2),
-    })
+    Ok(exit_code(report.is_as_asked()))
 }

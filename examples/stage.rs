@@ -71,10 +71,8 @@ fn stage(args: &Args) -> Result<ExitCode> {
         lose_steps: args.lose_steps,
         seed: args.seed,
     };
-    let name = match &args.port {
-        Some(port) => port.clone(),
-        None => args.gcode.display().to_string(),
-    };
+    let port = args.port.clone();
+    let name = port.unwrap_or_else(|| args.gcode.display().to_string());
     let source = match &args.port {
         Some(port) => Source::Terminal(Terminal::open_port(port, BAUD)?),
         // All of it is checked before anything moves.

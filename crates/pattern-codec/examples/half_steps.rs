@@ -1,5 +1,4 @@
-//! Eight motors in half steps, from the frames of a C header: prints the four windings of each motor
-//! at the end of every frame.
+//! Eight motors in half steps, from the frames of a C header: prints the windings after each frame.
 
 use pattern_codec::c_header::HeaderError;
 use pattern_codec::dance::{Data, DataHeader, Packing};

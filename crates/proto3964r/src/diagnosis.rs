@@ -24,7 +24,7 @@ use echo::Echo;
 use evidence::Evidence;
 use judge::{Case, Late};
 
-/// Answers that come later than so many acknowledgement delay times are none.
+/// Answers that come later than this number of acknowledgement delay times are none.
 const LATEST: u32 = 4;
 
 /// What is to be said of a record.

@@ -48,6 +48,16 @@ pub fn run<O: Parser>(program: impl FnOnce(&O) -> Result<ExitCode>) -> ExitCode 
     })
 }
 
+/// The exit status of a run that came to its end: 2 where its result is not as it should be.
+#[must_use]
+pub fn exit_code(is_good: bool) -> ExitCode {
+    if is_good {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    }
+}
+
 /// Prints what a person wants to know first on standard output.
 ///
 /// # Errors

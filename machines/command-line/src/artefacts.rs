@@ -68,10 +68,21 @@ impl Artefacts {
             .with_context(|| self.folder.join(name).display().to_string())
     }
 
-    /// This run writes no such file: one of a run before is removed, so that what is there belongs
-    /// together.
-    pub fn leave_out(&mut self, name: &'static str) {
+    /// Begins a file that a run may do without; where it does, one of a run before is removed, so that
+    /// what is there belongs together.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn create_if(
+        &mut self,
+        is_wanted: bool,
+        name: &'static str,
+    ) -> Result<Option<BufWriter<File>>> {
+        if is_wanted {
+            return self.create(name).map(Some);
+        }
         self.left_out.push(name);
+        Ok(None)
     }
 
     /// Opens a file that has been written, from its beginning.

@@ -9,7 +9,7 @@ mod progress;
 mod pseudo_terminal;
 mod terminal;
 
-pub use arguments::{arguments, fraction, print_notes, print_summary, run};
+pub use arguments::{arguments, exit_code, fraction, print_notes, print_summary, run};
 pub use artefacts::{Artefacts, write_json};
 pub use cable::{Cable, Port};
 pub use input::{read, read_bytes};

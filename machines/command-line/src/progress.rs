@@ -17,9 +17,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Progress of what is named.
-    #[must_use]
-    pub fn new(what: &'static str) -> Self {
+    fn new(what: &'static str) -> Self {
         let bar =
             ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::hidden()).with_message(what);
         if let Ok(style) =
@@ -34,8 +32,13 @@ impl Progress {
         }
     }
 
-    /// So much is done, of so much in all.
-    pub fn at(&self, done: u64, total: u64) {
+    /// Shows the progress of a work while it lasts: it says how much is done, of how much in all.
+    pub fn during<T>(what: &'static str, work: impl FnOnce(&dyn Fn(u64, u64)) -> T) -> T {
+        let progress = Self::new(what);
+        work(&|done, total| progress.at(done, total))
+    }
+
+    fn at(&self, done: u64, total: u64) {
         self.bar.set_length(total);
         self.bar.set_position(done);
         if self.hidden.get() && self.begun.elapsed() > PATIENCE {

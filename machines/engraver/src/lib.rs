@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The second line reads nothing but the bytes of the first. Beside it, [`TimedPlan`] brings the same
-//! drawing to the motors without a pattern: its curves, timed by `path-timing`, as edges. Text and bytes in, values out: no
-//! files, no printing.
+//! drawing to the motors without a pattern: its curves, timed by `path-timing`, as edges. Text and
+//! bytes in, values out: no files, no printing.
 //!
 //! ```
 //! use engraver::{Drawing, Machine, Plan, PlanSettings, Report, simulate};
@@ -25,6 +25,7 @@
 
 mod controller;
 mod drawing;
+mod engraving;
 mod gauge;
 mod header;
 mod layout;
@@ -44,6 +45,7 @@ mod view;
 
 pub use self::controller::Wires;
 pub use self::drawing::Drawing;
+pub use self::engraving::{Engraving, MotorController};
 pub use self::header::header;
 pub use self::machine::Machine;
 pub use self::placement::{Bed, Placement};

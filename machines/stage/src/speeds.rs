@@ -19,8 +19,8 @@ pub(crate) const START_STOP_MM_S: f64 = 5.0;
 /// direction.
 const ACROSS_ARC: f64 = 0.8;
 const ALONG_ARC: f64 = 0.6;
-/// Rates are rounded to mHz; so much less way than there is makes up for it.
-const WAY: f64 = 0.999;
+/// Of the path that a ramp is planned for: rates are rounded to mHz, and it must not end short.
+const PLANNED_FRACTION: f64 = 0.999;
 
 /// How the speed along the path changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -98,8 +98,8 @@ impl Leg {
 
     /// The largest speed at one end from a speed at the other.
     fn reached_from(&self, speed: f64) -> f64 {
-        let way = f64::from(self.units) * WAY;
-        (speed * speed + 2.0 * self.acceleration * way).sqrt()
+        let distance = f64::from(self.units) * PLANNED_FRACTION;
+        (speed * speed + 2.0 * self.acceleration * distance).sqrt()
     }
 
     fn ramp(&self) -> Result<Ramp<1>> {

@@ -29,8 +29,8 @@ use crate::number::larger_or_nan;
 /// N + ψ E + κ E²/2 + M/24576
 /// ```
 ///
-/// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the way
-/// is done and (1 - τ)²/2 left, and |e| ≤ M τ² (1 - τ)²/24, so 12 times the way must be M or more.
+/// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the distance
+/// is done and (1 - τ)²/2 left, and |e| ≤ M τ² (1 - τ)²/24, so 12 times the distance must be M or more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveMotion<'a, const D: usize> {
     curve: &'a Curve<D>,
@@ -40,8 +40,8 @@ pub struct CurveMotion<'a, const D: usize> {
     turn: f64,
     /// κ
     curvature: f64,
-    /// Length of the way, 0 where its part behind the tool is not known.
-    way: f64,
+    /// Distance that the tool covers, 0 where a part of it is not known.
+    distance: f64,
 }
 
 /// Nodes between the ends of a segment.
@@ -67,13 +67,13 @@ struct Parameter {
 
 impl Parameter {
     fn new(cubic: &Cubic) -> Self {
-        let way = cubic.q1 - cubic.q0;
+        let distance = cubic.q1 - cubic.q0;
         let [a, b] = [cubic.v0, cubic.v1].map(|speed| speed * cubic.duration_s);
-        let (c2, c3) = (3.0 * way - 2.0 * a - b, a + b - 2.0 * way);
+        let (c2, c3) = (3.0 * distance - 2.0 * a - b, a + b - 2.0 * distance);
         Self {
             coefficients: [cubic.q0, a, c2, c3],
             largest: [
-                a.abs().max(b.abs()).max((3.0 * way - a - b).abs()),
+                a.abs().max(b.abs()).max((3.0 * distance - a - b).abs()),
                 (2.0 * c2).abs().max((2.0 * c2 + 6.0 * c3).abs()),
                 (6.0 * c3).abs(),
             ],
@@ -94,12 +94,12 @@ impl Parameter {
         ]
     }
 
-    /// Whether at each τ at least τ²/2 of the way is done, and at least (1 - τ)²/2 left: where the
+    /// Whether at each τ at least τ²/2 of the distance is done, and at least (1 - τ)²/2 left: where the
     /// speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has 2.
     fn comes_forward(cubic: &Cubic) -> bool {
-        let way = cubic.q1 - cubic.q0;
+        let distance = cubic.q1 - cubic.q0;
         let ends = [cubic.v0, cubic.v1].map(|speed| speed * cubic.duration_s);
-        way > 0.0 && ends.iter().all(|end| *end >= 0.0 && *end <= 2.5 * way)
+        distance > 0.0 && ends.iter().all(|end| *end >= 0.0 && *end <= 2.5 * distance)
     }
 }
 
@@ -159,10 +159,10 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         let longest = curve.longest(&jet, half);
         let ([_, first, ..], [_, second, ..]) = (&jet, longest);
         let slowest = norm(first) - half * second;
-        let (turn, curvature, way) = if slowest > 0.0 && Parameter::comes_forward(&cubic) {
-            let way = (q1 - q0) * slowest;
+        let (turn, curvature, distance) = if slowest > 0.0 && Parameter::comes_forward(&cubic) {
+            let distance = (q1 - q0) * slowest;
             let turn = fastest * NODE * second / slowest;
-            (turn, second / (slowest * slowest), way)
+            (turn, second / (slowest * slowest), distance)
         } else {
             (0.0, 0.0, 0.0)
         };
@@ -172,7 +172,7 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
             longest: longest_composed(longest, parameter.largest),
             turn,
             curvature,
-            way,
+            distance,
         }
     }
 
@@ -225,7 +225,7 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         }
         let all = all + between;
         // Written so that NaN stays.
-        let is_known = fourth <= 12.0 * self.way;
+        let is_known = fourth <= 12.0 * self.distance;
         if is_known {
             all.min(across + between + self.turn * all + 0.5 * self.curvature * all * all)
         } else {

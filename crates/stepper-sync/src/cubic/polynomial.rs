@@ -11,7 +11,7 @@ use crate::fixed::{ONE, first, fraction, shifted, signed_high};
 
 /// The most fraction bits of a position.
 const MAX_BITS: u32 = 50;
-/// Bits of a distance or v T, at most, with those behind the point: sums of 24 of them stay below 2^62.
+/// Bits of a distance or v T, at most, with those after the point: sums of 24 of them stay below 2^62.
 const WAY_BITS: u32 = 57;
 
 /// Fraction bits with which every distance fits: half a step a tick for 2^32 ticks.
@@ -60,7 +60,7 @@ impl Cubic {
     /// 2^31 steps and more.
     ///
     /// With B the greatest of the distance, v0 T and v1 T, |q2| and |q3| are at most 6 B, and the sums
-    /// below at most 24 B. That leaves 50 bits behind the point for 128 steps a row, and one less
+    /// below at most 24 B. That leaves 50 bits after the point for 128 steps a row, and one less
     /// with each doubling. The coefficients are rounded to them, so that q is off by less than 8
     /// units.
     pub(super) fn new(from: PvtKnot, to: PvtKnot, ticks: u32, origin: i64) -> Option<Self> {
