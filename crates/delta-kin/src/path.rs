@@ -43,6 +43,11 @@ pub struct DeltaPath {
 /// Nearest to the edge of the workspace, as a fraction of the span, that a path may come.
 const EDGE: f64 = 1e-6;
 
+/// Longest curve that stays within the workspace, in spans: an arc of 100 rad. A Bézier curve of
+/// degree 5 in a ball of radius 1 is at most 87 long, by Markov's inequality. Beyond, the machine may
+/// be too small for the digits of the curve, and would be walked on without end.
+const LONGEST: f64 = 100.0;
+
 /// Shortest step along the curve, as a fraction of it.
 const LEAST_STEP: f64 = 1e-12;
 
@@ -56,6 +61,10 @@ impl Delta {
     /// # Errors
     /// [`DeltaPathError`]; the place named is the first along the curve.
     pub fn path(&self, curve: Curve<3>) -> Result<DeltaPath, DeltaPathError> {
+        let (length, max) = (curve.length(), self.span() * LONGEST);
+        if length > max {
+            return Err(DeltaPathError::TooLong { length, max });
+        }
         let path = DeltaPath {
             delta: *self,
             curve,

@@ -274,3 +274,12 @@ fn pick_and_place_does_not_stop_on_the_way() {
     let above = delta.pick_and_place(from, [80.0, 0.0, -310.0], -270.0, 3.0, None);
     assert!(matches!(above, Err(DeltaPathError::Curve(_))));
 }
+
+#[test]
+fn a_curve_longer_than_any_in_the_workspace_is_no_endless_walk() {
+    let error = delta().path(line([0.0, 0.0, -250.0], [1e9, 0.0, -250.0]));
+    assert_eq!(
+        error.unwrap_err().to_string(),
+        "the curve is 1.0000e9 long, within the workspace at most 42300"
+    );
+}

@@ -51,6 +51,11 @@ pub struct ArmPath {
 /// Nearest to the edge of the workspace, as a fraction of the reach, that a path may come.
 const EDGE: f64 = 1e-6;
 
+/// Longest curve that stays within the workspace, in reaches: an arc of 100 rad. A Bézier curve of
+/// degree 5 in a disc of radius 1 is at most 71 long, by Markov's inequality. Beyond, the arm may be
+/// too small for the digits of the curve, and would be walked on without end.
+const LONGEST: f64 = 100.0;
+
 /// Most that a joint turns from one look at the path to the next, in radians.
 const LOOK: f64 = 1.0;
 
@@ -88,6 +93,10 @@ impl Arm {
         elbow: Elbow,
         previous: Joints,
     ) -> Result<ArmPath, ArmPathError> {
+        let (length, max) = (curve.length(), self.reach() * LONGEST);
+        if length > max {
+            return Err(ArmPathError::TooLong { length, max });
+        }
         let looker = Looker {
             arm: self,
             curve: &curve,

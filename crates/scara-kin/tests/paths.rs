@@ -339,6 +339,18 @@ fn what_cannot_be_followed_is_refused_with_its_place() {
     assert!(path.departure(&span).is_infinite());
 }
 
+/// The digits of the curve do not show the arm: the walk along it would take hours.
+#[test]
+fn an_arm_too_small_for_the_curve_is_no_endless_walk() {
+    let arm = Arm::new(7.5e-38, 7.5e-38).unwrap();
+    let arc = Curve::arc([0.0, -1e-38], [0.0, 8e10], [1.0, 0.0], 0.1).unwrap();
+    let error = arm.path(arc, Elbow::Left).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the curve is 8e9 long, within the workspace at most 1.5e-35"
+    );
+}
+
 /// A disc that turns slowly: the blend of a corner is passed slower, the lines are not.
 #[test]
 fn a_corner_that_the_disc_cannot_follow_slows_all_down() {

@@ -15,6 +15,14 @@ pub enum DeltaPathError {
     /// There is no such curve.
     #[error(transparent)]
     Curve(#[from] CurveError),
+    /// The curve is longer than any within the workspace, so that it leaves it.
+    #[error("the curve is {} long, within the workspace at most {}", Rounded(*.length), Rounded(*.max))]
+    TooLong {
+        /// Length of the curve.
+        length: f64,
+        /// Largest length, 100 times the span: that of an arc of 100 rad.
+        max: f64,
+    },
     /// The platform cannot be at a place of the curve.
     #[error("{}: {reason}", At(*.s, *.point))]
     Unreachable {

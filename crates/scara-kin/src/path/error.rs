@@ -11,6 +11,13 @@ use crate::{InverseError, TangentError};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ArmPathError {
+    /// The curve is longer than any within the workspace, so that it leaves it.
+    TooLong {
+        /// Length of the curve.
+        length: f64,
+        /// Largest length, 100 times the reach: that of an arc of 100 rad.
+        max: f64,
+    },
     /// The tool cannot be at a place of the curve.
     Unreachable {
         /// Arc length up to there.
@@ -48,6 +55,12 @@ pub enum ArmPathError {
 impl Display for ArmPathError {
     fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
         match self {
+            Self::TooLong { length, max } => write!(
+                f,
+                "the curve is {} long, within the workspace at most {}",
+                Digits(*length),
+                Digits(*max)
+            ),
             Self::Unreachable { s, point, reason } => write!(f, "{}: {reason}", At(*s, *point)),
             Self::Edge { s, point, distance } => write!(
                 f,
