@@ -54,7 +54,7 @@ pub enum SubmitError {
     },
 }
 
-/// What [`Driver::poll_event`] hands out.
+/// What [`Driver::poll_event`](crate::Driver::poll_event) hands out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
