@@ -1,36 +1,7 @@
 //! Programs that bring up a 3964 or 3964R line.
 
-mod monitor;
-mod port;
-mod preset;
-mod station;
-mod text;
-
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
-
-/// Brings up a Siemens 3964 or 3964R line.
-#[derive(Parser)]
-#[command(version)]
-struct Options {
-    #[command(subcommand)]
-    program: Program,
-}
-
-#[derive(Subcommand)]
-enum Program {
-    Station(station::Options),
-    Monitor(monitor::Options),
-}
-
 fn main() -> ExitCode {
-    let ended = match Options::parse().program {
-        Program::Station(options) => station::run(&options),
-        Program::Monitor(options) => monitor::run(&options),
-    };
-    ended.unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
-        ExitCode::FAILURE
-    })
+    line3964r::cli::main()
 }

@@ -1,16 +1,21 @@
-//! Parameter sets by their names on a command line.
+//! Parameter sets by their names.
 
-use clap::ValueEnum;
 use proto3964r::{Config, Line, Priority};
+use serde::Deserialize;
 
-/// A parameter set of `proto3964r`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Preset {
+/// A parameter set of `proto3964r`, by name on a command line and in a configuration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Preset {
     /// Siemens 3964R: QVZ 2000 ms, ZVZ 220 ms, with BCC.
-    #[value(name = "siemens-3964r")]
+    #[serde(rename = "siemens-3964r")]
+    #[cfg_attr(feature = "cli", value(name = "siemens-3964r"))]
     Siemens3964r,
     /// Siemens 3964: QVZ 550 ms, without BCC.
-    #[value(name = "siemens-3964")]
+    #[serde(rename = "siemens-3964")]
+    #[cfg_attr(feature = "cli", value(name = "siemens-3964"))]
     Siemens3964,
     /// EUCHNER hand-held pendant HBLS.
     Hbls,
@@ -24,7 +29,8 @@ pub(crate) enum Preset {
 
 impl Preset {
     /// The parameters, for this priority and this line.
-    pub(crate) fn config(self, priority: Priority, line: Line) -> Config {
+    #[must_use]
+    pub const fn config(self, priority: Priority, line: Line) -> Config {
         let preset = match self {
             Self::Siemens3964r => Config::siemens_3964r(priority, line),
             Self::Siemens3964 => Config::siemens_3964(priority, line),

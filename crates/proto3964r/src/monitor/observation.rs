@@ -146,6 +146,36 @@ pub enum Observation<'a> {
     },
 }
 
+impl Observation<'_> {
+    /// Whose step it is: who sent something, or who should have; `None` for what both did.
+    #[must_use]
+    pub const fn side(&self) -> Option<Side> {
+        match *self {
+            Self::Conflict | Self::BothGaveWay => None,
+            Self::Request { side, .. }
+            | Self::RequestUnanswered { side, .. }
+            | Self::DidNotWait { side }
+            | Self::Reset { side }
+            | Self::Stray { side, .. }
+            | Self::Damaged { side, .. } => Some(side),
+            Self::NoAnswer { silent, .. } => Some(silent),
+            Self::Connected { by, .. }
+            | Self::Refused { by, .. }
+            | Self::Block { by, .. }
+            | Self::BadBlock { by, .. }
+            | Self::NoBcc { by }
+            | Self::BccNotAwaited { by }
+            | Self::NoBlock { by, .. }
+            | Self::Accepted { by, .. }
+            | Self::Rejected { by, .. }
+            | Self::RequestForAnswer { by, .. }
+            | Self::Aborted { by }
+            | Self::BrokenOff { by }
+            | Self::Gap { by, .. } => Some(by),
+        }
+    }
+}
+
 impl fmt::Display for Observation<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

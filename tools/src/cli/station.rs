@@ -16,7 +16,8 @@ use proto3964r::{
     serialport::Driver,
 };
 
-use crate::{port::Frame, preset::Preset, text};
+use super::serial::Frame;
+use crate::{Preset, text};
 
 /// Longest block in either direction: that of a CP 341.
 const BLOCK: usize = 4096;
@@ -42,7 +43,7 @@ const TICK: Duration = Duration::from_millis(20);
 /// of the input, after the outcome of the last job.
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Options {
+pub(super) struct Options {
     /// Serial device or pseudo-terminal.
     #[arg(long)]
     port: String,
@@ -98,7 +99,7 @@ impl Options {
 /// A line of standard input: its number, and a job or what is wrong with it.
 type InputLine = (usize, Result<Vec<u8>, String>);
 
-pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+pub(super) fn run(options: &Options) -> Result<ExitCode> {
     let port = options.frame.open(&options.port, Duration::ZERO)?;
     let mut line =
         Driver::<BLOCK>::new(port, options.config()).with_context(|| options.port.clone())?;

@@ -1,0 +1,16 @@
+//! What the program `line3964r` is made of, for other programs.
+//!
+//! [`capture`] reads captures of a line and tells the conversation and the verdict: no file, no
+//! clock, no port. [`Address`] names a port. Feature `cli`, on by default, is the program itself.
+
+extern crate alloc;
+
+pub mod capture;
+#[cfg(feature = "cli")]
+pub mod cli;
+mod port;
+mod preset;
+pub mod text;
+
+pub use port::{Address, AddressError, Frame, Parity, Target};
+pub use preset::Preset;
