@@ -4,13 +4,13 @@ use core::fmt;
 
 use thiserror::Error;
 
-use crate::frame::FrameError;
+use crate::{frame::FrameError, monitor::Hex};
 
 /// What [`Station::poll_event`](crate::Station::poll_event) hands out.
 ///
 /// [`Received`](Self::Received) and the outcome of a job ([`Sent`](Self::Sent) or
 /// [`Failed`](Self::Failed)) are never lost. The others are diagnosis: when they are not fetched,
-/// later ones are dropped and counted.
+/// later ones are dropped and counted. Its `Display` is a line for a person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -173,21 +173,71 @@ pub enum Abandoned {
     ByPartner,
 }
 
+impl fmt::Display for Event<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Received([]) => f.write_str("received an empty telegram"),
+            Self::Received(telegram) => write!(f, "received {}", Hex(telegram)),
+            Self::Sent { len } => write!(f, "sent {len} bytes"),
+            Self::Failed(failure) => failure.fmt(f),
+            Self::Rejected(rejection) => write!(f, "rejected: {rejection}"),
+            Self::Abandoned(abandoned) => write!(f, "abandoned: {abandoned}"),
+            Self::Conflict { in_a_row } => {
+                write!(f, "initialization conflict, {in_a_row} in a row")
+            }
+            Self::SamePriority => f.write_str("both stations seem to have the same priority"),
+            Self::Break => f.write_str("BREAK on the line"),
+        }
+    }
+}
+
 #[cfg(feature = "log")]
 impl Event<'_> {
     /// Writes the event to `log`: what went well at level debug, everything else at level warn.
     pub(crate) fn log(&self) {
         match self {
             Self::Received(telegram) => log::debug!("received {} bytes", telegram.len()),
-            Self::Sent { len } => log::debug!("sent {len} bytes"),
-            Self::Failed(failure) => log::warn!("{failure}"),
-            Self::Rejected(rejection) => log::warn!("rejected: {rejection}"),
-            Self::Abandoned(abandoned) => log::warn!("abandoned: {abandoned}"),
-            Self::Conflict { in_a_row } => {
-                log::warn!("initialization conflict, {in_a_row} in a row");
-            }
-            Self::SamePriority => log::warn!("both stations seem to have the same priority"),
-            Self::Break => log::warn!("BREAK on the line"),
+            Self::Sent { .. } => log::debug!("{self}"),
+            _ => log::warn!("{self}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString as _;
+
+    use super::*;
+
+    #[test]
+    fn events_are_lines_for_a_person() {
+        let failure = Failure {
+            phase: Phase::Connection,
+            cause: Cause::Timeout,
+            attempts: 6,
+        };
+        for (event, line) in [
+            (Event::Received(&[0x41, 0x10]), "received 41 10"),
+            (Event::Received(&[]), "received an empty telegram"),
+            (Event::Sent { len: 3 }, "sent 3 bytes"),
+            (
+                Event::Failed(failure),
+                "job given up after 6 connection attempts, first error: timeout",
+            ),
+            (
+                Event::Rejected(Rejection::Noise { first: 0x41 }),
+                "rejected: noise 41h while idle",
+            ),
+            (
+                Event::Abandoned(Abandoned::TooMany(6)),
+                "abandoned: 6 rejected receptions",
+            ),
+            (
+                Event::Conflict { in_a_row: 2 },
+                "initialization conflict, 2 in a row",
+            ),
+        ] {
+            assert_eq!(event.to_string(), line);
         }
     }
 }

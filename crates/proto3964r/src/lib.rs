@@ -42,4 +42,4 @@ pub use diagnosis::{Diagnosis, Formula, Totals, Verdict, diagnose};
 pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
 pub use monitor::{Character, Monitor, Observation, Observations, Side};
-pub use station::{Station, SubmitError, Transmit};
+pub use station::{Activity, Station, SubmitError, Transmit};

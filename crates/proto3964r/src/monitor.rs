@@ -18,7 +18,7 @@ pub use side::Side;
 
 pub(crate) use character::since;
 pub(crate) use conversation::Conversation;
-pub(crate) use observation::{Mark, Millis};
+pub(crate) use observation::{Hex, Mark, Millis};
 pub(crate) use scan::BccSeen;
 pub(crate) use side::PerSide;
 

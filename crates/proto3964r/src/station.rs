@@ -1,5 +1,6 @@
 //! One end of the line: what it is, its contract, and the user's side of it.
 
+mod activity;
 mod character;
 #[cfg(test)]
 mod explore;
@@ -16,6 +17,7 @@ use core::time::Duration;
 
 use thiserror::Error;
 
+pub use activity::Activity;
 pub(crate) use queue::Note;
 
 use self::{

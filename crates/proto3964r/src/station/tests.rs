@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use proptest::prelude::*;
 
-use super::{Station, Transmit};
+use super::{Activity, Station, Transmit};
 use crate::{
     config::{Config, Line, Priority},
     event::{Event, LineError},
@@ -163,4 +163,48 @@ proptest! {
             }
         }
     }
+}
+
+/// One telegram, character by character.
+#[test]
+fn what_a_station_does_can_be_told() {
+    let config = Config {
+        allow_empty: false,
+        ..silent()
+    };
+    let [mut sender, mut receiver] = [Station::<8>::new(config), Station::<8>::new(config)];
+    let now = Duration::ZERO;
+    let mut told = Vec::new();
+    let mut tell = |sender: &Station<8>, receiver: &Station<8>| {
+        let both = (sender.activity(), receiver.activity());
+        if told.last() != Some(&both) {
+            told.push(both);
+        }
+    };
+    tell(&sender, &receiver);
+    sender.submit(now, b"A").unwrap();
+    tell(&sender, &receiver);
+    for _ in 0..3 {
+        while let Some(byte) = sender.poll_transmit_byte(now) {
+            tell(&sender, &receiver);
+            receiver.handle_byte(now, byte);
+            tell(&sender, &receiver);
+        }
+        while let Some(byte) = receiver.poll_transmit_byte(now) {
+            sender.handle_byte(now, byte);
+            tell(&sender, &receiver);
+        }
+    }
+    let expected = [
+        (Activity::Idle, Activity::Idle),
+        (Activity::Request, Activity::Idle),
+        (Activity::AwaitConnection, Activity::Idle),
+        (Activity::AwaitConnection, Activity::AwaitBlock),
+        (Activity::Send, Activity::AwaitBlock),
+        (Activity::Send, Activity::Receive),
+        (Activity::AwaitAcknowledgement, Activity::Receive),
+        (Activity::AwaitAcknowledgement, Activity::Idle),
+        (Activity::Idle, Activity::Idle),
+    ];
+    assert_eq!(told, expected);
 }
