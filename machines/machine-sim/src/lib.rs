@@ -24,6 +24,7 @@ pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
 pub use self::motion_sampler::MotionSampler;
 pub use self::motor::{Motor, Rotor};
 pub use self::profile::Profile;
+pub use self::random::Random;
 pub use self::scale::{LimitSwitches, Scale};
 pub use self::stepper::Stepper;
 pub use self::vcd::{VcdError, VcdWriter, Wire};

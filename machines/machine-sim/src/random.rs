@@ -2,14 +2,21 @@
 
 /// `SplitMix64` (Steele, Lea and Flood, 2014): any seed is as good as another.
 #[derive(Debug, Clone)]
-pub(crate) struct Random(u64);
+#[expect(
+    missing_copy_implementations,
+    reason = "a copy would give the same numbers once more"
+)]
+pub struct Random(u64);
 
 impl Random {
-    pub(crate) const fn new(seed: u64) -> Self {
+    /// The same numbers for the same seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    pub(crate) const fn next(&mut self) -> u64 {
+    /// The next number: 64 random bits.
+    pub const fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -17,11 +24,11 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Whether something happens whose probability is this.
-    pub(crate) fn happens(&mut self, probability: f64) -> bool {
+    /// Whether something happens whose probability is this: never for 0, always for 1.
+    pub fn happens(&mut self, probability: f64) -> bool {
         // 53 bits, which are exact.
         #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
-        let fraction = (self.next() >> 11) as f64 / 9_007_199_254_740_992.0;
+        let fraction = (self.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0;
         fraction < probability
     }
 }
@@ -39,7 +46,10 @@ mod tests {
             3_203_168_211_198_807_973,
             9_817_491_932_198_370_423,
         ];
-        assert_eq!([random.next(), random.next(), random.next()], wanted);
+        assert_eq!(
+            [random.next_u64(), random.next_u64(), random.next_u64()],
+            wanted
+        );
     }
 
     #[test]

@@ -75,15 +75,15 @@ impl Noise {
     fn damage(&mut self, byte: u8, arrived: &mut Vec<u8>) {
         self.damaged += 1;
         self.ahead = self.gap();
-        match self.random.next() % 4 {
+        match self.random.next_u64() % 4 {
             0 => {}
             1 => arrived.extend([byte, byte]),
-            _ => arrived.push(byte ^ (1 << (self.random.next() % 8))),
+            _ => arrived.push(byte ^ (1 << (self.random.next_u64() % 8))),
         }
     }
 
     const fn gap(&mut self) -> Option<u64> {
-        match self.random.next().checked_rem(self.spacing) {
+        match self.random.next_u64().checked_rem(self.spacing) {
             Some(more) => Some(self.spacing.saturating_add(more)),
             None => None,
         }

@@ -1,18 +1,24 @@
 //! Verdicts on simulated lines: any data and times, either side at fault, one fault or none.
 #![cfg(test)]
 
-mod line;
-#[path = "../common/random.rs"]
-mod random;
-mod uart;
-
+use core::time::Duration;
 use std::env;
 
-use line::{Plan, record};
+use line_sim::{Faults, Frame, Parity, Simulation, StationSettings};
+use machine_sim::Random;
 use proptest::{prelude::*, test_runner::RngSeed};
 use proto3964r::{Character, Config, Diagnosis, Formula, Line, Priority, Side, Verdict, diagnose};
-use random::Random;
-use uart::{Parity, Setting, USUAL};
+
+/// One station, what is wrong with it, and its user.
+#[derive(Clone, Debug)]
+struct Plan {
+    settings: StationSettings,
+    faults: Faults,
+    /// When the jobs are submitted, in ms.
+    jobs: Vec<(u64, Vec<u8>)>,
+    /// From when on it is dead, in ms.
+    dead_from_ms: Option<u64>,
+}
 
 /// What the lines of a case have in common.
 #[derive(Clone, Copy, Debug)]
@@ -25,9 +31,9 @@ struct Case {
     /// Whether the faulty side has high priority.
     is_high: bool,
     /// Longest payload.
-    longest: u32,
-    /// Of 1000 bits, how many are damaged in both directions.
-    noise: u32,
+    longest: u64,
+    /// In both directions.
+    bit_error_rate: f64,
     seconds: u64,
 }
 
@@ -37,15 +43,15 @@ fn cases() -> impl Strategy<Value = Case> {
         any::<bool>(),
         prop_oneof![Just([true, true]), Just([true, false]), Just([false, true])],
         any::<bool>(),
-        prop_oneof![Just(3_u32), Just(12), Just(48)],
+        prop_oneof![Just(3_u64), Just(12), Just(48)],
     )
         .prop_map(|(seed, is_a, sends, is_high, longest)| Case {
-            seed: seed >> 8,
+            seed,
             faulty: if is_a { Side::A } else { Side::B },
             sends,
             is_high,
             longest,
-            noise: 0,
+            bit_error_rate: 0.0,
             seconds: 20,
         })
 }
@@ -80,25 +86,35 @@ impl Case {
         let mut random = Random::new(self.seed);
         let mut number = 0;
         priorities.map(|priority| {
-            let mut plan = Plan::new(Config::siemens_3964r(priority, line));
-            plan.damage = self.noise;
-            let mut at = 200 + u64::from(random.below(1000));
+            let mut jobs = Vec::new();
+            let mut at = 200 + random.next_u64() % 1000;
             while at < self.seconds * 1000 {
-                let len = 1 + random.below(self.longest);
-                let data = (0..len).map(|place| match random.below(6) {
+                let len = 1 + random.next_u64() % self.longest;
+                let data = (0..len).map(|place| match random.next_u64() % 6 {
                     0 if place > 0 => 0x10,
                     1 => 0x03,
                     2 => 0x02,
-                    _ => random.byte() | 0x20,
+                    _ => random.next_u64().to_be_bytes()[0] | 0x20,
                 });
-                plan.jobs.push((at, data.collect()));
-                at += 400 + u64::from(random.below(1500));
+                jobs.push((at, data.collect()));
+                at += 400 + random.next_u64() % 1500;
             }
             if !self.sends[number] {
-                plan.jobs.clear();
+                jobs.clear();
             }
             number += 1;
-            plan
+            Plan {
+                settings: StationSettings {
+                    config: Config::siemens_3964r(priority, line),
+                    frame: Frame::USUAL,
+                },
+                faults: Faults {
+                    bit_error_rate: self.bit_error_rate,
+                    ..Faults::NONE
+                },
+                jobs,
+                dead_from_ms: None,
+            }
         })
     }
 
@@ -108,12 +124,38 @@ impl Case {
             Side::A => [faulty, partner],
             Side::B => [partner, faulty],
         };
-        record(plans, one_wire, self.seconds * 1000, self.seed)
+        record(&plans, one_wire, self.seconds * 1000, self.seed)
     }
 
     fn diagnose(&self, plans: [Plan; 2]) -> Diagnosis {
         judge(&self.record(plans, false))
     }
+}
+
+/// What the tap hears up to this time, in ms; `one_wire` joins both directions.
+fn record(plans: &[Plan; 2], one_wire: bool, until_ms: u64, seed: u64) -> Vec<Character> {
+    let mut line = Simulation::new(plans.each_ref().map(|plan| plan.settings), seed);
+    line.set_one_wire(one_wire);
+    let mut deaths = Vec::new();
+    for (side, plan) in [Side::A, Side::B].into_iter().zip(plans) {
+        line.set_faults(side, plan.faults);
+        for (at, job) in &plan.jobs {
+            line.plan(side, Duration::from_millis(*at), job).unwrap();
+        }
+        deaths.extend(plan.dead_from_ms.map(|at| (at, side, plan.faults)));
+    }
+    deaths.sort_by_key(|&(at, ..)| at);
+    for (at, side, faults) in deaths {
+        line.run_until(Duration::from_millis(at));
+        let is_dead = true;
+        line.set_faults(side, Faults { is_dead, ..faults });
+    }
+    line.run_until(Duration::from_millis(until_ms));
+    line.heard().to_vec()
+}
+
+fn frame(baud: u32, parity: Parity) -> Frame {
+    Frame::new(baud, parity).unwrap()
 }
 
 fn judge(record: &[Character]) -> Diagnosis {
@@ -128,7 +170,7 @@ proptest! {
     fn nothing_is_wrong(case in cases()) {
         let [mut a, b] = case.plans();
         let jobs = a.jobs.len() + b.jobs.len();
-        a.config.nak_at_startup = case.seed % 2 == 0;
+        a.settings.config.nak_at_startup = case.seed % 2 == 0;
         let found = case.diagnose([a, b]);
         prop_assert_eq!(found.verdict, Verdict::Works, "{}", found);
         // One may be under way at the end.
@@ -137,8 +179,8 @@ proptest! {
     }
 
     #[test]
-    fn noise(case in cases(), noise in 1..30_u32) {
-        let case = Case { noise, seconds: 60, ..case };
+    fn noise(case in cases(), bit_error_rate in 1e-5..4e-4) {
+        let case = Case { bit_error_rate, seconds: 60, ..case };
         let found = case.diagnose(case.plans());
         prop_assert!(
             matches!(found.verdict, Verdict::Works | Verdict::WorksWithRepeats { .. } | Verdict::BadBlocks { .. }),
@@ -147,32 +189,32 @@ proptest! {
     }
 
     #[test]
-    fn another_frame(case in cases(), setting in prop_oneof![
-        Just(Setting { parity: Parity::None, ..USUAL }),
-        Just(Setting { parity: Parity::Odd, ..USUAL }),
-        Just(Setting { bit: 4, ..USUAL }),
-        Just(Setting { bit: 8, ..USUAL }),
-        Just(Setting { bit: 32, ..USUAL }),
-        Just(Setting { bit: 64, ..USUAL }),
-        Just(Setting { bit: 32, parity: Parity::None }),
+    fn another_frame(case in cases(), other in prop_oneof![
+        Just(frame(9600, Parity::None)),
+        Just(frame(9600, Parity::Odd)),
+        Just(frame(38_400, Parity::Even)),
+        Just(frame(19_200, Parity::Even)),
+        Just(frame(4800, Parity::Even)),
+        Just(frame(2400, Parity::Even)),
+        Just(frame(4800, Parity::None)),
     ]) {
         // A side without telegrams shows a missing parity bit to nobody.
         let case = Case { sends: [true, case.sends[1]], ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.setting = setting;
+        faulty.settings.frame = other;
         let found = case.diagnose([faulty, partner]);
         let side = case.faulty;
         // A missing parity bit shows as such where STX, DLE and NAK mostly stand alone.
         let is_named = found.verdict == Verdict::Garbage { side }
             || found.verdict == Verdict::NoParity { side }
-                && setting == (Setting { parity: Parity::None, ..USUAL });
+                && other == frame(9600, Parity::None);
         prop_assert!(is_named, "{}", found);
     }
 
     #[test]
     fn an_open_wire(case in cases()) {
         let [mut faulty, partner] = case.plans();
-        faulty.is_deaf = true;
+        faulty.faults.is_deaf = true;
         let found = case.diagnose([faulty, partner]);
         let not_heard = Verdict::NotHeard { speaker: other(case.faulty), listener: case.faulty };
         if case.sends[0] {
@@ -190,7 +232,10 @@ proptest! {
     #[test]
     fn both_wires_open(case in cases()) {
         let case = Case { sends: [true, true], seconds: 60, ..case };
-        let plans = case.plans().map(|plan| Plan { is_deaf: true, ..plan });
+        let plans = case.plans().map(|mut plan| {
+            plan.faults.is_deaf = true;
+            plan
+        });
         let found = case.diagnose(plans);
         prop_assert!([Some(found.verdict), found.or].contains(&Some(Verdict::NeitherHears)), "{}", found);
     }
@@ -199,7 +244,7 @@ proptest! {
     fn a_dead_side(case in cases(), dead_from_ms in prop_oneof![Just(0_u64), 5000..10_000_u64]) {
         let case = Case { sends: [case.sends[0], true], seconds: 30, ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.dead_from_ms = dead_from_ms;
+        faulty.dead_from_ms = Some(dead_from_ms);
         let found = case.diagnose([faulty, partner]);
         if dead_from_ms == 0 {
             prop_assert_eq!(found.verdict, Verdict::NoAnswer { silent: case.faulty }, "{}", found);
@@ -215,8 +260,8 @@ proptest! {
     fn the_same_priority(case in cases(), priority in prop_oneof![Just(Priority::Low), Just(Priority::High)]) {
         let case = Case { sends: [true, true], seconds: 40, ..case };
         let [mut a, mut b] = case.plans();
-        a.config.priority = priority;
-        b.config.priority = priority;
+        a.settings.config.priority = priority;
+        b.settings.config.priority = priority;
         // Jobs that meet.
         for (one, two) in a.jobs.iter_mut().zip(&mut b.jobs) {
             two.0 = one.0;
@@ -228,11 +273,12 @@ proptest! {
     #[test]
     fn without_bcc(case in cases(), delay_ms in 0..5_u64, quiet in any::<bool>()) {
         let [mut faulty, partner] = case.plans();
-        faulty.config = Config { priority: faulty.config.priority, ..Config::siemens_3964(faulty.config.priority, faulty.config.line) };
+        let Config { priority, line, .. } = faulty.settings.config;
+        faulty.settings.config = Config::siemens_3964(priority, line);
         if quiet {
-            faulty.config.qvz_ms = 2000;
+            faulty.settings.config.qvz_ms = 2000;
         }
-        faulty.delay_ms = delay_ms;
+        faulty.faults.delay = Duration::from_millis(delay_ms);
         let found = case.diagnose([faulty, partner]);
         prop_assert_eq!(found.verdict, Verdict::WithoutBcc { side: case.faulty }, "{}", found);
     }
@@ -252,7 +298,7 @@ proptest! {
                 job.extend([0x41, 0x10]);
             }
         }
-        faulty.bcc_change = bcc_change;
+        faulty.faults.bcc_change = bcc_change;
         let found = case.diagnose([faulty, partner]);
         prop_assert_eq!(found.verdict, Verdict::OtherBcc { sender: case.faulty, formula }, "{}", found);
     }
@@ -261,7 +307,7 @@ proptest! {
     fn late_answers(case in cases(), delay_ms in 2050..6000_u64) {
         let case = Case { sends: [false, true], seconds: 40, ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.delay_ms = delay_ms;
+        faulty.faults.delay = Duration::from_millis(delay_ms);
         let found = case.diagnose([faulty, partner]);
         let Verdict::Late { side, delay, .. } = found.verdict else {
             return Err(TestCaseError::fail(format!("{found}")));
@@ -274,8 +320,8 @@ proptest! {
     fn late_for_a_short_qvz(case in cases(), delay_ms in 600..1500_u64) {
         let case = Case { sends: [false, true], seconds: 40, ..case };
         let [mut faulty, mut partner] = case.plans();
-        faulty.delay_ms = delay_ms;
-        partner.config.qvz_ms = 550;
+        faulty.faults.delay = Duration::from_millis(delay_ms);
+        partner.settings.config.qvz_ms = 550;
         let found = case.diagnose([faulty, partner]);
         let Verdict::Late { side, delay, qvz } = found.verdict else {
             return Err(TestCaseError::fail(format!("{found}")));
@@ -296,7 +342,7 @@ proptest! {
     fn own_echo(case in cases()) {
         let case = Case { sends: [true, case.sends[1]], ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.hears_itself = true;
+        faulty.faults.hears_itself = true;
         let found = case.diagnose([faulty, partner]);
         prop_assert_eq!(found.verdict, Verdict::OwnEcho { side: case.faulty }, "{}", found);
     }
@@ -305,7 +351,7 @@ proptest! {
     fn pauses(case in cases(), pause_ms in 260..600_u64) {
         let case = Case { sends: [true, case.sends[1]], longest: 12, ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.pause_ms = pause_ms;
+        faulty.faults.pause = Duration::from_millis(pause_ms);
         let found = case.diagnose([faulty, partner]);
         prop_assert!(
             matches!(found.verdict, Verdict::Gaps { sender, .. } if sender == case.faulty),
@@ -317,7 +363,7 @@ proptest! {
     fn no_receive_buffer(case in cases()) {
         let case = Case { sends: [false, true], ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.keeps_telegrams = true;
+        faulty.faults.keeps_telegrams = true;
         let found = case.diagnose([faulty, partner]);
         prop_assert_eq!(found.verdict, Verdict::NoReceiveBuffer { refuser: case.faulty }, "{}", found);
     }
@@ -326,7 +372,7 @@ proptest! {
     fn a_bad_receiver(case in cases()) {
         let case = Case { sends: [case.sends[0], true], longest: 48, ..case };
         let [mut faulty, partner] = case.plans();
-        faulty.deafness = 150;
+        faulty.faults.receiver_error_rate = 0.15;
         let found = case.diagnose([faulty, partner]);
         let is_named = [Some(found.verdict), found.or].into_iter().flatten().any(|verdict| {
             matches!(verdict, Verdict::GoodBlocksRejected { refuser, .. } if refuser == case.faulty)
