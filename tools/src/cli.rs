@@ -1,11 +1,12 @@
 //! The command line.
 
 mod monitor;
-mod serial;
 mod station;
 
+use core::future::Future;
 use std::process::ExitCode;
 
+use anyhow::{Context as _, Result};
 use clap::{Parser, Subcommand};
 
 /// Brings up a Siemens 3964 or 3964R line.
@@ -33,4 +34,13 @@ pub fn main() -> ExitCode {
         eprintln!("error: {error:#}");
         ExitCode::FAILURE
     })
+}
+
+/// Runs a program on this thread.
+fn block_on<T>(program: impl Future<Output = Result<T>>) -> Result<T> {
+    let mut runtime = tokio::runtime::Builder::new_current_thread();
+    let runtime = runtime.enable_all().build();
+    runtime
+        .context("the asynchronous runtime")?
+        .block_on(program)
 }

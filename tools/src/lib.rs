@@ -1,7 +1,8 @@
 //! What the program `line3964r` is made of, for other programs.
 //!
 //! [`capture`] reads captures of a line and tells the conversation and the verdict: no file, no
-//! clock, no port. [`Address`] names a port. Feature `cli`, on by default, is the program itself.
+//! clock, no port. [`Address`] names a port, and opens it with feature `ports`. Feature `cli`, on by
+//! default, is the program itself.
 
 extern crate alloc;
 
@@ -12,5 +13,7 @@ mod port;
 mod preset;
 pub mod text;
 
+#[cfg(feature = "ports")]
+pub use port::Port;
 pub use port::{Address, AddressError, Frame, Parity, Target};
 pub use preset::Preset;

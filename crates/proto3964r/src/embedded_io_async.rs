@@ -98,6 +98,12 @@ where
         &mut self.station
     }
 
+    /// The time by the timer.
+    #[cfg(feature = "tokio")]
+    pub(crate) fn now(&mut self) -> Duration {
+        self.timer.now()
+    }
+
     /// Takes a job; it goes out while [`wait`](Self::wait) is polled.
     ///
     /// # Errors

@@ -125,6 +125,9 @@ pub enum LineError {
     /// Characters were lost before this one.
     #[error("overrun")]
     Overrun,
+    /// On a two-wire line, another character was heard than was sent.
+    #[error("collision")]
+    Collision,
 }
 
 /// Why a reception was answered with NAK.

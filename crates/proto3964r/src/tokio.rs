@@ -3,6 +3,7 @@
 //! [`Link`] is what a program uses. A protocol on top of 3964R, which wants every event in its
 //! order, has a [`driver`] in a [`Task`] of its own.
 
+mod damage;
 mod link;
 mod stream;
 mod task;
@@ -16,6 +17,7 @@ use ::tokio::{
 };
 
 pub use self::{
+    damage::Damage,
     link::{Link, SendError},
     stream::{Clock, Reader, Writer},
     task::{Caller, Lost, Task},

@@ -6,17 +6,29 @@
     reason = "the helpers of tests fail loudly"
 )]
 
-use core::time::Duration;
-use std::{io::ErrorKind, thread};
+extern crate alloc;
+
+use alloc::collections::VecDeque;
+use core::{
+    pin::Pin,
+    task::{Context, Poll},
+    time::Duration,
+};
+use std::{
+    io::{self, ErrorKind},
+    thread,
+};
 
 use proto3964r::{
-    Cause, Config, Event, Line, Phase, Priority, SubmitError,
+    Cause, Config, Event, Line, LineError, Phase, Priority, SubmitError,
     serialport::Driver,
-    tokio::{Link, SendError},
+    tokio::{Damage, Link, SendError},
 };
 use serialport::TTYPort;
 use tokio::{
-    io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream, duplex},
+    io::{
+        AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, DuplexStream, ReadBuf, duplex,
+    },
     net::{TcpListener, TcpStream},
     time::{sleep, timeout},
 };
@@ -78,10 +90,7 @@ async fn over_tcp() {
 }
 
 /// One direction of a line on which every 997th byte loses a bit.
-async fn damage(
-    mut from: impl tokio::io::AsyncRead + Unpin,
-    mut to: impl tokio::io::AsyncWrite + Unpin,
-) {
+async fn damage(mut from: impl AsyncRead + Unpin, mut to: impl AsyncWrite + Unpin) {
     let mut count = 0;
     while let Ok(byte) = from.read_u8().await {
         count += 1;
@@ -256,4 +265,63 @@ async fn a_serial_server_with_a_pseudo_terminal_behind_it() {
     let answer = timeout(PATIENCE, link.receive()).await.unwrap().unwrap();
     assert_eq!(answer, b"cba");
     device.join().unwrap();
+}
+
+/// A stream that reports damage in between its characters.
+struct Damaging {
+    stream: DuplexStream,
+    script: VecDeque<Result<u8, Damage>>,
+}
+
+impl AsyncRead for Damaging {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        match self.script.pop_front() {
+            Some(Ok(byte)) => buffer.put_slice(&[byte]),
+            Some(Err(damage)) => return Poll::Ready(Err(damage.into())),
+            None => return Pin::new(&mut self.stream).poll_read(context, buffer),
+        }
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Damaging {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        Pin::new(&mut self.stream).poll_write(context, bytes)
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+}
+
+/// The BCC is right all the same: two bits of the character are wrong.
+#[tokio::test(start_paused = true)]
+async fn damaged_characters_reach_the_station() {
+    let (stream, mut partner) = duplex(64);
+    let damaged = Damage::Character {
+        byte: 0x41,
+        error: LineError::Parity,
+    };
+    let block = [Ok(0x02), Err(damaged), Ok(0x10), Ok(0x03), Ok(0x52)];
+    let script = [Err(Damage::Break)].into_iter().chain(block).collect();
+    let link = Link::new(Damaging { stream, script }, LOW);
+    let mut answers = [0; 3];
+    partner.read_exact(&mut answers).await.unwrap();
+    assert_eq!(answers, [0x15, 0x10, 0x15], "start-up, ready, rejected");
+    partner.write_all(&[0x02]).await.unwrap();
+    assert_eq!(partner.read_u8().await.unwrap(), 0x10);
+    partner.write_all(&[0x41, 0x10, 0x03, 0x52]).await.unwrap();
+    assert_eq!(link.receive().await.unwrap(), [0x41]);
 }

@@ -3,26 +3,24 @@
 use core::{mem, time::Duration};
 use std::{
     fs,
-    io::{self, IsTerminal as _, Read as _, Write as _},
+    io::{self, IsTerminal as _, Write as _},
     process::ExitCode,
-    sync::mpsc::{self, RecvTimeoutError, Sender},
-    thread,
     time::Instant,
 };
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
-use proto3964r::{Character, Diagnosis, Line, Priority, Side};
+use proto3964r::{Character, Diagnosis, Line, LineError, Priority, Side, tokio::Damage};
+use tokio::{io::AsyncReadExt as _, select, time::sleep};
 
-use super::serial::Frame;
 use crate::{
-    Preset,
+    Address, Port, Preset,
     capture::{self, Kind, Report, Step, Tap},
     text,
 };
 
-/// A port that hears nothing for so long is asked again.
-const PATIENCE: Duration = Duration::from_secs(3600);
+/// How soon a wait that has become too long is told.
+const TICK: Duration = Duration::from_millis(20);
 
 /// What the verdict of a live tap looks back on.
 const RECENT: Duration = Duration::from_secs(60);
@@ -48,14 +46,12 @@ pub(super) struct Options {
     /// Capture file.
     #[arg(required_unless_present = "port", conflicts_with = "port")]
     capture: Option<String>,
-    /// Port that hears A; given a second time, port that hears B.
+    /// Port that hears A; given a second time, port that hears B. Its syntax is that of `station`.
     #[arg(long)]
-    port: Vec<String>,
+    port: Vec<Address>,
     /// Times and check of the line.
     #[arg(long, default_value = "siemens-3964r")]
     preset: Preset,
-    #[command(flatten)]
-    frame: Frame,
     /// Print verdicts as JSON, one a line, and nothing else.
     #[arg(long)]
     json: bool,
@@ -70,7 +66,7 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
     let printer = Printer { json: options.json };
     match &options.capture {
         Some(path) => replay(path, tap, printer)?,
-        None => listen(options, tap, printer)?,
+        None => super::block_on(listen(options, tap, printer))?,
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -127,40 +123,32 @@ fn print_json(now: Option<Duration>, diagnosis: Diagnosis) -> Result<()> {
     writeln!(io::stdout(), "{line}").context("standard output")
 }
 
-/// What a port has heard.
-type Heard = io::Result<(Instant, Side, Vec<u8>)>;
-
 /// Prints what two ports hear, and the verdict at the end.
-fn listen(options: &Options, mut tap: Tap, printer: Printer) -> Result<()> {
+async fn listen(options: &Options, mut tap: Tap, printer: Printer) -> Result<()> {
     let [a, b] = &options.port[..] else {
         bail!("two ports are needed, one for each direction");
     };
+    let mut ear_a = Ear::open(Side::A, a).await?;
+    let mut ear_b = Ear::open(Side::B, b).await?;
     let begin = Instant::now();
-    let (sender, receiver) = mpsc::channel();
-    for (side, path) in [(Side::A, a), (Side::B, b)] {
-        let port = options.frame.open(path, PATIENCE)?;
-        let sender = sender.clone();
-        thread::spawn(move || hear(port, side, &sender));
-    }
     let mut verdict = None;
     let mut due = PAUSE;
     while options.seconds.is_none_or(|end| begin.elapsed() < end) {
-        match receiver.recv_timeout(Duration::from_millis(20)) {
-            Ok(heard) => {
-                let (at, side, bytes) = heard?;
-                for byte in bytes {
-                    printer.steps(tap.hear(Character {
-                        at: at - begin,
-                        side,
-                        byte,
-                        error: None,
-                    }))?;
-                }
-            }
-            Err(RecvTimeoutError::Timeout) => printer.steps(tap.wait(begin.elapsed()))?,
-            Err(RecvTimeoutError::Disconnected) => break,
-        }
+        let heard = select! {
+            heard = ear_a.hear() => heard?,
+            heard = ear_b.hear() => heard?,
+            () = sleep(TICK) => Vec::new(),
+        };
         let now = begin.elapsed();
+        printer.steps(tap.wait(now))?;
+        for (side, byte, error) in heard {
+            printer.steps(tap.hear(Character {
+                at: now,
+                side,
+                byte,
+                error,
+            }))?;
+        }
         if now < due {
             continue;
         }
@@ -175,23 +163,35 @@ fn listen(options: &Options, mut tap: Tap, printer: Printer) -> Result<()> {
     printer.conclude(tap.verdict())
 }
 
-/// Reads a port until it or the monitor ends.
-fn hear(mut port: Box<dyn serialport::SerialPort>, side: Side, sender: &Sender<Heard>) {
-    let mut buffer = [0; 256];
-    loop {
-        let heard = match port.read(&mut buffer) {
-            Ok(len) => Ok((
-                Instant::now(),
-                side,
-                buffer.get(..len).unwrap_or_default().to_vec(),
-            )),
-            Err(error) if error.kind() == io::ErrorKind::TimedOut => continue,
-            Err(error) => Err(error),
+/// A port that hears one side.
+struct Ear {
+    side: Side,
+    port: Port,
+    name: String,
+}
+
+impl Ear {
+    async fn open(side: Side, address: &Address) -> Result<Self> {
+        let name = address.target.to_string();
+        let port = address.open().await.with_context(|| name.clone())?;
+        Ok(Self { side, port, name })
+    }
+
+    /// The next characters. May be dropped and called again.
+    async fn hear(&mut self) -> Result<Vec<(Side, u8, Option<LineError>)>> {
+        let mut buffer = [0; 256];
+        let intact = match self.port.read(&mut buffer).await {
+            Ok(0) => bail!("{}: closed by the other end", self.name),
+            Ok(len) => buffer.get(..len).unwrap_or_default(),
+            Err(error) => match Damage::of(&error) {
+                Some(Damage::Character { byte, error }) => {
+                    return Ok(vec![(self.side, byte, Some(error))]);
+                }
+                Some(_) => return Ok(vec![(self.side, 0, Some(LineError::Framing))]), // BREAK
+                None => return Err(error).with_context(|| self.name.clone()),
+            },
         };
-        let failed = heard.is_err();
-        if sender.send(heard).is_err() || failed {
-            return;
-        }
+        Ok(intact.iter().map(|&byte| (self.side, byte, None)).collect())
     }
 }
 

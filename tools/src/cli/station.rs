@@ -4,7 +4,6 @@ use core::time::Duration;
 use std::{
     io::{self, BufRead as _, Write as _},
     process::ExitCode,
-    sync::mpsc::{self, Receiver, TryRecvError},
     thread,
     time::Instant,
 };
@@ -12,17 +11,16 @@ use std::{
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, Priority, Rejection, frame::FrameError,
-    serialport::Driver,
+    Abandoned, Cause, Event, Failure, Priority, Rejection, frame::FrameError, tokio::driver,
 };
+use tokio::{select, sync::mpsc, time::sleep};
 
-use super::serial::Frame;
-use crate::{Preset, text};
+use crate::{Address, Preset, text};
 
 /// Longest block in either direction: that of a CP 341.
 const BLOCK: usize = 4096;
 
-/// How soon a new input line is noticed.
+/// How soon the end is noticed.
 const TICK: Duration = Duration::from_millis(20);
 
 /// One end of a line, to bring up the other.
@@ -44,21 +42,16 @@ const TICK: Duration = Duration::from_millis(20);
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub(super) struct Options {
-    /// Serial device or pseudo-terminal.
+    /// Port: /dev/ttyUSB0?baud=9600&parity=even, tcp://HOST:PORT, rfc2217://HOST:PORT,
+    /// tcp-listen://HOST:PORT, pty:PATH; line=instant where no wire is in between.
     #[arg(long)]
-    port: String,
+    port: Address,
     /// Who gives way when both sides want to send.
     #[arg(long)]
     priority: PriorityName,
     /// Times, attempts and policies.
     #[arg(long)]
     preset: Preset,
-    #[command(flatten)]
-    frame: Frame,
-    /// What lies between this program and the wire. Answers that come sooner than the wire can
-    /// carry them count only on an instant one.
-    #[arg(long, default_value = "buffered")]
-    line: LineName,
     /// Stay this number of seconds after the last outcome.
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = text::seconds, allow_hyphen_values = true)]
     listen: Duration,
@@ -70,29 +63,12 @@ enum PriorityName {
     Low,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum LineName {
-    /// A pseudo-terminal.
-    Instant,
-    /// A UART whose output can be discarded.
-    Paced,
-    /// A USB adapter or serial server.
-    Buffered,
-}
-
-impl Options {
-    fn config(&self) -> Config {
-        let priority = match self.priority {
-            PriorityName::High => Priority::High,
-            PriorityName::Low => Priority::Low,
-        };
-        let Frame { baud, .. } = self.frame;
-        let line = match self.line {
-            LineName::Instant => proto3964r::Line::Instant,
-            LineName::Paced => proto3964r::Line::paced(baud, self.frame.bits()),
-            LineName::Buffered => proto3964r::Line::buffered(baud, self.frame.bits()),
-        };
-        self.preset.config(priority, line)
+impl From<PriorityName> for Priority {
+    fn from(name: PriorityName) -> Self {
+        match name {
+            PriorityName::High => Self::High,
+            PriorityName::Low => Self::Low,
+        }
     }
 }
 
@@ -100,32 +76,39 @@ impl Options {
 type InputLine = (usize, Result<Vec<u8>, String>);
 
 pub(super) fn run(options: &Options) -> Result<ExitCode> {
-    let port = options.frame.open(&options.port, Duration::ZERO)?;
-    let mut line =
-        Driver::<BLOCK>::new(port, options.config()).with_context(|| options.port.clone())?;
-    let input = read_input();
+    super::block_on(work(options))
+}
+
+async fn work(options: &Options) -> Result<ExitCode> {
+    let Options { port: address, .. } = options;
+    let name = || address.target.to_string();
+    let port = address.open().await.with_context(name)?;
+    let config = options
+        .preset
+        .config(options.priority.into(), address.line());
+    let mut line = driver::<BLOCK>(port, config);
+    let mut input = read_input();
     let mut code = ExitCode::SUCCESS;
     let mut input_ended = false;
     let mut last_outcome: Option<Instant> = None;
     loop {
-        if !line.is_busy() && !input_ended {
-            match input.try_recv() {
-                Ok((number, job)) => {
-                    let taken =
-                        job.and_then(|job| line.submit(&job).map_err(|error| error.to_string()));
-                    if let Err(error) = taken {
+        let is_free = !line.is_busy() && !input_ended;
+        select! {
+            event = line.wait() => match event {
+                Ok(event) => writeln!(io::stdout(), "{}", describe(event))?,
+                Err(error) => line.take_damage(error).with_context(name)?,
+            },
+            job = input.recv(), if is_free => match job {
+                Some((number, job)) => {
+                    let job = job.and_then(|job| line.submit(&job).map_err(|error| error.to_string()));
+                    if let Err(error) = job {
                         eprintln!("error: line {number}: {error}");
                         code = ExitCode::FAILURE;
                     }
                 }
-                Err(TryRecvError::Empty) => {}
-                Err(TryRecvError::Disconnected) => input_ended = true,
-            }
-        }
-        let event = line.wait(TICK);
-        if let Some(event) = event.with_context(|| options.port.clone())? {
-            writeln!(io::stdout(), "{}", describe(event))?;
-            continue;
+                None => input_ended = true,
+            },
+            () = sleep(TICK) => {}
         }
         if input_ended && !line.is_busy() && line.station_mut().is_idle() {
             let since = last_outcome.get_or_insert_with(Instant::now);
@@ -137,8 +120,8 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
 }
 
 /// Reads standard input in a thread of its own.
-fn read_input() -> Receiver<InputLine> {
-    let (sender, receiver) = mpsc::channel();
+fn read_input() -> mpsc::Receiver<InputLine> {
+    let (sender, receiver) = mpsc::channel(1);
     thread::spawn(move || {
         for (number, line) in (1..).zip(io::stdin().lock().lines()) {
             let readable = match &line {
@@ -150,7 +133,7 @@ fn read_input() -> Receiver<InputLine> {
                 Ok(line) => parse(line.trim()),
                 Err(error) => Err(error.to_string()),
             };
-            if sender.send((number, job)).is_err() || !readable {
+            if sender.blocking_send((number, job)).is_err() || !readable {
                 return;
             }
         }

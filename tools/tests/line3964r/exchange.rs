@@ -10,7 +10,7 @@ use std::thread;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::program::{lines, program, run};
+use super::program::{instant, lines, program, run};
 
 const PEER: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -103,9 +103,9 @@ fn exchange(priority: &str, peer_priority: &str) {
         .args(["--expect", &COUNT.to_string(), "--linger-ms", "500"]);
     let mut station = program("station");
     station
-        .args(["--port", &station_end.name().unwrap()])
+        .args(["--port", &instant(&station_end)])
         .args(["--priority", priority, "--preset", "siemens-3964r"])
-        .args(["--line", "instant", "--listen", "2"]);
+        .args(["--listen", "2"]);
     let over = AtomicBool::new(false);
     let (forth, back) = (
         station_line.try_clone_native(),

@@ -256,7 +256,7 @@ fn wrong_options() {
         ),
         (
             &["--port", "/nowhere/a", "--port", "/nowhere/b"],
-            "/nowhere/a: No such file or directory",
+            "/nowhere/a: No such file or directory (os error 2)",
         ),
     ] {
         assert_refused(program("monitor").args(ports), &format!("error: {error}"));

@@ -3,6 +3,8 @@
 use std::io::Write as _;
 use std::process::{Command, Output, Stdio};
 
+use serialport::{SerialPort as _, TTYPort};
+
 /// `line3964r` with one of its subcommands.
 pub(crate) fn program(subcommand: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_line3964r"));
@@ -21,6 +23,11 @@ pub(crate) fn run(command: &mut Command, input: &[u8]) -> Output {
     // A program that refuses its options does not read: the pipe is then closed.
     drop(child.stdin.take().unwrap().write_all(input));
     child.wait_with_output().unwrap()
+}
+
+/// The address of a pseudo-terminal's end that somebody else has made.
+pub(crate) fn instant(end: &TTYPort) -> String {
+    format!("{}?line=instant", end.name().unwrap())
 }
 
 pub(crate) fn lines(text: &[u8]) -> Vec<String> {

@@ -155,7 +155,9 @@ async fn work<const N: usize>(
         let queue_is_full = station.holds_telegram();
         let is_idle = !driver.is_busy();
         ::tokio::select! {
-            done = driver.round() => done?,
+            done = driver.round() => if let Err(error) = done {
+                driver.take_damage(error)?;
+            },
             job = jobs.recv(), if is_idle => {
                 let Some(job) = job else {
                     return Ok(());

@@ -34,7 +34,10 @@ pub(super) async fn work(
         }
         let (due, is_idle) = (session.poll_timeout(), !session.is_busy());
         ::tokio::select! {
-            event = line.wait() => session.handle(epoch.elapsed(), event?),
+            event = line.wait() => match event {
+                Ok(event) => session.handle(epoch.elapsed(), event),
+                Err(error) => line.take_damage(error)?,
+            },
             job = jobs.recv(), if is_idle => {
                 let Some(job) = job else {
                     return Ok(());

@@ -1,0 +1,198 @@
+//! An open port as a stream of tokio.
+
+use alloc::collections::VecDeque;
+use core::{
+    fmt,
+    pin::Pin,
+    task::{Context, Poll, ready},
+};
+use std::{io, time::Instant};
+
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+
+use super::{echo::Echo, heard::Heard, telnet::Telnet};
+#[cfg(unix)]
+use super::{marks::Marks, pty::OtherEnd};
+
+/// Characters that are read or written at a time.
+const PIECE: usize = 256;
+
+/// An open port.
+///
+/// Damaged characters and BREAK, where a port tells them, come as errors that are a
+/// [`Damage`](proto3964r::tokio::Damage), in their place among the characters; stations of
+/// `proto3964r::tokio` understand them.
+pub struct Port {
+    stream: Pin<Box<dyn Stream>>,
+    coding: Coding,
+    echo: Option<Echo>,
+    heard: VecDeque<Heard>,
+    /// What the stream has not taken.
+    output: VecDeque<u8>,
+    #[cfg(unix)]
+    _other_end: Option<OtherEnd>,
+}
+
+pub(super) trait Stream: AsyncRead + AsyncWrite + Send {}
+
+impl<S: AsyncRead + AsyncWrite + Send> Stream for S {}
+
+/// How characters are carried.
+#[derive(Debug)]
+pub(super) enum Coding {
+    Plain,
+    #[cfg(unix)]
+    Marked(Marks),
+    Telnet(Telnet),
+}
+
+impl Port {
+    pub(super) fn new(stream: impl Stream + 'static, coding: Coding, echo: Option<Echo>) -> Self {
+        Self {
+            stream: Box::pin(stream),
+            coding,
+            echo,
+            heard: VecDeque::new(),
+            output: VecDeque::new(),
+            #[cfg(unix)]
+            _other_end: None,
+        }
+    }
+
+    /// Keeps the other end as long as the port.
+    #[cfg(unix)]
+    pub(super) fn with_other_end(self, other_end: OtherEnd) -> Self {
+        Self {
+            _other_end: Some(other_end),
+            ..self
+        }
+    }
+
+    pub(super) const fn telnet(&self) -> Option<&Telnet> {
+        match &self.coding {
+            Coding::Telnet(telnet) => Some(telnet),
+            _ => None,
+        }
+    }
+
+    /// Writes what TELNET has to say, and reads once; whether the connection is still open.
+    pub(super) fn poll_exchange(&mut self, context: &mut Context<'_>) -> Poll<io::Result<bool>> {
+        let mut bytes = [0; PIECE];
+        let mut piece = ReadBuf::new(&mut bytes);
+        // Whatever cannot be written now is written with the next poll.
+        if let Poll::Ready(Err(error)) = self.poll_drain(context) {
+            return Poll::Ready(Err(error));
+        }
+        ready!(self.stream.as_mut().poll_read(context, &mut piece))?;
+        let now = Instant::now();
+        for &byte in piece.filled() {
+            let heard = match &mut self.coding {
+                Coding::Plain => Some(Ok(byte)),
+                #[cfg(unix)]
+                Coding::Marked(marks) => marks.take(byte),
+                Coding::Telnet(telnet) => telnet.take(byte).map_err(io::Error::other)?,
+            };
+            let heard = match &mut self.echo {
+                Some(echo) => heard.and_then(|heard| echo.hear(now, heard)),
+                None => heard,
+            };
+            self.heard.extend(heard);
+        }
+        Poll::Ready(Ok(!piece.filled().is_empty()))
+    }
+
+    /// Writes what was taken and what TELNET has to say.
+    fn poll_drain(&mut self, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        if let Coding::Telnet(telnet) = &mut self.coding {
+            self.output.extend(telnet.replies());
+        }
+        loop {
+            let (piece, _) = self.output.as_slices();
+            if piece.is_empty() {
+                return Poll::Ready(Ok(()));
+            }
+            let len = ready!(self.stream.as_mut().poll_write(context, piece))?;
+            if len == 0 {
+                return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
+            }
+            self.output.drain(..len);
+        }
+    }
+
+    /// Hands out characters up to the next damage, or that; whether there was any.
+    fn hand_out(&mut self, buffer: &mut ReadBuf<'_>) -> io::Result<bool> {
+        if let Some(&Err(damage)) = self.heard.front() {
+            self.heard.pop_front();
+            return Err(damage.into());
+        }
+        let before = buffer.filled().len();
+        while buffer.remaining() > 0
+            && let Some(&Ok(byte)) = self.heard.front()
+        {
+            self.heard.pop_front();
+            buffer.put_slice(&[byte]);
+        }
+        Ok(buffer.filled().len() > before)
+    }
+}
+
+impl AsyncRead for Port {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        while !self.hand_out(buffer)? {
+            let is_open = ready!(self.poll_exchange(context))?;
+            if !is_open {
+                break;
+            }
+        }
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Port {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        ready!(self.poll_drain(context))?;
+        let piece = bytes.get(..PIECE).unwrap_or(bytes);
+        let is_telnet = self.telnet().is_some();
+        for &byte in piece {
+            if is_telnet {
+                self.output.extend(Telnet::encode(byte));
+            } else {
+                self.output.push_back(byte);
+            }
+        }
+        if let Some(echo) = &mut self.echo {
+            echo.sent(Instant::now(), piece);
+        }
+        match self.poll_drain(context) {
+            Poll::Ready(Err(error)) => Poll::Ready(Err(error)),
+            _ => Poll::Ready(Ok(piece.len())),
+        }
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        ready!(self.poll_drain(context))?;
+        self.stream.as_mut().poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        ready!(self.poll_drain(context))?;
+        self.stream.as_mut().poll_shutdown(context)
+    }
+}
+
+impl fmt::Debug for Port {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Port")
+            .field("coding", &self.coding)
+            .field("echo", &self.echo)
+            .finish_non_exhaustive()
+    }
+}
