@@ -6,7 +6,10 @@ import { defineConfig, type Plugin } from 'vite';
 
 const pages = readdirSync(import.meta.dirname).filter((name) => name.endsWith('.html'));
 
-/** Puts the common head and header into each page. */
+/** Parts that pages have in common, each at a comment with its name. */
+const PARTS = ['head', 'header', 'transport', 'views', 'machine'];
+
+/** Puts the common parts into each page. */
 function frame(): Plugin {
   const part = (name: string) =>
     readFileSync(resolve(import.meta.dirname, 'src/shared', name), 'utf8');
@@ -20,7 +23,11 @@ function frame(): Plugin {
           `href="./${page}"`,
           `href="./${page}" aria-current="page"`,
         );
-        return html.replace('<!-- head -->', part('head.part')).replace('<!-- header -->', header);
+        return PARTS.reduce(
+          (text, name) =>
+            text.replace(`<!-- ${name} -->`, name === 'header' ? header : part(`${name}.part`)),
+          html,
+        );
       },
     },
   };

@@ -116,3 +116,14 @@ export async function saved(page, name) {
   await page.getByRole('button', { name, exact: true }).click();
   return readFileSync(await (await download).path());
 }
+
+/**
+ * Waits for a refusal and gives its words.
+ * @param {import('playwright-core').Page} page
+ * @param {string} part
+ */
+export async function refusal(page, part) {
+  const status = page.locator('#status.bad').filter({ hasText: part });
+  await status.waitFor();
+  return (await status.textContent()) ?? '';
+}

@@ -1,11 +1,12 @@
 // The command lines of the machines, which the page is compared with.
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync } from 'node:fs';
+import { mkdtempSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { ROOT } from './browser.js';
 
 export const DRAWINGS = join(ROOT, 'machines/engraver/drawings');
+export const STAGE_DRAWINGS = join(ROOT, 'machines/stage/drawings');
 
 /** Any profile gives the same bytes. */
 const PROFILE = process.env.PAGE_TEST_PROFILE ?? 'release';
@@ -22,4 +23,15 @@ export function commandLine(example, args) {
   const run = spawnSync('cargo', all, { cwd: ROOT, encoding: 'utf8' });
   if (run.error) throw run.error;
   return { folder, status: run.status, text: run.stdout + run.stderr };
+}
+
+/**
+ * A file in a folder of its own.
+ * @param {string} name
+ * @param {string | Buffer} contents
+ */
+export function file(name, contents) {
+  const path = join(mkdtempSync(join(tmpdir(), 'page-')), name);
+  writeFileSync(path, contents);
+  return path;
 }

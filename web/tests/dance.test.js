@@ -1,11 +1,10 @@
 // The dancer in the browser: edited by hand, and the same bytes as from the command line.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { assertAccessible, open, saved, shoot } from './browser.js';
-import { commandLine } from './command-line.js';
+import { commandLine, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let browser;
@@ -17,17 +16,6 @@ after(() => browser.close());
 /** @param {import('playwright-core').Page} page */
 async function danced(page) {
   await page.getByRole('status').filter({ hasText: 'Danced' }).waitFor();
-}
-
-/**
- * A file in a folder of its own.
- * @param {string} name
- * @param {string | Buffer} contents
- */
-function file(name, contents) {
-  const path = join(mkdtempSync(join(tmpdir(), 'page-')), name);
-  writeFileSync(path, contents);
-  return path;
 }
 
 test('the shipped score leaves the files of the command line, byte for byte', async () => {

@@ -1,11 +1,10 @@
 // The engraver in the browser: the same bytes as from the command line, and a page that lives on.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, saved, shoot } from './browser.js';
-import { commandLine, DRAWINGS } from './command-line.js';
+import { assertAccessible, open, refusal, saved, shoot } from './browser.js';
+import { commandLine, DRAWINGS, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let browser;
@@ -17,17 +16,6 @@ after(() => browser.close());
 /** @param {import('playwright-core').Page} page */
 async function engraved(page) {
   await page.getByRole('status').filter({ hasText: 'Engraved in' }).waitFor();
-}
-
-/**
- * Waits for a refusal and gives its words.
- * @param {import('playwright-core').Page} page
- * @param {string} part
- */
-async function refusal(page, part) {
-  const status = page.locator('#status.bad').filter({ hasText: part });
-  await status.waitFor();
-  return (await status.textContent()) ?? '';
 }
 
 test('the rosette leaves the files of the command line, byte for byte', async () => {
@@ -85,8 +73,10 @@ test('what is refused is said as on the command line, and the page lives on', as
   await page.getByLabel('Tolerance').fill('0.05');
   await engraved(page);
 
-  const broken = join(mkdtempSync(join(tmpdir(), 'page-')), 'broken.svg');
-  writeFileSync(broken, '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0"></svg>');
+  const broken = file(
+    'broken.svg',
+    '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0"></svg>',
+  );
   await page.locator('#file').setInputFiles(broken);
   const unread = commandLine('engrave', ['--svg', broken]);
   const why = await refusal(page, 'broken.svg');
@@ -104,8 +94,7 @@ test('the machine has its settings as fields; they are kept until it is as shipp
   assert.match(await refusal(page, 'machine.toml'), /\[arm\].*-1/);
   await page.getByLabel('upper mm').fill('140');
   await engraved(page);
-  const machine = join(mkdtempSync(join(tmpdir(), 'page-')), 'machine.toml');
-  writeFileSync(machine, await saved(page, 'Save machine.toml'));
+  const machine = file('machine.toml', await saved(page, 'Save machine.toml'));
   const { folder } = commandLine('engrave', ['--machine', machine]);
   const pattern = readFileSync(join(folder, 'pattern.bin'));
   await page.reload();

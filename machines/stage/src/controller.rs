@@ -159,7 +159,7 @@ impl<'a> Controller<'a> {
     /// # Errors
     /// A limit switch is closed, more steps are lost than the loop corrects, or the observer's.
     pub(crate) fn run(&mut self, motion: &Motion, clock: &mut Clock) -> Result<()> {
-        self.record.begin(motion, self.at_mm());
+        self.record.begin(self.ticks, motion, self.at_mm());
         let run = self.make(motion, clock);
         self.end = match run {
             Ok(()) => motion.to,
@@ -260,7 +260,7 @@ impl<'a> Controller<'a> {
     /// More steps are lost than the loop corrects.
     pub(crate) fn finish(mut self) -> Result<Run> {
         self.settle()?;
-        self.record.end(self.at_mm());
+        self.record.end(self.ticks, self.at_mm());
         let motors = core::mem::take(&mut self.record.motors);
         let stages = [&self.stage, &self.uncorrected];
         Ok(Run {

@@ -42,10 +42,12 @@ mod step_log;
 pub use self::controller::{Settings, StepObserver};
 pub use self::gcode::Program;
 pub use self::paths::PathRule;
+pub use self::record::{Leg, Seen};
 pub use self::report::Report;
 pub use self::run::{Run, run};
 pub use self::session::Session;
-pub use self::speeds::SpeedProfile;
+pub use self::speeds::{ACCELERATION_MM_S2, SpeedProfile};
+pub use self::stage::switches_mm;
 pub use self::step_log::StepLog;
 
 /// The test path of the source: rectangle, diagonal, circle.

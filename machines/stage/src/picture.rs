@@ -1,16 +1,14 @@
 //! The picture of a run: the programmed path, the stage's with and without corrections, the largest
 //! deviation enlarged, and the deviations over time.
 
-use kurbo::Point;
-use machine_sim::{Axis, Colour, Figure, Mark, Plot, Profile, Stroke};
+use machine_sim::{Axis, Colour, Figure, Mark, Plot, Stroke};
 
-use crate::controller::seconds;
 use crate::motors::Followed;
 use crate::paths::STEPS_PER_MM;
 use crate::record::{Leg, Seen};
 use crate::run::Run;
 use crate::speeds::ACCELERATION_MM_S2;
-use crate::stage::SWITCHES;
+use crate::stage::switches_mm;
 
 const UM_PER_MM: f64 = 1000.0;
 /// Half the side of the enlarged square, in steps.
@@ -119,13 +117,12 @@ fn maps(run: &Run) -> Vec<Plot> {
 /// Switches, and the paths of both stages.
 fn map(run: &Run, plot: Plot) -> Plot {
     let legs = |seen: &Seen, is_rapid: bool| -> Vec<Vec<[f64; 2]>> {
-        let point = |at: &Point| [at.x, at.y];
+        let point = |&[_, x, y]: &[f64; 3]| [x, y];
         let line = |leg: &Leg| leg.points.iter().map(point).collect();
         let legs = seen.legs.iter().filter(|leg| leg.is_rapid == is_rapid);
         legs.map(line).collect()
     };
-    let [[x0, x1], [y0, y1]] =
-        SWITCHES.map(|ends| ends.map(|steps| f64::from(steps) / STEPS_PER_MM));
+    let [[x0, x1], [y0, y1]] = switches_mm();
     let switches = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
     let (closed, open) = (&run.record.closed, &run.record.open);
     let mut plot = plot.line("limit switches", Stroke::LIMIT, switches);
@@ -136,14 +133,14 @@ fn map(run: &Run, plot: Plot) -> Plot {
         .lines("rapid", Stroke::RAPID, legs(closed, true))
         .lines("closed loop", Stroke::ACTUAL, legs(closed, false));
     match closed.legs.first().and_then(|leg| leg.points.first()) {
-        Some(at) => plot.start([at.x, at.y]),
+        Some(&[_, x, y]) => plot.start([x, y]),
         None => plot,
     }
 }
 
 /// How far a stage is from the programmed curve.
 fn deviations(run: &Run, name: &str, stroke: Stroke, seen: &Seen) -> Plot {
-    let points = over_time(&seen.deviations).map(|[t, mm]| [t, mm * UM_PER_MM]);
+    let points = seen.deviations().map(|[t, mm]| [t, mm * UM_PER_MM]);
     time_chart(run, "distance in µm")
         .with_title("Distance from the programmed curve")
         .line(name, stroke, points)
@@ -151,7 +148,7 @@ fn deviations(run: &Run, name: &str, stroke: Stroke, seen: &Seen) -> Plot {
 
 fn corrections(run: &Run) -> Plot {
     let start = [[0.0, 0.0]].into_iter();
-    let corrected = over_time(&run.record.corrections).filter(|[_, steps]| steps.is_finite());
+    let corrected = run.corrections();
     time_chart(run, "steps")
         .with_title("Corrections so far")
         .line("corrected", Stroke::series(2), start.chain(corrected))
@@ -160,10 +157,4 @@ fn corrections(run: &Run) -> Plot {
 fn time_chart(run: &Run, name: &str) -> Plot {
     let time = Axis::new("time in s").over(0.0..=run.duration_s);
     Plot::chart(time, Axis::new(name).including(0.0))
-}
-
-/// Time in s and the largest value; no number where there is none.
-fn over_time(profile: &Profile) -> impl Iterator<Item = [f64; 2]> {
-    let parts = profile.parts();
-    parts.map(|(ticks, max)| [seconds(ticks), max.unwrap_or(f64::NAN)])
 }

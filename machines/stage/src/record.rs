@@ -3,6 +3,7 @@
 use kurbo::Point;
 use machine_sim::Profile;
 
+use crate::controller::seconds;
 use crate::motion::Motion;
 use crate::motors::Motors;
 
@@ -11,16 +12,25 @@ const PICTURE_MM: f64 = 0.05;
 
 /// Where a stage was during a motion, thinned for a picture.
 #[derive(Debug, Clone)]
-pub(crate) struct Leg {
-    pub(crate) is_rapid: bool,
-    pub(crate) points: Vec<Point>,
+#[non_exhaustive]
+pub struct Leg {
+    /// The motion was a rapid one.
+    pub is_rapid: bool,
+    /// As programmed, in mm/s.
+    pub feed_mm_s: f64,
+    /// Time in s, X and Y in mm.
+    pub points: Vec<[f64; 3]>,
 }
 
 impl Leg {
-    fn follow(&mut self, at: Point) {
-        let last = self.points.last();
-        if last.is_none_or(|last| last.distance(at) >= PICTURE_MM) {
-            self.points.push(at);
+    fn push(&mut self, ticks: u64, at: Point) {
+        self.points.push([seconds(ticks), at.x, at.y]);
+    }
+
+    fn follow(&mut self, ticks: u64, at: Point) {
+        let is_near = |&[_, x, y]: &[f64; 3]| at.distance(Point::new(x, y)) < PICTURE_MM;
+        if !self.points.last().is_some_and(is_near) {
+            self.push(ticks, at);
         }
     }
 }
@@ -59,11 +69,31 @@ impl Worst {
 
 /// What is seen of one stage.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Seen {
+pub struct Seen {
     pub(crate) legs: Vec<Leg>,
     pub(crate) worst: Worst,
     /// Distance in mm from the programmed curve, over microseconds.
     pub(crate) deviations: Profile,
+}
+
+impl Seen {
+    /// Where the stage was, a leg for each motion of the program.
+    #[must_use]
+    pub fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
+    /// Time in s, and the largest distance from the programmed curve around it in mm; no number
+    /// where no step was made.
+    pub fn deviations(&self) -> impl Iterator<Item = [f64; 2]> {
+        over_time(&self.deviations)
+    }
+}
+
+/// Time in s and the largest value; no number where there is none.
+pub(crate) fn over_time(profile: &Profile) -> impl Iterator<Item = [f64; 2]> {
+    let parts = profile.parts();
+    parts.map(|(ticks, max)| [seconds(ticks), max.unwrap_or(f64::NAN)])
 }
 
 /// What is seen of a run.
@@ -83,16 +113,17 @@ pub(crate) struct Record {
 
 impl Record {
     /// A motion begins, with both stages at a point.
-    pub(crate) fn begin(&mut self, motion: &Motion, [closed, open]: [Point; 2]) {
+    pub(crate) fn begin(&mut self, ticks: u64, motion: &Motion, [closed, open]: [Point; 2]) {
         self.programmed.push(*motion);
         for (seen, at) in [(&mut self.closed, closed), (&mut self.open, open)] {
             // A motion's leg begins where the one before ends.
             if let Some(leg) = seen.legs.last_mut() {
-                leg.points.push(at);
+                leg.push(ticks, at);
             }
             seen.legs.push(Leg {
                 is_rapid: motion.is_rapid,
-                points: vec![at],
+                feed_mm_s: motion.feed_mm_s,
+                points: vec![[seconds(ticks), at.x, at.y]],
             });
         }
     }
@@ -111,7 +142,7 @@ impl Record {
             seen.worst.step(at, deviation_mm);
             seen.deviations.add(ticks, deviation_mm);
             if let Some(leg) = seen.legs.last_mut() {
-                leg.follow(at);
+                leg.follow(ticks, at);
             }
         }
     }
@@ -124,10 +155,10 @@ impl Record {
     }
 
     /// The run ends, with both stages at a point.
-    pub(crate) fn end(&mut self, [closed, open]: [Point; 2]) {
+    pub(crate) fn end(&mut self, ticks: u64, [closed, open]: [Point; 2]) {
         for (seen, at) in [(&mut self.closed, closed), (&mut self.open, open)] {
             if let Some(leg) = seen.legs.last_mut() {
-                leg.points.push(at);
+                leg.push(ticks, at);
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::controller::{Controller, Settings, StepObserver};
 use crate::gcode::Program;
 use crate::motors::Followed;
 use crate::picture;
-use crate::record::Record;
+use crate::record::{Record, Seen, over_time};
 use crate::report::Report;
 
 /// What the stage did, in a closed loop and without corrections.
@@ -30,6 +30,39 @@ impl Run {
     #[must_use]
     pub fn report(&self) -> Report {
         Report::new(self)
+    }
+
+    /// The stage whose lost steps are corrected.
+    #[must_use]
+    pub const fn closed_loop(&self) -> &Seen {
+        &self.record.closed
+    }
+
+    /// The stage beside it, without corrections.
+    #[must_use]
+    pub const fn open_loop(&self) -> &Seen {
+        &self.record.open
+    }
+
+    /// Points of each programmed motion, X and Y in mm, near enough for a picture.
+    pub fn programmed(&self) -> impl Iterator<Item = Vec<[f64; 2]>> {
+        let motions = self.record.programmed.iter();
+        motions.map(|motion| motion.points().iter().map(|at| [at.x, at.y]).collect())
+    }
+
+    /// Time in s and the mean speed along the path around it in mm/s, by the steps.
+    pub fn speeds(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.followed.motion.speeds()
+    }
+
+    /// Time in s, and by the steps the acceleration in mm/s².
+    pub fn accelerations(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.followed.motion.accelerations()
+    }
+
+    /// Time in s, and the steps corrected until then; where some were.
+    pub fn corrections(&self) -> impl Iterator<Item = [f64; 2]> {
+        over_time(&self.record.corrections).filter(|[_, steps]| steps.is_finite())
     }
 
     /// The programmed path and both stages' as an SVG figure.

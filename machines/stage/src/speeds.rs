@@ -11,8 +11,8 @@ use crate::controller::TICKS_PER_S;
 use crate::motion::{Motion, Shape};
 use crate::paths::STEPS_PER_MM;
 
-/// Of each axis.
-pub(crate) const ACCELERATION_MM_S2: f64 = 500.0;
+/// The acceleration that each axis is planned for at most.
+pub const ACCELERATION_MM_S2: f64 = 500.0;
 /// By what an axis may change its speed at once: what its motor starts and stops with.
 pub(crate) const START_STOP_MM_S: f64 = 5.0;
 /// An arc takes 0.8 of the acceleration across its path and 0.6 along it: together 1 in the worst

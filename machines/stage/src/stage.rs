@@ -4,12 +4,19 @@ use kurbo::Point;
 use machine_sim::{LimitSwitches, Scale, Stepper};
 use pulse_interp::{Direction, Switches};
 
-use crate::paths::to_mm;
+use crate::paths::{STEPS_PER_MM, to_mm};
 
 /// Counts of a scale per step: 500 counts/mm.
 pub(crate) const COUNTS_PER_STEP: u16 = 5;
 /// Where each axis' switches close, in steps from the drawing's zero: a millimetre beyond travel.
 pub(crate) const SWITCHES: [[i32; 2]; 2] = [[-100, 12_100], [-100, 10_100]];
+
+/// Where the switches of X and Y close, in mm from the drawing's zero: the lower one first.
+#[must_use]
+pub fn switches_mm() -> [[f64; 2]; 2] {
+    SWITCHES.map(|ends| ends.map(|steps| f64::from(steps) / STEPS_PER_MM))
+}
+
 /// Where the stage stands when it is switched on.
 const SWITCHED_ON_AT: [i32; 2] = [1731, 942];
 

@@ -1,5 +1,6 @@
 // What the machine made of a drawing, ready to be asked for any time.
 import type { Answer } from '../shared/machine';
+import { columns, countUntil, numbers } from '../shared/rows';
 
 export const AXES = ['theta1', 'theta2', 'theta3', 'vertical'] as const;
 export type Axis = (typeof AXES)[number];
@@ -39,17 +40,6 @@ export interface Pose {
   disc: number;
 }
 
-/** How many numbers of an ascending list are at most a value. */
-export function countUntil(list: Float64Array, value: number, stride = 1): number {
-  let [low, high] = [0, list.length / stride];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((list[middle * stride] ?? Number.POSITIVE_INFINITY) <= value) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
 /** Seconds, x, y and height of each point of the path. */
 export const PATH_STRIDE = 4;
 
@@ -63,22 +53,16 @@ export class Engraving {
   readonly deviation: [number[], (number | null)[]];
 
   constructor({ value, blobs }: Answer<Result>) {
-    const numbers = (name: string) => new Float64Array(blobs[name] ?? new ArrayBuffer(0));
     this.result = value;
-    const pin = (axis: Axis) => [axis, makePin(numbers(`${axis} edges`), blobs[`${axis} steps`])];
-    this.pins = Object.fromEntries(AXES.map(pin)) as Record<Axis, Pin>;
-    this.outlines = numbers('outlines');
-    this.path = numbers('path');
-    const pairs = numbers('deviation');
-    const each = <T>(take: (index: number) => T) =>
-      Array.from({ length: pairs.length / 2 }, (_, index) => take(2 * index));
-    this.deviation = [
-      each((index) => pairs[index] ?? 0),
-      each((index) => {
-        const mm = pairs[index + 1] ?? Number.NaN;
-        return Number.isNaN(mm) ? null : mm;
-      }),
+    const pin = (axis: Axis) => [
+      axis,
+      makePin(numbers(blobs, `${axis} edges`), blobs[`${axis} steps`]),
     ];
+    this.pins = Object.fromEntries(AXES.map(pin)) as Record<Axis, Pin>;
+    this.outlines = numbers(blobs, 'outlines');
+    this.path = numbers(blobs, 'path');
+    const [seconds = [], mm = []] = columns(numbers(blobs, 'deviation'), 2);
+    this.deviation = [seconds as number[], mm];
   }
 
   /** Steps of a motor from home at a time. */

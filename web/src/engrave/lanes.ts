@@ -1,7 +1,8 @@
 // The step pins over time: how many pulses where there are many, single edges where there is room.
 import { Picture, takeGestures } from '../shared/canvas';
 import { colour, onColours } from '../shared/dom';
-import { AXES, type Axis, countUntil, type Engraving } from './engraving';
+import { countUntil } from '../shared/rows';
+import { AXES, type Axis, type Engraving } from './engraving';
 
 const NAMES: Record<Axis, string> = {
   theta1: 'theta1, forearm',

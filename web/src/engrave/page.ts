@@ -8,9 +8,9 @@ import star from '../../../machines/engraver/drawings/star.svg?raw';
 import shipped from '../../../machines/engraver/machine.toml?raw';
 import wasm from '../../built/engrave.wasm?url';
 import { Chart } from '../shared/chart';
-import { element, save, settled, takeFiles } from '../shared/dom';
+import { element, settled, takeFiles } from '../shared/dom';
 import { Machine, Superseded } from '../shared/machine';
-import { SettingsForm } from '../shared/settings';
+import { machineForm } from '../shared/settings';
 import { FileButtons, Status } from '../shared/result';
 import { fromAddress, keep, kept, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
@@ -44,10 +44,7 @@ const chart = new Chart(element('deviation', HTMLElement), 'mm', 180, (seconds) 
 );
 lanes.onSeek((seconds) => transport.set(seconds));
 
-const settings = new SettingsForm(element('settings', HTMLElement), () => {
-  keep('engrave machine', settings.text === shipped ? null : settings.text);
-  changed();
-});
+const settings = machineForm('engrave machine', shipped, changed);
 
 const replan = settled(150, engrave);
 
@@ -150,23 +147,12 @@ function begin(): void {
   tolerance.value = fromAddress('tolerance') ?? '0.05';
   placement.value = fromAddress('placement') ?? '';
   keepOrder.checked = fromAddress('order') === 'file';
-  settings.text = kept('engrave machine') ?? shipped;
 
   element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
   for (const input of [drawing, tolerance, placement, keepOrder]) {
     input.addEventListener('input', changed);
   }
   takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), own);
-  const machineFile = element('machine-file', HTMLInputElement);
-  takeFiles(element('settings', HTMLElement), machineFile, async (file) =>
-    settings.replace(await file.text()),
-  );
-  element('default-machine', HTMLButtonElement).addEventListener('click', () =>
-    settings.replace(shipped),
-  );
-  element('save-machine', HTMLButtonElement).addEventListener('click', () =>
-    save('machine.toml', settings.text),
-  );
   engrave();
 }
 

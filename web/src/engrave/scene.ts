@@ -1,95 +1,70 @@
 // The machine from above: drawing, path by its distance from the drawing, and the arm at a time.
-import { Picture, takeGestures } from '../shared/canvas';
-import { colour, element, onColours } from '../shared/dom';
-import { countUntil, type Engraving, PATH_STRIDE } from './engraving';
+import { colour, element } from '../shared/dom';
+import {
+  type Bounds,
+  Plane,
+  scaleColour,
+  scalePart,
+  showScale,
+  strokeLines,
+  strokeParts,
+} from '../shared/plane';
+import { countUntil } from '../shared/rows';
+import { type Engraving, PATH_STRIDE } from './engraving';
 
-/** From near to far; told apart by those who see no red or green too. */
-const NEAR_TO_FAR = ['#2563eb', '#0891b2', '#65a30d', '#eab308', '#f97316', '#dc2626'];
 const DISC_MM = 5;
-
-/** Of the canvas: pixels of a mm, and where the machine's origin is. */
-interface View {
-  scale: number;
-  x: number;
-  y: number;
-}
+/** Above the glass. */
+const LIFTED = -1;
 
 export class Scene {
-  readonly #picture: Picture;
+  readonly #plane: Plane;
   #engraving: Engraving | undefined;
   #seconds = 0;
-  /** Unless it shows all. */
-  #view: View | undefined;
 
   constructor(canvas: HTMLCanvasElement) {
-    this.#picture = new Picture(canvas, (context, width, height) =>
-      this.#draw(context, width, height),
+    this.#plane = new Plane(
+      canvas,
+      () => this.#engraving && bounds(this.#engraving),
+      (context, px) => this.#draw(context, px),
     );
-    takeGestures(canvas, {
-      pan: (dx, dy) => this.#change((view) => ({ ...view, x: view.x + dx, y: view.y + dy })),
-      zoom: (factor, x, y) =>
-        this.#change((view) => ({
-          scale: view.scale * factor,
-          x: x + (view.x - x) * factor,
-          y: y + (view.y - y) * factor,
-        })),
-      reset: () => this.#change(() => undefined),
-    });
-    onColours(() => this.#picture.redraw());
-    const steps = NEAR_TO_FAR.map(
-      (it, index) =>
-        `${it} ${(index / NEAR_TO_FAR.length) * 100}% ${((index + 1) / NEAR_TO_FAR.length) * 100}%`,
-    );
-    element('scale', HTMLElement).style.background = `linear-gradient(90deg, ${steps.join(', ')})`;
+    showScale('scale');
   }
 
   show(engraving: Engraving): void {
     this.#engraving = engraving;
     element('scale-end', HTMLElement).textContent =
       `${engraving.result.report.bound_mm.toFixed(3)} mm, the bound`;
-    this.#picture.redraw();
+    this.#plane.redraw();
   }
 
   at(seconds: number): void {
     this.#seconds = seconds;
-    this.#picture.redraw();
+    this.#plane.redraw();
   }
 
-  #change(change: (view: View) => View | undefined): void {
-    this.#view = change(this.#view ?? this.#all(this.#picture.width, this.#picture.height));
-    this.#picture.redraw();
-  }
-
-  /** Bed and the arm's axis. */
-  #all(width: number, height: number): View {
-    const bed = this.#engraving?.result.report.machine.settings.bed;
-    if (!bed) return { scale: 1, x: width / 2, y: height };
-    const [left, right] = [Math.min(bed.x_mm, -20), Math.max(bed.x_mm + bed.width_mm, 20)];
-    const [low, high] = [Math.min(bed.y_mm, -15), Math.max(bed.y_mm + bed.height_mm, 15)];
-    const scale = 0.94 * Math.min(width / (right - left), height / (high - low));
-    return {
-      scale,
-      x: width / 2 - (scale * (left + right)) / 2,
-      y: height / 2 + (scale * (low + high)) / 2,
-    };
-  }
-
-  #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
+  #draw(context: CanvasRenderingContext2D, px: number): void {
     const engraving = this.#engraving;
     if (!engraving) return;
-    const view = this.#view ?? this.#all(width, height);
-    context.save();
-    context.translate(view.x, view.y);
-    context.scale(view.scale, -view.scale);
-    const px = 1 / view.scale;
-    context.lineJoin = 'round';
-    context.lineCap = 'round';
     drawBed(context, engraving, px);
-    drawOutlines(context, engraving, px);
+    context.strokeStyle = colour('drawing');
+    context.globalAlpha = 0.5;
+    context.lineWidth = 5 * px;
+    strokeLines(context, engraving.outlines);
+    context.globalAlpha = 1;
     drawPath(context, engraving, this.#seconds, px);
     drawArm(context, engraving, this.#seconds, px);
-    context.restore();
   }
+}
+
+/** Bed and the arm's axis. */
+function bounds({ result }: Engraving): Bounds {
+  const { x_mm, y_mm, width_mm, height_mm } = result.report.machine.settings.bed;
+  return {
+    left: Math.min(x_mm, -20),
+    right: Math.max(x_mm + width_mm, 20),
+    low: Math.min(y_mm, -15),
+    high: Math.max(y_mm + height_mm, 15),
+  };
 }
 
 function drawBed(context: CanvasRenderingContext2D, engraving: Engraving, px: number): void {
@@ -101,29 +76,6 @@ function drawBed(context: CanvasRenderingContext2D, engraving: Engraving, px: nu
   context.setLineDash([]);
 }
 
-function drawOutlines(
-  context: CanvasRenderingContext2D,
-  { outlines }: Engraving,
-  px: number,
-): void {
-  context.beginPath();
-  let isOpen = false;
-  for (let index = 0; index < outlines.length; index += 2) {
-    const [x, y] = [outlines[index] ?? Number.NaN, outlines[index + 1] ?? Number.NaN];
-    if (Number.isNaN(x)) isOpen = false;
-    else if (isOpen) context.lineTo(x, y);
-    else {
-      context.moveTo(x, y);
-      isOpen = true;
-    }
-  }
-  context.strokeStyle = colour('drawing');
-  context.globalAlpha = 0.5;
-  context.lineWidth = 5 * px;
-  context.stroke();
-  context.globalAlpha = 1;
-}
-
 /** The path until a time: lifted in one colour, engraved by its distance from the drawing. */
 function drawPath(
   context: CanvasRenderingContext2D,
@@ -133,33 +85,20 @@ function drawPath(
 ): void {
   const { path } = engraving;
   const bound = engraving.result.report.bound_mm;
-  const points = countUntil(path, until, PATH_STRIDE);
   const at = (point: number, value: number) => path[point * PATH_STRIDE + value] ?? 0;
-  /** -1 above the glass. */
-  const bucket = (point: number) => {
-    if (at(point, 3) > 0 || at(point - 1, 3) > 0) return -1;
-    const part = engraving.deviationAt(at(point, 0)) / bound;
-    return Math.min(Math.floor(part * NEAR_TO_FAR.length), NEAR_TO_FAR.length - 1);
-  };
-  let current = bucket(1);
-  context.beginPath();
-  context.moveTo(at(0, 1), at(0, 2));
-  const stroke = () => {
-    context.strokeStyle = current < 0 ? colour('quiet') : (NEAR_TO_FAR[current] ?? '');
-    context.lineWidth = (current < 0 ? 0.5 : 1.8) * px;
-    context.stroke();
-  };
-  for (let point = 1; point < points; point += 1) {
-    const next = bucket(point);
-    if (next !== current) {
-      stroke();
-      context.beginPath();
-      context.moveTo(at(point - 1, 1), at(point - 1, 2));
-      current = next;
-    }
-    context.lineTo(at(point, 1), at(point, 2));
-  }
-  stroke();
+  strokeParts(
+    context,
+    countUntil(path, until, PATH_STRIDE),
+    (point) => [at(point, 1), at(point, 2)],
+    (point) =>
+      at(point, 3) > 0 || at(point - 1, 3) > 0
+        ? LIFTED
+        : scalePart(engraving.deviationAt(at(point, 0)) / bound),
+    (part) => {
+      context.strokeStyle = part === LIFTED ? colour('quiet') : scaleColour(part);
+      context.lineWidth = (part === LIFTED ? 0.5 : 1.8) * px;
+    },
+  );
 }
 
 function drawArm(

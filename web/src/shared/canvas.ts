@@ -56,6 +56,8 @@ export interface Gestures {
   pan(dx: number, dy: number): void;
   zoom(factor: number, x: number, y: number): void;
   reset(): void;
+  /** What is dragged instead of the view, if something is at this place. */
+  grab?(x: number, y: number): ((dx: number, dy: number) => void) | undefined;
   /** What keys zoom about, unless the middle. */
   focus?(): [number, number];
 }
@@ -65,6 +67,7 @@ const KEY_ZOOM = 1.4;
 
 export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): void {
   const pointers = new Map<number, [number, number]>();
+  let held: ((dx: number, dy: number) => void) | undefined;
   canvas.addEventListener(
     'wheel',
     (event) => {
@@ -79,6 +82,7 @@ export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): voi
     canvas.focus({ preventScroll: true });
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    held = pointers.size === 1 ? gestures.grab?.(event.offsetX, event.offsetY) : undefined;
   });
   canvas.addEventListener('pointermove', (event) => {
     const from = pointers.get(event.pointerId);
@@ -89,11 +93,14 @@ export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): voi
       const apart = (it: [number, number]) => Math.hypot(it[0] - other[0], it[1] - other[1]);
       gestures.zoom(apart(to) / Math.max(apart(from), 1), other[0], other[1]);
     } else {
-      gestures.pan(to[0] - from[0], to[1] - from[1]);
+      (held ?? gestures.pan)(to[0] - from[0], to[1] - from[1]);
     }
     pointers.set(event.pointerId, to);
   });
-  const up = (event: PointerEvent) => pointers.delete(event.pointerId);
+  const up = (event: PointerEvent) => {
+    pointers.delete(event.pointerId);
+    held = undefined;
+  };
   canvas.addEventListener('pointerup', up);
   canvas.addEventListener('pointercancel', up);
   canvas.addEventListener('dblclick', () => gestures.reset());

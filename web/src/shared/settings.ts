@@ -1,7 +1,8 @@
 // A machine file as a form: each number of the TOML text is a field, its comment the explanation.
-import { create } from './dom';
+import { create, element, save, takeFiles } from './dom';
+import { keep, kept } from './store';
 
-const SECTION = /^\[(\w+)\]\s*(?:#\s*(.*))?$/;
+const SECTION = /^\[{1,2}(\w+)\]{1,2}\s*(?:#\s*(.*))?$/;
 const SETTING = /^(\w+)(\s*=\s*)([^#]*?)(\s*)(?:#\s*(.*))?$/;
 
 export class SettingsForm {
@@ -66,4 +67,23 @@ export class SettingsForm {
     if (comment) label.append(create('small', { textContent: comment }));
     return label;
   }
+}
+
+/** The form of a page's machine, which the browser keeps under a name unless it is as shipped. */
+export function machineForm(name: string, shipped: string, changed: () => void): SettingsForm {
+  const target = element('settings', HTMLElement);
+  const form = new SettingsForm(target, () => {
+    keep(name, form.text === shipped ? null : form.text);
+    changed();
+  });
+  form.text = kept(name) ?? shipped;
+  const file = element('machine-file', HTMLInputElement);
+  takeFiles(target, file, async (given) => form.replace(await given.text()));
+  element('default-machine', HTMLButtonElement).addEventListener('click', () =>
+    form.replace(shipped),
+  );
+  element('save-machine', HTMLButtonElement).addEventListener('click', () =>
+    save('machine.toml', form.text),
+  );
+  return form;
 }

@@ -33,6 +33,16 @@ impl Answer {
         self.with_bytes(name, numbers.into_iter().flatten().collect::<Vec<_>>())
     }
 
+    /// Rows of numbers, one after the other.
+    #[cfg(feature = "stage")]
+    pub(crate) fn with_rows<const N: usize>(
+        self,
+        name: &'static str,
+        rows: impl IntoIterator<Item = [f64; N]>,
+    ) -> Self {
+        self.with_numbers(name, rows.into_iter().flatten().map(f64::to_le_bytes))
+    }
+
     /// First the JSON with the names of the others, then these.
     pub(crate) fn into_outputs(self) -> Result<Vec<Vec<u8>>> {
         let names: Vec<_> = self.blobs.iter().map(|(name, _)| name).collect();

@@ -8,7 +8,10 @@ mod boundary;
 mod dance;
 #[cfg(feature = "engrave")]
 mod engrave;
+#[cfg(any(feature = "dance", feature = "engrave"))]
 mod progress;
+#[cfg(feature = "stage")]
+mod stage;
 
 use anyhow::{Result, bail};
 
@@ -28,6 +31,10 @@ fn perform(request: &Request) -> Result<Answer> {
         "dance.read" => dance::read(request),
         #[cfg(feature = "dance")]
         "dance.file" => dance::file(request),
+        #[cfg(feature = "stage")]
+        "stage" => stage::stage(request),
+        #[cfg(feature = "stage")]
+        "stage.file" => stage::file(request),
         other => bail!("there is no operation {other:?}"),
     }
 }

@@ -64,6 +64,11 @@ impl Program {
         Self::parse(&String::from_utf8_lossy(bytes))
     }
 
+    /// The number of the line of each motion, from 1.
+    pub fn line_numbers(&self) -> impl Iterator<Item = usize> {
+        self.lines.iter().map(|line| line.number)
+    }
+
     /// What it asks for that is left out or done otherwise.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {

@@ -1,0 +1,211 @@
+// The page of the stage: the program on the right, what the stage makes of it on the left.
+import '../shared/style.css';
+import './stage.css';
+import '../shared/offline';
+import link from '../../../machines/stage/drawings/link.gcode?raw';
+import rosette from '../../../machines/stage/drawings/rosette.gcode?raw';
+import test from '../../../machines/stage/drawings/test.gcode?raw';
+import wasm from '../../built/stage.wasm?url';
+import { Chart } from '../shared/chart';
+import { element, save, settled, takeFiles } from '../shared/dom';
+import { Editor, linesOf } from '../shared/editor';
+import { Machine, Superseded } from '../shared/machine';
+import { FileButtons, Status } from '../shared/result';
+import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { Transport } from '../shared/transport';
+import { type Result, Run } from './run';
+import { Scene } from './scene';
+
+const DRAWINGS: Record<string, string> = { test, link, rosette };
+const UM_PER_MM = 1000;
+
+const machine = new Machine(wasm);
+const status = new Status();
+const files = new FileButtons(
+  machine,
+  'stage.file',
+  ['steps.csv', 'stage.svg', 'report.json'],
+  status,
+);
+const drawing = element('drawing', HTMLSelectElement);
+const lose = element('lose', HTMLInputElement);
+const seed = element('seed', HTMLInputElement);
+const profile = element('profile', HTMLSelectElement);
+const rule = element('rule', HTMLSelectElement);
+
+/** What the address leaves out. */
+const USUAL: [string, HTMLInputElement | HTMLSelectElement, string][] = [
+  ['lose', lose, '0.1'],
+  ['seed', seed, '1'],
+  ['profile', profile, 'trapezoidal'],
+  ['rule', rule, 'nearest'],
+];
+
+let shown: Run | undefined;
+let ownName = kept('stage name') ?? 'your own';
+
+const scene = new Scene(element('scene', HTMLCanvasElement));
+const transport = new Transport((seconds) => {
+  scene.at(seconds);
+  for (const chart of charts) chart.at(seconds);
+  const line = shown?.legAt(seconds)?.line;
+  editor.mark('now', line === undefined ? [] : [line]);
+});
+const seek = (seconds: number) => transport.set(seconds);
+const chart = (id: string, unit: string, height: number) =>
+  new Chart(element(id, HTMLElement), unit, height, seek);
+const speeds = chart('speeds', 'mm/s', 170);
+const accelerations = chart('accelerations', 'mm/s²', 150);
+const deviations = chart('deviations', 'µm', 170);
+const corrections = chart('corrections', 'steps', 140);
+const charts = [speeds, accelerations, deviations, corrections];
+
+const editor = new Editor(element('gcode', HTMLElement), 'G-code', () => {
+  own(editor.text, drawing.value === 'own' ? ownName : `${drawing.value}.gcode, changed`);
+  changed();
+});
+const rerun = settled(150, run);
+
+function changed(): void {
+  element('lost', HTMLOutputElement).value = `${lose.valueAsNumber.toFixed(2)} %`;
+  files.allow(false);
+  status.say('Running');
+  rerun();
+}
+
+/** What messages call the program. */
+function name(): string {
+  return drawing.value === 'own' ? ownName : `${drawing.value}.gcode`;
+}
+
+async function run(): Promise<void> {
+  const values = USUAL.map(([key, { value }, usual]) => [key, value === usual ? null : value]);
+  const shipped = drawing.value in DRAWINGS ? drawing.value : null;
+  toAddress({ ...Object.fromEntries(values), drawing: shipped === 'test' ? null : shipped });
+  machine.stop();
+  const parameters = {
+    name: name(),
+    gcode: editor.text,
+    rule: rule.value,
+    profile: profile.value,
+    lose_steps: lose.valueAsNumber * 0.01,
+    seed: seed.valueAsNumber,
+  };
+  if (!Number.isSafeInteger(parameters.seed) || parameters.seed < 0) {
+    refuse(new Error('which are lost: a whole number is needed'));
+    return;
+  }
+  try {
+    show(new Run(await machine.call<Result>('stage', parameters)));
+  } catch (error) {
+    if (!(error instanceof Superseded)) refuse(error);
+  }
+}
+
+function refuse(error: unknown): void {
+  status.refuse('', error);
+  files.allow(false);
+  const [line] = linesOf([error instanceof Error ? error.message : '']);
+  editor.mark('note', []);
+  editor.mark('now', []);
+  editor.mark('bad', line === undefined ? [] : [line]);
+  if (line !== undefined) editor.reveal(line);
+}
+
+function show(run: Run): void {
+  shown = run;
+  const { report, summary, accelerationMmS2 } = run.result;
+  const um = (mm: number) => (mm * UM_PER_MM).toFixed(0);
+  const verdict =
+    `Run in ${report.duration_s.toFixed(1)} s of the machine's time: ` +
+    `at most ${um(report.max_deviation_mm)} µm off the curve` +
+    (run.isLossy ? `, without corrections ${um(report.open_loop.max_deviation_mm)} µm` : '');
+  const notes = report.notes.map((note) => `note: ${note}`);
+  status.say([verdict, ...notes].join('\n'));
+  editor.mark('bad', []);
+  editor.mark('note', linesOf(report.notes));
+  element('summary', HTMLElement).textContent = summary;
+  files.allow(true);
+  scene.show(run);
+  showCharts(run, accelerationMmS2);
+  transport.pause();
+  transport.begin(report.duration_s);
+  element('main', HTMLElement).dataset.ready = '';
+}
+
+function showCharts(run: Run, limit: number): void {
+  const [times = [], values = []] = run.speeds;
+  const feeds = times.map((it) => run.legAt(it ?? 0)?.feedMmS ?? null);
+  speeds.show(
+    [
+      { label: 'programmed feed', colour: 'series-2', dash: [6, 4] },
+      { label: 'speed by the steps', colour: 'series-1' },
+    ],
+    [times as number[], feeds, values],
+  );
+  const [when = [], each = []] = run.accelerations;
+  accelerations.show(
+    [
+      { label: 'limit of an axis', colour: 'limit', dash: [6, 4] },
+      { label: 'by the steps', colour: 'series-1' },
+    ],
+    [when as number[], when.map(() => limit), each],
+  );
+  const [at, closed, open] = run.deviations;
+  const inUm = (values: (number | null)[]) => values.map((it) => it && it * UM_PER_MM);
+  const closedLine = { label: 'closed loop', colour: 'series-1' };
+  if (run.isLossy) {
+    const openLine = { label: 'open loop', colour: 'series-3' };
+    deviations.show([openLine, closedLine], [at as number[], inUm(open), inUm(closed)]);
+  } else {
+    deviations.show([closedLine], [at as number[], inUm(closed)]);
+  }
+  element('corrected', HTMLElement).hidden = !run.isLossy;
+  const [corrected, steps] = run.corrections;
+  corrections.show([{ label: 'corrected', colour: 'series-1' }], [corrected as number[], steps]);
+}
+
+/** The program is no shipped one. */
+function own(text: string, called: string): void {
+  ownName = called;
+  keep('stage program', text);
+  keep('stage name', called);
+  offerOwn();
+  drawing.value = 'own';
+}
+
+function offerOwn(): void {
+  const option = drawing.querySelector<HTMLOptionElement>('option[value=own]');
+  if (!option) return;
+  option.hidden = false;
+  option.textContent = ownName;
+}
+
+function begin(): void {
+  const program = kept('stage program');
+  if (program !== null) offerOwn();
+  const asked = fromAddress('drawing');
+  drawing.value = asked && asked in DRAWINGS ? asked : program === null ? 'test' : 'own';
+  editor.text = DRAWINGS[drawing.value] ?? program ?? '';
+  for (const [key, input, usual] of USUAL) {
+    input.value = fromAddress(key) ?? usual;
+    if (input instanceof HTMLSelectElement && input.selectedIndex < 0) input.value = usual;
+    input.addEventListener('input', changed);
+  }
+  element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+  drawing.addEventListener('input', () => {
+    editor.text = DRAWINGS[drawing.value] ?? kept('stage program') ?? '';
+    changed();
+  });
+  takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) => {
+    editor.text = await file.text();
+    own(editor.text, file.name);
+    changed();
+  });
+  element('save-program', HTMLButtonElement).addEventListener('click', () =>
+    save(name(), editor.text),
+  );
+  changed();
+}
+
+begin();
