@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compares what was counted with what is committed, and writes docs/metal.md.
 
-    table.py check m4 m3 m0    no count, stack or size is more than 5 % above the committed one,
-                               and docs/metal.md says what is committed
-    table.py accept m4 m3 m0   what was counted is what will be committed
+    table.py check m4 m3 m0 boards    no count, stack or size is more than 5 % above the committed
+                                      one, and docs/metal.md says what is committed
+    table.py accept m4 m3 m0 boards   what was counted is what will be committed
 """
 
 import sys
@@ -119,6 +119,15 @@ def lines():
     return table(head, rows), f"{played['planning', 'board'][0] / 1e6:.1f}"
 
 
+def boards():
+    title = {"rp2040": "Raspberry Pi Pico, RP2040", "stm32": "Nucleo-F411RE, STM32F411"}
+    rows = [
+        [title[board], *map(number, sizes)]
+        for (board, _), sizes in read(COMMITTED / "boards-sizes").items()
+    ]
+    return table(["", "flash", "static memory"], rows)
+
+
 def page():
     calls, kept = counts()
     nothing, flash = sizes()
@@ -131,6 +140,7 @@ def page():
         "PLANNING": planning,
         "FLASH": flash,
         "NOTHING": number(nothing),
+        "BOARDS": boards(),
         "MOST": f"{MOST - 1:.0%}".replace("%", " %"),
     }.items():
         assert f"@{mark}@" in text, mark

@@ -1,0 +1,239 @@
+//! Commands as text.
+
+use core::fmt::{self, Display, Formatter};
+
+use thiserror::Error;
+
+/// A joint of the arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joint {
+    /// Between base and upper arm.
+    Shoulder,
+    /// Between upper arm and forearm.
+    Elbow,
+}
+
+impl Joint {
+    pub(crate) const ALL: [Self; 2] = [Self::Shoulder, Self::Elbow];
+}
+
+impl Display for Joint {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Shoulder => "shoulder",
+            Self::Elbow => "elbow",
+        })
+    }
+}
+
+/// What a telegram asks for: a word in small letters and its numbers, with spaces in between.
+///
+/// | text | what it does |
+/// |---|---|
+/// | `home` | finds both home switches |
+/// | `line X Y [F]` | the tool along a straight line to X, Y in mm, at most at F mm/s |
+/// | `jog JOINT A` | turns `shoulder` or `elbow` by A degrees |
+/// | `hold` | comes to rest on the path |
+/// | `resume` | goes on |
+/// | `stop` | comes to rest on the path and gives the rest of it up |
+/// | `feed P` | at P percent of the planned speed from now on, 1 to 100 |
+/// | `where` | tool, joints and steps |
+/// | `status` | what the machine does |
+/// | `limits` | where it can go, and how fast |
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Finds both home switches.
+    Home,
+    /// A straight line of the tool.
+    Line {
+        /// The tool's position at the end, in mm.
+        to_mm: [f64; 2],
+        /// Its largest speed, in mm/s.
+        feed_mm_s: Option<f64>,
+    },
+    /// One joint turns.
+    Jog {
+        /// Which.
+        joint: Joint,
+        /// By how much, in degrees.
+        by_deg: f64,
+    },
+    /// To rest on the path.
+    Hold,
+    /// On from there.
+    Resume,
+    /// To rest on the path, for good.
+    Stop,
+    /// The speed of all motions.
+    Feed {
+        /// 1 to 100.
+        percent: u8,
+    },
+    /// Tool, joints and steps.
+    Where,
+    /// What the machine does.
+    Status,
+    /// Where it can go, and how fast.
+    Limits,
+}
+
+/// Why a text is no command. Columns count from 1, in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum CommandError<'t> {
+    /// Nothing but spaces.
+    #[error("no command")]
+    Empty,
+    /// A word that is not the name of a command.
+    #[error("column {column}: `{}` is no command", Quoted(.word))]
+    Unknown {
+        /// Where it begins.
+        column: usize,
+        /// The word.
+        word: &'t [u8],
+    },
+    /// The text ends before something that the command needs.
+    #[error("column {column}: {name} is missing")]
+    Missing {
+        /// Where it should begin.
+        column: usize,
+        /// What.
+        name: &'static str,
+    },
+    /// A word that is not what the command needs there.
+    #[error("column {column}: `{}` is no {name}", Quoted(.word))]
+    Wrong {
+        /// Where it begins.
+        column: usize,
+        /// The word.
+        word: &'t [u8],
+        /// What it should be.
+        name: &'static str,
+    },
+    /// A word after the end of the command.
+    #[error("column {column}: `{}` is too much", Quoted(.word))]
+    TooMuch {
+        /// Where it begins.
+        column: usize,
+        /// The word.
+        word: &'t [u8],
+    },
+}
+
+/// The first bytes of a word, as far as an answer has room for them.
+struct Quoted<'t>(&'t [u8]);
+
+impl Display for Quoted<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        const MOST: usize = 16;
+        let shown = self.0.get(..MOST).unwrap_or(self.0);
+        write!(f, "{}", shown.escape_ascii())?;
+        if shown.len() < self.0.len() {
+            write!(f, "...")?;
+        }
+        Ok(())
+    }
+}
+
+impl Command {
+    /// The command of a text.
+    ///
+    /// # Errors
+    /// [`CommandError`], with the place.
+    pub fn parse(text: &[u8]) -> Result<Self, CommandError<'_>> {
+        let mut words = Words { text, next: 0 };
+        let (column, name) = words.next().ok_or(CommandError::Empty)?;
+        let command = match name {
+            b"home" => Self::Home,
+            b"line" => Self::Line {
+                to_mm: [words.number("number of mm")?, words.number("number of mm")?],
+                feed_mm_s: words.positive("positive number of mm/s")?,
+            },
+            b"jog" => Self::Jog {
+                joint: words.joint()?,
+                by_deg: words.number("number of degrees")?,
+            },
+            b"hold" => Self::Hold,
+            b"resume" => Self::Resume,
+            b"stop" => Self::Stop,
+            b"feed" => Self::Feed {
+                percent: words.percent()?,
+            },
+            b"where" => Self::Where,
+            b"status" => Self::Status,
+            b"limits" => Self::Limits,
+            word => return Err(CommandError::Unknown { column, word }),
+        };
+        match words.next() {
+            None => Ok(command),
+            Some((column, word)) => Err(CommandError::TooMuch { column, word }),
+        }
+    }
+}
+
+/// The words of a text with their columns.
+struct Words<'t> {
+    text: &'t [u8],
+    next: usize,
+}
+
+impl<'t> Iterator for Words<'t> {
+    type Item = (usize, &'t [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let is_space = |&byte: &u8| byte.is_ascii_whitespace();
+        let rest = self.text.get(self.next..)?;
+        let start = self.next + rest.iter().position(|byte| !is_space(byte))?;
+        let rest = self.text.get(start..)?;
+        let len = rest.iter().position(is_space).unwrap_or(rest.len());
+        self.next = start + len;
+        Some((start + 1, rest.get(..len)?))
+    }
+}
+
+impl<'t> Words<'t> {
+    fn need(&mut self, name: &'static str) -> Result<(usize, &'t [u8]), CommandError<'t>> {
+        let column = self.text.len() + 1;
+        self.next().ok_or(CommandError::Missing { column, name })
+    }
+
+    fn number(&mut self, name: &'static str) -> Result<f64, CommandError<'t>> {
+        let (column, word) = self.need(name)?;
+        number(word).ok_or(CommandError::Wrong { column, word, name })
+    }
+
+    fn positive(&mut self, name: &'static str) -> Result<Option<f64>, CommandError<'t>> {
+        let Some((column, word)) = self.next() else {
+            return Ok(None);
+        };
+        match number(word) {
+            Some(value) if value > 0.0 => Ok(Some(value)),
+            _ => Err(CommandError::Wrong { column, word, name }),
+        }
+    }
+
+    fn percent(&mut self) -> Result<u8, CommandError<'t>> {
+        let name = "whole percentage from 1 to 100";
+        let (column, word) = self.need(name)?;
+        let percent = core::str::from_utf8(word)
+            .ok()
+            .and_then(|word| word.parse().ok());
+        percent
+            .filter(|percent| (1..=100).contains(percent))
+            .ok_or(CommandError::Wrong { column, word, name })
+    }
+
+    fn joint(&mut self) -> Result<Joint, CommandError<'t>> {
+        let name = "`shoulder` or `elbow`";
+        match self.need(name)? {
+            (_, b"shoulder") => Ok(Joint::Shoulder),
+            (_, b"elbow") => Ok(Joint::Elbow),
+            (column, word) => Err(CommandError::Wrong { column, word, name }),
+        }
+    }
+}
+
+/// A finite number.
+fn number(word: &[u8]) -> Option<f64> {
+    let word = core::str::from_utf8(word).ok()?;
+    word.parse().ok().filter(|value: &f64| value.is_finite())
+}

@@ -1,0 +1,32 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![warn(unreachable_pub)]
+
+mod blocks;
+mod command;
+mod homing;
+mod motion;
+mod panel;
+mod pulses;
+mod settings;
+mod talk;
+
+pub use command::{Command, CommandError, Joint};
+pub use motion::Motion;
+pub use panel::{Panel, State};
+pub use pulses::{Block, BlockEnd, Word};
+pub use settings::{Machine, Settings, SettingsError};
+pub use talk::talk;
+
+/// An answer to a command, or what became of it.
+pub type Text = heapless::String<160>;
+
+/// A text of what is formatted; what does not fit is left out.
+macro_rules! text {
+    ($($arguments:tt)*) => {{
+        let mut text = $crate::Text::new();
+        let _ = core::fmt::Write::write_fmt(&mut text, format_args!($($arguments)*));
+        text
+    }};
+}
+use text;

@@ -1,0 +1,287 @@
+//! What those who talk, plan and play share.
+
+use core::cell::Cell;
+use core::fmt::{self, Display, Formatter};
+
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::channel::{Channel, TrySendError};
+use embassy_sync::signal::Signal;
+
+use crate::command::{Command, Joint};
+use crate::pulses::{Block, BlockEnd};
+use crate::{Text, text};
+
+/// Blocks between planner and pins. With the time of a block this is how far the
+/// planner may be late, and how long a hold takes to show.
+const BLOCKS: usize = 8;
+
+/// What the machine does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// It does not know where it is: `home` comes first.
+    NotHomed,
+    /// On its way to the switches.
+    Homing,
+    /// At rest.
+    Ready,
+    /// A motion is planned or run.
+    Moving,
+    /// At rest on the path, until `resume` or `stop`.
+    Held,
+}
+
+impl Display for State {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotHomed => "not homed",
+            Self::Homing => "homing",
+            Self::Ready => "ready",
+            Self::Moving => "moving",
+            Self::Held => "held",
+        })
+    }
+}
+
+/// A command that takes time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Job {
+    Home,
+    Line {
+        to_mm: [f64; 2],
+        feed_mm_s: Option<f64>,
+    },
+    Jog {
+        joint: Joint,
+        by_deg: f64,
+    },
+}
+
+/// What the user wants of the motion under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    Run,
+    Hold,
+    Stop,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    state: State,
+    wanted: Wanted,
+    feed_percent: u8,
+    /// Steps of both joints from zero that the pins have made.
+    steps: [i32; 2],
+    blocks_put: u32,
+    blocks_played: u32,
+    underruns: u32,
+}
+
+/// What those who talk, plan and play share; each may be a task of another priority.
+pub struct Panel {
+    shared: Mutex<CriticalSectionRawMutex, Cell<Shared>>,
+    jobs: Signal<CriticalSectionRawMutex, Job>,
+    /// Something that the planner may wait for has changed.
+    changed: Signal<CriticalSectionRawMutex, ()>,
+    played: Signal<CriticalSectionRawMutex, ()>,
+    blocks: Channel<CriticalSectionRawMutex, Block, BLOCKS>,
+    answers: Channel<CriticalSectionRawMutex, Text, 4>,
+}
+
+impl Default for Panel {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Panel {
+    /// A machine that is not homed.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            shared: Mutex::new(Cell::new(Shared {
+                state: State::NotHomed,
+                wanted: Wanted::Run,
+                feed_percent: 100,
+                steps: [0; 2],
+                blocks_put: 0,
+                blocks_played: 0,
+                underruns: 0,
+            })),
+            jobs: Signal::new(),
+            changed: Signal::new(),
+            played: Signal::new(),
+            blocks: Channel::new(),
+            answers: Channel::new(),
+        }
+    }
+
+    fn shared(&self) -> Shared {
+        self.shared.lock(Cell::get)
+    }
+
+    /// Changes all or nothing.
+    fn change<R>(&self, change: impl FnOnce(&mut Shared) -> R) -> R {
+        self.shared.lock(|cell| {
+            let mut shared = cell.get();
+            let result = change(&mut shared);
+            cell.set(shared);
+            result
+        })
+    }
+
+    /// What the machine does.
+    pub fn state(&self) -> State {
+        self.shared().state
+    }
+
+    /// Steps of shoulder and elbow from zero that the pins have made.
+    pub fn steps(&self) -> [i32; 2] {
+        self.shared().steps
+    }
+
+    /// How often the pins had to wait for the planner in the middle of a motion.
+    pub fn underruns(&self) -> u32 {
+        self.shared().underruns
+    }
+}
+
+/// For the task that plays.
+impl Panel {
+    /// The next block for the pins.
+    pub async fn next_block(&self) -> Block {
+        self.blocks.receive().await
+    }
+
+    /// The next block, if there is one already.
+    pub fn try_next_block(&self) -> Option<Block> {
+        self.blocks.try_receive().ok()
+    }
+
+    /// Whether the pins would have to wait for a block.
+    pub fn has_no_block(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
+    /// The last word of a block has been played.
+    pub fn played(&self, end: BlockEnd) {
+        self.change(|shared| {
+            shared.steps = end.steps;
+            shared.blocks_played = shared.blocks_played.wrapping_add(1);
+        });
+        self.played.signal(());
+    }
+
+    /// The pins have come to the end of a block, and there is no other. Counts as an underrun
+    /// unless the machine rests there.
+    pub fn ran_out_after(&self, end: BlockEnd) {
+        if !end.rests {
+            self.change(|shared| shared.underruns = shared.underruns.wrapping_add(1));
+        }
+    }
+}
+
+/// For the task that plans.
+impl Panel {
+    pub(crate) async fn next_job(&self) -> Job {
+        self.jobs.wait().await
+    }
+
+    pub(crate) async fn put(&self, block: Block) {
+        self.change(|shared| shared.blocks_put = shared.blocks_put.wrapping_add(1));
+        self.blocks.send(block).await;
+    }
+
+    /// Returns when all blocks are played.
+    pub(crate) async fn all_played(&self) {
+        loop {
+            let shared = self.shared();
+            if shared.blocks_put == shared.blocks_played {
+                return;
+            }
+            self.played.wait().await;
+        }
+    }
+
+    pub(crate) fn wanted(&self) -> (Wanted, u8) {
+        let shared = self.shared();
+        (shared.wanted, shared.feed_percent)
+    }
+
+    /// Returns when [`wanted`](Self::wanted) may have changed.
+    pub(crate) async fn changed(&self) {
+        self.changed.wait().await;
+    }
+
+    pub(crate) fn set_state(&self, state: State) {
+        self.change(|shared| shared.state = state);
+    }
+
+    pub(crate) fn set_steps(&self, steps: [i32; 2]) {
+        self.change(|shared| shared.steps = steps);
+    }
+
+    /// Says what became of a job. Nobody who listens too slowly stops the machine: the oldest answer
+    /// is lost then.
+    pub(crate) fn answer(&self, answer: Text) {
+        if let Err(TrySendError::Full(answer)) = self.answers.try_send(answer) {
+            let _ = self.answers.try_receive();
+            let _ = self.answers.try_send(answer);
+        }
+    }
+}
+
+/// For the task that talks.
+impl Panel {
+    pub(crate) fn status(&self) -> Text {
+        let shared = self.shared();
+        let (state, percent, underruns) = (shared.state, shared.feed_percent, shared.underruns);
+        text!("{state}, feed {percent} %, {underruns} underruns")
+    }
+
+    pub(crate) async fn next_answer(&self) -> Text {
+        self.answers.receive().await
+    }
+
+    /// Takes a command that changes what the machine does. Of one that takes time the planner tells
+    /// the outcome.
+    pub(crate) fn take(&self, command: Command) -> Option<Text> {
+        let job = match command {
+            Command::Home => Some(Job::Home),
+            Command::Line { to_mm, feed_mm_s } => Some(Job::Line { to_mm, feed_mm_s }),
+            Command::Jog { joint, by_deg } => Some(Job::Jog { joint, by_deg }),
+            _ => None,
+        };
+        let refusal = self.change(|shared| {
+            let state = shared.state;
+            match (command, state) {
+                (Command::Home, State::NotHomed | State::Ready) => shared.state = State::Homing,
+                (Command::Line { .. } | Command::Jog { .. }, State::Ready) => {
+                    shared.state = State::Moving;
+                }
+                (Command::Hold, State::Moving) => shared.wanted = Wanted::Hold,
+                (Command::Resume, State::Held | State::Moving) => shared.wanted = Wanted::Run,
+                (Command::Stop, State::Moving | State::Held | State::Homing) => {
+                    shared.wanted = Wanted::Stop;
+                }
+                (Command::Feed { percent }, _) => shared.feed_percent = percent,
+                _ => return Some(state),
+            }
+            if job.is_some() {
+                shared.wanted = Wanted::Run;
+            }
+            None
+        });
+        match (refusal, job) {
+            (Some(state), _) => Some(text!("refused: {state}")),
+            (None, Some(job)) => {
+                self.jobs.signal(job);
+                None
+            }
+            (None, None) => {
+                self.changed.signal(());
+                Some(text!("ok"))
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! From steps to levels of pins.
+
+use heapless::Vec;
+use stepper_sync::Direction;
+
+use crate::settings::PinTicks;
+
+/// What a board plays: it waits, then sets its pins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// Ticks since the word before, 1 to those of 5 ms: longer waits are several words.
+    pub ticks: u32,
+    /// Level of each pin from then on: bit 0 steps the shoulder, bit 1 is its direction, bits 2 and 3
+    /// are the elbow's.
+    pub levels: u8,
+}
+
+/// Words that are handed to a board at a time.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// At least one.
+    pub words: Vec<Word, { Self::MAX_WORDS }>,
+    /// What is so when all are played.
+    pub end: BlockEnd,
+}
+
+/// What is so at the end of a block, to be told to the [`Panel`](crate::Panel).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BlockEnd {
+    /// Steps of both joints from zero.
+    pub(crate) steps: [i32; 2],
+    /// Whether the machine rests: no block needs to follow at once.
+    pub(crate) rests: bool,
+}
+
+impl Block {
+    /// The most words of a block.
+    pub const MAX_WORDS: usize = 64;
+}
+
+/// The edges of step and direction pins, from steps in time order.
+///
+/// A step at tick t is a change of direction at t, if there is one, the start of the pulse at t and
+/// the setup time, its end the pulse time later: so all pulses are late by the setup time, and their
+/// intervals are those of the steps.
+#[derive(Clone, Debug)]
+pub(crate) struct Pulses {
+    pins: PinTicks,
+    max_ticks: u32,
+    levels: u8,
+    /// The tick of the last word.
+    last_ticks: u64,
+    /// Of each joint: change of direction, start and end of the pulse.
+    edges: [[Option<Edge>; 3]; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    ticks: u64,
+    mask: u8,
+    high: bool,
+}
+
+impl Pulses {
+    /// For words of at most `max_ticks`; all pins are low.
+    pub(crate) const fn new(pins: PinTicks, max_ticks: u32) -> Self {
+        Self {
+            pins,
+            max_ticks,
+            levels: 0,
+            last_ticks: 0,
+            edges: [[None; 3]; 2],
+        }
+    }
+
+    /// After a rest, when all edges are out: the next step's time counts from `ticks`.
+    pub(crate) fn restart(&mut self, ticks: u64) {
+        self.last_ticks = ticks;
+    }
+
+    /// The edges of a step of a joint, 0 or 1. Those before `ticks` have been taken, so that none of
+    /// the joint's step before are left, as [`PinTicks::step`] makes it.
+    pub(crate) fn add(&mut self, joint: usize, ticks: u64, direction: Direction) {
+        let high = direction == Direction::Positive;
+        let (step_mask, direction_mask) = (1 << (2 * joint), 2 << (2 * joint));
+        let start = ticks + self.pins.setup;
+        let edge = |ticks, mask, high| Some(Edge { ticks, mask, high });
+        if let Some(edges) = self.edges.get_mut(joint) {
+            *edges = [
+                edge(ticks, direction_mask, high),
+                edge(start, step_mask, true),
+                edge(start + self.pins.pulse, step_mask, false),
+            ];
+        }
+    }
+
+    /// The next word of edges before a tick.
+    pub(crate) fn next_before(&mut self, before: u64) -> Option<Word> {
+        let edges = || self.edges.iter().flatten().flatten();
+        let next = edges().map(|edge| edge.ticks).min()?;
+        if next >= before {
+            return None;
+        }
+        let wait = next.saturating_sub(self.last_ticks);
+        if wait > u64::from(self.max_ticks) {
+            return Some(self.word(self.max_ticks));
+        }
+        let levels_before = self.levels;
+        for place in self.edges.iter_mut().flatten() {
+            if let Some(edge) = place.take_if(|edge| edge.ticks == next) {
+                self.levels &= !edge.mask;
+                self.levels |= if edge.high { edge.mask } else { 0 };
+            }
+        }
+        if self.levels == levels_before {
+            // A direction that stays.
+            return self.next_before(before);
+        }
+        // After a rest the last pulse may have ended later than that.
+        Some(self.word(wait.max(1) as u32))
+    }
+
+    /// A word without an edge, if a tick has not come.
+    pub(crate) fn wait_until(&mut self, ticks: u64) -> Option<Word> {
+        let wait = ticks.saturating_sub(self.last_ticks);
+        (wait > 0).then(|| self.word(wait.min(self.max_ticks.into()) as u32))
+    }
+
+    fn word(&mut self, ticks: u32) -> Word {
+        self.last_ticks += u64::from(ticks);
+        Word {
+            ticks,
+            levels: self.levels,
+        }
+    }
+}

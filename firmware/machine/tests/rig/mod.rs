@@ -1,0 +1,229 @@
+//! An arm on a desk: its firmware, a PC on its serial line, pins that are looked at, and switches.
+
+mod pins;
+mod wire;
+
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::pin::Pin;
+use std::rc::Rc;
+use std::task::{Context, Waker};
+use std::time::{Duration, Instant};
+
+use arm_machine::{Machine, Motion, Panel, Settings, talk};
+use proto3964r::{Config, Event, Line, LineError, Priority, Station};
+use pulse_interp::{Direction, HomingSettings};
+use scara_kin::nalgebra::Point2;
+use scara_kin::{Arm, Elbow, Joints};
+use stepper_sync::StepDirTiming;
+
+pub use pins::Pins;
+use wire::Wire;
+
+pub const STEPS_PER_TURN: f64 = 16_000.0;
+pub const TICK_HZ: u32 = 1_000_000;
+/// -90 and 20 degrees.
+pub const HOME_STEPS: [i32; 2] = [-4000, 889];
+/// -30 and 20 degrees.
+pub const START_STEPS: [i32; 2] = [-1333, 889];
+pub const LINKS_MM: [f64; 2] = [132.0, 132.0];
+pub const SPEED_DEG_S: f64 = 180.0;
+pub const ACCELERATION_DEG_S2: f64 = 1500.0;
+
+const HOMING: HomingSettings = HomingSettings {
+    direction: Direction::Negative,
+    most_steps: 16_000,
+    clear_steps: 20,
+};
+
+const SETTINGS: Settings = Settings {
+    links_mm: LINKS_MM,
+    elbow: Elbow::Right,
+    ranges_deg: [[-90.0, 210.0], [20.0, 160.0]],
+    steps_per_turn: [STEPS_PER_TURN; 2],
+    driver: StepDirTiming::DRV8825,
+    speed_deg_s: [SPEED_DEG_S; 2],
+    acceleration_deg_s2: [ACCELERATION_DEG_S2; 2],
+    tolerance_mm: 0.05,
+    home_deg: [-90.0, 20.0],
+    homing: [HOMING; 2],
+    homing_fast_hz: 800,
+    homing_slow_hz: 100,
+};
+
+/// Looks at all tasks before something else happens: enough for a command and its answer.
+const ROUNDS: usize = 60;
+/// Blocks of the longest homing.
+const MOST_BLOCKS: usize = 100_000;
+
+pub fn forward(joints: [f64; 2]) -> [f64; 2] {
+    let point = arm().forward(Joints::new(joints[0], joints[1]));
+    [point.x, point.y]
+}
+
+pub fn joints_of(tool: [f64; 2]) -> [f64; 2] {
+    let joints = arm()
+        .inverse_elbow(Point2::from(tool), Elbow::Right)
+        .unwrap();
+    [joints.shoulder, joints.elbow]
+}
+
+pub fn arm() -> Arm {
+    Arm::new(LINKS_MM[0], LINKS_MM[1]).unwrap()
+}
+
+type Task = Pin<Box<dyn Future<Output = ()>>>;
+
+pub struct Rig {
+    panel: &'static Panel,
+    tasks: [Task; 2],
+    pc: Station<160, 64>,
+    to_firmware: Wire,
+    from_firmware: Wire,
+    answers: VecDeque<String>,
+    log: Vec<String>,
+    start: Instant,
+    pub pins: Pins,
+}
+
+impl Rig {
+    /// The joints are so many steps from their switches.
+    pub fn new(from_switches: [i32; 2]) -> Self {
+        let panel: &Panel = Box::leak(Box::new(Panel::new()));
+        let machine: &Machine = Box::leak(Box::new(Machine::new(&SETTINGS, TICK_HZ).unwrap()));
+        let from_switches = Rc::new(Cell::new(from_switches));
+        let (to_firmware, from_firmware) = (Wire::default(), Wire::default());
+
+        let switches = Rc::clone(&from_switches);
+        let motion = Motion::new(machine, panel).unwrap();
+        let plan = async move {
+            motion.run(|| switches.get().map(|steps| steps <= 0)).await;
+        };
+        let port = (to_firmware.clone(), from_firmware.clone());
+        let converse = async move {
+            talk(machine, panel, Line::Instant, port, |_| {
+                Some(LineError::Parity)
+            })
+            .await;
+        };
+        Self {
+            panel,
+            tasks: [Box::pin(plan), Box::pin(converse)],
+            pc: Station::with_buffers(Config::siemens_3964r(Priority::High, Line::Instant)),
+            to_firmware,
+            from_firmware,
+            answers: VecDeque::new(),
+            log: Vec::new(),
+            start: Instant::now(),
+            pins: Pins::new(from_switches),
+        }
+    }
+
+    /// At home, and away from the end of the shoulder's range.
+    pub fn homed() -> Self {
+        let mut rig = Self::new([3, 3]);
+        let answer = rig.ask("home");
+        assert!(answer.starts_with("done, "), "{answer}");
+        assert_eq!(rig.pins.steps, HOME_STEPS);
+        assert!(rig.ask("jog shoulder 60").starts_with("ok, "));
+        assert!(rig.answer().starts_with("done, "));
+        assert_eq!(rig.pins.steps, START_STEPS);
+        rig.pins.forget();
+        rig
+    }
+
+    pub fn panel(&self) -> &Panel {
+        self.panel
+    }
+
+    pub fn log(&self) -> &[String] {
+        &self.log
+    }
+
+    /// Sends a command; its first answer.
+    pub fn ask(&mut self, command: &str) -> String {
+        assert_eq!(self.answers, [""; 0], "answers that nobody has read");
+        self.pc.submit(self.now(), command.as_bytes()).unwrap();
+        self.answer()
+    }
+
+    /// The next answer; the pins play when there is none yet.
+    pub fn answer(&mut self) -> String {
+        for _ in 0..MOST_BLOCKS {
+            self.work();
+            if let Some(answer) = self.answers.pop_front() {
+                return answer;
+            }
+            self.play_block();
+        }
+        panic!("no answer after {:?}", self.log);
+    }
+
+    pub fn play_blocks(&mut self, count: usize) {
+        for _ in 0..count {
+            self.work();
+            assert!(self.play_block(), "no block after {:?}", self.log);
+        }
+    }
+
+    /// Plays what there is, while the planner does nothing.
+    pub fn starve(&mut self) {
+        let mut end = None;
+        while let Some(block) = self.panel.try_next_block() {
+            self.pins.play(&block);
+            self.panel.played(block.end);
+            end = Some(block.end);
+        }
+        self.panel.ran_out_after(end.expect("a block"));
+    }
+
+    fn play_block(&mut self) -> bool {
+        let Some(block) = self.panel.try_next_block() else {
+            return false;
+        };
+        self.pins.play(&block);
+        self.panel.played(block.end);
+        self.work();
+        if self.panel.has_no_block() {
+            self.panel.ran_out_after(block.end);
+        }
+        true
+    }
+
+    /// All tasks as far as they go.
+    fn work(&mut self) {
+        for _ in 0..ROUNDS {
+            let mut context = Context::from_waker(Waker::noop());
+            for task in &mut self.tasks {
+                assert!(
+                    task.as_mut().poll(&mut context).is_pending(),
+                    "a task ended"
+                );
+            }
+            self.exchange();
+        }
+    }
+
+    /// The PC's side of the line.
+    fn exchange(&mut self) {
+        let now = self.now();
+        while let Some(byte) = self.pc.poll_transmit_byte(now) {
+            self.to_firmware.push(byte);
+        }
+        while let Some(byte) = self.from_firmware.pop() {
+            self.pc.handle_byte(now, byte);
+        }
+        self.pc.handle_timeout(now);
+        while let Some(event) = self.pc.poll_event() {
+            if let Event::Received(telegram) = event {
+                let answer = String::from_utf8(telegram.to_vec()).unwrap();
+                self.log.push(answer.clone());
+                self.answers.push_back(answer);
+            }
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+}
