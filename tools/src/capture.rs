@@ -27,6 +27,7 @@
 //! # }
 //! ```
 
+mod pcapng;
 mod report;
 mod step;
 mod tap;
@@ -37,6 +38,7 @@ use proto3964r::{Character, LineError, Side};
 use thiserror::Error;
 
 pub use self::{
+    pcapng::PcapngWriter,
     report::Report,
     step::{Kind, Step},
     tap::Tap,
@@ -120,6 +122,15 @@ fn read_word(word: &str, mut push: impl FnMut(u8, Option<LineError>)) -> Result<
     }
     bytes.into_iter().for_each(|byte| push(byte, error));
     Ok(())
+}
+
+/// The record in pieces, each of which one side sent at one time; a damaged character is a piece of
+/// its own.
+pub fn pieces(record: &[Character]) -> impl Iterator<Item = &[Character]> {
+    record.chunk_by(|one, next| {
+        let is_intact = one.error.is_none() && next.error.is_none();
+        is_intact && one.at == next.at && one.side == next.side
+    })
 }
 
 /// A character as a line of a capture.

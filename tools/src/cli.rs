@@ -1,6 +1,8 @@
 //! The command line.
 
+mod input;
 mod monitor;
+mod simulate;
 mod station;
 
 use core::future::Future;
@@ -8,6 +10,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context as _, Result};
 use clap::{Parser, Subcommand};
+use tokio::signal::ctrl_c;
 
 /// Brings up a Siemens 3964 or 3964R line.
 #[derive(Parser)]
@@ -21,6 +24,7 @@ struct Options {
 enum Program {
     Station(station::Options),
     Monitor(monitor::Options),
+    Simulate(simulate::Options),
 }
 
 /// Runs what the arguments of this process ask for.
@@ -29,6 +33,7 @@ pub fn main() -> ExitCode {
     let ended = match Options::parse().program {
         Program::Station(options) => station::run(&options),
         Program::Monitor(options) => monitor::run(&options),
+        Program::Simulate(options) => simulate::run(&options),
     };
     ended.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");
@@ -43,4 +48,19 @@ fn block_on<T>(program: impl Future<Output = Result<T>>) -> Result<T> {
     runtime
         .context("the asynchronous runtime")?
         .block_on(program)
+}
+
+/// Returns when the program is to end: Ctrl-C, or SIGTERM on Unix.
+async fn interrupted() -> Result<()> {
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        let mut terminated = signal(SignalKind::terminate()).context("SIGTERM")?;
+        tokio::select! {
+            pressed = ctrl_c() => pressed.context("Ctrl-C"),
+            _ = terminated.recv() => Ok(()),
+        }
+    }
+    #[cfg(not(unix))]
+    ctrl_c().await.context("Ctrl-C")
 }

@@ -1,11 +1,13 @@
 //! A listener on both directions of a line.
 
-use core::{mem, time::Duration};
+mod saved;
+
+use core::{future::pending, mem, pin::pin, time::Duration};
 use std::{
     fs,
     io::{self, IsTerminal as _, Write as _},
     process::ExitCode,
-    time::Instant,
+    time::{Instant, SystemTime},
 };
 
 use anyhow::{Context as _, Result, anyhow, bail};
@@ -13,6 +15,7 @@ use clap::Args;
 use proto3964r::{Character, Diagnosis, Line, LineError, Priority, Side, tokio::Damage};
 use tokio::{io::AsyncReadExt as _, select, time::sleep};
 
+use self::saved::Saved;
 use crate::{
     Address, Port, Preset,
     capture::{self, Kind, Report, Step, Tap},
@@ -52,10 +55,14 @@ pub(super) struct Options {
     /// Times and check of the line.
     #[arg(long, default_value = "siemens-3964r")]
     preset: Preset,
+    /// Keep what is heard: as pcapng for Wireshark if the name ends so, else as a capture of this
+    /// program. The file must not exist.
+    #[arg(long, value_name = "FILE")]
+    save: Option<String>,
     /// Print verdicts as JSON, one a line, and nothing else.
     #[arg(long)]
     json: bool,
-    /// End after this number of seconds; without it, ports are heard for ever.
+    /// End after this number of seconds; without it, ports are heard until Ctrl-C.
     #[arg(long, requires = "port", value_parser = text::seconds, allow_hyphen_values = true)]
     seconds: Option<Duration>,
 }
@@ -63,43 +70,77 @@ pub(super) struct Options {
 pub(super) fn run(options: &Options) -> Result<ExitCode> {
     // A listener has no priority and sends nothing.
     let tap = Tap::new(options.preset.config(Priority::Low, Line::Instant));
-    let printer = Printer { json: options.json };
+    let teller = Teller {
+        tap,
+        json: options.json,
+        file: None,
+    };
     match &options.capture {
-        Some(path) => replay(path, tap, printer)?,
-        None => super::block_on(listen(options, tap, printer))?,
+        Some(path) => replay(path, options, teller)?,
+        None => super::block_on(listen(options, teller))?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the conversation of a capture file and the verdict.
-fn replay(path: &str, mut tap: Tap, printer: Printer) -> Result<()> {
+fn replay(path: &str, options: &Options, mut teller: Teller) -> Result<()> {
     let text = fs::read_to_string(path).with_context(|| path.to_owned())?;
     let record = capture::read(&text).map_err(|error| anyhow!("{path}:{error}"))?;
-    for character in record {
-        printer.steps(tap.hear(character))?;
+    teller.save(options, Duration::ZERO)?;
+    for piece in capture::pieces(&record) {
+        teller.hear(piece)?;
     }
-    printer.conclude(tap.verdict())
+    teller.conclude(record.last().map_or(Duration::ZERO, |last| last.at))
 }
 
-/// How a conversation is told.
-#[derive(Clone, Copy)]
-struct Printer {
+/// A tap, and how what it hears is told and kept.
+struct Teller {
+    tap: Tap,
     json: bool,
+    file: Option<(Saved, String)>,
 }
 
-impl Printer {
-    fn steps(self, steps: Vec<Step>) -> Result<()> {
+impl Teller {
+    /// Keeps what is heard from now on, if that is asked for.
+    fn save(&mut self, options: &Options, epoch: Duration) -> Result<()> {
+        if let Some(path) = &options.save {
+            let file = Saved::create(path, epoch).with_context(|| path.clone())?;
+            self.file = Some((file, path.clone()));
+        }
+        Ok(())
+    }
+
+    /// Tells what a piece means.
+    fn hear(&mut self, piece: &[Character]) -> Result<()> {
+        let steps = piece.iter().flat_map(|&heard| self.tap.hear(heard));
+        let steps: Vec<_> = steps.collect();
+        if let Some((file, path)) = &mut self.file {
+            file.piece(piece, &steps).with_context(|| path.clone())?;
+        }
+        self.steps(&steps)
+    }
+
+    /// Tells what it means that nothing came.
+    fn wait(&mut self, now: Duration) -> Result<()> {
+        let steps = self.tap.wait(now);
+        if let Some((file, path)) = &mut self.file {
+            file.wait(&steps).with_context(|| path.clone())?;
+        }
+        self.steps(&steps)
+    }
+
+    fn steps(&self, steps: &[Step]) -> Result<()> {
         if self.json {
             return Ok(());
         }
         for Step { at, kind, text, .. } in steps {
-            print(&format!("{}s {text}", text::time(at)), colour(kind))?;
+            print(&format!("{}s {text}", text::time(*at)), colour(*kind))?;
         }
         Ok(())
     }
 
     /// Prints a verdict on the last minute.
-    fn recent(self, now: Duration, recent: Diagnosis) -> Result<()> {
+    fn recent(&self, now: Duration, recent: Diagnosis) -> Result<()> {
         if self.json {
             print_json(Some(now), recent)
         } else {
@@ -108,12 +149,17 @@ impl Printer {
         }
     }
 
-    /// Prints the verdict on all.
-    fn conclude(self, diagnosis: Diagnosis) -> Result<()> {
+    /// Tells the verdict on all.
+    fn conclude(&mut self, now: Duration) -> Result<()> {
+        let diagnosis = self.tap.verdict();
+        let verdict = format!("verdict: {diagnosis}");
+        if let Some((file, path)) = &mut self.file {
+            file.verdict(now, &verdict).with_context(|| path.clone())?;
+        }
         if self.json {
             print_json(None, diagnosis)
         } else {
-            print(&format!("verdict: {diagnosis}"), "1")
+            print(&verdict, "1")
         }
     }
 }
@@ -124,43 +170,54 @@ fn print_json(now: Option<Duration>, diagnosis: Diagnosis) -> Result<()> {
 }
 
 /// Prints what two ports hear, and the verdict at the end.
-async fn listen(options: &Options, mut tap: Tap, printer: Printer) -> Result<()> {
+async fn listen(options: &Options, mut teller: Teller) -> Result<()> {
     let [a, b] = &options.port[..] else {
         bail!("two ports are needed, one for each direction");
     };
     let mut ear_a = Ear::open(Side::A, a).await?;
     let mut ear_b = Ear::open(Side::B, b).await?;
     let begin = Instant::now();
+    let epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    teller.save(options, epoch.unwrap_or_default())?;
+    let end = async {
+        match options.seconds {
+            Some(seconds) => sleep(seconds).await,
+            None => pending().await,
+        }
+    };
+    let (mut end, mut interrupt) = (pin!(end), pin!(super::interrupted()));
     let mut verdict = None;
     let mut due = PAUSE;
-    while options.seconds.is_none_or(|end| begin.elapsed() < end) {
+    loop {
         let heard = select! {
             heard = ear_a.hear() => heard?,
             heard = ear_b.hear() => heard?,
             () = sleep(TICK) => Vec::new(),
+            () = &mut end => break,
+            ended = &mut interrupt => {
+                ended?;
+                break;
+            }
         };
         let now = begin.elapsed();
-        printer.steps(tap.wait(now))?;
-        for (side, byte, error) in heard {
-            printer.steps(tap.hear(Character {
-                at: now,
-                side,
-                byte,
-                error,
-            }))?;
-        }
+        teller.wait(now)?;
+        let heard: Vec<_> = heard
+            .into_iter()
+            .map(|heard| Character { at: now, ..heard })
+            .collect();
+        teller.hear(&heard)?;
         if now < due {
             continue;
         }
         due = now + PAUSE;
         // Its numbers change all the time.
-        let recent = tap.verdict_since(now.saturating_sub(RECENT));
+        let recent = teller.tap.verdict_since(now.saturating_sub(RECENT));
         let kind = mem::discriminant(&recent.verdict);
         if verdict.replace(kind) != Some(kind) {
-            printer.recent(now, recent)?;
+            teller.recent(now, recent)?;
         }
     }
-    printer.conclude(tap.verdict())
+    teller.conclude(begin.elapsed())
 }
 
 /// A port that hears one side.
@@ -177,21 +234,31 @@ impl Ear {
         Ok(Self { side, port, name })
     }
 
-    /// The next characters. May be dropped and called again.
-    async fn hear(&mut self) -> Result<Vec<(Side, u8, Option<LineError>)>> {
+    /// The next characters, without their time. May be dropped and called again.
+    async fn hear(&mut self) -> Result<Vec<Character>> {
         let mut buffer = [0; 256];
         let intact = match self.port.read(&mut buffer).await {
             Ok(0) => bail!("{}: closed by the other end", self.name),
             Ok(len) => buffer.get(..len).unwrap_or_default(),
             Err(error) => match Damage::of(&error) {
                 Some(Damage::Character { byte, error }) => {
-                    return Ok(vec![(self.side, byte, Some(error))]);
+                    return Ok(vec![self.character(byte, Some(error))]);
                 }
-                Some(_) => return Ok(vec![(self.side, 0, Some(LineError::Framing))]), // BREAK
+                Some(_) => return Ok(vec![self.character(0, Some(LineError::Framing))]), // BREAK
                 None => return Err(error).with_context(|| self.name.clone()),
             },
         };
-        Ok(intact.iter().map(|&byte| (self.side, byte, None)).collect())
+        let intact = intact.iter().map(|&byte| self.character(byte, None));
+        Ok(intact.collect())
+    }
+
+    const fn character(&self, byte: u8, error: Option<LineError>) -> Character {
+        Character {
+            at: Duration::ZERO,
+            side: self.side,
+            byte,
+            error,
+        }
     }
 }
 

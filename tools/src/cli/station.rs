@@ -2,9 +2,8 @@
 
 use core::time::Duration;
 use std::{
-    io::{self, BufRead as _, Write as _},
+    io::{self, Write as _},
     process::ExitCode,
-    thread,
     time::Instant,
 };
 
@@ -13,12 +12,13 @@ use clap::{Args, ValueEnum};
 use proto3964r::{
     Abandoned, Cause, Event, Failure, Priority, Rejection, frame::FrameError, tokio::driver,
 };
-use tokio::{select, sync::mpsc, time::sleep};
+use tokio::{select, time::sleep};
 
+use super::input;
 use crate::{Address, Preset, text};
 
 /// Longest block in either direction: that of a CP 341.
-const BLOCK: usize = 4096;
+pub(super) const BLOCK: usize = 4096;
 
 /// How soon the end is noticed.
 const TICK: Duration = Duration::from_millis(20);
@@ -58,7 +58,7 @@ pub(super) struct Options {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum PriorityName {
+pub(super) enum PriorityName {
     High,
     Low,
 }
@@ -72,9 +72,6 @@ impl From<PriorityName> for Priority {
     }
 }
 
-/// A line of standard input: its number, and a job or what is wrong with it.
-type InputLine = (usize, Result<Vec<u8>, String>);
-
 pub(super) fn run(options: &Options) -> Result<ExitCode> {
     super::block_on(work(options))
 }
@@ -87,7 +84,7 @@ async fn work(options: &Options) -> Result<ExitCode> {
         .preset
         .config(options.priority.into(), address.line());
     let mut line = driver::<BLOCK>(port, config);
-    let mut input = read_input();
+    let mut input = input::lines();
     let mut code = ExitCode::SUCCESS;
     let mut input_ended = false;
     let mut last_outcome: Option<Instant> = None;
@@ -100,6 +97,7 @@ async fn work(options: &Options) -> Result<ExitCode> {
             },
             job = input.recv(), if is_free => match job {
                 Some((number, job)) => {
+                    let job = job.and_then(|job| parse(&job));
                     let job = job.and_then(|job| line.submit(&job).map_err(|error| error.to_string()));
                     if let Err(error) = job {
                         eprintln!("error: line {number}: {error}");
@@ -119,28 +117,6 @@ async fn work(options: &Options) -> Result<ExitCode> {
     }
 }
 
-/// Reads standard input in a thread of its own.
-fn read_input() -> mpsc::Receiver<InputLine> {
-    let (sender, receiver) = mpsc::channel(1);
-    thread::spawn(move || {
-        for (number, line) in (1..).zip(io::stdin().lock().lines()) {
-            let readable = match &line {
-                Ok(_) => true,
-                Err(error) => error.kind() == io::ErrorKind::InvalidData, // not text, but read
-            };
-            let job = match line {
-                Ok(line) if line.trim().is_empty() => continue,
-                Ok(line) => parse(line.trim()),
-                Err(error) => Err(error.to_string()),
-            };
-            if sender.blocking_send((number, job)).is_err() || !readable {
-                return;
-            }
-        }
-    });
-    receiver
-}
-
 fn parse(line: &str) -> Result<Vec<u8>, String> {
     match line {
         "-" => Ok(Vec::new()),
@@ -149,7 +125,7 @@ fn parse(line: &str) -> Result<Vec<u8>, String> {
 }
 
 /// The line of output for an event.
-fn describe(event: Event<'_>) -> String {
+pub(super) fn describe(event: Event<'_>) -> String {
     match event {
         Event::Received(telegram) => {
             let hex: String = telegram.iter().map(|byte| format!(" {byte:02X}")).collect();

@@ -5,4 +5,6 @@
 mod exchange;
 mod monitor;
 mod program;
+mod simulate;
 mod station;
+mod wireshark;
