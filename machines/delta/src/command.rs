@@ -21,9 +21,18 @@ pub(crate) fn is_empty(line: &str) -> bool {
 }
 
 /// The words of a line, without the mark of the text's encoding before the first.
-fn without_comment(line: &str) -> &str {
+pub(crate) fn without_comment(line: &str) -> &str {
     let line = line.trim_start_matches('\u{FEFF}');
     line.split_once('#').map_or(line, |(words, _)| words).trim()
+}
+
+/// The numbers of a line.
+pub(crate) fn numbers(words: &str) -> Result<Vec<f64>> {
+    let numbers = words.split_whitespace().map(|word| match word.parse() {
+        Ok(number) if f64::is_finite(number) => Ok(number),
+        _ => Err(anyhow!("{word:?} is not a number")),
+    });
+    numbers.collect()
 }
 
 /// Reads a line; nothing for an empty one or a comment.
@@ -35,13 +44,7 @@ pub(crate) fn parse(line: &str) -> Result<Option<Command>> {
     if line.eq_ignore_ascii_case("end") {
         return Ok(Some(Command::End));
     }
-    let numbers = line
-        .split_whitespace()
-        .map(|word| match word.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(anyhow!("{word:?} is not a number")),
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let numbers = numbers(line)?;
     let (x, y, z, feed_mm_s) = match *numbers {
         [x, y, z] => (x, y, z, None),
         [x, y, z, feed] => (x, y, z, Some(feed)),

@@ -29,8 +29,10 @@
 //! ```
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod calibration;
 mod command;
 mod control_tick;
+mod course;
 mod line_reader;
 mod machine;
 mod motion;
@@ -44,6 +46,8 @@ mod session;
 mod simulation;
 mod step_log;
 
+pub use self::calibration::{Calibrated, Fit};
+pub use self::course::ArmsAt;
 pub use self::machine::Machine;
 pub use self::motion::Motion;
 pub use self::record::Record;

@@ -67,21 +67,22 @@ impl PathSettings {
 }
 
 /// What an arm differs by from the drawing.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-struct Deviation {
-    azimuth_deg: f64,
-    base_mm: f64,
-    platform_mm: f64,
-    upper_mm: f64,
-    lower_mm: f64,
-    home_deg: f64,
+pub(crate) struct Deviation {
+    pub(crate) azimuth_deg: f64,
+    pub(crate) base_mm: f64,
+    pub(crate) platform_mm: f64,
+    pub(crate) upper_mm: f64,
+    pub(crate) lower_mm: f64,
+    pub(crate) home_deg: f64,
 }
 
 /// The checked machine. Its angles read zero at home, as the steps do.
 #[derive(Debug, Clone)]
 pub struct Machine {
     pub(crate) delta: Delta,
+    pub(crate) deviations: [Deviation; 3],
     pub(crate) rad_per_step: f64,
     pub(crate) scale: StepScale,
     pub(crate) microsteps: u32,
@@ -126,8 +127,13 @@ impl Machine {
         ensure!(motor.microsteps > 0, "microsteps = 0 is not above zero");
         let rad_per_step =
             motor.step_deg.to_radians() / f64::from(motor.microsteps) / motor.gear_ratio;
+        let mut deviations = [Deviation::default(); 3];
+        for (deviation, arm) in deviations.iter_mut().zip(&settings.arm) {
+            *deviation = *arm;
+        }
         let machine = Self {
             delta: settings.delta()?,
+            deviations,
             rad_per_step,
             scale: StepScale::new(rad_per_step.recip())?,
             microsteps: motor.microsteps,
@@ -150,6 +156,21 @@ impl Machine {
             machine.delta.tolerance()
         );
         Ok(machine)
+    }
+
+    /// Its geometry.
+    #[must_use]
+    pub const fn geometry(&self) -> &Delta {
+        &self.delta
+    }
+
+    /// What an arm's rate may be, and its acceleration, in deg/s and deg/s².
+    #[must_use]
+    pub const fn max_rate_and_acceleration(&self) -> [f64; 2] {
+        [
+            self.max_rate_rad_s.to_degrees(),
+            self.max_acceleration_rad_s2.to_degrees(),
+        ]
     }
 
     /// The theta of each arm at home, in radians from straight down.

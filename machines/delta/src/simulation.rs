@@ -8,6 +8,7 @@ use machine_sim::{Figure, MotionSampler};
 use nalgebra::Point3;
 
 use crate::control_tick;
+use crate::course::{self, ArmsAt};
 use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::motors::{FollowedArm, Motors};
@@ -33,7 +34,10 @@ pub struct Run<'a> {
     pub(crate) driven: Driven,
     pub(crate) trains: Driven,
     pub(crate) ticked: Driven,
+    /// Of the platform, in mm.
     pub(crate) motion: MotionSampler<3>,
+    /// Of the motors, in steps from home.
+    pub(crate) positions: MotionSampler<3>,
 }
 
 /// What the simulated machine did in one of these ways.
@@ -57,6 +61,28 @@ impl Run<'_> {
         Report::new(self)
     }
 
+    /// What the arms do over time, with a load on the platform in kg.
+    ///
+    /// # Errors
+    /// The rods of a pose lie in a plane, where no torque holds the platform.
+    pub fn arms(&self, load_kg: f64) -> Result<Vec<ArmsAt>> {
+        course::arms(self, load_kg)
+    }
+
+    /// Time in s and speed of the platform in mm/s, the mean around it.
+    pub fn speeds(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.motion.speeds()
+    }
+
+    /// The lines that were asked for: ends in mm, feed in mm/s, and when each ends in s.
+    pub fn lines(&self) -> impl Iterator<Item = ([[f64; 3]; 2], f64, f64)> {
+        let moves = self.record.moves.iter();
+        moves.map(|it| {
+            let ends = [it.from.into(), it.to.into()];
+            (ends, it.feed_mm_s, seconds(it.end_ticks))
+        })
+    }
+
     /// Workspace, mechanism and paths, and the platform's speed and acceleration, as an SVG figure.
     ///
     /// # Errors
@@ -77,12 +103,15 @@ pub fn simulate<'a>(
 ) -> Result<Run<'a>> {
     let duration_s = seconds(record.duration_ticks());
     let mut motion = MotionSampler::new(machine.point([0; 3])?.into());
+    let mut positions = MotionSampler::new([0.0; 3]);
     let mut follower = Follower::new(machine, &record.moves, record.motion)?;
     for position in step_log::read(steps) {
         let (t_s, position) = position?;
         motion.add(t_s, follower.follow(t_s, position)?.into());
+        positions.add(t_s, position.map(f64::from));
     }
     motion.end(duration_s);
+    positions.end(duration_s);
     let deviation_steps = match record.motion {
         Motion::Rounded => CUBIC_STEPS,
         Motion::Trains => TRAINS_STEPS,
@@ -94,6 +123,7 @@ pub fn simulate<'a>(
         trains: by_trains(machine, &record.moves)?,
         ticked: by_ticks(machine, &record.moves)?,
         motion,
+        positions,
     })
 }
 

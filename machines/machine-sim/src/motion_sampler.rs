@@ -44,6 +44,12 @@ impl<const N: usize> MotionSampler<N> {
         self.window_s
     }
 
+    /// Time in s and the point at the ends of the windows, the first at 0 s.
+    pub fn points(&self) -> impl Iterator<Item = (f64, [f64; N])> {
+        let ends = (0_u32..).map(|k| f64::from(k) * self.window_s);
+        ends.zip(self.points.iter().copied())
+    }
+
     /// It is at a point at a time; from the last one it has moved evenly.
     pub fn add(&mut self, t_s: f64, point: [f64; N]) {
         let (last_s, last) = self.last;

@@ -4,6 +4,7 @@ use anyhow::{Context as _, Result};
 use machine_sim::Figure;
 use pose_pt::Platform;
 
+use crate::course::{self, PlatformAt};
 use crate::examination::Examination;
 use crate::line::Wire;
 use crate::machine::{Locators, Machine, isometry};
@@ -37,6 +38,7 @@ pub struct Run {
     align: Figure,
     report: Report,
     note: Option<String>,
+    course: Vec<PlatformAt>,
 }
 
 impl Run {
@@ -62,6 +64,12 @@ impl Run {
     #[must_use]
     pub const fn align_picture(&self) -> &Figure {
         &self.align
+    }
+
+    /// The locators and the body over the time of the table.
+    #[must_use]
+    pub fn course(&self) -> &[PlatformAt] {
+        &self.course
     }
 
     /// The numbers.
@@ -110,15 +118,15 @@ fn align<const N: usize>(
     // Whatever is wrong with the motion is said before anything moves.
     planner.plan(from, task.reached)?;
 
-    let mut world = World::new(&planner, machine.panel, from, wire)?;
+    let mut world = World::new(planner, machine.panel, from, wire)?;
     operator::work(&mut world, &task)?;
-    let course = world.finish()?;
-    let plan = course.plan.as_ref().context("no pose change was run")?;
+    let done = world.finish()?;
+    let plan = done.plan.as_ref().context("no pose change was run")?;
 
     let table = Table::read(&plan.csv, platform)?;
     let examination = Examination::of(&table, platform)?;
     let report = Report::new(
-        &course,
+        &done,
         plan,
         &table,
         &examination,
@@ -126,7 +134,7 @@ fn align<const N: usize>(
         alignment.mode,
     );
     Ok(Run {
-        jog: picture::jog(&course.jog, &machine.panel),
+        jog: picture::jog(&done.jog, &machine.panel),
         align: picture::align(
             machine,
             platform,
@@ -136,7 +144,8 @@ fn align<const N: usize>(
         ),
         report,
         note: task.rounding_note(),
+        course: course::of_table(&examination, platform, &machine.settings)?,
         table: plan.csv.clone(),
-        line_log: course.line_log,
+        line_log: done.line_log,
     })
 }

@@ -27,6 +27,8 @@ enum Motion<const N: usize> {
 pub(crate) struct Drives<const N: usize> {
     states: States<N>,
     accelerations: [[f64; 3]; N],
+    /// Ends of each axis, in mm.
+    strokes: [[(f64, f64); 3]; N],
     motion: Motion<N>,
     now_us: u64,
 }
@@ -42,6 +44,9 @@ impl<const N: usize> Drives<N> {
             accelerations: platform
                 .locators()
                 .map(|it| it.limits.map(|limits| limits.acceleration)),
+            strokes: platform
+                .locators()
+                .map(|it| it.limits.map(|limits| (limits.min, limits.max))),
             motion: Motion::Hold,
             now_us: 0,
         }
@@ -103,7 +108,7 @@ impl<const N: usize> Drives<N> {
     /// One cycle; true when it has brought everything to rest.
     pub(crate) fn cycle(&mut self) -> bool {
         self.now_us += CYCLE_US;
-        match &self.motion {
+        match &mut self.motion {
             Motion::Hold => return false,
             Motion::Jog {
                 locator,
@@ -120,9 +125,18 @@ impl<const N: usize> Drives<N> {
                     .and_then(|it| it.get_mut(*axis));
                 if let (Some(state), Some(acceleration)) = (state, acceleration) {
                     let max_change = acceleration * CYCLE_S;
-                    let change = (speed - state.speed).clamp(-max_change, max_change);
+                    let change = (*speed - state.speed).clamp(-max_change, max_change);
                     state.position += (state.speed + change / 2.0) * CYCLE_S;
                     state.speed += change;
+                    let stroke = self.strokes.get(*locator).and_then(|it| it.get(*axis));
+                    if let Some(&(min, max)) = stroke
+                        && !(min..=max).contains(&state.position)
+                    {
+                        // The drive ends a jog at the end of the stroke by itself.
+                        state.position = state.position.clamp(min, max);
+                        state.speed = 0.0;
+                        *speed = 0.0;
+                    }
                     if *speed != 0.0 || state.speed != 0.0 {
                         return false;
                     }
@@ -130,7 +144,7 @@ impl<const N: usize> Drives<N> {
             }
             Motion::Table { table, start_us } => {
                 #[expect(clippy::cast_precision_loss, reason = "hours of microseconds")]
-                let time_s = (self.now_us - start_us) as f64 * 1e-6;
+                let time_s = (self.now_us - *start_us) as f64 * 1e-6;
                 self.states = table.at(time_s).unwrap_or(self.states);
                 if time_s < table.duration_s() {
                     return false;

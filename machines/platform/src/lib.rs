@@ -55,6 +55,8 @@ extern crate alloc;
 
 mod alignment;
 mod arbiter;
+mod course;
+mod desk;
 mod drives;
 mod examination;
 mod line;
@@ -75,6 +77,8 @@ mod world;
 
 pub use self::alignment::{Alignment, Run, run};
 pub use self::arbiter::{Arbiter, PendantId, Refused, Target};
+pub use self::course::PlatformAt;
+pub use self::desk::{Desk, Hand, Seen};
 pub use self::line::{Side, Wire};
 pub use self::machine::Machine;
 pub use self::mode::Mode;

@@ -46,6 +46,12 @@ impl Machine {
             panel,
         })
     }
+
+    /// Where the body is, and where it goes, as the platform file has it.
+    #[must_use]
+    pub fn poses(&self) -> [Pose; 2] {
+        self.settings.poses()
+    }
 }
 
 impl Locators {

@@ -21,10 +21,9 @@ const MAX_S: f64 = 10_000.0;
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// What every motion of the body is planned with.
-#[derive(Clone, Copy)]
-pub(crate) struct Planner<'a, const N: usize> {
-    pub(crate) platform: &'a Platform<N>,
-    settings: &'a Settings,
+pub(crate) struct Planner<const N: usize> {
+    pub(crate) platform: Platform<N>,
+    pub(crate) settings: Settings,
     mode: Mode,
 }
 
@@ -35,11 +34,11 @@ pub(crate) struct Plan {
     pub(crate) distance_error_bound_mm: f64,
 }
 
-impl<'a, const N: usize> Planner<'a, N> {
-    pub(crate) const fn new(platform: &'a Platform<N>, settings: &'a Settings, mode: Mode) -> Self {
+impl<const N: usize> Planner<N> {
+    pub(crate) fn new(platform: &Platform<N>, settings: &Settings, mode: Mode) -> Self {
         Self {
-            platform,
-            settings,
+            platform: *platform,
+            settings: settings.clone(),
             mode,
         }
     }
@@ -64,7 +63,7 @@ impl<'a, const N: usize> Planner<'a, N> {
         let mut csv = self.header();
         let (points, distance_error_bound_mm) = match self.mode {
             Mode::Pt => {
-                let table = PtTable::plan(self.platform, &path, segmentation).map_err(placed)?;
+                let table = PtTable::plan(&self.platform, &path, segmentation).map_err(placed)?;
                 table.fits(MAX_POINTS).map_err(placed)?;
                 is_short(table.duration_s())?;
                 for point in table.points() {
@@ -74,7 +73,7 @@ impl<'a, const N: usize> Planner<'a, N> {
             }
             Mode::Pvt => {
                 let mut knots = vec![Knot::default(); MAX_POINTS];
-                let table = PvtTable::plan(self.platform, &path, segmentation, &mut knots);
+                let table = PvtTable::plan(&self.platform, &path, segmentation, &mut knots);
                 let table = table.map_err(placed)?;
                 is_short(table.duration_s())?;
                 for point in table.points() {

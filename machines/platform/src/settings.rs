@@ -11,7 +11,7 @@ use crate::panel::PanelSettings;
 use crate::pose::Pose;
 
 /// The platform file, as written.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     locator: Vec<LocatorSettings>,
@@ -20,7 +20,7 @@ pub(crate) struct Settings {
     wheel: WheelSettings,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LocatorSettings {
     anchor_mm: Numbers<3>,
@@ -33,13 +33,13 @@ struct LocatorSettings {
     jerk_mm_s3: Option<Numbers<3>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BodySettings {
     outline_mm: Vec<Numbers<3>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PathSettings {
     from: Numbers<6>,
@@ -57,7 +57,7 @@ enum InterpolationName {
     Vector,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WheelSettings {
     full_counts: u32,

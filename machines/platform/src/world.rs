@@ -10,7 +10,7 @@ use proto3964r::Transmit;
 use crate::drives::Drives;
 use crate::line::{Line, Side, Wire};
 use crate::machine::isometry;
-use crate::panel::{Action, Input, PanelSettings};
+use crate::panel::{Action, Input, PanelSettings, Refusal};
 use crate::pendant::Pendant;
 use crate::planner::{Plan, Planner};
 use crate::pose::{Pose, changed};
@@ -41,12 +41,12 @@ pub(crate) struct Course {
 }
 
 pub(crate) struct World<'a, const N: usize> {
-    planner: &'a Planner<'a, N>,
+    pub(crate) planner: Planner<N>,
     now_us: u64,
     pub(crate) pendant: Pendant,
     line: Line<'a>,
     workstation: Workstation<N>,
-    drives: Drives<N>,
+    pub(crate) drives: Drives<N>,
     /// Pulses of the wheel, on their own wires.
     counter: u32,
     sampler: WheelSampler,
@@ -61,19 +61,20 @@ pub(crate) struct World<'a, const N: usize> {
 impl<'a, const N: usize> World<'a, N> {
     /// The body at rest, the pendant without power.
     pub(crate) fn new(
-        planner: &'a Planner<'a, N>,
+        planner: Planner<N>,
         panel: PanelSettings,
         pose: Pose,
         wire: Wire<'a>,
     ) -> Result<Self> {
         let axes = planner.platform.axes(&isometry(pose));
+        let drives = Drives::new(&planner.platform, &axes);
         Ok(Self {
             planner,
             now_us: 0,
             pendant: Pendant::new(),
             line: Line::new(wire),
             workstation: Workstation::new(panel)?,
-            drives: Drives::new(planner.platform, &axes),
+            drives,
             counter: 0,
             sampler: WheelSampler::new(Duration::ZERO, 0),
             positions_um: micrometres(&axes),
@@ -121,9 +122,14 @@ impl<'a, const N: usize> World<'a, N> {
         self.act(action)
     }
 
+    /// Turns the wheel by some counts, now.
+    pub(crate) const fn turn_wheel(&mut self, counts: i32) {
+        self.counter = self.counter.wrapping_add_signed(counts);
+    }
+
     /// Turns the wheel by some counts, evenly over the next sample.
     pub(crate) fn wheel(&mut self, counts: i32) -> Result<()> {
-        self.counter = self.counter.wrapping_add_signed(counts);
+        self.turn_wheel(counts);
         let due = micros(self.sampler.due()).context("the sampler's clock")?;
         self.advance_to(due)
     }
@@ -256,8 +262,14 @@ impl<'a, const N: usize> World<'a, N> {
             }
             Some(Action::Move(change)) => {
                 let to = changed(self.pose, &change);
-                let plan = self.planner.plan(self.pose, to)?;
-                let table = Table::read(&plan.csv, self.planner.platform)?;
+                let plan = match self.plan_to(to) {
+                    Ok(plan) => plan,
+                    Err(refusal) => {
+                        let none = self.workstation.input(Input::Refused(refusal));
+                        return self.act(none);
+                    }
+                };
+                let table = Table::read(&plan.csv, &self.planner.platform)?;
                 self.drives.run(self.now_us, table);
                 self.plan = Some(plan);
                 self.pose = to;
@@ -271,6 +283,16 @@ impl<'a, const N: usize> World<'a, N> {
                 Ok(())
             }
         }
+    }
+
+    /// The motion of the body to a pose, unless that is out of reach, or a locator has been jogged
+    /// from where it holds the body.
+    fn plan_to(&self, to: Pose) -> Result<Plan, Refusal> {
+        if self.largest_residual() > self.planner.settings.max_distance_error_mm() {
+            return Err(Refusal::NotReady);
+        }
+        let plan = self.planner.plan(self.pose, to);
+        plan.map_err(|_| Refusal::OutOfReach)
     }
 
     fn at_rest(&mut self) -> Result<()> {
@@ -292,7 +314,7 @@ impl<'a, const N: usize> World<'a, N> {
         Duration::from_micros(self.now_us)
     }
 
-    fn now_s(&self) -> f64 {
+    pub(crate) fn now_s(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "hours of microseconds")]
         let micros = self.now_us as f64;
         micros * 1e-6

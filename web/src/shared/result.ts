@@ -38,8 +38,10 @@ export class FileButtons {
     element('files', HTMLElement).append(...this.#buttons);
   }
 
-  /** Not while they are of an input that has changed. */
-  allow(isAllowed: boolean): void {
-    for (const button of this.#buttons) button.disabled = !isAllowed;
+  /** Not while they are of an input that has changed, nor those that are missing. */
+  allow(isAllowed: boolean, missing: string[] = []): void {
+    for (const button of this.#buttons) {
+      button.disabled = !isAllowed || missing.includes(button.textContent);
+    }
   }
 }

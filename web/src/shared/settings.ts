@@ -41,7 +41,8 @@ export class SettingsForm {
         into = create('fieldset', {}, legend);
         if (section[2]) into.append(create('small', { textContent: section[2] }));
         this.#target.append(into);
-      } else if (setting) {
+      } else if (setting && setting[3] !== '[') {
+        // What goes on over several lines is for the file alone.
         into.append(this.#field(index, setting));
       }
     }
@@ -70,20 +71,23 @@ export class SettingsForm {
 }
 
 /** The form of a page's machine, which the browser keeps under a name unless it is as shipped. */
-export function machineForm(name: string, shipped: string, changed: () => void): SettingsForm {
+export function machineForm(
+  name: string,
+  shipped: string,
+  changed: () => void,
+  file = 'machine.toml',
+): SettingsForm {
   const target = element('settings', HTMLElement);
   const form = new SettingsForm(target, () => {
     keep(name, form.text === shipped ? null : form.text);
     changed();
   });
   form.text = kept(name) ?? shipped;
-  const file = element('machine-file', HTMLInputElement);
-  takeFiles(target, file, async (given) => form.replace(await given.text()));
+  const chosen = element('machine-file', HTMLInputElement);
+  takeFiles(target, chosen, async (given) => form.replace(await given.text()));
   element('default-machine', HTMLButtonElement).addEventListener('click', () =>
     form.replace(shipped),
   );
-  element('save-machine', HTMLButtonElement).addEventListener('click', () =>
-    save('machine.toml', form.text),
-  );
+  element('save-machine', HTMLButtonElement).addEventListener('click', () => save(file, form.text));
   return form;
 }

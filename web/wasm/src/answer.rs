@@ -25,6 +25,12 @@ impl Answer {
     }
 
     /// Numbers, each by its bytes, lowest first as wasm has them.
+    #[cfg(any(
+        feature = "dance",
+        feature = "delta",
+        feature = "engrave",
+        feature = "stage"
+    ))]
     pub(crate) fn with_numbers<const N: usize>(
         self,
         name: &'static str,
@@ -34,7 +40,7 @@ impl Answer {
     }
 
     /// Rows of numbers, one after the other.
-    #[cfg(feature = "stage")]
+    #[cfg(any(feature = "delta", feature = "stage"))]
     pub(crate) fn with_rows<const N: usize>(
         self,
         name: &'static str,

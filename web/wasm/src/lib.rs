@@ -2,10 +2,14 @@
 //! its input as JSON and bytes; its result is JSON and named bytes, or one line for a person, the
 //! same that the command line prints.
 
+#[cfg(feature = "align")]
+mod align;
 mod answer;
 mod boundary;
 #[cfg(feature = "dance")]
 mod dance;
+#[cfg(feature = "delta")]
+mod delta;
 #[cfg(feature = "engrave")]
 mod engrave;
 #[cfg(any(feature = "dance", feature = "engrave"))]
@@ -35,6 +39,20 @@ fn perform(request: &Request) -> Result<Answer> {
         "stage" => stage::stage(request),
         #[cfg(feature = "stage")]
         "stage.file" => stage::file(request),
+        #[cfg(feature = "delta")]
+        "delta" => delta::delta(request),
+        #[cfg(feature = "delta")]
+        "delta.calibrate" => delta::calibrate(request),
+        #[cfg(feature = "delta")]
+        "delta.file" => delta::file(request),
+        #[cfg(feature = "align")]
+        "align" => align::align(request),
+        #[cfg(feature = "align")]
+        "align.file" => align::file(request),
+        #[cfg(feature = "align")]
+        "desk" => align::begin(request),
+        #[cfg(feature = "align")]
+        "desk.turn" => align::turn(request),
         other => bail!("there is no operation {other:?}"),
     }
 }

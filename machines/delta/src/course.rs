@@ -1,0 +1,83 @@
+//! The arms over time, as the steps drive them: angles, rates, accelerations and torques.
+
+use anyhow::Result;
+use nalgebra::Vector3;
+
+use crate::simulation::Run;
+
+const GRAVITY_M_S2: f64 = 9.81;
+const MM_PER_M: f64 = 1000.0;
+
+/// The arms and the platform at a time.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct ArmsAt {
+    /// Seconds from the start.
+    pub t_s: f64,
+    /// From straight down, outward positive.
+    pub angles_deg: [f64; 3],
+    /// Mean around this time.
+    pub rates_deg_s: [f64; 3],
+    /// Mean around this time.
+    pub accelerations_deg_s2: [f64; 3],
+    /// What the arms need to hold and accelerate the load; their own mass is not counted.
+    pub torques_nm: [f64; 3],
+    /// Its centre.
+    pub platform_mm: [f64; 3],
+    /// The end of each upper arm.
+    pub elbows_mm: [[f64; 3]; 3],
+}
+
+/// ```text
+/// rate = (q(t + w) - q(t - w)) / 2 w
+/// acceleration = (q(t + w) - 2 q(t) + q(t - w)) / w²
+/// torque = -Jᵀ F,  F = -m (g + acceleration of the platform)
+/// ```
+/// of angles and platform at the ends of windows of length w.
+pub(crate) fn arms(run: &Run<'_>, load_kg: f64) -> Result<Vec<ArmsAt>> {
+    let machine = run.machine;
+    let window_s = run.positions.window_s();
+    let points: Vec<_> = run.positions.points().collect();
+    let angles = |at: usize| {
+        let (_, steps) = points
+            .get(at)
+            .or(points.last())
+            .copied()
+            .unwrap_or_default();
+        Vector3::from(steps) * machine.rad_per_step
+    };
+    let mut platforms = Vec::with_capacity(points.len());
+    for index in 0..points.len() {
+        platforms.push(machine.delta.forward(angles(index))?);
+    }
+    let platform = |at: usize| {
+        platforms
+            .get(at)
+            .or(platforms.last())
+            .map_or(Vector3::zeros(), |it| it.coords)
+    };
+
+    let mut arms = Vec::with_capacity(points.len());
+    for (index, (t_s, _)) in points.iter().enumerate() {
+        // At rest before the first and after the last.
+        let (before, after) = (index.saturating_sub(1), index + 1);
+        let second = |[a, b, c]: [Vector3<f64>; 3]| (a - b * 2.0 + c) / (window_s * window_s);
+        let q = [before, index, after].map(angles);
+        let acceleration_mm_s2 = second([before, index, after].map(platform));
+        let [from, at, to] = q;
+        let pose = machine.delta.pose_of(at)?;
+        let acceleration_m_s2 = acceleration_mm_s2 / MM_PER_M + Vector3::z() * GRAVITY_M_S2;
+        let torques_nmm = pose.holding_torques(acceleration_m_s2 * -load_kg)?;
+        let deg = |rad: Vector3<f64>| rad.map(f64::to_degrees).into();
+        arms.push(ArmsAt {
+            t_s: *t_s,
+            angles_deg: deg(at + Vector3::from(machine.home_rad())),
+            rates_deg_s: deg((to - from) / (2.0 * window_s)),
+            accelerations_deg_s2: deg(second(q)),
+            torques_nm: (torques_nmm / MM_PER_M).into(),
+            platform_mm: pose.point().into(),
+            elbows_mm: pose.elbows().map(|at| at.into()),
+        });
+    }
+    Ok(arms)
+}

@@ -1,0 +1,226 @@
+// The page of the Delta robot: points on the right, what the robot makes of them on the left.
+import '../shared/style.css';
+import './delta.css';
+import '../shared/offline';
+import example from '../../../machines/delta/inputs/measured.txt?raw';
+import pickAndPlace from '../../../machines/delta/inputs/pick-and-place.txt?raw';
+import spiral from '../../../machines/delta/inputs/spiral.txt?raw';
+import shipped from '../../../machines/delta/machine.toml?raw';
+import wasm from '../../built/delta.wasm?url';
+import { Chart } from '../shared/chart';
+import { element, save, settled, takeFiles } from '../shared/dom';
+import { Editor, linesOf } from '../shared/editor';
+import { Machine, Superseded } from '../shared/machine';
+import { FileButtons, Status } from '../shared/result';
+import { columns, countUntil } from '../shared/rows';
+import { machineForm } from '../shared/settings';
+import { viewButtons } from '../shared/space';
+import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { Transport } from '../shared/transport';
+import { ARMS, Driving, type Quantity, type Result } from './driving';
+import { Scene } from './scene';
+
+const INPUTS: Record<string, string> = { 'pick-and-place': pickAndPlace, spiral };
+const ARM_COLOURS = ['series-1', 'series-2', 'series-4'] as const;
+const GRAMS_PER_KG = 1000;
+
+const machine = new Machine(wasm);
+const status = new Status();
+const files = new FileButtons(
+  machine,
+  'delta.file',
+  ['steps.csv', 'delta.svg', 'report.json'],
+  status,
+);
+const input = element('shipped', HTMLSelectElement);
+const motion = element('motion', HTMLSelectElement);
+const load = element('load', HTMLInputElement);
+const calibrated = element('calibrated', HTMLElement);
+const use = element('use', HTMLButtonElement);
+
+let shown: Driving | undefined;
+/** With what the last calibration has found. */
+let calibratedMachine: string | undefined;
+
+const scene = new Scene(element('scene', HTMLCanvasElement), (text) => {
+  editor.change(text);
+});
+viewButtons(element('views', HTMLElement), scene.space);
+const transport = new Transport((seconds) => {
+  scene.at(seconds);
+  for (const chart of charts) chart.at(seconds);
+});
+const seek = (seconds: number) => transport.set(seconds);
+const chart = (id: string, unit: string) => new Chart(element(id, HTMLElement), unit, 160, seek);
+const speeds = chart('speeds', 'mm/s');
+const rates = chart('rates', '°/s');
+const accelerations = chart('accelerations', '°/s²');
+const torques = chart('torques', 'N m');
+const charts = [speeds, rates, accelerations, torques];
+
+const editor = new Editor(element('lines', HTMLElement), 'Points', () => {
+  keep('delta lines', editor.text);
+  offerOwn();
+  input.value = 'own';
+  changed();
+});
+const measured = new Editor(element('measured', HTMLElement), 'Measured points', () => {
+  keep('delta measured', measured.text || null);
+  measured.mark('bad', []);
+});
+const redrive = settled(150, drive);
+const settings = machineForm('delta machine', shipped, changed);
+
+function changed(): void {
+  scene.text = editor.text;
+  files.allow(false);
+  status.say('Driving');
+  redrive();
+}
+
+async function drive(): Promise<void> {
+  const chosen = input.value in INPUTS ? input.value : null;
+  toAddress({
+    input: chosen === 'pick-and-place' ? null : chosen,
+    motion: motion.value === 'rounded' ? null : motion.value,
+    load: load.value === '100' ? null : load.value,
+  });
+  machine.stop();
+  const parameters = {
+    lines: editor.text,
+    machine: settings.text,
+    motion: motion.value,
+    load_kg: load.valueAsNumber / GRAMS_PER_KG,
+  };
+  if (Number.isNaN(parameters.load_kg)) {
+    refuse('load: no number');
+    return;
+  }
+  try {
+    show(new Driving(await machine.call<Result>('delta', parameters)));
+  } catch (error) {
+    if (!(error instanceof Superseded)) refuse(error);
+  }
+}
+
+function refuse(error: unknown): void {
+  status.refuse('', error);
+  files.allow(false);
+}
+
+function show(driving: Driving): void {
+  const isFirst = shown === undefined;
+  const before = transport.seconds;
+  shown = driving;
+  const { report, refused, summary } = driving.result;
+  const verdict =
+    refused ??
+    `Driven in ${report.duration_s.toFixed(2)} s of the machine's time, ` +
+      `at most ${report.max_path_error_mm.toFixed(3)} mm off the lines`;
+  const notes = report.notes.map((note) => `note: ${note}`);
+  status.say([verdict, ...notes].join('\n'), refused !== null);
+  const bad = report.refusals.map((it) => it.line);
+  editor.mark('bad', bad);
+  editor.mark('note', linesOf(report.notes));
+  element('summary', HTMLElement).textContent = summary;
+  files.allow(true);
+  scene.show(driving);
+  showCharts(driving);
+  transport.pause();
+  transport.begin(report.duration_s);
+  // A point that is dragged does not move the time.
+  if (!isFirst) transport.set(before);
+  element('main', HTMLElement).dataset.ready = '';
+}
+
+function showCharts(driving: Driving): void {
+  const [times = [], values = []] = columns(driving.speeds, 2);
+  const ends = Float64Array.from(driving.lines, (line) => line.endS);
+  const feeds = times.map((it) => driving.lines[countUntil(ends, it ?? 0)]?.feed ?? null);
+  speeds.show(
+    [
+      { label: 'feed asked for', colour: 'series-3', dash: [6, 4] },
+      { label: 'by the steps', colour: 'series-1' },
+    ],
+    [times as number[], feeds, values],
+  );
+  showArms(rates, driving, 'rates', driving.result.maxRateDegS);
+  showArms(accelerations, driving, 'accelerations', driving.result.maxAccelerationDegS2);
+  showArms(torques, driving, 'torques');
+}
+
+/** A quantity of the three arms, and its limit either way. */
+function showArms(chart: Chart, driving: Driving, quantity: Quantity, limit?: number): void {
+  const lines = ARMS.map((arm) => ({ label: `arm ${arm + 1}`, colour: ARM_COLOURS[arm] }));
+  const values = ARMS.map((arm) => driving.column(quantity, arm));
+  const times = Array.from(driving.times);
+  const limits = limit === undefined ? [] : [limit, -limit];
+  const limitLines = limits.map((it) => ({
+    label: it > 0 ? 'limit' : 'limit backward',
+    colour: 'limit',
+    dash: [6, 4],
+  }));
+  const limitValues = limits.map((it) => times.map(() => it));
+  chart.show([...limitLines, ...lines], [times, ...limitValues, ...values]);
+}
+
+async function calibrate(): Promise<void> {
+  const parameters = {
+    machine: settings.text,
+    measured: measured.text,
+    fit: element('fit', HTMLSelectElement).value,
+  };
+  use.disabled = true;
+  measured.mark('bad', []);
+  try {
+    const found = await machine.call<{ summary: string; machine: string }>(
+      'delta.calibrate',
+      parameters,
+    );
+    calibrated.textContent = found.value.summary;
+    calibratedMachine = found.value.machine;
+    use.disabled = false;
+  } catch (error) {
+    const said = error instanceof Error ? error.message : String(error);
+    calibrated.textContent = `measured points: ${said}`;
+    measured.mark('bad', linesOf([said]));
+  }
+}
+
+function offerOwn(): void {
+  const option = input.querySelector<HTMLOptionElement>('option[value=own]');
+  if (option) option.hidden = false;
+}
+
+function on(id: string, act: () => void): void {
+  element(id, HTMLButtonElement).addEventListener('click', act);
+}
+
+function begin(): void {
+  const own = kept('delta lines');
+  if (own !== null) offerOwn();
+  const asked = fromAddress('input');
+  input.value = asked && asked in INPUTS ? asked : own === null ? 'pick-and-place' : 'own';
+  editor.text = INPUTS[input.value] ?? own ?? '';
+  motion.value = fromAddress('motion') === 'trains' ? 'trains' : 'rounded';
+  load.value = fromAddress('load') ?? '100';
+  measured.text = kept('delta measured') ?? '';
+  for (const it of [motion, load]) it.addEventListener('input', changed);
+  input.addEventListener('input', () => {
+    editor.text = INPUTS[input.value] ?? kept('delta lines') ?? '';
+    changed();
+  });
+  element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+  takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) =>
+    editor.change(await file.text()),
+  );
+  on('calibrate', calibrate);
+  on('example', () => measured.change(example));
+  on('use', () => {
+    if (calibratedMachine !== undefined) settings.replace(calibratedMachine);
+  });
+  on('save-lines', () => save('points.txt', editor.text));
+  changed();
+}
+
+begin();

@@ -1,0 +1,100 @@
+// The robot in space: workspace, lines, path, and the mechanism at a time. Points can be dragged.
+import { colour } from '../shared/dom';
+import { type Pen, type Point3, Space } from '../shared/space';
+import type { Driving } from './driving';
+import { moved, type Waypoint, waypoints } from './points';
+
+/** A point is held when it is so near to the pointer. */
+const HOLD_PX = 12;
+const ARM_COLOURS = ['series-1', 'series-2', 'series-4'];
+
+export class Scene {
+  readonly space: Space;
+  #driving: Driving | undefined;
+  #seconds = 0;
+  #text = '';
+  #points: Waypoint[] = [];
+  #bad = new Set<number>();
+
+  /** `change` gets the text with a point that has been dragged. */
+  constructor(canvas: HTMLCanvasElement, change: (text: string) => void) {
+    this.space = new Space(
+      canvas,
+      () => this.#driving && ball(this.#driving),
+      (pen) => this.#draw(pen),
+      (project, x, y) => {
+        const near = this.#points.map((point) => {
+          const [px, py] = project(point.point);
+          return { point, px: Math.hypot(px - x, py - y) };
+        });
+        const held = near.sort((a, b) => a.px - b.px)[0];
+        if (!held || held.px > HOLD_PX) return undefined;
+        let at = held.point.point;
+        return (by) => {
+          at = at.map((it, axis) => it + (by[axis] ?? 0)) as Point3;
+          change(moved(this.#text, { line: held.point.line, point: at }));
+        };
+      },
+    );
+  }
+
+  /** The lines as they are written; the machine may not have seen them yet. */
+  set text(text: string) {
+    this.#text = text;
+    this.#points = waypoints(text);
+    this.space.redraw();
+  }
+
+  show(driving: Driving): void {
+    this.#driving = driving;
+    this.#bad = new Set(driving.result.report.refusals.map((it) => it.line));
+    this.space.redraw();
+  }
+
+  at(seconds: number): void {
+    this.#seconds = seconds;
+    this.space.redraw();
+  }
+
+  #draw(pen: Pen): void {
+    const driving = this.#driving;
+    if (!driving) return;
+    const { context } = pen;
+    context.globalAlpha = 0.55;
+    for (const outline of driving.workspace) pen.line(colour('limit'), 1, outline);
+    context.globalAlpha = 0.6;
+    for (const line of driving.lines) pen.line(colour('drawing'), 5, [line.from, line.to]);
+    context.globalAlpha = 1;
+    drawMechanism(pen, driving, this.#seconds);
+    pen.line(colour('series-3'), 2, driving.path(this.#seconds));
+    for (const { line, point } of this.#points) {
+      pen.dot(colour(this.#bad.has(line) ? 'bad' : 'text'), this.#bad.has(line) ? 6 : 4, point);
+    }
+  }
+}
+
+function drawMechanism(pen: Pen, driving: Driving, seconds: number): void {
+  const { platform, shoulders, elbows, wrists } = driving.mechanism(seconds);
+  const closed = (points: Point3[]) => [...points, ...points.slice(0, 1)];
+  pen.line(colour('arm'), 5, closed(shoulders));
+  for (const [arm, name] of ARM_COLOURS.entries()) {
+    const [shoulder, elbow, wrist] = [shoulders[arm], elbows[arm], wrists[arm]];
+    if (!shoulder || !elbow || !wrist) continue;
+    pen.line(colour(name), 3, [elbow, wrist]);
+    pen.line(colour(name), 8, [shoulder, elbow]);
+  }
+  pen.line(colour('arm'), 4, closed(wrists));
+  pen.dot(colour('now'), 5, platform);
+}
+
+/** All that is drawn, around the middle of it. */
+function ball(driving: Driving): { centre: Point3; radius: number } {
+  const points = [...driving.workspace.flat(), ...driving.mechanism(0).elbows, [0, 0, 0]];
+  const range = [0, 1, 2].map((axis) => {
+    const all = points.map((it) => it[axis] ?? 0);
+    return [Math.min(...all), Math.max(...all)] as const;
+  });
+  const centre = range.map(([low, high]) => (low + high) / 2) as Point3;
+  const spans = range.map(([low, high]) => high - low);
+  return { centre, radius: 0.55 * Math.max(...spans, 1) };
+}

@@ -1,0 +1,161 @@
+// Something in space in parallel projection: turned, tilted and zoomed by hand.
+import { Picture, takeGestures } from './canvas';
+import { onColours } from './dom';
+
+/** In mm, z up. */
+export type Point3 = [number, number, number];
+
+/** What must be in sight. */
+export interface Ball {
+  centre: Point3;
+  radius: number;
+  /** Where it is flatter than it is wide. */
+  halfHeight?: number;
+}
+
+/** From where it is seen, in rad: turn 0 is from the front, tilt 0 level, a quarter turn from above. */
+export interface View {
+  turn: number;
+  tilt: number;
+}
+
+export const VIEWS = {
+  turned: { turn: 0.6, tilt: 0.35 },
+  above: { turn: 0, tilt: Math.PI / 2 },
+  front: { turn: 0, tilt: 0 },
+  side: { turn: Math.PI / 2, tilt: 0 },
+} satisfies Record<string, View>;
+export type ViewName = keyof typeof VIEWS;
+
+const RAD_PER_PX = 1 / 150;
+
+/** Puts points in mm on the canvas, and draws lines and dots. */
+export interface Pen {
+  context: CanvasRenderingContext2D;
+  project(point: Point3): [number, number];
+  line(stroke: string, widthPx: number, points: Point3[]): void;
+  dot(fill: string, radiusPx: number, point: Point3): void;
+}
+
+/** Drags what is at a place of the canvas by a stretch in the plane of the view, in mm. */
+export type Grab = (
+  project: Pen['project'],
+  x: number,
+  y: number,
+) => ((by: Point3) => void) | undefined;
+
+export class Space {
+  readonly #picture: Picture;
+  readonly #ball: () => Ball | undefined;
+  #view: View = VIEWS.turned;
+  #zoom = 1;
+
+  constructor(
+    canvas: HTMLCanvasElement,
+    ball: () => Ball | undefined,
+    draw: (pen: Pen) => void,
+    grab: Grab = () => undefined,
+  ) {
+    this.#ball = ball;
+    this.#picture = new Picture(canvas, (context) => {
+      if (this.#ball()) draw(this.#pen(context));
+    });
+    takeGestures(canvas, {
+      pan: (dx, dy) => {
+        const { turn, tilt } = this.#view;
+        this.look({
+          turn: turn - dx * RAD_PER_PX,
+          tilt: Math.min(Math.max(tilt + dy * RAD_PER_PX, -Math.PI / 2), Math.PI / 2),
+        });
+      },
+      zoom: (factor) => {
+        this.#zoom = Math.min(Math.max(this.#zoom * factor, 0.3), 20);
+        this.redraw();
+      },
+      reset: () => {
+        this.#zoom = 1;
+        this.look(VIEWS.turned);
+      },
+      grab: (x, y) => {
+        const drag = this.#ball() && grab((point) => this.#project(point), x, y);
+        return drag && ((dx, dy) => drag(this.#inPlane(dx, dy)));
+      },
+    });
+    onColours(() => this.redraw());
+  }
+
+  look(view: View): void {
+    this.#view = view;
+    this.redraw();
+  }
+
+  redraw(): void {
+    this.#picture.redraw();
+  }
+
+  get #scale(): number {
+    const { width, height } = this.#picture;
+    const ball = this.#ball() ?? { centre: [0, 0, 0], radius: 1 };
+    return (
+      this.#zoom *
+      Math.min(width / (2 * ball.radius), height / (2 * (ball.halfHeight ?? ball.radius)))
+    );
+  }
+
+  /** Unit vectors to the right and upward on the canvas. */
+  get #axes(): [Point3, Point3] {
+    const { turn, tilt } = this.#view;
+    const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
+    const away = Math.sin(tilt);
+    return [
+      [cos, sin, 0],
+      [-sin * away, cos * away, Math.cos(tilt)],
+    ];
+  }
+
+  #project(point: Point3): [number, number] {
+    const centre = this.#ball()?.centre ?? [0, 0, 0];
+    const [right, up] = this.#axes;
+    const along = (axis: Point3) =>
+      axis.reduce((sum, it, index) => sum + it * ((point[index] ?? 0) - (centre[index] ?? 0)), 0);
+    const { width, height } = this.#picture;
+    return [width / 2 + this.#scale * along(right), height / 2 - this.#scale * along(up)];
+  }
+
+  /** In mm, by pixels to the right and downward. */
+  #inPlane(dx: number, dy: number): Point3 {
+    const [right, up] = this.#axes;
+    const along = (index: 0 | 1 | 2) => (dx * right[index] - dy * up[index]) / this.#scale;
+    return [along(0), along(1), along(2)];
+  }
+
+  #pen(context: CanvasRenderingContext2D): Pen {
+    context.lineCap = 'round';
+    context.lineJoin = 'round';
+    const project = (point: Point3) => this.#project(point);
+    return {
+      context,
+      project,
+      line: (stroke, widthPx, points) => {
+        context.strokeStyle = stroke;
+        context.lineWidth = widthPx;
+        context.beginPath();
+        for (const point of points) context.lineTo(...project(point));
+        context.stroke();
+      },
+      dot: (fill, radiusPx, point) => {
+        context.fillStyle = fill;
+        context.beginPath();
+        context.arc(...project(point), radiusPx, 0, 2 * Math.PI);
+        context.fill();
+      },
+    };
+  }
+}
+
+/** Connects the buttons of a row, each with the name of a view, to a space. */
+export function viewButtons(row: HTMLElement, space: Space): void {
+  for (const button of row.querySelectorAll<HTMLButtonElement>('button[data-view]')) {
+    button.addEventListener('click', () => space.look(VIEWS[button.dataset.view as ViewName]));
+  }
+}

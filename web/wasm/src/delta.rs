@@ -1,0 +1,176 @@
+//! The Delta robot: lines answered, planned and driven, and the files that this leaves.
+
+use std::cell::RefCell;
+
+use anyhow::{Context, Result, bail};
+use delta::{ArmsAt, Machine, Record, Report, Run, Session, StepLog, simulate};
+use serde::Deserialize;
+use serde_json::json;
+
+use crate::answer::{self, Answer};
+use crate::boundary::Request;
+
+/// Points of an outline of the workspace.
+const OUTLINE: u32 = 72;
+/// Heights at which the workspace is cut, from the home position to the lowest point of the path.
+const SLICES: u32 = 4;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    lines: String,
+    machine: String,
+    motion: String,
+    /// On the platform.
+    load_kg: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Calibration {
+    machine: String,
+    measured: String,
+    fit: String,
+}
+
+/// What was driven last: the files are written from it when they are asked for.
+struct Driven {
+    machine: Machine,
+    record: Record,
+    steps: Vec<u8>,
+    report: Option<Report>,
+}
+
+thread_local!(static LAST: RefCell<Option<Driven>> = const { RefCell::new(None) });
+
+/// Drives the lines of an input, and gives what the page shows of it.
+pub(crate) fn delta(request: &Request) -> Result<Answer> {
+    let parameters: Parameters = request.parameters()?;
+    let machine = Machine::parse(&parameters.machine).context("machine.toml")?;
+    let mut log = StepLog::new(Vec::new())?;
+    let mut observer = |ticks, steps| log.step(ticks, steps);
+    let mut session = Session::new(&machine, parameters.motion.parse()?, &mut observer)?;
+    let mut answers = Vec::new();
+    for byte in parameters.lines.bytes() {
+        answers.extend(session.handle_byte(byte)?);
+    }
+    answers.extend(session.handle_end()?);
+    let record = session.finish()?;
+    let steps = log.finish()?;
+    let mut driven = Driven {
+        machine,
+        record,
+        steps,
+        report: None,
+    };
+    let (answer, report) = driven.answer(&answers, parameters.load_kg)?;
+    driven.report = Some(report);
+    LAST.set(Some(driven));
+    Ok(answer)
+}
+
+impl Driven {
+    fn run(&self) -> Result<Run<'_>> {
+        simulate(&self.machine, &self.record, &*self.steps)
+    }
+
+    fn answer(&self, answers: &[String], load_kg: f64) -> Result<(Answer, Report)> {
+        let run = self.run()?;
+        let report = run.report();
+        let geometry = self.machine.geometry();
+        let arms = geometry.arms().iter().map(|arm| {
+            json!({ "azimuthRad": arm.azimuth, "baseMm": arm.base, "platformMm": arm.platform })
+        });
+        let [max_rate, max_acceleration] = self.machine.max_rate_and_acceleration();
+        let value = json!({
+            "summary": report.to_string(),
+            "report": report,
+            "answers": answers,
+            "refused": report.check().err().map(|it| it.to_string()),
+            "arms": arms.collect::<Vec<_>>(),
+            "maxRateDegS": max_rate,
+            "maxAccelerationDegS2": max_acceleration,
+        });
+        let course = run.arms(load_kg)?;
+        let lines = run
+            .lines()
+            .map(|([[a, b, c], [x, y, z]], feed, end_s)| [a, b, c, x, y, z, feed, end_s]);
+        let answer = Answer::new(value)?
+            .with_rows("arms", course.iter().map(row))
+            .with_rows("lines", lines)
+            .with_rows("speeds", run.speeds())
+            .with_rows("workspace", self.workspace(&course));
+        Ok((answer, report))
+    }
+
+    /// Outlines around the heights of a path; no number after each. Those that there are not are
+    /// left out.
+    fn workspace(&self, course: &[ArmsAt]) -> Vec<[f64; 3]> {
+        let heights = course.iter().map(|it| it.platform_mm[2]);
+        let lowest = heights.clone().fold(f64::INFINITY, f64::min);
+        let highest = heights.fold(f64::NEG_INFINITY, f64::max);
+        let geometry = self.machine.geometry();
+        let mut points = Vec::new();
+        for slice in 0..SLICES {
+            let part = f64::from(slice) / f64::from(SLICES - 1);
+            let z = highest + (lowest - highest) * part;
+            points.extend(geometry.horizontal_slice(z, OUTLINE).ok().map(closed));
+        }
+        let centre = f64::midpoint(highest, lowest);
+        for azimuth in [0.0, core::f64::consts::FRAC_PI_2] {
+            let slice = geometry.vertical_slice(azimuth, centre, OUTLINE);
+            points.extend(slice.ok().map(closed));
+        }
+        points.concat()
+    }
+}
+
+/// A line that ends where it begins, then no number.
+fn closed(points: impl Iterator<Item = impl Into<[f64; 3]>>) -> Vec<[f64; 3]> {
+    let mut points: Vec<[f64; 3]> = points.map(Into::into).collect();
+    points.extend(points.first().copied());
+    points.push([f64::NAN; 3]);
+    points
+}
+
+/// Seconds; angles, rates, accelerations and torques of the arms; platform; elbows.
+fn row(it: &ArmsAt) -> [f64; 25] {
+    let mut row = [it.t_s; 25];
+    let values = [
+        it.angles_deg,
+        it.rates_deg_s,
+        it.accelerations_deg_s2,
+        it.torques_nm,
+        it.platform_mm,
+    ];
+    let values = values.iter().chain(&it.elbows_mm).flatten();
+    for (cell, value) in row.iter_mut().skip(1).zip(values) {
+        *cell = *value;
+    }
+    row
+}
+
+/// Calibrates a machine by measured points: what was found, and the machine file with it.
+pub(crate) fn calibrate(request: &Request) -> Result<Answer> {
+    let parameters: Calibration = request.parameters()?;
+    let machine = Machine::parse(&parameters.machine).context("machine.toml")?;
+    let found = machine.calibrate(&parameters.measured, parameters.fit.parse()?)?;
+    Answer::new(json!({
+        "summary": found.to_string(),
+        "machine": found.machine_file(&parameters.machine),
+    }))
+}
+
+/// A file of what was driven last, by its name.
+pub(crate) fn file(request: &Request) -> Result<Answer> {
+    let name: String = request.parameters()?;
+    LAST.with_borrow(|last| {
+        let last = last.as_ref().context("nothing has been driven yet")?;
+        match &*name {
+            "steps.csv" => answer::file(&*last.steps),
+            "delta.svg" => answer::file(last.run()?.picture()?.to_string()),
+            "report.json" => answer::json_file(&last.report),
+            _ => bail!("there is no file {name:?}"),
+        }
+    })
+}
