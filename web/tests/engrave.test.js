@@ -33,6 +33,20 @@ test('the rosette leaves the files of the command line, byte for byte', async ()
   await done();
 });
 
+test('timed motion leaves the edges of the command line', async () => {
+  const { page, done } = await browser.visit('index.html');
+  await engraved(page);
+  await page.getByLabel('Controller').selectOption('timed');
+  await page.waitForURL(/controller=timed/);
+  await engraved(page);
+  const { folder } = commandLine('engrave', ['--controller', 'timed']);
+  for (const name of ['pulses.vcd', 'engraved.svg', 'report.json']) {
+    assert((await saved(page, name)).equals(readFileSync(join(folder, name))), `${name} differs`);
+  }
+  await shoot(page, 'engrave-timed');
+  await done();
+});
+
 test('settings change the plan as the options of the command line do, and stay in the address', async () => {
   const address =
     'index.html?drawing=star&tolerance=0.02&order=file&placement=0.4,0,0,-0.4,-40,160';
@@ -94,7 +108,7 @@ test('the machine has its settings as fields; they are kept until it is as shipp
   assert.match(await refusal(page, 'machine.toml'), /\[arm\].*-1/);
   await page.getByLabel('upper mm').fill('140');
   await engraved(page);
-  const machine = file('machine.toml', await saved(page, 'Save machine.toml'));
+  const machine = file('machine.toml', await saved(page, 'Save the machine file'));
   const { folder } = commandLine('engrave', ['--machine', machine]);
   const pattern = readFileSync(join(folder, 'pattern.bin'));
   await page.reload();

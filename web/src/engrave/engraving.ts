@@ -14,6 +14,8 @@ export interface Result {
     notes: string[];
     duration_s: number;
     bound_mm: number;
+    /** Where timed motion was asked for. */
+    timed?: { duration_s: number; bound_mm: number };
     machine: {
       upper_mm: number;
       fore_mm: number;
@@ -63,6 +65,11 @@ export class Engraving {
     this.path = numbers(blobs, 'path');
     const [seconds = [], mm = []] = columns(numbers(blobs, 'deviation'), 2);
     this.deviation = [seconds as number[], mm];
+  }
+
+  /** Of the controller that was asked for. */
+  get shown(): { duration_s: number; bound_mm: number } {
+    return this.result.report.timed ?? this.result.report;
   }
 
   /** Steps of a motor from home at a time. */

@@ -66,7 +66,7 @@ export class Lanes {
   }
 
   get #duration(): number {
-    return this.#engraving?.result.report.duration_s ?? 1;
+    return this.#engraving?.shown.duration_s ?? 1;
   }
 
   #window(from: number, span: number): void {

@@ -26,6 +26,7 @@ const machine = new Machine(wasm);
 const status = new Status();
 const progress = element('progress', HTMLProgressElement);
 const drawing = element('drawing', HTMLSelectElement);
+const controller = element('controller', HTMLSelectElement);
 const tolerance = element('tolerance', HTMLInputElement);
 const placement = element('placement', HTMLInputElement);
 const keepOrder = element('keep-order', HTMLInputElement);
@@ -67,6 +68,7 @@ async function engrave(): Promise<void> {
     tolerance: tolerance.value === '0.05' ? null : tolerance.value,
     placement: placement.value || null,
     order: keepOrder.checked ? 'file' : null,
+    controller: controller.value === 'pattern' ? null : controller.value,
   });
   machine.stop();
   progress.hidden = false;
@@ -76,6 +78,7 @@ async function engrave(): Promise<void> {
     tolerance_mm: tolerance.valueAsNumber,
     placement: placement.value || null,
     keep_order: keepOrder.checked,
+    controller: controller.value,
   };
   if (Number.isNaN(parameters.tolerance_mm)) {
     refuse('tolerance: no number');
@@ -101,9 +104,10 @@ function refuse(error: unknown): void {
 function show(engraving: Engraving): void {
   progress.hidden = true;
   const { report, summary, isWithinBound } = engraving.result;
+  const { duration_s, bound_mm } = engraving.shown;
   const notes = report.notes.map((note) => `note: ${note}`);
   const verdict = isWithinBound
-    ? `Engraved in ${report.duration_s.toFixed(0)} s of the machine's time, within ${report.bound_mm.toFixed(3)} mm`
+    ? `Engraved in ${duration_s.toFixed(0)} s of the machine's time, within ${bound_mm.toFixed(3)} mm`
     : 'The tool left the drawing by more than the bound';
   status.say([verdict, ...notes].join('\n'), !isWithinBound);
   element('summary', HTMLElement).textContent = summary;
@@ -111,7 +115,7 @@ function show(engraving: Engraving): void {
   scene.show(engraving);
   lanes.show(engraving);
   const [seconds, distance] = engraving.deviation;
-  const bound = seconds.map(() => report.bound_mm);
+  const bound = seconds.map(() => bound_mm);
   chart.show(
     [
       { label: 'max of each part of the time', colour: 'series-1' },
@@ -120,7 +124,7 @@ function show(engraving: Engraving): void {
     [seconds, distance, bound],
   );
   transport.pause();
-  transport.begin(report.duration_s);
+  transport.begin(duration_s);
   element('main', HTMLElement).dataset.ready = '';
 }
 
@@ -147,9 +151,10 @@ function begin(): void {
   tolerance.value = fromAddress('tolerance') ?? '0.05';
   placement.value = fromAddress('placement') ?? '';
   keepOrder.checked = fromAddress('order') === 'file';
+  controller.value = fromAddress('controller') === 'timed' ? 'timed' : 'pattern';
 
   element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
-  for (const input of [drawing, tolerance, placement, keepOrder]) {
+  for (const input of [drawing, controller, tolerance, placement, keepOrder]) {
     input.addEventListener('input', changed);
   }
   takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), own);

@@ -33,7 +33,7 @@ export class Scene {
   show(engraving: Engraving): void {
     this.#engraving = engraving;
     element('scale-end', HTMLElement).textContent =
-      `${engraving.result.report.bound_mm.toFixed(3)} mm, the bound`;
+      `${engraving.shown.bound_mm.toFixed(3)} mm, the bound`;
     this.#plane.redraw();
   }
 
@@ -84,7 +84,7 @@ function drawPath(
   px: number,
 ): void {
   const { path } = engraving;
-  const bound = engraving.result.report.bound_mm;
+  const bound = engraving.shown.bound_mm;
   const at = (point: number, value: number) => path[point * PATH_STRIDE + value] ?? 0;
   strokeParts(
     context,

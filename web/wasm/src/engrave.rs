@@ -5,7 +5,10 @@ mod recorder;
 use std::cell::RefCell;
 
 use anyhow::{Context, Result, bail};
-use engraver::{Drawing, Machine, Plan, PlanSettings, PulseLog, Report, Run, Tolerance, simulate};
+use engraver::{
+    Drawing, Engraving, Machine, MotorController, Plan, PlanSettings, PulseLog, Report, Tolerance,
+    Wires,
+};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -25,14 +28,18 @@ struct Parameters {
     /// `a,b,c,d,e,f`, or fitted into the bed.
     placement: Option<String>,
     keep_order: bool,
+    /// `pattern` or `timed`.
+    controller: String,
 }
 
 /// What was engraved last: the files are written from it when they are asked for.
 struct Engraved {
     machine: Machine,
     drawing: Drawing,
+    settings: PlanSettings,
+    controller: MotorController,
     plan: Plan,
-    run: Run,
+    engraving: Engraving,
 }
 
 thread_local!(static LAST: RefCell<Option<Engraved>> = const { RefCell::new(None) });
@@ -51,25 +58,41 @@ pub(crate) fn engrave(request: &Request) -> Result<Answer> {
     let drawing = Drawing::parse(&parameters.svg).with_context(place)?;
     let plan = Plan::new(&machine, &drawing, &settings, progress::teller(0));
     let plan = plan.with_context(place)?;
+    let controller = parameters.controller.parse()?;
     let mut recorder = Recorder::new(&machine);
-    let (pattern, reference) = (plan.pattern(), plan.reference());
-    let told = progress::teller(1);
-    let run = simulate(&machine, pattern, reference, &mut recorder, told)?;
-    let recorded = recorder.finish(run.ticks());
+    let engraving = play(
+        (&machine, &drawing, &settings, &plan),
+        controller,
+        &mut recorder,
+    );
+    let engraving = engraving.with_context(place)?;
+    let recorded = recorder.finish(engraving.shown().ticks());
     let engraved = Engraved {
         machine,
         drawing,
+        settings,
+        controller,
         plan,
-        run,
+        engraving,
     };
     let answer = recorded.add_to(engraved.answer()?);
     LAST.set(Some(engraved));
     Ok(answer)
 }
 
+fn play(
+    (machine, drawing, settings, plan): (&Machine, &Drawing, &PlanSettings, &Plan),
+    controller: MotorController,
+    wires: &mut impl Wires,
+) -> Result<Engraving> {
+    let told = progress::teller(1);
+    Engraving::run(machine, drawing, settings, plan, controller, wires, told)
+}
+
 impl Engraved {
     fn report(&self) -> Report<'_> {
-        Report::new(&self.machine, &self.drawing, &self.plan, &self.run)
+        self.engraving
+            .report(&self.machine, &self.drawing, &self.plan)
     }
 
     fn answer(&self) -> Result<Answer> {
@@ -77,14 +100,15 @@ impl Engraved {
         let value = json!({
             "summary": report.to_string(),
             "report": report,
-            "isWithinBound": self.run.is_within_bound(),
+            "isWithinBound": self.engraving.is_within_bound(),
         });
         let mut outlines = Vec::new();
-        for outline in self.run.drawing() {
+        let run = self.engraving.shown();
+        for outline in run.drawing() {
             outlines.extend(outline.iter().flat_map(|point| [point.x, point.y]));
             outlines.extend([f64::NAN; 2]);
         }
-        let deviation = self.run.deviation_over_time();
+        let deviation = run.deviation_over_time();
         let deviation = deviation.flat_map(|(s, mm)| [s, mm.unwrap_or(f64::NAN)]);
         Ok(Answer::new(value)?
             .with_numbers("outlines", outlines.into_iter().map(f64::to_le_bytes))
@@ -100,7 +124,7 @@ pub(crate) fn file(request: &Request) -> Result<Answer> {
         match &*name {
             "pattern.bin" => answer::file(last.plan.pattern()),
             "pattern.h" => answer::file(engraver::header(&last.machine, &last.plan)?),
-            "engraved.svg" => answer::file(last.run.picture().to_string()),
+            "engraved.svg" => answer::file(last.engraving.shown().picture().to_string()),
             "report.json" => answer::json_file(&last.report()),
             "pulses.vcd" => answer::file(last.pulses()?),
             _ => bail!("there is no file {name:?}"),
@@ -109,19 +133,13 @@ pub(crate) fn file(request: &Request) -> Result<Answer> {
 }
 
 impl Engraved {
-    /// The pins over time: the pattern is played once more.
+    /// The pins over time: all is played once more.
     fn pulses(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut log = PulseLog::new(&mut bytes, &self.machine)?;
-        let (pattern, reference) = (self.plan.pattern(), self.plan.reference());
-        simulate(
-            &self.machine,
-            pattern,
-            reference,
-            &mut log,
-            progress::teller(1),
-        )?;
-        log.finish(self.run.ticks())?;
+        let all = (&self.machine, &self.drawing, &self.settings, &self.plan);
+        let engraving = play(all, self.controller, &mut log)?;
+        log.finish(engraving.shown().ticks())?;
         Ok(bytes)
     }
 }
