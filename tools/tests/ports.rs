@@ -1,4 +1,7 @@
 //! Stations of both sides over every kind of port.
+//!
+//! Without pyserial one test says so on standard error and passes; with
+//! `POSE2PULSE_REQUIRE_PYSERIAL=1` it fails.
 #![cfg(all(test, unix))]
 #![expect(
     clippy::unwrap_used,
@@ -7,7 +10,13 @@
 )]
 
 use core::{future::Future, time::Duration};
-use std::{fs, io, net, path::Path};
+use std::{
+    env, fs,
+    io::{self, BufRead as _, BufReader},
+    net,
+    path::Path,
+    process::{Command, Stdio},
+};
 
 use line3964r::{Address, Port};
 use proto3964r::{Config, Line, Priority, tokio::Link};
@@ -15,6 +24,7 @@ use tempfile::TempDir;
 use tokio::{
     io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, DuplexStream, duplex},
     net::{TcpListener, TcpStream},
+    task::spawn_blocking,
     time::timeout,
 };
 
@@ -252,6 +262,48 @@ async fn rfc_2217() {
         both_ways(port.unwrap(), there).await;
     })
     .await;
+}
+
+/// Debian's own, for which there is a package python3-serial.
+const PYTHON: &str = "/usr/bin/python3";
+/// Set to 1: a missing pyserial is a failure.
+const REQUIRE: &str = "POSE2PULSE_REQUIRE_PYSERIAL";
+
+fn has_pyserial() -> bool {
+    let import = Command::new(PYTHON).args(["-c", "import serial"]).output();
+    let found = import.is_ok_and(|output| output.status.success());
+    assert!(found || env::var_os(REQUIRE).is_none(), "no pyserial");
+    found
+}
+
+/// A server that others have written. A pseudo-terminal knows no parity.
+#[tokio::test]
+async fn rfc_2217_by_pyserial() {
+    if !has_pyserial() {
+        eprintln!("skipped: {PYTHON} has no pyserial");
+        return;
+    }
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("line").display().to_string();
+    let line = open(&format!("pty:{path}")).await.unwrap();
+    let mut server = Command::new(PYTHON)
+        .arg(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/tests/serial_server.py"
+        ))
+        .arg(&path)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut printed = BufReader::new(server.stdout.take().unwrap()).lines();
+    let port = printed.next().unwrap().unwrap();
+    let address = format!("rfc2217://127.0.0.1:{port}?baud=19200&parity=none&stop=2");
+    both_ways(open(&address).await.unwrap(), line).await;
+    // The task of a station closes its port; it must not be kept from that.
+    let ended = spawn_blocking(move || (printed.next().unwrap().unwrap(), server.wait().unwrap()));
+    let (settings, status) = timeout(PATIENCE, ended).await.unwrap().unwrap();
+    assert_eq!(settings, "19200 8 N 2");
+    assert!(status.success());
 }
 
 #[tokio::test]

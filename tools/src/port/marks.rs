@@ -1,8 +1,8 @@
 //! The marks of a Unix terminal whose input flag `PARMRK` is set.
 
-use proto3964r::tokio::Damage;
+use proto3964r::{LineError, tokio::Damage};
 
-use super::heard::{Heard, damaged};
+use super::heard::Heard;
 
 const ESCAPE: u8 = 0xFF;
 
@@ -38,6 +38,14 @@ impl Marks {
         *self = next;
         heard
     }
+}
+
+/// A character with a wrong parity bit, or a wrong stop bit: Linux does not tell which.
+const fn damaged(byte: u8) -> Heard {
+    Err(Damage::Character {
+        byte,
+        error: LineError::Parity,
+    })
 }
 
 #[cfg(test)]

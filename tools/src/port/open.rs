@@ -61,6 +61,34 @@ fn pseudo_terminal(path: &str, echo: Option<Echo>) -> io::Result<Port> {
     Ok(Port::new(terminal, Coding::Plain, echo).with_other_end(other_end))
 }
 
+/// Without marks: damaged characters cannot be told from others.
+#[cfg(not(unix))]
+fn serial(path: &str, frame: Frame, echo: Option<Echo>) -> io::Result<Port> {
+    use super::Parity;
+    use tokio_serial::{DataBits, SerialPortBuilderExt as _, StopBits};
+    let parity = match frame.parity {
+        Parity::None => tokio_serial::Parity::None,
+        Parity::Even => tokio_serial::Parity::Even,
+        Parity::Odd => tokio_serial::Parity::Odd,
+    };
+    let stop_bits = match frame.stop_bits {
+        2 => StopBits::Two,
+        _ => StopBits::One,
+    };
+    let port = tokio_serial::new(path, frame.baud)
+        .data_bits(DataBits::Eight)
+        .parity(parity)
+        .stop_bits(stop_bits)
+        .open_native_async()?;
+    Ok(Port::new(port, Coding::Plain, echo))
+}
+
+#[cfg(not(unix))]
+fn pseudo_terminal(_: &str, _: Option<Echo>) -> io::Result<Port> {
+    let message = "this system has no pseudo-terminals";
+    Err(io::Error::new(io::ErrorKind::Unsupported, message))
+}
+
 async fn connect(host: &str) -> io::Result<TcpStream> {
     let connected = timeout(PATIENCE, TcpStream::connect(host)).await;
     let stream = connected.unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into()))?;
