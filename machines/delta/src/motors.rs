@@ -1,7 +1,6 @@
 //! What the emitted edges ask of the motors, and whether they follow.
 
-use machine_sim::{DrivenAxis, Measured, Motor};
-use serde::Serialize;
+use machine_sim::{DrivenAxis, Followed, Motor, StepSize};
 
 use crate::machine::Machine;
 
@@ -50,31 +49,8 @@ impl Motors {
 
     /// What was seen of each, in degrees of the arms; each edge is at most `deviation_steps` off
     /// its place.
-    pub(crate) fn finish(self, machine: &Machine, deviation_steps: f64) -> [FollowedArm; 3] {
-        let deg_per_step = machine.rad_per_step.to_degrees();
-        self.axes.map(|axis| {
-            let followed = axis.finish(deviation_steps);
-            let deg = |measured: Measured| measured.times(deg_per_step);
-            FollowedArm {
-                max_start_speed_deg_s: deg(followed.motion.start_speed),
-                max_speed_deg_s: deg(followed.motion.speed),
-                max_speed_jump_deg_s: deg(followed.motion.speed_jump),
-                max_acceleration_deg_s2: deg(followed.motion.acceleration),
-                lost_steps: followed.lost_steps,
-                max_lag_full_steps: followed.max_lag_full_steps,
-            }
-        })
+    pub(crate) fn finish(self, machine: &Machine, deviation_steps: f64) -> [Followed; 3] {
+        let step = StepSize::Degrees(machine.rad_per_step.to_degrees());
+        self.axes.map(|axis| axis.finish(deviation_steps, step))
     }
-}
-
-/// What an arm's motor was asked for, by the edges alone, and what it lost.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(crate) struct FollowedArm {
-    pub(crate) max_start_speed_deg_s: Measured,
-    pub(crate) max_speed_deg_s: Measured,
-    pub(crate) max_speed_jump_deg_s: Measured,
-    pub(crate) max_acceleration_deg_s2: Measured,
-    pub(crate) lost_steps: u64,
-    /// At 2 it loses steps.
-    pub(crate) max_lag_full_steps: f64,
 }

@@ -3,10 +3,10 @@
 use core::fmt;
 
 use anyhow::{Result, bail};
+use machine_sim::Followed;
 use serde::Serialize;
 
 use crate::motion::Motion;
-use crate::motors::FollowedArm;
 use crate::record::Refusal;
 use crate::simulation::{Driven, Run};
 
@@ -37,7 +37,7 @@ pub struct Report {
     end: [i32; 3],
     /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
     /// given them loses steps where torque or inertia are overrun.
-    motors: [FollowedArm; 3],
+    motors: [Followed; 3],
     /// The same moves, each line at its feed from the first step to the last.
     trains: Comparison,
     /// The same moves driven by the thesis' control tick.
@@ -48,7 +48,7 @@ pub struct Report {
 struct Comparison {
     max_path_error_mm: f64,
     duration_s: f64,
-    motors: [FollowedArm; 3],
+    motors: [Followed; 3],
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -120,7 +120,7 @@ impl fmt::Display for Report {
         let line = |driven: &Comparison| {
             let motors = driven.motors.iter();
             let lost: u64 = motors.clone().map(|motor| motor.lost_steps).sum();
-            let accelerations = motors.map(|motor| motor.max_acceleration_deg_s2.proven());
+            let accelerations = motors.map(|motor| motor.acceleration.proven());
             format!(
                 "{:.3} s, at most {:.4} mm off the lines, at least {:.0} deg/s², {lost} steps lost",
                 driven.duration_s,

@@ -4,14 +4,14 @@
 use std::io::BufRead;
 
 use anyhow::Result;
-use machine_sim::{Figure, MotionSampler};
+use machine_sim::{Figure, Followed, MotionSampler};
 use nalgebra::Point3;
 
 use crate::control_tick;
 use crate::course::{self, ArmsAt};
 use crate::machine::Machine;
 use crate::motion::Motion;
-use crate::motors::{FollowedArm, Motors};
+use crate::motors::Motors;
 use crate::picture;
 use crate::plan::{Plan, seconds};
 use crate::record::{Move, Record};
@@ -49,7 +49,7 @@ pub(crate) struct Driven {
     pub(crate) steps: u64,
     /// Steps from home at the end.
     pub(crate) end: [i32; 3],
-    pub(crate) motors: [FollowedArm; 3],
+    pub(crate) motors: [Followed; 3],
     /// The platform's path, thinned for a picture.
     pub(crate) path: Vec<Point3<f64>>,
 }

@@ -1,6 +1,6 @@
 //! What the emitted edges ask of the motors, and whether they follow.
 
-use machine_sim::{DrivenAxis, Measured, Motor};
+use machine_sim::{DrivenAxis, Followed, Motor, StepSize};
 use pattern_codec::engraving::{Axis, PerAxis};
 use serde::Serialize;
 
@@ -72,9 +72,10 @@ impl Motors {
     }
 
     /// What was seen of each when it has come to rest.
-    pub(crate) fn finish(self, machine: &Machine) -> Followed {
+    pub(crate) fn finish(self, machine: &Machine) -> FollowedAxes {
         let joint = |axis: DrivenAxis, scale: JointScale| {
-            FollowedJoint::new(axis, scale.rad_per_pulse.to_degrees())
+            let deg = scale.rad_per_pulse.to_degrees();
+            axis.finish(DEVIATION_STEPS, StepSize::Degrees(deg))
         };
         let PerAxis {
             theta1,
@@ -82,11 +83,12 @@ impl Motors {
             theta3,
             vertical,
         } = self.axes;
-        Followed {
+        let lift = StepSize::Millimetres(machine.settings.mm_per_vertical_pulse());
+        FollowedAxes {
             theta1: joint(theta1, machine.theta1),
             theta2: joint(theta2, machine.theta2),
             theta3: joint(theta3, machine.theta3),
-            vertical: FollowedLift::new(vertical, machine.settings.mm_per_vertical_pulse()),
+            vertical: vertical.finish(DEVIATION_STEPS, lift),
         }
     }
 }
@@ -103,14 +105,15 @@ fn motor(joint: JointScale, load_kg_m2: f64) -> Motor {
 
 /// What all motors were asked for, and what they lost.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub(crate) struct Followed {
-    theta1: FollowedJoint,
-    theta2: FollowedJoint,
-    theta3: FollowedJoint,
-    vertical: FollowedLift,
+pub(crate) struct FollowedAxes {
+    /// The joints behind their gears.
+    theta1: Followed,
+    theta2: Followed,
+    theta3: Followed,
+    vertical: Followed,
 }
 
-impl Followed {
+impl FollowedAxes {
     /// Of all motors.
     pub(crate) const fn lost_steps(&self) -> u64 {
         let joints = self.theta1.lost_steps + self.theta2.lost_steps + self.theta3.lost_steps;
@@ -119,67 +122,14 @@ impl Followed {
 
     /// Proven of either joint of the arm, in degrees a second.
     pub(crate) fn max_speed_jump_deg_s(&self) -> f64 {
-        let [a, b] = [self.theta1, self.theta2].map(|joint| joint.max_speed_jump_deg_s.proven());
+        let [a, b] = [self.theta1, self.theta2].map(|joint| joint.speed_jump.proven());
         a.max(b)
     }
 
     /// Proven of either joint of the arm, in deg/s².
     pub(crate) fn max_acceleration_deg_s2(&self) -> f64 {
         let joints = [self.theta1, self.theta2];
-        let [a, b] = joints.map(|joint| joint.max_acceleration_deg_s2.proven());
+        let [a, b] = joints.map(|joint| joint.acceleration.proven());
         a.max(b)
-    }
-}
-
-/// By the edges alone, and by a simulated motor; of the joint, behind the gear.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct FollowedJoint {
-    max_start_speed_deg_s: Measured,
-    max_speed_deg_s: Measured,
-    max_speed_jump_deg_s: Measured,
-    max_acceleration_deg_s2: Measured,
-    lost_steps: u64,
-    /// At 2 it loses steps.
-    max_lag_full_steps: f64,
-}
-
-impl FollowedJoint {
-    fn new(axis: DrivenAxis, deg_per_step: f64) -> Self {
-        let followed = axis.finish(DEVIATION_STEPS);
-        let deg = |measured: Measured| measured.times(deg_per_step);
-        Self {
-            max_start_speed_deg_s: deg(followed.motion.start_speed),
-            max_speed_deg_s: deg(followed.motion.speed),
-            max_speed_jump_deg_s: deg(followed.motion.speed_jump),
-            max_acceleration_deg_s2: deg(followed.motion.acceleration),
-            lost_steps: followed.lost_steps,
-            max_lag_full_steps: followed.max_lag_full_steps,
-        }
-    }
-}
-
-/// The same of the lift.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct FollowedLift {
-    max_start_speed_mm_s: Measured,
-    max_speed_mm_s: Measured,
-    max_speed_jump_mm_s: Measured,
-    max_acceleration_mm_s2: Measured,
-    lost_steps: u64,
-    max_lag_full_steps: f64,
-}
-
-impl FollowedLift {
-    fn new(axis: DrivenAxis, mm_per_step: f64) -> Self {
-        let followed = axis.finish(DEVIATION_STEPS);
-        let mm = |measured: Measured| measured.times(mm_per_step);
-        Self {
-            max_start_speed_mm_s: mm(followed.motion.start_speed),
-            max_speed_mm_s: mm(followed.motion.speed),
-            max_speed_jump_mm_s: mm(followed.motion.speed_jump),
-            max_acceleration_mm_s2: mm(followed.motion.acceleration),
-            lost_steps: followed.lost_steps,
-            max_lag_full_steps: followed.max_lag_full_steps,
-        }
     }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::drawing::Drawing;
 use crate::machine::{Machine, Settings};
-use crate::motors::Followed;
+use crate::motors::FollowedAxes;
 use crate::plan::Plan;
 use crate::simulation::Run;
 use crate::tool_speed::Spread;
@@ -54,7 +54,7 @@ pub struct Report<'a> {
     bound_mm: f64,
     /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
     /// given them loses steps where torque or inertia are overrun.
-    motors: Followed,
+    motors: FollowedAxes,
     /// The same drawing by timed strokes.
     #[serde(skip_serializing_if = "Option::is_none")]
     timed: Option<TimedReport>,
@@ -72,7 +72,7 @@ struct TimedReport {
     rms_deviation_mm: f64,
     missing_mm: f64,
     bound_mm: f64,
-    motors: Followed,
+    motors: FollowedAxes,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -178,11 +178,11 @@ impl<'a> Report<'a> {
         let (a, b) = (self.rms_deviation_mm, timed.rms_deviation_mm);
         line("deviation, rms", a, b, "mm")?;
         line("bound", self.bound_mm, timed.bound_mm, "mm")?;
-        let [a, b] = [&self.motors, &timed.motors].map(Followed::max_speed_jump_deg_s);
+        let [a, b] = [&self.motors, &timed.motors].map(FollowedAxes::max_speed_jump_deg_s);
         line("speed jump of a joint", a, b, "deg/s")?;
-        let [a, b] = [&self.motors, &timed.motors].map(Followed::max_acceleration_deg_s2);
+        let [a, b] = [&self.motors, &timed.motors].map(FollowedAxes::max_acceleration_deg_s2);
         line("acceleration of a joint", a, b, "deg/s²")?;
-        let [a, b] = [&self.motors, &timed.motors].map(Followed::lost_steps);
+        let [a, b] = [&self.motors, &timed.motors].map(FollowedAxes::lost_steps);
         writeln!(f, "  {:<28} {a:>8} {b:>8}", "steps lost")
     }
 }

@@ -10,7 +10,7 @@ use crate::controller::{Controller, Wires};
 use crate::drawing::flatten;
 use crate::gauge::{Deviation, Gauge};
 use crate::machine::Machine;
-use crate::motors::{Followed, Motors};
+use crate::motors::{FollowedAxes, Motors};
 use crate::plan::Reference;
 use crate::tool_speed::{Meter, Pace, Spread, ToolSpeed};
 use crate::track::Track;
@@ -37,7 +37,7 @@ pub struct Run {
     pub(crate) end: PerAxis<i32>,
     pub(crate) tool_speed: ToolSpeed,
     pub(crate) spread: Option<Spread>,
-    pub(crate) motors: Followed,
+    pub(crate) motors: FollowedAxes,
     pub(crate) track: Track,
     /// The placed drawing as lines.
     pub(crate) drawing: Vec<Vec<Point2<f64>>>,

@@ -18,7 +18,7 @@ pub mod serial_line;
 mod stepper;
 mod vcd;
 
-pub use self::driven::{DrivenAxis, Followed};
+pub use self::driven::{DrivenAxis, Followed, StepSize};
 pub use self::edge_motion::{EdgeLog, EdgeMotion, Measured};
 pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
 pub use self::motion_sampler::MotionSampler;

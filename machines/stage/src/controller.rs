@@ -8,7 +8,7 @@ use pulse_interp::{
 };
 
 use crate::motion::Motion;
-use crate::motors::Followed;
+use crate::motors::FollowedAxes;
 use crate::paths::{self, PathRule, STEPS_PER_MM, to_mm};
 use crate::record::Record;
 use crate::run::Run;
@@ -270,7 +270,7 @@ impl<'a> Controller<'a> {
             closing_mm: stages.map(|stage| stage.at_mm().distance(self.end)),
             lost: stages.map(Stage::lost),
             followed: motors.finish(),
-            constant: Followed::at_constant_speed(&self.record.programmed, self.settings.rule)?,
+            constant: FollowedAxes::at_constant_speed(&self.record.programmed, self.settings.rule)?,
             record: self.record,
         })
     }

@@ -1,7 +1,7 @@
 //! What the emitted edges ask of the motors, and whether they follow.
 
 use anyhow::Result;
-use machine_sim::{DrivenAxis, Measured, MotionSampler, Motor};
+use machine_sim::{DrivenAxis, Followed, MotionSampler, Motor, StepSize};
 use serde::Serialize;
 
 use crate::controller::{Clock, seconds};
@@ -57,10 +57,11 @@ impl Motors {
     }
 
     /// What was seen of them, when they have come to rest.
-    pub(crate) fn finish(mut self) -> Followed {
+    pub(crate) fn finish(mut self) -> FollowedAxes {
         self.motion.end(seconds(self.ticks));
-        let [x, y] = self.axes.map(FollowedAxis::new);
-        Followed {
+        let step = StepSize::Millimetres(STEPS_PER_MM.recip());
+        let [x, y] = self.axes.map(|axis| axis.finish(DEVIATION_STEPS, step));
+        FollowedAxes {
             duration_s: seconds(self.ticks),
             x,
             y,
@@ -71,27 +72,16 @@ impl Motors {
 
 /// What both motors were asked for, and what they lost.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct Followed {
+pub(crate) struct FollowedAxes {
     pub(crate) duration_s: f64,
-    pub(crate) x: FollowedAxis,
-    pub(crate) y: FollowedAxis,
+    pub(crate) x: Followed,
+    pub(crate) y: Followed,
     /// Of the path, in mm.
     #[serde(skip)]
     pub(crate) motion: MotionSampler<2>,
 }
 
-/// By the edges alone, and by a simulated motor.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(crate) struct FollowedAxis {
-    pub(crate) max_start_speed_mm_s: Measured,
-    pub(crate) max_speed_jump_mm_s: Measured,
-    pub(crate) max_acceleration_mm_s2: Measured,
-    pub(crate) lost_steps: u64,
-    /// At 2 it loses steps.
-    pub(crate) max_lag_full_steps: f64,
-}
-
-impl Followed {
+impl FollowedAxes {
     /// What the same motions ask for without ramps.
     pub(crate) fn at_constant_speed(motions: &[Motion], rule: PathRule) -> Result<Self> {
         let (mut motors, mut now) = (Motors::default(), 0);
@@ -112,22 +102,7 @@ impl Followed {
 
     /// Proven of either axis.
     pub(crate) fn max_acceleration_mm_s2(&self) -> f64 {
-        let [x, y] = [self.x, self.y].map(|axis| axis.max_acceleration_mm_s2.proven());
+        let [x, y] = [self.x, self.y].map(|axis| axis.acceleration.proven());
         x.max(y)
-    }
-}
-
-impl FollowedAxis {
-    fn new(axis: DrivenAxis) -> Self {
-        let followed = axis.finish(DEVIATION_STEPS);
-        let motion = followed.motion;
-        let mm = |measured: Measured| measured.times(STEPS_PER_MM.recip());
-        Self {
-            max_start_speed_mm_s: mm(motion.start_speed),
-            max_speed_jump_mm_s: mm(motion.speed_jump),
-            max_acceleration_mm_s2: mm(motion.acceleration),
-            lost_steps: followed.lost_steps,
-            max_lag_full_steps: followed.max_lag_full_steps,
-        }
     }
 }

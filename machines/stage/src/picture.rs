@@ -3,7 +3,7 @@
 
 use machine_sim::{Axis, Colour, Figure, Mark, Plot, Stroke};
 
-use crate::motors::Followed;
+use crate::motors::FollowedAxes;
 use crate::paths::STEPS_PER_MM;
 use crate::record::{Leg, Seen};
 use crate::run::Run;
@@ -56,7 +56,7 @@ pub(crate) fn picture(run: &Run) -> Figure {
 }
 
 fn motors(run: &Run) -> String {
-    let lost = |followed: &Followed| {
+    let lost = |followed: &FollowedAxes| {
         let (s, lost) = (followed.duration_s, followed.lost_steps());
         format!("{lost} steps in {s:.1} s")
     };

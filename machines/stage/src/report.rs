@@ -4,7 +4,7 @@ use core::fmt;
 
 use serde::Serialize;
 
-use crate::motors::Followed;
+use crate::motors::FollowedAxes;
 use crate::run::Run;
 use crate::speeds::SpeedProfile;
 
@@ -30,9 +30,9 @@ pub struct Report {
     open_loop: OpenLoop,
     /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
     /// given them loses steps where torque or inertia are overrun.
-    motors: Followed,
+    motors: FollowedAxes,
     /// The same motions without ramps.
-    constant_speed: Followed,
+    constant_speed: FollowedAxes,
     lose_steps: f64,
     seed: u64,
     /// What the program asked for that was left out or done otherwise.
@@ -102,7 +102,7 @@ impl fmt::Display for Report {
             "open loop:   {} steps lost; {:.3} mm off the curve at most, {:.3} mm at the end",
             open.lost_steps, open.max_deviation_mm, open.closing_error_mm
         )?;
-        let ramps = |name: &str, followed: &Followed| {
+        let ramps = |name: &str, followed: &FollowedAxes| {
             format!(
                 "{name} speed: {:.1} s, at least {:.0} mm/s², {} steps lost by torque and inertia",
                 followed.duration_s,

@@ -5,7 +5,7 @@ use machine_sim::Figure;
 
 use crate::controller::{Controller, Settings, StepObserver};
 use crate::gcode::Program;
-use crate::motors::Followed;
+use crate::motors::FollowedAxes;
 use crate::picture;
 use crate::record::{Record, Seen, over_time};
 use crate::report::Report;
@@ -19,9 +19,9 @@ pub struct Run {
     /// From the programmed end: in a closed loop, and without.
     pub(crate) closing_mm: [f64; 2],
     pub(crate) lost: [u64; 2],
-    pub(crate) followed: Followed,
+    pub(crate) followed: FollowedAxes,
     /// The same motions at constant speed.
-    pub(crate) constant: Followed,
+    pub(crate) constant: FollowedAxes,
     pub(crate) record: Record,
 }
 

@@ -171,9 +171,11 @@ fn sample_px(sample: &Sample) -> f64 {
     match sample {
         Sample::Line(_) => SAMPLE_PX + 6.0,
         Sample::Mark(..) => 18.0,
-        Sample::Scale(ends) => ends.iter().fold(SCALE_PX + 18.0, |sum, end| {
-            sum + text_px(&short(*end), TEXT_PX)
-        }),
+        Sample::Scale(ends) => {
+            let numbers = ends_of_scale(*ends);
+            let numbers = numbers.iter().map(|number| text_px(number, TEXT_PX));
+            SCALE_PX + 18.0 + numbers.sum::<f64>()
+        }
     }
 }
 
@@ -187,8 +189,9 @@ fn entry(group: Group, [x, y]: Point, sample: &Sample, name: &str) -> Group {
             group.add(stroked(line.set("fill", "none"), stroke))
         }
         Sample::Mark(kind, colour) => mark(group, [x + 7.0, middle], kind, colour),
-        Sample::Scale([low, high]) => {
-            let left = x + text_px(&short(low), TEXT_PX) + 6.0;
+        Sample::Scale(ends) => {
+            let [low, high] = ends_of_scale(ends);
+            let left = x + text_px(&low, TEXT_PX) + 6.0;
             let steps = 15_u32;
             let width = SCALE_PX / f64::from(steps + 1);
             let bars = (0..=steps).fold(group, |group, k| {
@@ -201,13 +204,13 @@ fn entry(group: Group, [x, y]: Point, sample: &Sample, name: &str) -> Group {
                     .set("fill", colour.css());
                 group.add(bar)
             });
-            bars.add(text([x, y], TEXT_PX, "start", &short(low)))
-                .add(text(
-                    [left + SCALE_PX + 6.0, y],
-                    TEXT_PX,
-                    "start",
-                    &short(high),
-                ))
+            let right = left + SCALE_PX + 6.0;
+            bars.add(text([x, y], TEXT_PX, "start", &low)).add(text(
+                [right, y],
+                TEXT_PX,
+                "start",
+                &high,
+            ))
         }
     }
     .add(named)
@@ -307,6 +310,20 @@ fn round(px: f64) -> f64 {
     (px * 100.0).round() / 100.0
 }
 
+/// The numbers at the ends of a scale, in three digits; 0 where that is nothing beside the other end.
+fn ends_of_scale(ends: [f64; 2]) -> [String; 2] {
+    /// Half of the last digit of the other end.
+    const NOTHING: f64 = 0.0005;
+    let [low, high] = ends.map(f64::abs);
+    ends.map(|end| {
+        if end.abs() <= NOTHING * low.max(high) {
+            "0".to_owned()
+        } else {
+            short(end)
+        }
+    })
+}
+
 /// A number in three digits.
 fn short(value: f64) -> String {
     let decimals = 2.0 - value.abs().max(1e-9).log10().floor();
@@ -317,4 +334,23 @@ fn short(value: f64) -> String {
     )]
     let decimals = decimals.clamp(0.0, 9.0) as usize;
     format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_that_is_nothing_beside_the_other_is_0() {
+        for (ends, wanted) in [
+            ([1e-12, 8.46], ["0", "8.46"]),
+            ([0.0, 123.4], ["0", "123"]),
+            ([-1e-13, 0.05], ["0", "0.0500"]),
+            ([-20.0, 0.001], ["-20.0", "0"]),
+            ([0.02, 8.0], ["0.0200", "8.00"]),
+            ([0.0, 0.0], ["0", "0"]),
+        ] {
+            assert_eq!(ends_of_scale(ends), wanted, "{ends:?}");
+        }
+    }
 }
