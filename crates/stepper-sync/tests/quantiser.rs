@@ -9,7 +9,7 @@ use stepper_sync::{KnotError, PvtKnot, PvtQuantiser, PvtRow, Rate, StepScale};
 /// 2^-53 of ten steps a tick and of what they change by in a row of 500 ticks.
 const F64: [f64; 3] = [9.3e-10, 1e-14, 1e-16];
 
-/// A cubic: position at the share s of T ticks, from positions and velocities a tick at its ends.
+/// A cubic: position at the fraction s of T ticks, from positions and velocities a tick at its ends.
 #[derive(Clone, Copy, Debug)]
 struct Cubic {
     ticks: f64,
@@ -18,8 +18,13 @@ struct Cubic {
 
 impl Cubic {
     fn new(from: (f64, f64), to: (f64, f64), ticks: f64) -> Self {
-        let (way, v0, v1) = (to.0 - from.0, from.1 * ticks, to.1 * ticks);
-        let q = [from.0, v0, 3.0 * way - 2.0 * v0 - v1, v0 + v1 - 2.0 * way];
+        let (travel, v0, v1) = (to.0 - from.0, from.1 * ticks, to.1 * ticks);
+        let q = [
+            from.0,
+            v0,
+            3.0 * travel - 2.0 * v0 - v1,
+            v0 + v1 - 2.0 * travel,
+        ];
         Self { ticks, q }
     }
 
@@ -177,6 +182,79 @@ fn rows_by_hand() {
     };
     assert_eq!(pvt.jump([0.0]), Ok(rest));
     assert_eq!(pvt.knots(), rest.knots);
+}
+
+/// At a corner between ticks the velocities jump within what the motors start and stop with, and the
+/// row after it departs by what is documented: at constant speeds by less than the jump a tick.
+#[test]
+fn a_knot_of_the_same_time_is_a_jump() {
+    let hz = 1_000_000.0;
+    let scale = StepScale::new(1.0).unwrap();
+    let new = || {
+        let rate = Rate::from_hz(1_000_000).unwrap();
+        PvtQuantiser::new(rate, [scale; 2], [0.0; 2])
+            .unwrap()
+            .with_start_stop_speeds([300.0; 2])
+    };
+    for early in [0.0, 0.3, 0.7, 0.999] {
+        let mut pvt = new();
+        let corner_s = (1000.0 + early) / hz;
+        pvt.jump([1000.0, 250.0]).unwrap();
+        let at = |time_s: f64, [x, y]: [f64; 2]| {
+            let since = time_s - corner_s;
+            [1000.0 * corner_s + x * since, 250.0 * corner_s + y * since]
+        };
+        pvt.row(corner_s, at(corner_s, [0.0; 2]), [1000.0, 250.0])
+            .unwrap();
+        let [after_x, after_y] = [1250.0, -50.0];
+        let row = pvt
+            .row(corner_s, at(corner_s, [0.0; 2]), [after_x, after_y])
+            .unwrap();
+        assert_eq!(row.ticks, 0);
+        let start = row.knots.map(in_steps);
+        let end_s = (4000.0 + early) / hz;
+        let row = pvt
+            .row(end_s, at(end_s, [after_x, after_y]), [after_x, after_y])
+            .unwrap();
+        assert_eq!(row.ticks, 3000);
+        let end = row.knots.map(in_steps);
+        let jump = 300.0 / hz;
+        for (axis, velocity) in [after_x, after_y].into_iter().enumerate() {
+            let cubic = Cubic::new(start[axis], end[axis], 3000.0);
+            for n in 0..=30 {
+                let tick = 100.0 * f64::from(n);
+                let [position, speed, acceleration] = cubic.at(tick);
+                let wanted = at((1000.0 + tick) / hz, [after_x, after_y])[axis];
+                // Rounding to 2^-33 steps and 2^-57 steps a tick, and of f64.
+                let rounding = 3e-10;
+                assert!((position - wanted).abs() <= jump * early + rounding);
+                assert!((speed - velocity / hz).abs() <= 1.5 * jump * early / 3000.0 + 1e-12);
+                assert!(acceleration.abs() <= 6.0 * jump * early / 3000.0_f64.powi(2) + 1e-15);
+            }
+        }
+    }
+    let mut pvt = new();
+    pvt.row(0.001, [1.0, 0.0], [0.0; 2]).unwrap();
+    let before = pvt.clone();
+    let refused = |positions, velocities| {
+        let mut pvt = before.clone();
+        let error = pvt.row(0.001, positions, velocities).unwrap_err();
+        assert_eq!(pvt, before);
+        error
+    };
+    assert_eq!(
+        refused([1.0, 0.0], [300.0, -301.0]).to_string(),
+        "axis 1: velocity jumps by 0.000301 steps a tick, more than 0.000300"
+    );
+    for elsewhere in [[1.1, 0.0], [1.0, f64::NAN]] {
+        let error = refused(elsewhere, [0.0; 2]);
+        assert!(matches!(error, KnotError::Time { .. }), "{error}");
+    }
+    let error = refused([1.0, 0.0], [f64::NAN, 0.0]);
+    assert!(
+        matches!(error, KnotError::Velocity { axis: 0, .. }),
+        "{error}"
+    );
 }
 
 #[test]

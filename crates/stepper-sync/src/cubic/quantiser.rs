@@ -40,6 +40,16 @@ pub enum KnotError {
         /// Time of the knot before, in s.
         last_s: f64,
     },
+    /// A velocity that jumps by more than the motor starts and stops with.
+    #[error("axis {axis}: velocity jumps by {jump:.6} steps a tick, more than {max:.6}")]
+    Jump {
+        /// Index of the axis.
+        axis: usize,
+        /// Change of the velocity, in steps a tick.
+        jump: f64,
+        /// The start-stop speed, in steps a tick.
+        max: f64,
+    },
 }
 
 /// Turns knots in seconds and units into rows of whole ticks and steps: the last floating point
@@ -65,6 +75,16 @@ pub enum KnotError {
 /// below 2^32 ticks. At 72 MHz, rows of 1 ms and jumps of 10⁵ steps/s² that is 2·10⁻⁷ steps,
 /// 0.0014 steps/s and 5.6 steps/s².
 ///
+/// # Jumps
+/// With [`start-stop speeds`](Self::with_start_stop_speeds), a knot of the same time and positions as
+/// the one before sets other velocities, by a row of 0 ticks at the tick n of both. Where an axis
+/// jumps by D steps a tick, and its accelerations before and after are at most a, the row after it
+/// departs by
+/// ```text
+/// position      D        velocity      a h + 1.5 D / T        acceleration  4 a h/T + 6 D / T²
+/// ```
+/// more, with h and T in ticks.
+///
 /// # Examples
 /// ```
 /// use stepper_sync::{PvtQuantiser, Rate, StepScale};
@@ -78,6 +98,8 @@ pub enum KnotError {
 pub struct PvtQuantiser<const N: usize> {
     tick_hz: f64,
     steps_per_unit: [f64; N],
+    /// Of each axis, in steps a tick.
+    start_stop: Option<[f64; N]>,
     /// The knot given last.
     last_s: f64,
     last_ticks: f64,
@@ -91,6 +113,8 @@ pub struct PvtQuantiser<const N: usize> {
 const POSITION_UNITS: f64 = (1_u64 << PvtKnot::POSITION_BITS) as f64;
 /// Units of a velocity in a step a tick.
 const VELOCITY_UNITS: f64 = (1_u64 << PvtKnot::VELOCITY_BITS) as f64;
+/// Of a velocity by its scale and the tick rate, and of a sum, relative.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// From here on an `f64` has no half ticks.
 const MAX_TICKS: f64 = (1_u64 << 52) as f64;
 
@@ -107,6 +131,7 @@ impl<const N: usize> PvtQuantiser<N> {
         let mut quantiser = Self {
             tick_hz: f64::from(tick_rate.numerator()) / f64::from(tick_rate.denominator()),
             steps_per_unit: scales.map(StepScale::steps_per_unit),
+            start_stop: None,
             last_s: 0.0,
             last_ticks: 0.0,
             last: [Motion::default(); N],
@@ -118,6 +143,15 @@ impl<const N: usize> PvtQuantiser<N> {
         Ok(quantiser)
     }
 
+    /// The same for motors that start and stop at once with up to `speeds`, in the axes' units a
+    /// second: by these the velocities may jump from a knot to the next one of the same time.
+    #[must_use]
+    pub fn with_start_stop_speeds(mut self, speeds: [f64; N]) -> Self {
+        let motions = self.motions([0.0; N], speeds);
+        self.start_stop = Some(motions.map(|motion| motion.velocity));
+        self
+    }
+
     /// Where the axes are at the end of the last row.
     #[must_use]
     pub const fn knots(&self) -> [PvtKnot; N] {
@@ -125,7 +159,8 @@ impl<const N: usize> PvtQuantiser<N> {
     }
 
     /// The row to the knot at `time_s`, with positions in the axes' units, and velocities in these
-    /// a second.
+    /// a second. A knot of the same time and positions is a jump of the velocities, where
+    /// [start-stop speeds](Self::with_start_stop_speeds) allow one.
     ///
     /// # Errors
     /// [`KnotError`]: the state is as before then.
@@ -135,6 +170,12 @@ impl<const N: usize> PvtQuantiser<N> {
         positions: [f64; N],
         velocities: [f64; N],
     ) -> Result<PvtRow<N>, KnotError> {
+        if let Some(start_stop) = self.start_stop
+            && time_s == self.last_s
+        {
+            let to = self.motions(positions, velocities);
+            return self.checked_jump(&to, start_stop);
+        }
         let now_ticks = time_s * self.tick_hz;
         let whole_ticks = if (0.0..MAX_TICKS).contains(&now_ticks) {
             now_ticks as u64
@@ -167,13 +208,44 @@ impl<const N: usize> PvtQuantiser<N> {
         })
     }
 
-    /// A row of no time that sets other velocities at the last knot.
+    /// A jump to another motion at the time of the last knot.
+    fn checked_jump(
+        &mut self,
+        to: &[Motion; N],
+        start_stop: [f64; N],
+    ) -> Result<PvtRow<N>, KnotError> {
+        let axes = to.iter().zip(self.last).zip(start_stop).enumerate();
+        for (axis, ((to, last), max)) in axes {
+            // Not a number either.
+            let is_there = (to.position - last.position).abs() * POSITION_UNITS < 1.0;
+            if !is_there {
+                let time_s = self.last_s;
+                return Err(KnotError::Time {
+                    time_s,
+                    last_s: time_s,
+                });
+            }
+            let jump = (to.velocity - last.velocity).abs();
+            let rounding = ROUNDING * (to.velocity.abs() + last.velocity.abs());
+            if jump > max + rounding {
+                return Err(KnotError::Jump { axis, jump, max });
+            }
+        }
+        self.jump_to(to)
+    }
+
+    /// A row of no time that sets other velocities at the last knot, however different.
     ///
     /// # Errors
     /// [`KnotError::Velocity`].
     pub fn jump(&mut self, velocities: [f64; N]) -> Result<PvtRow<N>, KnotError> {
         let to = self.motions([0.0; N], velocities);
-        let velocities = rounded(&to)?;
+        self.jump_to(&to)
+    }
+
+    /// A row of no time to other velocities.
+    fn jump_to(&mut self, to: &[Motion; N]) -> Result<PvtRow<N>, KnotError> {
+        let velocities = rounded(to)?;
         for ((last, to), (knot, new)) in self
             .last
             .iter_mut()

@@ -23,9 +23,6 @@ const TIMING: StepDirTiming = StepDirTiming {
     hold_ns: 10_000,
 };
 
-/// Ticks of a jump of the velocities.
-const JUMP_TICKS: f64 = 2.0;
-
 /// Shoulder, elbow and disc, as the rows have them.
 const AXES: [Axis; 3] = [Axis::Theta2, Axis::Theta1, Axis::Theta3];
 
@@ -110,7 +107,8 @@ impl Player<'_> {
         };
         let rate = machine.timer.tick_rate();
         let scales = joints.map(|joint| joint.scale());
-        let mut quantiser = PvtQuantiser::new(rate, scales, from_home(start.position))?;
+        let mut quantiser = PvtQuantiser::new(rate, scales, from_home(start.position))?
+            .with_start_stop_speeds(machine.start_speeds());
         let mut steps = PvtSteps::new(quantiser.knots(), TIMING.min_intervals(rate));
         let is_there = AXES
             .iter()
@@ -118,23 +116,10 @@ impl Player<'_> {
             .all(|(axis, steps)| i64::from(*self.position.get(*axis)) == steps);
         ensure!(is_there, "a stroke does not begin where the machine stands");
         simulation.turns_while_moving(true);
-        let jump_s = JUMP_TICKS * machine.tick_s();
-        let mut before = *start;
         let mut edges = Edges::new(self.controller.now(), machine);
         for row in rows {
-            let (mut time_s, mut position) = (row.time_s, from_home(row.position));
-            if row.duration_s <= 0.0 {
-                // The velocities jump at once, which is two ticks here.
-                time_s += jump_s;
-                let joints = position
-                    .iter_mut()
-                    .zip(before.velocity.iter().zip(row.velocity));
-                for (position, (from, to)) in joints {
-                    *position += (from + to) * 0.5 * jump_s;
-                }
-            }
-            before = *row;
-            steps.push(&quantiser.row(time_s, position, row.velocity)?)?;
+            let position = from_home(row.position);
+            steps.push(&quantiser.row(row.time_s, position, row.velocity)?)?;
             for step in &mut steps {
                 edges.step(step.ticks, step.axis, step.direction, simulation)?;
             }
