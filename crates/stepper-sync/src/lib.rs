@@ -32,7 +32,7 @@ mod trains;
 pub use accumulators::{Accumulation, AccumulatorError, Accumulators, SpeedLaw};
 pub use cubic::{
     AxisSegments, JoinedSegments, KnotError, MinIntervals, PvtKnot, PvtQuantiser, PvtRow, PvtSteps,
-    RowError, Segment, SegmentError, SegmentPlayer, Step,
+    RowBits, RowBytesError, RowCodec, RowError, Segment, SegmentError, SegmentPlayer, Step,
 };
 pub use edges::{Edge, Edges, Level};
 pub use latches::{BusError, BusWrite, LatchWrites, Latches};

@@ -1,10 +1,13 @@
 //! Segments: their bytes, what is refused, and those that reach across rows.
 #![cfg(test)]
 
+#[path = "common/arm.rs"]
+mod arm;
+
 use proptest::prelude::*;
 use stepper_sync::{
-    AxisSegments, JoinedSegments, MinIntervals, PvtKnot, PvtQuantiser, Rate, Segment, SegmentError,
-    SegmentPlayer, StepDirTiming, StepScale,
+    AxisSegments, JoinedSegments, MinIntervals, PvtKnot, Rate, Segment, SegmentError,
+    SegmentPlayer, StepDirTiming,
 };
 
 const STEP: i64 = 1 << 32;
@@ -243,46 +246,17 @@ proptest! {
     }
 }
 
-/// Both links of an arm, in mm.
-const LINK_MM: f64 = 132.0;
-
-/// Angles of shoulder and elbow, in radians.
-fn inverse([x, y]: [f64; 2]) -> [f64; 2] {
-    let half = (x.hypot(y) / (2.0 * LINK_MM)).acos();
-    [y.atan2(x) - half, 2.0 * half]
-}
-
-/// Their speeds.
-fn inverse_speeds([shoulder, elbow]: [f64; 2], [vx, vy]: [f64; 2]) -> [f64; 2] {
-    let (upper, lower) = (shoulder, shoulder + elbow);
-    let determinant = LINK_MM * elbow.sin();
-    let first = (vx * lower.cos() + vy * lower.sin()) / determinant;
-    let second = -(vx * upper.cos() + vy * upper.sin()) / determinant;
-    [first, second - first]
-}
-
-/// Bytes and steps of both axes for a line of 244 mm at 300 mm/s and 3000 mm/s², at 32,000 steps a
-/// turn, by rows of 10 ms.
+/// Bytes and steps of both axes for the line at 32,000 steps a turn, by rows of 10 ms.
 fn line_of_an_arm(tick_hz: u32) -> (usize, usize) {
-    const LINE: [[f64; 2]; 2] = [[60.0, 150.0], [200.0, -50.0]];
-    const ROW_S: f64 = 0.01;
-    const RAMP_S: f64 = 0.1;
-    const SPEED: f64 = 300.0;
-    let [[x0, y0], [x1, y1]] = LINE;
-    let length = (x1 - x0).hypot(y1 - y0);
-    let end_s = length / SPEED + RAMP_S;
-    // Way and speed of the tool.
-    let at = |time_s: f64| {
-        let up = time_s.min(RAMP_S);
-        let down = (time_s - end_s + RAMP_S).max(0.0);
-        let way = SPEED * (up * up / (2.0 * RAMP_S) + (time_s - up) - down * down / (2.0 * RAMP_S));
-        (way / length, SPEED * (up - down) / RAMP_S / length)
-    };
-    let rate = Rate::from_hz(tick_hz).unwrap();
-    let scale = StepScale::new(32_000.0 / core::f64::consts::TAU).unwrap();
-    let mut table = PvtQuantiser::new(rate, [scale; 2], inverse(LINE[0])).unwrap();
-    let least = StepDirTiming::DRV8825.min_intervals(rate);
-    let mut axes = table.knots().map(|knot| JoinedSegments::new(knot, least));
+    let rows = (arm::END_S / 0.01).ceil();
+    let times: Vec<f64> = (1_u32..)
+        .map(f64::from)
+        .take_while(|row| *row <= rows)
+        .map(|row| row * arm::END_S / rows)
+        .collect();
+    let (start, table) = arm::line(tick_hz, 32_000.0, &times);
+    let least = StepDirTiming::DRV8825.min_intervals(Rate::from_hz(tick_hz).unwrap());
+    let mut axes = start.map(|knot| JoinedSegments::new(knot, least));
     let (mut bytes, mut steps) = (0, 0);
     let mut take = |axis: &mut JoinedSegments| {
         for segment in axis {
@@ -290,15 +264,7 @@ fn line_of_an_arm(tick_hz: u32) -> (usize, usize) {
             steps += usize::from(segment.count());
         }
     };
-    let rows = (end_s / ROW_S).ceil();
-    let mut row = 0.0;
-    while row < rows {
-        row += 1.0;
-        let time_s = row * end_s / rows;
-        let (fraction, speed) = at(time_s);
-        let joints = inverse([x0 + (x1 - x0) * fraction, y0 + (y1 - y0) * fraction]);
-        let speeds = inverse_speeds(joints, [(x1 - x0) * speed, (y1 - y0) * speed]);
-        let row = table.row(time_s, joints, speeds).unwrap();
+    for row in table {
         for (axis, knot) in axes.iter_mut().zip(row.knots) {
             axis.push(row.ticks, knot).unwrap();
             take(axis);

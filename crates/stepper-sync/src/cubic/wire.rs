@@ -2,17 +2,15 @@
 #![expect(
     clippy::arithmetic_side_effects,
     clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
     clippy::cast_sign_loss,
-    reason = "bytes are cut out of numbers; lengths and shifts below 64"
+    reason = "bits are cut out of counts; intervals are above 0"
 )]
 
+use super::leb128::{MAX_LEN, NumberError, Reader, put_signed, put_unsigned};
 use super::segment::{MAX_COUNT, Segment, Units};
 use crate::Direction;
 use thiserror::Error;
 
-/// Most bytes of a number: 64 bits, 7 in each.
-const MAX_NUMBER_LEN: usize = 10;
 /// In the first byte: the direction is negative.
 const NEGATIVE: u8 = 0x80;
 /// In the first byte: where the number of differences is.
@@ -66,6 +64,15 @@ pub enum SegmentError {
     },
 }
 
+impl From<NumberError> for SegmentError {
+    fn from(error: NumberError) -> Self {
+        match error {
+            NumberError::Truncated { len } => Self::Truncated { len },
+            NumberError::TooLong { at } => Self::Number { at },
+        }
+    }
+}
+
 /// # Bytes
 /// | bytes | what | when |
 /// |---|---|---|
@@ -82,7 +89,7 @@ pub enum SegmentError {
 /// spelling.
 impl Segment {
     /// The most bytes of a segment.
-    pub const MAX_ENCODED_LEN: usize = 3 + 4 * MAX_NUMBER_LEN;
+    pub const MAX_ENCODED_LEN: usize = 3 + 4 * MAX_LEN;
 
     /// The segment as bytes, in the front of a buffer.
     pub fn encode<'b>(&self, buffer: &'b mut [u8; Self::MAX_ENCODED_LEN]) -> &'b [u8] {
@@ -116,7 +123,7 @@ impl Segment {
     /// # Errors
     /// [`SegmentError`]. Whatever decodes is played forwards in time.
     pub fn decode(bytes: &[u8]) -> Result<(Self, &[u8]), SegmentError> {
-        let mut reader = Reader { bytes, rest: bytes };
+        let mut reader = Reader::new(bytes);
         let head = reader.byte()?;
         let differences = (head >> DIFFERENCES_SHIFT) & 3;
         let mut count = u32::from(head & LOW_COUNT) + 1;
@@ -158,7 +165,7 @@ impl Segment {
             return Err(SegmentError::ZeroDifference { differences });
         }
         segment.check_times()?;
-        Ok((segment, reader.rest))
+        Ok((segment, reader.rest()))
     }
 
     /// Differences up to the last that is not 0.
@@ -209,58 +216,15 @@ impl<'b> Writer<'b> {
         }
     }
 
-    fn unsigned(&mut self, mut number: u64) {
-        while number >> 7 > 0 {
-            self.byte(number as u8 | 0x80);
-            number >>= 7;
-        }
-        self.byte(number as u8);
+    fn unsigned(&mut self, number: u64) {
+        put_unsigned(number, |byte| self.byte(byte));
     }
 
     fn signed(&mut self, number: i64) {
-        self.unsigned(((number << 1) ^ (number >> 63)) as u64);
+        put_signed(number, |byte| self.byte(byte));
     }
 
     fn finish(self) -> &'b [u8] {
         self.buffer.get(..self.len).unwrap_or_default()
-    }
-}
-
-/// Takes from the front of bytes.
-struct Reader<'b> {
-    bytes: &'b [u8],
-    rest: &'b [u8],
-}
-
-impl Reader<'_> {
-    fn byte(&mut self) -> Result<u8, SegmentError> {
-        let (&byte, rest) = self.rest.split_first().ok_or(SegmentError::Truncated {
-            len: self.bytes.len(),
-        })?;
-        self.rest = rest;
-        Ok(byte)
-    }
-
-    fn unsigned(&mut self) -> Result<u64, SegmentError> {
-        let mut number = 0;
-        for shift in (0..).step_by(7) {
-            let byte = self.byte()?;
-            let bits = u64::from(byte & 0x7F);
-            // Of the tenth byte one bit is left; a last byte of 0 is one too many.
-            if shift > 63 || bits << shift >> shift != bits || (byte == 0 && shift > 0) {
-                let at = self.bytes.len() - self.rest.len() - 1;
-                return Err(SegmentError::Number { at });
-            }
-            number |= bits << shift;
-            if byte & 0x80 == 0 {
-                break;
-            }
-        }
-        Ok(number)
-    }
-
-    fn signed(&mut self) -> Result<i64, SegmentError> {
-        let number = self.unsigned()?;
-        Ok((number >> 1) as i64 ^ -((number & 1) as i64))
     }
 }
