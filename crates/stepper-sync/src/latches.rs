@@ -1,4 +1,4 @@
-//! Many motors on one data bus, each behind a transparent latch.
+//! Many motors on one data bus, each through a transparent latch.
 
 use core::iter::FusedIterator;
 use thiserror::Error;

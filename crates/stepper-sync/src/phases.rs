@@ -4,8 +4,8 @@ use thiserror::Error;
 
 /// Windings that carry current from step to step.
 ///
-/// A winding is a bit of a nibble: 1, 2, 4, 8 for A, B, A', B', where A' is A with the current the
-/// other way, by another winding of a unipolar motor or by the bridge of a bipolar one.
+/// A winding is a bit of a nibble: 1, 2, 4, 8 for A, B, A', B', where A' is A with the current
+/// reversed, by another winding of a unipolar motor or by the bridge of a bipolar one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -157,7 +157,7 @@ impl Phase {
 /// Half steps of an electrical turn.
 const TURN: [u8; 8] = [1, 3, 2, 6, 4, 12, 8, 9];
 
-/// The phases of a motor: the byte of each, and the way from one to the next.
+/// The phases of a motor: the byte of each, and their order.
 ///
 /// The phase itself is a small value of each motor, so that motors with the same windings share
 /// this table of 11 bytes. A change of direction starts from the phase at hand: the rotor does not

@@ -25,7 +25,7 @@ const NS_PER_S: NonZeroU128 = NonZeroU128::MIN.saturating_add(999_999_999);
 
 /// A hardware timer: its clock, the clocks per tick, its width, and what its register holds.
 ///
-/// Each constructor is named after the way the counter runs, and what stands in the register for
+/// Each constructor is named after how the counter runs, and what its register holds for
 /// an interval of T ticks:
 ///
 /// | constructor | register | shortest T |
@@ -80,7 +80,7 @@ pub struct Timer {
 }
 
 impl Timer {
-    /// Most clocks per tick, 2^20: a 16-bit prescaler behind a fixed divider of 16.
+    /// Most clocks per tick, 2^20: a 16-bit prescaler after a fixed divider of 16.
     pub const MAX_CLOCKS_PER_TICK: u32 = 1 << 20;
 
     /// A counter that counts up from what is written into it, or into its reload register, and
@@ -175,7 +175,7 @@ impl Timer {
         }
     }
 
-    /// The same timer behind the smallest of `prescalers` with which half a period of `rate` fits
+    /// The same timer with the smallest of `prescalers` with which half a period of `rate` fits
     /// one count: the finest.
     ///
     /// `prescalers` is the list of the data sheet in any order. Each is multiplied with the clocks
@@ -190,7 +190,7 @@ impl Timer {
     /// ```
     /// use stepper_sync::{CounterWidth::Bits16, Rate, Timer};
     /// let timer1 = Timer::up_to_compare(16_000_000, 1, Bits16)?;
-    /// // 70,922 clocks do not fit 16 bits; behind 8 they are 8865 ticks.
+    /// // 70,922 clocks do not fit 16 bits; divided by 8 they are 8865 ticks.
     /// let rate = Rate::from_millihertz(112_800)?;
     /// let timer1 = timer1.with_finest_prescaler(&[1, 8, 64, 256, 1024], rate)?;
     /// assert_eq!(timer1.clocks_per_tick(), 8);
@@ -201,7 +201,7 @@ impl Timer {
         let mut finest: Option<Self> = None;
         let mut refusal = TimerError::NoPrescaler;
         for &prescaler in prescalers {
-            let timer = self.behind(prescaler)?;
+            let timer = self.with_prescaler(prescaler)?;
             let fits = timer
                 .half_period(rate)
                 .and_then(|exact| timer.check(exact.nearest()));
@@ -224,7 +224,7 @@ impl Timer {
         finest.ok_or(refusal)
     }
 
-    fn behind(self, prescaler: u32) -> Result<Self, TimerError> {
+    fn with_prescaler(self, prescaler: u32) -> Result<Self, TimerError> {
         let value = self.clocks_per_tick.get().saturating_mul(prescaler);
         match NonZeroU32::new(value) {
             Some(clocks_per_tick) if value <= Self::MAX_CLOCKS_PER_TICK => Ok(Self {

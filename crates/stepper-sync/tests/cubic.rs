@@ -116,8 +116,8 @@ fn long_and_fast_rows() {
     // A step in 12 ticks, the fastest that is allowed, for 2^32 - 1 ticks.
     let ticks = u32::MAX;
     let v = STEP_A_TICK / 12;
-    let way = i64::try_from((i128::from(v) * i128::from(ticks)) >> 24).unwrap();
-    let mut axis = AxisSegments::new(knot(-way, v), LEAST);
+    let travel = i64::try_from((i128::from(v) * i128::from(ticks)) >> 24).unwrap();
+    let mut axis = AxisSegments::new(knot(-travel, v), LEAST);
     axis.push(ticks, knot(0, v)).unwrap();
     let segments: Vec<_> = axis.by_ref().take(1000).collect();
     let count: u64 = segments

@@ -139,7 +139,7 @@ fn windings_follow_the_nibble_whatever_the_wiring() {
     }
 }
 
-/// A pin on a bus that is gone.
+/// A pin whose bus has failed.
 struct Broken;
 
 #[derive(Debug, PartialEq)]

@@ -346,9 +346,9 @@ proptest! {
         prop_assert!(stepped.step(2, Direction::Negative).is_err());
         let mut applied = position;
         prop_assert_eq!(applied.apply([0, steps]).is_ok(), range.contains(&(at + i64::from(steps))));
-        let way = i64::from(target) - at;
-        let reached = range.contains(&i64::from(target)) && way.unsigned_abs() <= 0x7FFF_FFFF;
-        prop_assert_eq!(position.move_to([0, target]).map(|moves| i64::from(moves[1])).ok(), reached.then_some(way));
+        let travel = i64::from(target) - at;
+        let reached = range.contains(&i64::from(target)) && travel.unsigned_abs() <= 0x7FFF_FFFF;
+        prop_assert_eq!(position.move_to([0, target]).map(|moves| i64::from(moves[1])).ok(), reached.then_some(travel));
         prop_assert_eq!(i64::from(position.homing()[1]), if reached { -i64::from(target) } else { -at });
     }
 }

@@ -1,4 +1,4 @@
-//! Phase sequences and the bus behind which latches hold them.
+//! Phase sequences and the latches on a bus that hold them.
 #![cfg(test)]
 
 use proptest::prelude::*;

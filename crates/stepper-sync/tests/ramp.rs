@@ -15,7 +15,7 @@ const END_TICKS: f64 = 0.5 + F64_TICKS;
 /// The documented bound of a step: ticks, and steps.
 const STEP_TICKS: f64 = 2.0;
 const STEP_PLACE: f64 = 1.0 / (1_u32 << 28) as f64;
-/// Error of this test's own f64 arithmetic, in ticks: 2^40 ticks have 12 bits behind the point.
+/// Error of this test's own f64 arithmetic, in ticks: 2^40 ticks have 12 bits after the point.
 const F64_TICKS: f64 = 1e-3;
 
 /// One motor on one timer.
@@ -141,8 +141,8 @@ fn check(s: &Setting, axis: AxisRamp, m: u32, n: f64, end: u64) -> f64 {
             pulses.push(interval);
             continue;
         }
-        let way = (f64::from(k) + 1.0) * n / (2.0 * f64::from(m));
-        let exact = s.time(way, n);
+        let travel = (f64::from(k) + 1.0) * n / (2.0 * f64::from(m));
+        let exact = s.time(travel, n);
         let error = (ticks as f64 - exact).abs();
         // Ticks of a step of this axis at the highest rate.
         let step = s.tick_hz / s.v() * n / f64::from(m);

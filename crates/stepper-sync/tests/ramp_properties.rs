@@ -156,7 +156,7 @@ proptest! {
             for pair in down.windows(2) {
                 prop_assert!(pair[0] <= pair[1] + TREND_TICKS, "{pair:?}");
             }
-            // The way down mirrors the way up.
+            // Deceleration mirrors acceleration.
             for (a, b) in up.iter().zip(down.iter().rev()) {
                 prop_assert!(a.abs_diff(*b) <= TREND_TICKS, "{a} and {b}");
             }

@@ -44,7 +44,7 @@ impl Motor {
     /// [`TurnError::Unreachable`] when no plan was found that ends within one half step, or there is
     /// no frame to turn in.
     pub fn turn(&self, half_steps: i32, frames: u16, easing: Easing) -> Result<Vec<i8>, TurnError> {
-        let mut magnitudes = self.shares(self.smallest_sum(half_steps), frames, easing)?;
+        let mut magnitudes = self.distributed(self.smallest_sum(half_steps), frames, easing)?;
         if self.law() == Law::Reset && half_steps != 0 && frames > 0 {
             magnitudes = reset::magnitudes(*self, half_steps, frames, easing);
         }
@@ -89,8 +89,8 @@ impl Motor {
         sum.max(0).cast_unsigned()
     }
 
-    /// A sum of speeds, shared out to frames.
-    fn shares(&self, sum: u64, frames: u16, easing: Easing) -> Result<Vec<u8>, TurnError> {
+    /// A sum of speeds, distributed over the frames.
+    fn distributed(&self, sum: u64, frames: u16, easing: Easing) -> Result<Vec<u8>, TurnError> {
         let max = self.max_speed();
         let mut before = 0;
         let speeds = (1..=frames).map(|frame| {

@@ -86,12 +86,12 @@ proptest! {
             let half_steps = percent * i32::from(frames) * 20 / 100;
             wanted += i64::from(half_steps);
             // The error of one turn is made up for by the next.
-            let way = i32::try_from(wanted - planned.position()).unwrap();
-            match planned.turn(way, frames, easing) {
+            let travel = i32::try_from(wanted - planned.position()).unwrap();
+            match planned.turn(travel, frames, easing) {
                 Ok(turn) => {
                     prop_assert_eq!(turn.len(), usize::from(frames));
                     for speed in turn {
-                        prop_assert!(i32::from(speed) * way >= 0 && speed > -128);
+                        prop_assert!(i32::from(speed) * travel >= 0 && speed > -128);
                         planned.run(speed);
                         firmware.ticks(speed, 200);
                     }
@@ -169,12 +169,12 @@ proptest! {
         let timing = Timing::new(1000, frame_ticks).unwrap();
         let motor = Motor::new(Law::Reset, Threshold::new(threshold).unwrap(), timing);
         for half_steps in makeable(threshold, frame_ticks, frames) {
-            let way = i32::try_from(half_steps).unwrap() * if negative { -1 } else { 1 };
-            let turn = motor.turn(way, frames, Easing::Linear);
-            prop_assert!(turn.is_ok(), "{way} in {frames} frames: {turn:?}");
+            let travel = i32::try_from(half_steps).unwrap() * if negative { -1 } else { 1 };
+            let turn = motor.turn(travel, frames, Easing::Linear);
+            prop_assert!(turn.is_ok(), "{travel} in {frames} frames: {turn:?}");
             let mut firmware = Firmware { threshold: threshold.into(), ..Firmware::new(Law::Reset) };
             turn.unwrap().into_iter().for_each(|speed| firmware.ticks(speed, frame_ticks));
-            prop_assert!(firmware.position.abs_diff(way.into()) <= 1);
+            prop_assert!(firmware.position.abs_diff(travel.into()) <= 1);
         }
     }
 }
@@ -252,14 +252,14 @@ fn frames_shorter_than_a_step_follow_the_way() {
             firmware.ticks(speed, frame_ticks);
             assert_eq!(motor.position(), firmware.position);
             made += 1.0;
-            let way = -40.0 * made / 1200.0;
-            worst = worst.max((f64::from(i32::try_from(motor.position()).unwrap()) - way).abs());
+            let travel = -40.0 * made / 1200.0;
+            worst = worst.max((f64::from(i32::try_from(motor.position()).unwrap()) - travel).abs());
         }
         assert_eq!(motor.position(), -40);
-        // Whole steps are up to one behind.
+        // Whole steps lag by up to one.
         assert!(
             worst < 1.1,
-            "{worst} half steps off the way with {frame_ticks} ticks"
+            "{worst} half steps off the course with {frame_ticks} ticks"
         );
     }
 }

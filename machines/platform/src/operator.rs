@@ -11,7 +11,7 @@ use crate::world::World;
 /// The rotary switch for the direction and the one for the multiplier.
 const DIRECTION: RotarySwitch = RotarySwitch::W2;
 const MULTIPLIER: RotarySwitch = RotarySwitch::W1;
-/// Counts of the samples of a jog, parts of full speed in percent: away, and the same way back.
+/// Counts of the samples of a jog, in percent of full speed: in one direction, and the same back.
 const JOG_PERCENT: [i32; 24] = [
     3, 6, 12, 18, 27, 36, 44, 57, 63, 78, 85, 97, 104, 110, 93, 81, 72, 66, 48, 39, 31, 22, 14, 4,
 ];

@@ -196,8 +196,8 @@ impl LocatorSettings {
                 None => limits,
             }
         });
-        let place = |numbers: &Numbers<3>| Point3::from(numbers.values());
-        let (anchor, origin) = (place(&self.anchor_mm), place(&self.origin_mm));
+        let point = |numbers: &Numbers<3>| Point3::from(numbers.values());
+        let (anchor, origin) = (point(&self.anchor_mm), point(&self.origin_mm));
         let locator = Locator::new(anchor, origin, limits);
         match self.axes {
             Some(Exactly(axes)) => {

@@ -14,16 +14,16 @@ struct AxisSegment {
 }
 
 impl AxisSegment {
-    /// Position and speed at a part `s` of a segment that takes `time_s`.
+    /// Position and speed at a fraction `s` of a segment that takes `time_s`.
     fn at(&self, s: f64, time_s: f64) -> (f64, f64) {
-        let way = self.to - self.from;
+        let travel = self.to - self.from;
         let Some([v0, v1]) = self.speeds else {
-            return (self.from + s * way, way / time_s);
+            return (self.from + s * travel, travel / time_s);
         };
-        let (a, b) = (v0 * time_s - way, way - v1 * time_s);
+        let (a, b) = (v0 * time_s - travel, travel - v1 * time_s);
         let rest = 1.0 - s;
-        let position = self.from + s * way + s * rest * (a * rest + b * s);
-        let slope = way + (rest - s) * (a * rest + b * s) + s * rest * (b - a);
+        let position = self.from + s * travel + s * rest * (a * rest + b * s);
+        let slope = travel + (rest - s) * (a * rest + b * s) + s * rest * (b - a);
         (position, slope / time_s)
     }
 }
@@ -113,13 +113,13 @@ impl<const N: usize> Table<N> {
         pairs.map(|(number, (start, end))| (number, [*start, *end]))
     }
 
-    /// The segment under way at a time.
+    /// The segment that runs at a time.
     pub(crate) fn segment_at(&self, time_s: f64) -> usize {
         let begun = self.times_s.partition_point(|start| *start <= time_s);
         begun.saturating_sub(1).min(self.points().saturating_sub(2))
     }
 
-    /// Where every axis is, and how fast it moves, at a part `s` of a segment.
+    /// Where every axis is, and how fast it moves, at a fraction `s` of a segment.
     pub(crate) fn states(&self, segment: usize, s: f64) -> Option<States<N>> {
         let next = segment + 1;
         let time_s = self.times_s.get(next)? - self.times_s.get(segment)?;

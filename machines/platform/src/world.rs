@@ -134,7 +134,7 @@ impl<'a, const N: usize> World<'a, N> {
         self.advance_to(due)
     }
 
-    /// Waits for the end of the sample under way.
+    /// Waits for the end of the present sample.
     pub(crate) fn wait_sample(&mut self) -> Result<()> {
         self.wheel(0)
     }

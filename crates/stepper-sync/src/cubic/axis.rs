@@ -30,12 +30,12 @@ const TOLERANCE: u64 = 7 << 28;
 /// two steps at once. A step back that comes in the first
 /// [`reversal_ticks`](MinIntervals::reversal_ticks) of a row waits for their end, when the axis is
 /// then no more than e past its place; else the row is refused. Here e is 2^-8 steps, or what the
-/// axis goes in a tick at its greatest velocity, if that is less.
+/// axis moves in a tick at its greatest velocity, if that is less.
 ///
 /// # How near to the cubic
 /// Each step comes less than a tick from the time at which the row's exact cubic passes its place,
 /// where the axis moves by u and more in a tick; elsewhere |q - (k + 1/2)| at the tick of the step
-/// is at most what the axis goes in a tick, and u. Here u is 2^-40 steps, or 2^-47 of the greatest
+/// is at most what the axis moves in a tick, and u. Here u is 2^-40 steps, or 2^-47 of the greatest
 /// of the row's travel and its duration times its velocities, if that is more than 128 steps.
 ///
 /// No root is searched for each step. Let s be the fraction of the row's time, and
@@ -50,7 +50,7 @@ const TOLERANCE: u64 = 7 << 28;
 /// b3 = 2 g2² - g3                 b5 = 14 g2⁴ - 21 g2² g3 + 3 g3²
 /// b6 = -g2 (42 g2⁴ - 84 g2² g3 + 28 g3²)
 /// ```
-/// x⁴ and x⁵ give way to the cubics that come nearest to them on |x| <= 1 (Chebyshev), x² - 1/8 and
+/// x⁴ and x⁵ are replaced by the cubics that come nearest to them on |x| <= 1 (Chebyshev), x² - 1/8 and
 /// 5/4 x³ - 5/16 x, which are off by 1/8 and 1/16 at most. So
 /// ```text
 /// p(x) = -b4/8 + (1 - 5/16 b5) x + (b2 + b4) x² + (b3 + 5/4 b5) x³
@@ -91,7 +91,7 @@ pub struct AxisSegments {
     row_end: u64,
     /// At the end of the present row.
     knot: PvtKnot,
-    /// Whole steps from zero, after the segments handed out.
+    /// Whole steps from zero, after the segments taken.
     steps: i64,
     last: Option<Direction>,
     /// Ticks since the start that the next segment's delay counts from.

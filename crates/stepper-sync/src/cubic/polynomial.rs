@@ -12,7 +12,7 @@ use crate::fixed::{ONE, first, fraction, shifted, signed_high};
 /// The most fraction bits of a position.
 const MAX_BITS: u32 = 50;
 /// Bits of a distance or v T, at most, with those after the point: sums of 24 of them stay below 2^62.
-const WAY_BITS: u32 = 57;
+const DISTANCE_BITS: u32 = 57;
 
 /// Fraction bits with which every distance fits: half a step a tick for 2^32 ticks.
 const WHOLE_BITS: u32 = 31;
@@ -70,7 +70,7 @@ impl Cubic {
             .max(scale(from, WHOLE_BITS).unsigned_abs())
             .max(scale(to, WHOLE_BITS).unsigned_abs());
         let used = 64 - (most + 1).leading_zeros();
-        let bits = (WAY_BITS + WHOLE_BITS - used).min(MAX_BITS);
+        let bits = (DISTANCE_BITS + WHOLE_BITS - used).min(MAX_BITS);
         let more = bits as i32 - PvtKnot::POSITION_BITS as i32;
         let offset = from.position.wrapping_sub(origin << PvtKnot::POSITION_BITS);
         let travel = shifted(travel, more);
@@ -176,7 +176,7 @@ impl Cubic {
     }
 }
 
-/// What is gone at a velocity of up to half a step a tick, in 2^-bits steps, rounded down.
+/// The distance moved at a velocity of up to half a step a tick, in 2^-bits steps, rounded down.
 pub(crate) fn distance(velocity: i64, ticks: u32, bits: u32) -> i64 {
     // v T 2^(bits - 56) = (v 2^a) (T 2^b) 2^-64.
     let b = u64::from(ticks).leading_zeros().min(bits + 8);

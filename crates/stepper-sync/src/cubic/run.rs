@@ -30,7 +30,7 @@ pub(super) struct Batch {
 
 impl Batch {
     /// The time of the first step, in 2^-32 ticks, so that the whole ticks are rounded and, of
-    /// several steps, the 8 bits behind them.
+    /// several steps, the 8 bits after the point.
     pub(super) const fn start(&self) -> u64 {
         let half = if self.count > 1 {
             HALF_TICK + (1 << 23)
@@ -60,7 +60,7 @@ pub(super) struct Back {
     pub(super) wait_ticks: u64,
 }
 
-/// An axis on its way through a row. Positions are seen in the direction of the present piece, so
+/// An axis within a row. Positions are measured in the direction of the present piece, so
 /// that they rise, and count from the whole step at which the row began.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Run {
@@ -132,8 +132,8 @@ impl Run {
     /// Whether the axis may pass a step's place by more than the touch, turn round and be back in
     /// less than `ticks` ticks.
     ///
-    /// With |q''| <= 2 A per fraction² the way there takes at least the fraction sqrt(touch / A), and so
-    /// does the way back.
+    /// With |q''| <= 2 A per fraction² the distance takes at least the fraction sqrt(touch / A), and as
+    /// much on return.
     pub(super) fn turns_within(&self, ticks: u64) -> bool {
         let acceleration = self.cubic.max_acceleration();
         // Half of the ticks, or all of the row.

@@ -147,7 +147,7 @@ impl Centre {
         })
     }
 
-    /// About where the cubic has gone `distance` further, by y = x - g2 x²; `None` outside the row
+    /// About where the cubic has moved `distance` further, by y = x - g2 x²; `None` outside the row
     /// or where it turns round before.
     pub(super) fn reach(&self, distance: i64) -> Option<u64> {
         let inverse = self.inverse?;

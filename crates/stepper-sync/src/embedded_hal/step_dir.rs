@@ -1,4 +1,4 @@
-//! Motors behind a step and a direction pin.
+//! Motors on drivers with a step and a direction pin.
 
 use crate::{Direction, Level, Polarity, StepDirTiming};
 use embedded_hal::delay::DelayNs;
@@ -18,7 +18,7 @@ pub enum StepDirError<S, D> {
     Direction(D),
 }
 
-/// A motor behind a driver chip with a step and a direction input.
+/// A motor on a driver chip with a step and a direction input.
 ///
 /// [`step`](Self::step) makes whole pulses, for steps that come from
 /// [`Accumulators`](crate::Accumulators); [`set_level`](Self::set_level) makes the edges of a train,

@@ -6,7 +6,7 @@ use embedded_hal::digital::{OutputPin, PinState};
 
 /// The four windings of a motor on four pins: bits 0 to 3 of [`Phases::nibble`].
 ///
-/// What goes off goes off first, then comes the dead time, then what goes on goes on: both switches
+/// At a step, pins are cleared first, then the dead time passes, then pins are set: both switches
 /// of one half of a bridge are never on.
 ///
 /// # Examples

@@ -3,7 +3,7 @@
 use super::{Periods, Timer, TimerError};
 use core::iter::FusedIterator;
 
-/// One period of a timer on the way to an edge.
+/// One period of a timer, of those up to an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -102,7 +102,7 @@ fn finest_prescaler_that_fits() {
         let timer1 = Timer::up_to_compare(16_000_000, 1, CounterWidth::Bits16)?;
         timer1.with_finest_prescaler(&avr, rate)
     };
-    // 16 MHz / (2 * 112.8 Hz) = 70,922 ticks: too long by itself, 8865 behind the prescaler 8.
+    // 16 MHz / (2 * 112.8 Hz) = 70,922 ticks: too long by itself, 8865 with the prescaler 8.
     assert_eq!(choose(112_800).map(|t| t.clocks_per_tick()), Ok(8));
     // 16 MHz / (2 * 65536) = 122.07 Hz.
     assert_eq!(choose(123_000).map(|t| t.clocks_per_tick()), Ok(1));

@@ -24,12 +24,12 @@ impl Exact {
             i128::from(from.velocity) * ticks,
             i128::from(to.velocity) * ticks,
         );
-        let way = p1 - p0;
-        let reach = way.abs().max(v0.abs()).max(v1.abs());
+        let travel = p1 - p0;
+        let reach = travel.abs().max(v0.abs()).max(v1.abs());
         Self {
             ticks,
             standstill: (STEP >> 40).max(reach >> 47),
-            q: [p0, v0, 3 * way - 2 * v0 - v1, v0 + v1 - 2 * way].map(I256::from),
+            q: [p0, v0, 3 * travel - 2 * v0 - v1, v0 + v1 - 2 * travel].map(I256::from),
         }
     }
 

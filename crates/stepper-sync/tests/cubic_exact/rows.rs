@@ -71,7 +71,7 @@ pub(crate) fn next_row(random: &mut Random, from: PvtKnot, least: MinIntervals) 
         3 => v0.clamp(-fast, fast),
         _ => random.sign() * fast * random.unit(),
     };
-    let way = match random.below(8) {
+    let travel = match random.below(8) {
         // As with constant acceleration.
         0..=3 => (v0 + v1) / 2.0 * t,
         // Whatever.
@@ -81,7 +81,7 @@ pub(crate) fn next_row(random: &mut Random, from: PvtKnot, least: MinIntervals) 
         6 => ((v0 + v1) / 2.0 + random.between(-0.2, 0.2) * (v0.abs() + v1.abs())) * t,
         _ => random.between(-3.0, 3.0),
     };
-    let mut q1 = q0 + way;
+    let mut q1 = q0 + travel;
     match random.below(16) {
         0..=3 => q1 = q1.round(),
         // On the place of a step, or next to it.
@@ -130,8 +130,8 @@ pub(crate) fn any_row(random: &mut Random, from: PvtKnot, least: MinIntervals) -
     if random.below(8) > 0 {
         // 2^-56 to 2^-32; two thirds of it leave room for the velocities at the ends.
         let most = (i128::from(limit) * i128::from(ticks)) >> 24;
-        let way = i128::from(to.position) % (most * 2 / 3 + 1);
-        to.position = i64::try_from(i128::from(from.position) + way).unwrap_or(to.position);
+        let travel = i128::from(to.position) % (most * 2 / 3 + 1);
+        to.position = i64::try_from(i128::from(from.position) + travel).unwrap_or(to.position);
     }
     match random.below(8) {
         0 => to.position = from.position,

@@ -89,7 +89,7 @@ impl Score {
     }
 }
 
-/// A motor on its way through the score.
+/// A motor while the score is compiled.
 struct Dancer<'s> {
     performer: &'s Performer,
     motor: Motor,

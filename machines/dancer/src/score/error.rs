@@ -12,7 +12,7 @@ use crate::turn::TurnError;
 #[error("line {line}{part}: {kind}")]
 #[non_exhaustive]
 pub struct ScoreError {
-    /// Line, from 1: that of the part, or nearer to the place.
+    /// Line, from 1: that of the part, or of what is wrong in it.
     pub line: u32,
     /// Which part of the score.
     pub part: ScorePart,
@@ -112,7 +112,7 @@ pub enum ScoreErrorKind {
         /// How many are given.
         given: usize,
     },
-    /// A repetition without `every_s`, or the other way round.
+    /// A repetition without `every_s`, or `every_s` without one.
     #[error("repeat and every_s go together")]
     Repeat,
     /// A speed above the highest of the motor.
@@ -130,7 +130,7 @@ pub enum ScoreErrorKind {
         start_s: f64,
         /// The motor.
         motor: String,
-        /// The move under way, from 1.
+        /// The move that has not ended, from 1.
         other: u32,
         /// Its end, in s.
         end_s: f64,

@@ -87,14 +87,14 @@ impl Plan {
 
     /// The magnitude of the next frame.
     fn magnitude(&self, motor: &Motor, made: u16) -> u8 {
-        match self.ending.get(self.place_in_ending(made)) {
+        match self.ending.get(self.index_in_ending(made)) {
             Some(magnitude) => *magnitude,
             None => self.tracked(motor, made),
         }
     }
 
     /// Index of a frame among the last ones; past them for a frame before.
-    fn place_in_ending(&self, frame: u16) -> usize {
+    fn index_in_ending(&self, frame: u16) -> usize {
         usize::from(ENDING.wrapping_sub(self.frames - frame))
     }
 
@@ -177,12 +177,12 @@ impl Plan {
             magnitudes: [0; ENDING as usize],
         };
         let next = frame + 1;
-        let place = self.place_in_ending(frame);
+        let index = self.index_in_ending(frame);
         let wanted = self.wanted(next);
         let mut look_at = |magnitude, after: &Motor, mut ending: Ending| {
             let off = self.parts(after).abs_diff(wanted);
             ending.off_easing = ending.off_easing.saturating_add(off);
-            if let Some(own) = ending.magnitudes.get_mut(place) {
+            if let Some(own) = ending.magnitudes.get_mut(index) {
                 *own = magnitude;
             }
             best = best.min(ending);

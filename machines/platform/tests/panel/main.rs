@@ -144,7 +144,7 @@ fn a_jog_follows_the_wheel_and_stops() {
     assert_eq!(desk.message(0), "STOPPING");
     desk.on(0, Input::AtRest);
     assert_eq!(desk.screen(0)[0], " LOCATOR  1 IDLE");
-    // Another direction under way: stop.
+    // The direction changes while it moves: stop.
     desk.on(0, Input::RotarySwitch(RotarySwitch::W1, Position::MIN));
     assert_eq!(desk.on(0, Input::Wheel(50)), jog(0, Axis::X, 55));
     let third = Position::new(3).unwrap();

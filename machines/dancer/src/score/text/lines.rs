@@ -39,7 +39,7 @@ pub(super) fn text_error(text: &str, error: &toml::de::Error) -> ScoreError {
     }
 }
 
-/// The places of the parts, whatever is in them.
+/// Where the parts are in the text, whatever is in them.
 #[derive(Deserialize)]
 struct Outline {
     #[serde(default)]
