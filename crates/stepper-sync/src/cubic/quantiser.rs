@@ -170,6 +170,10 @@ impl<const N: usize> PvtQuantiser<N> {
         positions: [f64; N],
         velocities: [f64; N],
     ) -> Result<PvtRow<N>, KnotError> {
+        #[expect(
+            clippy::float_cmp,
+            reason = "both knots of a jump have the same number"
+        )]
         if let Some(start_stop) = self.start_stop
             && time_s == self.last_s
         {

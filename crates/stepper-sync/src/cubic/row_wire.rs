@@ -2,7 +2,6 @@
 #![expect(
     clippy::arithmetic_side_effects,
     clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
     reason = "shifts below 64, products of 32 and 65 bits; differences wrap"
 )]
 
@@ -110,7 +109,7 @@ impl RowBits {
 /// let row = PvtRow { ticks: 1_000_000, knots: [PvtKnot::at_rest(200)] };
 /// let mut wire = Vec::new();
 /// sender.encode(&row, |byte| wire.push(byte));
-/// assert_eq!(wire.len(), 8);
+/// assert_eq!(wire.len(), 9);
 /// assert_eq!(receiver.decode(&wire), Ok((row, [].as_slice())));
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
