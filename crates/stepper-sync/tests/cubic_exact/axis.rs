@@ -41,10 +41,9 @@ impl Wanted {
                 .past_place(n.clamp(0, self.exact.ticks), self.place)
         };
         let v = sign * self.exact.velocity(n);
-        let moves = v > self.exact.standstill();
+        let moves = v > self.exact.standstill() && !self.exact.turns_near(n);
         if off(n - 1) <= 0 && off(n + 1) >= 0 {
-            let change = self.exact.velocity(n + 1) - self.exact.velocity(n - 1);
-            if moves && change.abs() * I256::from(64) < v {
+            if moves && self.exact.is_steady(n) {
                 let error = (sign * self.exact.past_place(n, self.place)).as_f64() / v.as_f64();
                 seen.joined_worst_ticks = seen.joined_worst_ticks.max(error.abs());
             }
@@ -75,7 +74,7 @@ pub(crate) struct Axis {
     joined_last: Option<(u64, Direction)>,
     /// Steps of a row that are tried.
     max_steps: usize,
-    /// A row of more than these: it is the last one.
+    /// A row of more than these, or one that joined segments refuse: it is the last one.
     pub(crate) cut: bool,
     pub(crate) knot: PvtKnot,
     row_start: u64,
@@ -160,7 +159,16 @@ impl Axis {
         }
         assert_eq!(self.emitter.steps(), self.steps);
         self.check_between(&exact, &made, seen);
-        self.joined.push(ticks, to)?;
+        // With finer times a step back may be too quick that is not with the others.
+        if let Err(error) = self.joined.push(ticks, to) {
+            assert!(
+                matches!(error, RowError::ReversalTooQuick { .. }),
+                "{error}"
+            );
+            seen.joined_too_quick += 1;
+            self.cut = true;
+            return Err(error);
+        }
         self.check_joined(seen);
         seen.rows += 1;
         self.row_start += u64::from(ticks);
@@ -231,7 +239,10 @@ impl Axis {
             return;
         }
         let v = sign * exact.velocity(n);
-        let moves = sign * exact.velocity(n - 1) > 0 && sign * exact.velocity(n + 1) > 0 && v > 0;
+        let moves = sign * exact.velocity(n - 1) > 0
+            && sign * exact.velocity(n + 1) > 0
+            && v > 0
+            && !exact.turns_near(n);
         if moves && v > exact.standstill() {
             assert!(
                 in_time,
@@ -239,8 +250,7 @@ impl Axis {
                 exact.ticks
             );
             let error = (distance.as_f64() / v.as_f64()).abs();
-            let steady = (exact.velocity(n + 1) - exact.velocity(n - 1)).abs() * I256::from(64) < v;
-            if steady {
+            if exact.is_steady(n) {
                 seen.worst_ticks = seen.worst_ticks.max(error);
             }
         } else {

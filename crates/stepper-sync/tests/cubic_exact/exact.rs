@@ -65,6 +65,20 @@ impl Exact {
         let most = a.max(b).max(c);
         most + (most - a.min(b).min(c))
     }
+
+    /// Whether q' changes by less than a 64th within a tick of n.
+    pub(crate) fn is_steady(&self, n: i128) -> bool {
+        let v = self.velocity(n);
+        let change = |n| (self.velocity(n) - v).abs();
+        change(n - 1).max(change(n + 1)) * I256::from(64) < v.abs()
+    }
+
+    /// Whether the axis turns round within a tick of n.
+    pub(crate) fn turns_near(&self, n: i128) -> bool {
+        turns(self)
+            .into_iter()
+            .any(|turn| (n - 1..=n).contains(&turn))
+    }
 }
 
 /// Ticks near which q' is zero.
