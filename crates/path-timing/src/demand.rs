@@ -1,10 +1,8 @@
-//! Utilisation of the limits by a leg, found on the cubics that the controller will run.
+//! Utilisation of the limits by the cubics that the controller will run.
 
-use crate::leg::Leg;
 use crate::number::{cube_root, sqrt};
 use crate::reciprocals::Reciprocals;
-use crate::table::spans_of_leg;
-use crate::{Axes, Cubic, Knot, Path, PlanError, Row, ToolLimits};
+use crate::{Axes, Cubic, Row, ToolLimits};
 
 /// An axis at the end of a segment.
 #[derive(Debug, Clone, Copy)]
@@ -32,36 +30,6 @@ pub(crate) struct Demand<A: Axes> {
 }
 
 impl<A: Axes> Demand<A> {
-    /// What a leg's knots ask of the axes and of the tool, from rest to rest.
-    pub(crate) fn of<P: Path<Axes = A>>(
-        limits: &Reciprocals<A>,
-        leg: &Leg<P>,
-        knots: &[Knot],
-    ) -> Result<Self, PlanError<P::Error>> {
-        let mut demand = Self::of_axes(limits, leg, knots)?;
-        for pair in knots.windows(2) {
-            if let (Some(tool), [from, to]) = (leg.tool(), pair) {
-                demand.add_tool(tool, from, to);
-            }
-        }
-        Ok(demand)
-    }
-
-    /// What a leg's knots ask of the axes, from rest to rest.
-    pub(crate) fn of_axes<P: Path<Axes = A>>(
-        limits: &Reciprocals<A>,
-        leg: &Leg<P>,
-        knots: &[Knot],
-    ) -> Result<Self, PlanError<P::Error>> {
-        let mut demand = Self::at_rest();
-        for span in spans_of_leg(leg, knots) {
-            let [from, to] = span?.rows;
-            demand.add(limits, &from, &to);
-        }
-        demand.stop(limits);
-        Ok(demand)
-    }
-
     pub(crate) fn at_rest() -> Self {
         Self {
             speed: 0.0,
@@ -102,14 +70,19 @@ impl<A: Axes> Demand<A> {
         self.duration_s = to.duration_s;
     }
 
-    /// Takes the tool's motion from one knot to the next into account.
-    fn add_tool(&mut self, tool: &ToolLimits, from: &Knot, to: &Knot) {
+    /// Takes the tool's motion from one parameter and speed to the next into account.
+    pub(crate) fn add_tool(
+        &mut self,
+        tool: &ToolLimits,
+        [[q0, q1], [v0, v1]]: [[f64; 2]; 2],
+        duration_s: f64,
+    ) {
         let tool_motion = Cubic {
-            q0: from.s,
-            q1: to.s,
-            v0: from.speed,
-            v1: to.speed,
-            duration_s: from.duration_s,
+            q0,
+            q1,
+            v0,
+            v1,
+            duration_s,
         };
         self.speed = self.speed.max(tool_motion.peak_speed() / tool.feed);
         if let Some(limit) = tool.acceleration {

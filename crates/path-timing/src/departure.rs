@@ -25,6 +25,8 @@ const BOTH_AT_REST: [[f64; 2]; 1] = [[0.0; 2]];
 pub(crate) enum Speeds {
     /// Those of a motion that does not stop on the path.
     Passing,
+    /// The same with a limit of jerk.
+    PassingSmoothly,
     /// Those of a stream with any feeds, holds and resumes: linear in time on each segment.
     Stream,
     /// Those of a table that runs at any feeds, holds and resumes.
@@ -122,10 +124,10 @@ pub(crate) fn bound_of_parameters<P: Path>(
             }
         };
         check(&LINEAR);
-        if speeds == Speeds::Run {
+        if matches!(speeds, Speeds::PassingSmoothly | Speeds::Run) {
             check(&SMOOTH);
         }
-        if speeds != Speeds::Passing {
+        if matches!(speeds, Speeds::Stream | Speeds::Run) {
             // Held at the last knot before a stop.
             if parameters.peek().is_none() {
                 check(&BOTH_AT_REST);

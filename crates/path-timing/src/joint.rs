@@ -24,7 +24,8 @@ pub enum Corner<A> {
     /// w ≤ δᵢ / |p₁ᵢ - p₀ᵢ|
     /// ```
     ///
-    /// w is the speed of the parameter, p₀ᵢ and p₁ᵢ are the slopes before and after the corner.
+    /// w is the speed of the parameter, p₀ᵢ and p₁ᵢ are the slopes before and after the corner. A
+    /// machine with a limit of jerk stops.
     Jump(A),
 }
 
@@ -66,11 +67,11 @@ impl<A: Axes> Joint<A> {
         });
         let is_smooth =
             |(limit, (p0, p1)): (f64, (&f64, &f64))| (p1 - p0).abs() * limit <= SMOOTH * steepest;
-        if limits.has_jerk() {
-            return Self::Stop;
-        }
         if speeds().all(is_smooth) {
             return Self::Smooth(*after);
+        }
+        if limits.has_jerk() {
+            return Self::Stop;
         }
         let speed = allowed.as_slice().iter().zip(slopes());
         let speed = speed.fold(f64::INFINITY, |speed, (allowed, (p0, p1))| {

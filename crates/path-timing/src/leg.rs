@@ -3,7 +3,7 @@
 use crate::joint::Joint;
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, Corner, Legs, Path, Place, PlanError, ToolLimits};
+use crate::{Axes, Corner, Path, Place, PlanError, ToolLimits};
 
 /// A leg: a path, which of all it is, and how the next one follows.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +42,21 @@ impl<P: Path> Leg<P> {
             leg.joint = Joint::new(limits, &corner, &before.slope, &after.slope);
         }
         Ok(leg)
+    }
+
+    /// The same, refused by name where the path refuses one of the two ends at its joint.
+    pub(crate) fn named(
+        number: usize,
+        path: P,
+        next: Option<&P>,
+        limits: &Reciprocals<P::Axes>,
+    ) -> Result<Self, PlanError<P::Error>> {
+        let s = path.length();
+        Self::new(number, path, next, limits).map_err(|reason| PlanError::Path {
+            leg: number,
+            s,
+            reason,
+        })
     }
 
     pub(crate) const fn path(&self) -> &P {
@@ -108,45 +123,4 @@ impl<P: Path> Leg<P> {
         }
         Err(PlanError::NotFinite { leg, s })
     }
-}
-
-/// All legs in their order.
-pub(crate) fn forward<'a, L: Legs>(
-    legs: &L,
-    limits: &'a Reciprocals<L::Axes>,
-) -> impl Iterator<Item = Result<Leg<L::Leg>, PlanError<L::Error>>> + use<'a, L> {
-    let mut later = legs.clone();
-    later.next();
-    legs.clone().enumerate().map(move |(number, path)| {
-        let next = later.next();
-        named(number, path, next.as_ref(), limits)
-    })
-}
-
-/// All legs from the last to the first.
-pub(crate) fn backward<'a, L: Legs>(
-    legs: &L,
-    limits: &'a Reciprocals<L::Axes>,
-) -> impl Iterator<Item = Result<Leg<L::Leg>, PlanError<L::Error>>> + use<'a, L> {
-    let count = legs.clone().count();
-    let mut next: Option<L::Leg> = None;
-    (0..count)
-        .rev()
-        .zip(legs.clone().rev())
-        .map(move |(number, path)| {
-            let leg = named(number, path.clone(), next.as_ref(), limits);
-            next = Some(path);
-            leg
-        })
-}
-
-/// A leg, or where the path refuses one of the two ends at its joint.
-fn named<P: Path>(
-    leg: usize,
-    path: P,
-    next: Option<&P>,
-    limits: &Reciprocals<P::Axes>,
-) -> Result<Leg<P>, PlanError<P::Error>> {
-    let s = path.length();
-    Leg::new(leg, path, next, limits).map_err(|reason| PlanError::Path { leg, s, reason })
 }

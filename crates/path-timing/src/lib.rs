@@ -7,6 +7,7 @@
 extern crate std;
 
 mod axes;
+mod chain;
 mod cubic;
 mod curve;
 mod demand;
@@ -28,6 +29,7 @@ mod short;
 mod smooth;
 mod span;
 mod table;
+mod utilisation;
 
 pub use axes::{Axes, AxisLimits, ToolLimits};
 pub use cubic::Cubic;

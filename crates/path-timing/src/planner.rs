@@ -1,8 +1,11 @@
 //! The knots of a table: how many, at which speeds, and whether they can be told apart.
 
-use crate::demand::Demand;
+use core::fmt::Debug;
+use core::iter;
+
+use crate::chain::Chain;
 use crate::departure::{FINEST, Speeds, bound_of_parameters, estimate, fewest, spread};
-use crate::leg::{self, Leg};
+use crate::leg::Leg;
 use crate::number::larger_or_nan;
 use crate::reciprocals::Reciprocals;
 use crate::table::spans_of_leg;
@@ -19,9 +22,6 @@ pub(crate) const MIN_SEGMENTS: u32 = 2;
 
 /// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
-
-/// Relative rounding of a stretched leg.
-const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 impl<A: Axes> Planner<A> {
     /// The planner for axes with limits within the range of the crate.
@@ -56,13 +56,13 @@ impl<A: Axes> Planner<A> {
     /// planned.
     pub(crate) fn check_legs<L: Legs<Axes = A>>(
         &self,
-        legs: &L,
+        legs: &Chain<L>,
         least: impl Fn(&L::Leg) -> u32,
         available: usize,
     ) -> Result<(), PlanError<L::Error>> {
         let mut needed = 0_usize;
         let mut last: Option<A> = None;
-        for leg in leg::forward(legs, &self.reciprocals) {
+        for leg in legs.forward(&self.reciprocals) {
             let leg = leg?;
             leg.check()?;
             let (number, start) = (leg.number, leg.checked_place(0.0)?.position);
@@ -78,6 +78,14 @@ impl<A: Axes> Planner<A> {
         Err(PlanError::Memory { needed, available })
     }
 
+    /// The ends of a leg at which its knots are dense.
+    fn rests<P: Path<Axes = A>>(&self, leg: &Leg<P>, starts_at_rest: bool) -> [bool; 2] {
+        if self.reciprocals.has_jerk() {
+            return [true; 2];
+        }
+        [starts_at_rest, leg.joint().is_stop()]
+    }
+
     /// Spreads a leg's knots over the first of the free ones; those that it takes.
     pub(crate) fn lay_leg<'k, P: Path<Axes = A>>(
         &self,
@@ -90,35 +98,51 @@ impl<A: Axes> Planner<A> {
         let own = free
             .get_mut(..needed)
             .ok_or(PlanError::Memory { needed, available })?;
-        profile::spread(own, leg.length(), [starts_at_rest, leg.joint().is_stop()]);
+        profile::spread(own, leg.length(), self.rests(leg, starts_at_rest));
         Ok(own)
     }
 
     /// Plans all legs whose knots are spread. Seconds from the first knot to the last.
     pub(crate) fn plan_legs<L: Legs<Axes = A>>(
         &self,
-        legs: &L,
+        legs: &Chain<L>,
         knots: &mut [Knot],
     ) -> Result<f64, PlanError<L::Error>> {
-        if !self.reciprocals.has_jerk() {
+        if self.reciprocals.has_jerk() {
+            self.plan_smooth(legs.clone(), knots)?;
+        } else {
             profile::fastest_of_all(&self.reciprocals, legs, knots)?;
         }
-        let (mut later, mut time_s) = (knots, 0.0);
-        for leg in leg::forward(legs, &self.reciprocals) {
-            let leg = leg?;
-            let (own, rest) = profile::split(later, profile::first_leg(later));
-            if self.reciprocals.has_jerk() {
-                smooth::smooth(&self.limits, &self.reciprocals, &leg, own)?;
-                self.stretch_to_limits(&leg, own)?;
-            }
-            time_s = check_times(leg.number, own, time_s)?;
+        let (mut later, mut time_s) = (&*knots, 0.0);
+        for leg in legs.forward(&self.reciprocals) {
+            let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
+            time_s = check_times(leg?.number, own, time_s)?;
             later = rest;
         }
         Ok(time_s)
     }
 
+    /// The same with a limit of jerk: from stop to stop.
+    fn plan_smooth<L: Legs<Axes = A>>(
+        &self,
+        mut legs: Chain<L>,
+        knots: &mut [Knot],
+    ) -> Result<(), PlanError<L::Error>> {
+        let mut later = knots;
+        while let Some(part) = legs.split_at_stop(&self.reciprocals)? {
+            let count = (0..part.count()).fold(0_usize, |count, _| {
+                let (_, rest) = later.split_at(count.min(later.len()));
+                count.saturating_add(profile::first_leg(rest))
+            });
+            let (own, rest) = profile::split(later, count);
+            smooth::smooth(&self.limits, &self.reciprocals, &part, own)?;
+            later = rest;
+        }
+        Ok(())
+    }
+
     /// Plans a leg from rest to rest in the first of the free knots; those that it takes.
-    fn plan_leg<'k, P: Path<Axes = A>>(
+    fn plan_leg<'k, P: Path<Axes = A> + Debug>(
         &self,
         leg: &Leg<P>,
         free: &'k mut [Knot],
@@ -129,30 +153,16 @@ impl<A: Axes> Planner<A> {
             .get_mut(..needed)
             .ok_or(PlanError::Memory { needed, available })?;
         if self.reciprocals.has_jerk() {
-            smooth::smooth(&self.limits, &self.reciprocals, leg, own)?;
+            let alone = Chain::new(iter::once(leg.path()), leg.number);
+            smooth::smooth_leg(&self.limits, &self.reciprocals, &alone, own)?;
         } else {
             profile::fastest(&self.reciprocals, leg, own)?;
         }
         Ok(own)
     }
 
-    /// Stretches the time of a leg with jerk so that it just keeps all limits; the fastest motion
-    /// keeps them by its making.
-    fn stretch_to_limits<P: Path<Axes = A>>(
-        &self,
-        leg: &Leg<P>,
-        knots: &mut [Knot],
-    ) -> Result<(), PlanError<P::Error>> {
-        let stretch = Demand::of(&self.reciprocals, leg, knots)?.stretch() * STRETCHED;
-        for knot in knots {
-            knot.speed /= stretch;
-            knot.duration_s *= stretch;
-        }
-        Ok(())
-    }
-
     /// A number of segments that keeps the allowed departure, while one fewer does not.
-    pub(crate) fn fewest<P: Path<Axes = A>>(
+    pub(crate) fn fewest<P: Path<Axes = A> + Debug>(
         &self,
         leg: &Leg<P>,
         starts_at_rest: bool,
@@ -168,24 +178,32 @@ impl<A: Axes> Planner<A> {
                 available: used.saturating_add(free),
             });
         }
-        let rests = [starts_at_rest, leg.joint().is_stop()];
-        let speeds = if wanted.any_feed {
-            Speeds::Run
-        } else {
-            Speeds::Passing
+        let rests = self.rests(leg, starts_at_rest);
+        let (jerk, any_feed) = (self.reciprocals.has_jerk(), wanted.any_feed);
+        let is_alone = starts_at_rest && leg.joint().is_stop();
+        let speeds = match (any_feed, jerk) {
+            (true, _) => Speeds::Run,
+            (false, true) => Speeds::PassingSmoothly,
+            (false, false) => Speeds::Passing,
         };
         let bound_of = |segments| {
-            if wanted.any_feed && self.reciprocals.has_jerk() {
+            let mut bound = 0.0;
+            if any_feed && !jerk || !is_alone {
+                let parameters = spread(leg, segments, rests);
+                bound = bound_of_parameters(leg, parameters, speeds, &wanted.departure)?;
+            }
+            // With jerk also where each leg runs alone.
+            if jerk || is_alone && !any_feed {
                 let knots = self.plan_leg(leg, knots, segments)?;
                 let parameters = knots.iter().map(|knot| knot.s);
-                bound_of_parameters(leg, parameters, speeds, &wanted.departure)
-            } else if wanted.any_feed || rests != [true; 2] {
-                let parameters = spread(leg, segments, rests);
-                bound_of_parameters(leg, parameters, speeds, &wanted.departure)
-            } else {
-                let knots = self.plan_leg(leg, knots, segments)?;
-                bound_of_leg(leg, knots, &wanted.departure)
+                let alone = if any_feed {
+                    bound_of_parameters(leg, parameters, speeds, &wanted.departure)
+                } else {
+                    bound_of_leg(leg, knots, &wanted.departure)
+                };
+                bound = larger_or_nan(bound, alone?);
             }
+            Ok(bound)
         };
         let too_coarse =
             |bound, segments| too_coarse(leg.number, bound / wanted.allowed, segments, used, room);

@@ -1,6 +1,7 @@
 //! The fastest speeds along legs, from stop to stop.
 
-use crate::leg::{self, Leg};
+use crate::chain::Chain;
+use crate::leg::Leg;
 use crate::number::LARGEST;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
@@ -13,31 +14,63 @@ pub(crate) fn fastest<P: Path>(
     knots: &mut [Knot],
 ) -> Result<(), PlanError<P::Error>> {
     spread(knots, leg.length(), [true; 2]);
-    backward(limits, leg, knots, 0.0)?;
+    backward(limits, leg, knots, 0.0, uncapped)?;
     forward(limits, leg, knots, 0.0)?;
+    times(knots);
     Ok(())
 }
 
 /// Gives the knots of all legs, spread already, the speeds and times of the fastest motion.
 pub(crate) fn fastest_of_all<L: Legs>(
     limits: &Reciprocals<L::Axes>,
-    legs: &L,
+    legs: &Chain<L>,
     knots: &mut [Knot],
 ) -> Result<(), PlanError<L::Error>> {
+    fastest_speeds(limits, legs, knots, uncapped)?;
+    times(knots);
+    Ok(())
+}
+
+/// The speeds of the fastest motion that is at no knot faster than its cap.
+pub(crate) fn fastest_speeds<L: Legs>(
+    limits: &Reciprocals<L::Axes>,
+    legs: &Chain<L>,
+    knots: &mut [Knot],
+    cap: impl Fn(&Knot) -> f64,
+) -> Result<(), PlanError<L::Error>> {
     let (mut earlier, mut speed) = (&mut *knots, 0.0);
-    for leg in leg::backward(legs, limits) {
+    for leg in legs.backward(limits) {
         let leg = leg?;
         let (rest, own) = split(earlier, last_leg(earlier));
-        speed = backward(limits, &leg, own, leg.joint().speed().min(speed))?;
+        speed = backward(limits, &leg, own, leg.joint().speed().min(speed), &cap)?;
         earlier = rest;
     }
     let (mut later, mut speed) = (knots, 0.0);
-    for leg in leg::forward(legs, limits) {
+    for leg in legs.forward(limits) {
         let (own, rest) = split(later, first_leg(later));
         speed = forward(limits, &leg?, own, speed)?;
         later = rest;
     }
     Ok(())
+}
+
+/// Gives each knot the time of its segment from the speeds at its ends.
+fn times(knots: &mut [Knot]) {
+    let mut rest = knots.iter_mut();
+    let Some(mut from) = rest.next() else {
+        return;
+    };
+    for to in rest {
+        if to.s > 0.0 {
+            from.duration_s = 2.0 * (to.s - from.s) / (from.speed + to.speed);
+        }
+        from = to;
+    }
+}
+
+/// No highest speed at a knot but what the limits ask for.
+pub(crate) const fn uncapped(_: &Knot) -> f64 {
+    LARGEST
 }
 
 /// Both parts of the knots; the second has none where there are fewer.
@@ -82,13 +115,14 @@ pub(crate) fn fraction(u: f64, rests: [bool; 2]) -> f64 {
     }
 }
 
-/// From the last knot, passed at `speed`: the highest speed at each from which the rest can be
-/// run, and the speed after it that goes with it. The speed at the first knot.
+/// From the last knot, passed at `speed`: the highest speed at each, up to its cap, from which the
+/// rest can be run, and the speed after it that goes with it. The speed at the first knot.
 fn backward<P: Path>(
     limits: &Reciprocals<P::Axes>,
     leg: &Leg<P>,
     knots: &mut [Knot],
     speed: f64,
+    cap: impl Fn(&Knot) -> f64,
 ) -> Result<f64, PlanError<P::Error>> {
     let mut before = knots.iter_mut().rev();
     let Some(mut to) = before.next() else {
@@ -100,14 +134,14 @@ fn backward<P: Path>(
         let start = leg.checked_place(from.s)?;
         let ds = to.s - from.s;
         let segment = Segment::new(limits, &start, &end, ds).with_tool(leg.tool(), ds);
-        (from.speed, from.after) = segment.begin(to.speed, LARGEST);
+        (from.speed, from.after) = segment.begin(to.speed, cap(from));
         (to, end) = (from, start);
     }
     Ok(to.speed)
 }
 
-/// From the first knot, passed at `speed`: as fast as each segment and what is left allow. The
-/// speed at the last knot.
+/// From the first knot, passed at `speed`: as fast as each segment and what is left allow.
+/// The speed at the last knot.
 fn forward<P: Path>(
     limits: &Reciprocals<P::Axes>,
     leg: &Leg<P>,
@@ -128,7 +162,6 @@ fn forward<P: Path>(
         let next_ratio = to.after / to.speed;
         // What holds for the highest speed here holds slower at the same ratio.
         to.speed = segment.end(from.speed, to.speed, from.speed * ratio);
-        from.duration_s = 2.0 * ds / (from.speed + to.speed);
         (from, start, ratio) = (to, end, next_ratio);
     }
     Ok(from.speed)

@@ -267,9 +267,9 @@ impl<L: Legs> Run<'_, L> {
         there: Ahead,
     ) -> f64 {
         let wanted = self.wanted.min(there.ceiling);
-        let segment = Segment::new(&self.limits, &from.departure(), &to.place, from.duration_s);
+        let segment = || Segment::new(&self.limits, &from.departure(), &to.place, from.duration_s);
         if is_rest(&from.place) {
-            self.feed = wanted.min(segment.even().max(1.0));
+            self.feed = wanted.min(segment().even().max(1.0));
         }
         // From rest and to rest at one feed, so that the cubic has the shape of the table's; at a
         // constant feed of at most 1 the table itself holds.
@@ -280,6 +280,7 @@ impl<L: Legs> Run<'_, L> {
         if is_even {
             return self.feed;
         }
+        let segment = segment();
         // A feed that both ends allow may stay.
         let known = if self.feed <= there.ceiling {
             self.feed

@@ -214,7 +214,7 @@ impl<A: Axes> Segment<A> {
             return (fast, ceiling);
         }
         let reached = self.reach(fast, ceiling);
-        let even = ceiling.min(self.even());
+        let even = ceiling.min(self.even()).min(cap);
         let (mut best, mut high) = match reached {
             Some(end) if fast >= even => return (fast, end),
             Some(_) => ((even, even), cap),

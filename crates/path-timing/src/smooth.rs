@@ -1,17 +1,23 @@
-//! Speeds along one leg whose jerk is limited.
+//! Speeds between two stops whose jerk is limited.
 
 mod average;
 mod scurve;
+mod shape;
+mod trial;
 
-use crate::demand::Demand;
+use core::iter;
+
+use crate::chain::Chain;
 use crate::leg::Leg;
 use crate::number::{LARGEST, cube_root, sqrt};
-use crate::planner::{MIN_SEGMENTS, knots_of};
+use crate::planner::knots_of;
 use crate::profile;
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, AxisLimits, Knot, Path, PlanError, ToolLimits};
+use crate::utilisation::{Of, stretch};
+use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, ToolLimits};
 pub(crate) use scurve::PHASES;
-use scurve::{SCurve, part};
+use scurve::SCurve;
+use trial::Trial;
 
 /// Something of each axis of a path.
 type EachAxis<P, T> = <<P as Path>::Axes as Axes>::Of<T>;
@@ -19,38 +25,115 @@ type EachAxis<P, T> = <<P as Path>::Axes as Axes>::Of<T>;
 /// The limits of all axes of a path.
 type LimitsOf<P> = EachAxis<P, AxisLimits>;
 
-/// Fills the knots of a leg, one more than segments, with the faster of an S-curve along the path
-/// and the fastest motion without a limit of jerk, averaged over a window of time.
+/// Gives the knots of the legs between two stops, spread already, the speeds and times of a motion that
+/// just keeps all limits: the fastest without a limit of jerk, averaged over a window of time; where
+/// that is faster, that of each leg alone, from rest to rest.
+pub(crate) fn smooth<L: Legs>(
+    limits: &LimitsOf<L::Leg>,
+    reciprocals: &Reciprocals<L::Axes>,
+    legs: &Chain<L>,
+    knots: &mut [Knot],
+) -> Result<(), PlanError<L::Error>> {
+    if legs.count() == 1 {
+        smooth_leg(limits, reciprocals, legs, knots)?;
+        return Ok(());
+    }
+    let (window_s, eased) = eased::<L::Leg>(limits);
+    let trial_limits = [reciprocals, &Reciprocals::new(&eased)];
+    let (least_s, best) = Trial::new(trial_limits, legs, knots).best(window_s)?;
+    let (mut later, mut alone_s) = (&mut *knots, 0.0);
+    for leg in legs.forward(reciprocals) {
+        let leg = leg?;
+        let (own, rest) = profile::split(later, profile::first_leg(later));
+        let alone = Chain::new(iter::once(leg.path().clone()), leg.number);
+        alone_s += smooth_leg(limits, reciprocals, &alone, own)?;
+        later = rest;
+    }
+    // What is not a number is not faster.
+    let is_faster = least_s <= alone_s;
+    if !is_faster {
+        return Ok(());
+    }
+    let mut later = &mut *knots;
+    for leg in legs.forward(reciprocals) {
+        let (own, rest) = profile::split(later, profile::first_leg(later));
+        profile::spread(own, leg?.length(), [true; 2]);
+        later = rest;
+    }
+    Trial::new(trial_limits, legs, knots).lay(best)?;
+    keep_limits(reciprocals, legs, knots)?;
+    Ok(())
+}
+
+/// Gives the knots of a leg, one more than segments, the faster of an S-curve along it and of an
+/// average, from rest to rest. Its time.
 ///
 /// The S-curve is the shortest motion on a straight path; where the axes turn far, its one
 /// speed is that of the hardest point. The average over a time w lasts w longer than what it
 /// is taken of, and a step of the acceleration by a becomes a jerk of a / w. Whatever either
 /// asks of the axes besides is made up for by stretching its time.
-pub(crate) fn smooth<P: Path>(
-    limits: &LimitsOf<P>,
-    reciprocals: &Reciprocals<P::Axes>,
-    leg: &Leg<P>,
+pub(crate) fn smooth_leg<L: Legs>(
+    limits: &LimitsOf<L::Leg>,
+    reciprocals: &Reciprocals<L::Axes>,
+    leg: &Chain<L>,
     knots: &mut [Knot],
-) -> Result<(), PlanError<P::Error>> {
-    let curve = Easing::Curve(s_curve(limits, leg)?);
-    let segments = segments_of(knots);
-    let mut trial = Trial {
-        limits: reciprocals,
-        eased: Reciprocals::new(&eased::<P>(limits)),
-        leg,
-        segments: segments.min(TRIAL_SEGMENTS),
-        knots,
+) -> Result<f64, PlanError<L::Error>> {
+    let Some(only) = leg.forward(reciprocals).next().transpose()? else {
+        return Ok(0.0);
     };
-    let average = trial.best_average()?;
-    trial.segments = segments;
-    let least_s = trial.time(&curve)? * (1.0 - LEAST_GAIN);
-    // What is not a number is not faster.
-    let is_faster = trial.time(&average)? < least_s;
-    if !is_faster {
-        trial.lay(&curve)?;
+    let (window_s, eased) = eased::<L::Leg>(limits);
+    let trial_limits = [reciprocals, &Reciprocals::new(&eased)];
+    let few = segments_of(knots).min(TRIAL_SEGMENTS);
+    let few = profile::split(knots, knots_of(few)).0;
+    profile::spread(few, only.length(), [true; 2]);
+    let (mut average_s, mut best) = Trial::new(trial_limits, leg, few).best(window_s)?;
+    if segments_of(knots) > TRIAL_SEGMENTS {
+        profile::spread(knots, only.length(), [true; 2]);
+        let mut trial = Trial::new(trial_limits, leg, knots);
+        (average_s, best) = trial.best_near(best, window_s)?;
     }
-    Ok(())
+    let curve = s_curve(limits, &only)?;
+    lay_curve(&curve, knots, only.length());
+    let mut curve_s = keep_limits(reciprocals, leg, knots)?;
+    if !are_apart(knots) {
+        curve_s = f64::INFINITY;
+    }
+    // What is not a number is not faster.
+    if average_s < curve_s * (1.0 - LEAST_GAIN) {
+        profile::spread(knots, only.length(), [true; 2]);
+        Trial::new(trial_limits, leg, knots).lay(best)?;
+        return keep_limits(reciprocals, leg, knots);
+    }
+    Ok(curve_s)
 }
+
+/// Stretches a motion so that it just keeps all limits. Its time.
+fn keep_limits<L: Legs>(
+    limits: &Reciprocals<L::Axes>,
+    legs: &Chain<L>,
+    knots: &mut [Knot],
+) -> Result<f64, PlanError<L::Error>> {
+    let stretch = stretch(limits, legs, knots, Of::AxesAndTool)? * STRETCHED;
+    Ok(knots.iter_mut().fold(0.0, |sum, knot| {
+        knot.speed /= stretch;
+        knot.duration_s *= stretch;
+        sum + knot.duration_s
+    }))
+}
+
+/// Whether the parameters and the times of all knots of a leg are distinct numbers.
+fn are_apart(knots: &[Knot]) -> bool {
+    let mut time_s = 0.0;
+    knots.windows(2).all(|pair| {
+        let before_s = time_s;
+        let [from, to] = pair else { return false };
+        time_s += from.duration_s;
+        time_s > before_s && to.s > from.s
+    })
+}
+
+/// Relative rounding of a stretched motion.
+const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// One fewer than knots.
 fn segments_of(knots: &[Knot]) -> u32 {
@@ -58,40 +141,24 @@ fn segments_of(knots: &[Knot]) -> u32 {
 }
 
 /// Limits by which axes accelerate no more than they need to where only speed and jerk are
-/// limited: √(v j).
-fn eased<P: Path>(limits: &LimitsOf<P>) -> LimitsOf<P> {
-    let mut eased = *limits;
+/// limited, √(v j), and the longest time in which an axis reaches its acceleration.
+fn eased<P: Path>(limits: &LimitsOf<P>) -> (f64, LimitsOf<P>) {
+    let (mut eased, mut window_s) = (*limits, 0.0_f64);
     for limits in P::Axes::each_mut(&mut eased) {
         if let Some(jerk) = limits.jerk {
             limits.acceleration = limits.acceleration.min(sqrt(limits.speed * jerk));
+            window_s = window_s.max(limits.acceleration / jerk);
         }
     }
-    eased
+    (window_s, eased)
 }
 
-/// Segments that tell a faster motion from a slower one.
+/// Segments that tell a faster motion from a slower one on a single leg.
 const TRIAL_SEGMENTS: u32 = 128;
 
 /// What an average must gain: the knots of an S-curve stand where its jerk changes, while few
 /// knots see little of the jerk of an average.
 const LEAST_GAIN: f64 = 0.01;
-
-/// Windows that are tried: the whole time of the fastest motion, and halves of it.
-const WINDOWS: u32 = 11;
-
-/// Rounds in which the best window is refined, by a factor of √2 and roots of it.
-const REFINEMENTS: u32 = 3;
-
-/// A motion of limited jerk.
-#[derive(Debug, Clone, Copy)]
-enum Easing {
-    Curve(SCurve),
-    /// The fastest motion, of `fastest_s`, averaged over `window_s`.
-    Average {
-        fastest_s: f64,
-        window_s: f64,
-    },
-}
 
 fn lay_curve(curve: &SCurve, knots: &mut [Knot], length: f64) {
     let segments = segments_of(knots);
@@ -106,95 +173,6 @@ fn lay_curve(curve: &SCurve, knots: &mut [Knot], length: f64) {
             };
         }
     });
-}
-
-/// A leg on which motions are compared.
-struct Trial<'a, P: Path> {
-    limits: &'a Reciprocals<P::Axes>,
-    eased: Reciprocals<P::Axes>,
-    leg: &'a Leg<P>,
-    /// As many of the knots, and one, are laid.
-    segments: u32,
-    knots: &'a mut [Knot],
-}
-
-impl<P: Path> Trial<'_, P> {
-    fn lay(&mut self, easing: &Easing) -> Result<(), PlanError<P::Error>> {
-        let segments = self.segments;
-        match easing {
-            Easing::Curve(curve) => {
-                lay_curve(curve, first(self.knots, segments), self.leg.length());
-                Ok(())
-            }
-            Easing::Average {
-                fastest_s,
-                window_s,
-            } => {
-                let late = part(segments, *window_s / (*fastest_s + *window_s));
-                let late = late.min(segments.saturating_sub(MIN_SEGMENTS)).max(1);
-                let moving = first(self.knots, segments.saturating_sub(late));
-                profile::fastest(&self.eased, self.leg, moving)?;
-                average::average(
-                    first(self.knots, segments),
-                    late,
-                    *window_s,
-                    self.leg.length(),
-                );
-                Ok(())
-            }
-        }
-    }
-
-    /// The time that a motion takes when it just keeps all limits.
-    fn time(&mut self, easing: &Easing) -> Result<f64, PlanError<P::Error>> {
-        self.lay(easing)?;
-        let knots = first(self.knots, self.segments);
-        let demand = Demand::of(self.limits, self.leg, knots)?;
-        Ok(duration_s(knots) * demand.stretch())
-    }
-
-    /// The average with the window of the shortest time.
-    fn best_average(&mut self) -> Result<Easing, PlanError<P::Error>> {
-        let knots = first(self.knots, self.segments);
-        profile::fastest(&self.eased, self.leg, knots)?;
-        let fastest_s = duration_s(knots);
-        let average = |window_s| Easing::Average {
-            fastest_s,
-            window_s,
-        };
-        let (mut window_s, mut best_s) = (fastest_s, self.time(&average(fastest_s))?);
-        let mut attempt = |trial: &mut Self, candidate: f64| {
-            let time_s = trial.time(&average(candidate))?;
-            if time_s < best_s {
-                (window_s, best_s) = (candidate, time_s);
-            }
-            Ok(window_s)
-        };
-        let mut candidate = fastest_s;
-        let mut best = fastest_s;
-        for _ in 1..WINDOWS {
-            candidate *= 0.5;
-            best = attempt(self, candidate)?;
-        }
-        let mut factor = core::f64::consts::SQRT_2;
-        for _ in 0..REFINEMENTS {
-            let middle = best;
-            attempt(self, middle * factor)?;
-            best = attempt(self, middle / factor)?;
-            factor = sqrt(factor);
-        }
-        Ok(average(window_s))
-    }
-}
-
-/// The first knots, one more than segments.
-fn first(knots: &mut [Knot], segments: u32) -> &mut [Knot] {
-    profile::split(knots, knots_of(segments)).0
-}
-
-/// Seconds of a leg's segments; the last knot has none.
-fn duration_s(knots: &[Knot]) -> f64 {
-    knots.iter().fold(0.0, |sum, knot| sum + knot.duration_s)
 }
 
 /// Places at which the slopes of a leg are looked at for its S-curve.

@@ -1,7 +1,8 @@
 //! Position-velocity-time tables along paths.
 
+use crate::chain::Chain;
 use crate::departure::check_allowed;
-use crate::leg::{self, Leg};
+use crate::leg::Leg;
 use crate::number::{SMALLEST, larger_or_nan};
 use crate::planner::{Planner, Within, bound_of_leg};
 use crate::reciprocals::Reciprocals;
@@ -15,9 +16,11 @@ pub struct Knot {
     pub(crate) s: f64,
     /// Speed of the parameter.
     pub(crate) speed: f64,
-    /// Time to the next knot; none at the last of a leg.
+    /// Time to the next knot; none at the last of a leg. While speeds with limits of jerk are chosen,
+    /// the highest even speed.
     pub(crate) duration_s: f64,
-    /// While speeds are chosen: the speed at the next knot that goes with the highest here.
+    /// While speeds are chosen: the speed at the next knot that goes with the highest here; before, with
+    /// limits of jerk, the highest speed that is wanted here.
     pub(crate) after: f64,
 }
 
@@ -29,9 +32,9 @@ pub struct Knot {
 /// acceleration at both ends. At the end of each path the machine does what that path's
 /// [`corner`](Path::corner) says.
 ///
-/// Where an axis has a limit of jerk, each leg is one S-curve along the path, which is the
-/// shortest motion on a straight path, or the fastest motion without the limit averaged over a
-/// window of time, whichever takes less.
+/// Where an axis has a limit of jerk, all legs between two stops are run by a fastest motion without
+/// the limit averaged over a window of time; a leg from rest to rest by one S-curve along it where that
+/// takes less, as on a straight path, which it is the shortest motion on.
 /// Between rows a cubic has one jerk; at a row its acceleration steps, which counts as a jerk over
 /// the time between the middles of the segments.
 #[derive(Debug, Clone, Copy)]
@@ -149,10 +152,11 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         ) -> Result<u32, PlanError<L::Error>>,
         knots: &'a mut [Knot],
     ) -> Result<Self, PlanError<L::Error>> {
-        planner.check_legs(&legs, least, knots.len())?;
+        let chain = Chain::new(legs.clone(), 0);
+        planner.check_legs(&chain, least, knots.len())?;
         let (mut used, mut nodes, mut jumps) = (0_usize, 0_usize, 0_usize);
         let mut starts_at_rest = true;
-        for leg in leg::forward(&legs, planner.reciprocals()) {
+        for leg in chain.forward(planner.reciprocals()) {
             let leg = leg?;
             let (_, free) = profile::split(knots, used);
             let segments = choose(planner, &leg, starts_at_rest, used, free)?;
@@ -166,7 +170,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
             starts_at_rest = leg.joint().is_stop();
         }
         let (knots, _) = profile::split(knots, used);
-        let duration_s = planner.plan_legs(&legs, knots)?;
+        let duration_s = planner.plan_legs(&chain, knots)?;
         Ok(Self {
             legs,
             knots,
@@ -229,12 +233,18 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         departure: impl Fn(&L::Leg, &Span<A>) -> f64,
     ) -> Result<f64, PlanError<L::Error>> {
         let mut later = self.knots;
-        leg::forward(&self.legs, &self.limits).try_fold(0.0, |worst, leg| {
-            let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
-            later = rest;
-            let bound = bound_of_leg(&leg?, own, &departure)?;
-            Ok(larger_or_nan(worst, bound))
-        })
+        self.chain()
+            .forward(&self.limits)
+            .try_fold(0.0, |worst, leg| {
+                let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
+                later = rest;
+                let bound = bound_of_leg(&leg?, own, &departure)?;
+                Ok(larger_or_nan(worst, bound))
+            })
+    }
+
+    pub(crate) fn chain(&self) -> Chain<L> {
+        Chain::new(self.legs.clone(), 0)
     }
 
     /// The rows in their order.

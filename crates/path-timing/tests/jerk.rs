@@ -1,6 +1,8 @@
 //! Limits of jerk under feed changes, holds and resumes.
 #![cfg(test)]
 
+#[path = "support/jerk.rs"]
+mod jerky;
 #[path = "support/limits.rs"]
 mod limited;
 #[path = "support/machine.rs"]
@@ -8,9 +10,9 @@ mod machine;
 #[path = "support/polyline.rs"]
 mod polyline;
 
-use limited::check_limits;
+use jerky::check_jerk;
 use machine::limits;
-use path_timing::{Ahead, AxisLimits, Corner, Cubic, Knot, Row, Table};
+use path_timing::{Ahead, AxisLimits, Corner, Knot, Row, Table};
 use polyline::lines;
 use proptest::prelude::*;
 
@@ -20,38 +22,8 @@ const LIMITS: [AxisLimits; 2] = [
 ];
 const POINTS: [[f64; 2]; 3] = [[-100.0, 80.0], [0.0, 150.0], [90.0, 60.0]];
 
-/// Of what is recomputed from rounded rows.
-const ROUNDING: f64 = 1.0 + 1e-9;
-
 /// A speed that leaves a sixteenth of the jerk: ∛(15/16).
 const WITH_ROOM: f64 = 0.978;
-
-/// The jerk inside of each cubic, and the steps of the acceleration at rows over the time between
-/// the middles of their segments; at rest the acceleration is zero.
-fn check_jerk(rows: &[Row<[f64; 2]>]) {
-    check_limits(&LIMITS, None, rows);
-    for (axis, limits) in LIMITS.iter().enumerate() {
-        let jerk = limits.jerk.unwrap() * ROUNDING;
-        let (mut before, mut before_s) = (0.0_f64, 0.0);
-        for pair in rows.windows(2) {
-            let cubic = Cubic::between(&pair[0], &pair[1]).nth(axis).unwrap();
-            let [a0, a1] = cubic.accelerations();
-            let time_s = cubic.duration_s;
-            if pair[0].velocity.iter().all(|v| *v == 0.0) {
-                assert!(before.abs() <= jerk * before_s * 0.5, "to rest: {before}");
-                (before, before_s) = (0.0, 0.0);
-            }
-            assert!((a1 - a0).abs() <= jerk * time_s, "{cubic:?}");
-            let step = (a0 - before).abs() / ((time_s + before_s) * 0.5);
-            assert!(step <= jerk, "{} at {}", step / jerk, pair[0].time_s);
-            (before, before_s) = (a1, time_s);
-        }
-        assert!(
-            before.abs() <= jerk * before_s * 0.5,
-            "to the end: {before}"
-        );
-    }
-}
 
 /// How long a hold takes from each row on, and that the run goes on to its exact end.
 #[test]
@@ -77,7 +49,7 @@ fn a_hold_keeps_the_jerk_and_goes_on() {
         }
         run.set_feed(1.0).unwrap();
         rows.extend(run.map(Result::unwrap));
-        check_jerk(&rows);
+        check_jerk(&LIMITS, &rows);
         assert_eq!(rows.len(), table.len());
         for (row, planned) in rows.iter().zip(table.rows()) {
             let bits = |row: &Row<[f64; 2]>| row.position.map(f64::to_bits);
@@ -116,7 +88,7 @@ proptest! {
         rows.extend(run.by_ref().map(Result::unwrap));
         prop_assert!(run.is_finished());
         prop_assert_eq!(rows.len(), table.len());
-        check_jerk(&rows);
+        check_jerk(&LIMITS, &rows);
         let end = table.rows().last().unwrap().unwrap();
         let bits = |row: &Row<[f64; 2]>| row.position.map(f64::to_bits);
         prop_assert_eq!(bits(rows.last().unwrap()), bits(&end));

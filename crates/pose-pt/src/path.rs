@@ -167,8 +167,8 @@ impl<'a> Path<'a> {
     }
 
     /// The path rounded at the poses between the first and the last, one tolerance for each: a
-    /// [`PvtTable`](crate::PvtTable) then passes them without a stop where its platform has no limit
-    /// of jerk. A [`PtTable`](crate::PtTable) and [`leg`](Self::leg) stay unrounded.
+    /// [`PvtTable`](crate::PvtTable) then passes them without a stop. A
+    /// [`PtTable`](crate::PtTable) and [`leg`](Self::leg) stay unrounded.
     ///
     /// # Errors
     /// [`PathError::Blends`], [`PathError::Blend`], [`PathError::ScrewBlend`].
@@ -190,14 +190,6 @@ impl<'a> Path<'a> {
             }
         }
         Ok(Self { blends, ..self })
-    }
-
-    /// The same path with a stop at each pose.
-    pub(crate) const fn without_blends(self) -> Self {
-        Self {
-            blends: &[],
-            ..self
-        }
     }
 
     /// Whether there may be a pose without a stop.

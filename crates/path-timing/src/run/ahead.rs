@@ -1,9 +1,9 @@
 //! What of a feed the rest of a table allows, looked at from its end before it runs.
 
-use crate::demand::Demand;
-use crate::leg::{self, Leg};
+use crate::leg::Leg;
 use crate::number::LARGEST;
 use crate::segment::Segment;
+use crate::utilisation::{Of, stretch};
 use crate::{Axes, Knot, Legs, Place, PlanError, Table, profile};
 
 /// Memory for one row of a table that runs: the highest feed from which the rest can be run.
@@ -31,7 +31,7 @@ impl<A: Axes, L: Legs<Axes = A>> Table<'_, L, A> {
             after: 1.0,
         };
         let mut earlier = self.knots;
-        for leg in leg::backward(&self.legs, &self.limits) {
+        for leg in self.chain().backward(&self.limits) {
             let leg = leg?;
             let (rest, own) = earlier.split_at(profile::last_leg(earlier).min(earlier.len()));
             earlier = rest;
@@ -52,13 +52,8 @@ impl<A: Axes, L: Legs<Axes = A>> Table<'_, L, A> {
 
     /// The highest constant feed that the axes allow from end to end.
     pub(super) fn full_feed(&self) -> Result<f64, PlanError<L::Error>> {
-        let mut later = self.knots;
-        leg::forward(&self.legs, &self.limits).try_fold(LARGEST, |full, leg| {
-            let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
-            later = rest;
-            let demand = Demand::of_axes(&self.limits, &leg?, own)?;
-            Ok(full.min(self.stretch / demand.stretch()))
-        })
+        let stretch = stretch(&self.limits, &self.chain(), self.knots, Of::Axes)?;
+        Ok(LARGEST.min(self.stretch / stretch))
     }
 
     /// The highest feed at which the velocities may jump at the end of a leg; 1 at least.

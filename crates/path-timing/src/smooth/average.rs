@@ -2,170 +2,231 @@
 
 use crate::Knot;
 
-/// Replaces the motion s(t) of all segments but the last `late` by its mean over the `window_s`
-/// before t, and lets those run it out.
+/// The mean of a motion s(t) along legs over the window before t, told at the knots of that motion.
 ///
 /// ```text
 /// s̄(t) = 1/w ∫ s(u) du,  u = t - w..t      ds̄/dt = (s(t) - s(t - w)) / w
 /// ```
 ///
-/// Before the motion s is 0, after it the length. The mean at t needs nothing later than t: from the end
-/// to the start it is taken in place. The integral is kept as that of s(t) - s(u), which has the
-/// digits of near positions.
-pub(crate) fn average(knots: &mut [Knot], late: u32, window_s: f64, length: f64) {
-    let late_knots = usize::try_from(late).unwrap_or(usize::MAX);
-    let end = knots.len().saturating_sub(1);
-    let last = end.saturating_sub(late_knots);
-    let Some(mut now) = knots.get(last).copied() else {
-        return;
-    };
-    let mut tail = Tail::new(last, now);
-    let mut lag = 0.0;
-    for index in (0..end).rev() {
-        let (before, gained) = match knots.get(index) {
-            Some(before) if index < last => (*before, lag_of_segment(before, &now)),
-            _ => {
-                let duration_s = window_s / f64::from(late);
-                (Knot { duration_s, ..now }, 0.0)
-            }
-        };
-        let time = before.duration_s;
-        lag -= gained + (now.s - before.s) * (window_s - time);
-        lag += tail.back(knots, time, before.s);
-        now = before;
-        if let Some(knot) = knots.get_mut(index) {
-            *knot = Knot {
-                s: now.s - lag / window_s,
-                speed: (now.s - tail.s()) / window_s,
-                duration_s: time,
-                after: 0.0,
-            };
-        }
-    }
-    if let Some(knot) = knots.last_mut() {
-        *knot = Knot {
-            s: length,
-            ..Knot::default()
-        };
-    }
-    if let Some(knot) = knots.first_mut() {
-        (knot.s, knot.speed) = (0.0, 0.0);
-    }
+/// Before the motion s is 0, after it the length. Between two knots the speed of s is linear in time;
+/// so between two times at which t or t - w is at a knot, s̄ is a cubic of the time. The mean lasts
+/// w longer than what it is taken of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Average {
+    window_s: f64,
+    /// s(t), and s(t - w).
+    head: End,
+    tail: End,
+    /// s(t) - s(t - w).
+    gap: f64,
+    /// The next knot.
+    knot: usize,
 }
 
-/// ∫ (s(end) - s(u)) du over a segment of even acceleration: h² (v₀ + 2 v₁) / 6.
-fn lag_of_segment(from: &Knot, to: &Knot) -> f64 {
-    let time = from.duration_s;
-    (from.speed + to.speed + to.speed) * time * time / 6.0
-}
-
-/// Where the window begins, moving back along the motion.
-struct Tail {
-    /// Knots before the segment.
-    index: usize,
-    /// The segment's first knot; at rest at 0 before the motion.
-    from: Knot,
+/// An end of the window: the rest of the segment that it is on.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    /// The knot after the segment.
+    next: usize,
+    left_s: f64,
+    speed: f64,
     acceleration: f64,
-    /// Time since the segment's first knot.
-    offset_s: f64,
 }
 
-impl Tail {
-    /// At a knot.
-    fn new(index: usize, knot: Knot) -> Self {
+/// Rounds of a search for a root: each halves what is left, mostly much less is.
+const ROUNDS: u32 = 64;
+
+/// Relative change at which a root is found.
+const CLOSE: f64 = 4.0 * f64::EPSILON;
+
+impl End {
+    /// At rest before the motion, or after it.
+    fn at_rest(next: usize, left_s: f64) -> Self {
         Self {
-            index,
-            from: knot,
+            next,
+            left_s,
+            speed: 0.0,
             acceleration: 0.0,
-            offset_s: 0.0,
         }
     }
 
-    fn s(&self) -> f64 {
-        let mean = self.from.speed + self.acceleration * self.offset_s * 0.5;
-        self.from.s + mean * self.offset_s
-    }
-
-    /// Goes back by a time; ∫ (s - s(u)) du over it.
-    fn back(&mut self, knots: &[Knot], time: f64, s: f64) -> f64 {
-        let mut left = time;
-        let mut integral = 0.0;
-        while left > self.offset_s {
-            left -= self.offset_s;
-            integral += self.within(self.offset_s, s);
-            let Some(index) = self.index.checked_sub(1) else {
-                // Nothing has moved before.
-                return integral + s * left;
-            };
-            self.enter(index, knots);
+    /// Goes on by a time within the segment, and enters the next where it ends.
+    fn go_on(&mut self, time_s: f64, knots: &[Knot]) {
+        self.speed += self.acceleration * time_s;
+        self.left_s -= time_s;
+        while self.left_s <= 0.0 {
+            self.enter(knots);
         }
-        integral + self.within(left, s)
     }
 
-    /// Goes back by a time within the segment.
-    fn within(&mut self, time: f64, s: f64) -> f64 {
-        self.offset_s -= time;
-        let speed = self.from.speed + self.acceleration * self.offset_s;
-        let mean = (speed + self.acceleration * time / 3.0) * time * 0.5;
-        (s - self.s() - mean) * time
-    }
-
-    /// Enters a segment at its end.
-    fn enter(&mut self, index: usize, knots: &[Knot]) {
-        let Some(from) = knots.get(index).copied() else {
+    fn enter(&mut self, knots: &[Knot]) {
+        let ends = (knots.get(self.next), knots.get(self.next.saturating_add(1)));
+        let (Some(from), Some(to)) = ends else {
+            *self = Self::at_rest(self.next, f64::INFINITY);
             return;
         };
-        *self = Self {
-            index,
-            from,
-            acceleration: (self.from.speed - from.speed) / from.duration_s,
-            offset_s: from.duration_s,
+        self.next = self.next.saturating_add(1);
+        if to.s <= 0.0 {
+            // The same point on the next leg.
+            return;
+        }
+        self.left_s = 2.0 * (to.s - from.s) / (from.speed + to.speed);
+        self.speed = from.speed;
+        self.acceleration = (to.speed - from.speed) / self.left_s;
+    }
+}
+
+impl Average {
+    /// At rest at the first of the knots.
+    pub(crate) fn new(window_s: f64, knots: &[Knot]) -> Self {
+        let mut head = End::at_rest(0, 0.0);
+        head.enter(knots);
+        Self {
+            window_s,
+            head,
+            tail: End::at_rest(0, window_s),
+            gap: 0.0,
+            knot: 0,
+        }
+    }
+
+    /// The speed at the next knot, and the time to it from the one before.
+    pub(crate) fn next(&mut self, knots: &[Knot]) -> [f64; 2] {
+        let before = self
+            .knot
+            .checked_sub(1)
+            .and_then(|before| knots.get(before));
+        let ends = (before, knots.get(self.knot));
+        self.knot = self.knot.saturating_add(1);
+        let (Some(from), Some(to)) = ends else {
+            return [0.0; 2];
         };
+        let mut time_s = 0.0;
+        if self.knot >= knots.len() {
+            // To the end of the motion.
+            while let Some(step_s) = self.step_s() {
+                time_s += step_s;
+                self.go_on(step_s, knots);
+            }
+            return [0.0, time_s];
+        }
+        if to.s > 0.0 {
+            let mut missing = (to.s - from.s) * self.window_s;
+            while let Some(step_s) = self.step_s() {
+                let rise = self.rise(step_s);
+                if rise >= missing {
+                    let part_s = self.time_of(missing, step_s, rise);
+                    time_s += part_s;
+                    self.go_on(part_s, knots);
+                    break;
+                }
+                missing -= rise;
+                time_s += step_s;
+                self.go_on(step_s, knots);
+            }
+        }
+        [self.gap / self.window_s, time_s]
+    }
+
+    /// The time to the next knot of either end of the window; none after the motion.
+    fn step_s(&self) -> Option<f64> {
+        let step_s = self.head.left_s.min(self.tail.left_s);
+        step_s.is_finite().then_some(step_s)
+    }
+
+    fn go_on(&mut self, time_s: f64, knots: &[Knot]) {
+        let [speed, acceleration] = self.growth();
+        self.gap += (speed + acceleration * time_s * 0.5) * time_s;
+        self.head.go_on(time_s, knots);
+        self.tail.go_on(time_s, knots);
+    }
+
+    /// First and second derivative of the gap.
+    fn growth(&self) -> [f64; 2] {
+        [
+            self.head.speed - self.tail.speed,
+            self.head.acceleration - self.tail.acceleration,
+        ]
+    }
+
+    /// By how much w s̄ grows in a time.
+    fn rise(&self, time_s: f64) -> f64 {
+        let [speed, acceleration] = self.growth();
+        (self.gap + (speed + acceleration * time_s / 3.0) * time_s * 0.5) * time_s
+    }
+
+    /// The time in which w s̄ grows by `wanted`, at most that of `rise`, which takes `most_s`.
+    fn time_of(&self, wanted: f64, most_s: f64, rise: f64) -> f64 {
+        let [speed, acceleration] = self.growth();
+        let (mut low, mut high) = (0.0, most_s);
+        let mut time_s = most_s * (wanted / rise);
+        for _ in 0..ROUNDS {
+            let off = self.rise(time_s) - wanted;
+            if off > 0.0 {
+                high = time_s;
+            } else {
+                low = time_s;
+            }
+            let slope = self.gap + (speed + acceleration * time_s * 0.5) * time_s;
+            let newton = time_s - off / slope;
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                (low + high) * 0.5
+            };
+            let change = (next - time_s).abs();
+            time_s = next;
+            if change <= time_s * CLOSE {
+                break;
+            }
+        }
+        time_s
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Knot, average};
+    use super::{Average, Knot};
 
-    const SEGMENTS: u32 = 6;
     const TIMES: [f64; 6] = [0.3, 0.1, 0.5, 0.2, 0.4, 0.25];
     const SPEEDS: [f64; 7] = [0.0, 0.9, 0.6, 0.75, 0.75, 0.2, 0.0];
     /// Of the sum that stands for an integral.
     const SLICES: u32 = 20_000;
-    /// What the sum is off by, and a length that is 1 but for the last digits of its times.
+    /// What the sum is off by.
     const TOLERANCE: f64 = 1e-8;
 
     /// Position and speed at a time, from the numbers above alone.
-    fn motion(time: f64, scale: f64) -> [f64; 2] {
-        let (mut s, mut left) = (0.0, time);
-        if left <= 0.0 {
-            return [0.0; 2];
-        }
+    fn motion(time: f64) -> [f64; 2] {
+        let (mut s, mut left) = (0.0, time.max(0.0));
         for (duration, pair) in TIMES.iter().zip(SPEEDS.windows(2)) {
             let rate = (pair[1] - pair[0]) / duration;
             let within = left.min(*duration);
             s += (pair[0] + rate * within / 2.0) * within;
             if left <= *duration {
-                return [s * scale, (pair[0] + rate * left) * scale];
+                return [s, pair[0] + rate * left];
             }
             left -= duration;
         }
-        [1.0, 0.0]
+        [s, 0.0]
     }
 
-    /// The motion's knots, with room for late ones.
-    fn knots(scale: f64) -> [Knot; 12] {
+    /// The motion's knots, on two legs.
+    fn knots() -> [Knot; 8] {
         let mut time = 0.0;
-        let mut knots = [Knot::default(); 12];
-        let times = TIMES.iter().chain([&0.0]);
-        for ((knot, duration), speed) in knots.iter_mut().zip(times).zip(SPEEDS) {
-            *knot = Knot {
-                s: motion(time, scale)[0],
-                speed: speed * scale,
-                duration_s: *duration,
-                after: 0.0,
+        let mut start = 0.0;
+        let mut knots = [Knot::default(); 8];
+        let mut rest = knots.iter_mut();
+        for (number, (duration, speed)) in TIMES.iter().chain([&0.0]).zip(SPEEDS).enumerate() {
+            let [s, _] = motion(time);
+            let mut lay = |s| {
+                let knot = rest.next().unwrap();
+                (knot.s, knot.speed) = (s, speed);
             };
+            lay(s - start);
+            if number == 3 {
+                start = s;
+                lay(0.0);
+            }
             time += duration;
         }
         knots
@@ -173,28 +234,28 @@ mod tests {
 
     #[test]
     fn a_window_of_any_length_takes_the_mean() {
-        let scale = 1.0 / motion(TIMES.iter().sum::<f64>() - 1e-15, 1.0)[0];
-        for (late, window) in [(1, 0.01), (2, 0.35), (3, 1.1), (5, 1.75), (4, 9.0)] {
-            let mut knots = knots(scale);
-            let knots = &mut knots[..1 + (SEGMENTS + late) as usize];
-            average(knots, late, window, 1.0);
-            let knots = knots.iter();
-            let mut time = 0.0;
-            for knot in knots.clone() {
+        let total: f64 = TIMES.iter().sum();
+        for window in [0.01, 0.35, 1.1, 1.75, 9.0] {
+            let knots = knots();
+            let mut average = Average::new(window, &knots);
+            let (mut time, mut start) = (0.0, 0.0);
+            for (number, knot) in knots.iter().enumerate() {
+                let [speed, segment_s] = average.next(&knots);
+                time += segment_s;
+                if number == 4 {
+                    start = knots[3].s;
+                }
                 let slice = window / f64::from(SLICES);
                 let sum: f64 = (0..SLICES)
-                    .map(|number| motion(time - (f64::from(number) + 0.5) * slice, scale)[0])
+                    .map(|slices| motion(time - (f64::from(slices) + 0.5) * slice)[0])
                     .sum();
                 let mean = sum / f64::from(SLICES);
-                assert!((knot.s - mean).abs() < TOLERANCE, "{window} s at {time}");
-                let gained = motion(time, scale)[0] - motion(time - window, scale)[0];
-                assert!((knot.speed - gained / window).abs() < TOLERANCE / window);
-                time += knot.duration_s;
+                let off = (start + knot.s - mean).abs();
+                assert!(off < TOLERANCE, "{window} s at {time}: {off}");
+                let gained = motion(time)[0] - motion(time - window)[0];
+                assert!((speed - gained / window).abs() < TOLERANCE / window);
             }
-            assert!((time - TIMES.iter().sum::<f64>() - window).abs() < TOLERANCE);
-            let mut ends = knots.map(|knot| [knot.s, knot.speed]);
-            assert_eq!(ends.next(), Some([0.0, 0.0]));
-            assert_eq!(ends.next_back(), Some([1.0, 0.0]));
+            assert!((time - total - window).abs() < TOLERANCE);
         }
     }
 }

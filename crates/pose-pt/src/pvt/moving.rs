@@ -89,19 +89,11 @@ pub(super) struct Moving<'a, const N: usize> {
 
 impl<'a, const N: usize> Moving<'a, N> {
     pub(super) fn new(platform: &'a Platform<N>, path: &Path<'a>) -> Self {
-        let limits = platform.locators().iter().flat_map(|it| &it.limits);
-        // With a limit of jerk each leg is planned from rest to rest.
-        let has_jerk = limits.into_iter().any(|limits| limits.jerk.is_some());
-        let path = if has_jerk {
-            path.without_blends()
-        } else {
-            *path
-        };
         let travels = path.numbered_legs().map(|(_, leg)| travel(platform, &leg));
         Self {
             platform,
             longest: travels.fold(0.0, larger),
-            path,
+            path: *path,
             first: 0,
             end: path.legs().saturating_mul(2),
         }

@@ -177,13 +177,34 @@ fn a_part_that_does_not_change_needs_no_tolerance() {
 }
 
 #[test]
-fn a_limit_of_jerk_stops_at_each_pose() {
+fn blends_with_a_limit_of_jerk_are_passed() {
     let limits = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(200.0);
     let platform = panel_with(limits);
-    let segmentation = Segmentation::segments(40);
-    let (blended, ..) = table(&platform, KINDS[0], BLEND, segmentation);
-    let (stopped, ..) = table(&platform, KINDS[0], Blend::STOP, segmentation);
-    assert_eq!(blended, stopped);
+    let allowed = 0.01;
+    for segmentation in [
+        Segmentation::segments(40),
+        Segmentation::max_distance_error(allowed),
+    ] {
+        let (points, seconds, error) = table(&platform, KINDS[0], BLEND, segmentation);
+        let (_, stopped_s, _) = table(&platform, KINDS[0], Blend::STOP, segmentation);
+        println!(
+            "{seconds} s, with stops {stopped_s} s, {} points",
+            points.len()
+        );
+        assert!(seconds < stopped_s, "{seconds} {stopped_s}");
+        let stops = points.iter().filter(|point| {
+            let velocities = point.velocities.iter().flatten();
+            velocities.copied().all(|velocity| velocity == 0.0)
+        });
+        assert_eq!(stops.count(), 2);
+        let fractions = fractions(&platform, &points);
+        assert!(
+            fractions.iter().all(|fraction| *fraction < LIMIT),
+            "{fractions:?}"
+        );
+        check_motion(&platform, &points, seconds);
+        assert!(segmentation == Segmentation::segments(40) || error <= allowed);
+    }
 }
 
 #[test]
