@@ -35,3 +35,14 @@ export function file(name, contents) {
   writeFileSync(path, contents);
   return path;
 }
+
+/**
+ * Runs `line3964r`; tells what it printed and its exit status.
+ * @param {string[]} args
+ */
+export function line3964r(...args) {
+  const cargo = ['run', '--quiet', '--profile', PROFILE, '--package', 'line3964r', '--'];
+  const run = spawnSync('cargo', [...cargo, ...args], { cwd: ROOT, encoding: 'utf8' });
+  if (run.error) throw run.error;
+  return { status: run.status, text: run.stdout + run.stderr };
+}

@@ -16,7 +16,7 @@ const MAX_FIRST_VIEW_BYTES = 600_000;
 /** On the slowest machine that tests run on; a PC takes a second. */
 const MAX_FIRST_VIEW_MS = 10_000;
 
-const PAGES = ['index.html', 'dance.html', 'stage.html', 'delta.html', 'align.html'];
+const PAGES = ['index.html', 'dance.html', 'stage.html', 'delta.html', 'align.html', 'line.html'];
 
 for (const path of PAGES) {
   test(`the first view of ${path} is small and soon there`, async () => {

@@ -90,8 +90,20 @@ impl End {
         {
             self.jobs.pop_front();
         }
+        self.fetch(now);
+        self.load(now);
+    }
+
+    /// Fetches what the station has to send: a character when the one before has left; all at once
+    /// where its output is late.
+    fn fetch(&mut self, now: Duration) {
         let mut out = [0; 64];
-        while let Some(transmit) = self.station.poll_transmit(now, &mut out) {
+        loop {
+            let room = self.room().min(out.len());
+            let out = out.get_mut(..room).unwrap_or_default();
+            let Some(transmit) = self.station.poll_transmit(now, out) else {
+                return;
+            };
             match transmit {
                 Transmit::Discard => {
                     self.queue.clear();
@@ -103,7 +115,15 @@ impl End {
                 }
             }
         }
-        self.load(now);
+    }
+
+    /// How many characters are fetched now; none still tells what to discard.
+    fn room(&self) -> usize {
+        if !self.faults.delay.is_zero() {
+            usize::MAX
+        } else {
+            usize::from(self.queue.is_empty() && self.transmitter.is_free())
+        }
     }
 
     /// Hands the transmitter the next character that may leave, with what is wrong with this side.

@@ -184,6 +184,9 @@ impl Simulation {
     /// One step; or, where the line rests, all until the next thing is due.
     fn advance(&mut self, end: u64) {
         let now = self.now();
+        if !self.rests() {
+            self.wires(now);
+        }
         for (side, it) in SIDES.into_iter().zip(&mut self.ends) {
             let happenings = &mut self.happenings;
             it.serve(now, |event| {
@@ -195,14 +198,13 @@ impl Simulation {
                 });
             });
         }
-        if self.rests() {
+        let next = if self.rests() {
             let due = self.ends.iter().filter_map(End::next_due).min();
-            let due = due.map_or(end, step_at);
-            self.step = due.clamp(self.step + 1, end);
+            due.map_or(end, step_at)
         } else {
-            self.wires(now);
-            self.step += 1;
-        }
+            self.step
+        };
+        self.step = next.clamp(self.step + 1, end);
     }
 
     /// What is on the wires in this step, and who reads it.

@@ -14,6 +14,8 @@ pub struct Step {
     pub side: Option<Side>,
     /// How good it is.
     pub kind: Kind,
+    /// Whether it is something that was sent; `false` for what did not come, or not in time.
+    pub is_sent: bool,
     /// What happened, beginning with the side.
     pub text: String,
 }
@@ -40,10 +42,20 @@ impl Step {
             Observation::Conflict | Observation::Reset { .. } => Kind::Unusual,
             _ => Kind::Fault,
         };
+        let is_sent = !matches!(
+            observation,
+            Observation::RequestUnanswered { .. }
+                | Observation::BothGaveWay
+                | Observation::NoBlock { .. }
+                | Observation::BrokenOff { .. }
+                | Observation::NoAnswer { .. }
+                | Observation::Gap { .. }
+        );
         Self {
             at,
             side: observation.side(),
             kind,
+            is_sent,
             text: observation.to_string(),
         }
     }

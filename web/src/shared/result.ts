@@ -22,12 +22,19 @@ export class Status {
 export class FileButtons {
   readonly #buttons: HTMLButtonElement[];
 
-  constructor(machine: Machine, operation: string, names: string[], status: Status) {
+  /** The operation's parameters are the name alone, unless it is told otherwise. */
+  constructor(
+    machine: Machine,
+    operation: string,
+    names: string[],
+    status: Status,
+    parameters: (name: string) => unknown = (name) => name,
+  ) {
     this.#buttons = names.map((name) => {
       const button = create('button', { type: 'button', textContent: name, disabled: true });
       button.addEventListener('click', async () => {
         try {
-          const { blobs } = await machine.call(operation, name);
+          const { blobs } = await machine.call(operation, parameters(name));
           if (blobs.file) save(name, blobs.file);
         } catch (error) {
           status.refuse(name, error);

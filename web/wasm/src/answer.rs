@@ -29,7 +29,8 @@ impl Answer {
         feature = "dance",
         feature = "delta",
         feature = "engrave",
-        feature = "stage"
+        feature = "stage",
+        feature = "line"
     ))]
     pub(crate) fn with_numbers<const N: usize>(
         self,

@@ -12,7 +12,9 @@ mod dance;
 mod delta;
 #[cfg(feature = "engrave")]
 mod engrave;
-#[cfg(any(feature = "dance", feature = "engrave"))]
+#[cfg(feature = "line")]
+mod line;
+#[cfg(any(feature = "dance", feature = "engrave", feature = "line"))]
 mod progress;
 #[cfg(feature = "stage")]
 mod stage;
@@ -53,6 +55,8 @@ fn perform(request: &Request) -> Result<Answer> {
         "desk" => align::begin(request),
         #[cfg(feature = "align")]
         "desk.turn" => align::turn(request),
+        #[cfg(feature = "line")]
+        operation if operation.starts_with("line") => line::perform(operation, request),
         other => bail!("there is no operation {other:?}"),
     }
 }

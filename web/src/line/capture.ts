@@ -1,0 +1,98 @@
+// A capture that is pasted, dropped or chosen, judged as `line3964r monitor` judges it.
+import { element, settled, takeFiles } from '../shared/dom';
+import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { Conversation, type News } from './conversation';
+import type { Desk, View } from './desk';
+
+/** Captures of lines with known faults, loaded when they are chosen. */
+const EXAMPLES = Object.fromEntries(
+  Object.entries(
+    import.meta.glob<string>('../../../crates/proto3964r/tests/data/captures/*.txt', {
+      query: '?raw',
+      import: 'default',
+    }),
+  ).map(([path, load]) => [path.slice(path.lastIndexOf('/') + 1, -'.txt'.length), load]),
+);
+const FIRST = '01a_parity_B_8N1';
+
+export class Capture implements View {
+  readonly of = 'capture';
+  readonly follows = false;
+  readonly idle = 'No capture yet';
+  conversation = new Conversation();
+  readonly #desk: Desk;
+  readonly #text = element('capture', HTMLTextAreaElement);
+  readonly #example = element('example', HTMLSelectElement);
+  readonly #preset = element('preset', HTMLSelectElement);
+  #name = 'capture.txt';
+  /** The newest call; answers to older ones are dropped. */
+  #call = 0;
+
+  constructor(desk: Desk) {
+    this.#desk = desk;
+    for (const name of Object.keys(EXAMPLES).sort()) {
+      this.#example.add(new Option(name.replaceAll('_', ' '), name));
+    }
+    this.#preset.value = fromAddress('preset') ?? 'siemens-3964r';
+    if (this.#preset.selectedIndex < 0) this.#preset.value = 'siemens-3964r';
+    const judge = settled(150, () => this.#judge());
+    this.#text.addEventListener('input', () => {
+      this.#example.value = '';
+      this.#name = 'capture.txt';
+      keep('line capture', this.#text.value);
+      toAddress({ example: null });
+      judge();
+    });
+    this.#example.addEventListener('change', () => this.#open(this.#example.value));
+    this.#preset.addEventListener('change', () => this.#judge());
+    takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) =>
+      this.#take(await file.text(), file.name),
+    );
+  }
+
+  /** What was chosen or pasted last, else the first example. */
+  async begin(): Promise<void> {
+    const example = fromAddress('example');
+    const text = kept('line capture');
+    if (example !== null && example in EXAMPLES) await this.#open(example);
+    else if (text !== null) await this.#take(text, 'capture.txt');
+    else await this.#open(FIRST);
+  }
+
+  async #open(example: string): Promise<void> {
+    const text = await EXAMPLES[example]?.();
+    if (text === undefined) return;
+    this.#name = `${example}.txt`;
+    this.#example.value = example;
+    this.#text.value = text;
+    toAddress({ example: example === FIRST ? null : example });
+    keep('line capture', null);
+    await this.#judge();
+  }
+
+  async #take(text: string, name: string): Promise<void> {
+    this.#name = name;
+    this.#example.value = '';
+    this.#text.value = text;
+    toAddress({ example: null });
+    keep('line capture', text);
+    await this.#judge();
+  }
+
+  async #judge(): Promise<void> {
+    const preset = this.#preset.value;
+    toAddress({ preset: preset === 'siemens-3964r' ? null : preset });
+    this.#call += 1;
+    const call = this.#call;
+    const parameters = { name: this.#name, text: this.#text.value, preset };
+    try {
+      const answer = await this.#desk.machine.call<News>('line', parameters);
+      if (call !== this.#call) return;
+      this.conversation = new Conversation();
+      this.conversation.take(answer);
+      this.#desk.show(this);
+    } catch (error) {
+      if (call === this.#call) this.#desk.refuse(this, '', error);
+    }
+  }
+}

@@ -1,0 +1,143 @@
+// Both directions over time, character by character.
+import { Picture, takeGestures } from '../shared/canvas';
+import { colour, onColours } from '../shared/dom';
+import type { Character, Conversation } from './conversation';
+
+const NAMES: Record<number, string> = { 0x02: 'STX', 0x03: 'ETX', 0x10: 'DLE', 0x15: 'NAK' };
+/** Of the usual line: 9600 bit/s, 11 bits. */
+const CHARACTER_S = 11 / 9600;
+const MIN_SPAN_S = 0.01;
+/** What is seen of a line at first: single characters, a telegram or two. */
+const FIRST_SPAN_S = 0.03;
+const AXIS_PX = 20;
+const NAME_PX = 20;
+
+export class Wire {
+  readonly #picture: Picture;
+  readonly #note: HTMLElement;
+  #conversation: Conversation | undefined;
+  #from = 0;
+  #span = FIRST_SPAN_S;
+  #follows = false;
+
+  constructor(canvas: HTMLCanvasElement, note: HTMLElement) {
+    this.#note = note;
+    this.#picture = new Picture(canvas, (context, width, height) =>
+      this.#draw(context, width, height),
+    );
+    takeGestures(canvas, {
+      pan: (dx) => {
+        this.#follows = false;
+        this.#window(this.#from - (dx / this.#picture.width) * this.#span, this.#span);
+      },
+      zoom: (factor, x) => {
+        const span = Math.max(this.#span / factor, MIN_SPAN_S);
+        const part = this.#follows ? 1 : x / this.#picture.width;
+        this.#window(this.#from + part * (this.#span - span), span);
+      },
+      reset: () => this.#all(),
+    });
+    onColours(() => this.#picture.redraw());
+  }
+
+  /** Another conversation: its first request, or what comes last. */
+  show(conversation: Conversation, follows: boolean): void {
+    this.#conversation = conversation;
+    this.#follows = follows;
+    this.#window(conversation.requestS - 0.003, FIRST_SPAN_S);
+  }
+
+  /** More of the same conversation. */
+  update(): void {
+    this.#window(this.#from, this.#span);
+  }
+
+  /** Puts a time into the middle. */
+  at(seconds: number): void {
+    this.#follows = false;
+    this.#window(seconds - this.#span / 2, this.#span);
+  }
+
+  #all(): void {
+    const { beginS, nowS } = this.#conversation ?? { beginS: 0, nowS: 0 };
+    this.#follows = false;
+    this.#window(beginS - 0.02, Math.max(nowS - beginS + 0.04, MIN_SPAN_S));
+  }
+
+  #window(from: number, span: number): void {
+    this.#span = span;
+    this.#from = this.#follows ? (this.#conversation?.nowS ?? 0) - span : from;
+    const digits = span < 0.1 ? 4 : 2;
+    const [low, high] = [this.#from, this.#from + span].map((it) =>
+      Math.max(it, 0).toFixed(digits),
+    );
+    this.#note.textContent = `${low} s to ${high} s. Drag to move; zoom with Ctrl and the wheel, two fingers, or + and -; 0 shows all. A click on a step shows it here.`;
+    this.#picture.redraw();
+  }
+
+  #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
+    const lane = (height - AXIS_PX) / 2;
+    const x = (seconds: number) => ((seconds - this.#from) / this.#span) * width;
+    context.font = '12px system-ui, sans-serif';
+    this.#drawAxis(context, width, height, x);
+    const end = this.#from + this.#span + CHARACTER_S;
+    for (const it of this.#conversation?.between(this.#from, end) ?? []) {
+      const top = it.side === 'A' ? 0 : lane;
+      drawCharacter(context, it, x(it.atS - CHARACTER_S), x(it.atS), top + NAME_PX, lane - NAME_PX);
+    }
+    context.textAlign = 'left';
+    context.textBaseline = 'top';
+    for (const [index, name] of ['A to B', 'B to A'].entries()) {
+      context.fillStyle = colour('text');
+      context.fillText(name, 6, index * lane + 4);
+    }
+  }
+
+  #drawAxis(
+    context: CanvasRenderingContext2D,
+    width: number,
+    height: number,
+    x: (seconds: number) => number,
+  ): void {
+    const rough = (this.#span * 90) / width;
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const step = ([1, 2, 5, 10].find((it) => it * power >= rough) ?? 10) * power;
+    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    context.textAlign = 'center';
+    context.textBaseline = 'bottom';
+    const first = Math.max(0, Math.ceil(this.#from / step));
+    for (let tick = first; tick * step < this.#from + this.#span; tick += 1) {
+      const at = Math.round(x(tick * step)) + 0.5;
+      context.strokeStyle = colour('line');
+      context.beginPath();
+      context.moveTo(at, 0);
+      context.lineTo(at, height - AXIS_PX);
+      context.stroke();
+      context.fillStyle = colour('quiet');
+      context.fillText(`${(tick * step).toFixed(digits)} s`, at, height - 3);
+    }
+  }
+}
+
+function drawCharacter(
+  context: CanvasRenderingContext2D,
+  { side, byte, isDamaged }: Character,
+  from: number,
+  to: number,
+  top: number,
+  height: number,
+): void {
+  const width = Math.max(to - from - 1, 1);
+  const isControl = byte in NAMES;
+  const plain = colour(side === 'A' ? 'series-1' : 'series-2');
+  context.fillStyle = isDamaged || byte === 0x15 ? colour('bad') : plain;
+  context.globalAlpha = isControl || isDamaged ? 1 : 0.6;
+  context.fillRect(from, top, width, height - 6);
+  context.globalAlpha = 1;
+  const name = NAMES[byte] ?? byte.toString(16).toUpperCase().padStart(2, '0');
+  if (width < context.measureText(name).width + 4) return;
+  context.fillStyle = colour('back');
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillText(name, (from + to) / 2, top + height / 2 - 3);
+}
