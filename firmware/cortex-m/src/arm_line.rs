@@ -1,7 +1,7 @@
 //! A line of a two-link arm from rest to rest, as segments of steps for each joint.
 
 use path_timing::{AxisLimits, Curve, Knot, Path, Table};
-use scara_kin::{Arm, Elbow};
+use scara_kin::{Arm, ArmPath, Elbow};
 use stepper_sync::{
     AxisSegments, Direction, JoinedSegments, MinIntervals, PvtQuantiser, PvtRow, Rate, Segment,
     SegmentPlayer, StepScale,
@@ -14,12 +14,19 @@ pub const MAX_BYTES: usize = 8192;
 /// And how many they are at most.
 const MAX_SEGMENTS: usize = 512;
 
-const ROWS: usize = 100;
-const STEPS_PER_TURN: f64 = 32_000.0;
-const START_MM: [f64; 2] = [60.0, 150.0];
-const END_MM: [f64; 2] = [200.0, -50.0];
+/// Segments of the table.
+pub const ROWS: usize = 100;
+pub const STEPS_PER_TURN: f64 = 32_000.0;
+pub const START_MM: [f64; 2] = [60.0, 150.0];
+pub const END_MM: [f64; 2] = [200.0, -50.0];
+/// Of both joints, in radians.
+pub const JOINT: AxisLimits = AxisLimits {
+    speed: 3.0,
+    acceleration: 30.0,
+    jerk: None,
+};
 /// Two interrupts fit in between: 32 us at 31 million instructions a second.
-const LEAST: MinIntervals = MinIntervals {
+pub const LEAST: MinIntervals = MinIntervals {
     step_ticks: 800,
     reversal_ticks: 800,
 };
@@ -33,27 +40,39 @@ pub enum Planner {
     Board,
 }
 
+/// # Panics
+/// Never, as the next ones: the line is within reach.
+#[must_use]
+pub fn arm() -> Arm {
+    Arm::new(132.0, 132.0).expect("good lengths")
+}
+
+#[must_use]
+pub fn path() -> ArmPath {
+    let line = Curve::line(START_MM, END_MM).expect("has a length");
+    arm().path(line, Elbow::Right).expect("within reach")
+}
+
+/// At rest at the start of the path.
+#[must_use]
+pub fn quantiser(path: &ArmPath) -> PvtQuantiser<2> {
+    let scale = StepScale::new(STEPS_PER_TURN / core::f64::consts::TAU).expect("not zero");
+    let rate = Rate::from_hz(TICK_HZ).expect("not zero");
+    let first = path.place(0.0).expect("within reach").position;
+    PvtQuantiser::new(rate, [scale; 2], first).expect("in range")
+}
+
 /// Plans the line; the segments of shoulder and elbow as bytes, one after the other, go into the
 /// buffers. Says how many bytes.
 ///
 /// # Panics
 /// Never: the line is within reach and slow enough.
 pub fn plan(planner: Planner, wire: &mut [[u8; MAX_BYTES]; 2]) -> [usize; 2] {
-    let arm = Arm::new(132.0, 132.0).expect("good lengths");
-    let line = Curve::line(START_MM, END_MM).expect("has a length");
-    let path = arm.path(line, Elbow::Right).expect("within reach");
-    let joint = AxisLimits {
-        speed: 3.0,
-        acceleration: 30.0,
-        jerk: None,
-    };
+    let path = path();
     let mut knots = [Knot::default(); ROWS + 1];
-    let table = Table::plan([path], [joint; 2], |_| ROWS as u32, &mut knots).expect("good limits");
+    let table = Table::plan([path], [JOINT; 2], |_| ROWS as u32, &mut knots).expect("good limits");
 
-    let scale = StepScale::new(STEPS_PER_TURN / core::f64::consts::TAU).expect("not zero");
-    let rate = Rate::from_hz(TICK_HZ).expect("not zero");
-    let first = path.place(0.0).expect("within reach").position;
-    let mut quantiser = PvtQuantiser::new(rate, [scale; 2], first).expect("in range");
+    let mut quantiser = quantiser(&path);
     let mut steps = match planner {
         Planner::Pc => Quantised::joined(&quantiser),
         Planner::Board => Quantised::by_row(&quantiser),

@@ -71,6 +71,7 @@ impl Clock {
 
 impl StepTimer {
     const LOAD: usize = 0;
+    const VALUE: usize = 1;
     const CONTROL: usize = 2;
     const CLEAR_INTERRUPT: usize = 3;
     const MASKED_INTERRUPT: usize = 5;
@@ -99,6 +100,11 @@ impl StepTimer {
         self.registers.write(Self::NEXT_LOAD, ticks - 1);
     }
 
+    /// Ticks until the next interrupt.
+    pub fn ticks_left(&self) -> u32 {
+        self.registers.read(Self::VALUE)
+    }
+
     #[inline]
     pub fn is_due(&self) -> bool {
         self.registers.read(Self::MASKED_INTERRUPT) != 0
@@ -112,5 +118,52 @@ impl StepTimer {
     #[inline]
     pub fn stop(&self) {
         self.registers.write(Self::CONTROL, 0);
+    }
+}
+
+/// The serial port UART 0.
+#[derive(Debug)]
+pub struct Uart {
+    registers: Registers,
+}
+
+impl Uart {
+    const DATA: usize = 0;
+    const STATE: usize = 1;
+    const CONTROL: usize = 2;
+    const BAUD_DIVIDER: usize = 4;
+    const TRANSMITTER_FULL: u32 = 1;
+    const RECEIVER_FULL: u32 = 2;
+    /// Transmitter and receiver.
+    const ENABLE: u32 = 3;
+    const BAUD: u32 = 115_200;
+
+    /// The port, at work.
+    #[must_use]
+    pub fn start() -> Self {
+        let uart = Self {
+            registers: Registers(0x4000_4000 as *mut u32),
+        };
+        uart.registers
+            .write(Self::BAUD_DIVIDER, CLOCK_HZ / Self::BAUD);
+        uart.registers.write(Self::CONTROL, Self::ENABLE);
+        uart
+    }
+
+    /// A byte that has come in.
+    #[must_use]
+    pub fn read(&self) -> Option<u8> {
+        let is_full = self.registers.read(Self::STATE) & Self::RECEIVER_FULL != 0;
+        is_full.then(|| self.registers.read(Self::DATA) as u8)
+    }
+
+    /// Whether a byte can be written.
+    #[must_use]
+    pub fn has_room(&self) -> bool {
+        self.registers.read(Self::STATE) & Self::TRANSMITTER_FULL == 0
+    }
+
+    pub fn write(&self, byte: u8) {
+        self.registers.write(Self::DATA, byte.into());
     }
 }

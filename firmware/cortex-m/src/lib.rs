@@ -9,6 +9,7 @@ pub mod kinematics_bits;
 pub mod meter;
 pub mod motion_bits;
 pub mod random;
+pub mod stream;
 
 /// Numbers mixed into one, by Fowler, Noll and Vo.
 #[derive(Clone, Copy, Debug)]
