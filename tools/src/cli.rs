@@ -25,6 +25,8 @@ enum Program {
     Station(station::Options),
     Monitor(monitor::Options),
     Simulate(simulate::Options),
+    #[cfg(feature = "gateway")]
+    Gateway(crate::gateway::Options),
 }
 
 /// Runs what the arguments of this process ask for.
@@ -34,6 +36,8 @@ pub fn main() -> ExitCode {
         Program::Station(options) => station::run(&options),
         Program::Monitor(options) => monitor::run(&options),
         Program::Simulate(options) => simulate::run(&options),
+        #[cfg(feature = "gateway")]
+        Program::Gateway(options) => crate::gateway::run(&options),
     };
     ended.unwrap_or_else(|error| {
         eprintln!("error: {error:#}");
@@ -42,7 +46,7 @@ pub fn main() -> ExitCode {
 }
 
 /// Runs a program on this thread.
-fn block_on<T>(program: impl Future<Output = Result<T>>) -> Result<T> {
+pub(crate) fn block_on<T>(program: impl Future<Output = Result<T>>) -> Result<T> {
     let mut runtime = tokio::runtime::Builder::new_current_thread();
     let runtime = runtime.enable_all().build();
     runtime
@@ -51,7 +55,7 @@ fn block_on<T>(program: impl Future<Output = Result<T>>) -> Result<T> {
 }
 
 /// Returns when the program is to end: Ctrl-C, or SIGTERM on Unix.
-async fn interrupted() -> Result<()> {
+pub(crate) async fn interrupted() -> Result<()> {
     #[cfg(unix)]
     {
         use tokio::signal::unix::{SignalKind, signal};

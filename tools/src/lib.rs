@@ -9,6 +9,8 @@ extern crate alloc;
 pub mod capture;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "gateway")]
+mod gateway;
 mod port;
 mod preset;
 pub mod text;

@@ -176,6 +176,37 @@ async fn what_is_not_fetched_makes_the_partner_wait_and_is_not_lost() {
     }
 }
 
+#[tokio::test]
+async fn a_closed_link_hands_back_all_that_it_has_acknowledged() {
+    /// Closed in the middle of a telegram, between two, and with a full queue.
+    const FETCHED_BEFORE: [u8; 4] = [0, 1, 7, 30];
+    for fetched in FETCHED_BEFORE {
+        let (here, there) = duplex(64);
+        let (plc, scale) = (Link::new(here, HIGH), Link::new(there, LOW));
+        let sending = tokio::spawn(async move {
+            let mut acknowledged = 0;
+            while plc.send(&telegram(acknowledged)).await.is_ok() {
+                acknowledged += 1;
+            }
+            acknowledged
+        });
+        let mut received = Vec::new();
+        for _ in 0..fetched {
+            received.push(scale.receive().await.unwrap());
+        }
+        if fetched == 30 {
+            // Until the partner is made to wait.
+            sleep(Duration::from_millis(200)).await;
+        }
+        received.extend(scale.close().await);
+        let acknowledged = sending.await.unwrap();
+        let all: Vec<_> = (0..acknowledged).map(telegram).collect();
+        // The last acknowledgement may have been lost with the stream.
+        assert!(received.starts_with(&all), "{fetched} {acknowledged}");
+        assert!(received.len() <= all.len() + 1, "{fetched} {acknowledged}");
+    }
+}
+
 #[tokio::test(start_paused = true)]
 async fn a_lost_connection_is_told_to_every_call() {
     let (here, there) = duplex(1024);

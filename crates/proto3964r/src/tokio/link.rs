@@ -119,6 +119,18 @@ impl Link {
             None => Err(self.task.lost().await),
         }
     }
+
+    /// Ends the task and closes the stream; hands back the telegrams, in their order, that the
+    /// partner has an acknowledgement for and nobody has fetched.
+    pub async fn close(self) -> Vec<Vec<u8>> {
+        let Self { task, telegrams } = self;
+        drop(task);
+        let (mut telegrams, mut rest) = (telegrams.into_inner(), Vec::new());
+        while let Some(telegram) = telegrams.recv().await {
+            rest.push(telegram);
+        }
+        rest
+    }
 }
 
 /// A telegram to send.
@@ -138,6 +150,7 @@ async fn work<const N: usize>(
     telegrams: mpsc::Sender<Vec<u8>>,
 ) -> io::Result<()> {
     let mut caller = Caller::NONE;
+    let mut is_closing = false;
     loop {
         // While the queue is full a telegram stays in the station, which makes the partner wait.
         let station = driver.station_mut();
@@ -153,14 +166,19 @@ async fn work<const N: usize>(
             }
         }
         let queue_is_full = station.holds_telegram();
+        // Closed, a link still takes what has been acknowledged; dropped, it does not.
+        if is_closing && (!queue_is_full || telegrams.is_closed()) {
+            return Ok(());
+        }
         let is_idle = !driver.is_busy();
         ::tokio::select! {
-            done = driver.round() => if let Err(error) = done {
+            done = driver.round(), if !is_closing => if let Err(error) = done {
                 driver.take_damage(error)?;
             },
-            job = jobs.recv(), if is_idle => {
+            job = jobs.recv(), if is_idle && !is_closing => {
                 let Some(job) = job else {
-                    return Ok(());
+                    is_closing = true;
+                    continue;
                 };
                 let payload = job.payload;
                 caller = job.caller;

@@ -1,0 +1,161 @@
+//! What stands at which place of a telegram.
+
+mod kind;
+
+use core::ops::Range;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+pub(crate) use self::kind::Kind;
+use super::config::Name;
+use crate::text;
+
+/// One value in a telegram: `value = raw * scale`.
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Field {
+    pub(crate) name: Name,
+    /// First byte, from 0.
+    offset: usize,
+    #[serde(rename = "type")]
+    kind: Kind,
+    /// Bytes of `text` and `bcd`.
+    length: Option<usize>,
+    /// Of `bit`, 0 the lowest.
+    bit: Option<u8>,
+    scale: Option<f64>,
+    pub(crate) unit: Option<String>,
+    /// Home Assistant's class of the quantity, `temperature` for instance.
+    pub(crate) device_class: Option<String>,
+}
+
+/// A value with its unit, as JSON shows it.
+#[derive(Serialize)]
+pub(crate) struct Decoded<'f> {
+    value: Value,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'f str>,
+}
+
+/// First bytes of a telegram, as hexadecimal text.
+#[derive(Clone, Default, Deserialize)]
+#[serde(try_from = "String")]
+pub(crate) struct Pattern(pub(crate) Vec<u8>);
+
+impl TryFrom<String> for Pattern {
+    type Error = String;
+
+    fn try_from(hex: String) -> Result<Self, String> {
+        text::bytes(hex.split_whitespace()).map(Self)
+    }
+}
+
+impl Field {
+    /// Whether the settings fit together.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let kind = self.kind;
+        match (kind.has_length(), self.length) {
+            (true, None | Some(0)) => return Err("this type needs a length".to_owned()),
+            (false, Some(_)) => return Err("this type has its own length".to_owned()),
+            (true, Some(length)) if kind == Kind::Bcd && length > Kind::MAX_BCD => {
+                return Err(format!("{length} bytes of BCD, at most {}", Kind::MAX_BCD));
+            }
+            _ => {}
+        }
+        match (kind == Kind::Bit, self.bit) {
+            (true, Some(0..=7)) | (false, None) => {}
+            (true, _) => return Err("this type needs a bit, 0 to 7".to_owned()),
+            (false, Some(_)) => return Err("only type `bit` has a bit".to_owned()),
+        }
+        match self.scale {
+            Some(_) if !kind.is_number() => Err("only numbers have a scale".to_owned()),
+            Some(scale) if !scale.is_normal() => Err(format!("{scale} is no scale")),
+            _ => Ok(()),
+        }
+    }
+
+    /// The bytes that it takes.
+    pub(crate) fn range(&self) -> Range<usize> {
+        let length = self.length.or(self.kind.size()).unwrap_or(0);
+        self.offset..self.offset.saturating_add(length)
+    }
+
+    /// The value in a telegram.
+    ///
+    /// # Errors
+    /// What is wrong with these bytes.
+    pub(crate) fn decode(&self, telegram: &[u8]) -> Result<Decoded<'_>, String> {
+        let range = self.range();
+        let Some(bytes) = telegram.get(range.clone()) else {
+            let len = telegram.len();
+            return Err(format!(
+                "bytes {} to {} of {len}",
+                range.start,
+                range.end - 1
+            ));
+        };
+        let value = match self.kind {
+            Kind::Text => Value::from(String::from_utf8_lossy(bytes).trim_end()),
+            Kind::Bit => {
+                let byte = bytes.first().copied().unwrap_or(0);
+                Value::from(byte >> self.bit.unwrap_or(0) & 1 == 1)
+            }
+            kind => self.scaled(kind.number(bytes)?),
+        };
+        Ok(Decoded {
+            value,
+            unit: self.unit.as_deref(),
+        })
+    }
+
+    /// Whole numbers stay whole, without a scale.
+    fn scaled(&self, raw: kind::Number) -> Value {
+        match (raw, self.scale) {
+            (kind::Number::Signed(raw), None) => Value::from(raw),
+            (kind::Number::Unsigned(raw), None) => Value::from(raw),
+            (kind::Number::Float(raw), None) => Value::from(raw),
+            (raw, Some(scale)) => Value::from(rounded(raw.to_f64() * scale)),
+        }
+    }
+
+    /// The bytes that a value takes: `raw = value / scale`, rounded to the nearest.
+    ///
+    /// # Errors
+    /// A value of another type, or that does not fit.
+    pub(crate) fn encode(&self, value: &Value) -> Result<Vec<u8>, String> {
+        let length = self.range().len();
+        if self.kind == Kind::Text {
+            let text = value
+                .as_str()
+                .ok_or_else(|| format!("{value} is no text"))?;
+            let mut bytes = text.as_bytes().to_vec();
+            if bytes.len() > length {
+                return Err(format!("{value} is longer than {length} bytes"));
+            }
+            bytes.resize(length, b' ');
+            return Ok(bytes);
+        }
+        let bytes = match (self.scale, value) {
+            (_, Value::Number(number)) if self.kind == Kind::Bit => {
+                return Err(format!("{number}: a single bit cannot be written"));
+            }
+            (None, Value::Number(number)) => match number.as_i128() {
+                Some(whole) => self.kind.bytes_of_whole(whole, length),
+                None => number
+                    .as_f64()
+                    .and_then(|raw| self.kind.bytes_of(raw, length)),
+            },
+            (Some(scale), Value::Number(number)) => number
+                .as_f64()
+                .and_then(|value| self.kind.bytes_of(value / scale, length)),
+            _ => return Err(format!("{value} is no number")),
+        };
+        bytes.ok_or_else(|| format!("{value} does not fit"))
+    }
+}
+
+/// To twelve digits: 3 * 0.1 is 0.3.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}

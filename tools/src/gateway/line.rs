@@ -1,0 +1,105 @@
+//! One line: opened, served, and opened again.
+
+mod rk512;
+mod telegrams;
+
+use alloc::sync::Arc;
+use core::{sync::atomic::Ordering, time::Duration};
+
+use log::{info, warn};
+use tokio::sync::mpsc;
+use tokio_util::sync::CancellationToken;
+
+use super::{
+    config::{self, Procedure},
+    hub::Hub,
+    job::Job,
+};
+
+/// From one attempt to open the port to the next: doubled with each, between these.
+const PAUSE: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(10));
+
+/// A line in its task.
+pub(crate) struct Line {
+    pub(super) name: String,
+    pub(super) config: config::Line,
+    pub(super) hub: Arc<Hub>,
+    pub(super) jobs: mpsc::Receiver<Job>,
+    /// Telegrams and areas told so far.
+    pub(super) seq: u64,
+}
+
+impl Line {
+    pub(crate) fn new(config: config::Line, hub: Arc<Hub>, jobs: mpsc::Receiver<Job>) -> Self {
+        Self {
+            name: config.name.get_ref().to_string(),
+            config,
+            hub,
+            jobs,
+            seq: 0,
+        }
+    }
+
+    /// Works until the gateway stops.
+    pub(crate) async fn run(mut self) {
+        let stop = self.hub.stop.clone();
+        let mut pause = PAUSE.0;
+        while !stop.is_cancelled() {
+            let opened = tokio::select! {
+                opened = self.config.port.open() => opened,
+                () = refuse_jobs(&mut self.jobs, &self.hub, &self.name) => return,
+                () = stop.cancelled() => break,
+            };
+            let error = match opened {
+                Ok(stream) => {
+                    info!("{}: {} is open", self.name, self.config.port);
+                    if let Some(counts) = self.hub.counts(&self.name) {
+                        counts.opened.fetch_add(1, Ordering::Relaxed);
+                    }
+                    self.hub.online(&self.name, true);
+                    pause = PAUSE.0;
+                    match self.config.procedure {
+                        Procedure::Telegrams => self.exchange_telegrams(stream, &stop).await,
+                        Procedure::Rk512 => self.exchange_areas(stream, &stop).await,
+                    }
+                }
+                Err(error) => error.to_string(),
+            };
+            self.hub.online(&self.name, false);
+            if stop.is_cancelled() {
+                break;
+            }
+            warn!(
+                "{}: {}: {error}; next attempt in {pause:?}",
+                self.name, self.config.port
+            );
+            self.rest(pause, &stop).await;
+            pause = (2 * pause).min(PAUSE.1);
+        }
+        self.hub.online(&self.name, false);
+        self.jobs.close();
+        while let Some(job) = self.jobs.recv().await {
+            let error = "the gateway is stopping".to_owned();
+            self.hub
+                .outcome(&self.name, job.id.as_ref(), Err(error))
+                .await;
+        }
+    }
+
+    /// Waits, and refuses what comes meanwhile.
+    async fn rest(&mut self, pause: Duration, stop: &CancellationToken) {
+        tokio::select! {
+            () = tokio::time::sleep(pause) => {}
+            () = refuse_jobs(&mut self.jobs, &self.hub, &self.name) => {}
+            () = stop.cancelled() => {}
+        }
+    }
+}
+
+/// Jobs of a line whose port is not open. Never returns as long as there is a hub.
+async fn refuse_jobs(jobs: &mut mpsc::Receiver<Job>, hub: &Hub, line: &str) {
+    while let Some(job) = jobs.recv().await {
+        let error = "the port is not open".to_owned();
+        hub.outcome(line, job.id.as_ref(), Err(error)).await;
+    }
+}

@@ -1,0 +1,114 @@
+//! The gateway as a process.
+
+use alloc::sync::Arc;
+use core::time::Duration;
+use std::{
+    fs,
+    io::{BufRead as _, BufReader, Read as _, Write as _},
+    net::TcpStream,
+    process::{Child, Command, ExitStatus, Stdio},
+    sync::Mutex,
+    thread,
+    time::Instant,
+};
+
+use tempfile::TempDir;
+
+use super::broker::{PASSWORD, USER, terminate};
+
+/// Far above what anything here takes on a busy computer.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A running gateway.
+pub(crate) struct Gateway {
+    process: Child,
+    log: Arc<Mutex<String>>,
+    _folder: TempDir,
+}
+
+/// The settings of a broker without TLS.
+pub(crate) fn mqtt(port: u16) -> String {
+    format!(
+        "[mqtt]\nbroker = \"mqtt://127.0.0.1:{port}\"\nuser = \"{USER}\"\npassword = \"{PASSWORD}\"\n"
+    )
+}
+
+/// A line whose partner is at this port of TCP.
+pub(crate) fn line(name: &str, port: u16) -> String {
+    format!(
+        "[[line]]\nname = \"{name}\"\nport = \"tcp://127.0.0.1:{port}?line=instant\"\n\
+         priority = \"low\"\nqvz_ms = 500\n"
+    )
+}
+
+impl Gateway {
+    pub(crate) fn start(config: &str) -> Self {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("gateway.toml");
+        fs::write(&path, config).unwrap();
+        let mut process = Command::new(env!("CARGO_BIN_EXE_line3964r"))
+            .arg("gateway")
+            .arg(path)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let log = Arc::new(Mutex::new(String::new()));
+        let (lines, kept) = (process.stderr.take().unwrap(), Arc::clone(&log));
+        thread::spawn(move || {
+            for line in BufReader::new(lines).lines().map_while(Result::ok) {
+                let mut log = kept.lock().unwrap();
+                log.push_str(&line);
+                log.push('\n');
+            }
+        });
+        Self {
+            process,
+            log,
+            _folder: folder,
+        }
+    }
+
+    pub(crate) fn log(&self) -> String {
+        self.log.lock().unwrap().clone()
+    }
+
+    /// Waits until the log contains this.
+    pub(crate) fn logs(&self, text: &str) {
+        let begin = Instant::now();
+        while !self.log().contains(text) {
+            assert!(begin.elapsed() < PATIENCE, "no `{text}` in\n{}", self.log());
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// SIGTERM, and the end that comes of it.
+    pub(crate) fn stop(mut self) -> (ExitStatus, String) {
+        terminate(&self.process);
+        let status = self.process.wait().unwrap();
+        thread::sleep(Duration::from_millis(50)); // the last lines of the log
+        (status, self.log())
+    }
+}
+
+impl Drop for Gateway {
+    fn drop(&mut self) {
+        drop(self.process.kill());
+        drop(self.process.wait());
+    }
+}
+
+/// The value of a metric.
+pub(crate) fn metric(port: u16, name: &str) -> u64 {
+    let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+    write!(stream, "GET /metrics HTTP/1.1\r\nHost: gateway\r\n\r\n").unwrap();
+    let mut text = String::new();
+    stream.read_to_string(&mut text).unwrap();
+    assert!(text.starts_with("HTTP/1.1 200 OK"), "{text}");
+    let value = text
+        .lines()
+        .find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+    value
+        .unwrap_or_else(|| panic!("no {name} in\n{text}"))
+        .parse()
+        .unwrap()
+}

@@ -1,0 +1,25 @@
+//! `gateway` from outside: lines of simulated partners, a broker (mosquitto), its clients.
+#![cfg(test)]
+#![cfg(unix)]
+
+extern crate alloc;
+
+mod basics;
+mod broker;
+mod gateway;
+mod load;
+mod partner;
+mod refused;
+mod subscriber;
+
+/// The broker, or an end of the test that is seen: it must not be missed where
+/// `POSE2PULSE_REQUIRE_MOSQUITTO` is set.
+macro_rules! broker_or_skip {
+    () => {
+        match crate::broker::Broker::start() {
+            Some(broker) => broker,
+            None => return,
+        }
+    };
+}
+pub(crate) use broker_or_skip;
