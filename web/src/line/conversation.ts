@@ -65,6 +65,11 @@ export class Conversation {
     return this.#times[0] ?? 0;
   }
 
+  /** When the last character came. */
+  get endS(): number {
+    return this.#times.at(-1) ?? 0;
+  }
+
   /** When a side first asked to send. */
   get requestS(): number {
     const request = this.steps.find((it) => it.kind === 'neutral') ?? this.steps[0];

@@ -66,7 +66,8 @@ export class Wire {
 
   #window(from: number, span: number): void {
     this.#span = span;
-    this.#from = this.#follows ? (this.#conversation?.nowS ?? 0) - span : from;
+    // The last character, not the silence after it.
+    this.#from = this.#follows ? (this.#conversation?.endS ?? 0) + span / 20 - span : from;
     const digits = span < 0.1 ? 4 : 2;
     const [low, high] = [this.#from, this.#from + span].map((it) =>
       Math.max(it, 0).toFixed(digits),

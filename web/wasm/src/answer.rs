@@ -29,8 +29,8 @@ impl Answer {
         feature = "dance",
         feature = "delta",
         feature = "engrave",
-        feature = "stage",
-        feature = "line"
+        feature = "line",
+        feature = "stage"
     ))]
     pub(crate) fn with_numbers<const N: usize>(
         self,
