@@ -91,7 +91,10 @@ fn exchange(config: Config, arguments: &[&str]) {
     let (mut sent, mut received) = (0, Vec::new());
     let begin = Clock::now();
     while sent < COUNT || received.len() < COUNT {
-        if sent < COUNT && !line.is_busy() {
+        // Before the peer has started, repeated STX would wait for it, and plain 3964 takes the
+        // second one for data.
+        let has_started = !received.is_empty();
+        if has_started && sent < COUNT && !line.is_busy() {
             line.submit(&telegram(0x00, sent)).unwrap();
         }
         match line.wait(Duration::from_secs(1)).unwrap() {
