@@ -66,10 +66,11 @@ pub struct Run<'a, L: Legs> {
     /// From the row handed out last on.
     ahead: &'a [Ahead],
     limits: Reciprocals<L::Axes>,
-    /// With a limit of jerk: the feed that the table can be run at from end to end, the motion up
-    /// to the row handed out last, and the change of the feed that goes on there.
+    /// With a limit of jerk: the feed that the table can be run at from end to end, the rows at both
+    /// ends of the segment up to the row handed out last, none of them where the machine rests, and
+    /// the change of the feed that goes on there.
     full: f64,
-    demand: Demand<L::Axes>,
+    segment: [Option<Row<L::Axes>>; 2],
     warp: Option<Warp>,
     max: f64,
     wanted: f64,
@@ -114,7 +115,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
             ahead,
             limits: self.limits,
             full,
-            demand: Demand::at_rest(),
+            segment: [None; 2],
             warp: None,
             max,
             wanted: max.min(1.0),
@@ -192,7 +193,6 @@ impl<L: Legs> Run<'_, L> {
             return Ok(None);
         };
         let after_next = self.nodes.next()?;
-        let feed_before = self.feed;
         self.time_s += duration_s;
         self.feed = feed;
         (self.here, self.next, self.after_next) = (self.next, self.after_next, after_next);
@@ -201,8 +201,8 @@ impl<L: Legs> Run<'_, L> {
         let row = Row::new(&to.place, feed, self.time_s, duration_s);
         self.jump = to.jump.map(|velocity| row.with_jump(velocity.scaled(feed)));
         if self.limits.has_jerk() {
-            let start = Row::new(&from.place, feed_before, 0.0, 0.0);
-            self.demand.add(&self.limits, &start, &row);
+            let [_, before] = self.segment;
+            self.segment = [before, Some(row)];
         }
         Ok(Some(row))
     }
@@ -218,12 +218,16 @@ impl<L: Legs> Run<'_, L> {
             (self.feed, self.warp) = (wanted, None);
         }
         if is_rest(&from.place) || self.feed <= 0.0 {
-            self.demand = Demand::at_rest();
+            self.segment = [None, Some(Row::new(&from.place, 0.0, 0.0, 0.0))];
         }
         if self.warp.map_or(self.feed, |warp| warp.to) != wanted {
+            let mut demand = Demand::at_rest();
+            if let [Some(from), Some(to)] = &self.segment {
+                demand.add(&self.limits, from, to);
+            }
             let start = Start {
                 limits: &self.limits,
-                demand: &self.demand,
+                demand: &demand,
                 feed: self.feed,
                 fetched: [self.here, self.next, self.after_next],
                 nodes: &self.nodes,
