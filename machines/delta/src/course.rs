@@ -3,7 +3,7 @@
 use anyhow::Result;
 use nalgebra::Vector3;
 
-use crate::simulation::Run;
+use crate::simulation::Drive;
 
 const GRAVITY_M_S2: f64 = 9.81;
 const MM_PER_M: f64 = 1000.0;
@@ -34,10 +34,10 @@ pub struct ArmsAt {
 /// torque = -Jᵀ F,  F = -m (g + acceleration of the platform)
 /// ```
 /// of angles and platform at the ends of windows of length w.
-pub(crate) fn arms(run: &Run<'_>, load_kg: f64) -> Result<Vec<ArmsAt>> {
-    let machine = run.machine;
-    let window_s = run.positions.window_s();
-    let points: Vec<_> = run.positions.points().collect();
+pub(crate) fn arms(drive: &Drive<'_>, load_kg: f64) -> Result<Vec<ArmsAt>> {
+    let machine = drive.machine;
+    let window_s = drive.positions.window_s();
+    let points: Vec<_> = drive.positions.points().collect();
     let angles = |at: usize| {
         let (_, steps) = points
             .get(at)

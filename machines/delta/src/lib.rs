@@ -53,7 +53,7 @@ pub use self::motion::Motion;
 pub use self::record::Record;
 pub use self::report::Report;
 pub use self::session::{Session, StepObserver};
-pub use self::simulation::{Run, simulate};
+pub use self::simulation::{Drive, Run, drive, simulate};
 pub use self::step_log::StepLog;
 
 /// The machine of the source, in TOML.

@@ -1,5 +1,6 @@
 //! What came of the lines of an input.
 
+use anyhow::{Result, bail};
 use machine_sim::input::Notes;
 use nalgebra::Point3;
 use serde::Serialize;
@@ -54,8 +55,34 @@ impl Record {
         self.notes.lines()
     }
 
+    /// The numbers of the lines that were refused.
+    pub fn refused_lines(&self) -> impl Iterator<Item = usize> {
+        self.refusals.iter().map(|refusal| refusal.line)
+    }
+
+    /// Whether all lines were done.
+    ///
+    /// # Errors
+    /// Lines were refused: how many, and the first.
+    pub fn check(&self) -> Result<()> {
+        check(&self.refusals, self.moves.len())
+    }
+
     /// The time of the last move's end.
     pub(crate) fn duration_ticks(&self) -> u64 {
         self.moves.last().map_or(0, |last| last.end_ticks)
     }
+}
+
+/// Refuses what was not done of an input.
+pub(crate) fn check(refusals: &[Refusal], moves: usize) -> Result<()> {
+    let Some(first) = refusals.first() else {
+        return Ok(());
+    };
+    let (refused, all) = (refusals.len(), refusals.len() + moves);
+    bail!(
+        "{refused} of {all} lines refused, the first: line {}: {}",
+        first.line,
+        first.reason
+    )
 }

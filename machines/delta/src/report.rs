@@ -2,12 +2,12 @@
 
 use core::fmt;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use machine_sim::Followed;
 use serde::Serialize;
 
 use crate::motion::Motion;
-use crate::record::Refusal;
+use crate::record::{Refusal, check};
 use crate::simulation::{Driven, Run};
 
 /// `report.json`; displayed, a summary in lines.
@@ -98,15 +98,7 @@ impl Report {
     /// # Errors
     /// Lines were refused: how many, and the first.
     pub fn check(&self) -> Result<()> {
-        let Some(first) = self.refusals.first() else {
-            return Ok(());
-        };
-        let (refused, all) = (self.refused, self.refused + self.moves);
-        bail!(
-            "{refused} of {all} lines refused, the first: line {}: {}",
-            first.line,
-            first.reason
-        )
+        check(&self.refusals, self.moves)
     }
 }
 

@@ -25,6 +25,18 @@ const TRAINS_STEPS: f64 = 1.0;
 /// Between two points of a picture's path, in mm.
 const SPACING_MM: f64 = 0.5;
 
+/// What the simulated machine did, driven by the steps.
+#[derive(Debug, Clone)]
+pub struct Drive<'a> {
+    pub(crate) machine: &'a Machine,
+    pub(crate) record: &'a Record,
+    pub(crate) driven: Driven,
+    /// Of the platform, in mm.
+    pub(crate) motion: MotionSampler<3>,
+    /// Of the motors, in steps from home.
+    pub(crate) positions: MotionSampler<3>,
+}
+
 /// What the simulated machine did, driven by the steps, and for comparison by trains at the feed and
 /// by the thesis' control tick.
 #[derive(Debug, Clone)]
@@ -34,10 +46,7 @@ pub struct Run<'a> {
     pub(crate) driven: Driven,
     pub(crate) trains: Driven,
     pub(crate) ticked: Driven,
-    /// Of the platform, in mm.
     pub(crate) motion: MotionSampler<3>,
-    /// Of the motors, in steps from home.
-    pub(crate) positions: MotionSampler<3>,
 }
 
 /// What the simulated machine did in one of these ways.
@@ -61,6 +70,16 @@ impl Run<'_> {
         Report::new(self)
     }
 
+    /// Workspace, mechanism and paths, and the platform's speed and acceleration, as an SVG figure.
+    ///
+    /// # Errors
+    /// The machine has no workspace around its path.
+    pub fn picture(&self) -> Result<Figure> {
+        picture::picture(self)
+    }
+}
+
+impl<'a> Drive<'a> {
     /// What the arms do over time, with a load on the platform in kg.
     ///
     /// # Errors
@@ -83,16 +102,37 @@ impl Run<'_> {
         })
     }
 
-    /// Workspace, mechanism and paths, and the platform's speed and acceleration, as an SVG figure.
+    /// How long the steps take, in s.
+    #[must_use]
+    pub const fn duration_s(&self) -> f64 {
+        self.driven.duration_s
+    }
+
+    /// Farthest that the platform was from the lines asked for, in mm.
+    #[must_use]
+    pub const fn max_path_error_mm(&self) -> f64 {
+        self.driven.max_path_error_mm
+    }
+
+    /// Drives the same lines in the other ways too, which takes several times as long.
     ///
     /// # Errors
-    /// The machine has no workspace around its path.
-    pub fn picture(&self) -> Result<Figure> {
-        picture::picture(self)
+    /// No platform is where their steps lead.
+    pub fn compared(self) -> Result<Run<'a>> {
+        let (machine, moves) = (self.machine, &self.record.moves);
+        Ok(Run {
+            machine,
+            record: self.record,
+            driven: self.driven,
+            trains: by_trains(machine, moves)?,
+            ticked: by_ticks(machine, moves)?,
+            motion: self.motion,
+        })
     }
 }
 
-/// Moves a simulated machine by the steps of a [`StepLog`](crate::StepLog).
+/// Moves a simulated machine by the steps of a [`StepLog`](crate::StepLog), and for comparison in the
+/// other ways.
 ///
 /// # Errors
 /// The table cannot be read, or no platform is where its steps lead.
@@ -101,6 +141,18 @@ pub fn simulate<'a>(
     record: &'a Record,
     steps: impl BufRead,
 ) -> Result<Run<'a>> {
+    drive(machine, record, steps)?.compared()
+}
+
+/// Moves a simulated machine by the steps of a [`StepLog`](crate::StepLog).
+///
+/// # Errors
+/// The table cannot be read, or no platform is where its steps lead.
+pub fn drive<'a>(
+    machine: &'a Machine,
+    record: &'a Record,
+    steps: impl BufRead,
+) -> Result<Drive<'a>> {
     let duration_s = seconds(record.duration_ticks());
     let mut motion = MotionSampler::new(machine.point([0; 3])?.into());
     let mut positions = MotionSampler::new([0.0; 3]);
@@ -116,12 +168,10 @@ pub fn simulate<'a>(
         Motion::Rounded => CUBIC_STEPS,
         Motion::Trains => TRAINS_STEPS,
     };
-    Ok(Run {
+    Ok(Drive {
         machine,
         record,
         driven: follower.finish(duration_s, deviation_steps)?,
-        trains: by_trains(machine, &record.moves)?,
-        ticked: by_ticks(machine, &record.moves)?,
         motion,
         positions,
     })

@@ -5,6 +5,8 @@ import type { Moment } from './aligned';
 
 /** Of the posts that are drawn under the locators. */
 const POST_MM = 700;
+/** Around the body, for its moves. */
+const MARGIN = 1.1;
 
 export class Scene {
   readonly space: Space;
@@ -60,14 +62,16 @@ export class Scene {
   }
 }
 
+/** All that is drawn, from every side. */
 function ball({ outline, locators }: Moment): Ball {
   const points = [...outline, ...locators];
-  const range = [0, 1, 2].map((axis) => {
-    const all = points.map((it) => it[axis] ?? 0);
-    return [Math.min(...all), Math.max(...all)] as const;
-  });
-  const [x = 0, y = 0, z = 0] = range.map(([low, high]) => (low + high) / 2);
-  const spans = range.map(([low, high]) => high - low);
-  const span = Math.max(...spans, 1);
-  return { centre: [x, y, z - POST_MM / 3], radius: 0.58 * span, halfHeight: 0.45 * span };
+  const range = (axis: 0 | 1 | 2) => {
+    const all = points.map((it) => it[axis]);
+    const [low, high] = [Math.min(...all), Math.max(...all)];
+    return { middle: (low + high) / 2, half: (high - low) / 2 };
+  };
+  const [x, y, z] = [range(0), range(1), range(2)];
+  const radius = MARGIN * Math.max(Math.hypot(x.half, y.half, z.half), 1);
+  const halfHeight = MARGIN * Math.max(y.half, z.half, 1);
+  return { centre: [x.middle, y.middle, z.middle - POST_MM / 3], radius, halfHeight };
 }

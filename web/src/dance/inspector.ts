@@ -31,14 +31,14 @@ export class Inspector {
     if (!move) return;
     const names = score.motor.map((it) => create('option', { textContent: it.name }));
     this.#motor.replaceChildren(...names);
-    this.#motor.value = move.motor;
-    this.#action.value = actionOf(move);
-    this.#value.value = String(move[actionOf(move)] ?? 0);
-    this.#easing.value = move.easing ?? 'linear';
-    this.#at.value = String(move.at_s);
-    this.#for.value = String(move.for_s);
-    this.#repeat.value = String(move.repeat ?? 1);
-    this.#every.value = String(move.every_s ?? '');
+    fill(this.#motor, move.motor);
+    fill(this.#action, actionOf(move));
+    fill(this.#value, move[actionOf(move)] ?? 0);
+    fill(this.#easing, move.easing ?? 'linear');
+    fill(this.#at, move.at_s);
+    fill(this.#for, move.for_s);
+    fill(this.#repeat, move.repeat ?? 1);
+    fill(this.#every, move.every_s ?? '');
   }
 
   /** As the fields have it; what it may be, the score's reader says. */
@@ -57,5 +57,12 @@ export class Inspector {
       move.every_s = this.#every.value === '' ? move.for_s : Number(this.#every.value);
     }
     return move;
+  }
+}
+
+/** What is being typed stays when a result comes in between. */
+function fill(field: HTMLInputElement | HTMLSelectElement, value: string | number): void {
+  if (field instanceof HTMLSelectElement || document.activeElement !== field) {
+    field.value = String(value);
   }
 }

@@ -6,22 +6,18 @@ import type { Point3 } from '../shared/space';
 export const ARMS = [0, 1, 2] as const;
 export type Arm = (typeof ARMS)[number];
 
-/** The JSON of the operation; the report is that of the command line. */
+/** The JSON of the operation. */
 export interface Result {
-  summary: string;
   answers: string[];
   /** Which lines were refused, in a sentence. */
   refused: string | null;
+  refusedLines: number[];
+  notes: string[];
+  durationS: number;
+  maxPathErrorMm: number;
   arms: [Geometry, Geometry, Geometry];
   maxRateDegS: number;
   maxAccelerationDegS2: number;
-  report: {
-    moves: number;
-    refusals: { line: number }[];
-    notes: string[];
-    duration_s: number;
-    max_path_error_mm: number;
-  };
 }
 
 /** Of an arm. */

@@ -47,7 +47,7 @@ export class Scene {
 
   show(driving: Driving): void {
     this.#driving = driving;
-    this.#bad = new Set(driving.result.report.refusals.map((it) => it.line));
+    this.#bad = new Set(driving.result.refusedLines);
     this.space.redraw();
   }
 

@@ -110,7 +110,8 @@ function show(engraving: Engraving): void {
     ? `Engraved in ${duration_s.toFixed(0)} s of the machine's time, within ${bound_mm.toFixed(3)} mm`
     : 'The tool left the drawing by more than the bound';
   status.say([verdict, ...notes].join('\n'), !isWithinBound);
-  element('summary', HTMLElement).textContent = summary;
+  // Columns are as wide as a terminal; here they would be broken.
+  element('summary', HTMLElement).textContent = summary.replace(/ {3,}/g, '  ');
   files.allow(true);
   scene.show(engraving);
   lanes.show(engraving);

@@ -66,6 +66,7 @@ export class Chart {
             label: line.label,
             stroke: colour(line.colour),
             width: 1.5,
+            points: { show: false },
             ...(line.dash ? { dash: line.dash } : {}),
             value: (_: uPlot, it: number | null) => (it === null ? '' : it.toPrecision(4)),
           })),

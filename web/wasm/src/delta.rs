@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use anyhow::{Context, Result, bail};
-use delta::{ArmsAt, Machine, Record, Report, Run, Session, StepLog, simulate};
+use delta::{ArmsAt, Machine, Record, Report, Session, StepLog, drive, simulate};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -38,7 +38,8 @@ struct Driven {
     machine: Machine,
     record: Record,
     steps: Vec<u8>,
-    report: Option<Report>,
+    /// The report, and the picture as text, when they have been asked for.
+    compared: Option<(Report, String)>,
 }
 
 thread_local!(static LAST: RefCell<Option<Driven>> = const { RefCell::new(None) });
@@ -57,50 +58,57 @@ pub(crate) fn delta(request: &Request) -> Result<Answer> {
     answers.extend(session.handle_end()?);
     let record = session.finish()?;
     let steps = log.finish()?;
-    let mut driven = Driven {
+    let driven = Driven {
         machine,
         record,
         steps,
-        report: None,
+        compared: None,
     };
-    let (answer, report) = driven.answer(&answers, parameters.load_kg)?;
-    driven.report = Some(report);
+    let answer = driven.answer(&answers, parameters.load_kg)?;
     LAST.set(Some(driven));
     Ok(answer)
 }
 
 impl Driven {
-    fn run(&self) -> Result<Run<'_>> {
-        simulate(&self.machine, &self.record, &*self.steps)
-    }
-
-    fn answer(&self, answers: &[String], load_kg: f64) -> Result<(Answer, Report)> {
-        let run = self.run()?;
-        let report = run.report();
-        let geometry = self.machine.geometry();
-        let arms = geometry.arms().iter().map(|arm| {
+    fn answer(&self, answers: &[String], load_kg: f64) -> Result<Answer> {
+        let (machine, record) = (&self.machine, &self.record);
+        let drive = drive(machine, record, &*self.steps)?;
+        let arms = machine.geometry().arms().iter().map(|arm| {
             json!({ "azimuthRad": arm.azimuth, "baseMm": arm.base, "platformMm": arm.platform })
         });
-        let [max_rate, max_acceleration] = self.machine.max_rate_and_acceleration();
+        let [max_rate, max_acceleration] = machine.max_rate_and_acceleration();
         let value = json!({
-            "summary": report.to_string(),
-            "report": report,
             "answers": answers,
-            "refused": report.check().err().map(|it| it.to_string()),
+            "refused": record.check().err().map(|it| it.to_string()),
+            "refusedLines": record.refused_lines().collect::<Vec<_>>(),
+            "notes": record.notes(),
+            "durationS": drive.duration_s(),
+            "maxPathErrorMm": drive.max_path_error_mm(),
             "arms": arms.collect::<Vec<_>>(),
             "maxRateDegS": max_rate,
             "maxAccelerationDegS2": max_acceleration,
         });
-        let course = run.arms(load_kg)?;
-        let lines = run
+        let course = drive.arms(load_kg)?;
+        let lines = drive
             .lines()
             .map(|([[a, b, c], [x, y, z]], feed, end_s)| [a, b, c, x, y, z, feed, end_s]);
-        let answer = Answer::new(value)?
+        Ok(Answer::new(value)?
             .with_rows("arms", course.iter().map(row))
             .with_rows("lines", lines)
-            .with_rows("speeds", run.speeds())
-            .with_rows("workspace", self.workspace(&course));
-        Ok((answer, report))
+            .with_rows("speeds", drive.speeds())
+            .with_rows("workspace", self.workspace(&course)))
+    }
+
+    /// Report and picture: the lines are driven in the other ways too.
+    fn compared(&mut self) -> Result<&(Report, String)> {
+        let compared = match self.compared.take() {
+            Some(compared) => compared,
+            None => {
+                let run = simulate(&self.machine, &self.record, &*self.steps)?;
+                (run.report(), run.picture()?.to_string())
+            }
+        };
+        Ok(self.compared.insert(compared))
     }
 
     /// Outlines around the heights of a path; no number after each. Those that there are not are
@@ -161,16 +169,22 @@ pub(crate) fn calibrate(request: &Request) -> Result<Answer> {
     }))
 }
 
+fn with_last<T>(take: impl FnOnce(&mut Driven) -> Result<T>) -> Result<T> {
+    LAST.with_borrow_mut(|last| take(last.as_mut().context("nothing has been driven yet")?))
+}
+
+/// The summary of what was driven last, with what the other ways make of the lines.
+pub(crate) fn report() -> Result<Answer> {
+    with_last(|last| Answer::new(last.compared()?.0.to_string()))
+}
+
 /// A file of what was driven last, by its name.
 pub(crate) fn file(request: &Request) -> Result<Answer> {
     let name: String = request.parameters()?;
-    LAST.with_borrow(|last| {
-        let last = last.as_ref().context("nothing has been driven yet")?;
-        match &*name {
-            "steps.csv" => answer::file(&*last.steps),
-            "delta.svg" => answer::file(last.run()?.picture()?.to_string()),
-            "report.json" => answer::json_file(&last.report),
-            _ => bail!("there is no file {name:?}"),
-        }
+    with_last(|last| match &*name {
+        "steps.csv" => answer::file(&*last.steps),
+        "delta.svg" => answer::file(&*last.compared()?.1),
+        "report.json" => answer::json_file(&last.compared()?.0),
+        _ => bail!("there is no file {name:?}"),
     })
 }

@@ -46,6 +46,8 @@ fn perform(request: &Request) -> Result<Answer> {
         #[cfg(feature = "delta")]
         "delta.calibrate" => delta::calibrate(request),
         #[cfg(feature = "delta")]
+        "delta.report" => delta::report(),
+        #[cfg(feature = "delta")]
         "delta.file" => delta::file(request),
         #[cfg(feature = "align")]
         "align" => align::align(request),
