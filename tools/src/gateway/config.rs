@@ -363,3 +363,6 @@ const fn half_a_minute_s() -> NonZeroU16 {
 const fn sixteen() -> NonZeroU16 {
     const { NonZeroU16::new(16).unwrap() }
 }
+
+#[cfg(test)]
+mod tests;

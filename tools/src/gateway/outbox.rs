@@ -170,3 +170,6 @@ impl Outbox {
         self.dropped.load(Ordering::Relaxed)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,89 @@
+use std::fs;
+
+use super::Config;
+
+const HEAD: &str = "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:0\"\n";
+const LINE: &str = "[[line]]\nname = \"a\"\nport = \"tcp://h:1\"\npriority = \"low\"\n";
+
+fn error(text: &str) -> String {
+    match Config::parse(text) {
+        Ok(_) => panic!("{text}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn the_page_on_the_gateway_has_a_configuration_that_holds() {
+    // The published package is without it.
+    let Ok(page) = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gateway.md"))
+    else {
+        eprintln!("skipped: there is no docs/gateway.md");
+        return;
+    };
+    let text = page
+        .split("```toml\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let config = Config::parse(text).unwrap();
+    assert_eq!(config.lines.len(), 2);
+}
+
+#[test]
+fn errors_name_line_and_column() {
+    for (rest, message) in [
+        (
+            "[[line]]\nport = \"COM3\"",
+            "line 4, column 1: missing field `name`",
+        ),
+        (
+            "x = 1",
+            "line 4, column 1: unknown field `x`, expected `listen`",
+        ),
+        (
+            &LINE.replace("\"a\"", "\"a b\""),
+            "line 5, column 8: `a b` is not 1 to 64 of A-Z a-z 0-9 _ -",
+        ),
+        (
+            &LINE.replace("h:1", "h"),
+            "line 6, column 8: `tcp://h`: `h` is not HOST:PORT",
+        ),
+        (&LINE.repeat(2), "line 9, column 8: a second line `a`"),
+        (
+            &format!("{LINE}[[line.area]]\nname = \"x\"\nstart = \"DB 1.0\"\nlength = 1"),
+            "line 8, column 1: areas are for procedure = \"rk512\"",
+        ),
+        (
+            &format!(
+                "{LINE}[[line.telegram]]\nname = \"x\"\nfield = [{{ name = \"y\", offset = 0, type = \"text\" }}]"
+            ),
+            "line 10, column 10: field `y`: this type needs a length",
+        ),
+        (
+            &format!(
+                "{LINE}procedure = \"rk512\"\n[[line.area]]\nname = \"x\"\nstart = \"DB 1\"\nlength = 1"
+            ),
+            "line 11, column 9: `DB 1` is none of `DB N.WORD`, `DX N.WORD`, `inputs BYTE`, \
+             `outputs BYTE`, `flags BYTE`, `timers N`, `counters N`",
+        ),
+    ] {
+        assert_eq!(error(&format!("{HEAD}{rest}\n")), message);
+    }
+    let mqtt = |rest| format!("name = \"hall\"\n[mqtt]\nbroker = \"mqtt://h\"\n{rest}\n{LINE}");
+    for (rest, message) in [
+        ("password = \"x\"", "mqtt: a password without a user"),
+        (
+            "key_file = \"x\"",
+            "mqtt: certificate_file and key_file go together",
+        ),
+        ("ca_file = \"x\"", "mqtt: certificates are for mqtts://"),
+    ] {
+        assert_eq!(error(&mqtt(rest)), format!("line 1, column 1: {message}"));
+    }
+    assert_eq!(
+        error(&mqtt("prefix = \"a/#\"")),
+        "line 4, column 10: `a/#` is no beginning of a topic"
+    );
+}
