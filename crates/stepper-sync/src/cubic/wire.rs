@@ -11,6 +11,8 @@ use super::segment::{MAX_COUNT, Segment, Units};
 use crate::Direction;
 use thiserror::Error;
 
+/// So many steps are checked sooner one by one.
+const FEW: u16 = 8;
 /// In the first byte: the direction is negative.
 const NEGATIVE: u8 = 0x80;
 /// In the first byte: where the number of differences is.
@@ -180,6 +182,15 @@ impl Segment {
 
     /// Whether all steps come 1 to 2^31 ticks after the one before, and the last before 2^32.
     fn check_times(&self) -> Result<(), SegmentError> {
+        if self.count > FEW && self.has_near_intervals() {
+            Ok(())
+        } else {
+            self.check_each_time()
+        }
+    }
+
+    /// The same step by step.
+    fn check_each_time(&self) -> Result<(), SegmentError> {
         let units = Units::of(self.count);
         // In 2^-32 ticks, without what the player's sums of 64 bits may lose on top.
         let wide = |difference: i64, bits: u32| i128::from(difference) << (32 - bits);
@@ -199,6 +210,28 @@ impl Segment {
             second += third;
         }
         Ok(())
+    }
+
+    /// Whether the times are right for all intervals as far from the first as the differences allow,
+    /// by their sizes alone: so it is but for a segment that almost stops or reverses.
+    fn has_near_intervals(&self) -> bool {
+        let units = Units::of(self.count);
+        let wide = |difference: i64, bits: u32| {
+            let (size, shift) = (difference.unsigned_abs(), 32 - bits);
+            (size.leading_zeros() >= shift).then_some(size << shift)
+        };
+        let steps = u64::from(self.count);
+        let bounds = || {
+            let second = wide(self.second, units.second)?.checked_mul(steps)?;
+            let third = wide(self.third, units.third)?.checked_mul((steps * steps) >> 1)?;
+            let change = second.checked_add(third)?;
+            let first = wide(self.interval, units.interval)?;
+            Some((first.checked_sub(change)?, first.checked_add(change)?))
+        };
+        bounds().is_some_and(|(least, most)| {
+            // At most 2^10 steps take less than 2^63, and the phase is less than a tick.
+            self.interval > 0 && least >= 1 << 32 && most < 1 << 53
+        })
     }
 }
 
@@ -226,5 +259,44 @@ impl<'b> Writer<'b> {
 
     fn finish(self) -> &'b [u8] {
         self.buffer.get(..self.len).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Differences of all sizes; what is taken by its sizes has no step out of bounds.
+    #[test]
+    fn near_intervals_are_in_bounds() {
+        let mut state = 0x0139_408D_CBBF_7A44_u64;
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            state
+        };
+        let (mut near, mut others) = (0, 0);
+        for _ in 0..20_000 {
+            let mut sized =
+                |most: u64| (next() >> (64 - most + (((next() >> 32) * most) >> 32))) as i64;
+            let segment = Segment {
+                delay_ticks: 0,
+                count: 2 + (sized(10) as u16).min(MAX_COUNT - 2),
+                direction: Direction::Positive,
+                phase: sized(8) as u8,
+                interval: sized(48),
+                second: sized(40) - sized(40),
+                third: sized(40) - sized(40),
+            };
+            let times = segment.check_each_time();
+            if segment.has_near_intervals() {
+                assert_eq!(times, Ok(()), "{segment:?}");
+                near += 1;
+            } else if times.is_ok() {
+                others += 1;
+            }
+        }
+        assert!(near > 500 && others > 500, "{near} {others}");
     }
 }
