@@ -30,8 +30,12 @@ impl Factor {
     /// length / steps, with the length in 65536ths below 2^48.
     #[inline]
     pub(crate) fn of_q16(length_q16: u64, steps: u64) -> Self {
-        let half = steps >> 1;
-        match length_q16.wrapping_add(half).checked_div(steps) {
+        let dividend = length_q16.wrapping_add(steps >> 1);
+        // Up to 65535 steps long: a third of the instructions where words have 32 bits.
+        if let (Ok(dividend), Ok(steps)) = (u32::try_from(dividend), u32::try_from(steps)) {
+            return dividend.checked_div(steps).map_or(Self::ONE, Self);
+        }
+        match dividend.checked_div(steps) {
             Some(factor) => Self(u32::try_from(factor).unwrap_or(u32::MAX)),
             None => Self::ONE,
         }
