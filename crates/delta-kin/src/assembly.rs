@@ -6,8 +6,9 @@ use nalgebra::{RealField, Vector3};
 use trig_kernels::Trig;
 
 use crate::arm::zip;
-use crate::range::{half, two};
-use crate::{Delta, InverseError, ZAxis};
+use crate::prepared::PreparedArm;
+use crate::range::{half, norm, two};
+use crate::{Delta, Elbow, InverseError, ZAxis};
 
 /// Which of the two points where the lower arms meet the platform takes.
 ///
@@ -111,7 +112,7 @@ impl<T: RealField + Trig> Delta<T> {
         if !tripod.is_plane(self.tolerance()) {
             return Err(InverseError::Collinear);
         }
-        let beyond = -tripod.volume * self.side() / tripod.normal.norm();
+        let beyond = -tripod.volume * self.side() / norm(&tripod.normal);
         let [l1, l2, l3] = self.prepared().each_ref().map(|prepared| prepared.lower);
         let rounding = l1.min(l2).min(l3) * self.tolerance() * half();
         if beyond <= T::zero() || beyond * beyond <= rounding {
@@ -130,13 +131,22 @@ impl<T: RealField + Trig> Delta<T> {
             AssemblyMode::Upper => local.z < T::zero(),
         };
         let mirrored = Vector3::new(local.x, local.y, -local.z);
-        let rods = zip(self.prepared().each_ref(), self.working_mode()).map(|(prepared, elbow)| {
-            let triangle = prepared.triangle(&mirrored).at_edge();
-            prepared.rod(&triangle, &triangle.heading(elbow))
-        });
+        let rods = zip(self.prepared().each_ref(), self.working_mode())
+            .map(|(prepared, elbow)| rod_at_edge(prepared, &mirrored, elbow));
         (is_across && self.is_assembled(rods)).then(|| match self.z() {
             ZAxis::Up => ZAxis::Down,
             ZAxis::Down => ZAxis::Up,
         })
     }
+}
+
+/// Once for all arms, out of line: what is rare should be small.
+#[inline(never)]
+fn rod_at_edge<T: RealField + Trig>(
+    prepared: &PreparedArm<T>,
+    point: &Vector3<T>,
+    elbow: Elbow,
+) -> Vector3<T> {
+    let triangle = prepared.triangle(point).at_edge();
+    prepared.rod(&triangle, &triangle.heading(elbow))
 }

@@ -1,10 +1,10 @@
 //! From the three angles to the position: where three spheres meet.
 
 use nalgebra::{Matrix2, Point3, RealField, Vector2, Vector3};
-use trig_kernels::Trig;
+use trig_kernels::{Trig, sqrt};
 
 use crate::arm::{smallest, zip};
-use crate::range::{half, is_within, largest_angle, length};
+use crate::range::{half, is_within, largest_angle, length, norm};
 use crate::rounded::Rounded;
 use crate::{Arm, Delta};
 
@@ -51,15 +51,15 @@ struct Foot<T> {
     third: [T; 2],
 }
 
-impl<T: RealField + Copy> Foot<T> {
+impl<T: RealField + Trig> Foot<T> {
     fn new([c1, c2, c3]: [Vector3<T>; 3], [l1, l2, l3]: [T; 3]) -> Self {
         let (d2, d3) = (c2 - c1, c3 - c1);
-        let second = d2.norm();
+        let second = norm(&d2);
         let along = d2 / second;
         // Twice, so that the axes are perpendicular to each other also where the triangle is thin.
         let rest = d3 - along * along.dot(&d3);
         let rest = rest - along * along.dot(&rest);
-        let across = rest / rest.norm();
+        let across = rest / norm(&rest);
         let third = [along.dot(&d3), across.dot(&d3)];
         let b2 = (d2.norm_squared() + (l1 - l2) * (l1 + l2)) * half();
         let b3 = (d3.norm_squared() + (l1 - l3) * (l1 + l3)) * half();
@@ -107,10 +107,10 @@ impl<T: RealField + Copy> Foot<T> {
         let (mut mu, mut v) = (T::zero(), start);
         for _ in 0..NEWTON_STEPS {
             let slope = v.dot(&solve(mu, v));
-            mu += v.norm_squared() / slope * (v.norm() / l1 - T::one());
+            mu += v.norm_squared() / slope * (norm(&v) / l1 - T::one());
             v = start - solve(mu, start) * mu;
         }
-        v *= l1 / v.norm();
+        v *= l1 / norm(&v);
         (v, (a * (v - start)).amax())
     }
 }
@@ -152,7 +152,7 @@ impl<T: RealField + Trig> Delta<T> {
         // Not if it is not a number.
         let is_plane = foot.height() > self.tolerance();
         let [x, y, up] = if are_angles & is_plane & (foot.squared > T::zero()) {
-            [foot.x, foot.y, foot.squared.sqrt()]
+            [foot.x, foot.y, sqrt(foot.squared)]
         } else {
             self.check_angles(angles, thetas)?;
             if !is_plane {

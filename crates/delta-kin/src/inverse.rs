@@ -3,7 +3,7 @@
 use core::fmt;
 
 use nalgebra::{Point3, RealField, Vector3};
-use trig_kernels::Trig;
+use trig_kernels::{Trig, sqrt};
 
 use crate::arm::{smallest, zip};
 use crate::prepared::{PreparedArm, Triangle, middle, thetas};
@@ -130,15 +130,16 @@ impl<T: RealField + Trig> Delta<T> {
     /// For each arm, with u the point along its azimuth, w beside it, D = R - r:
     ///
     /// ```text
-    /// p = D - u,   h² = p² + z²
-    /// k = (La² - w² - (h - Lb)²) - ((h + Lb)² - La² + w²)
-    /// m = 2 √(La² - w² - (h - Lb)²) √((h + Lb)² - La² + w²)
+    /// p = D - u,   h² = p² + z²,   L² = La² - w²
+    /// k = L² - h² - Lb²
+    /// m = √(4 L² Lb² - (h² - L² - Lb²)²)
     /// elbow out: θ = atan2(k p - m z, k z + m p)
     /// elbow in:  θ = atan2(k p + m z, k z - m p)
     /// ```
     ///
-    /// Nothing is divided by what can vanish, and the two solutions are never swapped. Where a
-    /// bracket is negative the point is out of reach. What [`forward`](Self::forward) made in the same modes is
+    /// Nothing is divided by what can vanish, and the two solutions are never swapped. Where what
+    /// is under the root is negative the point is out of reach. Where h < Lb/2 it is instead
+    /// (L² - (h - Lb)²) ((h + Lb)² - L²), in which no squares of about equal lengths cancel. What [`forward`](Self::forward) made in the same modes is
     /// never refused: up to [`tolerance`](Self::tolerance) past an edge counts as on it, for
     /// limits too.
     ///
@@ -159,13 +160,13 @@ impl<T: RealField + Trig> Delta<T> {
             zip(self.prepared().each_ref(), thetas).map(|(prepared, theta)| prepared.angle(theta));
         let is_admitted = zip(arms, angles).map(|((prepared, triangle, _), angle)| {
             triangle.is_within_reach()
-                & (prepared.min <= angle)
-                & (angle <= prepared.max)
-                & (triangle.side.abs() <= prepared.max_side)
+                && prepared.min <= angle
+                && angle <= prepared.max
+                && triangle.side.abs() <= prepared.max_side
         });
         let [first, second, third] = is_admitted;
         let rods = arms.map(|(prepared, triangle, heading)| prepared.rod(&triangle, &heading));
-        if first & second & third & self.is_assembled(rods) {
+        if first && second && third && self.is_assembled(rods) {
             return Ok(Vector3::from(angles));
         }
         self.inverse_at_limits(point, local)
@@ -187,7 +188,7 @@ impl<T: RealField + Trig> Delta<T> {
             .map(|(arm, prepared)| (arm, prepared, triangle(prepared, &local)));
         worst(arms.map(|(arm, prepared, triangle)| self.out_of_reach(arm, prepared, &triangle)))?;
         for (arm, _, triangle) in arms {
-            if triangle.h <= self.tolerance() {
+            if sqrt(triangle.h2) <= self.tolerance() {
                 return Err(InverseError::AnyAngle { arm });
             }
         }
@@ -264,7 +265,7 @@ impl<T: RealField + Trig> Delta<T> {
             let side = side.min(prepared.lower);
             atan2(
                 side,
-                ((prepared.lower - side) * (prepared.lower + side)).sqrt(),
+                sqrt((prepared.lower - side) * (prepared.lower + side)),
             )
         };
         let (swivel, max) = (asin(triangle.side.abs()), asin(prepared.max_side));

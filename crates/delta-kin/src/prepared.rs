@@ -1,9 +1,9 @@
 //! One arm with all that follows from its geometry, in the frame of [Delta thesis].
 
 use nalgebra::{RealField, Vector2, Vector3};
-use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
+use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos, sqrt};
 
-use crate::range::{half, length, max_value, two};
+use crate::range::{half, length, max_value, norm, two};
 use crate::{ArmGeometry, Elbow, JointRange, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
@@ -36,16 +36,16 @@ pub(crate) struct Triangle<T> {
     pub(crate) z: T,
     /// Wrist beside the arm's plane.
     pub(crate) side: T,
-    /// Distance between shoulder and wrist in the plane, and its square.
-    pub(crate) h: T,
-    h2: T,
-    /// La² less the square of the wrist's distance from the nearest point of the elbow's circle.
-    past_near: T,
-    /// Square of the wrist's distance from the farthest point of the elbow's circle, less La².
-    short_of_far: T,
+    /// h², the square of the distance between shoulder and wrist in the plane.
+    pub(crate) h2: T,
+    /// La² - w² - Lb² - h²: twice the product of Lb, h and the cosine of the upper arm's angle from
+    /// the line to the wrist, reversed.
+    along: T,
+    /// The square of twice the product of Lb, h and the sine: not positive out of reach.
+    across2: T,
 }
 
-/// An upper arm's direction, sin θ and cos θ times 4 Lb h².
+/// An upper arm's direction, sin θ and cos θ times 2 Lb h².
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Heading<T> {
     pub(crate) sin: T,
@@ -115,25 +115,46 @@ impl<T: RealField + Trig> PreparedArm<T> {
         let inward = self.offset - (point.x * self.cos + point.y * self.sin);
         let side = point.y * self.cos - point.x * self.sin;
         let h2 = inward * inward + point.z * point.z;
-        let h = h2.sqrt();
         // La² - w², differences before products: short lower arms keep their digits.
         let in_plane = (self.lower - side) * (self.lower + side);
-        let (near, far) = (h - self.upper, h + self.upper);
+        let upper2 = self.upper * self.upper;
+        let (along, across2) = if h2 * (two::<T>() * two()) < upper2 {
+            self.near_axis(h2, in_plane)
+        } else {
+            // Heron's formula in squares, of which h² is the largest but for a factor of 9.
+            let longer = h2 - in_plane;
+            let opposite = longer - upper2;
+            let product = upper2 * two() * two() * in_plane;
+            (-(longer + upper2), product - opposite * opposite)
+        };
         Triangle {
             inward,
             z: point.z,
             side,
-            h,
             h2,
-            past_near: in_plane - near * near,
-            short_of_far: far * far - in_plane,
+            along,
+            across2,
         }
+    }
+
+    /// `along` and `across2` of a wrist near the motor's axis, where squares of lengths that are
+    /// about equal would be subtracted.
+    #[cold]
+    #[inline(never)]
+    fn near_axis(&self, h2: T, in_plane: T) -> (T, T) {
+        let h = sqrt(h2);
+        let (near, far) = (h - self.upper, h + self.upper);
+        let (past_near, short_of_far) = (in_plane - near * near, far * far - in_plane);
+        (
+            (past_near - short_of_far) * half(),
+            past_near * short_of_far,
+        )
     }
 
     /// The rod, from the elbow to the wrist.
     #[inline(always)]
     pub(crate) fn rod(&self, triangle: &Triangle<T>, heading: &Heading<T>) -> Vector3<T> {
-        let scale = (triangle.h2 * two() * two()).recip();
+        let scale = (triangle.h2 * two()).recip();
         let outward = -triangle.inward - heading.sin * scale;
         let up = triangle.z + heading.cos * scale;
         Vector3::new(
@@ -174,7 +195,7 @@ impl<T: RealField + Trig> PreparedArm<T> {
     /// By how much the rod would be too short if the elbow were at `theta`.
     #[inline(never)]
     pub(crate) fn stretch(&self, point: &Vector3<T>, theta: T) -> T {
-        (point - self.centre(sin_cos(theta))).norm() - self.lower
+        norm(&(point - self.centre(sin_cos(theta)))) - self.lower
     }
 
     /// How far the nearest and the farthest point of the elbow's circle are from the wrist.
@@ -187,18 +208,17 @@ impl<T: RealField + Trig> PreparedArm<T> {
     }
 }
 
-impl<T: RealField + Copy> Triangle<T> {
+impl<T: RealField + Trig> Triangle<T> {
     /// Whether the wrist is within reach, and not on its edge.
     #[inline(always)]
     pub(crate) fn is_within_reach(&self) -> bool {
-        (self.past_near > T::zero()) & (self.short_of_far > T::zero())
+        self.across2 > T::zero()
     }
 
     /// The same on the edge, from what may be a little beyond.
     pub(crate) fn at_edge(self) -> Self {
         Self {
-            past_near: self.past_near.max(T::zero()),
-            short_of_far: self.short_of_far.max(T::zero()),
+            across2: self.across2.max(T::zero()),
             ..self
         }
     }
@@ -206,8 +226,8 @@ impl<T: RealField + Copy> Triangle<T> {
     /// The upper arm with the elbow on the given side; not a number out of reach.
     #[inline(always)]
     pub(crate) fn heading(&self, elbow: Elbow) -> Heading<T> {
-        let along = self.past_near - self.short_of_far;
-        let across = (self.past_near * self.short_of_far).sqrt() * two();
+        let along = self.along;
+        let across = sqrt(self.across2);
         let across = match elbow {
             Elbow::Out => across,
             Elbow::In => -across,

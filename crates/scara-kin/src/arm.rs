@@ -9,7 +9,7 @@ pub use error::GeometryError;
 
 use crate::Limits;
 use crate::limits::two;
-use crate::range::{largest_ratio, length, link_lengths, within};
+use crate::range::{largest_angle, largest_ratio, length, link_lengths, norm, within};
 
 /// A two-link arm with parallel joint axes, in any unit of length, the same throughout.
 ///
@@ -40,6 +40,43 @@ pub struct Arm<T: RealField = f64> {
     window: Limits<T>,
     keep_out: T,
     tolerance: T,
+    squares: Squares<T>,
+}
+
+/// Squares that follow from the geometry, of which each `inverse` takes all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Squares<T> {
+    /// Of the distances from the base between which the tool can be, a rounding past the edges
+    /// included; zero where there is no inner one.
+    pub(crate) nearest: T,
+    pub(crate) farthest: T,
+    /// Of the links' difference and of their sum.
+    pub(crate) folded: T,
+    pub(crate) reach: T,
+    /// Of the links.
+    pub(crate) longer: T,
+    pub(crate) shorter: T,
+    /// That of the upper arm less that of the forearm.
+    pub(crate) difference: T,
+}
+
+impl<T: RealField + Copy> Squares<T> {
+    fn new(arm: &Arm<T>) -> Self {
+        let (upper, fore) = (arm.upper, arm.fore);
+        let (folded, reach) = (upper - fore, upper + fore);
+        let nearest = (folded.abs().max(arm.keep_out) - arm.tolerance).max(T::zero());
+        let farthest = reach + arm.tolerance;
+        let (longer, shorter) = (upper.max(fore), upper.min(fore));
+        Self {
+            nearest: nearest * nearest,
+            farthest: farthest * farthest,
+            folded: folded * folded,
+            reach: reach * reach,
+            longer: longer * longer,
+            shorter: shorter * shorter,
+            difference: folded * reach,
+        }
+    }
 }
 
 /// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of
@@ -86,8 +123,17 @@ impl<T: RealField + Trig> Arm<T> {
             window: Limits::unlimited().window(),
             keep_out: T::zero(),
             tolerance: T::zero(),
+            squares: Squares {
+                nearest: T::zero(),
+                farthest: T::zero(),
+                folded: T::zero(),
+                reach: T::zero(),
+                longer: T::zero(),
+                shorter: T::zero(),
+                difference: T::zero(),
+            },
         };
-        Ok(arm.with_tolerance())
+        Ok(arm.prepared())
     }
 
     /// The arm with its base at `base`: the position of the shoulder's axis and the
@@ -105,7 +151,7 @@ impl<T: RealField + Trig> Arm<T> {
         let (re, im) = (base.rotation.re, base.rotation.im);
         let length = length(Vector2::new(re, im));
         let drift = (length - T::one()).abs();
-        let is_rotation = drift <= T::default_epsilon().sqrt();
+        let is_rotation = drift <= largest_angle::<T>().recip();
         if !is_rotation {
             return Err(GeometryError::Rotation { length });
         }
@@ -114,7 +160,7 @@ impl<T: RealField + Trig> Arm<T> {
             base.rotation.renormalize();
         }
         self.base = base;
-        Ok(self.with_tolerance())
+        Ok(self.prepared())
     }
 
     /// The arm with joint limits.
@@ -135,12 +181,14 @@ impl<T: RealField + Trig> Arm<T> {
             return Err(GeometryError::KeepOut { radius, reach });
         }
         self.keep_out = radius;
-        Ok(self)
+        Ok(self.prepared())
     }
 
-    fn with_tolerance(mut self) -> Self {
-        let span = self.reach() + self.base.translation.vector.norm();
+    /// With what follows from the rest.
+    fn prepared(mut self) -> Self {
+        let span = self.reach() + norm(self.base.translation.vector);
         self.tolerance = span * T::default_epsilon() * nalgebra::convert(ROUNDING_STEPS);
+        self.squares = Squares::new(&self);
         self
     }
 
@@ -170,6 +218,10 @@ impl<T: RealField + Trig> Arm<T> {
 
     pub(crate) const fn window(&self) -> &Limits<T> {
         &self.window
+    }
+
+    pub(crate) const fn squares(&self) -> &Squares<T> {
+        &self.squares
     }
 
     /// Radius of the disc round the base that the tool must not enter; zero for none.

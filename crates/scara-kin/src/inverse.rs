@@ -5,7 +5,7 @@ mod error;
 mod solutions;
 
 use nalgebra::{Point2, RealField, Vector2};
-use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos};
+use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos, sqrt};
 
 pub use error::InverseError;
 pub use solutions::Solutions;
@@ -184,33 +184,33 @@ impl<T: RealField + Trig> Arm<T> {
     #[inline(always)]
     pub(crate) fn triangle(&self, point: Point2<T>) -> Result<Triangle<T>, InverseError<T>> {
         let tool = self.base().inverse_transform_point(&point).coords;
-        let (l1, l2) = (self.upper(), self.fore());
+        let squares = self.squares();
         // A square that overflows is out of reach; one that vanishes is at the centre
         // by more digits than the lengths have.
         let r2 = tool.norm_squared();
-        let (folded, reach, tolerance) = (l1 - l2, self.reach(), self.tolerance());
-        let (nearest, farthest) = (self.inner_reach() - tolerance, reach + tolerance);
         // Written so that NaN is outside too.
-        let is_inside = r2 <= farthest * farthest;
+        let is_inside = r2 <= squares.farthest;
         if !is_inside {
-            return Err(Self::outside(point, tool, reach));
+            return Err(Self::outside(point, tool, self.reach()));
         }
-        if nearest > T::zero() && r2 < nearest * nearest {
-            let (distance, reach) = (r2.sqrt(), self.inner_reach());
+        if r2 < squares.nearest {
+            let (distance, reach) = (sqrt(r2), self.inner_reach());
             return Err(InverseError::TooNear { distance, reach });
         }
-        if r2 == T::zero() && folded == T::zero() {
+        if r2 == T::zero() && squares.folded == T::zero() {
             return Err(InverseError::AnyAngle);
         }
-        let s2 = (r2 - folded * folded) * (reach * reach - r2);
-        let s = s2.max(T::zero()).sqrt();
-        let (square1, square2) = (l1 * l1, l2 * l2);
+        let s2 = (r2 - squares.folded) * (squares.reach - r2);
+        // Beyond an edge by rounding.
+        let s = if s2 > T::zero() { sqrt(s2) } else { T::zero() };
         // The longer link's square first: it cancels where the other link is short.
-        let (k1, k2) = if l1 >= l2 {
-            (r2 + folded * reach, r2 - square1 - square2)
+        let less = r2 - squares.longer;
+        let k1 = if squares.difference.is_sign_positive() {
+            r2 + squares.difference
         } else {
-            (r2 - square2 + square1, r2 - square2 - square1)
+            less + squares.shorter
         };
+        let k2 = less - squares.shorter;
         Ok(Triangle { tool, s, k1, k2 })
     }
 

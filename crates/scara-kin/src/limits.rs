@@ -144,17 +144,14 @@ impl<T: RealField + Copy> Limits<T> {
         }
     }
 
-    /// Whether both ranges hold both poses; without branches, for the fast path.
+    /// Whether both ranges hold the poses of both elbows, of which the right one's angle is not
+    /// negative and the left one's its opposite.
     #[inline]
-    pub(crate) fn hold_both(&self, a: &Joints<T>, b: &Joints<T>) -> bool {
-        (self.shoulder.min <= a.shoulder)
-            & (a.shoulder <= self.shoulder.max)
-            & (self.elbow.min <= a.elbow)
-            & (a.elbow <= self.elbow.max)
-            & (self.shoulder.min <= b.shoulder)
-            & (b.shoulder <= self.shoulder.max)
-            & (self.elbow.min <= b.elbow)
-            & (b.elbow <= self.elbow.max)
+    pub(crate) fn hold_both(&self, right: &Joints<T>, left: &Joints<T>) -> bool {
+        self.shoulder.contains(right.shoulder)
+            && self.shoulder.contains(left.shoulder)
+            && self.elbow.min <= left.elbow
+            && right.elbow <= self.elbow.max
     }
 
     pub(crate) fn middle(&self) -> Joints<T> {

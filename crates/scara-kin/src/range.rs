@@ -1,13 +1,20 @@
 //! The range of numbers that the crate computes with.
 
 use nalgebra::{RealField, Vector2};
+use trig_kernels::Trig;
 
 use crate::GeometryError;
 
 /// The largest joint angle and limit in radians, 1/√ε: 2²⁶ (6.7e7) in f64, 2896 in f32. There
 /// half of the digits are left: an angle is rounded to √ε/2 rad.
 pub(crate) fn largest_angle<T: RealField>() -> T {
-    T::default_epsilon().sqrt().recip()
+    of_precision([67_108_864.0, 2_896.309_4])
+}
+
+/// A number of f64 and the one of f32. Not computed, as a root in integers would be.
+fn of_precision<T: RealField>([double, single]: [f64; 2]) -> T {
+    let is_double = T::default_epsilon() < nalgebra::convert(1e-10);
+    nalgebra::convert(if is_double { double } else { single })
 }
 
 /// The longest link and the largest coordinate of the base, in units of the shorter link,
@@ -17,12 +24,13 @@ pub(crate) fn largest_ratio<T: RealField>() -> T {
     (T::default_epsilon() * nalgebra::convert(64.0)).recip()
 }
 
-/// Shortest and longest link. With h the fourth root of the largest number of `T`, divided
-/// by 4, they are 1/√h and h (f64: 6e-39 and 2.8e76, f32: 3e-5 and 1e9): outside, products of
-/// four lengths would overflow or lose digits.
+/// Shortest and longest link: 2^-127 and 2^254 in f64 (6e-39 and 2.8e76), 2^-15 and 2^30 in f32 (3e-5
+/// and 1e9). With h a quarter of the fourth root of the largest number they are 1/√h and h: outside,
+/// products of four lengths would overflow or lose digits.
 pub(crate) fn link_lengths<T: RealField + Copy>() -> (T, T) {
-    let max = max_value::<T>().sqrt().sqrt() * nalgebra::convert(0.25);
-    (max.sqrt().recip(), max)
+    let min = of_precision([5.877_471_754_111_438e-39, 3.051_757_812_5e-5]);
+    let max = of_precision([2.894_802_230_932_905e76, 1_073_741_824.0]);
+    (min, max)
 }
 
 /// Whether an angle is within ±[`largest_angle`]; NaN is not.
@@ -49,13 +57,18 @@ pub(crate) fn within<T: RealField + Copy>(
 }
 
 /// The length of a vector whose squares may overflow. In `T` alone, as `hypot` of `f32` is not.
-pub(crate) fn length<T: RealField + Copy>(vector: Vector2<T>) -> T {
+pub(crate) fn length<T: RealField + Trig>(vector: Vector2<T>) -> T {
     let largest = vector.amax();
     if largest > T::zero() && largest.is_finite() {
-        (vector / largest).norm() * largest
+        norm(vector / largest) * largest
     } else {
-        vector.norm()
+        norm(vector)
     }
+}
+
+/// The length of a vector.
+pub(crate) fn norm<T: RealField + Trig>(vector: Vector2<T>) -> T {
+    trig_kernels::sqrt(vector.norm_squared())
 }
 
 /// The largest finite number.

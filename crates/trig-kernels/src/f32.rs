@@ -6,7 +6,7 @@ use self::derived::{
     ARCTAN, COMMON_ANGLE, COSINE, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
     TWICE_ATAN_HALF, TWICE_ATAN_HALF_TAIL, TWO_OVER_PI,
 };
-use crate::{atan2::atan2, large::reduce_large, sin_cos::sin_cos};
+use crate::{HAS_VECTORS, atan2::atan2, large::reduce_large, sin_cos::sin_cos};
 
 /// 1.5 · 2^23: numbers of this size have no fraction.
 const SHIFT: f32 = 1.5 * power_of_two(23);

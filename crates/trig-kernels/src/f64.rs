@@ -6,7 +6,7 @@ use self::derived::{
     ARCTAN, COMMON_ANGLE, COSINE, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
     TWICE_ATAN_HALF, TWICE_ATAN_HALF_TAIL, TWO_OVER_PI,
 };
-use crate::{atan2::atan2, large::reduce_large, sin_cos::sin_cos};
+use crate::{HAS_VECTORS, atan2::atan2, large::reduce_large, sin_cos::sin_cos};
 
 /// 1.5 · 2^52: numbers of this size have no fraction.
 const SHIFT: f64 = 1.5 * power_of_two(52);
@@ -47,22 +47,36 @@ fn arctan_polynomial(z: f64) -> f64 {
     low + z4 * (high + z4 * c8)
 }
 
+// Vectors compare numbers; processors without vectors, mostly without an FPU for f64, their bits.
+
 /// `small < large` of two numbers that are not negative.
 #[inline(always)]
 fn is_less(small: f64, large: f64) -> bool {
-    small < large
+    if HAS_VECTORS {
+        small < large
+    } else {
+        small.to_bits() < large.to_bits()
+    }
 }
 
 #[inline(always)]
 fn is_common_large(large: f64) -> bool {
     let [min, max] = COMMON_LENGTHS;
-    (large >= min) & (large <= max)
+    if HAS_VECTORS {
+        (large >= min) & (large <= max)
+    } else {
+        large.to_bits().wrapping_sub(min.to_bits()) <= max.to_bits() - min.to_bits()
+    }
 }
 
 /// Above [`COMMON_SMALL`], and zero.
 #[inline(always)]
 fn is_common_small(small: f64) -> bool {
-    (small > COMMON_SMALL) | (small == 0.0)
+    if HAS_VECTORS {
+        (small > COMMON_SMALL) | (small == 0.0)
+    } else {
+        small.to_bits().wrapping_sub(1) >= COMMON_SMALL.to_bits()
+    }
 }
 
 sin_cos!(f64, u64);

@@ -11,6 +11,7 @@ mod f32;
 mod f64;
 mod large;
 mod sin_cos;
+mod sqrt;
 
 mod sealed {
     #[expect(unnameable_types, reason = "that is what seals `Trig`")]
@@ -49,10 +50,14 @@ pub trait Trig: Copy + sealed::Sealed {
     /// See [`atan2_lanes`].
     #[must_use]
     fn atan2_lanes<const L: usize>(y: [Self; L], x: [Self; L]) -> [Self; L];
+
+    /// See [`sqrt`].
+    #[must_use]
+    fn sqrt(x: Self) -> Self;
 }
 
 macro_rules! trig {
-    ($($float:ident)*) => {$(
+    ($($float:ident $instruction:path, $integers:ident;)*) => {$(
         impl Trig for $float {
             #[inline]
             fn sin_cos(x: Self) -> (Self, Self) {
@@ -73,10 +78,23 @@ macro_rules! trig {
             fn atan2_lanes<const L: usize>(y: [Self; L], x: [Self; L]) -> [Self; L] {
                 self::$float::atan2_lanes(y, x)
             }
+
+            #[inline]
+            fn sqrt(x: Self) -> Self {
+                if HAS_ROOT { $instruction(x) } else { sqrt::$integers(x) }
+            }
         }
     )*};
 }
-trig!(f32 f64);
+trig! {
+    f32 libm::sqrtf, sqrt_f32;
+    f64 libm::sqrt, sqrt_f64;
+}
+
+/// Whether `libm` makes one instruction of a root.
+const HAS_ROOT: bool = cfg!(any(target_feature = "sse2", target_feature = "neon"));
+/// Whether lanes become vector instructions.
+const HAS_VECTORS: bool = HAS_ROOT || cfg!(target_feature = "simd128");
 
 /// Sine and cosine of an angle in radians, of any size.
 ///
@@ -117,4 +135,13 @@ pub fn atan2<T: Trig>(y: T, x: T) -> T {
 #[inline]
 pub fn atan2_lanes<T: Trig, const L: usize>(y: [T; L], x: [T; L]) -> [T; L] {
     T::atan2_lanes(y, x)
+}
+
+/// The square root, rounded to the nearest as IEEE 754 says; of what is negative, NaN.
+///
+/// One instruction on x86 with SSE2 and on 64-bit ARM, elsewhere integers.
+#[must_use]
+#[inline]
+pub fn sqrt<T: Trig>(x: T) -> T {
+    T::sqrt(x)
 }

@@ -63,6 +63,9 @@ macro_rules! sin_cos {
         /// Adds whole quarter turns: an exchange and two signs, by bits, for lanes without branches.
         #[inline(always)]
         fn turn(sin: $float, cos: $float, quarters: $bits) -> ($float, $float) {
+            if !HAS_VECTORS {
+                return turn_alone(sin, cos, quarters);
+            }
             const TO_SIGN: u32 = $bits::BITS - 2;
             let exchange = (quarters & 1).wrapping_neg();
             let (sin, cos) = (sin.to_bits(), cos.to_bits());
@@ -75,26 +78,56 @@ macro_rules! sin_cos {
             )
         }
 
+        /// The same for processors that skip single instructions.
+        #[inline(always)]
+        fn turn_alone(sin: $float, cos: $float, quarters: $bits) -> ($float, $float) {
+            let (sin, cos) = if quarters & 1 == 0 {
+                (sin, cos)
+            } else {
+                (cos, sin)
+            };
+            let with_sign = |x: $float, turns: $bits| if turns & 2 == 0 { x } else { -x };
+            (
+                with_sign(sin, quarters),
+                with_sign(cos, quarters.wrapping_add(1)),
+            )
+        }
+
         #[inline]
         pub(crate) fn sin_cos(x: $float) -> ($float, $float) {
-            evaluate(if is_common_angle(x) {
+            if HAS_VECTORS {
+                evaluate(any_reduced(x))
+            } else {
+                sin_cos_alone(x)
+            }
+        }
+
+        /// One copy of it: memory is dear where there are no vectors, and beside vectors it is rare.
+        #[inline(never)]
+        fn sin_cos_alone(x: $float) -> ($float, $float) {
+            evaluate(any_reduced(x))
+        }
+
+        #[inline(always)]
+        fn any_reduced(x: $float) -> Reduced {
+            if is_common_angle(x) {
                 reduce(x)
             } else {
                 reduce_large(x)
-            })
+            }
         }
 
         #[inline]
         pub(crate) fn sin_cos_lanes<const L: usize>(x: [$float; L]) -> ([$float; L], [$float; L]) {
             let (mut sin, mut cos) = ([0.0; L], [0.0; L]);
             let lanes = sin.iter_mut().zip(&mut cos).zip(x);
-            if x.iter().fold(true, |all, &x| all & is_common_angle(x)) {
+            if HAS_VECTORS && x.iter().fold(true, |all, &x| all & is_common_angle(x)) {
                 for ((sin, cos), x) in lanes {
                     (*sin, *cos) = evaluate(reduce(x));
                 }
             } else {
                 for ((sin, cos), x) in lanes {
-                    (*sin, *cos) = self::sin_cos(x);
+                    (*sin, *cos) = sin_cos_alone(x);
                 }
             }
             (sin, cos)

@@ -5,6 +5,7 @@ use trig_kernels::Trig;
 
 use super::InverseError;
 use crate::limits::Fitted;
+use crate::range::norm;
 use crate::{Arm, Elbow, Joint, Joints};
 
 impl<T: RealField + Trig> Arm<T> {
@@ -83,10 +84,10 @@ impl<T: RealField + Trig> Arm<T> {
         } else {
             side >= T::zero()
         };
-        let r = tool.norm();
+        let r = norm(tool);
         let folded = (self.upper() - self.fore()).abs();
         let is_straight_or_folded = r >= self.reach() - rounding || r <= folded + rounding;
-        (is_same_side || is_straight_or_folded) && (self.tip(candidate) - tool).norm() <= rounding
+        (is_same_side || is_straight_or_folded) && norm(self.tip(candidate) - tool) <= rounding
     }
 
     /// How far rounding alone may displace the tool, in the unit of length: the
