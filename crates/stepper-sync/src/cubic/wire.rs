@@ -279,7 +279,7 @@ mod tests {
         let (mut near, mut others) = (0, 0);
         for _ in 0..20_000 {
             let mut sized =
-                |most: u64| (next() >> (64 - most + (((next() >> 32) * most) >> 32))) as i64;
+                |most: u64| (next() >> (64 - most + (((next() >> 32) * most) >> 32))).cast_signed();
             let segment = Segment {
                 delay_ticks: 0,
                 count: 2 + (sized(10) as u16).min(MAX_COUNT - 2),
