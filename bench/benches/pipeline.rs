@@ -9,9 +9,8 @@ use std::env;
 use std::process::Command;
 use std::time::Instant;
 
-use delta_kin::Delta;
-use delta_kin::nalgebra::{Point3, Vector3};
-use path_timing::{AxisLimits, Cubic, Curve, Knot, Path, Place, Row, Span, Table, ToolLimits};
+use delta_kin::{Delta, DeltaPath};
+use path_timing::{AxisLimits, Curve, Knot, Path, Row, Table, ToolLimits};
 use scara_kin::{Arm, ArmPath, Elbow};
 use stepper_sync::{
     AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, Rate, SegmentPlayer, StepDirTiming, StepScale,
@@ -168,40 +167,7 @@ fn arm_steps(lines: &[(Curve<2>, u32)], case: Case, knots: &mut [Knot]) -> u64 {
     lines.sum()
 }
 
-/// A line of a Delta as a path of its arms.
-#[derive(Debug, Clone)]
-struct DeltaPath<'a>(&'a Delta, Curve<3>);
-
-impl Path for DeltaPath<'_> {
-    type Axes = [f64; 3];
-    type Error = String;
-
-    fn length(&self) -> f64 {
-        self.1.length()
-    }
-
-    fn place(&self, s: f64) -> Result<Place<[f64; 3]>, String> {
-        let at = self.1.at(s);
-        let pose = self
-            .0
-            .pose_at(Point3::from(at.point))
-            .map_err(|error| error.to_string())?;
-        let slope = pose
-            .joint_rates(Vector3::from(at.tangent))
-            .map_err(|error| error.to_string())?;
-        Ok(Place {
-            position: pose.angles().into(),
-            slope: slope.into(),
-        })
-    }
-
-    fn tool(&self) -> Option<ToolLimits> {
-        self.1.tool()
-    }
-}
-
-/// A line of a Delta, and the segments that keep it within the tolerance, halfway and at the
-/// quarters of each.
+/// A line of a Delta, and the segments that keep it within the tolerance.
 fn delta_lines() -> Vec<(Curve<3>, u32)> {
     let delta = delta();
     let mut knots = vec![Knot::default(); 400];
@@ -213,14 +179,14 @@ fn delta_lines() -> Vec<(Curve<3>, u32)> {
     });
     lines
         .map(|curve| {
-            let path = DeltaPath(&delta, curve);
+            let path = delta.path(curve).expect("in reach");
             let limits = [LIMITS; 3];
             let table = Table::plan_within(
                 [path],
                 limits,
                 LEAST_SEGMENTS,
                 TOLERANCE_MM,
-                off,
+                DeltaPath::departure,
                 &mut knots,
             );
             (curve, table.expect("within limits").len() as u32 - 1)
@@ -232,31 +198,10 @@ fn delta() -> Delta {
     Delta::new(black_box(42.0), 18.0, 120.0, 243.0).expect("lengths")
 }
 
-/// How far the platform is off its line at the quarters of a segment.
-fn off(path: &DeltaPath<'_>, span: &Span<[f64; 3]>) -> f64 {
-    let [from, to] = &span.rows;
-    let start = Vector3::from(path.1.start());
-    let along = Vector3::from(path.1.at(0.0).tangent);
-    let quarters = [0.25, 0.5, 0.75].map(|tau: f64| {
-        let mut angles = Vector3::zeros();
-        for (angle, cubic) in angles.iter_mut().zip(Cubic::between(from, to)) {
-            let (change, t) = (cubic.q1 - cubic.q0, cubic.duration_s);
-            let (second, third) = (
-                3.0 * change - (2.0 * cubic.v0 + cubic.v1) * t,
-                (cubic.v0 + cubic.v1) * t - 2.0 * change,
-            );
-            *angle = cubic.q0 + tau * (cubic.v0 * t + tau * (second + tau * third));
-        }
-        let at = path.0.forward(angles).expect("in reach").coords - start;
-        (at - along * at.dot(&along)).norm()
-    });
-    quarters.into_iter().fold(0.0, f64::max)
-}
-
 fn delta_steps(lines: &[(Curve<3>, u32)], case: Case, knots: &mut [Knot]) -> u64 {
     let delta = delta();
     let lines = lines.iter().map(|(curve, segments)| {
-        let path = DeltaPath(&delta, black_box(*curve));
+        let path = delta.path(black_box(*curve)).expect("in reach");
         run(&path, *segments, case, knots)
     });
     lines.sum()
