@@ -110,7 +110,12 @@ fn align<const N: usize>(
     let from = alignment.from.unwrap_or(from);
     let to = alignment.to.unwrap_or(to);
     let task = Task::new(from, to, &machine.panel)?;
-    for (name, pose) in [("from", from), ("to", task.reached)] {
+    let via: Vec<_> = machine.settings.via().collect();
+    let named = (1..)
+        .zip(&via)
+        .map(|(n, (pose, _))| (format!("via {n}"), *pose));
+    let ends = [("from", from), ("to", task.reached)].map(|(name, pose)| (name.to_owned(), pose));
+    for (name, pose) in ends.into_iter().chain(named) {
         let axes = platform.checked_axes(&isometry(pose));
         axes.with_context(|| format!("{name}: out of reach"))?;
     }
@@ -125,6 +130,7 @@ fn align<const N: usize>(
 
     let table = Table::read(&plan.csv, platform)?;
     let examination = Examination::of(&table, platform)?;
+    let passed = via.iter().map(|via| examination.passing(platform, via));
     let report = Report::new(
         &done,
         plan,
@@ -132,14 +138,19 @@ fn align<const N: usize>(
         &examination,
         &isometry(to),
         alignment.mode,
-    );
+    )
+    .with_passed(passed.collect::<Result<_>>()?);
+    let poses: Vec<Pose> = core::iter::once(from)
+        .chain(via.into_iter().map(|(pose, _)| pose))
+        .chain([task.reached])
+        .collect();
     Ok(Run {
         jog: picture::jog(&done.jog, &machine.panel),
         align: picture::align(
             machine,
             platform,
             &examination,
-            [from, task.reached],
+            &poses,
             plan.distance_error_bound_mm,
         ),
         report,

@@ -1,8 +1,11 @@
 //! What a table does to axes and body, looked at between its points too.
 
 use anyhow::{Context as _, Result};
-use pose_pt::{BodyFit, Platform};
+use pose_pt::{Blend, BodyFit, Platform, angle_between};
+use serde::Serialize;
 
+use crate::machine::isometry;
+use crate::pose::Pose;
 use crate::table::{AxisState, States, Table, positions};
 
 /// Places of a segment that are looked at, in a short table and in a long one; the middle, where
@@ -11,6 +14,9 @@ const PLACES: u32 = 32;
 const PLACES_OF_MANY: u32 = 2;
 /// Points of a long table.
 const MANY: usize = 2000;
+
+/// In place of a tolerance of 0, where the body stops: in mm, and in radians.
+const LEAST_TOLERANCE: f64 = 1e-9;
 
 /// The platform at one moment of a table.
 pub(crate) struct Moment<const N: usize> {
@@ -33,7 +39,45 @@ pub(crate) struct Examination<const N: usize> {
     pub(crate) end: BodyFit<N>,
 }
 
+/// How the body passes a pose between the first and the last.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Passing {
+    pub(crate) time_s: f64,
+    pub(crate) distance_mm: f64,
+    pub(crate) rotation_deg: f64,
+    /// Of the axis that has the largest fraction of its rated speed there; 0 at a stop.
+    pub(crate) speed_ratio: f64,
+}
+
 impl<const N: usize> Examination<N> {
+    /// Where the body comes nearest to a pose, distance and rotation each in parts of its tolerance.
+    pub(crate) fn passing(
+        &self,
+        platform: &Platform<N>,
+        (pose, blend): &(Pose, Blend),
+    ) -> Result<Passing> {
+        let pose = isometry(*pose);
+        let mut nearest: Option<(f64, Passing)> = None;
+        for moment in &self.moments {
+            let body = platform.pose(&positions(&moment.states))?.pose;
+            let distance_mm = (body.translation.vector - pose.translation.vector).norm();
+            let rotation_rad = angle_between(&body.rotation, &pose.rotation);
+            let distance = distance_mm / blend.distance.max(LEAST_TOLERANCE);
+            let off = distance.max(rotation_rad / blend.rotation_rad.max(LEAST_TOLERANCE));
+            if nearest.is_none_or(|(least, _)| off < least) {
+                let passing = Passing {
+                    time_s: moment.time_s,
+                    distance_mm,
+                    rotation_deg: rotation_rad.to_degrees(),
+                    speed_ratio: speed_ratio(platform, &moment.states),
+                };
+                nearest = Some((off, passing));
+            }
+        }
+        let (_, passing) = nearest.context("a table without a segment")?;
+        Ok(passing)
+    }
+
     /// Runs all axes through all segments.
     pub(crate) fn of(table: &Table<N>, platform: &Platform<N>) -> Result<Self> {
         let mut moments = Vec::new();
@@ -57,11 +101,7 @@ impl<const N: usize> Examination<N> {
                 let anchors = platform.locator_positions(&positions(&states));
                 let distance_error = platform.distance_error(&anchors).change;
                 max_distance_error = max_distance_error.max(distance_error.abs());
-                for (locator, states) in platform.locators().iter().zip(&states) {
-                    for (limits, state) in locator.limits.iter().zip(states) {
-                        max_speed_ratio = max_speed_ratio.max(state.speed.abs() / limits.speed);
-                    }
-                }
+                max_speed_ratio = max_speed_ratio.max(speed_ratio(platform, &states));
                 moments.push(Moment {
                     time_s: start + s * (end - start),
                     states,
@@ -78,6 +118,14 @@ impl<const N: usize> Examination<N> {
             moments,
         })
     }
+}
+
+/// The largest fraction of its rated speed that an axis has.
+fn speed_ratio<const N: usize>(platform: &Platform<N>, states: &States<N>) -> f64 {
+    let limits = platform.locators().iter().flat_map(|it| &it.limits);
+    let axes = limits.zip(states.iter().flatten());
+    let ratios = axes.map(|(limits, state)| state.speed.abs() / limits.speed);
+    ratios.fold(0.0, f64::max)
 }
 
 /// The largest change of an axis' speed, in mm per second.

@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use anyhow::{Result, anyhow, ensure};
 use nalgebra::Vector3;
-use pose_pt::{Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable, Segmentation};
+use pose_pt::{Blend, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable, Segmentation};
 
 use crate::machine::isometry;
 use crate::mode::Mode;
@@ -44,12 +44,18 @@ impl<const N: usize> Planner<N> {
     }
 
     pub(crate) fn plan(&self, from: Pose, to: Pose) -> Result<Plan> {
-        let poses = [from, to].map(isometry);
-        let interpolation = self.settings.interpolation();
-        let path = Path::new(&poses, interpolation).map_err(|error| match error {
+        let (via, blends): (Vec<Pose>, Vec<Blend>) = self.settings.via().unzip();
+        let poses = core::iter::once(from).chain(via).chain([to]);
+        let poses: Vec<_> = poses.map(isometry).collect();
+        let path = Path::new(&poses, self.settings.interpolation());
+        let path = match path {
+            Ok(path) if !blends.is_empty() => path.with_blends(&blends),
+            other => other,
+        };
+        let path = path.map_err(|error| match error {
             PathError::HalfTurn { angle, .. } => {
                 anyhow!(
-                    "the body would turn by {angle} rad, half a turn: both ways are the shorter one"
+                    "the body would turn by {angle} rad, half a turn: either direction is as short"
                 )
             }
             other => other.into(),

@@ -6,7 +6,7 @@ use nalgebra::Isometry3;
 use pose_pt::angle_between;
 use serde::Serialize;
 
-use crate::examination::Examination;
+use crate::examination::{Examination, Passing};
 use crate::mode::Mode;
 use crate::planner::Plan;
 use crate::table::Table;
@@ -14,7 +14,7 @@ use crate::workstation::Telegrams;
 use crate::world::Course;
 
 /// `report.json`; displayed, a summary in lines.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Report {
     #[serde(skip)]
     mode: Mode,
@@ -33,6 +33,9 @@ pub struct Report {
     /// Of the body on the simulated locators in the end, from the pose asked for.
     pose_error_mm: f64,
     pose_error_rad: f64,
+    /// Poses between, in order: how near the body comes to each, and how fast it is there.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    via: Vec<Passing>,
     telegrams: Telegrams,
     line_bytes: usize,
 }
@@ -63,9 +66,16 @@ impl Report {
             keeps: mode.keeps(),
             pose_error_mm: offset.norm(),
             pose_error_rad: angle_between(&end.rotation, &target.rotation),
+            via: Vec::new(),
             telegrams: course.telegrams,
             line_bytes: course.line_bytes,
         }
+    }
+
+    /// The report with the poses between.
+    pub(crate) fn with_passed(mut self, via: Vec<Passing>) -> Self {
+        self.via = via;
+        self
     }
 
     /// Whether the distance error is within its bound, and no axis faster than it is rated.
@@ -98,6 +108,17 @@ impl fmt::Display for Report {
                 "{table} keeps speeds, not accelerations and jerks: an axis jumps by {:.1} mm/s at \
                  once; a PVT table keeps them",
                 self.max_speed_jump_mm_s
+            )?;
+        }
+        for (number, passing) in (1..).zip(&self.via) {
+            writeln!(
+                f,
+                "via {number}: passed at {:.1} s, {:.3} mm and {:.4}° off, fastest axis at {:.1} % of \
+                 its rated speed",
+                passing.time_s,
+                passing.distance_mm,
+                passing.rotation_deg,
+                100.0 * passing.speed_ratio
             )?;
         }
         writeln!(

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, ensure};
 use handwheel::WheelQuantiser;
 use nalgebra::{Matrix3, Point3, Vector3};
-use pose_pt::{AxisLimits, Interpolation, Locator};
+use pose_pt::{AxisLimits, Blend, Interpolation, Locator};
 use serde::Deserialize;
 
 use crate::machine::CONVENTION;
@@ -47,6 +47,16 @@ struct PathSettings {
     interpolation: InterpolationName,
     #[serde(alias = "strain_mm")]
     max_distance_error_mm: Finite,
+    #[serde(default)]
+    via: Vec<ViaSettings>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ViaSettings {
+    pose: Numbers<6>,
+    distance_mm: Finite,
+    rotation_deg: Finite,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -115,6 +125,18 @@ impl Settings {
     /// Where the body is, and where it goes.
     pub(crate) fn poses(&self) -> [Pose; 2] {
         [self.path.from.values(), self.path.to.values()]
+    }
+
+    /// The poses between, and how near to each the body passes.
+    pub(crate) fn via(&self) -> impl ExactSizeIterator<Item = (Pose, Blend)> {
+        self.path.via.iter().map(|via| {
+            let (Finite(distance), Finite(deg)) = (via.distance_mm, via.rotation_deg);
+            let blend = Blend {
+                distance,
+                rotation_rad: deg.to_radians(),
+            };
+            (via.pose.values(), blend)
+        })
     }
 
     /// What the distance of two locators may depart by from that of their anchors.

@@ -22,10 +22,10 @@ pub(crate) fn align<const N: usize>(
     machine: &Machine,
     platform: &Platform<N>,
     examination: &Examination<N>,
-    [from, to]: [Pose; 2],
+    poses: &[Pose],
     bound_mm: f64,
 ) -> Figure {
-    let body = Body::new(machine, platform, [from, to]);
+    let body = Body::new(machine, platform, poses);
     let factor = body.factor;
     let times = if factor > 1.0 {
         format!("{factor} times as large as it is")
@@ -95,18 +95,21 @@ fn distance_error<const N: usize>(examination: &Examination<N>, end_s: f64, boun
 struct Body {
     outlines: [Vec<Point3<f64>>; 2],
     anchors: [Vec<Point3<f64>>; 2],
+    /// The anchors at the poses between.
+    via: Vec<Vec<Point3<f64>>>,
     factor: f64,
 }
 
 impl Body {
-    fn new<const N: usize>(
-        machine: &Machine,
-        platform: &Platform<N>,
-        [from, to]: [Pose; 2],
-    ) -> Self {
+    fn new<const N: usize>(machine: &Machine, platform: &Platform<N>, poses: &[Pose]) -> Self {
         let outline = machine.settings.outline();
         let anchors: Vec<_> = platform.locators().iter().map(|it| it.anchor).collect();
-        let (from, to) = (isometry(from), isometry(to));
+        let poses: Vec<_> = poses.iter().copied().map(isometry).collect();
+        let from = poses.first().copied().unwrap_or_default();
+        let (to, via) = match poses.split_last() {
+            Some((to, [_, via @ ..])) => (*to, via),
+            _ => (from, [].as_slice()),
+        };
         let placed = |points: &[Point3<f64>], pose: &Isometry3<f64>| -> Vec<Point3<f64>> {
             points.iter().map(|point| pose * point).collect()
         };
@@ -114,20 +117,28 @@ impl Body {
         let moves = all().map(|it| (to * it - from * it).norm());
         let max_move = moves.fold(0.0, f64::max);
         let size = all().map(|it| it.coords.norm()).fold(0.0, f64::max);
-        let turn = (to.rotation * from.rotation.inverse()).scaled_axis();
+        let turn_to = |to: &Isometry3<f64>| (to.rotation * from.rotation.inverse()).scaled_axis();
+        let turn = turn_to(&to);
         let room = (MAX_MOVE * size / max_move).min(MAX_TURN_RAD / turn.norm());
         let factor = round_down(room);
         // The same move, larger: the body stays rigid.
-        let far = Isometry3::from_parts(
-            Translation3::from(
-                from.translation.vector
-                    + factor * (to.translation.vector - from.translation.vector),
-            ),
-            UnitQuaternion::from_scaled_axis(factor * turn) * from.rotation,
-        );
+        let far = |to: &Isometry3<f64>| {
+            Isometry3::from_parts(
+                Translation3::from(
+                    from.translation.vector
+                        + factor * (to.translation.vector - from.translation.vector),
+                ),
+                UnitQuaternion::from_scaled_axis(factor * turn_to(to)) * from.rotation,
+            )
+        };
+        let ends = [from, far(&to)];
         Self {
-            outlines: [from, far].map(|pose| placed(&outline, &pose)),
-            anchors: [from, far].map(|pose| placed(&anchors, &pose)),
+            outlines: ends.map(|pose| placed(&outline, &pose)),
+            anchors: ends.map(|pose| placed(&anchors, &pose)),
+            via: via
+                .iter()
+                .map(|pose| placed(&anchors, &far(pose)))
+                .collect(),
             factor,
         }
     }
@@ -157,12 +168,21 @@ impl Body {
         };
         let [before, after] = &self.outlines;
         let [held, moved] = self.anchors.each_ref().map(|it| seen(it));
-        let paths = held.iter().zip(&moved).map(|(from, to)| [*from, *to]);
+        let via: Vec<_> = self.via.iter().map(|it| seen(it)).collect();
+        let paths = held
+            .iter()
+            .zip(&moved)
+            .enumerate()
+            .map(|(anchor, (from, to))| {
+                let between = via.iter().filter_map(move |it| it.get(anchor).copied());
+                core::iter::once(*from).chain(between).chain([*to])
+            });
         let plot = plot
             .line("before", Stroke::MACHINE, closed(before))
             .line("after", Stroke::solid(AFTER, 1.6), closed(after))
             .lines("", Stroke::RAPID, paths)
             .marks("", Mark::Dot, BEFORE, held.iter().copied())
+            .marks("", Mark::Dot, BEFORE, via.iter().flatten().copied())
             .marks("locators", Mark::Dot, AFTER, moved);
         let names = (1..).zip(held);
         names.fold(plot, |plot, (number, at)| {
@@ -206,7 +226,7 @@ mod tests {
         let body = Body::new(
             &machine,
             platform,
-            [from, [35.0, -20.0, 1240.0, 1.2, -0.8, 2.5]],
+            &[from, [35.0, -20.0, 1240.0, 1.2, -0.8, 2.5]],
         );
         assert_eq!(body.factor.to_bits(), 5.0_f64.to_bits());
         let [before, after] = body.outlines.each_ref().map(|points| {
@@ -216,7 +236,7 @@ mod tests {
         });
         let differs = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-9;
         assert!(!before.iter().zip(&after).any(differs));
-        let still = Body::new(&machine, platform, [from, from]);
+        let still = Body::new(&machine, platform, &[from, from]);
         assert_eq!(still.factor.to_bits(), 1.0_f64.to_bits());
     }
 }
