@@ -92,9 +92,19 @@ impl<const N: usize> MotionSampler<N> {
     /// Time in s, and the change of the velocity from one window to the next over the time between
     /// them; it starts from rest.
     pub fn accelerations(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.over_time(0.0, self.velocity_changes().map(length))
+    }
+
+    /// The same of the axis that has the largest.
+    pub fn axis_accelerations(&self) -> impl Iterator<Item = [f64; 2]> {
+        let largest = |change: [f64; N]| change.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
+        self.over_time(0.0, self.velocity_changes().map(largest))
+    }
+
+    fn velocity_changes(&self) -> impl Iterator<Item = [f64; N]> {
         let before = core::iter::once([0.0; N]).chain(self.velocities());
         let changes = before.zip(self.velocities());
-        self.over_time(0.0, changes.map(|(a, b)| length(self.change(a, b))))
+        changes.map(|(from, to)| self.change(from, to))
     }
 
     fn velocities(&self) -> impl Iterator<Item = [f64; N]> {
@@ -159,6 +169,10 @@ mod tests {
             assert!((a / wanted - 1.0).abs() < ROUNDING, "{changes:?}");
         }
         assert_eq!(changes.len(), 3);
+        // At the corner each axis changes its speed by as much as at the ends.
+        let mut largest = sampler.axis_accelerations().filter(|[_, a]| *a > 1.0);
+        let even = 100.0 / sampler.window_s;
+        assert!(largest.all(|[_, a]| (a / even - 1.0).abs() < ROUNDING));
         assert!(sampler.speeds().last().unwrap()[1].abs() < ROUNDING);
     }
 

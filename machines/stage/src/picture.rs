@@ -76,9 +76,9 @@ fn motion(run: &Run) -> [Plot; 2] {
         .with_title("Speed along the path")
         .line(&window, Stroke::ACTUAL, motion.speeds());
     let acceleration = time_chart(run, "acceleration in mm/s²")
-        .with_title("Acceleration")
+        .with_title("Acceleration of X or Y, the larger")
         .line("limit of an axis", Stroke::LIMIT, limit)
-        .line(&window, Stroke::ACTUAL, motion.accelerations());
+        .line(&window, Stroke::ACTUAL, motion.axis_accelerations());
     [speed, acceleration]
 }
 
