@@ -66,6 +66,8 @@ pub(super) struct Trial<'a, L: Legs> {
     shortest_s: f64,
     /// Those at the start and at the end of the fastest motion.
     accelerations: [f64; 2],
+    /// Whether the knots have the speeds of the fastest motion along them.
+    are_fastest: bool,
 }
 
 /// Fewest knots of which the second and the last but one can be placed.
@@ -88,6 +90,7 @@ impl<'a, L: Legs> Trial<'a, L> {
             knots,
             shortest_s: 0.0,
             accelerations: [0.0; 2],
+            are_fastest: false,
         }
     }
 
@@ -114,10 +117,10 @@ impl<'a, L: Legs> Trial<'a, L> {
         window_s: f64,
     ) -> Result<(f64, Easing), PlanError<L::Error>> {
         let window_s = self.begin(window_s)?;
-        let mut best = (self.time_s(found)?, found);
+        let mut best = (self.time_s(found, f64::INFINITY)?, found);
         for room in [None, Some(1.0)] {
             let next = Easing { window_s, room };
-            let time_s = self.time_s(next)?;
+            let time_s = self.time_s(next, best.0)?;
             if time_s < best.0 {
                 best = (time_s, next);
             }
@@ -132,11 +135,8 @@ impl<'a, L: Legs> Trial<'a, L> {
     /// its ends cannot be told apart.
     fn begin(&mut self, window_s: f64) -> Result<f64, PlanError<L::Error>> {
         self.find_even_speeds()?;
-        profile::fastest_speeds(self.eased, self.legs, self.knots, profile::uncapped)?;
-        let fastest_s = self.knots.windows(2).fold(0.0, |sum, pair| match pair {
-            [from, to] if to.s > 0.0 => sum + 2.0 * (to.s - from.s) / (from.speed + to.speed),
-            _ => sum,
-        });
+        self.find_fastest()?;
+        let fastest_s = self.unaveraged_s();
         self.shortest_s = fastest_s * SHORTEST;
         self.accelerations = [2, self.knots.len().saturating_sub(3)].map(|number| {
             let length = self.knots.last().map_or(0.0, |knot| knot.s);
@@ -145,6 +145,14 @@ impl<'a, L: Legs> Trial<'a, L> {
             knot.speed * knot.speed / (2.0 * distance)
         });
         Ok(window_s.min(fastest_s).max(self.shortest_s))
+    }
+
+    /// The time of the motion that the average is taken of.
+    fn unaveraged_s(&self) -> f64 {
+        self.knots.windows(2).fold(0.0, |sum, pair| match pair {
+            [from, to] if to.s > 0.0 => sum + 2.0 * (to.s - from.s) / (from.speed + to.speed),
+            _ => sum,
+        })
     }
 
     /// Puts the first knot of a single leg where the average reaches its acceleration, a w²/6 from the
@@ -168,13 +176,14 @@ impl<'a, L: Legs> Trial<'a, L> {
         ];
         for (number, s) in ends {
             if let Some(knot) = self.knots.get_mut(number) {
+                self.are_fastest &= knot.s.to_bits() == s.to_bits();
                 knot.s = s;
             }
         }
     }
 
     fn search(&mut self, start: Easing) -> Result<(f64, Easing), PlanError<L::Error>> {
-        let mut best = (self.time_s(start)?, start);
+        let mut best = (self.time_s(start, f64::INFINITY)?, start);
         self.improve(&mut best, Number::Window, COARSE)?;
         for factor in FINE {
             self.improve(&mut best, Number::Window, factor)?;
@@ -195,7 +204,7 @@ impl<'a, L: Legs> Trial<'a, L> {
         for factor in [1.0 / factor, factor] {
             for step in 0..STEPS {
                 let next = best.1.with(number, factor);
-                let time_s = self.time_s(next)?;
+                let time_s = self.time_s(next, best.0)?;
                 // Written so that NaN is no shorter.
                 let is_shorter = time_s < best.0;
                 if is_shorter {
@@ -210,14 +219,16 @@ impl<'a, L: Legs> Trial<'a, L> {
         Ok(())
     }
 
-    /// The time that an average takes when it just keeps all limits.
-    fn time_s(&mut self, easing: Easing) -> Result<f64, PlanError<L::Error>> {
+    /// The time that an average takes when it just keeps all limits; infinite where it is at least
+    /// `most_s`.
+    fn time_s(&mut self, easing: Easing, most_s: f64) -> Result<f64, PlanError<L::Error>> {
         if easing.window_s < self.shortest_s {
             return Ok(f64::INFINITY);
         }
         self.find_speeds(easing)?;
         let mut motion = Utilisation::new(self.limits, self.legs.forward(self.limits));
         let mut average = Average::new(easing.window_s, self.knots);
+        let least_s = self.unaveraged_s() + easing.window_s;
         let (mut duration_s, mut stretch) = (0.0, 0.0_f64);
         for knot in &*self.knots {
             let [speed, segment_s] = average.next(self.knots);
@@ -227,6 +238,9 @@ impl<'a, L: Legs> Trial<'a, L> {
             }
             let segment = motion.next(Of::AxesAndTool, [knot.s, speed], segment_s)?;
             (duration_s, stretch) = (duration_s + segment_s, larger_or_nan(stretch, segment));
+            if least_s * stretch >= most_s {
+                return Ok(f64::INFINITY);
+            }
         }
         Ok(duration_s * stretch.max(motion.stop_at_rest()))
     }
@@ -278,12 +292,21 @@ impl<'a, L: Legs> Trial<'a, L> {
         Ok(())
     }
 
+    fn find_fastest(&mut self) -> Result<(), PlanError<L::Error>> {
+        if !self.are_fastest {
+            profile::fastest_speeds(self.eased, self.legs, self.knots, profile::uncapped)?;
+            self.are_fastest = true;
+        }
+        Ok(())
+    }
+
     /// The speeds of the motion that the average is taken of.
     fn find_speeds(&mut self, easing: Easing) -> Result<(), PlanError<L::Error>> {
         self.place_ends(easing.window_s);
         let Some(room) = easing.room else {
-            return profile::fastest_speeds(self.eased, self.legs, self.knots, profile::uncapped);
+            return self.find_fastest();
         };
+        self.are_fastest = false;
         shape::hold_low_speeds(self.knots, room, easing.window_s * 0.5);
         profile::fastest_speeds(self.eased, self.legs, self.knots, |knot| knot.after)?;
         shape::cut_tops(self.knots, easing.window_s);
