@@ -191,7 +191,7 @@ fn memory_is_fixed() {
     assert_eq!(size_of::<PtPoints<'_, 3>>(), 680);
     assert_eq!(size_of::<PvtTable<'_, 3>>(), 344);
     assert_eq!(size_of::<PvtPoints<'_, 3>>(), 1296);
-    assert_eq!(size_of::<PvtRun<'_, 3>>(), 2480);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 2640);
     assert_eq!((size_of::<Knot>(), size_of::<Ahead>()), (32, 16));
 }
 
