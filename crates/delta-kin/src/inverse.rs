@@ -7,7 +7,7 @@ use trig_kernels::{Trig, sqrt};
 
 use crate::arm::{smallest, zip};
 use crate::prepared::{PreparedArm, Triangle, middle, thetas};
-use crate::range::max_value;
+use crate::range::{half, max_value};
 use crate::rounded::Rounded;
 use crate::{Arm, AssemblyMode, Delta, Elbow, ZAxis};
 
@@ -139,9 +139,9 @@ impl<T: RealField + Trig> Delta<T> {
     ///
     /// Nothing is divided by what can vanish, and the two solutions are never swapped. Where what
     /// is under the root is negative the point is out of reach. Where h < Lb/2 it is instead
-    /// (L² - (h - Lb)²) ((h + Lb)² - L²), in which no squares of about equal lengths cancel. What [`forward`](Self::forward) made in the same modes is
-    /// never refused: up to [`tolerance`](Self::tolerance) past an edge counts as on it, for
-    /// limits too.
+    /// (L² - (h - Lb)²) ((h + Lb)² - L²), in which no squares of about equal lengths cancel. What
+    /// [`forward`](Self::forward) made in the same modes is never refused: up to
+    /// [`tolerance`](Self::tolerance) past an edge counts as on it, for limits too.
     ///
     /// Angles read from the machine's zero, in radians. θ is within -π..=π, and where the arm
     /// has a range, at the whole turn that lies in it.
@@ -289,12 +289,17 @@ impl<T: RealField + Trig> Delta<T> {
         if holds(angle) {
             return (angle, T::zero());
         }
+        let misses = |angle: T| {
+            let miss = prepared.stretch(local, prepared.theta(angle)).abs();
+            miss > self.tolerance()
+        };
         for end in [min, max] {
             // The other end may be the nearer one by a whole turn.
-            let apart = (end - angle) / turn;
-            let nearest = (apart - apart.round()).abs() * turn;
-            let miss = prepared.stretch(local, prepared.theta(end)).abs();
-            if nearest < T::frac_pi_2() && miss <= self.tolerance() {
+            let turns = (end - angle) / turn;
+            let apart = (turns - turns.round()) * turn;
+            // Not where the elbow would be on the other side: halfway there the rod misses.
+            let halfway = end - apart * half();
+            if apart.abs() < T::frac_pi_2() && !misses(end) && !misses(halfway) {
                 return (end, T::zero());
             }
         }

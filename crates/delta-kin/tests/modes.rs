@@ -2,10 +2,12 @@
 //! another mode than the machine's.
 #![cfg(test)]
 
+use core::f64::consts::FRAC_PI_2;
+
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    AssemblyMode, CalibrationError, Delta, Elbow, FollowError, InverseError, JointRange, Measured,
-    Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
+    Arm, AssemblyMode, CalibrationError, Delta, Elbow, FollowError, InverseError, JointRange,
+    Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
 };
 
 fn thesis() -> Delta {
@@ -246,5 +248,35 @@ fn the_working_mode_is_asked_for_by_name() {
             let out = Vector3::new(flat * cos, flat * sin, up) * (clearance * 0.999);
             assert!(ranged.is_reachable(point + out), "{elbows:?}");
         }
+    }
+}
+
+/// An end of a range that is the arm's angle with the elbow on the other side is no rounding of the
+/// angle in its working mode.
+#[test]
+fn the_other_elbow_s_angle_is_no_end_of_a_range() {
+    let delta = Delta::new(0.42, 0.18, 1.2, 2.43)
+        .unwrap()
+        .with_assembly_mode(AssemblyMode::Upper);
+    let point = Point3::new(0.05, -0.04, 1.27);
+    let out = delta.inverse(point).unwrap();
+    let inner = delta
+        .with_working_mode([Elbow::In; 3])
+        .inverse(point)
+        .unwrap();
+    for (arm, angle) in out.iter().copied().enumerate() {
+        assert!(f64::abs(angle - inner[arm]) < FRAC_PI_2);
+        let mut ranges = [JointRange::unlimited(); 3];
+        ranges[arm] = JointRange::new(inner[arm], inner[arm] + 1.0).unwrap();
+        let [min, max] = [ranges[arm].min(), ranges[arm].max()];
+        let refused = InverseError::JointLimit {
+            arm: Arm::ALL[arm],
+            angle,
+            min,
+            max,
+        };
+        assert_eq!(delta.with_ranges(ranges).inverse(point), Err(refused));
+        ranges[arm] = JointRange::new(angle, inner[arm]).unwrap();
+        assert_eq!(delta.with_ranges(ranges).inverse(point), Ok(out));
     }
 }
