@@ -138,7 +138,7 @@ async fn tcp() {
 }
 
 /// A bus on which everybody hears every character, its own too.
-async fn bus(listener: TcpListener, partner: DuplexStream) {
+async fn bus(listener: TcpListener, partner: DuplexStream) -> ! {
     let (mut a, _) = listener.accept().await.unwrap();
     let mut b = partner;
     let (mut from_a, mut from_b) = ([0; 64], [0; 64]);
@@ -151,9 +151,6 @@ async fn bus(listener: TcpListener, partner: DuplexStream) {
                 continue;
             }
         };
-        if piece.is_empty() {
-            return;
-        }
         a.write_all(piece).await.unwrap();
         b.write_all(piece).await.unwrap();
     }
@@ -174,8 +171,8 @@ async fn own_echo_is_removed() {
         b.send(&telegram(number)).await.unwrap();
         assert_eq!(a.receive().await.unwrap(), telegram(number));
     }
-    drop(a);
-    bus.await.unwrap();
+    // The last echo may not have been read yet: closing would reset the connection.
+    bus.abort();
 }
 
 /// A serial server of RFC 2217 that answers every setting with `set`, and then carries characters
