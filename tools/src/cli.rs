@@ -2,6 +2,7 @@
 
 mod input;
 mod monitor;
+pub(crate) mod settings;
 mod simulate;
 mod station;
 

@@ -12,7 +12,7 @@ use std::{
     time::Instant,
 };
 
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result, anyhow};
 use clap::{Args, ValueEnum};
 use proto3964r::{Config, Event, Priority, tokio::driver};
 use tokio::{select, sync::mpsc::Receiver, time::sleep};
@@ -91,7 +91,7 @@ trait Partner {
         None
     }
 
-    /// What became of its telegram.
+    /// What became of its telegram, if it has one under way.
     fn handle_outcome(&mut self, _now: Duration, _is_sent: bool) {}
 
     /// Whether its telegram is out of date.
@@ -123,10 +123,8 @@ fn partner(machine: Machine, path: Option<&str>) -> Result<Box<dyn Partner>> {
         Machine::Any => Answers::new(text.unwrap_or_default()).map(|it| Box::new(it) as _),
         Machine::Rk512 => Plc::new(text.unwrap_or_default()).map(|it| Box::new(it) as _),
         Machine::Km271 => Heating::new(text).map(|it| Box::new(it) as _),
-        Machine::Hbls => {
-            ensure!(text.is_none(), "a pendant has no data");
-            Ok(Box::new(Pendant::new()))
-        }
+        Machine::Hbls if text.is_some() => Err(anyhow!("a pendant has no data")),
+        Machine::Hbls => Ok(Box::new(Pendant::new())),
     };
     match path {
         Some(path) => made.with_context(|| path.to_owned()),
@@ -156,6 +154,8 @@ async fn work(options: &Options, mut partner: Box<dyn Partner>) -> Result<()> {
         let ended = serve(port, config(options), partner.as_mut(), &mut orders, epoch).await;
         match ended {
             Err(_) if matches!(options.port.target, Target::TcpListen(_)) => {
+                // What was under way to the one that has gone.
+                partner.handle_outcome(epoch.elapsed(), false);
                 writeln!(io::stdout(), "disconnected")?;
             }
             other => return other.with_context(name),

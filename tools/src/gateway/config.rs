@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Context as _, Result};
 use proto3964r::Priority;
 use serde::Deserialize;
 use toml::Spanned;
@@ -19,7 +19,7 @@ use super::{
     broker::Broker,
     field::{Field, Pattern},
 };
-use crate::{Address, Preset};
+use crate::{Address, Preset, cli::settings};
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -188,16 +188,10 @@ impl Config {
     }
 
     fn parse(text: &str) -> Result<Self> {
-        let config: Self = toml::from_str(text).map_err(|error| {
-            let message = error.message().replace('\n', ", ");
-            match error.span() {
-                Some(span) => located(text, span.start, &message),
-                None => anyhow!(message),
-            }
-        })?;
+        let config: Self = settings::parse(text)?;
         match config.check() {
             Ok(()) => Ok(config),
-            Err((start, message)) => Err(located(text, start, &message)),
+            Err((start, message)) => Err(settings::located(text, start, &message)),
         }
     }
 
@@ -326,14 +320,6 @@ pub(crate) fn time(seconds: f64) -> Result<Duration, String> {
         Ok(time) if !time.is_zero() => Ok(time),
         _ => Err(format!("{seconds} is no time in seconds")),
     }
-}
-
-/// Line and column, from 1, of an offset, before a message.
-fn located(text: &str, start: usize, message: &str) -> anyhow::Error {
-    let before = text.get(..start).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    anyhow!("line {line}, column {column}: {message}")
 }
 
 fn prefix() -> Prefix {

@@ -3,12 +3,12 @@
 use alloc::collections::{BTreeMap, VecDeque};
 use core::{array, time::Duration};
 
-use anyhow::{Context as _, Result, anyhow, ensure};
+use anyhow::{Result, anyhow, ensure};
 use rk512::{AbandonCause, Config, DataBlock, Memory, Server, ServerEvent};
 use serde::Deserialize;
 
 use super::Partner;
-use crate::text;
+use crate::{cli::settings, text};
 
 /// Data blocks that a file may have.
 const BLOCKS: usize = 64;
@@ -82,7 +82,7 @@ impl Content {
 impl Plc {
     /// From the memory as TOML.
     pub(super) fn new(text: &str) -> Result<Self> {
-        let file: File = toml::from_str(text)?;
+        let file: File = settings::parse(text)?;
         let mut blocks = Vec::new();
         for (kind, list) in [("db", file.db), ("dx", file.dx)] {
             for (number, content) in list {
@@ -91,7 +91,7 @@ impl Plc {
                     is_extended: kind == "dx",
                     number: number
                         .parse()
-                        .with_context(|| format!("{name}: a block has a number from 0 to 255"))?,
+                        .map_err(|_| anyhow!("{name}: a block has a number from 0 to 255"))?,
                     bytes: content.bytes(&name)?,
                 });
             }
