@@ -187,7 +187,7 @@ impl Config {
         Ok(config)
     }
 
-    fn parse(text: &str) -> Result<Self> {
+    pub(super) fn parse(text: &str) -> Result<Self> {
         let config: Self = settings::parse(text)?;
         match config.check() {
             Ok(()) => Ok(config),

@@ -4,11 +4,10 @@ mod rk512;
 mod telegrams;
 
 use alloc::sync::Arc;
-use core::{sync::atomic::Ordering, time::Duration};
+use core::{future::Future, pin::pin, sync::atomic::Ordering, time::Duration};
 
 use log::{info, warn};
-use tokio::sync::mpsc;
-use tokio_util::sync::CancellationToken;
+use tokio::{sync::mpsc, time::sleep};
 
 use super::{
     config::{self, Procedure},
@@ -45,10 +44,10 @@ impl Line {
         let stop = self.hub.stop.clone();
         let mut pause = PAUSE.0;
         while !stop.is_cancelled() {
-            let opened = tokio::select! {
-                opened = self.config.port.open() => opened,
-                () = refuse_jobs(&mut self.jobs, &self.hub, &self.name) => return,
-                () = stop.cancelled() => break,
+            let opening = self.config.port.open();
+            let opened = refuse_until(opening, &mut self.jobs, &self.hub, &self.name).await;
+            let Some(opened) = opened else {
+                break;
             };
             let error = match opened {
                 Ok(stream) => {
@@ -73,7 +72,7 @@ impl Line {
                 "{}: {}: {error}; next attempt in {pause:?}",
                 self.name, self.config.port
             );
-            self.rest(pause, &stop).await;
+            refuse_until(sleep(pause), &mut self.jobs, &self.hub, &self.name).await;
             pause = (2 * pause).min(PAUSE.1);
         }
         self.hub.online(&self.name, false);
@@ -85,21 +84,28 @@ impl Line {
                 .await;
         }
     }
-
-    /// Waits, and refuses what comes meanwhile.
-    async fn rest(&mut self, pause: Duration, stop: &CancellationToken) {
-        tokio::select! {
-            () = tokio::time::sleep(pause) => {}
-            () = refuse_jobs(&mut self.jobs, &self.hub, &self.name) => {}
-            () = stop.cancelled() => {}
-        }
-    }
 }
 
-/// Jobs of a line whose port is not open. Never returns as long as there is a hub.
-async fn refuse_jobs(jobs: &mut mpsc::Receiver<Job>, hub: &Hub, line: &str) {
-    while let Some(job) = jobs.recv().await {
+/// Waits until `done`, and refuses the jobs that come meanwhile: the port is not open. `None` when
+/// the gateway stops.
+async fn refuse_until<T>(
+    done: impl Future<Output = T>,
+    jobs: &mut mpsc::Receiver<Job>,
+    hub: &Hub,
+    line: &str,
+) -> Option<T> {
+    let mut done = pin!(done);
+    loop {
+        let job = tokio::select! {
+            done = &mut done => return Some(done),
+            () = hub.stop.cancelled() => return None,
+            job = jobs.recv() => job?,
+        };
+        // Its outcome is not dropped, however long the queue of the broker is full.
         let error = "the port is not open".to_owned();
         hub.outcome(line, job.id.as_ref(), Err(error)).await;
     }
 }
+
+#[cfg(test)]
+mod tests;
