@@ -47,7 +47,7 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let config = Config::read(&options.config)?;
     let (hub, jobs) = Hub::new(&config);
-    let session = match &config.mqtt {
+    let session = match config.mqtt() {
         Some(mqtt) => Some(mqtt::options(&config, mqtt, &hub)?),
         None => None,
     };
@@ -74,7 +74,7 @@ async fn work(
     if let Some(listener) = listen(config.metrics.as_ref()).await? {
         services.spawn(metrics::serve(listener, Arc::clone(&hub)));
     }
-    if let (Some(outbox), Some(mqtt)) = (&hub.outbox, &config.mqtt) {
+    if let (Some(outbox), Some(mqtt)) = (&hub.outbox, config.mqtt()) {
         outbox.retain(hub.status_topic(), "online".into());
         if let Some(prefix) = &mqtt.discovery {
             discovery::announce(&config, prefix, &hub, outbox);

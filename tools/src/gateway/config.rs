@@ -21,17 +21,20 @@ use super::{
 };
 use crate::{Address, Preset, cli::settings};
 
+/// The client of the broker takes no shorter one.
+const KEEP_ALIVE_MIN_S: u16 = 5;
+
 /// The whole file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Config {
     /// Of this gateway: its client identifier at the broker and first level of its topics.
     pub(crate) name: Name,
-    pub(crate) mqtt: Option<Mqtt>,
+    mqtt: Option<Spanned<Mqtt>>,
     pub(crate) tcp: Option<Listen>,
     pub(crate) metrics: Option<Listen>,
     #[serde(default = "ten_seconds")]
-    stop_s: f64,
+    stop_s: Spanned<f64>,
     #[serde(rename = "line")]
     pub(crate) lines: Vec<Spanned<Line>>,
 }
@@ -67,7 +70,7 @@ pub(crate) struct Mqtt {
     #[serde(default = "one_day_s")]
     pub(crate) session_expiry_s: u32,
     #[serde(default = "half_a_minute_s")]
-    pub(crate) keep_alive_s: NonZeroU16,
+    pub(crate) keep_alive_s: u16,
     /// Prefix of Home Assistant's discovery topics; without it nothing is announced.
     pub(crate) discovery: Option<Prefix>,
 }
@@ -117,7 +120,7 @@ pub(crate) struct Line {
     pub(crate) preset: Preset,
     pub(crate) priority: PriorityName,
     /// Acknowledgement delay time (QVZ), if not the preset's.
-    pub(crate) qvz_ms: Option<u16>,
+    pub(crate) qvz_ms: Option<NonZeroU16>,
     /// Jobs that wait for the line.
     #[serde(default = "sixteen")]
     pub(crate) commands: NonZeroU16,
@@ -172,7 +175,7 @@ impl Config {
         let place = || path.display().to_string();
         let text = fs::read_to_string(path).with_context(place)?;
         let mut config = Self::parse(&text).with_context(place)?;
-        if let Some(mqtt) = &mut config.mqtt {
+        if let Some(mqtt) = config.mqtt.as_mut().map(Spanned::get_mut) {
             let folder = path.parent().unwrap_or(Path::new(""));
             let files = [
                 &mut mqtt.password_file,
@@ -197,19 +200,25 @@ impl Config {
 
     /// What the types do not say. The place is an offset into the text.
     fn check(&self) -> Result<(), (usize, String)> {
-        if let Err(message) = time(self.stop_s) {
-            return Err((0, format!("stop_s: {message}")));
+        if let Err(message) = time(*self.stop_s.get_ref()) {
+            return Err((self.stop_s.span().start, format!("stop_s: {message}")));
         }
         if self.mqtt.is_none() && self.tcp.is_none() {
             return Err((0, "neither [mqtt] nor [tcp]".to_owned()));
         }
         if let Some(mqtt) = &self.mqtt {
-            mqtt.check()
-                .map_err(|message| (0, format!("mqtt: {message}")))?;
+            let checked = mqtt.get_ref().check();
+            checked.map_err(|message| (mqtt.span().start, format!("mqtt: {message}")))?;
         }
-        let mut names = Vec::new();
+        let (mut names, mut ports) = (Vec::new(), Vec::new());
         for line in &self.lines {
+            let table = line.span().start;
             let line = line.get_ref();
+            let port = &line.port.target;
+            if ports.contains(&port) {
+                return Err((table, format!("a second line on `{port}`")));
+            }
+            ports.push(port);
             let (name, start) = (line.name.get_ref(), line.name.span().start);
             if names.contains(&name) {
                 return Err((start, format!("a second line `{name}`")));
@@ -220,27 +229,36 @@ impl Config {
         Ok(())
     }
 
+    pub(crate) fn mqtt(&self) -> Option<&Mqtt> {
+        self.mqtt.as_ref().map(Spanned::get_ref)
+    }
+
     /// How long a stop may take.
     pub(crate) fn stop(&self) -> Duration {
-        Duration::try_from_secs_f64(self.stop_s).unwrap_or(Duration::MAX)
+        time(*self.stop_s.get_ref()).unwrap_or(Duration::MAX)
     }
 }
 
 impl Mqtt {
-    fn check(&self) -> Result<(), &'static str> {
-        if self.password.is_some() && self.password_file.is_some() {
-            return Err("password and password_file");
+    fn check(&self) -> Result<(), String> {
+        let keep_alive_s = self.keep_alive_s;
+        if keep_alive_s < KEEP_ALIVE_MIN_S {
+            return Err(format!(
+                "keep_alive_s: {keep_alive_s}, at least {KEEP_ALIVE_MIN_S}"
+            ));
         }
-        if self.user.is_none() && (self.password.is_some() || self.password_file.is_some()) {
-            return Err("a password without a user");
-        }
-        if self.certificate_file.is_some() != self.key_file.is_some() {
-            return Err("certificate_file and key_file go together");
-        }
-        if !self.broker.is_tls && (self.ca_file.is_some() || self.key_file.is_some()) {
-            return Err("certificates are for mqtts://");
-        }
-        Ok(())
+        let message = if self.password.is_some() && self.password_file.is_some() {
+            "password and password_file"
+        } else if self.user.is_none() && (self.password.is_some() || self.password_file.is_some()) {
+            "a password without a user"
+        } else if self.certificate_file.is_some() != self.key_file.is_some() {
+            "certificate_file and key_file go together"
+        } else if !self.broker.is_tls && (self.ca_file.is_some() || self.key_file.is_some()) {
+            "certificates are for mqtts://"
+        } else {
+            return Ok(());
+        };
+        Err(message.to_owned())
     }
 
     /// The password, from its file without the end of its line.
@@ -266,7 +284,8 @@ impl Line {
             if self.procedure == Procedure::Rk512 {
                 return Err((start, "telegrams on a line of RK512".to_owned()));
             }
-            check_fields(&telegram.get_ref().fields)?;
+            let telegram = telegram.get_ref();
+            check_fields(&telegram.fields, telegram.length)?;
         }
         let mut names = Vec::new();
         for area in &self.areas {
@@ -276,7 +295,7 @@ impl Line {
                 return Err((start, "areas are for procedure = \"rk512\"".to_owned()));
             }
             area.check().map_err(|message| (start, message))?;
-            check_fields(&area.fields)?;
+            check_fields(&area.fields, Some(area.bytes()))?;
             if names.contains(&&area.name) {
                 return Err((start, format!("a second area `{}`", area.name)));
             }
@@ -293,18 +312,19 @@ impl Line {
         };
         let config = self.preset.config(priority, self.port.line());
         proto3964r::Config {
-            qvz_ms: self.qvz_ms.unwrap_or(config.qvz_ms),
+            qvz_ms: self.qvz_ms.map_or(config.qvz_ms, NonZeroU16::get),
             ..config
         }
     }
 }
 
-fn check_fields(fields: &[Spanned<Field>]) -> Result<(), (usize, String)> {
+/// The fields of so many bytes, if that is known.
+fn check_fields(fields: &[Spanned<Field>], bytes: Option<usize>) -> Result<(), (usize, String)> {
     let mut names = Vec::new();
     for field in fields {
         let start = field.span().start;
         let field = field.get_ref();
-        let checked = field.check();
+        let checked = field.check(bytes);
         checked.map_err(|message| (start, format!("field `{}`: {message}", field.name)))?;
         if names.contains(&&field.name) {
             return Err((start, format!("a second field `{}`", field.name)));
@@ -330,8 +350,8 @@ const fn siemens() -> Preset {
     Preset::Siemens3964r
 }
 
-const fn ten_seconds() -> f64 {
-    10.0
+fn ten_seconds() -> Spanned<f64> {
+    Spanned::new(0..0, 10.0)
 }
 
 const fn ten_thousand() -> NonZeroU16 {
@@ -342,8 +362,8 @@ const fn one_day_s() -> u32 {
     24 * 60 * 60
 }
 
-const fn half_a_minute_s() -> NonZeroU16 {
-    const { NonZeroU16::new(30).unwrap() }
+const fn half_a_minute_s() -> u16 {
+    30
 }
 
 const fn sixteen() -> NonZeroU16 {

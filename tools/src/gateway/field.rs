@@ -52,8 +52,8 @@ impl TryFrom<String> for Pattern {
 }
 
 impl Field {
-    /// Whether the settings fit together.
-    pub(crate) fn check(&self) -> Result<(), String> {
+    /// Whether the settings fit together, and into so many bytes, if that is known.
+    pub(crate) fn check(&self, bytes: Option<usize>) -> Result<(), String> {
         let kind = self.kind;
         match (kind.has_length(), self.length) {
             (true, None | Some(0)) => return Err("this type needs a length".to_owned()),
@@ -67,6 +67,12 @@ impl Field {
             (true, Some(0..=7)) | (false, None) => {}
             (true, _) => return Err("this type needs a bit, 0 to 7".to_owned()),
             (false, Some(_)) => return Err("only type `bit` has a bit".to_owned()),
+        }
+        let end = self.range().end;
+        if let Some(bytes) = bytes
+            && end > bytes
+        {
+            return Err(format!("ends at byte {end} of {bytes}"));
         }
         match self.scale {
             Some(_) if !kind.is_number() => Err("only numbers have a scale".to_owned()),

@@ -111,7 +111,7 @@ impl Hub {
             };
             lines.insert(line.name.get_ref().to_string(), desk);
         }
-        let mqtt = config.mqtt.as_ref();
+        let mqtt = config.mqtt();
         let prefix = mqtt.map(|mqtt| mqtt.prefix.0.as_str()).unwrap_or_default();
         let hub = Self {
             topic: format!("{prefix}/{}", config.name),

@@ -45,7 +45,7 @@ const OVERHEAD: usize = 16;
 pub(crate) fn options(config: &Config, mqtt: &Mqtt, hub: &Hub) -> Result<MqttOptions> {
     let broker = &mqtt.broker;
     let mut options = MqttOptions::new(config.name.as_str(), &broker.host, broker.port);
-    options.set_keep_alive(Duration::from_secs(mqtt.keep_alive_s.get().into()));
+    options.set_keep_alive(Duration::from_secs(mqtt.keep_alive_s.into()));
     options.set_clean_start(false);
     options.set_session_expiry_interval(Some(mqtt.session_expiry_s));
     options.set_max_packet_size(Some(MAX_PACKET));

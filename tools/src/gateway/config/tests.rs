@@ -50,7 +50,31 @@ fn errors_name_line_and_column() {
             &LINE.replace("h:1", "h"),
             "line 6, column 8: `tcp://h`: `h` is not HOST:PORT",
         ),
-        (&LINE.repeat(2), "line 9, column 8: a second line `a`"),
+        (
+            &(LINE.to_owned() + &LINE.replace("h:1", "h:2")),
+            "line 9, column 8: a second line `a`",
+        ),
+        (
+            &(LINE.to_owned() + &LINE.replace("\"a\"", "\"b\"")),
+            "line 8, column 1: a second line on `tcp://h:1`",
+        ),
+        (
+            &format!("{LINE}qvz_ms = 0"),
+            "line 8, column 10: invalid value: integer `0`, expected a nonzero u16",
+        ),
+        (
+            &format!(
+                "{LINE}[[line.telegram]]\nname = \"x\"\nlength = 2\nfield = [{{ name = \"y\", offset = 1, type = \"u16be\" }}]"
+            ),
+            "line 11, column 10: field `y`: ends at byte 3 of 2",
+        ),
+        (
+            &format!(
+                "{LINE}procedure = \"rk512\"\n[[line.area]]\nname = \"x\"\nstart = \"DB 1.0\"\nlength = 1\n\
+                 field = [{{ name = \"y\", offset = 1, type = \"u16be\" }}]"
+            ),
+            "line 13, column 10: field `y`: ends at byte 3 of 2",
+        ),
         (
             &format!("{LINE}[[line.area]]\nname = \"x\"\nstart = \"DB 1.0\"\nlength = 1"),
             "line 8, column 1: areas are for procedure = \"rk512\"",
@@ -79,9 +103,14 @@ fn errors_name_line_and_column() {
             "mqtt: certificate_file and key_file go together",
         ),
         ("ca_file = \"x\"", "mqtt: certificates are for mqtts://"),
+        ("keep_alive_s = 4", "mqtt: keep_alive_s: 4, at least 5"),
     ] {
-        assert_eq!(error(&mqtt(rest)), format!("line 1, column 1: {message}"));
+        assert_eq!(error(&mqtt(rest)), format!("line 2, column 1: {message}"));
     }
+    assert_eq!(
+        error(&mqtt("[metrics]\nlisten = \"[::1]:0\"").replacen('[', "stop_s = -1\n[", 1)),
+        "line 2, column 10: stop_s: -1 is no time in seconds"
+    );
     assert_eq!(
         error(&mqtt("prefix = \"a/#\"")),
         "line 4, column 10: `a/#` is no beginning of a topic"
