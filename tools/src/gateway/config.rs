@@ -1,28 +1,28 @@
 //! The configuration file.
 
+mod mqtt;
 mod name;
 
 use core::{net::SocketAddr, num::NonZeroU16, time::Duration};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
 use anyhow::{Context as _, Result};
-use proto3964r::Priority;
-use serde::Deserialize;
+use proto3964r::{Priority, tokio::Link};
+use serde::{Deserialize, Deserializer, de::Error as _};
 use toml::Spanned;
 
-pub(crate) use self::name::Name;
+pub(crate) use self::{
+    mqtt::{Mqtt, Overflow, Prefix},
+    name::Name,
+};
 use super::{
     area::Area,
-    broker::Broker,
     field::{Field, Pattern},
 };
 use crate::{Address, Preset, cli::settings};
 
-/// The client of the broker takes no shorter one.
-const KEEP_ALIVE_MIN_S: u16 = 5;
+/// The longest time: 30 years, which every clock bears.
+const TIME_MAX_S: f64 = 1e9;
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -43,69 +43,14 @@ pub(crate) struct Config {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Listen {
+    #[serde(deserialize_with = "socket")]
     pub(crate) listen: SocketAddr,
 }
 
-/// The broker, and what is kept for it.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Mqtt {
-    pub(crate) broker: Broker,
-    pub(crate) user: Option<String>,
-    password: Option<String>,
-    password_file: Option<PathBuf>,
-    /// PEM; without it the system's certificate authorities hold.
-    pub(crate) ca_file: Option<PathBuf>,
-    /// PEM of certificate and key of this client.
-    pub(crate) certificate_file: Option<PathBuf>,
-    pub(crate) key_file: Option<PathBuf>,
-    #[serde(default = "prefix")]
-    pub(crate) prefix: Prefix,
-    /// Telegrams kept until the broker has acknowledged them.
-    #[serde(default = "ten_thousand")]
-    pub(crate) queue: NonZeroU16,
-    #[serde(default)]
-    pub(crate) overflow: Overflow,
-    /// How long the broker keeps the commands for a gateway that is away.
-    #[serde(default = "one_day_s")]
-    pub(crate) session_expiry_s: u32,
-    #[serde(default = "half_a_minute_s")]
-    pub(crate) keep_alive_s: u16,
-    /// Prefix of Home Assistant's discovery topics; without it nothing is announced.
-    pub(crate) discovery: Option<Prefix>,
-}
-
-/// What becomes of a telegram when the queue is full.
-#[derive(Clone, Copy, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Overflow {
-    /// Its line waits, and with it the partner, who is refused with NAK.
-    #[default]
-    Wait,
-    /// The oldest of the queue is given up, and counted.
-    DropOldest,
-}
-
-/// First levels of a topic, without wildcards and without `/` at its ends.
-#[derive(Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) struct Prefix(pub(crate) String);
-
-impl TryFrom<String> for Prefix {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        let is_level = |level: &str| {
-            !level.is_empty()
-                && !level.contains(['+', '#', '$'])
-                && !level.contains(char::is_control)
-        };
-        if text.split('/').all(is_level) {
-            Ok(Self(text))
-        } else {
-            Err(format!("`{text}` is no beginning of a topic"))
-        }
-    }
+fn socket<'de, D: Deserializer<'de>>(text: D) -> Result<SocketAddr, D::Error> {
+    let text = String::deserialize(text)?;
+    text.parse()
+        .map_err(|_| D::Error::custom(format!("`{text}` is not IP:PORT")))
 }
 
 /// One line and its partner.
@@ -176,16 +121,7 @@ impl Config {
         let text = fs::read_to_string(path).with_context(place)?;
         let mut config = Self::parse(&text).with_context(place)?;
         if let Some(mqtt) = config.mqtt.as_mut().map(Spanned::get_mut) {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let files = [
-                &mut mqtt.password_file,
-                &mut mqtt.ca_file,
-                &mut mqtt.certificate_file,
-                &mut mqtt.key_file,
-            ];
-            for file in files.into_iter().flatten() {
-                *file = folder.join(&file);
-            }
+            mqtt.set_folder(path.parent().unwrap_or(Path::new("")));
         }
         Ok(config)
     }
@@ -205,6 +141,9 @@ impl Config {
         }
         if self.mqtt.is_none() && self.tcp.is_none() {
             return Err((0, "neither [mqtt] nor [tcp]".to_owned()));
+        }
+        if self.lines.is_empty() {
+            return Err((0, "no [[line]]".to_owned()));
         }
         if let Some(mqtt) = &self.mqtt {
             let checked = mqtt.get_ref().check();
@@ -239,44 +178,6 @@ impl Config {
     }
 }
 
-impl Mqtt {
-    fn check(&self) -> Result<(), String> {
-        let keep_alive_s = self.keep_alive_s;
-        if keep_alive_s < KEEP_ALIVE_MIN_S {
-            return Err(format!(
-                "keep_alive_s: {keep_alive_s}, at least {KEEP_ALIVE_MIN_S}"
-            ));
-        }
-        let message = if self.password.is_some() && self.password_file.is_some() {
-            "password and password_file"
-        } else if self.user.is_none() && (self.password.is_some() || self.password_file.is_some()) {
-            "a password without a user"
-        } else if self.certificate_file.is_some() != self.key_file.is_some() {
-            "certificate_file and key_file go together"
-        } else if !self.broker.is_tls && (self.ca_file.is_some() || self.key_file.is_some()) {
-            "certificates are for mqtts://"
-        } else {
-            return Ok(());
-        };
-        Err(message.to_owned())
-    }
-
-    /// The password, from its file without the end of its line.
-    ///
-    /// # Errors
-    /// Those of the file.
-    pub(crate) fn password(&self) -> Result<String> {
-        match &self.password_file {
-            Some(path) => {
-                let text = fs::read_to_string(path);
-                let text = text.with_context(|| path.display().to_string())?;
-                Ok(text.trim_end_matches(['\r', '\n']).to_owned())
-            }
-            None => Ok(self.password.clone().unwrap_or_default()),
-        }
-    }
-}
-
 impl Line {
     fn check(&self) -> Result<(), (usize, String)> {
         for telegram in &self.telegrams {
@@ -285,7 +186,9 @@ impl Line {
                 return Err((start, "telegrams on a line of RK512".to_owned()));
             }
             let telegram = telegram.get_ref();
-            check_fields(&telegram.fields, telegram.length)?;
+            telegram.check().map_err(|message| (start, message))?;
+            let length = telegram.length.unwrap_or(Link::MAX_TELEGRAM);
+            check_fields(&telegram.fields, length)?;
         }
         let mut names = Vec::new();
         for area in &self.areas {
@@ -295,7 +198,7 @@ impl Line {
                 return Err((start, "areas are for procedure = \"rk512\"".to_owned()));
             }
             area.check().map_err(|message| (start, message))?;
-            check_fields(&area.fields, Some(area.bytes()))?;
+            check_fields(&area.fields, area.bytes())?;
             if names.contains(&&area.name) {
                 return Err((start, format!("a second area `{}`", area.name)));
             }
@@ -318,8 +221,28 @@ impl Line {
     }
 }
 
-/// The fields of so many bytes, if that is known.
-fn check_fields(fields: &[Spanned<Field>], bytes: Option<usize>) -> Result<(), (usize, String)> {
+impl Telegram {
+    /// Whether there are telegrams that this describes.
+    fn check(&self) -> Result<(), String> {
+        let (name, begin) = (&self.name, self.starts_with.0.len());
+        let length = self.length.unwrap_or(Link::MAX_TELEGRAM);
+        if length > Link::MAX_TELEGRAM {
+            let most = Link::MAX_TELEGRAM;
+            return Err(format!(
+                "telegram `{name}`: length {length}, at most {most}"
+            ));
+        }
+        if begin > length {
+            return Err(format!(
+                "telegram `{name}`: begins with {begin} bytes of {length}"
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The fields of so many bytes.
+fn check_fields(fields: &[Spanned<Field>], bytes: usize) -> Result<(), (usize, String)> {
     let mut names = Vec::new();
     for field in fields {
         let start = field.span().start;
@@ -337,13 +260,11 @@ fn check_fields(fields: &[Spanned<Field>], bytes: Option<usize>) -> Result<(), (
 /// A time of a file.
 pub(crate) fn time(seconds: f64) -> Result<Duration, String> {
     match Duration::try_from_secs_f64(seconds) {
-        Ok(time) if !time.is_zero() => Ok(time),
-        _ => Err(format!("{seconds} is no time in seconds")),
+        Ok(time) if !time.is_zero() && seconds <= TIME_MAX_S => Ok(time),
+        _ => Err(format!(
+            "{seconds} is no time in seconds, up to {TIME_MAX_S}"
+        )),
     }
-}
-
-fn prefix() -> Prefix {
-    Prefix("line3964r".to_owned())
 }
 
 const fn siemens() -> Preset {
@@ -352,18 +273,6 @@ const fn siemens() -> Preset {
 
 fn ten_seconds() -> Spanned<f64> {
     Spanned::new(0..0, 10.0)
-}
-
-const fn ten_thousand() -> NonZeroU16 {
-    const { NonZeroU16::new(10_000).unwrap() }
-}
-
-const fn one_day_s() -> u32 {
-    24 * 60 * 60
-}
-
-const fn half_a_minute_s() -> u16 {
-    30
 }
 
 const fn sixteen() -> NonZeroU16 {

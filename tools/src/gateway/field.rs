@@ -52,8 +52,8 @@ impl TryFrom<String> for Pattern {
 }
 
 impl Field {
-    /// Whether the settings fit together, and into so many bytes, if that is known.
-    pub(crate) fn check(&self, bytes: Option<usize>) -> Result<(), String> {
+    /// Whether the settings fit together, and into so many bytes.
+    pub(crate) fn check(&self, bytes: usize) -> Result<(), String> {
         let kind = self.kind;
         match (kind.has_length(), self.length) {
             (true, None | Some(0)) => return Err("this type needs a length".to_owned()),
@@ -69,9 +69,7 @@ impl Field {
             (false, Some(_)) => return Err("only type `bit` has a bit".to_owned()),
         }
         let end = self.range().end;
-        if let Some(bytes) = bytes
-            && end > bytes
-        {
+        if end > bytes {
             return Err(format!("ends at byte {end} of {bytes}"));
         }
         match self.scale {

@@ -3,6 +3,8 @@
 #![cfg(unix)]
 
 mod exchange;
+#[cfg(feature = "gateway")]
+mod gateway;
 mod monitor;
 mod program;
 mod simulate;

@@ -109,7 +109,7 @@ fn errors_name_line_and_column() {
     }
     assert_eq!(
         error(&mqtt("[metrics]\nlisten = \"[::1]:0\"").replacen('[', "stop_s = -1\n[", 1)),
-        "line 2, column 10: stop_s: -1 is no time in seconds"
+        "line 2, column 10: stop_s: -1 is no time in seconds, up to 1000000000"
     );
     assert_eq!(
         error(&mqtt("prefix = \"a/#\"")),

@@ -5,7 +5,7 @@ use super::Field;
 
 fn field(settings: &str) -> Field {
     let field: Field = toml::from_str(&format!("name = \"f\"\n{settings}")).unwrap();
-    field.check(None).unwrap();
+    field.check(4096).unwrap();
     field
 }
 
@@ -96,7 +96,7 @@ fn settings_that_do_not_fit() {
     ] {
         let field: Field =
             toml::from_str(&format!("name = \"f\"\noffset = 0\n{settings}")).unwrap();
-        assert_eq!(field.check(None), Err(error.to_owned()), "{settings}");
+        assert_eq!(field.check(4096), Err(error.to_owned()), "{settings}");
     }
 }
 
