@@ -17,7 +17,7 @@ pub(crate) const MAX_COMMAND: usize = 16 * 1024;
 ///
 /// Any may have an `id`, which its outcome repeats.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a JSON object")]
 struct CommandText {
     id: Option<Value>,
     send: Option<String>,
@@ -119,3 +119,6 @@ impl CommandText {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
