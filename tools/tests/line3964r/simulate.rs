@@ -72,7 +72,8 @@ impl Machine {
         let mut stdout = self.child.stdout.take().unwrap();
         stdout.read_to_end(&mut text).unwrap();
         let mut printed = lines(&text);
-        let of_the_line = ["received", "sent", "error", "receive-failed"];
+        // Whether both begin at once depends on who comes first.
+        let of_the_line = ["received", "sent", "error", "receive-failed", "conflict"];
         printed.retain(|line| !of_the_line.iter().any(|word| line.starts_with(word)));
         printed
     }
