@@ -10,7 +10,9 @@ mod gateway;
 mod load;
 mod partner;
 mod refused;
+mod scale;
 mod subscriber;
+mod uart;
 
 /// The broker, or an end of the test that is seen: it must not be missed where
 /// `POSE2PULSE_REQUIRE_MOSQUITTO` is set.
