@@ -1,11 +1,9 @@
 //! The machine as a board runs it: telegrams in and out, blocks played tick by tick, switches that
 //! close where they are. What comes out of the pins is compared with paths, not with the planner.
 
-#[allow(dead_code, reason = "each test uses a part of it")]
-mod rig;
-
 use arm_machine::State;
-use rig::{HOME_STEPS, Rig, START_STEPS, STEPS_PER_TURN, forward, joints_of};
+
+use crate::rig::{HOME_STEPS, Rig, START_STEPS, STEPS_PER_TURN, forward, joints_of};
 
 /// Each joint is within half a step of the path: at most so far from the line is the tool, both links
 /// in a row, and the tolerance of the settings on top.

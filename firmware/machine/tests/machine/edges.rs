@@ -1,15 +1,13 @@
 //! The pins of a line against the line: each step in its tick.
 
-#[allow(dead_code, reason = "each test uses a part of it")]
-mod rig;
-
 use std::f64::consts::TAU;
 
 use path_timing::{AxisLimits, Curve, Knot, Row, Table};
-use rig::{
+use scara_kin::{Elbow, Joints};
+
+use crate::rig::{
     ACCELERATION_DEG_S2, Rig, SPEED_DEG_S, START_STEPS, STEPS_PER_TURN, TICK_HZ, arm, forward,
 };
-use scara_kin::{Elbow, Joints};
 
 /// Of the line: the most that the firmware makes.
 const SEGMENTS: u32 = 100;
