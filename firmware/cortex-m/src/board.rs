@@ -1,8 +1,13 @@
-//! What the programs use of the boards MPS2 with AN385 (Cortex-M3) or AN386 (M4F): timers.
+//! What the programs use of the boards MPS2 with AN385 (Cortex-M3) or AN386 (M4F): timers, a serial
+//! port, and the end of a run in QEMU.
 //!
-//! Arm, *Cortex-M System Design Kit*, Technical Reference Manual (ARM DDI 0479), chapters 4.3 and 4.4.
+//! Arm, *Cortex-M System Design Kit*, Technical Reference Manual (ARM DDI 0479), chapter 4.
 
 use core::ptr::{read_volatile, write_volatile};
+
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m_semihosting::debug;
+use stepper_sync::Direction;
 
 /// The timers' clock.
 pub const CLOCK_HZ: u32 = 25_000_000;
@@ -23,7 +28,15 @@ pub struct StepTimer {
 struct Registers(*mut u32);
 
 /// The interrupt of both step timers.
-pub const STEP_INTERRUPT: u16 = 10;
+#[derive(Clone, Copy, Debug)]
+pub struct StepInterrupt;
+
+// SAFETY: the number of an interrupt that the boards have.
+unsafe impl InterruptNumber for StepInterrupt {
+    fn number(self) -> u16 {
+        10
+    }
+}
 
 const ENABLE_CLOCK: u32 = 1;
 /// Of 32 bits, again and again, with interrupts.
@@ -31,7 +44,7 @@ const ENABLE_STEPS: u32 = 1 << 7 | 1 << 6 | 1 << 5 | 1 << 1;
 
 impl Registers {
     fn write(&self, number: usize, value: u32) {
-        // SAFETY: registers of a timer, which the boards have there.
+        // SAFETY: registers of a timer or port, which the boards have there.
         unsafe { write_volatile(self.0.add(number), value) }
     }
 
@@ -165,5 +178,49 @@ impl Uart {
 
     pub fn write(&self, byte: u8) {
         self.registers.write(Self::DATA, byte.into());
+    }
+}
+
+/// The edges of a joint's step pin.
+#[derive(Debug)]
+pub struct Trace {
+    /// Twice the clock at each step, and 1 where the direction is negative.
+    edges: [u32; Self::MAX_STEPS],
+    len: usize,
+}
+
+impl Trace {
+    const MAX_STEPS: usize = 16_384;
+    pub const EMPTY: Self = Self {
+        edges: [0; Self::MAX_STEPS],
+        len: 0,
+    };
+
+    /// A step now, by a clock that has been started.
+    #[inline]
+    pub fn push(&mut self, direction: Direction) {
+        if let Some(place) = self.edges.get_mut(self.len) {
+            *place = Clock::started().value() << 1 | u32::from(direction == Direction::Negative);
+        }
+        self.len += 1;
+    }
+
+    /// Sign of each step, and the lower 31 bits of the clock.
+    ///
+    /// # Panics
+    /// For more steps than there is room for.
+    pub fn edges(&self) -> impl Iterator<Item = (char, u32)> {
+        assert!(self.len <= Self::MAX_STEPS, "{} steps", self.len);
+        self.edges[..self.len].iter().map(|edge| {
+            let sign = if edge & 1 == 0 { '+' } else { '-' };
+            (sign, edge >> 1)
+        })
+    }
+}
+
+/// The program has done its work.
+pub fn exit() -> ! {
+    loop {
+        debug::exit(debug::EXIT_SUCCESS);
     }
 }

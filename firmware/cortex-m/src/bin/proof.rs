@@ -21,10 +21,9 @@ fn main() {
 
 #[cfg(target_os = "none")]
 mod start {
-    use core::panic::PanicInfo;
-
-    use cortex_m_semihosting::{debug, hprintln};
+    use cortex_m_firmware::board::exit;
     use no_std_proof::checks;
+    use panic_semihosting as _;
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
@@ -32,16 +31,6 @@ mod start {
             assert!(check().is_some(), "check {number}");
         }
         super::say_hashes();
-        loop {
-            debug::exit(debug::EXIT_SUCCESS);
-        }
-    }
-
-    #[panic_handler]
-    fn panic(info: &PanicInfo<'_>) -> ! {
-        hprintln!("{}", info);
-        loop {
-            debug::exit(debug::EXIT_FAILURE);
-        }
+        exit()
     }
 }

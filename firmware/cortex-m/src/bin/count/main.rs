@@ -9,10 +9,10 @@ mod motion;
 mod steps;
 
 use core::hint::black_box;
-use core::panic::PanicInfo;
 
+use cortex_m_firmware::board::exit;
 use cortex_m_firmware::meter::Meter;
-use cortex_m_semihosting::{debug, hprintln};
+use panic_semihosting as _;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -23,9 +23,7 @@ fn main() -> ! {
     steps::count(&meter);
     line::count(&meter);
     memory::say();
-    loop {
-        debug::exit(debug::EXIT_SUCCESS);
-    }
+    exit()
 }
 
 /// As a function of its own, as an interrupt handler has it.
@@ -38,12 +36,4 @@ fn next<I: Iterator>(iterator: &mut I) -> Option<I::Item> {
 fn cycle<T: Copy>(values: &[T]) -> impl FnMut() -> T {
     let mut rest = values.iter().cycle();
     move || black_box(*rest.next().expect("not empty"))
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    hprintln!("{}", info);
-    loop {
-        debug::exit(debug::EXIT_FAILURE);
-    }
 }

@@ -1,19 +1,18 @@
 //! The player: an interrupt for each step of each joint.
 
 use core::cell::UnsafeCell;
-use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
 use cortex_m_firmware::Hash;
 use cortex_m_firmware::arm_line::{MAX_BYTES, Planner, Segments, Steps, plan};
-use cortex_m_firmware::board::{Clock, STEP_INTERRUPT, StepTimer};
-use cortex_m_semihosting::{debug, hprintln};
+use cortex_m_firmware::board::{Clock, StepInterrupt, StepTimer, Trace, exit};
+use cortex_m_semihosting::hprintln;
+use panic_semihosting as _;
 use stepper_sync::Direction;
 
 /// Where QEMU's loader puts the PC's line: two lengths, and the bytes of both joints.
 const WIRE: *const u32 = 0x2100_0000 as *const u32;
-const MAX_STEPS: usize = 16_384;
 
 /// What the interrupt has of a joint.
 struct Joint {
@@ -23,9 +22,7 @@ struct Joint {
     next: Option<(u32, Direction)>,
     /// The clock at the start.
     start: u32,
-    /// Twice the clock at each step, and 1 where the direction is negative.
-    trace: [u32; MAX_STEPS],
-    played: usize,
+    trace: Trace,
 }
 
 struct Shared(UnsafeCell<[Option<Joint>; 2]>);
@@ -44,8 +41,7 @@ impl Joint {
             next: steps.next(),
             steps,
             start: 0,
-            trace: [0; MAX_STEPS],
-            played: 0,
+            trace: Trace::EMPTY,
         }
     }
 
@@ -62,11 +58,8 @@ impl Joint {
         let Some((_, direction)) = self.now else {
             return;
         };
-        if let Some(place) = self.trace.get_mut(self.played) {
-            // A firmware with pins would change one here.
-            *place = Clock::started().value() << 1 | u32::from(direction == Direction::Negative);
-        }
-        self.played += 1;
+        // A firmware with pins would change one here.
+        self.trace.push(direction);
         self.now = self.next;
         self.next = self.steps.next();
         if let Some((ticks, _)) = self.next {
@@ -92,16 +85,6 @@ unsafe fn DefaultHandler(_: i16) {
     }
 }
 
-#[derive(Clone, Copy)]
-struct StepInterrupt;
-
-// SAFETY: the number of an interrupt that the boards have.
-unsafe impl cortex_m::interrupt::InterruptNumber for StepInterrupt {
-    fn number(self) -> u16 {
-        STEP_INTERRUPT
-    }
-}
-
 /// Plays both joints' segments, and says what came when.
 fn play(name: &str, wire: [&[u8]; 2]) {
     // SAFETY: no timer runs; the interrupt does not look before `start`.
@@ -113,9 +96,8 @@ fn play(name: &str, wire: [&[u8]; 2]) {
     }
     while RUNNING.load(Ordering::Acquire) > 0 {}
     for (number, joint) in joints.iter().flatten().enumerate() {
-        for edge in joint.trace.iter().take(joint.played) {
-            let ticks = joint.start.wrapping_sub(edge >> 1) & (u32::MAX >> 1);
-            let sign = if edge & 1 == 0 { '+' } else { '-' };
+        for (sign, clock) in joint.trace.edges() {
+            let ticks = joint.start.wrapping_sub(clock) & (u32::MAX >> 1);
             hprintln!("{} {} {} {}", name, number, sign, ticks);
         }
     }
@@ -145,15 +127,5 @@ fn main() -> ! {
         .for_each(|&byte| hash.add(byte.into()));
     hprintln!("planned {} {}", ticks, hash.value());
     play("board", [shoulder, elbow]);
-    loop {
-        debug::exit(debug::EXIT_SUCCESS);
-    }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    hprintln!("{}", info);
-    loop {
-        debug::exit(debug::EXIT_FAILURE);
-    }
+    exit()
 }

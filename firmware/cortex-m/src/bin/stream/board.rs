@@ -3,16 +3,16 @@
 mod joint;
 
 use core::cell::UnsafeCell;
-use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use core::time::Duration;
 
 use cortex_m::interrupt;
 use cortex_m::peripheral::NVIC;
-use cortex_m_firmware::board::{CLOCK_HZ, Clock, STEP_INTERRUPT, StepTimer, Uart};
+use cortex_m_firmware::board::{CLOCK_HZ, Clock, StepInterrupt, StepTimer, Uart, exit};
 use cortex_m_firmware::stream::{Batch, Event, MAX_BATCH, REPORT, Report, WINDOW};
-use cortex_m_semihosting::{debug, hprintln};
+use cortex_m_semihosting::hprintln;
 use joint::Joint;
+use panic_semihosting as _;
 use proto3964r::{Config, Event as LineEvent, Line, Priority, Station};
 
 /// A tail is taken up that long before the end of its batch: 20 ms, in which the main loop comes
@@ -106,16 +106,6 @@ unsafe fn DefaultHandler(_: i16) {
         if timer.is_due() {
             joint.step(number, timer, &SLOTS);
         }
-    }
-}
-
-#[derive(Clone, Copy)]
-struct StepInterrupt;
-
-// SAFETY: the number of an interrupt that the boards have.
-unsafe impl interrupt::InterruptNumber for StepInterrupt {
-    fn number(self) -> u16 {
-        STEP_INTERRUPT
     }
 }
 
@@ -343,20 +333,10 @@ fn finish(machine: &Machine) -> ! {
     }
     with_joints(|joints| {
         for (number, joint) in joints.iter().enumerate() {
-            for (sign, clock) in joint.trace() {
+            for (sign, clock) in joint.trace.edges() {
                 hprintln!("step {} {} {}", number, sign, clock);
             }
         }
     });
-    loop {
-        debug::exit(debug::EXIT_SUCCESS);
-    }
-}
-
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    hprintln!("{}", info);
-    loop {
-        debug::exit(debug::EXIT_FAILURE);
-    }
+    exit()
 }

@@ -2,12 +2,11 @@
 
 use core::sync::atomic::Ordering;
 
-use cortex_m_firmware::board::{Clock, StepTimer};
+use cortex_m_firmware::board::{StepTimer, Trace};
 use stepper_sync::{Direction, SegmentPlayer};
 
 use super::{Slots, next};
 
-const MAX_STEPS: usize = 16_384;
 /// A timer this near to its end is left alone: what is set then may come too late.
 const NEAR_TICKS: u32 = 200;
 
@@ -29,9 +28,7 @@ pub struct Joint {
     /// The step whose ticks are counted now, and the one after it.
     now: Option<Step>,
     next: Option<Step>,
-    /// Twice the clock at each step, and 1 where the direction is negative.
-    trace: [u32; MAX_STEPS],
-    played: usize,
+    pub trace: Trace,
 }
 
 enum Taken {
@@ -52,8 +49,7 @@ impl Joint {
         taken: 0,
         now: None,
         next: None,
-        trace: [0; MAX_STEPS],
-        played: 0,
+        trace: Trace::EMPTY,
     };
 
     /// At rest: goes on with a batch.
@@ -73,11 +69,8 @@ impl Joint {
         let Some((_, direction)) = self.now else {
             return;
         };
-        if let Some(place) = self.trace.get_mut(self.played) {
-            // A firmware with pins would change one here.
-            *place = Clock::started().value() << 1 | u32::from(direction == Direction::Negative);
-        }
-        self.played += 1;
+        // A firmware with pins would change one here.
+        self.trace.push(direction);
         self.made += match direction {
             Direction::Positive => 1,
             Direction::Negative => -1,
@@ -169,17 +162,5 @@ impl Joint {
             }
             self.segment = 0;
         }
-    }
-
-    /// Sign and clock of each step made.
-    pub fn trace(&self) -> impl Iterator<Item = (char, u32)> {
-        assert!(
-            self.played <= MAX_STEPS,
-            "more steps than the trace has room for"
-        );
-        self.trace[..self.played].iter().map(|edge| {
-            let sign = if edge & 1 == 0 { '+' } else { '-' };
-            (sign, edge >> 1)
-        })
     }
 }
