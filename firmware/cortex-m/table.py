@@ -12,8 +12,13 @@ from pathlib import Path
 HERE = Path(__file__).parent
 COUNTED, COMMITTED = HERE / "target", HERE / "measured"
 PAGE = HERE.parent.parent / "docs" / "metal.md"
-KINDS = ("count", "play", "sizes")
-CORES = {"m4": "M4F", "m3": "M3", "m0": "M0+"}
+# The tables that are kept; lines are played on an M3 and an M0+ as well.
+KEPT = {
+    "m4": ("count", "play", "sizes"),
+    "m3": ("count",),
+    "m0": ("count", "sizes"),
+    "boards": ("sizes",),
+}
 # Counts are of one compiler; another one may place a few instructions otherwise.
 MOST = 1.05
 # Below, one instruction is more than 5 %.
@@ -72,7 +77,7 @@ def table(head, rows):
 
 
 def counts():
-    by_core = {core: read(COMMITTED / f"{core}-count") for core in CORES}
+    by_core = {core: read(COMMITTED / f"{core}-count") for core in ("m4", "m3", "m0")}
     calls = [key for key in by_core["m4"] if key[1] != "bytes"]
     rows = []
     for name, kind in calls:
@@ -149,7 +154,9 @@ def page():
 
 
 def main(verb, *cores):
-    found = [(core, kind) for core in cores for kind in KINDS if (COUNTED / f"{core}-{kind}").exists()]
+    found = [
+        (core, kind) for core in cores for kind in KEPT[core] if (COUNTED / f"{core}-{kind}").exists()
+    ]
     if verb == "accept":
         COMMITTED.mkdir(exist_ok=True)
         for core, kind in found:
