@@ -63,6 +63,12 @@ pub enum SettingsError {
         /// The most that driver and ticks allow.
         max_s: f64,
     },
+    /// A tolerance that nothing can be within.
+    #[error("a tolerance of {tolerance_mm} mm")]
+    Tolerance {
+        /// The tolerance given.
+        tolerance_mm: f64,
+    },
     /// Homing that steps not at all or faster than the driver takes steps.
     #[error("homing at {hz} steps a second")]
     Homing {
@@ -177,6 +183,10 @@ impl Machine {
                 max_s,
             });
         }
+        let tolerance_mm = settings.tolerance_mm;
+        if tolerance_mm.is_nan() || tolerance_mm < 0.0 {
+            return Err(SettingsError::Tolerance { tolerance_mm });
+        }
         let homing_ticks = |hz: u32| {
             let ticks = tick_hz.checked_div(hz);
             ticks
@@ -199,7 +209,7 @@ impl Machine {
             tick_hz,
             pins,
             limits: [axis(0), axis(1)],
-            tolerance_mm: settings.tolerance_mm,
+            tolerance_mm,
             home,
             homing: settings.homing,
             homing_fast_ticks: homing_ticks(settings.homing_fast_hz)?,

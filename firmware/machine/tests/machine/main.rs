@@ -4,3 +4,4 @@ mod commands;
 mod edges;
 mod motion;
 mod rig;
+mod settings;

@@ -36,7 +36,7 @@ const HOMING: HomingSettings = HomingSettings {
     clear_steps: 20,
 };
 
-const SETTINGS: Settings = Settings {
+pub const SETTINGS: Settings = Settings {
     links_mm: LINKS_MM,
     elbow: Elbow::Right,
     ranges_deg: [[-90.0, 210.0], [20.0, 160.0]],
