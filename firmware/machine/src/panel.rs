@@ -259,13 +259,18 @@ impl Panel {
                 (Command::Line { .. } | Command::Jog { .. }, State::Ready) => {
                     shared.state = State::Moving;
                 }
+                (Command::Hold | Command::Resume, State::Moving | State::Held)
+                    if shared.wanted == Wanted::Stop =>
+                {
+                    return Some(text!("refused: stopping"));
+                }
                 (Command::Hold, State::Moving) => shared.wanted = Wanted::Hold,
                 (Command::Resume, State::Held | State::Moving) => shared.wanted = Wanted::Run,
                 (Command::Stop, State::Moving | State::Held | State::Homing) => {
                     shared.wanted = Wanted::Stop;
                 }
                 (Command::Feed { percent }, _) => shared.feed_percent = percent,
-                _ => return Some(state),
+                _ => return Some(text!("refused: {state}")),
             }
             if job.is_some() {
                 shared.wanted = Wanted::Run;
@@ -273,7 +278,7 @@ impl Panel {
             None
         });
         match (refusal, job) {
-            (Some(state), _) => Some(text!("refused: {state}")),
+            (Some(refusal), _) => Some(refusal),
             (None, Some(job)) => {
                 self.jobs.signal(job);
                 None

@@ -109,6 +109,19 @@ fn a_stopped_line_is_over_and_the_position_known() {
 }
 
 #[test]
+fn a_stop_is_not_taken_back() {
+    let mut rig = Rig::homed();
+    for command in ["hold", "resume"] {
+        assert!(rig.ask("line 60 150").starts_with("ok, "));
+        rig.play_blocks(12);
+        assert_eq!(rig.ask("stop"), "ok");
+        assert_eq!(rig.ask(command), "refused: stopping");
+        assert!(rig.answer().starts_with("stopped, "), "{:?}", rig.log());
+        assert_eq!(rig.panel().state(), State::Ready);
+    }
+}
+
+#[test]
 fn a_jog_turns_one_joint() {
     let mut rig = Rig::homed();
     assert!(rig.ask("jog elbow 36").starts_with("ok, "));
