@@ -42,22 +42,8 @@ impl Display for Joint {
 /// | `limits` | where it can go, and how fast |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Finds both home switches.
-    Home,
-    /// A straight line of the tool.
-    Line {
-        /// The tool's position at the end, in mm.
-        to_mm: [f64; 2],
-        /// Its largest speed, in mm/s.
-        feed_mm_s: Option<f64>,
-    },
-    /// One joint turns.
-    Jog {
-        /// Which.
-        joint: Joint,
-        /// By how much, in degrees.
-        by_deg: f64,
-    },
+    /// A motion.
+    Job(Job),
     /// To rest on the path.
     Hold,
     /// On from there.
@@ -75,6 +61,27 @@ pub enum Command {
     Status,
     /// Where it can go, and how fast.
     Limits,
+}
+
+/// A command that takes time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Job {
+    /// Finds both home switches.
+    Home,
+    /// A straight line of the tool.
+    Line {
+        /// The tool's position at the end, in mm.
+        to_mm: [f64; 2],
+        /// Its largest speed, in mm/s.
+        feed_mm_s: Option<f64>,
+    },
+    /// One joint turns.
+    Jog {
+        /// Which.
+        joint: Joint,
+        /// By how much, in degrees.
+        by_deg: f64,
+    },
 }
 
 /// Why a text is no command. Columns count from 1, in bytes.
@@ -143,15 +150,15 @@ impl Command {
         let mut words = Words { text, next: 0 };
         let (column, name) = words.next().ok_or(CommandError::Empty)?;
         let command = match name {
-            b"home" => Self::Home,
-            b"line" => Self::Line {
+            b"home" => Self::Job(Job::Home),
+            b"line" => Self::Job(Job::Line {
                 to_mm: [words.number("number of mm")?, words.number("number of mm")?],
                 feed_mm_s: words.positive("positive number of mm/s")?,
-            },
-            b"jog" => Self::Jog {
+            }),
+            b"jog" => Self::Job(Job::Jog {
                 joint: words.joint()?,
                 by_deg: words.number("number of degrees")?,
-            },
+            }),
             b"hold" => Self::Hold,
             b"resume" => Self::Resume,
             b"stop" => Self::Stop,

@@ -11,15 +11,18 @@ mod pulses;
 mod settings;
 mod talk;
 
-pub use command::{Command, CommandError, Joint};
+pub use command::{Command, CommandError, Job, Joint};
 pub use motion::Motion;
 pub use panel::{Panel, State};
 pub use pulses::{Block, BlockEnd, Word};
 pub use settings::{Machine, Settings, SettingsError};
 pub use talk::talk;
 
+/// Longest answer, in bytes.
+const MAX_ANSWER: usize = 160;
+
 /// An answer to a command, or what became of it.
-pub type Text = heapless::String<160>;
+pub type Text = heapless::String<MAX_ANSWER>;
 
 /// A text of what is formatted; what does not fit is left out.
 macro_rules! text {

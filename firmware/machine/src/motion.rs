@@ -7,9 +7,9 @@ use scara_kin::{ArmPath, Joints};
 use stepper_sync::{PvtQuantiser, PvtSteps};
 
 use crate::blocks::BlockWriter;
-use crate::command::Joint;
+use crate::command::{Job, Joint};
 use crate::homing::{NoHome, home};
-use crate::panel::{Job, Panel, State, Wanted};
+use crate::panel::{Panel, State, Wanted};
 use crate::settings::{Machine, SettingsError};
 use crate::{Text, text};
 
@@ -197,9 +197,8 @@ impl<'m> Motion<'m> {
         let machine = self.machine;
         let from = self.axes.joints;
         let by = by_deg.to_radians();
-        let ranges = [machine.arm.limits().shoulder, machine.arm.limits().elbow];
         let axis = joint as usize;
-        let (to, range) = (from[axis] + by, ranges[axis]);
+        let (to, range) = (from[axis] + by, machine.ranges()[axis]);
         if !range.contains(to) {
             return Err(refused(format_args!(
                 "{joint} at {:.3} degrees, not within {:.3} to {:.3}",

@@ -8,7 +8,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::{Channel, TrySendError};
 use embassy_sync::signal::Signal;
 
-use crate::command::{Command, Joint};
+use crate::command::{Command, Job};
 use crate::pulses::{Block, BlockEnd};
 use crate::{Text, text};
 
@@ -41,20 +41,6 @@ impl Display for State {
             Self::Held => "held",
         })
     }
-}
-
-/// A command that takes time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Job {
-    Home,
-    Line {
-        to_mm: [f64; 2],
-        feed_mm_s: Option<f64>,
-    },
-    Jog {
-        joint: Joint,
-        by_deg: f64,
-    },
 }
 
 /// What the user wants of the motion under way.
@@ -246,17 +232,13 @@ impl Panel {
     /// Takes a command that changes what the machine does. Of one that takes time the planner tells
     /// the outcome.
     pub(crate) fn take(&self, command: Command) -> Option<Text> {
-        let job = match command {
-            Command::Home => Some(Job::Home),
-            Command::Line { to_mm, feed_mm_s } => Some(Job::Line { to_mm, feed_mm_s }),
-            Command::Jog { joint, by_deg } => Some(Job::Jog { joint, by_deg }),
-            _ => None,
-        };
         let refusal = self.change(|shared| {
             let state = shared.state;
             match (command, state) {
-                (Command::Home, State::NotHomed | State::Ready) => shared.state = State::Homing,
-                (Command::Line { .. } | Command::Jog { .. }, State::Ready) => {
+                (Command::Job(Job::Home), State::NotHomed | State::Ready) => {
+                    shared.state = State::Homing;
+                }
+                (Command::Job(Job::Line { .. } | Job::Jog { .. }), State::Ready) => {
                     shared.state = State::Moving;
                 }
                 (Command::Hold | Command::Resume, State::Moving | State::Held)
@@ -272,18 +254,18 @@ impl Panel {
                 (Command::Feed { percent }, _) => shared.feed_percent = percent,
                 _ => return Some(text!("refused: {state}")),
             }
-            if job.is_some() {
+            if matches!(command, Command::Job(_)) {
                 shared.wanted = Wanted::Run;
             }
             None
         });
-        match (refusal, job) {
+        match (refusal, command) {
             (Some(refusal), _) => Some(refusal),
-            (None, Some(job)) => {
+            (None, Command::Job(job)) => {
                 self.jobs.signal(job);
                 None
             }
-            (None, None) => {
+            (None, _) => {
                 self.changed.signal(());
                 Some(text!("ok"))
             }

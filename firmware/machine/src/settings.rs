@@ -216,4 +216,9 @@ impl Machine {
             homing_slow_ticks: homing_ticks(settings.homing_slow_hz)?,
         })
     }
+
+    pub(crate) const fn ranges(&self) -> [JointRange; 2] {
+        let Limits { shoulder, elbow } = *self.arm.limits();
+        [shoulder, elbow]
+    }
 }

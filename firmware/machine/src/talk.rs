@@ -10,14 +10,13 @@ use proto3964r::embedded_io_async::{Driver, Timer};
 use proto3964r::{Config, Event, Line, LineError, Priority, Station};
 use scara_kin::Joints;
 
-use crate::command::Command;
+use crate::command::{Command, Joint};
 use crate::panel::Panel;
 use crate::settings::Machine;
-use crate::{Text, text};
+use crate::{MAX_ANSWER, Text, text};
 
 /// Longest telegram that is taken, in bytes.
 const MAX_COMMAND: usize = 64;
-const MAX_ANSWER: usize = 160;
 /// Answers that wait for the line.
 const ANSWERS: usize = 8;
 
@@ -136,11 +135,10 @@ impl Display for Limits<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Machine { arm, limits, .. } = self.0;
         write!(f, "reach {:.1} to {:.1} mm", arm.inner_reach(), arm.reach())?;
-        let ranges = [arm.limits().shoulder, arm.limits().elbow];
-        for ((name, range), limits) in ["shoulder", "elbow"].iter().zip(ranges).zip(limits) {
+        for ((joint, range), limits) in Joint::ALL.iter().zip(self.0.ranges()).zip(limits) {
             write!(
                 f,
-                ", {name} {:.1} to {:.1} degrees, {:.0} /s, {:.0} /s2",
+                ", {joint} {:.1} to {:.1} degrees, {:.0} /s, {:.0} /s2",
                 range.min().to_degrees(),
                 range.max().to_degrees(),
                 limits.speed.to_degrees(),

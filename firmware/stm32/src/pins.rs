@@ -25,7 +25,8 @@ pub type Drivers = (
 const RING: usize = 512;
 /// Filled at a time.
 const CHUNK: usize = 64;
-/// Blocks that the DMA has not played. A block of fewer ticks than a chunk is the last before a rest.
+/// Blocks that the DMA has not played. One of fewer ticks than a chunk comes before a rest or a long
+/// word.
 const IN_FLIGHT: usize = 16;
 
 /// Plays words, one tick after the other.

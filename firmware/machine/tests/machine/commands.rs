@@ -1,6 +1,6 @@
 //! Commands, and what is said of those that are none.
 
-use arm_machine::{Command, Joint};
+use arm_machine::{Command, Job, Joint};
 
 fn parsed(text: &str) -> Result<Command, String> {
     Command::parse(text.as_bytes()).map_err(|error| error.to_string())
@@ -8,13 +8,15 @@ fn parsed(text: &str) -> Result<Command, String> {
 
 #[test]
 fn commands() {
-    let line = |feed_mm_s| Command::Line {
-        to_mm: [60.0, -15.5],
-        feed_mm_s,
+    let line = |feed_mm_s| {
+        Command::Job(Job::Line {
+            to_mm: [60.0, -15.5],
+            feed_mm_s,
+        })
     };
-    let jog = |joint, by_deg| Command::Jog { joint, by_deg };
+    let jog = |joint, by_deg| Command::Job(Job::Jog { joint, by_deg });
     for (text, command) in [
-        ("home", Command::Home),
+        ("home", Command::Job(Job::Home)),
         ("line 60 -15.5", line(None)),
         ("  line  6e1 -15.5 80\r\n", line(Some(80.0))),
         ("jog shoulder -5", jog(Joint::Shoulder, -5.0)),
