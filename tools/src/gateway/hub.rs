@@ -47,12 +47,13 @@ pub(crate) struct Counts {
     pub(crate) failed: AtomicU64,
     pub(crate) refused: AtomicU64,
     pub(crate) opened: AtomicU64,
-    pub(crate) is_online: AtomicBool,
 }
 
 /// A line as others see it.
 pub(crate) struct Desk {
     pub(crate) counts: Counts,
+    /// The last that was told of its state.
+    is_online: Mutex<Option<bool>>,
     jobs: mpsc::Sender<Job>,
     refusals: Mutex<Refusals>,
     /// The last commands that had an identifier.
@@ -77,8 +78,6 @@ pub(crate) struct Hub {
     pub(crate) lines: BTreeMap<String, Desk>,
     pub(crate) stop: CancellationToken,
     pub(crate) broker: BrokerCounts,
-    /// The last state told of each line.
-    states: Mutex<BTreeMap<String, bool>>,
 }
 
 /// Counts of the connection to the broker.
@@ -105,6 +104,7 @@ impl Hub {
             receivers.push(receiver);
             let desk = Desk {
                 counts: Counts::default(),
+                is_online: Mutex::default(),
                 jobs,
                 refusals: Mutex::default(),
                 recent: Mutex::default(),
@@ -121,7 +121,6 @@ impl Hub {
             lines,
             stop: CancellationToken::new(),
             broker: BrokerCounts::default(),
-            states: Mutex::default(),
         };
         (Arc::new(hub), receivers)
     }
@@ -193,13 +192,11 @@ impl Hub {
 
     /// Tells whether a line works, where that is news.
     pub(crate) fn online(&self, line: &str, is_online: bool) {
-        let mut states = lock(&self.states);
-        if states.insert(line.to_owned(), is_online) == Some(is_online) {
+        let Some(desk) = self.lines.get(line) else {
             return;
-        }
-        drop(states);
-        if let Some(counts) = self.counts(line) {
-            counts.is_online.store(is_online, Ordering::Relaxed);
+        };
+        if lock(&desk.is_online).replace(is_online) == Some(is_online) {
+            return;
         }
         let status = if is_online { "online" } else { "offline" };
         self.tell(&json!({
@@ -251,6 +248,11 @@ impl Hub {
 }
 
 impl Desk {
+    /// Whether the port is open and the last exchange went well.
+    pub(crate) fn is_online(&self) -> bool {
+        *lock(&self.is_online) == Some(true)
+    }
+
     fn is_known(&self, job: &Job) -> bool {
         let recent = lock(&self.recent);
         job.id.as_ref().is_some_and(|id| recent.contains(id))

@@ -13,7 +13,7 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use log::{debug, warn};
 use tokio::net::TcpListener;
 
-use super::hub::{Counts, Hub};
+use super::hub::{Desk, Hub};
 
 /// How long a client may take for its request.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -59,50 +59,50 @@ fn answer(request: &Request<Incoming>, hub: &Hub) -> Response<Full<Bytes>> {
 }
 
 /// One metric: name, type, help, and how it is read from a line.
-type OfLine = (&'static str, &'static str, &'static str, fn(&Counts) -> u64);
+type OfLine = (&'static str, &'static str, &'static str, fn(&Desk) -> u64);
 
 const OF_LINES: [OfLine; 7] = [
     (
         "line_up",
         "gauge",
         "1 while the port is open and the last exchange went well",
-        |c| c.is_online.load(Ordering::Relaxed).into(),
+        |desk| desk.is_online().into(),
     ),
     (
         "line_opened_total",
         "counter",
         "times that the port was opened",
-        |c| c.opened.load(Ordering::Relaxed),
+        |desk| desk.counts.opened.load(Ordering::Relaxed),
     ),
     (
         "line_received_total",
         "counter",
         "telegrams and areas received",
-        |c| c.received.load(Ordering::Relaxed),
+        |desk| desk.counts.received.load(Ordering::Relaxed),
     ),
     (
         "line_possible_repeats_total",
         "counter",
         "telegrams that may be repeats",
-        |c| c.repeats.load(Ordering::Relaxed),
+        |desk| desk.counts.repeats.load(Ordering::Relaxed),
     ),
     (
         "line_commands_done_total",
         "counter",
         "commands that were done",
-        |c| c.done.load(Ordering::Relaxed),
+        |desk| desk.counts.done.load(Ordering::Relaxed),
     ),
     (
         "line_commands_failed_total",
         "counter",
         "commands that failed on the line",
-        |c| c.failed.load(Ordering::Relaxed),
+        |desk| desk.counts.failed.load(Ordering::Relaxed),
     ),
     (
         "line_commands_refused_total",
         "counter",
         "commands that were not begun",
-        |c| c.refused.load(Ordering::Relaxed),
+        |desk| desk.counts.refused.load(Ordering::Relaxed),
     ),
 ];
 
@@ -111,7 +111,7 @@ fn text(hub: &Hub) -> String {
     for (name, kind, help, value) in OF_LINES {
         head(&mut text, name, kind, help);
         for (line, desk) in &hub.lines {
-            let value = value(&desk.counts);
+            let value = value(desk);
             text.push_str(&format!("line3964r_{name}{{line=\"{line}\"}} {value}\n"));
         }
     }

@@ -123,8 +123,8 @@ impl<'h> Session<'h> {
             let event = {
                 let mut event = pin!(self.event_loop.poll());
                 loop {
-                    let is_done = self.window.is_empty() && self.outbox.is_empty();
-                    if finishing.is_cancelled() && self.is_connected && is_done && !is_leaving {
+                    let is_done = || self.window.is_empty() && self.outbox.is_empty();
+                    if finishing.is_cancelled() && self.is_connected && !is_leaving && is_done() {
                         drop(self.client.try_disconnect());
                         is_leaving = true;
                     }

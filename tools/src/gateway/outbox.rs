@@ -1,6 +1,6 @@
 //! What waits for the broker.
 
-use alloc::collections::{BTreeMap, VecDeque};
+use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -34,8 +34,10 @@ pub(crate) struct Outbox {
 #[derive(Default)]
 struct State {
     queue: VecDeque<(String, Bytes)>,
-    /// By topic, and whether they have yet to be sent.
-    retained: BTreeMap<String, (Bytes, bool)>,
+    /// By topic.
+    retained: BTreeMap<String, Bytes>,
+    /// Topics of those that have yet to be sent.
+    unsent: BTreeSet<String>,
 }
 
 impl Outbox {
@@ -93,9 +95,9 @@ impl Outbox {
     /// Sets what the broker retains under a topic.
     pub(crate) fn retain(&self, topic: String, payload: Bytes) {
         let mut state = self.state();
-        let is_same = |(known, _): &(Bytes, bool)| *known == payload;
-        if !state.retained.get(&topic).is_some_and(is_same) {
-            state.retained.insert(topic, (payload, true));
+        if state.retained.get(&topic) != Some(&payload) {
+            state.unsent.insert(topic.clone());
+            state.retained.insert(topic, payload);
             self.filled.notify_one();
         }
     }
@@ -113,15 +115,12 @@ impl Outbox {
 
     fn try_next(&self) -> Option<Message> {
         let mut state = self.state();
-        let unsent = state
-            .retained
-            .iter_mut()
-            .find(|(_, (_, is_unsent))| *is_unsent);
-        if let Some((topic, (payload, is_unsent))) = unsent {
-            *is_unsent = false;
+        if let Some(topic) = state.unsent.pop_first()
+            && let Some(payload) = state.retained.get(&topic).cloned()
+        {
             return Some(Message {
-                topic: topic.clone(),
-                payload: payload.clone(),
+                topic,
+                payload,
                 is_retained: true,
             });
         }
@@ -147,16 +146,14 @@ impl Outbox {
         for message in taken.rev().filter(|message| !message.is_retained) {
             state.queue.push_front((message.topic, message.payload));
         }
-        for (_, is_unsent) in state.retained.values_mut() {
-            *is_unsent = true;
-        }
+        state.unsent = state.retained.keys().cloned().collect();
         self.filled.notify_one();
     }
 
     /// Whether nothing waits for a session.
     pub(crate) fn is_empty(&self) -> bool {
         let state = self.state();
-        state.queue.is_empty() && !state.retained.values().any(|(_, is_unsent)| *is_unsent)
+        state.queue.is_empty() && state.unsent.is_empty()
     }
 
     /// Messages that the broker has not acknowledged.

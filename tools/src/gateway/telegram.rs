@@ -1,5 +1,7 @@
 //! Telegrams and areas as JSON.
 
+use core::fmt::Write as _;
+
 use serde::{Serialize, Serializer};
 use toml::Spanned;
 
@@ -78,6 +80,11 @@ pub(crate) fn describe<'d>(kinds: &'d [Spanned<Telegram>], bytes: &[u8]) -> Opti
 
 /// `41 42 43`.
 pub(crate) fn hex(bytes: &[u8]) -> String {
-    let bytes: Vec<_> = bytes.iter().map(|byte| format!("{byte:02X}")).collect();
-    bytes.join(" ")
+    let mut text = String::with_capacity(3 * bytes.len());
+    for byte in bytes {
+        let space = if text.is_empty() { "" } else { " " };
+        // Into a string, which does not fail.
+        write!(text, "{space}{byte:02X}").ok();
+    }
+    text
 }
