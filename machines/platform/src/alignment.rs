@@ -119,7 +119,7 @@ fn align<const N: usize>(
         let axes = platform.checked_axes(&isometry(pose));
         axes.with_context(|| format!("{name}: out of reach"))?;
     }
-    let planner = Planner::new(platform, &machine.settings, alignment.mode);
+    let planner = Planner::new(platform, &machine.settings, via.clone(), alignment.mode);
     // Whatever is wrong with the motion is said before anything moves.
     planner.plan(from, task.reached)?;
 

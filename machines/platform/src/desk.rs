@@ -1,12 +1,11 @@
 //! A platform whose pendant is in somebody's hands.
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use handwheel::{Key, LedState, Position, RotarySwitch};
 use pose_pt::Platform;
 
 use crate::course::PlatformAt;
-use crate::line::{Side, Wire};
-use crate::machine::{Locators, Machine};
+use crate::machine::{Locators, Machine, isometry};
 use crate::mode::Mode;
 use crate::planner::Planner;
 use crate::screen::LINES;
@@ -73,10 +72,11 @@ impl core::fmt::Debug for Desk {
 }
 
 impl Desk {
-    /// The body where the platform file has it, and both enabling switches up.
+    /// The body at the first pose of the platform file, and both enabling switches up. The poses
+    /// between are of that file's motion: a pose change set at the desk does not pass them.
     ///
     /// # Errors
-    /// Settings of the panel that cannot work.
+    /// The pose is out of reach; settings of the panel that cannot work.
     pub fn new(machine: &Machine) -> Result<Self> {
         let world = match &machine.locators {
             Locators::Three(platform) => desk(machine, platform)?,
@@ -120,11 +120,11 @@ trait Hands {
 }
 
 fn desk<const N: usize>(machine: &Machine, platform: &Platform<N>) -> Result<Box<dyn Hands>> {
-    let planner = Planner::new(platform, &machine.settings, Mode::Pvt);
     let [from, _] = machine.settings.poses();
-    // It holds nothing, so that nothing is leaked: a wire that brings every byte to the other end.
-    let wire: Wire<'static> = Box::leak(Box::new(|_: Side, byte: u8| Ok(byte)));
-    let mut world: World<'static, N> = World::new(planner, machine.panel, from, wire)?;
+    let axes = platform.checked_axes(&isometry(from));
+    axes.context("from: out of reach")?;
+    let planner = Planner::new(platform, &machine.settings, Vec::new(), Mode::Pvt);
+    let mut world = World::new(planner, machine.panel, from, |_, byte| Ok(byte))?;
     world.pendant.switch_on();
     world.switches(false, false)?;
     Ok(Box::new(world))

@@ -46,7 +46,7 @@ struct Transmitter {
 }
 
 pub(crate) struct Line<'a> {
-    wire: Wire<'a>,
+    wire: Box<dyn FnMut(Side, u8) -> Result<u8> + 'a>,
     control: Transmitter,
     pendant: Transmitter,
     log: String,
@@ -56,9 +56,9 @@ pub(crate) struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    pub(crate) fn new(wire: Wire<'a>) -> Self {
+    pub(crate) fn new(wire: impl FnMut(Side, u8) -> Result<u8> + 'a) -> Self {
         Self {
-            wire,
+            wire: Box::new(wire),
             control: Transmitter::default(),
             pendant: Transmitter::default(),
             log: String::new(),

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Error, Result, anyhow, ensure};
 use nalgebra::Vector3;
 use pose_pt::{Blend, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable, Segmentation};
 
@@ -24,6 +24,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub(crate) struct Planner<const N: usize> {
     pub(crate) platform: Platform<N>,
     pub(crate) settings: Settings,
+    /// Poses between the first and the last of each motion, and how near to them it passes.
+    via: Vec<(Pose, Blend)>,
     mode: Mode,
 }
 
@@ -35,16 +37,22 @@ pub(crate) struct Plan {
 }
 
 impl<const N: usize> Planner<N> {
-    pub(crate) fn new(platform: &Platform<N>, settings: &Settings, mode: Mode) -> Self {
+    pub(crate) fn new(
+        platform: &Platform<N>,
+        settings: &Settings,
+        via: Vec<(Pose, Blend)>,
+        mode: Mode,
+    ) -> Self {
         Self {
             platform: *platform,
             settings: settings.clone(),
+            via,
             mode,
         }
     }
 
     pub(crate) fn plan(&self, from: Pose, to: Pose) -> Result<Plan> {
-        let (via, blends): (Vec<Pose>, Vec<Blend>) = self.settings.via().unzip();
+        let (via, blends): (Vec<Pose>, Vec<Blend>) = self.via.iter().copied().unzip();
         let poses = core::iter::once(from).chain(via).chain([to]);
         let poses: Vec<_> = poses.map(isometry).collect();
         let path = Path::new(&poses, self.settings.interpolation());
@@ -58,6 +66,8 @@ impl<const N: usize> Planner<N> {
                     "the body would turn by {angle} rad, half a turn: either direction is as short"
                 )
             }
+            PathError::Blend { pose, .. } => Error::new(error).context(format!("via {pose}")),
+            PathError::ScrewBlend => Error::new(error).context("[[path.via]]"),
             other => other.into(),
         })?;
         let max_distance_error_mm = self.settings.max_distance_error_mm();

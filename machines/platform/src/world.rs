@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use proto3964r::Transmit;
 
 use crate::drives::Drives;
-use crate::line::{Line, Side, Wire};
+use crate::line::{Line, Side};
 use crate::machine::isometry;
 use crate::panel::{Action, Input, PanelSettings, Refusal};
 use crate::pendant::Pendant;
@@ -64,7 +64,7 @@ impl<'a, const N: usize> World<'a, N> {
         planner: Planner<N>,
         panel: PanelSettings,
         pose: Pose,
-        wire: Wire<'a>,
+        wire: impl FnMut(Side, u8) -> Result<u8> + 'a,
     ) -> Result<Self> {
         let axes = planner.platform.axes(&isometry(pose));
         let drives = Drives::new(&planner.platform, &axes);

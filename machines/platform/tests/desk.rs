@@ -72,6 +72,48 @@ fn a_pose_change_moves_the_body() {
     }
 }
 
+/// A platform file with a pose between, and another first pose.
+fn edited(from: &str) -> Machine {
+    let via = "[[path.via]]\npose = [35.0, 0.0, 1200.0, 0.0, 0.0, 2.5]\n\
+               distance_mm = 0.0\nrotation_deg = 0.0\n[wheel]";
+    let text = PLATFORM.replace("[wheel]", via);
+    let first = "from = [0.0, 0.0, 1200.0, 0.0, 0.0, 0.0]";
+    assert!(text.contains(first));
+    Machine::parse(&text.replace(first, from)).unwrap()
+}
+
+/// The poses between the first and the last of the platform file are not passed.
+#[test]
+fn a_pose_change_goes_straight() {
+    let machine = edited("from = [0.0, 0.0, 1200.0, 0.0, 0.0, 0.0]");
+    let mut desk = Desk::new(&machine).unwrap();
+    desk.wait_ms(3000).unwrap();
+    let corner = |desk: &Desk| desk.seen().unwrap().platform.outline_mm[0];
+    let before = corner(&desk);
+    act(&mut desk, Hand::Multiplier(Position::new(3).unwrap()));
+    act(
+        &mut desk,
+        Hand::Enable {
+            left: true,
+            right: true,
+        },
+    );
+    move_x(&mut desk);
+    for _ in 0..100 {
+        desk.wait_ms(100).unwrap();
+        let moved = corner(&desk)[0] - before[0];
+        assert!((-DISPLAYED_MM..1.0 + DISPLAYED_MM).contains(&moved));
+    }
+    assert!(line(&desk, 7).starts_with("DONE"));
+}
+
+#[test]
+fn a_body_out_of_reach_is_refused() {
+    let machine = edited("from = [900.0, 0.0, 1200.0, 0.0, 0.0, 0.0]");
+    let error = format!("{:#}", Desk::new(&machine).unwrap_err());
+    assert!(error.starts_with("from: out of reach: "), "{error}");
+}
+
 /// Without the switches nothing moves; with them to the end of the stroke and no farther; and then
 /// the locators do not hold the body any more.
 #[test]

@@ -52,6 +52,7 @@ fn refusals_name_the_pose() {
         &mut |_, byte| Ok(byte),
     );
     let error = format!("{:#}", refused.unwrap_err());
+    assert!(error.starts_with("via 1: "), "{error}");
     assert!(error.contains("the blend at pose 1"), "{error}");
     let error = format!("{:#}", parse("pose = [1.0]").unwrap_err());
     assert!(error.contains("6 are needed"), "{error}");
