@@ -255,6 +255,10 @@ fn a_knot_of_the_same_time_is_a_jump() {
         matches!(error, KnotError::Velocity { axis: 0, .. }),
         "{error}"
     );
+    // A start-stop speed that is no number allows no jump.
+    let mut pvt = new().with_start_stop_speeds([300.0, f64::NAN]);
+    let error = pvt.row(0.0, [0.0; 2], [300.0, 0.0]).unwrap_err();
+    assert!(matches!(error, KnotError::Jump { axis: 1, .. }), "{error}");
 }
 
 #[test]

@@ -231,7 +231,9 @@ impl<const N: usize> PvtQuantiser<N> {
             }
             let jump = (to.velocity - last.velocity).abs();
             let rounding = ROUNDING * (to.velocity.abs() + last.velocity.abs());
-            if jump > max + rounding {
+            // A velocity that is no number is refused below.
+            let is_within = jump <= max + rounding;
+            if jump.is_finite() && !is_within {
                 return Err(KnotError::Jump { axis, jump, max });
             }
         }

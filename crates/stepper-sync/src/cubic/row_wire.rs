@@ -97,7 +97,8 @@ impl RowBits {
 /// | 1 to 10, for each axis | v1 - v0 less that of the row before, in 2^-`bits.velocity` steps a tick |
 /// | 1 to 10, for each axis | q1 - q0 - T (v0 + v1)/2, rounded up, in 2^-`bits.position` steps |
 ///
-/// All are signed LEB128 as in a [`Segment`](crate::Segment), and 0 stands before the first row. A
+/// All are LEB128 with the sign in the lowest bit, as the signed ones of a
+/// [`Segment`](crate::Segment), and 0 stands before the first row. A
 /// row has one spelling.
 ///
 /// # Examples

@@ -265,30 +265,34 @@ impl<'b> Writer<'b> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+    use proptest::strategy::ValueTree as _;
+    use proptest::test_runner::TestRunner;
+
+    /// Any number of up to so many bits, all lengths as often.
+    fn sized(bits: u32) -> impl Strategy<Value = i64> {
+        (any::<u64>(), 64 - bits..64).prop_map(|(number, shift)| (number >> shift).cast_signed())
+    }
 
     /// Differences of all sizes; what is taken by its sizes has no step out of bounds.
     #[test]
     fn near_intervals_are_in_bounds() {
-        let mut state = 0x0139_408D_CBBF_7A44_u64;
-        let mut next = || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            state
-        };
+        let difference = || (sized(40), sized(40)).prop_map(|(a, b)| a - b);
+        let count = sized(10).prop_map(|count| 2 + (count as u16).min(MAX_COUNT - 2));
+        let all = (count, any::<u8>(), sized(48), difference(), difference());
+        let segments = all.prop_map(|(count, phase, interval, second, third)| Segment {
+            delay_ticks: 0,
+            count,
+            direction: Direction::Positive,
+            phase,
+            interval,
+            second,
+            third,
+        });
+        let mut runner = TestRunner::deterministic();
         let (mut near, mut others) = (0, 0);
         for _ in 0..20_000 {
-            let mut sized =
-                |most: u64| (next() >> (64 - most + (((next() >> 32) * most) >> 32))).cast_signed();
-            let segment = Segment {
-                delay_ticks: 0,
-                count: 2 + (sized(10) as u16).min(MAX_COUNT - 2),
-                direction: Direction::Positive,
-                phase: sized(8) as u8,
-                interval: sized(48),
-                second: sized(40) - sized(40),
-                third: sized(40) - sized(40),
-            };
+            let segment = segments.new_tree(&mut runner).unwrap().current();
             let times = segment.check_each_time();
             if segment.has_near_intervals() {
                 assert_eq!(times, Ok(()), "{segment:?}");
