@@ -140,17 +140,15 @@ fn align<const N: usize>(
         alignment.mode,
     )
     .with_passed(passed.collect::<Result<_>>()?);
-    let poses: Vec<Pose> = core::iter::once(from)
-        .chain(via.into_iter().map(|(pose, _)| pose))
-        .chain([task.reached])
-        .collect();
+    let via: Vec<_> = via.into_iter().map(|(pose, _)| pose).collect();
     Ok(Run {
         jog: picture::jog(&done.jog, &machine.panel),
         align: picture::align(
             machine,
             platform,
             &examination,
-            &poses,
+            [from, task.reached],
+            &via,
             plan.distance_error_bound_mm,
         ),
         report,

@@ -149,9 +149,8 @@ impl<const N: usize> Hands for World<'_, N> {
 
     fn seen(&self) -> Result<Seen> {
         let (platform, settings) = (&self.planner.platform, &self.planner.settings);
-        let mut lines = (0..LINES).map(|line| self.pendant.line(line));
         Ok(Seen {
-            display: core::array::from_fn(|_| lines.next().unwrap_or_default()),
+            display: core::array::from_fn(|line| self.pendant.line(line)),
             led: self.pendant.led(),
             is_moving: self.is_moving(),
             platform: PlatformAt::new(self.now_s(), self.drives.states(), platform, settings)?,

@@ -22,10 +22,11 @@ pub(crate) fn align<const N: usize>(
     machine: &Machine,
     platform: &Platform<N>,
     examination: &Examination<N>,
-    poses: &[Pose],
+    [from, to]: [Pose; 2],
+    via: &[Pose],
     bound_mm: f64,
 ) -> Figure {
-    let body = Body::new(machine, platform, poses);
+    let body = Body::new(machine, platform, [from, to], via);
     let factor = body.factor;
     let times = if factor > 1.0 {
         format!("{factor} times as large as it is")
@@ -101,26 +102,29 @@ struct Body {
 }
 
 impl Body {
-    fn new<const N: usize>(machine: &Machine, platform: &Platform<N>, poses: &[Pose]) -> Self {
+    fn new<const N: usize>(
+        machine: &Machine,
+        platform: &Platform<N>,
+        ends: [Pose; 2],
+        via: &[Pose],
+    ) -> Self {
         let outline = machine.settings.outline();
         let anchors: Vec<_> = platform.locators().iter().map(|it| it.anchor).collect();
-        let poses: Vec<_> = poses.iter().copied().map(isometry).collect();
-        let from = poses.first().copied().unwrap_or_default();
-        let (to, via) = match poses.split_last() {
-            Some((to, [_, via @ ..])) => (*to, via),
-            _ => (from, [].as_slice()),
-        };
+        let [from, to] = ends.map(isometry);
+        let via: Vec<_> = via.iter().copied().map(isometry).collect();
         let placed = |points: &[Point3<f64>], pose: &Isometry3<f64>| -> Vec<Point3<f64>> {
             points.iter().map(|point| pose * point).collect()
         };
         let all = || outline.iter().chain(&anchors);
-        let moves = all().map(|it| (to * it - from * it).norm());
-        let max_move = moves.fold(0.0, f64::max);
         let size = all().map(|it| it.coords.norm()).fold(0.0, f64::max);
         let turn_to = |to: &Isometry3<f64>| (to.rotation * from.rotation.inverse()).scaled_axis();
-        let turn = turn_to(&to);
-        let room = (MAX_MOVE * size / max_move).min(MAX_TURN_RAD / turn.norm());
-        let factor = round_down(room);
+        let room = |to: &Isometry3<f64>| {
+            let moves = all().map(|it| (to * it - from * it).norm());
+            let max_move = moves.fold(0.0, f64::max);
+            (MAX_MOVE * size / max_move).min(MAX_TURN_RAD / turn_to(to).norm())
+        };
+        let room = via.iter().chain([&to]).map(room);
+        let factor = round_down(room.fold(f64::INFINITY, f64::min));
         // The same move, larger: the body stays rigid.
         let far = |to: &Isometry3<f64>| {
             Isometry3::from_parts(
@@ -223,11 +227,8 @@ mod tests {
             panic!("three locators");
         };
         let from = [0.0, 0.0, 1200.0, 0.0, 0.0, 0.0];
-        let body = Body::new(
-            &machine,
-            platform,
-            &[from, [35.0, -20.0, 1240.0, 1.2, -0.8, 2.5]],
-        );
+        let to = [35.0, -20.0, 1240.0, 1.2, -0.8, 2.5];
+        let body = Body::new(&machine, platform, [from, to], &[]);
         assert_eq!(body.factor.to_bits(), 5.0_f64.to_bits());
         let [before, after] = body.outlines.each_ref().map(|points| {
             let next = points.iter().cycle().skip(1);
@@ -236,7 +237,10 @@ mod tests {
         });
         let differs = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-9;
         assert!(!before.iter().zip(&after).any(differs));
-        let still = Body::new(&machine, platform, &[from, from]);
+        let still = Body::new(&machine, platform, [from, from], &[]);
         assert_eq!(still.factor.to_bits(), 1.0_f64.to_bits());
+        // A pose between is seen as large as the last one would be.
+        let back = Body::new(&machine, platform, [from, from], &[to]);
+        assert_eq!(back.factor.to_bits(), body.factor.to_bits());
     }
 }
