@@ -120,8 +120,11 @@ impl Machine {
             CalibrationError::NotFinite { index }
             | CalibrationError::OtherAssembly { index, .. }
             | CalibrationError::Impossible { index, .. } => {
-                let line = lines.get(index).copied().unwrap_or_default();
-                Error::new(error).context(format!("line {line}"))
+                let error = Error::new(error);
+                match lines.get(index) {
+                    Some(line) => error.context(format!("line {line}")),
+                    None => error,
+                }
             }
             other => other.into(),
         })?;
@@ -187,14 +190,16 @@ const fn of(deviation: &mut Deviation, quantity: Quantity) -> &mut f64 {
 
 impl Calibrated {
     /// A machine file with what was found in place of its tables `[[arm]]`.
-    #[must_use]
-    pub fn machine_file(&self, text: &str) -> String {
+    ///
+    /// # Errors
+    /// Its arms are written in another form, or no machine is like this.
+    pub fn machine_file(&self, text: &str) -> Result<String> {
         let mut is_arm = false;
         let mut file = String::new();
         for line in text.lines() {
-            let line_begins = line.trim_start();
-            if line_begins.starts_with('[') {
-                is_arm = line_begins.starts_with("[[arm]]");
+            let header: String = line.split_whitespace().collect();
+            if header.starts_with('[') {
+                is_arm = header.starts_with("[[arm]]");
             }
             if !is_arm {
                 file.push_str(line);
@@ -210,7 +215,8 @@ impl Calibrated {
                 it.azimuth_deg, it.base_mm, it.platform_mm, it.upper_mm, it.lower_mm, it.home_deg
             );
         }
-        file
+        Machine::parse(&file).context("with a table [[arm]] for each of the three arms")?;
+        Ok(file)
     }
 }
 

@@ -37,43 +37,27 @@ pub struct ArmsAt {
 pub(crate) fn arms(drive: &Drive<'_>, load_kg: f64) -> Result<Vec<ArmsAt>> {
     let machine = drive.machine;
     let window_s = drive.positions.window_s();
-    let points: Vec<_> = drive.positions.points().collect();
-    let angles = |at: usize| {
-        let (_, steps) = points
-            .get(at)
-            .or(points.last())
-            .copied()
-            .unwrap_or_default();
-        Vector3::from(steps) * machine.rad_per_step
-    };
-    let mut platforms = Vec::with_capacity(points.len());
-    for index in 0..points.len() {
-        platforms.push(machine.delta.forward(angles(index))?);
+    let mut points = Vec::new();
+    for (t_s, steps) in drive.positions.points() {
+        let angles = Vector3::from(steps) * machine.rad_per_step;
+        points.push((t_s, angles, machine.delta.forward(angles)?.coords));
     }
-    let platform = |at: usize| {
-        platforms
-            .get(at)
-            .or(platforms.last())
-            .map_or(Vector3::zeros(), |it| it.coords)
-    };
+    let second = |[a, b, c]: [&Vector3<f64>; 3]| (a - b * 2.0 + c) / (window_s * window_s);
 
+    // At rest before the first and after the last.
+    let before = points.first().into_iter().chain(&points);
+    let after = points.iter().skip(1).chain(points.last());
     let mut arms = Vec::with_capacity(points.len());
-    for (index, (t_s, _)) in points.iter().enumerate() {
-        // At rest before the first and after the last.
-        let (before, after) = (index.saturating_sub(1), index + 1);
-        let second = |[a, b, c]: [Vector3<f64>; 3]| (a - b * 2.0 + c) / (window_s * window_s);
-        let q = [before, index, after].map(angles);
-        let acceleration_mm_s2 = second([before, index, after].map(platform));
-        let [from, at, to] = q;
-        let pose = machine.delta.pose_of(at)?;
-        let acceleration_m_s2 = acceleration_mm_s2 / MM_PER_M + Vector3::z() * GRAVITY_M_S2;
+    for (((_, q0, p0), (t_s, q1, p1)), (_, q2, p2)) in before.zip(&points).zip(after) {
+        let pose = machine.delta.pose_of(*q1)?;
+        let acceleration_m_s2 = second([p0, p1, p2]) / MM_PER_M + Vector3::z() * GRAVITY_M_S2;
         let torques_nmm = pose.holding_torques(acceleration_m_s2 * -load_kg)?;
         let deg = |rad: Vector3<f64>| rad.map(f64::to_degrees).into();
         arms.push(ArmsAt {
             t_s: *t_s,
-            angles_deg: deg(at + Vector3::from(machine.home_rad())),
-            rates_deg_s: deg((to - from) / (2.0 * window_s)),
-            accelerations_deg_s2: deg(second(q)),
+            angles_deg: deg(q1 + Vector3::from(machine.home_rad())),
+            rates_deg_s: deg((q2 - q0) / (2.0 * window_s)),
+            accelerations_deg_s2: deg(second([q0, q1, q2])),
             torques_nm: (torques_nmm / MM_PER_M).into(),
             platform_mm: pose.point().into(),
             elbows_mm: pose.elbows().map(|at| at.into()),

@@ -23,7 +23,7 @@ fn numbers(file: &str, key: &str) -> Vec<f64> {
 #[test]
 fn what_the_points_were_made_with_is_found() {
     let found = machine().calibrate(MEASURED, Fit::Lower).unwrap();
-    let file = found.machine_file(MACHINE);
+    let file = found.machine_file(MACHINE).unwrap();
     for (key, wanted, tolerance) in [
         ("home_deg", [0.3, -0.2, 0.0], 0.02),
         ("lower_mm", [0.0, 0.0, 0.15], 0.05),
@@ -42,10 +42,12 @@ fn what_the_points_were_made_with_is_found() {
 #[test]
 fn a_calibrated_machine_needs_no_more() {
     let first = machine().calibrate(MEASURED, Fit::All).unwrap();
-    let file = first.machine_file(MACHINE);
+    let file = first.machine_file(MACHINE).unwrap();
     let again = Machine::parse(&file).unwrap();
     let again = again.calibrate(MEASURED, Fit::All).unwrap();
-    let second = again.machine_file(&file);
+    // TOML takes spaces within the brackets.
+    let spaced = file.replacen("[[arm]]", "[[ arm ]]", 1);
+    let second = again.machine_file(&spaced).unwrap();
     assert_eq!(second.matches("\n[[arm]]\n").count(), 3);
     for key in ["home_deg", "lower_mm", "upper_mm", "base_mm", "azimuth_deg"] {
         let pairs = numbers(&file, key).into_iter().zip(numbers(&second, key));
@@ -74,4 +76,16 @@ fn what_is_wrong_is_said_with_its_line() {
         let said = format!("{error:#}");
         assert!(said.starts_with(wanted), "{said}");
     }
+}
+
+#[test]
+fn a_file_with_its_arms_in_another_form_is_refused() {
+    let text = format!("arm = [{{}}, {{}}, {{}}]\n{MACHINE}");
+    let machine = Machine::parse(&text).unwrap();
+    let found = machine.calibrate(MEASURED, Fit::Homes).unwrap();
+    let error = format!("{:#}", found.machine_file(&text).unwrap_err());
+    assert!(
+        error.starts_with("with a table [[arm]] for each of the three arms: line "),
+        "{error}"
+    );
 }

@@ -165,7 +165,7 @@ pub(crate) fn calibrate(request: &Request) -> Result<Answer> {
     let found = machine.calibrate(&parameters.measured, parameters.fit.parse()?)?;
     Answer::new(json!({
         "summary": found.to_string(),
-        "machine": found.machine_file(&parameters.machine),
+        "machine": found.machine_file(&parameters.machine)?,
     }))
 }
 
