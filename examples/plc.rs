@@ -10,16 +10,14 @@
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 use core::time::Duration;
-use std::fs::{self, File};
-use std::io::BufWriter;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::thread;
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use clap::{Parser, value_parser};
-use command_line::{Cable, arguments, print_summary, write_json};
+use command_line::{Artefacts, Cable, print_summary};
 use plc::{DamagingLine, MAX_TELEGRAM, Report, Role, Side, Spacing};
 use proto3964r::{Line, serialport::Driver};
 
@@ -28,7 +26,8 @@ const TURN: Duration = Duration::from_millis(1);
 
 /// Two RK512 stations on pseudo-terminals that write and read each other's data blocks over
 /// 3964R, through a line that damages bytes.
-#[derive(Parser)]
+#[derive(Parser, Debug)]
+#[command(version)]
 struct Args {
     /// Folder for line.log and report.json.
     #[arg(long, value_name = "DIR", default_value = "target/plc")]
@@ -45,17 +44,12 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let ended = arguments().and_then(|args| run(&args));
-    if let Err(error) = &ended {
-        eprintln!("plc: {error:#}");
-    }
-    ended.map_or(ExitCode::FAILURE, |()| ExitCode::SUCCESS)
+    command_line::run(run)
 }
 
-fn run(args: &Args) -> Result<()> {
-    let (log, report) = (args.out.join("line.log"), args.out.join("report.json"));
-    let created = fs::create_dir_all(&args.out).and_then(|()| File::create(&log));
-    let log = BufWriter::new(created.with_context(|| log.display().to_string())?);
+fn run(args: &Args) -> Result<ExitCode> {
+    let mut artefacts = Artefacts::new(&args.out)?;
+    let log = artefacts.create("line.log")?;
     let mut line = DamagingLine::new(log, args.spacing, args.seed);
     let (cable, [pc_port, plc_port]) = Cable::open()?;
     let config = |role: Role| role.line_config(Line::Instant);
@@ -80,11 +74,12 @@ fn run(args: &Args) -> Result<()> {
         })
     })?;
     let summary = Report::new(line.finish(start.elapsed())?, &pc, &plc);
-    let json = File::create(&report).with_context(|| report.display().to_string())?;
-    write_json(json, &summary)?;
-    print_summary(format!("{summary}{}\n", report.display()))?;
+    artefacts.write_json("report.json", &summary)?;
+    let names = artefacts.keep()?;
+    print_summary(format!("{summary}in {}: {names}\n", args.out.display()))?;
     summary.check()?;
-    print_summary("nothing was lost\n")
+    print_summary("nothing was lost\n")?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Works until both sides are done, or one fails.

@@ -2,21 +2,21 @@
 #![cfg(test)]
 #![cfg(unix)]
 
+#[path = "tools/artefacts.rs"]
+mod artefacts;
 #[path = "tools/command.rs"]
 mod command;
 #[path = "tools/example.rs"]
 mod example;
-#[path = "tools/refusal.rs"]
-mod refusal;
 
 use std::fs;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
+use artefacts::{assert_all_or_none, assert_refused, run_into};
 use command::{lines, run};
 use example::example;
-use refusal::assert_refused;
 
 const ROUNDS: u64 = 6;
 
@@ -80,7 +80,7 @@ fn wrong_options() {
             "invalid value '' for '--seed <SEED>': cannot parse integer from empty string",
         ),
     ] {
-        assert_refused(example("plc").args(options), &format!("plc: {error}"));
+        assert_refused("plc", &options, &format!("error: {error}\n"));
     }
 }
 
@@ -89,9 +89,13 @@ fn unwritable_folder() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let line = format!(
-        "plc: {}/line.log: File exists (os error 17)",
-        file.display()
-    );
-    assert_refused(example("plc").arg("--out").arg(file), &line);
+    let output = run_into(&file, "plc", &[]);
+    let line = format!("error: {}: File exists (os error 17)", file.display());
+    assert_eq!(lines(&output.stderr), [line]);
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
+    assert_all_or_none("plc", &["--rounds", "1"], &["line.log", "report.json"]);
 }

@@ -9,10 +9,7 @@ use anyhow::{Context as _, Result, anyhow, ensure};
 use clap::Parser;
 
 /// The options, or one line that says what is wrong with them. `--help` prints and exits.
-///
-/// # Errors
-/// An option cannot be read.
-pub fn arguments<O: Parser>() -> Result<O> {
+fn arguments<O: Parser>() -> Result<O> {
     O::try_parse().map_err(|error| {
         if error.use_stderr() {
             anyhow!(one_line(&error.to_string()))

@@ -120,11 +120,8 @@ impl Artefacts {
     }
 }
 
-/// Writes a report as JSON, for people too.
-///
-/// # Errors
-/// `out` does not take it.
-pub fn write_json(mut out: impl Write, report: &impl Serialize) -> Result<()> {
+/// JSON for people too.
+fn write_json(mut out: impl Write, report: &impl Serialize) -> Result<()> {
     serde_json::to_writer_pretty(&mut out, report)?;
     writeln!(out)?;
     Ok(out.flush()?)

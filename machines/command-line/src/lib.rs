@@ -9,8 +9,8 @@ mod progress;
 mod pseudo_terminal;
 mod terminal;
 
-pub use arguments::{arguments, exit_code, fraction, print_notes, print_summary, run};
-pub use artefacts::{Artefacts, write_json};
+pub use arguments::{exit_code, fraction, print_notes, print_summary, run};
+pub use artefacts::Artefacts;
 pub use cable::{Cable, Port};
 pub use input::{read, read_bytes};
 pub use progress::Progress;
