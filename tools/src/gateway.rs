@@ -15,13 +15,17 @@ mod tcp;
 mod telegram;
 
 use alloc::sync::Arc;
-use core::sync::atomic::Ordering;
+use core::{net::SocketAddr, sync::atomic::Ordering, time::Duration};
 use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Context as _, Result};
 use clap::Args;
 use log::{error, info, warn};
-use tokio::{net::TcpListener, task::JoinSet, time::timeout};
+use tokio::{
+    net::{TcpListener, TcpStream},
+    task::JoinSet,
+    time::{sleep, timeout},
+};
 use tokio_util::sync::CancellationToken;
 
 use self::{
@@ -135,4 +139,18 @@ async fn listen(settings: Option<&Listen>) -> Result<Option<TcpListener>> {
     }
     let listener = TcpListener::bind(listen).await;
     listener.map(Some).with_context(|| listen.to_string())
+}
+
+/// From a connection that could not be taken to the next attempt: what is missing may come back.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+
+/// The next connection to a service. May be dropped and called again.
+async fn accept(listener: &TcpListener, service: &str) -> (TcpStream, SocketAddr) {
+    loop {
+        match listener.accept().await {
+            Ok(accepted) => return accepted,
+            Err(error) => warn!("{service}: {error}"),
+        }
+        sleep(ACCEPT_PAUSE).await;
+    }
 }

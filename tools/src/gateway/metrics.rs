@@ -10,10 +10,13 @@ use hyper::{
     server::conn::http1, service::service_fn,
 };
 use hyper_util::rt::{TokioIo, TokioTimer};
-use log::{debug, warn};
+use log::debug;
 use tokio::net::TcpListener;
 
-use super::hub::{Desk, Hub};
+use super::{
+    accept,
+    hub::{Desk, Hub},
+};
 
 /// How long a client may take for its request.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -21,13 +24,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Serves `GET /metrics` until the gateway ends.
 pub(crate) async fn serve(listener: TcpListener, hub: Arc<Hub>) {
     loop {
-        let stream = match listener.accept().await {
-            Ok((stream, _)) => stream,
-            Err(error) => {
-                warn!("metrics: {error}");
-                continue;
-            }
-        };
+        let (stream, _) = accept(&listener, "metrics").await;
         let hub = Arc::clone(&hub);
         tokio::spawn(async move {
             let answer = service_fn(|request| {

@@ -13,7 +13,7 @@ use tokio::{
     task::JoinSet,
 };
 
-use super::{hub::Hub, job::MAX_COMMAND};
+use super::{accept, hub::Hub, job::MAX_COMMAND};
 
 /// Clients at once.
 const MAX_CLIENTS: usize = 64;
@@ -31,19 +31,19 @@ pub(crate) async fn serve(listener: TcpListener, hub: Arc<Hub>) {
     let mut clients = JoinSet::new();
     loop {
         tokio::select! {
-            accepted = listener.accept() => match accepted {
-                Ok((stream, from)) if clients.len() < MAX_CLIENTS => {
-                    let hub = Arc::clone(&hub);
-                    clients.spawn(async move {
-                        let ended = client(stream, &hub).await;
-                        if let Err(error) = ended {
-                            info!("tcp: {from}: {error}");
-                        }
-                    });
+            (stream, from) = accept(&listener, "tcp") => {
+                if clients.len() >= MAX_CLIENTS {
+                    warn!("tcp: {from} refused: {MAX_CLIENTS} clients are connected");
+                    continue;
                 }
-                Ok((_, from)) => warn!("tcp: {from} refused: {MAX_CLIENTS} clients are connected"),
-                Err(error) => warn!("tcp: {error}"),
-            },
+                let hub = Arc::clone(&hub);
+                clients.spawn(async move {
+                    let ended = client(stream, &hub).await;
+                    if let Err(error) = ended {
+                        info!("tcp: {from}: {error}");
+                    }
+                });
+            }
             Some(_) = clients.join_next() => {}
         }
     }

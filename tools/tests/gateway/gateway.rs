@@ -19,6 +19,8 @@ use super::broker::{PASSWORD, USER, terminate};
 /// Far above what anything here takes on a busy computer.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
+const PROGRAM: &str = env!("CARGO_BIN_EXE_line3964r");
+
 /// A running gateway.
 pub(crate) struct Gateway {
     process: Child,
@@ -43,10 +45,22 @@ pub(crate) fn line(name: &str, port: u16) -> String {
 
 impl Gateway {
     pub(crate) fn start(config: &str) -> Self {
+        Self::start_by(Command::new(PROGRAM), config)
+    }
+
+    /// One that may have so many files and connections open at a time.
+    pub(crate) fn start_with_files(limit: u32, config: &str) -> Self {
+        let mut shell = Command::new("sh");
+        let script = format!("ulimit -n {limit}; exec \"$0\" \"$@\"");
+        shell.args(["-c", &script, PROGRAM]);
+        Self::start_by(shell, config)
+    }
+
+    fn start_by(mut program: Command, config: &str) -> Self {
         let folder = TempDir::new().unwrap();
         let path = folder.path().join("gateway.toml");
         fs::write(&path, config).unwrap();
-        let mut process = Command::new(env!("CARGO_BIN_EXE_line3964r"))
+        let mut process = program
             .arg("gateway")
             .arg(path)
             .stderr(Stdio::piped())

@@ -4,11 +4,12 @@ use core::time::Duration;
 
 use rumqttc::v5::mqttbytes::QoS;
 use serde_json::json;
+use tokio::{net::TcpStream, task::spawn_blocking};
 
 use super::{
-    broker::{PASSWORD, USER},
+    broker::{PASSWORD, USER, free_ports},
     broker_or_skip,
-    gateway::{Gateway, line, mqtt},
+    gateway::{Gateway, line, metric, mqtt},
     partner::Partner,
     subscriber::Subscriber,
 };
@@ -136,4 +137,36 @@ async fn oversized_payloads_and_a_flood_of_commands() {
     gateway.logs("command refused: too many commands wait");
     let (status, log) = gateway.stop();
     assert!(status.success(), "{log}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn connections_beyond_what_the_system_allows() {
+    /// What the gateway has open by itself is about half of it.
+    const FILES: u32 = 24;
+    /// In a second, where one attempt every 0.1 s is logged.
+    const MOST_LOGGED: usize = 50;
+    let partner = Partner::new().await;
+    let [port] = free_ports();
+    let gateway = Gateway::start_with_files(
+        FILES,
+        &format!(
+            "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:0\"\n[metrics]\nlisten = \"127.0.0.1:{port}\"\n{}",
+            line("scale", partner.port)
+        ),
+    );
+    let scale = partner.link().await;
+    let mut connections = Vec::new();
+    for _ in 0..FILES {
+        connections.push(TcpStream::connect(("127.0.0.1", port)).await.unwrap());
+    }
+    let error = "metrics: Too many open files";
+    gateway.logs(error);
+    scale.send(b"still here").await.unwrap();
+    tokio::time::sleep(Duration::from_secs(1)).await;
+    let logged = gateway.log().matches(error).count();
+    assert!(logged < MOST_LOGGED, "{logged}");
+    drop(connections);
+    let received = "line3964r_line_received_total{line=\"scale\"}";
+    let received = spawn_blocking(move || metric(port, received)).await;
+    assert_eq!(received.unwrap(), 1);
 }
