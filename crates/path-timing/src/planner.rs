@@ -113,11 +113,9 @@ impl<A: Axes> Planner<A> {
         } else {
             profile::fastest_of_all(&self.reciprocals, legs, knots)?;
         }
-        let (mut later, mut time_s) = (&*knots, 0.0);
-        for leg in legs.forward(&self.reciprocals) {
-            let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
+        let mut time_s = 0.0;
+        for (leg, own) in legs.forward(&self.reciprocals).zip(profile::by_leg(knots)) {
             time_s = check_times(leg?.number, own, time_s)?;
-            later = rest;
         }
         Ok(time_s)
     }
@@ -223,6 +221,11 @@ pub(crate) struct Within<D> {
 /// The number of knots of a leg with this number of segments.
 pub(crate) fn knots_of(segments: u32) -> usize {
     usize::try_from(segments).map_or(usize::MAX, |segments| segments.saturating_add(1))
+}
+
+/// The number of segments of a leg with these knots.
+pub(crate) fn segments_of(knots: &[Knot]) -> u32 {
+    u32::try_from(knots.len().saturating_sub(1)).unwrap_or(u32::MAX)
 }
 
 /// Refuses a leg that begins elsewhere than the one before ends.

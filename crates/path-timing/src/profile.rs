@@ -1,8 +1,11 @@
 //! The fastest speeds along legs, from stop to stop.
 
+use core::{iter, mem};
+
 use crate::chain::Chain;
 use crate::leg::Leg;
 use crate::number::LARGEST;
+use crate::planner::segments_of;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::{Knot, Legs, Path, PlanError};
@@ -45,11 +48,9 @@ pub(crate) fn fastest_speeds<L: Legs>(
         speed = backward(limits, &leg, own, leg.joint().speed().min(speed), &cap)?;
         earlier = rest;
     }
-    let (mut later, mut speed) = (knots, 0.0);
-    for leg in legs.forward(limits) {
-        let (own, rest) = split(later, first_leg(later));
+    let mut speed = 0.0;
+    for (leg, own) in legs.forward(limits).zip(by_leg(knots)) {
         speed = forward(limits, &leg?, own, speed)?;
-        later = rest;
     }
     Ok(())
 }
@@ -62,10 +63,15 @@ fn times(knots: &mut [Knot]) {
     };
     for to in rest {
         if to.s > 0.0 {
-            from.duration_s = 2.0 * (to.s - from.s) / (from.speed + to.speed);
+            from.duration_s = segment_s(from, to);
         }
         from = to;
     }
+}
+
+/// The time of a segment on which the speed changes evenly.
+pub(crate) fn segment_s(from: &Knot, to: &Knot) -> f64 {
+    2.0 * (to.s - from.s) / (from.speed + to.speed)
 }
 
 /// No highest speed at a knot but what the limits ask for.
@@ -92,10 +98,20 @@ pub(crate) fn first_leg(knots: &[Knot]) -> usize {
     next.map_or(knots.len(), |(index, _)| index)
 }
 
+/// The knots of each leg, in their order.
+pub(crate) fn by_leg(mut knots: &mut [Knot]) -> impl Iterator<Item = &mut [Knot]> {
+    iter::from_fn(move || {
+        let at = first_leg(knots);
+        let (own, later) = split(mem::take(&mut knots), at);
+        knots = later;
+        (!own.is_empty()).then_some(own)
+    })
+}
+
 /// Spreads the knots over a length, dense at an end where the machine rests: there the speed
 /// changes most from knot to knot, and with it the cubic's departure from the path.
 pub(crate) fn spread(knots: &mut [Knot], length: f64, rests: [bool; 2]) {
-    let segments = f64::from(u32::try_from(knots.len()).map_or(u32::MAX, |n| n.saturating_sub(1)));
+    let segments = f64::from(segments_of(knots));
     for (index, knot) in (0_u32..).zip(knots) {
         *knot = Knot {
             s: length * fraction(f64::from(index) / segments, rests),

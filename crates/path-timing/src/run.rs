@@ -67,8 +67,8 @@ pub struct Run<'a, L: Legs> {
     ahead: &'a [Ahead],
     limits: Reciprocals<L::Axes>,
     /// With a limit of jerk: the feed that the table can be run at from end to end, the rows at both
-    /// ends of the segment up to the row handed out last, none of them where the machine rests, and
-    /// the change of the feed that goes on there.
+    /// ends of the segment up to the row handed out last, without the first where the machine rests,
+    /// and the change of the feed that goes on there.
     full: f64,
     segment: [Option<Row<L::Axes>>; 2],
     warp: Option<Warp>,

@@ -10,7 +10,7 @@ use core::iter;
 use crate::chain::Chain;
 use crate::leg::Leg;
 use crate::number::{LARGEST, cube_root, sqrt};
-use crate::planner::knots_of;
+use crate::planner::{knots_of, segments_of};
 use crate::profile;
 use crate::reciprocals::Reciprocals;
 use crate::utilisation::{Of, stretch};
@@ -41,24 +41,22 @@ pub(crate) fn smooth<L: Legs>(
     let (window_s, eased) = eased::<L::Leg>(limits);
     let trial_limits = [reciprocals, &Reciprocals::new(&eased)];
     let (least_s, best) = Trial::new(trial_limits, legs, knots).best(window_s)?;
-    let (mut later, mut alone_s) = (&mut *knots, 0.0);
-    for leg in legs.forward(reciprocals) {
+    let (mut alone_s, mut is_faster) = (0.0, false);
+    for (leg, own) in legs.forward(reciprocals).zip(profile::by_leg(knots)) {
         let leg = leg?;
-        let (own, rest) = profile::split(later, profile::first_leg(later));
         let alone = Chain::new(iter::once(leg.path().clone()), leg.number);
         alone_s += smooth_leg(limits, reciprocals, &alone, own)?;
-        later = rest;
+        // What is not a number is not faster; the legs that are left only take longer.
+        is_faster = least_s <= alone_s;
+        if is_faster {
+            break;
+        }
     }
-    // What is not a number is not faster.
-    let is_faster = least_s <= alone_s;
     if !is_faster {
         return Ok(());
     }
-    let mut later = &mut *knots;
-    for leg in legs.forward(reciprocals) {
-        let (own, rest) = profile::split(later, profile::first_leg(later));
+    for (leg, own) in legs.forward(reciprocals).zip(profile::by_leg(knots)) {
         profile::spread(own, leg?.length(), [true; 2]);
-        later = rest;
     }
     Trial::new(trial_limits, legs, knots).lay(best)?;
     keep_limits(reciprocals, legs, knots)?;
@@ -134,11 +132,6 @@ fn are_apart(knots: &[Knot]) -> bool {
 
 /// Relative rounding of a stretched motion.
 const STRETCHED: f64 = 1.0 + 64.0 * f64::EPSILON;
-
-/// One fewer than knots.
-fn segments_of(knots: &[Knot]) -> u32 {
-    u32::try_from(knots.len().saturating_sub(1)).unwrap_or(u32::MAX)
-}
 
 /// Limits by which axes accelerate no more than they need to where only speed and jerk are
 /// limited, √(v j), and the longest time in which an axis reaches its acceleration.

@@ -1,6 +1,7 @@
 //! A motion averaged over a window of time.
 
 use crate::Knot;
+use crate::profile::segment_s;
 
 /// The mean of a motion s(t) along legs over the window before t, told at the knots of that motion.
 ///
@@ -70,7 +71,7 @@ impl End {
             // The same point on the next leg.
             return;
         }
-        self.left_s = 2.0 * (to.s - from.s) / (from.speed + to.speed);
+        self.left_s = segment_s(from, to);
         self.speed = from.speed;
         self.acceleration = (to.speed - from.speed) / self.left_s;
     }

@@ -1,4 +1,5 @@
-//! Motions that leave their average room.
+//! Speeds lowered before the average is taken, so that its time need be stretched less: low ones held
+//! for longer, tops cut.
 
 use crate::Knot;
 
@@ -33,8 +34,7 @@ fn hold<'k>(knots: impl Iterator<Item = &'k mut Knot>, direction: f64, factor: f
 pub(super) fn cut_tops(knots: &mut [Knot], time_s: f64) {
     let mut from = 1;
     while let Some(top) = next_top(knots, from) {
-        let end = cut_top(knots, top, time_s);
-        from = end.max(top).saturating_add(1);
+        from = cut_top(knots, top, time_s).saturating_add(1);
     }
 }
 

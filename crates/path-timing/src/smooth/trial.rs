@@ -1,9 +1,10 @@
-//! Averages that are tried.
+//! The search for the average that takes the least time.
 
 use super::average::Average;
-use super::{segments_of, shape};
+use super::shape;
 use crate::chain::Chain;
-use crate::number::{LARGEST, larger_or_nan};
+use crate::number::LARGEST;
+use crate::planner::segments_of;
 use crate::reciprocals::Reciprocals;
 use crate::utilisation::{Of, Utilisation};
 use crate::{Knot, Legs, PlanError, profile};
@@ -138,11 +139,11 @@ impl<'a, L: Legs> Trial<'a, L> {
         self.find_fastest()?;
         let fastest_s = self.unaveraged_s();
         self.shortest_s = fastest_s * SHORTEST;
-        self.accelerations = [2, self.knots.len().saturating_sub(3)].map(|number| {
-            let length = self.knots.last().map_or(0.0, |knot| knot.s);
+        let length = self.knots.last().map_or(0.0, |knot| knot.s);
+        let ends = [(2, 0.0), (self.knots.len().saturating_sub(3), length)];
+        self.accelerations = ends.map(|(number, end)| {
             let knot = self.knots.get(number).copied().unwrap_or_default();
-            let distance = if number == 2 { knot.s } else { length - knot.s };
-            knot.speed * knot.speed / (2.0 * distance)
+            knot.speed * knot.speed / (2.0 * (knot.s - end).abs())
         });
         Ok(window_s.min(fastest_s).max(self.shortest_s))
     }
@@ -150,7 +151,7 @@ impl<'a, L: Legs> Trial<'a, L> {
     /// The time of the motion that the average is taken of.
     fn unaveraged_s(&self) -> f64 {
         self.knots.windows(2).fold(0.0, |sum, pair| match pair {
-            [from, to] if to.s > 0.0 => sum + 2.0 * (to.s - from.s) / (from.speed + to.speed),
+            [from, to] if to.s > 0.0 => sum + profile::segment_s(from, to),
             _ => sum,
         })
     }
@@ -201,19 +202,21 @@ impl<'a, L: Legs> Trial<'a, L> {
         number: Number,
         factor: f64,
     ) -> Result<(), PlanError<L::Error>> {
+        let before_s = best.0;
         for factor in [1.0 / factor, factor] {
-            for step in 0..STEPS {
+            for _ in 0..STEPS {
                 let next = best.1.with(number, factor);
                 let time_s = self.time_s(next, best.0)?;
                 // Written so that NaN is no shorter.
                 let is_shorter = time_s < best.0;
-                if is_shorter {
-                    *best = (time_s, next);
-                } else if step > 0 {
-                    return Ok(());
-                } else {
+                if !is_shorter {
                     break;
                 }
+                *best = (time_s, next);
+            }
+            // Else the other direction leads back.
+            if best.0 < before_s {
+                break;
             }
         }
         Ok(())
@@ -237,7 +240,7 @@ impl<'a, L: Legs> Trial<'a, L> {
                 return Ok(f64::INFINITY);
             }
             let segment = motion.next(Of::AxesAndTool, [knot.s, speed], segment_s)?;
-            (duration_s, stretch) = (duration_s + segment_s, larger_or_nan(stretch, segment));
+            (duration_s, stretch) = (duration_s + segment_s, stretch.max(segment));
             if least_s * stretch >= most_s {
                 return Ok(f64::INFINITY);
             }
