@@ -10,9 +10,9 @@ mod machine;
 #[path = "support/polyline.rs"]
 mod polyline;
 
-use jerky::check_jerk;
+use jerky::{bits, check_jerk, feeds, run_under};
 use machine::limits;
-use path_timing::{Ahead, AxisLimits, Corner, Knot, Row, Table};
+use path_timing::{Ahead, AxisLimits, Corner, Knot, Table};
 use polyline::lines;
 use proptest::prelude::*;
 
@@ -52,7 +52,6 @@ fn a_hold_keeps_the_jerk_and_goes_on() {
         check_jerk(&LIMITS, &rows);
         assert_eq!(rows.len(), table.len());
         for (row, planned) in rows.iter().zip(table.rows()) {
-            let bits = |row: &Row<[f64; 2]>| row.position.map(f64::to_bits);
             assert_eq!(bits(row), bits(&planned.unwrap()));
         }
     }
@@ -68,8 +67,7 @@ proptest! {
     #[test]
     fn jerk_is_kept_under_any_feeds(
         points in prop::collection::vec((-200.0..200.0_f64, 20.0..200.0_f64), 2..5),
-        feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
-        segments in 7..60_u32, scale in 0.5..1.0_f64,
+        feeds in feeds(), segments in 7..60_u32, scale in 0.5..1.0_f64,
     ) {
         prop_assume!(points.windows(2).all(|pair| pair[0] != pair[1]));
         let points: Vec<_> = points.into_iter().map(|(x, y)| [x, y]).collect();
@@ -77,20 +75,9 @@ proptest! {
         let mut knots = [Knot::default(); 250];
         let table = Table::plan(&paths, LIMITS, |_| segments, &mut knots).unwrap();
         let table = table.at_speed(scale).unwrap();
-        let mut ahead = [Ahead::default(); 250];
-        let mut run = table.run(1.5, &mut ahead).unwrap();
-        let mut rows = Vec::new();
-        for (feed, count) in feeds {
-            run.set_feed(if feed < 0.3 { 0.0 } else { feed }).unwrap();
-            rows.extend(run.by_ref().take(count).map(Result::unwrap));
-        }
-        run.set_feed(1.0).unwrap();
-        rows.extend(run.by_ref().map(Result::unwrap));
-        prop_assert!(run.is_finished());
-        prop_assert_eq!(rows.len(), table.len());
+        let rows = run_under(feeds, &table);
         check_jerk(&LIMITS, &rows);
         let end = table.rows().last().unwrap().unwrap();
-        let bits = |row: &Row<[f64; 2]>| row.position.map(f64::to_bits);
         prop_assert_eq!(bits(rows.last().unwrap()), bits(&end));
     }
 }

@@ -13,10 +13,11 @@ mod polyline;
 use core::convert::Infallible;
 use core::fmt::Debug;
 
-use jerky::check_jerk;
+use jerky::{bits, check_jerk, feeds, run_under};
+use limited::ROUNDING;
 use machine::limits;
 use path_timing::{
-    Ahead, AxisLimits, Corner, Curve, Knot, Path, PathFn, Rounded, Row, Span, Table, ToolLimits,
+    AxisLimits, Corner, Curve, Knot, Path, PathFn, Rounded, Row, Span, Table, ToolLimits,
 };
 use polyline::lines;
 use proptest::prelude::*;
@@ -27,9 +28,6 @@ const ARM: [AxisLimits; 2] = [
     limits(300.0, 2000.0, Some(40_000.0)),
 ];
 const STAGE: [AxisLimits; 2] = [limits(300.0, 2000.0, Some(400_000.0)); 2];
-
-/// Of a speed recomputed from rounded rows.
-const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// The sides of a polyline and the roundings between, with the same corner between all of them.
 fn rounded(
@@ -58,11 +56,6 @@ fn planned<P: Path<Axes = [f64; 2], Error = Infallible> + Clone + Debug>(
 
 fn time_s(rows: &[Row<[f64; 2]>]) -> f64 {
     rows.last().unwrap().time_s
-}
-
-/// All digits of a position.
-fn bits(row: &Row<[f64; 2]>) -> [u64; 2] {
-    row.position.map(f64::to_bits)
 }
 
 /// A line of an arm in two halves takes as long as the line: knots stand elsewhere.
@@ -171,23 +164,13 @@ proptest! {
     #[test]
     fn jerk_is_kept_under_any_feeds_on_rounded_corners(
         points in points(), tolerance in 0.1..5.0_f64, scale in 0.5..1.0_f64,
-        feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
-        segments in 7..30_u32,
+        feeds in feeds(), segments in 7..30_u32,
     ) {
         let legs = rounded(&points, tolerance, Corner::Smooth);
         let mut knots = vec![Knot::default(); 1000];
         let table = Table::plan(&legs, STAGE, |_| segments, &mut knots).unwrap();
         let table = table.at_speed(scale).unwrap();
-        let mut ahead = vec![Ahead::default(); 1000];
-        let mut run = table.run(1.5, &mut ahead).unwrap();
-        let mut rows = Vec::new();
-        for (feed, count) in feeds {
-            run.set_feed(if feed < 0.3 { 0.0 } else { feed }).unwrap();
-            rows.extend(run.by_ref().take(count).map(Result::unwrap));
-        }
-        run.set_feed(1.0).unwrap();
-        rows.extend(run.by_ref().map(Result::unwrap));
-        prop_assert!(run.is_finished());
+        let rows = run_under(feeds, &table);
         check_jerk(&STAGE, &rows);
         for (row, planned) in rows.iter().zip(table.rows()) {
             prop_assert_eq!(bits(row), bits(&planned.unwrap()));

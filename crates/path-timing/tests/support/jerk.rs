@@ -1,11 +1,11 @@
-//! What rows ask of axes with a limit of jerk.
+//! What rows ask of axes with a limit of jerk, and rows under feeds.
 
-use path_timing::{AxisLimits, Cubic, Row};
+use core::convert::Infallible;
 
-use crate::limited::check_limits;
+use path_timing::{Ahead, AxisLimits, Cubic, Legs, Row, Table};
+use proptest::prelude::*;
 
-/// Of what is recomputed from rounded rows.
-const ROUNDING: f64 = 1.0 + 1e-9;
+use crate::limited::{ROUNDING, check_limits};
 
 /// The jerk inside of each cubic, and the steps of the acceleration at rows over the time between
 /// the middles of their segments; at rest the acceleration is zero.
@@ -32,4 +32,37 @@ pub(crate) fn check_jerk<const N: usize>(limits: &[AxisLimits; N], rows: &[Row<[
             "to the end: {before}"
         );
     }
+}
+
+/// All digits of a position.
+pub(crate) fn bits(row: &Row<[f64; 2]>) -> [u64; 2] {
+    row.position.map(f64::to_bits)
+}
+
+/// Feeds, and for how many rows each is wanted.
+pub(crate) fn feeds() -> impl Strategy<Value = Vec<(f64, usize)>> {
+    prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12)
+}
+
+/// Feeds below are holds.
+const SLOWEST: f64 = 0.3;
+
+/// The rows of a table under feeds, and at a feed of 1 from there to its end.
+pub(crate) fn run_under<L: Legs<Axes = [f64; 2], Error = Infallible>>(
+    feeds: Vec<(f64, usize)>,
+    table: &Table<'_, L, [f64; 2]>,
+) -> Vec<Row<[f64; 2]>> {
+    let mut ahead = vec![Ahead::default(); table.len()];
+    let mut run = table.run(1.5, &mut ahead).unwrap();
+    let mut rows = Vec::new();
+    for (feed, count) in feeds {
+        run.set_feed(if feed < SLOWEST { 0.0 } else { feed })
+            .unwrap();
+        rows.extend(run.by_ref().take(count).map(Result::unwrap));
+    }
+    run.set_feed(1.0).unwrap();
+    rows.extend(run.by_ref().map(Result::unwrap));
+    assert!(run.is_finished());
+    assert_eq!(rows.len(), table.len());
+    rows
 }

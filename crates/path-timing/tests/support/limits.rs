@@ -3,7 +3,7 @@
 use path_timing::{AxisLimits, Cubic, Row};
 
 /// Of what is recomputed from rounded rows.
-const ROUNDING: f64 = 1.0 + 1e-9;
+pub(crate) const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Speeds and accelerations of all cubics are within their limits; velocities jump by at most the
 /// start-stop speeds, or nowhere.
