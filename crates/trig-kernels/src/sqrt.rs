@@ -54,17 +54,46 @@ fn upper_product(a: u32, b: u32) -> u32 {
     ((u64::from(a) * u64::from(b)) >> 32) as u32
 }
 
-/// The square root of an f32, rounded to the nearest.
-#[inline(never)]
-pub(crate) fn sqrt_f32(x: f32) -> f32 {
-    let bits = x.to_bits();
-    let least = f32::MIN_POSITIVE.to_bits();
-    if bits.wrapping_sub(least) < f32::INFINITY.to_bits() - least {
-        f32::from_bits(sqrt_of_normal_f32(bits))
-    } else {
-        sqrt_of_rare_f32(x)
-    }
+/// Makes the root of one precision from that of its normal numbers, and from a power of two whose
+/// square makes all others normal.
+macro_rules! sqrt {
+    ($float:ident, $sqrt:ident, $of_rare:ident, $of_normal:ident, $scale:literal) => {
+        /// The square root, rounded to the nearest.
+        #[inline(never)]
+        pub(crate) fn $sqrt(x: $float) -> $float {
+            let bits = x.to_bits();
+            let least = $float::MIN_POSITIVE.to_bits();
+            if bits.wrapping_sub(least) < $float::INFINITY.to_bits() - least {
+                $float::from_bits($of_normal(bits))
+            } else {
+                $of_rare(x)
+            }
+        }
+
+        /// Zeros, infinities, NaN, and what is negative or subnormal.
+        #[cold]
+        #[inline(never)]
+        fn $of_rare(x: $float) -> $float {
+            const UP: $float = $scale * $scale;
+            const DOWN: $float = 1.0 / $scale;
+            if x == 0.0 || x == $float::INFINITY {
+                x
+            } else if x > 0.0 {
+                $sqrt(x * UP) * DOWN
+            } else {
+                $float::NAN
+            }
+        }
+    };
 }
+sqrt!(f32, sqrt_f32, sqrt_of_rare_f32, sqrt_of_normal_f32, 4096.0);
+sqrt!(
+    f64,
+    sqrt_f64,
+    sqrt_of_rare_f64,
+    sqrt_of_normal_f64,
+    134_217_728.0
+);
 
 /// The bits of the root of a number that is positive, finite and normal.
 #[inline]
@@ -90,33 +119,6 @@ fn sqrt_of_normal_f32(bits: u32) -> u32 {
     ((bits + (125 << 23)) >> 24 << 23) + q_q23 + is_above
 }
 
-/// Zeros, infinities, NaN, and what is negative or subnormal.
-#[cold]
-#[inline(never)]
-fn sqrt_of_rare_f32(x: f32) -> f32 {
-    const UP: f32 = 16_777_216.0;
-    const DOWN: f32 = 1.0 / 4096.0;
-    if x == 0.0 || x == f32::INFINITY {
-        x
-    } else if x > 0.0 {
-        sqrt_f32(x * UP) * DOWN
-    } else {
-        f32::NAN
-    }
-}
-
-/// The square root of an f64, rounded to the nearest.
-#[inline(never)]
-pub(crate) fn sqrt_f64(x: f64) -> f64 {
-    let bits = x.to_bits();
-    let least = f64::MIN_POSITIVE.to_bits();
-    if bits.wrapping_sub(least) < f64::INFINITY.to_bits() - least {
-        f64::from_bits(sqrt_of_normal_f64(bits))
-    } else {
-        sqrt_of_rare_f64(x)
-    }
-}
-
 /// The bits of the root of a number that is positive, finite and normal.
 #[inline]
 fn sqrt_of_normal_f64(bits: u64) -> u64 {
@@ -140,21 +142,6 @@ fn sqrt_of_normal_f64(bits: u64) -> u64 {
     let rest_q104 = (m_q62 << 42).wrapping_sub(q_q52.wrapping_mul(q_q52));
     let is_above = q_q52.wrapping_sub(rest_q104) >> 63;
     ((bits + (1021 << 52)) >> 53 << 52) + q_q52 + is_above
-}
-
-/// Zeros, infinities, NaN, and what is negative or subnormal.
-#[cold]
-#[inline(never)]
-fn sqrt_of_rare_f64(x: f64) -> f64 {
-    const UP: f64 = 18_014_398_509_481_984.0;
-    const DOWN: f64 = 1.0 / 134_217_728.0;
-    if x == 0.0 || x == f64::INFINITY {
-        x
-    } else if x > 0.0 {
-        sqrt_f64(x * UP) * DOWN
-    } else {
-        f64::NAN
-    }
 }
 
 #[cfg(test)]
