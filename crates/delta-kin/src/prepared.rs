@@ -121,7 +121,7 @@ impl<T: RealField + Trig> PreparedArm<T> {
         let (along, across2) = if h2 * (two::<T>() * two()) < upper2 {
             self.near_axis(h2, in_plane)
         } else {
-            // Heron's formula in squares, of which h² is the largest but for a factor of 9.
+            // Heron's formula in squares, within reach none of them above 9 h².
             let longer = h2 - in_plane;
             let opposite = longer - upper2;
             let product = upper2 * two() * two() * in_plane;

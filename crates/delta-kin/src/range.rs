@@ -41,7 +41,8 @@ pub(crate) fn largest_angle<T: RealField + Copy>() -> T {
     of_precision([67_108_864.0, 2_896.309_4])
 }
 
-/// A number of f64 and the one of f32. Not computed, as a root in integers would be.
+/// The number for f64 or the one for f32. Written out, since the compiler does not fold a
+/// square root that is computed in integers.
 fn of_precision<T: RealField>([double, single]: [f64; 2]) -> T {
     let is_double = T::default_epsilon() < nalgebra::convert(1e-10);
     nalgebra::convert(if is_double { double } else { single })
