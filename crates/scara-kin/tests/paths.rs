@@ -1,19 +1,18 @@
-//! Curves as paths of the joints: the tool on the cubics that run, limits, refusals, the disc.
+//! Curves as paths of the joints: the tool on the cubics that run, limits, the disc.
 #![cfg(test)]
 #![cfg(feature = "path-timing")]
+
+#[path = "paths/refusals.rs"]
+mod refusals;
 
 use core::cell::{Cell, RefCell};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use path_timing::{
-    AxisLimits, Cubic, Curve, Knot, Path, PlanError, Rounded, Row, Span, Table, ToolLimits,
-};
+use path_timing::{AxisLimits, Cubic, Curve, Knot, Path, Rounded, Row, Span, Table, ToolLimits};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use scara_kin::nalgebra::{Isometry2, Point2, Vector2};
-use scara_kin::{
-    Arm, ArmPath, ArmPathError, DiscPath, Elbow, InverseError, Joint, JointRange, Joints, Limits,
-};
+use scara_kin::{Arm, ArmPath, ArmPathError, DiscPath, Elbow, Joints};
 
 /// Of joints and places of an arm of 264 mm, after some turns.
 const ROUNDING: f64 = 1e-11;
@@ -258,99 +257,6 @@ fn the_shoulder_counts_its_turns() {
     ));
 }
 
-#[test]
-fn what_cannot_be_followed_is_refused_with_its_place() {
-    let arm = arm().with_keep_out(40.0).unwrap();
-    let refused = |arm: &Arm, from, to| arm.path(line(from, to), Elbow::Right).unwrap_err();
-    let near = |s: f64, wanted: f64| assert!((s - wanted).abs() < 0.01, "{s} {wanted}");
-    // Over the rim, into the keep-out disc, through the base.
-    let ArmPathError::Edge { s, point, .. } = refused(&arm, [200.0, 0.0], [300.0, 0.0]) else {
-        panic!()
-    };
-    near(s, 64.0);
-    near(point.x, 264.0);
-    let ArmPathError::Edge { s, .. } = refused(&arm, [-100.0, 0.0], [100.0, 0.0]) else {
-        panic!()
-    };
-    near(s, 60.0);
-    let free = Arm::new(132.0, 132.0).unwrap();
-    let ArmPathError::Edge { s, .. } = refused(&free, [-100.0, 0.0], [100.0, 0.0]) else {
-        panic!()
-    };
-    near(s, 100.0);
-    // A start out of reach.
-    let error = refused(&arm, [300.0, 0.0], [200.0, 0.0]);
-    assert_eq!(
-        error.to_string(),
-        "at 0 of the curve, (300, 0): too far: distance 300 from the base is past the reach 264 by 36"
-    );
-    // A joint limit: the shoulder at π/2 where the tool is there by the elbow's half angle more.
-    let limited = free.with_limits(Limits {
-        shoulder: JointRange::new(-FRAC_PI_2, FRAC_PI_2).unwrap(),
-        elbow: JointRange::new(-3.0, 3.0).unwrap(),
-    });
-    let circle = Curve::arc([200.0, 0.0], [0.0, 0.0], [0.0, 1.0], 3.0).unwrap();
-    let start = limited
-        .path(line([200.0, 0.0], [199.0, 0.0]), Elbow::Right)
-        .unwrap();
-    let first = start.joints(0.0).unwrap().shoulder;
-    let Err(ArmPathError::Unreachable { s, reason, .. }) = limited.path(circle, Elbow::Right)
-    else {
-        panic!()
-    };
-    near(s, 200.0 * (FRAC_PI_2 - first));
-    assert!(matches!(
-        reason,
-        InverseError::JointLimit {
-            joint: Joint::Shoulder,
-            ..
-        }
-    ));
-    // A range that has the other turn only.
-    let turned = free.with_limits(Limits {
-        shoulder: JointRange::new(-PI, PI).unwrap(),
-        elbow: JointRange::new(-3.0, 3.0).unwrap(),
-    });
-    let behind = turned.path(line([-200.0, 100.0], [-200.0, -200.0]), Elbow::Right);
-    assert!(
-        matches!(
-            behind,
-            Err(ArmPathError::Unreachable {
-                reason: InverseError::JointLimit { .. },
-                ..
-            })
-        ),
-        "{behind:?}"
-    );
-    // No departure is small enough for a segment on which a limit is passed.
-    let path = limited
-        .path(line([200.0, 0.0], [199.0, 0.0]), Elbow::Right)
-        .unwrap();
-    let row = |shoulder| Row {
-        time_s: 0.0,
-        duration_s: 1.0,
-        position: [shoulder, 1.0],
-        velocity: [0.5, 0.0],
-    };
-    let span = Span {
-        s: [0.0, 1.0],
-        rows: [row(1.5), row(1.6)],
-    };
-    assert!(path.departure(&span).is_infinite());
-}
-
-/// The digits of the curve do not show the arm: the walk along it would take hours.
-#[test]
-fn an_arm_too_small_for_the_curve_is_no_endless_walk() {
-    let arm = Arm::new(7.5e-38, 7.5e-38).unwrap();
-    let arc = Curve::arc([0.0, -1e-38], [0.0, 8e10], [1.0, 0.0], 0.1).unwrap();
-    let error = arm.path(arc, Elbow::Left).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "the curve is 8e9 long, within the workspace at most 1.5e-35"
-    );
-}
-
 /// A disc that turns slowly: the blend of a corner is passed slower, the lines are not.
 #[test]
 fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
@@ -404,16 +310,4 @@ fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
         path.with_disc(f64::NAN),
         Err(ArmPathError::Disc { .. })
     ));
-}
-
-/// A path that is refused where it is planned says where.
-#[test]
-fn the_planner_names_the_place() {
-    let touching = Arm::new(132.0, 132.0).unwrap();
-    let path = touching
-        .path(line([100.0, 100.0], [150.0, 100.0]), Elbow::Left)
-        .unwrap();
-    let mut knots = [Knot::default(); 4];
-    let error = Table::plan_within([path], [JOINT; 2], 2, 1e-9, ArmPath::departure, &mut knots);
-    assert!(matches!(error, Err(PlanError::Memory { .. })));
 }
