@@ -5,7 +5,7 @@ mod error;
 mod pick;
 
 use nalgebra::{Point3, Vector3};
-use path_timing::{Corner, Curve, Place, ToolLimits};
+use path_timing::{Corner, Curve, PathPoint, ToolLimits};
 
 pub use error::DeltaPathError;
 
@@ -84,17 +84,17 @@ impl DeltaPath {
         &self.curve
     }
 
-    fn point(&self, s: f64) -> Point3<f64> {
+    fn centre(&self, s: f64) -> Point3<f64> {
         self.curve.at(s).point.into()
     }
 
     fn clearance(&self, s: f64) -> f64 {
-        self.delta.clearance(self.point(s))
+        self.delta.clearance(self.centre(s))
     }
 
     /// The angles at a place that is not on the edge of the workspace.
     fn free_angles(&self, s: f64) -> Result<Vector3<f64>, DeltaPathError> {
-        let point = self.point(s);
+        let point = self.centre(s);
         let angles = self.delta.inverse(point);
         let angles = angles.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })?;
         let clearance = self.clearance(s);
@@ -119,7 +119,7 @@ impl DeltaPath {
                     None => return Ok((next, there)),
                     Some(arm) => DeltaPathError::Turn {
                         s: next,
-                        point: self.point(next),
+                        point: self.centre(next),
                         arm,
                     },
                 },
@@ -133,7 +133,7 @@ impl DeltaPath {
     }
 
     fn pose(&self, s: f64) -> Result<Pose, DeltaPathError> {
-        let point = self.point(s);
+        let point = self.centre(s);
         let pose = self.delta.pose_at(point);
         pose.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })
     }
@@ -155,11 +155,11 @@ impl path_timing::Path for DeltaPath {
         self.curve.length()
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 3]>, DeltaPathError> {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 3]>, DeltaPathError> {
         let pose = self.pose(s)?;
         let slopes = pose.joint_rates(self.curve.at(s).tangent.into());
         let slopes = slopes.map_err(|reason: PoseError| DeltaPathError::Singular { s, reason })?;
-        Ok(Place {
+        Ok(PathPoint {
             position: pose.angles().into(),
             slope: slopes.into(),
         })

@@ -145,12 +145,12 @@ proptest! {
         let speeds = if is_rising { [ratio, 1.0] } else { [1.0, ratio] };
         let duration_s = 2.0 * (s[1] - s[0]) / (speeds[0] + speeds[1]);
         let row = |end: usize| {
-            let place = path.place(s[end]).unwrap();
+            let point = path.point(s[end]).unwrap();
             Row {
                 time_s: 0.0,
                 duration_s,
-                position: place.position,
-                velocity: place.slope.map(|slope| slope * speeds[end]),
+                position: point.position,
+                velocity: point.slope.map(|slope| slope * speeds[end]),
             }
         };
         let span = Span { s, rows: [row(0), row(1)] };
@@ -170,14 +170,14 @@ proptest! {
         let Ok(path) = delta.path(curve) else { return Ok(()) };
         for number in 0..20 {
             let s = curve.length() * (f64::from(number) + 0.5) / 20.0;
-            let place = path.place(s).unwrap();
-            let platform = delta.forward(place.position.into()).unwrap();
+            let point = path.point(s).unwrap();
+            let platform = delta.forward(point.position.into()).unwrap();
             prop_assert!((platform - Point3::from(curve.at(s).point)).norm() < 1e-9);
-            if place.slope.iter().all(|slope| slope.abs() < 0.03) {
-                let [before, after] = [s - STEP, s + STEP].map(|s| path.place(s).unwrap().position);
+            if point.slope.iter().all(|slope| slope.abs() < 0.03) {
+                let [before, after] = [s - STEP, s + STEP].map(|s| path.point(s).unwrap().position);
                 for arm in 0..3 {
                     let slope = (after[arm] - before[arm]) / (2.0 * STEP);
-                    prop_assert!((slope - place.slope[arm]).abs() < DIFFERENCES);
+                    prop_assert!((slope - point.slope[arm]).abs() < DIFFERENCES);
                 }
             }
         }

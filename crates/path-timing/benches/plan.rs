@@ -5,25 +5,25 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use path_timing::{Ahead, AxisLimits, Knot, LookAhead, PathFn, Place, Slot, Table};
+use path_timing::{Ahead, AxisLimits, Knot, LookAhead, PathFn, PathPoint, Slot, Table};
 
 /// Segments of the path.
 const SEGMENTS: u32 = 1000;
 
 /// Axes that swing along the path, each by its own frequency: the path costs little itself.
-fn swing<const N: usize>(s: f64) -> Result<Place<[f64; N]>, Infallible> {
+fn swing<const N: usize>(s: f64) -> Result<PathPoint<[f64; N]>, Infallible> {
     let (sin, cos) = (s * 1.5).sin_cos();
-    let mut place = Place {
+    let mut point = PathPoint {
         position: [0.0; N],
         slope: [0.0; N],
     };
-    let axes = place.position.iter_mut().zip(&mut place.slope);
+    let axes = point.position.iter_mut().zip(&mut point.slope);
     for (number, (position, slope)) in (1..).zip(axes) {
         let amplitude = f64::from(number) / 10.0;
         *position = amplitude * sin + s;
         *slope = amplitude * cos * 1.5 + 1.0;
     }
-    Ok(place)
+    Ok(point)
 }
 
 fn measure<const N: usize>(criterion: &mut Criterion) {
@@ -69,17 +69,17 @@ fn measure_stream<const N: usize>(criterion: &mut Criterion) {
         jerk: None,
     }; N];
     let back = |s: f64| {
-        let mut place = swing::<N>(4.0 - s)?;
-        for slope in &mut place.slope {
+        let mut point = swing::<N>(4.0 - s)?;
+        for slope in &mut point.slope {
             *slope = -*slope;
         }
-        Ok(place)
+        Ok(point)
     };
     let mut group = criterion.benchmark_group(format!("{N} axes, {SEGMENTS} segments"));
     group.bench_function("look ahead, 64 slots", |bencher| {
         let mut window = [Slot::default(); 64];
         bencher.iter(|| {
-            let paths = [swing::<N> as fn(f64) -> _, back].map(|place| PathFn::new(4.0, place));
+            let paths = [swing::<N> as fn(f64) -> _, back].map(|point| PathFn::new(4.0, point));
             let segments = |_: &_| Ok(SEGMENTS / 2);
             let motion = LookAhead::new(&paths, limits, segments, black_box(&mut window));
             let motion = motion.expect("window is long enough");

@@ -3,17 +3,17 @@
 use core::convert::Infallible;
 use core::error::Error;
 
-use path_timing::{Ahead, AxisLimits, Knot, PathFn, Place, Row, Table};
+use path_timing::{Ahead, AxisLimits, Knot, PathFn, PathPoint, Row, Table};
 
 /// The line's length and its distance from the arm, in mm.
 const LENGTH: f64 = 200.0;
 const DISTANCE: f64 = 100.0;
 
 /// Angle and reach of the arm, and their slopes, `s` mm along the line.
-fn place(s: f64) -> Result<Place<[f64; 2]>, Infallible> {
+fn point(s: f64) -> Result<PathPoint<[f64; 2]>, Infallible> {
     let (x, y) = (s - LENGTH / 2.0, DISTANCE);
     let reach = x.hypot(y);
-    Ok(Place {
+    Ok(PathPoint {
         position: [y.atan2(x), reach],
         slope: [-y / (reach * reach), x / reach],
     })
@@ -37,7 +37,7 @@ fn print(row: &Row<[f64; 2]>) {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let limits = [limits(2.0, 20.0), limits(300.0, 2000.0)]; // rad, mm; s
-    let line = PathFn::new(LENGTH, place);
+    let line = PathFn::new(LENGTH, point);
     let mut knots = [Knot::default(); 41];
     let table = Table::plan([&line], limits, |_| 40, &mut knots)?;
     println!("time_s,angle_rad,reach_mm,angle_rad_s,reach_mm_s");

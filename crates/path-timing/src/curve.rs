@@ -12,7 +12,7 @@ pub use error::CurveError;
 pub use motion::{CurveMotion, TurnMotion};
 pub use rounded::Rounded;
 
-use crate::{Corner, Cubic, Path, Place, Span, ToolLimits};
+use crate::{Corner, Cubic, Path, PathPoint, Span, ToolLimits};
 use polynomial::Polynomial;
 use vector::{all_finite, along, difference, dot, norm, scaled};
 
@@ -342,9 +342,9 @@ impl<const D: usize> Path for Curve<D> {
         self.length
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; D]>, Infallible> {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; D]>, Infallible> {
         let at = self.at(s);
-        Ok(Place {
+        Ok(PathPoint {
             position: at.point,
             slope: at.tangent,
         })

@@ -109,9 +109,9 @@ pub(crate) fn bound_of_parameters<P: Path>(
     let Some(mut from) = parameters.next() else {
         return Ok(worst);
     };
-    let mut start = leg.checked_place(from)?;
+    let mut start = leg.checked_point(from)?;
     while let Some(to) = parameters.next() {
-        let end = leg.checked_place(to)?;
+        let end = leg.checked_point(to)?;
         let mut check = |ratios: &[[f64; 2]]| {
             for [w0, w1] in ratios {
                 // In a second.

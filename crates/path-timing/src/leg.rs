@@ -3,7 +3,7 @@
 use crate::joint::Joint;
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, Corner, Path, Place, PlanError, ToolLimits};
+use crate::{Axes, Corner, Path, PathPoint, PlanError, ToolLimits};
 
 /// A leg: a path, which of all it is, and how the next one follows.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,7 @@ impl<P: Path> Leg<P> {
         let mut leg = Self::last(number, path);
         if let (corner @ (Corner::Smooth | Corner::Jump(_)), Some(next)) = (leg.path.corner(), next)
         {
-            let (before, after) = (leg.path.place(leg.length)?, next.place(0.0)?);
+            let (before, after) = (leg.path.point(leg.length)?, next.point(0.0)?);
             leg.joint = Joint::new(limits, &corner, &before.slope, &after.slope);
         }
         Ok(leg)
@@ -103,23 +103,23 @@ impl<P: Path> Leg<P> {
     }
 
     /// Positions and slopes at the parameter `s`; at the end those of the joint.
-    pub(crate) fn place(&self, s: f64) -> Result<Place<P::Axes>, P::Error> {
-        let mut place = self.path.place(s)?;
+    pub(crate) fn point(&self, s: f64) -> Result<PathPoint<P::Axes>, P::Error> {
+        let mut point = self.path.point(s)?;
         if let (Joint::Smooth(slope), true) = (&self.joint, s >= self.length) {
-            place.slope = *slope;
+            point.slope = *slope;
         }
-        Ok(place)
+        Ok(point)
     }
 
     /// The same, refused by name where the machine cannot be there.
-    pub(crate) fn checked_place(&self, s: f64) -> Result<Place<P::Axes>, PlanError<P::Error>> {
+    pub(crate) fn checked_point(&self, s: f64) -> Result<PathPoint<P::Axes>, PlanError<P::Error>> {
         let leg = self.number;
-        let place = self
-            .place(s)
+        let point = self
+            .point(s)
             .map_err(|reason| PlanError::Path { leg, s, reason })?;
-        let mut numbers = (place.position.as_slice().iter()).chain(place.slope.as_slice());
+        let mut numbers = (point.position.as_slice().iter()).chain(point.slope.as_slice());
         if numbers.all(|number| number.is_finite()) {
-            return Ok(place);
+            return Ok(point);
         }
         Err(PlanError::NotFinite { leg, s })
     }

@@ -38,7 +38,7 @@ pub use departure::segments_within;
 pub use error::PlanError;
 pub use joint::Corner;
 pub use look_ahead::{LookAhead, Slot};
-pub use path::{Legs, Path, PathFn, Place};
+pub use path::{Legs, Path, PathFn, PathPoint};
 pub use row::Row;
 pub use rows::Rows;
 pub use run::{Ahead, FeedError, Run};

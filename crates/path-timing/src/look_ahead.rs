@@ -172,7 +172,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// # Errors
     /// [`PlanError`] with the place, once, when a path is refused; no other path is taken then. It
     /// comes a window before the machine is there: further calls hand out the rows to a rest at the
-    /// last knot before that place.
+    /// last knot before that point.
     pub fn next_row(&mut self) -> Result<Option<Row<P::Axes>>, PlanError<P::Error>> {
         if let Some(row) = self.jump.take() {
             return Ok(Some(row));
@@ -192,7 +192,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         };
         self.speed = Some(step.speed);
         self.time_s += step.duration_s;
-        let row = Row::new(&step.place, step.speed, self.time_s, step.duration_s);
+        let row = Row::new(&step.point, step.speed, self.time_s, step.duration_s);
         self.jump = step
             .jump
             .map(|slope| row.with_jump(slope.scaled(step.speed)));
@@ -230,9 +230,9 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
                 return Ok(());
             };
             let s = entering.next_s();
-            let place = entering.leg.checked_place(s)?;
+            let point = entering.leg.checked_point(s)?;
             let tool = entering.leg.tool().copied();
-            self.window.push(s - entering.s, tool, place);
+            self.window.push(s - entering.s, tool, point);
             entering.s = s;
             if entering.index > entering.segments {
                 self.joint = Some((entering.leg.number, entering.leg.path().corner()));
@@ -253,7 +253,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         }
         let leg = Leg::last(number, path);
         leg.check()?;
-        let start = leg.checked_place(0.0)?;
+        let start = leg.checked_point(0.0)?;
         let ends_at_rest = matches!(leg.path().corner(), Corner::Stop);
         let starts_at_rest = match (self.joint.take(), self.window.last()) {
             (Some((_, corner)), Some(end)) => {

@@ -7,7 +7,7 @@ use crate::{Axes, Corner, ToolLimits};
 /// Positions and slopes of all axes at a point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::exhaustive_structs, reason = "a point has no more to it")]
-pub struct Place<A: Axes> {
+pub struct PathPoint<A: Axes> {
     /// Position q of each axis, in its unit.
     pub position: A,
     /// Slope dq/ds of each axis, per unit of the parameter.
@@ -33,7 +33,7 @@ pub trait Path {
     ///
     /// # Errors
     /// Why the machine cannot be there.
-    fn place(&self, s: f64) -> Result<Place<Self::Axes>, Self::Error>;
+    fn point(&self, s: f64) -> Result<PathPoint<Self::Axes>, Self::Error>;
 
     /// Feed and acceleration of the tool along the path, where the parameter is its arc length.
     /// Nothing but the axes limits it otherwise.
@@ -55,8 +55,8 @@ impl<P: Path> Path for &P {
         (**self).length()
     }
 
-    fn place(&self, s: f64) -> Result<Place<P::Axes>, P::Error> {
-        (**self).place(s)
+    fn point(&self, s: f64) -> Result<PathPoint<P::Axes>, P::Error> {
+        (**self).point(s)
     }
 
     fn tool(&self) -> Option<ToolLimits> {
@@ -72,17 +72,17 @@ impl<P: Path> Path for &P {
 #[derive(Clone, Copy)]
 pub struct PathFn<F, A> {
     length: f64,
-    place: F,
+    point: F,
     tool: Option<ToolLimits>,
     corner: Corner<A>,
 }
 
-impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> PathFn<F, A> {
-    /// The path of `place` from 0 to `length`.
-    pub const fn new(length: f64, place: F) -> Self {
+impl<A: Axes, E, F: Fn(f64) -> Result<PathPoint<A>, E>> PathFn<F, A> {
+    /// The path of `point` from 0 to `length`.
+    pub const fn new(length: f64, point: F) -> Self {
         Self {
             length,
-            place,
+            point,
             tool: None,
             corner: Corner::Stop,
         }
@@ -104,7 +104,7 @@ impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> PathFn<F, A> {
     }
 }
 
-impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> Path for PathFn<F, A> {
+impl<A: Axes, E, F: Fn(f64) -> Result<PathPoint<A>, E>> Path for PathFn<F, A> {
     type Axes = A;
     type Error = E;
 
@@ -112,8 +112,8 @@ impl<A: Axes, E, F: Fn(f64) -> Result<Place<A>, E>> Path for PathFn<F, A> {
         self.length
     }
 
-    fn place(&self, s: f64) -> Result<Place<A>, E> {
-        (self.place)(s)
+    fn point(&self, s: f64) -> Result<PathPoint<A>, E> {
+        (self.point)(s)
     }
 
     fn tool(&self) -> Option<ToolLimits> {

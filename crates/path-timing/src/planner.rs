@@ -65,11 +65,11 @@ impl<A: Axes> Planner<A> {
         for leg in legs.forward(&self.reciprocals) {
             let leg = leg?;
             leg.check()?;
-            let (number, start) = (leg.number, leg.checked_place(0.0)?.position);
+            let (number, start) = (leg.number, leg.checked_point(0.0)?.position);
             if let Some(last) = last {
                 check_joint(number, &last, &start)?;
             }
-            last = Some(leg.checked_place(leg.length())?.position);
+            last = Some(leg.checked_point(leg.length())?.position);
             needed = needed.saturating_add(knots_of(self.bounded(number, least(leg.path()))?));
         }
         if needed <= available {

@@ -145,9 +145,9 @@ fn backward<P: Path>(
         return Ok(speed);
     };
     to.speed = speed;
-    let mut end = leg.checked_place(to.s)?;
+    let mut end = leg.checked_point(to.s)?;
     for from in before {
-        let start = leg.checked_place(from.s)?;
+        let start = leg.checked_point(from.s)?;
         let ds = to.s - from.s;
         let segment = Segment::new(limits, &start, &end, ds).with_tool(leg.tool(), ds);
         (from.speed, from.after) = segment.begin(to.speed, cap(from));
@@ -168,11 +168,11 @@ fn forward<P: Path>(
     let Some(mut from) = rest.next() else {
         return Ok(speed);
     };
-    let mut start = leg.checked_place(from.s)?;
+    let mut start = leg.checked_point(from.s)?;
     let mut ratio = from.after / from.speed;
     from.speed = speed;
     for to in rest {
-        let end = leg.checked_place(to.s)?;
+        let end = leg.checked_point(to.s)?;
         let ds = to.s - from.s;
         let segment = Segment::new(limits, &start, &end, ds).with_tool(leg.tool(), ds);
         let next_ratio = to.after / to.speed;

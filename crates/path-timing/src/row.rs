@@ -1,6 +1,6 @@
 //! Rows of a table: what a controller gets.
 
-use crate::{Axes, Place};
+use crate::{Axes, PathPoint};
 
 /// A row of a position-velocity-time table. From one to the next every axis runs the
 /// [`Cubic`](crate::Cubic) with these positions and velocities at its ends.
@@ -32,12 +32,12 @@ impl<A: Axes> Row<A> {
     }
 
     /// A point that is passed at a speed of the parameter.
-    pub(crate) fn new(place: &Place<A>, speed: f64, time_s: f64, duration_s: f64) -> Self {
+    pub(crate) fn new(point: &PathPoint<A>, speed: f64, time_s: f64, duration_s: f64) -> Self {
         Self {
             time_s,
             duration_s,
-            position: place.position,
-            velocity: place.slope.scaled(speed),
+            position: point.position,
+            velocity: point.slope.scaled(speed),
         }
     }
 }

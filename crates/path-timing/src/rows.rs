@@ -4,13 +4,13 @@ use core::iter::FusedIterator;
 
 use crate::leg::Leg;
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, Knot, Legs, Place, Row, Table};
+use crate::{Axes, Knot, Legs, PathPoint, Row, Table};
 
 /// A knot as a point of its path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node<A: Axes> {
     /// Slopes by time: velocities on arrival.
-    pub(crate) place: Place<A>,
+    pub(crate) point: PathPoint<A>,
     /// Velocities with which the next segment begins, where they jump.
     pub(crate) jump: Option<A>,
     /// Time to the next node.
@@ -19,10 +19,10 @@ pub(crate) struct Node<A: Axes> {
 
 impl<A: Axes> Node<A> {
     /// The start of the next segment.
-    pub(crate) fn departure(&self) -> Place<A> {
-        let position = self.place.position;
+    pub(crate) fn departure(&self) -> PathPoint<A> {
+        let position = self.point.position;
         self.jump
-            .map_or(self.place, |slope| Place { position, slope })
+            .map_or(self.point, |slope| PathPoint { position, slope })
     }
 }
 
@@ -74,9 +74,9 @@ impl<'a, L: Legs> Nodes<'a, L> {
         let (Some((knot, later)), Some(leg)) = (self.knots.split_first(), &self.leg) else {
             return Ok(None);
         };
-        let mut place = leg.place(knot.s)?;
+        let mut point = leg.point(knot.s)?;
         let speed = knot.speed / self.stretch;
-        place.slope = place.slope.scaled(speed);
+        point.slope = point.slope.scaled(speed);
         let (mut duration_s, mut jump) = (knot.duration_s, None);
         self.knots = later;
         if let (true, Some((first, rest))) = (knot.s >= leg.length(), later.split_first()) {
@@ -85,11 +85,11 @@ impl<'a, L: Legs> Nodes<'a, L> {
             self.knots = rest;
             self.begin()?;
             if let (true, Some(leg)) = (jumps, &self.leg) {
-                jump = Some(leg.place(0.0)?.slope.scaled(speed));
+                jump = Some(leg.point(0.0)?.slope.scaled(speed));
             }
         }
         Ok(Some(Node {
-            place,
+            point,
             jump,
             duration_s: duration_s * self.stretch,
         }))
@@ -143,8 +143,8 @@ impl<L: Legs> Iterator for Rows<'_, L> {
         let row = Row {
             time_s: self.time_s,
             duration_s: self.duration_s,
-            position: node.place.position,
-            velocity: node.place.slope,
+            position: node.point.position,
+            velocity: node.point.slope,
         };
         self.duration_s = node.duration_s;
         self.jump = node.jump.map(|velocity| row.with_jump(velocity));

@@ -198,7 +198,7 @@ impl<L: Legs> Run<'_, L> {
         (self.here, self.next, self.after_next) = (self.next, self.after_next, after_next);
         self.ahead = later;
         self.remaining = self.remaining.saturating_sub(1);
-        let row = Row::new(&to.place, feed, self.time_s, duration_s);
+        let row = Row::new(&to.point, feed, self.time_s, duration_s);
         self.jump = to.jump.map(|velocity| row.with_jump(velocity.scaled(feed)));
         if self.limits.has_jerk() {
             let [_, before] = self.segment;
@@ -214,11 +214,11 @@ impl<L: Legs> Run<'_, L> {
         from: &Node<L::Axes>,
     ) -> Result<Option<(f64, f64)>, L::Error> {
         let wanted = self.wanted.min(self.full);
-        if is_rest(&from.place) {
+        if is_rest(&from.point) {
             (self.feed, self.warp) = (wanted, None);
         }
-        if is_rest(&from.place) || self.feed <= 0.0 {
-            self.segment = [None, Some(Row::new(&from.place, 0.0, 0.0, 0.0))];
+        if is_rest(&from.point) || self.feed <= 0.0 {
+            self.segment = [None, Some(Row::new(&from.point, 0.0, 0.0, 0.0))];
         }
         if self.warp.map_or(self.feed, |warp| warp.to) != wanted {
             let mut demand = Demand::at_rest();
@@ -259,7 +259,7 @@ impl<L: Legs> Run<'_, L> {
         self.after_next = self.nodes.next()?;
         self.here = Some(first);
         self.remaining = self.remaining.saturating_sub(1);
-        Ok(Some(Row::new(&first.place, 0.0, 0.0, 0.0)))
+        Ok(Some(Row::new(&first.point, 0.0, 0.0, 0.0)))
     }
 
     /// The feed at the next row. The feed here is set anew where the machine rests.
@@ -271,15 +271,15 @@ impl<L: Legs> Run<'_, L> {
         there: Ahead,
     ) -> f64 {
         let wanted = self.wanted.min(there.ceiling);
-        let segment = || Segment::new(&self.limits, &from.departure(), &to.place, from.duration_s);
-        if is_rest(&from.place) {
+        let segment = || Segment::new(&self.limits, &from.departure(), &to.point, from.duration_s);
+        if is_rest(&from.point) {
             self.feed = wanted.min(segment().even().max(1.0));
         }
         // From rest and to rest at one feed, so that the cubic has the shape of the table's; at a
         // constant feed of at most 1 the table itself holds.
         #[expect(clippy::float_cmp, reason = "the same number")]
-        let is_even = is_rest(&from.place)
-            || (is_rest(&to.place) && self.feed > 0.0)
+        let is_even = is_rest(&from.point)
+            || (is_rest(&to.point) && self.feed > 0.0)
             || (wanted == self.feed && wanted <= 1.0);
         if is_even {
             return self.feed;
@@ -309,10 +309,10 @@ impl<L: Legs> Run<'_, L> {
         let segment = Segment::new(
             &self.limits,
             &next.departure(),
-            &after.place,
+            &after.point,
             next.duration_s,
         );
-        if is_rest(&after.place) {
+        if is_rest(&after.point) {
             return highest.min(segment.even().max(1.0));
         }
         let (feed, _) = segment.begin(0.0, highest);

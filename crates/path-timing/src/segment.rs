@@ -2,7 +2,7 @@
 
 use crate::number::{larger, sqrt};
 use crate::reciprocals::{MARGIN, Reciprocal, Reciprocals};
-use crate::{Axes, Place, ToolLimits};
+use crate::{Axes, PathPoint, ToolLimits};
 
 /// The end of a segment whose speed is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,7 +96,12 @@ impl AxisLoad {
 }
 
 impl<A: Axes> Segment<A> {
-    pub(crate) fn new(limits: &Reciprocals<A>, from: &Place<A>, to: &Place<A>, ds: f64) -> Self {
+    pub(crate) fn new(
+        limits: &Reciprocals<A>,
+        from: &PathPoint<A>,
+        to: &PathPoint<A>,
+        ds: f64,
+    ) -> Self {
         let inverse = 1.0 / ds;
         let mut segment = Self {
             axes: A::filled(AxisLoad::NONE),

@@ -232,7 +232,7 @@ fn as_axis(tool: &ToolLimits) -> AxisLimits {
 fn derivatives<P: Path>(leg: &Leg<P>) -> Result<EachAxis<P, [f64; 3]>, PlanError<P::Error>> {
     let step = leg.length() / f64::from(SAMPLES);
     let mut largest = P::Axes::filled([1.0 / LARGEST; 3]);
-    let slope = |index: u32| Ok(leg.checked_place(f64::from(index) * step)?.slope);
+    let slope = |index: u32| Ok(leg.checked_point(f64::from(index) * step)?.slope);
     let (mut first, mut second) = (slope(0)?, slope(1)?);
     for index in 2..=SAMPLES {
         let third = slope(index)?;

@@ -227,7 +227,7 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     /// [`plan_within`](Self::plan_within).
     ///
     /// # Errors
-    /// Where the path refuses a place that it has given while the table was planned.
+    /// Where the path refuses a point that it has given while the table was planned.
     pub fn departure(
         &self,
         departure: impl Fn(&L::Leg, &Span<A>) -> f64,
@@ -262,8 +262,8 @@ pub(crate) fn spans_of_leg<P: Path>(
     let mut from: Option<(f64, Row<P::Axes>)> = None;
     let mut duration_s = 0.0;
     let rows = knots.iter().map(move |knot| {
-        let place = leg.checked_place(knot.s)?;
-        let row = Row::new(&place, knot.speed, 0.0, duration_s);
+        let point = leg.checked_point(knot.s)?;
+        let row = Row::new(&point, knot.speed, 0.0, duration_s);
         duration_s = knot.duration_s;
         Ok((knot.s, row))
     });

@@ -55,7 +55,7 @@ where
         let Some(leg) = &self.leg else {
             return Ok(stretch);
         };
-        let row = Row::new(&leg.checked_place(s)?, speed, 0.0, duration_s);
+        let row = Row::new(&leg.checked_point(s)?, speed, 0.0, duration_s);
         if let (false, Some((from_s, from_speed, from))) = (begins, self.from) {
             self.demand = self.demand.fresh();
             self.demand.add(self.limits, &from, &row);

@@ -10,7 +10,7 @@ mod polyline;
 
 use limited::check_limits;
 use machine::limits;
-use path_timing::{Ahead, AxisLimits, Corner, Knot, PathFn, Place, PlanError, Row, Table};
+use path_timing::{Ahead, AxisLimits, Corner, Knot, PathFn, PathPoint, PlanError, Row, Table};
 use polyline::lines;
 use proptest::prelude::*;
 
@@ -93,15 +93,15 @@ fn velocities_jump_by_what_motors_start_with() {
 #[test]
 fn a_square_corner_takes_the_closed_form() {
     let side = |axis: usize| {
-        let place = move |s: f64| {
-            let mut place = Place {
+        let point = move |s: f64| {
+            let mut point = PathPoint {
                 position: if axis == 0 { [s, 0.0] } else { [50.0, s] },
                 slope: [0.0; 2],
             };
-            place.slope[axis] = 1.0;
-            Ok::<_, core::convert::Infallible>(place)
+            point.slope[axis] = 1.0;
+            Ok::<_, core::convert::Infallible>(point)
         };
-        PathFn::new(50.0, place).with_corner(Corner::Jump([4.0, 3.0]))
+        PathFn::new(50.0, point).with_corner(Corner::Jump([4.0, 3.0]))
     };
     let mut knots = [Knot::default(); 202];
     let limits = [limits(20.0, 100.0, None); 2];

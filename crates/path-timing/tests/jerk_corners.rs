@@ -39,7 +39,7 @@ fn rounded(
     let curves = curves.map(Result::unwrap);
     curves
         .map(|curve: Curve<2>| {
-            PathFn::new(curve.length(), move |s| curve.place(s)).with_corner(corner)
+            PathFn::new(curve.length(), move |s| curve.point(s)).with_corner(corner)
         })
         .collect()
 }
@@ -108,7 +108,7 @@ fn the_tool_keeps_the_feed_of_each_leg() {
         .map(|(number, feed)| {
             let [from, to] = [number, number + 1].map(|n| [50.0 * f64::from(n), 0.0]);
             let line = Curve::line(from, to).unwrap();
-            PathFn::new(line.length(), move |s| line.place(s))
+            PathFn::new(line.length(), move |s| line.point(s))
                 .with_corner(Corner::Smooth)
                 .with_tool(ToolLimits {
                     feed,

@@ -16,7 +16,7 @@ mod polyline;
 use limited::check_limits;
 use machine::limits;
 use path_timing::{
-    Ahead, AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathFn, Place, PlanError, Rounded,
+    Ahead, AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathFn, PathPoint, PlanError, Rounded,
     Row, Slot, Table,
 };
 use polyline::lines;
@@ -71,13 +71,13 @@ fn a_long_window_is_a_table() {
 #[test]
 fn a_window_shorter_than_the_braking_distance_costs_time_alone() {
     let line = |from: f64| {
-        let place = move |s: f64| {
-            Ok::<_, &str>(Place {
+        let point = move |s: f64| {
+            Ok::<_, &str>(PathPoint {
                 position: [from + s],
                 slope: [1.0],
             })
         };
-        PathFn::new(10.0, place).with_corner(Corner::Smooth)
+        PathFn::new(10.0, point).with_corner(Corner::Smooth)
     };
     let limits = [limits(100.0, 1000.0, None)];
     let mut before_s = f64::INFINITY;
@@ -103,19 +103,19 @@ fn a_stream_without_end_costs_the_same_for_each_knot() {
     let asked = Cell::new(0_u32);
     let line = |number: u32| {
         let asked = &asked;
-        let place = move |s: f64| {
+        let point = move |s: f64| {
             asked.set(asked.get() + 1);
             let (x, slope) = if number.is_multiple_of(2) {
                 (s, 1.0)
             } else {
                 (5.0 - s, -1.0)
             };
-            Ok::<_, &str>(Place {
+            Ok::<_, &str>(PathPoint {
                 position: [x, (f64::from(number) * 5.0 + s) * 0.01],
                 slope: [slope, 0.01],
             })
         };
-        PathFn::new(5.0, place).with_corner(Corner::Jump([1.0; 2]))
+        PathFn::new(5.0, point).with_corner(Corner::Jump([1.0; 2]))
     };
     let mut window = slots(24);
     let limits = [limits(50.0, 500.0, None); 2];
@@ -151,16 +151,16 @@ fn a_stream_that_pauses_rests_at_the_end_and_goes_on() {
 fn a_refused_path_is_named_once_and_the_machine_stops_before_it() {
     let line = |n: u32| {
         let from = f64::from(n) * 10.0;
-        let place = move |s: f64| {
+        let point = move |s: f64| {
             if from + s > 34.0 {
                 return Err("out of reach");
             }
-            Ok(Place {
+            Ok(PathPoint {
                 position: [from + s],
                 slope: [1.0],
             })
         };
-        PathFn::new(10.0, place).with_corner(Corner::Smooth)
+        PathFn::new(10.0, point).with_corner(Corner::Smooth)
     };
     let limits = [limits(100.0, 1000.0, None)];
     let mut window = vec![Slot::default(); 16];
@@ -329,7 +329,7 @@ proptest! {
         check_limits(&LIMITS, jump.as_ref(), &rows);
         prop_assert!(rows.windows(2).all(|pair| pair[1].time_s.is_finite()));
         let end = paths.last().unwrap();
-        let Ok(end) = end.place(end.length());
+        let Ok(end) = end.point(end.length());
         let last = rows.last().unwrap();
         prop_assert_eq!(last.position.map(f64::to_bits), end.position.map(f64::to_bits));
         prop_assert!(motion.is_at_rest());

@@ -19,7 +19,7 @@ struct Here {
 
 fn here(line: &Line, limits: &[AxisLimits; 2], s: f64) -> [Here; 2] {
     let step = 1e-4 * line.length();
-    let slope = |s: f64| line.place(s).unwrap().slope;
+    let slope = |s: f64| line.point(s).unwrap().slope;
     let (before, now, after) = (slope(s - step), slope(s), slope(s + step));
     [0, 1].map(|i| Here {
         p: now[i],

@@ -10,14 +10,14 @@ use core::convert::Infallible;
 
 use limited::check_limits;
 use machine::{Line, limits};
-use path_timing::{Ahead, Knot, Path, PathFn, Place, PlanError, Row, Span, Table, ToolLimits};
+use path_timing::{Ahead, Knot, Path, PathFn, PathPoint, PlanError, Row, Span, Table, ToolLimits};
 use proptest::prelude::*;
 
 /// Of sums of some hundred times and positions.
 const ROUNDING: f64 = 1e-9;
 
-fn straight(s: f64) -> Result<Place<[f64; 1]>, Infallible> {
-    Ok(Place {
+fn straight(s: f64) -> Result<PathPoint<[f64; 1]>, Infallible> {
+    Ok(PathPoint {
         position: [3.0 + s],
         slope: [1.0],
     })
@@ -161,9 +161,9 @@ fn what_cannot_be_planned_is_named() {
     assert_eq!(error.to_string(), "leg 0, at 100: out of reach");
     for bad in [f64::NAN, f64::INFINITY] {
         let hole = move |s: f64| {
-            let mut place = straight(s)?;
-            place.slope = [if (40.0..60.0).contains(&s) { bad } else { 1.0 }];
-            Ok::<_, Infallible>(place)
+            let mut point = straight(s)?;
+            point.slope = [if (40.0..60.0).contains(&s) { bad } else { 1.0 }];
+            Ok::<_, Infallible>(point)
         };
         let error = Table::plan([PathFn::new(100.0, hole)], good, |_| 10, &mut knots);
         assert!(matches!(error, Err(PlanError::NotFinite { leg: 0, .. })));
@@ -248,7 +248,7 @@ fn the_tool_on_a_line_is_as_fast_as_its_feed() {
         from: [-100.0, 80.0],
         to: [100.0, 80.0],
     };
-    let path = PathFn::new(line.length(), |s| line.place(s)).with_tool(tool);
+    let path = PathFn::new(line.length(), |s| line.point(s)).with_tool(tool);
     let mut knots = [Knot::default(); 201];
     for jerk in [None, Some(400.0)] {
         let limits = [limits(2.0, 20.0, jerk), limits(300.0, 2000.0, None)];

@@ -12,12 +12,12 @@ use crate::{Platform, PoseVector};
 
 /// Axis coordinates and their derivative by the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place<const N: usize> {
+pub(crate) struct CoursePoint<const N: usize> {
     pub(crate) axes: [Vector3<f64>; N],
     pub(crate) slope: [Vector3<f64>; N],
 }
 
-impl<const N: usize> Place<N> {
+impl<const N: usize> CoursePoint<N> {
     /// The axes of a body that moves.
     pub(crate) fn of(platform: &Platform<N>, motion: &Motion) -> Self {
         let velocity = |anchor: Point3<f64>| {
@@ -91,11 +91,11 @@ impl<'a, const N: usize> Course<'a, N> {
     }
 
     /// Axes and slopes at a parameter.
-    pub(crate) fn place(&self, s: f64) -> Place<N> {
+    pub(crate) fn point(&self, s: f64) -> CoursePoint<N> {
         match self {
             Self::Turning(course) => {
                 let turn = Turn::of(course.angle * s);
-                Place {
+                CoursePoint {
                     axes: course.axes(s, turn),
                     slope: course.slope(turn),
                 }
@@ -106,7 +106,7 @@ impl<'a, const N: usize> Course<'a, N> {
                 let angular =
                     angular_velocity(leg.convention, &vector.angles(), &leg.angles_change());
                 let (position, linear) = (vector.position(), leg.slide());
-                Place::of(
+                CoursePoint::of(
                     platform,
                     &Motion {
                         rotation,

@@ -177,12 +177,12 @@ mod tests {
         let course = Course::new(&platform, &path.leg(0).unwrap());
         // The mean speed is 1, and so is the time.
         let point = |s, speed| {
-            let place = course.place(s);
+            let at = course.point(s);
             PvtPoint {
                 time_s: s,
                 segment_s: s,
-                axes: place.axes,
-                velocities: place.slope.map(|slope| slope * speed),
+                axes: at.axes,
+                velocities: at.slope.map(|slope| slope * speed),
             }
         };
         let (from, to) = (point(0.0, 1.0 - change), point(1.0, 1.0 + change));

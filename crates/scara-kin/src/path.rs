@@ -7,7 +7,9 @@ mod turns;
 use core::f64::consts::PI;
 
 use nalgebra::{Point2, Vector2};
-use path_timing::{Corner, Cubic, Curve, CurveMotion, Path, Place, Span, ToolLimits, TurnMotion};
+use path_timing::{
+    Corner, Cubic, Curve, CurveMotion, Path, PathPoint, Span, ToolLimits, TurnMotion,
+};
 use trig_kernels::sin_cos;
 
 pub use disc::DiscPath;
@@ -328,9 +330,9 @@ impl Path for ArmPath {
         self.curve.length()
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 2]>, ArmPathError> {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 2]>, ArmPathError> {
         let (joints, slopes) = self.turning(s)?;
-        Ok(Place {
+        Ok(PathPoint {
             position: [joints.shoulder, joints.elbow],
             slope: slopes.into(),
         })

@@ -191,12 +191,12 @@ proptest! {
         let speeds = if is_rising { [ratio, 1.0] } else { [1.0, ratio] };
         let duration_s = 2.0 * (s[1] - s[0]) / (speeds[0] + speeds[1]);
         let row = |end: usize| {
-            let place = path.place(s[end]).unwrap();
+            let point = path.point(s[end]).unwrap();
             Row {
                 time_s: 0.0,
                 duration_s,
-                position: place.position,
-                velocity: place.slope.map(|slope| slope * speeds[end]),
+                position: point.position,
+                velocity: point.slope.map(|slope| slope * speeds[end]),
             }
         };
         let span = Span { s, rows: [row(0), row(1)] };
@@ -210,28 +210,28 @@ proptest! {
         let arm = arm().with_base(Isometry2::new(Vector2::new(1.0, 2.0), -2.5)).unwrap();
         let Ok(path) = arm.path(curve, Elbow::Right) else { return Ok(()) };
         let disc = path.with_disc(theta3).unwrap();
-        let start = disc.place(0.0).unwrap().position;
+        let start = disc.point(0.0).unwrap().position;
         prop_assert!((start[2] - theta3).abs() <= PI + ROUNDING);
         let mut last = start;
         for number in 0..=400 {
             let s = curve.length() * f64::from(number) / 400.0;
-            let place = disc.place(s).unwrap();
-            let [shoulder, elbow, theta3] = place.position;
+            let point = disc.point(s).unwrap();
+            let [shoulder, elbow, theta3] = point.position;
             let at = curve.at(s);
             let tool = arm.forward(Joints::new(shoulder, elbow));
             prop_assert!((tool - Point2::from(at.point)).norm() < ROUNDING);
             let along = theta3 + shoulder + elbow - 2.5 - at.tangent[1].atan2(at.tangent[0]);
             prop_assert!((along / TAU - (along / TAU).round()).abs() < ROUNDING);
-            for (now, before) in place.position.iter().zip(last) {
+            for (now, before) in point.position.iter().zip(last) {
                 prop_assert!((now - before).abs() < PI, "{s}: {now} {before}");
             }
-            last = place.position;
+            last = point.position;
             // Where joints are not too fast for differences.
-            if number % 20 == 10 && place.slope.iter().all(|slope| slope.abs() < 0.05) {
-                let [before, after] = [s - STEP, s + STEP].map(|s| disc.place(s).unwrap().position);
+            if number % 20 == 10 && point.slope.iter().all(|slope| slope.abs() < 0.05) {
+                let [before, after] = [s - STEP, s + STEP].map(|s| disc.point(s).unwrap().position);
                 for axis in 0..3 {
                     let slope = (after[axis] - before[axis]) / (2.0 * STEP);
-                    prop_assert!((slope - place.slope[axis]).abs() < DIFFERENCES);
+                    prop_assert!((slope - point.slope[axis]).abs() < DIFFERENCES);
                 }
             }
         }
@@ -278,7 +278,7 @@ fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
                 .unwrap();
             let disc = path.with_disc(theta3).unwrap();
             joints = path.joints(curve.length()).unwrap();
-            [.., theta3] = disc.place(curve.length()).unwrap().position;
+            [.., theta3] = disc.point(curve.length()).unwrap().position;
             disc
         })
         .collect();

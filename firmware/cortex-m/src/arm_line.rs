@@ -58,7 +58,7 @@ pub fn path() -> ArmPath {
 pub fn quantiser(path: &ArmPath) -> PvtQuantiser<2> {
     let scale = StepScale::new(STEPS_PER_TURN / core::f64::consts::TAU).expect("not zero");
     let rate = Rate::from_hz(TICK_HZ).expect("not zero");
-    let first = path.place(0.0).expect("within reach").position;
+    let first = path.point(0.0).expect("within reach").position;
     PvtQuantiser::new(rate, [scale; 2], first).expect("in range")
 }
 

@@ -2,7 +2,7 @@
 
 use core::convert::Infallible;
 
-use path_timing::{Ahead, AxisLimits, Knot, PathFn, Place, Table};
+use path_timing::{Ahead, AxisLimits, Knot, PathFn, PathPoint, Table};
 use pulse_interp::{Arc, Rule, Turn};
 use stepper_sync::{Ramp, RampLimits, Rate, Trains};
 
@@ -18,7 +18,7 @@ pub fn hashes(say: &mut dyn FnMut(&str, &str, Hash)) {
 /// A parabola within jerk, half of it at half the feed.
 fn table() -> Hash {
     let parabola = |s: f64| {
-        Ok::<_, Infallible>(Place {
+        Ok::<_, Infallible>(PathPoint {
             position: [s, 0.01 * s * s],
             slope: [1.0, 0.02 * s],
         })

@@ -2,7 +2,7 @@
 
 use core::fmt::{Debug, Display};
 
-use path_timing::{Ahead, Curve, Knot, Path, PathFn, Place, Row, Run, Table, ToolLimits};
+use path_timing::{Ahead, Curve, Knot, Path, PathFn, PathPoint, Row, Run, Table, ToolLimits};
 use scara_kin::{ArmPath, Joints};
 use stepper_sync::{PvtQuantiser, PvtSteps};
 
@@ -211,7 +211,7 @@ impl<'m> Motion<'m> {
         slope[axis] = by.signum();
         let path = PathFn::new(by.abs(), move |s| {
             let position = [from[0] + slope[0] * s, from[1] + slope[1] * s];
-            Ok::<_, core::convert::Infallible>(Place { position, slope })
+            Ok::<_, core::convert::Infallible>(PathPoint { position, slope })
         });
         let table = Table::plan([path], machine.limits, |_| MIN_SEGMENTS, &mut self.knots);
         let table = table.map_err(refused)?;

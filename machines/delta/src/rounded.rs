@@ -89,7 +89,7 @@ pub(crate) fn run(
         }
         // The row at the end of a leg has its very positions.
         while let Some((path, line)) = leg
-            && path.place(path.length())?.position == row.position
+            && path.point(path.length())?.position == row.position
         {
             if let Some(ended) = moves.get_mut(line) {
                 ended.end_ticks = steps.end_ticks();

@@ -189,7 +189,7 @@ impl Planner<'_> {
             } else {
                 Leg::from_rest(path, is_corner, machine.start_speeds())
             };
-            let [shoulder, elbow_rad, disc] = leg.place(leg.length())?.position;
+            let [shoulder, elbow_rad, disc] = leg.point(leg.length())?.position;
             (joints, disc_rad) = (Joints::new(shoulder, elbow_rad), disc);
             match runs.last_mut().filter(|_| goes_on.is_some()) {
                 Some(run) => run.push(leg),

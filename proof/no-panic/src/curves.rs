@@ -8,8 +8,8 @@ use std::iter::Flatten;
 use delta_kin::{Delta, DeltaPath, DeltaPathError};
 use no_panic::no_panic;
 use path_timing::{
-    AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, Place, PlanError, Rounded,
-    Row, Slot, Span, Table, segments_within,
+    AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, PathPoint, PlanError,
+    Rounded, Row, Slot, Span, Table, segments_within,
 };
 use scara_kin::{Arm, ArmPath, ArmPathError, DiscPath, Elbow};
 
@@ -88,8 +88,8 @@ fn arm_path(arm: &Arm, curve: Curve<2>, elbow: Elbow) -> Result<ArmPath, ArmPath
 
 #[no_panic]
 #[inline(never)]
-fn arm_place(path: &ArmPath, s: f64) -> Result<Place<[f64; 2]>, ArmPathError> {
-    path.place(s)
+fn arm_point(path: &ArmPath, s: f64) -> Result<PathPoint<[f64; 2]>, ArmPathError> {
+    path.point(s)
 }
 
 #[no_panic]
@@ -106,8 +106,8 @@ fn with_disc(path: ArmPath, theta3: f64) -> Result<DiscPath, ArmPathError> {
 
 #[no_panic]
 #[inline(never)]
-fn disc_place(path: &DiscPath, s: f64) -> Result<Place<[f64; 3]>, ArmPathError> {
-    path.place(s)
+fn disc_point(path: &DiscPath, s: f64) -> Result<PathPoint<[f64; 3]>, ArmPathError> {
+    path.point(s)
 }
 
 #[no_panic]
@@ -134,8 +134,8 @@ fn pick_and_place(
 
 #[no_panic]
 #[inline(never)]
-fn delta_place(path: &DeltaPath, s: f64) -> Result<Place<[f64; 3]>, DeltaPathError> {
-    path.place(s)
+fn delta_point(path: &DeltaPath, s: f64) -> Result<PathPoint<[f64; 3]>, DeltaPathError> {
+    path.point(s)
 }
 
 #[no_panic]
@@ -190,7 +190,7 @@ pub fn run() {
         && let Ok(path) = delta_path(&delta, black_box(line))
     {
         let path = black_box(path);
-        black_box(delta_place(&path, black_box(3.0)).is_ok());
+        black_box(delta_point(&path, black_box(3.0)).is_ok());
         black_box(delta_departure(&path, &span()));
     }
 }
@@ -208,11 +208,11 @@ fn run_curve(curve: &Curve<2>, limits: AxisLimits) {
         return;
     };
     let path = black_box(path);
-    black_box(arm_place(&path, black_box(3.0)).is_ok());
+    black_box(arm_point(&path, black_box(3.0)).is_ok());
     black_box(arm_departure(&path, &span()));
     if let Ok(path) = with_disc(path, black_box(0.3)) {
         let path = black_box(path);
-        black_box(disc_place(&path, black_box(3.0)).is_ok());
+        black_box(disc_point(&path, black_box(3.0)).is_ok());
         black_box(disc_departure(&path, &span()));
     }
 }

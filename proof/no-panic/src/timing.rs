@@ -7,7 +7,7 @@ use std::iter::{Repeat, repeat};
 
 use no_panic::no_panic;
 use path_timing::{
-    Ahead, AxisLimits, Knot, LookAhead, Path, Place, PlanError, Row, Rows, Run, Slot, Table,
+    Ahead, AxisLimits, Knot, LookAhead, Path, PathPoint, PlanError, Row, Rows, Run, Slot, Table,
 };
 
 /// A parabola, one axis by the square of the other.
@@ -22,8 +22,8 @@ impl Path for Parabola {
         black_box(10.0)
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 2]>, Infallible> {
-        Ok(Place {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 2]>, Infallible> {
+        Ok(PathPoint {
             position: [s, s * s],
             slope: [1.0, 2.0 * s],
         })

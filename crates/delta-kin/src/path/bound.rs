@@ -136,7 +136,7 @@ impl DeltaPath {
             return None;
         }
         let velocity = |s, row: &Row<[f64; 3]>| {
-            let pose = Pose::new(delta, row.position.into(), self.point(s));
+            let pose = Pose::new(delta, row.position.into(), self.centre(s));
             let velocity = pose.platform_velocity(row.velocity.into()).ok()?;
             Some(<[f64; 3]>::from(velocity))
         };

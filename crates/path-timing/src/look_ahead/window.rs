@@ -4,12 +4,12 @@ use crate::joint::Joint;
 use crate::number::LARGEST;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
-use crate::{Axes, Place, ToolLimits};
+use crate::{Axes, PathPoint, ToolLimits};
 
 /// Memory for one knot of a [`LookAhead`](super::LookAhead).
 #[derive(Debug, Clone, Copy)]
 pub struct Slot<A: Axes> {
-    place: Place<A>,
+    point: PathPoint<A>,
     /// Slopes of the segment after, where they are others.
     jump: Option<A>,
     /// Of the segment before.
@@ -29,7 +29,7 @@ pub struct Slot<A: Axes> {
 impl<A: Axes> Default for Slot<A> {
     fn default() -> Self {
         Self {
-            place: Place {
+            point: PathPoint {
                 position: A::zeros(),
                 slope: A::zeros(),
             },
@@ -46,10 +46,10 @@ impl<A: Axes> Default for Slot<A> {
 
 impl<A: Axes> Slot<A> {
     /// Positions and slopes at the start of the segment after.
-    fn departure(&self) -> Place<A> {
-        let position = self.place.position;
+    fn departure(&self) -> PathPoint<A> {
+        let position = self.point.position;
         self.jump
-            .map_or(self.place, |slope| Place { position, slope })
+            .map_or(self.point, |slope| PathPoint { position, slope })
     }
 
     /// The segment from here to the next knot, with the tool's feed multiplied.
@@ -58,7 +58,7 @@ impl<A: Axes> Slot<A> {
             feed: tool.feed * feed,
             ..tool
         });
-        Segment::new(limits, &self.departure(), &next.place, next.ds)
+        Segment::new(limits, &self.departure(), &next.point, next.ds)
             .with_tool(tool.as_ref(), next.ds)
     }
 }
@@ -81,7 +81,7 @@ impl Feed {
 /// What the next row is made of.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step<A: Axes> {
-    pub(super) place: Place<A>,
+    pub(super) point: PathPoint<A>,
     pub(super) jump: Option<A>,
     pub(super) speed: f64,
     pub(super) duration_s: f64,
@@ -113,12 +113,12 @@ impl<'w, A: Axes> Window<'w, A> {
         self.slots.get(self.first..self.end).unwrap_or_default()
     }
 
-    pub(super) fn first(&self) -> Option<&Place<A>> {
-        self.knots().first().map(|slot| &slot.place)
+    pub(super) fn first(&self) -> Option<&PathPoint<A>> {
+        self.knots().first().map(|slot| &slot.point)
     }
 
-    pub(super) fn last(&self) -> Option<&Place<A>> {
-        self.knots().last().map(|slot| &slot.place)
+    pub(super) fn last(&self) -> Option<&PathPoint<A>> {
+        self.knots().last().map(|slot| &slot.point)
     }
 
     /// Where at most half of the slots hold knots: moves these to the beginning.
@@ -143,10 +143,10 @@ impl<'w, A: Axes> Window<'w, A> {
     }
 
     /// Appends a knot, `ds` after the last one.
-    pub(super) fn push(&mut self, ds: f64, tool: Option<ToolLimits>, place: Place<A>) {
+    pub(super) fn push(&mut self, ds: f64, tool: Option<ToolLimits>, point: PathPoint<A>) {
         if let Some(slot) = self.slots.get_mut(self.end) {
             *slot = Slot {
-                place,
+                point,
                 ds,
                 tool,
                 ..Slot::default()
@@ -165,7 +165,7 @@ impl<'w, A: Axes> Window<'w, A> {
         slot.corner = joint.speed();
         match joint {
             Joint::Stop | Joint::Jump(_) => slot.jump = Some(*start),
-            Joint::Smooth(slope) => slot.place.slope = *slope,
+            Joint::Smooth(slope) => slot.point.slope = *slope,
         }
     }
 
@@ -233,13 +233,13 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if both > 0.0 {
             2.0 * to.ds / both
         } else if feed.wanted > 0.0 {
-            let (start, end) = (&from.place.position, &to.place.position);
+            let (start, end) = (&from.point.position, &to.point.position);
             limits.rest_to_rest_s(start, end, to.tool.as_ref(), to.ds) / feed.wanted.min(1.0)
         } else {
             return None;
         };
         let step = Step {
-            place: to.place,
+            point: to.point,
             jump: to.jump.filter(|_| to.corner > 0.0),
             speed: next,
             duration_s,

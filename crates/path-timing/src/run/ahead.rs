@@ -4,7 +4,7 @@ use crate::leg::Leg;
 use crate::number::LARGEST;
 use crate::segment::Segment;
 use crate::utilisation::{Of, stretch};
-use crate::{Axes, Knot, Legs, Place, PlanError, Table, profile};
+use crate::{Axes, Knot, Legs, PathPoint, PlanError, Table, profile};
 
 /// Memory for one row of a table that runs: the highest feed from which the rest can be run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -65,17 +65,21 @@ impl<A: Axes, L: Legs<Axes = A>> Table<'_, L, A> {
     }
 
     /// A knot's point, slopes by time.
-    fn velocities(&self, leg: &Leg<L::Leg>, knot: &Knot) -> Result<Place<A>, PlanError<L::Error>> {
-        let mut place = leg.checked_place(knot.s)?;
-        place.slope = place.slope.scaled(knot.speed / self.stretch);
-        Ok(place)
+    fn velocities(
+        &self,
+        leg: &Leg<L::Leg>,
+        knot: &Knot,
+    ) -> Result<PathPoint<A>, PlanError<L::Error>> {
+        let mut point = leg.checked_point(knot.s)?;
+        point.slope = point.slope.scaled(knot.speed / self.stretch);
+        Ok(point)
     }
 }
 
 /// What a segment allows at its start where its end allows `later`.
 fn look_back<A: Axes>(
     segment: &Segment<A>,
-    [start, end]: [&Place<A>; 2],
+    [start, end]: [&PathPoint<A>; 2],
     later: f64,
     max: f64,
 ) -> Ahead {
@@ -95,6 +99,6 @@ fn look_back<A: Axes>(
     }
 }
 
-pub(super) fn is_rest<A: Axes>(place: &Place<A>) -> bool {
-    place.slope.as_slice().iter().all(|slope| *slope == 0.0)
+pub(super) fn is_rest<A: Axes>(point: &PathPoint<A>) -> bool {
+    point.slope.as_slice().iter().all(|slope| *slope == 0.0)
 }

@@ -193,7 +193,7 @@ impl<L: Legs> Start<'_, '_, L> {
             let Some(node) = ahead.next()? else {
                 return Ok(Trial::TooLong(number));
             };
-            if number > 0 && is_rest(&node.place) {
+            if number > 0 && is_rest(&node.point) {
                 return Ok(Trial::TooLong(number));
             }
             table_s += node.duration_s;
@@ -215,13 +215,13 @@ impl<L: Legs> Start<'_, '_, L> {
         let Some(mut node) = ahead.next()? else {
             return Ok(false);
         };
-        let mut from = Row::new(&node.place, self.feed, 0.0, 0.0);
+        let mut from = Row::new(&node.point, self.feed, 0.0, 0.0);
         while warp.left > 0 {
             let (feed, duration_s) = warp.step(node.duration_s);
             let Some(next) = ahead.next()? else {
                 return Ok(false);
             };
-            let to = Row::new(&next.place, feed, 0.0, duration_s);
+            let to = Row::new(&next.point, feed, 0.0, duration_s);
             demand.add(self.limits, &from, &to);
             // Written so that NaN does not hold.
             let holds = demand.stretch() <= 1.0;
@@ -230,11 +230,11 @@ impl<L: Legs> Start<'_, '_, L> {
             }
             (node, from) = (next, to);
         }
-        if last.to <= 0.0 || is_rest(&node.place) {
+        if last.to <= 0.0 || is_rest(&node.point) {
             demand.stop(self.limits);
         } else if let Some(next) = ahead.next()? {
             let duration_s = node.duration_s / last.to;
-            let to = Row::new(&next.place, last.to, 0.0, duration_s);
+            let to = Row::new(&next.point, last.to, 0.0, duration_s);
             demand.add(self.limits, &from, &to);
         }
         Ok(demand.stretch() <= 1.0)

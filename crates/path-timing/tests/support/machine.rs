@@ -2,7 +2,7 @@
 
 use core::convert::Infallible;
 
-use path_timing::{AxisLimits, Path, Place};
+use path_timing::{AxisLimits, Path, PathPoint};
 
 /// A line of the plane, run by the angle and the reach of a polar arm.
 #[derive(Debug, Clone, Copy)]
@@ -19,13 +19,13 @@ impl Path for Line {
         (self.to[0] - self.from[0]).hypot(self.to[1] - self.from[1])
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 2]>, Infallible> {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 2]>, Infallible> {
         let share = s / self.length();
         let [dx, dy] = [0, 1].map(|i| (self.to[i] - self.from[i]) / self.length());
         // The ends to the last bit, where lines join.
         let [x, y] = [0, 1].map(|i| self.from[i] * (1.0 - share) + self.to[i] * share);
         let reach = x.hypot(y);
-        Ok(Place {
+        Ok(PathPoint {
             position: [y.atan2(x), reach],
             slope: [
                 (x * dy - y * dx) / (reach * reach),

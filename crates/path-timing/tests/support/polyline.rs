@@ -18,7 +18,7 @@ pub(crate) fn lines<'a>(
             from: ends[0],
             to: ends[1],
         };
-        let path = PathFn::new(line.length(), move |s| line.place(s)).with_corner(corner);
+        let path = PathFn::new(line.length(), move |s| line.point(s)).with_corner(corner);
         match feed {
             Some(feed) => path.with_tool(ToolLimits {
                 feed,

@@ -5,7 +5,7 @@ use core::convert::Infallible;
 use nalgebra::Vector3;
 use path_timing::Corner;
 
-use crate::course::{Course, Place, is_still, travel};
+use crate::course::{Course, CoursePoint, is_still, travel};
 use crate::number::larger;
 use crate::path::blend::Rounding;
 use crate::path::{Leg, Path};
@@ -40,17 +40,17 @@ impl<const N: usize> path_timing::Path for Track<'_, N> {
         self.length
     }
 
-    fn place(&self, s: f64) -> Result<path_timing::Place<[[f64; 3]; N]>, Infallible> {
-        let place = match &self.piece {
+    fn point(&self, s: f64) -> Result<path_timing::PathPoint<[[f64; 3]; N]>, Infallible> {
+        let point = match &self.piece {
             Piece::Leg(course, [from, to]) => {
                 let rate = (to - from) / self.length;
-                let place = course.place(from + s * rate);
-                Place {
-                    slope: place.slope.map(|slope| slope * rate),
-                    ..place
+                let point = course.point(from + s * rate);
+                CoursePoint {
+                    slope: point.slope.map(|slope| slope * rate),
+                    ..point
                 }
             }
-            Piece::Blend(platform, rounding) => Place::of(platform, &rounding.motion(s)),
+            Piece::Blend(platform, rounding) => CoursePoint::of(platform, &rounding.motion(s)),
         };
         let [start, end] = self.ends;
         let axes = if s <= 0.0 {
@@ -58,11 +58,11 @@ impl<const N: usize> path_timing::Path for Track<'_, N> {
         } else if s >= self.length {
             end
         } else {
-            place.axes
+            point.axes
         };
-        Ok(path_timing::Place {
+        Ok(path_timing::PathPoint {
             position: axes.map(Into::into),
-            slope: place.slope.map(Into::into),
+            slope: point.slope.map(Into::into),
         })
     }
 
@@ -173,7 +173,7 @@ impl<'a, const N: usize> Moving<'a, N> {
             self.path.axes(self.platform, number.checked_add(1)?)
         } else {
             let leg = self.path.leg(number)?;
-            Some(Course::new(self.platform, &leg).place(s).axes)
+            Some(Course::new(self.platform, &leg).point(s).axes)
         }
     }
 

@@ -1,7 +1,7 @@
 //! A disc that is turned with the curve, as a third axis with limits of its own.
 
 use nalgebra::Vector2;
-use path_timing::{Corner, Path, Place, Span, ToolLimits};
+use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
 use trig_kernels::atan2;
 
 use super::turns::Turns;
@@ -126,7 +126,7 @@ impl Path for DiscPath {
         self.arm_path.length()
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 3]>, ArmPathError> {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 3]>, ArmPathError> {
         let (Joints { shoulder, elbow }, slopes) = self.arm_path.turning(s)?;
         let at = self.arm_path.curve.at(s);
         let near = self.heading.near(s);
@@ -138,7 +138,7 @@ impl Path for DiscPath {
         } else {
             heading + self.offset - shoulder - elbow
         };
-        Ok(Place {
+        Ok(PathPoint {
             position: [shoulder, elbow, theta3],
             slope: [slopes.x, slopes.y, bend - slopes.x - slopes.y],
         })

@@ -25,9 +25,9 @@ fn arm_path(arm: &Arm, path: &ArmPath, numbers: [f64; 8]) -> TestCaseResult {
             }
             Err(error) => is_readable(&error)?,
         }
-        match path.place(s) {
-            Ok(place) => {
-                let mut numbers = place.position.iter().chain(&place.slope);
+        match path.point(s) {
+            Ok(point) => {
+                let mut numbers = point.position.iter().chain(&point.slope);
                 prop_assert!(numbers.all(|number| number.is_finite()));
             }
             Err(error) => is_readable(&error)?,
@@ -49,8 +49,8 @@ fn arm_path(arm: &Arm, path: &ArmPath, numbers: [f64; 8]) -> TestCaseResult {
 fn disc_path(path: &DiscPath, numbers: [f64; 8]) -> TestCaseResult {
     prop_assert_eq!(path.arm_path().length().to_bits(), path.length().to_bits());
     for share in [0.0, 0.3, 1.0] {
-        match path.place(path.length() * share) {
-            Ok(place) => prop_assert!(place.position.iter().all(|number| number.is_finite())),
+        match path.point(path.length() * share) {
+            Ok(point) => prop_assert!(point.position.iter().all(|number| number.is_finite())),
             Err(error) => is_readable(&error)?,
         }
     }

@@ -6,11 +6,11 @@ cortex_m_firmware::smallest_program!(work);
 use core::convert::Infallible;
 use core::hint::black_box;
 
-use path_timing::{AxisLimits, Knot, PathFn, Place, Table};
+use path_timing::{AxisLimits, Knot, PathFn, PathPoint, Table};
 
 fn work() -> Option<f64> {
     let straight = |s: f64| {
-        Ok::<_, Infallible>(Place {
+        Ok::<_, Infallible>(PathPoint {
             position: [s, 0.5 * s],
             slope: [1.0, 0.5],
         })

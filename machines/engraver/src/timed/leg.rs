@@ -1,7 +1,7 @@
 //! One curve of a run, with the disc taken over from the curve before.
 
 use anyhow::Result;
-use path_timing::{Corner, Path, Place, Span, ToolLimits};
+use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
 use scara_kin::{ArmPathError, DiscPath};
 
 /// A curve of a run.
@@ -36,7 +36,7 @@ impl Leg {
         disc_rad: f64,
         start_speeds: [f64; 3],
     ) -> Result<Self, ArmPathError> {
-        let [.., own_rad] = path.place(0.0)?.position;
+        let [.., own_rad] = path.point(0.0)?.position;
         Ok(Self {
             path,
             disc_rad,
@@ -63,11 +63,11 @@ impl Path for Leg {
         self.path.length()
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 3]>, ArmPathError> {
-        let mut place = self.path.place(s)?;
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 3]>, ArmPathError> {
+        let mut point = self.path.point(s)?;
         if self.off_rad.abs() > 0.0 {
             let x = s / self.length();
-            let ([.., disc], [.., slope]) = (&mut place.position, &mut place.slope);
+            let ([.., disc], [.., slope]) = (&mut point.position, &mut point.slope);
             *disc = if s <= 0.0 {
                 self.disc_rad
             } else {
@@ -75,7 +75,7 @@ impl Path for Leg {
             };
             *slope -= self.off_rad * 6.0 * x * (1.0 - x) / self.length();
         }
-        Ok(place)
+        Ok(point)
     }
 
     fn tool(&self) -> Option<ToolLimits> {

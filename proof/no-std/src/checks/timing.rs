@@ -4,7 +4,8 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use path_timing::{
-    Ahead, AxisLimits, Curve, Knot, LookAhead, PathFn, Place, Rounded, Slot, Table, segments_within,
+    Ahead, AxisLimits, Curve, Knot, LookAhead, PathFn, PathPoint, Rounded, Slot, Table,
+    segments_within,
 };
 
 use super::{CLOSE_MM, holds};
@@ -12,7 +13,7 @@ use super::{CLOSE_MM, holds};
 /// A straight way of two axes as a trapezoid, and the same under a feed of a half.
 pub fn table() -> Option<()> {
     let straight = |s: f64| {
-        Ok::<_, Infallible>(Place {
+        Ok::<_, Infallible>(PathPoint {
             position: [s, 0.5 * s],
             slope: [1.0, 0.5],
         })

@@ -4,7 +4,7 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use cortex_m_firmware::meter::Meter;
-use path_timing::{Ahead, AxisLimits, Knot, Path, Place, Table};
+use path_timing::{Ahead, AxisLimits, Knot, Path, PathPoint, Table};
 use stepper_sync::{
     AxisSegments, MinIntervals, PvtKnot, PvtQuantiser, PvtSteps, Ramp, RampLimits, Rate, Segment,
     SegmentPlayer, StepScale,
@@ -37,8 +37,8 @@ impl Path for Parabola {
         black_box(100.0)
     }
 
-    fn place(&self, s: f64) -> Result<Place<[f64; 2]>, Infallible> {
-        Ok(Place {
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 2]>, Infallible> {
+        Ok(PathPoint {
             position: [s, 0.01 * s * s],
             slope: [1.0, 0.02 * s],
         })

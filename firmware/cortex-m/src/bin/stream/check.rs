@@ -159,7 +159,7 @@ fn brakes(steps: &[Step]) {
 fn on_line(steps: &Joints<Vec<Step>>) {
     let scale = STEPS_PER_TURN / TAU;
     let path = path();
-    let at = |s| path.place(s).expect("on the line").position;
+    let at = |s| path.point(s).expect("on the line").position;
     let whole = |joints: [f64; 2]| joints.map(|angle| (angle * scale).round() as i32);
     let mut now = whole(at(0.0));
     let joint = |joint: usize| {
