@@ -61,11 +61,10 @@ pub(crate) struct Squares<T> {
 }
 
 impl<T: RealField + Copy> Squares<T> {
-    fn new(arm: &Arm<T>) -> Self {
-        let (upper, fore) = (arm.upper, arm.fore);
+    fn new([upper, fore]: [T; 2], keep_out: T, tolerance: T) -> Self {
         let (folded, reach) = (upper - fore, upper + fore);
-        let nearest = (folded.abs().max(arm.keep_out) - arm.tolerance).max(T::zero());
-        let farthest = reach + arm.tolerance;
+        let nearest = (folded.abs().max(keep_out) - tolerance).max(T::zero());
+        let farthest = reach + tolerance;
         let (longer, shorter) = (upper.max(fore), upper.min(fore));
         Self {
             nearest: nearest * nearest,
@@ -123,15 +122,7 @@ impl<T: RealField + Trig> Arm<T> {
             window: Limits::unlimited().window(),
             keep_out: T::zero(),
             tolerance: T::zero(),
-            squares: Squares {
-                nearest: T::zero(),
-                farthest: T::zero(),
-                folded: T::zero(),
-                reach: T::zero(),
-                longer: T::zero(),
-                shorter: T::zero(),
-                difference: T::zero(),
-            },
+            squares: Squares::new([upper, fore], T::zero(), T::zero()),
         };
         Ok(arm.prepared())
     }
@@ -188,7 +179,7 @@ impl<T: RealField + Trig> Arm<T> {
     fn prepared(mut self) -> Self {
         let span = self.reach() + norm(self.base.translation.vector);
         self.tolerance = span * T::default_epsilon() * nalgebra::convert(ROUNDING_STEPS);
-        self.squares = Squares::new(&self);
+        self.squares = Squares::new([self.upper, self.fore], self.keep_out, self.tolerance);
         self
     }
 
