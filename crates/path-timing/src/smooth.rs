@@ -168,7 +168,7 @@ fn lay_curve(curve: &SCurve, knots: &mut [Knot], length: f64) {
     });
 }
 
-/// Places at which the slopes of a leg are looked at for its S-curve.
+/// Points of a leg at which its slopes are computed for its S-curve.
 const SAMPLES: u32 = 64;
 
 /// An S-curve whose limits keep those of the axes all along the leg.
@@ -179,7 +179,7 @@ const SAMPLES: u32 = 64;
 ///
 /// The speed is taken so that q″ ṡ² uses at most half of the acceleration and q‴ ṡ³ a third
 /// of the jerk, the acceleration so that its product uses at most another third; what is
-/// left over is used. On a straight way q″ = q‴ = 0, and this is the shortest motion.
+/// left over is used. On a straight path q″ = q‴ = 0, and this is the shortest motion.
 fn s_curve<P: Path>(limits: &LimitsOf<P>, leg: &Leg<P>) -> Result<SCurve, PlanError<P::Error>> {
     let derivatives = derivatives(leg)?;
     let tool = leg.tool().map(as_axis);

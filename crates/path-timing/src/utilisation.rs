@@ -6,14 +6,14 @@ use crate::leg::Leg;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, Legs, Path, PlanError, Row};
 
-/// A motion from rest along legs, told knot after knot.
+/// A motion from rest along legs, given knot after knot.
 pub(crate) struct Utilisation<'a, A: Axes, P: Path, I> {
     limits: &'a Reciprocals<A>,
     /// Those that have not begun.
     legs: I,
     leg: Option<Leg<P>>,
     demand: Demand<A>,
-    /// The knot told last: its parameter, its speed, and all axes there.
+    /// The knot given last: its parameter, its speed, and all axes there.
     from: Option<(f64, f64, Row<A>)>,
 }
 

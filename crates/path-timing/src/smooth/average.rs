@@ -3,7 +3,7 @@
 use crate::Knot;
 use crate::profile::segment_s;
 
-/// The mean of a motion s(t) along legs over the window before t, told at the knots of that motion.
+/// The mean of a motion s(t) along legs over the window before t, computed at the knots of that motion.
 ///
 /// ```text
 /// s̄(t) = 1/w ∫ s(u) du,  u = t - w..t      ds̄/dt = (s(t) - s(t - w)) / w

@@ -13,10 +13,10 @@ use crate::{Knot, Legs, PlanError, profile};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Easing {
     window_s: f64,
-    /// Where the motion makes room for its average: its speeds are at most this times those that all
-    /// limits allow where the speed is even, half a window around; and it stays at its tops for a
-    /// window. None for the fastest motion.
-    room: Option<f64>,
+    /// The cap of the speeds, as a factor of those that all limits allow where the speed is even; each
+    /// low speed is held half a window before its knot and after it, each top for a window. None for
+    /// the fastest motion.
+    cap: Option<f64>,
 }
 
 impl Easing {
@@ -27,8 +27,8 @@ impl Easing {
                 window_s: self.window_s * factor,
                 ..self
             },
-            Number::Room => Self {
-                room: self.room.map(|room| room * factor),
+            Number::Cap => Self {
+                cap: self.cap.map(|cap| cap * factor),
                 ..self
             },
         }
@@ -39,7 +39,7 @@ impl Easing {
 #[derive(Debug, Clone, Copy)]
 enum Number {
     Window,
-    Room,
+    Cap,
 }
 
 /// Factors by which a number is changed in a search: powers of two, and roots of it.
@@ -95,19 +95,23 @@ impl<'a, L: Legs> Trial<'a, L> {
         }
     }
 
-    /// The average of the shortest time, and that time: of windows around the one given, and with more
-    /// room or less.
+    /// The average of the shortest time, and that time: of windows around the one given, without a cap
+    /// and with one.
     pub(super) fn best(&mut self, window_s: f64) -> Result<(f64, Easing), PlanError<L::Error>> {
         let window_s = self.begin(window_s)?;
         let fastest = self.search(Easing {
             window_s,
-            room: None,
+            cap: None,
         })?;
-        let roomy = self.search(Easing {
+        let capped = self.search(Easing {
             window_s,
-            room: Some(1.0),
+            cap: Some(1.0),
         })?;
-        Ok(if roomy.0 < fastest.0 { roomy } else { fastest })
+        Ok(if capped.0 < fastest.0 {
+            capped
+        } else {
+            fastest
+        })
     }
 
     /// The same near an average that was found with fewer knots, which see little of the jerk of a short
@@ -119,8 +123,8 @@ impl<'a, L: Legs> Trial<'a, L> {
     ) -> Result<(f64, Easing), PlanError<L::Error>> {
         let window_s = self.begin(window_s)?;
         let mut best = (self.time_s(found, f64::INFINITY)?, found);
-        for room in [None, Some(1.0)] {
-            let next = Easing { window_s, room };
+        for cap in [None, Some(1.0)] {
+            let next = Easing { window_s, cap };
             let time_s = self.time_s(next, best.0)?;
             if time_s < best.0 {
                 best = (time_s, next);
@@ -188,8 +192,8 @@ impl<'a, L: Legs> Trial<'a, L> {
         self.improve(&mut best, Number::Window, COARSE)?;
         for factor in FINE {
             self.improve(&mut best, Number::Window, factor)?;
-            if start.room.is_some() {
-                self.improve(&mut best, Number::Room, factor)?;
+            if start.cap.is_some() {
+                self.improve(&mut best, Number::Cap, factor)?;
             }
         }
         Ok(best)
@@ -306,11 +310,11 @@ impl<'a, L: Legs> Trial<'a, L> {
     /// The speeds of the motion that the average is taken of.
     fn find_speeds(&mut self, easing: Easing) -> Result<(), PlanError<L::Error>> {
         self.place_ends(easing.window_s);
-        let Some(room) = easing.room else {
+        let Some(cap) = easing.cap else {
             return self.find_fastest();
         };
         self.are_fastest = false;
-        shape::hold_low_speeds(self.knots, room, easing.window_s * 0.5);
+        shape::hold_low_speeds(self.knots, cap, easing.window_s * 0.5);
         profile::fastest_speeds(self.eased, self.legs, self.knots, |knot| knot.after)?;
         shape::cut_tops(self.knots, easing.window_s);
         Ok(())
