@@ -102,3 +102,36 @@ pub(crate) fn length<T: RealField + Trig, const N: usize>(vector: &SVector<T, N>
 pub(crate) fn norm<T: RealField + Trig, const N: usize>(vector: &SVector<T, N>) -> T {
     trig_kernels::sqrt(vector.norm_squared())
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{RealField, convert};
+
+    use super::{largest_angle, largest_length, max_value, smallest_length, smallest_ratio};
+
+    /// Of two roots and a reciprocal, in machine epsilons.
+    const ROUNDING: f64 = 4.0;
+
+    fn are_the_roots<T: RealField + Copy>() {
+        let epsilon = T::default_epsilon();
+        let h = max_value::<T>().sqrt().sqrt() / convert(32.0);
+        for (written, computed) in [
+            (largest_length::<T>(), h),
+            (smallest_length(), h.sqrt().recip()),
+            (smallest_ratio(), epsilon.sqrt().sqrt()),
+            (largest_angle(), epsilon.sqrt().recip()),
+        ] {
+            let off = written / computed - T::one();
+            assert!(
+                off.abs() <= epsilon * convert(ROUNDING),
+                "{written} {computed}"
+            );
+        }
+    }
+
+    #[test]
+    fn written_numbers_are_the_roots_in_both_precisions() {
+        are_the_roots::<f64>();
+        are_the_roots::<f32>();
+    }
+}

@@ -81,3 +81,36 @@ pub(crate) fn max_value<T: RealField>() -> T {
         nalgebra::convert(f64::from(f32::MAX))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{RealField, convert};
+
+    use super::{largest_angle, link_lengths, max_value};
+
+    /// Of two roots and a reciprocal, in machine epsilons.
+    const ROUNDING: f64 = 4.0;
+
+    fn are_the_roots<T: RealField + Copy>() {
+        let epsilon = T::default_epsilon();
+        let h = max_value::<T>().sqrt().sqrt() / convert(4.0);
+        let (min, max) = link_lengths::<T>();
+        for (written, computed) in [
+            (max, h),
+            (min, h.sqrt().recip()),
+            (largest_angle(), epsilon.sqrt().recip()),
+        ] {
+            let off = written / computed - T::one();
+            assert!(
+                off.abs() <= epsilon * convert(ROUNDING),
+                "{written} {computed}"
+            );
+        }
+    }
+
+    #[test]
+    fn written_numbers_are_the_roots_in_both_precisions() {
+        are_the_roots::<f64>();
+        are_the_roots::<f32>();
+    }
+}
