@@ -37,12 +37,13 @@ export function file(name, contents) {
 }
 
 /**
- * Runs `line3964r`; tells what it printed and its exit status.
+ * Runs `line3964r`, without its gateway; tells what it printed and its exit status.
  * @param {string[]} args
  */
 export function line3964r(...args) {
-  const cargo = ['run', '--quiet', '--profile', PROFILE, '--package', 'line3964r', '--'];
-  const run = spawnSync('cargo', [...cargo, ...args], { cwd: ROOT, encoding: 'utf8' });
+  const cargo = ['run', '--quiet', '--profile', PROFILE, '--package', 'line3964r'];
+  const all = [...cargo, '--no-default-features', '--features', 'cli', '--', ...args];
+  const run = spawnSync('cargo', all, { cwd: ROOT, encoding: 'utf8' });
   if (run.error) throw run.error;
   return { status: run.status, text: run.stdout + run.stderr };
 }
