@@ -113,6 +113,19 @@ test('the pendant is used by keys alone: a locator is jogged, and stands when it
   await done();
 });
 
+test('a pendant that is clicked twice is off again, and can be switched on', async () => {
+  const { page, done } = await browser.visit('align.html');
+  await aligned(page);
+  const display = page.locator('#display');
+  await page.locator('#power').dblclick();
+  // The pendant's machine has answered by then.
+  await page.waitForTimeout(1000);
+  assert.equal(await display.textContent(), '');
+  await page.getByRole('button', { name: 'Switch on' }).click();
+  await display.filter({ hasText: '>LOCATOR  1 IDLE' }).waitFor();
+  await done();
+});
+
 for (const scheme of /** @type {const} */ (['light', 'dark'])) {
   for (const [size, viewport] of Object.entries({
     wide: { width: 1280, height: 1000 },

@@ -13,8 +13,9 @@ import { viewButtons } from '../shared/space';
 import { fromAddress, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { momentAt, type Result } from './aligned';
-import { Pendant, PoseSliders } from './pendant';
+import { Pendant } from './pendant';
 import { Scene } from './scene';
+import { PoseSliders } from './sliders';
 
 const UM_PER_MM = 1000;
 const COLOURS = ['series-1', 'series-2', 'series-4', 'series-3'] as const;

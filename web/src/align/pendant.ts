@@ -1,5 +1,5 @@
 // The pendant in the visitor's hands: its time is that of the clock on the wall.
-import { create, element } from '../shared/dom';
+import { element } from '../shared/dom';
 import { Machine } from '../shared/machine';
 import type { Moment } from './aligned';
 
@@ -40,7 +40,8 @@ export class Pendant {
   readonly #multiplier = element('multiplier', HTMLSelectElement);
   readonly #enable = element('enable', HTMLInputElement);
   #machine: Machine | undefined;
-  #isOn = false;
+  /** From switching on to switching off. */
+  #session: object | undefined;
   #acts: Act[] = [];
   #counts = 0;
 
@@ -55,9 +56,9 @@ export class Pendant {
     this.#platform = platform;
     this.#seen = seen;
     this.#power.addEventListener('click', () => {
-      if (this.#isOn) this.switchOff();
+      if (this.#session) this.switchOff();
       else
-        this.#run().catch((error) => {
+        this.#switchOn().catch((error) => {
           this.switchOff();
           refuse(error);
         });
@@ -82,8 +83,8 @@ export class Pendant {
   }
 
   switchOff(): void {
-    if (!this.#isOn) return;
-    this.#isOn = false;
+    if (!this.#session) return;
+    this.#session = undefined;
     this.#power.textContent = 'Switch on';
     this.#controls.hidden = true;
     this.#display.textContent = '';
@@ -91,10 +92,11 @@ export class Pendant {
     this.#seen(undefined);
   }
 
-  async #run(): Promise<void> {
+  async #switchOn(): Promise<void> {
     // A machine of its own: that of the sliders is stopped when they move.
     this.#machine ??= new Machine(this.#wasm);
-    this.#isOn = true;
+    const session = {};
+    this.#session = session;
     this.#power.textContent = 'Switch off';
     this.#controls.hidden = false;
     this.#enable.checked = false;
@@ -102,16 +104,17 @@ export class Pendant {
       { direction: Number(this.#direction.value) },
       { multiplier: Number(this.#multiplier.value) },
     ];
-    this.#show((await this.#machine.call<Seen>('desk', this.#platform())).value);
+    let seen = await this.#machine.call<Seen>('desk', this.#platform());
     let before = performance.now();
-    while (this.#isOn) {
+    while (this.#session === session) {
+      this.#show(seen.value);
       await new Promise((then) => setTimeout(then, LOOK_MS));
+      if (this.#session !== session) return;
       const now = performance.now();
       const wait_ms = Math.round(Math.min(now - before, MAX_WAIT_MS));
       before = now;
       const acts = this.#acts.splice(0);
-      const { value } = await this.#machine.call<Seen>('desk.turn', { acts, wait_ms });
-      if (this.#isOn) this.#show(value);
+      seen = await this.#machine.call<Seen>('desk.turn', { acts, wait_ms });
     }
   }
 
@@ -182,62 +185,5 @@ export class Pendant {
     const up = () => (at = undefined);
     wheel.addEventListener('pointerup', up);
     wheel.addEventListener('pointercancel', up);
-  }
-}
-
-const NAMES = ['x', 'y', 'z', 'alpha', 'beta', 'gamma'] as const;
-/** How far a slider goes to both sides, and its steps: in mm, in degrees. */
-const SPANS = { mm: { span: 150, step: 0.5 }, deg: { span: 3, step: 0.02 } };
-
-/** Six sliders for a pose, each with a field for the very number. */
-export class PoseSliders {
-  readonly #fields: HTMLInputElement[] = [];
-  readonly #ranges: HTMLInputElement[] = [];
-
-  constructor(target: HTMLElement, changed: () => void) {
-    for (const [index, name] of NAMES.entries()) {
-      const unit = index < 3 ? 'mm' : 'deg';
-      const label = `${name} in ${unit}`;
-      const field = create('input', { type: 'number', step: 'any', ariaLabel: label });
-      const range = create('input', { type: 'range', ariaLabel: `${label}, slider` });
-      range.step = String(SPANS[unit].step);
-      field.addEventListener('input', () => {
-        range.value = field.value;
-        changed();
-      });
-      range.addEventListener('input', () => {
-        field.value = range.value;
-        changed();
-      });
-      this.#fields.push(field);
-      this.#ranges.push(range);
-      target.append(
-        create(
-          'div',
-          { className: 'slider' },
-          create('span', {}, `${name}, ${unit === 'mm' ? unit : '°'}`),
-          range,
-          field,
-        ),
-      );
-    }
-  }
-
-  /** The numbers as they are typed; no number where there is none. */
-  get pose(): number[] {
-    return this.#fields.map((it) => it.valueAsNumber);
-  }
-
-  /** Shows a pose, with sliders around where the body is. */
-  show(pose: readonly number[], from: readonly number[]): void {
-    for (const [index, range] of this.#ranges.entries()) {
-      const { span } = SPANS[index < 3 ? 'mm' : 'deg'];
-      const [middle, value] = [from[index] ?? 0, pose[index] ?? 0];
-      range.min = String(middle - span);
-      range.max = String(middle + span);
-      range.value = String(value);
-      const field = this.#fields[index];
-      if (field && field.valueAsNumber !== value) field.value = String(value);
-    }
   }
 }
