@@ -84,6 +84,17 @@ export async function open() {
 }
 
 /**
+ * A script for a page: an order to its machine is on its way for two seconds.
+ * @param {string} operation
+ */
+export const delayed = (operation) => `
+  const post = Worker.prototype.postMessage;
+  Worker.prototype.postMessage = function (order, ...rest) {
+    if (order.operation !== '${operation}') post.call(this, order, ...rest);
+    else setTimeout(() => post.call(this, order, ...rest), 2000);
+  };`;
+
+/**
  * A picture for a person to look at.
  * @param {import('playwright-core').Page} page
  * @param {string} name

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, saved, shoot } from './browser.js';
+import { assertAccessible, delayed, open, refusal, saved, shoot } from './browser.js';
 import { commandLine, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -175,6 +175,16 @@ function tone(seconds) {
   for (let index = 0; index < samples; index += 1) bytes[44 + index] = 128 + 100 * Math.sin(index);
   return bytes;
 }
+
+test('what comes of an older input does not hide a refusal', async () => {
+  const { page, done } = await browser.visit('dance.html', { script: delayed('dance') });
+  await page.waitForTimeout(500);
+  await page.getByLabel('Code in bytes').fill('');
+  await refusal(page, 'code: no number');
+  await page.waitForTimeout(3000);
+  assert.equal(await page.locator('#status').textContent(), 'code: no number');
+  await done();
+});
 
 for (const scheme of /** @type {const} */ (['light', 'dark'])) {
   for (const [size, viewport] of Object.entries({

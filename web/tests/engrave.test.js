@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, refusal, saved, shoot } from './browser.js';
+import { assertAccessible, delayed, open, refusal, saved, shoot } from './browser.js';
 import { commandLine, DRAWINGS, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -139,6 +139,36 @@ test('time is played, set and zoomed by keys alone', async () => {
   assert.match((await page.locator('#lanes-note').textContent()) ?? '', /^\d+\.\d{5,} s/);
   await lanes.press('0');
   assert.match((await page.locator('#lanes-note').textContent()) ?? '', /^0\.\d+ s to 339/);
+  await done();
+});
+
+test('a drawing is engraved although the browser keeps nothing', async () => {
+  const script = "Storage.prototype.setItem = () => { throw new Error('there is no room'); };";
+  const { page, done } = await browser.visit('index.html', { script });
+  await engraved(page);
+  await page.locator('#file').setInputFiles(join(DRAWINGS, 'star.svg'));
+  await page.getByLabel('Shipped drawing').locator('option', { hasText: 'star.svg' }).waitFor({
+    state: 'attached',
+  });
+  await engraved(page);
+  const { folder } = commandLine('engrave', ['--svg', join(DRAWINGS, 'star.svg')]);
+  assert((await saved(page, 'pattern.bin')).equals(readFileSync(join(folder, 'pattern.bin'))));
+  await done();
+});
+
+test('a file that a newer input has made useless is not refused', async () => {
+  const { page, done } = await browser.visit('index.html', { script: delayed('engrave.file') });
+  await engraved(page);
+  await page.evaluate(`window.refusals = [];
+    const status = document.getElementById('status');
+    new MutationObserver(() => {
+      if (status.classList.contains('bad')) refusals.push(status.textContent);
+    }).observe(status, { attributes: true });`);
+  await page.getByRole('button', { name: 'pulses.vcd' }).click();
+  await page.getByLabel('Tolerance').fill('0.1');
+  await page.waitForURL(/tolerance=0\.1/);
+  await engraved(page);
+  assert.deepEqual(await page.evaluate('refusals'), []);
   await done();
 });
 

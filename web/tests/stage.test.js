@@ -104,6 +104,25 @@ test('time is played and set by keys alone, and its line is marked', async () =>
   await done();
 });
 
+test('the shipped program stays although there is one of the own', async () => {
+  const { page, done } = await browser.visit('stage.html');
+  await ran(page);
+  const gcode = page.getByLabel('G-code');
+  await gcode.fill('G21 G90 F600\nG1 X10\n');
+  await page.getByLabel('Shipped program').selectOption('test');
+  await page.waitForURL(/drawing=test/);
+  await page.reload();
+  await ran(page);
+  assert.match(await gcode.inputValue(), /^; The stage's test path/);
+  await page.getByLabel('Shipped program').selectOption('own');
+  await ran(page);
+  assert.equal(await gcode.inputValue(), 'G21 G90 F600\nG1 X10\n');
+  const download = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save the program' }).click();
+  assert.equal((await download).suggestedFilename(), 'test.gcode');
+  await done();
+});
+
 for (const scheme of /** @type {const} */ (['light', 'dark'])) {
   for (const [size, viewport] of Object.entries({
     wide: { width: 1280, height: 1000 },

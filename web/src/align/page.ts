@@ -5,7 +5,8 @@ import '../shared/offline';
 import shipped from '../../../machines/platform/platform.toml?raw';
 import wasm from '../../built/align.wasm?url';
 import { Chart } from '../shared/chart';
-import { element, settled } from '../shared/dom';
+import { element, onClick, settled } from '../shared/dom';
+import { AddressFields } from '../shared/fields';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { machineForm } from '../shared/settings';
@@ -51,6 +52,7 @@ const sliders = new PoseSliders(element('sliders', HTMLElement), () => {
   pose = sliders.pose;
   changed();
 });
+const fields = new AddressFields({ mode }, changed);
 const settings = machineForm('align platform', shipped, changed, 'platform.toml');
 const pendant = new Pendant(
   wasm,
@@ -71,7 +73,7 @@ function changed(): void {
 }
 
 async function align(): Promise<void> {
-  toAddress({ to: pose?.join(',') ?? null, mode: mode.value === 'pvt' ? null : mode.value });
+  toAddress({ to: pose?.join(',') ?? null, ...fields.values });
   machine.stop();
   if (pose?.some((it) => Number.isNaN(it))) {
     refuse('pose: six numbers are needed');
@@ -97,7 +99,7 @@ function show(result: Result): void {
   const verdict =
     `Aligned in ${report.duration_s.toFixed(1)} s of the machine's time: distance error at most ` +
     `${um(report.max_distance_error_mm)} µm, the bound is ${um(report.distance_error_bound_mm)} µm`;
-  status.say([verdict, ...(note ? [`note: ${note}`] : [])].join('\n'), !isWithinBounds);
+  status.tell(verdict, note ? [note] : [], !isWithinBounds);
   element('summary', HTMLElement).textContent = summary;
   files.allow(
     true,
@@ -141,19 +143,13 @@ function showCharts({ moments, report }: Result): void {
   );
 }
 
-function begin(): void {
-  const asked = fromAddress('to')?.split(',').map(Number);
-  if (asked?.length === 6 && asked.every(Number.isFinite)) pose = asked;
-  mode.value = fromAddress('mode') === 'pt' ? 'pt' : 'pvt';
-  scene.factor = Number(factor.value);
-  factor.addEventListener('input', () => (scene.factor = Number(factor.value)));
-  mode.addEventListener('input', changed);
-  element('default-pose', HTMLButtonElement).addEventListener('click', () => {
-    pose = undefined;
-    changed();
-  });
-  element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+const asked = fromAddress('to')?.split(',').map(Number);
+if (asked?.length === 6 && asked.every(Number.isFinite)) pose = asked;
+scene.factor = Number(factor.value);
+factor.addEventListener('input', () => (scene.factor = Number(factor.value)));
+onClick('default-pose', () => {
+  pose = undefined;
   changed();
-}
-
-begin();
+});
+element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+changed();

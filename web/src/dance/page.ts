@@ -5,10 +5,11 @@ import '../shared/offline';
 import shipped from '../../../machines/dancer/score.toml?raw';
 import wasm from '../../built/dance.wasm?url';
 import { Chart } from '../shared/chart';
-import { element, save, settled, takeFiles } from '../shared/dom';
+import { element, onClick, save, settled, takeFiles } from '../shared/dom';
+import { AddressFields } from '../shared/fields';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
-import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { keep, kept, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { Dance, type Result } from './dance';
 import { Inspector } from './inspector';
@@ -68,6 +69,7 @@ const inspector = new Inspector((move) => {
   const index = selected;
   if (index !== undefined) edit((moves) => moves.splice(index, 1, move), index);
 });
+const fields = new AddressFields({ law, code }, changed);
 const perform = settled(100, run);
 
 function draw(): void {
@@ -152,16 +154,13 @@ async function open(given: string, name: string): Promise<void> {
 }
 
 async function run(): Promise<void> {
-  toAddress({
-    law: law.value === 'reset' ? null : law.value,
-    code: code.value === '589' ? null : code.value,
-  });
+  toAddress(fields.values);
+  machine.stop();
   const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber };
   if (Number.isNaN(parameters.code_bytes)) {
     status.refuse('code', 'no number');
     return;
   }
-  machine.stop();
   try {
     const { value, blobs } = await machine.call<Result | Refused>('dance', parameters);
     if ('refused' in value) {
@@ -230,26 +229,18 @@ async function openMusic(file: File): Promise<void> {
   }
 }
 
-function on(id: string, act: () => void): void {
-  element(id, HTMLButtonElement).addEventListener('click', act);
-}
-
 function begin(): void {
-  law.value = fromAddress('law') ?? 'reset';
-  if (law.selectedIndex < 0) law.value = 'reset';
-  code.value = fromAddress('code') ?? '589';
-  for (const input of [law, code]) input.addEventListener('input', changed);
   const zoom = element('zoom', HTMLInputElement);
   zoom.addEventListener('input', () => {
     timeline.zoom = Number(zoom.value);
     music.stretch(timeline.zoom);
   });
-  on('add', add);
-  on('copy', () => selected !== undefined && copy(selected));
-  on('delete', () => selected !== undefined && remove(selected));
-  on('undo', takeBack);
-  on('save-score', () => save('score.toml', text));
-  on('shipped', () => open(shipped, 'score.toml'));
+  onClick('add', add);
+  onClick('copy', () => selected !== undefined && copy(selected));
+  onClick('delete', () => selected !== undefined && remove(selected));
+  onClick('undo', takeBack);
+  onClick('save-score', () => save('score.toml', text));
+  onClick('shipped', () => open(shipped, 'score.toml'));
   document.addEventListener('keydown', (event) => {
     const isUndo = (event.ctrlKey || event.metaKey) && event.key === 'z';
     if (!isUndo || event.target instanceof HTMLInputElement) return;

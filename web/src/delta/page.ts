@@ -8,19 +8,20 @@ import spiral from '../../../machines/delta/inputs/spiral.txt?raw';
 import shipped from '../../../machines/delta/machine.toml?raw';
 import wasm from '../../built/delta.wasm?url';
 import { Chart } from '../shared/chart';
-import { element, save, settled, takeFiles } from '../shared/dom';
+import { element, onClick, save, settled } from '../shared/dom';
 import { Editor, linesOf } from '../shared/editor';
+import { AddressFields } from '../shared/fields';
+import { Inputs } from '../shared/inputs';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { columns, countUntil } from '../shared/rows';
 import { machineForm } from '../shared/settings';
 import { viewButtons } from '../shared/space';
-import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { keep, kept, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { ARMS, Driving, type Quantity, type Result } from './driving';
 import { Scene } from './scene';
 
-const INPUTS: Record<string, string> = { 'pick-and-place': pickAndPlace, spiral };
 const ARM_COLOURS = ['series-1', 'series-2', 'series-4'] as const;
 const GRAMS_PER_KG = 1000;
 
@@ -32,7 +33,6 @@ const files = new FileButtons(
   ['steps.csv', 'delta.svg', 'report.json'],
   status,
 );
-const input = element('shipped', HTMLSelectElement);
 const motion = element('motion', HTMLSelectElement);
 const load = element('load', HTMLInputElement);
 const calibrated = element('calibrated', HTMLElement);
@@ -60,17 +60,28 @@ const torques = chart('torques', 'N m');
 const charts = [speeds, rates, accelerations, torques];
 
 const editor = new Editor(element('lines', HTMLElement), 'Points', () => {
-  keep('delta lines', editor.text);
-  offerOwn();
-  input.value = 'own';
+  points.text = editor.text;
   changed();
 });
+const points = new Inputs(
+  element('shipped', HTMLSelectElement),
+  { 'pick-and-place': pickAndPlace, spiral },
+  { parameter: 'input', ending: '.txt', kept: { text: 'delta lines', name: 'delta name' } },
+  open,
+);
+const fields = new AddressFields({ motion, load }, changed);
 const measured = new Editor(element('measured', HTMLElement), 'Measured points', () => {
   keep('delta measured', measured.text || null);
   measured.mark('bad', []);
 });
 const redrive = settled(150, drive);
 const settings = machineForm('delta machine', shipped, changed);
+
+/** Other points. */
+function open(): void {
+  editor.text = points.text;
+  changed();
+}
 
 function changed(): void {
   scene.text = editor.text;
@@ -80,12 +91,7 @@ function changed(): void {
 }
 
 async function drive(): Promise<void> {
-  const chosen = input.value in INPUTS ? input.value : null;
-  toAddress({
-    input: chosen === 'pick-and-place' ? null : chosen,
-    motion: motion.value === 'rounded' ? null : motion.value,
-    load: load.value === '100' ? null : load.value,
-  });
+  toAddress({ ...points.address, ...fields.values });
   machine.stop();
   const parameters = {
     lines: editor.text,
@@ -122,7 +128,7 @@ function show(driving: Driving): void {
     refused ??
     `Driven in ${durationS.toFixed(2)} s of the machine's time, ` +
       `at most ${maxPathErrorMm.toFixed(3)} mm off the lines`;
-  status.say([verdict, ...notes.map((note) => `note: ${note}`)].join('\n'), refused !== null);
+  status.tell(verdict, notes, refused !== null);
   editor.mark('bad', refusedLines);
   editor.mark('note', linesOf(notes));
   summary.textContent = 'Comparing with other ways to drive the lines';
@@ -183,46 +189,19 @@ async function calibrate(): Promise<void> {
     calibratedMachine = found.value.machine;
     use.disabled = false;
   } catch (error) {
+    if (error instanceof Superseded) return;
     const said = error instanceof Error ? error.message : String(error);
     calibrated.textContent = `measured points: ${said}`;
     measured.mark('bad', linesOf([said]));
   }
 }
 
-function offerOwn(): void {
-  const option = input.querySelector<HTMLOptionElement>('option[value=own]');
-  if (option) option.hidden = false;
-}
-
-function on(id: string, act: () => void): void {
-  element(id, HTMLButtonElement).addEventListener('click', act);
-}
-
-function begin(): void {
-  const own = kept('delta lines');
-  if (own !== null) offerOwn();
-  const asked = fromAddress('input');
-  input.value = asked && asked in INPUTS ? asked : own === null ? 'pick-and-place' : 'own';
-  editor.text = INPUTS[input.value] ?? own ?? '';
-  motion.value = fromAddress('motion') === 'trains' ? 'trains' : 'rounded';
-  load.value = fromAddress('load') ?? '100';
-  measured.text = kept('delta measured') ?? '';
-  for (const it of [motion, load]) it.addEventListener('input', changed);
-  input.addEventListener('input', () => {
-    editor.text = INPUTS[input.value] ?? kept('delta lines') ?? '';
-    changed();
-  });
-  element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
-  takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) =>
-    editor.change(await file.text()),
-  );
-  on('calibrate', calibrate);
-  on('example', () => measured.change(example));
-  on('use', () => {
-    if (calibratedMachine !== undefined) settings.replace(calibratedMachine);
-  });
-  on('save-lines', () => save('points.txt', editor.text));
-  changed();
-}
-
-begin();
+measured.text = kept('delta measured') ?? '';
+element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+onClick('calibrate', calibrate);
+onClick('example', () => measured.change(example));
+onClick('use', () => {
+  if (calibratedMachine !== undefined) settings.replace(calibratedMachine);
+});
+onClick('save-lines', () => save(points.file, editor.text));
+open();

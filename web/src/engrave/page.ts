@@ -8,24 +8,23 @@ import star from '../../../machines/engraver/drawings/star.svg?raw';
 import shipped from '../../../machines/engraver/machine.toml?raw';
 import wasm from '../../built/engrave.wasm?url';
 import { Chart } from '../shared/chart';
-import { element, settled, takeFiles } from '../shared/dom';
+import { element, settled } from '../shared/dom';
+import { AddressFields } from '../shared/fields';
+import { Inputs } from '../shared/inputs';
 import { Machine, Superseded } from '../shared/machine';
 import { machineForm } from '../shared/settings';
 import { FileButtons, Status } from '../shared/result';
-import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { fromAddress, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { Engraving, type Result } from './engraving';
 import { Lanes } from './lanes';
 import { Scene } from './scene';
-
-const DRAWINGS: Record<string, string> = { rosette, star, lettering };
 
 const STAGES = ['Planning', 'Engraving'] as const;
 
 const machine = new Machine(wasm);
 const status = new Status();
 const progress = element('progress', HTMLProgressElement);
-const drawing = element('drawing', HTMLSelectElement);
 const controller = element('controller', HTMLSelectElement);
 const tolerance = element('tolerance', HTMLInputElement);
 const placement = element('placement', HTMLInputElement);
@@ -45,6 +44,17 @@ const chart = new Chart(element('deviation', HTMLElement), 'mm', 180, (seconds) 
 );
 lanes.onSeek((seconds) => transport.set(seconds));
 
+const drawing = new Inputs(
+  element('drawing', HTMLSelectElement),
+  { rosette, star, lettering },
+  {
+    parameter: 'drawing',
+    ending: '.svg',
+    kept: { text: 'engrave drawing', name: 'engrave name' },
+  },
+  changed,
+);
+const fields = new AddressFields({ tolerance, placement, controller }, changed);
 const settings = machineForm('engrave machine', shipped, changed);
 
 const replan = settled(150, engrave);
@@ -56,24 +66,17 @@ function changed(): void {
   replan();
 }
 
-function svg(): { name: string; svg: string } {
-  const text = DRAWINGS[drawing.value];
-  if (text !== undefined) return { name: `${drawing.value}.svg`, svg: text };
-  return { name: kept('engrave name') ?? 'drawing', svg: kept('engrave drawing') ?? '' };
-}
-
 async function engrave(): Promise<void> {
   toAddress({
-    drawing: drawing.value === 'own' ? null : drawing.value,
-    tolerance: tolerance.value === '0.05' ? null : tolerance.value,
-    placement: placement.value || null,
+    ...drawing.address,
+    ...fields.values,
     order: keepOrder.checked ? 'file' : null,
-    controller: controller.value === 'pattern' ? null : controller.value,
   });
   machine.stop();
   progress.hidden = false;
   const parameters = {
-    ...svg(),
+    name: drawing.name,
+    svg: drawing.text,
     machine: settings.text,
     tolerance_mm: tolerance.valueAsNumber,
     placement: placement.value || null,
@@ -105,11 +108,10 @@ function show(engraving: Engraving): void {
   progress.hidden = true;
   const { report, summary, isWithinBound } = engraving.result;
   const { duration_s, bound_mm } = engraving.shown;
-  const notes = report.notes.map((note) => `note: ${note}`);
   const verdict = isWithinBound
     ? `Engraved in ${duration_s.toFixed(0)} s of the machine's time, within ${bound_mm.toFixed(3)} mm`
     : 'The tool left the drawing by more than the bound';
-  status.say([verdict, ...notes].join('\n'), !isWithinBound);
+  status.tell(verdict, report.notes, !isWithinBound);
   // Columns are as wide as a terminal; here they would be broken.
   element('summary', HTMLElement).textContent = summary.replace(/ {3,}/g, '  ');
   files.allow(true);
@@ -129,37 +131,7 @@ function show(engraving: Engraving): void {
   element('main', HTMLElement).dataset.ready = '';
 }
 
-async function own(file: File): Promise<void> {
-  keep('engrave drawing', await file.text());
-  keep('engrave name', file.name);
-  offerOwn(file.name);
-  drawing.value = 'own';
-  changed();
-}
-
-function offerOwn(name: string): void {
-  const option = drawing.querySelector<HTMLOptionElement>('option[value=own]');
-  if (!option) return;
-  option.hidden = false;
-  option.textContent = name;
-}
-
-function begin(): void {
-  const ownName = kept('engrave name');
-  if (ownName) offerOwn(ownName);
-  const asked = fromAddress('drawing');
-  drawing.value = asked && asked in DRAWINGS ? asked : ownName ? 'own' : 'rosette';
-  tolerance.value = fromAddress('tolerance') ?? '0.05';
-  placement.value = fromAddress('placement') ?? '';
-  keepOrder.checked = fromAddress('order') === 'file';
-  controller.value = fromAddress('controller') === 'timed' ? 'timed' : 'pattern';
-
-  element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
-  for (const input of [drawing, controller, tolerance, placement, keepOrder]) {
-    input.addEventListener('input', changed);
-  }
-  takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), own);
-  engrave();
-}
-
-begin();
+keepOrder.checked = fromAddress('order') === 'file';
+keepOrder.addEventListener('input', changed);
+element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+engrave();

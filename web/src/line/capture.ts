@@ -1,5 +1,6 @@
 // A capture that is pasted, dropped or chosen, judged as `line3964r monitor` judges it.
 import { element, settled, takeFiles } from '../shared/dom';
+import { AddressFields } from '../shared/fields';
 import { fromAddress, keep, kept, toAddress } from '../shared/store';
 import { Conversation, type News } from './conversation';
 import type { Desk, View } from './desk';
@@ -24,6 +25,7 @@ export class Capture implements View {
   readonly #text = element('capture', HTMLTextAreaElement);
   readonly #example = element('example', HTMLSelectElement);
   readonly #preset = element('preset', HTMLSelectElement);
+  readonly #fields: AddressFields;
   #name = 'capture.txt';
   /** The newest call; answers to older ones are dropped. */
   #call = 0;
@@ -33,8 +35,7 @@ export class Capture implements View {
     for (const name of Object.keys(EXAMPLES).sort()) {
       this.#example.add(new Option(name.replaceAll('_', ' '), name));
     }
-    this.#preset.value = fromAddress('preset') ?? 'siemens-3964r';
-    if (this.#preset.selectedIndex < 0) this.#preset.value = 'siemens-3964r';
+    this.#fields = new AddressFields({ preset: this.#preset }, () => this.#judge());
     const judge = settled(150, () => this.#judge());
     this.#text.addEventListener('input', () => {
       this.#example.value = '';
@@ -44,7 +45,6 @@ export class Capture implements View {
       judge();
     });
     this.#example.addEventListener('change', () => this.#open(this.#example.value));
-    this.#preset.addEventListener('change', () => this.#judge());
     takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) =>
       this.#take(await file.text(), file.name),
     );
@@ -81,7 +81,7 @@ export class Capture implements View {
 
   async #judge(): Promise<void> {
     const preset = this.#preset.value;
-    toAddress({ preset: preset === 'siemens-3964r' ? null : preset });
+    toAddress(this.#fields.values);
     this.#call += 1;
     const call = this.#call;
     const parameters = { name: this.#name, text: this.#text.value, preset };

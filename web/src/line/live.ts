@@ -1,6 +1,7 @@
 // A station, or a tap with two ports, on real ports.
-import { create, element } from '../shared/dom';
-import { fromAddress, toAddress } from '../shared/store';
+import { create, element, onClick } from '../shared/dom';
+import { AddressFields } from '../shared/fields';
+import { toAddress } from '../shared/store';
 import { COMMANDS, type Command } from './commands';
 import { Conversation, type News } from './conversation';
 import type { Desk, Of, View } from './desk';
@@ -18,14 +19,9 @@ interface Pulled extends News {
 /** How often the verdict on the last minute is asked for. */
 const JUDGE_MS = 500;
 const EVENTS = 50;
-/** What the address has, and what is not said there. */
-const SETTINGS = {
-  role: 'station',
-  'port-preset': 'siemens-3964r',
-  priority: 'high',
-  baud: '9600',
-  parity: 'even',
-};
+/** What is set of a port, by the ids of its fields, which are the names in the address too. */
+const SETTINGS = ['role', 'port-preset', 'priority', 'baud', 'parity'] as const;
+type Setting = (typeof SETTINGS)[number];
 
 export class Live implements View {
   readonly follows = true;
@@ -43,23 +39,19 @@ export class Live implements View {
 
   constructor(desk: Desk) {
     this.#desk = desk;
-    for (const [id, usual] of Object.entries(SETTINGS)) {
-      const field = this.#field(id);
-      field.value = fromAddress(id) ?? usual;
-      if (field instanceof HTMLSelectElement && field.selectedIndex < 0) field.value = usual;
-      field.addEventListener('change', () => {
-        toAddress({ [id]: field.value === usual ? null : field.value });
-        this.#showRole();
-      });
-    }
-    element('connect', HTMLButtonElement).addEventListener('click', () => this.#connect());
-    element('disconnect', HTMLButtonElement).addEventListener('click', () => this.#disconnect());
+    const fields = Object.fromEntries(SETTINGS.map((id) => [id, this.#field(id)]));
+    const address = new AddressFields(fields, () => {
+      toAddress(address.values);
+      this.#showRole();
+    });
+    onClick('connect', () => this.#connect());
+    onClick('disconnect', () => this.#disconnect());
     const form = element('live-send', HTMLFormElement);
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       this.#send(readTelegram(form));
     });
-    element('cancel', HTMLButtonElement).addEventListener('click', () => {
+    onClick('cancel', () => {
       this.#waiting = [];
       this.#push({ cancel: true });
     });
@@ -72,10 +64,8 @@ export class Live implements View {
     return this.#field('role').value === 'tap' ? 'tap' : 'station';
   }
 
-  #field(id: string): HTMLInputElement | HTMLSelectElement {
-    const found = document.getElementById(id);
-    if (found instanceof HTMLInputElement || found instanceof HTMLSelectElement) return found;
-    throw new Error(`no field has the id ${id}`);
+  #field(id: Setting): HTMLSelectElement {
+    return element(id, HTMLSelectElement);
   }
 
   #showRole(): void {
@@ -89,7 +79,7 @@ export class Live implements View {
     element('connect', HTMLButtonElement).disabled = isOpen || !serial;
     element('disconnect', HTMLButtonElement).disabled = !isOpen;
     element('live-activity', HTMLElement).textContent = isOpen ? 'idle' : 'no port';
-    for (const id of Object.keys(SETTINGS)) this.#field(id).disabled = isOpen;
+    for (const id of SETTINGS) this.#field(id).disabled = isOpen;
     for (const part of document.querySelectorAll<HTMLFieldSetElement>('fieldset.station-only')) {
       part.disabled = !isOpen;
     }

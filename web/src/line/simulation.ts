@@ -1,5 +1,5 @@
 // Two simulated stations whose line one breaks, to learn the procedure.
-import { element } from '../shared/dom';
+import { element, onClick } from '../shared/dom';
 import { fromAddress, toAddress } from '../shared/store';
 import { Conversation, type News } from './conversation';
 import type { Desk, View } from './desk';
@@ -57,11 +57,9 @@ export class Simulation implements View {
     this.#oneWire.addEventListener('change', () => this.#changed(() => this.#set()));
     this.#traffic.addEventListener('change', () => this.#do(() => this.#set()));
     this.#run.addEventListener('click', () => this.#toggle());
-    const on = (id: string, act: () => Promise<void>) =>
-      element(id, HTMLButtonElement).addEventListener('click', () => this.#do(act));
-    on('step', () => this.#step());
-    on('run-20', () => this.#runTo(this.#nowS + 20));
-    on('restart', () => this.#restart());
+    onClick('step', () => this.#do(() => this.#step()));
+    onClick('run-20', () => this.#do(() => this.#runTo(this.#nowS + 20)));
+    onClick('restart', () => this.#do(() => this.#restart()));
   }
 
   begin(): Promise<void> {

@@ -18,6 +18,11 @@ export function create<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
+/** Acts when the button of an id is clicked. */
+export function onClick(id: string, act: () => void): void {
+  element(id, HTMLButtonElement).addEventListener('click', act);
+}
+
 /** Saves bytes as a file. */
 export function save(name: string, bytes: BlobPart): void {
   const url = URL.createObjectURL(new Blob([bytes]));

@@ -1,6 +1,6 @@
 // What a machine says of a run, and the files that it leaves.
 import { create, element, save } from './dom';
-import type { Machine } from './machine';
+import { type Machine, Superseded } from './machine';
 
 /** The line that tells how it went, read aloud as it changes. */
 export class Status {
@@ -9,6 +9,11 @@ export class Status {
   say(text: string, isBad = false): void {
     this.#line.textContent = text;
     this.#line.classList.toggle('bad', isBad);
+  }
+
+  /** How it went, and what is worth a note. */
+  tell(verdict: string, notes: string[], isBad = false): void {
+    this.say([verdict, ...notes.map((note) => `note: ${note}`)].join('\n'), isBad);
   }
 
   /** As a command line says it: where, and what is wrong. */
@@ -37,7 +42,8 @@ export class FileButtons {
           const { blobs } = await machine.call(operation, parameters(name));
           if (blobs.file) save(name, blobs.file);
         } catch (error) {
-          status.refuse(name, error);
+          // A newer input has made the file useless.
+          if (!(error instanceof Superseded)) status.refuse(name, error);
         }
       });
       return button;

@@ -1,5 +1,5 @@
 // A machine file as a form: each number of the TOML text is a field, its comment the explanation.
-import { create, element, save, takeFiles } from './dom';
+import { create, element, onClick, save, takeFiles } from './dom';
 import { keep, kept } from './store';
 
 const SECTION = /^\[{1,2}(\w+)\]{1,2}\s*(?:#\s*(.*))?$/;
@@ -85,9 +85,7 @@ export function machineForm(
   form.text = kept(name) ?? shipped;
   const chosen = element('machine-file', HTMLInputElement);
   takeFiles(target, chosen, async (given) => form.replace(await given.text()));
-  element('default-machine', HTMLButtonElement).addEventListener('click', () =>
-    form.replace(shipped),
-  );
-  element('save-machine', HTMLButtonElement).addEventListener('click', () => save(file, form.text));
+  onClick('default-machine', () => form.replace(shipped));
+  onClick('save-machine', () => save(file, form.text));
   return form;
 }

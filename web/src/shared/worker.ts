@@ -62,9 +62,9 @@ addEventListener('message', async ({ data }: MessageEvent<Order>) => {
     exports = instantiate(data.module);
     return;
   }
-  const wasm = await exports;
-  current = data.id;
   try {
+    const wasm = await exports;
+    current = data.id;
     const notice = perform(wasm, data.operation, data.parameters);
     post(notice, 'blobs' in notice ? Object.values(notice.blobs) : []);
   } catch (error) {

@@ -7,16 +7,17 @@ import rosette from '../../../machines/stage/drawings/rosette.gcode?raw';
 import test from '../../../machines/stage/drawings/test.gcode?raw';
 import wasm from '../../built/stage.wasm?url';
 import { Chart } from '../shared/chart';
-import { element, save, settled, takeFiles } from '../shared/dom';
+import { element, onClick, save, settled } from '../shared/dom';
 import { Editor, linesOf } from '../shared/editor';
+import { AddressFields } from '../shared/fields';
+import { Inputs } from '../shared/inputs';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
-import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import { toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { type Result, Run } from './run';
 import { Scene } from './scene';
 
-const DRAWINGS: Record<string, string> = { test, link, rosette };
 const UM_PER_MM = 1000;
 
 const machine = new Machine(wasm);
@@ -27,22 +28,12 @@ const files = new FileButtons(
   ['steps.csv', 'stage.svg', 'report.json'],
   status,
 );
-const drawing = element('drawing', HTMLSelectElement);
 const lose = element('lose', HTMLInputElement);
 const seed = element('seed', HTMLInputElement);
 const profile = element('profile', HTMLSelectElement);
 const rule = element('rule', HTMLSelectElement);
 
-/** What the address leaves out. */
-const USUAL: [string, HTMLInputElement | HTMLSelectElement, string][] = [
-  ['lose', lose, '0.1'],
-  ['seed', seed, '1'],
-  ['profile', profile, 'trapezoidal'],
-  ['rule', rule, 'nearest'],
-];
-
 let shown: Run | undefined;
-let ownName = kept('stage name') ?? 'your own';
 
 const scene = new Scene(element('scene', HTMLCanvasElement));
 const transport = new Transport((seconds) => {
@@ -61,10 +52,23 @@ const corrections = chart('corrections', 'steps', 140);
 const charts = [speeds, accelerations, deviations, corrections];
 
 const editor = new Editor(element('gcode', HTMLElement), 'G-code', () => {
-  own(editor.text, drawing.value === 'own' ? ownName : `${drawing.value}.gcode, changed`);
+  program.text = editor.text;
   changed();
 });
+const program = new Inputs(
+  element('drawing', HTMLSelectElement),
+  { test, link, rosette },
+  { parameter: 'drawing', ending: '.gcode', kept: { text: 'stage program', name: 'stage name' } },
+  open,
+);
+const fields = new AddressFields({ lose, seed, profile, rule }, changed);
 const rerun = settled(150, run);
+
+/** Another program. */
+function open(): void {
+  editor.text = program.text;
+  changed();
+}
 
 function changed(): void {
   element('lost', HTMLOutputElement).value = `${lose.valueAsNumber.toFixed(2)} %`;
@@ -73,18 +77,11 @@ function changed(): void {
   rerun();
 }
 
-/** What messages call the program. */
-function name(): string {
-  return drawing.value === 'own' ? ownName : `${drawing.value}.gcode`;
-}
-
 async function run(): Promise<void> {
-  const values = USUAL.map(([key, { value }, usual]) => [key, value === usual ? null : value]);
-  const shipped = drawing.value in DRAWINGS ? drawing.value : null;
-  toAddress({ ...Object.fromEntries(values), drawing: shipped === 'test' ? null : shipped });
+  toAddress({ ...program.address, ...fields.values });
   machine.stop();
   const parameters = {
-    name: name(),
+    name: program.name,
     gcode: editor.text,
     rule: rule.value,
     profile: profile.value,
@@ -120,8 +117,7 @@ function show(run: Run): void {
     `Run in ${report.duration_s.toFixed(1)} s of the machine's time: ` +
     `at most ${um(report.max_deviation_mm)} µm off the curve` +
     (run.isLossy ? `, without corrections ${um(report.open_loop.max_deviation_mm)} µm` : '');
-  const notes = report.notes.map((note) => `note: ${note}`);
-  status.say([verdict, ...notes].join('\n'));
+  status.tell(verdict, report.notes);
   editor.mark('bad', []);
   editor.mark('note', linesOf(report.notes));
   element('summary', HTMLElement).textContent = summary;
@@ -165,47 +161,6 @@ function showCharts(run: Run, limit: number): void {
   corrections.show([{ label: 'corrected', colour: 'series-1' }], [corrected as number[], steps]);
 }
 
-/** The program is no shipped one. */
-function own(text: string, called: string): void {
-  ownName = called;
-  keep('stage program', text);
-  keep('stage name', called);
-  offerOwn();
-  drawing.value = 'own';
-}
-
-function offerOwn(): void {
-  const option = drawing.querySelector<HTMLOptionElement>('option[value=own]');
-  if (!option) return;
-  option.hidden = false;
-  option.textContent = ownName;
-}
-
-function begin(): void {
-  const program = kept('stage program');
-  if (program !== null) offerOwn();
-  const asked = fromAddress('drawing');
-  drawing.value = asked && asked in DRAWINGS ? asked : program === null ? 'test' : 'own';
-  editor.text = DRAWINGS[drawing.value] ?? program ?? '';
-  for (const [key, input, usual] of USUAL) {
-    input.value = fromAddress(key) ?? usual;
-    if (input instanceof HTMLSelectElement && input.selectedIndex < 0) input.value = usual;
-    input.addEventListener('input', changed);
-  }
-  element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
-  drawing.addEventListener('input', () => {
-    editor.text = DRAWINGS[drawing.value] ?? kept('stage program') ?? '';
-    changed();
-  });
-  takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) => {
-    editor.text = await file.text();
-    own(editor.text, file.name);
-    changed();
-  });
-  element('save-program', HTMLButtonElement).addEventListener('click', () =>
-    save(name(), editor.text),
-  );
-  changed();
-}
-
-begin();
+element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
+onClick('save-program', () => save(program.file, editor.text));
+open();
