@@ -133,8 +133,16 @@ test('time and view are set by keys alone', async () => {
   await page.getByLabel('Time', { exact: true }).press('Home');
   assert.notEqual(await shown(), end);
   const scene = page.locator('#scene');
-  for (const key of ['ArrowLeft', 'ArrowDown', '+', '+', '0']) await scene.press(key);
+  const other = "document.getElementById('scene').toDataURL() !== picture";
+  const look = "picture = document.getElementById('scene').toDataURL()";
+  for (const key of ['ArrowLeft', 'ArrowDown', '+', '0']) {
+    await page.evaluate(look);
+    await scene.press(key);
+    await page.waitForFunction(other);
+  }
+  await page.evaluate(look);
   await page.getByRole('button', { name: 'Front' }).press('Enter');
+  await page.waitForFunction(other);
   await shoot(page, 'delta-front');
   await done();
 });

@@ -134,6 +134,15 @@ test('time is played, set and zoomed by keys alone', async () => {
   await page.getByLabel('Time', { exact: true }).press('PageUp');
   assert((await shown()) > before);
   const lanes = page.locator('#lanes');
+  // A click sets the time; a drag moves what is in sight alone.
+  for (let press = 0; press < 4; press += 1) await lanes.press('+');
+  await lanes.click({ position: { x: 300, y: 40 } });
+  const clicked = await shown();
+  await lanes.hover({ position: { x: 100, y: 40 } });
+  await page.mouse.down();
+  await lanes.hover({ position: { x: 200, y: 40 } });
+  await page.mouse.up();
+  assert.equal(await shown(), clicked);
   for (let press = 0; press < 40; press += 1) await lanes.press('+');
   await shoot(page, 'engrave-edges');
   assert.match((await page.locator('#lanes-note').textContent()) ?? '', /^\d+\.\d{5,} s/);

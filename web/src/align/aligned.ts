@@ -1,4 +1,5 @@
 // What came of an alignment, ready to be asked for any time.
+import { countWhile } from '../shared/rows';
 import type { Point3 } from '../shared/space';
 
 export type Pose = [number, number, number, number, number, number];
@@ -33,11 +34,6 @@ export interface Result {
 
 /** The moment at a time, or the last one before. */
 export function momentAt(moments: Moment[], seconds: number): Moment | undefined {
-  let [low, high] = [0, moments.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((moments[middle]?.s ?? Number.POSITIVE_INFINITY) <= seconds) low = middle + 1;
-    else high = middle;
-  }
-  return moments[Math.max(low - 1, 0)];
+  const passed = countWhile(moments.length, (at) => (moments[at]?.s ?? Infinity) <= seconds);
+  return moments[Math.max(passed - 1, 0)];
 }

@@ -1,6 +1,6 @@
 // The body on its locators; its moves can be drawn larger than they are.
 import { colour } from '../shared/dom';
-import { type Ball, type Pen, type Point3, Space } from '../shared/space';
+import { type Ball, closed, extent, type Pen, type Point3, Space } from '../shared/space';
 import type { Moment } from './aligned';
 
 /** Of the posts that are drawn under the locators. */
@@ -42,7 +42,6 @@ export class Scene {
     const start = this.#start;
     const now = this.#now ?? start;
     if (!start || !now) return;
-    const closed = (points: Point3[]) => [...points, ...points.slice(0, 1)];
     const drawn = (from: Point3[], to: Point3[]) =>
       to.map((point, index) => this.#larger(from[index] ?? point, point));
     const locators = drawn(start.locators, now.locators);
@@ -64,14 +63,9 @@ export class Scene {
 
 /** All that is drawn, from every side. */
 function ball({ outline, locators }: Moment): Ball {
-  const points = [...outline, ...locators];
-  const range = (axis: 0 | 1 | 2) => {
-    const all = points.map((it) => it[axis]);
-    const [low, high] = [Math.min(...all), Math.max(...all)];
-    return { middle: (low + high) / 2, half: (high - low) / 2 };
-  };
-  const [x, y, z] = [range(0), range(1), range(2)];
-  const radius = MARGIN * Math.max(Math.hypot(x.half, y.half, z.half), 1);
-  const halfHeight = MARGIN * Math.max(y.half, z.half, 1);
-  return { centre: [x.middle, y.middle, z.middle - POST_MM / 3], radius, halfHeight };
+  const { middle, half } = extent([...outline, ...locators]);
+  const radius = MARGIN * Math.max(Math.hypot(...half), 1);
+  const halfHeight = MARGIN * Math.max(half[1], half[2], 1);
+  const [x, y, z] = middle;
+  return { centre: [x, y, z - POST_MM / 3], radius, halfHeight };
 }

@@ -50,7 +50,11 @@ const transport = new Transport(
     chart.at(seconds);
     apart.at(seconds);
   },
-  (isPlaying, seconds, rate) => (isPlaying ? music.play(seconds, rate) : music.pause()),
+  {
+    playing: (isPlaying, seconds, rate) => (isPlaying ? music.play(seconds, rate) : music.pause()),
+    speeds: [1, 4, 20],
+    speed: 1,
+  },
 );
 const seek = (seconds: number) => transport.set(seconds);
 const chart = new Chart(element('angles', HTMLElement), '°', 200, seek);

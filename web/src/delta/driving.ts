@@ -1,6 +1,6 @@
 // What the robot did with its lines, ready to be asked for any time.
 import type { Answer } from '../shared/machine';
-import { countUntil, numbers } from '../shared/rows';
+import { around, countUntil, numbers } from '../shared/rows';
 import type { Point3 } from '../shared/space';
 
 export const ARMS = [0, 1, 2] as const;
@@ -84,10 +84,7 @@ export class Driving {
 
   /** Evenly between two rows. */
   mechanism(seconds: number): Mechanism {
-    const after = Math.min(countUntil(this.times, seconds), this.times.length - 1);
-    const before = Math.max(after - 1, 0);
-    const [from, to] = [this.times[before] ?? 0, this.times[after] ?? 0];
-    const part = to > from ? Math.min((seconds - from) / (to - from), 1) : 1;
+    const { before, after, part } = around(this.times, seconds);
     const between = (column: number): Point3 => {
       const [a, b] = [before, after].map((row) => point(this.#rows, row * ROW + column));
       return [0, 1, 2].map((axis) => mix(a?.[axis] ?? 0, b?.[axis] ?? 0, part)) as Point3;

@@ -20,9 +20,8 @@ import { viewButtons } from '../shared/space';
 import { keep, kept, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { ARMS, Driving, type Quantity, type Result } from './driving';
-import { Scene } from './scene';
+import { ARM_COLOURS, Scene } from './scene';
 
-const ARM_COLOURS = ['series-1', 'series-2', 'series-4'] as const;
 const GRAMS_PER_KG = 1000;
 
 const machine = new Machine(wasm);

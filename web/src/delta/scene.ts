@@ -1,12 +1,14 @@
 // The robot in space: workspace, lines, path, and the mechanism at a time. Points can be dragged.
 import { colour } from '../shared/dom';
-import { type Pen, type Point3, Space } from '../shared/space';
+import { type Ball, closed, extent, type Pen, type Point3, Space } from '../shared/space';
 import type { Driving } from './driving';
 import { moved, type Waypoint, waypoints } from './points';
 
 /** A point is held when it is so near to the pointer. */
 const HOLD_PX = 12;
-const ARM_COLOURS = ['series-1', 'series-2', 'series-4'];
+/** Around all that is drawn. */
+const MARGIN = 1.1;
+export const ARM_COLOURS = ['series-1', 'series-2', 'series-4'] as const;
 
 export class Scene {
   readonly space: Space;
@@ -75,7 +77,6 @@ export class Scene {
 
 function drawMechanism(pen: Pen, driving: Driving, seconds: number): void {
   const { platform, shoulders, elbows, wrists } = driving.mechanism(seconds);
-  const closed = (points: Point3[]) => [...points, ...points.slice(0, 1)];
   pen.line(colour('arm'), 5, closed(shoulders));
   for (const [arm, name] of ARM_COLOURS.entries()) {
     const [shoulder, elbow, wrist] = [shoulders[arm], elbows[arm], wrists[arm]];
@@ -88,13 +89,8 @@ function drawMechanism(pen: Pen, driving: Driving, seconds: number): void {
 }
 
 /** All that is drawn, around the middle of it. */
-function ball(driving: Driving): { centre: Point3; radius: number } {
-  const points = [...driving.workspace.flat(), ...driving.mechanism(0).elbows, [0, 0, 0]];
-  const range = [0, 1, 2].map((axis) => {
-    const all = points.map((it) => it[axis] ?? 0);
-    return [Math.min(...all), Math.max(...all)] as const;
-  });
-  const centre = range.map(([low, high]) => (low + high) / 2) as Point3;
-  const spans = range.map(([low, high]) => high - low);
-  return { centre, radius: 0.55 * Math.max(...spans, 1) };
+function ball(driving: Driving): Ball {
+  const { elbows } = driving.mechanism(0);
+  const { middle, half } = extent([...driving.workspace.flat(), ...elbows, [0, 0, 0]]);
+  return { centre: middle, radius: MARGIN * Math.max(...half, 1) };
 }

@@ -1,5 +1,5 @@
 // The step pins over time: how many pulses where there are many, single edges where there is room.
-import { Picture, takeGestures } from '../shared/canvas';
+import { drawTimes, Picture, takeGestures, TIMES_PX } from '../shared/canvas';
 import { colour, onColours } from '../shared/dom';
 import { countUntil } from '../shared/rows';
 import { AXES, type Axis, type Engraving } from './engraving';
@@ -11,7 +11,6 @@ const NAMES: Record<Axis, string> = {
   vertical: 'vertical, lift',
 };
 const LABEL_PX = 16;
-const AXIS_PX = 20;
 /** Edges closer than this are drawn as a density. */
 const SINGLE_PX = 3;
 /** The least that is shown: some ticks of the timer. */
@@ -39,14 +38,12 @@ export class Lanes {
         this.#window(at - (x / this.#picture.width) * span, span);
       },
       reset: () => this.#window(0, this.#duration),
+      click: (x) => this.#seek(this.#from + (x / this.#picture.width) * this.#span),
       // The time that the pictures show, while it is in sight.
       focus: () => {
         const part = (this.#seconds - this.#from) / this.#span;
         return [(part >= 0 && part <= 1 ? part : 0.5) * this.#picture.width, 0];
       },
-    });
-    canvas.addEventListener('click', (event) => {
-      this.#seek(this.#from + (event.offsetX / this.#picture.width) * this.#span);
     });
     onColours(() => this.#picture.redraw());
   }
@@ -83,7 +80,7 @@ export class Lanes {
   #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
     const engraving = this.#engraving;
     if (!engraving) return;
-    const lane = (height - AXIS_PX) / AXES.length;
+    const lane = (height - TIMES_PX) / AXES.length;
     context.font = '12px system-ui, sans-serif';
     const x = (seconds: number) => ((seconds - this.#from) / this.#span) * width;
     for (const [index, axis] of AXES.entries()) {
@@ -95,7 +92,7 @@ export class Lanes {
       context.fillStyle = colour(`series-${index + 1}`);
       this.#drawPin(context, engraving, axis, [top + LABEL_PX + 2, top + lane - 4], width);
     }
-    this.#drawTimes(context, width, height, x);
+    drawTimes(context, this.#from, this.#span, width, height);
     context.strokeStyle = colour('now');
     context.lineWidth = 1;
     context.beginPath();
@@ -148,31 +145,5 @@ export class Lanes {
     }
     context.lineTo(width, level);
     context.stroke();
-  }
-
-  #drawTimes(
-    context: CanvasRenderingContext2D,
-    width: number,
-    height: number,
-    x: (seconds: number) => number,
-  ): void {
-    const about = this.#span / Math.max(width / 110, 2);
-    const power = 10 ** Math.floor(Math.log10(about));
-    const step = [1, 2, 5, 10].map((it) => it * power).find((it) => it >= about) ?? about;
-    const digits = Math.max(0, -Math.floor(Math.log10(step)));
-    context.fillStyle = colour('quiet');
-    context.strokeStyle = colour('line');
-    context.lineWidth = 1;
-    for (
-      let time = Math.ceil(this.#from / step) * step;
-      time < this.#from + this.#span;
-      time += step
-    ) {
-      context.beginPath();
-      context.moveTo(x(time), 0);
-      context.lineTo(x(time), height - AXIS_PX + 4);
-      context.stroke();
-      context.fillText(`${time.toFixed(digits)} s`, x(time) + 3, height - 6);
-    }
   }
 }

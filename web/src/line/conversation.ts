@@ -1,5 +1,6 @@
 // What was said on a line, as the machine tells it: steps, characters, and the verdict.
 import type { Answer } from '../shared/machine';
+import { countWhile } from '../shared/rows';
 
 export interface Step {
   /** In s, as a capture has it. */
@@ -78,22 +79,13 @@ export class Conversation {
 
   /** The characters that ended in a span of time. */
   *between(fromS: number, toS: number): Iterable<Character> {
-    for (let at = this.#first(fromS); at < this.#times.length; at += 1) {
+    const isBefore = (at: number) => (this.#times[at] ?? Infinity) < fromS;
+    const first = countWhile(this.#times.length, isBefore);
+    for (let at = first; at < this.#times.length; at += 1) {
       const [atS, bits] = [this.#times[at] ?? 0, this.#characters[at] ?? 0];
       if (atS > toS) return;
       const side = bits & 0x100 ? 'B' : 'A';
       yield { atS, side, byte: bits & 0xff, isDamaged: (bits & 0x200) !== 0 };
     }
-  }
-
-  /** The first character that ended at this time or later. */
-  #first(fromS: number): number {
-    let [low, high] = [0, this.#times.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if ((this.#times[middle] ?? 0) < fromS) low = middle + 1;
-      else high = middle;
-    }
-    return low;
   }
 }

@@ -5,6 +5,7 @@ import { toAddress } from '../shared/store';
 import { COMMANDS, type Command } from './commands';
 import { Conversation, type News } from './conversation';
 import type { Desk, Of, View } from './desk';
+import { tell } from './events';
 import { type Damage, OpenPort, serial } from './port';
 import { readTelegram, type Telegram } from './station-panel';
 
@@ -178,9 +179,7 @@ export class Live implements View {
     const list = element('live-events', HTMLElement);
     const isText = telegram?.every((byte) => byte >= 0x20 && byte < 0x7f) && telegram.length > 0;
     const words = isText ? `${text} "${String.fromCharCode(...(telegram ?? []))}"` : text;
-    const line = `${this.#nowS.toFixed(3)} s ${words}`;
-    list.append(create('li', { textContent: line, className: isGood ? 'good' : 'fault' }));
-    while (list.childElementCount > EVENTS) list.firstElementChild?.remove();
+    tell(list, EVENTS, { atS: this.#nowS, text: words, isGood });
     list.parentElement?.scrollTo(0, list.scrollHeight);
   }
 

@@ -1,5 +1,5 @@
 // One simulated station: what it does, what it is told to send, its settings and faults.
-import { create } from '../shared/dom';
+import { tell } from './events';
 
 /** What the machine tells of a station. */
 export interface StationState {
@@ -87,11 +87,8 @@ export class StationPanel {
     this.#part('.waiting').textContent = waiting > 0 ? `${waiting} to send` : '';
   }
 
-  tell({ atS, text, isGood }: StationEvent): void {
-    const list = this.#part('.events');
-    const line = `${atS.toFixed(3)} s ${text}`;
-    list.append(create('li', { textContent: line, className: isGood ? 'good' : 'fault' }));
-    while (list.childElementCount > EVENTS) list.firstElementChild?.remove();
+  tell(event: StationEvent): void {
+    tell(this.#part('.events'), EVENTS, event);
   }
 
   clear(): void {

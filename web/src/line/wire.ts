@@ -1,5 +1,5 @@
 // Both directions over time, character by character.
-import { Picture, takeGestures } from '../shared/canvas';
+import { drawTimes, Picture, takeGestures, TIMES_PX } from '../shared/canvas';
 import { colour, onColours } from '../shared/dom';
 import type { Character, Conversation } from './conversation';
 
@@ -9,7 +9,6 @@ const CHARACTER_S = 11 / 9600;
 const MIN_SPAN_S = 0.01;
 /** What is seen of a line at first: single characters, a telegram or two. */
 const FIRST_SPAN_S = 0.03;
-const AXIS_PX = 20;
 const NAME_PX = 20;
 
 export class Wire {
@@ -77,10 +76,10 @@ export class Wire {
   }
 
   #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
-    const lane = (height - AXIS_PX) / 2;
+    const lane = (height - TIMES_PX) / 2;
     const x = (seconds: number) => ((seconds - this.#from) / this.#span) * width;
     context.font = '12px system-ui, sans-serif';
-    this.#drawAxis(context, width, height, x);
+    drawTimes(context, this.#from, this.#span, width, height);
     const end = this.#from + this.#span + CHARACTER_S;
     for (const it of this.#conversation?.between(this.#from, end) ?? []) {
       const top = it.side === 'A' ? 0 : lane;
@@ -91,31 +90,6 @@ export class Wire {
     for (const [index, name] of ['A to B', 'B to A'].entries()) {
       context.fillStyle = colour('text');
       context.fillText(name, 6, index * lane + 4);
-    }
-  }
-
-  #drawAxis(
-    context: CanvasRenderingContext2D,
-    width: number,
-    height: number,
-    x: (seconds: number) => number,
-  ): void {
-    const rough = (this.#span * 90) / width;
-    const power = 10 ** Math.floor(Math.log10(rough));
-    const step = ([1, 2, 5, 10].find((it) => it * power >= rough) ?? 10) * power;
-    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    context.textAlign = 'center';
-    context.textBaseline = 'bottom';
-    const first = Math.max(0, Math.ceil(this.#from / step));
-    for (let tick = first; tick * step < this.#from + this.#span; tick += 1) {
-      const at = Math.round(x(tick * step)) + 0.5;
-      context.strokeStyle = colour('line');
-      context.beginPath();
-      context.moveTo(at, 0);
-      context.lineTo(at, height - AXIS_PX);
-      context.stroke();
-      context.fillStyle = colour('quiet');
-      context.fillText(`${(tick * step).toFixed(digits)} s`, at, height - 3);
     }
   }
 }

@@ -1,4 +1,5 @@
 // A canvas that is as sharp as the screen, drawn again when it changes its size.
+import { colour } from './dom';
 
 /** Draws in units of CSS pixels. */
 export type Draw = (context: CanvasRenderingContext2D, width: number, height: number) => void;
@@ -51,6 +52,40 @@ export class Picture {
   }
 }
 
+/** Height under a canvas along time that its times are written in. */
+export const TIMES_PX = 20;
+/** From one time to the next, at least. */
+const TICK_PX = 100;
+
+/** Lines at round times, each with its time below. */
+export function drawTimes(
+  context: CanvasRenderingContext2D,
+  fromS: number,
+  spanS: number,
+  width: number,
+  height: number,
+): void {
+  const least = spanS / Math.max(width / TICK_PX, 2);
+  const power = 10 ** Math.floor(Math.log10(least));
+  const step = ([1, 2, 5].find((it) => it * power >= least) ?? 10) * power;
+  // Powers of ten are not met exactly.
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  context.fillStyle = colour('quiet');
+  context.strokeStyle = colour('line');
+  context.lineWidth = 1;
+  context.textAlign = 'left';
+  context.textBaseline = 'alphabetic';
+  const first = Math.max(Math.ceil(fromS / step), 0);
+  for (let tick = first; tick * step < fromS + spanS; tick += 1) {
+    const x = Math.round(((tick * step - fromS) / spanS) * width) + 0.5;
+    context.beginPath();
+    context.moveTo(x, 0);
+    context.lineTo(x, height - TIMES_PX + 4);
+    context.stroke();
+    context.fillText(`${(tick * step).toFixed(digits)} s`, x + 3, height - 6);
+  }
+}
+
 /** Moves and zooms by wheel, pointers and keys; factors above 1 enlarge about a point. */
 export interface Gestures {
   pan(dx: number, dy: number): void;
@@ -58,16 +93,21 @@ export interface Gestures {
   reset(): void;
   /** What is dragged instead of the view, if something is at this place. */
   grab?(x: number, y: number): ((dx: number, dy: number) => void) | undefined;
+  /** A click that has dragged nothing. */
+  click?(x: number): void;
   /** What keys zoom about, unless the middle. */
   focus?(): [number, number];
 }
 
 const KEY_STEP = 40;
 const KEY_ZOOM = 1.4;
+/** Below it, a pointer has clicked and not dragged. */
+const DRAG_PX = 3;
 
 export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): void {
   const pointers = new Map<number, [number, number]>();
   let held: ((dx: number, dy: number) => void) | undefined;
+  let draggedPx = 0;
   canvas.addEventListener(
     'wheel',
     (event) => {
@@ -82,12 +122,14 @@ export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): voi
     canvas.focus({ preventScroll: true });
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    if (pointers.size === 1) draggedPx = 0;
     held = pointers.size === 1 ? gestures.grab?.(event.offsetX, event.offsetY) : undefined;
   });
   canvas.addEventListener('pointermove', (event) => {
     const from = pointers.get(event.pointerId);
     if (!from) return;
     const to: [number, number] = [event.offsetX, event.offsetY];
+    draggedPx += Math.hypot(to[0] - from[0], to[1] - from[1]);
     const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1];
     if (other) {
       const apart = (it: [number, number]) => Math.hypot(it[0] - other[0], it[1] - other[1]);
@@ -103,6 +145,9 @@ export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): voi
   };
   canvas.addEventListener('pointerup', up);
   canvas.addEventListener('pointercancel', up);
+  canvas.addEventListener('click', (event) => {
+    if (draggedPx < DRAG_PX) gestures.click?.(event.offsetX);
+  });
   canvas.addEventListener('dblclick', () => gestures.reset());
   canvas.addEventListener('keydown', (event) => {
     const middle = gestures.focus?.() ?? [canvas.clientWidth / 2, canvas.clientHeight / 2];

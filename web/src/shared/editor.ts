@@ -1,5 +1,6 @@
 // A text of lines with their numbers, of which some are marked.
 import { create } from './dom';
+import './editor.css';
 
 /** What a line is marked as: what is wrong, and what the machine is at. */
 export type Mark = 'bad' | 'note' | 'now';

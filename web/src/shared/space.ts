@@ -13,6 +13,22 @@ export interface Ball {
   halfHeight?: number;
 }
 
+/** Through all points, and back to the first. */
+export function closed(points: Point3[]): Point3[] {
+  return [...points, ...points.slice(0, 1)];
+}
+
+/** The middle of all points, and half of what they span, along each axis. */
+export function extent(points: Point3[]): { middle: Point3; half: Point3 } {
+  const range = ([0, 1, 2] as const).map((axis) => {
+    const all = points.map((it) => it[axis]);
+    return [Math.min(...all), Math.max(...all)] as const;
+  });
+  const along = (value: (low: number, high: number) => number) =>
+    range.map(([low, high]) => value(low, high)) as Point3;
+  return { middle: along((low, high) => (low + high) / 2), half: along((l, h) => (h - l) / 2) };
+}
+
 /** From where it is seen, in rad: turn 0 is from the front, tilt 0 level, a quarter turn from above. */
 export interface View {
   turn: number;

@@ -1,6 +1,14 @@
 // Time on the machine: played at a multiple of real time, or set by hand.
 import { element } from './dom';
 
+interface Options {
+  /** Told when it begins and ends to play, and at which multiple of real time. */
+  playing?: (isPlaying: boolean, seconds: number, rate: number) => void;
+  /** Multiples of real time, and the one at first. */
+  speeds?: number[];
+  speed?: number;
+}
+
 /** The buttons and the slider under a picture; tells the time whenever it changes. */
 export class Transport {
   readonly #play = element('play', HTMLButtonElement);
@@ -8,17 +16,20 @@ export class Transport {
   readonly #slider = element('time', HTMLInputElement);
   readonly #shown = element('shown-time', HTMLOutputElement);
   readonly #show: (seconds: number) => void;
-  readonly #playing: (isPlaying: boolean, seconds: number, rate: number) => void;
+  readonly #playing: Options['playing'];
   #seconds = 0;
   #duration = 0;
   #frame = 0;
   #before = 0;
 
-  /** `playing` is told when it begins and ends to play, and at which multiple of real time. */
   constructor(
     show: (seconds: number) => void,
-    playing: (isPlaying: boolean, seconds: number, rate: number) => void = () => undefined,
+    { playing, speeds = [1, 10, 100], speed = 10 }: Options = {},
   ) {
+    for (const it of speeds) {
+      this.#speed.add(new Option(`${it} ×${it === 1 ? ' (real)' : ''}`, String(it)));
+    }
+    this.#speed.value = String(speed);
     this.#show = show;
     this.#playing = playing;
     this.#play.addEventListener('click', () => (this.#frame ? this.pause() : this.play()));
@@ -51,14 +62,14 @@ export class Transport {
     this.#play.textContent = 'Pause';
     this.#before = performance.now();
     this.#frame = requestAnimationFrame((now) => this.#advance(now));
-    this.#playing(true, this.#seconds, Number(this.#speed.value));
+    this.#playing?.(true, this.#seconds, Number(this.#speed.value));
   }
 
   pause(): void {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
     this.#play.textContent = 'Play';
-    this.#playing(false, this.#seconds, 0);
+    this.#playing?.(false, this.#seconds, 0);
   }
 
   #advance(now: number): void {

@@ -1,6 +1,6 @@
 // What the stage did with a program, ready to be asked for any time.
 import type { Answer } from '../shared/machine';
-import { columns, countUntil, numbers } from '../shared/rows';
+import { around, columns, countUntil, numbers } from '../shared/rows';
 
 /** The JSON of the operation; the report is that of the command line. */
 export interface Result {
@@ -60,10 +60,7 @@ export class Track {
 
   /** Evenly between two points of the picture. */
   at(seconds: number): [number, number] {
-    const after = Math.min(this.passed(seconds), this.times.length - 1);
-    const before = Math.max(after - 1, 0);
-    const [from, to] = [this.times[before] ?? 0, this.times[after] ?? 0];
-    const part = to > from ? Math.min((seconds - from) / (to - from), 1) : 1;
+    const { before, after, part } = around(this.times, seconds);
     const [[x0, y0], [x1, y1]] = [this.point(before), this.point(after)];
     return [x0 + (x1 - x0) * part, y0 + (y1 - y0) * part];
   }
