@@ -67,7 +67,7 @@ fn motors(run: &Run) -> String {
     )
 }
 
-/// Speed and acceleration along the path, by the steps.
+/// Speed along the path, and the larger axis' acceleration, by the steps.
 fn motion(run: &Run) -> [Plot; 2] {
     let motion = &run.followed.motion;
     let window = format!("mean over {:.0} ms", motion.window_s() * 1000.0);

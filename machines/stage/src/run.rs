@@ -55,9 +55,9 @@ impl Run {
         self.followed.motion.speeds()
     }
 
-    /// Time in s, and by the steps the acceleration in mm/s².
-    pub fn accelerations(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.followed.motion.accelerations()
+    /// Time in s, and by the steps the acceleration in mm/s² of the axis that has the larger one.
+    pub fn axis_accelerations(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.followed.motion.axis_accelerations()
     }
 
     /// Time in s, and the steps corrected until then; where some were.

@@ -143,7 +143,7 @@ function showCharts(run: Run, limit: number): void {
   accelerations.show(
     [
       { label: 'limit of an axis', colour: 'limit', dash: [6, 4] },
-      { label: 'by the steps', colour: 'series-1' },
+      { label: 'larger axis by the steps', colour: 'series-1' },
     ],
     [when as number[], when.map(() => limit), each],
   );

@@ -74,6 +74,7 @@ export class Run {
   readonly open: Track;
   /** Seconds, and mean mm/s around them. */
   readonly speeds: Column[];
+  /** Seconds, and mm/s² of the axis that has the larger one. */
   readonly accelerations: Column[];
   /** Seconds, and mm from the programmed curve: in the closed loop, and without. */
   readonly deviations: [Column, Column, Column];

@@ -89,7 +89,7 @@ impl Ran {
             .with_rows("open deviations", open.deviations())
             .with_rows("corrections", self.run.corrections())
             .with_rows("speeds", self.run.speeds())
-            .with_rows("accelerations", self.run.accelerations()))
+            .with_rows("accelerations", self.run.axis_accelerations()))
     }
 }
 
