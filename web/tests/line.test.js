@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { assertAccessible, open, ROOT, saved, shoot } from './browser.js';
 import { file, line3964r } from './command-line.js';
-import { MOCK } from './serial-mock.js';
+import { connectFirmware, MOCK } from './serial-mock.js';
 
 const CAPTURES = join(ROOT, 'crates/proto3964r/tests/data/captures');
 
@@ -233,6 +233,51 @@ test('a station on a port exchanges telegrams with a station at its other end', 
   await page.getByLabel('Example').waitFor({ state: 'hidden' });
   const conversation = (await saved(page, 'conversation.txt')).toString();
   assert.match(conversation, /A block of 6: 73 74 61 74 75 73\n/);
+  await done();
+});
+
+test('a port drives the firmware: home, lines, jogs, hold and resume', async (context) => {
+  const { page, done } = await browser.visit('', { script: MOCK });
+  context.after(await connectFirmware(page));
+  await page.goto(`${browser.url}line.html?view=port`);
+  await page.getByRole('button', { name: 'Connect', exact: true }).click();
+  const events = page.locator('#live-events');
+  /**
+   * Gives a command, and waits for its answer.
+   * @param {string} command
+   * @param {RegExp} answer
+   */
+  const order = async (command, answer) => {
+    await page.getByRole('button', { name: command, exact: true }).click();
+    const told = events.locator('li:last-child').filter({ hasText: answer });
+    await told.waitFor({ timeout: 60_000 }).catch(async () => {
+      assert.fail(`no ${answer} after ${command}:\n${(await events.innerText()).trim()}`);
+    });
+  };
+  await order('status', /"not homed, feed 100 %, 0 underruns"/);
+  await order('line', /"refused: not homed"/);
+  await order('home', /"done, x [-\d.]+ y [-\d.]+ mm, shoulder -90\.\d+ elbow 20\.\d+ degrees/);
+  await order('jog', /"ok, in [\d.]+ s"/);
+  await events.getByText('"done, x').nth(1).waitFor();
+
+  await page.getByLabel('Feed, mm/s').fill('40');
+  await order('line', /"ok, [\d.]+ mm in [\d.]+ s, within 0\.\d+ mm"/);
+  await order('hold', /"held, x/);
+  await order('status', /"held, feed 100 %/);
+  await order('resume', /"done, x (149\.9|150\.0)\d+ y (99\.9|100\.0)\d+ mm/);
+  await order('where', /"x (149\.9|150\.0)\d+ y (99\.9|100\.0)\d+ mm/);
+
+  await page.getByLabel('X in mm').fill('500');
+  await order('line', /"refused: /);
+  await page.getByLabel('X in mm').fill('wide');
+  await order('line', /"column 6: `wide` is no number of mm"/);
+  await order('limits', /"reach 0\.0 to 264\.0 mm/);
+  await said(page, 'the line works');
+  await page.getByRole('button', { name: 'Disconnect' }).click();
+  await page
+    .getByRole('button', { name: 'Connect', exact: true })
+    .and(page.locator(':enabled'))
+    .waitFor();
   await done();
 });
 

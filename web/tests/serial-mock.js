@@ -1,4 +1,6 @@
-// Serial ports for a page whose browser has none: at the other end of a port is a station in wasm, or a recording that is played.
+// Serial ports for a page whose browser has none: at the other end of a port is a station in wasm, a recording that is played, or the firmware.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { ROOT } from './browser.js';
@@ -7,6 +9,34 @@ const WASM = readFileSync(join(ROOT, 'web/built/line.wasm')).toString('base64');
 
 /** Replaces the browser's ports: the script for a page, before its own. */
 export const MOCK = `(${install})(${JSON.stringify(WASM)})`;
+
+/**
+ * Puts the boards' firmware, run on this computer, at the other end of the ports that a page with MOCK will open.
+ * @param {import('playwright-core').Page} page
+ */
+export async function connectFirmware(page) {
+  const manifest = join(ROOT, 'firmware/machine/Cargo.toml');
+  const target = join(ROOT, 'target/boards');
+  const args = ['--quiet', '--locked', '--manifest-path', manifest, '--target-dir', target];
+  const built = spawnSync('cargo', ['build', ...args, '--example', 'simulate'], {
+    stdio: 'inherit',
+  });
+  assert.equal(built.status, 0);
+  const firmware = spawn(join(target, 'debug/examples/simulate'), {
+    stdio: ['pipe', 'pipe', 'inherit'],
+  });
+  const ended = new Promise((end) => firmware.on('close', (status) => end(status)));
+  firmware.stdout.on('data', (/** @type {Buffer} */ bytes) => {
+    page.evaluate(`fromFirmware(${JSON.stringify([...bytes])})`).catch(() => undefined);
+  });
+  await page.exposeFunction('toFirmware', (/** @type {number[]} */ bytes) => {
+    firmware.stdin.write(Uint8Array.from(bytes));
+  });
+  return async () => {
+    firmware.stdin.end();
+    assert.equal(await ended, 0);
+  };
+}
 
 /**
  * Runs in the page. Each requested port is noted in `ports`.
@@ -74,9 +104,22 @@ function install(wasm) {
     }
   }
 
+  /** The firmware in a process of its own, if a test has started one. */
+  class Firmware {
+    /** @param {(bytes: number[]) => void} send */
+    async start(send) {
+      Object.assign(window, { fromFirmware: send });
+    }
+
+    /** @param {{ bytes: number[] }} happened */
+    push({ bytes }) {
+      /** @type {any} */ (window).toFirmware(bytes);
+    }
+  }
+
   class Port extends EventTarget {
     /** @type {any} */ #controller;
-    partner = new Partner();
+    partner = 'toFirmware' in window ? new Firmware() : new Partner();
     /** @type {unknown} */ options;
     isOpen = false;
     /** Characters are on the wire one after the other. */

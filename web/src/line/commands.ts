@@ -5,26 +5,27 @@ export interface Command {
   /** What it does. */
   about: string;
   /** Its words after the name, with a first value; an optional one may be empty. */
-  words: { label: string; value: string; choices?: string[] }[];
+  words: { label: string; value: string; placeholder?: string; choices?: string[] }[];
 }
 
+/** From the home switches the arm turns before it has room for a line. */
 export const COMMANDS: Command[] = [
   { name: 'home', about: 'finds both home switches', words: [] },
+  {
+    name: 'jog',
+    about: 'turns one joint',
+    words: [
+      { label: 'Joint', value: 'shoulder', choices: ['shoulder', 'elbow'] },
+      { label: 'Degrees', value: '60' },
+    ],
+  },
   {
     name: 'line',
     about: 'moves the tool along a straight line',
     words: [
       { label: 'X in mm', value: '150' },
       { label: 'Y in mm', value: '100' },
-      { label: 'mm/s, or empty', value: '' },
-    ],
-  },
-  {
-    name: 'jog',
-    about: 'turns one joint',
-    words: [
-      { label: 'Joint', value: 'shoulder', choices: ['shoulder', 'elbow'] },
-      { label: 'Degrees', value: '5' },
+      { label: 'Feed, mm/s', value: '', placeholder: 'fastest' },
     ],
   },
   { name: 'hold', about: 'comes to rest on the path', words: [] },

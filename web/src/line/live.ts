@@ -178,7 +178,7 @@ export class Live implements View {
   #tell({ text, isGood, telegram }: Pulled['events'][number]): void {
     const list = element('live-events', HTMLElement);
     const isText = telegram?.every((byte) => byte >= 0x20 && byte < 0x7f) && telegram.length > 0;
-    const words = isText ? `${text} "${String.fromCharCode(...(telegram ?? []))}"` : text;
+    const words = isText ? `received "${String.fromCharCode(...(telegram ?? []))}"` : text;
     tell(list, EVENTS, { atS: this.#nowS, text: words, isGood });
     list.parentElement?.scrollTo(0, list.scrollHeight);
   }
@@ -199,16 +199,19 @@ export class Live implements View {
 
   /** A button of the machine, and the fields of its words. */
   #command({ name, about, words }: Command): HTMLElement {
-    const fields = words.map(({ label, value, choices }) => {
+    const fields = words.map(({ label, value, placeholder = '', choices }) => {
       const field = choices
         ? create('select', {}, ...choices.map((it) => new Option(it, it)))
-        : create('input', { type: 'text', inputMode: 'decimal', size: 6 });
+        : create('input', { type: 'text', inputMode: 'decimal', placeholder });
       field.value = value;
-      return { label: create('label', {}, `${label} `, field), field };
+      return { label: create('label', {}, label, field), field };
     });
     const button = create('button', { type: 'submit', textContent: name, title: about });
-    const form = create('form', { className: 'row' }, button, ...fields.map((it) => it.label));
-    form.append(create('small', { textContent: about }));
+    const note = create('small', { textContent: about });
+    const form = create('form', { className: 'command' }, button, note);
+    if (fields.length > 0) {
+      form.append(create('div', { className: 'words' }, ...fields.map((it) => it.label)));
+    }
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       const values = fields.map((it) => it.field.value.trim());

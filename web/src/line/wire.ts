@@ -7,6 +7,8 @@ const NAMES: Record<number, string> = { 0x02: 'STX', 0x03: 'ETX', 0x10: 'DLE', 0
 /** Of the usual line: 9600 bit/s, 11 bits. */
 const CHARACTER_S = 11 / 9600;
 const MIN_SPAN_S = 0.01;
+/** Characters that a port may hand over at once. */
+const MAX_TOGETHER = 256;
 /** What is seen of a line at first: single characters, a telegram or two. */
 const FIRST_SPAN_S = 0.03;
 const NAME_PX = 20;
@@ -80,10 +82,13 @@ export class Wire {
     const x = (seconds: number) => ((seconds - this.#from) / this.#span) * width;
     context.font = '12px system-ui, sans-serif';
     drawTimes(context, this.#from, this.#span, width, height);
-    const end = this.#from + this.#span + CHARACTER_S;
-    for (const it of this.#conversation?.between(this.#from, end) ?? []) {
-      const top = it.side === 'A' ? 0 : lane;
-      drawCharacter(context, it, x(it.atS - CHARACTER_S), x(it.atS), top + NAME_PX, lane - NAME_PX);
+    const end = this.#from + this.#span + MAX_TOGETHER * CHARACTER_S;
+    const heard = [...(this.#conversation?.between(this.#from, end) ?? [])];
+    for (const [index, side] of (['A', 'B'] as const).entries()) {
+      const top = index * lane + NAME_PX;
+      for (const { character, fromS, toS } of places(heard.filter((it) => it.side === side))) {
+        drawCharacter(context, character, x(fromS), x(toS), top, lane - NAME_PX);
+      }
     }
     context.textAlign = 'left';
     context.textBaseline = 'top';
@@ -92,6 +97,32 @@ export class Wire {
       context.fillText(name, 6, index * lane + 4);
     }
   }
+}
+
+interface Placed {
+  character: Character;
+  fromS: number;
+  toS: number;
+}
+
+/** The time of each character of a side on the wire: what came in at once came one after the other. */
+function places(characters: Character[]): Placed[] {
+  const placed: Placed[] = [];
+  let before = -Infinity;
+  for (let first = 0; first < characters.length;) {
+    const atS = characters[first]?.atS ?? 0;
+    const rest = characters.slice(first, first + MAX_TOGETHER);
+    const together = rest.filter((it) => it.atS === atS);
+    const begin = Math.max(atS - together.length * CHARACTER_S, before);
+    const length = (atS - begin) / together.length;
+    for (const [index, character] of together.entries()) {
+      const fromS = begin + index * length;
+      placed.push({ character, fromS, toS: fromS + length });
+    }
+    before = atS;
+    first += together.length;
+  }
+  return placed;
 }
 
 function drawCharacter(
