@@ -139,9 +139,44 @@ test('music lies under the lanes; what is no music is refused', async () => {
   await danced(page);
   await page.locator('#music').setInputFiles(file('tone.wav', tone(2)));
   await page.locator('canvas.wave').waitFor();
-  assert.equal(await page.locator('canvas.wave').evaluate((it) => it.style.width), '12px');
+  assert.equal(await page.locator('canvas.wave').evaluate((it) => it.style.width), '48px');
   await page.locator('#music').setInputFiles(file('no.wav', 'no music'));
   await page.locator('#status.bad').filter({ hasText: 'no.wav' }).waitFor();
+  await done();
+});
+
+test('music goes on from the time that is set while it plays', async () => {
+  const script = `const Sound = Audio;
+    window.Audio = class extends Sound {
+      constructor() {
+        super();
+        window.sound = this;
+      }
+    };`;
+  const { page, done } = await browser.visit('dance.html', { script });
+  await danced(page);
+  await page.locator('#music').setInputFiles(file('tone.wav', tone(60)));
+  await page.locator('canvas.wave').waitFor();
+  await page.getByRole('button', { name: 'Play' }).click();
+  await page.waitForFunction('!sound.paused');
+  await page.getByLabel('Time', { exact: true }).fill('40');
+  await page.waitForFunction('sound.currentTime >= 40');
+  await page.getByRole('combobox', { name: 'Speed', exact: true }).selectOption('4');
+  await page.waitForFunction('sound.playbackRate === 4');
+  // After its end, and faster than browsers play, it is silent.
+  await page.getByLabel('Time', { exact: true }).fill('200');
+  await page.waitForFunction('sound.paused');
+  await done();
+});
+
+test('the time on show is in sight on the lanes, and told under the charts', async () => {
+  const { page, done } = await browser.visit('dance.html');
+  await danced(page);
+  await page.getByLabel('Time', { exact: true }).fill('200');
+  const seen = await page.locator('#timeline').boundingBox();
+  const now = await page.locator('#timeline .now').boundingBox();
+  assert(seen && now && now.x > seen.x && now.x < seen.x + seen.width);
+  await page.locator('#angles').getByText('200.00 s').waitFor();
   await done();
 });
 

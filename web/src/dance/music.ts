@@ -28,7 +28,10 @@ export class Music {
   }
 
   play(seconds: number, rate: number): void {
-    if (seconds >= this.#duration || rate > MAX_RATE) return;
+    if (seconds >= this.#duration || rate > MAX_RATE) {
+      this.pause();
+      return;
+    }
     this.#sound.currentTime = seconds;
     this.#sound.playbackRate = rate;
     // Without permission to sound, the dance goes on.

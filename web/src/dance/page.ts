@@ -59,7 +59,8 @@ const transport = new Transport(
 const seek = (seconds: number) => transport.set(seconds);
 const chart = new Chart(element('angles', HTMLElement), '°', 200, seek);
 const apart = new Chart(element('apart', HTMLElement), '°', 140, seek);
-const timeline = new Timeline(element('timeline', HTMLElement), music.canvas, {
+const zoom = element('zoom', HTMLInputElement);
+const timeline = new Timeline(element('timeline', HTMLElement), music.canvas, Number(zoom.value), {
   select: (index) => {
     selected = index;
     draw();
@@ -234,7 +235,6 @@ async function openMusic(file: File): Promise<void> {
 }
 
 function begin(): void {
-  const zoom = element('zoom', HTMLInputElement);
   zoom.addEventListener('input', () => {
     timeline.zoom = Number(zoom.value);
     music.stretch(timeline.zoom);

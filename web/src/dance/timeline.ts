@@ -13,6 +13,8 @@ export interface Edits {
 
 /** Width of the right end of a block that stretches it. */
 const HANDLE_PX = 10;
+/** A narrower block has no room for what it does. */
+const TEXT_PX = 44;
 /** Below it, a pointer has clicked and not dragged. */
 const DRAG_PX = 3;
 
@@ -24,14 +26,15 @@ export class Timeline {
   #score: Score = { motor: [] };
   #selected: number | undefined;
   #bad: number | undefined;
-  #perSecond = 6;
+  #perSecond: number;
   #seconds = 0;
   /** What is dragged must not be drawn anew under the pointer. */
   #isDragging = false;
   #isOutdated = false;
 
-  constructor(target: HTMLElement, wave: HTMLElement, edits: Edits) {
+  constructor(target: HTMLElement, wave: HTMLElement, perSecond: number, edits: Edits) {
     this.#target = target;
+    this.#perSecond = perSecond;
     this.#wave = wave;
     this.#edits = edits;
     target.addEventListener('click', ({ target: clicked, offsetX }) => {
@@ -57,9 +60,18 @@ export class Timeline {
     this.#fill();
   }
 
+  /** The time of the robot, which is kept in sight. */
   at(seconds: number): void {
     this.#seconds = seconds;
-    this.#now.style.left = `calc(var(--names) + ${seconds * this.#perSecond}px)`;
+    this.#placeNow();
+    const x = seconds * this.#perSecond;
+    const { scrollLeft, clientWidth } = this.#target;
+    const seen = clientWidth - (this.#target.querySelector('span')?.offsetWidth ?? 0);
+    if (x < scrollLeft || x > scrollLeft + seen) this.#target.scrollLeft = x - seen / 10;
+  }
+
+  #placeNow(): void {
+    this.#now.style.left = `calc(var(--names) + ${this.#seconds * this.#perSecond}px)`;
   }
 
   focus(index: number): void {
@@ -92,7 +104,7 @@ export class Timeline {
       return lane(name, track);
     });
     this.#target.replaceChildren(lane('time', ruler), ...rows, this.#now);
-    this.at(this.#seconds);
+    this.#placeNow();
     if (focused !== undefined) this.focus(Number(focused));
   }
 
@@ -117,7 +129,9 @@ export class Timeline {
 
   #place(block: HTMLElement, at: number, length: number): void {
     block.style.left = `${at * this.#perSecond}px`;
-    block.style.width = `${Math.max(length * this.#perSecond, 4)}px`;
+    const width = Math.max(length * this.#perSecond, 4);
+    block.style.width = `${width}px`;
+    block.classList.toggle('narrow', width < TEXT_PX);
   }
 
   #button(index: number, move: Move): HTMLElement {

@@ -2,7 +2,7 @@
 import { element } from './dom';
 
 interface Options {
-  /** Told when it begins and ends to play, and at which multiple of real time. */
+  /** Told when it plays from another time or at another multiple of real time, and when it ends. */
   playing?: (isPlaying: boolean, seconds: number, rate: number) => void;
   /** Multiples of real time, and the one at first. */
   speeds?: number[];
@@ -33,6 +33,7 @@ export class Transport {
     this.#show = show;
     this.#playing = playing;
     this.#play.addEventListener('click', () => (this.#frame ? this.pause() : this.play()));
+    this.#speed.addEventListener('input', () => this.#tell());
     this.#slider.addEventListener('input', () => this.set(Number(this.#slider.value)));
   }
 
@@ -49,6 +50,11 @@ export class Transport {
   }
 
   set(seconds: number): void {
+    this.#move(seconds);
+    this.#tell();
+  }
+
+  #move(seconds: number): void {
     this.#seconds = Math.min(Math.max(seconds, 0), this.#duration);
     this.#slider.value = String(this.#seconds);
     const shown = `${this.#seconds.toFixed(2)} s of ${this.#duration.toFixed(1)} s`;
@@ -62,7 +68,12 @@ export class Transport {
     this.#play.textContent = 'Pause';
     this.#before = performance.now();
     this.#frame = requestAnimationFrame((now) => this.#advance(now));
-    this.#playing?.(true, this.#seconds, Number(this.#speed.value));
+    this.#tell();
+  }
+
+  /** As it plays from now on. */
+  #tell(): void {
+    if (this.#frame) this.#playing?.(true, this.#seconds, Number(this.#speed.value));
   }
 
   pause(): void {
@@ -75,7 +86,7 @@ export class Transport {
   #advance(now: number): void {
     const by = ((now - this.#before) / 1000) * Number(this.#speed.value);
     this.#before = now;
-    this.set(this.#seconds + Math.max(by, 0));
+    this.#move(this.#seconds + Math.max(by, 0));
     if (this.#seconds >= this.#duration) this.pause();
     else this.#frame = requestAnimationFrame((next) => this.#advance(next));
   }
