@@ -42,6 +42,14 @@ export class Chart {
   at(seconds: number): void {
     this.#now = seconds;
     this.#plot?.redraw(false);
+    this.#tell();
+  }
+
+  /** The values below the chart: at the pointer, or else at the time on show. */
+  #tell(): void {
+    const plot = this.#plot;
+    if (!plot || (plot.cursor.left ?? -1) >= 0 || plot.data[0].length === 0) return;
+    plot.setLegend({ idx: plot.valToIdx(this.#now) }, false);
   }
 
   #make(): void {
@@ -61,17 +69,23 @@ export class Chart {
           { ...axis, label: this.#unit, labelSize: 18, size: 56 },
         ],
         series: [
-          { label: 's', value: (_, it) => it?.toFixed(2) ?? '' },
+          { label: 'time', value: (_, it) => (it === null ? '' : `${it.toFixed(2)} s`) },
           ...this.#lines.map((line) => ({
             label: line.label,
             stroke: colour(line.colour),
             width: 1.5,
             points: { show: false },
             ...(line.dash ? { dash: line.dash } : {}),
-            value: (_: uPlot, it: number | null) => (it === null ? '' : it.toPrecision(4)),
+            value: (_: uPlot, it: number | null) =>
+              it === null ? 'none' : `${shown(it)} ${this.#unit}`,
           })),
         ],
-        hooks: { draw: [(plot) => this.#drawNow(plot)] },
+        legend: { markers: { dash: (_, series) => stroke(this.#lines[series - 1]?.dash) } },
+        hooks: {
+          ready: [() => this.#tell()],
+          draw: [(plot) => this.#drawNow(plot)],
+          setCursor: [() => this.#tell()],
+        },
       },
       this.#data,
       this.#target,
@@ -95,4 +109,15 @@ export class Chart {
     plot.ctx.stroke();
     plot.ctx.restore();
   }
+}
+
+/** Four digits, as far as a person reads them. */
+function shown(value: number): string {
+  return String(Number(value.toPrecision(4)));
+}
+
+/** The border that is the most like a line of these dashes. */
+function stroke([dash = 0, gap = 0]: number[] = []): 'solid' | 'dashed' | 'dotted' {
+  if (gap === 0) return 'solid';
+  return dash > gap ? 'dashed' : 'dotted';
 }
