@@ -13,18 +13,21 @@ import { countUntil } from '../shared/rows';
 import { type Engraving, PATH_STRIDE } from './engraving';
 
 const DISC_MM = 5;
+/** Times at which the arm is looked at for the space that it needs. */
+const LOOKS = 200;
 /** Above the glass. */
 const LIFTED = -1;
 
 export class Scene {
   readonly #plane: Plane;
   #engraving: Engraving | undefined;
+  #bounds: Bounds | undefined;
   #seconds = 0;
 
   constructor(canvas: HTMLCanvasElement) {
     this.#plane = new Plane(
       canvas,
-      () => this.#engraving && bounds(this.#engraving),
+      () => this.#bounds,
       (context, px) => this.#draw(context, px),
     );
     showScale('scale');
@@ -32,6 +35,7 @@ export class Scene {
 
   show(engraving: Engraving): void {
     this.#engraving = engraving;
+    this.#bounds = bounds(engraving);
     element('scale-end', HTMLElement).textContent =
       `${engraving.shown.bound_mm.toFixed(3)} mm, the bound`;
     this.#plane.redraw();
@@ -56,14 +60,19 @@ export class Scene {
   }
 }
 
-/** Bed and the arm's axis. */
-function bounds({ result }: Engraving): Bounds {
-  const { x_mm, y_mm, width_mm, height_mm } = result.report.machine.settings.bed;
+/** Bed, the arm's axis and its elbow. */
+function bounds(engraving: Engraving): Bounds {
+  const { x_mm, y_mm, width_mm, height_mm } = engraving.result.report.machine.settings.bed;
+  const elbows = Array.from(
+    { length: LOOKS + 1 },
+    (_, look) => engraving.pose((look / LOOKS) * engraving.shown.duration_s).elbow,
+  );
+  const [x, y] = [elbows.map((it) => it[0]), elbows.map((it) => it[1])];
   return {
-    left: Math.min(x_mm, -20),
-    right: Math.max(x_mm + width_mm, 20),
-    low: Math.min(y_mm, -15),
-    high: Math.max(y_mm + height_mm, 15),
+    left: Math.min(x_mm, -20, ...x),
+    right: Math.max(x_mm + width_mm, 20, ...x),
+    low: Math.min(y_mm, -15, ...y),
+    high: Math.max(y_mm + height_mm, 15, ...y),
   };
 }
 
