@@ -220,7 +220,7 @@ function showAngles(): void {
   const { law: here, other_law: there } = result.report;
   const angle = { label: `angle under the law ${here}`, colour: 'series-1' };
   chart.show([angle], [times, each((frame) => danced.angle(motor, frame))]);
-  const away = { label: `the same frames under ${there.law}: how far away`, colour: 'series-2' };
+  const away = { label: `difference under the law ${there.law}`, colour: 'series-2' };
   const off = (frame: number) => danced.otherAngle(motor, frame) - danced.angle(motor, frame);
   apart.show([away], [times, each(off)]);
 }
