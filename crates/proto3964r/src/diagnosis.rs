@@ -5,6 +5,7 @@ mod echo;
 mod evidence;
 mod formula;
 mod judge;
+mod setting;
 mod totals;
 mod verdict;
 
@@ -16,6 +17,7 @@ use crate::{
 };
 
 pub use formula::Formula;
+pub use setting::BaudRatio;
 pub use totals::Totals;
 pub use verdict::Verdict;
 
@@ -98,6 +100,7 @@ fn delays(record: &[Character], config: &Config) -> PerSide<Option<Late>> {
 pub fn diagnose(record: &[Character], config: &Config) -> Diagnosis {
     let evidence = Evidence::of(record, config);
     let case = Case {
+        record,
         evidence: &evidence,
         echo: Echo::of(record),
         delays: delays(record, config),

@@ -38,7 +38,7 @@ mod station;
 pub mod tokio;
 
 pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
-pub use diagnosis::{Diagnosis, Formula, Totals, Verdict, diagnose};
+pub use diagnosis::{BaudRatio, Diagnosis, Formula, Totals, Verdict, diagnose};
 pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
 pub use monitor::{Character, Monitor, Observation, Observations, Side};

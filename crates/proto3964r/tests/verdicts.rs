@@ -4,7 +4,8 @@
 use core::time::Duration;
 
 use proto3964r::{
-    Character, Config, Diagnosis, Formula, Line, LineError, Priority, Side, Verdict, diagnose,
+    BaudRatio, Character, Config, Diagnosis, Formula, Line, LineError, Priority, Side, Verdict,
+    diagnose,
 };
 
 /// Reads `ms side byte...` groups; `?` after a byte is a parity error.
@@ -234,5 +235,77 @@ fn the_tap_itself() {
         "0 A 02; 1 A 10; 2 A 41 10 03 52; 3 A 10",
         Verdict::OneInput { side: Side::A },
         "both directions come in on the tap's input for A: a two-wire line, or its inputs are joined",
+    );
+}
+
+/// What STX, DLE and NAK of another rate read as, as often as this.
+fn repeated(side: &str, readings: &[&str], times: usize) -> String {
+    let groups = readings.iter().cycle().take(readings.len() * times);
+    let groups = (0..)
+        .zip(groups)
+        .map(|(at, reading)| format!("{} {side} {reading}", at * 300));
+    groups.collect::<Vec<_>>().join("; ")
+}
+
+#[test]
+fn another_baud_rate() {
+    for (readings, ratio, sentence) in [
+        (&["66 E0", "00"][..], BaudRatio::Half, "half"),
+        (&["18?", "00 E0"], BaudRatio::Half, "half"),
+        (&["1C 00"], BaudRatio::Third, "a third of"),
+        (&["80 00", "00 00"], BaudRatio::Quarter, "a quarter of"),
+        (&["78? 78?"], BaudRatio::Quarter, "a quarter of"),
+        (&["80 80 80 00"], BaudRatio::Eighth, "an eighth of"),
+        (&["F8", "00"], BaudRatio::Double, "twice"),
+        (&["FE", "00"], BaudRatio::DoubleOrMore, "at least twice"),
+    ] {
+        check(
+            &repeated("B", readings, 4),
+            Verdict::OtherRate {
+                side: Side::B,
+                ratio,
+            },
+            &format!(
+                "B sends characters outside the procedure: another baud rate, {sentence} that of A"
+            ),
+        );
+    }
+    // Of these nothing more can be told.
+    for readings in [&["00"][..], &["E1", "E4"], &["3A", "4B"]] {
+        let found = diagnosis(&repeated("B", readings, 4));
+        assert_eq!(found.verdict, Verdict::Garbage { side: Side::B }, "{found}");
+    }
+}
+
+#[test]
+fn another_parity() {
+    check(
+        &repeated("A", &["15?", "02?", "10?"], 2),
+        Verdict::OtherParity { side: Side::A },
+        "A sends another parity: its STX, DLE and NAK come in with a wrong parity bit",
+    );
+}
+
+#[test]
+fn the_tap_is_set_otherwise_than_both() {
+    let both = |a: &[&str], b: &[&str]| {
+        let record = [repeated("A", a, 4), repeated("B", b, 4)].map(|side| read(&side));
+        let mut record = record.concat();
+        record.sort_by_key(|heard| heard.at);
+        let config = Config::siemens_3964r(Priority::Low, Line::Instant);
+        diagnose(&record, &config).verdict
+    };
+    // DLE at twice the rate is damaged: alone it tells nothing.
+    let ratio = BaudRatio::Double;
+    assert_eq!(both(&["F8"], &["00"]), Verdict::TapRate { ratio });
+    assert_eq!(both(&["02?"], &["10?"]), Verdict::TapParity);
+    assert_eq!(both(&["F8"], &["66 E0"]), Verdict::BothGarbage);
+    assert_eq!(
+        Verdict::TapRate { ratio }.to_string(),
+        "neither side can be read: the baud rate of the line is twice that of the tap"
+    );
+    assert_eq!(
+        Verdict::TapParity.to_string(),
+        "neither side can be read: the tap is set to another parity than both of them"
     );
 }

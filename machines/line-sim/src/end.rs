@@ -193,9 +193,10 @@ impl End {
             return;
         }
         let is_lost = self.random.happens(self.faults.receiver_error_rate);
-        match read.filter(|_| !is_lost) {
-            Some(byte) => self.station.handle_byte(now, byte),
-            None => self.station.handle_damaged(now, 0, LineError::Parity),
+        let error = read.error.or(is_lost.then_some(LineError::Parity));
+        match error {
+            None => self.station.handle_byte(now, read.byte),
+            Some(error) => self.station.handle_damaged(now, read.byte, error),
         }
     }
 

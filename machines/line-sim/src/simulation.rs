@@ -42,6 +42,7 @@ pub struct Simulation {
     /// Hears what each of them sends.
     taps: [Receiver; 2],
     is_one_wire: bool,
+    tells_damage: bool,
     step: u64,
     heard: Vec<Character>,
     happenings: Vec<Happening>,
@@ -70,6 +71,7 @@ impl Simulation {
             ends: [End::new(a, seed), End::new(b, !seed)],
             taps: [Frame::USUAL, Frame::USUAL].map(Receiver::new),
             is_one_wire: false,
+            tells_damage: false,
             step: 0,
             heard: Vec::new(),
             happenings: Vec::new(),
@@ -84,6 +86,11 @@ impl Simulation {
     /// Whether both directions are on one pair of wires from now on, echo and all.
     pub const fn set_one_wire(&mut self, is_one_wire: bool) {
         self.is_one_wire = is_one_wire;
+    }
+
+    /// Whether the tap tells from now on which characters came in damaged, as a port with marks does.
+    pub const fn set_tells_damage(&mut self, tells_damage: bool) {
+        self.tells_damage = tells_damage;
     }
 
     /// Gives a station a telegram to send, after those that it has.
@@ -135,7 +142,7 @@ impl Simulation {
     }
 
     /// What the tap has heard so far. A character with a wrong parity or stop bit reads 00h, as a port
-    /// of a PC reads it.
+    /// of a PC reads it, unless the tap [tells damage](Self::set_tells_damage).
     #[must_use]
     pub fn heard(&self) -> &[Character] {
         &self.heard
@@ -214,7 +221,8 @@ impl Simulation {
         let sent = if self.is_one_wire { [both; 2] } else { [a, b] };
         for ((side, tap), level) in SIDES.into_iter().zip(&mut self.taps).zip(sent) {
             if let Some(read) = tap.step(level) {
-                self.heard.push(character(now, side, read));
+                self.heard
+                    .push(character(now, side, read, self.tells_damage));
             }
         }
         for (it, other) in self.ends.iter_mut().zip([b, a]) {
@@ -231,11 +239,13 @@ impl Simulation {
     }
 }
 
-fn character(at: Duration, side: Side, read: Read) -> Character {
+fn character(at: Duration, side: Side, read: Read, tells_damage: bool) -> Character {
+    let Read { byte, error } = read;
+    let is_zero = error.is_some() && !tells_damage;
     Character {
         at,
         side,
-        byte: read.unwrap_or_default(),
-        error: None,
+        byte: if is_zero { 0 } else { byte },
+        error: error.filter(|_| tells_damage),
     }
 }

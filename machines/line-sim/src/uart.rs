@@ -1,5 +1,7 @@
 //! Transmitter and receiver circuits on a wire that is simulated in steps.
 
+use proto3964r::LineError;
+
 use crate::STEPS_PER_SECOND;
 
 /// Parity bit of a character.
@@ -116,8 +118,12 @@ pub(crate) struct Receiver {
     is_ready: bool,
 }
 
-/// A character came in: its byte, or `None` for a wrong parity or stop bit.
-pub(crate) type Read = Option<u8>;
+/// A character that came in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Read {
+    pub(crate) byte: u8,
+    pub(crate) error: Option<LineError>,
+}
 
 impl Receiver {
     pub(crate) const fn new(frame: Frame) -> Self {
@@ -155,7 +161,14 @@ impl Receiver {
         self.step = None;
         self.is_ready = level;
         let [_, byte] = (self.bits >> 1).to_be_bytes();
-        Some((self.bits == self.frame.of(byte)).then_some(byte))
+        let error = if !level {
+            Some(LineError::Framing)
+        } else if self.bits != self.frame.of(byte) {
+            Some(LineError::Parity)
+        } else {
+            None
+        };
+        Some(Read { byte, error })
     }
 }
 
@@ -163,13 +176,16 @@ impl Receiver {
 mod tests {
     use super::*;
 
-    fn pass(from: Frame, to: Frame, byte: u8, flipped: u16) -> Vec<Read> {
+    type Passed = Vec<(u8, Option<LineError>)>;
+
+    fn pass(from: Frame, to: Frame, byte: u8, flipped: u16) -> Passed {
         let mut transmitter = Transmitter::new(from);
         let mut receiver = Receiver::new(to);
         transmitter.load(byte, flipped);
         let steps = 3 * from.steps().max(to.steps());
         (0..steps)
             .filter_map(|_| receiver.step(transmitter.step()))
+            .map(|Read { byte, error }| (byte, error))
             .collect()
     }
 
@@ -179,7 +195,7 @@ mod tests {
             for parity in [Parity::None, Parity::Even, Parity::Odd] {
                 let frame = Frame::new(baud, parity).unwrap();
                 for byte in 0..=255 {
-                    assert_eq!(pass(frame, frame, byte, 0), [Some(byte)]);
+                    assert_eq!(pass(frame, frame, byte, 0), [(byte, None)]);
                 }
             }
         }
@@ -197,9 +213,10 @@ mod tests {
     fn parity_and_stop_bit_are_checked() {
         let even = Frame::USUAL;
         let odd = Frame::new(9600, Parity::Odd).unwrap();
-        assert_eq!(pass(odd, even, 0x41, 0), [None]);
-        assert_eq!(pass(even, even, 0x41, 1 << 3), [None]);
-        assert_eq!(pass(even, even, 0x41, 1 << 10), [None]);
-        assert_eq!(pass(even, even, 0x41, 0b11 << 3), [Some(0x41 ^ 0b1100)]);
+        let (parity, framing) = (Some(LineError::Parity), Some(LineError::Framing));
+        assert_eq!(pass(odd, even, 0x41, 0), [(0x41, parity)]);
+        assert_eq!(pass(even, even, 0x41, 1 << 3), [(0x45, parity)]);
+        assert_eq!(pass(even, even, 0x41, 1 << 10), [(0x41, framing)]);
+        assert_eq!(pass(even, even, 0x41, 0b11 << 3), [(0x4D, None)]);
     }
 }

@@ -2,7 +2,7 @@
 
 mod saved;
 
-use core::{future::pending, mem, pin::pin, time::Duration};
+use core::{future::pending, mem, time::Duration};
 use std::{
     fs,
     io::{self, IsTerminal as _, Write as _},
@@ -185,7 +185,18 @@ async fn listen(options: &Options, mut teller: Teller) -> Result<()> {
             None => pending().await,
         }
     };
-    let (mut end, mut interrupt) = (pin!(end), pin!(super::interrupted()));
+    let ended = select! {
+        ended = tell([&mut ear_a, &mut ear_b], begin, &mut teller) => ended,
+        ended = super::interrupted() => ended,
+        () = end => Ok(()),
+    };
+    // Also where a port has gone.
+    ended.and(teller.conclude(begin.elapsed()))
+}
+
+/// Tells what is heard, until a port goes.
+async fn tell(ears: [&mut Ear; 2], begin: Instant, teller: &mut Teller) -> Result<()> {
+    let [ear_a, ear_b] = ears;
     let mut verdict = None;
     let mut due = PAUSE;
     loop {
@@ -193,11 +204,6 @@ async fn listen(options: &Options, mut teller: Teller) -> Result<()> {
             heard = ear_a.hear() => heard?,
             heard = ear_b.hear() => heard?,
             () = sleep(TICK) => Vec::new(),
-            () = &mut end => break,
-            ended = &mut interrupt => {
-                ended?;
-                break;
-            }
         };
         let now = begin.elapsed();
         teller.wait(now)?;
@@ -217,7 +223,6 @@ async fn listen(options: &Options, mut teller: Teller) -> Result<()> {
             teller.recent(now, recent)?;
         }
     }
-    teller.conclude(begin.elapsed())
 }
 
 /// A port that hears one side.

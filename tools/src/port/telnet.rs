@@ -197,9 +197,10 @@ impl Telnet {
             return Ok(None);
         };
         let command = command.wrapping_sub(SERVER);
-        let set = match *value {
-            [value] => u32::from(value),
-            [a, b, c, d] => u32::from_be_bytes([a, b, c, d]),
+        let set = match (command, value) {
+            (SET_BAUDRATE, &[a, b, c, d]) => u32::from_be_bytes([a, b, c, d]),
+            (SET_BAUDRATE, _) => return Ok(None),
+            (_, &[value]) => value.into(),
             _ => return Ok(None),
         };
         if command == NOTIFY_LINESTATE {
@@ -294,6 +295,9 @@ mod tests {
         let state = [0x41, IAC, SB, COM_PORT, 107, 16, IAC, SE, 0x42];
         let heard = take_all(&mut granted(), &state);
         assert_eq!(heard, Ok(vec![Ok(0x41), Err(Damage::Break), Ok(0x42)]));
+        // The state of a line is one byte.
+        let longer = [IAC, SB, COM_PORT, 107, 0, 0, 0, 16, IAC, SE];
+        assert_eq!(take_all(&mut granted(), &longer), Ok(vec![]));
     }
 
     proptest! {

@@ -3,6 +3,7 @@
 use core::time::Duration;
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::thread;
@@ -192,6 +193,43 @@ fn two_ports() {
     );
     assert_eq!(lines.count(), 3);
     assert!(monitor.wait().unwrap().success());
+}
+
+/// An adapter is pulled out: what was heard before is judged and kept.
+#[test]
+fn a_port_that_goes_leaves_its_verdict() {
+    let (mut from_a, tap_a) = TTYPort::pair().unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let name = format!("tcp://{}", listener.local_addr().unwrap());
+    let folder = TempDir::new().unwrap();
+    let saved = folder.path().join("kept");
+    let mut monitor = program("monitor")
+        .args(["--port", &tap_a.name().unwrap()])
+        .args(["--port", &name])
+        .arg("--save")
+        .arg(&saved)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let output = monitor.stdout.take().unwrap();
+    let mut told = BufReader::new(output).lines().map(Result::unwrap);
+    let (from_b, _) = listener.accept().unwrap();
+    from_a.write_all(&[0x02]).unwrap();
+    assert!(told.next().unwrap().ends_with("A STX, attempt 1"));
+    drop(from_b);
+    let verdict = "verdict: nothing to complain of so far";
+    assert!(told.any(|line| line == verdict));
+    let ended = monitor.wait_with_output().unwrap();
+    let errors = lines(&ended.stderr);
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    assert!(
+        errors[0].starts_with(&format!("error: {name}: ")),
+        "{errors:?}"
+    );
+    assert_eq!(ended.status.code(), Some(1));
+    let kept = fs::read_to_string(saved).unwrap();
+    assert!(kept.contains(&format!("# {verdict}\n")), "{kept}");
 }
 
 #[test]

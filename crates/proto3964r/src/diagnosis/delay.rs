@@ -9,12 +9,15 @@ use crate::{
 };
 
 /// Characters of one side that follow each other within this time are one burst.
-const ALONE: Duration = Duration::from_millis(20);
+pub(super) const ALONE: Duration = Duration::from_millis(20);
 
 /// An STX without any character before it for so long is no reaction to one.
 const QUIET: Duration = Duration::from_millis(300);
 
-/// Answers and questions that are tried for a delay.
+/// So many answers are looked at, the last ones: more would tell nothing else, and take time.
+const LAST: usize = 128;
+
+/// Of those, answers and questions that are tried for a delay.
 const ANSWERS: usize = 16;
 const QUESTIONS: usize = 12;
 
@@ -65,6 +68,8 @@ impl Delay {
 /// least; among such as explain nearly as many the smallest, unless only a longer one answers the
 /// STX after silence. Never above `limit`.
 pub(super) fn delay_of(record: &[Character], by: Side, limit: Duration) -> Option<Delay> {
+    let begin = answers(record, by).rev().nth(LAST).map_or(0, |(at, _)| at);
+    let record = record.get(begin..).unwrap_or_default();
     let most = candidates(record, by, limit)
         .map(|tried| tried.score())
         .max()?;
@@ -109,7 +114,7 @@ pub(super) fn patience_of(record: &[Character], side: Side) -> Option<Duration> 
 }
 
 /// Stations look at their line in steps, and taps have their latency.
-fn tolerance(delay: Duration) -> Duration {
+pub(super) fn tolerance(delay: Duration) -> Duration {
     Duration::from_millis(3).saturating_add(delay / 100)
 }
 
@@ -173,7 +178,7 @@ fn within(
     begin..end
 }
 
-fn answers(record: &[Character], by: Side) -> impl Iterator<Item = (usize, &Character)> {
+fn answers(record: &[Character], by: Side) -> impl DoubleEndedIterator<Item = (usize, &Character)> {
     let all = record.iter().enumerate();
     all.filter(move |&(at, _)| is_lone_dle(record, at, by))
 }

@@ -5,14 +5,16 @@ mod blocks;
 use core::time::Duration;
 
 use super::{
+    delay::tolerance,
     echo::Echo,
     evidence::{Conduct, Evidence},
+    setting::Setting,
     verdict::Verdict,
 };
 use crate::{
     config::Priority,
     frame::Check,
-    monitor::{PerSide, Side},
+    monitor::{Character, PerSide, Side, since},
 };
 
 /// So many characters that nobody can read are no accident.
@@ -33,6 +35,7 @@ pub(super) struct Late {
 /// What the rules look at.
 #[derive(Debug)]
 pub(super) struct Case<'c> {
+    pub(super) record: &'c [Character],
     pub(super) evidence: &'c Evidence,
     pub(super) echo: Echo,
     pub(super) delays: PerSide<Option<Late>>,
@@ -76,7 +79,7 @@ impl<'c> Case<'c> {
             return (Verdict::Echo, None);
         }
         match Side::BOTH.map(|side| self.unreadable(side)) {
-            [Some(_), Some(_)] => return (Verdict::BothGarbage, None),
+            [Some(a), Some(b)] => return (self.both_unreadable(a, b), None),
             [Some(verdict), None] | [None, Some(verdict)] => return (verdict, None),
             [None, None] => {}
         }
@@ -152,8 +155,10 @@ impl<'c> Case<'c> {
                     blocks: sender.blocks(),
                 })
             }
-            // Whether the speaker hears it does not show either.
-            Verdict::NotHeard { speaker, .. } if self.side(speaker).reacted == 0 => {
+            // Whether the speaker hears it does not show either; a NAK may look like an answer.
+            Verdict::NotHeard { speaker, listener }
+                if self.side(speaker).reacted.saturating_mul(8) <= self.side(listener).requests =>
+            {
                 Some(Verdict::NeitherHears)
             }
             _ => None,
@@ -180,13 +185,24 @@ impl<'c> Case<'c> {
             return None;
         }
         // STX, DLE and NAK have an odd number of ones: a stop bit looks like their parity bit.
-        Some(
-            if inside && control >= GARBAGE && control.saturating_mul(8) >= garbage {
-                Verdict::NoParity { side }
-            } else {
-                Verdict::Garbage { side }
-            },
-        )
+        if inside && control >= GARBAGE && control.saturating_mul(8) >= garbage {
+            return Some(Verdict::NoParity { side });
+        }
+        Some(match Setting::of(self.record, &[side]) {
+            Some(Setting::Parity) => Verdict::OtherParity { side },
+            Some(Setting::Rate(ratio)) => Verdict::OtherRate { side, ratio },
+            None => Verdict::Garbage { side },
+        })
+    }
+
+    /// What both sides, of which nothing makes sense, have in common.
+    fn both_unreadable(&self, a: Verdict, b: Verdict) -> Verdict {
+        match (a, b, Setting::of(self.record, &Side::BOTH)) {
+            (Verdict::NoParity { .. }, Verdict::NoParity { .. }, _)
+            | (_, _, Some(Setting::Parity)) => Verdict::TapParity,
+            (_, _, Some(Setting::Rate(ratio))) => Verdict::TapRate { ratio },
+            _ => Verdict::BothGarbage,
+        }
     }
 
     /// One side answers what the other, which is never heard, must have said.
@@ -244,22 +260,30 @@ impl<'c> Case<'c> {
 
     /// Both sides agree, but not with what was expected of them.
     fn same_setting(&self) -> Option<Verdict> {
-        let all = |is: fn(&Conduct) -> bool| Side::BOTH.into_iter().all(|side| is(self.side(side)));
-        if all(|own| own.accepted == 0) {
+        let mut sides = Side::BOTH.into_iter().map(|side| self.side(side));
+        if sides.all(|own| own.accepted == 0) {
             return None;
         }
-        match self.check {
-            Check::Bcc if all(|own| own.good == 0 && own.without_bcc <= own.accepted) => {
-                all(|own| own.bad == 0).then_some(Verdict::BothWithoutBcc)
-            }
-            Check::None
-                if all(|own| own.without_bcc == 0 && own.good <= own.accepted)
-                    && all(|own| own.bcc_not_awaited == 0 && own.nak_after_dle == 0) =>
-            {
-                Some(Verdict::BothWithBcc)
-            }
-            _ => None,
-        }
+        // Noise spoils some.
+        let few = |part: u32, own: &Conduct| part.saturating_mul(4) <= own.blocks();
+        let works = |own: &Conduct| few(own.blocks().saturating_sub(own.accepted), own);
+        let verdict = match self.check {
+            Check::Bcc => Verdict::BothWithoutBcc,
+            Check::None => Verdict::BothWithBcc,
+        };
+        Side::BOTH
+            .into_iter()
+            .all(|side| {
+                let (own, other) = (self.side(side), self.side(side.other()));
+                let as_expected = match self.check {
+                    Check::Bcc => own.good.saturating_add(own.bad),
+                    Check::None => own.without_bcc,
+                };
+                // Who acknowledges at ETX takes the BCC of the other for noise.
+                let noticed = other.bcc_not_awaited.max(other.nak_after_dle);
+                works(own) && few(as_expected, own) && few(noticed, own)
+            })
+            .then_some(verdict)
     }
 
     fn late(&self, side: Side) -> Option<Verdict> {
@@ -273,7 +297,7 @@ impl<'c> Case<'c> {
         if works && !is_overtaken {
             return None;
         }
-        (delay > qvz).then_some(Verdict::Late { side, delay, qvz })
+        (since(qvz, delay) > tolerance(delay)).then_some(Verdict::Late { side, delay, qvz })
     }
 
     fn not_heard(&self, listener: Side) -> Option<Verdict> {

@@ -4,7 +4,7 @@ use core::{fmt, time::Duration};
 
 use thiserror::Error;
 
-use super::formula::Formula;
+use super::{formula::Formula, setting::BaudRatio};
 use crate::{
     config::Priority,
     monitor::{Millis, Side},
@@ -222,6 +222,31 @@ pub enum Verdict {
         /// Who sends them.
         side: Side,
     },
+    /// All characters come in with a wrong parity bit.
+    #[error("{side} sends another parity: its STX, DLE and NAK come in with a wrong parity bit")]
+    OtherParity {
+        /// Who sends them.
+        side: Side,
+    },
+    /// Characters that STX, DLE and NAK of another baud rate read as.
+    #[error(
+        "{side} sends characters outside the procedure: another baud rate, {ratio} that of {}", side.other()
+    )]
+    OtherRate {
+        /// Who sends them.
+        side: Side,
+        /// Its rate over that of the other side, which is that of the tap.
+        ratio: BaudRatio,
+    },
+    /// Characters of both sides differ from what the tap is set to in the same way.
+    #[error("neither side can be read: the tap is set to another parity than both of them")]
+    TapParity,
+    /// Characters of both sides read as STX, DLE and NAK of another baud rate.
+    #[error("neither side can be read: the baud rate of the line is {ratio} that of the tap")]
+    TapRate {
+        /// The rate of both over that of the tap.
+        ratio: BaudRatio,
+    },
     /// Characters of both sides cannot be read.
     #[error("neither side can be read: parity or baud rate of the tap, or of the line, is another")]
     BothGarbage,
@@ -266,7 +291,15 @@ impl Verdict {
             Self::NoAcknowledgement { .. } | Self::RequestForAnswer { .. } => {
                 "send the shortest telegram: if it is answered, the block length or a character in the longer ones is the cause"
             }
-            Self::Garbage { .. } | Self::BothGarbage => {
+            Self::Garbage { .. }
+            | Self::BothGarbage
+            | Self::OtherRate {
+                ratio: BaudRatio::DoubleOrMore,
+                ..
+            }
+            | Self::TapRate {
+                ratio: BaudRatio::DoubleOrMore,
+            } => {
                 "measure the shortest pulse of its characters with an oscilloscope: it is one bit, 104 us at 9600 bit/s; if that fits, parity or data bits differ"
             }
             _ => return None,

@@ -61,10 +61,11 @@ impl Case<'_> {
     }
 
     pub(super) fn bad_blocks_accepted(&self, receiver: Side) -> Option<Verdict> {
-        let Conduct {
-            bad_accepted, bad, ..
-        } = *self.side(receiver.other());
-        most(bad_accepted, bad).then_some(Verdict::BadBlocksAccepted { receiver })
+        let sender = self.side(receiver.other());
+        // One among others may have begun before the record.
+        let is_alone = sender.blocks() == 1;
+        (most(sender.bad_accepted, sender.bad) && (is_alone || sender.bad_accepted > 1))
+            .then_some(Verdict::BadBlocksAccepted { receiver })
     }
 
     pub(super) fn request_for_answer(&self, side: Side) -> Option<Verdict> {
