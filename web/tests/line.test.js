@@ -123,6 +123,8 @@ for (const [fault, verdict] of Object.entries(FAULTS)) {
     await page.locator('#scenario').selectOption(fault);
     await page.getByRole('button', { name: 'Run 20 s' }).click();
     await said(page, verdict);
+    // The verdict may come before the end, and the files are of what was heard so far.
+    await page.locator('#simulated-time').filter({ hasText: '20.0000 s' }).waitFor();
     // What the tap has heard is a capture, and what is told of it is what the command line tells.
     const capture = file('capture.txt', await saved(page, 'capture.txt'));
     const printed = line3964r('monitor', capture).text;
