@@ -76,8 +76,8 @@ export class Chart {
             width: 1.5,
             points: { show: false },
             ...(line.dash ? { dash: line.dash } : {}),
-            value: (_: uPlot, it: number | null) =>
-              it === null ? 'none' : `${shown(it)} ${this.#unit}`,
+            value: (plot: uPlot, it: number | null) =>
+              it === null ? 'none' : `${shown(it, plot.scales.y)} ${this.#unit}`,
           })),
         ],
         legend: { markers: { dash: (_, series) => stroke(this.#lines[series - 1]?.dash) } },
@@ -111,9 +111,13 @@ export class Chart {
   }
 }
 
+/** What is less, in parts of what the axis shows, is rounding of zero. */
+const ROUNDING = 1e-9;
+
 /** Four digits, as far as a person reads them. */
-function shown(value: number): string {
-  return String(Number(value.toPrecision(4)));
+function shown(value: number, { min = 0, max = 0 }: uPlot.Scale = {}): string {
+  const isZero = Math.abs(value) < ROUNDING * (max - min);
+  return isZero ? '0' : String(Number(value.toPrecision(4)));
 }
 
 /** The border that is the most like a line of these dashes. */
