@@ -12,7 +12,7 @@ use port::{Frame, Heard, Marks, Telnet};
 
 /// The decoders themselves, which are private in `line3964r`.
 #[path = "../../tools/src/port"]
-#[allow(dead_code, reason = "of each file only the decoder is used")]
+#[expect(dead_code, reason = "of each file only the decoder is used")]
 mod port {
     mod frame;
     mod heard;

@@ -36,6 +36,12 @@ fn turn(desk: &mut Desk, counts: i32, samples: u32) {
     }
 }
 
+/// Holds down both enabling switches.
+fn hold_switches(desk: &mut Desk) {
+    let (left, right) = (true, true);
+    act(desk, Hand::Enable { left, right });
+}
+
 /// Opens the pose change, sets dX to 1 mm and starts it.
 fn move_x(desk: &mut Desk) {
     for _ in 0..3 {
@@ -54,13 +60,7 @@ fn a_pose_change_moves_the_body() {
     let mut desk = desk();
     let before = desk.seen().unwrap().platform;
     act(&mut desk, Hand::Multiplier(Position::new(3).unwrap()));
-    act(
-        &mut desk,
-        Hand::Enable {
-            left: true,
-            right: true,
-        },
-    );
+    hold_switches(&mut desk);
     move_x(&mut desk);
     desk.wait_ms(10_000).unwrap();
     assert!(line(&desk, 7).starts_with("DONE"));
@@ -91,13 +91,7 @@ fn a_pose_change_goes_straight() {
     let corner = |desk: &Desk| desk.seen().unwrap().platform.outline_mm[0];
     let before = corner(&desk);
     act(&mut desk, Hand::Multiplier(Position::new(3).unwrap()));
-    act(
-        &mut desk,
-        Hand::Enable {
-            left: true,
-            right: true,
-        },
-    );
+    hold_switches(&mut desk);
     move_x(&mut desk);
     for _ in 0..100 {
         desk.wait_ms(100).unwrap();
@@ -124,13 +118,7 @@ fn a_jog_ends_at_the_end_of_the_stroke() {
     turn(&mut desk, 100, 5);
     desk.wait_ms(1000).unwrap();
     assert!(line(&desk, 2).contains("+0.000"));
-    act(
-        &mut desk,
-        Hand::Enable {
-            left: true,
-            right: true,
-        },
-    );
+    hold_switches(&mut desk);
     turn(&mut desk, 100, 150);
     desk.wait_ms(2000).unwrap();
     assert!(line(&desk, 2).contains("+250.000"), "{}", line(&desk, 2));
