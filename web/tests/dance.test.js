@@ -221,6 +221,17 @@ test('what comes of an older input does not hide a refusal', async () => {
   await done();
 });
 
+test('a score is read although the machine has another one to dance', async () => {
+  const { page, done } = await browser.visit('dance.html', { script: delayed('dance.read') });
+  await danced(page);
+  await page.getByRole('button', { name: 'waist, to -25°, smooth, at 2 s' }).press('Delete');
+  await page.getByRole('button', { name: 'As shipped' }).click();
+  await page.locator('#law').selectOption('carry');
+  await page.getByRole('button', { name: 'waist, to -25°, smooth, at 2 s' }).waitFor();
+  await danced(page);
+  await done();
+});
+
 for (const scheme of /** @type {const} */ (['light', 'dark'])) {
   for (const [size, viewport] of Object.entries({
     wide: { width: 1280, height: 1000 },

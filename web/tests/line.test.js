@@ -44,6 +44,22 @@ test('every capture has the conversation and the verdict of the command line', a
   await done();
 });
 
+test('a capture that is chosen while another one loads is the one that stays', async () => {
+  const { page, done } = await browser.visit('');
+  await page.route(/01a_parity/, async (route) => {
+    await new Promise((then) => setTimeout(then, 2000));
+    await route.continue();
+  });
+  const example = page.waitForResponse(/01a_parity/);
+  await page.goto(`${browser.url}line.html`);
+  await page.locator('#file').setInputFiles(join(CAPTURES, '00_good.txt'));
+  await said(page, 'the line works');
+  await (await example).finished();
+  await page.waitForTimeout(500);
+  await said(page, 'the line works');
+  await done();
+});
+
 test('what is expected of the line changes the verdict as it does on the command line', async () => {
   const { page, done } = await browser.visit('line.html?example=00_good&preset=siemens-3964');
   await said(page, 'both sides are set to 3964R');
@@ -134,7 +150,15 @@ for (const [fault, verdict] of Object.entries(FAULTS)) {
 }
 
 test('the procedure is seen step by step', async () => {
-  const { page, done } = await browser.visit('line.html?view=simulate');
+  const script = `window.answers = 0;
+    const Plain = Worker;
+    window.Worker = class extends Plain {
+      constructor(...parameters) {
+        super(...parameters);
+        this.addEventListener('message', () => (answers += 1));
+      }
+    };`;
+  const { page, done } = await browser.visit('line.html?view=simulate', { script });
   await page.locator('main[data-ready]').waitFor();
   await page.getByLabel('both send by themselves').uncheck();
   await page.getByRole('button', { name: 'Run 20 s' }).click();
@@ -147,8 +171,9 @@ test('the procedure is seen step by step', async () => {
   /** @type {string[]} */
   const seen = [];
   for (let step = 0; step < 40; step += 1) {
+    const answers = await page.evaluate('answers');
     await page.getByRole('button', { name: 'Step' }).click();
-    await page.waitForTimeout(30);
+    await page.waitForFunction(`answers > ${answers}`);
     const both = await Promise.all([a, b].map((it) => it.locator('.activity').textContent()));
     const now = both.join(' | ');
     if (seen.at(-1) !== now) seen.push(now);

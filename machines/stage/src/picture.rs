@@ -75,10 +75,12 @@ fn motion(run: &Run) -> [Plot; 2] {
     let speed = time_chart(run, "speed in mm/s")
         .with_title("Speed along the path")
         .line(&window, Stroke::ACTUAL, motion.speeds());
+    // Motors start and stop with a speed: over the window that shows as an acceleration, too.
+    let with_jumps = format!("{window}, start-stop speeds included");
     let acceleration = time_chart(run, "acceleration in mm/s²")
         .with_title("Acceleration of X or Y, the larger")
         .line("limit of an axis", Stroke::LIMIT, limit)
-        .line(&window, Stroke::ACTUAL, motion.axis_accelerations());
+        .line(&with_jumps, Stroke::ACTUAL, motion.axis_accelerations());
     [speed, acceleration]
 }
 

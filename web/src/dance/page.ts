@@ -38,6 +38,8 @@ let selected: number | undefined;
 /** The move that is refused. */
 let bad: number | undefined;
 let dance: Dance | undefined;
+/** Texts that the machine reads now. */
+let reading = 0;
 /** Texts that can be taken back to. */
 const before: string[] = [];
 
@@ -137,6 +139,7 @@ async function takeBack(): Promise<void> {
 
 /** Takes a text as the score, if it is one. */
 async function read(given: string, name: string): Promise<boolean> {
+  reading += 1;
   try {
     const { value } = await machine.call<Score>('dance.read', given);
     text = given;
@@ -147,6 +150,8 @@ async function read(given: string, name: string): Promise<boolean> {
   } catch (error) {
     status.refuse(name, error);
     return false;
+  } finally {
+    reading -= 1;
   }
 }
 
@@ -159,6 +164,11 @@ async function open(given: string, name: string): Promise<void> {
 }
 
 async function run(): Promise<void> {
+  // To stop the machine were to lose what it reads.
+  if (reading > 0) {
+    perform();
+    return;
+  }
   toAddress(fields.values);
   machine.stop();
   const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber };

@@ -27,8 +27,8 @@ export class Capture implements View {
   readonly #preset = element('preset', HTMLSelectElement);
   readonly #fields: AddressFields;
   #name = 'capture.txt';
-  /** The newest call; answers to older ones are dropped. */
-  #call = 0;
+  /** Of the newest input; what is still under way for older ones is dropped. */
+  #input = 0;
 
   constructor(desk: Desk) {
     this.#desk = desk;
@@ -38,15 +38,13 @@ export class Capture implements View {
     this.#fields = new AddressFields({ preset: this.#preset }, () => this.#judge());
     const judge = settled(150, () => this.#judge());
     this.#text.addEventListener('input', () => {
-      this.#example.value = '';
-      this.#name = 'capture.txt';
-      keep('line capture', this.#text.value);
-      toAddress({ example: null });
+      this.#supersede();
+      this.#own('capture.txt');
       judge();
     });
     this.#example.addEventListener('change', () => this.#open(this.#example.value));
-    takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) =>
-      this.#take(await file.text(), file.name),
+    takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), (file) =>
+      this.#take(file.text(), file.name),
     );
   }
 
@@ -55,13 +53,16 @@ export class Capture implements View {
     const example = fromAddress('example');
     const text = kept('line capture');
     if (example !== null && example in EXAMPLES) await this.#open(example);
-    else if (text !== null) await this.#take(text, 'capture.txt');
+    else if (text !== null) await this.#take(Promise.resolve(text), 'capture.txt');
     else await this.#open(FIRST);
   }
 
   async #open(example: string): Promise<void> {
-    const text = await EXAMPLES[example]?.();
-    if (text === undefined) return;
+    const load = EXAMPLES[example];
+    if (!load) return;
+    const input = this.#supersede();
+    const text = await load();
+    if (input !== this.#input) return;
     this.#name = `${example}.txt`;
     this.#example.value = example;
     this.#text.value = text;
@@ -70,29 +71,43 @@ export class Capture implements View {
     await this.#judge();
   }
 
-  async #take(text: string, name: string): Promise<void> {
+  async #take(loading: Promise<string>, name: string): Promise<void> {
+    const input = this.#supersede();
+    const text = await loading;
+    if (input !== this.#input) return;
+    this.#text.value = text;
+    this.#own(name);
+    await this.#judge();
+  }
+
+  /** What is in the field is one's own. */
+  #own(name: string): void {
     this.#name = name;
     this.#example.value = '';
-    this.#text.value = text;
     toAddress({ example: null });
-    keep('line capture', text);
-    await this.#judge();
+    keep('line capture', this.#text.value);
+  }
+
+  /** Another input is on its way; its number. */
+  #supersede(): number {
+    this.#desk.judging(this);
+    this.#input += 1;
+    return this.#input;
   }
 
   async #judge(): Promise<void> {
     const preset = this.#preset.value;
     toAddress(this.#fields.values);
-    this.#call += 1;
-    const call = this.#call;
+    const input = this.#supersede();
     const parameters = { name: this.#name, text: this.#text.value, preset };
     try {
       const answer = await this.#desk.machine.call<News>('line', parameters);
-      if (call !== this.#call) return;
+      if (input !== this.#input) return;
       this.conversation = new Conversation();
       this.conversation.take(answer);
-      this.#desk.show(this);
+      this.#desk.renew(this);
     } catch (error) {
-      if (call === this.#call) this.#desk.refuse(this, '', error);
+      if (input === this.#input) this.#desk.refuse(this, '', error);
     }
   }
 }

@@ -47,6 +47,19 @@ export class Desk {
     this.#tell();
   }
 
+  /** A view will have another conversation. */
+  judging(view: View): void {
+    if (view !== this.#view) return;
+    this.#said = '';
+    this.status.say('Judging');
+    this.#files.allow(false);
+  }
+
+  /** A view has another conversation. */
+  renew(view: View): void {
+    if (view === this.#view) this.show(view);
+  }
+
   /** A view has heard more, or was told a verdict. */
   update(view: View): void {
     if (view !== this.#view) return;

@@ -113,7 +113,7 @@ export class Simulation implements View {
     this.conversation = new Conversation();
     for (const panel of this.#panels) panel.clear();
     this.#nowS = 0;
-    this.#desk.show(this);
+    this.#desk.renew(this);
     await this.#pull(0, false);
   }
 
