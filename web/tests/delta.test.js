@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, refusal, ROOT, saved, shoot } from './browser.js';
+import { assertAccessible, delayed, open, refusal, ROOT, saved, shoot } from './browser.js';
 import { commandLine, file } from './command-line.js';
 
 const INPUTS = join(ROOT, 'machines/delta/inputs');
@@ -122,6 +122,18 @@ test('measured points calibrate the machine, and what is wrong with them is said
   const machine = file('machine.toml', await saved(page, 'Save the machine file'));
   await assertSameFiles(page, commandLine('delta', ['--geometry', machine]));
   assert.equal(await page.getByLabel('home deg').count(), 4);
+  await done();
+});
+
+test('a calibration that an input has ended is not lost in silence', async () => {
+  const { page, done } = await browser.visit('delta.html', { script: delayed('delta.calibrate') });
+  await driven(page);
+  await page.getByText('Calibrate', { exact: true }).first().click();
+  await page.getByRole('button', { name: 'Example' }).click();
+  await page.getByRole('button', { name: 'Calibrate' }).click();
+  await page.getByLabel('Load').fill('250');
+  await page.locator('#calibrated').filter({ hasText: 'calibrate again' }).waitFor();
+  await driven(page);
   await done();
 });
 

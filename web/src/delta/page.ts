@@ -188,7 +188,10 @@ async function calibrate(): Promise<void> {
     calibratedMachine = found.value.machine;
     use.disabled = false;
   } catch (error) {
-    if (error instanceof Superseded) return;
+    if (error instanceof Superseded) {
+      calibrated.textContent = 'the input has changed meanwhile: calibrate again';
+      return;
+    }
     const said = error instanceof Error ? error.message : String(error);
     calibrated.textContent = `measured points: ${said}`;
     measured.mark('bad', linesOf([said]));
