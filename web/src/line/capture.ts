@@ -53,7 +53,7 @@ export class Capture implements View {
     const example = fromAddress('example');
     const text = kept('line capture');
     if (example !== null && example in EXAMPLES) await this.#open(example);
-    else if (text !== null) await this.#take(Promise.resolve(text), 'capture.txt');
+    else if (text !== null) await this.#take(text, 'capture.txt');
     else await this.#open(FIRST);
   }
 
@@ -71,9 +71,9 @@ export class Capture implements View {
     await this.#judge();
   }
 
-  async #take(loading: Promise<string>, name: string): Promise<void> {
+  async #take(given: string | Promise<string>, name: string): Promise<void> {
     const input = this.#supersede();
-    const text = await loading;
+    const text = await given;
     if (input !== this.#input) return;
     this.#text.value = text;
     this.#own(name);
