@@ -8,18 +8,19 @@
 //!
 //! The second line reads nothing but the steps of the first. Lines are in mm and mm/s; each is
 //! answered with `ok a b c`, the steps of the three motors from home, or `error: ...`, and then
-//! the machine stays where it is, which is said, and the exit status is 1. `#` begins a comment,
-//! `end` ends the input.
+//! the machine stays where it is, which is said, and the exit status is 1. A file is looked at as a
+//! whole before anything moves: with a line that is refused nothing does, unless `--skip` leaves it
+//! out. `#` begins a comment, `end` ends the input.
 //!
-//! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--motion MOTION] [--port PATH] [--out DIR]`
+//! `cargo run --release --example delta -- [--input FILE|-] [--geometry FILE] [--motion MOTION] [--skip] [--port PATH] [--out DIR]`
 
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Parser;
-use command_line::{Artefacts, Terminal, print_notes, print_summary, read};
+use command_line::{Artefacts, Terminal, print_notes, print_summary, read, read_bytes};
 use delta::{Machine, Motion, Record, Session, StepLog, simulate};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/machines/delta");
@@ -41,6 +42,9 @@ struct Args {
     /// A serial port or pseudo-terminal that brings the lines and takes the answers.
     #[arg(long, value_name = "PATH")]
     port: Option<String>,
+    /// Leaves out the lines of a file that are refused, in place of not moving at all.
+    #[arg(long, conflicts_with = "port")]
+    skip: bool,
     /// Bits per second of the port.
     #[arg(long, default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
@@ -59,6 +63,15 @@ fn run(args: &Args) -> Result<ExitCode> {
         Some(port) => Terminal::open_port(port, args.baud)?,
         None => Terminal::open_file(&args.input)?,
     };
+    if terminal.is_file() && !args.skip {
+        let lines = read_bytes(&args.input)?;
+        delta::check(&machine, args.motion, &lines).with_context(|| {
+            format!(
+                "{} (--skip leaves out what is refused)",
+                args.input.display()
+            )
+        })?;
+    }
     let mut artefacts = Artefacts::new(&args.out)?;
     let record = serve(
         terminal,

@@ -6,9 +6,11 @@
 //!                                     ^                              |
 //!                                     +------- corrections <--- linear scales
 //! ```
-//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections.
+//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Where the
+//! torque of the motors does not allow the motion, as with `--profile constant`, the first line says
+//! how many steps are lost, and the exit status is 2.
 //!
-//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--rule RULE] [--profile PROFILE] [--lose-steps P] [--seed N] [--out DIR]`
+//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--offset X,Y | --fit] [--rule RULE] [--profile PROFILE] [--lose-steps P] [--seed N] [--out DIR]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,6 +22,9 @@ use stage::{PathRule, Program, Run, Session, Settings, SpeedProfile, StepLog, St
 
 /// Of the terminal.
 const BAUD: u32 = 9600;
+
+/// Exit status of a run in which the simulated motors lose steps.
+const LOST_STEPS: u8 = 2;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/machines/stage");
 
@@ -35,6 +40,12 @@ struct Args {
     /// keys < > v ^ jog by a millimetre, M2 ends.
     #[arg(long, value_name = "TTY", conflicts_with = "gcode")]
     port: Option<String>,
+    /// Where the drawing's zero is, in mm from that of the stage.
+    #[arg(long, value_name = "X,Y",  value_parser = pair, allow_negative_numbers = true, conflicts_with_all = ["fit", "port"])]
+    offset: Option<[f64; 2]>,
+    /// Puts a drawing that leaves the travel of 120 by 100 mm within it.
+    #[arg(long, conflicts_with = "port")]
+    fit: bool,
     /// Which axis steps next: one at a time as `published`, the one with the `nearest` point, or
     /// both where due, `bresenham`.
     #[arg(long, default_value_t)]
@@ -78,7 +89,7 @@ fn stage(args: &Args) -> Result<ExitCode> {
         // All of it is checked before anything moves.
         None => {
             let bytes = read_bytes(&args.gcode)?;
-            Source::Program(Program::from_bytes(&bytes).context(name.clone())?)
+            Source::Program(placed(args, Program::from_bytes(&bytes)).context(name.clone())?)
         }
     };
     let mut artefacts = Artefacts::new(&args.out)?;
@@ -98,7 +109,28 @@ fn stage(args: &Args) -> Result<ExitCode> {
     artefacts.write_json("report.json", &report)?;
     let names = artefacts.keep()?;
     print_summary(format!("{report}in {}: {names}\n", args.out.display()))?;
-    Ok(ExitCode::SUCCESS)
+    let is_followed = report.check().is_ok();
+    Ok(ExitCode::from(if is_followed { 0 } else { LOST_STEPS }))
+}
+
+/// Two numbers with a comma between.
+fn pair(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Option<Vec<f64>> = text
+        .split(',')
+        .map(|word| word.trim().parse().ok())
+        .collect();
+    let pair = numbers.and_then(|numbers| numbers.try_into().ok());
+    pair.ok_or_else(|| format!("{text:?} is not two numbers with a comma between"))
+}
+
+/// The program where the stage shall have it.
+fn placed(args: &Args, program: Result<Program>) -> Result<Program> {
+    let program = program?;
+    match args.offset {
+        Some(offset) => program.with_offset(offset),
+        _ if args.fit => program.fit(),
+        _ => Ok(program),
+    }
 }
 
 /// Answers lines and keys until the end of the program or of the line.

@@ -10,7 +10,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use delta_kin::{Delta, DeltaPath};
-use path_timing::{AxisLimits, Curve, Knot, Path, Row, Table, ToolLimits};
+use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Row, Table, ToolLimits};
 use scara_kin::{Arm, ArmPath, Elbow};
 use stepper_sync::{
     AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, Rate, SegmentPlayer, StepDirTiming, StepScale,
@@ -19,9 +19,12 @@ use stepper_sync::{
 const CASE: &str = "PIPELINE_CASE";
 const ROUNDS: &str = "PIPELINE_ROUNDS";
 
-const TOLERANCE_MM: f64 = 0.01;
 /// So that a line takes hardly longer than it has to.
-const LEAST_SEGMENTS: u32 = 32;
+const ACCURACY: Accuracy = Accuracy {
+    min_segments: 32,
+    max_departure: 0.01,
+    max_time_ratio: f64::INFINITY,
+};
 const TOOL: ToolLimits = ToolLimits {
     feed: 300.0,
     acceleration: Some(5000.0),
@@ -115,11 +118,11 @@ fn run<
     path: &P,
     segments: u32,
     case: Case,
-    knots: &mut [Knot],
+    knots: &mut [Knot<[f64; N]>],
 ) -> u64 {
     let limits = [LIMITS; N];
     let table = Table::plan([path], limits, |_| segments, knots).expect("within limits");
-    let mut rows = table.rows().map(|row| row.expect("on the path"));
+    let mut rows = table.rows();
     let start = rows.next().expect("a row");
     let mut emitter = Emitter::new(start.position, case);
     for row in rows {
@@ -141,14 +144,7 @@ fn arm_lines() -> Vec<(Curve<2>, u32)> {
         let curve = Curve::line(from, to).expect("a line").with_tool(TOOL);
         let path = arm.path(curve, Elbow::Right).expect("in reach");
         let limits = [LIMITS; 2];
-        let table = Table::plan_within(
-            [path],
-            limits,
-            LEAST_SEGMENTS,
-            TOLERANCE_MM,
-            ArmPath::departure,
-            &mut knots,
-        );
+        let table = Table::plan_within([path], limits, ACCURACY, ArmPath::departure, &mut knots);
         (curve, table.expect("within limits").len() as u32 - 1)
     })
     .collect()
@@ -158,7 +154,7 @@ fn arm() -> Arm {
     Arm::new(black_box(132.0), black_box(132.0)).expect("lengths")
 }
 
-fn arm_steps(lines: &[(Curve<2>, u32)], case: Case, knots: &mut [Knot]) -> u64 {
+fn arm_steps(lines: &[(Curve<2>, u32)], case: Case, knots: &mut [Knot<[f64; 2]>]) -> u64 {
     let arm = arm();
     let lines = lines.iter().map(|(curve, segments)| {
         let path = arm.path(black_box(*curve), Elbow::Right).expect("in reach");
@@ -181,14 +177,8 @@ fn delta_lines() -> Vec<(Curve<3>, u32)> {
         .map(|curve| {
             let path = delta.path(curve).expect("in reach");
             let limits = [LIMITS; 3];
-            let table = Table::plan_within(
-                [path],
-                limits,
-                LEAST_SEGMENTS,
-                TOLERANCE_MM,
-                DeltaPath::departure,
-                &mut knots,
-            );
+            let table =
+                Table::plan_within([path], limits, ACCURACY, DeltaPath::departure, &mut knots);
             (curve, table.expect("within limits").len() as u32 - 1)
         })
         .collect()
@@ -198,7 +188,7 @@ fn delta() -> Delta {
     Delta::new(black_box(42.0), 18.0, 120.0, 243.0).expect("lengths")
 }
 
-fn delta_steps(lines: &[(Curve<3>, u32)], case: Case, knots: &mut [Knot]) -> u64 {
+fn delta_steps(lines: &[(Curve<3>, u32)], case: Case, knots: &mut [Knot<[f64; 3]>]) -> u64 {
     let delta = delta();
     let lines = lines.iter().map(|(curve, segments)| {
         let path = delta.path(black_box(*curve)).expect("in reach");
@@ -241,7 +231,8 @@ fn cases() -> impl Iterator<Item = (String, Case)> {
 
 /// Rounds of a case: steps of all of them, segments of one, and the seconds of the fastest.
 fn rounds(case: Case, rounds: u32) -> (u64, u32, f64) {
-    let mut knots = vec![Knot::default(); 400];
+    let mut arm_knots = vec![Knot::default(); 400];
+    let mut delta_knots = vec![Knot::default(); 400];
     let (mut steps, mut fastest_s) = (0, f64::INFINITY);
     let (arm, delta) = match case.is_arm {
         true => (arm_lines(), Vec::new()),
@@ -249,7 +240,8 @@ fn rounds(case: Case, rounds: u32) -> (u64, u32, f64) {
     };
     for _ in 0..rounds {
         let start = Instant::now();
-        steps += arm_steps(&arm, case, &mut knots) + delta_steps(&delta, case, &mut knots);
+        steps += arm_steps(&arm, case, &mut arm_knots);
+        steps += delta_steps(&delta, case, &mut delta_knots);
         fastest_s = fastest_s.min(start.elapsed().as_secs_f64());
     }
     let segments = arm

@@ -97,6 +97,10 @@ impl Scene {
                 let len = encode(payload, check, &mut body).expect("the buffer is long enough");
                 self.hear([&[0x02], &body[..len]].concat());
             }
+            13 if happening >> 4 & 1 == 0 => {
+                assert_eq!(self.station.accept(self.now), self.twin.accept(self.now));
+            }
+            13 => assert_eq!(self.station.refuse(self.now), self.twin.refuse(self.now)),
             _ => self.hear(piece(u, happening >> 4)?.to_vec()),
         }
         if happening >> 6 != 3 {

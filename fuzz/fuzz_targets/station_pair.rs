@@ -53,7 +53,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
                 }
             }
         }
-        line.ends[side].poll_events();
+        line.ends[side].poll_events(line.now);
     }
     line.come_to_rest();
     for from in 0..2 {
@@ -74,11 +74,17 @@ impl End {
     }
 
     /// Takes the events; whether the job was sent.
-    fn poll_events(&mut self) -> bool {
+    fn poll_events(&mut self, now: Duration) -> bool {
         let mut sent = false;
         while let Some(event) = self.station.poll_event() {
             match event {
-                Event::Received(payload) => self.received.push(payload.to_vec()),
+                Event::Received(payload) => {
+                    let payload = payload.to_vec();
+                    let is_held = self.station.config().acknowledge_wait_ms > 0;
+                    if !is_held || self.station.accept(now) {
+                        self.received.push(payload);
+                    }
+                }
                 Event::Sent { len } => {
                     assert_eq!(self.job.take().map(|job| job.len()), Some(len));
                     sent = true;
@@ -164,7 +170,7 @@ impl Line {
             for side in 0..2 {
                 while let Some(byte) = self.way[side].pop_front() {
                     self.ends[1 - side].station.handle_byte(self.now, byte);
-                    sent[1 - side] |= self.ends[1 - side].poll_events();
+                    sent[1 - side] |= self.ends[1 - side].poll_events(self.now);
                 }
             }
         }
@@ -178,11 +184,11 @@ impl Line {
     fn come_to_rest(&mut self) {
         for _ in 0..MOST_ROUNDS {
             for end in &mut self.ends {
-                end.poll_events();
+                end.poll_events(self.now);
             }
             self.exchange();
             for end in &mut self.ends {
-                end.poll_events();
+                end.poll_events(self.now);
             }
             if self
                 .ends

@@ -5,12 +5,14 @@ mod broker;
 mod config;
 mod discovery;
 mod field;
+mod health;
 mod hub;
 mod job;
 mod line;
 mod metrics;
 mod mqtt;
 mod outbox;
+mod store;
 mod tcp;
 mod telegram;
 
@@ -24,14 +26,17 @@ use log::{error, info, warn};
 use tokio::{
     net::{TcpListener, TcpStream},
     task::JoinSet,
-    time::{sleep, timeout},
+    time::{Instant, sleep, timeout_at},
 };
 use tokio_util::sync::CancellationToken;
+use toml::Spanned;
 
 use self::{
-    config::{Config, Listen},
+    config::{Config, Listen, Sync},
     hub::Hub,
     line::Line,
+    outbox::Outbox,
+    store::{DeadLetters, Known, Store},
 };
 use crate::cli::{block_on, interrupted};
 
@@ -50,9 +55,8 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let config = Config::read(&options.config)?;
-    let (hub, jobs) = Hub::new(&config);
     let session = match config.mqtt() {
-        Some(mqtt) => Some(mqtt::options(&config, mqtt, &hub)?),
+        Some(mqtt) => Some(mqtt::options(&config, mqtt)?),
         None => None,
     };
     if options.check {
@@ -60,8 +64,36 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     }
     let environment = env_logger::Env::default().default_filter_or("info");
     env_logger::Builder::from_env(environment).init();
+    let (outbox, known) = keep(&config)?;
+    let (hub, jobs) = Hub::new(&config, outbox, known);
     // On one thread: a core carries hundreds of lines.
     block_on(work(config, hub, jobs, session))
+}
+
+/// Where messages wait for the broker, and what waits there already.
+///
+/// # Errors
+/// Those of the store.
+fn keep(config: &Config) -> Result<(Option<Outbox>, Known)> {
+    let Some(mqtt) = config.mqtt() else {
+        return Ok((None, Known::nothing()));
+    };
+    let (folder, max_bytes) = (config.store_folder(), config.store_max_bytes());
+    let letters = DeadLetters::new(folder.join("dead-letters.jsonl"), max_bytes);
+    if config.sync() == Sync::None {
+        let most = mqtt.queue();
+        warn!(
+            "messages are kept in memory, {most} at most: what waits is lost if this program ends"
+        );
+        let outbox = Outbox::in_memory(most, mqtt.overflow, letters)?;
+        return Ok((Some(outbox), Known::nothing()));
+    }
+    let shown = folder.display();
+    let opened = Store::open(&folder, max_bytes, mqtt.overflow);
+    let (store, known) = opened.with_context(|| shown.to_string())?;
+    info!("store: {shown}, {} messages wait in it", known.messages);
+    let outbox = Outbox::on_disk(store, config.sync(), letters)?;
+    Ok((Some(outbox), known))
 }
 
 /// Starts everything, and ends it in order: lines, broker.
@@ -72,19 +104,21 @@ async fn work(
     session: Option<rumqttc::v5::MqttOptions>,
 ) -> Result<ExitCode> {
     let mut services = JoinSet::new();
-    if let Some(listener) = listen(config.tcp.as_ref()).await? {
+    if let Some(listener) = listen(config.tcp.as_ref().map(Spanned::get_ref)).await? {
         services.spawn(tcp::serve(listener, Arc::clone(&hub)));
     }
-    if let Some(listener) = listen(config.metrics.as_ref()).await? {
+    if let Some(listener) = listen(config.metrics.as_ref().map(Spanned::get_ref)).await? {
         services.spawn(metrics::serve(listener, Arc::clone(&hub)));
     }
     if let (Some(outbox), Some(mqtt)) = (&hub.outbox, config.mqtt()) {
-        outbox.retain(hub.status_topic(), "online".into());
+        outbox.retain(config.status_topic(), "online".into());
         if let Some(prefix) = &mqtt.discovery {
             discovery::announce(&config, prefix, &hub, outbox);
         }
     }
-    let stop_within = config.stop();
+    let watched = Arc::clone(&hub);
+    services.spawn(async move { health::run(&watched).await });
+    let (stop_within, status_topic) = (config.stop(), config.status_topic());
     let finishing = CancellationToken::new();
     let mut delivery = tokio::spawn(deliver(session, Arc::clone(&hub), finishing.clone()));
     let mut lines = JoinSet::new();
@@ -95,29 +129,45 @@ async fn work(
 
     interrupted().await?;
     info!("stopping, within {stop_within:?}");
+    let stop_at = Instant::now() + stop_within;
     hub.stop.cancel();
-    let ending = async {
+    let lines_ended = timeout_at(stop_at, async {
         while lines.join_next().await.is_some() {}
-        if let Some(outbox) = &hub.outbox {
-            outbox.retain(hub.status_topic(), "offline".into());
-        }
-        finishing.cancel();
-        drop((&mut delivery).await);
-    };
-    let in_time = timeout(stop_within, ending).await.is_ok();
-    Ok(report_end(&hub, in_time))
+    });
+    let lines_ended = lines_ended.await.is_ok();
+    if let Some(outbox) = &hub.outbox {
+        outbox.retain(status_topic, "offline".into());
+    }
+    finishing.cancel();
+    drop(timeout_at(stop_at, &mut delivery).await);
+    delivery.abort();
+    Ok(report_end(&hub, lines_ended))
 }
 
-/// Whatever the broker has not acknowledged is lost now.
-fn report_end(hub: &Hub, in_time: bool) -> ExitCode {
-    let lost = hub.outbox.as_ref().map_or(0, outbox::Outbox::len);
+/// What the broker has not acknowledged is in the store, or lost now.
+fn report_end(hub: &Hub, lines_ended: bool) -> ExitCode {
     let published = hub.broker.published.load(Ordering::Relaxed);
-    if in_time && lost == 0 {
-        info!("stopped, {published} messages published");
-        return ExitCode::SUCCESS;
+    let mut status = ExitCode::SUCCESS;
+    if !lines_ended {
+        error!("stopped too late: a line was at work");
+        status = ExitCode::FAILURE;
     }
-    error!("stopped too late: {lost} messages were not delivered, {published} were");
-    ExitCode::FAILURE
+    if let Some(outbox) = &hub.outbox {
+        outbox.end();
+        let (waiting, dead) = (outbox.len(), outbox.dead());
+        if waiting > 0 && outbox.is_on_disk() {
+            info!("{waiting} messages wait in the store");
+        } else if waiting > 0 {
+            error!("stopped too late: {waiting} messages were not delivered");
+            status = ExitCode::FAILURE;
+        }
+        if dead > 0 {
+            error!("{dead} messages that the broker refused are in the file of dead letters");
+            status = ExitCode::FAILURE;
+        }
+    }
+    info!("stopped, {published} messages published");
+    status
 }
 
 async fn deliver(

@@ -8,8 +8,8 @@ import { ROOT } from './browser.js';
 export const DRAWINGS = join(ROOT, 'machines/engraver/drawings');
 export const STAGE_DRAWINGS = join(ROOT, 'machines/stage/drawings');
 
-/** Any profile gives the same bytes. */
-const PROFILE = process.env.PAGE_TEST_PROFILE ?? 'release';
+/** A folder of cargo's with programs that are built: any profile gives the same bytes. */
+const BUILT = process.env.PAGE_TEST_PROGRAMS;
 
 /** @type {string[]} */
 const folders = [];
@@ -28,17 +28,28 @@ function folderOfTests(prefix) {
 }
 
 /**
+ * Runs a program: what is built, or else what `cargo run` builds.
+ * @param {string} path below the folder of what is built
+ * @param {string[]} cargo
+ * @param {string[]} args
+ */
+function run(path, cargo, args) {
+  const command = BUILT ? join(ROOT, BUILT, path) : 'cargo';
+  const all = BUILT ? args : ['run', '--quiet', '--release', ...cargo, '--', ...args];
+  const ended = spawnSync(command, all, { cwd: ROOT, encoding: 'utf8' });
+  if (ended.error) throw ended.error;
+  return { status: ended.status, text: ended.stdout + ended.stderr };
+}
+
+/**
  * Runs a machine; tells where its files are, what it printed and its exit status.
  * @param {string} example
  * @param {string[]} args
  */
 export function commandLine(example, args) {
   const folder = folderOfTests(`${example}-`);
-  const cargo = ['run', '--quiet', '--profile', PROFILE, '--example', example, '--'];
-  const all = [...cargo, ...args, '--out', folder];
-  const run = spawnSync('cargo', all, { cwd: ROOT, encoding: 'utf8' });
-  if (run.error) throw run.error;
-  return { folder, status: run.status, text: run.stdout + run.stderr };
+  const all = [...args, '--out', folder];
+  return { folder, ...run(`examples/${example}`, ['--example', example], all) };
 }
 
 /**
@@ -53,13 +64,10 @@ export function file(name, contents) {
 }
 
 /**
- * Runs `line3964r`, without its gateway; tells what it printed and its exit status.
+ * Runs `line3964r`; tells what it printed and its exit status.
  * @param {string[]} args
  */
 export function line3964r(...args) {
-  const cargo = ['run', '--quiet', '--profile', PROFILE, '--package', 'line3964r'];
-  const all = [...cargo, '--no-default-features', '--features', 'cli', '--', ...args];
-  const run = spawnSync('cargo', all, { cwd: ROOT, encoding: 'utf8' });
-  if (run.error) throw run.error;
-  return { status: run.status, text: run.stdout + run.stderr };
+  const cargo = ['--package', 'line3964r', '--no-default-features', '--features', 'cli'];
+  return run('line3964r', cargo, args);
 }

@@ -1,4 +1,4 @@
-//! Assembly modes: on which side of the elbows' plane the platform is.
+//! Assembly modes: whether the platform is at the lower or the higher of its two points.
 
 use core::fmt;
 
@@ -13,21 +13,20 @@ use crate::{Delta, Elbow, InverseError, ZAxis};
 /// Which of the two points where the lower arms meet the platform takes.
 ///
 /// They are mirror images in the plane of the elbows (each moved inward by the platform's radius),
-/// and the platform comes from one to the other only where the rods lie in that plane, a parallel
-/// singularity. So a mode is a side of the plane, counted in the order of the arms: it keeps its
-/// name wherever the machine can go without passing a singularity, also where the plane tilts
-/// beyond vertical far out.
+/// and of the two one is lower than the other, unless that plane is upright. The platform comes
+/// from one to the other through a parallel singularity, the rods in that plane, or where the plane
+/// turns past upright: far out and high, or where arms swing inward beyond the axis. There a pose
+/// has no mode, and on the other side the other one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "three spheres meet in two points")]
 pub enum AssemblyMode {
-    /// Below the elbows that stand round the axis in the order of their azimuths: as Delta robots
-    /// hang.
+    /// The point with the smaller z, in the thesis' frame with z up: as Delta robots hang.
     #[default]
     Lower,
-    /// Above them.
+    /// The point with the larger z.
     Upper,
 }
 
@@ -63,6 +62,7 @@ struct Tripod<T> {
 
 impl<T: RealField + Trig> Tripod<T> {
     /// From the rods, each from its centre to the platform.
+    #[inline(always)]
     fn new([first, second, third]: [Vector3<T>; 3]) -> Self {
         let (d2, d3) = (first - second, first - third);
         let normal = d2.cross(&d3);
@@ -73,24 +73,29 @@ impl<T: RealField + Trig> Tripod<T> {
         }
     }
 
-    /// Whether the triangle is higher than twice what rounding makes of a line.
-    fn is_plane(&self, tolerance: T) -> bool {
+    /// Whether a triangle of twice this area is higher than twice what rounding makes of a line.
+    fn is_plane(&self, area2: T, tolerance: T) -> bool {
         let height = tolerance * two();
-        self.normal.norm_squared() > self.side2 * (height * height)
+        area2 > self.side2 * (height * height)
     }
 }
 
 impl<T: RealField + Trig> Delta<T> {
     /// Whether the rods, each from its centre to the platform, are clearly in the machine's
-    /// assembly mode: so far that the triangle, too, is no line.
+    /// assembly mode: so far that neither the triangle nor what is seen of it from above is a line.
     ///
-    /// With d a side of the triangle and h its height, the volume is at most La d h.
+    /// The platform is above the plane by volume/|n|, and is the higher of its two points if that
+    /// has the sign of `n_z`. With centres within C, |n| is at most 4 C² and the volume La times it,
+    /// so that one bound on their product holds each off rounding:
+    ///
+    /// ```text
+    /// |volume n_z| > 16 tolerance C³ (C + La)   =>   |n_z| > 4 tolerance C,
+    ///                                               |volume| > 4 tolerance C (C + La)
+    /// ```
     #[inline(always)]
-    pub(crate) fn is_assembled(&self, [first, second, third]: [Vector3<T>; 3]) -> bool {
-        let span = self.span();
-        let volume = first.dot(&second.cross(&third)) * self.side();
-        // A side is shorter than two spans.
-        volume > self.tolerance() * span * span * two() * two()
+    pub(crate) fn is_assembled(&self, rods: [Vector3<T>; 3]) -> bool {
+        let tripod = Tripod::new(rods);
+        tripod.volume * tripod.normal.z * self.side() > self.least_product()
     }
 
     /// Whether `forward` of these angles is the platform's position, or why it is not.
@@ -109,10 +114,14 @@ impl<T: RealField + Trig> Delta<T> {
     ) -> Result<(), InverseError<T>> {
         let centres = self.centres_at(thetas);
         let tripod = Tripod::new(centres.map(|centre| local - centre));
-        if !tripod.is_plane(self.tolerance()) {
+        let (normal, up) = (tripod.normal, tripod.normal.z);
+        if !tripod.is_plane(normal.norm_squared(), self.tolerance()) {
             return Err(InverseError::Collinear);
         }
-        let beyond = -tripod.volume * self.side() / norm(&tripod.normal);
+        if !tripod.is_plane(up * up, self.tolerance()) {
+            return Err(InverseError::Upright);
+        }
+        let beyond = -tripod.volume * up.signum() * self.side() / norm(&normal);
         let [l1, l2, l3] = self.prepared().each_ref().map(|prepared| prepared.lower);
         let rounding = l1.min(l2).min(l3) * self.tolerance() * half();
         if beyond <= T::zero() || beyond * beyond <= rounding {
@@ -140,6 +149,13 @@ impl<T: RealField + Trig> Delta<T> {
     }
 }
 
+/// Sides of a triangle as it is seen from above, each opposite its corner, and twice its area.
+pub(crate) fn from_above<T: RealField + Trig>([c1, c2, c3]: [Vector3<T>; 3]) -> ([T; 3], T) {
+    let sides = [c3 - c2, c1 - c3, c2 - c1].map(|side| side.xy());
+    let [_, d3, d2] = &sides;
+    (sides.each_ref().map(norm), d2.perp(d3).abs())
+}
+
 /// Once for all arms, out of line: what is rare should be small.
 #[inline(never)]
 fn rod_at_edge<T: RealField + Trig>(
@@ -148,5 +164,5 @@ fn rod_at_edge<T: RealField + Trig>(
     elbow: Elbow,
 ) -> Vector3<T> {
     let triangle = prepared.triangle(point).at_edge();
-    prepared.rod(&triangle, &triangle.heading(elbow))
+    prepared.rod(&triangle, &triangle.heading(elbow), triangle.scale())
 }

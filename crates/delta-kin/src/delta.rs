@@ -4,7 +4,7 @@ use nalgebra::{RealField, Vector3};
 use trig_kernels::{Trig, sin_cos_lanes};
 
 use crate::arm::zip;
-use crate::geometry::{checked_span, order};
+use crate::geometry::checked_span;
 use crate::prepared::PreparedArm;
 use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange};
 
@@ -41,8 +41,8 @@ pub struct Delta<T: RealField = f64> {
     prepared: [PreparedArm<T>; 3],
     span: T,
     tolerance: T,
-    /// 1 where the azimuths go round counter-clockwise, else -1.
-    order: T,
+    /// See [`Self::is_assembled`].
+    least_product: T,
 }
 
 /// Which way the z axis points. X, Y and the azimuths stay as they are: with z down the frame
@@ -96,7 +96,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// within ±1/√ε (f64: 6.7e7 rad, f32: 2900 rad).
     ///
     /// # Errors
-    /// [`GeometryError::Length`], [`GeometryError::Angle`], [`GeometryError::SameAzimuth`].
+    /// [`GeometryError::Length`], [`GeometryError::Angle`].
     pub fn from_arms(arms: [ArmGeometry<T>; 3]) -> Result<Self, GeometryError<T>> {
         let span = checked_span(&arms)?;
         let delta = Self {
@@ -112,7 +112,7 @@ impl<T: RealField + Trig> Delta<T> {
             }),
             span,
             tolerance: T::zero(),
-            order: order(&arms)?,
+            least_product: T::zero(),
         };
         Ok(delta.prepare())
     }
@@ -195,7 +195,8 @@ impl<T: RealField + Trig> Delta<T> {
     }
 
     /// The machine in the assembly mode named, [`AssemblyMode::Lower`] unless set. It is left only
-    /// through a parallel singularity, the three rods in a plane.
+    /// through a parallel singularity, the three rods in a plane, or where the plane of the elbows
+    /// is upright.
     #[must_use]
     pub const fn with_assembly_mode(mut self, assembly_mode: AssemblyMode) -> Self {
         self.assembly_mode = assembly_mode;
@@ -208,6 +209,15 @@ impl<T: RealField + Trig> Delta<T> {
         let [first, second, third] = self.prepared.each_ref().map(PreparedArm::angle_rounding);
         let steps = self.span * nalgebra::convert(ROUNDING_STEPS);
         self.tolerance = T::default_epsilon() * (steps + first.max(second).max(third));
+        let [out, rods] = [PreparedArm::farthest_centre, |arm: &PreparedArm<T>| {
+            arm.lower
+        }]
+        .map(|of| {
+            let [first, second, third] = self.prepared.each_ref().map(of);
+            first.max(second).max(third)
+        });
+        let sixteen: T = nalgebra::convert(16.0);
+        self.least_product = sixteen * self.tolerance * (out + rods) * out * out * out;
         self
     }
 
@@ -247,7 +257,7 @@ impl<T: RealField + Trig> Delta<T> {
         self.working_mode
     }
 
-    /// On which side of the elbows' plane the platform is.
+    /// At which of its two points the platform is.
     #[must_use]
     pub const fn assembly_mode(&self) -> AssemblyMode {
         self.assembly_mode
@@ -269,14 +279,17 @@ impl<T: RealField + Trig> Delta<T> {
         self.tolerance
     }
 
-    /// Sign of (P - c1) · (c2 - c1) × (c3 - c1) for a platform P in the machine's assembly mode, c
-    /// the centres of the spheres.
+    /// 1 where the platform is the higher of its two points, -1 where it is the lower.
     #[inline]
     pub(crate) fn side(&self) -> T {
         match self.assembly_mode {
-            AssemblyMode::Lower => -self.order,
-            AssemblyMode::Upper => self.order,
+            AssemblyMode::Lower => -T::one(),
+            AssemblyMode::Upper => T::one(),
         }
+    }
+
+    pub(crate) const fn least_product(&self) -> T {
+        self.least_product
     }
 
     pub(crate) const fn prepared(&self) -> &[PreparedArm<T>; 3] {

@@ -36,6 +36,12 @@ pub enum ForwardError<T: RealField + Copy = f64> {
     /// turn about it.
     #[error("the elbows, moved inward by the platform's radius, lie on a line")]
     Collinear,
+    /// The plane of the elbows is upright: of the two points where the lower arms meet neither is
+    /// the lower, so that no assembly mode tells which is meant.
+    #[error(
+        "the plane of the elbows is upright: neither of the platform's two points is the lower"
+    )]
+    Upright,
 }
 
 /// Where three spheres could meet, in the plane of their centres and seen from the first.
@@ -132,6 +138,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// P = c1 + x e1 + y e2 ± √(La1² - x² - y²) e1 × e2
     /// ```
     ///
+    /// with the sign that makes P the lower or the higher point, as the mode has it.
+    ///
     /// The position is as exact as the three lengths that it meets times the conditioning, which
     /// is 1 over [`Pose::parallel_distance`](crate::Pose::parallel_distance). Limits are not
     /// looked at.
@@ -149,14 +157,20 @@ impl<T: RealField + Trig> Delta<T> {
         let are_angles = thetas
             .iter()
             .all(|theta| is_within(*theta, largest_angle()));
-        // Not if it is not a number.
-        let is_plane = foot.height() > self.tolerance();
+        let [along, across, normal] = foot.axes;
+        let height = foot.height();
+        // As seen from above. Not if it is not a number.
+        let is_plane = height * normal.z.abs() > self.tolerance();
         let [x, y, up] = if are_angles & is_plane & (foot.squared > T::zero()) {
             [foot.x, foot.y, sqrt(foot.squared)]
         } else {
             self.check_angles(angles, thetas)?;
             if !is_plane {
-                return Err(ForwardError::Collinear);
+                return Err(if height > self.tolerance() {
+                    ForwardError::Upright
+                } else {
+                    ForwardError::Collinear
+                });
             }
             let (v, miss) = foot.touching(lowers);
             // Half is left for `inverse`.
@@ -167,8 +181,8 @@ impl<T: RealField + Trig> Delta<T> {
             }
             [v.x, v.y, T::zero()]
         };
-        let [along, across, normal] = foot.axes;
-        let local = centres[0] + along * x + across * y + normal * (up * self.side());
+        let higher = if normal.z > T::zero() { up } else { -up };
+        let local = centres[0] + along * x + across * y + normal * (higher * self.side());
         Ok(Point3::from(self.flip(local)))
     }
 

@@ -1,12 +1,9 @@
 //! What an arm's numbers may be, and why a geometry is refused.
 
 use nalgebra::RealField;
-use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
-use crate::range::{
-    half, is_within, largest_angle, largest_length, smallest_length, smallest_ratio,
-};
+use crate::range::{is_within, largest_angle, largest_length, smallest_length, smallest_ratio};
 use crate::rounded::Rounded;
 use crate::{Arm, ArmGeometry};
 
@@ -43,15 +40,6 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         angle: T,
         /// Largest angle allowed, either way.
         largest: T,
-    },
-    /// Two arms stand at one azimuth: their elbows have no order round the axis, and so the
-    /// assembly modes no names.
-    #[error("{first} and {second} stand at the same azimuth")]
-    SameAzimuth {
-        /// One of them.
-        first: Arm,
-        /// The other.
-        second: Arm,
     },
     /// A joint range is empty, not finite, too far from zero or wider than a turn.
     #[error(
@@ -128,33 +116,4 @@ fn check_angles<T: RealField + Copy>(arms: &[ArmGeometry<T>; 3]) -> Result<(), G
         }
     }
     Ok(())
-}
-
-/// 1 where the azimuths of arms 1, 2, 3 go round counter-clockwise seen from above, -1 where they
-/// go round clockwise.
-///
-/// ```text
-/// sin(a2 - a1) + sin(a3 - a2) + sin(a1 - a3) = -4 sin((a2 - a1)/2) sin((a3 - a2)/2) sin((a1 - a3)/2)
-/// ```
-pub(crate) fn order<T: RealField + Trig>(
-    arms: &[ArmGeometry<T>; 3],
-) -> Result<T, GeometryError<T>> {
-    let [a1, a2, a3] = arms.each_ref().map(|arm| arm.azimuth);
-    let [first, second, third] = Arm::ALL;
-    let largest = T::one().max(a1.abs()).max(a2.abs()).max(a3.abs());
-    let rounding = largest * T::default_epsilon() * nalgebra::convert(4.0);
-    let mut order = -T::one();
-    for (pair, apart) in [
-        ((first, second), a2 - a1),
-        ((second, third), a3 - a2),
-        ((third, first), a1 - a3),
-    ] {
-        let (sin, _) = sin_cos(apart * half());
-        if sin.abs() <= rounding {
-            let (first, second) = pair;
-            return Err(GeometryError::SameAzimuth { first, second });
-        }
-        order *= sin.signum();
-    }
-    Ok(order)
 }

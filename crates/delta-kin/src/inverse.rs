@@ -3,7 +3,7 @@
 use core::fmt;
 
 use nalgebra::{Point3, RealField, Vector3};
-use trig_kernels::{Trig, sqrt};
+use trig_kernels::{Trig, atan2_of_length, sqrt};
 
 use crate::arm::{smallest, zip};
 use crate::prepared::{PreparedArm, Triangle, middle, thetas};
@@ -57,6 +57,12 @@ pub enum InverseError<T: RealField + Copy = f64> {
         "the elbows, moved inward by the platform's radius, lie on a line: nothing holds the platform"
     )]
     Collinear,
+    /// The plane of the elbows would be upright: of the two points of these angles neither is the
+    /// lower, so that the point is in no assembly mode.
+    #[error(
+        "the plane of the elbows is upright: neither of the two points of these angles is the lower"
+    )]
+    Upright,
     /// The arms reach the point, but only in the other assembly mode: with these angles
     /// [`forward`](Delta::forward) is elsewhere.
     #[error("{}", Across { assembly_mode: *.assembly_mode, z: *.z })]
@@ -65,7 +71,7 @@ pub enum InverseError<T: RealField + Copy = f64> {
         assembly_mode: AssemblyMode,
         /// The direction of z with which the machine would reach it, where it lies on the far side
         /// of the base plane: most likely the one that was meant. `None`: it lies beyond the
-        /// singular surface.
+        /// singular surface, or where the plane of the elbows is past upright.
         z: Option<ZAxis>,
     },
     /// The point is within reach, but a rod would swivel too far for its ball joints.
@@ -107,18 +113,21 @@ pub(crate) struct Across {
 impl fmt::Display for Across {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mode = self.assembly_mode;
-        let side = match mode {
-            AssemblyMode::Upper => "above",
-            AssemblyMode::Lower => "below",
+        let (side, other) = match mode {
+            AssemblyMode::Upper => ("above", "higher"),
+            AssemblyMode::Lower => ("below", "lower"),
         };
         match self.z {
-            None => f.write_str("the point lies beyond the singular surface")?,
-            Some(_) => write!(f, "the point lies {side} the base plane")?,
-        }
-        write!(f, ", where only the {mode} assembly mode reaches it")?;
-        match self.z {
-            None => Ok(()),
-            Some(z) => write!(f, "; ZAxis::{z:?} would put it where the machine works"),
+            None => write!(
+                f,
+                "the point is the {other} of the two to which its angles bring the platform: \
+                 it is reached in the {mode} assembly mode"
+            ),
+            Some(z) => write!(
+                f,
+                "the point lies {side} the base plane, where only the {mode} assembly mode \
+                 reaches it; ZAxis::{z:?} would put it where the machine works"
+            ),
         }
     }
 }
@@ -140,8 +149,9 @@ impl<T: RealField + Trig> Delta<T> {
     /// Nothing is divided by what can vanish, and the two solutions are never swapped. Where what
     /// is under the root is negative the point is out of reach. Where h < Lb/2 it is instead
     /// (L² - (h - Lb)²) ((h + Lb)² - L²), in which no squares of about equal lengths cancel. What
-    /// [`forward`](Self::forward) made in the same modes is never refused: up to
-    /// [`tolerance`](Self::tolerance) past an edge counts as on it, for limits too.
+    /// [`forward`](Self::forward) made in the same modes is not refused: up to
+    /// [`tolerance`](Self::tolerance) past an edge counts as on it, for limits too. Elbows within
+    /// that of a line, as they are or seen from above, are in no mode.
     ///
     /// Angles read from the machine's zero, in radians. θ is within -π..=π, and where the arm
     /// has a range, at the whole turn that lies in it.
@@ -153,19 +163,27 @@ impl<T: RealField + Trig> Delta<T> {
         let local = self.flip(point.coords);
         let arms = zip(self.prepared().each_ref(), self.working_mode()).map(|(prepared, elbow)| {
             let triangle = prepared.triangle(&local);
-            (prepared, triangle, triangle.heading(elbow))
+            (
+                prepared,
+                triangle,
+                triangle.heading(elbow),
+                triangle.scale(),
+            )
         });
-        let thetas = thetas(arms.map(|(_, _, heading)| heading));
+        let thetas = thetas(
+            arms.map(|(prepared, _, heading, scale)| (heading, prepared.per_heading(scale))),
+        );
         let angles =
             zip(self.prepared().each_ref(), thetas).map(|(prepared, theta)| prepared.angle(theta));
-        let is_admitted = zip(arms, angles).map(|((prepared, triangle, _), angle)| {
+        let is_admitted = zip(arms, angles).map(|((prepared, triangle, ..), angle)| {
             triangle.is_within_reach()
                 && prepared.min <= angle
                 && angle <= prepared.max
                 && triangle.side.abs() <= prepared.max_side
         });
         let [first, second, third] = is_admitted;
-        let rods = arms.map(|(prepared, triangle, heading)| prepared.rod(&triangle, &heading));
+        let rods = arms
+            .map(|(prepared, triangle, heading, scale)| prepared.rod(&triangle, &heading, scale));
         if first && second && third && self.is_assembled(rods) {
             return Ok(Vector3::from(angles));
         }
@@ -193,7 +211,7 @@ impl<T: RealField + Trig> Delta<T> {
             }
         }
         let thetas = zip(arms, self.working_mode())
-            .map(|((_, _, triangle), elbow)| theta(&triangle.at_edge(), elbow));
+            .map(|((_, prepared, triangle), elbow)| theta(prepared, &triangle.at_edge(), elbow));
         self.check_assembly(&local, thetas)?;
         worst(arms.map(|(arm, prepared, triangle)| self.swivelling(arm, prepared, &triangle)))?;
         let fitted = zip(arms, thetas).map(|((arm, prepared, _), theta)| {
@@ -321,9 +339,14 @@ fn triangle<T: RealField + Trig>(prepared: &PreparedArm<T>, local: &Vector3<T>) 
 }
 
 #[inline(never)]
-fn theta<T: RealField + Trig>(triangle: &Triangle<T>, elbow: Elbow) -> T {
+fn theta<T: RealField + Trig>(
+    prepared: &PreparedArm<T>,
+    triangle: &Triangle<T>,
+    elbow: Elbow,
+) -> T {
     let heading = triangle.heading(elbow);
-    atan2(heading.sin, heading.cos)
+    let per_heading = prepared.per_heading(triangle.scale());
+    atan2_of_length(heading.sin, heading.cos, per_heading)
 }
 
 #[inline(never)]

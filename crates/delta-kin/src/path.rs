@@ -5,7 +5,7 @@ mod error;
 mod pick;
 
 use nalgebra::{Point3, Vector3};
-use path_timing::{Corner, Curve, PathPoint, ToolLimits};
+use path_timing::{Corner, Curve, PathPoint, Span, ToolLimits};
 
 pub use error::DeltaPathError;
 
@@ -20,16 +20,16 @@ use crate::{Arm, Delta, Pose, PoseError};
 ///
 /// ```
 /// use delta_kin::{Delta, DeltaPath};
-/// use path_timing::{AxisLimits, Curve, Knot, Table};
+/// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
 ///
 /// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
 /// let line = Curve::line([50.0, 50.0, -300.0], [-50.0, 50.0, -300.0])?;
 /// let path = delta.path(line)?;
 /// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s
+/// let accuracy = Accuracy { min_segments: 8, max_departure: 0.01, max_time_ratio: f64::INFINITY };
 /// let mut knots = [Knot::default(); 100];
-/// let table = Table::plan_within([path], [arm; 3], 8, 0.01, DeltaPath::departure, &mut knots)?;
+/// let table = Table::plan_within([path], [arm; 3], accuracy, DeltaPath::departure, &mut knots)?;
 /// for row in table.rows() {
-///     let row = row?;
 ///     println!("{:?} rad after {} s", row.position, row.duration_s);
 /// }
 /// # Ok::<(), Box<dyn core::error::Error>>(())
@@ -171,5 +171,9 @@ impl path_timing::Path for DeltaPath {
 
     fn corner(&self) -> Corner<[f64; 3]> {
         Corner::Smooth
+    }
+
+    fn check(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
+        self.check_span(span)
     }
 }

@@ -1,7 +1,7 @@
 //! One arm with all that follows from its geometry, in the frame of [Delta thesis].
 
 use nalgebra::{RealField, Vector2, Vector3};
-use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos, sqrt};
+use trig_kernels::{Trig, atan2_of_length, atan2_of_length_lanes, sin_cos, sqrt};
 
 use crate::range::{half, length, max_value, norm, two};
 use crate::{ArmGeometry, Elbow, JointRange, Positive};
@@ -14,6 +14,8 @@ pub(crate) struct PreparedArm<T> {
     /// R - r.
     offset: T,
     pub(crate) upper: T,
+    /// 1 / Lb
+    per_upper: T,
     pub(crate) lower: T,
     zero: T,
     /// 1 where angles grow outward, else -1.
@@ -72,6 +74,7 @@ impl<T: RealField + Trig> PreparedArm<T> {
             sin,
             offset: arm.base - arm.platform,
             upper: arm.upper,
+            per_upper: arm.upper.recip(),
             lower: arm.lower,
             zero: arm.zero,
             turn,
@@ -151,10 +154,15 @@ impl<T: RealField + Trig> PreparedArm<T> {
         )
     }
 
-    /// The rod, from the elbow to the wrist.
+    /// One over the length of a heading with `scale` = 1 / 2 h².
     #[inline(always)]
-    pub(crate) fn rod(&self, triangle: &Triangle<T>, heading: &Heading<T>) -> Vector3<T> {
-        let scale = (triangle.h2 * two()).recip();
+    pub(crate) fn per_heading(&self, scale: T) -> T {
+        self.per_upper * scale
+    }
+
+    /// The rod, from the elbow to the wrist, with `scale` as before.
+    #[inline(always)]
+    pub(crate) fn rod(&self, triangle: &Triangle<T>, heading: &Heading<T>, scale: T) -> Vector3<T> {
         let outward = -triangle.inward - heading.sin * scale;
         let up = triangle.z + heading.cos * scale;
         Vector3::new(
@@ -169,6 +177,11 @@ impl<T: RealField + Trig> PreparedArm<T> {
     #[inline]
     pub(crate) fn centre(&self, (sin, cos): (T, T)) -> Vector3<T> {
         self.in_plane(self.offset + self.upper * sin, -self.upper * cos)
+    }
+
+    /// No centre is farther from the axis of the base.
+    pub(crate) fn farthest_centre(&self) -> T {
+        self.offset.abs() + self.upper
     }
 
     /// The upper arm as a vector.
@@ -215,6 +228,12 @@ impl<T: RealField + Trig> Triangle<T> {
         self.across2 > T::zero()
     }
 
+    /// 1 / 2 h²
+    #[inline(always)]
+    pub(crate) fn scale(&self) -> T {
+        (self.h2 * two()).recip()
+    }
+
     /// The same on the edge, from what may be a little beyond.
     pub(crate) fn at_edge(self) -> Self {
         Self {
@@ -239,12 +258,16 @@ impl<T: RealField + Trig> Triangle<T> {
     }
 }
 
-/// The thetas of three upper arms.
+/// The thetas of three upper arms, each from its heading and one over the heading's length.
 #[inline(always)]
-pub(crate) fn thetas<T: Trig>([first, second, third]: [Heading<T>; 3]) -> [T; 3] {
+pub(crate) fn thetas<T: Trig>([first, second, third]: [(Heading<T>, T); 3]) -> [T; 3] {
     // Two fill the vectors of every processor that has some; three would not be put into them.
-    let [one, two] = atan2_lanes([first.sin, second.sin], [first.cos, second.cos]);
-    [one, two, atan2(third.sin, third.cos)]
+    let [one, two] = atan2_of_length_lanes(
+        [first.0.sin, second.0.sin],
+        [first.0.cos, second.0.cos],
+        [first.1, second.1],
+    );
+    [one, two, atan2_of_length(third.0.sin, third.0.cos, third.1)]
 }
 
 /// The mean of two numbers that may be as large as there are.

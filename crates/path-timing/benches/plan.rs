@@ -5,7 +5,7 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use path_timing::{Ahead, AxisLimits, Knot, LookAhead, PathFn, PathPoint, Slot, Table};
+use path_timing::{AxisLimits, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Table};
 
 /// Segments of the path.
 const SEGMENTS: u32 = 1000;
@@ -49,14 +49,14 @@ fn measure<const N: usize>(criterion: &mut Criterion) {
     let table = Table::plan([&path], limits(None), |_| SEGMENTS, &mut knots);
     let table = table.expect("plan is good");
     group.bench_function("rows", |bencher| {
-        bencher.iter(|| table.rows().filter(|row| black_box(row).is_ok()).count());
+        bencher.iter(|| table.rows().map(black_box).count());
     });
-    let mut ahead = vec![Ahead::default(); 1001];
+    let mut ahead = vec![FeedCeiling::default(); 1001];
     group.bench_function("run", |bencher| {
         bencher.iter(|| {
-            let run = table.run(1.0, black_box(&mut ahead));
+            let run = table.playback(1.0, black_box(&mut ahead));
             let run = run.expect("memory is enough");
-            run.filter(|row| black_box(row).is_ok()).count()
+            run.map(black_box).count()
         });
     });
 }
@@ -77,7 +77,7 @@ fn measure_stream<const N: usize>(criterion: &mut Criterion) {
     };
     let mut group = criterion.benchmark_group(format!("{N} axes, {SEGMENTS} segments"));
     group.bench_function("look ahead, 64 slots", |bencher| {
-        let mut window = [Slot::default(); 64];
+        let mut window = [Knot::default(); 64];
         bencher.iter(|| {
             let paths = [swing::<N> as fn(f64) -> _, back].map(|point| PathFn::new(4.0, point));
             let segments = |_: &_| Ok(SEGMENTS / 2);

@@ -3,7 +3,7 @@
 use core::convert::Infallible;
 use core::error::Error;
 
-use path_timing::{Ahead, AxisLimits, Knot, PathFn, PathPoint, Row, Table};
+use path_timing::{AxisLimits, FeedCeiling, Knot, PathFn, PathPoint, Row, Table};
 
 /// The line's length and its distance from the arm, in mm.
 const LENGTH: f64 = 200.0;
@@ -43,18 +43,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("time_s,angle_rad,reach_mm,angle_rad_s,reach_mm_s");
 
     // Half of the rows, a hold, and the rest.
-    let mut ahead = [Ahead::default(); 41];
-    let mut run = table.run(1.0, &mut ahead)?;
+    let mut ahead = [FeedCeiling::default(); 41];
+    let mut run = table.playback(1.0, &mut ahead)?;
     for row in run.by_ref().take(20) {
-        print(&row?);
+        print(&row);
     }
     run.stop();
     for row in run.by_ref() {
-        print(&row?);
+        print(&row);
     }
     run.set_feed(1.0)?;
     for row in run {
-        print(&row?);
+        print(&row);
     }
     Ok(())
 }

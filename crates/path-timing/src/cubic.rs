@@ -1,7 +1,6 @@
 //! What one axis runs from a row to the next.
 
 use crate::number::sqrt;
-use crate::segment::NOISE;
 use crate::{Axes, Row};
 
 /// One axis between two rows: the cubic with given positions and velocities at its ends.
@@ -53,13 +52,6 @@ impl Cubic {
             (six_means - 4.0 * self.v0 - 2.0 * self.v1) / self.duration_s,
             (2.0 * self.v0 + 4.0 * self.v1 - six_means) / self.duration_s,
         ]
-    }
-
-    /// What both accelerations may be off by where they are computed anew from rounded speeds
-    /// and times.
-    pub(crate) fn noise(&self) -> f64 {
-        let mean = (self.q1 - self.q0).abs() / self.duration_s;
-        NOISE * (mean + self.v0.abs() + self.v1.abs()) / self.duration_s
     }
 
     /// The largest speed: at an end, or where the acceleration is zero.

@@ -7,6 +7,7 @@ mod rounded;
 mod vector;
 
 use core::convert::Infallible;
+use core::f64::consts::TAU;
 
 pub use error::CurveError;
 pub use motion::{CurveMotion, TurnMotion};
@@ -22,13 +23,14 @@ use vector::{all_finite, along, difference, dot, norm, scaled};
 /// next without a stop where their directions agree ([`Corner::Smooth`]).
 ///
 /// ```
-/// use path_timing::{AxisLimits, Curve, Knot, Table};
+/// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
 ///
 /// let quarter = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], core::f64::consts::FRAC_PI_2)?;
 /// let axis = AxisLimits { speed: 200.0, acceleration: 2000.0, jerk: None }; // mm, s
 /// let mut knots = [Knot::default(); 100];
 /// // No cubic between two rows leaves the arc by more than a micrometre.
-/// let table = Table::plan_within([quarter], [axis; 2], 2, 1e-3, Curve::departure, &mut knots)?;
+/// let accuracy = Accuracy { min_segments: 2, max_departure: 1e-3, max_time_ratio: f64::INFINITY };
+/// let table = Table::plan_within([quarter], [axis; 2], accuracy, Curve::departure, &mut knots)?;
 /// # assert!(table.len() > 10);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -79,6 +81,9 @@ pub(crate) type Jet<const D: usize> = [[f64; D]; 6];
 /// Most that an arc turns by, in radians: some 16 times round.
 const MAX_ANGLE: f64 = 100.0;
 
+/// Relative rounding of an angle that is whole turns: the arc ends where it starts.
+const WHOLE: f64 = 4.0 * f64::EPSILON;
+
 /// Least length, as a fraction of the coordinates, in which rounding leaves a direction 6 digits.
 const LEAST_LENGTH: f64 = 1e-10;
 
@@ -102,7 +107,7 @@ impl<const D: usize> Curve<D> {
 
     /// The arc of a circle by `angle` > 0 radians from `start` round `centre`, leaving the start in
     /// `direction`, of which only the part perpendicular to the radius counts. 2π and more go round, up
-    /// to 100 rad.
+    /// to 100 rad; whole turns end at the start, to the last bit.
     ///
     /// # Errors
     /// [`CurveError::NotFinite`], [`CurveError::NoLength`], [`CurveError::Angle`],
@@ -145,7 +150,10 @@ impl<const D: usize> Curve<D> {
             ends: [start, start],
             tool: None,
         };
-        curve.ends = [start, curve.jet(angle)[0]];
+        let turns = libm::round(angle / TAU);
+        if (angle - turns * TAU).abs() > angle * WHOLE {
+            curve.ends = [start, curve.jet(angle)[0]];
+        }
         curve.checked()
     }
 

@@ -1,36 +1,40 @@
-//! How far segments can depart from a path at any speeds, and the number of them that keeps a bound.
+//! How far the tool departs from its path, and the number of segments that keeps a bound of it.
 
+use crate::knots::{Laying, fraction, span, span_in_a_second};
 use crate::leg::Leg;
-use crate::number::{larger_or_nan, sqrt};
-use crate::planner::{MAX_SEGMENTS, MIN_SEGMENTS};
-use crate::profile::fraction;
-use crate::{Path, PlanError, Row, Span};
+use crate::number::{cube_root, larger_or_nan};
+use crate::passes::segment_s;
+use crate::planner::{Place, bounded, knots_of, time};
+use crate::reciprocals::Reciprocals;
+use crate::segment::STEEPEST;
+use crate::{Axes, Knot, Path, PlanError, Span};
 
 /// Segments beyond which rounding is all that is left of a departure.
-pub(crate) const FINEST: u32 = 1 << 20;
+const FINEST: u32 = 1 << 20;
 
-/// Path speeds at both ends of a segment, times its duration over its length: from rest, to rest
-/// and between, with the speed linear in time.
-const LINEAR: [[f64; 2]; 5] = [[0.0, 2.0], [0.5, 1.5], [1.0, 1.0], [1.5, 0.5], [2.0, 0.0]];
+/// Ratios w₀ T / Δs of a segment that may begin and end at rest: with T = 2Δs / (w₀ + w₁) they
+/// are 0..=2.
+const ANY: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
 
-/// From rest and to rest without a step of the acceleration; also where a table whose speed changes
-/// threefold on the segment is held or resumed.
-const SMOOTH: [[f64; 2]; 2] = [[0.0, 3.0], [3.0, 0.0]];
+/// The same where the speed changes at most by the growth of a segment between two knots at which the
+/// machine moves.
+const MOVING: [f64; 3] = [1.0 - STEEPEST, 1.0, 1.0 + STEEPEST];
 
-/// From rest to rest.
-const BOTH_AT_REST: [[f64; 2]; 1] = [[0.0; 2]];
-
-/// Which speeds a bound is looked at for.
+/// What a departure is bounded for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Speeds {
-    /// Those of a motion that does not stop on the path.
+    /// Any speeds, at rest at the ends alone; those of the plan where they are known.
     Passing,
-    /// The same with a limit of jerk.
-    PassingSmoothly,
-    /// Those of a stream with any feeds, holds and resumes: linear in time on each segment.
-    Stream,
-    /// Those of a table that runs at any feeds, holds and resumes.
-    Run,
+    /// Any speeds, with holds at any knot.
+    Any,
+}
+
+/// A departure that segments have to keep.
+pub(crate) struct Within<D> {
+    pub(crate) min_segments: u32,
+    pub(crate) allowed: f64,
+    pub(crate) speeds: Speeds,
+    pub(crate) departure: D,
 }
 
 /// The number of segments of a path that keeps a departure within `allowed` at any speeds, with any
@@ -49,33 +53,34 @@ pub fn segments_within<P: Path>(
     departure: impl Fn(&P, &Span<P::Axes>) -> f64,
 ) -> Result<u32, PlanError<P::Error>> {
     check_allowed(allowed)?;
-    if at_least > MAX_SEGMENTS {
-        let max = MAX_SEGMENTS;
-        return Err(PlanError::TooFine { leg: 0, max });
+    let leg = Leg::new(0, path)?;
+    let at_least = bounded(0, at_least)?;
+    let bound_of = |segments, rests| {
+        let mut laying = Laying::new(leg, leg.point(0.0)?);
+        let mut bound = Bound::new(allowed);
+        let mut from = Knot::start(leg.point(0.0)?);
+        for index in 1..=segments {
+            let u = f64::from(index) / f64::from(segments);
+            let to = laying.knot(leg.length() * fraction(u, rests))?;
+            bound.add_any([&from, &to], index == segments, |span| {
+                departure(path, span)
+            });
+            if bound.is_far() {
+                break;
+            }
+            from = to;
+        }
+        Ok(bound.worst)
+    };
+    let mut most = at_least;
+    for rests in [[true, true], [false, false], [true, false], [false, true]] {
+        let found = search([most, FINEST], allowed, |segments| {
+            bound_of(segments, rests)
+        })?;
+        let (leg, max) = (0, FINEST);
+        most = found.map_err(|_| PlanError::TooFine { leg, max })?;
     }
-    let leg = Leg::last(0, path);
-    leg.check()?;
-    let departure = |path: &&P, span: &Span<P::Axes>| departure(path, span);
-    let speeds = Speeds::Stream;
-    let bound_of = |segments| {
-        let ends = [[false, false], [false, true], [true, false], [true, true]];
-        ends.into_iter().try_fold(0.0, |worst, rests| {
-            let bound =
-                bound_of_parameters(&leg, spread(&leg, segments, rests), speeds, &departure)?;
-            Ok(larger_or_nan(worst, bound))
-        })
-    };
-    let too_coarse = |_, _| PlanError::TooFine {
-        leg: 0,
-        max: FINEST,
-    };
-    fewest(
-        at_least.max(MIN_SEGMENTS),
-        FINEST,
-        allowed,
-        bound_of,
-        too_coarse,
-    )
+    Ok(most)
 }
 
 /// Refuses a departure that no segment can keep.
@@ -86,96 +91,231 @@ pub(crate) fn check_allowed<E>(allowed: f64) -> Result<(), PlanError<E>> {
     Err(PlanError::Allowed { allowed })
 }
 
-/// The parameters of a leg's knots.
-pub(crate) fn spread<P: Path>(
-    leg: &Leg<P>,
-    segments: u32,
-    rests: [bool; 2],
-) -> impl Iterator<Item = f64> + use<P> {
-    let length = leg.length();
-    let at = move |index| length * fraction(f64::from(index) / f64::from(segments), rests);
-    (0..=segments).map(at)
-}
-
-/// The largest departure between knots at any speeds of their segments.
-pub(crate) fn bound_of_parameters<P: Path>(
-    leg: &Leg<P>,
-    parameters: impl Iterator<Item = f64>,
-    speeds: Speeds,
-    departure: &impl Fn(&P, &Span<P::Axes>) -> f64,
-) -> Result<f64, PlanError<P::Error>> {
-    let mut parameters = parameters.peekable();
-    let mut worst = 0.0;
-    let Some(mut from) = parameters.next() else {
-        return Ok(worst);
-    };
-    let mut start = leg.checked_point(from)?;
-    while let Some(to) = parameters.next() {
-        let end = leg.checked_point(to)?;
-        let mut check = |ratios: &[[f64; 2]]| {
-            for [w0, w1] in ratios {
-                // In a second.
-                let [w0, w1] = [w0 * (to - from), w1 * (to - from)];
-                let span = Span {
-                    s: [from, to],
-                    rows: [Row::new(&start, w0, 0.0, 0.0), Row::new(&end, w1, 1.0, 1.0)],
-                };
-                worst = larger_or_nan(worst, departure(leg.path(), &span));
-            }
-        };
-        check(&LINEAR);
-        if matches!(speeds, Speeds::PassingSmoothly | Speeds::Run) {
-            check(&SMOOTH);
+impl<D> Within<D> {
+    /// Lays the knots of a leg of a table, doubled in number some times.
+    pub(crate) fn lay<P: Path + Clone>(
+        &self,
+        place: &Place<'_, P>,
+        limits: &Reciprocals<P::Axes>,
+        doublings: u32,
+        knots: &mut [Knot<P::Axes>],
+    ) -> Result<u32, PlanError<P::Error>>
+    where
+        D: Fn(&P, &Span<P::Axes>) -> f64,
+    {
+        let number = place.leg.number;
+        let at_least = bounded(number, self.min_segments)?;
+        let segments = self.fewest(place, limits, at_least, knots)?;
+        if doublings == 0 {
+            return Ok(segments);
         }
-        if matches!(speeds, Speeds::Stream | Speeds::Run) {
-            // Held at the last knot before a stop.
-            if parameters.peek().is_none() {
-                check(&BOTH_AT_REST);
-            }
-        }
-        (from, start) = (to, end);
+        let finer = bounded(number, segments.saturating_mul(1 << doublings.min(24)))?;
+        place.lay(limits, finer, knots)?;
+        Ok(finer)
     }
-    Ok(worst)
+
+    /// Lays a leg with a number of segments, at most a sixteenth above the fewest found, that keeps
+    /// the allowed departure. A leg alone is planned, and the departure counts at its speeds.
+    fn fewest<P: Path + Clone>(
+        &self,
+        place: &Place<'_, P>,
+        limits: &Reciprocals<P::Axes>,
+        at_least: u32,
+        knots: &mut [Knot<P::Axes>],
+    ) -> Result<u32, PlanError<P::Error>>
+    where
+        D: Fn(&P, &Span<P::Axes>) -> f64,
+    {
+        let room = u32::try_from(knots.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let room = room.min(FINEST);
+        if room < at_least {
+            return Err(too_coarse(place, at_least, room));
+        }
+        let mut laid = 0;
+        let trial = |segments| {
+            laid = segments;
+            self.trial(place, limits, segments, knots)
+        };
+        let found = search([at_least, room], self.allowed, trial)?;
+        let segments = found.map_err(|needed| too_coarse(place, needed, room))?;
+        if laid != segments {
+            self.trial(place, limits, segments, knots)?;
+        }
+        Ok(segments)
+    }
+
+    /// The departure with a number of segments; what is far beyond the allowed one is not looked at
+    /// to its end.
+    fn trial<P: Path + Clone>(
+        &self,
+        place: &Place<'_, P>,
+        limits: &Reciprocals<P::Axes>,
+        segments: u32,
+        knots: &mut [Knot<P::Axes>],
+    ) -> Result<f64, PlanError<P::Error>>
+    where
+        D: Fn(&P, &Span<P::Axes>) -> f64,
+    {
+        match place.lay(limits, segments, knots) {
+            Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
+            laid => laid?,
+        }
+        let (knots, _) = knots.split_at_mut(knots_of(segments).min(knots.len()));
+        let is_planned = self.speeds == Speeds::Passing && place.is_alone;
+        if let (true, Some(last)) = (is_planned, knots.last_mut()) {
+            last.cap = 0.0;
+            time::<_, P::Error>(limits, knots)?;
+        }
+        let path = place.leg.path();
+        let last = knots.len().saturating_sub(2);
+        let mut bound = Bound::new(self.allowed);
+        for (index, pair) in knots.windows(2).enumerate() {
+            let [from, to] = pair else { continue };
+            let departure = |span: &Span<P::Axes>| (self.departure)(path, span);
+            let is_inside = index > 0 && index < last;
+            match self.speeds {
+                _ if is_planned => {
+                    let speeds = [from.speed, to.speed];
+                    bound.add(departure(&span([from, to], speeds, segment_s(from, to))));
+                }
+                Speeds::Passing if is_inside && !limits.has_jerk() => {
+                    bound.add_moving([from, to], departure);
+                }
+                Speeds::Passing | Speeds::Any => {
+                    bound.add_any([from, to], index == last, departure);
+                }
+            }
+            if bound.is_far() {
+                break;
+            }
+        }
+        Ok(bound.worst)
+    }
 }
 
-/// A number of segments whose bound is within `allowed`, while that of one fewer is not: by doubling
-/// up to `room`, and bisection. `too_coarse` is the error for a bound that is too large with the
-/// number that there is room for.
-pub(crate) fn fewest<E>(
-    least: u32,
-    room: u32,
+/// The largest departure of some segments.
+struct Bound {
+    worst: f64,
+    far: f64,
+}
+
+impl Bound {
+    const fn new(allowed: f64) -> Self {
+        Self {
+            worst: 0.0,
+            far: allowed * FAR,
+        }
+    }
+
+    fn add(&mut self, departure: f64) {
+        self.worst = larger_or_nan(self.worst, departure);
+    }
+
+    /// At the speeds of a segment that neither begins nor ends at rest.
+    fn add_moving<A: Axes>(&mut self, knots: [&Knot<A>; 2], departure: impl Fn(&Span<A>) -> f64) {
+        for start in MOVING {
+            self.add(departure(&span_in_a_second(knots, start)));
+        }
+    }
+
+    /// At any speeds; on the last segment before a stop, where it may be held at the knot before, also
+    /// from rest to rest.
+    fn add_any<A: Axes>(
+        &mut self,
+        knots: [&Knot<A>; 2],
+        is_last: bool,
+        departure: impl Fn(&Span<A>) -> f64,
+    ) {
+        for start in ANY {
+            self.add(departure(&span_in_a_second(knots, start)));
+        }
+        if is_last {
+            self.add(departure(&span(knots, [0.0; 2], 1.0)));
+        }
+    }
+
+    /// Whether it is so far beyond what is allowed that the rest need not be looked at.
+    fn is_far(&self) -> bool {
+        // Written so that NaN is, too.
+        let is_near = self.worst <= self.far;
+        !is_near
+    }
+}
+
+/// A number of segments within a range, at most a sixteenth above the fewest found, whose departure is
+/// within `allowed`; an estimate of what would be enough where the most are too few.
+fn search<E>(
+    [least, most]: [u32; 2],
     allowed: f64,
     mut bound_of: impl FnMut(u32) -> Result<f64, PlanError<E>>,
-    too_coarse: impl Fn(f64, u32) -> PlanError<E>,
-) -> Result<u32, PlanError<E>> {
-    let (mut too_few, mut enough) = (least.saturating_sub(1), least);
-    let mut bound = bound_of(enough)?;
-    // Written so that NaN is too large.
-    while !is_within(bound, allowed) {
-        if enough >= room || enough >= FINEST {
-            return Err(too_coarse(bound, enough));
-        }
-        too_few = enough;
-        enough = enough.saturating_mul(2).min(room).min(FINEST);
-        bound = bound_of(enough)?;
-    }
-    while enough.saturating_sub(too_few) > 1 {
-        let middle = too_few.midpoint(enough);
-        if is_within(bound_of(middle)?, allowed) {
-            enough = middle;
+) -> Result<Result<u32, u32>, PlanError<E>> {
+    let (mut too_few, mut enough, mut segments) = (least.saturating_sub(1), None, least);
+    loop {
+        let excess = bound_of(segments)? / allowed;
+        // Written so that NaN is too much.
+        if excess <= 1.0 {
+            enough = Some(segments);
         } else {
-            too_few = middle;
+            too_few = segments;
         }
+        let guess = next_guess(segments, excess);
+        segments = match enough {
+            Some(enough) => {
+                let gap = enough.saturating_sub(too_few);
+                if gap <= enough.div_euclid(CLOSE).max(1) {
+                    return Ok(Ok(enough));
+                }
+                // A quarter of the way where a guess would end next to nothing.
+                let step = gap.div_ceil(4);
+                guess
+                    .max(too_few.saturating_add(step))
+                    .min(enough.saturating_sub(step))
+            }
+            None if segments >= most => return Ok(Err(guess)),
+            None => guess.min(most),
+        };
     }
-    Ok(enough)
 }
 
-fn is_within(bound: f64, allowed: f64) -> bool {
-    bound <= allowed
+/// The part of the segments that more than the fewest may be.
+const CLOSE: u32 = 16;
+
+/// What is beyond this many times the allowed departure is so by its first segments.
+const FAR: f64 = 64.0;
+
+/// A number of segments that may be enough where `segments` depart by `excess` times what is allowed:
+/// the departure shrinks with the second to fourth power of the number.
+fn next_guess(segments: u32, excess: f64) -> u32 {
+    let excess = if excess.is_finite() {
+        excess.min(FAR)
+    } else {
+        FAR
+    };
+    let guess = f64::from(segments) * cube_root(excess) * 1.02;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive; a cast saturates"
+    )]
+    let guess = guess as u32;
+    if excess > 1.0 {
+        guess.max(segments.saturating_add(1))
+    } else {
+        guess
+    }
 }
 
-/// An estimate of the number that is enough where `segments` depart by `excess` times what is
-/// allowed: the departure shrinks with the square of the number; a tenth more.
-pub(crate) fn estimate(segments: u32, excess: f64) -> f64 {
-    f64::from(segments) * sqrt(excess) * 1.1
+/// Why no number of segments that there is room for keeps the departure.
+fn too_coarse<P: Path>(place: &Place<'_, P>, needed: u32, room: u32) -> PlanError<P::Error> {
+    if room >= FINEST {
+        let (leg, max) = (place.leg.number, FINEST);
+        return PlanError::TooFine { leg, max };
+    }
+    PlanError::Memory {
+        // Room for what an estimate may be off by.
+        needed: place
+            .used
+            .saturating_add(knots_of(needed.saturating_add(needed / 4))),
+        available: place.used.saturating_add(knots_of(room)),
+    }
 }

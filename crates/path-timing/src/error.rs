@@ -84,6 +84,15 @@ pub enum PlanError<E> {
         /// How far apart.
         by: f64,
     },
+    /// A segment is so coarse that the path between its ends cannot be known from their slopes: more
+    /// segments are needed.
+    #[error("leg {leg}, at {}: the segment is too coarse for the path; use more segments", short(.s))]
+    TooCoarse {
+        /// The leg, from 0.
+        leg: usize,
+        /// The parameter at which the segment begins.
+        s: f64,
+    },
     /// A leg would have more segments than can be told apart.
     #[error("leg {leg} would be cut into more than {max} segments")]
     TooFine {
@@ -105,6 +114,12 @@ pub enum PlanError<E> {
     Allowed {
         /// The departure given.
         allowed: f64,
+    },
+    /// A largest ratio of times that is not above 1.
+    #[error("a largest time ratio of {} is not above 1", short(.max_time_ratio))]
+    TimeRatio {
+        /// The ratio given.
+        max_time_ratio: f64,
     },
     /// Two knots of a leg cannot be told apart: so near are they, or so late, that `f64` has the
     /// same numbers for both.
@@ -145,12 +160,14 @@ impl<E> PlanError<E> {
             | Self::NotFinite { leg, .. }
             | Self::Length { leg, .. }
             | Self::Gap { leg, .. }
+            | Self::TooCoarse { leg, .. }
             | Self::TooFine { leg, .. }
             | Self::Indistinct { leg, .. } => *leg = number,
             Self::Limit { .. }
             | Self::Jerk
             | Self::Memory { .. }
             | Self::Allowed { .. }
+            | Self::TimeRatio { .. }
             | Self::SpeedScale { .. }
             | Self::Feed { .. } => {}
         }

@@ -1,11 +1,9 @@
-//! One path among several, and its joint to the next.
+//! A leg: one path among several, checked before it is planned.
 
-use crate::joint::Joint;
 use crate::number::{LARGEST, SMALLEST, range};
-use crate::reciprocals::Reciprocals;
 use crate::{Axes, Corner, Path, PathPoint, PlanError, ToolLimits};
 
-/// A leg: a path, which of all it is, and how the next one follows.
+/// A path, and which of all it is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leg<P: Path> {
     /// From 0.
@@ -13,50 +11,19 @@ pub(crate) struct Leg<P: Path> {
     path: P,
     length: f64,
     tool: Option<ToolLimits>,
-    joint: Joint<P::Axes>,
 }
 
 impl<P: Path> Leg<P> {
-    /// The path with no other after it.
-    pub(crate) fn last(number: usize, path: P) -> Self {
-        Self {
+    /// The path, whose length, tool limits and corner have numbers that the crate computes with.
+    pub(crate) fn new(number: usize, path: P) -> Result<Self, PlanError<P::Error>> {
+        let leg = Self {
             number,
             length: path.length(),
             tool: path.tool(),
             path,
-            joint: Joint::Stop,
-        }
-    }
-
-    /// The path with its joint to the `next`.
-    pub(crate) fn new(
-        number: usize,
-        path: P,
-        next: Option<&P>,
-        limits: &Reciprocals<P::Axes>,
-    ) -> Result<Self, P::Error> {
-        let mut leg = Self::last(number, path);
-        if let (corner @ (Corner::Smooth | Corner::Jump(_)), Some(next)) = (leg.path.corner(), next)
-        {
-            let (before, after) = (leg.path.point(leg.length)?, next.point(0.0)?);
-            leg.joint = Joint::new(limits, &corner, &before.slope, &after.slope);
-        }
+        };
+        leg.check()?;
         Ok(leg)
-    }
-
-    /// The same, refused by name where the path refuses one of the two ends at its joint.
-    pub(crate) fn named(
-        number: usize,
-        path: P,
-        next: Option<&P>,
-        limits: &Reciprocals<P::Axes>,
-    ) -> Result<Self, PlanError<P::Error>> {
-        let s = path.length();
-        Self::new(number, path, next, limits).map_err(|reason| PlanError::Path {
-            leg: number,
-            s,
-            reason,
-        })
     }
 
     pub(crate) const fn path(&self) -> &P {
@@ -71,13 +38,7 @@ impl<P: Path> Leg<P> {
         self.tool.as_ref()
     }
 
-    pub(crate) const fn joint(&self) -> &Joint<P::Axes> {
-        &self.joint
-    }
-
-    /// Whether its length, the limits of its tool and its corner have numbers that the crate
-    /// computes with.
-    pub(crate) fn check(&self) -> Result<(), PlanError<P::Error>> {
+    fn check(&self) -> Result<(), PlanError<P::Error>> {
         let (leg, length) = (self.number, self.length);
         if !range().contains(&length) {
             return Err(PlanError::Length { leg, length });
@@ -102,25 +63,28 @@ impl<P: Path> Leg<P> {
         }
     }
 
-    /// Positions and slopes at the parameter `s`; at the end those of the joint.
-    pub(crate) fn point(&self, s: f64) -> Result<PathPoint<P::Axes>, P::Error> {
-        let mut point = self.path.point(s)?;
-        if let (Joint::Smooth(slope), true) = (&self.joint, s >= self.length) {
-            point.slope = *slope;
-        }
-        Ok(point)
-    }
-
-    /// The same, refused by name where the machine cannot be there.
-    pub(crate) fn checked_point(&self, s: f64) -> Result<PathPoint<P::Axes>, PlanError<P::Error>> {
-        let leg = self.number;
+    /// Positions and slopes at the parameter `s`, refused by name where the machine cannot be there.
+    pub(crate) fn point(&self, s: f64) -> Result<PathPoint<P::Axes>, PlanError<P::Error>> {
         let point = self
+            .path
             .point(s)
-            .map_err(|reason| PlanError::Path { leg, s, reason })?;
+            .map_err(|reason| self.refused(s, reason))?;
         let mut numbers = (point.position.as_slice().iter()).chain(point.slope.as_slice());
         if numbers.all(|number| number.is_finite()) {
             return Ok(point);
         }
-        Err(PlanError::NotFinite { leg, s })
+        Err(PlanError::NotFinite {
+            leg: self.number,
+            s,
+        })
+    }
+
+    /// What the path said of a place, with the number of the leg.
+    pub(crate) const fn refused(&self, s: f64, reason: P::Error) -> PlanError<P::Error> {
+        PlanError::Path {
+            leg: self.number,
+            s,
+            reason,
+        }
     }
 }

@@ -4,18 +4,17 @@ mod window;
 
 use core::fmt::{self, Debug};
 
-use crate::joint::Joint;
+use crate::junction::Junction;
+use crate::knots::{LARGEST_GAP, Laying, fraction, is_resolved};
 use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST, range};
-use crate::planner::{MAX_SEGMENTS, MIN_SEGMENTS, check_joint};
-use crate::profile::fraction;
+use crate::planner::{MIN_SEGMENTS, bounded, check_gap, junction_to};
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, AxisLimits, Corner, FeedError, Path, PlanError, Row};
-pub use window::Slot;
+use crate::{Axes, AxisLimits, Corner, FeedError, Knot, Path, PlanError, Row};
 use window::{Feed, Window};
 
-/// Fewest slots of a window: a knot between two at rest.
-const MIN_SLOTS: usize = 3;
+/// Smallest window: a knot between two at rest, and one behind a jump.
+const MIN_KNOTS: usize = 4;
 
 /// The rows along a stream of paths that need not end, planned in a window of the caller's memory.
 ///
@@ -31,13 +30,13 @@ const MIN_SLOTS: usize = 3;
 /// the last one and goes on when there is one.
 ///
 /// ```
-/// use path_timing::{AxisLimits, Curve, LookAhead, Slot};
+/// use path_timing::{AxisLimits, Curve, Knot, LookAhead};
 ///
 /// // Sides of a staircase that never ends, in mm.
 /// let point = |n: u32| [f64::from(n / 2) * 20.0, f64::from(n.div_ceil(2)) * 20.0];
 /// let sides = (0..).map_while(|n| Curve::line(point(n), point(n + 1)).ok());
 /// let axis = AxisLimits { speed: 200.0, acceleration: 2000.0, jerk: None };
-/// let mut window = [Slot::default(); 32];
+/// let mut window = [Knot::default(); 32];
 /// let mut motion = LookAhead::new(sides, [axis; 2], |_| Ok(8), &mut window)?;
 /// for row in motion.by_ref().take(1000) {
 ///     let row = row?; // `row.duration_s` after the row before: `row.position`, `row.velocity`
@@ -49,15 +48,17 @@ const MIN_SLOTS: usize = 3;
 /// ```
 pub struct LookAhead<'w, P: Path, I, F> {
     paths: I,
+    /// The path after the one that enters the window.
+    following: Option<P>,
     segments: F,
-    /// The path whose knots enter the window, and how they are spread on it.
+    /// The path whose knots enter the window.
     entering: Option<Entering<P>>,
     /// Paths that have begun.
     count: usize,
     /// Whether a path was refused: the stream ends there.
     is_refused: bool,
-    /// The number and the corner of the path before, with its end in the window.
-    joint: Option<(usize, Corner<P::Axes>)>,
+    /// The corner of the path before, with its end in the window.
+    corner: Option<Corner<P::Axes>>,
     window: Window<'w, P::Axes>,
     limits: Reciprocals<P::Axes>,
     max: f64,
@@ -65,19 +66,17 @@ pub struct LookAhead<'w, P: Path, I, F> {
     /// Path speed at the row handed out last; none before the first.
     speed: Option<f64>,
     time_s: f64,
-    /// The second row of a corner where velocities jump.
-    jump: Option<Row<P::Axes>>,
+    /// The path on which the row handed out last lies.
+    leg: usize,
 }
 
 /// A path on its way into the window.
-#[derive(Debug, Clone)]
 struct Entering<P: Path> {
-    leg: Leg<P>,
+    laying: Laying<P>,
     rests: [bool; 2],
     segments: u32,
-    /// Of the next knot.
+    /// Of the last knot.
     index: u32,
-    s: f64,
 }
 
 impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>>
@@ -88,37 +87,38 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Jerk`] where an axis has a limit of jerk, which takes a
-    /// [`Table`](crate::Table); [`PlanError::Memory`] for a window of fewer than 3 slots.
+    /// [`Table`](crate::Table); [`PlanError::Memory`] for a window of fewer than 4 knots.
     pub fn new(
         paths: impl IntoIterator<IntoIter = I>,
         limits: <P::Axes as Axes>::Of<AxisLimits>,
         segments: F,
-        window: &'w mut [Slot<P::Axes>],
+        window: &'w mut [Knot<P::Axes>],
     ) -> Result<Self, PlanError<P::Error>> {
         let limits = Reciprocals::checked(&limits)?;
         if limits.has_jerk() {
             return Err(PlanError::Jerk);
         }
-        if window.len() < MIN_SLOTS {
+        if window.len() < MIN_KNOTS {
             return Err(PlanError::Memory {
-                needed: MIN_SLOTS,
+                needed: MIN_KNOTS,
                 available: window.len(),
             });
         }
         Ok(Self {
             paths: paths.into_iter(),
+            following: None,
             segments,
             entering: None,
             count: 0,
             is_refused: false,
-            joint: None,
+            corner: None,
             window: Window::new(window),
             limits,
             max: 1.0,
             wanted: 1.0,
             speed: None,
             time_s: 0.0,
-            jump: None,
+            leg: 0,
         })
     }
 
@@ -174,9 +174,6 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// comes a window before the machine is there: further calls hand out the rows to a rest at the
     /// last knot before that point.
     pub fn next_row(&mut self) -> Result<Option<Row<P::Axes>>, PlanError<P::Error>> {
-        if let Some(row) = self.jump.take() {
-            return Ok(Some(row));
-        }
         let filled = self.fill();
         let feed = Feed {
             max: self.max,
@@ -192,18 +189,20 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         };
         self.speed = Some(step.speed);
         self.time_s += step.duration_s;
-        let row = Row::new(&step.point, step.speed, self.time_s, step.duration_s);
-        self.jump = step
-            .jump
-            .map(|slope| row.with_jump(slope.scaled(step.speed)));
-        Ok(Some(row))
+        self.leg = self.leg.saturating_add(usize::from(step.begins_leg));
+        Ok(Some(Row {
+            time_s: self.time_s,
+            duration_s: step.duration_s,
+            leg: self.leg,
+            ..step.knot.row(step.speed)
+        }))
     }
 
     /// The first row, at rest.
     fn first_row(&mut self) -> Option<Row<P::Axes>> {
         let first = self.window.first()?;
         self.speed = Some(0.0);
-        Some(Row::new(first, 0.0, 0.0, 0.0))
+        Some(first.row(0.0))
     }
 
     /// Fills the window when half of it is free.
@@ -220,22 +219,23 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
 
     fn push_knots(&mut self) -> Result<(), PlanError<P::Error>> {
         while self.window.has_room() {
-            if self.entering.is_none() {
-                let Some(path) = self.paths.next() else {
+            let Some(entering) = &mut self.entering else {
+                let Some(path) = self.following.take().or_else(|| self.paths.next()) else {
                     return Ok(());
                 };
+                self.following = self.paths.next();
                 self.entering = Some(self.begin(path)?);
-            }
-            let Some(entering) = &mut self.entering else {
-                return Ok(());
+                continue;
             };
-            let s = entering.next_s();
-            let point = entering.leg.checked_point(s)?;
-            let tool = entering.leg.tool().copied();
-            self.window.push(s - entering.s, tool, point);
-            entering.s = s;
-            if entering.index > entering.segments {
-                self.joint = Some((entering.leg.number, entering.leg.path().corner()));
+            let from = entering.laying.last;
+            let to = entering.next_knot()?;
+            if !is_resolved(&self.limits, &from, &to, LARGEST_GAP) {
+                let (leg, s) = (entering.laying.leg.number, from.s);
+                return Err(PlanError::TooCoarse { leg, s });
+            }
+            self.window.push(to);
+            if to.ends_leg {
+                self.corner = Some(entering.laying.leg.path().corner());
                 self.entering = None;
             }
         }
@@ -247,42 +247,47 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         let number = self.count;
         self.count = number.wrapping_add(1);
         let segments = (self.segments)(&path).map_err(|error| error.of_leg(number))?;
-        if segments > MAX_SEGMENTS {
-            let max = MAX_SEGMENTS;
-            return Err(PlanError::TooFine { leg: number, max });
+        let segments = bounded(number, segments)?;
+        let leg = Leg::new(number, path)?;
+        let start = leg.point(0.0)?;
+        let mut starts_at_rest = true;
+        if let (Some(corner), Some(end)) = (self.corner.take(), self.window.last_mut()) {
+            check_gap(number, &end.point.position, &start.position)?;
+            let junction = Junction::new(&self.limits, &corner, &end.point.slope, &start.slope);
+            starts_at_rest = junction.is_stop();
+            if let Some(jump) = end.join(&junction, &start) {
+                self.window.push(jump);
+            }
+        } else {
+            self.window.push(Knot::start(start));
         }
-        let leg = Leg::last(number, path);
-        leg.check()?;
-        let start = leg.checked_point(0.0)?;
-        let ends_at_rest = matches!(leg.path().corner(), Corner::Stop);
-        let starts_at_rest = match (self.joint.take(), self.window.last()) {
-            (Some((_, corner)), Some(end)) => {
-                check_joint(number, &end.position, &start.position)?;
-                let joint = Joint::new(&self.limits, &corner, &end.slope, &start.slope);
-                self.window.join(&joint, &start.slope);
-                joint.is_stop()
-            }
-            _ => {
-                self.window.push(0.0, None, start);
-                true
-            }
+        // A path that is refused is so when it begins: until then the machine is to rest before it.
+        let ends_at_rest = match leg.path().corner() {
+            Corner::Stop => true,
+            Corner::Jump(_) => self.following.is_none(),
+            Corner::Smooth => junction_to(&leg, self.following.as_ref(), &self.limits)
+                .is_ok_and(|junction| junction.is_stop()),
         };
         Ok(Entering {
-            leg,
+            laying: Laying::new(leg, start),
             rests: [starts_at_rest, ends_at_rest],
             segments: segments.max(MIN_SEGMENTS),
-            index: 1,
-            s: 0.0,
+            index: 0,
         })
     }
 }
 
 impl<P: Path> Entering<P> {
-    /// The parameter of the next knot.
-    fn next_s(&mut self) -> f64 {
-        let u = f64::from(self.index) / f64::from(self.segments);
+    fn next_knot(&mut self) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
         self.index = self.index.saturating_add(1);
-        self.leg.length() * fraction(u, self.rests)
+        let u = f64::from(self.index) / f64::from(self.segments);
+        let length = self.laying.leg.length();
+        let s = if self.index < self.segments {
+            length * fraction(u, self.rests)
+        } else {
+            length
+        };
+        self.laying.knot(s)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Debug};
 
-use crate::{Axes, Corner, ToolLimits};
+use crate::{Axes, Corner, Span, ToolLimits};
 
 /// Positions and slopes of all axes at a point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +45,16 @@ pub trait Path {
     fn corner(&self) -> Corner<Self::Axes> {
         Corner::Stop
     }
+
+    /// Whether the machine may run the cubics of all axes between two knots: within the ranges of its
+    /// joints and its workspace. Every planner asks for each segment before anything moves.
+    ///
+    /// # Errors
+    /// Why it may not.
+    fn check(&self, span: &Span<Self::Axes>) -> Result<(), Self::Error> {
+        let _ = span;
+        Ok(())
+    }
 }
 
 impl<P: Path> Path for &P {
@@ -65,6 +75,10 @@ impl<P: Path> Path for &P {
 
     fn corner(&self) -> Corner<P::Axes> {
         (**self).corner()
+    }
+
+    fn check(&self, span: &Span<P::Axes>) -> Result<(), P::Error> {
+        (**self).check(span)
     }
 }
 
@@ -131,21 +145,4 @@ impl<F, A> Debug for PathFn<F, A> {
             .field("length", &self.length)
             .finish_non_exhaustive()
     }
-}
-
-/// Paths one after the other: any iterator over [`Path`]s that can be cloned and run backwards.
-/// Each begins at the very position at which the one before ends.
-pub trait Legs: DoubleEndedIterator<Item = Self::Leg> + Clone {
-    /// One of the paths.
-    type Leg: Path<Axes = Self::Axes, Error = Self::Error> + Clone + Debug;
-    /// `[f64; N]` for N axes.
-    type Axes: Axes;
-    /// Why the machine cannot be at a point.
-    type Error;
-}
-
-impl<P: Path + Clone + Debug, L: DoubleEndedIterator<Item = P> + Clone> Legs for L {
-    type Leg = P;
-    type Axes = P::Axes;
-    type Error = P::Error;
 }

@@ -1,21 +1,13 @@
-//! The knots of a table: how many, at which speeds, and whether they can be told apart.
+//! Paths to knots, and knots to speeds.
 
-use core::fmt::Debug;
-use core::iter;
-
-use crate::chain::Chain;
-use crate::departure::{FINEST, Speeds, bound_of_parameters, estimate, fewest, spread};
+use crate::junction::Junction;
+use crate::knots::{
+    LARGEST_GAP, LARGEST_GAP_AT_RESTS, Laying, fraction, is_resolved, spread_by_time,
+};
 use crate::leg::Leg;
-use crate::number::larger_or_nan;
+use crate::passes::{self, segment_s};
 use crate::reciprocals::Reciprocals;
-use crate::table::spans_of_leg;
-use crate::{Axes, AxisLimits, Knot, Legs, Path, PlanError, Span, profile, smooth};
-
-/// What all legs are planned with.
-pub(crate) struct Planner<A: Axes> {
-    limits: A::Of<AxisLimits>,
-    reciprocals: Reciprocals<A>,
-}
+use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
 
 /// Fewest segments of a leg: it starts and stops.
 pub(crate) const MIN_SEGMENTS: u32 = 2;
@@ -23,199 +15,223 @@ pub(crate) const MIN_SEGMENTS: u32 = 2;
 /// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
 
-impl<A: Axes> Planner<A> {
-    /// The planner for axes with limits within the range of the crate.
-    pub(crate) fn new<E>(limits: A::Of<AxisLimits>) -> Result<Self, PlanError<E>> {
-        Ok(Self {
-            reciprocals: Reciprocals::checked(&limits)?,
-            limits,
-        })
+/// A number of segments that a leg can have.
+pub(crate) fn bounded<E>(leg: usize, segments: u32) -> Result<u32, PlanError<E>> {
+    let max = MAX_SEGMENTS;
+    if segments <= max {
+        Ok(segments.max(MIN_SEGMENTS))
+    } else {
+        Err(PlanError::TooFine { leg, max })
     }
+}
 
-    pub(crate) const fn reciprocals(&self) -> &Reciprocals<A> {
-        &self.reciprocals
-    }
+/// A leg whose knots are to be laid.
+pub(crate) struct Place<'p, P: Path> {
+    pub(crate) leg: &'p Leg<P>,
+    pub(crate) start: PathPoint<P::Axes>,
+    /// Whether the machine rests at its ends.
+    pub(crate) rests: [bool; 2],
+    /// Whether it is the only one.
+    pub(crate) is_alone: bool,
+    /// Knots of the legs before.
+    pub(crate) used: usize,
+}
 
-    /// A number of segments that a leg can have; more than asked for where each phase of an
-    /// S-curve needs one.
-    pub(crate) fn bounded<E>(&self, leg: usize, segments: u32) -> Result<u32, PlanError<E>> {
-        let least = if self.reciprocals.has_jerk() {
-            smooth::PHASES
-        } else {
-            MIN_SEGMENTS
-        };
-        let max = MAX_SEGMENTS;
-        if segments <= max {
-            Ok(segments.max(least))
-        } else {
-            Err(PlanError::TooFine { leg, max })
-        }
-    }
+/// How often the knots of a leg are moved to where the machine is slow.
+const ROUNDS: u32 = 1;
 
-    /// Checks the legs and the memory for the smallest number of knots that they need, before anything is
-    /// planned.
-    pub(crate) fn check_legs<L: Legs<Axes = A>>(
+impl<P: Path + Clone> Place<'_, P> {
+    /// Lays the knots of the leg behind its first, which is the first of those given: dense where the
+    /// fastest motion along the leg is slow.
+    pub(crate) fn lay(
         &self,
-        legs: &Chain<L>,
-        least: impl Fn(&L::Leg) -> u32,
-        available: usize,
-    ) -> Result<(), PlanError<L::Error>> {
-        let mut needed = 0_usize;
-        let mut last: Option<A> = None;
-        for leg in legs.forward(&self.reciprocals) {
-            let leg = leg?;
-            leg.check()?;
-            let (number, start) = (leg.number, leg.checked_point(0.0)?.position);
-            if let Some(last) = last {
-                check_joint(number, &last, &start)?;
-            }
-            last = Some(leg.checked_point(leg.length())?.position);
-            needed = needed.saturating_add(knots_of(self.bounded(number, least(leg.path()))?));
-        }
-        if needed <= available {
-            return Ok(());
-        }
-        Err(PlanError::Memory { needed, available })
-    }
-
-    /// The ends of a leg at which its knots are dense.
-    fn rests<P: Path<Axes = A>>(&self, leg: &Leg<P>, starts_at_rest: bool) -> [bool; 2] {
-        if self.reciprocals.has_jerk() {
-            return [true; 2];
-        }
-        [starts_at_rest, leg.joint().is_stop()]
-    }
-
-    /// Spreads a leg's knots over the first of the free ones; those that it takes.
-    pub(crate) fn lay_leg<'k, P: Path<Axes = A>>(
-        &self,
-        leg: &Leg<P>,
-        starts_at_rest: bool,
-        free: &'k mut [Knot],
+        limits: &Reciprocals<P::Axes>,
         segments: u32,
-    ) -> Result<&'k mut [Knot], PlanError<P::Error>> {
-        let (needed, available) = (knots_of(segments), free.len());
-        let own = free
-            .get_mut(..needed)
-            .ok_or(PlanError::Memory { needed, available })?;
-        profile::spread(own, leg.length(), self.rests(leg, starts_at_rest));
-        Ok(own)
-    }
-
-    /// Plans all legs whose knots are spread. Seconds from the first knot to the last.
-    pub(crate) fn plan_legs<L: Legs<Axes = A>>(
-        &self,
-        legs: &Chain<L>,
-        knots: &mut [Knot],
-    ) -> Result<f64, PlanError<L::Error>> {
-        if self.reciprocals.has_jerk() {
-            self.plan_smooth(legs.clone(), knots)?;
-        } else {
-            profile::fastest_of_all(&self.reciprocals, legs, knots)?;
-        }
-        let mut time_s = 0.0;
-        for (leg, own) in legs.forward(&self.reciprocals).zip(profile::by_leg(knots)) {
-            time_s = check_times(leg?.number, own, time_s)?;
-        }
-        Ok(time_s)
-    }
-
-    /// The same with a limit of jerk: from stop to stop.
-    fn plan_smooth<L: Legs<Axes = A>>(
-        &self,
-        mut legs: Chain<L>,
-        knots: &mut [Knot],
-    ) -> Result<(), PlanError<L::Error>> {
-        let mut later = knots;
-        while let Some(part) = legs.split_at_stop(&self.reciprocals)? {
-            let count = (0..part.count()).fold(0_usize, |count, _| {
-                let (_, rest) = later.split_at(count.min(later.len()));
-                count.saturating_add(profile::first_leg(rest))
+        knots: &mut [Knot<P::Axes>],
+    ) -> Result<(), PlanError<P::Error>> {
+        let (count, available) = (knots_of(segments), knots.len());
+        let (Some(own), Ok(last)) = (knots.get_mut(..count), usize::try_from(segments)) else {
+            return Err(PlanError::Memory {
+                needed: self.used.saturating_add(count),
+                available: self.used.saturating_add(available),
             });
-            let (own, rest) = profile::split(later, count);
-            smooth::smooth(&self.limits, &self.reciprocals, &part, own)?;
-            later = rest;
+        };
+        let length = self.leg.length();
+        for (index, knot) in (0..=segments).zip(&mut *own) {
+            let u = f64::from(index) / f64::from(segments);
+            knot.moved_s = length * fraction(u, self.rests);
+        }
+        for round in 0..=ROUNDS {
+            if round > 0 {
+                self.alone(limits, own);
+                spread_by_time(own);
+            }
+            let mut laying = Laying::new(self.leg.clone(), self.start);
+            for (index, knot) in own.iter_mut().enumerate().skip(1) {
+                let s = if index < last { knot.moved_s } else { length };
+                *knot = laying.knot(s)?;
+            }
+        }
+        self.check_resolved(limits, own)
+    }
+
+    /// Refuses knots between which the path is not known.
+    fn check_resolved(
+        &self,
+        limits: &Reciprocals<P::Axes>,
+        knots: &[Knot<P::Axes>],
+    ) -> Result<(), PlanError<P::Error>> {
+        let mut from = Knot::start(self.start);
+        let gap = if knots.len() > knots_of(MIN_SEGMENTS) {
+            LARGEST_GAP
+        } else {
+            LARGEST_GAP_AT_RESTS
+        };
+        for to in knots.iter().skip(1) {
+            if !is_resolved(limits, &from, to, gap) {
+                let (leg, s) = (self.leg.number, from.s);
+                return Err(PlanError::TooCoarse { leg, s });
+            }
+            from = *to;
         }
         Ok(())
     }
 
-    /// Plans a leg from rest to rest in the first of the free knots; those that it takes.
-    fn plan_leg<'k, P: Path<Axes = A> + Debug>(
-        &self,
-        leg: &Leg<P>,
-        free: &'k mut [Knot],
-        segments: u32,
-    ) -> Result<&'k mut [Knot], PlanError<P::Error>> {
-        let (needed, available) = (knots_of(segments), free.len());
-        let own = free
-            .get_mut(..needed)
-            .ok_or(PlanError::Memory { needed, available })?;
-        if self.reciprocals.has_jerk() {
-            let alone = Chain::new(iter::once(leg.path()), leg.number);
-            smooth::smooth_leg(&self.limits, &self.reciprocals, &alone, own)?;
-        } else {
-            profile::fastest(&self.reciprocals, leg, own)?;
+    /// Plans the leg for itself.
+    fn alone(&self, limits: &Reciprocals<P::Axes>, knots: &mut [Knot<P::Axes>]) {
+        let before = knots.first().copied();
+        let cap_of = |rests| if rests { 0.0 } else { f64::INFINITY };
+        let [start, end] = self.rests.map(cap_of);
+        if let Some(first) = knots.first_mut() {
+            *first = Knot {
+                cap: start,
+                ..Knot::start(self.start)
+            };
         }
-        Ok(own)
-    }
-
-    /// A number of segments that keeps the allowed departure, while one fewer does not.
-    pub(crate) fn fewest<P: Path<Axes = A> + Debug>(
-        &self,
-        leg: &Leg<P>,
-        starts_at_rest: bool,
-        [used, free]: [usize; 2],
-        knots: &mut [Knot],
-        wanted: &Within<impl Fn(&P, &Span<A>) -> f64>,
-    ) -> Result<u32, PlanError<P::Error>> {
-        let least = self.bounded(leg.number, wanted.at_least)?;
-        let room = u32::try_from(free.saturating_sub(1)).unwrap_or(u32::MAX);
-        if room < least {
-            return Err(PlanError::Memory {
-                needed: used.saturating_add(knots_of(least)),
-                available: used.saturating_add(free),
-            });
+        if let Some(last) = knots.last_mut() {
+            last.cap = end;
         }
-        let rests = self.rests(leg, starts_at_rest);
-        let (jerk, any_feed) = (self.reciprocals.has_jerk(), wanted.any_feed);
-        let is_alone = starts_at_rest && leg.joint().is_stop();
-        let speeds = match (any_feed, jerk) {
-            (true, _) => Speeds::Run,
-            (false, true) => Speeds::PassingSmoothly,
-            (false, false) => Speeds::Passing,
-        };
-        let bound_of = |segments| {
-            let mut bound = 0.0;
-            if any_feed && !jerk || !is_alone {
-                let parameters = spread(leg, segments, rests);
-                bound = bound_of_parameters(leg, parameters, speeds, &wanted.departure)?;
-            }
-            // With jerk also where each leg runs alone.
-            if jerk || is_alone && !any_feed {
-                let knots = self.plan_leg(leg, knots, segments)?;
-                let parameters = knots.iter().map(|knot| knot.s);
-                let alone = if any_feed {
-                    bound_of_parameters(leg, parameters, speeds, &wanted.departure)
-                } else {
-                    bound_of_leg(leg, knots, &wanted.departure)
-                };
-                bound = larger_or_nan(bound, alone?);
-            }
-            Ok(bound)
-        };
-        let too_coarse =
-            |bound, segments| too_coarse(leg.number, bound / wanted.allowed, segments, used, room);
-        fewest(least, room, wanted.allowed, bound_of, too_coarse)
+        passes::fastest(limits, knots);
+        if let (Some(first), Some(before)) = (knots.first_mut(), before) {
+            *first = before;
+        }
     }
 }
 
-/// A departure that segments have to keep.
-pub(crate) struct Within<D> {
-    pub(crate) at_least: u32,
-    pub(crate) allowed: f64,
-    /// Whether at any speeds, or at those of the table.
-    pub(crate) any_feed: bool,
-    pub(crate) departure: D,
+/// Lays the knots of all paths, one behind the other; those that they take. `lay` lays those of a leg
+/// behind its first, which is the first of those that it is given, and says how many segments they are.
+pub(crate) fn lay_all<'k, P: Path + Clone>(
+    paths: impl Iterator<Item = P>,
+    limits: &Reciprocals<P::Axes>,
+    knots: &'k mut [Knot<P::Axes>],
+    mut lay: impl FnMut(&Place<'_, P>, &mut [Knot<P::Axes>]) -> Result<u32, PlanError<P::Error>>,
+) -> Result<&'k mut [Knot<P::Axes>], PlanError<P::Error>> {
+    let available = knots.len();
+    let mut paths = paths.peekable();
+    let (mut number, mut used, mut starts_at_rest) = (0_usize, 0_usize, true);
+    while let Some(path) = paths.next() {
+        let leg = Leg::new(number, path)?;
+        let start = leg.point(0.0)?;
+        let (last, free) = knots.split_at_mut(used.saturating_sub(1).min(available));
+        let short = PlanError::Memory {
+            needed: used.saturating_add(knots_of(MIN_SEGMENTS)),
+            available,
+        };
+        let Some(first) = free.first_mut() else {
+            return Err(short);
+        };
+        if number == 0 {
+            (*first, used) = (Knot::start(start), 1);
+        } else {
+            check_gap(number, &first.point.position, &start.position)?;
+        }
+        let junction = junction_to(&leg, paths.peek(), limits)?;
+        let place = Place {
+            leg: &leg,
+            start,
+            rests: [starts_at_rest, junction.is_stop()],
+            is_alone: number == 0 && paths.peek().is_none(),
+            used: last.len(),
+        };
+        let segments = lay(&place, free)?;
+        used = used.saturating_add(usize::try_from(segments).unwrap_or(usize::MAX));
+        starts_at_rest = junction.is_stop();
+        number = number.saturating_add(1);
+        let Some(end) = knots.get_mut(used.saturating_sub(1)) else {
+            return Err(short);
+        };
+        let next = paths
+            .peek()
+            .map(|next| start_of(number, next))
+            .transpose()?;
+        let jump = next.and_then(|next| end.join(&junction, &next));
+        if let Some(jump) = jump {
+            let slot = knots.get_mut(used).ok_or(short)?;
+            (*slot, used) = (jump, used.saturating_add(1));
+        }
+    }
+    let (knots, _) = knots.split_at_mut(used.min(available));
+    if let [first, .., last] = knots {
+        (first.cap, last.cap) = (0.0, 0.0);
+    }
+    Ok(knots)
+}
+
+/// The point at which a path begins.
+fn start_of<P: Path>(leg: usize, path: &P) -> Result<PathPoint<P::Axes>, PlanError<P::Error>> {
+    let refused = |reason| PlanError::Path {
+        leg,
+        s: 0.0,
+        reason,
+    };
+    path.point(0.0).map_err(refused)
+}
+
+/// How a leg goes on to the next path.
+pub(crate) fn junction_to<P: Path>(
+    leg: &Leg<P>,
+    next: Option<&P>,
+    limits: &Reciprocals<P::Axes>,
+) -> Result<Junction<P::Axes>, PlanError<P::Error>> {
+    let Some(next) = next else {
+        return Ok(Junction::Stop);
+    };
+    let before = leg.point(leg.length())?;
+    let after = start_of(leg.number.saturating_add(1), next)?;
+    let corner = leg.path().corner();
+    Ok(Junction::new(limits, &corner, &before.slope, &after.slope))
+}
+
+/// Gives knots the speeds of the fastest motion from rest to rest. Its time.
+pub(crate) fn time<A: Axes, E>(
+    limits: &Reciprocals<A>,
+    knots: &mut [Knot<A>],
+) -> Result<f64, PlanError<E>> {
+    passes::fastest(limits, knots);
+    if limits.has_jerk() {
+        jerk::smooth(limits, knots);
+    }
+    let mut knots = knots.iter();
+    let Some(mut from) = knots.next() else {
+        return Ok(0.0);
+    };
+    let (mut time_s, mut leg, mut number) = (0.0, 0_usize, 0_u32);
+    for to in knots {
+        (leg, number) = if from.ends_leg {
+            (leg.saturating_add(1), u32::from(to.ds > 0.0))
+        } else {
+            (leg, number.saturating_add(1))
+        };
+        let before_s = time_s;
+        time_s += segment_s(from, to);
+        // Written so that NaN is refused too.
+        let is_later = time_s > before_s && time_s.is_finite();
+        if to.ds > 0.0 && !is_later {
+            return Err(PlanError::Indistinct { leg, knot: number });
+        }
+        from = to;
+    }
+    Ok(time_s)
 }
 
 /// The number of knots of a leg with this number of segments.
@@ -223,58 +239,11 @@ pub(crate) fn knots_of(segments: u32) -> usize {
     usize::try_from(segments).map_or(usize::MAX, |segments| segments.saturating_add(1))
 }
 
-/// The number of segments of a leg with these knots.
-pub(crate) fn segments_of(knots: &[Knot]) -> u32 {
-    u32::try_from(knots.len().saturating_sub(1)).unwrap_or(u32::MAX)
-}
-
 /// Refuses a leg that begins elsewhere than the one before ends.
-pub(crate) fn check_joint<A: Axes, E>(leg: usize, end: &A, start: &A) -> Result<(), PlanError<E>> {
+pub(crate) fn check_gap<A: Axes, E>(leg: usize, end: &A, start: &A) -> Result<(), PlanError<E>> {
     let axes = start.as_slice().iter().zip(end.as_slice());
     let mut apart = axes.map(|(start, end)| start - end).enumerate();
     apart
         .find(|(_, by)| *by != 0.0)
         .map_or(Ok(()), |(axis, by)| Err(PlanError::Gap { leg, axis, by }))
-}
-
-/// Refuses knots that no time lies between; the time at the last.
-fn check_times<E>(leg: usize, knots: &[Knot], mut time_s: f64) -> Result<f64, PlanError<E>> {
-    let segments = knots.split_last().map_or(knots, |(_, segments)| segments);
-    for (knot, segment) in (1..).zip(segments) {
-        let before_s = time_s;
-        time_s += segment.duration_s;
-        if !(time_s > before_s && time_s.is_finite()) {
-            return Err(PlanError::Indistinct { leg, knot });
-        }
-    }
-    Ok(time_s)
-}
-
-/// Why no number of segments that there is room for keeps the departure.
-fn too_coarse<E>(leg: usize, excess: f64, segments: u32, used: usize, room: u32) -> PlanError<E> {
-    let estimate = estimate(segments, excess);
-    if segments < room || estimate > f64::from(FINEST) {
-        return PlanError::TooFine { leg, max: FINEST };
-    }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "checked against the finest"
-    )]
-    let needed = (estimate as u32).saturating_add(1);
-    PlanError::Memory {
-        needed: used.saturating_add(knots_of(needed)),
-        available: used.saturating_add(knots_of(room)),
-    }
-}
-
-/// The largest departure of a leg's segments.
-pub(crate) fn bound_of_leg<P: Path>(
-    leg: &Leg<P>,
-    knots: &[Knot],
-    departure: &impl Fn(&P, &Span<P::Axes>) -> f64,
-) -> Result<f64, PlanError<P::Error>> {
-    spans_of_leg(leg, knots).try_fold(0.0, |worst, span| {
-        Ok(larger_or_nan(worst, departure(leg.path(), &span?)))
-    })
 }

@@ -1,7 +1,7 @@
 //! The limits of the axes as factors, with what rounding needs of them.
 
-use crate::number::{LARGEST, SMALLEST, sqrt};
-use crate::{Axes, AxisLimits, PlanError, ToolLimits};
+use crate::number::{LARGEST, SMALLEST, cube_root, sqrt};
+use crate::{Axes, AxisLimits, Knot, PlanError, ToolLimits};
 
 /// By how much limits are taken lower: what a dozen products round off.
 pub(crate) const MARGIN: f64 = 1.0 + 64.0 * f64::EPSILON;
@@ -73,27 +73,33 @@ impl<A: Axes> Reciprocals<A> {
     /// The shortest time of a segment that starts and ends at rest.
     ///
     /// ```text
-    /// speed 3Δq / 2T   acceleration 6Δq / T²
+    /// speed 3Δq / 2T   acceleration 6Δq / T²   jerk 12Δq / T³
     /// ```
     pub(crate) fn rest_to_rest_s(
         &self,
-        start: &A,
-        end: &A,
+        [from, to]: [&Knot<A>; 2],
         tool: Option<&ToolLimits>,
-        ds: f64,
     ) -> f64 {
-        let distances = start.as_slice().iter().zip(end.as_slice());
+        let ends = [from, to].map(|knot| knot.point.position.as_slice());
+        let [starts, ends] = ends;
+        let distances = starts.iter().zip(ends);
         let distances = distances.map(|(q0, q1)| (q1 - q0).abs());
-        let of_axes = (A::each(&self.axes).iter().zip(distances))
-            .map(|(limits, distance)| (distance * limits.speed, distance * limits.acceleration));
+        let of_axes = (A::each(&self.axes).iter().zip(distances)).map(|(limits, distance)| {
+            [limits.speed, limits.acceleration, limits.jerk].map(|limit| distance * limit)
+        });
         let of_tool = tool.map(|tool| {
-            let acceleration = tool.acceleration.map_or(0.0, |limit| MARGIN * ds / limit);
-            (MARGIN * ds / tool.feed, acceleration)
+            let acceleration = tool
+                .acceleration
+                .map_or(0.0, |limit| MARGIN * to.ds / limit);
+            [MARGIN * to.ds / tool.feed, acceleration, 0.0]
         });
         of_axes
             .chain(of_tool)
-            .fold(0.0, |time_s: f64, (speed, acceleration)| {
-                time_s.max(1.5 * speed).max(sqrt(6.0 * acceleration))
+            .fold(0.0, |time_s: f64, [speed, acceleration, jerk]| {
+                time_s
+                    .max(1.5 * speed)
+                    .max(sqrt(6.0 * acceleration))
+                    .max(cube_root(12.0 * jerk))
             })
     }
 

@@ -1,6 +1,6 @@
 //! Rows of a table: what a controller gets.
 
-use crate::{Axes, PathPoint};
+use crate::Axes;
 
 /// A row of a position-velocity-time table. From one to the next every axis runs the
 /// [`Cubic`](crate::Cubic) with these positions and velocities at its ends.
@@ -19,25 +19,16 @@ pub struct Row<A> {
     pub position: A,
     /// Velocity of each axis, per second.
     pub velocity: A,
+    /// The leg that the row ends or lies on, from 0: which path of all.
+    pub leg: usize,
+    /// The parameter of that leg.
+    pub s: f64,
 }
 
 impl<A: Axes> Row<A> {
-    /// The same time and positions with the velocities after a corner.
-    pub(crate) fn with_jump(&self, velocity: A) -> Self {
-        Self {
-            duration_s: 0.0,
-            velocity,
-            ..*self
-        }
-    }
-
-    /// A point that is passed at a speed of the parameter.
-    pub(crate) fn new(point: &PathPoint<A>, speed: f64, time_s: f64, duration_s: f64) -> Self {
-        Self {
-            time_s,
-            duration_s,
-            position: point.position,
-            velocity: point.slope.scaled(speed),
-        }
+    /// Whether every axis stands still.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.velocity.as_slice().iter().all(|speed| *speed == 0.0)
     }
 }

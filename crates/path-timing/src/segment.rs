@@ -2,7 +2,7 @@
 
 use crate::number::{larger, sqrt};
 use crate::reciprocals::{MARGIN, Reciprocal, Reciprocals};
-use crate::{Axes, PathPoint, ToolLimits};
+use crate::{Axes, Knot, PathPoint};
 
 /// The end of a segment whose speed is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,13 +13,13 @@ pub(crate) enum End {
 
 /// Utilisation of the limits of one axis, as a function of the speeds w₀ and w₁.
 #[derive(Debug, Clone, Copy)]
-struct AxisLoad {
+pub(crate) struct AxisLoad {
     /// Accelerations at the start and at the end: coefficients of y and z.
-    accelerations: [[f64; 2]; 2],
+    pub(crate) accelerations: [[f64; 2]; 2],
     /// What both may be off by rounding: coefficient of y.
-    noise: f64,
+    pub(crate) noise: f64,
     /// Speed between the ends: coefficients of w₀ and w₁.
-    middle: [f64; 2],
+    pub(crate) middle: [f64; 2],
 }
 
 /// All limits of one cubic segment, in the speeds w₀ and w₁ of the parameter at its ends.
@@ -62,8 +62,8 @@ const ROOT_NOISE: f64 = 0.75;
 /// Limits that a search goes down by, one after the other.
 const PASSES: u32 = 8;
 
-/// Halvings that leave nothing of a relative gap.
-const HALVINGS: u32 = 48;
+/// Halvings of the gap between a speed that holds and one that does not.
+const HALVINGS: u32 = 12;
 
 impl AxisLoad {
     const NONE: Self = Self {
@@ -96,7 +96,26 @@ impl AxisLoad {
 }
 
 impl<A: Axes> Segment<A> {
-    pub(crate) fn new(
+    /// The segment between two knots, with the tool's feed multiplied.
+    ///
+    /// ```text
+    /// tool: p₀ = p₁ = m = 1, speeds w₀, w₁, acceleration 2 z / Δs = (w₁² - w₀²) / 2Δs
+    /// ```
+    pub(crate) fn new(limits: &Reciprocals<A>, from: &Knot<A>, to: &Knot<A>, feed: f64) -> Self {
+        let mut segment = Self::of_axes(limits, &from.point, &to.point, to.ds);
+        if let Some(tool) = &to.tool {
+            for end in &mut segment.ends {
+                *end = end.max(MARGIN / (tool.feed * feed));
+            }
+            if let Some(acceleration) = tool.acceleration {
+                segment.tool = 2.0 * MARGIN / (to.ds * acceleration);
+            }
+        }
+        segment
+    }
+
+    /// The segment with the limits of the axes alone.
+    pub(crate) fn of_axes(
         limits: &Reciprocals<A>,
         from: &PathPoint<A>,
         to: &PathPoint<A>,
@@ -121,23 +140,6 @@ impl<A: Axes> Segment<A> {
         segment
     }
 
-    /// The segment with the limits of the tool: it moves by the parameter, p₀ = p₁ = m = 1.
-    ///
-    /// ```text
-    /// speeds w₀, w₁     acceleration 2 z / Δs = (w₁² - w₀²) / 2Δs
-    /// ```
-    pub(crate) fn with_tool(mut self, tool: Option<&ToolLimits>, ds: f64) -> Self {
-        if let Some(tool) = tool {
-            for end in &mut self.ends {
-                *end = end.max(MARGIN / tool.feed);
-            }
-            if let Some(acceleration) = tool.acceleration {
-                self.tool = 2.0 * MARGIN / (ds * acceleration);
-            }
-        }
-        self
-    }
-
     /// The largest utilisation of a limit at these speeds, squared where it is a speed:
     /// at most 1 where all hold, and growing with the square of both speeds.
     #[inline]
@@ -156,6 +158,21 @@ impl<A: Axes> Segment<A> {
         }
         hardest = larger(hardest, (self.tool * z).abs());
         hardest.max(fastest * fastest)
+    }
+
+    /// What each axis asks for.
+    pub(crate) const fn axes(&self) -> &A::Of<AxisLoad> {
+        &self.axes
+    }
+
+    /// Largest utilisation of a speed limit per w₀, and per w₁.
+    pub(crate) const fn ends(&self) -> [f64; 2] {
+        self.ends
+    }
+
+    /// Acceleration of the tool: coefficient of z.
+    pub(crate) const fn tool(&self) -> f64 {
+        self.tool
     }
 
     pub(crate) fn holds(&self, w0: f64, w1: f64) -> bool {
@@ -207,71 +224,103 @@ impl<A: Axes> Segment<A> {
         speed
     }
 
-    /// The highest speed from which the segment can be begun if it must end with at most
-    /// `ceiling`, and the speed at its end that goes with it.
+    /// The pair of speeds with which the segment takes the least time, at most `ceiling` at its end
+    /// and `cap` at its start; where the machine brakes as hard as it can to the ceiling, the highest
+    /// speed to brake from.
     ///
-    /// What can be begun at a speed can be begun at each lower one, ending slower by the same
-    /// factor: from a speed that holds, steps that grow find one that does not, and halvings the
-    /// highest between.
+    /// Between two knots at which the machine moves, the speed changes at most by a factor of
+    /// [`GROWTH`]: no segment is begun at a speed whose only partner is next to rest.
     pub(crate) fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
-        let fast = self.highest(End::From, ceiling, cap);
+        if cap <= 0.0 {
+            return (0.0, ceiling.min(self.speed_from_rest()));
+        }
+        if ceiling <= 0.0 {
+            return (cap.min(self.speed_to_rest()), 0.0);
+        }
+        let fast = self.highest(End::From, ceiling, cap.min(ceiling * GROWTH));
         if fast >= ceiling && self.holds(fast, ceiling) {
             return (fast, ceiling);
         }
-        let reached = self.reach(fast, ceiling);
-        let even = ceiling.min(self.even()).min(cap);
-        let (mut best, mut high) = match reached {
-            Some(end) if fast >= even => return (fast, end),
-            Some(_) => ((even, even), cap),
-            None => {
-                // On the ray to a pair that does not hold there is one that does.
-                let end = self.highest(End::To, fast, ceiling);
-                let scale = 1.0 / sqrt(self.load(fast, end));
-                ((fast * scale, end * scale), fast)
+        self.shortest(ceiling, cap)
+    }
+
+    /// The highest speed at the end after a start at rest.
+    pub(crate) fn speed_from_rest(&self) -> f64 {
+        1.0 / sqrt(self.load(0.0, 1.0))
+    }
+
+    /// The highest speed at the start before a rest at the end.
+    pub(crate) fn speed_to_rest(&self) -> f64 {
+        1.0 / sqrt(self.load(1.0, 0.0))
+    }
+
+    /// The pair of the least time.
+    ///
+    /// With W = w₀ + w₁ and r = (w₁ - w₀) / W each utilisation is W² times a convex function of r, so
+    /// the least of their largest is found between two slopes by the cut of their tangents.
+    fn shortest(&self, ceiling: f64, cap: f64) -> (f64, f64) {
+        let at = |r: f64| self.tangent(r, [1.0 / cap, 1.0 / ceiling]);
+        let [mut low, mut high] = [-STEEPEST, STEEPEST].map(|r| (r, at(r)));
+        let (r, load) = 'found: {
+            if low.1.slope >= 0.0 {
+                break 'found (low.0, low.1.load);
             }
+            if high.1.slope <= 0.0 {
+                break 'found (high.0, high.1.load);
+            }
+            let mut best = if low.1.load < high.1.load { low } else { high };
+            for _ in 0..CUTS {
+                let ((a, f), (b, g)) = (low, high);
+                let rise = g.load - f.load + f.slope * a - g.slope * b;
+                let r = rise / (f.slope - g.slope);
+                if !(r > a && r < b) {
+                    break;
+                }
+                let least = f.load + f.slope * (r - a);
+                let here = at(r);
+                if here.load < best.1.load {
+                    best = (r, here);
+                }
+                if best.1.load - least <= best.1.load * CLOSE {
+                    break;
+                }
+                if here.slope > 0.0 {
+                    high = (r, here);
+                } else {
+                    low = (r, here);
+                }
+            }
+            (best.0, best.1.load)
         };
-        let mut step = best.0 * CLOSE;
-        for _ in 0..HALVINGS {
-            if high - best.0 <= best.0 * CLOSE {
-                break;
-            }
-            let middle = (best.0 + step).min((best.0 + high) * 0.5);
-            match self.reach(middle, ceiling) {
-                Some(end) => (best, step) = ((middle, end), step * 4.0),
-                None => high = middle,
-            }
-        }
-        best
+        let half = 1.0 / sqrt(load);
+        ((half * (1.0 - r)).min(cap), (half * (1.0 + r)).min(ceiling))
     }
 
-    /// The highest speed from which the segment can be begun if it ends with `ceiling`, or where
-    /// that is higher, with the speed that it begins with: never slower than it need be later.
-    pub(crate) fn begin_evenly(&self, ceiling: f64, cap: f64) -> f64 {
-        let even = self.even();
-        if even <= ceiling {
-            return even;
-        }
-        let (mut good, mut bad) = (ceiling, self.highest(End::From, ceiling, cap));
-        if bad > good && self.holds(bad, ceiling) {
-            return bad;
-        }
-        for _ in 0..HALVINGS {
-            if bad - good <= good * CLOSE {
-                break;
+    /// The largest utilisation at w₀ = 1 - r and w₁ = 1 + r, and its derivative by r. `ends` are
+    /// one over the highest speed at each end.
+    #[inline]
+    fn tangent(&self, r: f64, ends: [f64; 2]) -> Tangent {
+        let mut largest = Tangent::default();
+        let mut fastest = Tangent::default();
+        for axis in A::each(&self.axes) {
+            for [c, d] in axis.accelerations {
+                let value = c + d * r;
+                largest.raise(value.abs() + axis.noise, if value < 0.0 { -d } else { d });
             }
-            let middle = (good + bad) * 0.5;
-            if self.holds(middle, ceiling) {
-                good = middle;
-            } else {
-                bad = middle;
-            }
+            let [e, f] = axis.middle;
+            let value = e * (1.0 - r) + f * (1.0 + r);
+            fastest.raise(value.abs(), if value < 0.0 { e - f } else { f - e });
         }
-        good
-    }
-
-    /// The highest speed for both ends.
-    pub(crate) fn even(&self) -> f64 {
-        1.0 / sqrt(self.load(1.0, 1.0))
+        largest.raise((self.tool * r).abs(), self.tool.copysign(r));
+        let [from, to] = self.ends;
+        let [from, to] = [from.max(ends[0]), to.max(ends[1])];
+        fastest.raise(from * (1.0 - r), -from);
+        fastest.raise(to * (1.0 + r), to);
+        largest.raise(
+            fastest.load * fastest.load,
+            2.0 * fastest.load * fastest.slope,
+        );
+        largest
     }
 
     /// The highest speed at the end, at most `ceiling`, after the speed `w0`.
@@ -279,34 +328,42 @@ impl<A: Axes> Segment<A> {
     /// Each limit forbids an interval of speeds or all above one. Where the next lower speed that
     /// one allows is forbidden by another, the search goes on from there.
     fn reach(&self, w0: f64, ceiling: f64) -> Option<f64> {
-        let mut speed = ceiling;
+        let least = w0 / GROWTH;
+        let mut speed = ceiling.min(w0 * GROWTH);
         for _ in 0..PASSES {
             let lower = self.highest(End::To, w0, speed);
+            if lower < least {
+                return None;
+            }
             if self.holds(w0, lower) {
                 return Some(lower);
             }
             if lower >= speed {
-                break;
+                return None;
             }
             speed = lower;
         }
         None
     }
 
-    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; `known` is one
-    /// that holds.
-    pub(crate) fn end(&self, w0: f64, ceiling: f64, known: f64) -> f64 {
-        if w0 == 0.0 {
-            let fast = self.highest(End::To, w0, ceiling);
-            let load = self.load(w0, fast);
-            return fast / sqrt(load.max(1.0));
+    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with the speed w₀ times
+    /// `ratio` the segment holds.
+    pub(crate) fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
+        if w0 <= 0.0 {
+            return ceiling.min(self.speed_from_rest());
         }
-        self.reach(w0, ceiling).unwrap_or(known)
+        if ceiling <= 0.0 {
+            return 0.0;
+        }
+        let known = w0 * ratio;
+        self.reach(w0, ceiling)
+            .map_or(known, |speed| speed.max(known))
     }
 
-    /// The speed at the end that is nearest to `wanted` after the speed `w0`: the highest below it,
-    /// or where none is, one above it towards `known`, which holds.
+    /// The speed at the end that is nearest to `wanted` after the speed `w0`, where `known` holds:
+    /// the highest below it, else the lowest above it that is found.
     pub(crate) fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
+        let wanted = wanted.min(w0 * GROWTH);
         if self.holds(w0, wanted) {
             return wanted;
         }
@@ -317,7 +374,10 @@ impl<A: Axes> Segment<A> {
                 below
             };
         }
-        let (mut good, mut bad) = (known, wanted);
+        let step = (known - wanted) / f64::from(SAMPLES);
+        let mut samples = (1..SAMPLES).map(|sample| wanted + step * f64::from(sample));
+        let mut good = samples.find(|w1| self.holds(w0, *w1)).unwrap_or(known);
+        let mut bad = good - step;
         for _ in 0..HALVINGS {
             let middle = (good + bad) * 0.5;
             if self.holds(w0, middle) {
@@ -328,10 +388,47 @@ impl<A: Axes> Segment<A> {
         }
         good
     }
+
+    /// The lowest speed at the end after the speed `w0`, where `known` holds: at most as much slower as
+    /// a segment that does not end at rest may become.
+    pub(crate) fn slowest(&self, w0: f64, known: f64) -> f64 {
+        let least = (w0 / GROWTH).min(known);
+        self.toward(w0, least, known)
+    }
 }
 
-/// Relative gap at which the search for a beginning stops: it costs that fraction of the time.
+/// The most by which the speed grows or falls on a segment that neither begins nor ends at rest: what
+/// constant acceleration makes of it on knots as dense as those at a rest.
+pub(crate) const GROWTH: f64 = 8.0;
+
+/// The r of that growth.
+pub(crate) const STEEPEST: f64 = (GROWTH - 1.0) / (GROWTH + 1.0);
+
+/// Cuts of tangents in a search.
+const CUTS: u32 = 16;
+
+/// Relative gap at which the search for a pair stops: it costs half of that fraction of the time.
 const CLOSE: f64 = 1e-5;
+
+/// Speeds looked at between one that is wanted and one that holds.
+const SAMPLES: u32 = 8;
+
+/// A convex function at a place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tangent {
+    load: f64,
+    slope: f64,
+}
+
+impl Tangent {
+    /// The larger one.
+    #[inline]
+    fn raise(&mut self, load: f64, slope: f64) {
+        if load > self.load {
+            *self = Self { load, slope };
+        }
+    }
+}
 
 /// y and z of the two speeds.
 #[inline]

@@ -1,185 +1,155 @@
 //! Position-velocity-time tables along paths.
 
-use crate::chain::Chain;
-use crate::departure::check_allowed;
-use crate::leg::Leg;
-use crate::number::{SMALLEST, larger_or_nan};
-use crate::planner::{Planner, Within, bound_of_leg};
+use core::convert::Infallible;
+
+use crate::departure::{Speeds, Within, check_allowed};
+use crate::knots::halved;
+use crate::number::SMALLEST;
+use crate::planner::{Place, bounded, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
-use crate::{Axes, AxisLimits, Legs, Path, PlanError, Row, Span, profile};
-
-/// Memory for one row of a [`Table`] while it is planned and as long as it lives.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Knot {
-    /// Parameter of its leg: 0 at the first knot of each, the length at the last.
-    pub(crate) s: f64,
-    /// Speed of the parameter.
-    pub(crate) speed: f64,
-    /// Time to the next knot; none at the last of a leg. While speeds with limits of jerk are chosen,
-    /// the highest even speed.
-    pub(crate) duration_s: f64,
-    /// While speeds are chosen: the speed at the next knot that goes with the highest here; before, with
-    /// limits of jerk, the highest speed that is wanted here.
-    pub(crate) after: f64,
-}
+use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 
 /// A position-velocity-time table along one path or several: every axis runs a cubic from each row
 /// to the next, with the positions and slopes of the path at the rows.
 ///
-/// It is the fastest such table that keeps the limits of all axes, found by a backward and a
-/// forward pass over the knots. What is limited is the cubic itself: its peak speed inside, its
-/// acceleration at both ends. At the end of each path the machine does what that path's
-/// [`corner`](Path::corner) says.
+/// It is a fastest table that keeps the limits of all axes. What is limited is the cubic itself: its
+/// peak speed inside, its acceleration at both ends. With the path speeds w₀, w₁ at the ends of a
+/// segment of length Δs, its duration is 2Δs / (w₀ + w₁). At the end of each path the machine does
+/// what that path's [`corner`](Path::corner) says.
 ///
-/// Where an axis has a limit of jerk, all legs between two stops are run by a fastest motion without
-/// the limit averaged over a window of time; a leg from rest to rest by one S-curve along it where that
-/// takes less, as on a straight path, which it is the shortest motion on.
-/// Between rows a cubic has one jerk; at a row its acceleration steps, which counts as a jerk over
-/// the time between the middles of the segments.
+/// Where an axis has a limit of jerk: between rows a cubic has one jerk; at a row its acceleration
+/// steps, which counts as a jerk over the time between the middles of the segments.
 #[derive(Debug, Clone, Copy)]
-pub struct Table<'a, L, A: Axes> {
-    pub(crate) legs: L,
-    pub(crate) knots: &'a [Knot],
+pub struct Table<'a, A: Axes> {
+    pub(crate) knots: &'a [Knot<A>],
     pub(crate) limits: Reciprocals<A>,
     /// By what all times are multiplied.
     pub(crate) stretch: f64,
-    /// Rows with two velocities at a corner counted once.
-    pub(crate) nodes: usize,
-    rows: usize,
     duration_s: f64,
 }
 
-impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
-    /// Plans the table in memory of the caller: for each leg one knot more than segments.
-    /// `segments` says how many a leg has; at least 2, with jerk 7.
+/// How near to the path and to the least time a table has to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "named fields")]
+pub struct Accuracy {
+    /// Fewest segments of each path.
+    pub min_segments: u32,
+    /// Largest bound of the tool's departure, in the unit of that bound.
+    pub max_departure: f64,
+    /// Largest time, relative to what more segments would reach: above 1, such as 1.02; infinite
+    /// where the departure alone counts. It is judged by the change of the time with the number of
+    /// segments.
+    pub max_time_ratio: f64,
+}
+
+impl<'a, A: Axes> Table<'a, A> {
+    /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a path
+    /// has, at least 2.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan(
-        legs: impl IntoIterator<IntoIter = L>,
+    pub fn plan<P: Path<Axes = A> + Clone>(
+        paths: impl IntoIterator<Item = P>,
         limits: A::Of<AxisLimits>,
-        segments: impl Fn(&L::Leg) -> u32,
-        knots: &'a mut [Knot],
-    ) -> Result<Self, PlanError<L::Error>> {
-        let planner = Planner::new(limits)?;
-        let choose = |planner: &Planner<_>, leg: &Leg<_>, _, _, _: &mut [Knot]| {
-            planner.bounded(leg.number, segments(leg.path()))
+        segments: impl Fn(&P) -> u32,
+        knots: &'a mut [Knot<A>],
+    ) -> Result<Self, PlanError<P::Error>> {
+        let limits = Reciprocals::checked(&limits)?;
+        let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
+            let segments = bounded(place.leg.number, segments(place.leg.path()))?;
+            place.lay(&limits, segments, free)?;
+            Ok(segments)
         };
-        Self::plan_by(legs.into_iter(), &planner, &segments, choose, knots)
+        let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
+        let duration_s = time(&limits, knots)?;
+        Ok(Self::new(knots, limits, duration_s))
     }
 
-    /// Plans the table with a number of segments of each leg that keeps a departure within
-    /// `allowed` while one fewer does not.
+    /// Plans the table with about the fewest segments of each path that keep a departure.
     ///
-    /// `departure` is a bound on what a controller departs by on a segment of a leg, in any unit; it
-    /// should fall with the number of segments. The number is found by bisection, and each trial is
-    /// a plan. It holds at a constant feed; of a path that is passed without a stop at an end it holds
-    /// at any speeds, as [`plan_within_at_any_feed`](Self::plan_within_at_any_feed) makes it.
+    /// `departure` is a bound on what a controller departs by on a segment of a path, in any unit; it
+    /// should fall with the number of segments. It holds at a constant feed; of a path that is passed
+    /// without a stop at an end it holds at any speeds, as
+    /// [`plan_within_at_any_feed`](Self::plan_within_at_any_feed) makes it.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan_within(
-        legs: impl IntoIterator<IntoIter = L>,
+    pub fn plan_within<P: Path<Axes = A> + Clone>(
+        paths: impl IntoIterator<Item = P> + Clone,
         limits: A::Of<AxisLimits>,
-        at_least: u32,
-        allowed: f64,
-        departure: impl Fn(&L::Leg, &Span<A>) -> f64,
-        knots: &'a mut [Knot],
-    ) -> Result<Self, PlanError<L::Error>> {
-        let within = Within {
-            at_least,
-            allowed,
-            any_feed: false,
-            departure,
-        };
-        Self::plan_fewest(legs.into_iter(), limits, &within, knots)
+        accuracy: Accuracy,
+        departure: impl Fn(&P, &Span<A>) -> f64,
+        knots: &'a mut [Knot<A>],
+    ) -> Result<Self, PlanError<P::Error>> {
+        Self::plan_accurately(paths, limits, accuracy, Speeds::Passing, departure, knots)
     }
 
     /// Plans the table as [`plan_within`](Self::plan_within) does, with segments that keep the
-    /// departure at any speeds: also under feed changes, and where a [`Run`](crate::Run) is held at
-    /// any row and resumed. These are several times as many.
+    /// departure at any speeds: also under feed changes, and where a [`Playback`](crate::Playback) is
+    /// held at any row and resumed. These are several times as many.
     ///
     /// `departure` is asked for each segment from rest, to rest and at three ratios of the speeds
-    /// between, and with an acceleration that starts or ends at zero; the last segment of a path also
-    /// from rest to rest. It must be largest at one of these, as a bound is that grows towards rest.
-    /// The speed of the table must not change more than threefold on a segment that does not start or
-    /// end at rest.
+    /// between; the last segment of a path also from rest to rest. It must be largest at one of these,
+    /// as a bound is that grows towards rest.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan_within_at_any_feed(
-        legs: impl IntoIterator<IntoIter = L>,
+    pub fn plan_within_at_any_feed<P: Path<Axes = A> + Clone>(
+        paths: impl IntoIterator<Item = P> + Clone,
         limits: A::Of<AxisLimits>,
-        at_least: u32,
-        allowed: f64,
-        departure: impl Fn(&L::Leg, &Span<A>) -> f64,
-        knots: &'a mut [Knot],
-    ) -> Result<Self, PlanError<L::Error>> {
+        accuracy: Accuracy,
+        departure: impl Fn(&P, &Span<A>) -> f64,
+        knots: &'a mut [Knot<A>],
+    ) -> Result<Self, PlanError<P::Error>> {
+        Self::plan_accurately(paths, limits, accuracy, Speeds::Any, departure, knots)
+    }
+
+    fn plan_accurately<P: Path<Axes = A> + Clone>(
+        paths: impl IntoIterator<Item = P> + Clone,
+        limits: A::Of<AxisLimits>,
+        accuracy: Accuracy,
+        speeds: Speeds,
+        departure: impl Fn(&P, &Span<A>) -> f64,
+        knots: &'a mut [Knot<A>],
+    ) -> Result<Self, PlanError<P::Error>> {
+        accuracy.check()?;
+        let limits = Reciprocals::checked(&limits)?;
         let within = Within {
-            at_least,
-            allowed,
-            any_feed: true,
+            min_segments: accuracy.min_segments,
+            allowed: accuracy.max_departure,
+            speeds,
             departure,
         };
-        Self::plan_fewest(legs.into_iter(), limits, &within, knots)
-    }
-
-    fn plan_fewest(
-        legs: L,
-        limits: A::Of<AxisLimits>,
-        within: &Within<impl Fn(&L::Leg, &Span<A>) -> f64>,
-        knots: &'a mut [Knot],
-    ) -> Result<Self, PlanError<L::Error>> {
-        check_allowed(within.allowed)?;
-        let planner = Planner::new(limits)?;
-        let choose = |planner: &Planner<_>, leg: &Leg<_>, rests, used, free: &mut [Knot]| {
-            planner.fewest(leg, rests, [used, free.len()], free, within)
-        };
-        Self::plan_by(legs, &planner, |_| within.at_least, choose, knots)
-    }
-
-    fn plan_by(
-        legs: L,
-        planner: &Planner<A>,
-        least: impl Fn(&L::Leg) -> u32,
-        choose: impl Fn(
-            &Planner<A>,
-            &Leg<L::Leg>,
-            bool,
-            usize,
-            &mut [Knot],
-        ) -> Result<u32, PlanError<L::Error>>,
-        knots: &'a mut [Knot],
-    ) -> Result<Self, PlanError<L::Error>> {
-        let chain = Chain::new(legs.clone(), 0);
-        planner.check_legs(&chain, least, knots.len())?;
-        let (mut used, mut nodes, mut jumps) = (0_usize, 0_usize, 0_usize);
-        let mut starts_at_rest = true;
-        for leg in chain.forward(planner.reciprocals()) {
-            let leg = leg?;
-            let (_, free) = profile::split(knots, used);
-            let segments = choose(planner, &leg, starts_at_rest, used, free)?;
-            let own = planner.lay_leg(&leg, starts_at_rest, free, segments)?;
-            used = used.saturating_add(own.len());
-            // The last knot of a leg is the first of the next.
-            nodes = nodes
-                .saturating_add(own.len())
-                .saturating_sub(usize::from(nodes > 0));
-            jumps = jumps.saturating_add(usize::from(leg.joint().is_jump()));
-            starts_at_rest = leg.joint().is_stop();
+        let mut doublings = 0;
+        loop {
+            let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
+                within.lay(place, &limits, doublings, free)
+            };
+            let used = lay_all(paths.clone().into_iter(), &limits, knots, lay)?.len();
+            let (own, spare) = knots.split_at_mut(used.min(knots.len()));
+            let duration_s = time(&limits, own)?;
+            if !accuracy.max_time_ratio.is_finite() {
+                let (own, _) = knots.split_at(used.min(knots.len()));
+                break Ok(Self::new(own, limits, duration_s));
+            }
+            let coarse_s = time_of_half(&limits, own, spare)?;
+            let best_s = duration_s - (coarse_s - duration_s).max(0.0);
+            if duration_s <= best_s * accuracy.max_time_ratio {
+                let (own, _) = knots.split_at(used.min(knots.len()));
+                break Ok(Self::new(own, limits, duration_s));
+            }
+            doublings += 1;
         }
-        let (knots, _) = profile::split(knots, used);
-        let duration_s = planner.plan_legs(&chain, knots)?;
-        Ok(Self {
-            legs,
+    }
+
+    fn new(knots: &'a [Knot<A>], limits: Reciprocals<A>, duration_s: f64) -> Self {
+        Self {
             knots,
-            limits: *planner.reciprocals(),
+            limits,
             stretch: 1.0,
-            nodes,
-            rows: nodes.saturating_add(jumps),
             duration_s,
-        })
+        }
     }
 
     /// The same motion at a fraction of its speed, above 0 and at most 1: room for a feed above
@@ -187,34 +157,28 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
     ///
     /// # Errors
     /// [`PlanError::SpeedScale`].
-    pub fn at_speed(&self, scale: f64) -> Result<Self, PlanError<L::Error>> {
+    pub fn at_speed(&self, scale: f64) -> Result<Self, PlanError<Infallible>> {
         let min = self.stretch * SMALLEST;
         if scale >= min && scale <= 1.0 {
             return Ok(Self {
                 stretch: self.stretch / scale,
                 duration_s: self.duration_s / scale,
-                ..self.clone()
+                ..*self
             });
         }
         Err(PlanError::SpeedScale { scale, min })
     }
 
-    /// The paths, as they were given.
-    #[must_use]
-    pub const fn legs(&self) -> &L {
-        &self.legs
-    }
-
-    /// The number of rows: one more than segments; 0 without a leg.
+    /// The number of rows: one more than segments; 0 without a path.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.rows
+        self.knots.len()
     }
 
-    /// Whether there is no leg.
+    /// Whether there is no path.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.rows == 0
+        self.knots.is_empty()
     }
 
     /// Seconds from the first row to the last.
@@ -223,57 +187,55 @@ impl<'a, A: Axes, L: Legs<Axes = A>> Table<'a, L, A> {
         self.duration_s
     }
 
-    /// The largest of a bound of the departure over all segments, as given to
-    /// [`plan_within`](Self::plan_within).
-    ///
-    /// # Errors
-    /// Where the path refuses a point that it has given while the table was planned.
-    pub fn departure(
-        &self,
-        departure: impl Fn(&L::Leg, &Span<A>) -> f64,
-    ) -> Result<f64, PlanError<L::Error>> {
-        let mut later = self.knots;
-        self.chain()
-            .forward(&self.limits)
-            .try_fold(0.0, |worst, leg| {
-                let (own, rest) = later.split_at(profile::first_leg(later).min(later.len()));
-                later = rest;
-                let bound = bound_of_leg(&leg?, own, &departure)?;
-                Ok(larger_or_nan(worst, bound))
-            })
-    }
-
-    pub(crate) fn chain(&self) -> Chain<L> {
-        Chain::new(self.legs.clone(), 0)
-    }
-
     /// The rows in their order.
     #[must_use]
-    pub fn rows(&self) -> Rows<'a, L> {
+    pub fn rows(&self) -> Rows<'a, A> {
         Rows::new(self)
+    }
+
+    /// The segments in their order; which path each lies on is the `leg` of its second row.
+    pub fn spans(&self) -> impl Iterator<Item = Span<A>> + use<'a, A> {
+        let mut rows = self.rows();
+        let first = rows.next();
+        let knots = self.knots;
+        let ends = knots.iter().zip(knots.iter().skip(1)).zip(rows);
+        ends.scan(first, |before, ((from, to), row)| {
+            let rows = [before.replace(row)?, row];
+            let s = [from.next_start(), to.s];
+            Some((to.ds > 0.0).then_some(Span { s, rows }))
+        })
+        .flatten()
     }
 }
 
-/// The segments of a leg.
-pub(crate) fn spans_of_leg<P: Path>(
-    leg: &Leg<P>,
-    knots: &[Knot],
-) -> impl Iterator<Item = Result<Span<P::Axes>, PlanError<P::Error>>> {
-    let mut from: Option<(f64, Row<P::Axes>)> = None;
-    let mut duration_s = 0.0;
-    let rows = knots.iter().map(move |knot| {
-        let point = leg.checked_point(knot.s)?;
-        let row = Row::new(&point, knot.speed, 0.0, duration_s);
-        duration_s = knot.duration_s;
-        Ok((knot.s, row))
-    });
-    rows.filter_map(move |row| match row {
-        Ok((s, to)) => from.replace((s, to)).map(|(before, from)| {
-            Ok(Span {
-                s: [before, s],
-                rows: [from, to],
-            })
-        }),
-        Err(error) => Some(Err(error)),
-    })
+impl Accuracy {
+    fn check<E>(&self) -> Result<(), PlanError<E>> {
+        check_allowed(self.max_departure)?;
+        let max_time_ratio = self.max_time_ratio;
+        if max_time_ratio > 1.0 {
+            return Ok(());
+        }
+        Err(PlanError::TimeRatio { max_time_ratio })
+    }
+}
+
+/// The time that half of the segments take, planned in memory beside them.
+fn time_of_half<A: Axes, E>(
+    limits: &Reciprocals<A>,
+    knots: &[Knot<A>],
+    spare: &mut [Knot<A>],
+) -> Result<f64, PlanError<E>> {
+    let (needed, available) = (
+        knots.len().saturating_add(halved(knots).count()),
+        knots.len().saturating_add(spare.len()),
+    );
+    let mut used = 0_usize;
+    for (slot, knot) in spare.iter_mut().zip(halved(knots)) {
+        (*slot, used) = (knot, used.saturating_add(1));
+    }
+    if needed > available {
+        return Err(PlanError::Memory { needed, available });
+    }
+    let (half, _) = spare.split_at_mut(used.min(spare.len()));
+    time(limits, half)
 }

@@ -8,8 +8,8 @@ use core::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Vector3};
 use pose_pt::{
-    Ahead, AxisLimits, Convention, Interpolation, Knot, Locator, Path, Platform, PtTable, PvtTable,
-    Segmentation,
+    AxisLimits, Convention, FeedCeiling, Interpolation, Knot, Locator, Path, Platform, PtTable,
+    PvtTable, Segmentation,
 };
 
 const POINTS: u32 = 10_000;
@@ -102,7 +102,7 @@ fn pvt(c: &mut Criterion) {
 
     let table = PvtTable::plan(&platform, &path, Segmentation::segments(POINTS), &mut knots);
     let table = table.expect("plan is good");
-    let mut ahead = vec![Ahead::default(); ROOM];
+    let mut ceilings = vec![FeedCeiling::default(); ROOM];
     let mut group = c.benchmark_group("PVT points");
     group.throughput(Throughput::Elements(u64::from(POINTS)));
     group.sample_size(20);
@@ -115,7 +115,7 @@ fn pvt(c: &mut Criterion) {
     });
     group.bench_function("under a feed override", |b| {
         b.iter(|| {
-            let mut run = table.run(1.5, &mut ahead).expect("memory is enough");
+            let mut run = table.run(1.5, &mut ceilings).expect("memory is enough");
             run.set_feed(0.7).expect("feed is good");
             for point in run {
                 black_box(&point);

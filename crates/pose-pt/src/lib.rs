@@ -41,7 +41,7 @@ mod pvt;
 mod segmentation;
 mod turn;
 
-pub use path_timing::{Ahead, FeedError, Knot};
+pub use path_timing::{FeedCeiling, FeedError, Knot};
 pub use segmentation::Segmentation;
 
 pub use distance_error::hermite_distance_error;

@@ -1,8 +1,7 @@
 //! Why a table cannot be made.
 
-use core::convert::Infallible;
-
 use crate::LimitError;
+use crate::pvt::Moving;
 use crate::short::short;
 
 /// Why a table cannot be made; nothing of it has been handed out.
@@ -59,50 +58,44 @@ pub enum PlanError {
         /// The point of the leg, from 0.
         point: u32,
     },
-    /// A speed scale that is above 1, or so low that times leave the range of the crate.
-    #[error("a speed scale of {} is not within {}..=1", short(.scale), short(.min))]
-    SpeedScale {
-        /// The speed scale given.
-        scale: f64,
-        /// The lowest speed scale.
-        min: f64,
-    },
-    /// A highest feed that is beyond the range of the crate.
-    #[error("a highest feed of {} is not within {}..={}", short(.feed), short(.min), short(.max))]
-    Feed {
-        /// The feed given.
-        feed: f64,
-        /// The lowest.
-        min: f64,
-        /// The highest.
-        max: f64,
+    /// Between two points of a PVT table an axis would leave its stroke.
+    #[error("leg {leg}, at {} of it: {reason}", short(.part))]
+    Stroke {
+        /// The leg, from 0; of a blend the leg before it.
+        leg: usize,
+        /// The part of the leg, or of the blend, up to the first of both points, 0..=1.
+        part: f64,
+        /// Locator, axis, value and by how much it is out.
+        reason: LimitError,
     },
     /// Whatever else the planner of `path-timing` refuses.
     #[error("{0}")]
-    Timing(path_timing::PlanError<Infallible>),
+    Timing(path_timing::PlanError<LimitError>),
 }
 
 impl PlanError {
-    /// What `path-timing` refuses, as an error of a platform; `number` is that of a leg
-    /// that it was given.
-    pub(crate) fn of_timing(
-        error: path_timing::PlanError<Infallible>,
-        number: impl Fn(usize) -> usize,
+    /// What `path-timing` refuses of legs and blends.
+    pub(crate) fn of_timing<const N: usize>(
+        error: path_timing::PlanError<LimitError>,
+        moving: &Moving<'_, N>,
     ) -> Self {
         use path_timing::PlanError as Timing;
 
         match error {
+            Timing::Path { leg, s, reason } => Self::Stroke {
+                leg: moving.number(leg),
+                part: moving.part(leg, s),
+                reason,
+            },
             Timing::TooFine { leg, max } => Self::TooFine {
-                leg: number(leg),
+                leg: moving.number(leg),
                 max,
             },
             Timing::Memory { needed, available } => Self::TooManyPoints { needed, available },
             Timing::Indistinct { leg, knot } => Self::Indistinct {
-                leg: number(leg),
+                leg: moving.number(leg),
                 point: knot,
             },
-            Timing::SpeedScale { scale, min } => Self::SpeedScale { scale, min },
-            Timing::Feed { feed, min, max } => Self::Feed { feed, min, max },
             other => Self::Timing(other),
         }
     }

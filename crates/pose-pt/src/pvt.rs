@@ -7,14 +7,14 @@ mod strokes;
 
 use core::convert::Infallible;
 
-use path_timing::{AxisLimits, Knot, Span, Table};
+use path_timing::{Accuracy, AxisLimits, Knot, Span, Table};
 
 use crate::distance_error::hermite_distance_error;
 use crate::number::larger_or_nan;
 use crate::path::Path;
 use crate::segmentation::Rule;
 use crate::{PlanError, Platform, Segmentation};
-use moving::Moving;
+pub(crate) use moving::Moving;
 pub use points::{PvtPoint, PvtPoints};
 pub use run::PvtRun;
 
@@ -27,7 +27,8 @@ pub use run::PvtRun;
 #[derive(Debug, Clone, Copy)]
 pub struct PvtTable<'a, const N: usize> {
     /// Without a row where nothing moves.
-    table: Table<'a, Moving<'a, N>, [[f64; 3]; N]>,
+    table: Table<'a, [[f64; 3]; N]>,
+    moving: Moving<'a, N>,
 }
 
 impl<'a, const N: usize> PvtTable<'a, N> {
@@ -44,7 +45,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
         platform: &'a Platform<N>,
         path: &Path<'a>,
         segmentation: Segmentation,
-        knots: &'a mut [Knot],
+        knots: &'a mut [Knot<[[f64; 3]; N]>],
     ) -> Result<Self, PlanError> {
         segmentation.check(platform)?;
         let moving = Moving::new(platform, path);
@@ -55,66 +56,37 @@ impl<'a, const N: usize> PvtTable<'a, N> {
                     let [from, to] = span.rows.each_ref().map(PvtPoint::new);
                     hermite_distance_error(platform, &from, &to)
                 };
-                Table::plan_within(
-                    moving,
-                    limits,
-                    segmentation.at_least,
-                    allowed,
-                    distance_error,
-                    knots,
-                )
+                let accuracy = Accuracy {
+                    min_segments: segmentation.at_least,
+                    max_departure: allowed,
+                    max_time_ratio: f64::INFINITY,
+                };
+                Table::plan_within(moving, limits, accuracy, distance_error, knots)
             }
             _ => {
                 let segments = |leg: &moving::Track<'_, N>| segmentation.segments_over(leg.travel);
                 Table::plan(moving, limits, segments, knots)
             }
         };
-        let table = Self {
-            table: table.map_err(|error| PlanError::of_timing(error, |leg| moving.number(leg)))?,
-        };
-        table.check_strokes()?;
-        Ok(table)
-    }
-
-    /// Every point, and the cubics between them.
-    fn check_strokes(&self) -> Result<(), PlanError> {
-        let mut points = self.points();
-        let Some(mut from) = points.next() else {
-            return Ok(());
-        };
-        let failed = |leg, point| move |reason| PlanError::Limit { leg, point, reason };
-        let platform = self.platform();
-        platform.check_axes(&from.axes).map_err(failed(0, 0))?;
-        let (mut leg, mut point) = (0, 0_u32);
-        loop {
-            let next_leg = points.leg();
-            let Some(to) = points.next() else {
-                return Ok(());
-            };
-            point = if next_leg == leg {
-                point.saturating_add(1)
-            } else {
-                1
-            };
-            leg = next_leg;
-            strokes::check(platform, &from, &to).map_err(|reason| PlanError::Limit {
-                leg: self.table.legs().number(leg),
-                point,
-                reason,
-            })?;
-            from = to;
+        let table = table.map_err(|error| PlanError::of_timing(error, &moving))?;
+        let table = Self { table, moving };
+        if let Some(point) = table.still_point() {
+            let (leg, point, axes) = (0, 0, point.axes);
+            let left = |reason| PlanError::Limit { leg, point, reason };
+            platform.check_axes(&axes).map_err(left)?;
         }
+        Ok(table)
     }
 
     /// The same motion at a fraction of its speed, above 0 and at most 1: room for a feed above
     /// 100 %.
     ///
     /// # Errors
-    /// [`PlanError::SpeedScale`].
-    pub fn at_speed_scale(self, scale: f64) -> Result<Self, PlanError> {
-        let table = self.table.at_speed(scale);
+    /// [`SpeedScale`](path_timing::PlanError::SpeedScale).
+    pub fn at_speed_scale(self, scale: f64) -> Result<Self, path_timing::PlanError<Infallible>> {
         Ok(Self {
-            table: table.map_err(|error| self.refused(error))?,
+            table: self.table.at_speed(scale)?,
+            ..self
         })
     }
 
@@ -134,7 +106,7 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     /// The platform of the table.
     #[must_use]
     pub const fn platform(&self) -> &'a Platform<N> {
-        self.table.legs().platform
+        self.moving.platform
     }
 
     /// A bound on how far the distance of two locators ever departs from that of their anchors:
@@ -158,15 +130,9 @@ impl<'a, const N: usize> PvtTable<'a, N> {
         PvtPoints::new(self)
     }
 
-    fn refused(&self, error: path_timing::PlanError<Infallible>) -> PlanError {
-        PlanError::of_timing(error, |leg| self.table.legs().number(leg))
-    }
-
     /// The only point of a table where nothing moves.
     fn still_point(&self) -> Option<PvtPoint<N>> {
-        self.table
-            .is_empty()
-            .then(|| self.table.legs().first_point())?
+        self.table.is_empty().then(|| self.moving.first_point())?
     }
 }
 

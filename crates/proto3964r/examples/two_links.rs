@@ -4,7 +4,9 @@ use proto3964r::{Config, Line, Priority, tokio::Link};
 
 #[tokio::main]
 async fn main() -> Result<(), Box<dyn core::error::Error>> {
-    // Through a serial server: `Link::connect("tcp://192.168.0.7:4001", config).await?`.
+    // Through a serial server, whose line is slower than TCP and takes nothing back:
+    // let config = Config::siemens_3964r(Priority::High, Line::buffered(9600, 11));
+    // let scale = Link::connect("tcp://192.168.0.7:4001", config).await?;
     let (here, there) = tokio::io::duplex(64);
     let plc = Link::new(here, Config::siemens_3964r(Priority::High, Line::Instant));
     let scale = Link::new(there, Config::siemens_3964r(Priority::Low, Line::Instant));

@@ -111,6 +111,18 @@ impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
         self.station.cancel(self.now())
     }
 
+    /// Acknowledges the telegram of the last event, as [`Station::accept`] does; the answer goes out
+    /// while [`wait`](Self::wait) runs.
+    #[must_use = "a telegram that is accepted too late comes again"]
+    pub fn accept(&mut self) -> bool {
+        self.station.accept(self.now())
+    }
+
+    /// Has the telegram of the last event repeated, as [`Station::refuse`] does.
+    pub fn refuse(&mut self) -> bool {
+        self.station.refuse(self.now())
+    }
+
     /// Whether a job is under way, or its outcome has not been polled.
     #[must_use]
     pub fn is_busy(&self) -> bool {

@@ -104,6 +104,10 @@ pub struct Config {
     /// Longest wait for a free receive buffer after STX, in ms; never longer than QVZ less 10 ms.
     /// Siemens: 400.
     pub buffer_wait_ms: u16,
+    /// Longest time that the answer to a good block is held for
+    /// [`Station::accept`](crate::Station::accept) or [`refuse`](crate::Station::refuse), in ms;
+    /// never longer than QVZ less 10 ms. 0, as in every preset: DLE at once.
+    pub acknowledge_wait_ms: u16,
     /// How the output reaches the wire. QVZ, ZVZ and BWZ count from the end of the transmission,
     /// however far ahead the output is queued.
     pub line: Line,
@@ -152,7 +156,15 @@ impl Config {
 
     /// `min(buffer_wait, QVZ - 10 ms)`.
     pub(crate) fn buffer_wait(&self) -> Duration {
-        let ms = self.buffer_wait_ms.min(self.qvz_ms.saturating_sub(10));
-        Duration::from_millis(ms.into())
+        self.within_qvz(self.buffer_wait_ms)
+    }
+
+    /// How long the answer to a good block is held; `None` when it is not.
+    pub(crate) fn acknowledge_wait(&self) -> Option<Duration> {
+        (self.acknowledge_wait_ms > 0).then(|| self.within_qvz(self.acknowledge_wait_ms))
+    }
+
+    fn within_qvz(&self, ms: u16) -> Duration {
+        Duration::from_millis(ms.min(self.qvz_ms.saturating_sub(10)).into())
     }
 }

@@ -85,6 +85,17 @@ where
         self.station.cancel((self.clock)())
     }
 
+    /// Acknowledges the telegram of the last event, as [`Station::accept`] does.
+    #[must_use = "a telegram that is accepted too late comes again"]
+    pub fn accept(&mut self) -> bool {
+        self.station.accept((self.clock)())
+    }
+
+    /// Has the telegram of the last event repeated, as [`Station::refuse`] does.
+    pub fn refuse(&mut self) -> bool {
+        self.station.refuse((self.clock)())
+    }
+
     /// Whether a job is under way, or its outcome has not been polled.
     #[must_use]
     pub fn is_busy(&self) -> bool {

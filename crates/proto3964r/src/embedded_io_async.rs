@@ -117,6 +117,18 @@ where
         self.station.cancel(self.timer.now())
     }
 
+    /// Acknowledges the telegram of the last event, as [`Station::accept`] does; the answer goes out
+    /// while [`wait`](Self::wait) is polled.
+    #[must_use = "a telegram that is accepted too late comes again"]
+    pub fn accept(&mut self) -> bool {
+        self.station.accept(self.timer.now())
+    }
+
+    /// Has the telegram of the last event repeated, as [`Station::refuse`] does.
+    pub fn refuse(&mut self) -> bool {
+        self.station.refuse(self.timer.now())
+    }
+
     /// Whether a job is under way, or its outcome has not been polled.
     #[must_use]
     pub fn is_busy(&self) -> bool {

@@ -15,7 +15,9 @@ use crate::{frame::FrameError, monitor::Hex};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Event<'a> {
-    /// A telegram came in and was acknowledged.
+    /// A telegram came in and was acknowledged; or, with
+    /// [`Config::acknowledge_wait_ms`](crate::Config::acknowledge_wait_ms), waits for
+    /// [`Station::accept`](crate::Station::accept).
     Received(&'a [u8]),
     /// The job was acknowledged by the partner.
     Sent {
@@ -151,6 +153,13 @@ pub enum Rejection {
     /// STX came, and no receive buffer became free in time.
     #[error("no receive buffer")]
     NoBuffer,
+    /// The block is good, and [`Station::refuse`](crate::Station::refuse) was called.
+    #[error("refused by the user")]
+    Refused,
+    /// The block is good, and the user neither accepted nor refused it before its time, or before
+    /// the partner asked again.
+    #[error("not accepted in time")]
+    Undecided,
     /// A character other than STX and NAK in idle, followed by silence.
     #[error("noise {first:02X}h while idle")]
     Noise {

@@ -26,7 +26,7 @@ use self::{
 };
 use crate::{
     config::Config,
-    event::{Cause, Event, LineError},
+    event::{Cause, Event, LineError, Rejection},
     frame::Rules,
 };
 
@@ -43,6 +43,7 @@ use crate::{
 /// | [`handle_damaged`](Self::handle_damaged), [`handle_break`](Self::handle_break) | the receiver circuit saw an error |
 /// | [`handle_timeout`](Self::handle_timeout) | the time of `poll_timeout` has come |
 /// | [`submit`](Self::submit), [`cancel`](Self::cancel) | the user wants it |
+/// | [`accept`](Self::accept), [`refuse`](Self::refuse) | a telegram whose answer is held is safe, or cannot be made so |
 ///
 /// | pull | what |
 /// |---|---|
@@ -66,8 +67,13 @@ use crate::{
 /// It is in use from the first STX until [`Event::Received`] has been polled. A partner that sends
 /// in between is made to wait and then answered NAK, as the procedure wants it.
 ///
+/// # Telegrams that are answered by the user
+/// With [`Config::acknowledge_wait_ms`] a good block is not answered when it ends: `accept`, after
+/// its [`Event::Received`] was polled, answers DLE, `refuse` and the end of that time NAK, on which
+/// the partner repeats it. A user who stores what it accepts acknowledges nothing that it can lose.
+///
 /// # Size
-/// At most `N + T + 160` bytes.
+/// At most `N + T + 168` bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Station<const N: usize, const T: usize = N> {
     config: Config,
@@ -239,6 +245,34 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.end_job(now, Cause::Cancelled);
         }
         had_job
+    }
+
+    /// Answers the telegram that was polled last with DLE; `false` when that is too late, because it
+    /// has been answered NAK or the partner no longer waits: it comes again.
+    ///
+    /// For [`Config::acknowledge_wait_ms`]; otherwise nothing is held, and this is always `false`.
+    #[must_use = "a telegram that is accepted too late comes again"]
+    pub fn accept(&mut self, now: Duration) -> bool {
+        let is_held = self.is_held(now);
+        if is_held {
+            self.acknowledge(now);
+        }
+        is_held
+    }
+
+    /// Answers the telegram that was polled last with NAK, as for [`accept`](Self::accept).
+    pub fn refuse(&mut self, now: Duration) -> bool {
+        let is_held = self.is_held(now);
+        if is_held {
+            self.reject(now, Rejection::Refused);
+        }
+        is_held
+    }
+
+    /// Whether the telegram that was polled last waits for its answer.
+    fn is_held(&mut self, now: Duration) -> bool {
+        self.handle_timeout(now);
+        matches!(self.state, State::Held { .. }) && !self.holds_telegram
     }
 
     /// Takes a BREAK: the line is idle at once, a transmission under way fails.

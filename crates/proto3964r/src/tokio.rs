@@ -4,6 +4,7 @@
 //! order, has a [`driver`] in a [`Task`] of its own.
 
 mod damage;
+mod incoming;
 mod link;
 mod stream;
 mod task;
@@ -18,6 +19,7 @@ use ::tokio::{
 
 pub use self::{
     damage::Damage,
+    incoming::Incoming,
     link::{Link, SendError},
     stream::{Clock, Reader, Writer},
     task::{Caller, Lost, Task},

@@ -4,7 +4,7 @@ use alloc::{sync::Arc, vec::Vec};
 use core::time::Duration;
 use std::io;
 
-use proto3964r::Event as LineEvent;
+use proto3964r::{Event as LineEvent, Failure};
 use thiserror::Error;
 
 use crate::{
@@ -38,6 +38,9 @@ pub enum CallError {
     /// The job failed.
     #[error(transparent)]
     Failed(#[from] JobError),
+    /// 3964R did not deliver a command of the job.
+    #[error("command not delivered: {0}")]
+    NotDelivered(#[source] Failure),
     /// The connection is lost.
     #[error("the connection is lost: {0}")]
     Lost(#[source] Arc<io::Error>),
@@ -69,6 +72,8 @@ pub(crate) trait Transport {
 pub(crate) struct Session {
     endpoint: Endpoint<MAX_JOB>,
     served: Memory<'static, 0>,
+    /// Why the last telegram was not delivered.
+    failure: Option<Failure>,
 }
 
 impl Session {
@@ -76,6 +81,7 @@ impl Session {
         Self {
             endpoint: Endpoint::new(config),
             served: Memory::new([]),
+            failure: None,
         }
     }
 
@@ -119,7 +125,10 @@ impl Session {
                 result = Some(match outcome {
                     Outcome::Sent { .. } => Ok(Vec::new()),
                     Outcome::Fetched { data, .. } => Ok(data.to_vec()),
-                    Outcome::Failed { error, .. } => Err(error.into()),
+                    Outcome::Failed { error, .. } => Err(match (error, self.failure.take()) {
+                        (JobError::Transport, Some(failure)) => CallError::NotDelivered(failure),
+                        (error, _) => error.into(),
+                    }),
                 });
             }
         }
@@ -136,11 +145,18 @@ impl Session {
 
     /// An event of the station.
     pub(crate) fn handle(&mut self, now: Duration, event: LineEvent<'_>) {
-        let Self { endpoint, served } = self;
+        let Self {
+            endpoint,
+            served,
+            failure,
+        } = self;
         match event {
             LineEvent::Received(block) => endpoint.handle_block(now, block, served),
             LineEvent::Sent { .. } => endpoint.handle_delivered(now),
-            LineEvent::Failed(_) => endpoint.handle_failed(now, served),
+            LineEvent::Failed(cause) => {
+                *failure = Some(cause);
+                endpoint.handle_failed(now, served);
+            }
             _ => {}
         }
     }

@@ -7,7 +7,7 @@ use std::io;
 
 use ::tokio::io::{AsyncRead, AsyncWrite};
 use proto3964r::{
-    Line, Priority,
+    Event, Line, Priority,
     tokio::{Caller, Task, driver, tcp},
 };
 
@@ -72,9 +72,28 @@ impl Client {
     where
         S: AsyncRead + AsyncWrite + Send + 'static,
     {
+        Self::with_observer(stream, line, config, |_| {})
+    }
+
+    /// The same, and tells an observer each event of the station when it happens, diagnosis too. It
+    /// is called by the task that answers the partner, and must not wait.
+    ///
+    /// # Panics
+    /// Outside of a runtime of tokio.
+    #[must_use]
+    pub fn with_observer<S>(
+        stream: S,
+        line: proto3964r::Config,
+        config: Config,
+        observer: impl FnMut(Event<'_>) + Send + 'static,
+    ) -> Self
+    where
+        S: AsyncRead + AsyncWrite + Send + 'static,
+    {
         let driver = driver(stream, line);
+        let session = Session::new(config);
         Self {
-            task: Task::spawn(|jobs| task::work(driver, jobs, Session::new(config))),
+            task: Task::spawn(|jobs| task::work(driver, jobs, session, observer)),
         }
     }
 

@@ -58,6 +58,9 @@ pub(crate) struct Squares<T> {
     pub(crate) shorter: T,
     /// That of the upper arm less that of the forearm.
     pub(crate) difference: T,
+    /// 1 / (2 l1 l2), and 1 / (2 l1).
+    pub(crate) per_elbow: T,
+    pub(crate) per_shoulder: T,
 }
 
 impl<T: RealField + Copy> Squares<T> {
@@ -74,6 +77,8 @@ impl<T: RealField + Copy> Squares<T> {
             longer: longer * longer,
             shorter: shorter * shorter,
             difference: folded * reach,
+            per_elbow: (upper * fore * two()).recip(),
+            per_shoulder: (upper * two()).recip(),
         }
     }
 }

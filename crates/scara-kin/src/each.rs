@@ -1,7 +1,7 @@
 //! Many points or poses at once: `inverse` and `forward` in blocks that vectorise.
 
 use nalgebra::{Point2, RealField};
-use trig_kernels::{Trig, atan2_lanes, sin_cos_lanes};
+use trig_kernels::{Trig, atan2_of_length_lanes, sin_cos_lanes};
 
 use crate::inverse::Triangle;
 use crate::{Arm, InverseError, Joints, Solutions};
@@ -47,15 +47,16 @@ impl<T: RealField + Trig> Arm<T> {
         points: &[Point2<T>; LANES],
     ) -> impl Iterator<Item = Result<Solutions<T>, InverseError<T>>> + Clone + use<'_, T> {
         let triangles = points.map(|point| self.triangle(point));
-        let angles = |sides: fn(&Triangle<T>) -> (T, T)| {
+        let angles = |sides: fn(&Triangle<T>) -> (T, T, T)| {
             let (mut y, mut x) = ([T::zero(); LANES], [T::one(); LANES]);
+            let mut inverse = x;
             // The lane of a point that has no triangle keeps any angle.
             for (k, triangle) in triangles.iter().enumerate() {
                 if let Ok(triangle) = triangle {
-                    (y[k], x[k]) = sides(triangle);
+                    (y[k], x[k], inverse[k]) = sides(triangle);
                 }
             }
-            lanes(&y, &x)
+            lanes(&y, &x, &inverse)
         };
         let elbows = angles(Triangle::elbow);
         let rights = angles(Triangle::right_shoulder);
@@ -85,8 +86,8 @@ impl<T: RealField + Trig> Arm<T> {
 
 /// A call of its own: inlined, the compiler no longer makes vectors of the lanes.
 #[inline(never)]
-fn lanes<T: Trig>(y: &[T; LANES], x: &[T; LANES]) -> [T; LANES] {
-    atan2_lanes(*y, *x)
+fn lanes<T: Trig>(y: &[T; LANES], x: &[T; LANES], inverse: &[T; LANES]) -> [T; LANES] {
+    atan2_of_length_lanes(*y, *x, *inverse)
 }
 
 /// Blocks of all items and how many are in each; the last one is filled up with an item of its own.

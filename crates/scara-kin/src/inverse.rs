@@ -5,7 +5,7 @@ mod error;
 mod solutions;
 
 use nalgebra::{Point2, RealField, Vector2};
-use trig_kernels::{Trig, atan2, atan2_lanes, sin_cos, sqrt};
+use trig_kernels::{Trig, atan2_of_length, atan2_of_length_lanes, sin_cos, sqrt};
 
 pub use error::InverseError;
 pub use solutions::Solutions;
@@ -23,6 +23,9 @@ pub(crate) struct Triangle<T> {
     k1: T,
     /// r² - l1² - l2²
     k2: T,
+    /// One over the length of the vector (k2, s), 2 l1 l2, and of the shoulders', 2 l1 r².
+    per_elbow: T,
+    per_shoulder: T,
 }
 
 impl<T: RealField + Trig> Triangle<T> {
@@ -32,41 +35,43 @@ impl<T: RealField + Trig> Triangle<T> {
             Elbow::Right => self.s,
             Elbow::Left => -self.s,
         };
-        let (sin, cos) = self.shoulder(s);
-        let [shoulder, elbow] = atan2_lanes([sin, s], [cos, self.k2]);
+        let (sin, cos, inverse) = self.shoulder(s);
+        let [shoulder, elbow] =
+            atan2_of_length_lanes([sin, s], [cos, self.k2], [inverse, self.per_elbow]);
         Joints { shoulder, elbow }
     }
 
     #[inline]
     fn both(&self) -> [Joints<T>; 2] {
         let (right, left) = (self.right_shoulder(), self.left_shoulder());
-        let (sin, cos) = self.elbow();
-        let elbow = atan2(sin, cos);
-        let [right, left] = atan2_lanes([right.0, left.0], [right.1, left.1]);
+        let (sin, cos, inverse) = self.elbow();
+        let elbow = atan2_of_length(sin, cos, inverse);
+        let [right, left] =
+            atan2_of_length_lanes([right.0, left.0], [right.1, left.1], [right.2, left.2]);
         [Joints::new(right, elbow), Joints::new(left, -elbow)]
     }
 
-    /// Sine and cosine of the right elbow, times some area, as the next two.
+    /// Sine and cosine of the right elbow times some area, and one over that, as the next two.
     #[inline(always)]
-    pub(crate) fn elbow(&self) -> (T, T) {
-        (self.s, self.k2)
+    pub(crate) fn elbow(&self) -> (T, T, T) {
+        (self.s, self.k2, self.per_elbow)
     }
 
     #[inline(always)]
-    pub(crate) fn right_shoulder(&self) -> (T, T) {
+    pub(crate) fn right_shoulder(&self) -> (T, T, T) {
         self.shoulder(self.s)
     }
 
     #[inline(always)]
-    pub(crate) fn left_shoulder(&self) -> (T, T) {
+    pub(crate) fn left_shoulder(&self) -> (T, T, T) {
         self.shoulder(-self.s)
     }
 
-    /// Sine and cosine of the shoulder, times some length, for the area `s` with the elbow's sign.
+    /// Those of the shoulder, for the area `s` with the elbow's sign.
     #[inline(always)]
-    fn shoulder(&self, s: T) -> (T, T) {
+    fn shoulder(&self, s: T) -> (T, T, T) {
         let (x, y) = (self.tool.x, self.tool.y);
-        (self.k1 * y - s * x, self.k1 * x + s * y)
+        (self.k1 * y - s * x, self.k1 * x + s * y, self.per_shoulder)
     }
 }
 
@@ -82,7 +87,8 @@ impl<T: RealField + Trig> Arm<T> {
     /// q1 = atan2(k1 y ∓ s x, k1 x ± s y)
     /// ```
     ///
-    /// What the differences round off is what a change of r² by its own last place would do, at
+    /// The lengths of these vectors are known, 2 l1 l2 and 2 l1 r², so that the angles come by their
+    /// halves. What the differences round off is what a change of r² by its own last place would do, at
     /// the rim, at the fold, for equal links and for very unequal ones: `forward(inverse(p))` is
     /// within 8 machine epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
     /// made of allowed joints is never refused: up to [`tolerance`](Self::tolerance) past an
@@ -211,7 +217,14 @@ impl<T: RealField + Trig> Arm<T> {
             less + squares.shorter
         };
         let k2 = less - squares.shorter;
-        Ok(Triangle { tool, s, k1, k2 })
+        Ok(Triangle {
+            tool,
+            s,
+            k1,
+            k2,
+            per_elbow: squares.per_elbow,
+            per_shoulder: squares.per_shoulder / r2,
+        })
     }
 
     #[cold]

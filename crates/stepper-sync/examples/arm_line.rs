@@ -5,7 +5,7 @@
 
 use core::error::Error;
 
-use path_timing::{AxisLimits, Curve, Knot, Path, Table};
+use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Table};
 use scara_kin::{Arm, ArmPath, Elbow};
 use stepper_sync::{PvtQuantiser, PvtSteps, Rate, StepDirTiming, StepScale};
 
@@ -23,14 +23,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         jerk: None,
     };
     let mut knots = [Knot::default(); 200];
-    let table = Table::plan_within(
-        [line],
-        [joint; 2],
-        8,
-        TOLERANCE_MM,
-        ArmPath::departure,
-        &mut knots,
-    )?;
+    let accuracy = Accuracy {
+        min_segments: 8,
+        max_departure: TOLERANCE_MM,
+        max_time_ratio: f64::INFINITY,
+    };
+    let departure = ArmPath::departure;
+    let table = Table::plan_within([line], [joint; 2], accuracy, departure, &mut knots)?;
 
     let tick_rate = Rate::from_hz(72_000_000)?;
     let steps_per_rad = StepScale::new(32_000.0 / core::f64::consts::TAU)?;
@@ -39,7 +38,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let timing = StepDirTiming::DRV8825.min_intervals(tick_rate);
     let mut steps = PvtSteps::new(rows.knots(), timing);
     for row in table.rows().skip(1) {
-        let row = row?;
         steps.push(&rows.row(row.time_s, row.position, row.velocity)?)?;
         for step in &mut steps {
             println!("{:>9} axis {} {:?}", step.ticks, step.axis, step.direction);

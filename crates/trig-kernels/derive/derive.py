@@ -20,7 +20,7 @@ HALF = mpf(1) / 2
 
 
 class Precision:
-    def __init__(self, name, word, bits, quarter_bits, parts, grid, terms, table):
+    def __init__(self, name, word, bits, quarter_bits, parts, grid, terms, half_end, table):
         self.name, self.word, self.bits = name, word, bits
         # The common range ends at 2^quarter_bits quarter turns.
         self.quarter_bits = quarter_bits
@@ -28,8 +28,10 @@ class Precision:
         self.parts = parts
         # Angles that are added to quarter turns are multiples of 2^-grid.
         self.grid = grid
-        # Coefficients of the sine, cosine and arc tangent.
+        # Coefficients of the sine, cosine, arc tangent, and arc tangent of half an angle.
         self.terms = terms
+        # Largest square of the tangent of half an angle, or of that less π/4 where it is folded.
+        self.half_end = half_end
         # Words of 2/π that the largest exponent needs.
         self.table = table
 
@@ -59,7 +61,7 @@ class Precision:
         return HALF_PI * (HALF + mpf(2) ** (self.quarter_bits - self.bits))
 
     def polynomials(self):
-        sine_terms, cosine_terms, arctan_terms = self.terms
+        sine_terms, cosine_terms, arctan_terms, half_terms = self.terms
         angle = self.largest_angle() ** 2
         yield "SINE", "S", "sin t = t + t³ S(t²)", sine, sine_weight, angle, sine_terms
         yield (
@@ -71,13 +73,19 @@ class Precision:
             "ARCTAN", "A", "atan q = q + q³ A(q²)",
             arctan, arctan_weight, third, arctan_terms,
         )
+        # Of half an angle of a vector whose length is known.
+        yield (
+            "HALF_ARCTAN", "A", "atan t = t + t³ A(t²)",
+            arctan, arctan_weight, self.half_end, half_terms,
+        )
 
 
 SINGLE = Precision(
-    "f32", 32, 24, 13, [(201, -7), (2029, -22), (1297, -34)], 22, (3, 3, 4), 7
+    "f32", 32, 24, 13, [(201, -7), (2029, -22), (1297, -34)], 22, (3, 3, 4, 8), mpf(1), 7
 )
 DOUBLE = Precision(
-    "f64", 64, 53, 26, [(6588397, -22), (42501539, -49), (74025357, -80)], 51, (6, 6, 9), 19
+    "f64", 64, 53, 26, [(6588397, -22), (42501539, -49), (74025357, -80)], 51, (6, 6, 9, 10),
+    mp.tan(mp.pi / 8) ** 2, 19,
 )
 
 

@@ -3,10 +3,12 @@
 mod derived;
 
 use self::derived::{
-    ARCTAN, COMMON_ANGLE, COSINE, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
+    ARCTAN, COMMON_ANGLE, COSINE, HALF_ARCTAN, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
     TWICE_ATAN_HALF, TWICE_ATAN_HALF_TAIL, TWO_OVER_PI,
 };
-use crate::{HAS_VECTORS, atan2::atan2, large::reduce_large, sin_cos::sin_cos};
+use crate::{
+    HAS_VECTORS, atan2::atan2, known_length::known_length, large::reduce_large, sin_cos::sin_cos,
+};
 
 /// 1.5 · 2^23: numbers of this size have no fraction.
 const SHIFT: f32 = 1.5 * power_of_two(23);
@@ -21,6 +23,10 @@ const COMMON_SMALL: f32 = power_of_two(-100);
 const SCALES: [f32; 2] = [power_of_two(-90), power_of_two(90)];
 /// Quotients below do not change π/2.
 const TINY_QUOTIENT: f32 = power_of_two(-30);
+
+/// By how much a length may differ from what was said of it: half the square of that is left out of
+/// the angle.
+const KNOWN: f32 = power_of_two(-12);
 
 #[inline(always)]
 fn sine_polynomial(z: f32) -> f32 {
@@ -38,6 +44,22 @@ fn cosine_polynomial(z: f32) -> f32 {
 fn arctan_polynomial(z: f32) -> f32 {
     let [c0, c1, c2, c3] = ARCTAN;
     c0 + z * (c1 + z * (c2 + z * c3))
+}
+
+/// 2 atan(numerator/denominator) of a quotient from 0 to 1, or π less it.
+#[inline(always)]
+fn twice_arctan(numerator: f32, denominator: f32, is_supplement: bool) -> f32 {
+    let t = numerator / denominator;
+    let z = t * t;
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = HALF_ARCTAN;
+    let inner = c0 + z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * (c5 + z * (c6 + z * c7))))));
+    let half = t + t * (z * inner);
+    let size = half + half;
+    if is_supplement {
+        core::f32::consts::PI - size
+    } else {
+        size
+    }
 }
 
 /// `small < large` of two numbers that are not negative, without a comparison of floats: it is
@@ -62,3 +84,4 @@ fn is_common_small(small: f32) -> bool {
 sin_cos!(f32, u32);
 reduce_large!(f32, u32, u64, i64);
 atan2!(f32, u32);
+known_length!(f32, u32);

@@ -3,10 +3,12 @@
 mod derived;
 
 use self::derived::{
-    ARCTAN, COMMON_ANGLE, COSINE, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
+    ARCTAN, COMMON_ANGLE, COSINE, HALF_ARCTAN, HALF_PI, HALF_PI_TAIL, HALF_PI_WORD, QUARTER, SINE,
     TWICE_ATAN_HALF, TWICE_ATAN_HALF_TAIL, TWO_OVER_PI,
 };
-use crate::{HAS_VECTORS, atan2::atan2, large::reduce_large, sin_cos::sin_cos};
+use crate::{
+    HAS_VECTORS, atan2::atan2, known_length::known_length, large::reduce_large, sin_cos::sin_cos,
+};
 
 /// 1.5 · 2^52: numbers of this size have no fraction.
 const SHIFT: f64 = 1.5 * power_of_two(52);
@@ -23,6 +25,10 @@ const SCALES: [f64; 2] = [power_of_two(-600), power_of_two(600)];
 const TINY_QUOTIENT: f64 = power_of_two(-60);
 
 // In pairs instead of one chain: a processor computes them side by side.
+/// By how much a length may differ from what was said of it: half the square of that is left out of
+/// the angle.
+const KNOWN: f64 = power_of_two(-27);
+
 #[inline(always)]
 fn sine_polynomial(z: f64) -> f64 {
     let [c0, c1, c2, c3, c4, c5] = SINE;
@@ -48,6 +54,38 @@ fn arctan_polynomial(z: f64) -> f64 {
 }
 
 // Vectors compare numbers; processors without vectors, mostly without an FPU for f64, their bits.
+
+/// tan π/8: quotients above are turned by π/4.
+const FOLD: f64 = 0.414_213_562_373_095_05;
+
+/// 2 atan(numerator/denominator) of a quotient from 0 to 1, or π less it.
+#[inline(always)]
+fn twice_arctan(numerator: f64, denominator: f64, is_supplement: bool) -> f64 {
+    use core::f64::consts::{FRAC_PI_2, PI};
+    let is_folded = is_less(FOLD * denominator, numerator);
+    let (numerator, denominator) = if is_folded {
+        (numerator - denominator, numerator + denominator)
+    } else {
+        (numerator, denominator)
+    };
+    let t = numerator / denominator;
+    let z = t * t;
+    let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = HALF_ARCTAN;
+    let inner = c4 + z * (c5 + z * (c6 + z * (c7 + z * (c8 + z * c9))));
+    let inner = c0 + z * (c1 + z * (c2 + z * (c3 + z * inner)));
+    let half = t + t * (z * inner);
+    let turned = if is_supplement {
+        -(half + half)
+    } else {
+        half + half
+    };
+    let base = match (is_folded, is_supplement) {
+        (true, _) => FRAC_PI_2,
+        (false, true) => PI,
+        (false, false) => 0.0,
+    };
+    base + turned
+}
 
 /// `small < large` of two numbers that are not negative.
 #[inline(always)]
@@ -82,3 +120,4 @@ fn is_common_small(small: f64) -> bool {
 sin_cos!(f64, u64);
 reduce_large!(f64, u64, u128, i128);
 atan2!(f64, u64);
+known_length!(f64, u64);

@@ -9,9 +9,13 @@ extern crate std;
 mod atan2;
 mod f32;
 mod f64;
+mod known_length;
 mod large;
 mod sin_cos;
+mod six_digits;
 mod sqrt;
+
+pub use six_digits::SixDigits;
 
 mod sealed {
     #[expect(unnameable_types, reason = "that is what seals `Trig`")]
@@ -51,6 +55,18 @@ pub trait Trig: Copy + sealed::Sealed {
     #[must_use]
     fn atan2_lanes<const L: usize>(y: [Self; L], x: [Self; L]) -> [Self; L];
 
+    /// See [`atan2_of_length`].
+    #[must_use]
+    fn atan2_of_length(y: Self, x: Self, inverse_length: Self) -> Self;
+
+    /// See [`atan2_of_length_lanes`].
+    #[must_use]
+    fn atan2_of_length_lanes<const L: usize>(
+        y: [Self; L],
+        x: [Self; L],
+        inverse_length: [Self; L],
+    ) -> [Self; L];
+
     /// See [`sqrt`].
     #[must_use]
     fn sqrt(x: Self) -> Self;
@@ -77,6 +93,20 @@ macro_rules! trig {
             #[inline]
             fn atan2_lanes<const L: usize>(y: [Self; L], x: [Self; L]) -> [Self; L] {
                 self::$float::atan2_lanes(y, x)
+            }
+
+            #[inline]
+            fn atan2_of_length(y: Self, x: Self, inverse_length: Self) -> Self {
+                self::$float::atan2_of_length(y, x, inverse_length)
+            }
+
+            #[inline]
+            fn atan2_of_length_lanes<const L: usize>(
+                y: [Self; L],
+                x: [Self; L],
+                inverse_length: [Self; L],
+            ) -> [Self; L] {
+                self::$float::atan2_of_length_lanes(y, x, inverse_length)
             }
 
             #[inline]
@@ -135,6 +165,35 @@ pub fn atan2<T: Trig>(y: T, x: T) -> T {
 #[inline]
 pub fn atan2_lanes<T: Trig, const L: usize>(y: [T; L], x: [T; L]) -> [T; L] {
     T::atan2_lanes(y, x)
+}
+
+/// The angle of the vector (x, y) of a length that is known, in radians from -π to π: with
+/// u = y/N, w = |x|/N
+///
+/// ```text
+/// g = (1 + u² + w²)/2     tan(angle/2) = u / (g + w), or π less that angle where x < 0
+/// ```
+///
+/// `inverse_length` is 1/N, as near as about 2^-12 in `f32` and 2^-27 in `f64`: what the length is off
+/// by δ changes the angle by δ²/2 of it. Where it is off by more, or no number, the answer is that of
+/// [`atan2`]. Off by at most 4 of the last place; signed zeros as in `atan2`. It takes two thirds of
+/// `atan2`'s time.
+#[must_use]
+#[inline]
+pub fn atan2_of_length<T: Trig>(y: T, x: T, inverse_length: T) -> T {
+    T::atan2_of_length(y, x, inverse_length)
+}
+
+/// The angles of several vectors (x, y) whose lengths are known: the bits of [`atan2_of_length`] for
+/// each.
+#[must_use]
+#[inline]
+pub fn atan2_of_length_lanes<T: Trig, const L: usize>(
+    y: [T; L],
+    x: [T; L],
+    inverse_length: [T; L],
+) -> [T; L] {
+    T::atan2_of_length_lanes(y, x, inverse_length)
 }
 
 /// The square root, rounded to the nearest as IEEE 754 says; of what is negative, NaN.

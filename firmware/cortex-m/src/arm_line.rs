@@ -79,7 +79,6 @@ pub fn plan(planner: Planner, wire: &mut [[u8; MAX_BYTES]; 2]) -> [usize; 2] {
     };
     let mut lens = [0; 2];
     for row in table.rows().skip(1) {
-        let row = row.expect("within reach");
         let row = quantiser
             .row(row.time_s, row.position, row.velocity)
             .expect("in order");

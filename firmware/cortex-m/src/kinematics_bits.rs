@@ -7,7 +7,7 @@ use scara_kin::{Arm, Elbow};
 use crate::random::{Random, delta, platform};
 use crate::{Hash, Real};
 
-#[path = "../../../crates/trig-kernels/tests/common/bits.rs"]
+#[path = "../../../crates/trig-kernels/tests/it/common/bits.rs"]
 mod trig;
 
 const ROUNDS: u32 = 300;

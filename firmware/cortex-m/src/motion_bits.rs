@@ -2,7 +2,7 @@
 
 use core::convert::Infallible;
 
-use path_timing::{Ahead, AxisLimits, Knot, PathFn, PathPoint, Table};
+use path_timing::{AxisLimits, FeedCeiling, Knot, PathFn, PathPoint, Table};
 use pulse_interp::{Arc, Rule, Turn};
 use stepper_sync::{Ramp, RampLimits, Rate, Trains};
 
@@ -29,18 +29,19 @@ fn table() -> Hash {
         jerk: Some(200.0),
     };
     let mut hash = Hash::default();
-    let (mut knots, mut ahead) = ([Knot::default(); 65], [Ahead::default(); 65]);
+    let (mut knots, mut ceilings) = ([Knot::default(); 65], [FeedCeiling::default(); 65]);
     let path = PathFn::new(100.0, parabola);
     let table = Table::plan([&path], [limits; 2], |_| 64, &mut knots).expect("good limits");
-    let mut run = table.run(1.0, &mut ahead).expect("room for all rows");
+    let playback = table.playback(1.0, &mut ceilings);
+    let mut playback = playback.expect("room for all rows");
     let mut number = 0;
-    while let Ok(Some(row)) = run.next_row() {
+    while let Some(row) = playback.next_row() {
         hash.add_all([row.time_s]);
         hash.add_all(row.position);
         hash.add_all(row.velocity);
         number += 1;
         if number == 32 {
-            run.set_feed(0.5).expect("below the highest");
+            playback.set_feed(0.5).expect("below the highest");
         }
     }
     hash

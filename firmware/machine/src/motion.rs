@@ -1,9 +1,9 @@
 //! The planner: jobs to rows, rows to steps.
 
-use core::fmt::{Debug, Display};
+use core::fmt::Display;
 
-use path_timing::{Ahead, Curve, Knot, Path, PathFn, PathPoint, Row, Run, Table, ToolLimits};
-use scara_kin::{ArmPath, Joints};
+use path_timing::{Curve, FeedCeiling, Knot, PathFn, PathPoint, Playback, Row, Table, ToolLimits};
+use scara_kin::Joints;
 use stepper_sync::{PvtQuantiser, PvtSteps};
 
 use crate::blocks::BlockWriter;
@@ -27,8 +27,8 @@ pub struct Motion<'m> {
     machine: &'m Machine,
     panel: &'m Panel,
     axes: Axes<'m>,
-    knots: [Knot; MAX_SEGMENTS as usize + 1],
-    ahead: [Ahead; MAX_SEGMENTS as usize + 1],
+    knots: [Knot<[f64; 2]>; MAX_SEGMENTS as usize + 1],
+    ceilings: [FeedCeiling; MAX_SEGMENTS as usize + 1],
 }
 
 /// Where the joints are, and the way from there to the pins.
@@ -109,7 +109,7 @@ impl<'m> Motion<'m> {
             panel,
             axes: Axes::home(machine, BlockWriter::new(machine, panel))?,
             knots: [Knot::default(); _],
-            ahead: [Ahead::default(); _],
+            ceilings: [FeedCeiling::default(); _],
         })
     }
 
@@ -177,20 +177,21 @@ impl<'m> Motion<'m> {
             &mut self.knots,
         );
         let table = table.map_err(refused)?;
-        let departure = table.departure(ArmPath::departure).map_err(refused)?;
+        let departures = table.spans().map(|span| path.departure(&span));
+        let departure = departures.fold(0.0, f64::max);
         if departure > machine.tolerance_mm {
             let allowed = machine.tolerance_mm;
             return Err(refused(format_args!(
                 "the tool would leave the line by up to {departure:.3} mm, {allowed:.3} are allowed"
             )));
         }
-        let run = table.run(1.0, &mut self.ahead).map_err(refused)?;
+        let playback = table.playback(1.0, &mut self.ceilings).map_err(refused)?;
         self.panel.answer(text!(
             "ok, {:.3} mm in {:.3} s, within {departure:.4} mm",
             line.length(),
             table.duration_s()
         ));
-        self.axes.run(machine, self.panel, run).await
+        self.axes.run(machine, self.panel, playback).await
     }
 
     async fn jog(&mut self, joint: Joint, by_deg: f64) -> Result<End, Failure> {
@@ -215,10 +216,10 @@ impl<'m> Motion<'m> {
         });
         let table = Table::plan([path], machine.limits, |_| MIN_SEGMENTS, &mut self.knots);
         let table = table.map_err(refused)?;
-        let run = table.run(1.0, &mut self.ahead).map_err(refused)?;
+        let playback = table.playback(1.0, &mut self.ceilings).map_err(refused)?;
         self.panel
             .answer(text!("ok, in {:.3} s", table.duration_s()));
-        self.axes.run(machine, self.panel, run).await
+        self.axes.run(machine, self.panel, playback).await
     }
 
     /// Says how a motion ended.
@@ -251,29 +252,26 @@ impl Axes<'_> {
     }
 
     /// Runs a table to its end, or to where the user stops it.
-    async fn run<P>(
+    async fn run(
         &mut self,
         machine: &Machine,
         panel: &Panel,
-        mut run: Run<'_, core::array::IntoIter<P, 1>>,
-    ) -> Result<End, Failure>
-    where
-        P: Path<Axes = [f64; 2], Error: Display> + Clone + Debug,
-    {
+        mut playback: Playback<'_, [f64; 2]>,
+    ) -> Result<End, Failure> {
         let start_s = self.time_s;
         loop {
             let (wanted, feed_percent) = panel.wanted();
             match wanted {
-                Wanted::Run => run
+                Wanted::Run => playback
                     .set_feed(f64::from(feed_percent) / 100.0)
                     .map_err(failed)?,
-                Wanted::Hold | Wanted::Stop => run.stop(),
+                Wanted::Hold | Wanted::Stop => playback.stop(),
             }
-            if let Some(row) = run.next_row().map_err(failed)? {
+            if let Some(row) = playback.next_row() {
                 self.follow(start_s, &row).await?;
                 continue;
             }
-            if run.is_finished() {
+            if playback.is_finished() {
                 return Ok(End::Done);
             }
             self.rest().await;

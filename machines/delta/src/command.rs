@@ -30,6 +30,9 @@ pub(crate) fn without_comment(line: &str) -> &str {
 pub(crate) fn numbers(words: &str) -> Result<Vec<f64>> {
     let numbers = words.split_whitespace().map(|word| match word.parse() {
         Ok(number) if f64::is_finite(number) => Ok(number),
+        _ if word.contains([',', ';']) => Err(anyhow!(
+            "{word:?} is not a number: blanks separate the numbers of a line"
+        )),
         _ => Err(anyhow!("{word:?} is not a number")),
     });
     numbers.collect()

@@ -52,7 +52,7 @@ pub use self::machine::Machine;
 pub use self::motion::Motion;
 pub use self::record::Record;
 pub use self::report::Report;
-pub use self::session::{Session, StepObserver};
+pub use self::session::{Session, StepObserver, check};
 pub use self::simulation::{Drive, Run, drive, simulate};
 pub use self::step_log::StepLog;
 

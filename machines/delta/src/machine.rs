@@ -1,7 +1,7 @@
 //! The machine: from its settings in TOML to checked numbers.
 
-use anyhow::{Context, Result, ensure};
-use delta_kin::{Arm, ArmGeometry, Delta, JointRange, SpeedLimits};
+use anyhow::{Context, Result, bail, ensure};
+use delta_kin::{Arm, ArmGeometry, Delta, InverseError, JointRange, SpeedLimits};
 use machine_sim::input::parse_settings;
 use nalgebra::{Point3, Vector3};
 use path_timing::AxisLimits;
@@ -191,6 +191,28 @@ impl Machine {
     /// The angles at whole steps.
     pub(crate) fn angles(&self, steps: [i32; 3]) -> Vector3<f64> {
         Vector3::from(steps.map(|steps| f64::from(steps) * self.rad_per_step))
+    }
+
+    /// The angles that bring the platform to a point; a range that does not hold one is named as the
+    /// machine file has it.
+    pub(crate) fn angles_at(&self, point: Point3<f64>) -> Result<Vector3<f64>> {
+        let angles = self.delta.inverse(point);
+        if let Err(InverseError::JointLimit {
+            arm,
+            angle,
+            min,
+            max,
+        }) = angles
+        {
+            let index = usize::from(arm.number()) - 1;
+            let zero = self.home_rad().get(index).copied().unwrap_or_default();
+            let [angle, min, max] = [angle, min, max].map(|angle| (angle + zero).to_degrees());
+            bail!(
+                "{arm} would have to turn to {angle:.2} deg, outside min_deg = {min:.2} to \
+                 max_deg = {max:.2}"
+            );
+        }
+        Ok(angles?)
     }
 
     /// Where the platform is.

@@ -26,7 +26,7 @@ impl Plan {
         feed_mm_s: f64,
     ) -> Result<Self> {
         // The end first: a point that cannot be reached is the better reason.
-        machine.delta.inverse(to)?;
+        machine.angles_at(to)?;
         let line = Path::line(from, to)?;
         let speed_limits = machine.speed_limits(feed_mm_s)?;
         let min_step_s = machine.rad_per_step / machine.max_rate_rad_s;

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use delta_kin::DeltaPath;
 use nalgebra::Point3;
-use path_timing::{Curve, Knot, Path, Rounded, Table, ToolLimits};
+use path_timing::{Accuracy, Curve, Knot, Path, Rounded, Table, ToolLimits};
 use stepper_sync::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming};
 
 use crate::machine::Machine;
@@ -39,7 +39,6 @@ pub(crate) fn check(machine: &Machine, from: Point3<f64>, to: Point3<f64>) -> Re
 /// Runs the lines of moves, from rest to rest: calls `step` with the time and the position after
 /// each step, and sets the times at which the moves end, or round their corners. Returns a proven bound
 /// on how far the platform leaves its lines and their rounded corners between steps, in mm.
-#[expect(clippy::float_cmp, reason = "the very numbers of the same path")]
 pub(crate) fn run(
     machine: &Machine,
     moves: &mut [Move],
@@ -58,14 +57,17 @@ pub(crate) fn run(
     let table = Table::plan_within(
         legs.paths.iter(),
         machine.axis_limits(),
-        LEAST_SEGMENTS,
-        machine.tolerance_mm,
+        Accuracy {
+            min_segments: LEAST_SEGMENTS,
+            max_departure: machine.tolerance_mm,
+            max_time_ratio: f64::INFINITY,
+        },
         |path, span| path.departure(span),
         &mut knots,
     )?;
 
     let mut rows = table.rows();
-    let Some(first) = rows.next().transpose()? else {
+    let Some(first) = rows.next() else {
         return Ok(0.0);
     };
     let tick_rate = Rate::from_hz(TICKS_PER_S)?;
@@ -73,10 +75,7 @@ pub(crate) fn run(
     let mut quantiser = PvtQuantiser::new(tick_rate, [machine.scale; 3], first.position)?;
     let mut steps = PvtSteps::new(quantiser.knots(), timing);
     let mut position = machine.steps(first.position.into())?;
-    let mut legs = legs.paths.iter().zip(legs.lines);
-    let mut leg = legs.next();
     for row in rows {
-        let row = row?;
         steps.push(&quantiser.row(row.time_s, row.position, row.velocity)?)?;
         for edge in &mut steps {
             if let Some(position) = position.get_mut(edge.axis) {
@@ -87,14 +86,10 @@ pub(crate) fn run(
             }
             step(edge.ticks, position)?;
         }
-        // The row at the end of a leg has its very positions.
-        while let Some((path, line)) = leg
-            && path.point(path.length())?.position == row.position
-        {
-            if let Some(ended) = moves.get_mut(line) {
-                ended.end_ticks = steps.end_ticks();
-            }
-            leg = legs.next();
+        // The last row of a leg is the latest.
+        let ended = legs.lines.get(row.leg).copied();
+        if let Some(ended) = ended.and_then(|line| moves.get_mut(line)) {
+            ended.end_ticks = steps.end_ticks();
         }
     }
     // A move that goes nowhere ends with the one before.
@@ -103,7 +98,11 @@ pub(crate) fn run(
         it.end_ticks = it.end_ticks.max(last);
         last = it.end_ticks;
     }
-    Ok(table.departure(|path, span| path.departure(span))?)
+    let departures = table.spans().filter_map(|span| {
+        let [_, to] = &span.rows;
+        Some(legs.paths.get(to.leg)?.departure(&span))
+    });
+    Ok(departures.fold(0.0, f64::max))
 }
 
 /// The lines and the rounded corners between them, each at the feed of its move; a corner at the

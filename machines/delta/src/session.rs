@@ -1,6 +1,6 @@
 //! A dialogue with the machine: bytes in, answers and steps out.
 
-use anyhow::{Context, Error, Result};
+use anyhow::{Context, Error, Result, ensure};
 use nalgebra::Point3;
 
 use crate::command::{self, Command};
@@ -174,6 +174,25 @@ impl<'a> Session<'a> {
         });
         answer
     }
+}
+
+/// Looks at all lines of a file before anything moves.
+///
+/// # Errors
+/// The lines that are refused, each with its reason.
+pub fn check(machine: &Machine, motion: Motion, lines: &[u8]) -> Result<()> {
+    let mut observer = |_: u64, _: [i32; 3]| Ok(());
+    let mut session = Session::new(machine, motion, &mut observer)?;
+    for byte in lines {
+        session.handle_byte(*byte)?;
+    }
+    session.handle_end()?;
+    let refusals = session.record.refusals.iter();
+    let refused: Vec<_> = refusals
+        .map(|refusal| format!("line {}: {}", refusal.line, refusal.reason))
+        .collect();
+    ensure!(refused.is_empty(), "nothing moves: {}", refused.join("; "));
+    Ok(())
 }
 
 /// To a thousandth, without a negative zero.

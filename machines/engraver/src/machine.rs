@@ -186,6 +186,11 @@ fn joint(settings: &JointSettings) -> Result<JointScale> {
 }
 
 fn disc(settings: &DiscSettings) -> Result<TangentTool> {
+    ensure!(
+        settings.corner_deg.is_finite(),
+        "corner_deg = {} is not finite; 180 lifts at no corner",
+        settings.corner_deg
+    );
     let corner = TangentTool::new(settings.corner_deg.to_radians());
     let disc = corner.with_context(|| format!("corner_deg = {}", settings.corner_deg))?;
     let home = disc.starting_at(settings.home_deg.to_radians());

@@ -7,7 +7,7 @@ mod player;
 
 use anyhow::{Context, Result, bail};
 use nalgebra::Point2;
-use path_timing::{AxisLimits, Curve, Knot, Path as _, PlanError, Row, Table};
+use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path as _, PlanError, Row, Table};
 use pattern_codec::engraving::Axis;
 use scara_kin::{Elbow, Joints};
 
@@ -207,13 +207,16 @@ impl Planner<'_> {
             let table = Table::plan_within(
                 run.iter(),
                 self.machine.joint_limits(),
-                MIN_SEGMENTS,
-                self.tolerance_mm,
+                Accuracy {
+                    min_segments: MIN_SEGMENTS,
+                    max_departure: self.tolerance_mm,
+                    max_time_ratio: f64::INFINITY,
+                },
                 |leg: &&Leg, span: &_| leg.departure(span),
                 &mut knots,
             );
             match table {
-                Ok(table) => return Ok(table.rows().collect::<Result<_, _>>()?),
+                Ok(table) => return Ok(table.rows().collect()),
                 Err(PlanError::Memory { .. }) if room < most => room *= 4,
                 Err(error) => return Err(error.into()),
             }

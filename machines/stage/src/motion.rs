@@ -36,7 +36,43 @@ pub(crate) fn angle_on(centre: Point, from: Point, to: Point, turn: Turn) -> f64
     }
 }
 
+/// Of a move that does not work, in mm/s.
+pub(crate) const RAPID_MM_S: f64 = 50.0;
+
 impl Motion {
+    /// A straight move that does not work.
+    pub(crate) const fn rapid(from: Point, to: Point) -> Self {
+        Self {
+            from,
+            to,
+            shape: Shape::Line,
+            feed_mm_s: RAPID_MM_S,
+            is_rapid: true,
+        }
+    }
+
+    /// The same elsewhere.
+    pub(crate) fn moved(self, by: Vec2) -> Self {
+        let shape = match self.shape {
+            Shape::Line => Shape::Line,
+            Shape::Arc {
+                centre,
+                turn,
+                sweep_rad,
+            } => Shape::Arc {
+                centre: centre + by,
+                turn,
+                sweep_rad,
+            },
+        };
+        Self {
+            from: self.from + by,
+            to: self.to + by,
+            shape,
+            ..self
+        }
+    }
+
     /// How far a point is from the programmed curve, in mm.
     pub(crate) fn distance_mm(&self, at: Point) -> f64 {
         let to_ends = at.distance(self.from).min(at.distance(self.to));

@@ -2,11 +2,13 @@
 
 use core::fmt;
 
+use anyhow::{Result, ensure};
 use serde::Serialize;
 
+use crate::motion::Motion;
 use crate::motors::FollowedAxes;
 use crate::run::Run;
-use crate::speeds::SpeedProfile;
+use crate::speeds::{MAX_AXIS_MM_S, SpeedProfile, axis_feed};
 
 /// `report.json`; displayed, a summary in lines. Steps are those of the path, as in `steps.csv`;
 /// corrections are counted apart.
@@ -33,6 +35,10 @@ pub struct Report {
     motors: FollowedAxes,
     /// The same motions without ramps.
     constant_speed: FollowedAxes,
+    /// Motions that go slower than their feed, because an axis goes no faster than
+    /// `max_axis_speed_mm_s`.
+    slower_motions: usize,
+    max_axis_speed_mm_s: f64,
     lose_steps: f64,
     seed: u64,
     /// What the program asked for that was left out or done otherwise.
@@ -70,10 +76,25 @@ impl Report {
             },
             motors: run.followed.clone(),
             constant_speed: run.constant.clone(),
+            slower_motions: slower_motions(run),
+            max_axis_speed_mm_s: MAX_AXIS_MM_S,
             lose_steps: run.settings.lose_steps,
             seed: run.settings.seed,
             notes: Vec::new(),
         }
+    }
+
+    /// Whether the motors follow, as far as torque and inertia go.
+    ///
+    /// # Errors
+    /// The steps that they lose.
+    pub fn check(&self) -> Result<()> {
+        let lost = self.motors.lost_steps();
+        ensure!(
+            lost == 0,
+            "the motors lose {lost} steps: their torque does not allow this motion"
+        );
+        Ok(())
     }
 
     /// The same with notes on the program.
@@ -84,8 +105,19 @@ impl Report {
     }
 }
 
+fn slower_motions(run: &Run) -> usize {
+    let is_slower = |motion: &&Motion| axis_feed(motion) < motion.feed_mm_s;
+    match run.settings.profile {
+        SpeedProfile::Trapezoidal => run.record.programmed.iter().filter(is_slower).count(),
+        SpeedProfile::Constant => 0,
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Err(error) = self.check() {
+            writeln!(f, "{error}")?;
+        }
         writeln!(
             f,
             "{} + {} steps by the {} rule in {:.1} s",
@@ -111,6 +143,13 @@ impl fmt::Display for Report {
             )
         };
         writeln!(f, "{}", ramps(self.profile, &self.motors))?;
+        if self.slower_motions > 0 {
+            writeln!(
+                f,
+                "{} motions are slower than their feed: an axis goes {} mm/s at most",
+                self.slower_motions, self.max_axis_speed_mm_s
+            )?;
+        }
         if self.profile != SpeedProfile::Constant.name() {
             writeln!(
                 f,

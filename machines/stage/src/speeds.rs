@@ -13,6 +13,9 @@ use crate::paths::STEPS_PER_MM;
 
 /// The acceleration that each axis is planned for at most.
 pub const ACCELERATION_MM_S2: f64 = 500.0;
+/// The speed that each axis is planned for at most, in mm/s: its motor follows 70 at this acceleration,
+/// and loses steps at 80.
+pub(crate) const MAX_AXIS_MM_S: f64 = 60.0;
 /// By what an axis may change its speed at once: what its motor starts and stops with.
 pub(crate) const START_STOP_MM_S: f64 = 5.0;
 /// An arc takes 0.8 of the acceleration across its path and 0.6 along it: together 1 in the worst
@@ -75,7 +78,7 @@ struct Leg {
 impl Leg {
     /// With the highest speeds at both ends that the leg itself allows.
     fn new(motion: &Motion, units: i32) -> Self {
-        let feed = motion.feed_mm_s * STEPS_PER_MM;
+        let feed = axis_feed(motion) * STEPS_PER_MM;
         let each = ACCELERATION_MM_S2 * STEPS_PER_MM;
         let (feed, acceleration) = match motion.shape {
             Shape::Line => (feed, each / largest(motion.directions()[0])),
@@ -115,6 +118,16 @@ impl Leg {
         let rate = Rate::from_hz(whole(TICKS_PER_S))?;
         Ok(Ramp::between([self.units], &limits, ends, rate)?)
     }
+}
+
+/// The feed of a motion in mm/s, as far as both axes can go along it.
+pub(crate) fn axis_feed(motion: &Motion) -> f64 {
+    let fastest = match motion.shape {
+        Shape::Line => MAX_AXIS_MM_S / largest(motion.directions()[0]),
+        // Somewhere along it one axis has all of the speed, or nearly so.
+        Shape::Arc { .. } => MAX_AXIS_MM_S,
+    };
+    motion.feed_mm_s.min(fastest)
 }
 
 /// The speed at which the direction may change, within what the motors start and stop with.

@@ -11,6 +11,9 @@ pub(crate) const COUNTS_PER_STEP: u16 = 5;
 /// Where each axis' switches close, in steps from the drawing's zero: a millimetre beyond travel.
 pub(crate) const SWITCHES: [[i32; 2]; 2] = [[-100, 12_100], [-100, 10_100]];
 
+/// How far the axes travel from the drawing's zero, in mm: a millimetre before the upper switch.
+pub(crate) const TRAVEL_MM: [f64; 2] = [120.0, 100.0];
+
 /// Where the switches of X and Y close, in mm from the drawing's zero: the lower one first.
 #[must_use]
 pub fn switches_mm() -> [[f64; 2]; 2] {

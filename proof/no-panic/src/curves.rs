@@ -8,8 +8,8 @@ use std::iter::Flatten;
 use delta_kin::{Delta, DeltaPath, DeltaPathError};
 use no_panic::no_panic;
 use path_timing::{
-    AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, PathPoint, PlanError,
-    Rounded, Row, Slot, Span, Table, segments_within,
+    Accuracy, AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, PathPoint,
+    PlanError, Rounded, Row, Span, Table, segments_within,
 };
 use scara_kin::{Arm, ArmPath, ArmPathError, DiscPath, Elbow};
 
@@ -67,9 +67,14 @@ fn stream_next(
 fn plan_within(
     curve: Curve<2>,
     limits: [AxisLimits; 2],
-    knots: &mut [Knot],
-) -> Result<Table<'_, IntoIter<Curve<2>, 1>, [f64; 2]>, PlanError<Infallible>> {
-    Table::plan_within([curve], limits, 4, 0.01, Curve::departure, knots)
+    knots: &mut [Knot<[f64; 2]>],
+) -> Result<Table<'_, [f64; 2]>, PlanError<Infallible>> {
+    let accuracy = Accuracy {
+        min_segments: 4,
+        max_departure: 0.01,
+        max_time_ratio: 1.02,
+    };
+    Table::plan_within([curve], limits, accuracy, Curve::departure, knots)
 }
 
 type Segments = Result<u32, PlanError<Infallible>>;
@@ -96,6 +101,12 @@ fn arm_point(path: &ArmPath, s: f64) -> Result<PathPoint<[f64; 2]>, ArmPathError
 #[inline(never)]
 fn arm_departure(path: &ArmPath, span: &Span<[f64; 2]>) -> f64 {
     path.departure(span)
+}
+
+#[no_panic]
+#[inline(never)]
+fn arm_check(path: &ArmPath, span: &Span<[f64; 2]>) -> Result<(), ArmPathError> {
+    path.check(span)
 }
 
 #[no_panic]
@@ -140,6 +151,12 @@ fn delta_point(path: &DeltaPath, s: f64) -> Result<PathPoint<[f64; 3]>, DeltaPat
 
 #[no_panic]
 #[inline(never)]
+fn delta_check(path: &DeltaPath, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
+    path.check(span)
+}
+
+#[no_panic]
+#[inline(never)]
 fn delta_departure(path: &DeltaPath, span: &Span<[f64; 3]>) -> f64 {
     path.departure(span)
 }
@@ -150,6 +167,8 @@ fn span<const N: usize>() -> Span<[f64; N]> {
         duration_s: 0.1,
         position: [0.5; N],
         velocity: [0.1; N],
+        leg: 0,
+        s: 2.0,
     };
     black_box(Span {
         s: [1.0, 2.0],
@@ -170,7 +189,7 @@ pub fn run() {
     let corners = black_box([[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]]);
     if let Ok(rounded) = Rounded::new(corners, black_box(0.05)) {
         black_box(rounded_next(&mut black_box(rounded.clone())).is_some());
-        let mut window = black_box([Slot::default(); 16]);
+        let mut window = black_box([Knot::default(); 16]);
         let curves = black_box(rounded).flatten();
         if let Ok(mut motion) = LookAhead::new(curves, [limits; 2], segments_of, &mut window) {
             black_box(stream_next(black_box(&mut motion)).is_ok());
@@ -192,6 +211,7 @@ pub fn run() {
         let path = black_box(path);
         black_box(delta_point(&path, black_box(3.0)).is_ok());
         black_box(delta_departure(&path, &span()));
+        black_box(delta_check(&path, &span()).is_ok());
     }
 }
 
@@ -210,6 +230,7 @@ fn run_curve(curve: &Curve<2>, limits: AxisLimits) {
     let path = black_box(path);
     black_box(arm_point(&path, black_box(3.0)).is_ok());
     black_box(arm_departure(&path, &span()));
+    black_box(arm_check(&path, &span()).is_ok());
     if let Ok(path) = with_disc(path, black_box(0.3)) {
         let path = black_box(path);
         black_box(disc_point(&path, black_box(3.0)).is_ok());

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use no_panic::no_panic;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    Ahead, AxisLimits, Convention, Interpolation, Knot, Locator, Path, PlanError, Platform,
+    AxisLimits, Convention, FeedCeiling, Interpolation, Knot, Locator, Path, PlanError, Platform,
     PoseVector, PtPoint, PtPoints, PtTable, PvtPoint, PvtPoints, PvtRun, PvtTable, Segmentation,
     hermite_distance_error,
 };
@@ -34,7 +34,7 @@ fn pvt_plan<'a>(
     platform: &'a Platform<3>,
     path: &Path<'a>,
     segmentation: Segmentation,
-    knots: &'a mut [Knot],
+    knots: &'a mut [Knot<[[f64; 3]; 3]>],
 ) -> Planned<PvtTable<'a, 3>> {
     PvtTable::plan(platform, path, segmentation, knots)
 }
@@ -96,8 +96,8 @@ pub fn run() {
     if let (Some(from), Some(to)) = (pvt_next(&mut points), pvt_next(&mut points)) {
         black_box(distance_error(platform, &from, &to));
     }
-    let mut ahead = black_box([Ahead::default(); 64]);
-    if let Ok(mut run) = table.run(black_box(1.5), black_box(&mut ahead)) {
+    let mut ceilings = black_box([FeedCeiling::default(); 64]);
+    if let Ok(mut run) = table.run(black_box(1.5), black_box(&mut ceilings)) {
         black_box(run_next(&mut run));
     }
 }

@@ -1,13 +1,13 @@
-//! Tables along a path and their runs.
+//! Tables along a path and their playback.
 
 use core::convert::Infallible;
-use std::array::IntoIter;
 use std::hint::black_box;
 use std::iter::{Repeat, repeat};
 
 use no_panic::no_panic;
 use path_timing::{
-    Ahead, AxisLimits, Knot, LookAhead, Path, PathPoint, PlanError, Row, Rows, Run, Slot, Table,
+    AxisLimits, FeedCeiling, Knot, LookAhead, Path, PathPoint, PlanError, Playback, Row, Rows,
+    Table,
 };
 
 /// A parabola, one axis by the square of the other.
@@ -30,38 +30,36 @@ impl Path for Parabola {
     }
 }
 
-type Legs = IntoIter<Parabola, 1>;
-
 #[no_panic]
 #[inline(never)]
 fn plan(
     limits: [AxisLimits; 2],
     segments: u32,
-    knots: &mut [Knot],
-) -> Result<Table<'_, Legs, [f64; 2]>, PlanError<Infallible>> {
+    knots: &mut [Knot<[f64; 2]>],
+) -> Result<Table<'_, [f64; 2]>, PlanError<Infallible>> {
     Table::plan([Parabola], limits, |_| segments, knots)
 }
 
 #[no_panic]
 #[inline(never)]
-fn next_row(rows: &mut Rows<'_, Legs>) -> Option<Result<Row<[f64; 2]>, Infallible>> {
+fn next_row(rows: &mut Rows<'_, [f64; 2]>) -> Option<Row<[f64; 2]>> {
     rows.next()
 }
 
 #[no_panic]
 #[inline(never)]
-fn run_table<'a>(
-    table: &Table<'a, Legs, [f64; 2]>,
+fn playback<'a>(
+    table: &Table<'a, [f64; 2]>,
     max: f64,
-    ahead: &'a mut [Ahead],
-) -> Result<Run<'a, Legs>, PlanError<Infallible>> {
-    table.run(max, ahead)
+    ceilings: &'a mut [FeedCeiling],
+) -> Result<Playback<'a, [f64; 2]>, PlanError<Infallible>> {
+    table.playback(max, ceilings)
 }
 
 #[no_panic]
 #[inline(never)]
-fn run_next(run: &mut Run<'_, Legs>) -> Result<Option<Row<[f64; 2]>>, Infallible> {
-    run.next_row()
+fn playback_next(playback: &mut Playback<'_, [f64; 2]>) -> Option<Row<[f64; 2]>> {
+    playback.next_row()
 }
 
 type Stream = Repeat<Parabola>;
@@ -71,7 +69,7 @@ type Stream = Repeat<Parabola>;
 fn look_ahead<F: FnMut(&Parabola) -> Result<u32, PlanError<Infallible>>>(
     limits: [AxisLimits; 2],
     segments: F,
-    window: &mut [Slot<[f64; 2]>],
+    window: &mut [Knot<[f64; 2]>],
 ) -> Result<LookAhead<'_, Parabola, Stream, F>, PlanError<Infallible>> {
     LookAhead::new(repeat(Parabola), limits, segments, window)
 }
@@ -100,15 +98,15 @@ pub fn run() {
         return;
     };
     black_box(next_row(&mut black_box(&table).rows()).is_some());
-    let mut ahead = black_box([Ahead::default(); 64]);
-    if let Ok(mut run) = run_table(&table, black_box(1.5), black_box(&mut ahead)) {
-        black_box(run_next(&mut run).is_ok());
+    let mut ceilings = black_box([FeedCeiling::default(); 64]);
+    if let Ok(mut playback) = playback(&table, black_box(1.5), black_box(&mut ceilings)) {
+        black_box(playback_next(&mut playback).is_some());
     }
     let limits = AxisLimits {
         jerk: None,
         ..limits
     };
-    let mut window = black_box([Slot::default(); 16]);
+    let mut window = black_box([Knot::default(); 16]);
     if let Ok(mut motion) = look_ahead(
         black_box([limits; 2]),
         |_| Ok(black_box(7)),

@@ -2,9 +2,13 @@
 
 mod mqtt;
 mod name;
+mod store;
 
 use core::{net::SocketAddr, num::NonZeroU16, time::Duration};
-use std::{fs, path::Path};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+};
 
 use anyhow::{Context as _, Result};
 use proto3964r::{Priority, tokio::Link};
@@ -14,12 +18,13 @@ use toml::Spanned;
 pub(crate) use self::{
     mqtt::{Mqtt, Overflow, Prefix},
     name::Name,
+    store::{Settings as StoreSettings, Sync},
 };
 use super::{
     area::Area,
     field::{Field, Pattern},
 };
-use crate::{Address, Preset, cli::settings};
+use crate::{Address, Preset, Target, cli::settings};
 
 /// The longest time: 30 years, which every clock bears.
 const TIME_MAX_S: f64 = 1e9;
@@ -31,12 +36,16 @@ pub(crate) struct Config {
     /// Of this gateway: its client identifier at the broker and first level of its topics.
     pub(crate) name: Name,
     mqtt: Option<Spanned<Mqtt>>,
-    pub(crate) tcp: Option<Listen>,
-    pub(crate) metrics: Option<Listen>,
+    store: Option<Spanned<StoreSettings>>,
+    pub(crate) tcp: Option<Spanned<Listen>>,
+    pub(crate) metrics: Option<Spanned<Listen>>,
     #[serde(default = "ten_seconds")]
     stop_s: Spanned<f64>,
     #[serde(rename = "line")]
     pub(crate) lines: Vec<Spanned<Line>>,
+    /// Where the file is.
+    #[serde(skip)]
+    folder: PathBuf,
 }
 
 /// A socket that others connect to.
@@ -66,6 +75,15 @@ pub(crate) struct Line {
     pub(crate) priority: PriorityName,
     /// Acknowledgement delay time (QVZ), if not the preset's.
     pub(crate) qvz_ms: Option<NonZeroU16>,
+    /// A line of which nothing has come for so many seconds is told to be silent.
+    silent_after_s: Option<Spanned<f64>>,
+    /// Nothing is sent or written.
+    #[serde(default)]
+    pub(crate) read_only: bool,
+    /// Whether a telegram with the bytes of the one before, soon after it, is marked as a possible
+    /// repeat.
+    #[serde(default = "yes")]
+    pub(crate) mark_repeats: bool,
     /// Jobs that wait for the line.
     #[serde(default = "sixteen")]
     pub(crate) commands: NonZeroU16,
@@ -120,9 +138,11 @@ impl Config {
         let place = || path.display().to_string();
         let text = fs::read_to_string(path).with_context(place)?;
         let mut config = Self::parse(&text).with_context(place)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
         if let Some(mqtt) = config.mqtt.as_mut().map(Spanned::get_mut) {
-            mqtt.set_folder(path.parent().unwrap_or(Path::new("")));
+            mqtt.set_folder(folder);
         }
+        folder.clone_into(&mut config.folder);
         Ok(config)
     }
 
@@ -149,12 +169,37 @@ impl Config {
             let checked = mqtt.get_ref().check();
             checked.map_err(|message| (mqtt.span().start, format!("mqtt: {message}")))?;
         }
+        if let Some(store) = &self.store {
+            let message = match &self.mqtt {
+                None => "store: for [mqtt] alone",
+                Some(mqtt) if mqtt.get_ref().queue.is_some() && self.sync() != Sync::None => {
+                    "store: mqtt.queue is for sync = \"none\""
+                }
+                Some(_) => "",
+            };
+            if !message.is_empty() {
+                return Err((store.span().start, message.to_owned()));
+            }
+        } else if let Some(mqtt) = &self.mqtt
+            && mqtt.get_ref().queue.is_some()
+        {
+            let message = "mqtt: queue is for [store] with sync = \"none\"";
+            return Err((mqtt.span().start, message.to_owned()));
+        }
+        if let (Some(tcp), Some(metrics)) = (&self.tcp, &self.metrics)
+            && tcp.get_ref().listen == metrics.get_ref().listen
+            && tcp.get_ref().listen.port() != 0
+        {
+            let message = format!("tcp listens on {} too", tcp.get_ref().listen);
+            return Err((metrics.span().start, message));
+        }
         let (mut names, mut ports) = (Vec::new(), Vec::new());
         for line in &self.lines {
             let table = line.span().start;
             let line = line.get_ref();
-            let port = &line.port.target;
+            let port = place(&line.port.target);
             if ports.contains(&port) {
+                let port = &line.port.target;
                 return Err((table, format!("a second line on `{port}`")));
             }
             ports.push(port);
@@ -166,6 +211,44 @@ impl Config {
             line.check()?;
         }
         Ok(())
+    }
+
+    /// First levels of all topics.
+    pub(crate) fn topic(&self) -> String {
+        let prefix = self.mqtt().map(|mqtt| mqtt.prefix.0.as_str());
+        format!("{}/{}", prefix.unwrap_or_default(), self.name)
+    }
+
+    /// Where the state of the gateway is retained.
+    pub(crate) fn status_topic(&self) -> String {
+        format!("{}/status", self.topic())
+    }
+
+    /// When a message is safe.
+    pub(crate) fn sync(&self) -> Sync {
+        self.store
+            .as_ref()
+            .map_or(Sync::default(), |store| store.get_ref().sync)
+    }
+
+    /// Bytes that messages take on disk, at most.
+    pub(crate) fn store_max_bytes(&self) -> u64 {
+        let store = self.store.as_ref().map(Spanned::get_ref);
+        store.map_or(store::MAX_BYTES, |store| store.max_bytes.get())
+    }
+
+    /// The folder of the store: configured, or in that which systemd gives, or beside this file.
+    pub(crate) fn store_folder(&self) -> PathBuf {
+        let store = self.store.as_ref().map(Spanned::get_ref);
+        if let Some(path) = store.and_then(|store| store.path.as_deref()) {
+            return self.folder.join(path);
+        }
+        let given = env::var_os("STATE_DIRECTORY");
+        let first = given
+            .as_ref()
+            .and_then(|given| env::split_paths(given).next());
+        let folder = first.unwrap_or_else(|| self.folder.clone());
+        folder.join(format!("{}.store", self.name))
     }
 
     pub(crate) fn mqtt(&self) -> Option<&Mqtt> {
@@ -180,6 +263,11 @@ impl Config {
 
 impl Line {
     fn check(&self) -> Result<(), (usize, String)> {
+        if let Some(seconds) = &self.silent_after_s
+            && let Err(message) = time(*seconds.get_ref())
+        {
+            return Err((seconds.span().start, format!("silent_after_s: {message}")));
+        }
         for telegram in &self.telegrams {
             let start = telegram.span().start;
             if self.procedure == Procedure::Rk512 {
@@ -189,6 +277,15 @@ impl Line {
             telegram.check().map_err(|message| (start, message))?;
             let length = telegram.length.unwrap_or(Link::MAX_TELEGRAM);
             check_fields(&telegram.fields, length)?;
+        }
+        for (index, telegram) in self.telegrams.iter().enumerate() {
+            let (start, telegram) = (telegram.span().start, telegram.get_ref());
+            let mut before = self.telegrams.iter().take(index).map(Spanned::get_ref);
+            if let Some(other) = before.find(|other| other.hides(telegram)) {
+                let (name, other) = (&telegram.name, &other.name);
+                let message = format!("telegram `{name}`: `{other}` describes all of them before");
+                return Err((start, message));
+            }
         }
         let mut names = Vec::new();
         for area in &self.areas {
@@ -207,6 +304,11 @@ impl Line {
         Ok(())
     }
 
+    /// How long the partner may be silent.
+    pub(crate) fn silent_after(&self) -> Option<Duration> {
+        time(*self.silent_after_s.as_ref()?.get_ref()).ok()
+    }
+
     /// The parameters of the station.
     pub(crate) fn config(&self) -> proto3964r::Config {
         let priority = match self.priority {
@@ -222,6 +324,12 @@ impl Line {
 }
 
 impl Telegram {
+    /// Whether whatever the other describes is described by this one.
+    fn hides(&self, other: &Self) -> bool {
+        other.starts_with.0.starts_with(&self.starts_with.0)
+            && (self.length.is_none() || self.length == other.length)
+    }
+
     /// Whether there are telegrams that this describes.
     fn check(&self) -> Result<(), String> {
         let (name, begin) = (&self.name, self.starts_with.0.len());
@@ -238,6 +346,18 @@ impl Telegram {
             ));
         }
         Ok(())
+    }
+}
+
+/// Where a port is: the same for the same port, however it is written.
+fn place(target: &Target) -> String {
+    match target {
+        Target::Serial(path) => {
+            let path = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+            path.display().to_string()
+        }
+        Target::Tcp(host) | Target::Rfc2217(host) => host.clone(),
+        other => other.to_string(),
     }
 }
 
@@ -273,6 +393,10 @@ const fn siemens() -> Preset {
 
 fn ten_seconds() -> Spanned<f64> {
     Spanned::new(0..0, 10.0)
+}
+
+const fn yes() -> bool {
+    true
 }
 
 const fn sixteen() -> NonZeroU16 {

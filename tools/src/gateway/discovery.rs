@@ -74,8 +74,11 @@ impl Sensor<'_> {
         set(
             "availability",
             json!([
-                { "topic": hub.status_topic() },
-                { "topic": format!("{}/{line}/status", hub.topic) },
+                { "topic": config.status_topic() },
+                {
+                    "topic": format!("{}/{line}/status", hub.topic),
+                    "value_template": "{{ 'online' if value == 'online' else 'offline' }}",
+                },
             ]),
         );
         set(

@@ -47,6 +47,10 @@ impl TryFrom<String> for Pattern {
     type Error = String;
 
     fn try_from(hex: String) -> Result<Self, String> {
+        let is_half = |word: &&str| !word.len().is_multiple_of(2);
+        if let Some(half) = hex.split_whitespace().find(is_half) {
+            return Err(format!("`{half}` is not made of whole bytes"));
+        }
         text::bytes(hex.split_whitespace()).map(Self)
     }
 }

@@ -9,23 +9,26 @@ use core::{
     sync::atomic::{AtomicBool, AtomicU64, Ordering},
     time::Duration,
 };
-use std::{
-    sync::{Mutex, MutexGuard, PoisonError},
-    time::Instant,
-};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bytes::Bytes;
 use jiff::Timestamp;
-use log::{info, warn};
+use log::{error, info, warn};
+use proto3964r::Event;
 use serde::Serialize;
-use serde_json::{Value, json};
-use tokio::sync::{broadcast, mpsc};
+use serde_json::json;
+use tokio::{
+    sync::{broadcast, mpsc},
+    time::{Instant, sleep},
+};
 use tokio_util::sync::CancellationToken;
 
 use super::{
-    config::Config,
-    job::{Job, Outcome, Refused},
+    config::{Config, Name},
+    health::Faults,
+    job::{Asked, Id, Job, Outcome, Refused, Reply},
     outbox::Outbox,
+    store::{Entry, Known, Last, Message, Number, StoreError},
     telegram::Report,
 };
 
@@ -34,6 +37,12 @@ const TCP_QUEUE: usize = 1024;
 
 /// Identifiers of commands that a line remembers, more than the broker hands over at once.
 const RECENT: usize = 256;
+
+/// From one attempt to store an outcome to the next.
+const STORE_PAUSE: Duration = Duration::from_millis(500);
+
+/// How soon a line that is silent is looked at again.
+const SILENCE_PAUSE: Duration = Duration::from_secs(1);
 
 /// From one refusal in the log to the next.
 const LOG_PAUSE: Duration = Duration::from_secs(1);
@@ -47,20 +56,42 @@ pub(crate) struct Counts {
     pub(crate) failed: AtomicU64,
     pub(crate) refused: AtomicU64,
     pub(crate) opened: AtomicU64,
+    /// Telegrams answered NAK because they were not safe.
+    pub(crate) not_stored: AtomicU64,
+    /// Messages that the broker does not take.
+    pub(crate) dead: AtomicU64,
+    /// What the station tells.
+    pub(crate) faults: Faults,
+}
+
+/// What is told of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LineState {
+    /// The port is open, and the last exchange went well.
+    Online,
+    /// The same, and nothing has come for longer than the line should be silent.
+    Silent,
+    Offline,
 }
 
 /// A line as others see it.
 pub(crate) struct Desk {
     pub(crate) counts: Counts,
     /// The last that was told of its state.
-    is_online: Mutex<Option<bool>>,
+    state: Mutex<Option<LineState>>,
+    /// When the partner was last heard.
+    heard_at: Mutex<Option<Instant>>,
+    /// The last telegram of the runs before.
+    pub(crate) last: Last,
     jobs: mpsc::Sender<Job>,
     refusals: Mutex<Refusals>,
     /// The last commands that had an identifier.
-    recent: Mutex<VecDeque<Value>>,
+    recent: Mutex<VecDeque<Id>>,
+    /// Nothing is sent or written.
+    is_read_only: bool,
 }
 
-/// Refused commands that the log does not show one by one.
+/// What is refused and the log does not show one by one.
 #[derive(Default)]
 struct Refusals {
     /// The last that it shows.
@@ -78,6 +109,8 @@ pub(crate) struct Hub {
     pub(crate) lines: BTreeMap<String, Desk>,
     pub(crate) stop: CancellationToken,
     pub(crate) broker: BrokerCounts,
+    /// Of commands for no line.
+    refusals: Mutex<Refusals>,
 }
 
 /// Counts of the connection to the broker.
@@ -96,7 +129,11 @@ pub(crate) fn now() -> String {
 
 impl Hub {
     /// The hub, and for each line, in its order, where its jobs come from.
-    pub(crate) fn new(config: &Config) -> (Arc<Self>, Vec<mpsc::Receiver<Job>>) {
+    pub(crate) fn new(
+        config: &Config,
+        outbox: Option<Outbox>,
+        mut known: Known,
+    ) -> (Arc<Self>, Vec<mpsc::Receiver<Job>>) {
         let mut receivers = Vec::new();
         let mut lines = BTreeMap::new();
         for line in config.lines.iter().map(|line| line.get_ref()) {
@@ -104,30 +141,30 @@ impl Hub {
             receivers.push(receiver);
             let desk = Desk {
                 counts: Counts::default(),
-                is_online: Mutex::default(),
+                state: Mutex::default(),
+                heard_at: Mutex::default(),
+                last: known
+                    .lines
+                    .remove(line.name.get_ref().as_str())
+                    .unwrap_or_default(),
                 jobs,
                 refusals: Mutex::default(),
                 recent: Mutex::default(),
+                is_read_only: line.read_only,
             };
             lines.insert(line.name.get_ref().to_string(), desk);
         }
-        let mqtt = config.mqtt();
-        let prefix = mqtt.map(|mqtt| mqtt.prefix.0.as_str()).unwrap_or_default();
         let hub = Self {
-            topic: format!("{prefix}/{}", config.name),
-            run: now(),
-            outbox: mqtt.map(|mqtt| Outbox::new(mqtt.queue.get().into(), mqtt.overflow)),
+            topic: config.topic(),
+            run: known.run,
+            outbox,
             events: broadcast::channel(TCP_QUEUE).0,
             lines,
             stop: CancellationToken::new(),
             broker: BrokerCounts::default(),
+            refusals: Mutex::default(),
         };
         (Arc::new(hub), receivers)
-    }
-
-    /// Where the state of the gateway is retained.
-    pub(crate) fn status_topic(&self) -> String {
-        format!("{}/status", self.topic)
     }
 
     /// The counts of a line.
@@ -135,26 +172,41 @@ impl Hub {
         self.lines.get(line).map(|desk| &desk.counts)
     }
 
-    /// Tells what came, everywhere; waits where the queue of the broker does.
-    pub(crate) async fn report(&self, report: &Report<'_>) {
-        let payload = self.tell(report);
+    /// Makes what came safe, and tells it everywhere. In memory it may wait for a place; a future
+    /// that is dropped may have kept it all the same.
+    ///
+    /// # Errors
+    /// It is not safe, and was told nowhere.
+    pub(crate) async fn report(
+        &self,
+        report: &Report<'_>,
+        telegram: Option<&[u8]>,
+    ) -> Result<(), StoreError> {
+        let payload = json(report);
         if let Some(outbox) = &self.outbox {
             let Report { event, line, .. } = report;
             let topic = match report.name {
                 Some(name) => format!("{}/{line}/{event}/{name}", self.topic),
                 None => format!("{}/{line}/{event}", self.topic),
             };
-            outbox.push(topic, payload).await;
+            let number = telegram.map(|telegram| Number {
+                line: report.line.to_owned(),
+                seq: report.seq,
+                telegram: telegram.to_vec(),
+            });
+            let message = Message {
+                topic,
+                payload: payload.clone(),
+                ..Message::default()
+            };
+            outbox.push(Entry { message, number }).await?;
         }
+        self.tell(payload);
+        Ok(())
     }
 
-    /// Tells what became of a job.
-    pub(crate) async fn outcome(
-        &self,
-        line: &str,
-        job: Option<&Value>,
-        result: Result<(), String>,
-    ) {
+    /// Tells what became of a job; waits until that is safe, or the gateway stops.
+    pub(crate) async fn outcome(&self, line: &str, asked: &Asked, result: Result<(), String>) {
         if let Some(counts) = self.counts(line) {
             let count = if result.is_ok() {
                 &counts.done
@@ -163,107 +215,214 @@ impl Hub {
             };
             count.fetch_add(1, Ordering::Relaxed);
         }
-        let (topic, payload) = self.make_outcome(line, job, result);
-        if let Some(outbox) = &self.outbox {
-            outbox.push(topic, payload).await;
+        let messages = self.make_outcome(line, asked, result);
+        let Some(outbox) = &self.outbox else {
+            return;
+        };
+        for message in messages {
+            let number = None;
+            let entry = Entry { message, number };
+            while let Err(error) = outbox.push(entry.clone()).await {
+                if self.stop.is_cancelled() {
+                    error!("{line}: an outcome is lost: {error}");
+                    return;
+                }
+                sleep(STORE_PAUSE).await;
+            }
         }
     }
 
-    /// The event of an outcome, and its topic.
+    /// The message of an outcome, which TCP has been told, and the one for whoever asked.
     fn make_outcome(
         &self,
         line: &str,
-        id: Option<&Value>,
+        asked: &Asked,
         result: Result<(), String>,
-    ) -> (String, Bytes) {
+    ) -> impl Iterator<Item = Message> {
         let outcome = Outcome {
             event: "outcome",
             line,
             time: now(),
-            id,
+            id: asked.id.as_ref(),
             ok: result.is_ok(),
             error: result.as_ref().err().map(String::as_str),
         };
-        (
-            format!("{}/{line}/outcome", self.topic),
-            self.tell(&outcome),
-        )
+        let payload = json(&outcome);
+        self.tell(payload.clone());
+        let reply = asked.reply.as_ref().map(|reply| Message {
+            topic: reply.topic.clone(),
+            correlation: reply.correlation.clone(),
+            payload: payload.clone(),
+            ..Message::default()
+        });
+        let message = Message {
+            topic: format!("{}/{line}/outcome", self.topic),
+            payload,
+            ..Message::default()
+        };
+        core::iter::once(message).chain(reply)
     }
 
     /// Tells whether a line works, where that is news.
     pub(crate) fn online(&self, line: &str, is_online: bool) {
+        if is_online && let Some(desk) = self.lines.get(line) {
+            *lock(&desk.heard_at) = Some(Instant::now());
+        }
+        let state = if is_online {
+            LineState::Online
+        } else {
+            LineState::Offline
+        };
+        self.set_state(line, state);
+    }
+
+    /// Tells that the partner of a line is silent, as often as it is, for so long each time.
+    pub(crate) async fn watch_for_silence(&self, line: &str, after: Duration) {
+        loop {
+            let heard_at = self.lines.get(line).and_then(|desk| *lock(&desk.heard_at));
+            let rest = heard_at.map(|at| after.saturating_sub(at.elapsed()));
+            match rest.filter(|rest| !rest.is_zero()) {
+                Some(rest) => sleep(rest).await,
+                None => {
+                    if self.lines.get(line).is_some_and(Desk::is_online) {
+                        self.set_state(line, LineState::Silent);
+                    }
+                    sleep(SILENCE_PAUSE.min(after)).await;
+                }
+            }
+        }
+    }
+
+    /// What goes well and wrong on a line, for those who come later.
+    pub(crate) fn retain_health(&self, line: &str, health: String) {
+        if let Some(outbox) = &self.outbox {
+            outbox.retain(format!("{}/{line}/health", self.topic), health.into());
+        }
+    }
+
+    /// Hands what a station tells to the counts of its line.
+    pub(crate) fn observer(
+        self: &Arc<Self>,
+        line: &str,
+    ) -> impl FnMut(Event<'_>) + Send + 'static + use<> {
+        let (hub, line) = (Arc::clone(self), line.to_owned());
+        move |event| {
+            if let Some(counts) = hub.counts(&line) {
+                counts.faults.take(event);
+            }
+        }
+    }
+
+    fn set_state(&self, line: &str, state: LineState) {
         let Some(desk) = self.lines.get(line) else {
             return;
         };
-        if lock(&desk.is_online).replace(is_online) == Some(is_online) {
+        if lock(&desk.state).replace(state) == Some(state) {
             return;
         }
-        let status = if is_online { "online" } else { "offline" };
-        self.tell(&json!({
+        let status = match state {
+            LineState::Online => "online",
+            LineState::Silent => "silent",
+            LineState::Offline => "offline",
+        };
+        self.tell(json(&json!({
             "event": "status", "line": line, "time": now(), "status": status,
-        }));
+        })));
         if let Some(outbox) = &self.outbox {
             outbox.retain(format!("{}/{line}/status", self.topic), status.into());
         }
     }
 
     /// Hands a command to its line. One that is not taken gets an outcome, as long as there is
-    /// room, and a line in the log, where the same is not repeated within a second. One that the broker may have handed over
-    /// before is not run again if its `id` is known.
-    pub(crate) fn command(&self, line: &str, payload: &[u8], may_be_duplicate: bool) {
-        let Some(desk) = self.lines.get(line) else {
-            warn!(
-                "a command for `{}`, which is no line here",
-                line.escape_default()
-            );
-            return;
-        };
-        let refused = match Job::parse(payload) {
-            Ok(job) if may_be_duplicate && desk.is_known(&job) => {
+    /// room, and a line in the log, where the same is not repeated within a second. One that the
+    /// broker may have handed over before is not run again if its `id` is known.
+    pub(crate) fn command(
+        &self,
+        line: &str,
+        payload: &[u8],
+        reply: Option<Reply>,
+        may_be_duplicate: bool,
+    ) {
+        let desk = self.lines.get(line);
+        let refused = match (Job::parse(payload, reply), desk) {
+            (Ok(job), Some(desk)) if may_be_duplicate && desk.is_known(&job) => {
                 info!("{line}: a command that came twice is not run again");
                 return;
             }
-            Ok(job) => match desk.hand_over(job) {
+            (Ok(job), Some(desk)) => match desk.hand_over(job) {
                 Ok(()) => return,
                 Err(refused) => refused,
             },
-            Err(refused) => refused,
+            (Ok(Job { asked, .. }) | Err(Refused { asked, .. }), None) => Refused {
+                asked,
+                message: "there is no such line".to_owned(),
+            },
+            (Err(refused), Some(_)) => refused,
         };
-        desk.counts.refused.fetch_add(1, Ordering::Relaxed);
-        desk.log_refusal(line, &refused.message);
-        let (topic, payload) = self.make_outcome(line, refused.id.as_ref(), Err(refused.message));
-        if let Some(outbox) = &self.outbox {
-            outbox.offer(topic, payload);
+        let Refused { asked, message } = refused;
+        let shown = line.escape_default();
+        let refusals = desk.map_or(&self.refusals, |desk| &desk.refusals);
+        lock(refusals).log(&format!("{shown}: command refused: {message}"));
+        if let Some(desk) = desk {
+            desk.counts.refused.fetch_add(1, Ordering::Relaxed);
+        } else if Name::try_from(line.to_owned()).is_err() {
+            // No line can have that name: there is no topic for an outcome.
+            return;
+        }
+        for message in self.make_outcome(line, &asked, Err(message)) {
+            if let Some(outbox) = &self.outbox {
+                outbox.offer(message);
+            }
         }
     }
 
-    /// To the clients over TCP; the JSON is handed back.
-    fn tell(&self, event: &impl Serialize) -> Bytes {
-        // Strings, numbers and maps with text as keys always have a JSON.
-        let json = Bytes::from(serde_json::to_vec(event).unwrap_or_default());
+    /// Tells that something of a line is not safe; the same again within a second is counted.
+    pub(crate) fn not_stored(&self, line: &str, error: &StoreError) {
+        if let Some(desk) = self.lines.get(line) {
+            lock(&desk.refusals).log(&format!("{line}: not stored: {error}"));
+        }
+    }
+
+    /// The line that a message is about.
+    pub(crate) fn line_of(&self, topic: &str) -> Option<&Desk> {
+        let rest = topic.strip_prefix(&self.topic)?.strip_prefix('/')?;
+        self.lines.get(rest.split('/').next()?)
+    }
+
+    /// To the clients over TCP.
+    fn tell(&self, json: Bytes) {
         // Nobody may listen.
-        drop(self.events.send(json.clone()));
-        json
+        drop(self.events.send(json));
     }
 }
 
+/// Strings, numbers and maps with text as keys always have a JSON.
+fn json(event: &impl Serialize) -> Bytes {
+    Bytes::from(serde_json::to_vec(event).unwrap_or_default())
+}
+
 impl Desk {
-    /// Whether the port is open and the last exchange went well.
+    /// Whether the port is open, the last exchange went well, and was not too long ago.
     pub(crate) fn is_online(&self) -> bool {
-        *lock(&self.is_online) == Some(true)
+        *lock(&self.state) == Some(LineState::Online)
     }
 
     fn is_known(&self, job: &Job) -> bool {
         let recent = lock(&self.recent);
-        job.id.as_ref().is_some_and(|id| recent.contains(id))
+        let id = job.asked.id.as_ref();
+        id.is_some_and(|id| recent.contains(id))
     }
 
     fn hand_over(&self, job: Job) -> Result<(), Refused> {
-        let id = job.id.clone();
+        let asked = job.asked.clone();
+        if self.is_read_only && !job.action.is_reading() {
+            let message = "the line is read-only".to_owned();
+            return Err(Refused { asked, message });
+        }
         match self.jobs.try_send(job) {
             Ok(()) => {
                 let mut recent = lock(&self.recent);
-                recent.extend(id);
+                recent.extend(asked.id);
                 while recent.len() > RECENT {
                     recent.pop_front();
                 }
@@ -275,26 +434,27 @@ impl Desk {
                     mpsc::error::TrySendError::Closed(_) => "the gateway is stopping",
                 };
                 let message = message.to_owned();
-                Err(Refused { id, message })
+                Err(Refused { asked, message })
             }
         }
     }
+}
 
+impl Refusals {
     /// The same again within a second is counted, and told with the next.
-    fn log_refusal(&self, line: &str, message: &str) {
-        let mut refusals = lock(&self.refusals);
-        let is_known = refusals
+    fn log(&mut self, message: &str) {
+        let is_known = self
             .logged
             .as_ref()
             .is_some_and(|(at, last)| last == message && at.elapsed() < LOG_PAUSE);
         if is_known {
-            refusals.unlogged += 1;
+            self.unlogged += 1;
             return;
         }
-        refusals.logged = Some((Instant::now(), message.to_owned()));
-        match mem::take(&mut refusals.unlogged) {
-            0 => warn!("{line}: command refused: {message}"),
-            more => warn!("{line}: command refused: {message}; {more} more before this one"),
+        self.logged = Some((Instant::now(), message.to_owned()));
+        match mem::take(&mut self.unlogged) {
+            0 => warn!("{message}"),
+            more => warn!("{message}; {more} more before this one"),
         }
     }
 }

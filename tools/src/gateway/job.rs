@@ -1,7 +1,10 @@
 //! Commands and what comes of them.
 
+use alloc::collections::BTreeMap;
+
+use bytes::Bytes;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, value::RawValue};
 
 use crate::text;
 
@@ -19,13 +22,31 @@ pub(crate) const MAX_COMMAND: usize = 16 * 1024;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a JSON object")]
 struct CommandText {
-    id: Option<Value>,
+    id: Option<Id>,
     send: Option<String>,
     send_text: Option<String>,
     fetch: Option<String>,
     write: Option<String>,
     hex: Option<String>,
     fields: Option<Map<String, Value>>,
+}
+
+/// What identifies a command, as it was written: no digit of a long number is lost.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Id(Box<RawValue>);
+
+impl PartialEq for Id {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.get() == other.0.get()
+    }
+}
+
+/// Where an answer is wanted besides, and what it repeats (MQTT 5).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Reply {
+    pub(crate) topic: String,
+    pub(crate) correlation: Option<Bytes>,
 }
 
 /// What a line is to do.
@@ -47,8 +68,15 @@ pub(crate) enum Data {
 /// A command, with what its outcome repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Job {
-    pub(crate) id: Option<Value>,
+    pub(crate) asked: Asked,
     pub(crate) action: Action,
+}
+
+/// What the outcome of a command repeats, and where it goes besides.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Asked {
+    pub(crate) id: Option<Id>,
+    pub(crate) reply: Option<Reply>,
 }
 
 /// What became of a command.
@@ -58,7 +86,7 @@ pub(crate) struct Outcome<'o> {
     pub(crate) line: &'o str,
     pub(crate) time: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) id: Option<&'o Value>,
+    pub(crate) id: Option<&'o Id>,
     pub(crate) ok: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) error: Option<&'o str>,
@@ -67,29 +95,43 @@ pub(crate) struct Outcome<'o> {
 /// A command that is none: what is wrong, and its `id` if it could be read.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Refused {
-    pub(crate) id: Option<Value>,
+    pub(crate) asked: Asked,
     pub(crate) message: String,
 }
 
 impl Job {
-    /// Reads a command.
+    /// Reads a command, whose outcome goes to the reply too.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub(crate) fn parse(payload: &[u8]) -> Result<Self, Refused> {
-        let refused = |id, message| Refused { id, message };
+    pub(crate) fn parse(payload: &[u8], reply: Option<Reply>) -> Result<Self, Refused> {
+        let mut asked = Asked { id: None, reply };
         let len = payload.len();
         if len > MAX_COMMAND {
             let message = format!("a command of {len} bytes, at most {MAX_COMMAND}");
-            return Err(refused(None, message));
+            return Err(Refused { asked, message });
         }
-        let text: CommandText = serde_json::from_slice(payload)
-            .map_err(|error| refused(None, format!("no command: {error}")))?;
-        let id = text.id.clone();
-        match text.action() {
-            Ok(action) => Ok(Self { id, action }),
-            Err(message) => Err(refused(id, message)),
+        let (id, action) = match serde_json::from_slice::<CommandText>(payload) {
+            Ok(text) => (text.id.clone(), text.action()),
+            Err(error) => {
+                // Wanted even if the rest is wrong.
+                let object = serde_json::from_slice(payload).ok();
+                let id = object.and_then(|mut object: BTreeMap<String, Id>| object.remove("id"));
+                (id, Err(format!("no command: {error}")))
+            }
+        };
+        asked.id = id;
+        match action {
+            Ok(action) => Ok(Self { asked, action }),
+            Err(message) => Err(Refused { asked, message }),
         }
+    }
+}
+
+impl Action {
+    /// Whether it changes nothing at the partner.
+    pub(crate) const fn is_reading(&self) -> bool {
+        matches!(self, Self::Fetch { .. })
     }
 }
 
@@ -110,6 +152,9 @@ impl CommandText {
             (None, None, None, Some(area), Some(data), None) => {
                 let data = Data::Bytes(hex(data)?);
                 Ok(Action::Write { area, data })
+            }
+            (None, None, None, Some(_), None, Some(fields)) if fields.is_empty() => {
+                Err("`fields` is empty".to_owned())
             }
             (None, None, None, Some(area), None, Some(fields)) => {
                 let data = Data::Fields(fields);

@@ -8,12 +8,15 @@ use core::{future::Future, pin::pin, sync::atomic::Ordering, time::Duration};
 
 use log::{info, warn};
 use tokio::{sync::mpsc, time::sleep};
+use tokio_util::sync::CancellationToken;
 
+use self::telegrams::Numbers;
 use super::{
     config::{self, Procedure},
     hub::Hub,
     job::Job,
 };
+use crate::Port;
 
 /// From one attempt to open the port to the next: doubled with each, between these.
 const PAUSE: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(10));
@@ -24,18 +27,19 @@ pub(crate) struct Line {
     pub(super) config: config::Line,
     pub(super) hub: Arc<Hub>,
     pub(super) jobs: mpsc::Receiver<Job>,
-    /// Telegrams and areas told so far.
-    pub(super) seq: u64,
+    numbers: Numbers,
 }
 
 impl Line {
     pub(crate) fn new(config: config::Line, hub: Arc<Hub>, jobs: mpsc::Receiver<Job>) -> Self {
+        let name = config.name.get_ref().to_string();
+        let numbers = hub.lines.get(&name).map(|desk| Numbers::after(&desk.last));
         Self {
-            name: config.name.get_ref().to_string(),
+            name,
             config,
             hub,
             jobs,
-            seq: 0,
+            numbers: numbers.unwrap_or_default(),
         }
     }
 
@@ -57,10 +61,7 @@ impl Line {
                     }
                     self.hub.online(&self.name, true);
                     pause = PAUSE.0;
-                    match self.config.procedure {
-                        Procedure::Telegrams => self.exchange_telegrams(stream, &stop).await,
-                        Procedure::Rk512 => self.exchange_areas(stream, &stop).await,
-                    }
+                    self.exchange(stream, &stop).await
                 }
                 Err(error) => error.to_string(),
             };
@@ -79,9 +80,31 @@ impl Line {
         self.jobs.close();
         while let Some(job) = self.jobs.recv().await {
             let error = "the gateway is stopping".to_owned();
-            self.hub
-                .outcome(&self.name, job.id.as_ref(), Err(error))
-                .await;
+            self.hub.outcome(&self.name, &job.asked, Err(error)).await;
+        }
+    }
+}
+
+impl Line {
+    /// Serves the line until it is lost or the gateway stops; says why.
+    async fn exchange(&mut self, stream: Port, stop: &CancellationToken) -> String {
+        let (hub, name) = (Arc::clone(&self.hub), self.name.clone());
+        let silent_after = self.config.silent_after();
+        let watching = async {
+            match silent_after {
+                Some(after) => hub.watch_for_silence(&name, after).await,
+                None => core::future::pending().await,
+            }
+        };
+        let exchanging = async {
+            match self.config.procedure {
+                Procedure::Telegrams => self.exchange_telegrams(stream, stop).await,
+                Procedure::Rk512 => self.exchange_areas(stream, stop).await,
+            }
+        };
+        tokio::select! {
+            why = exchanging => why,
+            () = watching => String::new(),
         }
     }
 }
@@ -103,7 +126,7 @@ async fn refuse_until<T>(
         };
         // Its outcome is not dropped, however long the queue of the broker is full.
         let error = "the port is not open".to_owned();
-        hub.outcome(line, job.id.as_ref(), Err(error)).await;
+        hub.outcome(line, &job.asked, Err(error)).await;
     }
 }
 

@@ -11,22 +11,29 @@ use hyper::{
 };
 use hyper_util::rt::{TokioIo, TokioTimer};
 use log::debug;
-use tokio::net::TcpListener;
+use tokio::{net::TcpListener, task::JoinSet};
 
 use super::{
     accept,
     hub::{Desk, Hub},
 };
 
+/// Clients at once; others wait for them, and take no file from a line.
+const MAX_CLIENTS: usize = 8;
+
 /// How long a client may take for its request.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Serves `GET /metrics` until the gateway ends.
 pub(crate) async fn serve(listener: TcpListener, hub: Arc<Hub>) {
+    let mut clients = JoinSet::new();
     loop {
-        let (stream, _) = accept(&listener, "metrics").await;
+        let stream = tokio::select! {
+            (stream, _) = accept(&listener, "metrics"), if clients.len() < MAX_CLIENTS => stream,
+            Some(_) = clients.join_next() => continue,
+        };
         let hub = Arc::clone(&hub);
-        tokio::spawn(async move {
+        clients.spawn(async move {
             let answer = service_fn(|request| {
                 let answer = answer(&request, &hub);
                 async { Ok::<_, Infallible>(answer) }
@@ -58,11 +65,11 @@ fn answer(request: &Request<Incoming>, hub: &Hub) -> Response<Full<Bytes>> {
 /// One metric: name, type, help, and how it is read from a line.
 type OfLine = (&'static str, &'static str, &'static str, fn(&Desk) -> u64);
 
-const OF_LINES: [OfLine; 7] = [
+const OF_LINES: [OfLine; 9] = [
     (
         "line_up",
         "gauge",
-        "1 while the port is open and the last exchange went well",
+        "1 while the port is open, the last exchange went well, and the line is not silent",
         |desk| desk.is_online().into(),
     ),
     (
@@ -101,6 +108,18 @@ const OF_LINES: [OfLine; 7] = [
         "commands that were not begun",
         |desk| desk.counts.refused.load(Ordering::Relaxed),
     ),
+    (
+        "line_not_stored_total",
+        "counter",
+        "telegrams answered NAK because they could not be made safe",
+        |desk| desk.counts.not_stored.load(Ordering::Relaxed),
+    ),
+    (
+        "line_dead_letters_total",
+        "counter",
+        "messages that the broker refused",
+        |desk| desk.counts.dead.load(Ordering::Relaxed),
+    ),
 ];
 
 fn text(hub: &Hub) -> String {
@@ -112,9 +131,22 @@ fn text(hub: &Hub) -> String {
             text.push_str(&format!("line3964r_{name}{{line=\"{line}\"}} {value}\n"));
         }
     }
+    let faults = "line_faults_total";
+    head(
+        &mut text,
+        faults,
+        "counter",
+        "what went wrong on the line, by its cause",
+    );
+    for (line, desk) in &hub.lines {
+        for (fault, count) in desk.counts.faults.counts() {
+            text.push_str(&format!(
+                "line3964r_{faults}{{line=\"{line}\",fault=\"{fault}\"}} {count}\n"
+            ));
+        }
+    }
     if let Some(outbox) = &hub.outbox {
         let broker = &hub.broker;
-        let queued = u64::try_from(outbox.len()).unwrap_or(u64::MAX);
         let load = |count: &core::sync::atomic::AtomicU64| count.load(Ordering::Relaxed);
         let is_connected = broker.is_connected.load(Ordering::Relaxed);
         for (name, kind, help, value) in [
@@ -146,12 +178,24 @@ fn text(hub: &Hub) -> String {
                 "mqtt_queue",
                 "gauge",
                 "messages without an acknowledgement",
-                queued,
+                outbox.len(),
+            ),
+            (
+                "store_bytes",
+                "gauge",
+                "bytes of the messages in the store",
+                outbox.bytes(),
+            ),
+            (
+                "dead_letters_total",
+                "counter",
+                "messages in the file of dead letters since the start",
+                outbox.dead(),
             ),
             (
                 "mqtt_dropped_total",
                 "counter",
-                "messages given up, the queue was full",
+                "messages given up, there was no room",
                 outbox.dropped(),
             ),
         ] {

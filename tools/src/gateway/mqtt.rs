@@ -13,17 +13,21 @@ use rumqttc::{
         AsyncClient, ConnectionError, Event, EventLoop, Incoming, MqttOptions,
         mqttbytes::{
             QoS,
-            v5::{ConnAck, LastWill, PubAck, PubAckReason, Publish},
+            v5::{ConnAck, LastWill, PubAck, PubAckReason, Publish, PublishProperties},
         },
     },
 };
+use thiserror::Error;
+use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use self::window::Window;
 use super::{
     config::{Config, Mqtt},
     hub::Hub,
-    outbox::{Message, Outbox},
+    job::Reply,
+    outbox::Outbox,
+    store::Message,
 };
 
 /// Largest packet that is taken: the broker keeps larger ones to itself.
@@ -42,16 +46,23 @@ const OVERHEAD: usize = 16;
 ///
 /// # Errors
 /// Those of the files that the configuration names.
-pub(crate) fn options(config: &Config, mqtt: &Mqtt, hub: &Hub) -> Result<MqttOptions> {
+pub(crate) fn options(config: &Config, mqtt: &Mqtt) -> Result<MqttOptions> {
     let broker = &mqtt.broker;
     let mut options = MqttOptions::new(config.name.as_str(), &broker.host, broker.port);
     options.set_keep_alive(Duration::from_secs(mqtt.keep_alive_s.into()));
-    options.set_clean_start(false);
-    options.set_session_expiry_interval(Some(mqtt.session_expiry_s));
+    // The session holds nothing but commands, and those no longer than they are wanted.
+    options.set_clean_start(mqtt.command_max_age_s == 0);
+    options.set_session_expiry_interval(Some(mqtt.command_max_age_s));
     options.set_max_packet_size(Some(MAX_PACKET));
     options.set_receive_maximum(Some(RECEIVE_MAX));
     options.set_outgoing_inflight_upper_limit(Window::SIZE);
-    let will = LastWill::new(hub.status_topic(), "offline", QoS::AtLeastOnce, true, None);
+    let will = LastWill::new(
+        config.status_topic(),
+        "offline",
+        QoS::AtLeastOnce,
+        true,
+        None,
+    );
     options.set_last_will(will);
     if let Some(user) = &mqtt.user {
         options.set_credentials(user, mqtt.password()?);
@@ -64,27 +75,86 @@ pub(crate) fn options(config: &Config, mqtt: &Mqtt, hub: &Hub) -> Result<MqttOpt
 
 /// Keeps the connection until `finishing` and everything is delivered.
 pub(crate) async fn run(
-    options: MqttOptions,
+    mut options: MqttOptions,
     hub: &Hub,
     outbox: &Outbox,
     finishing: &CancellationToken,
 ) {
+    let max_age_s = options.session_expiry_interval().unwrap_or_default();
+    let max_age = Duration::from_secs(max_age_s.into());
     let mut pause = PAUSE.0;
+    let mut suspect = Suspect::default();
+    // When the broker was last heard.
+    let mut away_since = None;
     loop {
         let mut session = Session::new(&options, hub, outbox);
         let ended = session.work(finishing).await;
+        let heard_at = session.heard_at;
         let was_connected = hub.broker.is_connected.swap(false, Ordering::Relaxed);
-        session.window.restore(outbox);
         let Err(error) = ended else {
             return;
         };
+        session.take_last_answers();
         if was_connected {
             pause = PAUSE.0;
+            if session.has_acknowledged
+                && suspect.is_convicted(&session.window)
+                && let Some(message) = session.window.take_first()
+            {
+                session.refused(
+                    message,
+                    &format!("{SUSPICIONS} times the end of a connection"),
+                );
+            }
         }
+        session.window.restore(outbox);
         warn!("broker: {error}; next attempt in {pause:?}");
         tokio::time::sleep(pause).await;
         pause = (2 * pause).min(PAUSE.1);
+        if let Some(heard_at) = heard_at {
+            away_since = Some(heard_at);
+        }
+        // A broker that has missed the end of the connection keeps commands for too long.
+        let is_stale = away_since.is_some_and(|since| since.elapsed() >= max_age);
+        options.set_clean_start(max_age.is_zero() || is_stale);
     }
+}
+
+/// Connections over which the broker answered others, and that ended with the same message
+/// unanswered, before that is taken for the reason.
+const SUSPICIONS: u32 = 5;
+
+/// The first message that was unanswered when the connection ended, and how many times in a row.
+/// Some brokers close the connection on what they do not take.
+#[derive(Default)]
+struct Suspect {
+    /// By identifier, and by topic what is retained.
+    message: Option<(u64, String)>,
+    times: u32,
+}
+
+impl Suspect {
+    fn is_convicted(&mut self, window: &Window) -> bool {
+        let first = window.first();
+        let message = first.map(|message| (message.id, message.topic.clone()));
+        let before = if message == self.message {
+            self.times
+        } else {
+            0
+        };
+        let times = if message.is_some() { before + 1 } else { 0 };
+        *self = Self { message, times };
+        times >= SUSPICIONS
+    }
+}
+
+/// Why a connection has ended.
+#[derive(Debug, Error)]
+enum Ended {
+    #[error(transparent)]
+    Lost(#[from] ConnectionError),
+    #[error("the quota is exceeded, messages wait")]
+    Quota,
 }
 
 /// One connection.
@@ -97,6 +167,10 @@ struct Session<'h> {
     /// Largest packet that the broker takes.
     max_packet: usize,
     is_connected: bool,
+    /// The broker has acknowledged a message over this connection.
+    has_acknowledged: bool,
+    /// When the broker was last heard.
+    heard_at: Option<Instant>,
 }
 
 impl<'h> Session<'h> {
@@ -112,12 +186,14 @@ impl<'h> Session<'h> {
             outbox,
             max_packet: usize::MAX,
             is_connected: false,
+            has_acknowledged: false,
+            heard_at: None,
         }
     }
 
     /// # Errors
     /// The connection is lost, or was refused.
-    async fn work(&mut self, finishing: &CancellationToken) -> Result<(), ConnectionError> {
+    async fn work(&mut self, finishing: &CancellationToken) -> Result<(), Ended> {
         let mut is_leaving = false;
         loop {
             let event = {
@@ -131,15 +207,25 @@ impl<'h> Session<'h> {
                     tokio::select! {
                         event = &mut event => break event?,
                         message = self.outbox.next(), if self.is_connected && self.window.has_room() => {
-                            publish(&self.client, &mut self.window, message, self.max_packet, self.outbox, self.hub);
+                            let room = self.max_packet.saturating_sub(OVERHEAD);
+                            if message.len() > room {
+                                let reason = format!("{} bytes, the broker takes {room}", message.len());
+                                refused(self.hub, self.outbox, message, &reason);
+                            } else {
+                                publish(&self.client, &message);
+                                self.window.push(message);
+                            }
                         }
                         () = finishing.cancelled(), if !finishing.is_cancelled() => {}
                     }
                 }
             };
+            if matches!(event, Event::Incoming(_)) {
+                self.heard_at = Some(Instant::now());
+            }
             match event {
                 Event::Incoming(Incoming::ConnAck(answer)) => self.connected(&answer),
-                Event::Incoming(Incoming::PubAck(answer)) => self.acknowledged(&answer),
+                Event::Incoming(Incoming::PubAck(answer)) => self.acknowledged(&answer)?,
                 Event::Incoming(Incoming::Publish(publish)) => self.command(&publish),
                 Event::Outgoing(Outgoing::Publish(id)) => self.window.numbered(id),
                 Event::Outgoing(Outgoing::Disconnect) => return Ok(()),
@@ -164,20 +250,37 @@ impl<'h> Session<'h> {
         drop(self.client.try_subscribe(commands, QoS::AtLeastOnce));
     }
 
-    fn acknowledged(&mut self, answer: &PubAck) {
+    /// # Errors
+    /// The broker takes no more for now.
+    fn acknowledged(&mut self, answer: &PubAck) -> Result<(), Ended> {
+        if answer.reason == PubAckReason::QuotaExceeded {
+            return Err(Ended::Quota);
+        }
         let Some(message) = self.window.acknowledged(answer.pkid) else {
-            return;
+            return Ok(());
         };
-        self.outbox.done(&message);
         match answer.reason {
             PubAckReason::Success | PubAckReason::NoMatchingSubscribers => {
+                self.outbox.done(&message);
                 self.hub.broker.published.fetch_add(1, Ordering::Relaxed);
+                self.has_acknowledged = true;
             }
-            reason => {
-                self.hub.broker.refused.fetch_add(1, Ordering::Relaxed);
-                error!("broker: refused a message to {}: {reason:?}", message.topic);
+            reason => self.refused(message, &format!("{reason:?}")),
+        }
+        Ok(())
+    }
+
+    /// Answers that came before the end of the connection, and were not handed out because of it.
+    fn take_last_answers(&mut self) {
+        for event in core::mem::take(&mut self.event_loop.state.events) {
+            if let Event::Incoming(Incoming::PubAck(answer)) = event {
+                self.acknowledged(&answer).ok();
             }
         }
+    }
+
+    fn refused(&self, message: Message, reason: &str) {
+        refused(self.hub, self.outbox, message, reason);
     }
 
     fn command(&self, publish: &Publish) {
@@ -189,33 +292,55 @@ impl<'h> Session<'h> {
             Some(line) if publish.retain => {
                 warn!("{line}: a retained command is not run: it would be with every connection");
             }
-            Some(line) => self.hub.command(line, &publish.payload, publish.dup),
+            Some(line) => {
+                let reply = reply(publish);
+                self.hub.command(line, &publish.payload, reply, publish.dup);
+            }
             None => {}
         }
     }
 }
 
-fn publish(
-    client: &AsyncClient,
-    window: &mut Window,
-    message: Message,
-    max_packet: usize,
-    outbox: &Outbox,
-    hub: &Hub,
-) {
+fn publish(client: &AsyncClient, message: &Message) {
     let Message {
         topic,
         payload,
+        correlation,
         is_retained,
-    } = &message;
-    let len = topic.len() + payload.len() + OVERHEAD;
-    if len > max_packet {
-        error!("broker: takes packets up to {max_packet} bytes, not {len} for {topic}");
-        hub.broker.refused.fetch_add(1, Ordering::Relaxed);
-        outbox.done(&message);
+        ..
+    } = message;
+    let properties = PublishProperties {
+        correlation_data: correlation.clone(),
+        ..PublishProperties::default()
+    };
+    let (qos, payload) = (QoS::AtLeastOnce, payload.clone());
+    drop(client.try_publish_with_properties(topic, qos, *is_retained, payload, properties));
+}
+
+/// Where whoever sent a command wants to hear of it, if anything can be published there.
+fn reply(publish: &Publish) -> Option<Reply> {
+    let properties = publish.properties.as_ref()?;
+    let topic = properties.response_topic.as_ref()?;
+    if topic.is_empty() || topic.contains(['+', '#', '\0']) {
+        warn!("`{}` is no topic for a response", topic.escape_default());
+        return None;
+    }
+    Some(Reply {
+        topic: topic.clone(),
+        correlation: properties.correlation_data.clone(),
+    })
+}
+
+/// The broker does not take a message. What is retained is not offered again until it is another.
+fn refused(hub: &Hub, outbox: &Outbox, message: Message, reason: &str) {
+    hub.broker.refused.fetch_add(1, Ordering::Relaxed);
+    error!("broker: refused a message to {}: {reason}", message.topic);
+    if message.is_retained {
+        outbox.forget_retained(&message.topic);
         return;
     }
-    let at_least_once = QoS::AtLeastOnce;
-    drop(client.try_publish(topic, at_least_once, *is_retained, payload.clone()));
-    window.push(message);
+    if let Some(desk) = hub.line_of(&message.topic) {
+        desk.counts.dead.fetch_add(1, Ordering::Relaxed);
+    }
+    outbox.refused(message, reason.to_owned());
 }

@@ -1,105 +1,158 @@
 //! What waits for the broker.
 
-use alloc::collections::{BTreeMap, BTreeSet, VecDeque};
-use core::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use alloc::sync::Arc;
+use core::sync::atomic::Ordering;
+use std::io;
 
-use bytes::Bytes;
-use tokio::sync::{Notify, Semaphore};
+use tokio::sync::{Semaphore, oneshot};
 
-use super::config::Overflow;
+use super::{
+    config::{Overflow, Sync},
+    store::{Append, DeadLetters, Entry, Message, Shared, Store, StoreError, WINDOW, Writer},
+};
 
-/// A message and where it goes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Message {
-    pub(crate) topic: String,
-    pub(crate) payload: Bytes,
-    /// Whether the broker keeps it for those who come later.
-    pub(crate) is_retained: bool,
-}
-
-/// Messages in the order of their arrival, until the broker has acknowledged them; at most
-/// `capacity`, those under way included. Of what the broker retains, the latest of each topic.
+/// Messages in the order of their arrival, until the broker has acknowledged them: in a store, or in
+/// memory. Of what the broker retains, the latest of each topic.
 pub(crate) struct Outbox {
-    state: Mutex<State>,
-    /// A message has come.
-    filled: Notify,
-    /// Free places.
-    places: Semaphore,
-    capacity: usize,
-    overflow: Overflow,
-    dropped: AtomicU64,
+    shared: Arc<Shared>,
+    writer: Writer,
+    keeping: Keeping,
 }
 
-#[derive(Default)]
-struct State {
-    queue: VecDeque<(String, Bytes)>,
-    /// By topic.
-    retained: BTreeMap<String, Bytes>,
-    /// Topics of those that have yet to be sent.
-    unsent: BTreeSet<String>,
+enum Keeping {
+    Memory {
+        /// Free places.
+        places: Semaphore,
+        capacity: usize,
+        overflow: Overflow,
+    },
+    Disk {
+        max_bytes: u64,
+    },
 }
 
 impl Outbox {
-    pub(crate) fn new(capacity: usize, overflow: Overflow) -> Self {
-        Self {
-            state: Mutex::default(),
-            filled: Notify::new(),
-            places: Semaphore::new(capacity),
-            capacity,
-            overflow,
-            dropped: AtomicU64::new(0),
-        }
+    /// Keeps messages in memory, `capacity` at most, those under way included.
+    ///
+    /// # Errors
+    /// A thread that cannot be had.
+    pub(crate) fn in_memory(
+        capacity: usize,
+        overflow: Overflow,
+        letters: DeadLetters,
+    ) -> io::Result<Self> {
+        let shared = Arc::<Shared>::default();
+        Ok(Self {
+            writer: Writer::start(None, letters, Arc::clone(&shared))?,
+            shared,
+            keeping: Keeping::Memory {
+                places: Semaphore::new(capacity),
+                capacity,
+                overflow,
+            },
+        })
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Keeps messages in a store; what that holds already is sent first.
+    ///
+    /// # Errors
+    /// A thread that cannot be had.
+    pub(crate) fn on_disk(store: Store, sync: Sync, letters: DeadLetters) -> io::Result<Self> {
+        let shared = Arc::<Shared>::default();
+        let max_bytes = store.max_bytes();
+        Ok(Self {
+            writer: Writer::start(Some((store, sync)), letters, Arc::clone(&shared))?,
+            shared,
+            keeping: Keeping::Disk { max_bytes },
+        })
     }
 
-    /// Puts a message at the end; waits for a place, or gives up the oldest, as configured.
-    pub(crate) async fn push(&self, topic: String, payload: Bytes) {
-        if !self.try_push(&topic, &payload) {
-            let has_dropped =
-                self.overflow == Overflow::DropOldest && self.state().queue.pop_front().is_some();
+    /// Whether messages outlive this program.
+    pub(crate) const fn is_on_disk(&self) -> bool {
+        matches!(self.keeping, Keeping::Disk { .. })
+    }
+
+    /// Puts a message at the end, and returns when it is safe. In memory it waits for a place, or
+    /// gives up the oldest, as configured. A message whose future is dropped may be kept all the same.
+    ///
+    /// # Errors
+    /// A store that is full or a disk that fails: the message is not safe.
+    pub(crate) async fn push(&self, entry: Entry) -> Result<(), StoreError> {
+        let Keeping::Memory {
+            places, overflow, ..
+        } = &self.keeping
+        else {
+            let (done, is_done) = oneshot::channel();
+            self.writer.append(Append::Entry(entry, Some(done)))?;
+            let ended = || StoreError::Disk("its thread has ended".to_owned());
+            return is_done.await.unwrap_or_else(|_| Err(ended()));
+        };
+        if !self.try_push(places, &entry.message) {
+            let has_dropped = *overflow == Overflow::DropOldest
+                && self.shared.state().queue.pop_front().is_some();
             if has_dropped {
                 // The place of the oldest is taken over.
-                self.dropped.fetch_add(1, Ordering::Relaxed);
-            } else if let Ok(place) = self.places.acquire().await {
+                self.count_dropped();
+            } else if let Ok(place) = places.acquire().await {
                 place.forget();
             }
-            self.state().queue.push_back((topic, payload));
-            self.filled.notify_one();
+            self.shared.state().queue.push_back(entry.message);
+            self.shared.filled.notify_one();
+        }
+        Ok(())
+    }
+
+    /// Puts a message at the end if there is room for as much again; otherwise it is dropped and
+    /// counted. For what a flood would otherwise take all the room with.
+    pub(crate) fn offer(&self, message: Message) {
+        let is_taken = match &self.keeping {
+            Keeping::Memory {
+                places, capacity, ..
+            } => {
+                let is_half_full = places.available_permits() < capacity.div_ceil(2);
+                !is_half_full && self.try_push(places, &message)
+            }
+            Keeping::Disk { max_bytes } => {
+                let number = None;
+                self.shared.bytes.load(Ordering::Relaxed) < max_bytes / 2
+                    && self
+                        .writer
+                        .append(Append::Entry(Entry { message, number }, None))
+                        .is_ok()
+            }
+        };
+        if !is_taken {
+            self.count_dropped();
         }
     }
 
-    /// Puts a message at the end if the queue is less than half full; otherwise it is dropped and
-    /// counted. For what a flood would otherwise fill the queue with.
-    pub(crate) fn offer(&self, topic: String, payload: Bytes) {
-        let is_half_full = self.places.available_permits() < self.capacity.div_ceil(2);
-        if is_half_full || !self.try_push(&topic, &payload) {
-            self.dropped.fetch_add(1, Ordering::Relaxed);
-        }
+    fn count_dropped(&self) {
+        self.shared.dropped.fetch_add(1, Ordering::Relaxed);
     }
 
-    fn try_push(&self, topic: &str, payload: &Bytes) -> bool {
-        let Ok(place) = self.places.try_acquire() else {
+    fn try_push(&self, places: &Semaphore, message: &Message) -> bool {
+        let Ok(place) = places.try_acquire() else {
             return false;
         };
         place.forget();
-        let message = (topic.to_owned(), payload.clone());
-        self.state().queue.push_back(message);
-        self.filled.notify_one();
+        self.shared.state().queue.push_back(message.clone());
+        self.shared.filled.notify_one();
         true
     }
 
     /// Sets what the broker retains under a topic.
-    pub(crate) fn retain(&self, topic: String, payload: Bytes) {
-        let mut state = self.state();
+    pub(crate) fn retain(&self, topic: String, payload: bytes::Bytes) {
+        let mut state = self.shared.state();
         if state.retained.get(&topic) != Some(&payload) {
             state.unsent.insert(topic.clone());
             state.retained.insert(topic, payload);
-            self.filled.notify_one();
+            self.shared.filled.notify_one();
         }
+    }
+
+    /// The broker does not take what it should retain under a topic.
+    pub(crate) fn forget_retained(&self, topic: &str) {
+        self.shared.state().retained.remove(topic);
     }
 
     /// The next message, for the one session there is: what is retained first. May be dropped and
@@ -109,12 +162,12 @@ impl Outbox {
             if let Some(message) = self.try_next() {
                 return message;
             }
-            self.filled.notified().await;
+            self.shared.filled.notified().await;
         }
     }
 
     fn try_next(&self) -> Option<Message> {
-        let mut state = self.state();
+        let mut state = self.shared.state();
         if let Some(topic) = state.unsent.pop_first()
             && let Some(payload) = state.retained.get(&topic).cloned()
         {
@@ -122,51 +175,101 @@ impl Outbox {
                 topic,
                 payload,
                 is_retained: true,
+                ..Message::default()
             });
         }
-        let (topic, payload) = state.queue.pop_front()?;
-        Some(Message {
-            topic,
-            payload,
-            is_retained: false,
-        })
+        // What was refused and cannot be written down must not fill the memory.
+        if state.dead.len() >= WINDOW {
+            return None;
+        }
+        let next = state.queue.pop_front();
+        // Asked for once, half a window before the last is sent.
+        if state.has_more && (state.queue.len() == WINDOW / 4 || state.queue.is_empty()) {
+            self.writer.look();
+        }
+        next
     }
 
-    /// The broker has acknowledged a message, or it is given up.
+    /// The broker has acknowledged a message.
     pub(crate) fn done(&self, message: &Message) {
-        if !message.is_retained {
-            self.places.add_permits(1);
+        match &self.keeping {
+            _ if message.is_retained => {}
+            Keeping::Memory { places, .. } => places.add_permits(1),
+            Keeping::Disk { .. } => {
+                let mut state = self.shared.state();
+                state.done.push(message.id);
+                // The thread sleeps where nothing was to be forgotten.
+                if state.done.len() == 1 {
+                    self.writer.look();
+                }
+            }
         }
+    }
+
+    /// The broker does not take a message, and never will: it goes to the file of dead letters.
+    pub(crate) fn refused(&self, message: Message, reason: String) {
+        if let Keeping::Memory { places, .. } = &self.keeping {
+            places.add_permits(1);
+        }
+        self.shared.state().dead.push((message, reason));
+        self.writer.look();
     }
 
     /// A session has ended: what it had taken, in order, goes back to the front; what is retained
     /// is sent again.
     pub(crate) fn restore(&self, taken: impl DoubleEndedIterator<Item = Message>) {
-        let mut state = self.state();
+        let mut state = self.shared.state();
         for message in taken.rev().filter(|message| !message.is_retained) {
-            state.queue.push_front((message.topic, message.payload));
+            state.queue.push_front(message);
         }
         state.unsent = state.retained.keys().cloned().collect();
-        self.filled.notify_one();
+        self.shared.filled.notify_one();
     }
 
-    /// Whether nothing waits for a session.
+    /// Whether nothing waits for a session, and nothing that was refused for its file.
     pub(crate) fn is_empty(&self) -> bool {
-        let state = self.state();
-        state.queue.is_empty() && state.unsent.is_empty()
+        let state = self.shared.state();
+        state.queue.is_empty()
+            && !state.has_more
+            && state.unsent.is_empty()
+            && state.dead.is_empty()
     }
 
     /// Messages that the broker has not acknowledged.
-    pub(crate) fn len(&self) -> usize {
-        self.capacity
-            .saturating_sub(self.places.available_permits())
+    pub(crate) fn len(&self) -> u64 {
+        match &self.keeping {
+            Keeping::Memory {
+                places, capacity, ..
+            } => {
+                let taken = capacity.saturating_sub(places.available_permits());
+                u64::try_from(taken).unwrap_or(u64::MAX)
+            }
+            Keeping::Disk { .. } => self.shared.count.load(Ordering::Relaxed),
+        }
     }
 
-    /// Messages given up because the queue was full.
+    /// Bytes of the messages in the store.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.shared.bytes.load(Ordering::Relaxed)
+    }
+
+    /// Messages given up because there was no room.
     pub(crate) fn dropped(&self) -> u64 {
-        self.dropped.load(Ordering::Relaxed)
+        self.shared.dropped.load(Ordering::Relaxed)
+    }
+
+    /// Messages that the broker refused, in the file of dead letters since the start.
+    pub(crate) fn dead(&self) -> u64 {
+        self.shared.dead.load(Ordering::Relaxed)
+    }
+
+    /// Brings all that the thread was handed to the disk, and ends it.
+    pub(crate) fn end(&self) {
+        self.writer.end();
     }
 }
 
+#[cfg(test)]
+mod disk_tests;
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@ use std::io;
 
 use log::{info, warn};
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::value::RawValue;
 use tokio::{
     io::{AsyncBufReadExt as _, AsyncReadExt as _, AsyncWriteExt as _, BufReader},
     net::{TcpListener, TcpStream, tcp::ReadHalf},
@@ -23,7 +23,7 @@ const MAX_CLIENTS: usize = 64;
 #[serde(deny_unknown_fields)]
 struct Addressed {
     line: String,
-    command: Value,
+    command: Box<RawValue>,
 }
 
 /// Serves every client until the gateway ends.
@@ -103,6 +103,6 @@ fn command(line: &[u8], hub: &Hub) -> io::Result<()> {
         return Ok(());
     }
     let Addressed { line, command } = serde_json::from_slice(line)?;
-    hub.command(&line, command.to_string().as_bytes(), false);
+    hub.command(&line, command.get().as_bytes(), None, false);
     Ok(())
 }

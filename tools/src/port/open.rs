@@ -3,6 +3,7 @@
 use core::{future::poll_fn, time::Duration};
 use std::io;
 
+use socket2::{SockRef, TcpKeepalive};
 use tokio::{
     net::{TcpListener, TcpStream},
     time::timeout,
@@ -12,11 +13,20 @@ use super::{Address, Frame, Port, Target, echo::Echo, stream::Coding, telnet::Te
 #[cfg(unix)]
 use super::{marks::Marks, pty, tty::open_serial};
 
+/// After this silence a TCP connection is probed, then again and again: a partner that is gone is
+/// noticed within 25 s.
+const QUIET: Duration = Duration::from_secs(10);
+const PROBE: Duration = Duration::from_secs(5);
+const PROBES: u32 = 3;
+
 /// How long a connection, and the answers of a serial server, may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Address {
-    /// Opens the port; [`Target::TcpListen`] waits until somebody connects.
+    /// Opens the port; [`Target::TcpListen`] waits until somebody connects, and hears whoever
+    /// connects next in place of the one before, who may be gone.
+    ///
+    /// A partner on TCP that is switched off is noticed within 25 s: the port fails.
     ///
     /// A serial port is opened for this program alone. Damaged characters and BREAK are heard on
     /// serial ports of Unix, BREAK on serial servers that tell it (RFC 2217).
@@ -35,9 +45,10 @@ impl Address {
                 set_up.unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into()))
             }
             Target::TcpListen(host) => {
-                let (stream, _) = TcpListener::bind(host).await?.accept().await?;
-                stream.set_nodelay(true)?;
-                Ok(Port::new(stream, Coding::Plain, echo))
+                let listener = TcpListener::bind(host).await?;
+                let (stream, _) = listener.accept().await?;
+                set_options(&stream)?;
+                Ok(Port::new(stream, Coding::Plain, echo).with_listener(listener))
             }
             Target::Pty(path) => pseudo_terminal(path, echo),
         }
@@ -92,8 +103,23 @@ fn pseudo_terminal(_: &str, _: Option<Echo>) -> io::Result<Port> {
 async fn connect(host: &str) -> io::Result<TcpStream> {
     let connected = timeout(PATIENCE, TcpStream::connect(host)).await;
     let stream = connected.unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into()))?;
-    stream.set_nodelay(true)?;
+    set_options(&stream)?;
     Ok(stream)
+}
+
+/// Sends without delay, and notices a partner that is gone: one that was switched off answers
+/// nothing, and one that was switched on again knows of no connection.
+pub(super) fn set_options(stream: &TcpStream) -> io::Result<()> {
+    stream.set_nodelay(true)?;
+    let socket = SockRef::from(stream);
+    let probes = TcpKeepalive::new()
+        .with_time(QUIET)
+        .with_interval(PROBE)
+        .with_retries(PROBES);
+    socket.set_tcp_keepalive(&probes)?;
+    #[cfg(any(target_os = "android", target_os = "fuchsia", target_os = "linux"))]
+    socket.set_tcp_user_timeout(Some(QUIET + PROBE * PROBES))?;
+    Ok(())
 }
 
 /// Waits until the server has confirmed every setting.
@@ -105,4 +131,24 @@ async fn set_up(mut port: Port) -> io::Result<Port> {
         }
     }
     Ok(port)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_connection_is_watched() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let host = listener.local_addr().unwrap().to_string();
+        let stream = connect(&host).await.unwrap();
+        let socket = SockRef::from(&stream);
+        assert!(stream.nodelay().unwrap() && socket.keepalive().unwrap());
+        #[cfg(target_os = "linux")]
+        {
+            let within = Some(Duration::from_secs(25));
+            assert_eq!(socket.tcp_user_timeout().unwrap(), within);
+            assert_eq!(socket.tcp_keepalive_time().unwrap(), QUIET);
+        }
+    }
 }

@@ -5,17 +5,25 @@ use core::{
     fmt,
     pin::Pin,
     task::{Context, Poll, ready},
+    time::Duration,
 };
-use std::{io, time::Instant};
+use std::io;
 
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::{
+    io::{AsyncRead, AsyncWrite, ReadBuf},
+    net::TcpListener,
+    time::{Instant, Interval, interval_at},
+};
 
-use super::{echo::Echo, heard::Heard, telnet::Telnet};
+use super::{echo::Echo, heard::Heard, open::set_options, telnet::Telnet};
 #[cfg(unix)]
 use super::{marks::Marks, pty::OtherEnd};
 
 /// Characters that are read or written at a time.
 const PIECE: usize = 256;
+
+/// From one sign of life of TELNET to the next.
+const SILENCE: Duration = Duration::from_secs(10);
 
 /// An open port.
 ///
@@ -29,6 +37,10 @@ pub struct Port {
     heard: VecDeque<Heard>,
     /// What the stream has not taken.
     output: VecDeque<u8>,
+    /// Where whoever connects next takes the place of the partner.
+    listener: Option<TcpListener>,
+    /// When TELNET says something that means nothing, so that a server that is gone is noticed.
+    say_nothing: Option<Interval>,
     #[cfg(unix)]
     _other_end: Option<OtherEnd>,
 }
@@ -48,15 +60,40 @@ pub(super) enum Coding {
 
 impl Port {
     pub(super) fn new(stream: impl Stream + 'static, coding: Coding, echo: Option<Echo>) -> Self {
+        let is_telnet = matches!(coding, Coding::Telnet(_));
         Self {
             stream: Box::pin(stream),
             coding,
+            listener: None,
+            say_nothing: is_telnet.then(|| interval_at(Instant::now() + SILENCE, SILENCE)),
             echo,
             heard: VecDeque::new(),
             output: VecDeque::new(),
             #[cfg(unix)]
             _other_end: None,
         }
+    }
+
+    /// Goes on listening for partners.
+    pub(super) fn with_listener(self, listener: TcpListener) -> Self {
+        Self {
+            listener: Some(listener),
+            ..self
+        }
+    }
+
+    /// Takes the last of those who have connected meanwhile.
+    fn poll_accept(&mut self, context: &mut Context<'_>) -> io::Result<()> {
+        while let Some(listener) = &self.listener
+            && let Poll::Ready(accepted) = listener.poll_accept(context)
+        {
+            let (stream, _) = accepted?;
+            set_options(&stream)?;
+            self.stream = Box::pin(stream);
+            self.heard.clear();
+            self.output.clear();
+        }
+        Ok(())
     }
 
     /// Keeps the other end as long as the port.
@@ -79,12 +116,18 @@ impl Port {
     pub(super) fn poll_exchange(&mut self, context: &mut Context<'_>) -> Poll<io::Result<bool>> {
         let mut bytes = [0; PIECE];
         let mut piece = ReadBuf::new(&mut bytes);
+        self.poll_accept(context)?;
+        while let Some(interval) = &mut self.say_nothing
+            && interval.poll_tick(context).is_ready()
+        {
+            self.output.extend(Telnet::NOTHING);
+        }
         // Whatever cannot be written now is written with the next poll.
         if let Poll::Ready(Err(error)) = self.poll_drain(context) {
             return Poll::Ready(Err(error));
         }
         ready!(self.stream.as_mut().poll_read(context, &mut piece))?;
-        let now = Instant::now();
+        let now = std::time::Instant::now();
         for &byte in piece.filled() {
             let heard = match &mut self.coding {
                 Coding::Plain => Some(Ok(byte)),
@@ -169,7 +212,7 @@ impl AsyncWrite for Port {
             }
         }
         if let Some(echo) = &mut self.echo {
-            echo.sent(Instant::now(), piece);
+            echo.sent(std::time::Instant::now(), piece);
         }
         match self.poll_drain(context) {
             Poll::Ready(Err(error)) => Poll::Ready(Err(error)),
@@ -194,5 +237,73 @@ impl fmt::Debug for Port {
             .field("coding", &self.coding)
             .field("echo", &self.echo)
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::{
+        io::{AsyncReadExt as _, AsyncWriteExt as _, duplex},
+        net::TcpStream,
+        time::timeout,
+    };
+
+    use super::*;
+
+    /// A serial server over RFC 2217 hears from an idle port every 10 s.
+    #[tokio::test(start_paused = true)]
+    async fn telnet_gives_signs_of_life() {
+        let (here, mut there) = duplex(1024);
+        let frame = "rfc2217://h:1"
+            .parse::<super::super::Address>()
+            .unwrap()
+            .frame;
+        let coding = Coding::Telnet(Telnet::new(frame));
+        let mut port = Port::new(here, coding, None);
+        let begin = Instant::now();
+        let listening = timeout(Duration::from_secs(35), async {
+            drop(port.read_u8().await);
+        });
+        let hearing = async {
+            let (mut last, mut signs) = (0, Vec::new());
+            while let Ok(byte) = there.read_u8().await {
+                // IAC NOP.
+                if (last, byte) == (255, 241) {
+                    signs.push(begin.elapsed().as_secs());
+                }
+                last = byte;
+                if signs.len() == 3 {
+                    break;
+                }
+            }
+            signs
+        };
+        let (_, signs) = tokio::join!(listening, hearing);
+        assert_eq!(signs, [10, 20, 30]);
+    }
+
+    #[tokio::test]
+    async fn who_connects_next_takes_the_place_of_who_is_gone() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let host = listener.local_addr().unwrap();
+        drop(listener);
+        let address: super::super::Address = format!("tcp-listen://{host}").parse().unwrap();
+        let opening = tokio::spawn(async move { address.open().await.unwrap() });
+        let connect = async || loop {
+            if let Ok(stream) = TcpStream::connect(host).await {
+                return stream;
+            }
+        };
+        let mut first = connect().await;
+        let mut port = opening.await.unwrap();
+        first.write_all(b"1").await.unwrap();
+        assert_eq!(port.read_u8().await.unwrap(), b'1');
+        // The first is still open, and says nothing.
+        let mut second = connect().await;
+        second.write_all(b"2").await.unwrap();
+        assert_eq!(port.read_u8().await.unwrap(), b'2');
+        port.write_all(b"3").await.unwrap();
+        assert_eq!(second.read_u8().await.unwrap(), b'3');
+        assert_eq!(first.read(&mut [0]).await.unwrap(), 0, "closed");
     }
 }

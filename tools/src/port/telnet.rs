@@ -9,6 +9,7 @@ use super::{Frame, Parity, heard::Heard};
 
 // RFC 854, 856, 858, 2217.
 const SE: u8 = 240;
+const NOP: u8 = 241;
 const SB: u8 = 250;
 const WILL: u8 = 251;
 const WONT: u8 = 252;
@@ -72,6 +73,9 @@ pub(crate) enum Refusal {
 }
 
 impl Telnet {
+    /// What means nothing to the server.
+    pub(crate) const NOTHING: [u8; 2] = [IAC, NOP];
+
     /// Asks for a port with this frame.
     pub(crate) fn new(frame: Frame) -> Self {
         let parity = match frame.parity {

@@ -4,6 +4,7 @@ use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
+use crate::assembly::from_above;
 use crate::pose::{invert_rods, smallest_sine};
 use crate::prepared::PreparedArm;
 use crate::range::{half, two};
@@ -17,6 +18,9 @@ struct Swing<T> {
     miss: T,
     /// Largest amount by which the rod's direction differs from that halfway.
     turn: T,
+    /// Where the centre of the rod's sphere is halfway, and the most by which it is elsewhere.
+    centre: Vector3<T>,
+    moves: T,
 }
 
 impl<T: RealField + Trig> Delta<T> {
@@ -51,7 +55,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// their lengths. That point moves continuously from one pose to the other, so it is the
     /// platform, and δ is the bound. A is invertible in the whole ball, so its determinant keeps
     /// its sign, which is the assembly mode. For short steps δ is the true departure times at
-    /// most κ.
+    /// most κ. The triangle of the elbows, as seen from above, keeps its area from 0, as in
+    /// [`clearance`](Self::clearance).
     #[must_use]
     pub fn chord_bound(&self, from: &Pose<T>, to: &Pose<T>) -> Option<T> {
         for pose in [from, to] {
@@ -84,6 +89,11 @@ impl<T: RealField + Trig> Delta<T> {
         let swing =
             |(prepared, thetas)| Swing::new(prepared, thetas, &halfway, &velocity, rounding);
         let swings = [swing(first)?, swing(second)?, swing(third)?];
+        let ([s1, s2, s3], area2) = from_above(swings.each_ref().map(|swing| swing.centre));
+        let [m1, m2, m3] = swings.each_ref().map(|swing| swing.moves);
+        if m1 * (s1 + m2) + m2 * (s2 + m3) + m3 * (s3 + m1) >= area2 {
+            return None;
+        }
 
         let rods = swings.each_ref().map(|swing| swing.rod);
         // Nearer to a parallel singularity half the digits of κ would be lost.
@@ -123,7 +133,8 @@ impl<T: RealField + Trig> Swing<T> {
         let rate = to - from;
         let theta = from + rate * half();
         let theta = sin_cos(theta);
-        let rod = halfway - prepared.centre(theta);
+        let centre = prepared.centre(theta);
+        let rod = halfway - centre;
         let length = rod.norm();
         let relative = velocity - prepared.tangent(theta) * rate;
         let inward = prepared.spoke(theta) * (-rate * rate);
@@ -141,6 +152,8 @@ impl<T: RealField + Trig> Swing<T> {
             rod: rod / length,
             miss: largest / (prepared.lower * nalgebra::convert(8.0)) + rounding,
             turn: two::<T>() * distance / sum,
+            centre,
+            moves: prepared.upper * rate.abs() * half(),
         })
     }
 }

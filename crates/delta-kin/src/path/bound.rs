@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 use path_timing::{Cubic, CurveMotion, Row, Span, TurnMotion};
-use trig_kernels::sin_cos;
+use trig_kernels::{atan2, sin_cos};
 
-use super::{DeltaPath, jumping};
+use super::{DeltaPath, DeltaPathError, jumping};
 use crate::arm::zip;
 use crate::pose::{invert_rods, smallest_sine};
 use crate::prepared::PreparedArm;
 use crate::range::sqrt;
-use crate::{JointRange, Pose};
+use crate::{Arm, JointRange, Pose};
 
 /// By how much an arm may pass an end of its range between two rows, in radians: rounding, and a path
 /// that touches it.
@@ -87,7 +87,7 @@ impl<'a> Swing<'a> {
 
 impl DeltaPath {
     /// The most by which the platform's centre leaves the curve on a segment of a table, in the unit
-    /// of length; infinite where the segment is too long to tell or an arm passes its range there. For
+    /// of length; infinite where the segment is too long to tell. For
     /// [`Table::plan_within`](path_timing::Table::plan_within).
     ///
     /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], K the centres of the rods' spheres as
@@ -122,17 +122,57 @@ impl DeltaPath {
     /// ```
     #[must_use]
     pub fn departure(&self, span: &Span<[f64; 3]>) -> f64 {
-        self.known_departure(span).unwrap_or(f64::INFINITY)
+        self.known(span)
+            .map_or(f64::INFINITY, |known| known.departure)
+    }
+
+    /// Whether the machine may run a segment: all arms within their ranges, and no rod beside the plane
+    /// of its arm by more than its ball joints let it. How far beside it is depends on the platform's
+    /// place alone, which is known at the nodes of [`departure`](Self::departure) and linear between
+    /// them but for what it departs by there and the curve's own bend.
+    pub(super) fn check_span(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
+        let (delta, [from, to], s) = (&self.delta, &span.rows, span.s);
+        let arms = Cubic::between(from, to).zip(delta.ranges()).zip(Arm::ALL);
+        for ((cubic, range), arm) in arms {
+            if let Some(angle) = beyond(range, &cubic) {
+                return Err(DeltaPathError::Range {
+                    s,
+                    arm,
+                    angle,
+                    min: range.min(),
+                    max: range.max(),
+                });
+            }
+        }
+        let Some(max) = delta.max_swivel() else {
+            return Ok(());
+        };
+        let known = self.known(span).ok_or(DeltaPathError::TooCoarse { s })?;
+        let arms = zip(delta.prepared().each_ref(), known.sides);
+        for ((prepared, side), arm) in arms.into_iter().zip(Arm::ALL) {
+            // Written so that NaN is refused too.
+            let is_free = side <= prepared.max_side;
+            if !is_free {
+                let in_plane = (prepared.lower - side) * (prepared.lower + side);
+                let swivel = atan2(side, sqrt(in_plane.max(0.0)));
+                return Err(DeltaPathError::BallJoint {
+                    s,
+                    arm,
+                    swivel,
+                    max,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// None where it cannot be told.
-    fn known_departure(&self, span: &Span<[f64; 3]>) -> Option<f64> {
+    fn known(&self, span: &Span<[f64; 3]>) -> Option<Known> {
         let (delta, [from, to]) = (&self.delta, &span.rows);
         let mut cubics = Cubic::between(from, to);
         let cubics = [cubics.next()?, cubics.next()?, cubics.next()?];
-        let ranges = zip(cubics, *delta.ranges());
         let change = Vector3::from(to.position) - Vector3::from(from.position);
-        if jumping(change).is_some() || ranges.iter().any(|(cubic, range)| passes(range, cubic)) {
+        if jumping(change).is_some() {
             return None;
         }
         let velocity = |s, row: &Row<[f64; 3]>| {
@@ -189,12 +229,46 @@ impl DeltaPath {
         };
         let departure = motion.departure_between(platform, 2.0 * kappa * fourth, between);
         let rounding = 2.0 * ROOT3 * kappa * delta.tolerance();
-        (!departure.is_nan()).then_some(departure + rounding)
+        // Between nodes, and the curve's bend from one to the next: h²/8 of its second derivative.
+        let [_, second, ..] = *motion.longest();
+        let off = between + second * NODE * NODE / 8.0 + rounding;
+        let ends = span.s.map(|s| self.curve.at(s).point);
+        let nodes = CurveMotion::<3>::NODES.map(platform);
+        let sides = delta.prepared().each_ref().map(|prepared| {
+            let side = |place: &[f64; 3]| delta.flip((*place).into()).dot(&prepared.sideways());
+            let places = ends.iter().chain(&nodes);
+            places.fold(0.0, |most, place| larger_or_nan(most, side(place).abs())) + off
+        });
+        (!departure.is_nan()).then_some(Known {
+            departure: departure + rounding,
+            sides,
+        })
     }
 }
 
-/// Whether an arm passes an end of its range on the way.
-fn passes(range: &JointRange, cubic: &Cubic) -> bool {
+/// What is known of a segment.
+struct Known {
+    /// The most by which the platform leaves the curve.
+    departure: f64,
+    /// How far each wrist comes beside the plane of its arm.
+    sides: [f64; 3],
+}
+
+/// From a node to the next, in durations of the segment.
+const NODE: f64 = 0.0625;
+
+fn larger_or_nan(a: f64, b: f64) -> f64 {
+    if b <= a { a } else { b }
+}
+
+/// The angle that is farthest beyond an end of the range, if one is.
+fn beyond(range: &JointRange, cubic: &Cubic) -> Option<f64> {
     let [low, high] = cubic.extent();
-    low < range.min() - TOUCH || high > range.max() + TOUCH
+    // Written so that NaN is beyond.
+    let (is_above, is_below) = (low >= range.min() - TOUCH, high <= range.max() + TOUCH);
+    if is_above && is_below {
+        return None;
+    }
+    let is_lower = range.min() - low > high - range.max();
+    Some(if is_lower { low } else { high })
 }

@@ -55,6 +55,46 @@ pub enum DeltaPathError {
         /// The arm.
         arm: Arm,
     },
+    /// Between two rows of a table an arm would leave its range.
+    #[error(
+        "{}: {arm} turns to {} rad, outside its range {}..={} rad by {} rad",
+        Between(*.s), Rounded(*.angle), Rounded(*.min), Rounded(*.max),
+        Rounded((.min - .angle).max(.angle - .max))
+    )]
+    Range {
+        /// Arc length of both rows.
+        s: [f64; 2],
+        /// The arm.
+        arm: Arm,
+        /// Where it is farthest beyond the range, as it reads, in radians.
+        angle: f64,
+        /// Lower end of its range, in radians.
+        min: f64,
+        /// Upper end of its range, in radians.
+        max: f64,
+    },
+    /// Between two rows of a table rods could swivel too far for their ball joints.
+    #[error(
+        "{}: {arm} could swivel by {} rad at its ball joints, more than {} rad",
+        Between(*.s), Rounded(*.swivel), Rounded(*.max)
+    )]
+    BallJoint {
+        /// Arc length of both rows.
+        s: [f64; 2],
+        /// The arm.
+        arm: Arm,
+        /// How far the rods could swivel out of the arm's plane, in radians.
+        swivel: f64,
+        /// How far they may, in radians.
+        max: f64,
+    },
+    /// Two rows of a table are too far apart to tell where the platform is between them, and whether
+    /// the ball joints let it: more segments are needed.
+    #[error("{}: too long a segment to tell whether ball joints hold; use more segments", Between(*.s))]
+    TooCoarse {
+        /// Arc length of both rows.
+        s: [f64; 2],
+    },
     /// The arms' rates do not follow from the platform's.
     #[error("at {} of the curve: {reason}", Rounded(*.s))]
     Singular {
@@ -63,6 +103,16 @@ pub enum DeltaPathError {
         /// Why.
         reason: PoseError,
     },
+}
+
+/// From one place of a curve to another.
+struct Between([f64; 2]);
+
+impl fmt::Display for Between {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [from, to] = self.0.map(Rounded);
+        write!(f, "from {from} to {to} of the curve")
+    }
 }
 
 /// A place of a curve.

@@ -16,13 +16,14 @@ impl Delta {
     ///
     /// ```
     /// use delta_kin::{Delta, DeltaPath};
-    /// use path_timing::{AxisLimits, Knot, Table};
+    /// use path_timing::{Accuracy, AxisLimits, Knot, Table};
     ///
     /// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
     /// let moves = delta.pick_and_place([80.0, 0.0, -300.0], [-60.0, 40.0, -290.0], -270.0, 3.0, None)?;
     /// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s
+    /// let accuracy = Accuracy { min_segments: 4, max_departure: 0.05, max_time_ratio: f64::INFINITY };
     /// let mut knots = [Knot::default(); 300];
-    /// let table = Table::plan_within(moves, [arm; 3], 4, 0.05, DeltaPath::departure, &mut knots)?;
+    /// let table = Table::plan_within(moves, [arm; 3], accuracy, DeltaPath::departure, &mut knots)?;
     /// assert!(table.duration_s() < 0.5);
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```

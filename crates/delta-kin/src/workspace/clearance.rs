@@ -4,6 +4,7 @@ use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
 use crate::arm::zip;
+use crate::assembly::from_above;
 use crate::pose::invert_rods;
 use crate::prepared::PreparedArm;
 use crate::range::two;
@@ -43,6 +44,14 @@ impl<T: RealField + Trig> Delta<T> {
     ///
     /// So no rod turns by more than η = (δ + Y)/La, and with κ the Frobenius norm of the inverse
     /// of the rods' matrix none comes into the plane of the others while κ √(η1² + η2² + η3²) < 1.
+    /// And no elbow moves by more than Y: as seen from above, twice the area of the elbows' triangle
+    /// with the sides s, each opposite its elbow, changes by at most
+    ///
+    /// ```text
+    /// Y1 s1 + Y2 s2 + Y3 s3 + Y1 Y2 + Y2 Y3 + Y3 Y1
+    /// ```
+    ///
+    /// and while that is less than it was the plane of the elbows does not come upright.
     #[must_use]
     pub fn clearance(&self, point: Point3<T>) -> T {
         let Ok(pose) = self.pose_at(point) else {
@@ -101,13 +110,28 @@ fn assembly_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> 
         let least_y = along / (nine_quarters / prepared.lower + both / prepared.upper);
         // η for δ = 1.
         let turn = (T::one() + two::<T>() / along) / prepared.lower;
-        (least_y * along / two(), turn)
+        (least_y * along / two(), turn, along)
     });
     let held = first.0.min(second.0).min(third.0);
+    let held = held.min(upright_clearance(delta, pose, [first.2, second.2, third.2]));
     let turn = Vector3::new(first.1, second.1, third.1).norm();
     // There rods that are longer or shorter by the tolerance decide whether they meet at all: at
     // a height d over the elbows' plane with d²/(2 La) up to the tolerance.
     let rounding = (pose.rounding() * two()).sqrt() * two();
     let margin: T = nalgebra::convert(1.0 - 1e-3);
     held.min((kappa.recip() - rounding) / turn) * margin
+}
+
+/// How far the platform can move before elbows that move by 2 δ/λ could lie on a line, as seen from
+/// above.
+fn upright_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>, lambdas: [T; 3]) -> T {
+    let ([s1, s2, s3], area2) = from_above(delta.centres_at(delta.thetas(pose.angles())));
+    let [u1, u2, u3] = lambdas.map(|lambda| two::<T>() / lambda);
+    let a = u1 * u2 + u2 * u3 + u3 * u1;
+    // Twice the height that `inverse` asks for: the angles are rounded.
+    let b = u1 * s1 + u2 * s2 + u3 * s3;
+    let rounding = delta.tolerance() * (s1 + s2 + s3) * two() * two();
+    let c = area2 - rounding;
+    // a δ² + b δ = c
+    two::<T>() * c / (b + (b * b + two::<T>() * two() * a * c).max(T::zero()).sqrt())
 }

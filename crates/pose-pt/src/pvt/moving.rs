@@ -1,20 +1,20 @@
 //! The legs of a path on which something moves and the blends between them, as the axes run them.
 
-use core::convert::Infallible;
-
 use nalgebra::Vector3;
-use path_timing::Corner;
+use path_timing::{Corner, Span};
 
+use super::strokes;
 use crate::course::{Course, CoursePoint, is_still, travel};
 use crate::number::larger;
 use crate::path::blend::Rounding;
 use crate::path::{Leg, Path};
-use crate::{Platform, PvtPoint};
+use crate::{LimitError, Platform, PvtPoint};
 
 /// A leg or a blend with both ends exactly where its neighbours have them: a controller gets one
 /// position for the end of one and the start of the next, while each by itself would round it anew.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Track<'a, const N: usize> {
+pub(crate) struct Track<'a, const N: usize> {
+    platform: &'a Platform<N>,
     piece: Piece<'a, N>,
     /// In the parameter that is common to all.
     length: f64,
@@ -29,18 +29,18 @@ pub(super) struct Track<'a, const N: usize> {
 enum Piece<'a, const N: usize> {
     /// The part of a leg between two of its parameters.
     Leg(Course<'a, N>, [f64; 2]),
-    Blend(&'a Platform<N>, Rounding),
+    Blend(Rounding),
 }
 
 impl<const N: usize> path_timing::Path for Track<'_, N> {
     type Axes = [[f64; 3]; N];
-    type Error = Infallible;
+    type Error = LimitError;
 
     fn length(&self) -> f64 {
         self.length
     }
 
-    fn point(&self, s: f64) -> Result<path_timing::PathPoint<[[f64; 3]; N]>, Infallible> {
+    fn point(&self, s: f64) -> Result<path_timing::PathPoint<[[f64; 3]; N]>, LimitError> {
         let point = match &self.piece {
             Piece::Leg(course, [from, to]) => {
                 let rate = (to - from) / self.length;
@@ -50,7 +50,7 @@ impl<const N: usize> path_timing::Path for Track<'_, N> {
                     ..point
                 }
             }
-            Piece::Blend(platform, rounding) => CoursePoint::of(platform, &rounding.motion(s)),
+            Piece::Blend(rounding) => CoursePoint::of(self.platform, &rounding.motion(s)),
         };
         let [start, end] = self.ends;
         let axes = if s <= 0.0 {
@@ -73,18 +73,21 @@ impl<const N: usize> path_timing::Path for Track<'_, N> {
             Corner::Stop
         }
     }
+
+    fn check(&self, span: &Span<[[f64; 3]; N]>) -> Result<(), LimitError> {
+        strokes::check(self.platform, span)
+    }
 }
 
-/// The legs on which something moves and the blends between them, from either end.
+/// The legs on which something moves and the blends between them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Moving<'a, const N: usize> {
+pub(crate) struct Moving<'a, const N: usize> {
     pub(super) platform: &'a Platform<N>,
     path: Path<'a>,
     /// The longest travel of a leg, which the common parameter takes 1 to run.
     longest: f64,
-    /// The pieces that are still to come: 2 n is leg n, 2 n + 1 the blend after it.
+    /// The first piece that is still to come: 2 n is leg n, 2 n + 1 the blend after it.
     first: usize,
-    end: usize,
 }
 
 impl<'a, const N: usize> Moving<'a, N> {
@@ -95,7 +98,6 @@ impl<'a, const N: usize> Moving<'a, N> {
             longest: travels.fold(0.0, larger),
             path: *path,
             first: 0,
-            end: path.legs().saturating_mul(2),
         }
     }
 
@@ -108,8 +110,9 @@ impl<'a, const N: usize> Moving<'a, N> {
         }
     }
 
-    fn pieces(self) -> impl DoubleEndedIterator<Item = usize> {
-        (self.first..self.end).filter(move |piece| self.has(*piece))
+    fn pieces(self) -> impl Iterator<Item = usize> {
+        let end = self.path.legs().saturating_mul(2);
+        (self.first..end).filter(move |piece| self.has(*piece))
     }
 
     fn has(&self, piece: usize) -> bool {
@@ -121,14 +124,15 @@ impl<'a, const N: usize> Moving<'a, N> {
     }
 
     /// The number in the path of leg `index` of these; of a blend that of the leg before it.
-    pub(super) fn number(&self, index: usize) -> usize {
-        let mut piece = self.first;
-        let mut before = index;
-        while before > 0 || !self.has(piece) {
-            before = before.saturating_sub(usize::from(self.has(piece)));
-            piece = piece.saturating_add(1);
-        }
-        piece / 2
+    pub(crate) fn number(&self, index: usize) -> usize {
+        self.pieces().nth(index).map_or(0, |piece| piece / 2)
+    }
+
+    /// The part of leg `index` of these that is done at a parameter of it, 0..=1.
+    pub(crate) fn part(&self, index: usize, s: f64) -> f64 {
+        let mut rest = *self;
+        let track = rest.nth(index);
+        track.map_or(0.0, |track| s / track.length)
     }
 
     /// At the first pose, at rest.
@@ -190,6 +194,7 @@ impl<'a, const N: usize> Moving<'a, N> {
         let leg = self.path.leg(number)?;
         let [from, to] = self.rest(number, &leg);
         Some(Track {
+            platform: self.platform,
             piece: Piece::Leg(Course::new(self.platform, &leg), [from, to]),
             length: (to - from) * self.size(&leg),
             ends: [self.axes(number, from)?, self.axes(number, to)?],
@@ -204,7 +209,8 @@ impl<'a, const N: usize> Moving<'a, N> {
         let [_, from] = self.rest(number, &self.path.leg(number)?);
         let [to, _] = self.rest(next, &self.path.leg(next)?);
         Some(Track {
-            piece: Piece::Blend(self.platform, rounding),
+            platform: self.platform,
+            piece: Piece::Blend(rounding),
             length: 2.0 * rounding.reach(),
             ends: [self.axes(number, from)?, self.axes(next, to)?],
             goes_on: true,
@@ -219,14 +225,6 @@ impl<'a, const N: usize> Iterator for Moving<'a, N> {
     fn next(&mut self) -> Option<Self::Item> {
         let piece = self.pieces().next()?;
         self.first = piece.saturating_add(1);
-        self.track(piece)
-    }
-}
-
-impl<const N: usize> DoubleEndedIterator for Moving<'_, N> {
-    fn next_back(&mut self) -> Option<Self::Item> {
-        let piece = self.pieces().next_back()?;
-        self.end = piece;
         self.track(piece)
     }
 }

@@ -6,7 +6,6 @@ use nalgebra::Vector3;
 use path_timing::{Row, Rows};
 
 use super::PvtTable;
-use super::moving::Moving;
 
 /// A line of a PVT table: where every axis is at a time, and how fast it moves then.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,22 +31,12 @@ impl<const N: usize> PvtPoint<N> {
             velocities: row.velocity.map(Vector3::from),
         }
     }
-
-    /// The same as a row.
-    pub(super) fn row(&self) -> Row<[[f64; 3]; N]> {
-        Row {
-            time_s: self.time_s,
-            duration_s: self.segment_s,
-            position: self.axes.map(Into::into),
-            velocity: self.velocities.map(Into::into),
-        }
-    }
 }
 
 /// The points of a [`PvtTable`].
 #[derive(Debug, Clone)]
 pub struct PvtPoints<'a, const N: usize> {
-    rows: Rows<'a, Moving<'a, N>>,
+    rows: Rows<'a, [[f64; 3]; N]>,
     /// The only point where nothing moves.
     still: Option<PvtPoint<N>>,
 }
@@ -59,11 +48,6 @@ impl<'a, const N: usize> PvtPoints<'a, N> {
             still: table.still_point(),
         }
     }
-
-    /// The moving leg, from 0, on which the segment before the next point lies.
-    pub(super) fn leg(&self) -> usize {
-        self.rows.leg()
-    }
 }
 
 impl<const N: usize> Iterator for PvtPoints<'_, N> {
@@ -73,8 +57,7 @@ impl<const N: usize> Iterator for PvtPoints<'_, N> {
         if let Some(point) = self.still.take() {
             return Some(point);
         }
-        let Ok(row) = self.rows.next()?;
-        Some(PvtPoint::new(&row))
+        self.rows.next().as_ref().map(PvtPoint::new)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -1,20 +1,21 @@
 //! A PVT table that runs under a feed override and can stop on its path.
 
-use path_timing::{Ahead, FeedError, Run};
+use core::convert::Infallible;
+
+use path_timing::{FeedCeiling, FeedError, Playback};
 
 use super::PvtTable;
-use super::moving::Moving;
-use crate::{PlanError, PvtPoint};
+use crate::PvtPoint;
 
 /// A [`PvtTable`] as it goes to the controller, at a feed that may change from point to point.
 ///
-/// How the feed goes towards the wanted one, and how it stops: see [`path_timing::Run`]. The body
+/// How the feed goes towards the wanted one, and how it stops: see [`path_timing::Playback`]. The body
 /// stays on its path at any feed; a change of it also changes the speed within a segment and with it
 /// the distance error: [`hermite_distance_error`](crate::hermite_distance_error) of two points
 /// handed out bounds it.
 #[derive(Debug, Clone)]
 pub struct PvtRun<'a, const N: usize> {
-    run: Run<'a, Moving<'a, N>>,
+    run: Playback<'a, [[f64; 3]; N]>,
     /// The only point where nothing moves.
     still: Option<PvtPoint<N>>,
 }
@@ -24,12 +25,15 @@ impl<'a, const N: usize> PvtTable<'a, N> {
     /// point of the table.
     ///
     /// # Errors
-    /// [`PlanError::Feed`] for a `max` that is beyond the range of the crate,
-    /// [`PlanError::TooManyPoints`] for too little memory.
-    pub fn run(&self, max: f64, ahead: &'a mut [Ahead]) -> Result<PvtRun<'a, N>, PlanError> {
-        let run = self.table.run(max, ahead);
+    /// [`Feed`](path_timing::PlanError::Feed) for a `max` that is beyond the range of the crate,
+    /// [`Memory`](path_timing::PlanError::Memory) for too little memory.
+    pub fn run(
+        &self,
+        max: f64,
+        ceilings: &'a mut [FeedCeiling],
+    ) -> Result<PvtRun<'a, N>, path_timing::PlanError<Infallible>> {
         Ok(PvtRun {
-            run: run.map_err(|error| self.refused(error))?,
+            run: self.table.playback(max, ceilings)?,
             still: self.still_point(),
         })
     }
@@ -47,12 +51,6 @@ impl<const N: usize> PvtRun<'_, N> {
     /// Stops as soon as the accelerations allow, on the path. [`set_feed`](Self::set_feed) goes on.
     pub const fn stop(&mut self) {
         self.run.stop();
-    }
-
-    /// The feed at the last point handed out.
-    #[must_use]
-    pub const fn feed(&self) -> f64 {
-        self.run.feed()
     }
 
     /// Points of the table that have not been handed out.
@@ -74,8 +72,7 @@ impl<const N: usize> PvtRun<'_, N> {
         if let Some(point) = self.still.take() {
             return Some(point);
         }
-        let Ok(row) = self.run.next_row();
-        Some(PvtPoint::new(&row?))
+        self.run.next_row().as_ref().map(PvtPoint::new)
     }
 }
 

@@ -1,22 +1,24 @@
 //! Whether the axes stay within their strokes between two points.
 
-use path_timing::Cubic;
+use path_timing::{Cubic, Span};
 
-use crate::{Axis, LimitError, Platform, PvtPoint};
+use crate::{Axis, LimitError, Platform};
 
 /// The axis that leaves its stroke between two points, if one does.
 pub(super) fn check<const N: usize>(
     platform: &Platform<N>,
-    from: &PvtPoint<N>,
-    to: &PvtPoint<N>,
+    span: &Span<[[f64; 3]; N]>,
 ) -> Result<(), LimitError> {
-    platform.check_axes(&to.axes)?;
+    let [from, to] = &span.rows;
+    for row in [from, to] {
+        platform.check_axes(&row.position.map(Into::into))?;
+    }
     let locators = platform.locators().iter().enumerate();
     let limits = locators.flat_map(|(locator, it)| {
         let axes = Axis::ALL.into_iter().zip(it.limits);
         axes.map(move |(axis, limits)| (locator, axis, limits))
     });
-    for ((locator, axis, limits), cubic) in limits.zip(Cubic::between(&from.row(), &to.row())) {
+    for ((locator, axis, limits), cubic) in limits.zip(Cubic::between(from, to)) {
         let (min, max) = (limits.min, limits.max);
         let points = cubic.control_points();
         if points.iter().all(|point| *point >= min && *point <= max) {

@@ -14,6 +14,7 @@ impl Config {
             zvz_ms: 220,
             bwz_ms: 4000,
             buffer_wait_ms: 400,
+            acknowledge_wait_ms: 0,
             line,
             babble_s: 10,
             connection_attempts: 6,

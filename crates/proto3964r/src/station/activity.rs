@@ -23,6 +23,8 @@ pub enum Activity {
     Receive,
     /// A block comes in that is known to be bad; NAK follows at its end.
     ReceiveBad,
+    /// A good block came in, the user has yet to accept or refuse it.
+    AwaitUser,
     /// NAK rejects the block, its repeat is awaited.
     AwaitRepeat,
     /// STX is next on the line.
@@ -48,6 +50,7 @@ impl fmt::Display for Activity {
             Self::AwaitBlock => "DLE sent, waits for the block: ZVZ",
             Self::Receive => "receives the block: ZVZ",
             Self::ReceiveBad => "receives a bad block, NAK at its end: ZVZ",
+            Self::AwaitUser => "block received, waits for its user to accept it",
             Self::AwaitRepeat => "NAK sent, waits for the repeat: BWZ",
             Self::Request => "STX is next",
             Self::AwaitConnection => "STX sent, waits for DLE: QVZ",
@@ -70,6 +73,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             State::Invited { .. } => Activity::AwaitBlock,
             State::Receiving { .. } => Activity::Receive,
             State::Spoiled { .. } => Activity::ReceiveBad,
+            State::Held { .. } => Activity::AwaitUser,
             State::AwaitRepeat { .. } => Activity::AwaitRepeat,
             State::Request { .. } => Activity::Request,
             State::AwaitDle { .. } => Activity::AwaitConnection,

@@ -51,6 +51,11 @@ impl<const N: usize, const T: usize> Station<N, T> {
             (State::Noise { .. } | State::Interrupted { .. } | State::Settling { .. }, _) => {
                 self.await_silence(now);
             }
+            // The answer is held. STX: the partner has waited for it long enough. NAK is its last
+            // word. Nothing else has a meaning before the answer.
+            (State::Held { .. }, Stx) => self.asked_again(now),
+            (State::Held { .. }, Nak) => self.abandon(now, Abandoned::ByPartner),
+            (State::Held { .. }, Dle | Other) => {}
             // NAK has been sent for the block before. NAK is the partner's last word, STX must not
             // be missed because of noise before it.
             (State::AwaitRepeat { .. }, Nak) => self.abandon(now, Abandoned::ByPartner),

@@ -5,6 +5,7 @@
 //! differ only in the time of day are one. From each world every next step is taken:
 //!
 //! - a user submits its job, or takes its events where the scope has a slow one;
+//! - a user accepts or refuses a telegram whose answer is held, at any time or never;
 //! - a station puts the next character on the line (one in flight per direction);
 //! - the character that left first arrives, intact, at once or a character time after it left:
 //!   both directions are equally fast, and a station sends what it has before it takes in the next
@@ -61,6 +62,8 @@ struct World {
     forged_dle: bool,
     /// In this step the slow user takes its events.
     user_1_looks: bool,
+    /// Each user's telegram that was polled and has not been accepted or refused.
+    undecided: [bool; 2],
 }
 
 /// A character on its way.
@@ -108,6 +111,7 @@ impl World {
             faults_left: scope.faults,
             forged_dle: false,
             user_1_looks: false,
+            undecided: [false; 2],
         }
     }
 
@@ -138,6 +142,10 @@ impl World {
                         arrives_at: NOW + scope.character(),
                     });
                 });
+            }
+            if self.undecided[side] {
+                step(&|world| world.decide(side, true));
+                step(&|world| world.decide(side, false));
             }
             if self.stations[side]
                 .poll_timeout()
@@ -189,6 +197,17 @@ impl World {
         next
     }
 
+    /// The user accepts the telegram that it has polled, or refuses it, in time or too late.
+    fn decide(&mut self, side: usize, accepts: bool) {
+        self.undecided[side] = false;
+        let station = &mut self.stations[side];
+        if !accepts {
+            station.refuse(NOW);
+        } else if station.accept(NOW) {
+            self.delivered[side] = 3.min(self.delivered[side] + 1);
+        }
+    }
+
     /// Whether the station has something to send and its direction is free.
     fn can_launch(&self, side: usize) -> bool {
         let free = self.in_flight.iter().all(|first| first.to == side);
@@ -230,13 +249,18 @@ impl World {
             while let Some(event) = self.stations[side].poll_event() {
                 match event {
                     Event::Received(telegram) => {
-                        self.delivered[side] = 3.min(self.delivered[side] + 1);
                         findings.forged += usize::from(telegram != [scope.payloads[1 - side]]);
+                        if scope.is_held() {
+                            self.undecided[side] = true;
+                        } else {
+                            self.delivered[side] = 3.min(self.delivered[side] + 1);
+                        }
                     }
                     Event::Sent { .. } => {
                         assert_eq!(self.jobs[side], Seen::Open);
                         self.jobs[side] = Seen::Sent;
-                        let waiting = self.stations[1 - side].holds_telegram;
+                        // One that is held is not answered while it waits.
+                        let waiting = self.stations[1 - side].holds_telegram && !scope.is_held();
                         if self.delivered[1 - side] == 0 && !waiting {
                             findings.lost += 1;
                             assert!(
@@ -319,6 +343,19 @@ impl Scope {
             Line::Instant => Duration::ZERO,
             _ => 2 * HALF_CHARACTER,
         }
+    }
+
+    /// Whether users answer telegrams, not the stations.
+    fn is_held(&self) -> bool {
+        self.configs[0].acknowledge_wait_ms > 0
+    }
+
+    /// The same with users that accept, refuse or forget.
+    fn held(mut self) -> Self {
+        for config in &mut self.configs {
+            config.acknowledge_wait_ms = 1500;
+        }
+        self
     }
 
     /// The same on a UART.

@@ -18,7 +18,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn noise(&mut self, now: Duration, first: u8) {
         match self.config.idle_noise {
             IdleNoise::Ignore => {}
-            IdleNoise::NakAtOnce => self.refuse(now, Rejection::Noise { first }),
+            IdleNoise::NakAtOnce => self.turn_away(now, Rejection::Noise { first }),
             IdleNoise::NakAfterSilence => {
                 self.state = State::Noise {
                     first,
@@ -50,6 +50,12 @@ impl<const N: usize, const T: usize> Station<N, T> {
         } else {
             self.invite(now);
         }
+    }
+
+    /// STX came in place of an answer that is held: what is held is void, and comes again.
+    pub(super) fn asked_again(&mut self, now: Duration) {
+        self.notes.diagnosis(Note::Rejected(Rejection::Undecided));
+        self.asked_to_receive(now);
     }
 
     /// Answers DLE. ZVZ runs from here and again from the moment in which the line takes the DLE.
@@ -107,7 +113,6 @@ impl<const N: usize, const T: usize> Station<N, T> {
             // A bad block: NAK, for the first error that was noted.
             (&State::Spoiled { rejection, .. }, _) => self.reject(now, rejection),
             (_, Err(fault)) => self.reject(now, Rejection::Frame(fault)),
-            // A good one: DLE.
             (_, Ok(len)) => self.received(now, len),
         }
     }
@@ -125,10 +130,22 @@ impl<const N: usize, const T: usize> Station<N, T> {
         }
     }
 
+    /// A good block: DLE, unless the user has to accept it first.
     fn received(&mut self, now: Duration, len: u16) {
-        self.replies.push(Reply::Dle);
         self.holds_telegram = true;
         self.notes.result(Note::Received { len });
+        match self.config.acknowledge_wait() {
+            Some(wait) => {
+                let refuse_at = now.saturating_add(wait);
+                self.state = State::Held { refuse_at };
+            }
+            None => self.acknowledge(now),
+        }
+    }
+
+    /// DLE to a good block.
+    pub(super) fn acknowledge(&mut self, now: Duration) {
+        self.replies.push(Reply::Dle);
         self.conflicts = 0;
         // The line works: a job that gave way begins its attempts anew.
         if self.job.is_open() {
@@ -157,7 +174,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     }
 
     /// NAK, and nothing is expected.
-    pub(super) fn refuse(&mut self, now: Duration, rejection: Rejection) {
+    pub(super) fn turn_away(&mut self, now: Duration, rejection: Rejection) {
         self.replies.push(Reply::Nak);
         self.notes.diagnosis(Note::Rejected(rejection));
         self.go_idle(now);
@@ -173,7 +190,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.notes.diagnosis(Note::SamePriority);
         }
         match self.config.silence_in_block {
-            SilenceInBlock::Idle => self.refuse(now, Rejection::CharacterDelay),
+            SilenceInBlock::Idle => self.turn_away(now, Rejection::CharacterDelay),
             SilenceInBlock::ExpectRepeat => self.reject(now, Rejection::CharacterDelay),
         }
     }

@@ -16,6 +16,9 @@ use crate::{
 ///  | +-> AwaitBuffer ---+                   v            end: NAK
 ///  |        buffer free ^                Spoiled -----------------> AwaitRepeat
 ///  | noise              +------------------------------------------------ STX
+///  |                       Receiving -- good, held --> Held -- accepted: DLE --> Idle
+///  |                                                    | refused, too late: NAK
+///  |                                                    +----> AwaitRepeat
 ///  +-----> Noise --- silence: NAK ---> Idle
 ///
 ///          STX             DLE            end of the block             DLE
@@ -50,6 +53,8 @@ pub(super) enum State {
         gap_at: Duration,
         babble_at: Duration,
     },
+    /// The block came in and is good; the user has yet to accept or refuse it.
+    Held { refuse_at: Duration },
     /// NAK is queued or sent, the STX of the repeat is awaited.
     AwaitRepeat { give_up_at: Duration },
     /// STX is next on the line.
@@ -103,6 +108,7 @@ impl State {
             | Self::Invited { .. }
             | Self::Receiving { .. }
             | Self::Spoiled { .. }
+            | Self::Held { .. }
             | Self::AwaitRepeat { .. }
             | Self::Settling { .. } => None,
         }

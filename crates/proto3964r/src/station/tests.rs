@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Bytes of a station beside its two buffers.
-const OVERHEAD: usize = 160;
+const OVERHEAD: usize = 168;
 
 /// A station of low priority that says nothing at start-up.
 fn silent() -> Config {

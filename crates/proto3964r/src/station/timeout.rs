@@ -21,7 +21,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         Some(match self.state {
             State::Idle => return None,
             State::AwaitBuffer { .. } if !self.holds_telegram => Duration::ZERO,
-            State::AwaitBuffer { refuse_at } => refuse_at,
+            State::AwaitBuffer { refuse_at } | State::Held { refuse_at } => refuse_at,
             State::Noise {
                 silent_at,
                 babble_at,
@@ -68,14 +68,16 @@ impl<const N: usize, const T: usize> Station<N, T> {
             // A buffer became free in time: DLE.
             State::AwaitBuffer { .. } if !self.holds_telegram => self.invite(now),
             // None did: NAK (080Ah).
-            State::AwaitBuffer { .. } => self.refuse(now, Rejection::NoBuffer),
+            State::AwaitBuffer { .. } => self.turn_away(now, Rejection::NoBuffer),
             // Silence after noise, or no end of it: NAK (0802h).
-            State::Noise { first, .. } => self.refuse(now, Rejection::Noise { first }),
+            State::Noise { first, .. } => self.turn_away(now, Rejection::Noise { first }),
             // ZVZ ran out before or in a block: NAK (0806h).
             State::Invited { .. } | State::Receiving { .. } => self.gap_in_block(now),
             State::Spoiled { gap_at, .. } if gap_at <= now => self.gap_in_block(now),
             // A bad block does not end.
             State::Spoiled { .. } => self.reject(now, Rejection::Endless),
+            // The user has not accepted the block in time: NAK.
+            State::Held { .. } => self.reject(now, Rejection::Undecided),
             // BWZ ran out.
             State::AwaitRepeat { .. } => self.abandon(now, Abandoned::NoRepeat),
             // The line does not take STX.

@@ -9,11 +9,11 @@ use ::tokio::{
 };
 use thiserror::Error;
 
-use super::{Caller, Lost, StreamDriver, Task, driver, tcp};
+use super::{Caller, Incoming, Lost, StreamDriver, Task, driver, incoming::Decision, tcp};
 use crate::{
     config::Config,
     event::{Event, Failure},
-    station::SubmitError,
+    station::{Activity, SubmitError},
 };
 
 /// One end of a line, whose station works in a task of its own: it answers the partner at any time,
@@ -22,6 +22,9 @@ use crate::{
 /// All methods take `&self`: a program may send and receive at once. Telegrams that were received
 /// and not fetched wait; when [`QUEUE`](Self::QUEUE) of them do, the partner is made to wait, and
 /// the outcomes of jobs after them, too. Dropping the link ends the task and closes the stream.
+///
+/// With [`Config::acknowledge_wait_ms`] nothing waits that has an acknowledgement: a telegram is
+/// acknowledged when [`receive`](Self::receive) hands it out, or when its [`Incoming`] is accepted.
 ///
 /// A lost connection is final: every call reports it as [`Lost`], and whether and when to connect
 /// again is the caller's decision.
@@ -45,7 +48,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Link {
     task: Task<Job>,
-    telegrams: Mutex<mpsc::Receiver<Vec<u8>>>,
+    telegrams: Mutex<mpsc::Receiver<Incoming>>,
 }
 
 /// Why a telegram was not sent.
@@ -79,10 +82,28 @@ impl Link {
     where
         S: AsyncRead + AsyncWrite + Send + 'static,
     {
-        let (received, telegrams) = mpsc::channel(Self::QUEUE);
+        Self::with_observer(stream, config, |_| {})
+    }
+
+    /// The same, and tells an observer each event when it happens, diagnosis too. It is called by the
+    /// task that answers the partner, and must not wait.
+    ///
+    /// # Panics
+    /// Outside of a runtime of tokio.
+    #[must_use]
+    pub fn with_observer<S>(
+        stream: S,
+        config: Config,
+        observer: impl FnMut(Event<'_>) + Send + 'static,
+    ) -> Self
+    where
+        S: AsyncRead + AsyncWrite + Send + 'static,
+    {
+        let is_held = config.acknowledge_wait_ms > 0;
+        let (received, telegrams) = mpsc::channel(if is_held { 1 } else { Self::QUEUE });
         let driver = driver::<{ Self::MAX_TELEGRAM }>(stream, config);
         Self {
-            task: Task::spawn(|jobs| work(driver, jobs, received)),
+            task: Task::spawn(|jobs| work(driver, jobs, received, observer)),
             telegrams: Mutex::new(telegrams),
         }
     }
@@ -113,10 +134,22 @@ impl Link {
     /// # Errors
     /// [`Lost`], after the last telegram that had come before.
     pub async fn receive(&self) -> Result<Vec<u8>, Lost> {
-        let telegram = self.telegrams.lock().await.recv().await;
-        match telegram {
-            Some(telegram) => Ok(telegram),
-            None => Err(self.task.lost().await),
+        self.incoming().await.map(Incoming::into_accepted)
+    }
+
+    /// The next telegram of the partner, which may wait to be accepted. Dropping the future loses
+    /// none.
+    ///
+    /// # Errors
+    /// [`Lost`], after the last telegram that had come before.
+    pub async fn incoming(&self) -> Result<Incoming, Lost> {
+        let mut telegrams = self.telegrams.lock().await;
+        loop {
+            match telegrams.recv().await {
+                Some(incoming) if incoming.is_void() => {}
+                Some(incoming) => return Ok(incoming),
+                None => return Err(self.task.lost().await),
+            }
         }
     }
 
@@ -126,8 +159,10 @@ impl Link {
         let Self { task, telegrams } = self;
         drop(task);
         let (mut telegrams, mut rest) = (telegrams.into_inner(), Vec::new());
-        while let Some(telegram) = telegrams.recv().await {
-            rest.push(telegram);
+        while let Some(incoming) = telegrams.recv().await {
+            if !incoming.is_held() {
+                rest.push(incoming.into_telegram());
+            }
         }
         rest
     }
@@ -147,8 +182,12 @@ struct Job {
 async fn work<const N: usize>(
     mut driver: StreamDriver<N>,
     mut jobs: mpsc::Receiver<Job>,
-    telegrams: mpsc::Sender<Vec<u8>>,
+    telegrams: mpsc::Sender<Incoming>,
+    mut observer: impl FnMut(Event<'_>),
 ) -> io::Result<()> {
+    let is_held = driver.station_mut().config().acknowledge_wait_ms > 0;
+    // Of the telegram whose answer the station holds.
+    let mut decision = Decision::NONE;
     let mut caller = Caller::NONE;
     let mut is_closing = false;
     loop {
@@ -157,17 +196,34 @@ async fn work<const N: usize>(
         while !(station.holds_telegram() && telegrams.capacity() == 0)
             && let Some(event) = station.poll_event()
         {
+            observer(event);
             match event {
-                // The queue has room, and is closed only when the link is dropped.
-                Event::Received(telegram) => drop(telegrams.try_send(telegram.to_vec())),
+                Event::Received(telegram) => {
+                    let telegram = telegram.to_vec();
+                    // One whose time is over comes again.
+                    let is_void = is_held && station.activity() != Activity::AwaitUser;
+                    if is_void {
+                        continue;
+                    }
+                    let incoming = if is_held {
+                        decision.about(telegram)
+                    } else {
+                        Incoming::acknowledged(telegram)
+                    };
+                    // The queue has room, and is closed only when the link is dropped.
+                    drop(telegrams.try_send(incoming));
+                }
                 Event::Sent { .. } => caller.tell(Ok(())),
                 Event::Failed(failure) => caller.tell(Err(failure.into())),
                 _ => {}
             }
         }
         let queue_is_full = station.holds_telegram();
+        if station.activity() != Activity::AwaitUser {
+            decision = Decision::NONE;
+        }
         // Closed, a link still takes what has been acknowledged; dropped, it does not.
-        if is_closing && (!queue_is_full || telegrams.is_closed()) {
+        if is_closing && (!queue_is_full || is_held || telegrams.is_closed()) {
             return Ok(());
         }
         let is_idle = !driver.is_busy();
@@ -189,6 +245,10 @@ async fn work<const N: usize>(
             () = caller.gone() => {
                 driver.cancel();
             }
+            accepted = decision.made() => match accepted {
+                Some(accepted) => drop(accepted.send(driver.accept())),
+                None => _ = driver.refuse(),
+            },
             permit = telegrams.reserve(), if queue_is_full => drop(permit),
         }
     }

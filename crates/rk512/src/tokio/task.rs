@@ -7,7 +7,10 @@ use ::tokio::{
     sync::mpsc,
     time::{Instant, sleep_until},
 };
-use proto3964r::tokio::{Caller, StreamDriver};
+use proto3964r::{
+    Event,
+    tokio::{Caller, StreamDriver},
+};
 
 use super::Job;
 use crate::{
@@ -25,6 +28,7 @@ pub(super) async fn work(
     mut line: LineDriver,
     mut jobs: mpsc::Receiver<Job>,
     mut session: Session,
+    mut observer: impl FnMut(Event<'_>),
 ) -> io::Result<()> {
     let epoch = Instant::now();
     let mut caller = Caller::NONE;
@@ -35,7 +39,10 @@ pub(super) async fn work(
         let (due, is_idle) = (session.poll_timeout(), !session.is_busy());
         ::tokio::select! {
             event = line.wait() => match event {
-                Ok(event) => session.handle(epoch.elapsed(), event),
+                Ok(event) => {
+                    observer(event);
+                    session.handle(epoch.elapsed(), event);
+                }
                 Err(error) => line.take_damage(error)?,
             },
             job = jobs.recv(), if is_idle => {

@@ -79,15 +79,14 @@ impl<T: RealField + Trig> Arm<T> {
     fn stands_for(&self, candidate: Joints<T>, joints: Joints<T>, tool: Vector2<T>) -> bool {
         let rounding = self.rounding(candidate);
         let side = sin_cos(candidate.elbow).0;
-        let is_same_side = if joints.elbow < T::zero() {
-            side <= T::zero()
+        let beyond = if joints.elbow.is_sign_negative() {
+            side
         } else {
-            side >= T::zero()
+            -side
         };
-        let r = norm(tool);
-        let folded = (self.upper() - self.fore()).abs();
-        let is_straight_or_folded = r >= self.reach() - rounding || r <= folded + rounding;
-        (is_same_side || is_straight_or_folded) && norm(self.tip(candidate) - tool) <= rounding
+        // The sine of π as the float has it.
+        let is_same_side = beyond <= T::default_epsilon();
+        is_same_side && norm(self.tip(candidate) - tool) <= rounding
     }
 
     /// How far rounding alone may displace the tool, in the unit of length: the

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
 use trig_kernels::atan2;
 
+use super::swing::Swing;
 use super::turns::Turns;
 use super::{ArmPath, ArmPathError};
 use crate::limits::half_turn;
@@ -41,6 +42,9 @@ const STEPS: f64 = 128.0;
 
 /// Most that the heading turns in a step, in radians.
 const STEP: f64 = 0.5;
+
+/// Shortest step, as a fraction of the curve: next to a cusp the curvature knows no bound.
+const LEAST_STEP: f64 = 1e-12;
 
 impl ArmPath {
     /// The path with a disc that stands at the angle `theta3` before, in radians: it begins at the
@@ -84,8 +88,9 @@ fn headings(path: &ArmPath, start: f64) -> Result<Turns, ArmPathError> {
     let mut last = start;
     while s < curve.length() {
         let [x, y] = curve.at(s).curvature;
-        let step = curve.length() / STEPS;
-        s = (s + step.min(STEP / Vector2::new(x, y).norm())).min(curve.length());
+        let (most, least) = (curve.length() / STEPS, curve.length() * LEAST_STEP);
+        let step = (STEP / Vector2::new(x, y).norm()).max(least).min(most);
+        s = (s + step).min(curve.length());
         last += half_turn(direction(curve.at(s).tangent) - last);
         if !heading.add(s, last) {
             return Err(ArmPathError::Turns { s });
@@ -109,13 +114,14 @@ impl DiscPath {
     /// As [`ArmPath::departure`]: the disc's angle has no part in where the tool is.
     #[must_use]
     pub fn departure(&self, span: &Span<[f64; 3]>) -> f64 {
-        let [from, to] = &span.rows;
-        let ends = [from, to].map(|row| {
-            let ([q1, q2, _], [v1, v2, _]) = (row.position, row.velocity);
-            ([q1, q2], [v1, v2])
-        });
-        self.arm_path.departure_of(span.s, ends, to.duration_s)
+        let path = &self.arm_path;
+        arm_swing(span).departure(&path.arm, &path.curve)
     }
+}
+
+/// The arm on a segment of a table with the disc.
+fn arm_swing(span: &Span<[f64; 3]>) -> Swing {
+    Swing::of(span, |[shoulder, elbow, _]| [shoulder, elbow])
 }
 
 impl Path for DiscPath {
@@ -150,5 +156,9 @@ impl Path for DiscPath {
 
     fn corner(&self) -> Corner<[f64; 3]> {
         Corner::Smooth
+    }
+
+    fn check(&self, span: &Span<[f64; 3]>) -> Result<(), ArmPathError> {
+        arm_swing(span).check(&self.arm_path.arm)
     }
 }

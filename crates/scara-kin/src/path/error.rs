@@ -5,7 +5,7 @@ use core::fmt::{Display, Formatter};
 use nalgebra::Point2;
 
 use crate::digits::Digits;
-use crate::{InverseError, TangentError};
+use crate::{InverseError, Joint, TangentError};
 
 /// Why a curve is no path of the joints; nothing of it has been handed out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +38,28 @@ pub enum ArmPathError {
         /// Distance from the edge, in the unit of length.
         distance: f64,
     },
+    /// Between two places of the curve, as rows of a table are, a joint would leave its range.
+    Limit {
+        /// Arc length of both places.
+        s: [f64; 2],
+        /// The joint.
+        joint: Joint,
+        /// Where it is farthest beyond the range, in radians.
+        angle: f64,
+        /// Lower end of its range, in radians.
+        min: f64,
+        /// Upper end of its range, in radians.
+        max: f64,
+    },
+    /// Between two rows of a table the tool would enter the keep-out disc.
+    KeepOut {
+        /// Arc length of both rows.
+        s: [f64; 2],
+        /// Where it is nearest to the base, in the unit of length.
+        distance: f64,
+        /// The radius of the disc.
+        radius: f64,
+    },
     /// The shoulder or the disc turns by more than three times on one curve.
     Turns {
         /// Arc length up to there.
@@ -68,6 +90,33 @@ impl Display for ArmPathError {
                 At(*s, *point),
                 Digits(*distance)
             ),
+            Self::Limit {
+                s,
+                joint,
+                angle,
+                min,
+                max,
+            } => write!(
+                f,
+                "{}: {joint} turns to {} rad, outside its range {}..={} rad by {} rad",
+                Between(*s),
+                Digits(*angle),
+                Digits(*min),
+                Digits(*max),
+                Digits((min - angle).max(angle - max))
+            ),
+            Self::KeepOut {
+                s,
+                distance,
+                radius,
+            } => write!(
+                f,
+                "{}: the tool comes to {} from the base, into the keep-out disc of radius {} by {}",
+                Between(*s),
+                Digits(*distance),
+                Digits(*radius),
+                Digits(radius - distance)
+            ),
             Self::Turns { s } => write!(
                 f,
                 "at {} of the curve: a joint has turned more than three times",
@@ -79,6 +128,16 @@ impl Display for ArmPathError {
 }
 
 impl core::error::Error for ArmPathError {}
+
+/// From one place of a curve to another.
+struct Between([f64; 2]);
+
+impl Display for Between {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        let [from, to] = self.0.map(Digits);
+        write!(f, "from {from} to {to} of the curve")
+    }
+}
 
 /// A place of a curve.
 struct At(f64, Point2<f64>);

@@ -30,7 +30,12 @@ const TOLERANCE: u64 = 7 << 28;
 /// two steps at once. A step back that comes in the first
 /// [`reversal_ticks`](MinIntervals::reversal_ticks) of a row waits for their end, when the axis is
 /// then no more than e past its place; else the row is refused. Here e is 2^-8 steps, or what the
-/// axis moves in a tick at its greatest velocity, if that is less.
+/// axis moves in a tick at its greatest velocity, if that is less. So at the end of a row, as at rest,
+/// ```text
+/// |q - k| <= 1/2 + e     at most 1/2 + 2^-8 = 0.50390625
+/// ```
+/// which is above 1/2 only where the axis has turned round past a place in that row, or rests there.
+/// The next row that moves on makes the step at once.
 ///
 /// # How near to the cubic
 /// Each step comes less than a tick from the time at which the row's exact cubic passes its place,

@@ -10,6 +10,7 @@
 use super::row::{PvtKnot, PvtRow};
 use crate::{Rate, StepScale};
 use thiserror::Error;
+use trig_kernels::SixDigits;
 
 /// Why a knot has no row.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -17,7 +18,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum KnotError {
     /// A position that is no number, or past ±2^31 steps.
-    #[error("axis {axis}: position {position:.6} steps, not within 2^31")]
+    #[error("axis {axis}: position {} steps, not within 2^31", SixDigits(*.position))]
     Position {
         /// Index of the axis.
         axis: usize,
@@ -25,23 +26,43 @@ pub enum KnotError {
         position: f64,
     },
     /// A velocity that is no number, or of 128 steps a tick and more.
-    #[error("axis {axis}: velocity {velocity:.6} steps a tick, not within 128")]
+    #[error("axis {axis}: velocity {} steps a tick, not within 128", SixDigits(*.velocity))]
     Velocity {
         /// Index of the axis.
         axis: usize,
         /// Velocity, in steps a tick.
         velocity: f64,
     },
-    /// A time that is no number, before the knot before, in the same tick or 2^32 ticks after it.
-    #[error("time {time_s:.6} s is not 1 to 2^32 - 1 whole ticks after {last_s:.6} s")]
+    /// A time that is no number, before the knot before, or 2^32 ticks after it.
+    #[error(
+        "time {} s is not 0 to 2^32 - 1 whole ticks after {} s",
+        SixDigits(*.time_s), SixDigits(*.last_s)
+    )]
     Time {
         /// Time given, in s.
         time_s: f64,
         /// Time of the knot before, in s.
         last_s: f64,
     },
-    /// A velocity that jumps by more than the motor starts and stops with.
-    #[error("axis {axis}: velocity jumps by {jump:.6} steps a tick, more than {max:.6}")]
+    /// A knot in the tick of the one before, that is elsewhere by more than 2^-8 steps.
+    #[error(
+        "axis {axis}: {} steps between two knots of a tick, not the {} of their velocities",
+        SixDigits(*.distance), SixDigits(*.expected)
+    )]
+    Moved {
+        /// Index of the axis.
+        axis: usize,
+        /// From the knot before, in steps.
+        distance: f64,
+        /// What the mean of both velocities makes of the time between them, in steps.
+        expected: f64,
+    },
+    /// A velocity that jumps by more than the motor starts and stops with, which is 0 unless
+    /// [given](PvtQuantiser::with_start_stop_speeds).
+    #[error(
+        "axis {axis}: velocity jumps by {} steps a tick, more than {}",
+        SixDigits(*.jump), SixDigits(*.max)
+    )]
     Jump {
         /// Index of the axis.
         axis: usize,
@@ -75,15 +96,31 @@ pub enum KnotError {
 /// below 2^32 ticks. At 72 MHz, rows of 1 ms and jumps of 10⁵ steps/s² that is 2·10⁻⁷ steps,
 /// 0.0014 steps/s and 5.6 steps/s².
 ///
+/// # Knots in one tick
+/// A knot later than the one before, but in the same tick n, is merged with it: it has no row of its
+/// own, but one of 0 ticks that changes nothing, and the next row goes from what the axes were at
+/// tick n to where the motion comes from the last of them. So no motion stops for a row that is
+/// shorter than a tick. Where the velocities of the first and the last of them differ by D steps a
+/// tick, that row departs by
+/// ```text
+/// position      D        velocity      1.5 D / T              acceleration  6 D / T²
+/// ```
+/// more, T in ticks. A knot that is elsewhere by more than 2^-8 steps than its velocity and the one
+/// before make it, is no such motion and refused.
+///
 /// # Jumps
 /// With [`start-stop speeds`](Self::with_start_stop_speeds), a knot of the same time and positions as
-/// the one before sets other velocities, by a row of 0 ticks at the tick n of both. Where an axis
-/// jumps by D steps a tick, and its accelerations before and after are at most a, the row after it
-/// departs by
+/// the one before sets other velocities, by a row of 0 ticks at the tick n of both, as at the corners
+/// of a table of path-timing. Where an axis jumps by D steps a tick, and its accelerations before and
+/// after are at most a, the row after it departs by
 /// ```text
 /// position      D        velocity      a h + 1.5 D / T        acceleration  4 a h/T + 6 D / T²
 /// ```
 /// more, with h and T in ticks.
+///
+/// # Refusals
+/// A knot is refused before anything of its row is put out, and the state is as before then: another
+/// one may follow in its place, such as one at rest within the machine's accelerations.
 ///
 /// # Examples
 /// ```
@@ -99,7 +136,7 @@ pub struct PvtQuantiser<const N: usize> {
     tick_hz: f64,
     steps_per_unit: [f64; N],
     /// Of each axis, in steps a tick.
-    start_stop: Option<[f64; N]>,
+    start_stop: [f64; N],
     /// The knot given last.
     last_s: f64,
     last_ticks: f64,
@@ -115,6 +152,8 @@ const POSITION_UNITS: f64 = (1_u64 << PvtKnot::POSITION_BITS) as f64;
 const VELOCITY_UNITS: f64 = (1_u64 << PvtKnot::VELOCITY_BITS) as f64;
 /// Of a velocity by its scale and the tick rate, and of a sum, relative.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// What a knot may be off from where the velocities of two knots in one tick have it, in steps.
+const MOVED: f64 = 1.0 / 256.0;
 /// From here on an `f64` has no half ticks.
 const MAX_TICKS: f64 = (1_u64 << 52) as f64;
 
@@ -131,7 +170,7 @@ impl<const N: usize> PvtQuantiser<N> {
         let mut quantiser = Self {
             tick_hz: f64::from(tick_rate.numerator()) / f64::from(tick_rate.denominator()),
             steps_per_unit: scales.map(StepScale::steps_per_unit),
-            start_stop: None,
+            start_stop: [0.0; N],
             last_s: 0.0,
             last_ticks: 0.0,
             last: [Motion::default(); N],
@@ -148,7 +187,7 @@ impl<const N: usize> PvtQuantiser<N> {
     #[must_use]
     pub fn with_start_stop_speeds(mut self, speeds: [f64; N]) -> Self {
         let motions = self.motions([0.0; N], speeds);
-        self.start_stop = Some(motions.map(|motion| motion.velocity));
+        self.start_stop = motions.map(|motion| motion.velocity);
         self
     }
 
@@ -160,7 +199,8 @@ impl<const N: usize> PvtQuantiser<N> {
 
     /// The row to the knot at `time_s`, with positions in the axes' units, and velocities in these
     /// a second. A knot of the same time and positions is a jump of the velocities, where
-    /// [start-stop speeds](Self::with_start_stop_speeds) allow one.
+    /// [start-stop speeds](Self::with_start_stop_speeds) allow one; a later one in the same tick is
+    /// merged with the one before, by a row of 0 ticks that changes nothing.
     ///
     /// # Errors
     /// [`KnotError`]: the state is as before then.
@@ -170,25 +210,13 @@ impl<const N: usize> PvtQuantiser<N> {
         positions: [f64; N],
         velocities: [f64; N],
     ) -> Result<PvtRow<N>, KnotError> {
-        #[expect(
-            clippy::float_cmp,
-            reason = "both knots of a jump have the same number"
-        )]
-        if let Some(start_stop) = self.start_stop
-            && time_s == self.last_s
-        {
-            let to = self.motions(positions, velocities);
-            return self.checked_jump(&to, start_stop);
-        }
         let now_ticks = time_s * self.tick_hz;
-        let whole_ticks = if (0.0..MAX_TICKS).contains(&now_ticks) {
-            now_ticks as u64
-        } else {
-            0
-        };
+        // Not a number neither.
+        let is_later = now_ticks >= self.last_ticks && now_ticks < MAX_TICKS;
+        let whole_ticks = if is_later { now_ticks as u64 } else { 0 };
         let ticks = u32::try_from(whole_ticks.saturating_sub(self.whole_ticks))
             .ok()
-            .filter(|&ticks| ticks > 0)
+            .filter(|_| is_later)
             .ok_or(KnotError::Time {
                 time_s,
                 last_s: self.last_s,
@@ -196,12 +224,20 @@ impl<const N: usize> PvtQuantiser<N> {
         let to = self.motions(positions, velocities);
         rounded(&to)?;
         let duration = now_ticks - self.last_ticks;
-        let early = now_ticks - whole_ticks as f64;
-        let mut at_tick = to;
-        for (motion, from) in at_tick.iter_mut().zip(self.last) {
-            *motion = from.before(*motion, duration, early);
+        if ticks == 0 {
+            self.check_merged(&to, duration)?;
+            if duration <= 0.0 {
+                self.check_jump(&to)?;
+                return self.jump_to(&to);
+            }
+        } else {
+            let early = now_ticks - whole_ticks as f64;
+            let mut at_tick = to;
+            for (motion, from) in at_tick.iter_mut().zip(self.last) {
+                *motion = from.before(*motion, duration, early);
+            }
+            self.knots = rounded(&at_tick)?;
         }
-        self.knots = rounded(&at_tick)?;
         self.last_s = time_s;
         self.last_ticks = now_ticks;
         self.last = to;
@@ -212,32 +248,35 @@ impl<const N: usize> PvtQuantiser<N> {
         })
     }
 
-    /// A jump to another motion at the time of the last knot.
-    fn checked_jump(
-        &mut self,
-        to: &[Motion; N],
-        start_stop: [f64; N],
-    ) -> Result<PvtRow<N>, KnotError> {
-        let axes = to.iter().zip(self.last).zip(start_stop).enumerate();
-        for (axis, ((to, last), max)) in axes {
-            // Not a number either.
-            let is_there = (to.position - last.position).abs() * POSITION_UNITS < 1.0;
-            if !is_there {
-                let time_s = self.last_s;
-                return Err(KnotError::Time {
-                    time_s,
-                    last_s: time_s,
+    /// Whether the axes are where their velocities bring them in `ticks`, less than one.
+    fn check_merged(&self, to: &[Motion; N], ticks: f64) -> Result<(), KnotError> {
+        for (axis, (to, last)) in to.iter().zip(self.last).enumerate() {
+            let distance = to.position - last.position;
+            let expected = (to.velocity + last.velocity) / 2.0 * ticks;
+            if (distance - expected).abs() > MOVED {
+                return Err(KnotError::Moved {
+                    axis,
+                    distance,
+                    expected,
                 });
             }
+        }
+        Ok(())
+    }
+
+    /// Whether the motors jump to other velocities at the time of the last knot.
+    fn check_jump(&self, to: &[Motion; N]) -> Result<(), KnotError> {
+        let axes = to.iter().zip(self.last).zip(self.start_stop).enumerate();
+        for (axis, ((to, last), max)) in axes {
             let jump = (to.velocity - last.velocity).abs();
             let rounding = ROUNDING * (to.velocity.abs() + last.velocity.abs());
-            // A velocity that is no number is refused below.
+            // A limit that is no number allows none, not even of 0.
             let is_within = jump <= max + rounding;
-            if jump.is_finite() && !is_within {
+            if !is_within {
                 return Err(KnotError::Jump { axis, jump, max });
             }
         }
-        self.jump_to(to)
+        Ok(())
     }
 
     /// A row of no time that sets other velocities at the last knot, however different.

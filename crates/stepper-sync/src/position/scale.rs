@@ -3,6 +3,7 @@
 use core::num::NonZeroU32;
 use core::ops::RangeInclusive;
 use thiserror::Error;
+use trig_kernels::SixDigits;
 
 /// Why a position has no number of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -10,7 +11,10 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ScaleError {
     /// Steps per unit that are zero, not finite or outside 1e-150..=1e150 either way.
-    #[error("{steps_per_unit:.5e} steps per unit, not within 1e-150..=1e150 either way")]
+    #[error(
+        "{} steps per unit, not within 1e-150..=1e150 either way",
+        SixDigits(*.steps_per_unit)
+    )]
     Scale {
         /// Steps per unit given.
         steps_per_unit: f64,
@@ -30,7 +34,10 @@ pub enum ScaleError {
         position: f64,
     },
     /// More steps than 31 bits hold.
-    #[error("position {position:.5e} is {steps:.5e} steps, more than {limit} either way")]
+    #[error(
+        "position {} is {} steps, more than {limit} either way",
+        SixDigits(*.position), SixDigits(*.steps)
+    )]
     OutOfRange {
         /// Position given.
         position: f64,

@@ -10,6 +10,18 @@ pub(super) const COSINE: [f32; 3] = [0.041666646, -0.001388731, 2.4432338e-5];
 /// A of `atan q = q + q³ A(q²)`, off by at most 2^-28.48 of it for
 /// arguments up to 0.33333.
 pub(super) const ARCTAN: [f32; 4] = [-0.33333257, 0.19993213, -0.14096566, 0.089809865];
+/// A of `atan t = t + t³ A(t²)`, off by at most 2^-25.83 of it for
+/// arguments up to 1.0.
+pub(super) const HALF_ARCTAN: [f32; 8] = [
+    -0.33333153,
+    0.19993769,
+    -0.14211024,
+    0.10665893,
+    -0.075519934,
+    0.043209426,
+    -0.01636652,
+    0.0029203598,
+];
 
 /// 2^13 quarter turns: up to here the products of [`QUARTER`] are exact.
 pub(super) const COMMON_ANGLE: f32 = 12867.963;

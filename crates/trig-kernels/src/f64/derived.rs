@@ -34,6 +34,20 @@ pub(super) const ARCTAN: [f64; 9] = [
     0.05456185064324048,
     -0.03257495242362821,
 ];
+/// A of `atan t = t + t³ A(t²)`, off by at most 2^-54.66 of it for
+/// arguments up to 0.41421.
+pub(super) const HALF_ARCTAN: [f64; 10] = [
+    -0.3333333333333015,
+    0.19999999999088947,
+    -0.14285714195260782,
+    0.11111106653571524,
+    -0.09090782412189023,
+    0.07690068297353399,
+    -0.06641121165706218,
+    0.05692538850257109,
+    -0.0435909480574319,
+    0.021259838302943472,
+];
 
 /// 2^26 quarter turns: up to here the products of [`QUARTER`] are exact.
 pub(super) const COMMON_ANGLE: f64 = 105414357.06657825;

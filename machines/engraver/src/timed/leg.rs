@@ -85,4 +85,8 @@ impl Path for Leg {
     fn corner(&self) -> Corner<[f64; 3]> {
         Corner::Jump(self.start_speeds)
     }
+
+    fn check(&self, span: &Span<[f64; 3]>) -> Result<(), ArmPathError> {
+        self.path.check(span)
+    }
 }

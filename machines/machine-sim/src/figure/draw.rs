@@ -35,13 +35,26 @@ pub(super) fn document(title: &str, notes: &[String], rows: &[Vec<Plot>]) -> Doc
     y += GAP_PX;
     let mut clips = Definitions::new();
     let mut number = 0;
+    // Charts that stand alone share their horizontal axis, mostly time.
+    let alone = rows.iter().filter_map(|plots| match &plots[..] {
+        [plot] if !plot.is_map => Some(Frame::numbers_px(plot)),
+        _ => None,
+    });
+    let numbers_px = alone.fold(0.0, f64::max);
     for plots in rows {
         let weights: f64 = plots.iter().map(|plot| plot.weight).sum();
         let gaps = plots.iter().skip(1).fold(0.0, |sum, _| sum + GAP_PX);
         let width = WIDTH_PX - 2.0 * MARGIN_PX - gaps;
         let cells: Vec<_> = plots
             .iter()
-            .map(|plot| Cell::new(plot, width * plot.weight / weights))
+            .map(|plot| {
+                let shared = if plots.len() == 1 && !plot.is_map {
+                    numbers_px
+                } else {
+                    0.0
+                };
+                Cell::new(plot, width * plot.weight / weights, shared)
+            })
             .collect();
         // The frames of a row begin at one height.
         let head = cells.iter().map(Cell::head_px).fold(0.0, f64::max);
@@ -87,8 +100,8 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn new(plot: &'a Plot, width: f64) -> Self {
-        let frame = Frame::new(plot, width);
+    fn new(plot: &'a Plot, width: f64, numbers_px: f64) -> Self {
+        let frame = Frame::new(plot, width, numbers_px);
         let room = width - frame.left;
         let mut legend: Vec<Vec<_>> = Vec::new();
         let mut x = f64::INFINITY;

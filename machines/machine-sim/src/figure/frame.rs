@@ -32,20 +32,18 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The frame of a plot in a cell of this width, with its top at 0 and its left at the cell's.
-    pub(super) fn new(plot: &Plot, cell_px: f64) -> Self {
+    ///
+    /// Its numbers have at least `numbers_px` beside it, so that charts below each other share their
+    /// horizontal axis.
+    pub(super) fn new(plot: &Plot, cell_px: f64, numbers_px: f64) -> Self {
         let [x_axis, y_axis] = &plot.axes;
         let ends = [
             x_axis.ends(plot.coordinates(0)),
             y_axis.ends(plot.coordinates(1)),
         ];
         let [[x0, x1], [y0, y1]] = ends;
-        // The numbers' width depends on the height, which for a map depends on the width.
         let y_ticks = |height: f64| ticks([y0, y1], height / TICKS_PX[1]);
-        let widest = y_ticks(plot.height_px)
-            .iter()
-            .map(|(_, text)| text_px(text, 12.0))
-            .fold(0.0, f64::max);
-        let left = BESIDE_PX + widest;
+        let left = BESIDE_PX + numbers_px.max(Self::numbers_px(plot));
         let mut width = cell_px - left - RIGHT_PX;
         let mut height = plot.height_px;
         if plot.is_map {
@@ -60,6 +58,17 @@ impl Frame {
             ends,
             ticks: [ticks([x0, x1], width / TICKS_PX[0]), y_ticks(height)],
         }
+    }
+
+    /// The width of the widest number beside the frame. It depends on the height, which for a map depends
+    /// on the width.
+    pub(super) fn numbers_px(plot: &Plot) -> f64 {
+        let [_, y_axis] = &plot.axes;
+        let ends = y_axis.ends(plot.coordinates(1));
+        ticks(ends, plot.height_px / TICKS_PX[1])
+            .iter()
+            .map(|(_, text)| text_px(text, 12.0))
+            .fold(0.0, f64::max)
     }
 
     /// The same frame elsewhere.

@@ -143,7 +143,7 @@ mod tests {
             Axis::new("x").over(0.0..=10.0),
             Axis::new("y").over(0.0..=10.0),
         );
-        let frame = Frame::new(&plot, 700.0);
+        let frame = Frame::new(&plot, 700.0, 0.0);
         let standing = vec![[5.0, 5.0], [5.0, 5.0]];
         let moving = vec![[5.0, 5.0], [5.0001, 5.0], [6.0, 5.0]];
         // Beside the frame before it moves.

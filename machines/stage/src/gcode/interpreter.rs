@@ -8,11 +8,9 @@ use super::arc::{ARC_TOLERANCE_MM, Arc, Centre, SAME_MM};
 use super::block::Block;
 use super::codes::{self, Code, Mode, Plane};
 use super::words;
-use crate::motion::{Motion, Shape};
+use crate::motion::{Motion, RAPID_MM_S, Shape};
 use machine_sim::input::Notes;
 
-/// G0.
-const RAPID_MM_S: f64 = 50.0;
 /// What the motors can follow; the note on feeds above says it too.
 const FEEDS_MM_MIN: core::ops::RangeInclusive<f64> = 0.1..=6000.0;
 
@@ -94,13 +92,7 @@ impl Interpreter {
     }
 
     const fn rapid_to(&self, to: Point) -> Motion {
-        Motion {
-            from: self.at,
-            to,
-            shape: Shape::Line,
-            feed_mm_s: RAPID_MM_S,
-            is_rapid: true,
-        }
+        Motion::rapid(self.at, to)
     }
 
     fn command(&mut self, block: &Block<'_>, notes: &mut Notes) -> Result<Command> {

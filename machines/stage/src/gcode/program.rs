@@ -1,11 +1,13 @@
 //! Whole programs of G-code.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
+use kurbo::{Point, Rect, Vec2};
 
 use super::codes;
 use super::interpreter::{Command, Interpreter};
 use super::words;
-use crate::motion::Motion;
+use crate::motion::{Motion, Shape};
+use crate::stage::TRAVEL_MM;
 use machine_sim::input::Notes;
 
 /// A motion, and the number of its line from 1.
@@ -62,6 +64,61 @@ impl Program {
     /// As [`Self::parse`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         Self::parse(&String::from_utf8_lossy(bytes))
+    }
+
+    /// The program with its zero at `offset`, X and Y in mm from that of the stage, where it begins all
+    /// the same.
+    ///
+    /// # Errors
+    /// The offset is no number.
+    pub fn with_offset(mut self, offset: [f64; 2]) -> Result<Self> {
+        let [x, y] = offset;
+        let by = Vec2::new(x, y);
+        ensure!(by.is_finite(), "offset {x},{y} is not a finite number");
+        for line in &mut self.lines {
+            line.motion = line.motion.moved(by);
+        }
+        if let Some(first) = self.lines.first_mut() {
+            match first.motion.shape {
+                Shape::Line => first.motion.from = Point::ZERO,
+                Shape::Arc { .. } => {
+                    let (number, to) = (first.number, first.motion.from);
+                    let motion = Motion::rapid(Point::ZERO, to);
+                    self.lines.insert(0, Line { number, motion });
+                }
+            }
+        }
+        Ok(self)
+    }
+
+    /// The program with its zero where all of it is within the travel of the stage: its own, if that
+    /// will do, else with the lowest X, or Y, at 0.
+    ///
+    /// # Errors
+    /// It is larger than the travel.
+    pub fn fit(self) -> Result<Self> {
+        let motions = self.lines.iter().map(|line| line.motion);
+        let points = motions.flat_map(|motion| {
+            // From where the stage stands a first line may begin anywhere.
+            let is_line = matches!(motion.shape, Shape::Line);
+            let points = motion.points();
+            points.into_iter().skip(usize::from(is_line))
+        });
+        let taken = points.map(|at| Rect::from_points(at, at));
+        let taken = taken.reduce(|all, at| all.union(at)).unwrap_or_default();
+        let [travel_x, travel_y] = TRAVEL_MM;
+        let offset = |axis: &str, low: f64, high: f64, travel: f64| {
+            let size = high - low;
+            ensure!(
+                size <= travel,
+                "the program takes {size:.3} mm in {axis}, the stage travels {travel} mm"
+            );
+            let is_within = low >= 0.0 && high <= travel;
+            Ok(if is_within { 0.0 } else { -low })
+        };
+        let x = offset("X", taken.x0, taken.x1, travel_x)?;
+        let y = offset("Y", taken.y0, taken.y1, travel_y)?;
+        self.with_offset([x, y])
     }
 
     /// The number of the line of each motion, from 1.

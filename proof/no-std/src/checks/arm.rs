@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 
-use path_timing::{AxisLimits, Curve, Knot, Table};
+use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
 use scara_kin::nalgebra::{Point2, Vector2};
 use scara_kin::{Arm, DiscPath, Elbow, Joints};
 
@@ -51,9 +51,14 @@ pub fn path() -> Option<()> {
     };
     let mut knots = [Knot::default(); 129];
     let departure = DiscPath::departure;
-    let table = Table::plan_within([path], [joint; 3], 4, 0.01, departure, &mut knots).ok()?;
-    holds(table.departure(DiscPath::departure).ok()? <= 0.01)?;
-    let [shoulder, elbow, _] = table.rows().last()?.ok()?.position;
+    let accuracy = Accuracy {
+        min_segments: 4,
+        max_departure: 0.01,
+        max_time_ratio: f64::INFINITY,
+    };
+    let table = Table::plan_within([path], [joint; 3], accuracy, departure, &mut knots).ok()?;
+    holds(table.spans().all(|span| path.departure(&span) <= 0.01))?;
+    let [shoulder, elbow, _] = table.rows().last()?.position;
     let tool = arm.forward(Joints::new(shoulder, elbow));
     holds((tool - Point2::from(arc.end())).norm() < CLOSE_MM)
 }

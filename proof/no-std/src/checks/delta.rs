@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{Delta, DeltaPath, Measured, Parameter, Path, Quantity, SpeedLimits};
-use path_timing::{AxisLimits, Knot, Table};
+use path_timing::{Accuracy, AxisLimits, Knot, Table};
 
 use super::{CLOSE_MM, holds};
 fn thesis() -> Option<Delta> {
@@ -73,8 +73,16 @@ pub fn path() -> Option<()> {
     };
     let mut knots = [Knot::default(); 257];
     let departure = DeltaPath::departure;
-    let table = Table::plan_within(paths, [arm; 3], 4, 0.05, departure, &mut knots).ok()?;
-    holds(table.departure(DeltaPath::departure).ok()? <= 0.05)?;
-    let angles = Vector3::from(table.rows().last()?.ok()?.position);
+    let accuracy = Accuracy {
+        min_segments: 4,
+        max_departure: 0.05,
+        max_time_ratio: f64::INFINITY,
+    };
+    let table = Table::plan_within(paths, [arm; 3], accuracy, departure, &mut knots).ok()?;
+    for span in table.spans() {
+        let [_, to] = &span.rows;
+        holds(paths.get(to.leg)?.departure(&span) <= 0.05)?;
+    }
+    let angles = Vector3::from(table.rows().last()?.position);
     holds((delta.forward(angles).ok()? - Point3::from(to)).norm() < CLOSE_MM)
 }

@@ -4,7 +4,7 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use path_timing::{
-    Ahead, AxisLimits, Curve, Knot, LookAhead, PathFn, PathPoint, Rounded, Slot, Table,
+    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Rounded, Table,
     segments_within,
 };
 
@@ -28,12 +28,12 @@ pub fn table() -> Option<()> {
     let table = Table::plan([&path], [limits; 2], |_| 64, &mut knots).ok()?;
     // 100 mm at 10 mm/s, and half a second for the ramps.
     holds((10.5..10.6).contains(&table.duration_s()))?;
-    let last = table.rows().last()?.ok()?;
+    let last = table.rows().last()?;
     holds(last.position == [100.0, 50.0] && last.velocity == [0.0; 2])?;
-    let mut ahead = [Ahead::default(); 65];
-    let mut run = table.run(1.0, &mut ahead).ok()?;
-    run.set_feed(0.5).ok()?;
-    let last = run.last()?.ok()?;
+    let mut ceilings = [FeedCeiling::default(); 65];
+    let mut playback = table.playback(1.0, &mut ceilings).ok()?;
+    playback.set_feed(0.5).ok()?;
+    let last = playback.last()?;
     holds((last.time_s - 2.0 * table.duration_s()).abs() < CLOSE_MM)
 }
 
@@ -52,10 +52,16 @@ pub fn curve() -> Option<()> {
     let curve = Curve::bezier([[0.0, 0.0], [10.0, 0.0], [20.0, 10.0], [20.0, 20.0]]).ok()?;
     let mut knots = [Knot::default(); 65];
     let bound = Curve::departure;
-    let table = Table::plan_within([curve], limits, 4, ALLOWED_MM, bound, &mut knots).ok()?;
-    let departure = table.departure(Curve::departure).ok()?;
+    let accuracy = Accuracy {
+        min_segments: 4,
+        max_departure: ALLOWED_MM,
+        max_time_ratio: f64::INFINITY,
+    };
+    let table = Table::plan_within([curve], limits, accuracy, bound, &mut knots).ok()?;
+    let departures = table.spans().map(|span| curve.departure(&span));
+    let departure = departures.fold(0.0, f64::max);
     holds(departure > 0.0 && departure <= ALLOWED_MM)?;
-    let last = table.rows().last()?.ok()?;
+    let last = table.rows().last()?;
     holds(last.position == [20.0, 20.0] && last.velocity == [0.0; 2])
 }
 
@@ -65,7 +71,7 @@ pub fn stream() -> Option<()> {
     let corners = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0]];
     let curves = Rounded::new(corners, ALLOWED_MM).ok()?;
     let segments = |curve: &Curve<2>| segments_within(curve, 4, ALLOWED_MM, Curve::departure);
-    let mut window = [Slot::default(); 16];
+    let mut window = [Knot::default(); 16];
     let curves = curves.map_while(Result::ok);
     let mut motion = LookAhead::new(curves, limits, segments, &mut window).ok()?;
     for _ in 0..6 {

@@ -17,6 +17,9 @@ const KEEP_ALIVE_MIN_S: u16 = 5;
 /// Bytes of the longest text of MQTT: its length has 16 bits.
 const MQTT_TEXT_MAX: usize = 0xFFFF;
 
+/// Messages that are kept in memory, unless configured.
+const QUEUE: usize = 10_000;
+
 /// The broker, and what is kept for it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,28 +35,27 @@ pub(crate) struct Mqtt {
     pub(crate) key_file: Option<PathBuf>,
     #[serde(default = "prefix")]
     pub(crate) prefix: Prefix,
-    /// Telegrams kept until the broker has acknowledged them.
-    #[serde(default = "ten_thousand")]
-    pub(crate) queue: NonZeroU16,
+    /// Messages kept in memory until the broker has acknowledged them.
+    pub(super) queue: Option<NonZeroU16>,
     #[serde(default)]
     pub(crate) overflow: Overflow,
     /// How long the broker keeps the commands for a gateway that is away.
-    #[serde(default = "one_day_s")]
-    pub(crate) session_expiry_s: u32,
+    #[serde(default)]
+    pub(crate) command_max_age_s: u32,
     #[serde(default = "half_a_minute_s")]
     pub(crate) keep_alive_s: u16,
     /// Prefix of Home Assistant's discovery topics; without it nothing is announced.
     pub(crate) discovery: Option<Prefix>,
 }
 
-/// What becomes of a telegram when the queue is full.
+/// What becomes of a telegram when there is no room for it.
 #[derive(Clone, Copy, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Overflow {
     /// Its line waits, and with it the partner, who is refused with NAK.
     #[default]
     Wait,
-    /// The oldest of the queue is given up, and counted.
+    /// The oldest message is given up, and counted.
     DropOldest,
 }
 
@@ -85,6 +87,11 @@ impl TryFrom<String> for Prefix {
 }
 
 impl Mqtt {
+    /// Messages that are kept in memory, where they are.
+    pub(crate) fn queue(&self) -> usize {
+        self.queue.map_or(QUEUE, |queue| queue.get().into())
+    }
+
     /// The paths count from this folder.
     pub(super) fn set_folder(&mut self, folder: &Path) {
         let files = [
@@ -150,14 +157,6 @@ fn check_text(name: &str, text: Option<&str>) -> Result<(), String> {
 
 fn prefix() -> Prefix {
     Prefix("line3964r".to_owned())
-}
-
-const fn ten_thousand() -> NonZeroU16 {
-    const { NonZeroU16::new(10_000).unwrap() }
-}
-
-const fn one_day_s() -> u32 {
-    24 * 60 * 60
 }
 
 const fn half_a_minute_s() -> u16 {

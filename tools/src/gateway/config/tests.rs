@@ -59,6 +59,25 @@ fn errors_name_line_and_column() {
             "line 8, column 1: a second line on `tcp://h:1`",
         ),
         (
+            &(LINE.to_owned() + &LINE.replace("\"a\"", "\"b\"").replace("tcp:", "rfc2217:")),
+            "line 8, column 1: a second line on `rfc2217://h:1`",
+        ),
+        (
+            &format!("{LINE}[[line.telegram]]\nname = \"x\"\nstarts_with = \"5\""),
+            "line 10, column 15: `5` is not made of whole bytes",
+        ),
+        (
+            &format!(
+                "{LINE}[[line.telegram]]\nname = \"x\"\nstarts_with = \"57\"\n\
+                 [[line.telegram]]\nname = \"y\"\nstarts_with = \"57 01\"\nlength = 3"
+            ),
+            "line 11, column 1: telegram `y`: `x` describes all of them before",
+        ),
+        (
+            &format!("{LINE}silent_after_s = 0"),
+            "line 8, column 18: silent_after_s: 0 is no time in seconds, up to 1000000000",
+        ),
+        (
             &format!("{LINE}qvz_ms = 0"),
             "line 8, column 10: invalid value: integer `0`, expected a nonzero u16",
         ),
@@ -95,6 +114,12 @@ fn errors_name_line_and_column() {
     ] {
         assert_eq!(error(&format!("{HEAD}{rest}\n")), message);
     }
+    let listening = HEAD.replace(":0", ":9");
+    let both = format!("{listening}[metrics]\nlisten = \"127.0.0.1:9\"\n{LINE}");
+    assert_eq!(
+        error(&both),
+        "line 4, column 1: tcp listens on 127.0.0.1:9 too"
+    );
     let mqtt = |rest| format!("name = \"hall\"\n[mqtt]\nbroker = \"mqtt://h\"\n{rest}\n{LINE}");
     for (rest, message) in [
         ("password = \"x\"", "mqtt: a password without a user"),
@@ -104,6 +129,10 @@ fn errors_name_line_and_column() {
         ),
         ("ca_file = \"x\"", "mqtt: certificates are for mqtts://"),
         ("keep_alive_s = 4", "mqtt: keep_alive_s: 4, at least 5"),
+        (
+            "queue = 10",
+            "mqtt: queue is for [store] with sync = \"none\"",
+        ),
     ] {
         assert_eq!(error(&mqtt(rest)), format!("line 2, column 1: {message}"));
     }

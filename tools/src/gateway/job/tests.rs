@@ -3,7 +3,13 @@ use serde_json::json;
 use super::*;
 
 fn parse(command: &str) -> Result<Job, Refused> {
-    Job::parse(command.as_bytes())
+    Job::parse(command.as_bytes(), None)
+}
+
+/// What asks for no reply.
+fn asked(id: Option<Value>) -> Asked {
+    let id = id.map(|id| serde_json::from_str(&id.to_string()).unwrap());
+    Asked { id, reply: None }
 }
 
 #[test]
@@ -26,7 +32,7 @@ fn each_action() {
             Action::Send("Öl".as_bytes().to_vec()),
         ),
         (
-            r#"{"fetch": "oven", "id": {"order": [1, "a"]}}"#,
+            r#"{"fetch": "oven", "id": {"order":[1,"a"]}}"#,
             Some(json!({ "order": [1, "a"] })),
             Action::Fetch {
                 area: "oven".to_owned(),
@@ -43,7 +49,8 @@ fn each_action() {
             write(Data::Fields(fields)),
         ),
     ] {
-        assert_eq!(parse(command), Ok(Job { id, action }), "{command}");
+        let asked = asked(id);
+        assert_eq!(parse(command), Ok(Job { asked, action }), "{command}");
     }
 }
 
@@ -56,7 +63,7 @@ fn half_an_action_and_two_at_once_are_refused() {
         r#""fetch": "a""#,
         r#""write": "a""#,
         r#""hex": "41""#,
-        r#""fields": {}"#,
+        r#""fields": {"a": 1}"#,
     ];
     const WHOLE: [u32; 5] = [0b1, 0b10, 0b100, 0b01_1000, 0b10_1000];
     for set in 0..1_u32 << PARTS.len() {
@@ -72,7 +79,7 @@ fn half_an_action_and_two_at_once_are_refused() {
         }
         let message = "one of send, send_text, fetch, write with hex, write with fields";
         let refused = Refused {
-            id: Some(json!(1)),
+            asked: asked(Some(json!(1))),
             message: message.to_owned(),
         };
         assert_eq!(parsed, Err(refused), "{parts:?}");
@@ -112,7 +119,10 @@ fn what_is_no_command_is_told_with_its_place() {
         let message = message.to_owned();
         assert_eq!(
             parse(command),
-            Err(Refused { id: None, message }),
+            Err(Refused {
+                asked: asked(None),
+                message
+            }),
             "{command}"
         );
     }
@@ -125,7 +135,7 @@ fn wrong_bytes_are_named_and_the_id_is_repeated() {
         r#"{"id": "x", "write": "oven", "hex": "4G"}"#,
     ] {
         let refused = Refused {
-            id: Some(json!("x")),
+            asked: asked(Some(json!("x"))),
             message: "`4G` is not made of hexadecimal bytes".to_owned(),
         };
         assert_eq!(parse(command), Err(refused), "{command}");
@@ -143,7 +153,7 @@ fn the_longest_telegram_fits_and_a_longer_command_is_not_read() {
     let spaces = |len| format!("{command}{}", " ".repeat(len - command.len()));
     assert!(parse(&spaces(MAX_COMMAND)).is_ok());
     let refused = Refused {
-        id: None,
+        asked: asked(None),
         message: "a command of 16385 bytes, at most 16384".to_owned(),
     };
     assert_eq!(parse(&spaces(MAX_COMMAND + 1)), Err(refused));
@@ -159,7 +169,7 @@ fn outcomes_have_what_there_is() {
         ok: error.is_none(),
         error,
     };
-    let id = json!([1]);
+    let id = asked(Some(json!([1]))).id.unwrap();
     assert_eq!(
         serde_json::to_value(outcome(Some(&id), Some("lost"))).unwrap(),
         json!({ "event": "outcome", "line": "scale", "time": "t", "id": [1], "ok": false, "error": "lost" })
@@ -168,4 +178,27 @@ fn outcomes_have_what_there_is() {
         serde_json::to_value(outcome(None, None)).unwrap(),
         json!({ "event": "outcome", "line": "scale", "time": "t", "ok": true })
     );
+}
+
+#[test]
+fn an_id_comes_back_as_it_was() {
+    let id = "123456789012345678901234567890";
+    for command in [
+        format!("{{\"id\": {id}, \"send\": \"41\"}}"),
+        // A key that nobody knows, and one that is missing.
+        format!("{{\"id\": {id}, \"sned\": \"41\"}}"),
+        format!("{{\"id\": {id}}}"),
+    ] {
+        let asked = match parse(&command) {
+            Ok(job) => job.asked,
+            Err(refused) => refused.asked,
+        };
+        assert_eq!(serde_json::to_string(&asked.id).unwrap(), id, "{command}");
+    }
+}
+
+#[test]
+fn nothing_to_write_is_no_success() {
+    let refused = parse(r#"{"write": "oven", "fields": {}}"#).unwrap_err();
+    assert_eq!(refused.message, "`fields` is empty");
 }

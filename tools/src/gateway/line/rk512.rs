@@ -41,7 +41,8 @@ impl Line {
         stop: &CancellationToken,
     ) -> String {
         let config = rk512::Config::DEFAULT;
-        let partner = Client::new(stream, self.config.config(), config);
+        let observer = self.hub.observer(&self.name);
+        let partner = Client::with_observer(stream, self.config.config(), config, observer);
         let start = Instant::now();
         let areas = self.config.areas.iter().map(|area| area.get_ref());
         let mut due: Vec<_> = areas.map(|area| area.poll().map(|_| start)).collect();
@@ -58,10 +59,10 @@ impl Line {
                     }
                     result
                 }
-                Next::Job(Job { id, action }) => {
+                Next::Job(Job { asked, action }) => {
                     let result = self.act(&partner, action).await;
                     let outcome = result.as_ref().copied().map_err(ToString::to_string);
-                    self.hub.outcome(&self.name, id.as_ref(), outcome).await;
+                    self.hub.outcome(&self.name, &asked, outcome).await;
                     result
                 }
             };
@@ -149,22 +150,26 @@ impl Line {
         if let Some(counts) = self.hub.counts(&self.name) {
             counts.received.fetch_add(1, Ordering::Relaxed);
         }
-        self.seq += 1;
+        let seq = self.numbers.next();
         let (fields, errors) = decode(&area.fields, &bytes);
         let report = Report {
             event: "area",
             line: &self.name,
             name: Some(area.name.as_str()),
             run: &self.hub.run,
-            seq: self.seq,
+            seq,
             time: hub::now(),
             hex: hex(&bytes),
             possible_repeat: false,
             fields,
             errors,
         };
-        self.hub.report(&report).await;
-        Ok(())
+        // A number of an area is stored like that of a telegram, so that no other run has it.
+        let stored = self.hub.report(&report, Some(&[])).await;
+        stored.map_err(|error| {
+            self.hub.not_stored(&self.name, &error);
+            Failed::Refused(error.to_string())
+        })
     }
 }
 

@@ -1,8 +1,11 @@
 //! 3964R: what the partner sends, and what is sent to it.
 
-use core::{sync::atomic::Ordering, time::Duration};
+use core::{
+    sync::atomic::{AtomicU64, Ordering},
+    time::Duration,
+};
 
-use proto3964r::tokio::{Link, Lost, SendError};
+use proto3964r::tokio::{Incoming, Link, Lost, SendError};
 use tokio::{sync::mpsc, time::Instant};
 use tokio_util::sync::CancellationToken;
 
@@ -11,14 +14,19 @@ use crate::{
     Port,
     gateway::{
         config,
-        hub::{self, Hub},
+        hub::{self, Counts, Hub},
         job::{Action, Job},
+        store::{Last, StoreError},
         telegram::{Report, decode, describe, hex},
     },
 };
 
 /// What a partner may need besides its times: STX, DLE and the reading of them.
 const SLACK: Duration = Duration::from_millis(500);
+
+/// How much of the acknowledgement delay time (QVZ) the store may take, in quarters; the rest is for
+/// the way to the partner.
+const QUARTERS_OF_QVZ: u16 = 3;
 
 impl Line {
     /// Serves the line until it is lost or the gateway stops; says why.
@@ -27,8 +35,11 @@ impl Line {
         stream: Port,
         stop: &CancellationToken,
     ) -> String {
-        let settings = self.config.config();
-        let link = Link::new(stream, settings);
+        let mut settings = self.config.config();
+        if self.hub.outbox.is_some() {
+            settings.acknowledge_wait_ms = (settings.qvz_ms / 4 * QUARTERS_OF_QVZ).max(1);
+        }
+        let link = Link::with_observer(stream, settings, self.hub.observer(&self.name));
         // Set when the line is lost or the gateway stops: no job is begun after that.
         let closing = stop.child_token();
         let (hub, name) = (&*self.hub, self.name.as_str());
@@ -36,18 +47,17 @@ impl Line {
             hub,
             line: &self.config,
             name,
-            seq: &mut self.seq,
+            numbers: &mut self.numbers,
             repeat_within: Duration::from_millis(settings.qvz_ms.into()) + SLACK,
-            last: None,
         };
         let receiving = async {
             let lost = loop {
-                let telegram = tokio::select! {
-                    telegram = link.receive() => telegram,
+                let incoming = tokio::select! {
+                    incoming = link.incoming() => incoming,
                     () = closing.cancelled() => break None,
                 };
-                match telegram {
-                    Ok(telegram) => desk.received(&telegram).await,
+                match incoming {
+                    Ok(incoming) => desk.received(incoming, &closing).await,
                     Err(lost) => break Some(lost),
                 }
             };
@@ -56,10 +66,12 @@ impl Line {
         };
         let sending = send_jobs(&mut self.jobs, &link, hub, name, &closing);
         let (lost, ()) = tokio::join!(receiving, sending);
-        // What was acknowledged to the partner while the last job ended.
+        // What was acknowledged to the partner while the last job ended, where nothing is stored.
         for telegram in link.close().await {
-            desk.received(&telegram).await;
+            let arrival = desk.number(&telegram);
+            desk.keep(&telegram, &arrival).await.ok();
         }
+        self.numbers.line_was_lost();
         lost.as_ref()
             .map_or_else(|| "stopped".to_owned(), Lost::to_string)
     }
@@ -78,14 +90,14 @@ async fn send_jobs(
             () = closing.cancelled() => return,
             job = jobs.recv() => job,
         };
-        let Some(Job { id, action }) = job else {
+        let Some(Job { asked, action }) = job else {
             return;
         };
         let result = match action {
             Action::Send(telegram) => link.send(&telegram).await,
             Action::Fetch { .. } | Action::Write { .. } => {
                 let error = "fetch and write are for lines of RK512".to_owned();
-                hub.outcome(name, id.as_ref(), Err(error)).await;
+                hub.outcome(name, &asked, Err(error)).await;
                 continue;
             }
         };
@@ -96,7 +108,58 @@ async fn send_jobs(
             Err(_) => {}
         }
         let result = result.map_err(|error| error.to_string());
-        hub.outcome(name, id.as_ref(), result).await;
+        hub.outcome(name, &asked, result).await;
+    }
+}
+
+/// The numbers of a line's telegrams.
+#[derive(Debug, Default)]
+pub(super) struct Numbers {
+    /// Of the last telegram or area.
+    seq: u64,
+    /// The last telegram that was acknowledged.
+    last: Option<Acknowledged>,
+    /// One that was numbered and not acknowledged: its repeat has the same number.
+    open: Option<Arrival>,
+}
+
+#[derive(Debug)]
+struct Acknowledged {
+    telegram: Vec<u8>,
+    /// `None` before the line was lost: the partner may not have heard of it.
+    at: Option<Instant>,
+}
+
+/// A telegram and its number.
+#[derive(Clone, Debug)]
+struct Arrival {
+    telegram: Vec<u8>,
+    seq: u64,
+    possible_repeat: bool,
+    is_stored: bool,
+}
+
+impl Numbers {
+    /// Goes on after the last telegram of the run before.
+    pub(super) fn after(last: &Last) -> Self {
+        let is_first = last.seq == 0;
+        let telegram = last.telegram.clone();
+        Self {
+            seq: last.seq,
+            last: (!is_first).then_some(Acknowledged { telegram, at: None }),
+            open: None,
+        }
+    }
+
+    pub(super) fn next(&mut self) -> u64 {
+        self.seq += 1;
+        self.seq
+    }
+
+    fn line_was_lost(&mut self) {
+        if let Some(last) = &mut self.last {
+            last.at = None;
+        }
     }
 }
 
@@ -105,31 +168,66 @@ struct Desk<'d> {
     hub: &'d Hub,
     line: &'d config::Line,
     name: &'d str,
-    seq: &'d mut u64,
+    numbers: &'d mut Numbers,
     /// How soon the partner repeats a telegram whose acknowledgement it missed: after the
     /// acknowledgement delay time (QVZ).
     repeat_within: Duration,
-    last: Option<(Vec<u8>, Instant)>,
 }
 
 impl Desk<'_> {
-    async fn received(&mut self, telegram: &[u8]) {
-        let now = Instant::now();
+    /// Makes a telegram safe, then acknowledges it; one that cannot be made safe is refused.
+    async fn received(&mut self, incoming: Incoming, closing: &CancellationToken) {
+        let telegram = incoming.telegram().to_vec();
+        self.hub.online(self.name, true);
+        let mut arrival = self.number(&telegram);
+        if !arrival.is_stored {
+            let stored = tokio::select! {
+                stored = self.keep(&telegram, &arrival) => stored.is_ok(),
+                () = closing.cancelled() => false,
+            };
+            arrival.is_stored = stored;
+        }
+        if !arrival.is_stored {
+            self.count(|counts| &counts.not_stored);
+            self.numbers.open = Some(arrival);
+            incoming.refuse();
+        } else if incoming.accept().await {
+            self.count(|counts| &counts.received);
+            if arrival.possible_repeat {
+                self.count(|counts| &counts.repeats);
+            }
+            let at = Some(Instant::now());
+            self.numbers.last = Some(Acknowledged { telegram, at });
+        } else {
+            self.numbers.open = Some(arrival);
+        }
+    }
+
+    /// The number of a telegram: that of the one before, if that is the same and was not
+    /// acknowledged.
+    fn number(&mut self, telegram: &[u8]) -> Arrival {
+        if let Some(open) = self.numbers.open.take()
+            && open.telegram == telegram
+        {
+            return open;
+        }
         let character = Duration::from_secs(self.line.port.frame.bits().into())
             / self.line.port.frame.baud.max(1);
         let block = u32::try_from(telegram.len()).unwrap_or(u32::MAX);
         let within = self.repeat_within + character.saturating_mul(block.saturating_mul(2));
-        let possible_repeat = self
-            .last
-            .replace((telegram.to_vec(), now))
-            .is_some_and(|(last, at)| last == telegram && now - at <= within);
-        if let Some(counts) = self.hub.counts(self.name) {
-            counts.received.fetch_add(1, Ordering::Relaxed);
-            let repeats = u64::from(possible_repeat);
-            counts.repeats.fetch_add(repeats, Ordering::Relaxed);
+        let possible_repeat = self.line.mark_repeats
+            && self.numbers.last.as_ref().is_some_and(|last| {
+                last.telegram == telegram && last.at.is_none_or(|at| at.elapsed() <= within)
+            });
+        Arrival {
+            telegram: telegram.to_vec(),
+            seq: self.numbers.next(),
+            possible_repeat,
+            is_stored: false,
         }
-        self.hub.online(self.name, true);
-        *self.seq += 1;
+    }
+
+    async fn keep(&self, telegram: &[u8], arrival: &Arrival) -> Result<(), StoreError> {
         let kind = describe(&self.line.telegrams, telegram);
         let fields = kind.map_or(&[][..], |kind| &kind.fields);
         let (fields, errors) = decode(fields, telegram);
@@ -138,13 +236,23 @@ impl Desk<'_> {
             line: self.name,
             name: kind.map(|kind| kind.name.as_str()),
             run: &self.hub.run,
-            seq: *self.seq,
+            seq: arrival.seq,
             time: hub::now(),
             hex: hex(telegram),
-            possible_repeat,
+            possible_repeat: arrival.possible_repeat,
             fields,
             errors,
         };
-        self.hub.report(&report).await;
+        let stored = self.hub.report(&report, Some(telegram)).await;
+        if let Err(error) = &stored {
+            self.hub.not_stored(self.name, error);
+        }
+        stored
+    }
+
+    fn count(&self, count: impl FnOnce(&Counts) -> &AtomicU64) {
+        if let Some(counts) = self.hub.counts(self.name) {
+            count(counts).fetch_add(1, Ordering::Relaxed);
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use alloc::collections::VecDeque;
 
-use crate::gateway::outbox::{Message, Outbox};
+use crate::gateway::{outbox::Outbox, store::Message};
 
 /// Messages without an acknowledgement, in the order in which they were handed over.
 #[derive(Default)]
@@ -42,6 +42,14 @@ impl Window {
         self.0
             .remove(index)
             .map(|acknowledged| acknowledged.message)
+    }
+
+    pub(super) fn first(&self) -> Option<&Message> {
+        self.0.front().map(|first| &first.message)
+    }
+
+    pub(super) fn take_first(&mut self) -> Option<Message> {
+        self.0.pop_front().map(|first| first.message)
     }
 
     /// The connection is lost: back into the queue.

@@ -3,11 +3,26 @@ use core::{iter, time::Duration};
 use bytes::Bytes;
 use tokio::time::timeout;
 
-use super::{Message, Outbox};
-use crate::gateway::config::Overflow;
+use super::{Entry, Message, Outbox};
+use crate::gateway::{config::Overflow, store::DeadLetters};
+
+fn in_memory(capacity: usize, overflow: Overflow) -> Outbox {
+    let letters = DeadLetters::new("unused".into(), 0);
+    Outbox::in_memory(capacity, overflow, letters).unwrap()
+}
+
+pub(super) fn message(payload: Bytes) -> Message {
+    Message {
+        topic: "t".to_owned(),
+        payload,
+        ..Message::default()
+    }
+}
 
 async fn push(outbox: &Outbox, number: u8) {
-    outbox.push("t".to_owned(), Bytes::from(vec![number])).await;
+    let message = message(Bytes::from(vec![number]));
+    let number = None;
+    outbox.push(Entry { message, number }).await.unwrap();
 }
 
 async fn next(outbox: &Outbox) -> Message {
@@ -18,7 +33,7 @@ async fn next(outbox: &Outbox) -> Message {
 
 #[tokio::test]
 async fn in_order_until_it_is_acknowledged() {
-    let outbox = Outbox::new(4, Overflow::Wait);
+    let outbox = in_memory(4, Overflow::Wait);
     for number in 0..3 {
         push(&outbox, number).await;
     }
@@ -34,7 +49,7 @@ async fn in_order_until_it_is_acknowledged() {
 
 #[tokio::test]
 async fn full_it_waits_or_drops_the_oldest() {
-    let outbox = Outbox::new(1, Overflow::Wait);
+    let outbox = in_memory(1, Overflow::Wait);
     push(&outbox, 0).await;
     assert!(
         timeout(Duration::from_millis(20), push(&outbox, 1))
@@ -51,7 +66,7 @@ async fn full_it_waits_or_drops_the_oldest() {
     );
     assert_eq!((second.payload, outbox.dropped()), ([2][..].into(), 0));
 
-    let outbox = Outbox::new(2, Overflow::DropOldest);
+    let outbox = in_memory(2, Overflow::DropOldest);
     for number in 0..5 {
         push(&outbox, number).await;
     }
@@ -61,9 +76,9 @@ async fn full_it_waits_or_drops_the_oldest() {
 
 #[tokio::test]
 async fn a_flood_takes_half_of_the_room() {
-    let outbox = Outbox::new(8, Overflow::Wait);
+    let outbox = in_memory(8, Overflow::Wait);
     for _ in 0..100 {
-        outbox.offer("t".to_owned(), Bytes::new());
+        outbox.offer(message(Bytes::new()));
     }
     assert_eq!((outbox.len(), outbox.dropped()), (5, 95));
     push(&outbox, 1).await;
@@ -71,7 +86,7 @@ async fn a_flood_takes_half_of_the_room() {
 
 #[tokio::test]
 async fn what_is_retained_comes_first_once_and_again_after_a_loss() {
-    let outbox = Outbox::new(1, Overflow::Wait);
+    let outbox = in_memory(1, Overflow::Wait);
     push(&outbox, 0).await;
     outbox.retain("s".to_owned(), "offline".into());
     outbox.retain("s".to_owned(), "online".into());

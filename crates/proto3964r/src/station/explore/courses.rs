@@ -100,6 +100,36 @@ fn a_slow_user_leaves_nobody_stuck() {
     }
 }
 
+/// A sender is told of success only when the receiver's user has accepted, whoever accepts, refuses
+/// or forgets, and whatever the line does; and nobody gets stuck.
+#[test]
+fn what_is_held_is_acknowledged_by_its_user_alone() {
+    for payloads in PAYLOADS {
+        let findings = explore(&scope(DISTINCT, 2, payloads, 0).held());
+        report("held, no fault", &findings);
+        assert_eq!((findings.forged, findings.lost), (0, 0));
+        assert!(findings.with_failure > 0, "who refuses is among the users");
+        assert_eq!(findings.with_repeat, 0);
+    }
+    for faults in [0, 1] {
+        let findings = explore(&scope(DISTINCT, 2, [DLE, 0x41], faults).held().paced());
+        report("held, paced", &findings);
+        assert_eq!((findings.forged, findings.ends > 0), (0, true));
+    }
+    let slow = Scope {
+        slow_user: true,
+        ..scope(DISTINCT, 2, [DLE, ETX], 1).held()
+    };
+    let findings = explore(&slow);
+    report("held, slow user, one fault", &findings);
+    assert_eq!((findings.forged, findings.ends > 0), (0, true));
+    for priority in [Priority::High, Priority::Low] {
+        let findings = explore(&scope([priority; 2], 2, [DLE, 0x41], 0).held());
+        report("held, equal priorities", &findings);
+        assert!(findings.ends > 0);
+    }
+}
+
 /// Equal priorities, with which the procedure cannot always succeed, still end.
 #[test]
 fn equal_priorities_end() {

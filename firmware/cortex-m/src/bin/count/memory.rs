@@ -2,6 +2,9 @@
 
 use cortex_m_semihosting::hprintln;
 
+/// A knot of an arm: a name without the `;` that ends a column.
+type ArmKnot = path_timing::Knot<[f64; 2]>;
+
 /// Says the bytes of each type.
 pub fn say() {
     macro_rules! say {
@@ -9,7 +12,7 @@ pub fn say() {
             $(hprintln!("{};bytes;{}", stringify!($kind), size_of::<$kind>());)*
         };
     }
-    use path_timing::{Ahead, Knot};
+    use path_timing::FeedCeiling;
     use stepper_sync::{
         Accumulators, AxisRamp, AxisSegments, AxisTrain, Edges, JoinedSegments, PvtSteps, Segment,
         SegmentPlayer,
@@ -21,8 +24,8 @@ pub fn say() {
         delta_kin::Delta<f64>,
         pose_pt::Platform<3, f32>,
         pose_pt::Platform<3, f64>,
-        Knot,
-        Ahead,
+        ArmKnot,
+        FeedCeiling,
         PvtSteps<2>,
         AxisSegments,
         JoinedSegments,

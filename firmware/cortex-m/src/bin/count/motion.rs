@@ -4,7 +4,7 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use cortex_m_firmware::meter::Meter;
-use path_timing::{Ahead, AxisLimits, Knot, Path, PathPoint, Table};
+use path_timing::{AxisLimits, FeedCeiling, Knot, Path, PathPoint, Table};
 use stepper_sync::{
     AxisSegments, MinIntervals, PvtKnot, PvtQuantiser, PvtSteps, Ramp, RampLimits, Rate, Segment,
     SegmentPlayer, StepScale,
@@ -51,7 +51,7 @@ fn tables(meter: &Meter) {
         acceleration: 20.0,
         jerk: None,
     };
-    let (mut knots, mut ahead) = ([Knot::default(); 65], [Ahead::default(); 65]);
+    let (mut knots, mut ceilings) = ([Knot::default(); 65], [FeedCeiling::default(); 65]);
     meter.count("Table::plan, 64 rows", "f64", 1, || {
         let table = Table::plan([Parabola], black_box([limits; 2]), |_| SEGMENTS, &mut knots);
         black_box(table.is_ok());
@@ -68,9 +68,10 @@ fn tables(meter: &Meter) {
     meter.count("Rows::next", "f64", 32, || {
         black_box(next(&mut rows).is_some());
     });
-    let mut run = table.run(1.0, &mut ahead).expect("room for all rows");
-    meter.count("Run::next_row", "f64", 32, || {
-        black_box(run.next_row().is_ok());
+    let playback = table.playback(1.0, &mut ceilings);
+    let mut playback = playback.expect("room for all rows");
+    meter.count("Playback::next_row", "f64", 32, || {
+        black_box(playback.next_row().is_some());
     });
 }
 

@@ -13,7 +13,7 @@ use std::{env, fs};
 
 use cortex_m_firmware::arm_line::{JOINT, ROWS, path, quantiser};
 use cortex_m_firmware::stream::{Event, Head, MAX_BATCH, REPORT, Report, WINDOW, encode};
-use path_timing::{Knot, Table};
+use path_timing::{FeedCeiling, Knot, Table};
 use plan::Plan;
 use port::Socket;
 use proto3964r::blocking::Driver;
@@ -112,11 +112,11 @@ impl<'a> Sender<'a> {
 fn send(socket: &str, record: &str, late: Option<u16>) -> Result<()> {
     let path = path();
     let mut knots = [Knot::default(); ROWS + 1];
-    let mut ahead = [path_timing::Ahead::default(); ROWS + 1];
+    let mut ceilings = [FeedCeiling::default(); ROWS + 1];
     let table = Table::plan([path], [JOINT; 2], |_| ROWS as u32, &mut knots)?;
-    let run = table.run(1.0, &mut ahead)?;
+    let playback = table.playback(1.0, &mut ceilings)?;
     let mut sender = Sender {
-        plan: Plan::new(run, quantiser(&path)),
+        plan: Plan::new(playback, quantiser(&path)),
         next: 0,
         from_rest: true,
         is_ended: false,

@@ -2,27 +2,23 @@
 
 use cortex_m_firmware::arm_line::LEAST;
 use cortex_m_firmware::stream::Joints;
-use path_timing::Run;
-use scara_kin::ArmPath;
+use path_timing::Playback;
 use stepper_sync::{AxisSegments, PvtQuantiser, Segment};
 
 use super::Result;
 
-/// A run of the line at one of its rows. A copy of it can go another way from there.
+/// A playback of the line at one of its rows. A copy of it can go another way from there.
 #[derive(Clone)]
 pub struct Plan<'a> {
-    run: Run<'a, core::array::IntoIter<ArmPath, 1>>,
+    playback: Playback<'a, [f64; 2]>,
     quantiser: PvtQuantiser<2>,
     axes: Joints<AxisSegments>,
 }
 
 impl<'a> Plan<'a> {
-    pub fn new(
-        run: Run<'a, core::array::IntoIter<ArmPath, 1>>,
-        quantiser: PvtQuantiser<2>,
-    ) -> Self {
+    pub fn new(playback: Playback<'a, [f64; 2]>, quantiser: PvtQuantiser<2>) -> Self {
         Self {
-            run,
+            playback,
             axes: quantiser.knots().map(|knot| AxisSegments::new(knot, LEAST)),
             quantiser,
         }
@@ -33,14 +29,14 @@ impl<'a> Plan<'a> {
     }
 
     pub fn is_finished(&self) -> bool {
-        self.run.is_finished()
+        self.playback.is_finished()
     }
 
     /// The next rows as bytes, at most so many: fewer before a rest.
     pub fn rows(&mut self, most: usize) -> Result<Joints<Vec<u8>>> {
         let mut wire = [Vec::new(), Vec::new()];
         for _ in 0..most {
-            let Some(row) = self.run.next_row()? else {
+            let Some(row) = self.playback.next_row() else {
                 break;
             };
             if row.duration_s == 0.0 {
@@ -59,12 +55,12 @@ impl<'a> Plan<'a> {
 
     /// The rows to rest.
     pub fn stop(&mut self) -> Result<Joints<Vec<u8>>> {
-        self.run.stop();
+        self.playback.stop();
         self.rows(usize::MAX)
     }
 
     /// At rest: goes on.
     pub fn resume(&mut self) -> Result<()> {
-        Ok(self.run.set_feed(1.0)?)
+        Ok(self.playback.set_feed(1.0)?)
     }
 }

@@ -1,0 +1,294 @@
+//! What the speeds at the knots ask of each limit, with derivatives by these speeds.
+
+use crate::reciprocals::Reciprocals;
+use crate::segment::Segment;
+use crate::{Axes, Knot};
+
+/// How a utilisation grows with all speeds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Degree {
+    Speed,
+    Acceleration,
+    Jerk,
+}
+
+/// A part of a limit that is used, -1 to 1, and its derivatives by the speeds at three consecutive
+/// knots: the one before a segment, and both ends of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Utilisation {
+    pub(super) value: f64,
+    pub(super) by: [f64; 3],
+    pub(super) degree: Degree,
+}
+
+/// What takes utilisations and times into account.
+pub(crate) trait Barrier {
+    fn limit(&mut self, utilisation: &Utilisation);
+    /// The length of a segment and the speeds at its ends.
+    fn time(&mut self, ds: f64, speeds: [f64; 2]);
+}
+
+/// The acceleration of an axis at an end of a segment, as a part of its limit, with derivatives by the
+/// speeds at both ends.
+#[derive(Debug, Clone, Copy)]
+struct Acceleration {
+    value: f64,
+    by: [f64; 2],
+}
+
+impl Acceleration {
+    const NONE: Self = Self {
+        value: 0.0,
+        by: [0.0; 2],
+    };
+
+    /// ```text
+    /// a = c y + d z = W (c W + d D) / 4      W = w₀ + w₁, D = w₁ - w₀
+    /// ```
+    fn new([c, d]: [f64; 2], [w0, w1]: [f64; 2]) -> Self {
+        let (sum, rise) = (w0 + w1, w1 - w0);
+        let (by_sum, by_rise) = ((2.0 * c * sum + d * rise) * 0.25, d * sum * 0.25);
+        Self {
+            value: sum * (c * sum + d * rise) * 0.25,
+            by: [by_sum - by_rise, by_sum + by_rise],
+        }
+    }
+
+    fn utilisation(&self) -> Utilisation {
+        let [by0, by1] = self.by;
+        Utilisation {
+            value: self.value,
+            by: [0.0, by0, by1],
+            degree: Degree::Acceleration,
+        }
+    }
+}
+
+/// The end of the segment before, from which the acceleration steps.
+#[derive(Debug, Clone, Copy)]
+struct Before<A: Axes> {
+    accelerations: A::Of<Acceleration>,
+    ds: f64,
+    speeds: [f64; 2],
+}
+
+/// A segment with the speeds at its ends.
+pub(crate) struct Moving<'a, A: Axes> {
+    limits: &'a Reciprocals<A>,
+    segment: Segment<A>,
+    ds: f64,
+    pub(super) speeds: [f64; 2],
+    /// Highest speeds at both ends.
+    caps: [f64; 2],
+    /// Whether accelerations begin, and end, at zero.
+    eased: [bool; 2],
+    before: Option<Before<A>>,
+    /// The knots of the three speeds, the first where there is a segment before.
+    pub(super) knots: [usize; 3],
+}
+
+/// Least part of a limit of jerk that is left by rounding.
+const LEAST_LIMIT: f64 = 0.5;
+
+/// The segments one after the other, at speeds that the caller says.
+pub(crate) struct Walk<A: Axes> {
+    has_tool: bool,
+    /// The knot where the next segment begins, and the speed there.
+    index: usize,
+    speed: f64,
+    before: Option<Before<A>>,
+    node_before: usize,
+}
+
+impl<A: Axes> Walk<A> {
+    /// From the knot of a number, passed at a speed.
+    pub(crate) const fn new(index: usize, speed: f64) -> Self {
+        Self {
+            has_tool: true,
+            index,
+            speed,
+            before: None,
+            node_before: index,
+        }
+    }
+
+    /// With the limits of the axes alone.
+    pub(crate) fn without_tool(self) -> Self {
+        Self {
+            has_tool: false,
+            ..self
+        }
+    }
+
+    /// The number of the knot where the next segment ends.
+    pub(crate) fn next_knot(&self, knots: &[Knot<A>]) -> Option<usize> {
+        let next = self.index.saturating_add(1);
+        let next = next.saturating_add(usize::from(is_jump(knots, next)));
+        (next < knots.len()).then_some(next)
+    }
+
+    /// The segment to the next knot, passed at a speed.
+    pub(crate) fn advance<'a>(
+        &mut self,
+        limits: &'a Reciprocals<A>,
+        knots: &[Knot<A>],
+        speed: f64,
+    ) -> Option<Moving<'a, A>> {
+        let next = self.next_knot(knots)?;
+        let index = next.saturating_sub(1);
+        // At a jump the speed is that of the knot before it.
+        let from_jump = is_jump(knots, index);
+        let node = index.saturating_sub(usize::from(from_jump));
+        let (from, to) = (knots.get(index)?, knots.get(next)?);
+        let segment = if self.has_tool {
+            Segment::new(limits, from, to, 1.0)
+        } else {
+            Segment::of_axes(limits, &from.point, &to.point, to.ds)
+        };
+        let moving = Moving {
+            limits,
+            segment,
+            ds: to.ds,
+            speeds: [self.speed, speed],
+            caps: [from.cap, to.cap],
+            eased: [
+                self.speed <= 0.0 || from_jump,
+                speed <= 0.0 || is_jump(knots, next.saturating_add(1)),
+            ],
+            before: self.before,
+            knots: [self.node_before, node, next],
+        };
+        self.before = (!moving.eased[1]).then(|| moving.end());
+        (self.node_before, self.index, self.speed) = (node, next, speed);
+        Some(moving)
+    }
+}
+
+/// Whether velocities jump at a knot.
+fn is_jump<A: Axes>(knots: &[Knot<A>], index: usize) -> bool {
+    index > 0 && knots.get(index).is_some_and(|knot| knot.ds <= 0.0)
+}
+
+impl<A: Axes> Moving<'_, A> {
+    /// The accelerations with which the segment ends.
+    fn end(&self) -> Before<A> {
+        let mut accelerations = A::filled(Acceleration::NONE);
+        let loads = A::each(self.segment.axes());
+        for (end, load) in A::each_mut(&mut accelerations).iter_mut().zip(loads) {
+            let [_, to] = load.accelerations;
+            *end = Acceleration::new(to, self.speeds);
+        }
+        Before {
+            accelerations,
+            ds: self.ds,
+            speeds: self.speeds,
+        }
+    }
+
+    /// Hands all limits that concern the segment, and the knot where it begins, to the barrier.
+    pub(crate) fn visit(&self, barrier: &mut impl Barrier) {
+        let [w0, w1] = self.speeds;
+        barrier.time(self.ds, self.speeds);
+        self.visit_speeds(barrier);
+        let tool = Acceleration::new([0.0, self.segment.tool()], self.speeds);
+        barrier.limit(&tool.utilisation());
+        let axes = A::each(self.segment.axes()).iter().zip(self.limits.axes());
+        for (axis, (load, limits)) in axes.enumerate() {
+            // What rounding may add: a part of the limit that is not there.
+            let sum = w0 + w1;
+            let rest = 1.0 - load.noise * sum * sum * 0.25;
+            let ends = load
+                .accelerations
+                .map(|terms| Acceleration::new(terms.map(|term| term / rest), self.speeds));
+            for end in &ends {
+                barrier.limit(&end.utilisation());
+            }
+            // The jerk as a part of its limit is this times that of the acceleration by the time.
+            let time_s = limits.jerk / limits.acceleration;
+            if time_s > 0.0 {
+                self.visit_jerk(axis, &ends, [time_s, 1.0 - rest], barrier);
+            }
+        }
+    }
+
+    fn visit_speeds(&self, barrier: &mut impl Barrier) {
+        let [w0, w1] = self.speeds;
+        let mut speed = |[e, f]: [f64; 2]| {
+            barrier.limit(&Utilisation {
+                value: e * w0 + f * w1,
+                by: [0.0, e, f],
+                degree: Degree::Speed,
+            });
+        };
+        let [from, to] = self.segment.ends();
+        let [from_cap, to_cap] = self.caps;
+        if w0 > 0.0 {
+            speed([from.max(1.0 / from_cap), 0.0]);
+        }
+        if w1 > 0.0 {
+            speed([0.0, to.max(1.0 / to_cap)]);
+        }
+        for load in A::each(self.segment.axes()) {
+            speed(load.middle);
+        }
+    }
+
+    /// The jerk inside, and the steps of the acceleration at the knots.
+    ///
+    /// ```text
+    /// inside (a₁ - a₀) / T     at a knot (a₀ - a₋) / ((T₋ + T) / 2)     T = 2Δs / (w₀ + w₁)
+    /// where accelerations begin or end at zero a / (T / 2)
+    /// ```
+    fn visit_jerk(
+        &self,
+        axis: usize,
+        [start, end]: &[Acceleration; 2],
+        [time_s, noise]: [f64; 2],
+        barrier: &mut impl Barrier,
+    ) {
+        let [w0, w1] = self.speeds;
+        let sum = w0 + w1;
+        // Both accelerations may be off by the noise: so much less of the limit is there.
+        let with_noise = |rate: f64| rate / (1.0 - 2.0 * noise * rate * sum).max(LEAST_LIMIT);
+        let mut over_time = |value: f64, [by0, by1]: [f64; 2], rate: f64| {
+            let rate = with_noise(rate);
+            barrier.limit(&Utilisation {
+                value: value * sum * rate,
+                by: [0.0, (by0 * sum + value) * rate, (by1 * sum + value) * rate],
+                degree: Degree::Jerk,
+            });
+        };
+        let rate = time_s * 0.5 / self.ds;
+        let by = [end.by[0] - start.by[0], end.by[1] - start.by[1]];
+        over_time(end.value - start.value, by, rate);
+        let [eased_start, eased_end] = self.eased;
+        if eased_start {
+            over_time(start.value, start.by, rate * 2.0);
+        }
+        if eased_end {
+            over_time(end.value, end.by, rate * 2.0);
+        }
+        let before = self.before.as_ref().filter(|_| !eased_start);
+        let Some(before) = before else { return };
+        let Some(earlier) = A::each(&before.accelerations).get(axis) else {
+            return;
+        };
+        let [wb, wa] = before.speeds;
+        let (sum_before, step) = (wb + wa, start.value - earlier.value);
+        // One over the time between the middles: W₋ W / (Δs₋ W + Δs W₋).
+        let mixed = before.ds * sum + self.ds * sum_before;
+        let rate = time_s * sum_before * sum / mixed;
+        let rate = rate / (1.0 - 4.0 * noise * rate).max(LEAST_LIMIT);
+        let by_before = rate * before.ds * sum / (mixed * sum_before);
+        let by_here = rate * self.ds * sum_before / (mixed * sum);
+        barrier.limit(&Utilisation {
+            value: step * rate,
+            by: [
+                step * by_before - earlier.by[0] * rate,
+                step * (by_before + by_here) + (start.by[0] - earlier.by[1]) * rate,
+                step * by_here + start.by[1] * rate,
+            ],
+            degree: Degree::Jerk,
+        });
+    }
+}

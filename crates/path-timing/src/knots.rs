@@ -1,0 +1,296 @@
+//! Knots: the points of a path at which its speed is chosen, and how they are spread.
+
+use crate::jerk::Equation;
+use crate::junction::Junction;
+use crate::leg::Leg;
+use crate::reciprocals::Reciprocals;
+use crate::{Axes, Path, PathPoint, PlanError, Row, Span, ToolLimits};
+
+/// Memory for one row: of a [`Table`](crate::Table) while it is planned and as long as it lives, and
+/// of the window of a [`LookAhead`](crate::LookAhead).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knot<A: Axes> {
+    /// Positions, and slopes on arrival.
+    pub(crate) point: PathPoint<A>,
+    /// Parameter of its leg on arrival.
+    pub(crate) s: f64,
+    /// Length of the segment before; 0 where only the slopes are others than at the knot before.
+    pub(crate) ds: f64,
+    /// Limits of the tool on the segment before.
+    pub(crate) tool: Option<ToolLimits>,
+    /// Whether its leg ends here.
+    pub(crate) ends_leg: bool,
+    /// The highest speed of the parameter, by a corner: 0 at a stop.
+    pub(crate) cap: f64,
+    /// Speed of the parameter: the highest from which the rest can be run, then the one planned.
+    pub(crate) speed: f64,
+    /// Speed at the next knot that goes with the highest here, as a ratio.
+    pub(crate) ratio: f64,
+    /// The highest speed at a feed below the highest.
+    pub(crate) wanted: f64,
+    /// The parameter at which it is to stand instead.
+    pub(crate) moved_s: f64,
+    /// With a limit of jerk: its row of the system that the speeds are found by.
+    pub(crate) equation: Equation,
+}
+
+impl<A: Axes> Default for Knot<A> {
+    fn default() -> Self {
+        Self {
+            point: PathPoint {
+                position: A::zeros(),
+                slope: A::zeros(),
+            },
+            s: 0.0,
+            ds: 0.0,
+            tool: None,
+            ends_leg: false,
+            cap: f64::INFINITY,
+            speed: 0.0,
+            ratio: 0.0,
+            wanted: 0.0,
+            moved_s: 0.0,
+            equation: Equation::default(),
+        }
+    }
+}
+
+impl<A: Axes> Knot<A> {
+    /// A knot at which the machine begins.
+    pub(crate) fn start(point: PathPoint<A>) -> Self {
+        Self {
+            point,
+            cap: 0.0,
+            ..Self::default()
+        }
+    }
+
+    /// The parameter at which the segment after it begins.
+    pub(crate) const fn next_start(&self) -> f64 {
+        if self.ends_leg { 0.0 } else { self.s }
+    }
+
+    /// The knot passed at a speed of the parameter.
+    pub(crate) fn row(&self, speed: f64) -> Row<A> {
+        Row {
+            time_s: 0.0,
+            duration_s: 0.0,
+            position: self.point.position,
+            velocity: self.point.slope.scaled(speed),
+            leg: 0,
+            s: self.s,
+        }
+    }
+
+    /// Joins the end of a leg to the next, which begins with the slopes `start`. The knot after it,
+    /// where velocities jump.
+    pub(crate) fn join(&mut self, junction: &Junction<A>, start: &PathPoint<A>) -> Option<Self> {
+        match junction {
+            Junction::Stop => self.cap = 0.0,
+            Junction::Smooth(slope) => self.point.slope = *slope,
+            Junction::Jump(speed) => {
+                self.cap = *speed;
+                return Some(Self {
+                    cap: *speed,
+                    ..Self::start(*start)
+                });
+            }
+        }
+        None
+    }
+}
+
+/// The segment between two knots that is passed at these speeds: it takes 2Δs/(w₀ + w₁).
+pub(crate) fn span<A: Axes>(
+    [from, to]: [&Knot<A>; 2],
+    [w0, w1]: [f64; 2],
+    duration_s: f64,
+) -> Span<A> {
+    Span {
+        s: [from.next_start(), to.s],
+        rows: [
+            from.row(w0),
+            Row {
+                duration_s,
+                time_s: duration_s,
+                ..to.row(w1)
+            },
+        ],
+    }
+}
+
+/// The segment between two knots in a second, at a ratio of both speeds: from rest at 0, evenly at 1,
+/// to rest at 2.
+pub(crate) fn span_in_a_second<A: Axes>(knots: [&Knot<A>; 2], start: f64) -> Span<A> {
+    let [_, to] = knots;
+    span(knots, [start * to.ds, (2.0 - start) * to.ds], 1.0)
+}
+
+/// The knots of a leg, one behind the other.
+#[derive(Debug, Clone)]
+pub(crate) struct Laying<P: Path> {
+    pub(crate) leg: Leg<P>,
+    index: u32,
+    pub(crate) last: Knot<P::Axes>,
+}
+
+impl<P: Path> Laying<P> {
+    /// From the first knot on, whose point is `start`.
+    pub(crate) fn new(leg: Leg<P>, start: PathPoint<P::Axes>) -> Self {
+        Self {
+            leg,
+            index: 0,
+            last: Knot::start(start),
+        }
+    }
+
+    /// The knot at a parameter behind the last one.
+    ///
+    /// Whatever the speeds, each position of a cubic of duration 2Δs/(w₀ + w₁) lies between those
+    /// with which it begins and ends at rest: what the path allows for both, it allows for all.
+    pub(crate) fn knot(&mut self, s: f64) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
+        self.index = self.index.saturating_add(1);
+        let knot = Knot {
+            point: self.leg.point(s)?,
+            s,
+            ds: s - self.last.s,
+            tool: self.leg.tool().copied(),
+            ends_leg: s >= self.leg.length(),
+            cap: f64::INFINITY,
+            ..Knot::default()
+        };
+        // Written so that NaN is refused too.
+        let is_behind = knot.ds > 0.0;
+        if !is_behind {
+            let (leg, knot) = (self.leg.number, self.index);
+            return Err(PlanError::Indistinct { leg, knot });
+        }
+        for start in [0.0, 2.0] {
+            let span = span_in_a_second([&self.last, &knot], start);
+            let refused = |reason| self.leg.refused(self.last.s, reason);
+            self.leg.path().check(&span).map_err(refused)?;
+        }
+        self.last = knot;
+        Ok(knot)
+    }
+}
+
+/// Whether the positions and slopes at both ends of a segment agree: the mean slope of each axis, in
+/// units of its speed limit, is that of the slopes at its ends but for a part of the steepest one. What
+/// happens to the path between two knots that do not cannot be known from them, and a cubic through
+/// them may take any time.
+pub(crate) fn is_resolved<A: Axes>(
+    limits: &Reciprocals<A>,
+    from: &Knot<A>,
+    to: &Knot<A>,
+    gap: f64,
+) -> bool {
+    let inverse = 1.0 / to.ds;
+    let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
+    let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
+    let axes = limits.axes().iter().zip(positions.zip(slopes));
+    let (mut apart, mut steepest) = (0.0, [0.0; 3]);
+    for (limit, ((q0, q1), (p0, p1))) in axes {
+        let mean = (q1 - q0) * inverse;
+        let rounding = (q0.abs() + q1.abs()) * inverse * ROUNDING;
+        let by = ((mean - (p0 + p1) * 0.5).abs() - rounding).max(0.0) * limit.speed;
+        apart += by * by;
+        for (square, slope) in steepest.iter_mut().zip([mean, *p0, *p1]) {
+            *square += (slope * limit.speed) * (slope * limit.speed);
+        }
+    }
+    let steepest = steepest.into_iter().fold(0.0, f64::max);
+    apart <= steepest * (gap * gap)
+}
+
+/// The part of the steepest slope by which slopes may disagree. Of 5000 random paths with 2 to 39
+/// segments those that keep it took at most 3 times the time of 400 segments, of the others one in
+/// eight more.
+pub(crate) const LARGEST_GAP: f64 = 0.2;
+
+/// The same for a path of two segments, of which one begins at rest and the other ends there.
+pub(crate) const LARGEST_GAP_AT_RESTS: f64 = 0.1;
+
+/// Relative rounding of positions, with those of paths that are sums and turns.
+const ROUNDING: f64 = 1e-11;
+
+/// Where each knot of a leg has to stand for all segments to take about the same time, written into
+/// the knots; their speeds are planned.
+///
+/// A part of each segment's share is the same for all, so that places of high speed, where a limit may
+/// be hidden between two knots, keep theirs.
+pub(crate) fn spread_by_time<A: Axes>(knots: &mut [Knot<A>]) {
+    let count = knots.len().saturating_sub(1);
+    let Ok(segments) = u32::try_from(count) else {
+        return;
+    };
+    let segments = f64::from(segments);
+    let total_s = knots.windows(2).map(pair_s).sum::<f64>();
+    let shares = |time_s: f64| TIMED * time_s / total_s * segments + (1.0 - TIMED);
+    let mut from = 0_usize;
+    // Shares of the segments before `from`.
+    let mut before = 0.0;
+    for index in 1..count {
+        let wanted = index_as_f64(index);
+        let mut s = None;
+        while let Some(pair) = knots.get(from..from.saturating_add(2)) {
+            let share = shares(pair_s(pair));
+            if before + share >= wanted {
+                s = Some(within(pair, (wanted - before) / share));
+                break;
+            }
+            (before, from) = (before + share, from.saturating_add(1));
+        }
+        if let (Some(s), Some(knot)) = (s, knots.get_mut(index)) {
+            knot.moved_s = s;
+        }
+    }
+}
+
+/// The part of a segment's share that its time decides.
+const TIMED: f64 = 0.5;
+
+fn index_as_f64(index: usize) -> f64 {
+    u32::try_from(index).map_or(f64::INFINITY, f64::from)
+}
+
+fn pair_s<A: Axes>(pair: &[Knot<A>]) -> f64 {
+    match pair {
+        [from, to] => crate::passes::segment_s(from, to),
+        _ => 0.0,
+    }
+}
+
+/// The parameter at a fraction of a segment's time.
+fn within<A: Axes>(pair: &[Knot<A>], fraction: f64) -> f64 {
+    let [from, to] = pair else { return 0.0 };
+    let rise = (to.speed - from.speed) * fraction * 0.5;
+    let mean = (from.speed + to.speed) * 0.5;
+    to.s - to.ds * (1.0 - fraction * (from.speed + rise) / mean)
+}
+
+/// Where a knot stands on a leg, as a fraction: dense at an end where the machine rests, for there the
+/// speed changes most from knot to knot, and with it the cubic's departure from the path.
+pub(crate) fn fraction(u: f64, rests: [bool; 2]) -> f64 {
+    let from_rest = |u: f64| u * u * (3.0 - u) * 0.5;
+    match rests {
+        [true, true] => u * u * (3.0 - 2.0 * u),
+        [true, false] => from_rest(u),
+        [false, true] => 1.0 - from_rest(1.0 - u),
+        [false, false] => u,
+    }
+}
+
+/// Every second knot of each leg, and all at which legs meet.
+pub(crate) fn halved<A: Axes>(knots: &[Knot<A>]) -> impl Iterator<Item = Knot<A>> + '_ {
+    let (mut ds, mut is_left_out) = (0.0, false);
+    knots.iter().filter_map(move |knot| {
+        ds += knot.ds;
+        is_left_out = knot.ds > 0.0 && !knot.ends_leg && !is_left_out;
+        if is_left_out {
+            return None;
+        }
+        let ds = core::mem::take(&mut ds);
+        Some(Knot { ds, ..*knot })
+    })
+}

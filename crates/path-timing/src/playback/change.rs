@@ -1,0 +1,365 @@
+//! Changes of the feed with limited jerk.
+
+use super::stop::{KAPPAS, State, Stop};
+use super::{At, Playback};
+use crate::Axes;
+use crate::jerk::{Most, Walk};
+use crate::passes::segment_s;
+
+/// A change of the feed over some segments, with ramps of its rate at both ends.
+///
+/// ```text
+/// f = f₀ + (f₁ - f₀) g(x)        x = t / T
+/// g' rises over 0..α, is constant, and falls over 1-β..1;  ∫ g' = 1
+/// ```
+///
+/// The integral of f is the table's own time. A stop ends, and a start begins, without a step of the
+/// acceleration.
+#[derive(Debug, Clone, Copy)]
+struct FeedChange {
+    from: f64,
+    to: f64,
+    ramps: [f64; 2],
+    /// T.
+    duration_s: f64,
+    /// Time of the table since it began.
+    table_s: f64,
+}
+
+/// Ramps as fractions of a change: short ones where the acceleration limits it, long ones where the
+/// jerk does, one end slower where the table leaves little of either.
+const RAMPS: [[f64; 2]; 10] = [
+    [0.08, 0.08],
+    [0.15, 0.15],
+    [0.25, 0.25],
+    [0.35, 0.35],
+    [0.5, 0.5],
+    [0.5, 0.15],
+    [0.15, 0.5],
+    [0.8, 0.2],
+    [0.2, 0.8],
+    [0.65, 0.35],
+];
+
+/// Halvings that find x to its last digit.
+const ROUNDS: u32 = 60;
+
+/// g and its integral from 0.
+fn shape([rise, fall]: [f64; 2], x: f64) -> [f64; 2] {
+    let rate = 1.0 / (1.0 - 0.5 * (rise + fall));
+    if x < rise {
+        let g = rate * x * x * 0.5 / rise;
+        return [g, g * x / 3.0];
+    }
+    let (g_rise, sum_rise) = (rate * rise * 0.5, rate * rise * rise / 6.0);
+    if x <= 1.0 - fall {
+        let on = x - rise;
+        return [
+            g_rise + rate * on,
+            sum_rise + (g_rise + rate * on * 0.5) * on,
+        ];
+    }
+    // From the end: 1 - g is a ramp as well, and the integral of g over 0..1 is known.
+    let rest = 1.0 - x;
+    let missing = rate * rest * rest * 0.5 / fall;
+    let on = 1.0 - fall - rise;
+    let middle = sum_rise + (g_rise + rate * on * 0.5) * on;
+    let whole = middle + fall - rate * fall * fall / 6.0;
+    [1.0 - missing, whole - (rest - missing * rest / 3.0)]
+}
+
+impl FeedChange {
+    /// The feed, and its integral from 0 by x.
+    fn values(&self, x: f64) -> [f64; 2] {
+        let [g, integral] = shape(self.ramps, x);
+        let change = self.to - self.from;
+        [self.from + change * g, self.from * x + change * integral]
+    }
+
+    /// The feed at the next knot, over a segment that takes `table_s` at a feed of 1.
+    fn step(&mut self, table_s: f64) -> f64 {
+        self.table_s += table_s;
+        let wanted = self.table_s / self.duration_s;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..ROUNDS {
+            let x = (low + high) * 0.5;
+            let [_, reached] = self.values(x);
+            if reached < wanted {
+                low = x;
+            } else {
+                high = x;
+            }
+        }
+        let [feed, _] = self.values(high);
+        feed
+    }
+}
+
+/// How the machine goes from one speed to another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Change {
+    kind: Kind,
+    /// The feed that it ends with.
+    pub(super) to: f64,
+    /// Segments to go.
+    left: usize,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    Feed(FeedChange),
+    Stop(Stop),
+}
+
+impl Change {
+    /// The speed at the next knot, over a segment that takes `table_s` to the speed `planned` at a feed
+    /// of 1.
+    fn step(&mut self, ds: f64, table_s: f64, planned: f64) -> f64 {
+        self.left = self.left.saturating_sub(1);
+        if self.left == 0 {
+            return self.to * planned;
+        }
+        match &mut self.kind {
+            Kind::Feed(change) => change.step(table_s) * planned,
+            Kind::Stop(stop) => stop.step(ds),
+        }
+    }
+}
+
+/// What became of a trial.
+enum Trial {
+    Holds(Change),
+    /// A limit is passed.
+    Fails,
+    /// The table comes to rest before; the number of segments up to there.
+    TooLong(usize),
+}
+
+/// Rows after which a stop is looked for, too.
+const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
+
+/// Halvings of a feed that nothing moves at.
+const HALVINGS: u32 = 64;
+
+impl<A: Axes> Playback<'_, A> {
+    /// The speed at the next knot, the feed there, and the change that goes on there; none where the
+    /// machine stays at rest.
+    pub(super) fn next_smooth(
+        &self,
+        at: At,
+        [max, feed]: [f64; 2],
+        change: Option<Change>,
+    ) -> Option<(f64, f64, Option<Change>)> {
+        let wanted = self.wanted.min(max);
+        let next = at.index.saturating_add(1);
+        let rests = at.speed <= 0.0;
+        let begins = rests && self.planned(at.index) <= 0.0;
+        // Where the table rests, too, every feed is as good.
+        let (feed, mut change) = if begins {
+            (wanted, None)
+        } else {
+            (feed, change)
+        };
+        let feed = if rests && !begins { 0.0 } else { feed };
+        let is_other = |feed: f64| (feed - wanted).abs() > 0.0;
+        if is_other(change.map_or(feed, |change| change.to)) {
+            let found = if feed <= 0.0 {
+                self.resume(at, wanted)
+            } else if wanted <= 0.0 && change.is_none() {
+                self.stop_soonest(at, feed)
+            } else {
+                self.change_to(at, feed, wanted)
+            };
+            change = found.or(change);
+        }
+        let Some(going) = &mut change else {
+            if feed <= 0.0 {
+                // Nothing but the next stop is ahead.
+                return (self.planned(next) <= 0.0).then_some((0.0, 0.0, None));
+            }
+            return Some((feed * self.planned(next), feed, None));
+        };
+        let planned = self.planned(next);
+        let ds = self.knots.get(next).map_or(0.0, |knot| knot.ds);
+        let speed = going.step(ds, self.segment_s(next), planned);
+        let feed = if going.left == 0 {
+            going.to
+        } else if planned > 0.0 {
+            speed / planned
+        } else {
+            feed
+        };
+        if going.left == 0 {
+            change = None;
+        }
+        Some((speed, feed, change))
+    }
+
+    /// Time of the table from the knot before.
+    fn segment_s(&self, index: usize) -> f64 {
+        let before = index.checked_sub(1);
+        let ends = (
+            before.and_then(|before| self.knots.get(before)),
+            self.knots.get(index),
+        );
+        match ends {
+            (Some(from), Some(to)) => segment_s(from, to) * self.stretch,
+            _ => 0.0,
+        }
+    }
+
+    /// The shortest change found to another feed that keeps all limits and can be followed by a
+    /// constant feed: over 1, 2, 3, 5, 8 .. segments, then fewer by halves.
+    fn change_to(&self, at: At, from: f64, to: f64) -> Option<Change> {
+        let (mut too_few, mut segments) = (0_usize, 1_usize);
+        let mut found = loop {
+            match self.trial(at, [from, to], segments) {
+                Trial::Holds(change) => break change,
+                Trial::Fails => {
+                    too_few = segments;
+                    segments = segments.saturating_add(segments.div_ceil(2));
+                }
+                Trial::TooLong(_) => return None,
+            }
+        };
+        while segments.saturating_sub(too_few) > 1 {
+            let middle = too_few.midpoint(segments);
+            if let Trial::Holds(change) = self.trial(at, [from, to], middle) {
+                (found, segments) = (change, middle);
+            } else {
+                too_few = middle;
+            }
+        }
+        Some(found)
+    }
+
+    /// The stop that begins here, unless one that begins a few rows later rests sooner: where the table
+    /// uses all of the jerk, a change has to wait.
+    fn stop_soonest(&self, at: At, feed: f64) -> Option<Change> {
+        let found = self.change_to(at, feed, 0.0);
+        let end = found.map_or(usize::MAX, |change| at.index.saturating_add(change.left));
+        for rows in LATER {
+            let index = at.index.saturating_add(rows);
+            let speeds = [index, index.saturating_sub(1)].map(|index| feed * self.planned(index));
+            let [speed, before] = speeds;
+            if index >= end || speed <= 0.0 {
+                break;
+            }
+            let later = At {
+                index,
+                speed,
+                before,
+            };
+            let later = self.change_to(later, feed, 0.0);
+            if later.is_some_and(|later| index.saturating_add(later.left) < end) {
+                return None;
+            }
+        }
+        found
+    }
+
+    /// The same from rest, where there must be one: where the path is too short for the feed, the
+    /// one that ends with it, of the highest feed of halves of it.
+    fn resume(&self, at: At, to: f64) -> Option<Change> {
+        let mut feed = to;
+        for _ in 0..HALVINGS {
+            if let Some(change) = self.change_to(at, 0.0, feed) {
+                return Some(change);
+            }
+            if let Trial::TooLong(available) = self.trial(at, [0.0, feed], usize::MAX)
+                && let Trial::Holds(change) = self.trial(at, [0.0, feed], available)
+            {
+                return Some(change);
+            }
+            feed *= 0.5;
+        }
+        None
+    }
+
+    fn trial(&self, at: At, [from, to]: [f64; 2], segments: usize) -> Trial {
+        let (mut table_s, mut length) = (0.0, 0.0);
+        let (mut index, mut count) = (at.index, 0_usize);
+        while count < segments {
+            let next = index.saturating_add(1);
+            let rests = count > 0 && self.planned(index) <= 0.0;
+            let Some(knot) = self.knots.get(next).filter(|_| !rests) else {
+                return Trial::TooLong(count);
+            };
+            table_s += self.segment_s(next);
+            length += knot.ds;
+            index = next;
+            count = count.saturating_add(usize::from(knot.ds > 0.0));
+        }
+        let start = self.state(at);
+        let stops = KAPPAS.iter().filter(|_| to <= 0.0);
+        let stops = stops.filter_map(|kappa| Stop::new(start, length, *kappa).map(Kind::Stop));
+        let changes = RAMPS.iter().map(|ramps| {
+            let mut change = FeedChange {
+                from,
+                to,
+                ramps: *ramps,
+                duration_s: 1.0,
+                table_s: 0.0,
+            };
+            let [_, mean] = change.values(1.0);
+            change.duration_s = table_s / mean;
+            Kind::Feed(change)
+        });
+        let changes = stops.chain(changes).map(|kind| Change {
+            kind,
+            to,
+            left: segments,
+        });
+        let found = changes.into_iter().find(|change| self.holds(at, *change));
+        found.map_or(Trial::Fails, Trial::Holds)
+    }
+
+    /// Speed and acceleration along the path.
+    fn state(&self, at: At) -> State {
+        let ds = self.knots.get(at.index).map_or(0.0, |knot| knot.ds);
+        let squares = at.speed * at.speed - at.before * at.before;
+        State {
+            speed: at.speed,
+            acceleration: if ds > 0.0 { squares / (2.0 * ds) } else { 0.0 },
+        }
+    }
+
+    /// Whether the cubics of a change, and the first after it, keep all limits.
+    fn holds(&self, at: At, mut change: Change) -> bool {
+        let is_jump = self.knots.get(at.index).is_some_and(|knot| knot.ds <= 0.0);
+        let mut walk = if at.speed > 0.0 && !is_jump {
+            // From the segment before, whose acceleration it goes on from.
+            let mut walk = Walk::new(at.index.saturating_sub(1), at.before).without_tool();
+            walk.advance(&self.limits, self.knots, at.speed);
+            walk
+        } else {
+            Walk::new(at.index, at.speed).without_tool()
+        };
+        let mut most = Most::default();
+        loop {
+            let is_after = change.left == 0;
+            let Some(next) = walk.next_knot(self.knots) else {
+                return true;
+            };
+            let planned = self.planned(next);
+            let ds = self.knots.get(next).map_or(0.0, |knot| knot.ds);
+            let speed = if is_after {
+                change.to * planned
+            } else {
+                change.step(ds, self.segment_s(next), planned)
+            };
+            let Some(segment) = walk.advance(&self.limits, self.knots, speed) else {
+                return true;
+            };
+            segment.visit(&mut most);
+            // Written so that NaN does not hold.
+            let holds = most.stretch <= 1.0;
+            if !holds {
+                return false;
+            }
+            if is_after || speed <= 0.0 {
+                return true;
+            }
+        }
+    }
+}

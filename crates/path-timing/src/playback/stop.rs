@@ -1,0 +1,171 @@
+//! A stop with limited jerk at a given knot.
+
+use crate::number::sqrt;
+
+/// Three phases of constant jerk from a speed and an acceleration along the path to rest: the
+/// acceleration falls to -A, stays, and goes back to zero.
+///
+/// ```text
+/// A = κ √(J v₀ + a₀²/2)        κ = 1: it does not stay
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stop {
+    /// Duration and jerk.
+    phases: [(f64, f64); 3],
+    start: State,
+    /// The length from the start to the knot reached.
+    reached: f64,
+    /// The length to the knot where it rests.
+    length: f64,
+}
+
+/// Speed and acceleration of the parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct State {
+    pub(super) speed: f64,
+    pub(super) acceleration: f64,
+}
+
+impl State {
+    /// The state after a time, and the length passed.
+    fn after(self, time: f64, jerk: f64) -> (Self, f64) {
+        let gain = self.acceleration + jerk * time * 0.5;
+        let mean = self.speed + (self.acceleration + jerk * time / 3.0) * time * 0.5;
+        let next = Self {
+            speed: self.speed + gain * time,
+            acceleration: self.acceleration + jerk * time,
+        };
+        (next, mean * time)
+    }
+}
+
+/// Halvings in a search for a jerk or a time.
+const ROUNDS: u32 = 60;
+
+/// By how much the jerk is changed to find two that a stop lies between.
+const FACTOR: f64 = 4.0;
+
+/// Shapes to be tried, the quickest first.
+pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
+
+impl Stop {
+    /// The stop that takes a length; none where no jerk makes one.
+    pub(super) fn new(start: State, length: f64, kappa: f64) -> Option<Self> {
+        let with = |jerk: f64| {
+            let State {
+                speed,
+                acceleration: before,
+            } = start;
+            let hardest = kappa * sqrt(jerk * speed + before * before * 0.5);
+            let fall = before + hardest;
+            let stay = (speed + before * before / (2.0 * jerk)) / hardest - hardest / jerk;
+            Self {
+                phases: [
+                    (fall.abs() / jerk, -jerk.copysign(fall)),
+                    (stay.max(0.0), 0.0),
+                    (hardest / jerk, jerk),
+                ],
+                start,
+                reached: 0.0,
+                length,
+            }
+        };
+        // It would take this length if the speed fell evenly, and would do so in this time.
+        let time = 2.0 * length / start.speed;
+        let mut high = start.speed / (time * time);
+        for _ in 0..ROUNDS {
+            if with(high).end() <= length {
+                break;
+            }
+            high *= FACTOR;
+        }
+        let mut low = high;
+        for _ in 0..ROUNDS {
+            if with(low).end() >= length {
+                break;
+            }
+            low /= FACTOR;
+        }
+        for _ in 0..ROUNDS {
+            let middle = sqrt(low * high);
+            if with(middle).end() > length {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let stop = with(high);
+        let is_found = (stop.end() - length).abs() <= length * CLOSE;
+        is_found.then_some(stop)
+    }
+
+    /// The length that it takes.
+    fn end(&self) -> f64 {
+        let (_, length) = self
+            .phases
+            .iter()
+            .fold((self.start, 0.0), |(state, sum), phase| {
+                let (next, length) = state.after(phase.0, phase.1);
+                (next, sum + length)
+            });
+        length
+    }
+
+    /// The speed at the next knot, a length further.
+    pub(super) fn step(&mut self, ds: f64) -> f64 {
+        self.reached += ds;
+        if self.reached >= self.length * (1.0 - CLOSE) {
+            return 0.0;
+        }
+        let (mut state, mut left) = (self.start, self.reached);
+        for (time, jerk) in self.phases {
+            let (next, length) = state.after(time, jerk);
+            if length >= left {
+                let (mut low, mut high) = (0.0, time);
+                for _ in 0..ROUNDS {
+                    let middle = (low + high) * 0.5;
+                    if state.after(middle, jerk).1 < left {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                return state.after(high, jerk).0.speed.max(0.0);
+            }
+            (state, left) = (next, left - length);
+        }
+        0.0
+    }
+}
+
+/// Relative gap at which a stop takes the length wanted.
+const CLOSE: f64 = 1e-9;
+
+#[cfg(test)]
+mod tests {
+    use super::{KAPPAS, State, Stop};
+
+    /// From 2 at an acceleration of 1 over a length of 3, in 300 steps: it comes to rest at its end, its
+    /// speed goes on smoothly from the start.
+    #[test]
+    fn a_stop_ends_at_rest_where_it_is_to() {
+        let start = State {
+            speed: 2.0,
+            acceleration: 1.0,
+        };
+        for kappa in KAPPAS {
+            let mut stop = Stop::new(start, 3.0, kappa).unwrap();
+            let (mut before, mut steepest) = (2.0_f64, 0.0_f64);
+            for number in 1..=300 {
+                let speed = stop.step(0.01);
+                let acceleration = (speed * speed - before * before) / 0.02;
+                if number == 1 {
+                    assert!((acceleration - 1.0).abs() < 0.1, "{acceleration}");
+                }
+                steepest = steepest.min(acceleration);
+                before = speed;
+            }
+            assert!(before.abs() < f64::EPSILON && steepest < -0.5);
+        }
+    }
+}

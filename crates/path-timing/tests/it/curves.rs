@@ -1,0 +1,396 @@
+//! Curves: arc length, derivatives, blends, and how far cubics depart from them.
+
+use core::f64::consts::PI;
+
+use path_timing::{
+    AxisLimits, Curve, CurveError, Knot, PlanError, Rounded, Row, Span, Table, ToolLimits,
+};
+
+use crate::support::polyline::within;
+use proptest::prelude::*;
+
+/// Of sums of some products of coordinates up to 1000.
+const ROUNDING: f64 = 1e-11;
+
+/// Step of finite differences, in the unit of length, and what they are off by with curvatures
+/// up to 1.
+const STEP: f64 = 1e-4;
+const DIFFERENCES: f64 = 1e-6;
+
+fn sub<const D: usize>(a: [f64; D], b: [f64; D]) -> [f64; D] {
+    core::array::from_fn(|i| a[i] - b[i])
+}
+
+fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
+    core::array::from_fn::<_, D, _>(|i| a[i] * b[i])
+        .iter()
+        .sum()
+}
+
+fn norm<const D: usize>(a: [f64; D]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// A point, to be compared to the last bit.
+fn bits<const D: usize>(a: [f64; D]) -> [u64; D] {
+    a.map(f64::to_bits)
+}
+
+fn curves() -> Vec<Curve<3>> {
+    vec![
+        Curve::line([1.0, 2.0, 3.0], [-4.0, 8.0, 10.0]).unwrap(),
+        Curve::arc([5.0, 0.0, 1.0], [2.0, 4.0, 1.0], [0.3, 1.0, 0.5], 4.0).unwrap(),
+        Curve::bezier([
+            [0.0, 0.0, 0.0],
+            [30.0, 5.0, -9.0],
+            [-10.0, 40.0, 3.0],
+            [20.0, 42.0, 8.0],
+        ])
+        .unwrap(),
+    ]
+}
+
+/// |dP/ds| = 1 within what the curve says, and the derivatives are those of the points.
+#[test]
+fn derivatives_are_those_of_the_points() {
+    for curve in curves() {
+        for number in 1..200 {
+            let s = curve.length() * f64::from(number) / 200.0;
+            let [before, here, after] = [s - STEP, s, s + STEP].map(|s| curve.at(s));
+            let tangent = sub(after.point, before.point).map(|d| d / (2.0 * STEP));
+            assert!(
+                norm(sub(tangent, here.tangent)) < DIFFERENCES,
+                "{curve:?} {s}"
+            );
+            let curvature = sub(after.tangent, before.tangent).map(|d| d / (2.0 * STEP));
+            assert!(
+                norm(sub(curvature, here.curvature)) < DIFFERENCES,
+                "{curve:?} {s}"
+            );
+            let off = (norm(here.tangent) - 1.0).abs();
+            assert!(off <= curve.speed_error() + ROUNDING, "{off}");
+        }
+        assert!(curve.speed_error() < 1e-5, "{}", curve.speed_error());
+        assert_eq!(bits(curve.at(0.0).point), bits(curve.start()));
+        assert_eq!(bits(curve.at(curve.length()).point), bits(curve.end()));
+    }
+}
+
+#[test]
+fn lengths_are_those_of_the_closed_forms() {
+    let line = Curve::line([0.0, 0.0], [3.0, 4.0]).unwrap();
+    assert!((line.length() - 5.0).abs() < ROUNDING);
+    let arc = Curve::arc([10.0, 0.0], [0.0, 0.0], [0.0, -1.0], PI / 2.0).unwrap();
+    assert!((arc.length() - 5.0 * PI).abs() < ROUNDING);
+    assert!(norm(sub(arc.end(), [0.0, -10.0])) < ROUNDING);
+    assert!(
+        norm(sub(
+            arc.at(5.0 * PI / 2.0).point,
+            [50_f64.sqrt(), -50_f64.sqrt()]
+        )) < ROUNDING
+    );
+    // A parabola: (t, t²) has the length √5/2 + asinh(2)/4.
+    let parabola = Curve::bezier([
+        [0.0, 0.0],
+        [1.0 / 3.0, 0.0],
+        [2.0 / 3.0, 1.0 / 3.0],
+        [1.0, 1.0],
+    ]);
+    let length = 5_f64.sqrt() / 2.0 + 2_f64.asinh() / 4.0;
+    assert!((parabola.unwrap().length() - length).abs() < ROUNDING);
+}
+
+#[test]
+fn what_is_no_curve_is_refused() {
+    let nan = f64::NAN;
+    assert_eq!(
+        Curve::line([1.0, 2.0], [1.0, 2.0]),
+        Err(CurveError::NoLength)
+    );
+    assert_eq!(
+        Curve::line([1.0, 2.0], [nan, 2.0]),
+        Err(CurveError::NotFinite)
+    );
+    assert_eq!(
+        Curve::line([1e200, 2.0], [-1e200, 2.0]),
+        Err(CurveError::NotFinite)
+    );
+    let arc = |centre, direction, angle| Curve::arc([5.0, 0.0], centre, direction, angle);
+    assert_eq!(arc([5.0, 0.0], [0.0, 1.0], 1.0), Err(CurveError::NoLength));
+    assert_eq!(arc([0.0, 0.0], [0.0, 1.0], -1.0), Err(CurveError::NoLength));
+    assert_eq!(arc([0.0, 0.0], [0.0, 1.0], nan), Err(CurveError::NotFinite));
+    assert_eq!(
+        arc([0.0, 0.0], [3.0, 0.0], 1.0),
+        Err(CurveError::NoDirection)
+    );
+    assert_eq!(
+        arc([0.0, 0.0], [0.0, 0.0], 1.0),
+        Err(CurveError::NoDirection)
+    );
+    assert!(matches!(
+        arc([0.0, 0.0], [0.0, 1.0], 101.0),
+        Err(CurveError::Angle { .. })
+    ));
+    assert_eq!(Curve::bezier([[1.0, 2.0]; 4]), Err(CurveError::NoLength));
+    assert_eq!(Curve::bezier([[nan, 2.0]; 4]), Err(CurveError::NotFinite));
+    // There and back: the derivative vanishes at 1/2.
+    let back = Curve::bezier([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]);
+    let Err(CurveError::Cusp { parameter }) = back else {
+        panic!("{back:?}")
+    };
+    assert!((parameter - 0.5).abs() < 0.05);
+    for tolerance in [0.0, -1.0, nan, f64::INFINITY] {
+        assert!(matches!(
+            Rounded::new([[0.0, 0.0]], tolerance),
+            Err(CurveError::Tolerance { .. })
+        ));
+    }
+}
+
+fn rounded<const D: usize>(points: &[[f64; D]], tolerance: f64) -> Vec<Curve<D>> {
+    let rounded = Rounded::new(points.iter().copied(), tolerance).unwrap();
+    rounded.collect::<Result<_, _>>().unwrap()
+}
+
+/// The distance of a point from a line between two others.
+fn distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let way = sub(to, from);
+    let share = (dot(sub(point, from), way) / dot(way, way)).clamp(0.0, 1.0);
+    norm(sub(
+        point,
+        core::array::from_fn(|i| from[i] + way[i] * share),
+    ))
+}
+
+/// Corners of all angles: within the tolerance both ways, joined to the last bit, without a step of
+/// direction or curvature.
+#[test]
+fn corners_are_rounded_within_the_tolerance() {
+    const TOLERANCE: f64 = 0.1;
+    for turn in 1..=170 {
+        let (sin, cos) = f64::from(turn).to_radians().sin_cos();
+        let points = [[0.0, 0.0], [20.0, 0.0], [20.0 + 20.0 * cos, 20.0 * sin]];
+        let curves = rounded(&points, TOLERANCE);
+        let [_, blend, _] = curves[..] else {
+            panic!("{turn}°: {curves:?}")
+        };
+        for pair in curves.windows(2) {
+            assert_eq!(bits(pair[0].end()), bits(pair[1].start()));
+            let (before, after) = (pair[0].at(pair[0].length()), pair[1].at(0.0));
+            assert!(
+                norm(sub(before.tangent, after.tangent)) < ROUNDING,
+                "{turn}°"
+            );
+            assert!(norm(before.curvature) < 1e-9 && norm(after.curvature) < 1e-9);
+        }
+        let places = (0..=1000).map(|n| blend.at(blend.length() * f64::from(n) / 1000.0).point);
+        let off = |at: [f64; 2]| {
+            distance(at, points[0], points[1]).min(distance(at, points[1], points[2]))
+        };
+        let worst = places.clone().map(off).fold(0.0, f64::max);
+        let corner = places
+            .map(|at| norm(sub(at, points[1])))
+            .fold(9.9, f64::min);
+        assert!(worst <= TOLERANCE && corner <= TOLERANCE, "{turn}°");
+        // All of the tolerance is used where the lines are long enough.
+        assert!(corner > TOLERANCE * 0.99 || turn < 10, "{turn}°: {corner}");
+    }
+}
+
+#[test]
+fn blends_share_short_lines_and_leave_out_what_is_straight_or_sharp() {
+    // Lines so short that the blends meet.
+    let zigzag: Vec<_> = (0..9).map(|n| [f64::from(n), f64::from(n % 2)]).collect();
+    let curves = rounded(&zigzag, 10.0);
+    for pair in curves.windows(2) {
+        assert_eq!(bits(pair[0].end()), bits(pair[1].start()));
+        let (before, after) = (pair[0].at(pair[0].length()), pair[1].at(0.0));
+        assert!(norm(sub(before.tangent, after.tangent)) < ROUNDING);
+        // The ends to the last bit are those of the curve between them, to rounding.
+        let inside = pair[1].at(pair[1].length() * 1e-15).point;
+        assert!(norm(sub(inside, pair[1].start())) < ROUNDING);
+    }
+    assert_eq!(bits(curves.last().unwrap().end()), bits(zigzag[8]));
+    assert!(curves.len() <= 10, "{}", curves.len());
+    // Straight on, repeated points, and straight back.
+    let points = [[0.0], [1.0], [1.0], [3.0], [2.0]];
+    let curves = rounded(&points, 0.1);
+    let ends: Vec<_> = curves.iter().map(Curve::end).collect();
+    assert_eq!(ends, [[1.0], [3.0], [2.0]]);
+    assert!(rounded(&[[1.0, 1.0]], 0.1).is_empty());
+    assert!(rounded::<2>(&[], 0.1).is_empty());
+    let broken = Rounded::new([[0.0, 0.0], [1.0, f64::NAN], [2.0, 0.0]], 0.1).unwrap();
+    let found: Vec<_> = broken.collect();
+    assert_eq!(found, [Err(CurveError::NotFinite)]);
+}
+
+/// How far the cubics of a segment are from the curve at most.
+fn measured<const D: usize>(curve: &Curve<D>, span: &Span<[f64; D]>, places: u32) -> f64 {
+    let [from, to] = &span.rows;
+    let cubics: Vec<_> = path_timing::Cubic::between(from, to).collect();
+    let places = (0..=places).map(|number| {
+        let share = f64::from(number) / f64::from(places);
+        let place: [f64; D] = core::array::from_fn(|axis| cubics[axis].position(share));
+        let mut s = span.s[0] + (span.s[1] - span.s[0]) * share;
+        for _ in 0..4 {
+            let at = curve.at(s);
+            s = (s + dot(sub(place, at.point), at.tangent)).clamp(0.0, curve.length());
+        }
+        norm(sub(curve.at(s).point, place))
+    });
+    places.fold(0.0, f64::max)
+}
+
+/// A segment of a curve passed with any speeds at its ends.
+fn span<const D: usize>(curve: &Curve<D>, s: [f64; 2], speeds: [f64; 2]) -> Span<[f64; D]> {
+    let duration_s = 2.0 * (s[1] - s[0]) / (speeds[0] + speeds[1]);
+    let row = |end: usize| {
+        let at = curve.at(s[end]);
+        Row {
+            time_s: 0.0,
+            duration_s,
+            position: at.point,
+            velocity: at.tangent.map(|t| t * speeds[end]),
+            leg: 0,
+            s: 0.0,
+        }
+    };
+    Span {
+        s,
+        rows: [row(0), row(1)],
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The bound holds for any speeds at the ends of any piece of a curve.
+    #[test]
+    fn no_cubic_departs_by_more_than_its_bound(
+        points in prop::array::uniform4(prop::array::uniform2(-100.0..100.0_f64)),
+        from in 0.0..0.95_f64,
+        share in 0.001..0.2_f64,
+        ratio in 0.0..1.0_f64,
+        is_rising: bool,
+        radius in 1.0..100.0_f64,
+    ) {
+        let speeds = if is_rising { [ratio, 1.0] } else { [1.0, ratio] };
+        let arc = Curve::arc([radius, 0.0], [0.0, 0.0], [0.0, 1.0], 5.0).unwrap();
+        let bezier = Curve::bezier(points);
+        for curve in [Ok(arc), bezier].into_iter().flatten() {
+            let to = (from + share).min(1.0);
+            let span = span(&curve, [from, to].map(|share| share * curve.length()), speeds);
+            let (bound, measured) = (curve.departure(&span), measured(&curve, &span, 1000));
+            prop_assert!(measured <= bound + ROUNDING, "{measured} {bound}");
+        }
+    }
+}
+
+/// On tables within a tolerance the bound is at most three times what is measured.
+#[test]
+fn bounds_of_tables_are_near_to_what_is_measured() {
+    let axis = AxisLimits {
+        speed: 100.0,
+        acceleration: 1500.0,
+        jerk: None,
+    };
+    let mut knots = [Knot::default(); 2000];
+    let mut ratios = Vec::new();
+    for number in 0..40_u32 {
+        let random = |k: u32| (f64::from(number * 8 + k) * 0.618_034).fract() * 100.0;
+        let bezier = Curve::bezier(core::array::from_fn::<_, 4, _>(|i| {
+            let k = 2 * u32::try_from(i).unwrap();
+            [random(k), random(k + 1)]
+        }));
+        let arc = Curve::arc(
+            [5.0 + random(1), 0.0],
+            [0.0, 0.0],
+            [0.0, 1.0],
+            0.1 + random(2) * 0.05,
+        );
+        for curve in [bezier, arc].into_iter().flatten() {
+            let curve = curve.with_tool(ToolLimits {
+                feed: 80.0,
+                acceleration: None,
+            });
+            for tolerance in [0.1, 0.001] {
+                let table = Table::plan_within(
+                    [curve],
+                    [axis; 2],
+                    within(4, tolerance),
+                    Curve::departure,
+                    &mut knots,
+                )
+                .unwrap();
+                let of_all = |departure: &dyn Fn(&Span<[f64; 2]>) -> f64| {
+                    table
+                        .spans()
+                        .map(|span| departure(&span))
+                        .fold(0.0, f64::max)
+                };
+                let bound = of_all(&|span| curve.departure(span));
+                assert!(bound <= tolerance);
+                let worst = of_all(&|span| measured(&curve, span, 100));
+                assert!(worst <= bound);
+                ratios.push(bound / worst);
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    let of = |share: usize| ratios[(ratios.len() - 1) * share / 100];
+    println!("bound over measured: {} {} {}", of(50), of(90), of(100));
+    assert!(of(100) <= 3.0, "{ratios:?}");
+}
+
+/// A Cartesian machine is exact on lines, and a departure that nothing keeps is refused.
+#[test]
+fn lines_have_no_departure() {
+    let line = Curve::line([0.0, 0.0, 0.0], [30.0, 40.0, 0.0]).unwrap();
+    let span = span(&line, [0.0, 50.0], [0.0, 10.0]);
+    assert!(line.departure(&span) < ROUNDING);
+    let axis = AxisLimits {
+        speed: 100.0,
+        acceleration: 1500.0,
+        jerk: None,
+    };
+    let mut knots = [Knot::default(); 10];
+    let arc = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 3.0).unwrap();
+    let table = Table::plan_within(
+        [arc],
+        [axis; 2],
+        within(2, 1e-9),
+        Curve::departure,
+        &mut knots,
+    );
+    assert!(matches!(table, Err(PlanError::Memory { .. })));
+}
+
+/// The spans of a table of several curves are those of each in turn.
+#[test]
+fn spans_of_several_curves_follow_each_other() {
+    let axis = AxisLimits {
+        speed: 100.0,
+        acceleration: 1500.0,
+        jerk: None,
+    };
+    let curves = rounded(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [60.0, 25.0]], 0.5);
+    let mut knots = [Knot::default(); 500];
+    let table = Table::plan_within(
+        curves.iter(),
+        [axis; 2],
+        within(4, 1e-3),
+        |curve: &&Curve<2>, span: &_| curve.departure(span),
+        &mut knots,
+    );
+    let table = table.unwrap();
+    let (mut spans, mut before) = (0, (0, 0.0));
+    for span in table.spans() {
+        let leg = span.rows[1].leg;
+        let start: f64 = if leg == before.0 { before.1 } else { 0.0 };
+        assert_eq!(span.s[0].to_bits(), start.to_bits());
+        assert!(span.s[0] < span.s[1] && span.s[1] <= curves[leg].length());
+        assert!(curves[leg].departure(&span) <= 1e-3);
+        (spans, before) = (spans + 1, (leg, span.s[1]));
+    }
+    assert_eq!((spans + 1, before.0), (table.len(), curves.len() - 1));
+}

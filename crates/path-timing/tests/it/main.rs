@@ -1,0 +1,17 @@
+//! All tests of the crate: one program, which is linked once.
+#![cfg(test)]
+
+extern crate alloc;
+
+mod corners;
+mod curves;
+mod departure;
+mod jerk;
+mod jerk_corners;
+mod look_ahead;
+mod optimum;
+mod run;
+mod support;
+mod table;
+mod toppra;
+mod verify;

@@ -1,0 +1,6 @@
+//! What several modules use.
+
+pub(crate) mod jerk;
+pub(crate) mod limits;
+pub(crate) mod machine;
+pub(crate) mod polyline;

@@ -1,0 +1,44 @@
+//! Lines of a polar arm through points, with corners.
+
+use core::convert::Infallible;
+use core::fmt::Debug;
+
+use path_timing::{Accuracy, Corner, Path, PathFn, ToolLimits};
+
+use crate::support::machine::Line;
+
+/// Lines through all points, with the same corner between them, a stop at the end, and a feed.
+pub(crate) fn lines<'a>(
+    points: &'a [[f64; 2]],
+    corner: Corner<[f64; 2]>,
+    feed: Option<f64>,
+) -> Vec<impl Path<Axes = [f64; 2], Error = Infallible> + Clone + Debug + use<'a>> {
+    let line = |ends: &[[f64; 2]]| {
+        let line = Line {
+            from: ends[0],
+            to: ends[1],
+        };
+        let path = PathFn::new(line.length(), move |s| line.point(s)).with_corner(corner);
+        match feed {
+            Some(feed) => path.with_tool(ToolLimits {
+                feed,
+                acceleration: None,
+            }),
+            None => path,
+        }
+    };
+    let mut lines: Vec<_> = points.windows(2).map(line).collect();
+    if let Some(last) = lines.pop() {
+        lines.push(last.with_corner(Corner::Stop));
+    }
+    lines
+}
+
+/// A departure, and any time.
+pub(crate) const fn within(min_segments: u32, max_departure: f64) -> Accuracy {
+    Accuracy {
+        min_segments,
+        max_departure,
+        max_time_ratio: f64::INFINITY,
+    }
+}

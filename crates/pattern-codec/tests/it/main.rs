@@ -1,0 +1,11 @@
+//! All tests of the crate: one program, which is linked once.
+#![cfg(test)]
+
+mod dance;
+mod extremes;
+mod headers;
+mod motions;
+mod properties;
+mod records;
+#[cfg(feature = "serde")]
+mod serde;

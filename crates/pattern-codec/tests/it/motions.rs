@@ -1,0 +1,155 @@
+//! Builder, splitting, homing and statistics on the public interface.
+
+use pattern_codec::engraving::{Axis, Builder, Format, JointPulses, PerAxis, Record, Statistics};
+
+const LIFT_FIRST: [Axis; 4] = [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2];
+
+fn pulses(records: impl Iterator<Item = Record>, axis: Axis) -> Vec<i32> {
+    records.map(|record| *record.pulses().get(axis)).collect()
+}
+
+#[test]
+fn a_long_fast_motion_is_full_records_and_the_rest() {
+    let mut builder = Builder::new();
+    let records = builder.fast(Axis::Theta2, -150_000).unwrap();
+    assert_eq!(records.size_hint(), (3, Some(3)));
+    assert_eq!(pulses(records, Axis::Theta2), [-65_535, -65_535, -18_930]);
+    assert_eq!(builder.position().theta2, -150_000);
+    // From the least position to zero, the longest way home.
+    let mut builder = Builder::at(PerAxis {
+        theta2: i32::MIN,
+        ..PerAxis::default()
+    });
+    let home = builder.home(LIFT_FIRST).unwrap();
+    assert_eq!(home.size_hint().0, 32_769);
+    let sum: i64 = pulses(home, Axis::Theta2).into_iter().map(i64::from).sum();
+    assert_eq!(sum, 1 << 31);
+}
+
+#[test]
+fn a_slow_split_keeps_the_ratio_in_every_part() {
+    let mut builder = Builder::new();
+    let records = builder
+        .slow(JointPulses {
+            theta1: 100,
+            theta2: -50,
+            theta3: 1,
+        })
+        .unwrap();
+    assert_eq!(records.size_hint(), (4, Some(4)));
+    assert_eq!(pulses(records.clone(), Axis::Theta1), [25, 25, 25, 25]);
+    assert_eq!(pulses(records.clone(), Axis::Theta2), [-13, -12, -13, -12]);
+    assert_eq!(pulses(records, Axis::Theta3), [0, 1, 0, 0]);
+}
+
+#[test]
+fn motions_without_pulses_have_no_records() {
+    let mut builder = Builder::new();
+    assert_eq!(builder.fast(Axis::Theta1, 0).unwrap().count(), 0);
+    assert_eq!(builder.slow(JointPulses::default()).unwrap().count(), 0);
+    assert_eq!(builder.home(LIFT_FIRST).unwrap().count(), 0);
+}
+
+#[test]
+fn homing_undoes_every_pulse_in_the_given_order() {
+    let mut builder = Builder::new();
+    let mut all: Vec<_> = builder.fast(Axis::Vertical, -300).unwrap().collect();
+    let cut = JointPulses {
+        theta1: 45,
+        theta2: -7,
+        theta3: 12,
+    };
+    all.extend(builder.slow(cut).unwrap());
+    let home: Vec<_> = builder.home(LIFT_FIRST).unwrap().collect();
+    let moved = home.iter().map(|record| {
+        let Record::Fast(fast) = record else {
+            panic!("homing is rapid")
+        };
+        (fast.axis(), fast.pulses())
+    });
+    assert!(moved.eq([
+        (Axis::Vertical, 300),
+        (Axis::Theta3, -12),
+        (Axis::Theta1, -45),
+        (Axis::Theta2, 7),
+    ]));
+    assert_eq!(builder.position(), PerAxis::default());
+
+    let mut arm = Builder::new();
+    for record in all.into_iter().chain(home) {
+        arm.track(record).unwrap();
+    }
+    assert_eq!(arm.position(), PerAxis::default());
+}
+
+#[test]
+fn a_homing_order_names_every_axis_once() {
+    let mut builder = Builder::at(PerAxis {
+        theta1: 3,
+        ..PerAxis::default()
+    });
+    let order = [Axis::Vertical, Axis::Theta3, Axis::Theta2, Axis::Theta3];
+    let error = builder.home(order).unwrap_err();
+    assert_eq!(error.to_string(), "theta3 comes twice in the homing order");
+    assert_eq!(builder.position().theta1, 3);
+}
+
+#[test]
+fn a_position_beyond_32_bits_is_an_error_and_changes_nothing() {
+    let start = PerAxis {
+        theta1: 5,
+        theta2: i32::MAX - 1,
+        theta3: -5,
+        vertical: i32::MIN,
+    };
+    let mut builder = Builder::at(start);
+    let cut = JointPulses {
+        theta1: 1,
+        theta2: 2,
+        theta3: 3,
+    };
+    let error = builder.slow(cut).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "theta2: 2 pulses from position 2147483646 leave the range of 32 bits"
+    );
+    let error = builder.fast(Axis::Vertical, -1).unwrap_err();
+    assert_eq!(
+        (error.axis, error.position, error.pulses),
+        (Axis::Vertical, i32::MIN, -1)
+    );
+    let record = Builder::new().slow(cut).unwrap().next().unwrap();
+    assert!(builder.track(record).is_err());
+    assert_eq!(builder.position(), start);
+}
+
+#[test]
+fn statistics_count_records_pulses_and_time() {
+    let mut builder = Builder::new();
+    let mut records: Vec<_> = builder.fast(Axis::Vertical, -70_000).unwrap().collect();
+    let cut = JointPulses {
+        theta1: -20,
+        theta2: 30,
+        theta3: 5,
+    };
+    records.extend(builder.slow(cut).unwrap());
+    records.push(Format::new().decode([0, 0, 0]).unwrap());
+    records.push(Format::new().decode([0x1F, 0, 0]).unwrap());
+    let statistics: Statistics = records.into_iter().collect();
+    assert_eq!(statistics.fast_records, 3);
+    assert_eq!(statistics.slow_records, 2);
+    assert_eq!(statistics.idle_records, 2);
+    assert_eq!((statistics.records(), statistics.bytes()), (5, 15));
+    assert_eq!(
+        statistics.pulses,
+        PerAxis {
+            theta1: 20,
+            theta2: 30,
+            theta3: 5,
+            vertical: 70_000
+        }
+    );
+    assert_eq!(statistics.fast_periods, 70_000);
+    // 5 of the disc, then 30 of the faster arm.
+    assert_eq!(statistics.slow_periods, 5 + 30);
+}

@@ -1,0 +1,95 @@
+//! Serialized settings and records: names as documented, values validated when read.
+
+use pattern_codec::engraving::{
+    Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, Mode, PerAxis, Record, Slow, Statistics,
+};
+use serde_json::{from_str, json, to_value};
+
+#[test]
+fn a_format_is_read_and_written_by_name() {
+    let codes = PerAxis {
+        theta1: 3,
+        theta2: 2,
+        theta3: 1,
+        vertical: 0,
+    };
+    let format = Format::new()
+        .with_axis_codes(AxisCodes::new(codes).unwrap())
+        .with_byte_order(ByteOrder::LittleEndian)
+        .with_mode(Mode::Lenient);
+    let value = json!({
+        "axis_codes": { "theta1": 3, "theta2": 2, "theta3": 1, "vertical": 0 },
+        "byte_order": "little_endian",
+        "mode": "lenient",
+    });
+    assert_eq!(to_value(format).unwrap(), value);
+    assert_eq!(from_str::<Format>(&value.to_string()).unwrap(), format);
+    assert_eq!(from_str::<Format>("{}").unwrap(), Format::new());
+}
+
+#[test]
+fn wrong_settings_are_refused_with_the_reason() {
+    for (text, reason) in [
+        (
+            r#"{"axis_codes": {"theta1": 0, "theta2": 1, "theta3": 1, "vertical": 3}}"#,
+            "theta2 and theta3: both have the axis code 1",
+        ),
+        (
+            r#"{"axis_codes": {"theta1": 0, "theta2": 1, "theta3": 2, "vertical": 9}}"#,
+            "vertical: axis code 9 is above 3",
+        ),
+        (r#"{"byte_order": "middle"}"#, "unknown variant `middle`"),
+        (
+            r#"{"byteorder": "big_endian"}"#,
+            "unknown field `byteorder`",
+        ),
+    ] {
+        let error = from_str::<Format>(text).unwrap_err().to_string();
+        assert!(error.contains(reason), "{error}");
+    }
+}
+
+#[test]
+fn records_are_read_within_their_range_only() {
+    let fast: Record = Fast::new(Axis::Vertical, -65_535).unwrap().into();
+    let value = json!({ "fast": { "axis": "vertical", "pulses": -65_535 } });
+    assert_eq!(to_value(fast).unwrap(), value);
+    assert_eq!(from_str::<Record>(&value.to_string()).unwrap(), fast);
+
+    let pulses = JointPulses {
+        theta1: -30,
+        theta2: 30,
+        theta3: 1,
+    };
+    let slow: Record = Slow::new(pulses).unwrap().into();
+    let value = json!({ "slow": { "theta1": -30, "theta2": 30, "theta3": 1 } });
+    assert_eq!(to_value(slow).unwrap(), value);
+    assert_eq!(from_str::<Record>(&value.to_string()).unwrap(), slow);
+
+    for (text, reason) in [
+        (
+            r#"{"fast": {"axis": "theta1", "pulses": 65536}}"#,
+            "theta1: 65536 pulses do not fit",
+        ),
+        (
+            r#"{"slow": {"theta1": 0, "theta2": -31, "theta3": 0}}"#,
+            "theta2: -31 pulses do not fit",
+        ),
+    ] {
+        let error = from_str::<Record>(text).unwrap_err().to_string();
+        assert!(error.contains(reason), "{error}");
+    }
+}
+
+#[test]
+fn statistics_are_written_by_name() {
+    let fast = Fast::new(Axis::Theta2, -7).unwrap();
+    let statistics: Statistics = [fast.into()].into_iter().collect();
+    let value = to_value(statistics).unwrap();
+    assert_eq!(value["fast_records"], 1);
+    assert_eq!(value["pulses"]["theta2"], 7);
+    assert_eq!(
+        from_str::<Statistics>(&value.to_string()).unwrap(),
+        statistics
+    );
+}

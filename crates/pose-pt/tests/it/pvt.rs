@@ -1,0 +1,191 @@
+//! PVT tables: what the controller will run, checked from outside.
+
+mod blends;
+mod refusals;
+mod times;
+
+use pose_pt::nalgebra::Vector3;
+use pose_pt::{AxisLimits, Knot, Path, PlanError, Platform, PvtPoint, PvtTable, Segmentation};
+use proptest::prelude::*;
+
+use crate::support::cubic::between;
+use crate::support::moves::{ALL, from_rest, poses};
+use crate::support::platform::{ACCELERATION, panel_with, pose, skewed};
+
+/// Times and positions of some metres rounded off, in limits that a reader recomputes.
+const LIMIT: f64 = 1.0 + 1e-9;
+
+/// Positions of some metres rounded off.
+const ROUNDING: f64 = 1e-11;
+
+/// The largest fractions of the limits of speed, acceleration and jerk.
+fn fractions<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> [f64; 3] {
+    let mut fractions = [0.0_f64; 3];
+    let mut before = [Vector3::<f64>::zeros(); N];
+    let mut before_s = 0.0;
+    for pair in points.windows(2) {
+        let [from, to] = pair else { unreachable!() };
+        let [_, _, starts, jerks] = between(from, to, 0.0);
+        let mean_s = (before_s + to.segment_s) / 2.0;
+        for (number, locator) in platform.locators().iter().enumerate() {
+            for (axis, limits) in locator.limits.iter().enumerate() {
+                for place in 0..=16 {
+                    let [_, speeds, accelerations, _] = between(from, to, f64::from(place) / 16.0);
+                    fractions[0] = fractions[0].max(speeds[number][axis].abs() / limits.speed);
+                    let acceleration = accelerations[number][axis].abs();
+                    fractions[1] = fractions[1].max(acceleration / limits.acceleration);
+                }
+                if let Some(limit) = limits.jerk {
+                    let step = (starts[number][axis] - before[number][axis]).abs() / mean_s;
+                    fractions[2] = fractions[2].max(step / limit);
+                    fractions[2] = fractions[2].max(jerks[number][axis].abs() / limit);
+                }
+            }
+        }
+        before = between(from, to, 1.0)[2];
+        before_s = to.segment_s;
+    }
+    // And at the end, where all stands still.
+    for (locator, before) in platform.locators().iter().zip(&before) {
+        for (limits, before) in locator.limits.iter().zip(before.iter()) {
+            if let Some(limit) = limits.jerk {
+                fractions[2] = fractions[2].max(before.abs() / (before_s / 2.0) / limit);
+            }
+        }
+    }
+    fractions
+}
+
+/// Rest at both ends, times that add up, and velocities that belong to a rigid motion.
+fn check_motion<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>], duration_s: f64) {
+    for end in [points.first().unwrap(), points.last().unwrap()] {
+        assert!(end.velocities.iter().all(|v| v.amax() == 0.0));
+    }
+    assert!((points.last().unwrap().time_s - duration_s).abs() < 1e-9);
+    for pair in points.windows(2) {
+        let step = pair[1].time_s - pair[0].time_s;
+        assert!(step > 0.0 && (step - pair[1].segment_s).abs() < 1e-9 * (1.0 + step));
+    }
+    for point in points {
+        let positions = platform.locator_positions(&point.axes);
+        let mut speeds = point.velocities;
+        for (locator, speed) in platform.locators().iter().zip(&mut speeds) {
+            *speed = locator.axes * *speed;
+        }
+        for i in 0..N {
+            for j in 0..i {
+                let (apart, speed) = (positions[i] - positions[j], speeds[i] - speeds[j]);
+                assert!(apart.dot(&speed).abs() < 1e-9 * apart.norm());
+            }
+        }
+    }
+}
+
+#[test]
+fn poses_on_the_way_are_stops() {
+    let platform = skewed();
+    let poses = [
+        pose([0.0; 3], [0.0; 3]),
+        pose([5.0, 0.0, 0.0], [0.0, 0.0, 0.01]),
+        pose([5.0, 0.0, 0.0], [0.0, 0.0, 0.01]),
+        pose([5.0, -5.0, 0.0], [0.0, 0.0, 0.02]),
+    ];
+    for kind in ALL {
+        let path = Path::new(&poses, kind).unwrap();
+        let mut knots = [Knot::default(); 202];
+        let table =
+            PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots).unwrap();
+        let points: Vec<_> = table.points().collect();
+        assert_eq!((points.len(), table.len()), (201, 201));
+        assert!(points[100].velocities.iter().all(|v| v.amax() == 0.0));
+        for (number, pose) in [(0, poses[0]), (100, poses[1]), (200, poses[3])] {
+            let wanted = platform.axes(&pose);
+            for (got, wanted) in points[number].axes.iter().zip(wanted) {
+                assert!((got - wanted).amax() < ROUNDING);
+            }
+        }
+        let fractions = fractions(&platform, &points);
+        assert!(
+            fractions.iter().all(|share| *share < LIMIT),
+            "{fractions:?}"
+        );
+        check_motion(&platform, &points, table.duration_s());
+    }
+}
+
+/// Moves at the edge of what can be told apart, and limits far apart.
+#[test]
+fn tiny_moves_and_odd_limits_give_finite_tables() {
+    let odd = [
+        AxisLimits::new(-1500.0, 1500.0, 1e-3, 1e6),
+        AxisLimits::new(-1500.0, 1500.0, 1e6, 1e-3),
+        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e9),
+        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e-2),
+        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e-30).with_jerk(1e30),
+        AxisLimits::new(-1500.0, 1500.0, 1e-30, 1e30).with_jerk(1e30),
+        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e30).with_jerk(1e-30),
+    ];
+    for limits in odd {
+        let platform = panel_with(limits);
+        for (way, turn) in [
+            (1e-6, 0.0),
+            (0.0, 1e-9),
+            (1e-13, 1e-15),
+            (100.0, 1e-12),
+            (1e-9, 0.3),
+        ] {
+            let poses = from_rest([way, 0.0, -way], [0.0, turn, turn]);
+            for kind in ALL {
+                let path = Path::new(&poses, kind).unwrap();
+                let mut knots = [Knot::default(); 33];
+                let table =
+                    PvtTable::plan(&platform, &path, Segmentation::segments(32), &mut knots);
+                // What rounding is most of may be too coarse to be known.
+                if let Err(PlanError::Timing(path_timing::PlanError::TooCoarse { .. })) = table {
+                    continue;
+                }
+                let table = table.unwrap();
+                let mut last = 0.0;
+                for point in table.points().skip(1) {
+                    assert!(
+                        point.time_s > last && point.time_s.is_finite(),
+                        "{kind:?} {way} {turn}"
+                    );
+                    assert!(
+                        point
+                            .velocities
+                            .iter()
+                            .all(|v| v.amax() <= limits.speed * LIMIT)
+                    );
+                    last = point.time_s;
+                }
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(160))]
+
+    #[test]
+    fn limits_are_never_passed(
+        poses in poses(), kind in 0..4_usize, segments in 7..120_u32,
+        jerk in prop::option::of(20.0..2000.0),
+        speed in 1.0..1000.0, skew in any::<bool>(),
+    ) {
+        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        limits.jerk = jerk;
+        let platform = if skew { skewed() } else { panel_with(limits) };
+        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let mut knots = [Knot::default(); 121];
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
+        let points: Vec<_> = table.points().collect();
+        prop_assert_eq!(points.len(), table.len());
+        let fractions = fractions(&platform, &points);
+        prop_assert!(fractions.iter().all(|share| *share < LIMIT), "{:?}", fractions);
+        // Something is at its limit.
+        prop_assert!(fractions.iter().any(|share| *share > 0.99), "{:?}", fractions);
+        check_motion(&platform, &points, table.duration_s());
+    }
+}

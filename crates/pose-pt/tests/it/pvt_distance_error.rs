@@ -1,0 +1,105 @@
+//! PVT tables: the distance error of two locators between the points.
+
+use pose_pt::{
+    AxisLimits, Interpolation, Knot, Path, Platform, PtTable, PvtPoint, PvtTable, Segmentation,
+};
+use proptest::prelude::*;
+
+use crate::support::cubic::between;
+use crate::support::distance_error::distance_error;
+use crate::support::moves::{ALL, from_rest, poses};
+use crate::support::platform::{ACCELERATION, panel, panel_with, skewed};
+
+/// Positions of some metres rounded off.
+const ROUNDING: f64 = 1e-11;
+
+/// The largest distance error between points, at 1000 places of each segment.
+fn measured<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> f64 {
+    let mut worst = 0.0_f64;
+    for pair in points.windows(2) {
+        for place in 0..=1000 {
+            let [axes, ..] = between(&pair[0], &pair[1], f64::from(place) / 1000.0);
+            worst = worst.max(distance_error(platform, &axes));
+        }
+    }
+    worst
+}
+
+/// From rest the fourth-order figure for constant speed does not hold: the distance error is
+/// L δ²/32.
+#[test]
+fn distance_error_from_rest_is_of_second_order() {
+    let platform = panel();
+    let turn = 0.01;
+    let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 3];
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(2), &mut knots).unwrap();
+    let points: Vec<_> = table.points().collect();
+    let length = (platform.anchors()[1] - platform.anchors()[0]).xy().norm();
+    let half = turn / 2.0;
+    let (bound, measured) = (table.distance_error_bound(), measured(&platform, &points));
+    let second = length * length / platform.largest_anchor_distance() * half * half / 32.0;
+    assert!(
+        (measured / second - 1.0).abs() < 1e-3,
+        "{measured} {second}"
+    );
+    assert!(measured > 1e3 * length * half.powi(4) / 384.0);
+    assert!(
+        bound >= measured && bound < 1.01 * measured,
+        "{bound} {measured}"
+    );
+}
+
+#[test]
+fn distance_error_decides_the_number_of_points() {
+    let platform = panel();
+    let poses = from_rest([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]);
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    for allowed in [0.1, 0.01, 0.001] {
+        let mut knots = vec![Knot::default(); 2000];
+        let table = PvtTable::plan(
+            &platform,
+            &path,
+            Segmentation::max_distance_error(allowed),
+            &mut knots,
+        )
+        .unwrap();
+        let (segments, bound) = (table.len() - 1, table.distance_error_bound());
+        let points: Vec<_> = table.points().collect();
+        println!(
+            "{allowed} mm: {segments} segments, bound {bound}, {} s",
+            table.duration_s()
+        );
+        assert!(bound <= allowed && measured(&platform, &points) <= bound);
+        let linear =
+            PtTable::plan(&platform, &path, Segmentation::max_distance_error(allowed)).unwrap();
+        println!("PT: {} segments", linear.len() - 1);
+        assert!(linear.len() > table.len());
+        let fewer = Segmentation::segments(u32::try_from(segments - 1).unwrap());
+        let coarse = PvtTable::plan(&platform, &path, fewer, &mut knots).unwrap();
+        assert!(coarse.distance_error_bound() > allowed);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(160))]
+
+    #[test]
+    fn the_distance_error_never_passes_its_bound(
+        poses in poses(), kind in 0..4_usize, segments in 2..12_u32, speed in 1.0..1000.0,
+        jerk in prop::option::of(20.0..2000.0), skew in any::<bool>(),
+    ) {
+        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        limits.jerk = jerk;
+        let platform = if skew { skewed() } else { panel_with(limits) };
+        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let mut knots = [Knot::default(); 13];
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
+        let points: Vec<_> = table.points().collect();
+        let (bound, measured) = (table.distance_error_bound(), measured(&platform, &points));
+        prop_assert!(measured <= bound + ROUNDING, "{} {}", measured, bound);
+        prop_assert!(bound <= 3.0 * measured + ROUNDING, "{} {}", measured, bound);
+    }
+}

@@ -1,0 +1,255 @@
+//! Feed override, stops on the path, and the controller's buffer.
+
+use pose_pt::nalgebra::Isometry3;
+use pose_pt::path_timing::PlanError;
+use pose_pt::{
+    AxisLimits, FeedCeiling, FeedError, Interpolation, Knot, Path, Platform, PvtPoint, PvtTable,
+    Segmentation,
+};
+use proptest::prelude::*;
+
+use crate::support::cubic::between;
+use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
+
+/// Times and positions of some metres rounded off.
+const LIMIT: f64 = 1.0 + 1e-9;
+
+/// Positions of some metres rounded off.
+const ROUNDING: f64 = 1e-11;
+
+fn poses() -> [Isometry3<f64>; 2] {
+    [
+        pose([0.0; 3], [0.0; 3]),
+        pose([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]),
+    ]
+}
+
+/// Speeds and accelerations of what the controller runs, as shares of the limits.
+fn check_limits<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) {
+    for pair in points.windows(2) {
+        for place in 0..=16 {
+            let share = f64::from(place) / 16.0;
+            let [_, speeds, accelerations, _] = between(&pair[0], &pair[1], share);
+            for (number, locator) in platform.locators().iter().enumerate() {
+                for (axis, limits) in locator.limits.iter().enumerate() {
+                    assert!(speeds[number][axis].abs() < limits.speed * LIMIT);
+                    let acceleration = accelerations[number][axis].abs();
+                    assert!(acceleration < limits.acceleration * LIMIT, "{acceleration}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn at_full_feed_it_is_the_table() {
+    for platform in [panel(), skewed()] {
+        let poses = poses();
+        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let mut knots = [Knot::default(); 101];
+        let table =
+            PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots).unwrap();
+        let mut ceilings = [FeedCeiling::default(); 101];
+        let run = table.run(1.5, &mut ceilings).unwrap();
+        assert_eq!(run.size_hint(), (0, Some(101)));
+        for (got, wanted) in run.zip(table.points()) {
+            assert_eq!(got.axes, wanted.axes);
+            assert!(
+                (got.time_s - wanted.time_s).abs() < 1e-9 * (1.0 + wanted.time_s),
+                "{} {}",
+                got.time_s,
+                wanted.time_s
+            );
+            for (got, wanted) in got.velocities.iter().zip(&wanted.velocities) {
+                assert!((got - wanted).amax() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_table_at_its_limits_cannot_go_faster_and_one_below_can() {
+    let platform = panel();
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 201];
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(200), &mut knots).unwrap();
+    let slow = table.at_speed_scale(0.5).unwrap();
+    for (table, feed, expected) in [(table, 1.5, 1.0), (slow, 1.5, 2.0 / 1.5), (slow, 0.5, 4.0)] {
+        let mut ceilings = [FeedCeiling::default(); 201];
+        let mut run = table.run(1.5, &mut ceilings).unwrap();
+        run.set_feed(feed).unwrap();
+        let points: Vec<_> = run.collect();
+        check_limits(&platform, &points);
+        let share = points.last().unwrap().time_s / slow.duration_s() * 2.0;
+        println!("{feed}: {share}, {expected}");
+        assert!((share / expected - 1.0).abs() < 0.01, "{share} {expected}");
+    }
+}
+
+#[test]
+fn a_stop_is_on_the_path_and_can_go_on() {
+    let platform = panel();
+    let poses = [pose([0.0; 3], [0.0; 3]), pose([100.0, 0.0, 0.0], [0.0; 3])];
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 401];
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(400), &mut knots).unwrap();
+    let mut ceilings = [FeedCeiling::default(); 401];
+    let mut run = table.run(1.5, &mut ceilings).unwrap();
+    let mut points: Vec<_> = run.by_ref().take(200).collect();
+    let from = *points.last().unwrap();
+    run.stop();
+    points.extend(run.by_ref());
+    assert!(!run.is_finished() && run.next_point().is_none());
+    let rest = points.last().unwrap();
+    assert!(rest.velocities.iter().all(|v| v.amax() == 0.0));
+    // 10 mm/s at 25 mm/s² stop within 2 mm, and a segment.
+    let way = rest.axes[0].x - from.axes[0].x;
+    let shortest = SPEED * SPEED / (2.0 * ACCELERATION);
+    assert!(
+        way > shortest * (1.0 - 1e-9) && way < shortest + 2.0 * 100.0 / 400.0,
+        "{way}"
+    );
+    check_limits(&platform, &points);
+
+    run.set_feed(1.0).unwrap();
+    points.extend(run.by_ref());
+    assert!(run.is_finished());
+    check_limits(&platform, &points);
+    assert_eq!(points.len(), 401);
+    assert!((points[400].axes[2].x - 100.0).abs() < ROUNDING);
+}
+
+/// Braking as hard as it can before the last segment, the machine would crawl on it.
+#[test]
+fn no_stop_crawls() {
+    let platform = panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, 2.0));
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 51];
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(50), &mut knots).unwrap();
+    for moving in 2..50 {
+        let mut ceilings = [FeedCeiling::default(); 51];
+        let mut run = table.run(1.0, &mut ceilings).unwrap();
+        let mut points: Vec<_> = run.by_ref().take(moving).collect();
+        run.stop();
+        points.extend(run);
+        check_limits(&platform, &points);
+        for (found, planned) in points.iter().zip(table.points()).skip(1) {
+            let longer = found.segment_s / planned.segment_s;
+            assert!(longer < 10.0, "{moving}: {longer}");
+        }
+    }
+}
+
+#[test]
+fn wrong_feeds_and_memory_are_named() {
+    let platform = panel();
+    let poses = poses();
+    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let mut knots = [Knot::default(); 11];
+    let table = PvtTable::plan(&platform, &path, Segmentation::segments(10), &mut knots).unwrap();
+    let mut ceilings = [FeedCeiling::default(); 11];
+    let error = table.run(1.5, &mut ceilings[..10]).unwrap_err();
+    assert_eq!(
+        error,
+        PlanError::Memory {
+            needed: 11,
+            available: 10
+        }
+    );
+    for max in [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e-310, 1e300] {
+        let error = table.run(max, &mut ceilings).unwrap_err();
+        assert!(matches!(error, PlanError::Feed { .. }), "{error}");
+    }
+    let mut run = table.run(1.5, &mut ceilings).unwrap();
+    let error = run.set_feed(1.6).unwrap_err();
+    assert_eq!(
+        error,
+        FeedError {
+            feed: 1.6,
+            min: 1e-50,
+            max: 1.5
+        }
+    );
+    for feed in [-0.1, f64::NAN, 1e-310] {
+        assert!(run.set_feed(feed).is_err(), "{feed}");
+    }
+}
+
+/// The sizes that docs/body.md states, for three locators in f64 on 64 bits.
+#[cfg(target_pointer_width = "64")]
+#[test]
+fn memory_is_fixed() {
+    use pose_pt::{PtPoints, PtTable, PvtPoints, PvtRun};
+
+    assert_eq!(size_of::<PtTable<'_, 3>>(), 96);
+    assert_eq!(size_of::<PtPoints<'_, 3>>(), 680);
+    assert_eq!(size_of::<PvtTable<'_, 3>>(), 320);
+    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 216);
+    assert_eq!(size_of::<PvtRun<'_, 3>>(), 600);
+    assert_eq!(size_of::<Knot<[[f64; 3]; 3]>>(), 264);
+    assert_eq!(size_of::<FeedCeiling>(), 16);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// What goes faster at one place must not go slower for it at the next.
+    #[test]
+    fn more_feed_never_takes_longer(
+        translation in prop::array::uniform3(-300.0..300.0), turn in prop::array::uniform3(-1.5..1.5),
+        on in prop::array::uniform3(-300.0..300.0), on_turn in prop::array::uniform3(-1.5..1.5),
+        segments in 2..30_u32, scale in 0.3..1.0, feed in 1.0..3.0, speed in 5.0..1e4,
+    ) {
+        let platform = panel_with(AxisLimits::new(-1e5, 1e5, speed, ACCELERATION));
+        let poses = [pose([0.0; 3], [0.0; 3]), pose(translation, turn), pose(on, on_turn)];
+        let Ok(path) = Path::new(&poses, Interpolation::Screw) else { return Ok(()) };
+        let mut knots = [Knot::default(); 62];
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots);
+        // Few segments may be too coarse.
+        let Ok(table) = table else { return Ok(()) };
+        let table = table.at_speed_scale(scale).unwrap();
+        let mut ceilings = [FeedCeiling::default(); 61];
+        let mut run = table.run(feed, &mut ceilings).unwrap();
+        run.set_feed(feed).unwrap();
+        let points: Vec<_> = run.collect();
+        check_limits(&platform, &points);
+        let share = points.last().unwrap().time_s / table.duration_s();
+        prop_assert!(share <= LIMIT, "{share}");
+    }
+
+    /// Any feeds at any points: limits, the path, the end.
+    #[test]
+    fn limits_hold_under_any_feed(
+        feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
+        segments in 10..150_u32, scale in 0.3..1.0, skew in any::<bool>(), speed in 5.0..500.0,
+    ) {
+        let platform = if skew {
+            skewed()
+        } else {
+            panel_with(AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION))
+        };
+        let poses = poses();
+        let path = Path::new(&poses, Interpolation::Screw).unwrap();
+        let mut knots = [Knot::default(); 151];
+        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+            .unwrap();
+        let table = table.at_speed_scale(scale).unwrap();
+        let mut ceilings = [FeedCeiling::default(); 151];
+        let mut run = table.run(1.5, &mut ceilings).unwrap();
+        let mut points = Vec::new();
+        for (feed, count) in feeds {
+            run.set_feed(if feed < 0.2 { 0.0 } else { feed }).unwrap();
+            points.extend(run.by_ref().take(count));
+        }
+        run.set_feed(1.0).unwrap();
+        points.extend(run.by_ref());
+        prop_assert!(run.is_finished());
+        prop_assert_eq!(points.len(), table.len());
+        check_limits(&platform, &points);
+        for (got, wanted) in points.iter().zip(table.points()) {
+            prop_assert_eq!(got.axes, wanted.axes);
+        }
+    }
+}

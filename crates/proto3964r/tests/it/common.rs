@@ -1,0 +1,4 @@
+//! What several modules use.
+
+pub(crate) mod low_side;
+pub(crate) mod random;

@@ -1,0 +1,17 @@
+//! All tests of the crate: one program, which is linked once.
+#![cfg(test)]
+
+mod accuracy;
+mod each;
+mod extremes;
+mod follow;
+mod geometry;
+mod mistakes;
+#[cfg(feature = "path-timing")]
+mod paths;
+mod properties;
+mod reference;
+#[cfg(feature = "serde")]
+mod serialised;
+mod turns;
+mod units;

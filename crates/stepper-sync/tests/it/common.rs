@@ -1,0 +1,5 @@
+//! What several modules use.
+
+pub(crate) mod arm;
+pub(crate) mod pulses;
+pub(crate) mod rows;

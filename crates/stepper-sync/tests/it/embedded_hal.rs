@@ -1,0 +1,265 @@
+//! Pin drivers on pins that log what they do.
+
+use alloc::rc::Rc;
+use core::{cell::RefCell, convert::Infallible, fmt};
+use std::collections::HashMap;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{Error, ErrorKind, ErrorType, OutputPin, PinState};
+use stepper_sync::embedded_hal::{StepDir, StepDirError, WindingPins};
+use stepper_sync::{Direction, Level, Phases, Polarity, StepDirTiming, Stepping, Wiring};
+
+/// All pins and the clock of a test: `name+`, `name-`, and waits in nanoseconds.
+#[derive(Clone, Default)]
+struct Board(Rc<RefCell<Vec<String>>>);
+
+impl Board {
+    fn pin(&self, name: &'static str) -> Pin {
+        let board = self.clone();
+        Pin { name, board }
+    }
+
+    fn log(&self, entry: impl fmt::Display) {
+        self.0.borrow_mut().push(entry.to_string());
+    }
+
+    fn take(&self) -> String {
+        self.0.borrow_mut().split_off(0).join(" ")
+    }
+}
+
+impl DelayNs for Board {
+    fn delay_ns(&mut self, ns: u32) {
+        self.log(ns);
+    }
+}
+
+struct Pin {
+    name: &'static str,
+    board: Board,
+}
+
+impl ErrorType for Pin {
+    type Error = Infallible;
+}
+
+impl OutputPin for Pin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.board.log(format_args!("{}-", self.name));
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.board.log(format_args!("{}+", self.name));
+        Ok(())
+    }
+}
+
+const TIMING: StepDirTiming = StepDirTiming {
+    pulse_ns: 11,
+    pause_ns: 22,
+    setup_ns: 33,
+    hold_ns: 44,
+};
+
+#[test]
+fn pulses_keep_width_pause_setup_and_hold() {
+    let mut board = Board::default();
+    let mut motor = StepDir::new(board.pin("s"), board.pin("d"), TIMING);
+    let mut steps = |steps: &[i32]| {
+        for &step in steps {
+            motor.step(Direction::of(step), &mut board).unwrap();
+        }
+        board.take()
+    };
+    assert_eq!(steps(&[0]), "");
+    assert_eq!(steps(&[1, 1]), "d+ 33 s+ 11 s- 22 s+ 11 s- 22");
+    assert_eq!(steps(&[0, -1]), "44 d- 33 s+ 11 s- 22");
+}
+
+#[test]
+fn other_levels_and_single_edges() {
+    let mut board = Board::default();
+    let mut motor = StepDir::new(board.pin("s"), board.pin("d"), StepDirTiming::A4988)
+        .with_polarity(Polarity::ActiveLow, Polarity::ActiveLow);
+    motor
+        .set_direction(Direction::Negative, &mut board)
+        .unwrap();
+    motor.set_level(Level::High).unwrap();
+    motor.set_level(Level::Low).unwrap();
+    assert_eq!(board.take(), "d+ 200 s- s+");
+}
+
+#[test]
+fn windings_go_off_before_others_go_on() {
+    let mut board = Board::default();
+    let phases = Phases::new(Stepping::Full, Wiring::BIPOLAR).unwrap();
+    let pins = ["A+", "A-", "B+", "B-"].map(|name| board.pin(name));
+    let mut motor = WindingPins::new(pins, phases, 7);
+    motor.hold(&mut board).unwrap();
+    assert_eq!(board.take(), "A-- B-- 7 A++ B++");
+    motor.step(1, &mut board).unwrap();
+    assert_eq!(board.take(), "A+- 7 A-+ B++");
+    motor.step(-1, &mut board).unwrap();
+    assert_eq!(board.take(), "A-- 7 A++ B++");
+    motor.release().unwrap();
+    assert_eq!(board.take(), "A+- A-- B+- B--");
+    assert_eq!(motor.phase(), phases.start());
+    // The dead time runs from the release: the next phase may be the other half of a bridge.
+    motor.step(0, &mut board).unwrap();
+    assert_eq!(board.take(), "7 A++ B++");
+    motor.step(0, &mut board).unwrap();
+    assert_eq!(board.take(), "A++ B++");
+}
+
+#[test]
+fn windings_follow_the_nibble_whatever_the_wiring() {
+    let mut board = Board::default();
+    let wiring = Wiring {
+        polarity: Polarity::ActiveLow,
+        ..Wiring::UNIPOLAR.reversed()
+    };
+    let phases = Phases::new(Stepping::Half, wiring).unwrap();
+    let names = ["0", "1", "2", "3"];
+    let mut motor = WindingPins::new(names.map(|name| board.pin(name)), phases, 0);
+    let mut levels = HashMap::new();
+    for step in [0, 1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1_i8] {
+        motor.step(step, &mut board).unwrap();
+        for entry in board.take().split(' ').filter(|entry| entry.len() > 1) {
+            levels.insert(entry[..1].to_owned(), entry.ends_with('+'));
+        }
+        for (bit, name) in names.iter().enumerate() {
+            let expected = phases.nibble(motor.phase()) >> bit & 1 == 1;
+            assert_eq!(levels[*name], expected);
+        }
+    }
+}
+
+/// A pin whose bus has failed.
+struct Broken;
+
+#[derive(Debug, PartialEq)]
+struct Gone;
+
+impl Error for Gone {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
+    }
+}
+
+impl ErrorType for Broken {
+    type Error = Gone;
+}
+
+impl OutputPin for Broken {
+    fn set_low(&mut self) -> Result<(), Gone> {
+        Err(Gone)
+    }
+
+    fn set_high(&mut self) -> Result<(), Gone> {
+        Err(Gone)
+    }
+}
+
+/// A pin that refuses its n-th settings.
+struct Flaky {
+    pin: Pin,
+    refused: &'static [usize],
+    settings: usize,
+}
+
+impl Flaky {
+    fn new(pin: Pin, refused: &'static [usize]) -> Self {
+        Self {
+            pin,
+            refused,
+            settings: 0,
+        }
+    }
+
+    fn set(&mut self, state: PinState) -> Result<(), Gone> {
+        self.settings += 1;
+        if self.refused.contains(&self.settings) {
+            self.pin.board.log("x");
+            return Err(Gone);
+        }
+        self.pin.set_state(state).map_err(|never| match never {})
+    }
+}
+
+impl ErrorType for Flaky {
+    type Error = Gone;
+}
+
+impl OutputPin for Flaky {
+    fn set_low(&mut self) -> Result<(), Gone> {
+        self.set(PinState::Low)
+    }
+
+    fn set_high(&mut self) -> Result<(), Gone> {
+        self.set(PinState::High)
+    }
+}
+
+#[test]
+fn a_pulse_that_did_not_end_is_ended_before_the_next() {
+    let mut board = Board::default();
+    let step_pin = Flaky::new(board.pin("s"), &[2]);
+    let mut motor = StepDir::new(step_pin, board.pin("d"), TIMING);
+    let forward = Some(Direction::Positive);
+    assert!(motor.step(forward, &mut board).is_err());
+    assert_eq!(board.take(), "d+ 33 s+ 11 x");
+    // Without the edge down there would be none up: a step less.
+    motor.step(forward, &mut board).unwrap();
+    assert_eq!(board.take(), "s- 22 s+ 11 s- 22");
+    motor.step(forward, &mut board).unwrap();
+    assert_eq!(board.take(), "s+ 11 s- 22");
+}
+
+#[test]
+fn a_direction_that_was_not_set_does_not_forget_the_pulse_before() {
+    let mut board = Board::default();
+    let direction_pin = Flaky::new(board.pin("d"), &[2]);
+    let mut motor = StepDir::new(board.pin("s"), direction_pin, TIMING);
+    motor
+        .set_direction(Direction::Positive, &mut board)
+        .unwrap();
+    assert!(
+        motor
+            .set_direction(Direction::Negative, &mut board)
+            .is_err()
+    );
+    motor.set_level(Level::High).unwrap();
+    motor.set_level(Level::Low).unwrap();
+    board.take();
+    motor
+        .set_direction(Direction::Negative, &mut board)
+        .unwrap();
+    assert_eq!(board.take(), "44 d- 33");
+}
+
+#[test]
+fn other_levels_are_set_even_where_the_direction_stays() {
+    let mut board = Board::default();
+    let mut motor = StepDir::new(board.pin("s"), board.pin("d"), TIMING);
+    let forward = Some(Direction::Positive);
+    motor.step(forward, &mut board).unwrap();
+    let mut motor = motor.with_polarity(Polarity::ActiveHigh, Polarity::ActiveLow);
+    board.take();
+    motor.step(forward, &mut board).unwrap();
+    assert_eq!(board.take(), "44 d- 33 s+ 11 s- 22");
+}
+
+#[test]
+fn errors_name_the_pin() {
+    let mut board = Board::default();
+    let mut motor = StepDir::new(Broken, board.pin("d"), TIMING);
+    let error = motor.step(Some(Direction::Positive), &mut board);
+    assert_eq!(error, Err(StepDirError::Step(Gone)));
+    assert_eq!(error.unwrap_err().to_string(), "step pin: Gone");
+    let mut motor = StepDir::new(board.pin("s"), Broken, TIMING);
+    let error = motor.step(Some(Direction::Positive), &mut board);
+    assert_eq!(error, Err(StepDirError::Direction(Gone)));
+    // Not taken for set.
+    assert!(motor.step(Some(Direction::Positive), &mut board).is_err());
+}

@@ -1,0 +1,6 @@
+//! All tests of the crate: one program, which is linked once.
+#![cfg(test)]
+
+mod extremes;
+mod score;
+mod turns;

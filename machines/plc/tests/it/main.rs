@@ -1,0 +1,4 @@
+//! All tests of the crate: one program, which is linked once.
+#![cfg(test)]
+
+mod simulated_line;

@@ -1,0 +1,22 @@
+//! Tests of the machines as programs, of the C sources and of the facade: one program, which is linked once.
+#![cfg(test)]
+
+#[cfg(unix)]
+mod align;
+#[cfg(all(feature = "pattern-codec", feature = "stepper-sync"))]
+mod dance;
+mod delta;
+#[cfg(all(
+    feature = "scara-kin",
+    feature = "stepper-sync",
+    feature = "pattern-codec"
+))]
+mod engrave;
+#[cfg(all(unix, feature = "pattern-codec", feature = "stepper-sync"))]
+mod mcs51;
+#[cfg(unix)]
+mod plc;
+#[cfg(all(unix, feature = "stepper-sync"))]
+mod segments;
+mod stage;
+mod tools;

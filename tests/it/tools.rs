@@ -1,0 +1,6 @@
+//! What several modules use.
+
+pub(crate) mod artefacts;
+pub(crate) mod command;
+pub(crate) mod example;
+pub(crate) mod refusal;

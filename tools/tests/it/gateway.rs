@@ -1,0 +1,26 @@
+//! `gateway` from outside: lines of simulated partners, a broker (mosquitto), its clients.
+
+mod basics;
+mod broker;
+mod commands;
+mod health;
+mod load;
+mod partner;
+mod process;
+mod refused;
+mod safe;
+mod scale;
+mod subscriber;
+mod uart;
+
+/// The broker, or an end of the test that is seen: it must not be missed where
+/// `POSE2PULSE_REQUIRE_MOSQUITTO` is set.
+macro_rules! broker_or_skip {
+    () => {
+        match crate::gateway::broker::Broker::start() {
+            Some(broker) => broker,
+            None => return,
+        }
+    };
+}
+pub(crate) use broker_or_skip;
