@@ -3,7 +3,7 @@
 mod error;
 mod motion;
 mod polynomial;
-mod rounded;
+mod smoothed;
 mod vector;
 
 use core::convert::Infallible;
@@ -11,7 +11,7 @@ use core::f64::consts::TAU;
 
 pub use error::CurveError;
 pub use motion::{CurveMotion, TurnMotion};
-pub use rounded::Rounded;
+pub use smoothed::{Smoothed, Vertex, Waypoint};
 
 use crate::{Corner, Cubic, Path, PathPoint, Span, ToolLimits};
 use polynomial::Polynomial;
@@ -40,6 +40,7 @@ pub struct Curve<const D: usize> {
     length: f64,
     ends: [[f64; D]; 2],
     tool: Option<ToolLimits>,
+    between: Option<[usize; 2]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +60,8 @@ enum Shape<const D: usize> {
         ahead: [f64; D],
         radius: f64,
     },
+    /// Coefficients of 1, u, u², u³.
+    Cubic([[f64; D]; 4]),
     Polynomial(Polynomial<D>),
 }
 
@@ -68,8 +71,8 @@ enum Shape<const D: usize> {
 pub struct CurvePoint<const D: usize> {
     /// The point.
     pub point: [f64; D],
-    /// First derivative: the unit tangent. Of a Bézier curve or blend its length is 1 within
-    /// [`Curve::speed_error`].
+    /// First derivative: the unit tangent. Of a Bézier curve its length is 1 within
+    /// [`Curve::speed_error`], in a smoothed corner less.
     pub tangent: [f64; D],
     /// Second derivative: the curvature's vector.
     pub curvature: [f64; D],
@@ -101,6 +104,7 @@ impl<const D: usize> Curve<D> {
             length,
             ends: [from, to],
             tool: None,
+            between: None,
         };
         curve.checked()
     }
@@ -149,6 +153,7 @@ impl<const D: usize> Curve<D> {
             length: radius * angle,
             ends: [start, start],
             tool: None,
+            between: None,
         };
         let turns = libm::round(angle / TAU);
         if (angle - turns * TAU).abs() > angle * WHOLE {
@@ -169,16 +174,28 @@ impl<const D: usize> Curve<D> {
         Self::polynomial(Polynomial::new(control_points)?, [start, end])
     }
 
-    /// The quintic Bézier curve of six control points, given from `origin`, so that its derivatives
-    /// have all digits of these differences; its first point is `start` to the last bit.
-    pub(crate) fn quintic(
-        start: [f64; D],
-        origin: &[f64; D],
-        control_points: [[f64; D]; 6],
+    /// The cubic between two points with the derivatives there, by a parameter from 0 to `length`.
+    pub(crate) fn cubic(
+        [from, to]: [[f64; D]; 2],
+        [before, after]: [[f64; D]; 2],
+        length: f64,
     ) -> Result<Self, CurveError> {
-        let [.., end] = control_points.map(|point| along(origin, 1.0, &point));
-        let polynomial = Polynomial::new(control_points)?.moved(origin);
-        Self::polynomial(polynomial, [start, end])
+        let mean = scaled(&difference(&to, &from), 1.0 / length);
+        let second = along(&along(&scaled(&mean, 3.0), -2.0, &before), -1.0, &after);
+        let third = along(&along(&before, 1.0, &after), -2.0, &mean);
+        let curve = Self {
+            shape: Shape::Cubic([
+                from,
+                before,
+                scaled(&second, 1.0 / length),
+                scaled(&third, 1.0 / (length * length)),
+            ]),
+            length,
+            ends: [from, to],
+            tool: None,
+            between: None,
+        };
+        curve.checked()
     }
 
     fn polynomial(polynomial: Polynomial<D>, ends: [[f64; D]; 2]) -> Result<Self, CurveError> {
@@ -187,6 +204,7 @@ impl<const D: usize> Curve<D> {
             shape: Shape::Polynomial(polynomial),
             ends,
             tool: None,
+            between: None,
         };
         curve.checked()
     }
@@ -228,14 +246,30 @@ impl<const D: usize> Curve<D> {
         self.ends[1]
     }
 
-    /// The most by which |dP/ds| differs from 1: 0 of lines and arcs; of a Bézier curve twice the
-    /// largest that was found at 8 places of each of its intervals.
+    /// The most by which |dP/ds| is above 1: 0 of lines and arcs; of a Bézier curve, where it may
+    /// be as much below, twice the largest that was found at 8 places of each of its intervals. In a
+    /// [`Smoothed`] corner |dP/ds| is below 1.
     #[must_use]
-    pub const fn speed_error(&self) -> f64 {
+    pub fn speed_error(&self) -> f64 {
         match &self.shape {
             Shape::Polynomial(polynomial) => polynomial.speed_error(),
             Shape::Line { .. } | Shape::Arc { .. } => 0.0,
+            Shape::Cubic([_, first, second, third]) => {
+                // The control points of the derivative, a quadratic, have its largest length.
+                let l = self.length;
+                let middle = along(first, l, second);
+                let end = along(&along(first, 2.0 * l, second), 3.0 * l * l, third);
+                let longest = norm(first).max(norm(&middle)).max(norm(&end));
+                (longest - 1.0).max(0.0)
+            }
         }
+    }
+
+    /// The points of the input between which it lies, from 0, where it is part of a [`Smoothed`]
+    /// polyline.
+    #[must_use]
+    pub const fn between(&self) -> Option<[usize; 2]> {
+        self.between
     }
 
     /// Limits of the tool along the curve in terms of s: the tool's speed and that of s differ by
@@ -271,7 +305,7 @@ impl<const D: usize> Curve<D> {
     /// The curve's own parameter at an arc length, and its first two derivatives by it.
     fn parameter(&self, s: f64) -> [f64; 3] {
         match &self.shape {
-            Shape::Line { .. } => [s, 1.0, 0.0],
+            Shape::Line { .. } | Shape::Cubic(_) => [s, 1.0, 0.0],
             Shape::Arc { radius, .. } => [s / radius, 1.0 / radius, 0.0],
             Shape::Polynomial(polynomial) => polynomial.parameter(s),
         }
@@ -310,6 +344,14 @@ impl<const D: usize> Curve<D> {
                     forward,
                 ]
             }
+            Shape::Cubic([c0, c1, c2, c3]) => {
+                let zero = [0.0; D];
+                let third = scaled(c3, 6.0);
+                let second = along(&scaled(c2, 2.0), u, &third);
+                let first = along(&along(c1, 2.0 * u, c2), 3.0 * u * u, c3);
+                let point = along(&along(&along(c0, u, c1), u * u, c2), u * u * u, c3);
+                [point, first, second, third, zero, zero]
+            }
             Shape::Polynomial(polynomial) => polynomial.jet(u),
         }
     }
@@ -319,7 +361,7 @@ impl<const D: usize> Curve<D> {
         match &self.shape {
             Shape::Line { .. } => [1.0, 0.0, 0.0, 0.0],
             Shape::Arc { radius, .. } => [*radius; 4],
-            Shape::Polynomial(_) => polynomial::longest(jet, half),
+            Shape::Cubic(_) | Shape::Polynomial(_) => polynomial::longest(jet, half),
         }
     }
 

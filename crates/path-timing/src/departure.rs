@@ -54,7 +54,7 @@ pub fn segments_within<P: Path>(
 ) -> Result<u32, PlanError<P::Error>> {
     check_allowed(allowed)?;
     let leg = Leg::new(0, path)?;
-    let at_least = bounded(0, at_least)?;
+    let at_least = bounded(0, at_least, [false; 2])?;
     let bound_of = |segments, rests| {
         let mut laying = Laying::new(leg, leg.point(0.0)?);
         let mut bound = Bound::new(allowed);
@@ -104,12 +104,16 @@ impl<D> Within<D> {
         D: Fn(&P, &Span<P::Axes>) -> f64,
     {
         let number = place.leg.number;
-        let at_least = bounded(number, self.min_segments)?;
+        let at_least = bounded(number, self.min_segments, place.rests)?;
         let segments = self.fewest(place, limits, at_least, knots)?;
         if doublings == 0 {
             return Ok(segments);
         }
-        let finer = bounded(number, segments.saturating_mul(1 << doublings.min(24)))?;
+        let finer = bounded(
+            number,
+            segments.saturating_mul(1 << doublings.min(24)),
+            place.rests,
+        )?;
         place.lay(limits, finer, knots)?;
         Ok(finer)
     }

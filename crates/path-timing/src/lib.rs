@@ -33,7 +33,9 @@ mod verify;
 
 pub use axes::{Axes, AxisLimits, ToolLimits};
 pub use cubic::Cubic;
-pub use curve::{Curve, CurveError, CurveMotion, CurvePoint, Rounded, TurnMotion};
+pub use curve::{
+    Curve, CurveError, CurveMotion, CurvePoint, Smoothed, TurnMotion, Vertex, Waypoint,
+};
 pub use departure::segments_within;
 pub use error::PlanError;
 pub use junction::Corner;

@@ -8,7 +8,7 @@ use crate::junction::Junction;
 use crate::knots::{LARGEST_GAP, Laying, fraction, is_resolved};
 use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST, range};
-use crate::planner::{MIN_SEGMENTS, bounded, check_gap, junction_to};
+use crate::planner::{bounded, check_gap, junction_to};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, Corner, FeedError, Knot, Path, PlanError, Row};
 use window::{Feed, Window};
@@ -82,8 +82,8 @@ struct Entering<P: Path> {
 impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>>
     LookAhead<'w, P, I, F>
 {
-    /// The rows along `paths`, each cut into as many `segments` as the function says, at least 2: a
-    /// fixed number, or what [`segments_within`](crate::segments_within) finds.
+    /// The rows along `paths`, each cut into as many `segments` as the function says, at least 2 from rest
+    /// to rest: a fixed number, or what [`segments_within`](crate::segments_within) finds.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Jerk`] where an axis has a limit of jerk, which takes a
@@ -247,7 +247,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         let number = self.count;
         self.count = number.wrapping_add(1);
         let segments = (self.segments)(&path).map_err(|error| error.of_leg(number))?;
-        let segments = bounded(number, segments)?;
+        let segments = bounded(number, segments, [false; 2])?;
         let leg = Leg::new(number, path)?;
         let start = leg.point(0.0)?;
         let mut starts_at_rest = true;
@@ -268,10 +268,11 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
             Corner::Smooth => junction_to(&leg, self.following.as_ref(), &self.limits)
                 .is_ok_and(|junction| junction.is_stop()),
         };
+        let rests = [starts_at_rest, ends_at_rest];
         Ok(Entering {
             laying: Laying::new(leg, start),
-            rests: [starts_at_rest, ends_at_rest],
-            segments: segments.max(MIN_SEGMENTS),
+            rests,
+            segments: bounded(number, segments, rests)?,
             index: 0,
         })
     }

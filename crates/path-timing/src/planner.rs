@@ -9,20 +9,24 @@ use crate::passes::{self, segment_s};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
 
-/// Fewest segments of a leg: it starts and stops.
-pub(crate) const MIN_SEGMENTS: u32 = 2;
+/// Fewest segments of a leg that starts and stops.
+const MIN_AT_RESTS: u32 = 2;
 
 /// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
 
-/// A number of segments that a leg can have.
-pub(crate) fn bounded<E>(leg: usize, segments: u32) -> Result<u32, PlanError<E>> {
+/// A number of segments that a leg can have which rests at its ends, or does not.
+pub(crate) fn bounded<E>(leg: usize, segments: u32, rests: [bool; 2]) -> Result<u32, PlanError<E>> {
     let max = MAX_SEGMENTS;
     if segments <= max {
-        Ok(segments.max(MIN_SEGMENTS))
+        Ok(segments.max(fewest(rests)))
     } else {
         Err(PlanError::TooFine { leg, max })
     }
+}
+
+const fn fewest([starts, ends]: [bool; 2]) -> u32 {
+    if starts && ends { MIN_AT_RESTS } else { 1 }
 }
 
 /// A leg whose knots are to be laid.
@@ -82,7 +86,7 @@ impl<P: Path + Clone> Place<'_, P> {
         knots: &[Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let mut from = Knot::start(self.start);
-        let gap = if knots.len() > knots_of(MIN_SEGMENTS) {
+        let gap = if knots.len() > knots_of(MIN_AT_RESTS) {
             LARGEST_GAP
         } else {
             LARGEST_GAP_AT_RESTS
@@ -134,7 +138,7 @@ pub(crate) fn lay_all<'k, P: Path + Clone>(
         let start = leg.point(0.0)?;
         let (last, free) = knots.split_at_mut(used.saturating_sub(1).min(available));
         let short = PlanError::Memory {
-            needed: used.saturating_add(knots_of(MIN_SEGMENTS)),
+            needed: used.saturating_add(knots_of(1)),
             available,
         };
         let Some(first) = free.first_mut() else {

@@ -45,7 +45,7 @@ pub struct Accuracy {
 
 impl<'a, A: Axes> Table<'a, A> {
     /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a path
-    /// has, at least 2.
+    /// has, at least 2 from rest to rest.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -57,7 +57,8 @@ impl<'a, A: Axes> Table<'a, A> {
     ) -> Result<Self, PlanError<P::Error>> {
         let limits = Reciprocals::checked(&limits)?;
         let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
-            let segments = bounded(place.leg.number, segments(place.leg.path()))?;
+            let segments = segments(place.leg.path());
+            let segments = bounded(place.leg.number, segments, place.rests)?;
             place.lay(&limits, segments, free)?;
             Ok(segments)
         };

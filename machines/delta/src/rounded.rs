@@ -3,29 +3,29 @@
 use anyhow::{Context, Result};
 use delta_kin::DeltaPath;
 use nalgebra::Point3;
-use path_timing::{Accuracy, Curve, Knot, Path, Rounded, Table, ToolLimits};
+use path_timing::{Accuracy, Curve, Knot, Path, Smoothed, Table, ToolLimits, Vertex, Waypoint};
 use stepper_sync::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming};
 
 use crate::machine::Machine;
 use crate::plan::TICKS_PER_S;
 use crate::record::Move;
-use crate::simulation::distance;
 
-/// Segments of a leg at the least: a change of speed takes some of them.
-const LEAST_SEGMENTS: u32 = 64;
+/// Vertices of the lines in sight at a time.
+const VERTICES: usize = 32;
+/// The time is at most so many times the best.
+const TIME_RATIO: f64 = 1.02;
 /// Room for the knots of a leg: so many, and one more for each of so many mm.
 const KNOTS: f64 = 130.0;
 const KNOT_MM: f64 = 0.25;
 
-/// What a point of a line may be off it, in roundings of the machine's lengths.
-const ROUNDING: f64 = 100.0;
-
-/// The paths of the lines and of the rounded corners between them.
+/// The paths along the lines.
 #[derive(Debug, Default)]
 struct Legs {
     paths: Vec<DeltaPath>,
-    /// For each the index of the move whose line it is, or with whose end it begins.
-    lines: Vec<usize>,
+    /// For each the index of the move on whose line it ends.
+    moves: Vec<usize>,
+    /// How far they are from the lines at most.
+    departure_mm: f64,
 }
 
 /// Whether the machine can go along a line with room to both sides.
@@ -58,9 +58,9 @@ pub(crate) fn run(
         legs.paths.iter(),
         machine.axis_limits(),
         Accuracy {
-            min_segments: LEAST_SEGMENTS,
+            min_segments: 2,
             max_departure: machine.tolerance_mm,
-            max_time_ratio: f64::INFINITY,
+            max_time_ratio: TIME_RATIO,
         },
         |path, span| path.departure(span),
         &mut knots,
@@ -87,8 +87,8 @@ pub(crate) fn run(
             step(edge.ticks, position)?;
         }
         // The last row of a leg is the latest.
-        let ended = legs.lines.get(row.leg).copied();
-        if let Some(ended) = ended.and_then(|line| moves.get_mut(line)) {
+        let ended = legs.moves.get(row.leg).copied();
+        if let Some(ended) = ended.and_then(|it| moves.get_mut(it)) {
             ended.end_ticks = steps.end_ticks();
         }
     }
@@ -102,37 +102,34 @@ pub(crate) fn run(
         let [_, to] = &span.rows;
         Some(legs.paths.get(to.leg)?.departure(&span))
     });
-    Ok(departures.fold(0.0, f64::max))
+    Ok(departures.fold(0.0, f64::max) + legs.departure_mm)
 }
 
-/// The lines and the rounded corners between them, each at the feed of its move; a corner at the
-/// lower one of both.
+/// The curves along the lines, each at the feed of its move.
 fn legs(machine: &Machine, moves: &[Move]) -> Result<Legs> {
-    let start = moves.iter().take(1).map(|first| first.from);
-    let points = start.chain(moves.iter().map(|it| it.to));
-    let mut lines = moves.iter().enumerate().filter(|(_, it)| it.from != it.to);
-    let mut line = lines.next();
-    let mut legs = Legs::default();
-    for curve in Rounded::new(points.map(Into::into), machine.corner_mm)? {
-        let curve: Curve<3> = curve?;
-        let (index, now) = line.context("a curve behind the last line")?;
-        let end = Point3::from(curve.end());
-        let mut feed_mm_s = now.feed_mm_s;
-        if distance(end, now.from, now.to) > ROUNDING * machine.delta.tolerance() {
-            line = lines.next();
-            let (_, next) = line.context("a corner behind the last line")?;
-            feed_mm_s = feed_mm_s.min(next.feed_mm_s);
-        } else if end == now.to {
-            line = lines.next();
-        }
-        let tool = ToolLimits {
-            feed: feed_mm_s,
+    let start = moves
+        .iter()
+        .take(1)
+        .map(|first| Waypoint::from(<[f64; 3]>::from(first.from)));
+    let points = start.chain(moves.iter().map(|it| Waypoint {
+        point: it.to.into(),
+        tool: Some(ToolLimits {
+            feed: it.feed_mm_s,
             acceleration: Some(machine.acceleration_mm_s2),
-        };
-        let path = machine.delta.path(curve.with_tool(tool));
+        }),
+    }));
+    let mut memory = [Vertex::default(); VERTICES];
+    let mut curves = Smoothed::new(points, machine.corner_mm, &mut memory)?;
+    let mut legs = Legs::default();
+    for curve in curves.by_ref() {
+        let curve: Curve<3> = curve?;
+        let [_, end] = curve.between().context("a curve of no points")?;
+        let path = machine.delta.path(curve);
         legs.paths
-            .push(path.with_context(|| format!("the corner at the end of move {}", index + 1))?);
-        legs.lines.push(index);
+            .push(path.with_context(|| format!("move {end}"))?);
+        // Point 0 is the start.
+        legs.moves.push(end.saturating_sub(1));
     }
+    legs.departure_mm = curves.departure();
     Ok(legs)
 }

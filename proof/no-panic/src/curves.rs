@@ -9,7 +9,7 @@ use delta_kin::{Delta, DeltaPath, DeltaPathError};
 use no_panic::no_panic;
 use path_timing::{
     Accuracy, AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, PathPoint,
-    PlanError, Rounded, Row, Span, Table, segments_within,
+    PlanError, Row, Smoothed, Span, Table, Vertex, segments_within,
 };
 use scara_kin::{Arm, ArmPath, ArmPathError, DiscPath, Elbow};
 
@@ -48,16 +48,18 @@ type Corners = IntoIter<[f64; 2], 4>;
 
 #[no_panic]
 #[inline(never)]
-fn rounded_next(rounded: &mut Rounded<Corners, 2>) -> Option<Result<Curve<2>, CurveError>> {
-    rounded.next()
+fn smoothed_next(
+    smoothed: &mut Smoothed<'_, Corners, 2>,
+) -> Option<Result<Curve<2>, CurveError>> {
+    smoothed.next()
 }
 
-type Stream = Flatten<Rounded<Corners, 2>>;
+type Stream<'m> = Flatten<Smoothed<'m, Corners, 2>>;
 
 #[no_panic]
 #[inline(never)]
 fn stream_next(
-    motion: &mut LookAhead<'_, Curve<2>, Stream, impl FnMut(&Curve<2>) -> Segments>,
+    motion: &mut LookAhead<'_, Curve<2>, Stream<'_>, impl FnMut(&Curve<2>) -> Segments>,
 ) -> Result<Option<Row<[f64; 2]>>, PlanError<Infallible>> {
     motion.next_row()
 }
@@ -187,10 +189,11 @@ pub fn run() {
         black_box(2.0),
     ));
     let corners = black_box([[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]]);
-    if let Ok(rounded) = Rounded::new(corners, black_box(0.05)) {
-        black_box(rounded_next(&mut black_box(rounded.clone())).is_some());
+    let mut vertices = black_box([Vertex::default(); 8]);
+    if let Ok(mut smoothed) = Smoothed::new(corners, black_box(0.05), &mut vertices) {
+        black_box(smoothed_next(black_box(&mut smoothed)).is_some());
         let mut window = black_box([Knot::default(); 16]);
-        let curves = black_box(rounded).flatten();
+        let curves = black_box(smoothed).flatten();
         if let Ok(mut motion) = LookAhead::new(curves, [limits; 2], segments_of, &mut window) {
             black_box(stream_next(black_box(&mut motion)).is_ok());
         }

@@ -1,18 +1,21 @@
 //! Up, over, down: from one place to another, round what stands between.
 
-use path_timing::{Curve, CurveError, Rounded, ToolLimits};
+use path_timing::{Curve, CurveError, Smoothed, ToolLimits, Vertex};
 
 use super::{DeltaPath, DeltaPathError};
 use crate::Delta;
 
-/// Largest tolerance of a corner, as a fraction of the shorter line: a blend then takes four tenths
-/// of each line.
-const CORNER: f64 = 0.125;
+/// Largest tolerance of a corner, as a fraction of the shortest line: it then takes four tenths of
+/// that line.
+const CORNER: f64 = 0.1;
+
+/// Vertices in sight: more than there are.
+const VERTICES: usize = 6;
 
 impl Delta {
     /// The paths from one place straight to the height `z`, over, and straight down to another, in one
-    /// go: three lines and two blends, which pass within `tolerance` of the corners, at most an
-    /// eighth of the shorter line.
+    /// go: three lines, and two curves at each of the corners, within `tolerance` of these, at most a
+    /// tenth of the shortest line.
     ///
     /// ```
     /// use delta_kin::{Delta, DeltaPath};
@@ -38,17 +41,20 @@ impl Delta {
         z: f64,
         tolerance: f64,
         tool: Option<ToolLimits>,
-    ) -> Result<[DeltaPath; 5], DeltaPathError> {
+    ) -> Result<[DeltaPath; 7], DeltaPathError> {
         let [above, above_there] = [from, to].map(|[x, y, _]| [x, y, z]);
         let lengths = [(from, above), (above, above_there), (above_there, to)]
             .map(|(from, to)| Curve::line(from, to).map(|line| line.length()));
         let [up, over, down] = lengths;
         let largest = up?.min(over?).min(down?) * CORNER;
-        let mut curves = Rounded::new([from, above, above_there, to], tolerance.min(largest))?;
+        let points = [from, above, above_there, to];
+        let mut memory = [Vertex::default(); VERTICES];
+        let mut curves = Smoothed::new(points, tolerance.min(largest), &mut memory)?;
         let mut next = || {
             let curve = curves.next().ok_or(CurveError::NoLength)??;
             self.path(tool.map_or(curve, |tool| curve.with_tool(tool)))
         };
-        Ok([next()?, next()?, next()?, next()?, next()?])
+        let [a, b, c, d] = [next()?, next()?, next()?, next()?];
+        Ok([a, b, c, d, next()?, next()?, next()?])
     }
 }

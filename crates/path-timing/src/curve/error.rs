@@ -30,10 +30,18 @@ pub enum CurveError {
         /// The parameter of the Bézier curve, 0..=1.
         parameter: f64,
     },
-    /// A tolerance of a corner that is not a positive finite number.
-    #[error("a corner tolerance of {} is not a positive finite number", short(.tolerance))]
+    /// A tolerance that is neither 0 nor within 1e-50 to 1e50.
+    #[error("a tolerance of {} is neither 0 nor within 1e-50 to 1e50", short(.tolerance))]
     Tolerance {
         /// The tolerance given.
         tolerance: f64,
+    },
+    /// Memory for too few vertices.
+    #[error("memory for {available} vertices: {needed} are needed")]
+    Memory {
+        /// Vertices needed.
+        needed: usize,
+        /// Vertices given.
+        available: usize,
     },
 }

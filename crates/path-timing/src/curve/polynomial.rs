@@ -90,13 +90,6 @@ impl<const D: usize> Polynomial<D> {
         }
     }
 
-    /// The curve elsewhere.
-    pub(super) fn moved(mut self, by: &[f64; D]) -> Self {
-        let [start, ..] = &mut self.coefficients;
-        *start = along(start, 1.0, by);
-        self
-    }
-
     pub(super) fn length(&self) -> f64 {
         let [.., last] = self.lengths;
         last

@@ -3,12 +3,11 @@
 use core::f64::consts::PI;
 
 use path_timing::{
-    AxisLimits, Cubic, Curve, FeedCeiling, Knot, LookAhead, PlanError, Rounded, Row, Table,
-    segments_within,
+    AxisLimits, Cubic, Curve, FeedCeiling, Knot, LookAhead, PlanError, Row, Table, segments_within,
 };
 use proptest::prelude::*;
 
-use crate::support::polyline::within;
+use crate::support::polyline::{smoothed, within};
 
 const RADIUS: f64 = 50.0;
 const TOLERANCE: f64 = 0.01;
@@ -62,8 +61,7 @@ fn run(table: &Table<'_, [f64; 2]>, feeds: &[(f64, usize)]) -> Vec<Row<[f64; 2]>
 #[test]
 fn a_table_keeps_its_departure_where_it_does_not_stop() {
     let corners = [[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [10.0, 60.0]];
-    let curves: Result<Vec<_>, _> = Rounded::new(corners, 0.05).unwrap().collect();
-    let curves = curves.unwrap();
+    let curves = smoothed(&corners, 0.05);
     let mut knots = vec![Knot::default(); 4000];
     for jerk in [None, Some(20_000.0)] {
         let limits = [limits(100.0, 1000.0, jerk); 2];

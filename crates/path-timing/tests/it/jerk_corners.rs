@@ -4,14 +4,14 @@ use core::convert::Infallible;
 use core::fmt::Debug;
 
 use path_timing::{
-    AxisLimits, Corner, Curve, Knot, Path, PathFn, PlanError, Rounded, Row, Table, ToolLimits,
+    AxisLimits, Corner, Curve, Knot, Path, PathFn, PlanError, Row, Table, ToolLimits,
 };
 use proptest::prelude::*;
 
 use crate::support::jerk::{bits, check_jerk, feeds, run_under};
 use crate::support::limits::ROUNDING;
 use crate::support::machine::limits;
-use crate::support::polyline::{lines, within};
+use crate::support::polyline::{lines, smoothed, within};
 
 /// A polar arm, and a stage.
 const ARM: [AxisLimits; 2] = [
@@ -26,8 +26,7 @@ fn rounded(
     tolerance: f64,
     corner: Corner<[f64; 2]>,
 ) -> Vec<impl Path<Axes = [f64; 2], Error = Infallible> + Clone + Debug + use<>> {
-    let curves = Rounded::new(points.iter().copied(), tolerance).unwrap();
-    let curves = curves.map(Result::unwrap);
+    let curves = smoothed(points, tolerance).into_iter();
     curves
         .map(|curve: Curve<2>| {
             PathFn::new(curve.length(), move |s| curve.point(s)).with_corner(corner)
@@ -195,8 +194,7 @@ proptest! {
         points in points(), tolerance in 0.1..5.0_f64, allowed in 0.001..0.1_f64,
         jerk in 1e4..1e6_f64,
     ) {
-        let curves = Rounded::new(points.iter().copied(), tolerance).unwrap();
-        let curves: Vec<Curve<2>> = curves.map(Result::unwrap).collect();
+        let curves = smoothed(&points, tolerance);
         let limits = [limits(300.0, 2000.0, Some(jerk)); 2];
         let mut knots = vec![Knot::default(); 20_000];
         let legs = curves.iter().copied();

@@ -5,7 +5,7 @@ use core::cell::{Cell, RefCell};
 
 use path_timing::{
     AxisLimits, Corner, Curve, FeedCeiling, Knot, LookAhead, Path, PathFn, PathPoint, PlanError,
-    Rounded, Row, Table,
+    Row, Smoothed, Table, Vertex,
 };
 use proptest::prelude::*;
 
@@ -262,7 +262,9 @@ fn a_hold_rests_on_the_path_and_goes_on() {
 fn a_rounded_polyline_is_run_without_a_stop() {
     let corners = [[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [10.0, 60.0]];
     let points = (0..400).map(|n: usize| corners[n % 4]);
-    let curves = Rounded::new(points, 0.05).unwrap().map(Result::unwrap);
+    let mut memory = [Vertex::default(); 8];
+    let curves = Smoothed::new(points, 0.05, &mut memory).unwrap();
+    let curves = curves.map(Result::unwrap);
     let mut window = slots(64);
     let limits = [limits(100.0, 1000.0, None); 2];
     let motion = LookAhead::new(curves, limits, |_| Ok(12), &mut window).unwrap();

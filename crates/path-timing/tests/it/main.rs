@@ -11,6 +11,7 @@ mod jerk_corners;
 mod look_ahead;
 mod optimum;
 mod run;
+mod smoothed;
 mod support;
 mod table;
 mod toppra;

@@ -4,3 +4,4 @@ pub(crate) mod jerk;
 pub(crate) mod limits;
 pub(crate) mod machine;
 pub(crate) mod polyline;
+pub(crate) mod vectors;

@@ -19,8 +19,8 @@ use crate::{Joints, TangentError};
 /// ```
 ///
 /// κ is the curvature, signed. The disc is an axis like others: where the curve bends more than the
-/// disc can follow, all slow down. A corner has no heading: it is a blend
-/// ([`Rounded`](path_timing::Rounded)), or the end of a path, where the disc is lifted and turned to
+/// disc can follow, all slow down. A corner has no heading: it is smoothed
+/// ([`Smoothed`](path_timing::Smoothed)), or the end of a path, where the disc is lifted and turned to
 /// the start of the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiscPath {
@@ -87,9 +87,10 @@ fn headings(path: &ArmPath, start: f64) -> Result<Turns, ArmPathError> {
     let (curve, mut heading, mut s) = (&path.curve, Turns::new(start), 0.0);
     let mut last = start;
     while s < curve.length() {
-        let [x, y] = curve.at(s).curvature;
+        let at = curve.at(s);
+        let (first, second) = (Vector2::from(at.tangent), Vector2::from(at.curvature));
         let (most, least) = (curve.length() / STEPS, curve.length() * LEAST_STEP);
-        let step = (STEP / Vector2::new(x, y).norm()).max(least).min(most);
+        let step = (STEP * first.norm() / second.norm()).max(least).min(most);
         s = (s + step).min(curve.length());
         last += half_turn(direction(curve.at(s).tangent) - last);
         if !heading.add(s, last) {

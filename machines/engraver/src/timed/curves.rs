@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use kurbo::{BezPath, ParamCurve as _, PathEl, PathSeg, Point};
-use path_timing::{Curve, CurveError, Rounded};
+use path_timing::{Curve, CurveError, Smoothed, Vertex};
 
-/// The curves of an outline: its Bézier curves as they are, its lines with blends at corners of up to
-/// `corner_rad`, within `tolerance_mm`.
+/// The curves of an outline: its Bézier curves as they are, its lines smoothed within `tolerance_mm`,
+/// but for corners above `corner_rad`.
 pub(super) fn curves_of(
     outline: &BezPath,
     is_reversed: bool,
@@ -32,6 +32,9 @@ pub(super) fn curves_of(
     Ok(collected.curves)
 }
 
+/// Vertices of lines in sight at a time.
+const VERTICES: usize = 32;
+
 struct Collected {
     tolerance_mm: f64,
     corner_rad: f64,
@@ -43,7 +46,8 @@ struct Collected {
 impl Collected {
     fn add(&mut self, segment: PathSeg) -> Result<()> {
         if let PathSeg::Line(line) = segment {
-            return self.line(xy(line.p0), xy(line.p1));
+            self.line(xy(line.p0), xy(line.p1));
+            return Ok(());
         }
         let cubic = segment.to_cubic();
         match Curve::bezier([cubic.p0, cubic.p1, cubic.p2, cubic.p3].map(xy)) {
@@ -62,7 +66,7 @@ impl Collected {
                     }
                 });
                 for to in points {
-                    self.line(from, to)?;
+                    self.line(from, to);
                     from = to;
                 }
                 Ok(())
@@ -72,26 +76,17 @@ impl Collected {
         }
     }
 
-    fn line(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<()> {
-        let line = match Curve::line(from, to) {
-            Ok(line) => line,
-            Err(CurveError::NoLength) => return Ok(()),
-            Err(error) => return Err(error.into()),
-        };
-        if let [.., a, b] = self.lines[..]
-            && kink_rad(&Curve::line(a, b)?, &line).abs() > self.corner_rad
-        {
-            self.end_lines()?;
-        }
+    fn line(&mut self, from: [f64; 2], to: [f64; 2]) {
         if self.lines.is_empty() {
             self.lines.push(from);
         }
         self.lines.push(to);
-        Ok(())
     }
 
     fn end_lines(&mut self) -> Result<()> {
-        for curve in Rounded::new(self.lines.drain(..), self.tolerance_mm)? {
+        let mut memory = [Vertex::default(); VERTICES];
+        let curves = Smoothed::new(self.lines.drain(..), self.tolerance_mm, &mut memory)?;
+        for curve in curves.with_stops_above(self.corner_rad) {
             self.curves.push(curve?);
         }
         Ok(())

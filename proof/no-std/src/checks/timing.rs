@@ -4,7 +4,8 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use path_timing::{
-    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Rounded, Table,
+    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Smoothed, Table,
+    Vertex,
     segments_within,
 };
 
@@ -69,7 +70,8 @@ pub fn curve() -> Option<()> {
 pub fn stream() -> Option<()> {
     let limits = black_box([AXIS; 2]);
     let corners = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0]];
-    let curves = Rounded::new(corners, ALLOWED_MM).ok()?;
+    let mut vertices = [Vertex::default(); 6];
+    let curves = Smoothed::new(corners, ALLOWED_MM, &mut vertices).ok()?;
     let segments = |curve: &Curve<2>| segments_within(curve, 4, ALLOWED_MM, Curve::departure);
     let mut window = [Knot::default(); 16];
     let curves = curves.map_while(Result::ok);

@@ -3,7 +3,7 @@
 use core::convert::Infallible;
 use core::fmt::Debug;
 
-use path_timing::{Accuracy, Corner, Path, PathFn, ToolLimits};
+use path_timing::{Accuracy, Corner, Curve, Path, PathFn, Smoothed, ToolLimits, Vertex};
 
 use crate::support::machine::Line;
 
@@ -41,4 +41,11 @@ pub(crate) const fn within(min_segments: u32, max_departure: f64) -> Accuracy {
         max_departure,
         max_time_ratio: f64::INFINITY,
     }
+}
+
+/// The curves of a smoothed polyline.
+pub(crate) fn smoothed<const D: usize>(points: &[[f64; D]], tolerance: f64) -> Vec<Curve<D>> {
+    let mut memory = [Vertex::default(); 32];
+    let curves = Smoothed::new(points.iter().copied(), tolerance, &mut memory);
+    curves.unwrap().collect::<Result<_, _>>().unwrap()
 }

@@ -1,0 +1,156 @@
+//! Where one curve ends and the next begins: at some of the knots of all humps.
+
+use super::sight::Sight;
+use super::vertex::Vertex;
+
+/// Where a curve may end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    pub(super) s: f64,
+    /// The vertex with which the edge begins that comes here.
+    pub(super) edge: usize,
+    /// Whether it stands on the vertex after that.
+    pub(super) is_vertex: bool,
+    /// Whether the direction steps there.
+    pub(super) is_step: bool,
+    /// The most by which the curve departs from the humps.
+    pub(super) departure: f64,
+}
+
+/// A knot of the humps.
+#[derive(Debug, Clone, Copy)]
+struct HumpKnot {
+    s: f64,
+    /// Jump of the third derivative.
+    jump: f64,
+    /// Whether it is the vertex itself.
+    is_vertex: bool,
+}
+
+/// Knots nearer than this fraction of the coordinates are one.
+const LEAST: f64 = 1e-9;
+
+/// Of the deflection of a clamped beam in whose middle a point load stands.
+const BEAM: f64 = 192.0;
+
+/// What jumps may add up to with the square of the length: a clamped beam then has a slope of about a
+/// sixty-fourth of that, by which the tool is faster or slower than it should.
+const SLOPE: f64 = 1.0;
+
+/// The knots of all humps in their order. Those of one kind are in the order of the vertices.
+struct HumpKnots<'a, const D: usize> {
+    vertices: &'a [Vertex<D>],
+    /// Of the next hump that begins, has its middle, ends.
+    next: [usize; 3],
+}
+
+impl<'a, const D: usize> HumpKnots<'a, D> {
+    /// Those behind `s`.
+    fn after(s: f64, vertices: &'a [Vertex<D>]) -> Self {
+        let first = |knot: fn(&Vertex<D>) -> f64| {
+            let before = vertices.iter().take_while(|vertex| knot(vertex) <= s);
+            before.count()
+        };
+        Self {
+            vertices,
+            next: [first(Vertex::begin), first(|it| it.s), first(Vertex::end)],
+        }
+    }
+}
+
+impl<const D: usize> Iterator for HumpKnots<'_, D> {
+    type Item = HumpKnot;
+
+    fn next(&mut self) -> Option<HumpKnot> {
+        let [begin, middle, end] = &mut self.next;
+        let at = |index: usize, knot: fn(&Vertex<D>) -> f64| {
+            self.vertices.get(index).map_or(f64::INFINITY, knot)
+        };
+        let begins = at(*begin, Vertex::begin);
+        let stands = at(*middle, |it| it.s);
+        let ends = at(*end, Vertex::end);
+        let (index, is_vertex) = if begins <= stands && begins <= ends {
+            (begin, false)
+        } else if stands <= ends {
+            (middle, true)
+        } else {
+            (end, false)
+        };
+        let vertex = self.vertices.get(*index)?;
+        *index = index.saturating_add(1);
+        Some(HumpKnot {
+            s: begins.min(stands).min(ends),
+            jump: vertex.jump() * if is_vertex { 2.0 } else { 1.0 },
+            is_vertex,
+        })
+    }
+}
+
+impl<const D: usize> Sight<'_, D> {
+    /// The farthest knot at which a curve from `s`, on the edge that begins at a vertex, may end; none
+    /// while there may be a farther one, but for the last chance.
+    pub(super) fn end_after(&self, s: f64, edge: usize, is_last_chance: bool) -> Option<End> {
+        let decided = self.vertices().get(..self.decided())?;
+        let horizon = self.horizon();
+        // Jumps inside a curve that ends at the next knot, and those at the knot before.
+        let (mut edge, mut sum, mut last_jumps) = (edge, 0.0, 0.0);
+        let mut farthest: Option<End> = None;
+        let first = decided.first()?;
+        let least = LEAST * first.point.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        for knot in HumpKnots::after(s, decided) {
+            if knot.s > horizon {
+                return farthest.filter(|_| is_last_chance);
+            }
+            let next = edge.saturating_add(usize::from(knot.is_vertex));
+            let must_end = knot.is_vertex && self.must_end(next);
+            let is_other = farthest.is_none_or(|end| knot.s - end.s > least);
+            if is_other {
+                sum += last_jumps;
+                last_jumps = 0.0;
+            }
+            let length = knot.s - s;
+            let departure = sum * length * length * length / BEAM;
+            let is_off = departure > self.for_cubics() || sum * length * length > SLOPE;
+            if is_other && farthest.is_some() && is_off {
+                return farthest;
+            }
+            if must_end || length > least {
+                farthest = Some(End {
+                    s: knot.s,
+                    edge,
+                    is_vertex: knot.is_vertex,
+                    is_step: knot.is_vertex && self.is_step(next),
+                    departure,
+                });
+                last_jumps += knot.jump;
+            }
+            edge = next;
+            if must_end {
+                return farthest;
+            }
+        }
+        farthest.filter(|_| is_last_chance)
+    }
+
+    /// Up to where all humps are known.
+    fn horizon(&self) -> f64 {
+        let decided = self.decided();
+        let Some(next) = self.get(decided) else {
+            return f64::INFINITY;
+        };
+        let before = self.get(decided.wrapping_sub(1));
+        before.map_or(0.0, |before| next.s - before.widest_next(next))
+    }
+
+    /// Whether the direction steps at a vertex: it has no hump.
+    fn is_step(&self, index: usize) -> bool {
+        let vertex = self.get(index);
+        vertex.is_some_and(|it| it.is_stop || (it.width == 0.0 && it.sharpness > 0.0))
+    }
+
+    /// Whether a curve has to end at a vertex: the direction steps there, or the tool has other limits.
+    fn must_end(&self, index: usize) -> bool {
+        let tool = |index| self.get(index).map(|vertex| vertex.tool);
+        self.is_step(index) || tool(index) != tool(index.saturating_add(1))
+    }
+}
