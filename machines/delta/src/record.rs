@@ -34,6 +34,7 @@ pub struct Record {
     pub(crate) moves: Vec<Move>,
     /// Of lines with rounded corners.
     pub(crate) departure_bound_mm: Option<f64>,
+    pub(crate) smoothed_bound_mm: Option<f64>,
     pub(crate) refusals: Vec<Refusal>,
     pub(crate) notes: Notes,
 }
@@ -44,6 +45,7 @@ impl Record {
             motion,
             moves: Vec::new(),
             departure_bound_mm: None,
+            smoothed_bound_mm: None,
             refusals: Vec::new(),
             notes: Notes::default(),
         }

@@ -24,9 +24,11 @@ pub struct Report {
     motion: &'static str,
     /// Farthest that the simulated platform was from the lines asked for.
     max_path_error_mm: f64,
-    /// With rounded corners, a proven bound on how far the platform leaves the rounded lines, whole
+    /// With smoothed lines, a proven bound on how far the platform leaves the smooth curves, whole
     /// steps not counted.
     departure_bound_mm: Option<f64>,
+    /// And one on how far these leave the lines: what of `corner_mm` is used.
+    smoothed_bound_mm: Option<f64>,
     duration_s: f64,
     /// Of all motors, either way.
     steps: u64,
@@ -79,6 +81,7 @@ impl Report {
             motion: record.motion.name(),
             max_path_error_mm: run.driven.max_path_error_mm,
             departure_bound_mm: record.departure_bound_mm,
+            smoothed_bound_mm: record.smoothed_bound_mm,
             duration_s: run.driven.duration_s,
             steps: run.driven.steps,
             rad_per_step: machine.rad_per_step,

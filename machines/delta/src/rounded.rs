@@ -12,6 +12,8 @@ use crate::record::Move;
 
 /// Vertices of the lines in sight at a time.
 const VERTICES: usize = 32;
+/// Segments of a leg at the least: of fewer it cannot be told whether ball joints hold.
+const LEAST_SEGMENTS: u32 = 16;
 /// The time is at most so many times the best.
 const TIME_RATIO: f64 = 1.02;
 /// Room for the knots of a leg: so many, and one more for each of so many mm.
@@ -22,10 +24,22 @@ const KNOT_MM: f64 = 0.25;
 #[derive(Debug, Default)]
 struct Legs {
     paths: Vec<DeltaPath>,
-    /// For each the index of the move on whose line it ends.
-    moves: Vec<usize>,
+    /// For each the indices of the moves on whose lines it begins and ends.
+    moves: Vec<[usize; 2]>,
     /// How far they are from the lines at most.
     departure_mm: f64,
+}
+
+impl Legs {
+    /// The move on whose line a place is: those of a leg share its length.
+    fn at(&self, leg: usize, s: f64) -> Option<usize> {
+        let (path, [begin, end]) = (self.paths.get(leg)?, self.moves.get(leg)?);
+        let length = path.length();
+        let later = (*begin..*end).zip(1_u32..);
+        let lines = f64::from(u32::try_from(end.saturating_sub(*begin)).ok()?) + 1.0;
+        let passed = later.take_while(|(_, n)| f64::from(*n) / lines * length < s);
+        Some(begin.saturating_add(passed.count()))
+    }
 }
 
 /// Whether the machine can go along a line with room to both sides.
@@ -37,13 +51,13 @@ pub(crate) fn check(machine: &Machine, from: Point3<f64>, to: Point3<f64>) -> Re
 }
 
 /// Runs the lines of moves, from rest to rest: calls `step` with the time and the position after
-/// each step, and sets the times at which the moves end, or round their corners. Returns a proven bound
-/// on how far the platform leaves its lines and their rounded corners between steps, in mm.
+/// each step, and sets the times at which the moves end, or round their corners. Returns proven bounds
+/// in mm: how far the platform leaves its curves between whole steps, and these the lines.
 pub(crate) fn run(
     machine: &Machine,
     moves: &mut [Move],
     mut step: impl FnMut(u64, [i32; 3]) -> Result<()>,
-) -> Result<f64> {
+) -> Result<[f64; 2]> {
     let legs = legs(machine, moves)?;
     let knots = legs.paths.iter();
     let knots = knots.map(|path| KNOTS + path.length() / KNOT_MM);
@@ -58,7 +72,7 @@ pub(crate) fn run(
         legs.paths.iter(),
         machine.axis_limits(),
         Accuracy {
-            min_segments: 2,
+            min_segments: LEAST_SEGMENTS,
             max_departure: machine.tolerance_mm,
             max_time_ratio: TIME_RATIO,
         },
@@ -68,7 +82,7 @@ pub(crate) fn run(
 
     let mut rows = table.rows();
     let Some(first) = rows.next() else {
-        return Ok(0.0);
+        return Ok([0.0; 2]);
     };
     let tick_rate = Rate::from_hz(TICKS_PER_S)?;
     let timing = StepDirTiming::DRV8825.min_intervals(tick_rate);
@@ -86,8 +100,8 @@ pub(crate) fn run(
             }
             step(edge.ticks, position)?;
         }
-        // The last row of a leg is the latest.
-        let ended = legs.moves.get(row.leg).copied();
+        // The last row on a move is the latest.
+        let ended = legs.at(row.leg, row.s);
         if let Some(ended) = ended.and_then(|it| moves.get_mut(it)) {
             ended.end_ticks = steps.end_ticks();
         }
@@ -102,7 +116,7 @@ pub(crate) fn run(
         let [_, to] = &span.rows;
         Some(legs.paths.get(to.leg)?.departure(&span))
     });
-    Ok(departures.fold(0.0, f64::max) + legs.departure_mm)
+    Ok([departures.fold(0.0, f64::max), legs.departure_mm])
 }
 
 /// The curves along the lines, each at the feed of its move.
@@ -123,12 +137,12 @@ fn legs(machine: &Machine, moves: &[Move]) -> Result<Legs> {
     let mut legs = Legs::default();
     for curve in curves.by_ref() {
         let curve: Curve<3> = curve?;
-        let [_, end] = curve.between().context("a curve of no points")?;
+        let [begin, end] = curve.between().context("a curve of no points")?;
         let path = machine.delta.path(curve);
         legs.paths
             .push(path.with_context(|| format!("move {end}"))?);
-        // Point 0 is the start.
-        legs.moves.push(end.saturating_sub(1));
+        // Point 0 is the start, point 1 the end of the first move.
+        legs.moves.push([begin, end.saturating_sub(1)]);
     }
     legs.departure_mm = curves.departure();
     Ok(legs)

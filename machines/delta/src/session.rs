@@ -101,8 +101,10 @@ impl<'a> Session<'a> {
     pub fn finish(mut self) -> Result<Record> {
         if self.motion == Motion::Rounded {
             let moves = &mut self.record.moves;
-            let bound_mm = rounded::run(self.machine, moves, &mut *self.observer)?;
-            self.record.departure_bound_mm = Some(bound_mm);
+            let bounds_mm = rounded::run(self.machine, moves, &mut *self.observer)?;
+            let [departure_mm, smoothed_mm] = bounds_mm.map(Some);
+            self.record.departure_bound_mm = departure_mm;
+            self.record.smoothed_bound_mm = smoothed_mm;
         }
         Ok(self.record)
     }

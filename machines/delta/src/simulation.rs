@@ -202,6 +202,9 @@ fn by_ticks(machine: &Machine, moves: &[Move]) -> Result<Driven> {
     follower.finish(now_s, TRAINS_STEPS)
 }
 
+/// Lines before and after that which the platform is on by the time, one of which it may be on.
+const BESIDE: usize = 2;
+
 /// The simulated machine on its way along the lines.
 struct Follower<'a> {
     machine: &'a Machine,
@@ -247,15 +250,15 @@ impl<'a> Follower<'a> {
         Ok(point)
     }
 
-    /// The nearer of the line that it is on by the time, and the next one.
+    /// The nearest of the lines next to that which it is on by the time.
     fn follow_rounded(&mut self, t_s: f64, point: Point3<f64>) {
-        while let [now, rest @ ..] = self.lines
-            && !rest.is_empty()
-            && t_s > seconds(now.end_ticks)
+        while let [_, .., last] = self.lines.get(..=BESIDE).unwrap_or_default()
+            && self.lines.len() > BESIDE.saturating_add(1)
+            && t_s > seconds(last.end_ticks)
         {
-            self.lines = rest;
+            self.lines = self.lines.get(1..).unwrap_or_default();
         }
-        let near = self.lines.iter().take(2);
+        let near = self.lines.iter().take(2 * BESIDE + 1);
         let off = near.map(|line| distance(point, line.from, line.to));
         let off = off.fold(f64::INFINITY, f64::min);
         if off.is_finite() {

@@ -69,7 +69,9 @@ impl<const D: usize> Thinning<D> {
         };
         let Some(to) = self.to else {
             if self.is_same(&point.at, &from) {
-                self.start_departs = Self::largest(self.allowed);
+                if norm(&difference(&point.at, &from)) > 0.0 {
+                    self.start_departs = Self::largest(self.allowed);
+                }
             } else {
                 let thinned = self.start_departs;
                 self.begin(from, Point { thinned, ..point });
@@ -77,7 +79,9 @@ impl<const D: usize> Thinning<D> {
             return None;
         };
         if self.is_same(&point.at, &to.at) {
-            self.pass_over();
+            if norm(&difference(&point.at, &to.at)) > 0.0 {
+                self.pass_over();
+            }
             return None;
         }
         if to.tool == point.tool && self.extend(&from, point) {
