@@ -141,7 +141,7 @@ fn pick_and_place(
     delta: &Delta,
     [from, to]: [[f64; 3]; 2],
     z: f64,
-) -> Result<[DeltaPath; 5], DeltaPathError> {
+) -> Result<[DeltaPath; 7], DeltaPathError> {
     delta.pick_and_place(from, to, z, 5.0, None)
 }
 
