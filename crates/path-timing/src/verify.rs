@@ -79,7 +79,7 @@ pub enum Violation<E> {
         /// Time of the row.
         time_s: f64,
     },
-    /// Paths are not in their order, or a parameter does not rise.
+    /// Paths are not in their order, a parameter does not rise, or there is no such path.
     #[error("leg {leg}, at {}: the row does not follow the one before", short(.s))]
     Order {
         /// The leg of the row.
@@ -129,7 +129,7 @@ const ROUNDING: f64 = 1e-9;
 ///     max_slowness: 3.0,
 /// });
 /// for row in table.rows() {
-///     verifier.add(&row, |_leg| quarter, Curve::departure)?;
+///     verifier.add(&row, |leg| [quarter].get(leg).copied(), Curve::departure)?;
 /// }
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
@@ -198,26 +198,27 @@ impl<A: Axes> Verifier<A> {
         }
     }
 
-    /// The next row: proves the segment that leads to it. `path` gives the path of a leg, `departure`
-    /// bounds what a segment departs by.
+    /// The next row: proves the segment that leads to it. `path` gives the path of a leg, if there is
+    /// one, `departure` bounds what a segment departs by.
     ///
     /// # Errors
     /// [`Violation`]: the first promise that is broken.
     pub fn add<P: Path<Axes = A>>(
         &mut self,
         row: &Row<A>,
-        path: impl Fn(usize) -> P,
+        path: impl Fn(usize) -> Option<P>,
         departure: impl Fn(&P, &Span<A>) -> f64,
     ) -> Result<(), Violation<P::Error>> {
+        let (leg, s) = (row.leg, row.s);
+        let path = path(leg).ok_or(Violation::Order { leg, s })?;
         let Some(from) = self.before.replace(*row) else {
-            return self.add_first(row, &path(row.leg));
+            return self.add_first(row, &path);
         };
         self.check_order(&from, row)?;
         if row.duration_s == 0.0 {
-            return self.add_jump(&from, row, &path(row.leg));
+            return self.add_jump(&from, row, &path);
         }
         let begins_leg = row.leg != from.leg;
-        let path = path(row.leg);
         let start = if begins_leg { 0.0 } else { from.s };
         let span = Span {
             s: [start, row.s],
@@ -225,7 +226,6 @@ impl<A: Axes> Verifier<A> {
         };
         self.check_parameter(&path, &span)?;
         self.check_limits(&from, row)?;
-        let (leg, s) = (row.leg, row.s);
         path.check(&span)
             .map_err(|reason| Violation::Path { leg, s, reason })?;
         let (promised, departure) = (self.promise.max_departure, departure(&path, &span));

@@ -3,7 +3,9 @@
 use anyhow::{Context, Result};
 use delta_kin::DeltaPath;
 use nalgebra::Point3;
-use path_timing::{Accuracy, Curve, Knot, Path, Smoothed, Table, ToolLimits, Vertex, Waypoint};
+use path_timing::{
+    Accuracy, Curve, Knot, Path, Promise, Smoothed, Table, ToolLimits, Verifier, Vertex, Waypoint,
+};
 use stepper_sync::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming};
 
 use crate::machine::Machine;
@@ -80,6 +82,20 @@ pub(crate) fn run(
         &mut knots,
     )?;
 
+    let mut verifier = Verifier::new(Promise {
+        limits: machine.axis_limits(),
+        start_stop: [0.0; 3],
+        max_departure: machine.tolerance_mm,
+        // The feed may be far below what the arms are capable of.
+        max_slowness: f64::INFINITY,
+    });
+    for row in table.rows() {
+        verifier.add(
+            &row,
+            |leg| legs.paths.get(leg),
+            |path, span| path.departure(span),
+        )?;
+    }
     let mut rows = table.rows();
     let Some(first) = rows.next() else {
         return Ok([0.0; 2]);

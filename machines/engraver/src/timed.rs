@@ -7,7 +7,9 @@ mod player;
 
 use anyhow::{Context, Result, bail};
 use nalgebra::Point2;
-use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path as _, PlanError, Row, Table};
+use path_timing::{
+    Accuracy, AxisLimits, Curve, Knot, Path as _, PlanError, Promise, Row, Rows, Table, Verifier,
+};
 use pattern_codec::engraving::Axis;
 use scara_kin::{Elbow, Joints};
 
@@ -216,11 +218,28 @@ impl Planner<'_> {
                 &mut knots,
             );
             match table {
-                Ok(table) => return Ok(table.rows().collect()),
+                Ok(table) => return self.verified(run, table.rows()),
                 Err(PlanError::Memory { .. }) if room < most => room *= 4,
                 Err(error) => return Err(error.into()),
             }
         }
+    }
+
+    /// Rows that keep what is promised of them, by code that has no part in the plan.
+    fn verified(&self, run: &Run, rows: Rows<'_, [f64; 3]>) -> Result<Vec<Row<[f64; 3]>>> {
+        let mut verifier = Verifier::new(Promise {
+            limits: self.machine.joint_limits(),
+            start_stop: self.machine.start_speeds(),
+            max_departure: self.tolerance_mm,
+            // The tool's feed may be far below what the joints are capable of.
+            max_slowness: f64::INFINITY,
+        });
+        let mut verified = Vec::new();
+        for row in rows {
+            verifier.add(&row, |leg| run.get(leg), |leg, span| leg.departure(span))?;
+            verified.push(row);
+        }
+        Ok(verified)
     }
 
     fn travel(&mut self, to: Joints) -> Result<()> {

@@ -30,7 +30,7 @@ fn three_quarters() -> Curve<2> {
 fn verify(promise: Promise<[f64; 2]>, rows: &[Row<[f64; 2]>]) -> Result<(), Violation<Infallible>> {
     let mut verifier = Verifier::new(promise);
     rows.iter()
-        .try_for_each(|row| verifier.add(row, |_| three_quarters(), Curve::departure))
+        .try_for_each(|row| verifier.add(row, |_| Some(three_quarters()), Curve::departure))
 }
 
 /// Rows along the arc at any feeds, and with no change of it.
@@ -84,7 +84,9 @@ fn what_is_planned_is_proven() {
         };
         let mut verifier = Verifier::new(promise);
         for row in table.rows() {
-            verifier.add(&row, |leg| &paths[leg], |_, _| 0.0).unwrap();
+            verifier
+                .add(&row, |leg| paths.get(leg), |_, _| 0.0)
+                .unwrap();
         }
     }
 }
