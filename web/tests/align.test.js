@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, refusal, saved, shoot } from './browser.js';
+import { assertAccessible, open, refusal, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -128,23 +128,18 @@ test('a pendant that is clicked twice is off again, and can be switched on', asy
   await done();
 });
 
-for (const scheme of /** @type {const} */ (['light', 'dark'])) {
-  for (const [size, viewport] of Object.entries({
-    wide: { width: 1280, height: 1000 },
-    phone: { width: 390, height: 844 },
-  })) {
-    test(`it is readable: ${scheme}, ${size}`, async () => {
-      const { page, done } = await browser.visit('align.html', { viewport, colorScheme: scheme });
-      await aligned(page);
-      await page.getByLabel('Time', { exact: true }).fill('6');
-      await page.getByRole('button', { name: 'Switch on' }).click();
-      await page.locator('#display').filter({ hasText: 'SINGLE' }).waitFor();
-      await page.locator('summary').filter({ hasText: 'Machine' }).click();
-      await assertAccessible(page);
-      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
-      await page.locator('summary').filter({ hasText: 'Machine' }).click();
-      await shoot(page, `align-${scheme}-${size}`);
-      await done();
-    });
-  }
+for (const { scheme, size, viewport } of VIEWS) {
+  test(`it is readable: ${scheme}, ${size}`, async () => {
+    const { page, done } = await browser.visit('align.html', { viewport, colorScheme: scheme });
+    await aligned(page);
+    await page.getByLabel('Time', { exact: true }).fill('6');
+    await page.getByRole('button', { name: 'Switch on' }).click();
+    await page.locator('#display').filter({ hasText: 'SINGLE' }).waitFor();
+    await page.locator('summary').filter({ hasText: 'Machine' }).click();
+    await assertAccessible(page);
+    assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+    await page.locator('summary').filter({ hasText: 'Machine' }).click();
+    await shoot(page, `align-${scheme}-${size}`);
+    await done();
+  });
 }

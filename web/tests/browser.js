@@ -94,6 +94,18 @@ export const delayed = (operation) => `
     else setTimeout(() => post.call(this, order, ...rest), 2000);
   };`;
 
+const SIZES = /** @type {const} */ ([
+  ['wide', { width: 1280, height: 1000 }],
+  ['phone', { width: 390, height: 844 }],
+]);
+
+/** In which a page is looked at: each size and each scheme once, or with PAGE_TEST_VIEWS=all both in both. */
+export const VIEWS = SIZES.flatMap(([size, viewport], index) => {
+  const schemes = /** @type {const} */ (['light', 'dark']);
+  const own = process.env.PAGE_TEST_VIEWS === 'all' ? schemes : [schemes[index] ?? 'light'];
+  return own.map((scheme) => ({ scheme, size, viewport }));
+});
+
 /**
  * A picture for a person to look at.
  * @param {import('playwright-core').Page} page

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, delayed, open, refusal, saved, shoot } from './browser.js';
+import { assertAccessible, delayed, open, refusal, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -232,20 +232,15 @@ test('a score is read although the machine has another one to dance', async () =
   await done();
 });
 
-for (const scheme of /** @type {const} */ (['light', 'dark'])) {
-  for (const [size, viewport] of Object.entries({
-    wide: { width: 1280, height: 1000 },
-    phone: { width: 390, height: 844 },
-  })) {
-    test(`it is readable: ${scheme}, ${size}`, async () => {
-      const { page, done } = await browser.visit('dance.html', { viewport, colorScheme: scheme });
-      await danced(page);
-      await page.getByLabel('Time', { exact: true }).fill('24.6');
-      await page.getByRole('button', { name: 'left arm, to 80°' }).click();
-      await assertAccessible(page);
-      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
-      await shoot(page, `dance-${scheme}-${size}`);
-      await done();
-    });
-  }
+for (const { scheme, size, viewport } of VIEWS) {
+  test(`it is readable: ${scheme}, ${size}`, async () => {
+    const { page, done } = await browser.visit('dance.html', { viewport, colorScheme: scheme });
+    await danced(page);
+    await page.getByLabel('Time', { exact: true }).fill('24.6');
+    await page.getByRole('button', { name: 'left arm, to 80°' }).click();
+    await assertAccessible(page);
+    assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+    await shoot(page, `dance-${scheme}-${size}`);
+    await done();
+  });
 }

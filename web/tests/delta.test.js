@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, delayed, open, refusal, ROOT, saved, shoot } from './browser.js';
+import { assertAccessible, delayed, open, refusal, ROOT, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, file } from './command-line.js';
 
 const INPUTS = join(ROOT, 'machines/delta/inputs');
@@ -160,25 +160,20 @@ test('time and view are set by keys alone', async () => {
   await done();
 });
 
-for (const scheme of /** @type {const} */ (['light', 'dark'])) {
-  for (const [size, viewport] of Object.entries({
-    wide: { width: 1280, height: 1000 },
-    phone: { width: 390, height: 844 },
-  })) {
-    test(`it is readable: ${scheme}, ${size}`, async () => {
-      const { page, done } = await browser.visit('delta.html', { viewport, colorScheme: scheme });
-      await driven(page);
-      await page.getByLabel('Time', { exact: true }).fill('3');
-      for (const name of ['Calibrate', 'Machine']) {
-        await page.locator('summary').filter({ hasText: name }).click();
-      }
-      await assertAccessible(page);
-      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
-      for (const name of ['Calibrate', 'Machine']) {
-        await page.locator('summary').filter({ hasText: name }).click();
-      }
-      await shoot(page, `delta-${scheme}-${size}`);
-      await done();
-    });
-  }
+for (const { scheme, size, viewport } of VIEWS) {
+  test(`it is readable: ${scheme}, ${size}`, async () => {
+    const { page, done } = await browser.visit('delta.html', { viewport, colorScheme: scheme });
+    await driven(page);
+    await page.getByLabel('Time', { exact: true }).fill('3');
+    for (const name of ['Calibrate', 'Machine']) {
+      await page.locator('summary').filter({ hasText: name }).click();
+    }
+    await assertAccessible(page);
+    assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+    for (const name of ['Calibrate', 'Machine']) {
+      await page.locator('summary').filter({ hasText: name }).click();
+    }
+    await shoot(page, `delta-${scheme}-${size}`);
+    await done();
+  });
 }

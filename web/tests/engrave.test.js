@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, delayed, open, refusal, saved, shoot } from './browser.js';
+import { assertAccessible, delayed, open, refusal, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, DRAWINGS, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -181,21 +181,16 @@ test('a file that a newer input has made useless is not refused', async () => {
   await done();
 });
 
-for (const scheme of /** @type {const} */ (['light', 'dark'])) {
-  for (const [size, viewport] of Object.entries({
-    wide: { width: 1280, height: 1000 },
-    phone: { width: 390, height: 844 },
-  })) {
-    test(`it is readable: ${scheme}, ${size}`, async () => {
-      const { page, done } = await browser.visit('index.html', { viewport, colorScheme: scheme });
-      await engraved(page);
-      await page.getByLabel('Time', { exact: true }).fill('150');
-      await page.getByText('Machine', { exact: true }).click();
-      await assertAccessible(page);
-      await page.getByText('Machine', { exact: true }).click();
-      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
-      await shoot(page, `engrave-${scheme}-${size}`);
-      await done();
-    });
-  }
+for (const { scheme, size, viewport } of VIEWS) {
+  test(`it is readable: ${scheme}, ${size}`, async () => {
+    const { page, done } = await browser.visit('index.html', { viewport, colorScheme: scheme });
+    await engraved(page);
+    await page.getByLabel('Time', { exact: true }).fill('150');
+    await page.getByText('Machine', { exact: true }).click();
+    await assertAccessible(page);
+    await page.getByText('Machine', { exact: true }).click();
+    assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+    await shoot(page, `engrave-${scheme}-${size}`);
+    await done();
+  });
 }

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, ROOT, saved, shoot } from './browser.js';
+import { assertAccessible, open, ROOT, saved, shoot, VIEWS } from './browser.js';
 import { file, line3964r } from './command-line.js';
 import { connectFirmware, MOCK } from './serial-mock.js';
 
@@ -335,34 +335,29 @@ test('a browser without Web Serial is told so, and all else works', async () => 
   await done();
 });
 
-for (const scheme of /** @type {const} */ (['light', 'dark'])) {
-  for (const [size, viewport] of Object.entries({
-    wide: { width: 1280, height: 1000 },
-    phone: { width: 390, height: 844 },
-  })) {
-    test(`it is readable: ${scheme}, ${size}`, async () => {
-      const options = { viewport, colorScheme: scheme, script: MOCK };
-      const { page, done } = await browser.visit('line.html', options);
-      await said(page, 'another parity');
-      const look = async (/** @type {string} */ name) => {
-        await assertAccessible(page);
-        assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
-        await shoot(page, `line-${name}-${scheme}-${size}`);
-      };
-      await look('capture');
-      await page.getByLabel('Two simulated stations').check();
-      await page.locator('#scenario').selectOption('late');
-      await page.getByRole('button', { name: 'Run 20 s' }).click();
-      await said(page, 'B answers');
-      await page.locator('#station-b').getByText('Faults').click();
-      await look('simulation');
-      await page.getByLabel('A serial port').check();
-      await page.getByRole('button', { name: 'Connect', exact: true }).click();
-      await page.getByRole('button', { name: 'home' }).click();
-      await page.locator('#live-events').getByText('"home: done"').waitFor();
-      await said(page, 'the line works');
-      await look('port');
-      await done();
-    });
-  }
+for (const { scheme, size, viewport } of VIEWS) {
+  test(`it is readable: ${scheme}, ${size}`, async () => {
+    const options = { viewport, colorScheme: scheme, script: MOCK };
+    const { page, done } = await browser.visit('line.html', options);
+    await said(page, 'another parity');
+    const look = async (/** @type {string} */ name) => {
+      await assertAccessible(page);
+      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+      await shoot(page, `line-${name}-${scheme}-${size}`);
+    };
+    await look('capture');
+    await page.getByLabel('Two simulated stations').check();
+    await page.locator('#scenario').selectOption('late');
+    await page.getByRole('button', { name: 'Run 20 s' }).click();
+    await said(page, 'B answers');
+    await page.locator('#station-b').getByText('Faults').click();
+    await look('simulation');
+    await page.getByLabel('A serial port').check();
+    await page.getByRole('button', { name: 'Connect', exact: true }).click();
+    await page.getByRole('button', { name: 'home' }).click();
+    await page.locator('#live-events').getByText('"home: done"').waitFor();
+    await said(page, 'the line works');
+    await look('port');
+    await done();
+  });
 }

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, refusal, saved, shoot } from './browser.js';
+import { assertAccessible, open, refusal, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, file, STAGE_DRAWINGS } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -123,22 +123,17 @@ test('the shipped program stays although there is one of the own', async () => {
   await done();
 });
 
-for (const scheme of /** @type {const} */ (['light', 'dark'])) {
-  for (const [size, viewport] of Object.entries({
-    wide: { width: 1280, height: 1000 },
-    phone: { width: 390, height: 844 },
-  })) {
-    test(`it is readable: ${scheme}, ${size}`, async () => {
-      const { page, done } = await browser.visit('stage.html?lose=1', {
-        viewport,
-        colorScheme: scheme,
-      });
-      await ran(page);
-      await page.getByLabel('Time', { exact: true }).fill('14');
-      await assertAccessible(page);
-      assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
-      await shoot(page, `stage-${scheme}-${size}`);
-      await done();
+for (const { scheme, size, viewport } of VIEWS) {
+  test(`it is readable: ${scheme}, ${size}`, async () => {
+    const { page, done } = await browser.visit('stage.html?lose=1', {
+      viewport,
+      colorScheme: scheme,
     });
-  }
+    await ran(page);
+    await page.getByLabel('Time', { exact: true }).fill('14');
+    await assertAccessible(page);
+    assert.equal(await page.evaluate('document.documentElement.scrollWidth'), viewport.width);
+    await shoot(page, `stage-${scheme}-${size}`);
+    await done();
+  });
 }
