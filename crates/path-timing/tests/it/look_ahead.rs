@@ -287,6 +287,7 @@ fn memory_is_stated() {
         (152, 16)
     );
     assert_eq!(size_of::<Knot<[f64; 3]>>(), 168);
+    assert_eq!((size_of::<Vertex<2>>(), size_of::<Vertex<3>>()), (128, 152));
 }
 
 proptest! {
