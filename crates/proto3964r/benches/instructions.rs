@@ -1,9 +1,6 @@
-//! Instructions per byte, counted by callgrind: the same on a busy machine as on an idle one.
-//!
-//! The bench runs itself under valgrind, twice per case with different numbers of rounds; the
-//! difference is the cost of the rounds alone. It fails when a telegram of random bytes costs more
+//! Instructions per byte, counted by callgrind. It fails when a telegram of random bytes costs more
 //! than its limit, any other telegram more than three times that, or noise more than three times
-//! what a byte of a telegram may cost an interrupt handler; and says so when there is no valgrind.
+//! what a byte of a telegram may cost an interrupt handler.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
@@ -17,17 +14,12 @@ mod floods;
 mod work;
 
 use core::hint::black_box;
-use std::{
-    env,
-    process::{Command, ExitCode},
-};
+use std::process::ExitCode;
 
 use floods::{FLOODS, full_of};
 use proto3964r::{Check, frame};
+use test_support::instructions::{Limit, bench};
 use work::Bench;
-
-const CASE: &str = "PROTO3964R_BENCH_CASE";
-const ROUNDS: &str = "PROTO3964R_BENCH_ROUNDS";
 
 /// What a telegram goes through, and the most instructions per payload byte on x86-64.
 const WAYS: [(&str, f64); 6] = [
@@ -88,65 +80,28 @@ fn run(case: &str, rounds: u32) {
     }
 }
 
-/// Instructions of a whole run, from callgrind's report.
-fn instructions(case: &str, rounds: u32) -> u64 {
-    let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg(env::current_exe().unwrap())
-        .env(CASE, case)
-        .env(ROUNDS, rounds.to_string())
-        .output()
-        .unwrap();
-    let report = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{report}");
-    let collected = report
-        .lines()
-        .find_map(|line| line.split("Collected :").nth(1));
-    collected
-        .unwrap_or_else(|| panic!("{report}"))
-        .trim()
-        .parse()
-        .unwrap()
-}
-
-#[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
-fn per_byte(case: &str) -> f64 {
-    let (few, many) = (20, 120);
-    let difference = instructions(case, many) - instructions(case, few);
-    difference as f64 / (f64::from(many - few) * work::LEN as f64)
-}
-
-/// Prints the cost of a case; whether it is within the limit.
-fn judge(way: &str, what: &str, limit: f64) -> bool {
-    let case = format!("{way}, {what}");
-    let cost = per_byte(&case);
-    let verdict = if cost <= limit { "ok" } else { "TOO MANY" };
-    println!("{case:43} {cost:6.2} instructions per byte, at most {limit:5.1}: {verdict}");
-    cost <= limit
+#[expect(clippy::cast_precision_loss, reason = "a telegram's length")]
+fn limit<'a>(case: &'a str, most: f64) -> Limit<'a> {
+    Limit {
+        case,
+        unit: "per byte",
+        units: work::LEN as f64,
+        rounds: [20, 120],
+        most,
+    }
 }
 
 fn main() -> ExitCode {
-    if let (Ok(case), Ok(rounds)) = (env::var(CASE), env::var(ROUNDS)) {
-        run(&case, rounds.parse().unwrap());
-        return ExitCode::SUCCESS;
+    let mut cases = Vec::new();
+    for (way, most) in WAYS {
+        cases.push((format!("{way}, random bytes"), most));
+        cases.extend(DATA.map(|(what, _)| (format!("{way}, {what}"), MOST * most)));
+        let floods = FLOODS.iter().filter(|_| way.starts_with("receive"));
+        cases.extend(floods.map(|flood| (format!("{way}, {}", flood.name), NOISE)));
     }
-    if Command::new("valgrind").arg("--version").output().is_err() {
-        eprintln!("skipped: there is no valgrind to count instructions with");
-        return ExitCode::SUCCESS;
-    }
-    let mut all_good = true;
-    for (way, limit) in WAYS {
-        all_good &= judge(way, "random bytes", limit);
-        for (what, _) in DATA {
-            all_good &= judge(way, what, MOST * limit);
-        }
-        for flood in FLOODS.iter().filter(|_| way.starts_with("receive")) {
-            all_good &= judge(way, flood.name, NOISE);
-        }
-    }
-    if all_good {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    let limits: Vec<_> = cases
+        .iter()
+        .map(|(case, most)| limit(case, *most))
+        .collect();
+    bench(run, &limits)
 }

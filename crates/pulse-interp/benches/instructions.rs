@@ -1,20 +1,11 @@
-//! Instructions per step, counted by callgrind: the same on a busy machine as on an idle one.
-//!
-//! The bench runs itself under valgrind, twice per case with different numbers of paths; the
-//! difference is the cost of the steps alone. It fails when a case costs more than its limit, and
-//! says so when there is no valgrind.
+//! Instructions per step, counted by callgrind.
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a bench fails loudly")]
 
 use core::hint::black_box;
-use std::{
-    env,
-    process::{Command, ExitCode},
-};
+use std::process::ExitCode;
 
 use pulse_interp::{Arc, Line, Move, Rule, Turn};
-
-const CASE: &str = "PULSE_INTERP_BENCH_CASE";
-const ROUNDS: &str = "PULSE_INTERP_BENCH_ROUNDS";
+use test_support::instructions::{Limit, bench};
 
 /// Name, and the most instructions per step on x86-64, the sum over the steps included.
 const CASES: [(&str, f64); 6] = [
@@ -68,50 +59,14 @@ fn run(case: &str, rounds: u32) {
     }
 }
 
-/// Instructions of a whole run, from callgrind's report.
-fn instructions(case: &str, rounds: u32) -> u64 {
-    let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg(env::current_exe().unwrap())
-        .env(CASE, case)
-        .env(ROUNDS, rounds.to_string())
-        .output()
-        .unwrap();
-    let report = String::from_utf8_lossy(&output.stderr).into_owned();
-    let collected = report
-        .lines()
-        .find_map(|line| line.split("Collected :").nth(1));
-    collected
-        .unwrap_or_else(|| panic!("{report}"))
-        .trim()
-        .parse()
-        .unwrap()
-}
-
-#[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
-fn per_step(case: &str) -> f64 {
-    let (few, many) = (2, 42);
-    let difference = instructions(case, many) - instructions(case, few);
-    difference as f64 / (f64::from(many - few) * steps(case) as f64)
-}
-
 fn main() -> ExitCode {
-    if let (Ok(case), Ok(rounds)) = (env::var(CASE), env::var(ROUNDS)) {
-        run(&case, rounds.parse().unwrap());
-        return ExitCode::SUCCESS;
-    }
-    if Command::new("valgrind").arg("--version").output().is_err() {
-        eprintln!("skipped: there is no valgrind to count instructions with");
-        return ExitCode::SUCCESS;
-    }
-    let mut code = ExitCode::SUCCESS;
-    for (case, limit) in CASES {
-        let cost = per_step(case);
-        let verdict = if cost <= limit { "ok" } else { "TOO MANY" };
-        println!("{case:15} {cost:6.2} instructions per step, at most {limit:4.1}: {verdict}");
-        if cost > limit {
-            code = ExitCode::FAILURE;
-        }
-    }
-    code
+    #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
+    let limits = CASES.map(|(case, most)| Limit {
+        case,
+        unit: "per step",
+        units: steps(case) as f64,
+        rounds: [2, 42],
+        most,
+    });
+    bench(run, &limits)
 }

@@ -48,9 +48,7 @@ type Corners = IntoIter<[f64; 2], 4>;
 
 #[no_panic]
 #[inline(never)]
-fn smoothed_next(
-    smoothed: &mut Smoothed<'_, Corners, 2>,
-) -> Option<Result<Curve<2>, CurveError>> {
+fn smoothed_next(smoothed: &mut Smoothed<'_, Corners, 2>) -> Option<Result<Curve<2>, CurveError>> {
     smoothed.next()
 }
 

@@ -5,6 +5,7 @@
     reason = "tests fail by panics"
 )]
 
+pub mod instructions;
 mod random;
 mod sizes;
 

@@ -5,8 +5,7 @@ use core::hint::black_box;
 
 use path_timing::{
     Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Smoothed, Table,
-    Vertex,
-    segments_within,
+    Vertex, segments_within,
 };
 
 use super::{CLOSE_MM, holds};
