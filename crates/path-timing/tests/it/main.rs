@@ -3,6 +3,7 @@
 
 extern crate alloc;
 
+mod attack;
 mod corners;
 mod curves;
 mod departure;
