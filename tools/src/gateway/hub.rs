@@ -88,7 +88,7 @@ pub(crate) struct Desk {
     /// The last commands that had an identifier.
     recent: Mutex<VecDeque<Id>>,
     /// Nothing is sent or written.
-    is_read_only: bool,
+    pub(crate) is_read_only: AtomicBool,
 }
 
 /// What is refused and the log does not show one by one.
@@ -150,7 +150,7 @@ impl Hub {
                 jobs,
                 refusals: Mutex::default(),
                 recent: Mutex::default(),
-                is_read_only: line.read_only,
+                is_read_only: AtomicBool::new(line.read_only),
             };
             lines.insert(line.name.get_ref().to_string(), desk);
         }
@@ -415,7 +415,7 @@ impl Desk {
 
     fn hand_over(&self, job: Job) -> Result<(), Refused> {
         let asked = job.asked.clone();
-        if self.is_read_only && !job.action.is_reading() {
+        if self.is_read_only.load(Ordering::Relaxed) && !job.action.is_reading() {
             let message = "the line is read-only".to_owned();
             return Err(Refused { asked, message });
         }

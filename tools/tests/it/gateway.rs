@@ -8,6 +8,7 @@ mod load;
 mod partner;
 mod process;
 mod refused;
+mod reload;
 mod safe;
 mod scale;
 mod subscriber;
