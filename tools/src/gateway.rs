@@ -14,6 +14,7 @@ mod mqtt;
 mod outbox;
 mod reload;
 mod store;
+mod tap;
 mod tcp;
 mod telegram;
 

@@ -14,7 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use bytes::Bytes;
 use jiff::Timestamp;
 use log::{error, info, warn};
-use proto3964r::Event;
+use proto3964r::{Diagnosis, Event};
 use serde::Serialize;
 use serde_json::json;
 use tokio::{
@@ -29,8 +29,10 @@ use super::{
     job::{Asked, Id, Job, Outcome, Refused, Reply},
     outbox::Outbox,
     store::{Entry, Known, Last, Message, Number, StoreError},
+    tap::Tap,
     telegram::Report,
 };
+use crate::capture;
 
 /// Events that a slow TCP client may be behind.
 const TCP_QUEUE: usize = 1024;
@@ -83,6 +85,7 @@ pub(crate) struct Desk {
     heard_at: Mutex<Option<Instant>>,
     /// The last telegram of the runs before.
     pub(crate) last: Last,
+    pub(crate) tap: Arc<Tap>,
     jobs: mpsc::Sender<Job>,
     refusals: Mutex<Refusals>,
     /// The last commands that had an identifier.
@@ -147,6 +150,7 @@ impl Hub {
                     .lines
                     .remove(line.name.get_ref().as_str())
                     .unwrap_or_default(),
+                tap: Arc::default(),
                 jobs,
                 refusals: Mutex::default(),
                 recent: Mutex::default(),
@@ -300,6 +304,28 @@ impl Hub {
         }
     }
 
+    /// What is wrong with a line, or that it works, for those who come later.
+    pub(crate) fn retain_verdict(&self, line: &str, diagnosis: Diagnosis) {
+        let verdict = diagnosis.verdict;
+        if verdict.is_fault() {
+            warn!("{line}: {verdict} (A is the gateway)");
+        } else {
+            info!("{line}: {verdict}");
+        }
+        let told = Told {
+            event: "verdict",
+            line,
+            time: now(),
+            is_fault: verdict.is_fault(),
+            report: capture::Report::new(None, diagnosis),
+        };
+        let payload = json(&told);
+        self.tell(payload.clone());
+        if let Some(outbox) = &self.outbox {
+            outbox.retain(format!("{}/{line}/verdict", self.topic), payload);
+        }
+    }
+
     /// Hands what a station tells to the counts of its line.
     pub(crate) fn observer(
         self: &Arc<Self>,
@@ -394,6 +420,17 @@ impl Hub {
         // Nobody may listen.
         drop(self.events.send(json));
     }
+}
+
+/// A verdict as it is told.
+#[derive(Serialize)]
+struct Told<'t> {
+    event: &'static str,
+    line: &'t str,
+    time: String,
+    is_fault: bool,
+    #[serde(flatten)]
+    report: capture::Report,
 }
 
 /// Strings, numbers and maps with text as keys always have a JSON.

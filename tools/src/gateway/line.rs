@@ -23,6 +23,7 @@ use super::{
     config::{self, Procedure},
     hub::Hub,
     job::Job,
+    tap::Tap,
 };
 use crate::Port;
 
@@ -38,6 +39,7 @@ pub(crate) struct Line {
     pub(super) hub: Arc<Hub>,
     pub(super) jobs: mpsc::Receiver<Job>,
     numbers: Numbers,
+    tap: Arc<Tap>,
 }
 
 impl Line {
@@ -48,7 +50,9 @@ impl Line {
     ) -> Self {
         let config = Arc::clone(&settings.borrow_and_update());
         let name = config.name.get_ref().to_string();
-        let numbers = hub.lines.get(&name).map(|desk| Numbers::after(&desk.last));
+        let desk = hub.lines.get(&name);
+        let numbers = desk.map(|desk| Numbers::after(&desk.last));
+        let tap = desk.map(|desk| Arc::clone(&desk.tap));
         Self {
             name,
             config,
@@ -56,6 +60,7 @@ impl Line {
             hub,
             jobs,
             numbers: numbers.unwrap_or_default(),
+            tap: tap.unwrap_or_default(),
         }
     }
 
@@ -139,6 +144,7 @@ impl Line {
                 None => pending().await,
             }
         };
+        let stream = self.tap.listen(stream, self.config.config());
         let exchanging = async {
             match self.config.procedure {
                 Procedure::Telegrams => self.exchange_telegrams(stream, stop).await,

@@ -13,6 +13,7 @@ mod safe;
 mod scale;
 mod subscriber;
 mod uart;
+mod verdicts;
 
 /// The broker, or an end of the test that is seen: it must not be missed where
 /// `POSE2PULSE_REQUIRE_MOSQUITTO` is set.
