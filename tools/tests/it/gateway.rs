@@ -3,6 +3,7 @@
 mod basics;
 mod broker;
 mod commands;
+mod connections;
 mod health;
 mod load;
 mod partner;
