@@ -31,7 +31,7 @@ const RECENT: Duration = Duration::from_secs(60);
 
 /// From one look at a line that works to the next, unless its station counts faults: a look takes as
 /// long as many telegrams.
-const UNDISTURBED: Duration = Duration::from_secs(60);
+const UNDISTURBED: Duration = Duration::from_secs(300);
 
 /// Characters that are kept, at most: some 50 telegrams of 32 bytes.
 const KEPT: usize = 2048;
