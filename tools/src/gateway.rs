@@ -12,13 +12,18 @@ mod line;
 mod metrics;
 mod mqtt;
 mod outbox;
+mod reload;
 mod store;
+mod tap;
 mod tcp;
 mod telegram;
 
 use alloc::sync::Arc;
-use core::{net::SocketAddr, sync::atomic::Ordering, time::Duration};
-use std::{path::PathBuf, process::ExitCode};
+use core::{net::SocketAddr, pin::pin, sync::atomic::Ordering, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use anyhow::{Context as _, Result};
 use clap::Args;
@@ -36,11 +41,14 @@ use self::{
     hub::Hub,
     line::Line,
     outbox::Outbox,
+    reload::{Hangups, Reload},
     store::{DeadLetters, Known, Store},
 };
 use crate::cli::{block_on, interrupted};
 
 /// Brings lines of 3964R and RK512 to MQTT and TCP, until SIGINT or SIGTERM.
+///
+/// SIGHUP reads the configuration again: lines that have changed are opened anew.
 ///
 /// What it does is logged to standard error; the environment variable `RUST_LOG` set to
 /// `debug` logs more, to `warn` less.
@@ -67,7 +75,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let (outbox, known) = keep(&config)?;
     let (hub, jobs) = Hub::new(&config, outbox, known);
     // On one thread: a core carries hundreds of lines.
-    block_on(work(config, hub, jobs, session))
+    block_on(work(&options.config, config, hub, jobs, session))
 }
 
 /// Where messages wait for the broker, and what waits there already.
@@ -98,6 +106,7 @@ fn keep(config: &Config) -> Result<(Option<Outbox>, Known)> {
 
 /// Starts everything, and ends it in order: lines, broker.
 async fn work(
+    path: &Path,
     config: Config,
     hub: Arc<Hub>,
     jobs: Vec<tokio::sync::mpsc::Receiver<job::Job>>,
@@ -110,11 +119,8 @@ async fn work(
     if let Some(listener) = listen(config.metrics.as_ref().map(Spanned::get_ref)).await? {
         services.spawn(metrics::serve(listener, Arc::clone(&hub)));
     }
-    if let (Some(outbox), Some(mqtt)) = (&hub.outbox, config.mqtt()) {
+    if let Some(outbox) = &hub.outbox {
         outbox.retain(config.status_topic(), "online".into());
-        if let Some(prefix) = &mqtt.discovery {
-            discovery::announce(&config, prefix, &hub, outbox);
-        }
     }
     let watched = Arc::clone(&hub);
     services.spawn(async move { health::run(&watched).await });
@@ -122,12 +128,20 @@ async fn work(
     let finishing = CancellationToken::new();
     let mut delivery = tokio::spawn(deliver(session, Arc::clone(&hub), finishing.clone()));
     let mut lines = JoinSet::new();
-    for (line, jobs) in config.lines.into_iter().zip(jobs) {
-        lines.spawn(Line::new(line.into_inner(), Arc::clone(&hub), jobs).run());
+    let mut hangups = Hangups::new().context("SIGHUP")?;
+    let (mut reload, settings) = Reload::new(path.to_owned(), config, &hub);
+    for (settings, jobs) in settings.into_iter().zip(jobs) {
+        lines.spawn(Line::new(settings, Arc::clone(&hub), jobs).run());
     }
     info!("{} lines", lines.len());
 
-    interrupted().await?;
+    let mut interrupted = pin!(interrupted());
+    loop {
+        tokio::select! {
+            ended = &mut interrupted => break ended?,
+            () = hangups.next() => reload.again(&hub),
+        }
+    }
     info!("stopping, within {stop_within:?}");
     let stop_at = Instant::now() + stop_within;
     hub.stop.cancel();

@@ -12,7 +12,7 @@ use std::{
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
-use proto3964r::{Character, Diagnosis, Line, LineError, Priority, Side, tokio::Damage};
+use proto3964r::{Character, Diagnosis, Line, LineError, Priority, Side, Verdict, tokio::Damage};
 use tokio::{io::AsyncReadExt as _, select, time::sleep};
 
 use self::saved::Saved;
@@ -43,6 +43,8 @@ const PAUSE: Duration = Duration::from_secs(1);
 ///   0.009000 < 10
 ///
 /// With two ports, the first one listens to what A sends and the second one to what B sends.
+///
+/// The exit status is 1 where the last verdict names a fault, blocks that had to be repeated too.
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub(super) struct Options {
@@ -75,15 +77,19 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
         json: options.json,
         file: None,
     };
-    match &options.capture {
+    let verdict = match &options.capture {
         Some(path) => replay(path, options, teller)?,
         None => super::block_on(listen(options, teller))?,
-    }
-    Ok(ExitCode::SUCCESS)
+    };
+    Ok(if verdict.is_fault() {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// Prints the conversation of a capture file and the verdict.
-fn replay(path: &str, options: &Options, mut teller: Teller) -> Result<()> {
+fn replay(path: &str, options: &Options, mut teller: Teller) -> Result<Verdict> {
     let text = fs::read_to_string(path).with_context(|| path.to_owned())?;
     let record = capture::read(&text).map_err(|error| anyhow!("{path}:{error}"))?;
     teller.save(options, Duration::ZERO)?;
@@ -150,17 +156,18 @@ impl Teller {
     }
 
     /// Tells the verdict on all.
-    fn conclude(&mut self, now: Duration) -> Result<()> {
+    fn conclude(&mut self, now: Duration) -> Result<Verdict> {
         let diagnosis = self.tap.verdict();
         let verdict = format!("verdict: {diagnosis}");
         if let Some((file, path)) = &mut self.file {
             file.verdict(now, &verdict).with_context(|| path.clone())?;
         }
         if self.json {
-            print_json(None, diagnosis)
+            print_json(None, diagnosis)?;
         } else {
-            print(&verdict, "1")
+            print(&verdict, "1")?;
         }
+        Ok(diagnosis.verdict)
     }
 }
 
@@ -170,7 +177,7 @@ fn print_json(now: Option<Duration>, diagnosis: Diagnosis) -> Result<()> {
 }
 
 /// Prints what two ports hear, and the verdict at the end.
-async fn listen(options: &Options, mut teller: Teller) -> Result<()> {
+async fn listen(options: &Options, mut teller: Teller) -> Result<Verdict> {
     let [a, b] = &options.port[..] else {
         bail!("two ports are needed, one for each direction");
     };
@@ -191,7 +198,8 @@ async fn listen(options: &Options, mut teller: Teller) -> Result<()> {
         () = end => Ok(()),
     };
     // Also where a port has gone.
-    ended.and(teller.conclude(begin.elapsed()))
+    let verdict = teller.conclude(begin.elapsed());
+    ended.and(verdict)
 }
 
 /// Tells what is heard, until a port goes.

@@ -1,5 +1,7 @@
 //! One end of a line: hexadecimal lines in, events out.
 
+mod events;
+
 use core::time::Duration;
 use std::{
     io::{self, Write as _},
@@ -9,11 +11,10 @@ use std::{
 
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
-use proto3964r::{
-    Abandoned, Cause, Event, Failure, Priority, Rejection, frame::FrameError, tokio::driver,
-};
+use proto3964r::{Event, Priority, tokio::driver};
 use tokio::{select, time::sleep};
 
+pub(super) use self::events::describe;
 use super::input;
 use crate::{Address, Preset, text};
 
@@ -37,8 +38,8 @@ const TICK: Duration = Duration::from_millis(20);
 ///   same-priority                both sides seem to have the same priority
 ///   break                        BREAK on the line
 ///
-/// A line that is no telegram is reported, and makes the exit status 1. The program ends at the end
-/// of the input, after the outcome of the last job.
+/// A line that is no telegram is reported, and makes the exit status 1, as a job that was given up
+/// does. The program ends at the end of the input, after the outcome of the last job.
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub(super) struct Options {
@@ -55,6 +56,9 @@ pub(super) struct Options {
     /// Stay this number of seconds after the last outcome.
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = text::seconds, allow_hyphen_values = true)]
     listen: Duration,
+    /// Print events as JSON, one object a line.
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -92,7 +96,16 @@ async fn work(options: &Options) -> Result<ExitCode> {
         let is_free = !line.is_busy() && !input_ended;
         select! {
             event = line.wait() => match event {
-                Ok(event) => writeln!(io::stdout(), "{}", describe(event))?,
+                Ok(event) => {
+                    if matches!(event, Event::Failed(_)) {
+                        code = ExitCode::FAILURE;
+                    }
+                    if options.json {
+                        writeln!(io::stdout(), "{}", events::json(event))?;
+                    } else {
+                        writeln!(io::stdout(), "{}", describe(event))?;
+                    }
+                }
                 Err(error) => line.take_damage(error).with_context(name)?,
             },
             job = input.recv(), if is_free => match job {
@@ -121,53 +134,5 @@ fn parse(line: &str) -> Result<Vec<u8>, String> {
     match line {
         "-" => Ok(Vec::new()),
         hex => text::bytes(hex.split_whitespace()),
-    }
-}
-
-/// The line of output for an event.
-pub(super) fn describe(event: Event<'_>) -> String {
-    match event {
-        Event::Received(telegram) => {
-            let hex: String = telegram.iter().map(|byte| format!(" {byte:02X}")).collect();
-            format!("received{hex}")
-        }
-        Event::Sent { len } => format!("sent {len}"),
-        Event::Failed(Failure {
-            phase,
-            cause,
-            attempts,
-            ..
-        }) => format!("failed {phase} {} {attempts}", cause_word(cause)),
-        Event::Rejected(rejection) => format!("error {}", rejection_word(rejection)),
-        Event::Abandoned(Abandoned::NoRepeat) => "receive-failed bwz".to_owned(),
-        Event::Abandoned(Abandoned::TooMany(_)) => "receive-failed attempts".to_owned(),
-        Event::Abandoned(Abandoned::ByPartner) => "receive-failed nak".to_owned(),
-        Event::Conflict { in_a_row } => format!("conflict {in_a_row}"),
-        Event::SamePriority => "same-priority".to_owned(),
-        Event::Break => "break".to_owned(),
-        other => format!("{other:?}"),
-    }
-}
-
-fn cause_word(cause: Cause) -> String {
-    match cause {
-        Cause::Unexpected(_) => "char".to_owned(),
-        Cause::Line(_) => "line".to_owned(),
-        Cause::Conflict => "conflict".to_owned(),
-        other => other.to_string(),
-    }
-}
-
-fn rejection_word(rejection: Rejection) -> String {
-    match rejection {
-        Rejection::Frame(FrameError::Bcc { .. }) => "bcc".to_owned(),
-        Rejection::Frame(FrameError::IllegalDle { .. }) => "dle".to_owned(),
-        Rejection::Frame(FrameError::TooLong { .. }) => "overflow".to_owned(),
-        Rejection::Line(_) => "line".to_owned(),
-        Rejection::CharacterDelay => "zvz".to_owned(),
-        Rejection::Endless => "endless".to_owned(),
-        Rejection::NoBuffer => "nobuf".to_owned(),
-        Rejection::Noise { .. } => "noise".to_owned(),
-        other => other.to_string(),
     }
 }

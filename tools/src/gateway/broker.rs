@@ -1,13 +1,15 @@
 //! Where the broker is.
 
-use core::fmt;
+use core::{fmt, net::Ipv6Addr};
 
 use serde::Deserialize;
 
-/// `mqtt://HOST[:PORT]`, or `mqtts://HOST[:PORT]` over TLS; without a port 1883 and 8883.
+/// `mqtt://HOST[:PORT]`, or `mqtts://HOST[:PORT]` over TLS; without a port 1883 and 8883. An address
+/// of IPv6 is in brackets.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub(crate) struct Broker {
+    /// Without brackets.
     pub(crate) host: String,
     pub(crate) port: u16,
     pub(crate) is_tls: bool,
@@ -24,12 +26,20 @@ impl TryFrom<String> for Broker {
             _ => return Err(no_broker()),
         };
         let (host, port) = match place.rsplit_once(':') {
-            Some((host, port)) => (host, port.parse().map_err(|_| no_broker())?),
-            None => (place, if is_tls { 8883 } else { 1883 }),
+            // The last colon is one of an address without a port.
+            Some(_) if place.ends_with(']') => (place, None),
+            Some((host, port)) => (host, Some(port.parse().map_err(|_| no_broker())?)),
+            None => (place, None),
         };
-        if host.is_empty() || host.contains(['/', ':', '@', ' ']) {
-            return Err(no_broker());
-        }
+        let port = port.unwrap_or(if is_tls { 8883 } else { 1883 });
+        let bracketed = host.strip_prefix('[').and_then(|it| it.strip_suffix(']'));
+        let host = match bracketed {
+            Some(address) if address.parse::<Ipv6Addr>().is_ok() => address,
+            _ if host.is_empty() || host.contains(['/', ':', '@', ' ', '[', ']']) => {
+                return Err(no_broker());
+            }
+            _ => host,
+        };
         Ok(Self {
             host: host.to_owned(),
             port,
@@ -41,7 +51,11 @@ impl TryFrom<String> for Broker {
 impl fmt::Display for Broker {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let scheme = if self.is_tls { "mqtts" } else { "mqtt" };
-        write!(f, "{scheme}://{}:{}", self.host, self.port)
+        if self.host.contains(':') {
+            write!(f, "{scheme}://[{}]:{}", self.host, self.port)
+        } else {
+            write!(f, "{scheme}://{}:{}", self.host, self.port)
+        }
     }
 }
 
@@ -55,6 +69,8 @@ mod tests {
             ("mqtt://plant", "mqtt://plant:1883"),
             ("mqtts://plant", "mqtts://plant:8883"),
             ("mqtts://10.0.0.1:1", "mqtts://10.0.0.1:1"),
+            ("mqtt://[::1]", "mqtt://[::1]:1883"),
+            ("mqtts://[fd00::7]:1", "mqtts://[fd00::7]:1"),
         ] {
             let broker = Broker::try_from(text.to_owned()).unwrap();
             assert_eq!(broker.to_string(), printed);
@@ -66,6 +82,10 @@ mod tests {
             "mqtt://:1",
             "mqtt://u:p@h",
             "mqtt://h:x",
+            "mqtt://::1",
+            "mqtt://[h]",
+            "mqtt://[::1",
+            "mqtt://[::1]x",
         ] {
             let error = Broker::try_from(text.to_owned()).unwrap_err();
             let message = format!("`{text}` is not mqtt://HOST[:PORT] or mqtts://HOST[:PORT]");

@@ -13,7 +13,7 @@ use std::{
 use anyhow::{Context as _, Result};
 use proto3964r::{Priority, tokio::Link};
 use serde::{Deserialize, Deserializer, de::Error as _};
-use toml::Spanned;
+use toml::{Spanned, Table};
 
 pub(crate) use self::{
     mqtt::{Mqtt, Overflow, Prefix},
@@ -46,6 +46,9 @@ pub(crate) struct Config {
     /// Where the file is.
     #[serde(skip)]
     folder: PathBuf,
+    /// What stands there.
+    #[serde(skip)]
+    pub(crate) tables: Table,
 }
 
 /// A socket that others connect to.
@@ -143,6 +146,7 @@ impl Config {
             mqtt.set_folder(folder);
         }
         folder.clone_into(&mut config.folder);
+        config.tables = text.parse().with_context(place)?;
         Ok(config)
     }
 

@@ -1,5 +1,7 @@
 //! What Home Assistant finds by itself: one sensor for each field.
 
+use alloc::collections::BTreeSet;
+
 use serde_json::{Map, Value, json};
 use toml::Spanned;
 
@@ -10,37 +12,40 @@ use super::{
     outbox::Outbox,
 };
 
-/// Retains the description of every field, under `PREFIX/sensor/GATEWAY/LINE_KIND_FIELD/config`.
-pub(crate) fn announce(config: &Config, prefix: &Prefix, hub: &Hub, outbox: &Outbox) {
+/// Retains the description of every field of the hub's lines, under
+/// `PREFIX/sensor/GATEWAY/LINE_KIND_FIELD/config`; returns the topics.
+pub(crate) fn announce(config: &Config, hub: &Hub) -> BTreeSet<String> {
+    let mut topics = BTreeSet::new();
+    let prefix = config.mqtt().and_then(|mqtt| mqtt.discovery.as_ref());
+    let (Some(prefix), Some(outbox)) = (prefix, &hub.outbox) else {
+        return topics;
+    };
+    let mut announce = |line, event: &str, kind, fields: &[Spanned<Field>]| {
+        let state_topic = format!("{}/{line}/{event}/{kind}", hub.topic);
+        for field in fields.iter().map(Spanned::get_ref) {
+            let sensor = Sensor {
+                config,
+                hub,
+                line,
+                kind,
+                field,
+            };
+            topics.insert(sensor.announce(prefix, &state_topic, outbox));
+        }
+    };
     for line in config.lines.iter().map(Spanned::get_ref) {
         let name = line.name.get_ref();
+        if !hub.lines.contains_key(name.as_str()) {
+            continue;
+        }
         for kind in line.telegrams.iter().map(Spanned::get_ref) {
-            let topic = format!("{}/{name}/telegram/{}", hub.topic, kind.name);
-            for field in kind.fields.iter().map(Spanned::get_ref) {
-                let sensor = Sensor {
-                    config,
-                    hub,
-                    line: name,
-                    kind: &kind.name,
-                    field,
-                };
-                sensor.announce(prefix, &topic, outbox);
-            }
+            announce(name, "telegram", &kind.name, &kind.fields);
         }
         for area in line.areas.iter().map(Spanned::get_ref) {
-            let topic = format!("{}/{name}/area/{}", hub.topic, area.name);
-            for field in area.fields.iter().map(Spanned::get_ref) {
-                let sensor = Sensor {
-                    config,
-                    hub,
-                    line: name,
-                    kind: &area.name,
-                    field,
-                };
-                sensor.announce(prefix, &topic, outbox);
-            }
+            announce(name, "area", &area.name, &area.fields);
         }
     }
+    topics
 }
 
 /// A field of one kind of telegram or of an area.
@@ -53,7 +58,8 @@ struct Sensor<'s> {
 }
 
 impl Sensor<'_> {
-    fn announce(&self, prefix: &Prefix, state_topic: &str, outbox: &Outbox) {
+    /// Returns the topic.
+    fn announce(&self, prefix: &Prefix, state_topic: &str, outbox: &Outbox) -> String {
         let Self {
             config,
             hub,
@@ -95,6 +101,7 @@ impl Sensor<'_> {
             set("device_class", json!(class));
         }
         let topic = format!("{}/sensor/{gateway}/{id}/config", prefix.0);
-        outbox.retain(topic, Value::Object(sensor).to_string().into());
+        outbox.retain(topic.clone(), Value::Object(sensor).to_string().into());
+        topic
     }
 }

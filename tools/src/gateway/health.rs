@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use proto3964r::{Cause, Event, LineError, Phase, Rejection, frame::FrameError};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use tokio::time::sleep;
+use tokio::{task::yield_now, time::sleep};
 
 use super::hub::{Desk, Hub, now};
 
@@ -72,6 +72,11 @@ impl Faults {
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(last);
     }
 
+    /// All of them together.
+    fn total(&self) -> u64 {
+        self.counts().map(|(_, count)| count).sum()
+    }
+
     /// By name, all of them.
     pub(crate) fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
         let counts = self
@@ -115,11 +120,16 @@ fn fault(event: Event<'_>) -> Option<&'static str> {
     })
 }
 
-/// Retains the health of every line, where it has changed.
+/// Retains health and verdict of every line, where they have changed.
 pub(crate) async fn run(hub: &Hub) {
     loop {
         for (line, desk) in &hub.lines {
             hub.retain_health(line, health(desk).to_string());
+            if let Some(diagnosis) = desk.tap.news(desk.counts.faults.total()) {
+                hub.retain_verdict(line, diagnosis);
+            }
+            // The stations of all lines answer meanwhile.
+            yield_now().await;
         }
         sleep(PAUSE).await;
     }

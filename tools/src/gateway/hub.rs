@@ -14,7 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use bytes::Bytes;
 use jiff::Timestamp;
 use log::{error, info, warn};
-use proto3964r::Event;
+use proto3964r::{Diagnosis, Event};
 use serde::Serialize;
 use serde_json::json;
 use tokio::{
@@ -29,8 +29,10 @@ use super::{
     job::{Asked, Id, Job, Outcome, Refused, Reply},
     outbox::Outbox,
     store::{Entry, Known, Last, Message, Number, StoreError},
+    tap::Tap,
     telegram::Report,
 };
+use crate::capture;
 
 /// Events that a slow TCP client may be behind.
 const TCP_QUEUE: usize = 1024;
@@ -83,12 +85,13 @@ pub(crate) struct Desk {
     heard_at: Mutex<Option<Instant>>,
     /// The last telegram of the runs before.
     pub(crate) last: Last,
+    pub(crate) tap: Arc<Tap>,
     jobs: mpsc::Sender<Job>,
     refusals: Mutex<Refusals>,
     /// The last commands that had an identifier.
     recent: Mutex<VecDeque<Id>>,
     /// Nothing is sent or written.
-    is_read_only: bool,
+    pub(crate) is_read_only: AtomicBool,
 }
 
 /// What is refused and the log does not show one by one.
@@ -147,10 +150,11 @@ impl Hub {
                     .lines
                     .remove(line.name.get_ref().as_str())
                     .unwrap_or_default(),
+                tap: Arc::default(),
                 jobs,
                 refusals: Mutex::default(),
                 recent: Mutex::default(),
-                is_read_only: line.read_only,
+                is_read_only: AtomicBool::new(line.read_only),
             };
             lines.insert(line.name.get_ref().to_string(), desk);
         }
@@ -300,6 +304,28 @@ impl Hub {
         }
     }
 
+    /// What is wrong with a line, or that it works, for those who come later.
+    pub(crate) fn retain_verdict(&self, line: &str, diagnosis: Diagnosis) {
+        let verdict = diagnosis.verdict;
+        if verdict.is_fault() {
+            warn!("{line}: {verdict} (A is the gateway)");
+        } else {
+            info!("{line}: {verdict}");
+        }
+        let told = Told {
+            event: "verdict",
+            line,
+            time: now(),
+            is_fault: verdict.is_fault(),
+            report: capture::Report::new(None, diagnosis),
+        };
+        let payload = json(&told);
+        self.tell(payload.clone());
+        if let Some(outbox) = &self.outbox {
+            outbox.retain(format!("{}/{line}/verdict", self.topic), payload);
+        }
+    }
+
     /// Hands what a station tells to the counts of its line.
     pub(crate) fn observer(
         self: &Arc<Self>,
@@ -396,6 +422,17 @@ impl Hub {
     }
 }
 
+/// A verdict as it is told.
+#[derive(Serialize)]
+struct Told<'t> {
+    event: &'static str,
+    line: &'t str,
+    time: String,
+    is_fault: bool,
+    #[serde(flatten)]
+    report: capture::Report,
+}
+
 /// Strings, numbers and maps with text as keys always have a JSON.
 fn json(event: &impl Serialize) -> Bytes {
     Bytes::from(serde_json::to_vec(event).unwrap_or_default())
@@ -415,7 +452,7 @@ impl Desk {
 
     fn hand_over(&self, job: Job) -> Result<(), Refused> {
         let asked = job.asked.clone();
-        if self.is_read_only && !job.action.is_reading() {
+        if self.is_read_only.load(Ordering::Relaxed) && !job.action.is_reading() {
             let message = "the line is read-only".to_owned();
             return Err(Refused { asked, message });
         }

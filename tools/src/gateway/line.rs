@@ -4,10 +4,18 @@ mod rk512;
 mod telegrams;
 
 use alloc::sync::Arc;
-use core::{future::Future, pin::pin, sync::atomic::Ordering, time::Duration};
+use core::{
+    future::{Future, pending},
+    pin::pin,
+    sync::atomic::Ordering,
+    time::Duration,
+};
 
 use log::{info, warn};
-use tokio::{sync::mpsc, time::sleep};
+use tokio::{
+    sync::{mpsc, watch},
+    time::sleep,
+};
 use tokio_util::sync::CancellationToken;
 
 use self::telegrams::Numbers;
@@ -15,6 +23,7 @@ use super::{
     config::{self, Procedure},
     hub::Hub,
     job::Job,
+    tap::Tap,
 };
 use crate::Port;
 
@@ -24,22 +33,34 @@ const PAUSE: (Duration, Duration) = (Duration::from_millis(250), Duration::from_
 /// A line in its task.
 pub(crate) struct Line {
     pub(super) name: String,
-    pub(super) config: config::Line,
+    pub(super) config: Arc<config::Line>,
+    /// Where other settings come from.
+    settings: watch::Receiver<Arc<config::Line>>,
     pub(super) hub: Arc<Hub>,
     pub(super) jobs: mpsc::Receiver<Job>,
     numbers: Numbers,
+    tap: Arc<Tap>,
 }
 
 impl Line {
-    pub(crate) fn new(config: config::Line, hub: Arc<Hub>, jobs: mpsc::Receiver<Job>) -> Self {
+    pub(crate) fn new(
+        mut settings: watch::Receiver<Arc<config::Line>>,
+        hub: Arc<Hub>,
+        jobs: mpsc::Receiver<Job>,
+    ) -> Self {
+        let config = Arc::clone(&settings.borrow_and_update());
         let name = config.name.get_ref().to_string();
-        let numbers = hub.lines.get(&name).map(|desk| Numbers::after(&desk.last));
+        let desk = hub.lines.get(&name);
+        let numbers = desk.map(|desk| Numbers::after(&desk.last));
+        let tap = desk.map(|desk| Arc::clone(&desk.tap));
         Self {
             name,
             config,
+            settings,
             hub,
             jobs,
             numbers: numbers.unwrap_or_default(),
+            tap: tap.unwrap_or_default(),
         }
     }
 
@@ -48,10 +69,14 @@ impl Line {
         let stop = self.hub.stop.clone();
         let mut pause = PAUSE.0;
         while !stop.is_cancelled() {
-            let opening = self.config.port.open();
+            self.config = Arc::clone(&self.settings.borrow_and_update());
+            let opening = unless_changed(&self.settings, self.config.port.open());
             let opened = refuse_until(opening, &mut self.jobs, &self.hub, &self.name).await;
             let Some(opened) = opened else {
                 break;
+            };
+            let Some(opened) = opened else {
+                continue;
             };
             let error = match opened {
                 Ok(stream) => {
@@ -61,7 +86,7 @@ impl Line {
                     }
                     self.hub.online(&self.name, true);
                     pause = PAUSE.0;
-                    self.exchange(stream, &stop).await
+                    self.exchange_until_changed(stream, &stop).await
                 }
                 Err(error) => error.to_string(),
             };
@@ -69,11 +94,15 @@ impl Line {
             if stop.is_cancelled() {
                 break;
             }
+            if self.settings.has_changed().unwrap_or_default() {
+                continue;
+            }
             warn!(
                 "{}: {}: {error}; next attempt in {pause:?}",
                 self.name, self.config.port
             );
-            refuse_until(sleep(pause), &mut self.jobs, &self.hub, &self.name).await;
+            let pausing = unless_changed(&self.settings, sleep(pause));
+            refuse_until(pausing, &mut self.jobs, &self.hub, &self.name).await;
             pause = (2 * pause).min(PAUSE.1);
         }
         self.hub.online(&self.name, false);
@@ -86,16 +115,36 @@ impl Line {
 }
 
 impl Line {
-    /// Serves the line until it is lost or the gateway stops; says why.
+    /// Serves the line until it is lost, its settings change or the gateway stops; says why.
+    async fn exchange_until_changed(&mut self, stream: Port, stop: &CancellationToken) -> String {
+        let closing = stop.child_token();
+        let mut settings = self.settings.clone();
+        let changing = async {
+            match settings.changed().await {
+                Ok(()) => closing.cancel(),
+                // Nobody changes them any more.
+                Err(_) => pending().await,
+            }
+            pending().await
+        };
+        // What is under way ends first.
+        tokio::select! {
+            why = self.exchange(stream, &closing) => why,
+            never = changing => never,
+        }
+    }
+
+    /// Serves the line until it is lost or is to be closed; says why.
     async fn exchange(&mut self, stream: Port, stop: &CancellationToken) -> String {
         let (hub, name) = (Arc::clone(&self.hub), self.name.clone());
         let silent_after = self.config.silent_after();
         let watching = async {
             match silent_after {
                 Some(after) => hub.watch_for_silence(&name, after).await,
-                None => core::future::pending().await,
+                None => pending().await,
             }
         };
+        let stream = self.tap.listen(stream, self.config.config());
         let exchanging = async {
             match self.config.procedure {
                 Procedure::Telegrams => self.exchange_telegrams(stream, stop).await,
@@ -106,6 +155,19 @@ impl Line {
             why = exchanging => why,
             () = watching => String::new(),
         }
+    }
+}
+
+/// The outcome, or `None` as soon as there are other settings.
+async fn unless_changed<T>(
+    settings: &watch::Receiver<Arc<config::Line>>,
+    outcome: impl Future<Output = T>,
+) -> Option<T> {
+    // A copy: the change is taken with the settings.
+    let mut settings = settings.clone();
+    tokio::select! {
+        outcome = outcome => Some(outcome),
+        Ok(()) = settings.changed() => None,
     }
 }
 

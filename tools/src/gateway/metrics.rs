@@ -65,12 +65,18 @@ fn answer(request: &Request<Incoming>, hub: &Hub) -> Response<Full<Bytes>> {
 /// One metric: name, type, help, and how it is read from a line.
 type OfLine = (&'static str, &'static str, &'static str, fn(&Desk) -> u64);
 
-const OF_LINES: [OfLine; 9] = [
+const OF_LINES: [OfLine; 10] = [
     (
         "line_up",
         "gauge",
         "1 while the port is open, the last exchange went well, and the line is not silent",
         |desk| desk.is_online().into(),
+    ),
+    (
+        "line_verdict_is_fault",
+        "gauge",
+        "1 while the verdict on the line names a fault",
+        |desk| desk.tap.is_fault().into(),
     ),
     (
         "line_opened_total",

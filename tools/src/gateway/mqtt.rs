@@ -3,17 +3,20 @@
 mod tls;
 mod window;
 
-use core::{pin::pin, sync::atomic::Ordering, time::Duration};
+use core::{mem, pin::pin, sync::atomic::Ordering, time::Duration};
 
 use anyhow::Result;
 use log::{error, info, warn};
 use rumqttc::{
     Outgoing, Transport,
     v5::{
-        AsyncClient, ConnectionError, Event, EventLoop, Incoming, MqttOptions,
+        AsyncClient, ConnectionError, Event, EventLoop, Incoming, MqttOptions, StateError,
         mqttbytes::{
             QoS,
-            v5::{ConnAck, LastWill, PubAck, PubAckReason, Publish, PublishProperties},
+            v5::{
+                ConnAck, DisconnectReasonCode, LastWill, PubAck, PubAckReason, Publish,
+                PublishProperties,
+            },
         },
     },
 };
@@ -38,6 +41,9 @@ const RECEIVE_MAX: u16 = 64;
 
 /// From one attempt to connect to the next: doubled with each, between these.
 const PAUSE: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(15));
+
+/// A connection that is closed for no reason so soon after another one is one too many.
+const THEFT: Duration = Duration::from_secs(30);
 
 /// Bytes of a PUBLISH besides topic and payload, at most: header, lengths, identifier, properties.
 const OVERHEAD: usize = 16;
@@ -86,15 +92,18 @@ pub(crate) async fn run(
     let mut suspect = Suspect::default();
     // When the broker was last heard.
     let mut away_since = None;
+    // When the broker closed a connection for no reason.
+    let mut closed_at: Option<Instant> = None;
     loop {
         let mut session = Session::new(&options, hub, outbox);
         let ended = session.work(finishing).await;
         let heard_at = session.heard_at;
         let was_connected = hub.broker.is_connected.swap(false, Ordering::Relaxed);
-        let Err(error) = ended else {
+        let Err(mut error) = ended else {
             return;
         };
         session.take_last_answers();
+        let was_idle = session.window.is_empty();
         if was_connected {
             pause = PAUSE.0;
             if session.has_acknowledged
@@ -108,6 +117,15 @@ pub(crate) async fn run(
             }
         }
         session.window.restore(outbox);
+        let is_closed = was_connected && was_idle && error.is_closed();
+        let closed_before = mem::replace(&mut closed_at, is_closed.then(Instant::now));
+        if error.is_theft() {
+            error = Ended::Stolen(options.client_id());
+            // Two that take it from each other are no help.
+            pause = PAUSE.1;
+        } else if is_closed && closed_before.is_some_and(|at| at.elapsed() < THEFT) {
+            error = Ended::ClosedAgain(options.client_id());
+        }
         warn!("broker: {error}; next attempt in {pause:?}");
         tokio::time::sleep(pause).await;
         pause = (2 * pause).min(PAUSE.1);
@@ -155,6 +173,36 @@ enum Ended {
     Lost(#[from] ConnectionError),
     #[error("the quota is exceeded, messages wait")]
     Quota,
+    #[error(
+        "another client has taken the identifier `{0}`: there is a second gateway of this name"
+    )]
+    Stolen(String),
+    #[error(
+        "closed by the broker again, which does not say why: has another client the identifier `{0}`?"
+    )]
+    ClosedAgain(String),
+}
+
+impl Ended {
+    /// Whether another client has connected under the same identifier.
+    const fn is_theft(&self) -> bool {
+        matches!(
+            self,
+            Self::Lost(ConnectionError::MqttState(StateError::ServerDisconnect {
+                reason_code: DisconnectReasonCode::SessionTakenOver,
+                ..
+            }))
+        )
+    }
+
+    /// Whether the broker has closed the connection without a word. In MQTT 3.1.1 there is none,
+    /// and not every broker of MQTT 5 says it.
+    const fn is_closed(&self) -> bool {
+        matches!(
+            self,
+            Self::Lost(ConnectionError::MqttState(StateError::ConnectionAborted))
+        )
+    }
 }
 
 /// One connection.
@@ -272,7 +320,7 @@ impl<'h> Session<'h> {
 
     /// Answers that came before the end of the connection, and were not handed out because of it.
     fn take_last_answers(&mut self) {
-        for event in core::mem::take(&mut self.event_loop.state.events) {
+        for event in mem::take(&mut self.event_loop.state.events) {
             if let Event::Incoming(Incoming::PubAck(answer)) = event {
                 self.acknowledged(&answer).ok();
             }

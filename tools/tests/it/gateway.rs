@@ -3,15 +3,18 @@
 mod basics;
 mod broker;
 mod commands;
+mod connections;
 mod health;
 mod load;
 mod partner;
 mod process;
 mod refused;
+mod reload;
 mod safe;
 mod scale;
 mod subscriber;
 mod uart;
+mod verdicts;
 
 /// The broker, or an end of the test that is seen: it must not be missed where
 /// `POSE2PULSE_REQUIRE_MOSQUITTO` is set.

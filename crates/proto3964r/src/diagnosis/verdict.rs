@@ -253,6 +253,12 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Whether something is wrong with the line; repeats are, silence alone is not.
+    #[must_use]
+    pub const fn is_fault(&self) -> bool {
+        !matches!(self, Self::Silent | Self::Open | Self::Works)
+    }
+
     /// What tells the causes in the sentence apart, where it names more than one.
     #[must_use]
     pub const fn measurement(&self) -> Option<&'static str> {

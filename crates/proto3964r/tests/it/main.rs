@@ -4,6 +4,8 @@
 mod captures;
 mod common;
 mod duel;
+#[cfg(feature = "tokio")]
+mod held;
 mod mistakes;
 mod pair;
 mod partners;

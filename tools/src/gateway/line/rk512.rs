@@ -9,14 +9,12 @@ use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 
 use super::Line;
-use crate::{
-    Port,
-    gateway::{
-        area::Area,
-        hub,
-        job::{Action, Data, Job},
-        telegram::{Report, decode, hex},
-    },
+use crate::gateway::{
+    area::Area,
+    hub,
+    job::{Action, Data, Job},
+    tap::Tapped,
+    telegram::{Report, decode, hex},
 };
 
 /// What is next.
@@ -37,7 +35,7 @@ impl Line {
     /// Serves the line until it is lost or the gateway stops; says why.
     pub(super) async fn exchange_areas(
         &mut self,
-        stream: Port,
+        stream: Tapped,
         stop: &CancellationToken,
     ) -> String {
         let config = rk512::Config::DEFAULT;

@@ -10,15 +10,13 @@ use tokio::{sync::mpsc, time::Instant};
 use tokio_util::sync::CancellationToken;
 
 use super::Line;
-use crate::{
-    Port,
-    gateway::{
-        config,
-        hub::{self, Counts, Hub},
-        job::{Action, Job},
-        store::{Last, StoreError},
-        telegram::{Report, decode, describe, hex},
-    },
+use crate::gateway::{
+    config,
+    hub::{self, Counts, Hub},
+    job::{Action, Job},
+    store::{Last, StoreError},
+    tap::Tapped,
+    telegram::{Report, decode, describe, hex},
 };
 
 /// What a partner may need besides its times: STX, DLE and the reading of them.
@@ -32,7 +30,7 @@ impl Line {
     /// Serves the line until it is lost or the gateway stops; says why.
     pub(super) async fn exchange_telegrams(
         &mut self,
-        stream: Port,
+        stream: Tapped,
         stop: &CancellationToken,
     ) -> String {
         let mut settings = self.config.config();

@@ -114,10 +114,8 @@ keyfile {shown}/broker.key
         self.signal("-CONT");
     }
 
-    fn signal(&self, signal: &str) {
-        let id = self.process.as_ref().unwrap().id().to_string();
-        let sent = Command::new("kill").args([signal, &id]).status().unwrap();
-        assert!(sent.success());
+    fn signal(&self, name: &str) {
+        signal(self.process.as_ref().unwrap(), name);
     }
 
     /// The authority that signed the broker's certificate.
@@ -139,8 +137,12 @@ impl Drop for Broker {
 
 /// SIGTERM.
 pub(crate) fn terminate(process: &Child) {
+    signal(process, "-TERM");
+}
+
+pub(crate) fn signal(process: &Child, name: &str) {
     let id = process.id().to_string();
-    let sent = Command::new("kill").args(["-TERM", &id]).status().unwrap();
+    let sent = Command::new("kill").args([name, &id]).status().unwrap();
     assert!(sent.success());
 }
 

@@ -14,7 +14,7 @@ use std::{
 
 use tempfile::TempDir;
 
-use super::broker::{PASSWORD, USER, terminate};
+use super::broker::{PASSWORD, USER, signal, terminate};
 
 /// Far above what anything here takes on a busy computer.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
@@ -25,7 +25,7 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_line3964r");
 pub(crate) struct Gateway {
     process: Child,
     log: Arc<Mutex<String>>,
-    _folder: TempDir,
+    folder: TempDir,
 }
 
 /// The settings of a broker without TLS.
@@ -78,7 +78,7 @@ impl Gateway {
         Self {
             process,
             log,
-            _folder: folder,
+            folder,
         }
     }
 
@@ -98,6 +98,12 @@ impl Gateway {
             assert!(begin.elapsed() < PATIENCE, "no `{text}` in\n{}", self.log());
             thread::sleep(Duration::from_millis(10));
         }
+    }
+
+    /// Another configuration, and SIGHUP.
+    pub(crate) fn reload(&self, config: &str) {
+        fs::write(self.folder.path().join("gateway.toml"), config).unwrap();
+        signal(&self.process, "-HUP");
     }
 
     /// SIGTERM, and the end that comes of it.

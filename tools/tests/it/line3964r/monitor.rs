@@ -22,11 +22,12 @@ fn capture(text: &[u8]) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-fn replay(options: &[&str], text: &str) -> Vec<String> {
+/// What is printed of a capture; `code` is the exit status.
+fn replay(options: &[&str], text: &str, code: i32) -> Vec<String> {
     let (_folder, path) = capture(text.as_bytes());
     let output = run(program("monitor").args(options).arg(path), b"");
     assert_eq!(lines(&output.stderr), [""; 0]);
-    assert!(output.status.success());
+    assert_eq!(output.status.code(), Some(code));
     lines(&output.stdout)
 }
 
@@ -46,7 +47,7 @@ fn good_conversation() {
 0.2075 > 10
 ";
     assert_eq!(
-        replay(&[], text),
+        replay(&[], text, 0),
         [
             "0.000000s A NAK without a question",
             "0.100000s A STX, attempt 1",
@@ -77,7 +78,7 @@ fn wrong_bcc_and_its_repeat() {
 1.017 < 10
 ";
     assert_eq!(
-        replay(&[], text),
+        replay(&[], text, 1),
         [
             "1.000000s A STX, attempt 1",
             "1.002000s B DLE, ready to receive, 2.000 ms",
@@ -97,7 +98,7 @@ fn wrong_bcc_and_its_repeat() {
 #[test]
 fn json() {
     let text = "0.0 > 02\n0.4 < 15\n0.401 > 02\n0.801 < 15\n";
-    let printed = replay(&["--json"], text);
+    let printed = replay(&["--json"], text, 1);
     assert_eq!(printed.len(), 1);
     let report: Value = serde_json::from_str(&printed[0]).unwrap();
     assert_eq!(
@@ -122,7 +123,7 @@ fn nak_to_stx_is_the_verdict() {
 0.801 < 15
 ";
     assert_eq!(
-        replay(&[], text),
+        replay(&[], text, 1),
         [
             "0.000000s A STX, attempt 1",
             "0.400000s B NAK to STX, 400.000 ms",
@@ -139,7 +140,7 @@ fn nak_to_stx_is_the_verdict() {
 fn the_times_are_those_of_the_preset() {
     let text = "0 > 02\n0.6 < 10\n1.3 > 41 10 03\n";
     assert_eq!(
-        replay(&["--preset", "siemens-3964"], text),
+        replay(&["--preset", "siemens-3964"], text, 1),
         [
             "0.000000s A STX, attempt 1",
             "0.600000s B does not answer, waited 600.000 ms",
@@ -192,7 +193,7 @@ fn two_ports() {
         "{verdict}"
     );
     assert_eq!(lines.count(), 3);
-    assert!(monitor.wait().unwrap().success());
+    assert_eq!(monitor.wait().unwrap().code(), Some(1), "a fault");
 }
 
 /// An adapter is pulled out: what was heard before is judged and kept.

@@ -83,7 +83,11 @@ impl Bench {
     }
 
     fn ends_well(self) {
-        assert_eq!(self.end(), (Some(0), vec![], vec![]));
+        self.ends_with(0);
+    }
+
+    fn ends_with(self, code: i32) {
+        assert_eq!(self.end(), (Some(code), vec![], vec![]));
     }
 }
 
@@ -146,7 +150,7 @@ fn failed_connection() {
     bench.submit("41");
     bench.expect(&[0x02, 0x02, 0x02, 0x02, 0x02, 0x02, 0x15]);
     assert_eq!(bench.event(), "failed connection timeout 6");
-    bench.ends_well();
+    bench.ends_with(1);
 }
 
 #[test]
@@ -161,7 +165,7 @@ fn failed_transmission() {
     }
     bench.expect(&[0x15]);
     assert_eq!(bench.event(), "failed transmission nak 3");
-    bench.ends_well();
+    bench.ends_with(1);
 }
 
 #[test]
@@ -175,6 +179,49 @@ fn error_bcc_and_the_partner_gives_up() {
     bench.send(&[0x15]);
     assert_eq!(bench.event(), "receive-failed nak");
     bench.ends_well();
+}
+
+#[test]
+fn events_as_json() {
+    let mut bench = Bench::started("siemens-3964r", &["--json"]);
+    let heard: [(&[u8], &[u8], &str); 4] = [
+        (&[0x02], &[0x10], ""),
+        (
+            &[0x41, 0x10, 0x03, 0x00],
+            &[0x15],
+            r#"{"cause":"bcc","event":"error"}"#,
+        ),
+        (&[0x02], &[0x10], ""),
+        (
+            &[0x41, 0x42, 0x10, 0x03, 0x10],
+            &[0x10],
+            r#"{"event":"received","hex":"41 42"}"#,
+        ),
+    ];
+    for (bytes, answer, event) in heard {
+        bench.send(bytes);
+        bench.expect(answer);
+        if !event.is_empty() {
+            assert_eq!(bench.event(), event);
+        }
+    }
+    bench.submit("43");
+    bench.expect(&[0x02]);
+    bench.send(&[0x10]);
+    bench.expect(&[0x43, 0x10, 0x03, 0x50]);
+    bench.send(&[0x10]);
+    assert_eq!(bench.event(), r#"{"event":"sent","length":1}"#);
+    bench.submit("43");
+    for _ in 0..6 {
+        bench.expect(&[0x02]);
+        bench.send(&[0x15]);
+    }
+    bench.expect(&[0x15]);
+    assert_eq!(
+        bench.event(),
+        r#"{"attempts":6,"cause":"nak","event":"failed","phase":"connection"}"#
+    );
+    bench.ends_with(1);
 }
 
 #[test]
