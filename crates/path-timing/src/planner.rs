@@ -137,8 +137,9 @@ pub(crate) fn lay_all<'k, P: Path + Clone>(
         let leg = Leg::new(number, path)?;
         let start = leg.point(0.0)?;
         let (last, free) = knots.split_at_mut(used.saturating_sub(1).min(available));
+        let least = fewest([starts_at_rest, paths.peek().is_none()]);
         let short = PlanError::Memory {
-            needed: used.saturating_add(knots_of(1)),
+            needed: used.saturating_add(knots_of(least)),
             available,
         };
         let Some(first) = free.first_mut() else {
