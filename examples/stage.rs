@@ -2,15 +2,15 @@
 //! command line of `machines/stage`.
 //!
 //! ```text
-//! G-code -> lines and arcs in mm -> steps -> pulses -> simulated motors, which may lose some
-//!                                     ^                              |
-//!                                     +------- corrections <--- linear scales
+//! G-code -> lines and arcs in mm -> curves -> rows -> pulses -> simulated motors, which may lose some
+//!                                                       ^                      |
+//!                                                       +-- corrections <--- linear scales
 //! ```
 //! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Where the
-//! torque of the motors does not allow the motion, as with `--profile constant`, the first line says
+//! torque of the motors does not allow the motion, as with `--steps nearest`, the first line says
 //! how many steps are lost, and the exit status is 2.
 //!
-//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--offset X,Y | --fit] [--rule RULE] [--profile PROFILE] [--lose-steps P] [--seed N] [--out DIR]`
+//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--offset X,Y | --fit] [--steps WHEN] [--tolerance MM] [--lose-steps P] [--seed N] [--out DIR]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use clap::Parser;
 use command_line::{Artefacts, Terminal, fraction, print_notes, print_summary, read_bytes};
-use stage::{PathRule, Program, Run, Session, Settings, SpeedProfile, StepLog, StepObserver};
+use stage::{Program, Run, Session, Settings, StepLog, StepObserver, Stepping};
 
 /// Of the terminal.
 const BAUD: u32 = 9600;
@@ -46,14 +46,15 @@ struct Args {
     /// Puts a drawing that leaves the travel of 120 by 100 mm within it.
     #[arg(long, conflicts_with = "port")]
     fit: bool,
-    /// Which axis steps next: one at a time as `published`, the one with the `nearest` point, or
-    /// both where due, `bresenham`.
-    #[arg(long, default_value_t)]
-    rule: PathRule,
-    /// Of the speed along the path: `trapezoidal` between corners that the motors can take, or
-    /// `constant`, as published.
-    #[arg(long, default_value_t)]
-    profile: SpeedProfile,
+    /// When the axes step: `timed`, each by itself within what the motors follow; or at the feed from
+    /// the first step to the last, as published: one axis at a time as `published`, the one with the
+    /// `nearest` point, or both where due, `bresenham`.
+    #[arg(long, value_name = "WHEN", default_value_t)]
+    steps: Stepping,
+    /// How far timed steps may leave straight lines to pass their corners faster, in mm. Arcs are
+    /// arcs.
+    #[arg(long, value_name = "MM", default_value_t = Settings::default().tolerance_mm, allow_negative_numbers = true)]
+    tolerance: f64,
     /// The fraction of steps that the motors lose, as 0.001 or 0.1%.
     #[arg(long, value_name = "P", default_value = "0", value_parser = fraction, allow_negative_numbers = true)]
     lose_steps: f64,
@@ -77,8 +78,8 @@ enum Source {
 
 fn stage(args: &Args) -> Result<ExitCode> {
     let settings = Settings {
-        rule: args.rule,
-        profile: args.profile,
+        stepping: args.steps,
+        tolerance_mm: args.tolerance,
         lose_steps: args.lose_steps,
         seed: args.seed,
     };

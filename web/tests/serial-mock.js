@@ -53,6 +53,8 @@ function install(wasm) {
     #begin = performance.now();
     /** @type {(bytes: number[]) => void} */ #send = () => undefined;
     /** @type {string[]} */ received = [];
+    /** Answers that wait until the one before has left. @type {string[]} */
+    #answers = [];
     #deadline = 0;
 
     /** @param {(bytes: number[]) => void} send */
@@ -70,7 +72,8 @@ function install(wasm) {
     /** @param {Record<string, unknown>} happened */
     push(happened) {
       const now_s = (performance.now() - this.#begin) / 1000;
-      const { transmit, events, deadlineS } = this.#call('line.station', { now_s, ...happened });
+      const answer = this.#call('line.station', { now_s, ...happened });
+      const { transmit, events, deadlineS, isBusy } = answer;
       if (transmit.length > 0) this.#send(transmit);
       clearTimeout(this.#deadline);
       if (deadlineS !== null) {
@@ -81,8 +84,11 @@ function install(wasm) {
         const text = String.fromCharCode(...telegram);
         this.received.push(text);
         // It answers as a machine does.
-        this.push({ send: { text: `${text}: done`, is_hex: false } });
+        this.#answers.push(`${text}: done`);
       }
+      if (isBusy) return;
+      const text = this.#answers.shift();
+      if (text !== undefined) this.push({ send: { text, is_hex: false } });
     }
 
     /**

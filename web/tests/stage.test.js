@@ -41,12 +41,12 @@ test('the test path leaves the files of the command line, byte for byte', async 
 });
 
 test('settings are those of the command line, and stay in the address', async () => {
-  const address = 'stage.html?drawing=rosette&rule=bresenham&profile=constant&lose=0.5&seed=7';
+  const address = 'stage.html?drawing=rosette&steps=bresenham&lose=0.5&seed=7';
   const { page, done } = await browser.visit(address);
   await ran(page);
   const rosette = ['--gcode', join(STAGE_DRAWINGS, 'rosette.gcode')];
   const lost = ['--lose-steps', '0.5%', '--seed', '7'];
-  const ways = ['--rule', 'bresenham', '--profile', 'constant'];
+  const ways = ['--steps', 'bresenham'];
   await assertSameFiles(page, commandLine('stage', [...rosette, ...lost, ...ways]));
   await page.getByLabel('Lost steps').fill('0');
   await page.waitForURL(/lose=0(&|$)/);

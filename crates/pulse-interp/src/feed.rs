@@ -117,12 +117,6 @@ impl<U: Iterator<Item = u32>> StepIntervals<U> {
         }
     }
 
-    /// The units that are left; that in hand is not among them.
-    #[must_use]
-    pub fn into_units(self) -> U {
-        self.units
-    }
-
     /// The ticks until the next step; `None` where the units end before it.
     #[must_use = "the fraction has been carried on"]
     #[inline]

@@ -1,52 +1,29 @@
 //! The controller: steps of the path out, scales and switches in, the loop closed between them.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Error, Result, bail};
 use kurbo::Point;
 use pulse_interp::{
-    AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, Move, ScaleRatio,
-    StepIntervals,
+    AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, ScaleRatio,
 };
 
+use crate::drive::{Drive, TICKS_PER_S};
 use crate::motion::Motion;
 use crate::motors::FollowedAxes;
 use crate::paths::{self, PathRule, STEPS_PER_MM, to_mm};
 use crate::record::Record;
 use crate::run::Run;
-use crate::speeds::{SpeedProfile, Units};
+use crate::settings::{Settings, Stepping};
 use crate::stage::{COUNTS_PER_STEP, SWITCHES, Stage};
+use crate::timed::Course;
 
 /// A step's counts are more, a count or two of noise less.
 const DEAD_BAND_COUNTS: u32 = 3;
 /// 20 steps: what is farther off is no lost step.
 const ALARM_COUNTS: u32 = 100;
-/// Of the clock of all intervals.
-pub(crate) const TICKS_PER_S: f64 = 1e6;
 /// How often the end is looked at again while a correction may itself be lost.
 const LOOKS_AT_END: u32 = 1000;
 
 const AXES: [&str; 2] = ["X", "Y"];
-
-/// When the steps of a chain of motions come.
-pub(crate) enum Clock {
-    /// Each motion at its feed.
-    Constant,
-    /// Ramps that begin at a tick.
-    Ramps(Box<StepIntervals<Units>>, u64),
-}
-
-/// How the simulated stage is driven, and what it does wrong.
-#[derive(Debug, Clone, Copy, Default)]
-#[expect(clippy::exhaustive_structs, reason = "settings, set by their names")]
-pub struct Settings {
-    /// Which axis steps next.
-    pub rule: PathRule,
-    /// How the speed along the path changes.
-    pub profile: SpeedProfile,
-    /// The probability with which a step is lost, within 0..=1.
-    pub lose_steps: f64,
-    /// Which steps are lost.
-    pub seed: u64,
-}
 
 /// Takes the steps of the path: microseconds from the start, and the step of each axis.
 pub type StepObserver<'a> = &'a mut dyn FnMut(u64, [i32; 2]) -> Result<()>;
@@ -62,8 +39,8 @@ pub(crate) struct Controller<'a> {
     uncorrected: Stage,
     observer: StepObserver<'a>,
     ticks: u64,
-    /// From the last step to the end of its ramp.
-    rest_ticks: u64,
+    /// Of timed steps; none where another motion has come between, or one was broken off.
+    drive: Option<Drive>,
     record: Record,
     /// Of the last motion, in mm.
     end: Point,
@@ -83,8 +60,9 @@ impl<'a> Controller<'a> {
     /// Homes both axes and goes to the drawing's zero.
     ///
     /// # Errors
-    /// A switch is not found, or more steps are lost than the loop corrects.
+    /// A setting out of its range; a switch is not found, or more steps are lost than the loop corrects.
     pub(crate) fn homed(settings: &Settings, observer: StepObserver<'a>) -> Result<Self> {
+        settings.check()?;
         let axis = AxisLoop::new(LoopSettings {
             ratio: ScaleRatio::new(COUNTS_PER_STEP, 1)?,
             dead_band_counts: DEAD_BAND_COUNTS,
@@ -103,7 +81,7 @@ impl<'a> Controller<'a> {
             stage,
             observer,
             ticks: 0,
-            rest_ticks: 0,
+            drive: None,
             record: Record::default(),
             end: Point::ORIGIN,
         };
@@ -114,7 +92,7 @@ impl<'a> Controller<'a> {
     /// From the switches to the drawing's zero: no step of the drawing.
     fn leave_switches(&mut self) -> Result<()> {
         while self.commanded != [0, 0] {
-            self.step(Move::UpRight)?;
+            self.step([1, 1])?;
             self.correct()?;
         }
         self.settle()?;
@@ -145,66 +123,95 @@ impl<'a> Controller<'a> {
         Point::new(mm(x, x_zero), mm(y, y_zero))
     }
 
-    /// Plans a chain of motions from rest to rest, from where the stage was last commanded to.
+    /// Makes the steps of a chain of motions, from rest to rest; on an error the stage stands where it was
+    /// last commanded to.
     ///
     /// # Errors
-    /// There is no path of steps for one of them.
-    pub(crate) fn plan<'m>(&self, motions: impl Iterator<Item = &'m Motion>) -> Result<Clock> {
-        let start = self.ticks + self.rest_ticks;
-        Clock::plan(&self.settings, (start, self.commanded), motions)
-    }
-
-    /// Makes a motion's steps; on an error the stage stands where it was last commanded to.
-    ///
-    /// # Errors
-    /// A limit switch is closed, more steps are lost than the loop corrects, or the observer's.
-    pub(crate) fn run(&mut self, motion: &Motion, clock: &mut Clock) -> Result<()> {
-        self.record.begin(self.ticks, motion, self.at_mm());
-        let run = self.make(motion, clock);
-        self.end = match run {
-            Ok(()) => motion.to,
-            Err(_) => self.commanded_mm(),
+    /// A limit switch is closed, more steps are lost than the loop corrects, or the observer's; and the
+    /// motion on which that was.
+    pub(crate) fn run(&mut self, motions: &[Motion]) -> Result<(), BrokenOff> {
+        let mut chain = Chain {
+            motions,
+            current: None,
         };
-        run
+        let run = match self.settings.stepping {
+            Stepping::Timed => self.follow(&mut chain),
+            Stepping::AtFeed(rule) => self.interpolate(&mut chain, rule),
+        };
+        self.end = match (&run, motions.last()) {
+            (Ok(()), Some(last)) => last.to,
+            _ => self.commanded_mm(),
+        };
+        run.map_err(|error| BrokenOff {
+            motion: chain.current.unwrap_or(0),
+            error,
+        })
     }
 
-    /// A chain of one motion.
-    ///
-    /// # Errors
-    /// As [`Self::plan`] and [`Self::run`].
-    pub(crate) fn run_alone(&mut self, motion: &Motion) -> Result<()> {
-        let mut clock = self.plan([motion].into_iter())?;
-        self.run(motion, &mut clock)?;
-        self.rest(clock);
+    /// Along the curves of a chain, each axis by itself.
+    fn follow(&mut self, chain: &mut Chain<'_>) -> Result<()> {
+        let course = Course::new(chain.motions, self.settings.tolerance_mm)?;
+        self.record.departure_mm = self.record.departure_mm.max(course.departure_mm);
+        // Put back when the chain has come to its end.
+        let mut drive = match self.drive.take() {
+            Some(drive) => drive,
+            None => Drive::at_rest(self.ticks, self.commanded_mm())?,
+        };
+        drive.begin();
+        course.rows(|row| {
+            for (ticks, by) in drive.row(row)? {
+                let [first, last] = course.piece(row).map_or([0; 2], |piece| piece.motions);
+                let mut next = self.begun(chain, first);
+                while next < last && chain.is_past(next, self.commanded_mm()) {
+                    next = self.begun(chain, next + 1);
+                }
+                self.made(chain, ticks, by)?;
+            }
+            Ok(())
+        })?;
+        self.drive = Some(drive);
+        self.begun(chain, chain.motions.len().saturating_sub(1));
         Ok(())
     }
 
-    fn make(&mut self, motion: &Motion, clock: &mut Clock) -> Result<()> {
-        let target = || format!("on the way to ({:.3}, {:.3}) mm", motion.to.x, motion.to.y);
-        self.ticks += core::mem::take(&mut self.rest_ticks);
-        for timed in clock.steps(motion, self.commanded, self.settings.rule)? {
-            let (ticks, step) = timed?;
-            self.ticks += ticks;
-            self.step(step).with_context(target)?;
-            let by = [step.dx(), step.dy()];
-            (self.observer)(self.ticks, by)?;
-            self.record.step(self.ticks, by, self.at_mm());
-            self.correct().with_context(target)?;
+    /// Each motion at its feed, on the paths of an interpolator.
+    fn interpolate(&mut self, chain: &mut Chain<'_>, rule: PathRule) -> Result<()> {
+        for (number, motion) in chain.motions.iter().enumerate() {
+            self.begun(chain, number);
+            for timed in paths::at_feed(motion, self.commanded, rule)? {
+                let (ticks, step) = timed?;
+                self.made(chain, self.ticks + ticks, [step.dx(), step.dy()])?;
+            }
         }
         Ok(())
     }
 
-    /// The end of a chain: it takes the time that is left to come to rest before the next one.
-    pub(crate) fn rest(&mut self, clock: Clock) {
-        if let Clock::Ramps(intervals, start) = clock {
-            let end = start + intervals.into_units().end_ticks();
-            self.rest_ticks = end.saturating_sub(self.ticks);
+    /// Notes that all motions up to one have begun; the latest that has.
+    fn begun(&mut self, chain: &mut Chain<'_>, number: usize) -> usize {
+        loop {
+            let next = chain.current.map_or(0, |current| current + 1);
+            match chain.motions.get(next).filter(|_| next <= number) {
+                Some(motion) => self.record.begin(self.ticks, motion, self.at_mm()),
+                None => return next.saturating_sub(1),
+            }
+            chain.current = Some(next);
         }
+    }
+
+    /// A step of a motion at a tick, seen and corrected.
+    fn made(&mut self, chain: &Chain<'_>, ticks: u64, by: [i32; 2]) -> Result<()> {
+        let target = || chain.target();
+        self.ticks = ticks;
+        self.step(by).with_context(target)?;
+        (self.observer)(self.ticks, by)?;
+        self.record.step(self.ticks, by, self.at_mm());
+        self.correct().with_context(target)?;
+        Ok(())
     }
 
     /// One step of the path, if no switch forbids it.
-    fn step(&mut self, step: Move) -> Result<()> {
-        let directions = [step.dx(), step.dy()].map(direction);
+    fn step(&mut self, by: [i32; 2]) -> Result<()> {
+        let directions = by.map(direction);
         // Both are asked before either moves.
         let asked = self.stage.switches().into_iter().zip(self.commanded);
         for (((switches, at), wanted), name) in asked.zip(directions).zip(AXES) {
@@ -270,66 +277,49 @@ impl<'a> Controller<'a> {
             closing_mm: stages.map(|stage| stage.at_mm().distance(self.end)),
             lost: stages.map(Stage::lost),
             followed: motors.finish(),
-            constant: FollowedAxes::at_constant_speed(&self.record.programmed, self.settings.rule)?,
+            at_feed: FollowedAxes::at_feed(
+                &self.record.programmed,
+                self.settings.stepping.path_rule(),
+            )?,
             record: self.record,
         })
     }
 }
 
-impl Clock {
-    /// Plans a chain of motions from rest to rest, from a tick and a point on.
-    ///
-    /// # Errors
-    /// There is no path of steps for one of them.
-    pub(crate) fn plan<'m>(
-        settings: &Settings,
-        (start, mut from): (u64, [i32; 2]),
-        motions: impl Iterator<Item = &'m Motion>,
-    ) -> Result<Self> {
-        if settings.profile == SpeedProfile::Constant {
-            return Ok(Self::Constant);
-        }
-        let mut legs = Vec::new();
-        for motion in motions {
-            legs.push((motion, paths::length_q16(motion, from, settings.rule)?));
-            from = paths::to_steps(motion.to);
-        }
-        let units = Units::plan(legs.into_iter())?;
-        let intervals = Box::new(StepIntervals::from_units(units));
-        Ok(Self::Ramps(intervals, start))
+/// A chain of motions, and how far it is.
+struct Chain<'m> {
+    motions: &'m [Motion],
+    /// None before the first step.
+    current: Option<usize>,
+}
+
+impl Chain<'_> {
+    fn target(&self) -> String {
+        let motion = self.motions.get(self.current.unwrap_or(0));
+        let to = motion.map_or(Point::ORIGIN, |motion| motion.to);
+        format!("on the way to ({:.3}, {:.3}) mm", to.x, to.y)
     }
 
-    /// The steps of a motion of the chain, and the ticks before each.
-    pub(crate) fn steps<'c>(
-        &'c mut self,
-        motion: &Motion,
-        from: [i32; 2],
-        rule: PathRule,
-    ) -> Result<impl Iterator<Item = Result<(u64, Move)>> + 'c> {
-        // Rates are bounded by the parser: 100 to 60 million ticks.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "bounded"
-        )]
-        let unit = (TICKS_PER_S / (motion.feed_mm_s * STEPS_PER_MM)).round() as u32;
-        let mut constant = StepIntervals::new(unit);
-        let steps = paths::paths(motion, from, rule)?.into_iter().flatten();
-        Ok(steps.map(move |(step, factor)| {
-            let ticks = match self {
-                Self::Constant => constant.next(factor),
-                Self::Ramps(intervals, _) => intervals.next(factor),
-            };
-            Ok((ticks.context("the path is longer than its plan")?, step))
-        }))
+    /// Whether a place is nearer to the next motion than to this one.
+    fn is_past(&self, number: usize, at: Point) -> bool {
+        let distance_mm = |number: usize| Some(self.motions.get(number)?.distance_mm(at));
+        distance_mm(number + 1) < distance_mm(number)
     }
+}
+
+/// Where a chain of motions was broken off, and why.
+#[derive(Debug)]
+pub(crate) struct BrokenOff {
+    /// From 0.
+    pub(crate) motion: usize,
+    pub(crate) error: Error,
 }
 
 /// Ticks of the clock in seconds.
 pub(crate) fn seconds(ticks: u64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "microseconds far below 2^52")]
     let ticks = ticks as f64;
-    ticks / TICKS_PER_S
+    ticks / f64::from(TICKS_PER_S)
 }
 
 fn home(stage: &mut Stage, axis: usize) -> Result<()> {

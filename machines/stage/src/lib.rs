@@ -2,9 +2,9 @@
 //! limit switches.
 //!
 //! ```text
-//! G-code -> lines and arcs in mm -> steps -> pulses -> simulated motors, which may lose some
-//!                                     ^                              |
-//!                                     +------- corrections <--- linear scales
+//! G-code -> lines and arcs in mm -> curves -> rows -> pulses -> simulated motors, which may lose some
+//!                                                       ^                      |
+//!                                                       +-- corrections <--- linear scales
 //! ```
 //! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Text
 //! and bytes in, values out: no files, no printing.
@@ -26,6 +26,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod controller;
+mod drive;
 mod gcode;
 mod motion;
 mod motors;
@@ -35,20 +36,22 @@ mod record;
 mod report;
 mod run;
 mod session;
-mod speeds;
+mod settings;
 mod stage;
 mod step_log;
+mod timed;
 
-pub use self::controller::{Settings, StepObserver};
+pub use self::controller::StepObserver;
 pub use self::gcode::Program;
 pub use self::paths::PathRule;
 pub use self::record::{Leg, Seen};
 pub use self::report::Report;
 pub use self::run::{Run, run};
 pub use self::session::Session;
-pub use self::speeds::{ACCELERATION_MM_S2, SpeedProfile};
+pub use self::settings::{Settings, Stepping};
 pub use self::stage::switches_mm;
 pub use self::step_log::StepLog;
+pub use self::timed::ACCELERATION_MM_S2;
 
 /// The test path of the source: rectangle, diagonal, circle.
 pub const TEST: &str = include_str!("../drawings/test.gcode");

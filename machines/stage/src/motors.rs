@@ -4,7 +4,7 @@ use anyhow::Result;
 use machine_sim::{DrivenAxis, Followed, MotionSampler, Motor, StepSize};
 use serde::Serialize;
 
-use crate::controller::{Clock, seconds};
+use crate::controller::seconds;
 use crate::motion::Motion;
 use crate::paths::{self, PathRule, STEPS_PER_MM};
 
@@ -82,12 +82,11 @@ pub(crate) struct FollowedAxes {
 }
 
 impl FollowedAxes {
-    /// What the same motions ask for without ramps.
-    pub(crate) fn at_constant_speed(motions: &[Motion], rule: PathRule) -> Result<Self> {
+    /// What the same motions ask for at their feeds from the first step to the last.
+    pub(crate) fn at_feed(motions: &[Motion], rule: PathRule) -> Result<Self> {
         let (mut motors, mut now) = (Motors::default(), 0);
-        let mut clock = Clock::Constant;
         for motion in motions {
-            for timed in clock.steps(motion, paths::to_steps(motion.from), rule)? {
+            for timed in paths::at_feed(motion, paths::to_steps(motion.from), rule)? {
                 let (ticks, step) = timed?;
                 now += ticks;
                 motors.step(now, [step.dx(), step.dy()]);

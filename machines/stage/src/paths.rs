@@ -1,13 +1,14 @@
 //! From programmed motions to paths of whole steps.
 
 use core::f64::consts::{PI, TAU};
-use core::fmt;
-use core::str::FromStr;
 
-use anyhow::{Context, Error, Result, bail};
+use anyhow::{Context, Result};
 use kurbo::Point;
-use pulse_interp::{Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule};
+use pulse_interp::{
+    Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule, StepIntervals,
+};
 
+use crate::drive::TICKS_PER_S;
 use crate::gcode::ARC_TOLERANCE_MM;
 use crate::motion::{Motion, Shape, angle_on};
 
@@ -29,33 +30,12 @@ pub enum PathRule {
 
 impl PathRule {
     /// Its name on a command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
             Self::Nearest => "nearest",
             Self::Bresenham => "bresenham",
         }
-    }
-}
-
-impl fmt::Display for PathRule {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for PathRule {
-    type Err = Error;
-
-    /// Reads a name, also those of earlier versions, `textbook` and `centred`.
-    fn from_str(name: &str) -> Result<Self> {
-        Ok(match name {
-            "published" | "textbook" => Self::Published,
-            "nearest" | "centred" => Self::Nearest,
-            "bresenham" => Self::Bresenham,
-            _ => bail!("the rules are published, nearest and bresenham"),
-        })
     }
 }
 
@@ -146,10 +126,25 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
     Ok(vec![path, line(end, to, rule)?])
 }
 
-/// The length of a motion's path as its intervals count it, in 65536ths of a step length.
-pub(crate) fn length_q16(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<u64> {
+/// The steps of a motion at its feed from the first to the last, as published: the ticks before each.
+pub(crate) fn at_feed(
+    motion: &Motion,
+    from: [i32; 2],
+    rule: PathRule,
+) -> Result<impl Iterator<Item = Result<(u64, Move)>>> {
+    // Rates are bounded by the parser: 100 to 60 million ticks.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "bounded"
+    )]
+    let unit = (f64::from(TICKS_PER_S) / (motion.feed_mm_s * STEPS_PER_MM)).round() as u32;
+    let mut intervals = StepIntervals::new(unit);
     let steps = paths(motion, from, rule)?.into_iter().flatten();
-    Ok(steps.map(|(_, factor)| u64::from(factor.to_q16())).sum())
+    Ok(steps.map(move |(step, factor)| {
+        let ticks = intervals.next(factor).context("intervals have no end")?;
+        Ok((ticks, step))
+    }))
 }
 
 /// The grid point about which the circle through the grid point `from` is nearest to that

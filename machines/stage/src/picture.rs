@@ -7,8 +7,8 @@ use crate::motors::FollowedAxes;
 use crate::paths::STEPS_PER_MM;
 use crate::record::{Leg, Seen};
 use crate::run::Run;
-use crate::speeds::ACCELERATION_MM_S2;
 use crate::stage::switches_mm;
+use crate::timed::ACCELERATION_MM_S2;
 
 const UM_PER_MM: f64 = 1000.0;
 /// Half the side of the enlarged square, in steps.
@@ -23,8 +23,8 @@ pub(crate) fn picture(run: &Run) -> Figure {
     };
     let [steps_x, steps_y] = record.steps;
     let title = format!(
-        "Stage: {steps_x} + {steps_y} steps by the {} rule in {:.1} s",
-        run.settings.rule.name(),
+        "Stage: {steps_x} + {steps_y} steps, {}, in {:.1} s",
+        run.settings.stepping.name(),
         run.duration_s
     );
     let figure = Figure::new(title).with_note(measured("Closed loop", &record.closed, closed_mm));
@@ -61,9 +61,9 @@ fn motors(run: &Run) -> String {
         format!("{lost} steps in {s:.1} s")
     };
     format!(
-        "Lost by a simulated motor of limited torque: {}; with the feed from the first step on: {}.",
+        "Lost by a simulated motor of limited torque: {}; at the feed throughout: {}.",
         lost(&run.followed),
-        lost(&run.constant)
+        lost(&run.at_feed)
     )
 }
 

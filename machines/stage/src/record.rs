@@ -100,6 +100,8 @@ pub(crate) fn over_time(profile: &Profile) -> impl Iterator<Item = [f64; 2]> {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Record {
     pub(crate) programmed: Vec<Motion>,
+    /// How far the curves leave the lines at most, by the proof.
+    pub(crate) departure_mm: f64,
     /// They get the steps of the path.
     pub(crate) motors: Motors,
     /// Of each axis, either way; corrections are counted apart.

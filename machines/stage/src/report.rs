@@ -8,20 +8,24 @@ use serde::Serialize;
 use crate::motion::Motion;
 use crate::motors::FollowedAxes;
 use crate::run::Run;
-use crate::speeds::{MAX_AXIS_MM_S, SpeedProfile, axis_feed};
+use crate::settings::Stepping;
+use crate::timed::{MAX_AXIS_MM_S, axis_feed};
 
 /// `report.json`; displayed, a summary in lines. Steps are those of the path, as in `steps.csv`;
 /// corrections are counted apart.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
-    rule: &'static str,
-    profile: &'static str,
+    stepping: &'static str,
     /// Either way.
     steps_x: u64,
     /// Either way.
     steps_y: u64,
     /// From the drawing's zero.
     end_steps: [i32; 2],
+    /// How far timed steps may leave the lines to pass their corners faster.
+    tolerance_mm: f64,
+    /// How far the curves leave the lines at most, by the proof.
+    smoothed_bound_mm: f64,
     /// Of the stage from the programmed curve.
     max_deviation_mm: f64,
     /// Of the stage from the programmed end.
@@ -33,8 +37,8 @@ pub struct Report {
     /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
     /// given them loses steps where torque or inertia are overrun.
     motors: FollowedAxes,
-    /// The same motions without ramps.
-    constant_speed: FollowedAxes,
+    /// The same motions at their feeds from the first step to the last.
+    at_feed: FollowedAxes,
     /// Motions that go slower than their feed, because an axis goes no faster than
     /// `max_axis_speed_mm_s`.
     slower_motions: usize,
@@ -59,11 +63,12 @@ impl Report {
         let [closed_mm, open_mm] = run.closing_mm;
         let [closed_lost, open_lost] = run.lost;
         Self {
-            rule: run.settings.rule.name(),
-            profile: run.settings.profile.name(),
+            stepping: run.settings.stepping.name(),
             steps_x,
             steps_y,
             end_steps: run.commanded,
+            tolerance_mm: run.settings.tolerance_mm,
+            smoothed_bound_mm: run.record.departure_mm,
             max_deviation_mm: run.record.closed.worst.deviation_mm,
             closing_error_mm: closed_mm,
             lost_steps: closed_lost,
@@ -75,7 +80,7 @@ impl Report {
                 lost_steps: open_lost,
             },
             motors: run.followed.clone(),
-            constant_speed: run.constant.clone(),
+            at_feed: run.at_feed.clone(),
             slower_motions: slower_motions(run),
             max_axis_speed_mm_s: MAX_AXIS_MM_S,
             lose_steps: run.settings.lose_steps,
@@ -107,9 +112,9 @@ impl Report {
 
 fn slower_motions(run: &Run) -> usize {
     let is_slower = |motion: &&Motion| axis_feed(motion) < motion.feed_mm_s;
-    match run.settings.profile {
-        SpeedProfile::Trapezoidal => run.record.programmed.iter().filter(is_slower).count(),
-        SpeedProfile::Constant => 0,
+    match run.settings.stepping {
+        Stepping::Timed => run.record.programmed.iter().filter(is_slower).count(),
+        Stepping::AtFeed(_) => 0,
     }
 }
 
@@ -120,8 +125,8 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "{} + {} steps by the {} rule in {:.1} s",
-            self.steps_x, self.steps_y, self.rule, self.duration_s
+            "{} + {} steps, {}, in {:.1} s",
+            self.steps_x, self.steps_y, self.stepping, self.duration_s
         )?;
         writeln!(
             f,
@@ -134,15 +139,15 @@ impl fmt::Display for Report {
             "open loop:   {} steps lost; {:.3} mm off the curve at most, {:.3} mm at the end",
             open.lost_steps, open.max_deviation_mm, open.closing_error_mm
         )?;
-        let ramps = |name: &str, followed: &FollowedAxes| {
+        let motors = |name: &str, followed: &FollowedAxes| {
             format!(
-                "{name} speed: {:.1} s, at least {:.0} mm/s², {} steps lost by torque and inertia",
+                "{name}: {:.1} s, at least {:.0} mm/s², {} steps lost by torque and inertia",
                 followed.duration_s,
                 followed.max_acceleration_mm_s2(),
                 followed.lost_steps()
             )
         };
-        writeln!(f, "{}", ramps(self.profile, &self.motors))?;
+        writeln!(f, "{}", motors(self.stepping, &self.motors))?;
         if self.slower_motions > 0 {
             writeln!(
                 f,
@@ -150,12 +155,13 @@ impl fmt::Display for Report {
                 self.slower_motions, self.max_axis_speed_mm_s
             )?;
         }
-        if self.profile != SpeedProfile::Constant.name() {
+        if self.stepping == Stepping::Timed.name() {
             writeln!(
                 f,
-                "{}",
-                ramps(SpeedProfile::Constant.name(), &self.constant_speed)
+                "lines left by {:.4} mm at most to pass their corners, {} mm are allowed",
+                self.smoothed_bound_mm, self.tolerance_mm
             )?;
+            writeln!(f, "{}", motors("at the feed throughout", &self.at_feed))?;
         }
         Ok(())
     }

@@ -1,14 +1,15 @@
 //! A whole program on the simulated stage, and what comes of it.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use machine_sim::Figure;
 
-use crate::controller::{Controller, Settings, StepObserver};
+use crate::controller::{BrokenOff, Controller, StepObserver};
 use crate::gcode::Program;
 use crate::motors::FollowedAxes;
 use crate::picture;
 use crate::record::{Record, Seen, over_time};
 use crate::report::Report;
+use crate::settings::Settings;
 
 /// What the stage did, in a closed loop and without corrections.
 #[derive(Debug, Clone)]
@@ -20,8 +21,8 @@ pub struct Run {
     pub(crate) closing_mm: [f64; 2],
     pub(crate) lost: [u64; 2],
     pub(crate) followed: FollowedAxes,
-    /// The same motions at constant speed.
-    pub(crate) constant: FollowedAxes,
+    /// The same motions at their feeds from the first step to the last.
+    pub(crate) at_feed: FollowedAxes,
     pub(crate) record: Record,
 }
 
@@ -79,11 +80,12 @@ impl Run {
 /// program; or the observer's.
 pub fn run(program: &Program, settings: &Settings, observer: StepObserver<'_>) -> Result<Run> {
     let mut controller = Controller::homed(settings, observer)?;
-    let mut clock = controller.plan(program.lines.iter().map(|line| &line.motion))?;
-    for line in &program.lines {
-        let ran = controller.run(&line.motion, &mut clock);
-        ran.with_context(|| format!("line {}", line.number))?;
-    }
-    controller.rest(clock);
+    let motions: Vec<_> = program.lines.iter().map(|line| line.motion).collect();
+    controller
+        .run(&motions)
+        .map_err(|BrokenOff { motion, error }| {
+            let number = program.lines.get(motion).map_or(0, |line| line.number);
+            error.context(format!("line {number}"))
+        })?;
     controller.finish()
 }

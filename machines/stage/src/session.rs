@@ -4,10 +4,11 @@ use anyhow::{Result, anyhow};
 use kurbo::{Point, Vec2};
 use machine_sim::input::Notes;
 
-use crate::controller::{Controller, Settings, StepObserver};
+use crate::controller::{Controller, StepObserver};
 use crate::gcode::{Command, Interpreter};
 use crate::motion::Motion;
 use crate::run::Run;
+use crate::settings::Settings;
 
 /// One press of a key.
 const JOG_MM: f64 = 1.0;
@@ -136,11 +137,10 @@ impl<'a> Session<'a> {
 
     /// Makes a motion; where it breaks off, the program goes on from there.
     fn run(&mut self, motion: &Motion) -> Result<()> {
-        let run = self.controller.run_alone(motion);
-        if run.is_err() {
+        self.controller.run(&[*motion]).map_err(|broken_off| {
             self.interpreter.stands_at(self.controller.commanded_mm());
-        }
-        run
+            broken_off.error
+        })
     }
 
     fn position(&self) -> String {

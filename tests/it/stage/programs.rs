@@ -143,7 +143,8 @@ fn slicer() {
 
 /// Asserts that two programs make the same steps at the same times.
 fn assert_same(program: &str, wanted: &str) {
-    let [got, wanted] = [program, wanted].map(|text| Run::of_text(text, &[]).path());
+    let at_feed = ["--steps", "nearest"];
+    let [got, wanted] = [program, wanted].map(|text| Run::of_text(text, &at_feed).path());
     assert!(
         got == wanted,
         "{program}: {} steps, {} wanted",
@@ -259,7 +260,7 @@ fn what_comes_after_the_end_is_noted() {
 /// A feed above the stage's highest is run at that, and the note has it in the program's unit.
 #[test]
 fn high_feeds_are_the_highest() {
-    let run = Run::of_text("G20 G1 X2 F400\nF300 X0", &["--profile", "constant"]);
+    let run = Run::of_text("G20 G1 X2 F400\nF300 X0", &["--steps", "nearest"]);
     assert_eq!(
         notes(&run),
         ["line 1: F400, F300: above what the motors can follow, run at 6000 mm/min (2 times)"]

@@ -30,8 +30,8 @@ const files = new FileButtons(
 );
 const lose = element('lose', HTMLInputElement);
 const seed = element('seed', HTMLInputElement);
-const profile = element('profile', HTMLSelectElement);
-const rule = element('rule', HTMLSelectElement);
+const steps = element('steps', HTMLSelectElement);
+const tolerance = element('tolerance', HTMLInputElement);
 
 let shown: Run | undefined;
 
@@ -61,7 +61,7 @@ const program = new Inputs(
   { parameter: 'drawing', ending: '.gcode', kept: { text: 'stage program', name: 'stage name' } },
   open,
 );
-const fields = new AddressFields({ lose, seed, profile, rule }, changed);
+const fields = new AddressFields({ lose, seed, steps, tolerance }, changed);
 const rerun = settled(150, run);
 
 /** Another program. */
@@ -83,13 +83,17 @@ async function run(): Promise<void> {
   const parameters = {
     name: program.name,
     gcode: editor.text,
-    rule: rule.value,
-    profile: profile.value,
+    stepping: steps.value,
+    tolerance_mm: tolerance.valueAsNumber,
     lose_steps: lose.valueAsNumber * 0.01,
     seed: seed.valueAsNumber,
   };
   if (!Number.isSafeInteger(parameters.seed) || parameters.seed < 0) {
     refuse(new Error('which are lost: a whole number is needed'));
+    return;
+  }
+  if (Number.isNaN(parameters.tolerance_mm)) {
+    refuse(new Error('corners within: a number of mm is needed'));
     return;
   }
   try {

@@ -16,8 +16,8 @@ struct Parameters {
     /// What the program is called in messages.
     name: String,
     gcode: String,
-    rule: String,
-    profile: String,
+    stepping: String,
+    tolerance_mm: f64,
     /// A fraction.
     lose_steps: f64,
     seed: u64,
@@ -36,8 +36,8 @@ thread_local!(static LAST: RefCell<Option<Ran>> = const { RefCell::new(None) });
 pub(crate) fn stage(request: &Request) -> Result<Answer> {
     let parameters: Parameters = request.parameters()?;
     let settings = Settings {
-        rule: parameters.rule.parse()?,
-        profile: parameters.profile.parse()?,
+        stepping: parameters.stepping.parse()?,
+        tolerance_mm: parameters.tolerance_mm,
         lose_steps: parameters.lose_steps,
         seed: parameters.seed,
     };

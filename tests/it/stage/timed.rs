@@ -1,7 +1,7 @@
-//! Ramps of the stage, by the times of its steps alone.
+//! Timed steps of the stage, judged by their times alone.
 
 use super::run::{Run, STEP_MM};
-use super::shipped;
+use super::{DRAWINGS, shipped};
 
 /// Of an axis, in mm/s²; and by what it may change its speed at once, in mm/s.
 const ACCELERATION_MM_S2: f64 = 500.0;
@@ -25,22 +25,17 @@ fn acceleration(path: &[(f64, [f64; 2])], axis: usize) -> f64 {
 }
 
 #[test]
-fn motors_follow_by_every_rule_and_stall_without_ramps() {
+fn motors_follow_timed_steps_and_stall_at_the_feed_throughout() {
     let uncertainty = 4.0 * DEVIATION_MM / (SPAN_S * SPAN_S);
     let most = ACCELERATION_MM_S2 + JUMP_MM_S / SPAN_S + uncertainty;
-    let runs = [
-        ("test", "nearest"),
-        ("rosette", "published"),
-        ("link", "bresenham"),
-    ];
-    for (drawing, rule) in runs {
+    for drawing in DRAWINGS {
         let file = shipped(drawing);
-        let run = Run::of(&["--gcode", file.to_str().unwrap(), "--rule", rule]);
-        assert_eq!(run.report["profile"], "trapezoidal");
+        let run = Run::of(&["--gcode", file.to_str().unwrap()]);
+        assert_eq!(run.report["stepping"], "timed");
         let path = run.path();
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let worst = acceleration(&path, axis);
-            assert!(worst < most, "{drawing}, {rule}: {worst} mm/s²");
+            assert!(worst < most, "{drawing}: {worst} mm/s²");
             let number = |of: &str| run.number(&format!("/motors/{name}/{of}"));
             assert!(number("lost_steps") < 0.5);
             assert!(number("max_lag_full_steps") < 1.5);
@@ -54,17 +49,17 @@ fn motors_follow_by_every_rule_and_stall_without_ramps() {
             );
         }
         // What it costs.
-        let slower = run.number("/duration_s") / run.number("/constant_speed/duration_s");
+        let slower = run.number("/duration_s") / run.number("/at_feed/duration_s");
         assert!((1.0..1.02).contains(&slower), "{drawing}: {slower}");
-        let lost = |of: &str| run.number(&format!("/constant_speed/{of}/lost_steps"));
-        assert!(lost("x") + lost("y") > 1000.0, "{drawing}, {rule}");
+        let lost = |of: &str| run.number(&format!("/at_feed/{of}/lost_steps"));
+        assert!(lost("x") + lost("y") > 1000.0, "{drawing}");
     }
 }
 
 /// The feed from the first step to the last, as before.
 #[test]
-fn without_ramps_the_speed_is_that_of_the_feed() {
-    let run = Run::of_text("G1 X30 Y40 F1200", &["--profile", "constant"]);
+fn at_the_feed_throughout_the_speed_is_that_of_the_feed() {
+    let run = Run::of_text("G1 X30 Y40 F1200", &["--steps", "nearest"]);
     let path = run.path();
     // 50 mm at 20 mm/s.
     assert!((path.last().unwrap().0 - 2.5).abs() < 1e-3);
@@ -75,7 +70,7 @@ fn without_ramps_the_speed_is_that_of_the_feed() {
         assert!((speed / 20.0 - 1.0).abs() < 0.01, "{speed} mm/s");
     }
     assert!(acceleration(&path, 0) > 5.0 * ACCELERATION_MM_S2 / 10.0);
-    let same = |of: &str| run.report["motors"][of] == run.report["constant_speed"][of];
+    let same = |of: &str| run.report["motors"][of] == run.report["at_feed"][of];
     assert!(same("x") && same("y"));
 }
 
@@ -119,7 +114,62 @@ fn no_feed_makes_the_motors_lose_steps() {
         let lost = ["x", "y"].map(|of| run.number(&format!("/motors/{of}/lost_steps")));
         assert!(lost.iter().all(|steps| steps.abs() < 0.5), "{text}");
         // At the feed from the first step on, as published, they stall.
-        let constant = Run::of_text(text, &["--profile", "constant"]);
+        let constant = Run::of_text(text, &["--steps", "nearest"]);
         assert!(constant.number("/motors/x/lost_steps") > 0.5);
     }
+}
+
+/// A circle as a slicer writes it, in chords with three decimals.
+fn chords(count: u32) -> String {
+    let point = |n: u32| {
+        let angle = core::f64::consts::TAU * f64::from(n) / f64::from(count);
+        [50.0 + 20.0 * angle.cos(), 50.0 + 20.0 * angle.sin()]
+    };
+    let lines = (1..=count).map(|n| {
+        let [x, y] = point(n);
+        format!("G1 X{x:.3} Y{y:.3} F3000\n")
+    });
+    format!("G0 X70 Y50\n{}", lines.collect::<String>())
+}
+
+/// Chords take the time of the arc, and stay within the tolerance.
+#[test]
+fn lines_are_passed_like_the_curve_that_they_stand_for() {
+    let duration_s = |text: &str, options: &[&str]| {
+        let run = Run::of_text(text, options);
+        let [used, allowed] = ["/smoothed_bound_mm", "/tolerance_mm"].map(|of| run.number(of));
+        assert!(used <= allowed, "{used} of {allowed}");
+        let worst = run.number("/max_deviation_mm");
+        // Half a step of each axis, and what the cubics of the axes leave the curves.
+        let most = allowed + STEP_MM * core::f64::consts::FRAC_1_SQRT_2 + 0.001;
+        assert!(worst <= most, "{worst} mm, {options:?}");
+        assert_eq!(run.number("/lost_steps").to_bits(), 0);
+        run.number("/duration_s")
+    };
+    let arc = duration_s("G0 X70 Y50\nG3 I-20 F3000\n", &[]);
+    for (count, slower) in [(1000, 1.01), (250, 1.01), (63, 1.02)] {
+        let taken = duration_s(&chords(count), &[]) / arc;
+        assert!(taken < slower, "{count} chords: {taken}");
+    }
+    // Corners of 30 degrees: 0.01 mm give about the speed by which the motors may jump, more gives more.
+    let [corners, narrow, wide] =
+        ["0", "0.01", "0.2"].map(|mm| duration_s(&chords(12), &["--tolerance", mm]));
+    assert!(
+        narrow < 1.02 * corners && wide < 0.9 * narrow,
+        "{corners} {narrow} {wide} s"
+    );
+}
+
+/// Programs round both ends of their arcs: each ends where it is programmed to, however many there are.
+#[test]
+fn arcs_whose_ends_are_rounded_do_not_drift() {
+    let mut text = String::from("G0 X60 Y50\n");
+    for turn in 0..40 {
+        let (out, back) = (f64::from(turn % 7) * 0.001, f64::from(turn % 5) * 0.001);
+        text += &format!("G3 X{:.3} Y50 I-10.003 F1800\n", 40.0 - out);
+        text += &format!("G3 X{:.3} Y50 I9.997 F1800\n", 60.0 + back);
+    }
+    let run = Run::of_text(&text, &[]);
+    assert!(run.number("/max_deviation_mm") < 0.03);
+    assert!(run.number("/closing_error_mm") < STEP_MM);
 }
