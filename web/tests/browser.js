@@ -135,9 +135,16 @@ export async function assertAccessible(page) {
  * @param {string} name
  */
 export async function saved(page, name) {
-  const download = page.waitForEvent('download');
-  await page.getByRole('button', { name, exact: true }).click();
-  return readFileSync(await (await download).path());
+  const button = page.getByRole('button', { name, exact: true });
+  const [download] = await Promise.all([
+    page.waitForEvent('download', { timeout: 60_000 }),
+    button.click(),
+  ]).catch(async (error) => {
+    const said = await page.locator('#status').textContent();
+    const enabled = await button.isEnabled();
+    assert.fail(`no ${name}, enabled: ${enabled}; the page says ${said}\n${error}`);
+  });
+  return readFileSync(await download.path());
 }
 
 /**
