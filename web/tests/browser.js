@@ -129,6 +129,9 @@ export async function assertAccessible(page) {
   assert.deepEqual(told, []);
 }
 
+/** Chromium drops the tenth download of a page within a second, without a word. */
+const BETWEEN_DOWNLOADS_MS = 150;
+
 /**
  * The bytes that a button saves.
  * @param {import('playwright-core').Page} page
@@ -144,7 +147,9 @@ export async function saved(page, name) {
     const enabled = await button.isEnabled();
     assert.fail(`no ${name}, enabled: ${enabled}; the page says ${said}\n${error}`);
   });
-  return readFileSync(await download.path());
+  const bytes = readFileSync(await download.path());
+  await page.waitForTimeout(BETWEEN_DOWNLOADS_MS);
+  return bytes;
 }
 
 /**
