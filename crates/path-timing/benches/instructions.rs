@@ -1,54 +1,137 @@
-//! Instructions per point of a dense file, counted by callgrind: smoothing, look-ahead, rows.
-#![expect(clippy::unwrap_used, clippy::panic, reason = "a bench fails loudly")]
+//! Instructions per point of a dense file, counted by callgrind: smoothing, look-ahead, rows; for arms
+//! also the path of the joints, and as many segments as keep the departure's proven bound.
+#![expect(clippy::unwrap_used, reason = "a bench fails loudly")]
 
 use core::hint::black_box;
 use std::process::ExitCode;
 
-use path_timing::{AxisLimits, Knot, LookAhead, Smoothed, Vertex};
+use delta_kin::{Delta, DeltaPath};
+use path_timing::{
+    AxisLimits, Curve, Knot, LookAhead, Path, Smoothed, Vertex, Waypoint, segments_within,
+};
+use scara_kin::{Arm, ArmPath, Elbow, Joints};
 use test_support::instructions::{Limit, bench};
 
-/// Points of a circle of 40 mm so far apart, in mm, and the most instructions for each.
-const CASES: [(&str, f64, f64); 6] = [
-    ("0.05 mm apart", 0.05, 1500.0),
-    ("0.1 mm apart", 0.1, 2000.0),
-    ("0.2 mm apart", 0.2, 3000.0),
-    ("0.5 mm apart", 0.5, 9000.0),
-    ("1 mm apart", 1.0, 10_000.0),
-    ("2 mm apart", 2.0, 14_000.0),
-];
-const POINTS: u32 = 2000;
+/// Who runs the points.
+#[derive(Clone, Copy)]
+enum Machine {
+    Cartesian,
+    TwoLinks,
+    ThreeArms,
+}
 
-const AXIS: AxisLimits = AxisLimits {
+/// Points of a circle of 40 mm so far apart, in mm, and the most instructions for each.
+const CASES: [(&str, Machine, f64, f64); 10] = [
+    ("0.05 mm apart", Machine::Cartesian, 0.05, 1500.0),
+    ("0.1 mm apart", Machine::Cartesian, 0.1, 2000.0),
+    ("0.2 mm apart", Machine::Cartesian, 0.2, 3000.0),
+    ("0.5 mm apart", Machine::Cartesian, 0.5, 9000.0),
+    ("1 mm apart", Machine::Cartesian, 1.0, 10_000.0),
+    ("2 mm apart", Machine::Cartesian, 2.0, 14_000.0),
+    ("arm, 0.2 mm apart", Machine::TwoLinks, 0.2, 16_000.0),
+    ("arm, 1 mm apart", Machine::TwoLinks, 1.0, 72_000.0),
+    ("Delta, 0.2 mm apart", Machine::ThreeArms, 0.2, 60_000.0),
+    ("Delta, 1 mm apart", Machine::ThreeArms, 1.0, 270_000.0),
+];
+
+/// As many of the Cartesian machine; arms take long under callgrind.
+const fn points(machine: Machine) -> u32 {
+    match machine {
+        Machine::Cartesian => 2000,
+        Machine::TwoLinks | Machine::ThreeArms => 200,
+    }
+}
+
+/// Of smoothing, and of the joints' cubics, in mm.
+const TOLERANCE_MM: f64 = 0.01;
+
+/// Of a Cartesian axis in mm; of a joint in rad.
+const LINEAR: AxisLimits = AxisLimits {
     speed: 300.0,
     acceleration: 3000.0,
     jerk: None,
 };
+const JOINT: AxisLimits = AxisLimits {
+    speed: 6.0,
+    acceleration: 100.0,
+    jerk: None,
+};
+
+/// Points of a circle with three decimals, from its centre.
+fn circle(count: u32, step_mm: f64) -> Vec<[f64; 2]> {
+    (0..count)
+        .map(|n| {
+            let (sin, cos) = (f64::from(n) * step_mm / 40.0).sin_cos();
+            [cos, sin].map(|x| (x * 40_000.0).round() / 1000.0)
+        })
+        .collect()
+}
+
+fn smoothed<const D: usize>(
+    points: impl Iterator<Item = [f64; D]>,
+    vertices: &mut [Vertex<D>],
+) -> impl Iterator<Item = Curve<D>> {
+    let points = points.map(Waypoint::from);
+    let curves = Smoothed::new(points, TOLERANCE_MM, vertices).unwrap();
+    curves.map(Result::unwrap)
+}
+
+fn cartesian(points: &[[f64; 2]]) {
+    let (mut vertices, mut window) = ([Vertex::default(); 24], [Knot::default(); 64]);
+    let curves = smoothed(points.iter().copied(), &mut vertices);
+    let rows = LookAhead::new(curves, [LINEAR; 2], |_| Ok(1), &mut window).unwrap();
+    black_box(rows.last());
+}
+
+fn arm(points: &[[f64; 2]]) {
+    let arm = Arm::new(132.0, 132.0).unwrap();
+    let (mut vertices, mut window) = ([Vertex::default(); 24], [Knot::default(); 64]);
+    let points = points.iter().map(|[x, y]| [*x, y + 150.0]);
+    let mut joints = None;
+    let paths = smoothed(points, &mut vertices).map(|curve| {
+        let path = match joints {
+            Some(joints) => arm.path_from(curve, Elbow::Right, joints),
+            None => arm.path(curve, Elbow::Right),
+        };
+        let path = path.unwrap();
+        let [shoulder, elbow] = path.point(path.length()).unwrap().position;
+        joints = Some(Joints::new(shoulder, elbow));
+        path
+    });
+    let segments = |path: &ArmPath| segments_within(path, 1, TOLERANCE_MM, ArmPath::departure);
+    let rows = LookAhead::new(paths, [JOINT; 2], segments, &mut window).unwrap();
+    black_box(rows.last());
+}
+
+fn delta(points: &[[f64; 2]]) {
+    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let (mut vertices, mut window) = ([Vertex::default(); 24], [Knot::default(); 64]);
+    let points = points.iter().map(|[x, y]| [*x, *y, -300.0]);
+    let paths = smoothed(points, &mut vertices).map(|curve| delta.path(curve).unwrap());
+    let segments = |path: &DeltaPath| segments_within(path, 1, TOLERANCE_MM, DeltaPath::departure);
+    let rows = LookAhead::new(paths, [JOINT; 3], segments, &mut window).unwrap();
+    black_box(rows.last());
+}
 
 fn run(case: &str, rounds: u32) {
-    let step_mm = CASES.iter().find(|(name, ..)| *name == case);
-    let (_, step_mm, _) = step_mm.unwrap_or_else(|| panic!("no case {case}"));
-    let points: Vec<[f64; 2]> = (0..POINTS)
-        .scan(0.0_f64, |angle, _| {
-            *angle += step_mm / 40.0;
-            let (sin, cos) = angle.sin_cos();
-            Some([cos, sin].map(|x| (x * 40_000.0).round() / 1000.0))
-        })
-        .collect();
+    let found = CASES.iter().find(|(name, ..)| *name == case);
+    let (_, machine, step_mm, _) = *found.unwrap();
+    let points = circle(points(machine), step_mm);
     for _ in 0..rounds {
-        let (mut vertices, mut window) = ([Vertex::default(); 24], [Knot::default(); 64]);
-        let points = black_box(&points).iter().copied();
-        let curves = Smoothed::new(points, 0.01, &mut vertices).unwrap();
-        let curves = curves.map(Result::unwrap);
-        let rows = LookAhead::new(curves, [AXIS; 2], |_| Ok(1), &mut window).unwrap();
-        black_box(rows.last());
+        let points = black_box(&points);
+        match machine {
+            Machine::Cartesian => cartesian(points),
+            Machine::TwoLinks => arm(points),
+            Machine::ThreeArms => delta(points),
+        }
     }
 }
 
 fn main() -> ExitCode {
-    let limits = CASES.map(|(case, _, most)| Limit {
+    let limits = CASES.map(|(case, machine, _, most)| Limit {
         case,
         unit: "per point",
-        units: f64::from(POINTS),
+        units: f64::from(points(machine)),
         rounds: [1, 4],
         most,
     });

@@ -79,6 +79,10 @@ pub fn segments_within<P: Path>(
         })?;
         let (leg, max) = (0, FINEST);
         most = found.map_err(|_| PlanError::TooFine { leg, max })?;
+        // Its knots are the ends, with any corners.
+        if most == 1 {
+            break;
+        }
     }
     Ok(most)
 }
