@@ -165,7 +165,8 @@ impl<'a> Controller<'a> {
                 while next < last && chain.is_past(next, self.commanded_mm()) {
                     next = self.begun(chain, next + 1);
                 }
-                self.made(chain, ticks, by)?;
+                let near = chain.motions.get(first..=last).unwrap_or_default();
+                self.made(chain, near, ticks, by)?;
             }
             Ok(())
         })?;
@@ -180,7 +181,8 @@ impl<'a> Controller<'a> {
             self.begun(chain, number);
             for timed in paths::at_feed(motion, self.commanded, rule)? {
                 let (ticks, step) = timed?;
-                self.made(chain, self.ticks + ticks, [step.dx(), step.dy()])?;
+                let near = core::slice::from_ref(motion);
+                self.made(chain, near, self.ticks + ticks, [step.dx(), step.dy()])?;
             }
         }
         Ok(())
@@ -198,13 +200,13 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// A step of a motion at a tick, seen and corrected.
-    fn made(&mut self, chain: &Chain<'_>, ticks: u64, by: [i32; 2]) -> Result<()> {
+    /// A step at a tick on a curve along some motions, seen and corrected.
+    fn made(&mut self, chain: &Chain<'_>, near: &[Motion], ticks: u64, by: [i32; 2]) -> Result<()> {
         let target = || chain.target();
         self.ticks = ticks;
         self.step(by).with_context(target)?;
         (self.observer)(self.ticks, by)?;
-        self.record.step(self.ticks, by, self.at_mm());
+        self.record.step(self.ticks, by, self.at_mm(), near);
         self.correct().with_context(target)?;
         Ok(())
     }

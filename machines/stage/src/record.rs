@@ -130,17 +130,21 @@ impl Record {
         }
     }
 
-    /// A step is made, the stages are at a point each.
-    pub(crate) fn step(&mut self, ticks: u64, by: [i32; 2], [closed, open]: [Point; 2]) {
+    /// A step is made along some motions, the stages are at a point each.
+    pub(crate) fn step(
+        &mut self,
+        ticks: u64,
+        by: [i32; 2],
+        [closed, open]: [Point; 2],
+        motions: &[Motion],
+    ) {
         self.motors.step(ticks, by);
         for (made, by) in self.steps.iter_mut().zip(by) {
             *made += u64::from(by.unsigned_abs());
         }
-        let Some(motion) = self.programmed.last() else {
-            return;
-        };
         for (seen, at) in [(&mut self.closed, closed), (&mut self.open, open)] {
-            let deviation_mm = motion.distance_mm(at);
+            let each = motions.iter().map(|motion| motion.distance_mm(at));
+            let deviation_mm = each.fold(f64::INFINITY, f64::min);
             seen.worst.step(at, deviation_mm);
             seen.deviations.add(ticks, deviation_mm);
             if let Some(leg) = seen.legs.last_mut() {

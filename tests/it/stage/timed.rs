@@ -11,6 +11,9 @@ const SPAN_S: f64 = 0.04;
 /// What steps are off their places on the programmed motion: 1 off the curve, half along it.
 const DEVIATION_MM: f64 = 1.5 * STEP_MM;
 
+/// Half a step of each axis, and what the cubics of the axes leave the curves.
+const HALF_STEPS_MM: f64 = STEP_MM * core::f64::consts::FRAC_1_SQRT_2 + 0.001;
+
 /// The largest second difference of the steps of an axis, in mm/s².
 fn acceleration(path: &[(f64, [f64; 2])], axis: usize) -> f64 {
     let at = |time_s: f64| match path.partition_point(|(t, _)| *t <= time_s) {
@@ -140,8 +143,7 @@ fn lines_are_passed_like_the_curve_that_they_stand_for() {
         let [used, allowed] = ["/smoothed_bound_mm", "/tolerance_mm"].map(|of| run.number(of));
         assert!(used <= allowed, "{used} of {allowed}");
         let worst = run.number("/max_deviation_mm");
-        // Half a step of each axis, and what the cubics of the axes leave the curves.
-        let most = allowed + STEP_MM * core::f64::consts::FRAC_1_SQRT_2 + 0.001;
+        let most = allowed + HALF_STEPS_MM;
         assert!(worst <= most, "{worst} mm, {options:?}");
         assert_eq!(run.number("/lost_steps").to_bits(), 0);
         run.number("/duration_s")
@@ -172,4 +174,32 @@ fn arcs_whose_ends_are_rounded_do_not_drift() {
     let run = Run::of_text(&text, &[]);
     assert!(run.number("/max_deviation_mm") < 0.03);
     assert!(run.number("/closing_error_mm") < STEP_MM);
+}
+
+/// Points of few decimals: many are the same, lines go straight back, each has a feed of its own.
+#[test]
+fn points_on_a_grid_are_passed_to_the_last() {
+    let mut state = 1_u64;
+    let mut random = |below: i64| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        i64::try_from(state >> 33).unwrap() % below
+    };
+    for (decimals, tolerance) in [(1, "0"), (2, "0.01"), (3, "0.05"), (2, "0.3")] {
+        let unit = 10_f64.powi(decimals);
+        let (mut text, mut at) = (String::from("G0 X60 Y50\n"), [0_i32; 2]);
+        for _ in 0..60 {
+            at = at.map(|x| x + i32::try_from(random(7) - 3).unwrap());
+            let [x, y] = at.map(f64::from);
+            let feed = [30, 300, 3000][usize::try_from(random(3)).unwrap()];
+            text += &format!("G1 X{} Y{} F{feed}\n", 60.0 + x / unit, 50.0 + y / unit);
+        }
+        let run = Run::of_text(&text, &["--tolerance", tolerance]);
+        let most = run.number("/tolerance_mm") + HALF_STEPS_MM;
+        let worst = run.number("/max_deviation_mm");
+        assert!(worst <= most, "{decimals} decimals: {worst} mm");
+        assert!(run.number("/closing_error_mm") < HALF_STEPS_MM);
+        assert_eq!(run.number("/lost_steps").to_bits(), 0);
+    }
 }

@@ -30,6 +30,9 @@ struct HumpKnot {
 /// Knots nearer than this fraction of the coordinates are one.
 const LEAST: f64 = 1e-9;
 
+/// So are those nearer than this fraction of the arc length, which is a sum of rounded lengths.
+const LEAST_OF_LENGTH: f64 = 1e-12;
+
 /// Of the deflection of a clamped beam in whose middle a point load stands.
 const BEAM: f64 = 192.0;
 
@@ -95,8 +98,7 @@ impl<const D: usize> Sight<'_, D> {
         // Jumps inside a curve that ends at the next knot, and those at the knot before.
         let (mut edge, mut sum, mut last_jumps) = (edge, 0.0, 0.0);
         let mut farthest: Option<End> = None;
-        let first = decided.first()?;
-        let least = LEAST * first.point.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let least = self.least_between_knots(s, edge);
         for knot in HumpKnots::after(s, decided) {
             if knot.s > horizon {
                 return farthest.filter(|_| is_last_chance);
@@ -130,6 +132,14 @@ impl<const D: usize> Sight<'_, D> {
             }
         }
         farthest.filter(|_| is_last_chance)
+    }
+
+    /// Length at or below which knots on an edge are one.
+    fn least_between_knots(&self, s: f64, edge: usize) -> f64 {
+        let ends = [edge, edge.saturating_add(1)].map(|index| self.get(index));
+        let coordinates = ends.iter().flatten().flat_map(|vertex| &vertex.point);
+        let largest = coordinates.fold(0.0_f64, |a, b| a.max(b.abs()));
+        (LEAST * largest).max(LEAST_OF_LENGTH * s)
     }
 
     /// Up to where all humps are known.

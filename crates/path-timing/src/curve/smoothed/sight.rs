@@ -151,8 +151,12 @@ impl<'m, const D: usize> Sight<'m, D> {
             // Written so that NaN is none.
             let is_some = width > LEAST_WIDTH * largest;
             vertex.width = if is_some { width } else { 0.0 };
+            if self.measured <= index {
+                vertex.widest = vertex.width;
+            }
         }
         self.decided = index.saturating_add(1);
+        self.measured = self.measured.max(self.decided);
         true
     }
 
@@ -187,7 +191,6 @@ impl<'m, const D: usize> Sight<'m, D> {
                 break;
             }
         }
-        self.measured = self.measured.max(index.saturating_add(1));
         Some(width)
     }
 
@@ -223,12 +226,27 @@ impl<'m, const D: usize> Sight<'m, D> {
         } else {
             0.0
         };
-        let is_final = widest < in_sight * IN_SIGHT;
+        let is_final = self.is_whole || widest < in_sight * IN_SIGHT;
         if is_final && index == self.measured {
             self.measured = index.saturating_add(1);
             self.vertices.get_mut(index)?.widest = widest;
         }
         (is_final || is_last_chance).then_some(widest)
+    }
+
+    /// The widest that a hump may be beside what the vertex before bears, as far as that is known.
+    fn beside(&self, index: usize) -> f64 {
+        let (Some(vertex), Some(before)) = (self.get(index), self.get(index.wrapping_sub(1)))
+        else {
+            return f64::INFINITY;
+        };
+        if index <= self.decided {
+            before.widest_next(vertex)
+        } else if index <= self.measured {
+            before.widest + GROWTH * (vertex.s - before.s)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Arc length at the last stop before a vertex, else that from which on all is in sight.
@@ -255,13 +273,9 @@ impl<'m, const D: usize> Sight<'m, D> {
         } else {
             behind / REACH
         };
-        // Where nothing turns nothing departs most.
-        if vertex.sharpness == 0.0 {
-            return f64::INFINITY;
-        }
         // The bound is convex in h and 0 at 0: Newton's steps come down to what is allowed, and a
         // part of h departs by no more than that part.
-        let mut widest = alone.min(in_sight).min(behind);
+        let mut widest = alone.min(in_sight).min(behind).min(self.beside(index));
         for _ in 0..STEPS {
             let (bound, slope) = self.bound(index, widest);
             // Written so that NaN is enough.
