@@ -239,7 +239,7 @@ fn bad_input_is_one_line_and_no_file() {
     )]);
     refused(
         &["--platform", file.path().to_str().unwrap()],
-        "error: [path]: max_distance_error_mm = 0: segmentation by 0: not a positive finite number",
+        "error: [path]: max_distance_error_mm = 0: an allowed departure of 0 is not a positive finite number",
     );
     let file = changed(&[
         ("[20.0, 20.0, 10.0]", "[0.001, 20.0, 10.0]"),

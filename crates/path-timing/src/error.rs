@@ -1,6 +1,6 @@
 //! Why a table cannot be made.
 
-use crate::short::short;
+use trig_kernels::SixDigits;
 
 /// Why a table cannot be made; nothing of it has been handed out. `E` is the path's own error.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -8,7 +8,7 @@ use crate::short::short;
 #[non_exhaustive]
 pub enum PlanError<E> {
     /// A limit is not a number within the range of the crate.
-    #[error("axis {axis}: {name} is {}, not within {}..={}", short(.value), short(.min), short(.max))]
+    #[error("axis {axis}: {name} is {}, not within {}..={}", SixDigits(*.value), SixDigits(*.min), SixDigits(*.max))]
     Limit {
         /// The axis, from 0.
         axis: usize,
@@ -22,7 +22,7 @@ pub enum PlanError<E> {
         max: f64,
     },
     /// A limit of the tool along a path is not a number within the range of the crate.
-    #[error("leg {leg}: {name} is {}, not within {}..={}", short(.value), short(.min), short(.max))]
+    #[error("leg {leg}: {name} is {}, not within {}..={}", SixDigits(*.value), SixDigits(*.min), SixDigits(*.max))]
     Tool {
         /// The leg, from 0.
         leg: usize,
@@ -39,7 +39,7 @@ pub enum PlanError<E> {
     #[error("a limit of jerk takes a table: no window of fixed size has the path to the next stop")]
     Jerk,
     /// A start-stop speed of a corner is neither 0 nor a number within the range of the crate.
-    #[error("leg {leg}, axis {axis}: a start-stop speed of {} is not within the range of numbers", short(.speed))]
+    #[error("leg {leg}, axis {axis}: a start-stop speed of {} is not within the range of numbers", SixDigits(*.speed))]
     StartStopSpeed {
         /// The leg before the corner, from 0.
         leg: usize,
@@ -49,7 +49,7 @@ pub enum PlanError<E> {
         speed: f64,
     },
     /// The machine cannot be at a point of the path.
-    #[error("leg {leg}, at {}: {reason}", short(.s))]
+    #[error("leg {leg}, at {}: {reason}", SixDigits(*.s))]
     Path {
         /// The leg, from 0.
         leg: usize,
@@ -59,7 +59,7 @@ pub enum PlanError<E> {
         reason: E,
     },
     /// A position or a slope of a path is not a finite number.
-    #[error("leg {leg}, at {}: a position or slope is not a finite number", short(.s))]
+    #[error("leg {leg}, at {}: a position or slope is not a finite number", SixDigits(*.s))]
     NotFinite {
         /// The leg, from 0.
         leg: usize,
@@ -67,7 +67,7 @@ pub enum PlanError<E> {
         s: f64,
     },
     /// The length of a path is not a number within the range of the crate.
-    #[error("leg {leg}: a length of {} is not within the range of numbers", short(.length))]
+    #[error("leg {leg}: a length of {} is not within the range of numbers", SixDigits(*.length))]
     Length {
         /// The leg, from 0.
         leg: usize,
@@ -75,7 +75,7 @@ pub enum PlanError<E> {
         length: f64,
     },
     /// A leg does not begin where the one before ends, to the last bit.
-    #[error("leg {leg}, axis {axis}: begins {} from where the leg before ends", short(.by))]
+    #[error("leg {leg}, axis {axis}: begins {} from where the leg before ends", SixDigits(*.by))]
     Gap {
         /// The leg, from 0.
         leg: usize,
@@ -86,7 +86,7 @@ pub enum PlanError<E> {
     },
     /// A segment is so coarse that the path between its ends cannot be known from their slopes: more
     /// segments are needed.
-    #[error("leg {leg}, at {}: the segment is too coarse for the path; use more segments", short(.s))]
+    #[error("leg {leg}, at {}: the segment is too coarse for the path; use more segments", SixDigits(*.s))]
     TooCoarse {
         /// The leg, from 0.
         leg: usize,
@@ -110,13 +110,13 @@ pub enum PlanError<E> {
         available: usize,
     },
     /// An allowed departure that is not positive and finite.
-    #[error("an allowed departure of {} is not a positive finite number", short(.allowed))]
+    #[error("an allowed departure of {} is not a positive finite number", SixDigits(*.allowed))]
     Allowed {
         /// The departure given.
         allowed: f64,
     },
     /// A largest ratio of times that is not above 1.
-    #[error("a largest time ratio of {} is not above 1", short(.max_time_ratio))]
+    #[error("a largest time ratio of {} is not above 1", SixDigits(*.max_time_ratio))]
     TimeRatio {
         /// The ratio given.
         max_time_ratio: f64,
@@ -131,7 +131,7 @@ pub enum PlanError<E> {
         knot: u32,
     },
     /// A scale of the speed that is above 1, or so low that times leave the range of the crate.
-    #[error("a speed scale of {} is not within {}..=1", short(.scale), short(.min))]
+    #[error("a speed scale of {} is not within {}..=1", SixDigits(*.scale), SixDigits(*.min))]
     SpeedScale {
         /// The scale given.
         scale: f64,
@@ -139,7 +139,7 @@ pub enum PlanError<E> {
         min: f64,
     },
     /// A highest feed that is beyond the range of the crate.
-    #[error("a highest feed of {} is not within {}..={}", short(.feed), short(.min), short(.max))]
+    #[error("a highest feed of {} is not within {}..={}", SixDigits(*.feed), SixDigits(*.min), SixDigits(*.max))]
     Feed {
         /// The feed given.
         feed: f64,

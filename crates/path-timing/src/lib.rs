@@ -25,7 +25,6 @@ mod reciprocals;
 mod row;
 mod rows;
 mod segment;
-mod short;
 mod span;
 mod stepping;
 mod table;
@@ -45,8 +44,6 @@ pub use path::{Path, PathFn, PathPoint};
 pub use playback::{FeedCeiling, FeedError, Playback};
 pub use row::Row;
 pub use rows::Rows;
-#[doc(hidden)]
-pub use short::SixDigits;
 pub use span::Span;
 pub use table::{Accuracy, Table};
 pub use verify::{Promise, Verifier, Violation};

@@ -6,11 +6,12 @@ mod stop;
 
 use core::convert::Infallible;
 
+use trig_kernels::SixDigits;
+
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::passes::time_of;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
-use crate::short::short;
 use crate::stepping::Ahead;
 use crate::{Axes, Knot, PlanError, Row, Table};
 pub use ceiling::FeedCeiling;
@@ -19,7 +20,7 @@ use change::Change;
 /// A feed that the override cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[error("feed {} is neither 0 nor within {}..={}", short(.feed), short(.min), short(.max))]
+#[error("feed {} is neither 0 nor within {}..={}", SixDigits(*.feed), SixDigits(*.min), SixDigits(*.max))]
 #[expect(clippy::exhaustive_structs, reason = "there is one cause")]
 pub struct FeedError {
     /// The feed asked for, 1 for 100 %.

@@ -4,8 +4,9 @@
 //! Method: each cubic by its own formulas, from positions, velocities and time alone; the path is asked
 //! for the places that the rows name. No line of it is used by the planner, nor the other way round.
 
+use trig_kernels::SixDigits;
+
 use crate::number::{cube_root, sqrt};
-use crate::short::short;
 use crate::{Axes, AxisLimits, Path, Row, Span};
 
 /// What is promised of rows besides the limits of the axes.
@@ -29,7 +30,7 @@ pub struct Promise<A: Axes> {
 #[non_exhaustive]
 pub enum Violation<E> {
     /// A limit of an axis is passed in the segment up to a time.
-    #[error("axis {axis}, up to {} s: {name} reaches {}, the limit is {}", short(.time_s), short(.value), short(.limit))]
+    #[error("axis {axis}, up to {} s: {name} reaches {}, the limit is {}", SixDigits(*.time_s), SixDigits(*.value), SixDigits(*.limit))]
     Limit {
         /// The axis, from 0.
         axis: usize,
@@ -43,7 +44,7 @@ pub enum Violation<E> {
         limit: f64,
     },
     /// A position or a velocity is not that of the path at the place that the row names.
-    #[error("axis {axis}, at {} s: {name} is {} off the path", short(.time_s), short(.by))]
+    #[error("axis {axis}, at {} s: {name} is {} off the path", SixDigits(*.time_s), SixDigits(*.by))]
     OffPath {
         /// The axis, from 0.
         axis: usize,
@@ -56,7 +57,7 @@ pub enum Violation<E> {
     },
     /// The parameter of the path turns back on a segment: its speed at an end times the duration is
     /// negative or more than three times the length.
-    #[error("up to {} s: the path turns back; {} times the length", short(.time_s), short(.times))]
+    #[error("up to {} s: the path turns back; {} times the length", SixDigits(*.time_s), SixDigits(*.times))]
     TurnsBack {
         /// Time of the row at the end of the segment.
         time_s: f64,
@@ -64,7 +65,7 @@ pub enum Violation<E> {
         times: f64,
     },
     /// The tool departs by more than was promised.
-    #[error("up to {} s: a departure of {}, {} is promised", short(.time_s), short(.departure), short(.promised))]
+    #[error("up to {} s: a departure of {}, {} is promised", SixDigits(*.time_s), SixDigits(*.departure), SixDigits(*.promised))]
     Departure {
         /// Time of the row at the end of the segment.
         time_s: f64,
@@ -74,13 +75,13 @@ pub enum Violation<E> {
         promised: f64,
     },
     /// A time is not after the one before by the duration of the segment.
-    #[error("at {} s: the row does not follow the one before", short(.time_s))]
+    #[error("at {} s: the row does not follow the one before", SixDigits(*.time_s))]
     Time {
         /// Time of the row.
         time_s: f64,
     },
     /// Paths are not in their order, a parameter does not rise, or there is no such path.
-    #[error("leg {leg}, at {}: the row does not follow the one before", short(.s))]
+    #[error("leg {leg}, at {}: the row does not follow the one before", SixDigits(*.s))]
     Order {
         /// The leg of the row.
         leg: usize,
@@ -88,7 +89,7 @@ pub enum Violation<E> {
         s: f64,
     },
     /// A motion between two rests is slower than it is promised to be.
-    #[error("up to {} s: all limits allow {} times the speed", short(.time_s), short(.times))]
+    #[error("up to {} s: all limits allow {} times the speed", SixDigits(*.time_s), SixDigits(*.times))]
     Slow {
         /// Time of the rest.
         time_s: f64,
@@ -96,7 +97,7 @@ pub enum Violation<E> {
         times: f64,
     },
     /// The machine may not be there.
-    #[error("leg {leg}, up to {}: {reason}", short(.s))]
+    #[error("leg {leg}, up to {}: {reason}", SixDigits(*.s))]
     Path {
         /// The leg.
         leg: usize,

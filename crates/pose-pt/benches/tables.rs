@@ -6,10 +6,10 @@
 use core::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use path_timing::{Accuracy, FeedCeiling, Knot, Table};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Vector3};
 use pose_pt::{
-    AxisLimits, Convention, FeedCeiling, Interpolation, Knot, Locator, Path, Platform, PtTable,
-    PvtTable, Segmentation,
+    AxisLimits, BodyPath, Convention, Interpolation, Locator, Path, Platform, PtTable, Segmentation,
 };
 
 const POINTS: u32 = 10_000;
@@ -82,8 +82,8 @@ fn pvt(c: &mut Criterion) {
         let path = Path::new(&poses, kind).expect("poses are good");
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
             b.iter(|| {
-                let segmentation = Segmentation::segments(POINTS);
-                PvtTable::plan(&platform, black_box(&path), segmentation, &mut knots)
+                let paths = platform.paths(black_box(&path));
+                Table::plan(paths, platform.axis_limits(), |_| POINTS, &mut knots)
                     .expect("plan is good")
                     .duration_s()
             });
@@ -92,15 +92,21 @@ fn pvt(c: &mut Criterion) {
     let path = Path::new(&poses, Interpolation::Straight).expect("poses are good");
     group.bench_function("straight, from a distance error of 0.01", |b| {
         b.iter(|| {
-            let segmentation = Segmentation::max_distance_error(0.01);
-            PvtTable::plan(&platform, black_box(&path), segmentation, &mut knots)
+            let accuracy = Accuracy {
+                min_segments: 2,
+                max_departure: 0.01,
+                max_time_ratio: f64::INFINITY,
+            };
+            let (paths, limits) = (platform.paths(black_box(&path)), platform.axis_limits());
+            Table::plan_within(paths, limits, accuracy, BodyPath::departure, &mut knots)
                 .expect("plan is good")
                 .len()
         });
     });
     group.finish();
 
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(POINTS), &mut knots);
+    let (paths, limits) = (platform.paths(&path), platform.axis_limits());
+    let table = Table::plan(paths, limits, |_| POINTS, &mut knots);
     let table = table.expect("plan is good");
     let mut ceilings = vec![FeedCeiling::default(); ROOM];
     let mut group = c.benchmark_group("PVT points");
@@ -108,14 +114,16 @@ fn pvt(c: &mut Criterion) {
     group.sample_size(20);
     group.bench_function("of the table", |b| {
         b.iter(|| {
-            for point in black_box(&table).points() {
+            for point in black_box(&table).rows() {
                 black_box(&point);
             }
         });
     });
     group.bench_function("under a feed override", |b| {
         b.iter(|| {
-            let mut run = table.run(1.5, &mut ceilings).expect("memory is enough");
+            let mut run = table
+                .playback(1.5, &mut ceilings)
+                .expect("memory is enough");
             run.set_feed(0.7).expect("feed is good");
             for point in run {
                 black_box(&point);

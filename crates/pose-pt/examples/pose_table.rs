@@ -3,8 +3,9 @@
 
 use core::error::Error;
 
-use pose_pt::{AxisLimits, Convention, Interpolation, Knot, Locator, Segmentation};
-use pose_pt::{Path, Platform, PoseVector, PvtTable};
+use path_timing::{Accuracy, Knot, Table};
+use pose_pt::{AxisLimits, BodyPath, Convention, Interpolation, Locator};
+use pose_pt::{Path, Platform, PoseVector};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Stroke in mm, speed in mm/s, acceleration in mm/s²; zero where the panel is at rest.
@@ -22,27 +23,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let poses = [rest, lifted].map(|vector| vector.to_isometry(Convention::ExtrinsicXyz));
     let path = Path::new(&poses, Interpolation::Straight)?;
     let mut knots = [Knot::default(); 65];
-    let table = PvtTable::plan(
-        &platform,
-        &path,
-        Segmentation::max_distance_error(0.01),
-        &mut knots,
-    )?;
+    let accuracy = Accuracy {
+        min_segments: 16,
+        max_departure: 0.01,
+        max_time_ratio: f64::INFINITY,
+    };
+    let (paths, limits) = (platform.paths(&path), platform.axis_limits());
+    let table = Table::plan_within(paths, limits, accuracy, BodyPath::departure, &mut knots)?;
 
-    for point in table.points() {
-        print!("{:8.4} s", point.time_s);
-        for (axes, velocities) in point.axes.iter().zip(&point.velocities) {
-            for (axis, velocity) in axes.iter().zip(velocities) {
-                print!("{axis:9.3} {velocity:7.3}");
-            }
+    for row in table.rows() {
+        print!("{:8.4} s", row.time_s);
+        let axes = row.position.iter().zip(&row.velocity);
+        for (position, velocity) in axes.flat_map(|(q, v)| q.iter().zip(v)) {
+            print!("{position:9.3} {velocity:7.3}");
         }
         println!();
     }
-    println!(
-        "{} points, {:.3} s, distance error at most {:.1e} mm",
-        table.len(),
-        table.duration_s(),
-        table.distance_error_bound()
-    );
+    println!("{} rows, {:.3} s", table.len(), table.duration_s());
     Ok(())
 }

@@ -1,34 +1,13 @@
 //! A leg as the axes of a platform see it.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 
 use crate::number::{epsilons, larger};
-use crate::path::blend::Motion;
-use crate::path::leg::{Shape, Turning, VectorLeg, angular_velocity};
+use crate::path::leg::{Shape, Turning, VectorLeg};
 use crate::path::{Leg, Path};
 use crate::rotation::to_matrix;
 use crate::turn::{Sweep, Turn};
 use crate::{Platform, PoseVector};
-
-/// Axis coordinates and their derivative by the parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CoursePoint<const N: usize> {
-    pub(crate) axes: [Vector3<f64>; N],
-    pub(crate) slope: [Vector3<f64>; N],
-}
-
-impl<const N: usize> CoursePoint<N> {
-    /// The axes of a body that moves.
-    pub(crate) fn of(platform: &Platform<N>, motion: &Motion) -> Self {
-        let velocity = |anchor: Point3<f64>| {
-            motion.linear + motion.angular.cross(&(motion.rotation * anchor.coords))
-        };
-        Self {
-            axes: platform.axes_at(&motion.rotation, &motion.position),
-            slope: platform.in_axes(platform.anchors().map(velocity)),
-        }
-    }
-}
 
 /// Axis coordinates as a function of the leg's parameter s, 0..=1.
 #[derive(Debug, Clone, Copy)]
@@ -41,10 +20,10 @@ pub(crate) enum Course<'a, const N: usize> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TurningCourse<const N: usize> {
     start: [Vector3<f64>; N],
-    slide: [Vector3<f64>; N],
-    sine: [Vector3<f64>; N],
-    versine: [Vector3<f64>; N],
-    angle: f64,
+    pub(crate) slide: [Vector3<f64>; N],
+    pub(crate) sine: [Vector3<f64>; N],
+    pub(crate) versine: [Vector3<f64>; N],
+    pub(crate) angle: f64,
 }
 
 /// By how much more than the body an axis may move where the three of a locator are least
@@ -87,35 +66,6 @@ impl<'a, const N: usize> Course<'a, N> {
         match &leg.shape {
             Shape::Turning(leg) => Self::Turning(TurningCourse::new(platform, leg)),
             Shape::Vector(leg) => Self::Vector(platform, *leg),
-        }
-    }
-
-    /// Axes and slopes at a parameter.
-    pub(crate) fn point(&self, s: f64) -> CoursePoint<N> {
-        match self {
-            Self::Turning(course) => {
-                let turn = Turn::of(course.angle * s);
-                CoursePoint {
-                    axes: course.axes(s, turn),
-                    slope: course.slope(turn),
-                }
-            }
-            Self::Vector(platform, leg) => {
-                let vector = leg.at(s);
-                let rotation = vector.to_rotation(leg.convention);
-                let angular =
-                    angular_velocity(leg.convention, &vector.angles(), &leg.angles_change());
-                let (position, linear) = (vector.position(), leg.slide());
-                CoursePoint::of(
-                    platform,
-                    &Motion {
-                        rotation,
-                        position,
-                        linear,
-                        angular,
-                    },
-                )
-            }
         }
     }
 
@@ -183,20 +133,12 @@ impl<const N: usize> TurningCourse<N> {
     }
 
     #[inline]
-    fn axes(&self, s: f64, turn: Turn) -> [Vector3<f64>; N] {
+    pub(crate) fn axes(&self, s: f64, turn: Turn) -> [Vector3<f64>; N] {
         let mut axes = self.start;
         let parts = self.slide.iter().zip(&self.sine).zip(&self.versine);
         for (axes, ((slide, sine), versine)) in axes.iter_mut().zip(parts) {
             *axes += slide * s + (sine * turn.sin + versine * turn.versine);
         }
         axes
-    }
-
-    fn slope(&self, turn: Turn) -> [Vector3<f64>; N] {
-        let mut slope = self.slide;
-        for (slope, (sine, versine)) in slope.iter_mut().zip(self.sine.iter().zip(&self.versine)) {
-            *slope += (sine * turn.cos() + versine * turn.sin) * self.angle;
-        }
-        slope
     }
 }

@@ -19,7 +19,6 @@ mod short;
 mod svd;
 
 pub use nalgebra;
-pub use path_timing;
 pub use trig_kernels::Trig;
 
 pub use angles::{Convention, PoseVector, Resolved};
@@ -32,20 +31,19 @@ pub use rotation::{
     rotation_vector_between, slerp, to_matrix,
 };
 
+#[cfg(feature = "path-timing")]
+mod body_path;
 mod course;
 mod distance_error;
 mod path;
 mod plan_error;
 mod pt;
-mod pvt;
 mod segmentation;
 mod turn;
 
-pub use path_timing::{FeedCeiling, FeedError, Knot};
-pub use segmentation::Segmentation;
-
-pub use distance_error::hermite_distance_error;
+#[cfg(feature = "path-timing")]
+pub use body_path::{BodyPath, BodyPathError, BodyPaths, hermite_distance_error};
 pub use path::{Blend, Interpolation, Leg, Path, PathError};
 pub use plan_error::PlanError;
 pub use pt::{PtPoint, PtPoints, PtTable};
-pub use pvt::{PvtPoint, PvtPoints, PvtRun, PvtTable};
+pub use segmentation::Segmentation;

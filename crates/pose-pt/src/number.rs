@@ -87,11 +87,6 @@ pub(crate) fn magnitude<T: RealField + Copy>(value: T) -> T {
     larger(value, -value)
 }
 
-/// The larger of two numbers; not a number where either is none, unlike `f64::max`.
-pub(crate) fn larger_or_nan(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
-}
-
 /// The square root, of `core` alone.
 pub(crate) fn sqrt(x: f64) -> f64 {
     ComplexField::sqrt(x)

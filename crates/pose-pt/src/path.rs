@@ -1,6 +1,6 @@
 //! The path of a body through poses.
 
-pub(crate) mod blend;
+mod blend;
 pub(crate) mod leg;
 
 use core::f64::consts::PI;
@@ -8,7 +8,6 @@ use core::f64::consts::PI;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 pub use blend::Blend;
-use blend::Rounding;
 pub use leg::Leg;
 
 use crate::number::{epsilons, first_beyond, largest, largest_angle};
@@ -166,9 +165,9 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// The path rounded at the poses between the first and the last, one tolerance for each: a
-    /// [`PvtTable`](crate::PvtTable) then passes them without a stop. A
-    /// [`PtTable`](crate::PtTable) and [`leg`](Self::leg) stay unrounded.
+    /// The path rounded at the poses between the first and the last, one tolerance for each: timed by
+    /// `path-timing` the body passes them without a stop. A [`PtTable`](crate::PtTable) and
+    /// [`leg`](Self::leg) stay unrounded.
     ///
     /// # Errors
     /// [`PathError::Blends`], [`PathError::Blend`], [`PathError::ScrewBlend`].
@@ -192,17 +191,10 @@ impl<'a> Path<'a> {
         Ok(Self { blends, ..self })
     }
 
-    /// Whether there may be a pose without a stop.
-    pub(crate) const fn has_blends(&self) -> bool {
-        !self.blends.is_empty()
-    }
-
-    /// The rounding of the pose after leg `number`, `size` what the common parameter takes to run a
-    /// leg.
-    pub(crate) fn rounding(&self, number: usize, size: impl Fn(&Leg) -> f64) -> Option<Rounding> {
-        let blend = self.blends.get(number)?;
-        let (before, after) = (self.leg(number)?, self.leg(number.checked_add(1)?)?);
-        Rounding::new(blend, [&before, &after], [size(&before), size(&after)])
+    /// How far each pose between the first and the last is rounded; empty where all are stops.
+    #[must_use]
+    pub const fn blends(&self) -> &'a [Blend] {
+        self.blends
     }
 
     /// The number of legs: one fewer than poses.

@@ -1,7 +1,6 @@
 //! Why a table cannot be made.
 
 use crate::LimitError;
-use crate::pvt::Moving;
 use crate::short::short;
 
 /// Why a table cannot be made; nothing of it has been handed out.
@@ -58,45 +57,4 @@ pub enum PlanError {
         /// The point of the leg, from 0.
         point: u32,
     },
-    /// Between two points of a PVT table an axis would leave its stroke.
-    #[error("leg {leg}, at {} of it: {reason}", short(.part))]
-    Stroke {
-        /// The leg, from 0; of a blend the leg before it.
-        leg: usize,
-        /// The part of the leg, or of the blend, up to the first of both points, 0..=1.
-        part: f64,
-        /// Locator, axis, value and by how much it is out.
-        reason: LimitError,
-    },
-    /// Whatever else the planner of `path-timing` refuses.
-    #[error("{0}")]
-    Timing(path_timing::PlanError<LimitError>),
-}
-
-impl PlanError {
-    /// What `path-timing` refuses of legs and blends.
-    pub(crate) fn of_timing<const N: usize>(
-        error: path_timing::PlanError<LimitError>,
-        moving: &Moving<'_, N>,
-    ) -> Self {
-        use path_timing::PlanError as Timing;
-
-        match error {
-            Timing::Path { leg, s, reason } => Self::Stroke {
-                leg: moving.number(leg),
-                part: moving.part(leg, s),
-                reason,
-            },
-            Timing::TooFine { leg, max } => Self::TooFine {
-                leg: moving.number(leg),
-                max,
-            },
-            Timing::Memory { needed, available } => Self::TooManyPoints { needed, available },
-            Timing::Indistinct { leg, knot } => Self::Indistinct {
-                leg: moving.number(leg),
-                point: knot,
-            },
-            other => Self::Timing(other),
-        }
-    }
 }

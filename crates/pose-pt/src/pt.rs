@@ -33,8 +33,8 @@ pub struct PtPoint<const N: usize> {
 /// ```
 ///
 /// Poses between the first and the last are passed without a stop: speeds step at every point of a PT table, and
-/// no acceleration limit is looked at. [`PvtTable`](crate::PvtTable) is for controllers that
-/// can do better.
+/// no acceleration limit is looked at. Controllers that run cubics can do better, with
+/// `Platform::paths`.
 #[derive(Debug, Clone, Copy)]
 pub struct PtTable<'a, const N: usize> {
     platform: &'a Platform<N>,

@@ -67,8 +67,7 @@ impl Segmentation {
         }
     }
 
-    /// The same with at least `segments` of a leg. A PVT table gets nearer to the shortest
-    /// time with more points than the distance error asks for.
+    /// The same with at least `segments` of a leg.
     #[must_use]
     pub const fn at_least(mut self, segments: u32) -> Self {
         self.at_least = segments;
@@ -113,31 +112,19 @@ impl Segmentation {
             Some(leg) if !is_still(platform, path, number) => leg,
             _ => return 0,
         };
-        match self.rule {
+        let segments = match self.rule {
             Rule::DistanceError(allowed) => {
-                let turn = largest_turn(platform, &leg, allowed);
-                self.raised(segments_within(leg.turn(), turn))
+                segments_within(leg.turn(), largest_turn(platform, &leg, allowed))
             }
-            Rule::Segments(_) | Rule::Steps { .. } => {
-                self.segments_over([leg.length(), leg.turn()])
-            }
-        }
-    }
-
-    /// Segments of a motion by these bounds on the length of the reference point's path and on the
-    /// turn of the body; of a distance error the lowest number.
-    pub(crate) fn segments_over(&self, [length, turn]: [f64; 2]) -> u32 {
-        self.raised(match self.rule {
             Rule::Segments(segments) => segments,
             Rule::Steps {
                 translation,
                 rotation_rad,
-            } => segments_below(length, translation).max(segments_below(turn, rotation_rad)),
-            Rule::DistanceError(_) => 1,
-        })
-    }
-
-    fn raised(&self, segments: u32) -> u32 {
+            } => {
+                let (length, turn) = (leg.length(), leg.turn());
+                segments_below(length, translation).max(segments_below(turn, rotation_rad))
+            }
+        };
         segments.max(self.at_least).max(1)
     }
 

@@ -1,7 +1,7 @@
 //! Numbers in messages, rounded to the digits that a person reads.
 
 use nalgebra::RealField;
-use path_timing::SixDigits;
+use trig_kernels::SixDigits;
 
 /// The number as it stands in a message.
 pub(crate) fn short<T: RealField + Copy>(value: &T) -> SixDigits {

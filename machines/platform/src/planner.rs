@@ -1,10 +1,11 @@
 //! The table that goes to the controller of the axes: planned, and written.
 
-use core::fmt::Write as _;
+use core::fmt::{Display, Write as _};
 
 use anyhow::{Error, Result, anyhow, ensure};
 use nalgebra::Vector3;
-use pose_pt::{Blend, Knot, Path, PathError, PlanError, Platform, PtTable, PvtTable, Segmentation};
+use path_timing::{Accuracy, Knot, PlanError, Promise, Table, Verifier};
+use pose_pt::{Blend, BodyPath, BodyPathError, Path, PathError, Platform, PtTable, Segmentation};
 
 use crate::machine::isometry;
 use crate::mode::Mode;
@@ -70,33 +71,10 @@ impl<const N: usize> Planner<N> {
             PathError::ScrewBlend => Error::new(error).context("[[path.via]]"),
             other => other.into(),
         })?;
-        let max_distance_error_mm = self.settings.max_distance_error_mm();
-        let segmentation = Segmentation::max_distance_error(max_distance_error_mm);
-        let placed = |error: PlanError| match error {
-            PlanError::Limit { .. } => anyhow!(error),
-            _ => anyhow!("[path]: max_distance_error_mm = {max_distance_error_mm}: {error}"),
-        };
         let mut csv = self.header();
         let (points, distance_error_bound_mm) = match self.mode {
-            Mode::Pt => {
-                let table = PtTable::plan(&self.platform, &path, segmentation).map_err(placed)?;
-                table.fits(MAX_POINTS).map_err(placed)?;
-                is_short(table.duration_s())?;
-                for point in table.points() {
-                    self.row(&mut csv, point.time_s, &point.axes, None)?;
-                }
-                (table.len(), table.distance_error_bound())
-            }
-            Mode::Pvt => {
-                let mut knots = vec![Knot::default(); MAX_POINTS];
-                let table = PvtTable::plan(&self.platform, &path, segmentation, &mut knots);
-                let table = table.map_err(placed)?;
-                is_short(table.duration_s())?;
-                for point in table.points() {
-                    self.row(&mut csv, point.time_s, &point.axes, Some(&point.velocities))?;
-                }
-                (table.len(), table.distance_error_bound())
-            }
+            Mode::Pt => self.linear(&path, &mut csv)?,
+            Mode::Pvt => self.cubic(&path, &mut csv)?,
         };
         ensure!(points > 1, "from and to are the same pose: nothing moves");
         let places = poses.iter().flat_map(|pose| self.platform.positions(pose));
@@ -111,6 +89,62 @@ impl<const N: usize> Planner<N> {
             csv,
             distance_error_bound_mm: distance_error_bound_mm + rounding_mm,
         })
+    }
+
+    /// A table for linear motion between its points: how many there are, and the bound.
+    fn linear(&self, path: &Path<'_>, csv: &mut String) -> Result<(usize, f64)> {
+        let segmentation = Segmentation::max_distance_error(self.settings.max_distance_error_mm());
+        let placed = |error: pose_pt::PlanError| match error {
+            pose_pt::PlanError::Limit { .. } => anyhow!(error),
+            _ => self.too_accurate(error),
+        };
+        let table = PtTable::plan(&self.platform, path, segmentation).map_err(placed)?;
+        table.fits(MAX_POINTS).map_err(placed)?;
+        is_short(table.duration_s())?;
+        for point in table.points() {
+            self.row(csv, point.time_s, &point.axes, None)?;
+        }
+        Ok((table.len(), table.distance_error_bound()))
+    }
+
+    /// A table for cubics between its points, each of which the verifier has passed.
+    fn cubic(&self, path: &Path<'_>, csv: &mut String) -> Result<(usize, f64)> {
+        let max_departure = self.settings.max_distance_error_mm();
+        let accuracy = Accuracy {
+            min_segments: 2,
+            max_departure,
+            max_time_ratio: f64::INFINITY,
+        };
+        let placed = |error: PlanError<BodyPathError>| match error {
+            PlanError::Path { reason, .. } => anyhow!(reason),
+            _ => self.too_accurate(error),
+        };
+        let (paths, limits) = (self.platform.paths(path), self.platform.axis_limits());
+        let mut knots = vec![Knot::default(); MAX_POINTS];
+        let table = Table::plan_within(paths, limits, accuracy, BodyPath::departure, &mut knots);
+        let table = table.map_err(placed)?;
+        is_short(table.duration_s())?;
+        let legs: Vec<_> = paths.collect();
+        let mut verifier = Verifier::new(Promise {
+            limits,
+            start_stop: [[0.0; 3]; N],
+            max_departure,
+            // Few rows take long.
+            max_slowness: f64::INFINITY,
+        });
+        for row in table.rows() {
+            verifier.add(&row, |leg| legs.get(leg), |leg, span| leg.departure(span))?;
+            let [axes, velocities] = [row.position, row.velocity].map(|it| it.map(Vector3::from));
+            self.row(csv, row.time_s, &axes, Some(&velocities))?;
+        }
+        let spans = table.spans().zip(table.rows().skip(1));
+        let bounds = spans.filter_map(|(span, row)| Some(legs.get(row.leg)?.departure(&span)));
+        Ok((table.len(), bounds.fold(0.0, f64::max)))
+    }
+
+    fn too_accurate(&self, error: impl Display) -> Error {
+        let allowed_mm = self.settings.max_distance_error_mm();
+        anyhow!("[path]: max_distance_error_mm = {allowed_mm}: {error}")
     }
 
     fn header(&self) -> String {

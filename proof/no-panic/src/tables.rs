@@ -3,14 +3,12 @@
 use std::hint::black_box;
 
 use no_panic::no_panic;
+use path_timing::{Accuracy, Knot, PlanError, Table};
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    AxisLimits, Convention, FeedCeiling, Interpolation, Knot, Locator, Path, PlanError, Platform,
-    PoseVector, PtPoint, PtPoints, PtTable, PvtPoint, PvtPoints, PvtRun, PvtTable, Segmentation,
-    hermite_distance_error,
+    AxisLimits, BodyPath, BodyPathError, Convention, Interpolation, Locator, Path, Platform,
+    PoseVector, PtPoint, PtPoints, PtTable, Segmentation,
 };
-
-type Planned<T> = Result<T, PlanError>;
 
 #[no_panic]
 #[inline(never)]
@@ -18,7 +16,7 @@ fn pt_plan<'a>(
     platform: &'a Platform<3>,
     path: &Path<'a>,
     segmentation: Segmentation,
-) -> Planned<PtTable<'a, 3>> {
+) -> Result<PtTable<'a, 3>, pose_pt::PlanError> {
     PtTable::plan(platform, path, segmentation)
 }
 
@@ -30,31 +28,14 @@ fn pt_next(points: &mut PtPoints<'_, 3>) -> Option<PtPoint<3>> {
 
 #[no_panic]
 #[inline(never)]
-fn pvt_plan<'a>(
-    platform: &'a Platform<3>,
-    path: &Path<'a>,
-    segmentation: Segmentation,
+fn plan<'a>(
+    platform: &Platform<3>,
+    path: &Path<'_>,
+    accuracy: Accuracy,
     knots: &'a mut [Knot<[[f64; 3]; 3]>],
-) -> Planned<PvtTable<'a, 3>> {
-    PvtTable::plan(platform, path, segmentation, knots)
-}
-
-#[no_panic]
-#[inline(never)]
-fn pvt_next(points: &mut PvtPoints<'_, 3>) -> Option<PvtPoint<3>> {
-    points.next()
-}
-
-#[no_panic]
-#[inline(never)]
-fn distance_error(platform: &Platform<3>, from: &PvtPoint<3>, to: &PvtPoint<3>) -> f64 {
-    hermite_distance_error(platform, from, to)
-}
-
-#[no_panic]
-#[inline(never)]
-fn run_next(run: &mut PvtRun<'_, 3>) -> Option<PvtPoint<3>> {
-    run.next_point()
+) -> Result<Table<'a, [[f64; 3]; 3]>, PlanError<BodyPathError>> {
+    let (paths, limits) = (platform.paths(path), platform.axis_limits());
+    Table::plan_within(paths, limits, accuracy, BodyPath::departure, knots)
 }
 
 pub fn run() {
@@ -84,20 +65,16 @@ pub fn run() {
         black_box(pt_next(&mut points));
     }
     let mut knots = black_box([Knot::default(); 64]);
-    let Ok(table) = pvt_plan(
+    let accuracy = black_box(Accuracy {
+        min_segments: 2,
+        max_departure: 0.01,
+        max_time_ratio: 1.02,
+    });
+    // What a table hands out is looked at without a body.
+    let _ = black_box(plan(
         platform,
         black_box(&path),
-        segmentation(),
+        accuracy,
         black_box(&mut knots),
-    ) else {
-        return;
-    };
-    let mut points = black_box(table).points();
-    if let (Some(from), Some(to)) = (pvt_next(&mut points), pvt_next(&mut points)) {
-        black_box(distance_error(platform, &from, &to));
-    }
-    let mut ceilings = black_box([FeedCeiling::default(); 64]);
-    if let Ok(mut run) = table.run(black_box(1.5), black_box(&mut ceilings)) {
-        black_box(run_next(&mut run));
-    }
+    ));
 }

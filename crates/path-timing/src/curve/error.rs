@@ -1,6 +1,6 @@
 //! Why there is no such curve.
 
-use crate::short::short;
+use trig_kernels::SixDigits;
 
 /// Why there is no such curve.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -17,7 +17,7 @@ pub enum CurveError {
     #[error("the direction of the arc is along its radius")]
     NoDirection,
     /// An arc goes round too often.
-    #[error("the arc turns by {} rad, more than {} rad", short(.angle), short(.max))]
+    #[error("the arc turns by {} rad, more than {} rad", SixDigits(*.angle), SixDigits(*.max))]
     Angle {
         /// The angle given, in radians.
         angle: f64,
@@ -25,13 +25,13 @@ pub enum CurveError {
         max: f64,
     },
     /// The curve turns round at once, or nearly: its derivative vanishes.
-    #[error("the curve has a cusp near its parameter {}", short(.parameter))]
+    #[error("the curve has a cusp near its parameter {}", SixDigits(*.parameter))]
     Cusp {
         /// The parameter of the Bézier curve, 0..=1.
         parameter: f64,
     },
     /// A tolerance that is neither 0 nor within 1e-50 to 1e50.
-    #[error("a tolerance of {} is neither 0 nor within 1e-50 to 1e50", short(.tolerance))]
+    #[error("a tolerance of {} is neither 0 nor within 1e-50 to 1e50", SixDigits(*.tolerance))]
     Tolerance {
         /// The tolerance given.
         tolerance: f64,

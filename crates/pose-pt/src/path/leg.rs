@@ -200,40 +200,6 @@ impl VectorLeg {
     }
 }
 
-/// Angular velocity in the world of the rotation by `angles` that change at `rate`.
-///
-/// ```text
-/// R = Rz(γ) Ry(β) Rx(α)   ω = γ' ẑ + Rz (β' ŷ + Ry α' x̂)
-/// R = Rx(α) Ry(β) Rz(γ)   ω = α' x̂ + Rx (β' ŷ + Ry γ' ẑ)
-/// ```
-pub(crate) fn angular_velocity(
-    convention: Convention,
-    angles: &Vector3<f64>,
-    rate: &Vector3<f64>,
-) -> Vector3<f64> {
-    let (sb, cb) = sin_cos(angles.y);
-    match convention {
-        Convention::ExtrinsicXyz => {
-            let (sg, cg) = sin_cos(angles.z);
-            let across = cb * rate.x;
-            Vector3::new(
-                cg * across - sg * rate.y,
-                sg * across + cg * rate.y,
-                rate.z - sb * rate.x,
-            )
-        }
-        Convention::IntrinsicXyz => {
-            let (sa, ca) = sin_cos(angles.x);
-            let across = cb * rate.z;
-            Vector3::new(
-                rate.x + sb * rate.z,
-                ca * rate.y - sa * across,
-                sa * rate.y + ca * across,
-            )
-        }
-    }
-}
-
 /// The smallest and the largest sine of the angles from `a` to `b`.
 fn sine_range(a: f64, b: f64) -> (f64, f64) {
     let (from, to) = (a.min(b), a.max(b));

@@ -3,6 +3,7 @@
 
 mod calls;
 mod paths;
+#[cfg(feature = "path-timing")]
 mod pvt;
 
 use calls::{Call, Inputs, Outcome};
@@ -32,6 +33,7 @@ impl<T: RealField + Trig> Call<T> {
 fn double() -> Vec<Call<f64>> {
     let mut calls = calls::all();
     calls.extend(paths::all());
+    #[cfg(feature = "path-timing")]
     calls.extend(pvt::all());
     calls
 }
@@ -222,7 +224,7 @@ fn check_unit<T: RealField + Trig>(call: &Call<T>, unit: T, is_in_range: bool) {
 }
 
 fn check_units<T: RealField + Trig>(calls: &[Call<T>], exponents: [i32; 2], range: [i32; 2]) {
-    let names = ["Platform of poses", "rigid_fit", "PtTable", "PvtTable"];
+    let names = ["Platform of poses", "rigid_fit", "PtTable"];
     for call in calls.iter().filter(|call| names.contains(&call.name)) {
         for exponent in (exponents[0]..exponents[1]).step_by(5) {
             let unit = T::from_subset(&2_f64.powi(exponent));

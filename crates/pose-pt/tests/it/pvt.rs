@@ -4,8 +4,10 @@ mod blends;
 mod refusals;
 mod times;
 
+use crate::support::table::{Cut, Point, plan, points_of};
+use path_timing::{Knot, PlanError};
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{AxisLimits, Knot, Path, PlanError, Platform, PvtPoint, PvtTable, Segmentation};
+use pose_pt::{AxisLimits, Path, Platform};
 use proptest::prelude::*;
 
 use crate::support::cubic::between;
@@ -19,7 +21,7 @@ const LIMIT: f64 = 1.0 + 1e-9;
 const ROUNDING: f64 = 1e-11;
 
 /// The largest fractions of the limits of speed, acceleration and jerk.
-fn fractions<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> [f64; 3] {
+fn fractions<const N: usize>(platform: &Platform<N>, points: &[Point<N>]) -> [f64; 3] {
     let mut fractions = [0.0_f64; 3];
     let mut before = [Vector3::<f64>::zeros(); N];
     let mut before_s = 0.0;
@@ -57,7 +59,7 @@ fn fractions<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> 
 }
 
 /// Rest at both ends, times that add up, and velocities that belong to a rigid motion.
-fn check_motion<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>], duration_s: f64) {
+fn check_motion<const N: usize>(platform: &Platform<N>, points: &[Point<N>], duration_s: f64) {
     for end in [points.first().unwrap(), points.last().unwrap()] {
         assert!(end.velocities.iter().all(|v| v.amax() == 0.0));
     }
@@ -93,9 +95,8 @@ fn poses_on_the_way_are_stops() {
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
         let mut knots = [Knot::default(); 202];
-        let table =
-            PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots).unwrap();
-        let points: Vec<_> = table.points().collect();
+        let table = plan(&platform, &path, Cut::Into(100), &mut knots).unwrap();
+        let points = points_of(table.rows());
         assert_eq!((points.len(), table.len()), (201, 201));
         assert!(points[100].velocities.iter().all(|v| v.amax() == 0.0));
         for (number, pose) in [(0, poses[0]), (100, poses[1]), (200, poses[3])] {
@@ -138,15 +139,14 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
             for kind in ALL {
                 let path = Path::new(&poses, kind).unwrap();
                 let mut knots = [Knot::default(); 33];
-                let table =
-                    PvtTable::plan(&platform, &path, Segmentation::segments(32), &mut knots);
+                let table = plan(&platform, &path, Cut::Into(32), &mut knots);
                 // What rounding is most of may be too coarse to be known.
-                if let Err(PlanError::Timing(path_timing::PlanError::TooCoarse { .. })) = table {
+                if let Err(PlanError::TooCoarse { .. }) = table {
                     continue;
                 }
                 let table = table.unwrap();
                 let mut last = 0.0;
-                for point in table.points().skip(1) {
+                for point in points_of(table.rows()).into_iter().skip(1) {
                     assert!(
                         point.time_s > last && point.time_s.is_finite(),
                         "{kind:?} {way} {turn}"
@@ -178,9 +178,9 @@ proptest! {
         let platform = if skew { skewed() } else { panel_with(limits) };
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let mut knots = [Knot::default(); 121];
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+        let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();
-        let points: Vec<_> = table.points().collect();
+        let points = points_of(table.rows());
         prop_assert_eq!(points.len(), table.len());
         let fractions = fractions(&platform, &points);
         prop_assert!(fractions.iter().all(|share| *share < LIMIT), "{:?}", fractions);

@@ -1,8 +1,8 @@
 //! PVT tables: the distance error of two locators between the points.
 
-use pose_pt::{
-    AxisLimits, Interpolation, Knot, Path, Platform, PtTable, PvtPoint, PvtTable, Segmentation,
-};
+use crate::support::table::{Cut, Point, bound, plan, points_of};
+use path_timing::Knot;
+use pose_pt::{AxisLimits, Interpolation, Path, Platform, PtTable, Segmentation};
 use proptest::prelude::*;
 
 use crate::support::cubic::between;
@@ -14,7 +14,7 @@ use crate::support::platform::{ACCELERATION, panel, panel_with, skewed};
 const ROUNDING: f64 = 1e-11;
 
 /// The largest distance error between points, at 1000 places of each segment.
-fn measured<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) -> f64 {
+fn measured<const N: usize>(platform: &Platform<N>, points: &[Point<N>]) -> f64 {
     let mut worst = 0.0_f64;
     for pair in points.windows(2) {
         for place in 0..=1000 {
@@ -34,11 +34,11 @@ fn distance_error_from_rest_is_of_second_order() {
     let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 3];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(2), &mut knots).unwrap();
-    let points: Vec<_> = table.points().collect();
+    let table = plan(&platform, &path, Cut::Into(2), &mut knots).unwrap();
+    let points = points_of(table.rows());
     let length = (platform.anchors()[1] - platform.anchors()[0]).xy().norm();
     let half = turn / 2.0;
-    let (bound, measured) = (table.distance_error_bound(), measured(&platform, &points));
+    let (bound, measured) = (bound(&platform, &table), measured(&platform, &points));
     let second = length * length / platform.largest_anchor_distance() * half * half / 32.0;
     assert!(
         (measured / second - 1.0).abs() < 1e-3,
@@ -58,27 +58,21 @@ fn distance_error_decides_the_number_of_points() {
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     for allowed in [0.1, 0.01, 0.001] {
         let mut knots = vec![Knot::default(); 2000];
-        let table = PvtTable::plan(
-            &platform,
-            &path,
-            Segmentation::max_distance_error(allowed),
-            &mut knots,
-        )
-        .unwrap();
-        let (segments, bound) = (table.len() - 1, table.distance_error_bound());
-        let points: Vec<_> = table.points().collect();
+        let table = plan(&platform, &path, Cut::Within(allowed), &mut knots).unwrap();
+        let (segments, most) = (table.len() - 1, bound(&platform, &table));
+        let points = points_of(table.rows());
         println!(
-            "{allowed} mm: {segments} segments, bound {bound}, {} s",
+            "{allowed} mm: {segments} segments, bound {most}, {} s",
             table.duration_s()
         );
-        assert!(bound <= allowed && measured(&platform, &points) <= bound);
+        assert!(most <= allowed && measured(&platform, &points) <= most);
         let linear =
             PtTable::plan(&platform, &path, Segmentation::max_distance_error(allowed)).unwrap();
         println!("PT: {} segments", linear.len() - 1);
         assert!(linear.len() > table.len());
-        let fewer = Segmentation::segments(u32::try_from(segments - 1).unwrap());
-        let coarse = PvtTable::plan(&platform, &path, fewer, &mut knots).unwrap();
-        assert!(coarse.distance_error_bound() > allowed);
+        let fewer = Cut::Into(u32::try_from(segments - 1).unwrap());
+        let coarse = plan(&platform, &path, fewer, &mut knots).unwrap();
+        assert!(bound(&platform, &coarse) > allowed);
     }
 }
 
@@ -95,10 +89,10 @@ proptest! {
         let platform = if skew { skewed() } else { panel_with(limits) };
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let mut knots = [Knot::default(); 13];
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+        let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();
-        let points: Vec<_> = table.points().collect();
-        let (bound, measured) = (table.distance_error_bound(), measured(&platform, &points));
+        let points = points_of(table.rows());
+        let (bound, measured) = (bound(&platform, &table), measured(&platform, &points));
         prop_assert!(measured <= bound + ROUNDING, "{} {}", measured, bound);
         prop_assert!(bound <= 3.0 * measured + ROUNDING, "{} {}", measured, bound);
     }

@@ -1,6 +1,8 @@
 //! PVT tables: limits in exact arithmetic.
 
-use pose_pt::{AxisLimits, FeedCeiling, Knot, Path, Platform, PvtPoint, PvtTable, Segmentation};
+use crate::support::table::{Cut, Point, plan, points_of};
+use path_timing::{FeedCeiling, Knot};
+use pose_pt::{AxisLimits, Path, Platform};
 use proptest::prelude::*;
 
 use crate::support::exact::Exact;
@@ -28,20 +30,15 @@ fn limits_hold_to_the_last_digit() {
             for (segments, kind) in [(40, 0), (1024, 1), (8192, 2), (20_000, 3)] {
                 let path = Path::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
-                let table = PvtTable::plan(
-                    &platform,
-                    &path,
-                    Segmentation::segments(segments),
-                    &mut knots,
-                );
+                let table = plan(&platform, &path, Cut::Into(segments), &mut knots);
                 let table = table.unwrap();
-                let slower = table.at_speed_scale(1.0 - f64::EPSILON).unwrap();
+                let slower = table.at_speed(1.0 - f64::EPSILON).unwrap();
                 let mut ceilings = vec![FeedCeiling::default(); table.len()];
-                let run = slower.run(1.0, &mut ceilings).unwrap();
+                let run = slower.playback(1.0, &mut ceilings).unwrap();
                 let excess = [
-                    exact_excess(&platform, table.points()),
-                    exact_excess(&platform, slower.points()),
-                    exact_excess(&platform, run),
+                    exact_excess(&platform, &points_of(table.rows())),
+                    exact_excess(&platform, &points_of(slower.rows())),
+                    exact_excess(&platform, &points_of(run)),
                 ];
                 assert!(
                     excess.iter().all(|of| *of <= 0.0),
@@ -54,8 +51,7 @@ fn limits_hold_to_the_last_digit() {
 
 /// The most by which an acceleration or a jerk of what the controller gets is above its limit, as
 /// a share of it, in exact arithmetic.
-fn exact_excess(platform: &Platform<3>, points: impl Iterator<Item = PvtPoint<3>>) -> f64 {
-    let points: Vec<_> = points.collect();
+fn exact_excess(platform: &Platform<3>, points: &[Point<3>]) -> f64 {
     let mut worst = f64::MIN;
     for pair in points.windows(2) {
         let [from, to] = pair else { unreachable!() };
@@ -100,10 +96,10 @@ proptest! {
         let poses = [first, second].concat();
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let mut knots = vec![Knot::default(); 1203];
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+        let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();
-        let table = table.at_speed_scale(scale).unwrap();
-        let excess = exact_excess(&platform, table.points());
+        let table = table.at_speed(scale).unwrap();
+        let excess = exact_excess(&platform, &points_of(table.rows()));
         prop_assert!(excess <= 0.0, "{excess:e}");
     }
 }

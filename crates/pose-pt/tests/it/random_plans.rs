@@ -15,9 +15,11 @@ use core::panic::AssertUnwindSafe;
 use std::collections::HashMap;
 use std::panic::catch_unwind;
 
+use crate::support::table;
 use check::{check_run, check_table};
 use linear::check_linear;
-use pose_pt::{FeedCeiling, Knot, Path, Platform, PvtTable};
+use path_timing::{FeedCeiling, Knot};
+use pose_pt::{Path, Platform};
 use scene::{Draw, Scene};
 use test_support::{Random, setting};
 
@@ -60,22 +62,24 @@ fn plan(scene: &Scene, draw: &mut Draw, counts: &mut Counts) {
         Err(error) => return counts.refuse(&error),
     };
     let mut knots = vec![Knot::default(); ROOM];
-    let table = match PvtTable::plan(&platform, &path, scene.segmentation, &mut knots) {
+    let table = match table::plan(&platform, &path, scene.cut, &mut knots) {
+        // Nothing moves.
+        Ok(table) if table.is_empty() => return,
         Ok(table) => table,
         Err(error) => return counts.refuse(&error),
     };
     counts.planned += 1;
-    check_table(scene, &table);
+    check_table(scene, &platform, &table);
     let scale = if draw.one_in(2) {
         1.0
     } else {
         draw.size(-2.0, 0.0)
     };
-    let table = table.at_speed_scale(scale).unwrap();
+    let table = table.at_speed(scale).unwrap();
     let mut ceilings = vec![FeedCeiling::default(); ROOM];
     let max = draw.size(-1.0, 1.0);
-    let run = table.run(max, &mut ceilings).unwrap();
-    check_run(&table, run, max, draw);
+    let run = table.playback(max, &mut ceilings).unwrap();
+    check_run(&platform, &table, run, max, draw);
     counts.runs += 1;
 }
 

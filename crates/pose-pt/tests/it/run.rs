@@ -1,11 +1,9 @@
 //! Feed override, stops on the path, and the controller's buffer.
 
+use crate::support::table::{Cut, Point, plan, points_of};
+use path_timing::{FeedCeiling, FeedError, Knot, PlanError, Playback};
 use pose_pt::nalgebra::Isometry3;
-use pose_pt::path_timing::PlanError;
-use pose_pt::{
-    AxisLimits, FeedCeiling, FeedError, Interpolation, Knot, Path, Platform, PvtPoint, PvtTable,
-    Segmentation,
-};
+use pose_pt::{AxisLimits, Interpolation, Path, Platform};
 use proptest::prelude::*;
 
 use crate::support::cubic::between;
@@ -25,7 +23,7 @@ fn poses() -> [Isometry3<f64>; 2] {
 }
 
 /// Speeds and accelerations of what the controller runs, as shares of the limits.
-fn check_limits<const N: usize>(platform: &Platform<N>, points: &[PvtPoint<N>]) {
+fn check_limits<const N: usize>(platform: &Platform<N>, points: &[Point<N>]) {
     for pair in points.windows(2) {
         for place in 0..=16 {
             let share = f64::from(place) / 16.0;
@@ -47,12 +45,11 @@ fn at_full_feed_it_is_the_table() {
         let poses = poses();
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 101];
-        let table =
-            PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots).unwrap();
+        let table = plan(&platform, &path, Cut::Into(100), &mut knots).unwrap();
         let mut ceilings = [FeedCeiling::default(); 101];
-        let run = table.run(1.5, &mut ceilings).unwrap();
+        let run = table.playback(1.5, &mut ceilings).unwrap();
         assert_eq!(run.size_hint(), (0, Some(101)));
-        for (got, wanted) in run.zip(table.points()) {
+        for (got, wanted) in points_of(run).into_iter().zip(points_of(table.rows())) {
             assert_eq!(got.axes, wanted.axes);
             assert!(
                 (got.time_s - wanted.time_s).abs() < 1e-9 * (1.0 + wanted.time_s),
@@ -73,13 +70,13 @@ fn a_table_at_its_limits_cannot_go_faster_and_one_below_can() {
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(200), &mut knots).unwrap();
-    let slow = table.at_speed_scale(0.5).unwrap();
+    let table = plan(&platform, &path, Cut::Into(200), &mut knots).unwrap();
+    let slow = table.at_speed(0.5).unwrap();
     for (table, feed, expected) in [(table, 1.5, 1.0), (slow, 1.5, 2.0 / 1.5), (slow, 0.5, 4.0)] {
         let mut ceilings = [FeedCeiling::default(); 201];
-        let mut run = table.run(1.5, &mut ceilings).unwrap();
+        let mut run = table.playback(1.5, &mut ceilings).unwrap();
         run.set_feed(feed).unwrap();
-        let points: Vec<_> = run.collect();
+        let points = points_of(run);
         check_limits(&platform, &points);
         let share = points.last().unwrap().time_s / slow.duration_s() * 2.0;
         println!("{feed}: {share}, {expected}");
@@ -93,14 +90,14 @@ fn a_stop_is_on_the_path_and_can_go_on() {
     let poses = [pose([0.0; 3], [0.0; 3]), pose([100.0, 0.0, 0.0], [0.0; 3])];
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 401];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(400), &mut knots).unwrap();
+    let table = plan(&platform, &path, Cut::Into(400), &mut knots).unwrap();
     let mut ceilings = [FeedCeiling::default(); 401];
-    let mut run = table.run(1.5, &mut ceilings).unwrap();
-    let mut points: Vec<_> = run.by_ref().take(200).collect();
+    let mut run = table.playback(1.5, &mut ceilings).unwrap();
+    let mut points = points_of(run.by_ref().take(200));
     let from = *points.last().unwrap();
     run.stop();
-    points.extend(run.by_ref());
-    assert!(!run.is_finished() && run.next_point().is_none());
+    points.extend(points_of(run.by_ref()));
+    assert!(!run.is_finished() && run.next_row().is_none());
     let rest = points.last().unwrap();
     assert!(rest.velocities.iter().all(|v| v.amax() == 0.0));
     // 10 mm/s at 25 mm/s² stop within 2 mm, and a segment.
@@ -113,7 +110,7 @@ fn a_stop_is_on_the_path_and_can_go_on() {
     check_limits(&platform, &points);
 
     run.set_feed(1.0).unwrap();
-    points.extend(run.by_ref());
+    points.extend(points_of(run.by_ref()));
     assert!(run.is_finished());
     check_limits(&platform, &points);
     assert_eq!(points.len(), 401);
@@ -127,15 +124,15 @@ fn no_stop_crawls() {
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 51];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(50), &mut knots).unwrap();
+    let table = plan(&platform, &path, Cut::Into(50), &mut knots).unwrap();
     for moving in 2..50 {
         let mut ceilings = [FeedCeiling::default(); 51];
-        let mut run = table.run(1.0, &mut ceilings).unwrap();
-        let mut points: Vec<_> = run.by_ref().take(moving).collect();
+        let mut run = table.playback(1.0, &mut ceilings).unwrap();
+        let mut points = points_of(run.by_ref().take(moving));
         run.stop();
-        points.extend(run);
+        points.extend(points_of(run));
         check_limits(&platform, &points);
-        for (found, planned) in points.iter().zip(table.points()).skip(1) {
+        for (found, planned) in points.iter().zip(points_of(table.rows())).skip(1) {
             let longer = found.segment_s / planned.segment_s;
             assert!(longer < 10.0, "{moving}: {longer}");
         }
@@ -148,9 +145,9 @@ fn wrong_feeds_and_memory_are_named() {
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 11];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(10), &mut knots).unwrap();
+    let table = plan(&platform, &path, Cut::Into(10), &mut knots).unwrap();
     let mut ceilings = [FeedCeiling::default(); 11];
-    let error = table.run(1.5, &mut ceilings[..10]).unwrap_err();
+    let error = table.playback(1.5, &mut ceilings[..10]).unwrap_err();
     assert_eq!(
         error,
         PlanError::Memory {
@@ -159,10 +156,10 @@ fn wrong_feeds_and_memory_are_named() {
         }
     );
     for max in [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e-310, 1e300] {
-        let error = table.run(max, &mut ceilings).unwrap_err();
+        let error = table.playback(max, &mut ceilings).unwrap_err();
         assert!(matches!(error, PlanError::Feed { .. }), "{error}");
     }
-    let mut run = table.run(1.5, &mut ceilings).unwrap();
+    let mut run = table.playback(1.5, &mut ceilings).unwrap();
     let error = run.set_feed(1.6).unwrap_err();
     assert_eq!(
         error,
@@ -181,13 +178,16 @@ fn wrong_feeds_and_memory_are_named() {
 #[cfg(target_pointer_width = "64")]
 #[test]
 fn memory_is_fixed() {
-    use pose_pt::{PtPoints, PtTable, PvtPoints, PvtRun};
+    use pose_pt::{BodyPath, BodyPaths, PtPoints, PtTable};
+
+    use crate::support::table::BodyTable;
 
     assert_eq!(size_of::<PtTable<'_, 3>>(), 96);
     assert_eq!(size_of::<PtPoints<'_, 3>>(), 680);
-    assert_eq!(size_of::<PvtTable<'_, 3>>(), 320);
-    assert_eq!(size_of::<PvtPoints<'_, 3>>(), 216);
-    assert_eq!(size_of::<PvtRun<'_, 3>>(), 600);
+    assert_eq!(size_of::<BodyPaths<'_, 3>>(), 64);
+    assert_eq!(size_of::<BodyPath<'_, 3>>(), 496);
+    assert_eq!(size_of::<BodyTable<'_, 3>>(), 256);
+    assert_eq!(size_of::<Playback<'_, [[f64; 3]; 3]>>(), 432);
     assert_eq!(size_of::<Knot<[[f64; 3]; 3]>>(), 264);
     assert_eq!(size_of::<FeedCeiling>(), 16);
 }
@@ -206,14 +206,14 @@ proptest! {
         let poses = [pose([0.0; 3], [0.0; 3]), pose(translation, turn), pose(on, on_turn)];
         let Ok(path) = Path::new(&poses, Interpolation::Screw) else { return Ok(()) };
         let mut knots = [Knot::default(); 62];
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots);
+        let table = plan(&platform, &path, Cut::Into(segments), &mut knots);
         // Few segments may be too coarse.
         let Ok(table) = table else { return Ok(()) };
-        let table = table.at_speed_scale(scale).unwrap();
+        let table = table.at_speed(scale).unwrap();
         let mut ceilings = [FeedCeiling::default(); 61];
-        let mut run = table.run(feed, &mut ceilings).unwrap();
+        let mut run = table.playback(feed, &mut ceilings).unwrap();
         run.set_feed(feed).unwrap();
-        let points: Vec<_> = run.collect();
+        let points = points_of(run);
         check_limits(&platform, &points);
         let share = points.last().unwrap().time_s / table.duration_s();
         prop_assert!(share <= LIMIT, "{share}");
@@ -233,22 +233,22 @@ proptest! {
         let poses = poses();
         let path = Path::new(&poses, Interpolation::Screw).unwrap();
         let mut knots = [Knot::default(); 151];
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(segments), &mut knots)
+        let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();
-        let table = table.at_speed_scale(scale).unwrap();
+        let table = table.at_speed(scale).unwrap();
         let mut ceilings = [FeedCeiling::default(); 151];
-        let mut run = table.run(1.5, &mut ceilings).unwrap();
+        let mut run = table.playback(1.5, &mut ceilings).unwrap();
         let mut points = Vec::new();
         for (feed, count) in feeds {
             run.set_feed(if feed < 0.2 { 0.0 } else { feed }).unwrap();
-            points.extend(run.by_ref().take(count));
+            points.extend(points_of(run.by_ref().take(count)));
         }
         run.set_feed(1.0).unwrap();
-        points.extend(run.by_ref());
+        points.extend(points_of(run.by_ref()));
         prop_assert!(run.is_finished());
         prop_assert_eq!(points.len(), table.len());
         check_limits(&platform, &points);
-        for (got, wanted) in points.iter().zip(table.points()) {
+        for (got, wanted) in points.iter().zip(points_of(table.rows())) {
             prop_assert_eq!(got.axes, wanted.axes);
         }
     }

@@ -3,7 +3,9 @@
 
 mod scene;
 
-use pose_pt::{Interpolation, Knot, Path, PvtTable, Segmentation};
+use crate::support::table::{Cut, bound, plan, points_of};
+use path_timing::Knot;
+use pose_pt::{Interpolation, Path};
 use proptest::prelude::*;
 use scene::{Number, Scene, scaled_platform, scaled_pose};
 
@@ -54,14 +56,8 @@ fn the_bound_on_the_distance_error_holds_in_every_unit() {
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let allowed = 1e-6 * apart;
         let mut knots = [Knot::default(); 100];
-        let table = PvtTable::plan(
-            &platform,
-            &path,
-            Segmentation::max_distance_error(allowed),
-            &mut knots,
-        )
-        .unwrap();
-        let points: Vec<_> = table.points().collect();
+        let table = plan(&platform, &path, Cut::Within(allowed), &mut knots).unwrap();
+        let points = points_of(table.rows());
         let mut measured = 0.0_f64;
         for pair in points.windows(2) {
             for place in 0..=1000 {
@@ -69,7 +65,7 @@ fn the_bound_on_the_distance_error_holds_in_every_unit() {
                 measured = measured.max(distance_error(&platform, &axes));
             }
         }
-        let bound = table.distance_error_bound();
+        let bound = bound(&platform, &table);
         println!("{apart}: {measured}, bound {bound}, allowed {allowed}");
         assert!(
             measured <= bound && bound <= allowed,

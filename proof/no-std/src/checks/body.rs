@@ -2,9 +2,10 @@
 
 use core::hint::black_box;
 
+use path_timing::{Knot, Table};
 use pose_pt::{
-    AxisLimits, Convention, Interpolation, Knot, Locator, Path, Platform, PoseVector, PtTable,
-    PvtTable, Segmentation,
+    AxisLimits, Convention, Interpolation, Locator, Path, Platform, PoseVector, PtTable,
+    Segmentation,
 };
 
 use super::{CLOSE_MM, holds};
@@ -47,12 +48,9 @@ pub fn tables() -> Option<()> {
     let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).ok()?;
     holds(table.points().count() == 5 && table.distance_error_bound() <= 0.01)?;
     let mut knots = [Knot::default(); 33];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(32), &mut knots).ok()?;
-    let last = table.points().last()?;
+    let (paths, limits) = (platform.paths(&path), platform.axis_limits());
+    let table = Table::plan(paths, limits, |_| 32, &mut knots).ok()?;
+    let last = table.rows().last()?;
     holds((last.time_s - table.duration_s()).abs() < CLOSE_MM)?;
-    holds(
-        last.velocities
-            .iter()
-            .all(|velocity| velocity.amax() < CLOSE_MM),
-    )
+    holds(last.is_at_rest())
 }

@@ -1,9 +1,11 @@
 //! Poses that are passed without a stop: how far from them, how fast, and what is refused.
 
+use crate::support::table::{Cut, Point, bound, plan, points_of};
+use path_timing::Knot;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    AxisLimits, Blend, Convention, Interpolation, Knot, Path, PathError, Platform, PoseVector,
-    PvtPoint, PvtTable, Segmentation, angle_between,
+    AxisLimits, Blend, Convention, Interpolation, Path, PathError, Platform, PoseVector,
+    angle_between,
 };
 use proptest::prelude::*;
 
@@ -32,21 +34,21 @@ fn corners() -> [Isometry3<f64>; 4] {
 }
 
 /// The table through the corners with the same blend at both.
-fn table<const N: usize>(
+fn rounded<const N: usize>(
     platform: &Platform<N>,
     kind: Interpolation,
     blend: Blend,
-    segmentation: Segmentation,
-) -> (Vec<PvtPoint<N>>, f64, f64) {
+    segmentation: Cut,
+) -> (Vec<Point<N>>, f64, f64) {
     let (poses, blends) = (corners(), [blend; 2]);
     let path = Path::new(&poses, kind).unwrap();
     let path = path.with_blends(&blends).unwrap();
     let mut knots = vec![Knot::default(); 2000];
-    let table = PvtTable::plan(platform, &path, segmentation, &mut knots).unwrap();
+    let table = plan(platform, &path, segmentation, &mut knots).unwrap();
     (
-        table.points().collect(),
+        points_of(table.rows()),
         table.duration_s(),
-        table.distance_error_bound(),
+        bound(platform, &table),
     )
 }
 
@@ -88,8 +90,8 @@ const ROUNDING: f64 = 1e-9;
 fn poses_are_passed_within_their_tolerance_and_limits_without_a_stop() {
     for platform in [panel(), skewed()] {
         for kind in KINDS {
-            let segmentation = Segmentation::segments(60);
-            let (points, duration_s, _) = table(&platform, kind, BLEND, segmentation);
+            let segmentation = Cut::Into(60);
+            let (points, duration_s, _) = rounded(&platform, kind, BLEND, segmentation);
             check_motion(&platform, &points, duration_s);
             let inner = &points[1..points.len() - 1];
             assert!(
@@ -109,7 +111,7 @@ fn poses_are_passed_within_their_tolerance_and_limits_without_a_stop() {
             // A point near the middle of a blend uses what is allowed: the pairing of the bound is
             // not the nearest one, of right angles it is off by √2.
             assert!((0.4..1.0 + ROUNDING).contains(&worst), "{kind:?}: {worst}");
-            let (_, stops_s, _) = table(&platform, kind, Blend::STOP, segmentation);
+            let (_, stops_s, _) = rounded(&platform, kind, Blend::STOP, segmentation);
             println!("{kind:?}: {duration_s:.3} s, with stops {stops_s:.3} s");
             // Each stop takes 0.4 s and more, of which corners leave some.
             assert!(duration_s < stops_s - 0.4, "{duration_s} {stops_s}");
@@ -120,8 +122,8 @@ fn poses_are_passed_within_their_tolerance_and_limits_without_a_stop() {
 #[test]
 fn the_distance_error_is_kept_in_blends_too() {
     for allowed in [0.01, 1e-4] {
-        let segmentation = Segmentation::max_distance_error(allowed);
-        let (points, _, bound) = table(&skewed(), KINDS[0], BLEND, segmentation);
+        let segmentation = Cut::Within(allowed);
+        let (points, _, bound) = rounded(&skewed(), KINDS[0], BLEND, segmentation);
         assert!(bound <= allowed, "{bound}");
         for pair in points.windows(2) {
             for step in 0..=20 {
@@ -141,7 +143,7 @@ fn a_pose_on_a_line_costs_nothing() {
     let platform = panel();
     let mut knots = [Knot::default(); 1000];
     let mut seconds = |path: &Path<'_>| {
-        let table = PvtTable::plan(&platform, path, Segmentation::segments(200), &mut knots);
+        let table = plan(&platform, path, Cut::Into(200), &mut knots);
         table.unwrap().duration_s()
     };
     let one = seconds(&Path::new(&ends, Interpolation::Straight).unwrap());
@@ -169,7 +171,7 @@ fn a_part_that_does_not_change_needs_no_tolerance() {
         }];
         let mut knots = [Knot::default(); 500];
         let path = path.with_blends(&blend).unwrap();
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(100), &mut knots);
+        let table = plan(&platform, &path, Cut::Into(100), &mut knots);
         table.unwrap().duration_s()
     };
     assert!(seconds(1.0, 0.0) < 0.99 * seconds(0.0, 1.0));
@@ -181,12 +183,9 @@ fn blends_with_a_limit_of_jerk_are_passed() {
     let limits = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(200.0);
     let platform = panel_with(limits);
     let allowed = 0.01;
-    for segmentation in [
-        Segmentation::segments(40),
-        Segmentation::max_distance_error(allowed),
-    ] {
-        let (points, seconds, error) = table(&platform, KINDS[0], BLEND, segmentation);
-        let (_, stopped_s, _) = table(&platform, KINDS[0], Blend::STOP, segmentation);
+    for segmentation in [Cut::Into(40), Cut::Within(allowed)] {
+        let (points, seconds, error) = rounded(&platform, KINDS[0], BLEND, segmentation);
+        let (_, stopped_s, _) = rounded(&platform, KINDS[0], Blend::STOP, segmentation);
         println!(
             "{seconds} s, with stops {stopped_s} s, {} points",
             points.len()
@@ -203,7 +202,7 @@ fn blends_with_a_limit_of_jerk_are_passed() {
             "{fractions:?}"
         );
         check_motion(&platform, &points, seconds);
-        assert!(segmentation == Segmentation::segments(40) || error <= allowed);
+        assert!(segmentation == Cut::Into(40) || error <= allowed);
     }
 }
 
@@ -267,9 +266,9 @@ proptest! {
             .collect();
         let blended = path.with_blends(&blends).unwrap();
         let mut knots = vec![Knot::default(); 1000];
-        let table = PvtTable::plan(&platform, &blended, Segmentation::segments(40), &mut knots)
+        let table = plan(&platform, &blended, Cut::Into(40), &mut knots)
             .unwrap();
-        let points: Vec<_> = table.points().collect();
+        let points = points_of(table.rows());
         check_motion(&platform, &points, table.duration_s());
         let used = fractions(&platform, &points);
         prop_assert!(used.iter().all(|used| *used < LIMIT), "{used:?}");

@@ -3,11 +3,11 @@
 use super::ROUNDING;
 use crate::support::moves::from_rest;
 use crate::support::platform::{ACCELERATION, SPEED, panel_with, pose};
+use crate::support::table::{Cut, plan, points_of};
+use path_timing::{Knot, PlanError};
 use pose_pt::nalgebra::Point3;
-use pose_pt::path_timing;
 use pose_pt::{
-    Axis, AxisLimits, Interpolation, Knot, LimitError, Locator, Path, PlanError, Platform,
-    PvtTable, Segmentation,
+    Axis, AxisLimits, BodyPathError, Interpolation, LimitError, Locator, Path, Platform,
 };
 
 /// A swing by ±0.3 rad carries the first two locators out to 1000 mm in its middle, where three
@@ -25,26 +25,25 @@ fn a_stroke_left_between_points_is_named() {
                 .map(|anchor| Locator::new(anchor.into(), Point3::origin(), [limits, wide, wide])),
         );
         let mut knots = [Knot::default(); 4];
-        let table = PvtTable::plan(
-            &platform.unwrap(),
-            &path,
-            Segmentation::segments(3),
-            &mut knots,
-        )
-        .map(|table| table.len());
+        let table =
+            plan(&platform.unwrap(), &path, Cut::Into(3), &mut knots).map(|table| table.len());
         table.map_err(|error| match error {
-            PlanError::Stroke {
-                leg: 0,
-                part,
+            PlanError::Path {
                 reason:
-                    LimitError::Stroke {
-                        locator,
-                        axis: Axis::X,
-                        value,
-                        min,
-                        max,
-                        by,
+                    BodyPathError::Leg {
+                        leg: 0,
+                        part,
+                        reason:
+                            LimitError::Stroke {
+                                locator,
+                                axis: Axis::X,
+                                value,
+                                min,
+                                max,
+                                by,
+                            },
                     },
+                ..
             } => {
                 assert!(part > 0.2 && part < 0.8, "{part}");
                 assert!((by - (min - value).max(value - max)).abs() < ROUNDING);
@@ -66,43 +65,30 @@ fn wrong_input_is_named() {
     let poses = from_rest([30.0, 0.0, 0.0], [0.0; 3]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 64];
-    let error =
-        PvtTable::plan(&platform, &path, Segmentation::segments(64), &mut knots).unwrap_err();
-    let wanted = PlanError::TooManyPoints {
+    let error = plan(&platform, &path, Cut::Into(64), &mut knots).unwrap_err();
+    let wanted = PlanError::Memory {
         needed: 65,
         available: 64,
     };
     assert_eq!(error, wanted);
-    let error = PvtTable::plan(&platform, &path, Segmentation::segments(2), &mut []).unwrap_err();
+    let error = plan(&platform, &path, Cut::Into(2), &mut []).unwrap_err();
     assert!(matches!(
         error,
-        PlanError::TooManyPoints {
+        PlanError::Memory {
             needed: 3,
             available: 0
         }
     ));
 
-    let error = PvtTable::plan(
-        &platform,
-        &path,
-        Segmentation::segments((1 << 24) + 1),
-        &mut knots,
-    )
-    .unwrap_err();
+    let error = plan(&platform, &path, Cut::Into((1 << 24) + 1), &mut knots).unwrap_err();
     let max = 1 << 24;
     assert_eq!(error, PlanError::TooFine { leg: 0, max });
 
     let turning = from_rest([0.0; 3], [0.0, 0.0, 0.02]);
     let turning = Path::new(&turning, Interpolation::Straight).unwrap();
     let few = &mut knots[..9];
-    let error = PvtTable::plan(
-        &platform,
-        &turning,
-        Segmentation::max_distance_error(1e-6),
-        few,
-    )
-    .unwrap_err();
-    let PlanError::TooManyPoints {
+    let error = plan(&platform, &turning, Cut::Within(1e-6), few).unwrap_err();
+    let PlanError::Memory {
         needed,
         available: 9,
     } = error
@@ -110,33 +96,34 @@ fn wrong_input_is_named() {
         panic!("{error}");
     };
     let mut enough = vec![Knot::default(); needed];
-    PvtTable::plan(
-        &platform,
-        &turning,
-        Segmentation::max_distance_error(1e-6),
-        &mut enough,
-    )
-    .unwrap();
-    let error = PvtTable::plan(
-        &platform,
-        &turning,
-        Segmentation::max_distance_error(1e-14),
-        &mut enough,
-    )
-    .unwrap_err();
+    plan(&platform, &turning, Cut::Within(1e-6), &mut enough).unwrap();
+    // Below what positions round off no number of segments is enough.
+    let error = plan(&platform, &turning, Cut::Within(1e-14), &mut enough).unwrap_err();
     assert!(
-        matches!(error, PlanError::DistanceError { allowed: 1e-14, .. }),
+        matches!(
+            error,
+            PlanError::Memory { .. } | PlanError::Indistinct { .. } | PlanError::TooFine { .. }
+        ),
         "{error}"
     );
 
     let far = from_rest([0.0, 0.0, 130.0], [0.0; 3]);
     let far = Path::new(&far, Interpolation::Straight).unwrap();
-    let error =
-        PvtTable::plan(&platform, &far, Segmentation::segments(20), &mut knots).unwrap_err();
-    let PlanError::Stroke {
-        leg: 0,
-        part,
-        reason,
+    let error = plan(&platform, &far, Cut::Into(20), &mut knots).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("from pose 0 to the next, at 0.71825 of the way: locator 0, axis Z"),
+        "{error}"
+    );
+    let PlanError::Path {
+        reason:
+            BodyPathError::Leg {
+                leg: 0,
+                part,
+                reason,
+            },
+        ..
     } = error
     else {
         panic!("{error}");
@@ -152,13 +139,17 @@ fn wrong_input_is_named() {
         }
     ));
 
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(8), &mut knots).unwrap();
+    let table = plan(&platform, &path, Cut::Into(8), &mut knots).unwrap();
     for scale in [0.0, -1.0, 1.1, f64::NAN, 1e-310] {
         assert!(matches!(
-            table.at_speed_scale(scale),
-            Err(path_timing::PlanError::SpeedScale { .. })
+            table.at_speed(scale),
+            Err(PlanError::SpeedScale { .. })
         ));
     }
-    let slower = table.at_speed_scale(0.5).unwrap();
-    assert!((slower.points().last().unwrap().time_s - 2.0 * table.duration_s()).abs() < 1e-12);
+    let slower = table.at_speed(0.5).unwrap();
+    assert!(
+        (points_of(slower.rows()).into_iter().last().unwrap().time_s - 2.0 * table.duration_s())
+            .abs()
+            < 1e-12
+    );
 }

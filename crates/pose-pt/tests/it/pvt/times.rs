@@ -3,7 +3,9 @@
 use super::{LIMIT, check_motion, fractions};
 use crate::support::moves::{ALL, from_rest};
 use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with};
-use pose_pt::{AxisLimits, Interpolation, Knot, Path, Platform, PvtTable, Segmentation};
+use crate::support::table::{Cut, plan, points_of};
+use path_timing::Knot;
+use pose_pt::{AxisLimits, Interpolation, Path, Platform};
 use proptest::prelude::*;
 
 #[test]
@@ -19,8 +21,7 @@ fn a_straight_move_takes_the_closed_form() {
         for kind in ALL {
             let path = Path::new(&poses, kind).unwrap();
             let mut knots = [Knot::default(); 257];
-            let table =
-                PvtTable::plan(&platform, &path, Segmentation::segments(256), &mut knots).unwrap();
+            let table = plan(&platform, &path, Cut::Into(256), &mut knots).unwrap();
             let ratio = table.duration_s() / seconds;
             println!("{way} mm: {ratio}");
             assert!((0.97..1.002).contains(&ratio), "{way}: {ratio}");
@@ -47,12 +48,11 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
         let poses = from_rest([0.0, way, 0.0], [0.0; 3]);
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 65];
-        let table =
-            PvtTable::plan(&platform, &path, Segmentation::segments(64), &mut knots).unwrap();
+        let table = plan(&platform, &path, Cut::Into(64), &mut knots).unwrap();
         let ratio = table.duration_s() / seconds;
         println!("{way} mm: {ratio}");
         assert!((0.97..1.002).contains(&ratio), "{way}: {ratio}");
-        let points: Vec<_> = table.points().collect();
+        let points = points_of(table.rows());
         assert_eq!(points.len(), 65);
         let fractions = fractions(&platform, &points);
         assert!(
@@ -79,9 +79,8 @@ fn jerk_costs_a_turn_little() {
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 513];
         let mut plan = |platform: &Platform<3>| {
-            let table =
-                PvtTable::plan(platform, &path, Segmentation::segments(512), &mut knots).unwrap();
-            let points: Vec<_> = table.points().collect();
+            let table = plan(platform, &path, Cut::Into(512), &mut knots).unwrap();
+            let points = points_of(table.rows());
             let fractions = fractions(platform, &points);
             assert!(
                 fractions.iter().all(|fraction| *fraction < LIMIT),
@@ -127,8 +126,7 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
             let leg = path.leg(0).unwrap();
             let mut knots = vec![Knot::default(); 4001];
             let optimum = crate::support::optimum::seconds(&platform, &leg, 40_000);
-            let table =
-                PvtTable::plan(&platform, &path, Segmentation::segments(4000), &mut knots).unwrap();
+            let table = plan(&platform, &path, Cut::Into(4000), &mut knots).unwrap();
             let ratio = table.duration_s() / optimum;
             println!("{name}, {kind:?}: {} s, {ratio}", table.duration_s());
             assert!((0.97..1.002).contains(&ratio), "{name}: {ratio}");
@@ -147,13 +145,7 @@ fn near_the_optimum_of_a_turn_of_126_degrees() {
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 40_000);
         for (segments, max) in [(1000, 1.0005), (16_000, 1.000_15)] {
             let mut knots = vec![Knot::default(); 16_001];
-            let table = PvtTable::plan(
-                &platform,
-                &path,
-                Segmentation::segments(segments),
-                &mut knots,
-            )
-            .unwrap();
+            let table = plan(&platform, &path, Cut::Into(segments), &mut knots).unwrap();
             let ratio = table.duration_s() / optimum;
             println!("{kind:?}, {segments} segments: {ratio}");
             assert!((0.999..max).contains(&ratio), "{ratio}");
@@ -176,7 +168,7 @@ proptest! {
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 8000);
         let mut knots = [Knot::default(); 1001];
-        let table = PvtTable::plan(&platform, &path, Segmentation::segments(1000), &mut knots)
+        let table = plan(&platform, &path, Cut::Into(1000), &mut knots)
             .unwrap();
         let ratio = table.duration_s() / optimum;
         prop_assert!((0.97..1.002).contains(&ratio), "{ratio}");
@@ -192,7 +184,7 @@ fn a_pure_turn_takes_the_closed_form() {
     let poses = from_rest([0.0; 3], [0.0, 0.0, angle]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
-    let table = PvtTable::plan(&platform, &path, Segmentation::segments(200), &mut knots).unwrap();
+    let table = plan(&platform, &path, Cut::Into(200), &mut knots).unwrap();
     let seconds = 4000.0 * angle / SPEED + SPEED / ACCELERATION;
     let ratio = table.duration_s() / seconds;
     assert!((0.97..1.002).contains(&ratio), "{ratio}");

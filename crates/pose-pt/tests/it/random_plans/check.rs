@@ -1,7 +1,9 @@
 //! What a PVT table and its runs promise, looked at on the numbers that a controller gets.
 
+use crate::support::table::{BodyTable, Point, bound, points_of};
+use path_timing::Playback;
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{AxisLimits, Platform, PvtPoint, PvtRun, PvtTable};
+use pose_pt::{AxisLimits, Platform};
 
 use crate::random_plans::scene::{Draw, Scene};
 use crate::support::exact::Exact;
@@ -26,8 +28,8 @@ struct Cubic {
 
 fn cubics<'a>(
     platform: &'a Platform<3>,
-    from: &'a PvtPoint<3>,
-    to: &'a PvtPoint<3>,
+    from: &'a Point<3>,
+    to: &'a Point<3>,
 ) -> impl Iterator<Item = (Cubic, &'a AxisLimits)> {
     (0..9)
         .map(|number| (number / 3, number % 3))
@@ -118,7 +120,7 @@ fn share(asked: Exact, allowed: Exact) -> f64 {
 }
 
 /// The lengths that positions are made of.
-fn size(platform: &Platform<3>, points: &[PvtPoint<3>]) -> f64 {
+fn size(platform: &Platform<3>, points: &[Point<3>]) -> f64 {
     let origins = platform
         .locators()
         .iter()
@@ -137,12 +139,7 @@ fn distance_error(platform: &Platform<3>, axes: &[Vector3<f64>; 3]) -> f64 {
 }
 
 /// The distance error between two points is within the bound.
-fn check_distance_error(
-    platform: &Platform<3>,
-    pair: [&PvtPoint<3>; 2],
-    bound: f64,
-    rounding: f64,
-) {
+fn check_distance_error(platform: &Platform<3>, pair: [&Point<3>; 2], bound: f64, rounding: f64) {
     let [from, to] = pair;
     for place in 0..=PLACES {
         let share = f64::from(place) / f64::from(PLACES);
@@ -156,13 +153,12 @@ fn check_distance_error(
     }
 }
 
-pub(crate) fn check_table(scene: &Scene, table: &PvtTable<'_, 3>) {
-    let platform = table.platform();
-    let points: Vec<_> = table.points().collect();
+pub(crate) fn check_table(scene: &Scene, platform: &Platform<3>, table: &BodyTable<'_, 3>) {
+    let points = points_of(table.rows());
     assert_eq!(points.len(), table.len());
     let rounding = ROUNDING * size(platform, &points);
-    let bound = table.distance_error_bound();
-    if let Some(allowed) = scene.allowed {
+    let bound = bound(platform, table);
+    if let Some(allowed) = scene.allowed() {
         assert!(bound <= allowed, "bound {bound}, allowed {allowed}");
     }
     let first = points.first().unwrap();
@@ -185,12 +181,17 @@ pub(crate) fn check_table(scene: &Scene, table: &PvtTable<'_, 3>) {
 }
 
 /// Runs a table with changes of the feed, stops too, to its end.
-pub(crate) fn check_run(table: &PvtTable<'_, 3>, run: PvtRun<'_, 3>, max: f64, draw: &mut Draw) {
-    let platform = table.platform();
+pub(crate) fn check_run(
+    platform: &Platform<3>,
+    table: &BodyTable<'_, 3>,
+    run: Playback<'_, [[f64; 3]; 3]>,
+    max: f64,
+    draw: &mut Draw,
+) {
     let steady: Vec<_> = {
         let mut run = run.clone();
         run.set_feed(max).unwrap();
-        run.collect()
+        points_of(run)
     };
     assert_eq!(steady.len(), table.len());
     let longest = table.duration_s() / max.min(1.0);
@@ -209,10 +210,10 @@ pub(crate) fn check_run(table: &PvtTable<'_, 3>, run: PvtRun<'_, 3>, max: f64, d
         };
         run.set_feed(feed).unwrap();
         let many = usize::try_from(draw.count(30.0)).unwrap();
-        points.extend(run.by_ref().take(many));
+        points.extend(points_of(run.by_ref().take(many)));
     }
     run.set_feed(max).unwrap();
-    points.extend(run.by_ref());
+    points.extend(points_of(run.by_ref()));
     assert!(run.is_finished() && points.len() == table.len());
     for points in [&steady, &points] {
         for pair in points.windows(2) {
@@ -222,7 +223,7 @@ pub(crate) fn check_run(table: &PvtTable<'_, 3>, run: PvtRun<'_, 3>, max: f64, d
                 cubic.check_limits(limits, false);
             }
         }
-        for (point, planned) in points.iter().zip(table.points()) {
+        for (point, planned) in points.iter().zip(points_of(table.rows())) {
             assert_eq!(point.axes, planned.axes);
         }
         let last = points.last().unwrap();

@@ -39,7 +39,7 @@ pub(crate) fn check_linear(scene: &Scene) -> bool {
     let size = lengths.chain(axes).fold(0.0, f64::max);
     let rounding = epsilons * size;
     let bound = table.distance_error_bound();
-    if let Some(allowed) = scene.allowed {
+    if let Some(allowed) = scene.allowed() {
         assert!(
             bound <= allowed + rounding,
             "bound {bound}, allowed {allowed}"

@@ -3,6 +3,7 @@
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, Vector3};
 use pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platform, Segmentation};
 
+use crate::support::table::Cut;
 use test_support::Random;
 
 pub(crate) struct Draw(Random);
@@ -66,8 +67,7 @@ pub(crate) struct Scene {
     pub(crate) poses: Vec<Isometry3<f64>>,
     pub(crate) kind: Interpolation,
     pub(crate) segmentation: Segmentation,
-    /// The distance error that the segmentation allows.
-    pub(crate) allowed: Option<f64>,
+    pub(crate) cut: Cut,
 }
 
 const KINDS: [Interpolation; 4] = [
@@ -85,19 +85,27 @@ impl Scene {
         let mut locators = locators(draw, unit, reach);
         let poses = poses(draw, unit);
         tighten(draw, &mut locators, &poses);
-        let (segmentation, allowed) = segmentation(draw, unit);
+        let (segmentation, cut) = cuts(draw, unit);
         let kind = KINDS[usize::try_from(draw.0.bits() % 4).unwrap()];
         let mut scene = Self {
             locators,
             poses,
             kind,
             segmentation,
-            allowed,
+            cut,
         };
         if draw.one_in(12) {
             scene.poison(draw);
         }
         scene
+    }
+
+    /// The distance error that is allowed.
+    pub(crate) fn allowed(&self) -> Option<f64> {
+        match self.cut {
+            Cut::Within(allowed) => Some(allowed),
+            Cut::Into(_) => None,
+        }
     }
 
     /// Replaces one number.
@@ -118,7 +126,7 @@ impl Scene {
             8 => self.poses[1].translation.vector[axis] = value,
             _ => {
                 self.segmentation = Segmentation::max_distance_error(value);
-                self.allowed = Some(value);
+                self.cut = Cut::Within(value);
             }
         }
     }
@@ -203,18 +211,23 @@ fn tighten(draw: &mut Draw, locators: &mut [Locator<f64>; 3], poses: &[Isometry3
     }
 }
 
-fn segmentation(draw: &mut Draw, unit: f64) -> (Segmentation, Option<f64>) {
+/// How finely positions are cut, and cubics.
+fn cuts(draw: &mut Draw, unit: f64) -> (Segmentation, Cut) {
     let at_least = draw.count(100.0);
     match draw.0.bits() % 4 {
         0 => {
             let distance_error = unit * draw.size(-12.0, 0.0);
             let segmentation = Segmentation::max_distance_error(distance_error);
-            (segmentation.at_least(at_least), Some(distance_error))
+            let cut = Cut::Within(distance_error);
+            (segmentation.at_least(at_least), cut)
         }
         1 => {
             let (slide, turn) = (unit * draw.size(-3.0, 1.0), draw.size(-2.0, 1.0));
-            (Segmentation::steps(slide, turn), None)
+            (Segmentation::steps(slide, turn), Cut::Into(at_least))
         }
-        _ => (Segmentation::segments(draw.count(130.0)), None),
+        _ => {
+            let segments = draw.count(130.0);
+            (Segmentation::segments(segments), Cut::Into(segments))
+        }
     }
 }

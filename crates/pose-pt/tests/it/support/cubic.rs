@@ -1,6 +1,6 @@
 //! What a controller runs between two points of a PVT table.
 
-use pose_pt::PvtPoint;
+use super::table::Point;
 use pose_pt::nalgebra::Vector3;
 
 /// Position, speed, acceleration and jerk of one axis at a share of a segment's time.
@@ -21,15 +21,15 @@ fn cubic(from: (f64, f64), to: (f64, f64), time: f64, share: f64) -> [f64; 4] {
 
 /// Position, speed, acceleration and jerk of all axes at a share of a segment's time.
 pub(crate) fn between<const N: usize>(
-    from: &PvtPoint<N>,
-    to: &PvtPoint<N>,
+    from: &Point<N>,
+    to: &Point<N>,
     share: f64,
 ) -> [[Vector3<f64>; N]; 4] {
     let mut all = [[Vector3::zeros(); N]; 4];
     for locator in 0..N {
         for axis in 0..3 {
             let end =
-                |point: &PvtPoint<N>| (point.axes[locator][axis], point.velocities[locator][axis]);
+                |point: &Point<N>| (point.axes[locator][axis], point.velocities[locator][axis]);
             let values = cubic(end(from), end(to), to.segment_s, share);
             for (all, value) in all.iter_mut().zip(values) {
                 all[locator][axis] = value;

@@ -1,10 +1,11 @@
 //! Everything that the crate computes of one platform and one move, in a unit of length.
 
+use crate::support::table::{Cut, plan};
+use path_timing::{FeedCeiling, Knot, Row};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose_pt::{
-    AxisLimits, FeedCeiling, FitError, Knot, LimitError, Locator, Path, PlanError, Platform,
-    PlatformError, PoseVector, PtTable, PvtPoint, PvtTable, Segmentation, calibrate,
-    hermite_distance_error, rigid_fit,
+    AxisLimits, FitError, LimitError, Locator, Path, PlanError, Platform, PlatformError,
+    PoseVector, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
 };
 
 use crate::support::moves::ALL;
@@ -213,29 +214,31 @@ impl Numbers {
                 self.vectors("PT axes", &point.axes);
                 self.put("PT segment", 0, [point.segment_s]);
             }
-            let table = PvtTable::plan(platform, path, segmentation, &mut knots).unwrap();
-            self.put("PVT distance error", 1, [table.distance_error_bound()]);
+        }
+        for cut in [Cut::Into(segments.max(7)), Cut::Within(0.003_7 * unit)] {
+            let table = plan(platform, path, cut, &mut knots).unwrap();
             self.put("PVT time", 0, [table.duration_s()]);
-            let points: Vec<_> = table.points().collect();
-            self.segments(platform, &points);
+            self.rows(platform, table.rows());
             let mut ceilings = vec![FeedCeiling::default(); table.len()];
-            let mut run = table
-                .at_speed_scale(0.7)
-                .unwrap()
-                .run(1.3, &mut ceilings)
-                .unwrap();
-            run.set_feed(1.2).unwrap();
-            self.segments(platform, &run.collect::<Vec<_>>());
+            let slower = table.at_speed(0.7).unwrap();
+            let mut playback = slower.playback(1.3, &mut ceilings).unwrap();
+            playback.set_feed(1.2).unwrap();
+            self.rows(platform, playback);
         }
     }
 
-    fn segments(&mut self, platform: &Platform<3>, points: &[PvtPoint<3>]) {
-        for pair in points.windows(2) {
-            self.vectors("PVT axes", &pair[1].axes);
-            self.vectors("PVT speeds", &pair[1].velocities);
-            self.put("PVT segment", 0, [pair[1].segment_s]);
-            let distance_error = hermite_distance_error(platform, &pair[0], &pair[1]);
-            self.put("distance error between", 1, [distance_error]);
+    fn rows(&mut self, platform: &Platform<3>, rows: impl Iterator<Item = Row<[[f64; 3]; 3]>>) {
+        let rows: Vec<_> = rows.collect();
+        for rows in rows.array_windows() {
+            let [_, to] = rows;
+            self.vectors("PVT axes", &to.position.map(Vector3::from));
+            self.vectors("PVT speeds", &to.velocity.map(Vector3::from));
+            self.put("PVT segment", 0, [to.duration_s]);
+            self.put(
+                "distance error",
+                1,
+                [hermite_distance_error(platform, rows)],
+            );
         }
     }
 }
