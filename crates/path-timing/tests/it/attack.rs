@@ -1,19 +1,22 @@
 //! Random machines, paths, segments, windows, feeds and holds, judged by dense sampling with formulas
 //! of this file: `MOTIONS=100000 cargo test --release -p path-timing --test it attack:: -- --nocapture`.
 
+mod machines;
+
 use core::fmt::Debug;
 
-use delta_kin::Delta;
+use machines::{attack_arm, attack_delta, attack_platform, attack_points};
 use path_timing::{
-    AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Path, PlanError, Row, Table, ToolLimits,
+    Accuracy, Axes, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Path, PlanError, Row, Span,
+    Table,
 };
-use scara_kin::{Arm, Elbow};
 use test_support::{Random, setting};
-
-use crate::support::polyline::smoothed;
 
 /// Of what is sampled from rounded rows.
 const ROUNDING: f64 = 1.0 + 1e-7;
+
+/// What positions round off, as a part of the machine's size.
+const POSITION: f64 = 1e-9;
 
 /// Places of a segment.
 const PLACES: u32 = 24;
@@ -33,8 +36,8 @@ fn hermite([q0, q1]: [f64; 2], [v0, v1]: [f64; 2], duration_s: f64, tau: f64) ->
 }
 
 /// No axis is above its speed, its acceleration or, at rows and inside, its jerk, and times rise.
-fn check<const N: usize>(limits: &[AxisLimits; N], rows: &[Row<[f64; N]>], what: &str) {
-    for (axis, limits) in limits.iter().enumerate() {
+fn check<A: Axes>(limits: &A::Of<AxisLimits>, rows: &[Row<A>], what: &str) {
+    for (axis, limits) in A::each(limits).iter().enumerate() {
         let (mut before, mut before_s) = (0.0, 0.0);
         for pair in rows.windows(2) {
             let [from, to] = pair else { unreachable!() };
@@ -43,8 +46,8 @@ fn check<const N: usize>(limits: &[AxisLimits; N], rows: &[Row<[f64; N]>], what:
                 "{what}: {to:?}"
             );
             let at = |tau| {
-                let positions = [from.position[axis], to.position[axis]];
-                let velocities = [from.velocity[axis], to.velocity[axis]];
+                let positions = [from, to].map(|row| row.position.as_slice()[axis]);
+                let velocities = [from, to].map(|row| row.velocity.as_slice()[axis]);
                 hermite(positions, velocities, to.duration_s, tau)
             };
             for place in 0..=PLACES {
@@ -80,25 +83,45 @@ struct Tried {
     tables: u64,
     playbacks: u64,
     streams: u64,
+    /// Tables within a departure, played with feeds and holds.
+    departures: u64,
     refused: u64,
     rows: usize,
     slowest: f64,
+    /// The largest departure, as a part of what was allowed.
+    farthest: f64,
+}
+
+/// Where rows leave their path: a bound, and the departure itself at positions of a part of the path.
+struct Judge<'a, P, A: Axes> {
+    bound: &'a dyn Fn(&P, &Span<A>) -> f64,
+    off: &'a dyn Fn(&P, [f64; 2], &A) -> f64,
+    size: f64,
 }
 
 /// The paths of a machine under random limits.
-fn attack<const N: usize, P>(random: &mut Random, paths: &[P], scale: f64, tried: &mut Tried)
-where
-    P: Path<Axes = [f64; N], Error: Debug + Clone> + Clone,
+fn attack<P>(
+    random: &mut Random,
+    paths: &[P],
+    scale: f64,
+    judge: &Judge<'_, P, P::Axes>,
+    tried: &mut Tried,
+) where
+    P: Path<Error: Debug + Clone> + Clone,
 {
     let speed = scale * random.size(-1.0, 1.0);
     let acceleration = speed * random.size(0.0, 2.0);
     let has_jerk = random.below(4) == 0;
     let jerk = acceleration * random.size(0.7, 2.3);
-    let limits = core::array::from_fn::<_, N, _>(|_| AxisLimits {
-        speed: speed * random.within(0.5, 1.0),
-        acceleration: acceleration * random.within(0.3, 1.0),
+    let mut limits = P::Axes::filled(AxisLimits {
+        speed,
+        acceleration,
         jerk: has_jerk.then_some(jerk),
     });
+    for limits in P::Axes::each_mut(&mut limits) {
+        limits.speed *= random.within(0.5, 1.0);
+        limits.acceleration *= random.within(0.3, 1.0);
+    }
     let most = [8, 100][usize::from(random.below(2) == 0)];
     let segments = 2 + u32::try_from(random.below(most)).unwrap();
     let mut knots = vec![Knot::default(); 60_000];
@@ -111,7 +134,9 @@ where
             check(&limits, &rows, "table");
             tried.tables += 1;
             tried.rows += rows.len();
-            play(random, &table, &limits, tried);
+            let rows = play(random, &table);
+            check(&limits, &rows, "playback");
+            tried.playbacks += 1;
             let duration_s = table.duration_s();
             let mut fine = vec![Knot::default(); paths.len() * 401 + 1];
             let fine = Table::plan(paths.iter().cloned(), limits, |_| 400, &mut fine);
@@ -123,15 +148,86 @@ where
     if !has_jerk {
         stream(random, paths, limits, segments, tried);
     }
+    if random.below(4) == 0 {
+        depart(random, paths, limits, judge, tried);
+    }
+}
+
+/// Rows within a departure, at any feed, with holds.
+fn depart<P>(
+    random: &mut Random,
+    paths: &[P],
+    limits: <P::Axes as Axes>::Of<AxisLimits>,
+    judge: &Judge<'_, P, P::Axes>,
+    tried: &mut Tried,
+) where
+    P: Path<Error: Debug + Clone> + Clone,
+{
+    let accuracy = Accuracy {
+        min_segments: 2,
+        max_departure: judge.size * random.size(-4.0, -1.0),
+        max_time_ratio: f64::INFINITY,
+    };
+    let mut knots = vec![Knot::default(); 20_000];
+    let paths_of = || paths.iter().cloned();
+    let table =
+        Table::plan_within_at_any_feed(paths_of(), limits, accuracy, judge.bound, &mut knots);
+    let Ok(table) = table else {
+        tried.refused += 1;
+        return;
+    };
+    let rows = play(random, &table);
+    check(&limits, &rows, "within a departure");
+    for pair in rows.windows(2) {
+        let [from, to] = pair else { unreachable!() };
+        let start = if from.leg == to.leg { from.s } else { 0.0 };
+        let path = &paths[to.leg];
+        for place in 0..=PLACES {
+            let tau = f64::from(place) / f64::from(PLACES);
+            let mut at = from.position;
+            for (axis, at) in at.as_mut_slice().iter_mut().enumerate() {
+                let [q0, q1] = [from, to].map(|row| row.position.as_slice()[axis]);
+                let [m0, m1] = [from, to].map(|row| row.velocity.as_slice()[axis] * to.duration_s);
+                let rest = 1.0 - tau;
+                *at = q0 * (1.0 + 2.0 * tau) * rest * rest
+                    + m0 * tau * rest * rest
+                    + q1 * tau * tau * (3.0 - 2.0 * tau)
+                    - m1 * tau * tau * rest;
+            }
+            let off = (judge.off)(path, [start, to.s], &at);
+            tried.farthest = tried.farthest.max(off / accuracy.max_departure);
+            let most = accuracy.max_departure * ROUNDING + judge.size * POSITION;
+            assert!(
+                off <= most,
+                "{off} off, allowed {}: {from:?} {to:?}",
+                accuracy.max_departure
+            );
+        }
+    }
+    tried.departures += 1;
+    tried.rows += rows.len();
+}
+
+/// The distance of a point from a part of a curve.
+fn distance<const D: usize>(curve: &Curve<D>, [from, to]: [f64; 2], point: [f64; D]) -> f64 {
+    let at = |s: f64| {
+        let place = curve.at(s).point;
+        let squares = place.iter().zip(&point).map(|(a, b)| (a - b) * (a - b));
+        squares.sum::<f64>().sqrt()
+    };
+    let step = (to - from) / 16.0;
+    let places = (0..=16).map(|n| from + f64::from(n) * step);
+    let nearest = places.min_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap();
+    let (mut low, mut high) = ((nearest - step).max(from), (nearest + step).min(to));
+    for _ in 0..40 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if at(a) < at(b) { high = b } else { low = a }
+    }
+    at(low)
 }
 
 /// Feeds and holds at random rows.
-fn play<const N: usize>(
-    random: &mut Random,
-    table: &Table<'_, [f64; N]>,
-    limits: &[AxisLimits; N],
-    tried: &mut Tried,
-) {
+fn play<A: Axes>(random: &mut Random, table: &Table<'_, A>) -> Vec<Row<A>> {
     let mut ceilings = vec![FeedCeiling::default(); table.len()];
     let mut playback = table.playback(1.5, &mut ceilings).unwrap();
     let mut rows = Vec::new();
@@ -146,19 +242,18 @@ fn play<const N: usize>(
     playback.set_feed(1.0).unwrap();
     rows.extend(playback.by_ref());
     assert!(playback.is_finished() && rows.len() == table.len());
-    check(limits, &rows, "playback");
-    tried.playbacks += 1;
+    rows
 }
 
 /// A window of any size, feeds and holds.
-fn stream<const N: usize, P>(
+fn stream<P>(
     random: &mut Random,
     paths: &[P],
-    limits: [AxisLimits; N],
+    limits: <P::Axes as Axes>::Of<AxisLimits>,
     segments: u32,
     tried: &mut Tried,
 ) where
-    P: Path<Axes = [f64; N], Error: Debug + Clone> + Clone,
+    P: Path<Error: Debug + Clone> + Clone,
 {
     let mut window = vec![Knot::default(); usize::try_from(4 + random.below(100)).unwrap()];
     let motion = LookAhead::new(paths.iter().cloned(), limits, |_| Ok(segments), &mut window);
@@ -191,29 +286,6 @@ fn stream<const N: usize, P>(
     tried.rows += rows.len();
 }
 
-/// A random curve near a place, at a feed or none.
-fn curve<const D: usize>(random: &mut Random, centre: [f64; D], size: f64) -> Option<Curve<D>> {
-    let near = |random: &mut Random| centre.map(|x| x + random.within(-size, size));
-    let curve = match random.below(3) {
-        0 => Curve::line(near(random), near(random)),
-        1 => {
-            let (start, about, way) = (near(random), near(random), near(random));
-            Curve::arc(start, about, way, random.within(0.05, 5.0))
-        }
-        _ => Curve::bezier([near(random), near(random), near(random), near(random)]),
-    };
-    let tool = ToolLimits {
-        feed: size * random.size(-1.0, 1.0),
-        acceleration: (random.below(2) == 0).then_some(size * random.size(0.0, 2.0)),
-    };
-    let curve = curve.ok()?;
-    Some(if random.below(2) == 0 {
-        curve.with_tool(tool)
-    } else {
-        curve
-    })
-}
-
 #[test]
 fn nothing_is_passed() {
     let motions = setting("MOTIONS", 40);
@@ -221,49 +293,11 @@ fn nothing_is_passed() {
     let mut random = Random::new(seed);
     let mut tried = Tried::default();
     for _ in 0..motions {
-        match random.below(3) {
-            0 => {
-                let count = 3 + random.below(20);
-                let step = random.size(-1.0, 1.5);
-                let mut at = [0.0; 3];
-                let points: Vec<_> = (0..count)
-                    .map(|_| {
-                        at = at.map(|x| x + random.within(-step, step));
-                        at
-                    })
-                    .collect();
-                let curves = smoothed(&points, random.size(-3.0, 0.0));
-                attack(&mut random, &curves, 100.0, &mut tried);
-            }
-            1 => {
-                let arm = Arm::new(132.0, random.within(80.0, 160.0)).unwrap();
-                let at = [random.within(-150.0, 150.0), random.within(60.0, 180.0)];
-                let elbow = if random.below(2) == 0 {
-                    Elbow::Left
-                } else {
-                    Elbow::Right
-                };
-                let size = random.size(0.5, 2.0);
-                let path = curve(&mut random, at, size).and_then(|it| arm.path(it, elbow).ok());
-                match path {
-                    Some(path) => attack(&mut random, &[path], 3.0, &mut tried),
-                    None => tried.refused += 1,
-                }
-            }
-            _ => {
-                let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
-                let at = [
-                    random.within(-60.0, 60.0),
-                    random.within(-60.0, 60.0),
-                    -250.0,
-                ];
-                let size = random.size(0.5, 1.8);
-                let path = curve(&mut random, at, size).and_then(|it| delta.path(it).ok());
-                match path {
-                    Some(path) => attack(&mut random, &[path], 3.0, &mut tried),
-                    None => tried.refused += 1,
-                }
-            }
+        match random.below(4) {
+            0 => attack_points(&mut random, &mut tried),
+            1 => attack_arm(&mut random, &mut tried),
+            2 => attack_delta(&mut random, &mut tried),
+            _ => attack_platform(&mut random, &mut tried),
         }
     }
     println!("{motions} motions from seed {seed}: {tried:?}");
