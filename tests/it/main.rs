@@ -12,6 +12,7 @@ mod delta;
     feature = "pattern-codec"
 ))]
 mod engrave;
+mod generators;
 #[cfg(all(unix, feature = "pattern-codec", feature = "stepper-sync"))]
 mod mcs51;
 #[cfg(unix)]
