@@ -14,6 +14,8 @@ extern crate std;
 
 mod accumulators;
 mod cubic;
+#[cfg(feature = "path-timing")]
+mod drive;
 mod edges;
 #[cfg(feature = "embedded-hal")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-hal")))]
@@ -34,6 +36,8 @@ pub use cubic::{
     AxisSegments, JoinedSegments, KnotError, MinIntervals, PvtKnot, PvtQuantiser, PvtRow, PvtSteps,
     RowBits, RowBytesError, RowCodec, RowError, Segment, SegmentError, SegmentPlayer, Step,
 };
+#[cfg(feature = "path-timing")]
+pub use drive::{Drive, DriveError};
 pub use edges::{Edge, Edges, Level};
 pub use latches::{BusError, BusWrite, LatchWrites, Latches};
 pub use phases::{Phase, Phases, Placement, Polarity, Stepping, Wiring, WiringError};

@@ -7,6 +7,8 @@ mod accumulators;
 mod common;
 mod cubic;
 mod cubic_exact;
+#[cfg(feature = "path-timing")]
+mod drive;
 mod driver_limits;
 #[cfg(feature = "embedded-hal")]
 mod embedded_hal;
