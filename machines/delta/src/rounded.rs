@@ -33,6 +33,13 @@ struct Legs {
 }
 
 impl Legs {
+    /// The moves on whose lines a leg begins, passes and ends.
+    fn moves<'m>(&self, moves: &'m mut [Move], leg: usize) -> impl Iterator<Item = &'m mut Move> {
+        let ends = self.moves.get(leg);
+        let moves = ends.and_then(|[begin, end]| moves.get_mut(*begin..=*end));
+        moves.into_iter().flatten()
+    }
+
     /// The move on whose line a place is: those of a leg share its length.
     fn at(&self, leg: usize, s: f64) -> Option<usize> {
         let (path, [begin, end]) = (self.paths.get(leg)?, self.moves.get(leg)?);
@@ -106,6 +113,7 @@ pub(crate) fn run(
     let mut steps = PvtSteps::new(quantiser.knots(), timing);
     let mut position = machine.steps(first.position.into())?;
     for row in rows {
+        let begin_ticks = steps.end_ticks();
         steps.push(&quantiser.row(row.time_s, row.position, row.velocity)?)?;
         for edge in &mut steps {
             if let Some(position) = position.get_mut(edge.axis) {
@@ -115,6 +123,10 @@ pub(crate) fn run(
                 };
             }
             step(edge.ticks, position)?;
+        }
+        for it in legs.moves(moves, row.leg) {
+            let [begin_ticks, _] = it.curves_ticks.unwrap_or([begin_ticks; 2]);
+            it.curves_ticks = Some([begin_ticks, steps.end_ticks()]);
         }
         // The last row on a move is the latest.
         let ended = legs.at(row.leg, row.s);

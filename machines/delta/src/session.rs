@@ -158,6 +158,7 @@ impl<'a> Session<'a> {
             feed_mm_s,
             end: plan.end(),
             end_ticks,
+            curves_ticks: None,
         });
         (self.point, self.position) = (to, plan.end());
         let [a, b, c] = self.position;

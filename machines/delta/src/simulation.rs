@@ -202,9 +202,6 @@ fn by_ticks(machine: &Machine, moves: &[Move]) -> Result<Driven> {
     follower.finish(now_s, TRAINS_STEPS)
 }
 
-/// Lines before and after that which the platform is on by the time, one of which it may be on.
-const BESIDE: usize = 2;
-
 /// The simulated machine on its way along the lines.
 struct Follower<'a> {
     machine: &'a Machine,
@@ -250,15 +247,18 @@ impl<'a> Follower<'a> {
         Ok(point)
     }
 
-    /// The nearest of the lines next to that which it is on by the time.
+    /// The nearest of the lines on which the curve that is run begins, passes or ends.
     fn follow_rounded(&mut self, t_s: f64, point: Point3<f64>) {
-        while let [_, .., last] = self.lines.get(..=BESIDE).unwrap_or_default()
-            && self.lines.len() > BESIDE.saturating_add(1)
-            && t_s > seconds(last.end_ticks)
-        {
+        let is_over = |line: &Move| line.curves_ticks.is_none_or(|[_, end]| seconds(end) < t_s);
+        while self.lines.first().is_some_and(is_over) {
             self.lines = self.lines.get(1..).unwrap_or_default();
         }
-        let near = self.lines.iter().take(2 * BESIDE + 1);
+        let has_begun = |line: &&Move| {
+            line.curves_ticks
+                .is_none_or(|[begin, _]| seconds(begin) <= t_s)
+        };
+        let near = self.lines.iter().take_while(has_begun);
+        let near = near.filter(|line| !is_over(line));
         let off = near.map(|line| distance(point, line.from, line.to));
         let off = off.fold(f64::INFINITY, f64::min);
         if off.is_finite() {

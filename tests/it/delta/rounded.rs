@@ -120,3 +120,22 @@ fn lines_that_go_nowhere_change_nothing() {
     let nowhere = Run::of(&["--input", "-"], "hello\n");
     assert_eq!(nowhere.steps.len(), 1);
 }
+
+/// Points closer together than the tolerance, and there and back: a curve passes many lines, and no
+/// place of it is farther from them than the tolerance.
+#[test]
+fn a_curve_is_measured_from_all_lines_that_it_passes() {
+    const CORNER_MM: f64 = 1.0;
+    let near: String = (0..200_i32)
+        .map(|n| {
+            let [x, y] = [n * 37 % 11, n * 53 % 7].map(|of| 10.0 + 0.05 * f64::from(of));
+            format!("{x:.2} {y:.2} -280 {}\n", 20 + n % 3 * 60)
+        })
+        .collect();
+    let spikes = "50 0 -280\n0 0 -280\n50 30 -280\n25 0 -280\n50 0 -280\n".repeat(5);
+    for text in [near, spikes] {
+        let run = Run::of(&["--input", "-"], &format!("0 0 -280 150\n{text}"));
+        let worst = run.number("/max_path_error_mm");
+        assert!(worst <= CORNER_MM + STEP_MM, "{worst} mm");
+    }
+}
