@@ -16,6 +16,10 @@ use crate::tools::artefacts::run_into;
 /// Half a step of each axis, what the axes' cubics leave the curves, and half of a third decimal.
 const OFF_MM: f64 = 0.01 * core::f64::consts::FRAC_1_SQRT_2 + 0.0015;
 
+/// By which the Delta's lines are smoothed, and half a step of each arm through the mechanism.
+const CORNER_MM: f64 = 1.0;
+const DELTA_STEP_MM: f64 = 0.02;
+
 fn report(example: &str, arguments: &[&str]) -> serde_json::Value {
     let folder = TempDir::new().unwrap();
     let output = run_into(folder.path(), example, arguments);
@@ -70,6 +74,12 @@ fn the_drawings_run_through_the_delta() {
         let file = folder.path().join(format!("{drawing}.txt"));
         fs::write(&file, text).unwrap();
         let report = report("delta", &["--input", file.to_str().unwrap()]);
-        println!("{drawing}: {}", report["duration_s"]);
+        let number = |of: &str| report.pointer(of).unwrap().as_f64().unwrap();
+        let worst = number("/max_path_error_mm");
+        assert!(worst <= CORNER_MM + DELTA_STEP_MM, "{drawing}: {worst} mm");
+        for motor in 0..3 {
+            assert!(number(&format!("/motors/{motor}/lost_steps")).abs() < 0.5);
+        }
+        println!("{drawing}: {} s", number("/duration_s"));
     }
 }

@@ -35,7 +35,7 @@ pub enum DriveError<E> {
 /// path -> LookAhead -> rows -> PvtQuantiser -> whole steps, ticks -> PvtSteps -> edges
 /// ```
 ///
-/// It plans in windows of `KNOTS` knots, which are in it: a path may be of any length, and is as fast
+/// It plans in windows of `W` knots, which are in it: a path may be of any length, and is as fast
 /// as braking within the window allows. What is not to be decided here is done by these parts one by
 /// one: feed override, tables with jerk, edges on a wire.
 ///

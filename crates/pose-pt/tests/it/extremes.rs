@@ -224,7 +224,7 @@ fn check_unit<T: RealField + Trig>(call: &Call<T>, unit: T, is_in_range: bool) {
 }
 
 fn check_units<T: RealField + Trig>(calls: &[Call<T>], exponents: [i32; 2], range: [i32; 2]) {
-    let names = ["Platform of poses", "rigid_fit", "PtTable"];
+    let names = ["Platform of poses", "rigid_fit", "PtTable", "PVT"];
     for call in calls.iter().filter(|call| names.contains(&call.name)) {
         for exponent in (exponents[0]..exponents[1]).step_by(5) {
             let unit = T::from_subset(&2_f64.powi(exponent));

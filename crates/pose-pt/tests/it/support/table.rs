@@ -66,5 +66,6 @@ pub(crate) fn plan<'a, const N: usize>(
 pub(crate) fn bound<const N: usize>(platform: &Platform<N>, table: &BodyTable<'_, N>) -> f64 {
     let each = table.spans();
     let each = each.map(|span| hermite_distance_error(platform, &span.rows));
-    each.fold(0.0, f64::max)
+    // What is no number is the largest.
+    each.max_by(f64::total_cmp).unwrap_or(0.0)
 }
