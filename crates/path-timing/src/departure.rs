@@ -6,7 +6,6 @@ use crate::number::{cube_root, larger_or_nan};
 use crate::passes::segment_s;
 use crate::planner::{Place, bounded, knots_of, time};
 use crate::reciprocals::Reciprocals;
-use crate::segment::STEEPEST;
 use crate::{Axes, Knot, Path, PlanError, Span};
 
 /// Segments beyond which rounding is all that is left of a departure.
@@ -15,10 +14,6 @@ const FINEST: u32 = 1 << 20;
 /// Ratios w₀ T / Δs of a segment that may begin and end at rest: with T = 2Δs / (w₀ + w₁) they
 /// are 0..=2.
 const ANY: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
-
-/// The same where the speed changes at most by the growth of a segment between two knots at which the
-/// machine moves.
-const MOVING: [f64; 3] = [1.0 - STEEPEST, 1.0, 1.0 + STEEPEST];
 
 /// What a departure is bounded for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -180,18 +175,11 @@ impl<D> Within<D> {
         for (index, pair) in knots.windows(2).enumerate() {
             let [from, to] = pair else { continue };
             let departure = |span: &Span<P::Axes>| (self.departure)(path, span);
-            let is_inside = index > 0 && index < last;
-            match self.speeds {
-                _ if is_planned => {
-                    let speeds = [from.speed, to.speed];
-                    bound.add(departure(&span([from, to], speeds, segment_s(from, to))));
-                }
-                Speeds::Passing if is_inside && !limits.has_jerk() => {
-                    bound.add_moving([from, to], departure);
-                }
-                Speeds::Passing | Speeds::Any => {
-                    bound.add_any([from, to], index == last, departure);
-                }
+            if is_planned {
+                let speeds = [from.speed, to.speed];
+                bound.add(departure(&span([from, to], speeds, segment_s(from, to))));
+            } else {
+                bound.add_any([from, to], index == last, departure);
             }
             if bound.is_far() {
                 break;
@@ -217,13 +205,6 @@ impl Bound {
 
     fn add(&mut self, departure: f64) {
         self.worst = larger_or_nan(self.worst, departure);
-    }
-
-    /// At the speeds of a segment that neither begins nor ends at rest.
-    fn add_moving<A: Axes>(&mut self, knots: [&Knot<A>; 2], departure: impl Fn(&Span<A>) -> f64) {
-        for start in MOVING {
-            self.add(departure(&span_in_a_second(knots, start)));
-        }
     }
 
     /// At any speeds; on the last segment before a stop, where it may be held at the knot before, also

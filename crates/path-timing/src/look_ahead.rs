@@ -82,8 +82,11 @@ struct Entering<P: Path> {
 impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>>
     LookAhead<'w, P, I, F>
 {
-    /// The rows along `paths`, each cut into as many `segments` as the function says, at least 2 from rest
-    /// to rest: a fixed number, or what [`segments_within`](crate::segments_within) finds.
+    /// The rows along `paths`, each cut into as many `segments` as the function says: a fixed number, or
+    /// what [`segments_within`](crate::segments_within) finds.
+    ///
+    /// From rest to rest they are at least 2. On one segment the speed does not rise and fall again: a
+    /// long path between slow corners takes 2 or more.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Jerk`] where an axis has a limit of jerk, which takes a

@@ -239,6 +239,38 @@ pub(crate) fn time<A: Axes, E>(
     Ok(time_s)
 }
 
+/// Refuses a plan that legs of one segment make slow, with the worst of them: on one segment the speed
+/// cannot rise and fall again, and between two slow corners it is slow all the way.
+pub(crate) fn check_single_segments<A: Axes, E>(
+    limits: &Reciprocals<A>,
+    knots: &[Knot<A>],
+) -> Result<(), PlanError<E>> {
+    let (mut time_s, mut lost_s, mut leg) = (0.0, 0.0, 0_usize);
+    let (mut most_s, mut worst) = (0.0, 0);
+    for pair in knots.windows(2) {
+        let [from, to] = pair else { continue };
+        leg = leg.saturating_add(usize::from(from.ends_leg));
+        let segment_s = segment_s(from, to);
+        time_s += segment_s;
+        let is_single = to.ends_leg && to.ds >= to.s;
+        if is_single {
+            let own_s = segment_s - limits.rest_to_rest_s([from, to], to.tool.as_ref());
+            lost_s += own_s.max(0.0);
+            if own_s > most_s {
+                (most_s, worst) = (own_s, leg);
+            }
+        }
+    }
+    if time_s > (time_s - lost_s) * MOST_LOST {
+        return Err(PlanError::TooCoarse { leg: worst, s: 0.0 });
+    }
+    Ok(())
+}
+
+/// The most by which legs of one segment may take longer than with stops at their ends, as a part of the
+/// whole time.
+const MOST_LOST: f64 = 2.0;
+
 /// The number of knots of a leg with this number of segments.
 pub(crate) fn knots_of(segments: u32) -> usize {
     usize::try_from(segments).map_or(usize::MAX, |segments| segments.saturating_add(1))

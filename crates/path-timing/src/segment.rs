@@ -228,8 +228,8 @@ impl<A: Axes> Segment<A> {
     /// and `cap` at its start; where the machine brakes as hard as it can to the ceiling, the highest
     /// speed to brake from.
     ///
-    /// Between two knots at which the machine moves, the speed changes at most by a factor of
-    /// [`GROWTH`]: no segment is begun at a speed whose only partner is next to rest.
+    /// Where the ceiling cannot be kept, the speeds differ at most by a factor of [`GROWTH`]: no segment
+    /// is begun at a speed whose only partner is next to rest.
     pub(crate) fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
         if cap <= 0.0 {
             return (0.0, ceiling.min(self.speed_from_rest()));
@@ -237,7 +237,7 @@ impl<A: Axes> Segment<A> {
         if ceiling <= 0.0 {
             return (cap.min(self.speed_to_rest()), 0.0);
         }
-        let fast = self.highest(End::From, ceiling, cap.min(ceiling * GROWTH));
+        let fast = self.highest(End::From, ceiling, cap);
         if fast >= ceiling && self.holds(fast, ceiling) {
             return (fast, ceiling);
         }
@@ -328,8 +328,8 @@ impl<A: Axes> Segment<A> {
     /// Each limit forbids an interval of speeds or all above one. Where the next lower speed that
     /// one allows is forbidden by another, the search goes on from there.
     fn reach(&self, w0: f64, ceiling: f64) -> Option<f64> {
-        let least = w0 / GROWTH;
-        let mut speed = ceiling.min(w0 * GROWTH);
+        let least = w0.min(ceiling) / GROWTH;
+        let mut speed = ceiling;
         for _ in 0..PASSES {
             let lower = self.highest(End::To, w0, speed);
             if lower < least {
@@ -363,7 +363,6 @@ impl<A: Axes> Segment<A> {
     /// The speed at the end that is nearest to `wanted` after the speed `w0`, where `known` holds:
     /// the highest below it, else the lowest above it that is found.
     pub(crate) fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
-        let wanted = wanted.min(w0 * GROWTH);
         if self.holds(w0, wanted) {
             return wanted;
         }
@@ -389,20 +388,20 @@ impl<A: Axes> Segment<A> {
         good
     }
 
-    /// The lowest speed at the end after the speed `w0`, where `known` holds: at most as much slower as
-    /// a segment that does not end at rest may become.
+    /// The lowest speed at the end after the speed `w0`, where `known` holds: at most slower by a factor
+    /// of [`GROWTH`].
     pub(crate) fn slowest(&self, w0: f64, known: f64) -> f64 {
         let least = (w0 / GROWTH).min(known);
         self.toward(w0, least, known)
     }
 }
 
-/// The most by which the speed grows or falls on a segment that neither begins nor ends at rest: what
+/// By what one speed of a pair that is chosen for the least time alone may be above the other: what
 /// constant acceleration makes of it on knots as dense as those at a rest.
-pub(crate) const GROWTH: f64 = 8.0;
+const GROWTH: f64 = 8.0;
 
 /// The r of that growth.
-pub(crate) const STEEPEST: f64 = (GROWTH - 1.0) / (GROWTH + 1.0);
+const STEEPEST: f64 = (GROWTH - 1.0) / (GROWTH + 1.0);
 
 /// Cuts of tangents in a search.
 const CUTS: u32 = 16;

@@ -5,7 +5,7 @@ use core::convert::Infallible;
 use crate::departure::{Speeds, Within, check_allowed};
 use crate::knots::halved;
 use crate::number::SMALLEST;
-use crate::planner::{Place, bounded, lay_all, time};
+use crate::planner::{Place, bounded, check_single_segments, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
 use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
@@ -45,7 +45,7 @@ pub struct Accuracy {
 
 impl<'a, A: Axes> Table<'a, A> {
     /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a path
-    /// has, at least 2 from rest to rest.
+    /// has, at least 2 from rest to rest, or from a slow corner to another.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -64,6 +64,7 @@ impl<'a, A: Axes> Table<'a, A> {
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
         let duration_s = time(&limits, knots)?;
+        check_single_segments(&limits, knots)?;
         Ok(Self::new(knots, limits, duration_s))
     }
 
@@ -130,6 +131,10 @@ impl<'a, A: Axes> Table<'a, A> {
             let used = lay_all(paths.clone().into_iter(), &limits, knots, lay)?.len();
             let (own, spare) = knots.split_at_mut(used.min(knots.len()));
             let duration_s = time(&limits, own)?;
+            if check_single_segments::<_, P::Error>(&limits, own).is_err() {
+                doublings += 1;
+                continue;
+            }
             if !accuracy.max_time_ratio.is_finite() {
                 let (own, _) = knots.split_at(used.min(knots.len()));
                 break Ok(Self::new(own, limits, duration_s));

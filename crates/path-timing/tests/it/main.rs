@@ -12,6 +12,7 @@ mod jerk_corners;
 mod look_ahead;
 mod optimum;
 mod run;
+mod slow_corners;
 mod smoothed;
 mod support;
 mod table;
