@@ -20,7 +20,8 @@ use vector::{all_finite, along, difference, dot, norm, scaled};
 /// A curve of the tool in `D` dimensions, in any unit of length, by its arc length s.
 ///
 /// As a [`Path`] it is that of a Cartesian machine, whose axes are the coordinates; it goes on to the
-/// next without a stop where their directions agree ([`Corner::Smooth`]).
+/// next without a stop where their directions agree ([`Corner::Smooth`]), unless
+/// [`with_corner`](Self::with_corner) says otherwise.
 ///
 /// ```
 /// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
@@ -41,6 +42,7 @@ pub struct Curve<const D: usize> {
     ends: [[f64; D]; 2],
     tool: Option<ToolLimits>,
     between: Option<[usize; 2]>,
+    corner: Corner<[f64; D]>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,6 +107,7 @@ impl<const D: usize> Curve<D> {
             ends: [from, to],
             tool: None,
             between: None,
+            corner: Corner::Smooth,
         };
         curve.checked()
     }
@@ -154,6 +157,7 @@ impl<const D: usize> Curve<D> {
             ends: [start, start],
             tool: None,
             between: None,
+            corner: Corner::Smooth,
         };
         let turns = libm::round(angle / TAU);
         if (angle - turns * TAU).abs() > angle * WHOLE {
@@ -194,6 +198,7 @@ impl<const D: usize> Curve<D> {
             ends: [from, to],
             tool: None,
             between: None,
+            corner: Corner::Smooth,
         };
         curve.checked()
     }
@@ -205,6 +210,7 @@ impl<const D: usize> Curve<D> {
             ends,
             tool: None,
             between: None,
+            corner: Corner::Smooth,
         };
         curve.checked()
     }
@@ -225,6 +231,13 @@ impl<const D: usize> Curve<D> {
     #[must_use]
     pub const fn with_tool(mut self, tool: ToolLimits) -> Self {
         self.tool = Some(tool);
+        self
+    }
+
+    /// The curve with another corner at its end, such as the start-stop speeds of a gantry's motors.
+    #[must_use]
+    pub const fn with_corner(mut self, corner: Corner<[f64; D]>) -> Self {
+        self.corner = corner;
         self
     }
 
@@ -405,6 +418,6 @@ impl<const D: usize> Path for Curve<D> {
     }
 
     fn corner(&self) -> Corner<[f64; D]> {
-        Corner::Smooth
+        self.corner
     }
 }

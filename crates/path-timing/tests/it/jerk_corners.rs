@@ -3,9 +3,7 @@
 use core::convert::Infallible;
 use core::fmt::Debug;
 
-use path_timing::{
-    AxisLimits, Corner, Curve, Knot, Path, PathFn, PlanError, Row, Table, ToolLimits,
-};
+use path_timing::{AxisLimits, Corner, Curve, Knot, Path, PlanError, Row, Table, ToolLimits};
 use proptest::prelude::*;
 
 use crate::support::jerk::{bits, check_jerk, feeds, run_under};
@@ -21,17 +19,9 @@ const ARM: [AxisLimits; 2] = [
 const STAGE: [AxisLimits; 2] = [limits(300.0, 2000.0, Some(400_000.0)); 2];
 
 /// The sides of a polyline and the roundings between, with the same corner between all of them.
-fn rounded(
-    points: &[[f64; 2]],
-    tolerance: f64,
-    corner: Corner<[f64; 2]>,
-) -> Vec<impl Path<Axes = [f64; 2], Error = Infallible> + Clone + Debug + use<>> {
+fn rounded(points: &[[f64; 2]], tolerance: f64, corner: Corner<[f64; 2]>) -> Vec<Curve<2>> {
     let curves = smoothed(points, tolerance).into_iter();
-    curves
-        .map(|curve: Curve<2>| {
-            PathFn::new(curve.length(), move |s| curve.point(s)).with_corner(corner)
-        })
-        .collect()
+    curves.map(|curve| curve.with_corner(corner)).collect()
 }
 
 fn planned<P: Path<Axes = [f64; 2], Error = Infallible> + Clone + Debug>(
@@ -113,13 +103,11 @@ fn the_tool_keeps_the_feed_of_each_leg() {
         .zip(feeds)
         .map(|(number, feed)| {
             let [from, to] = [number, number + 1].map(|n| [50.0 * f64::from(n), 0.0]);
-            let line = Curve::line(from, to).unwrap();
-            PathFn::new(line.length(), move |s| line.point(s))
-                .with_corner(Corner::Smooth)
-                .with_tool(ToolLimits {
-                    feed,
-                    acceleration: Some(1000.0),
-                })
+            let tool = ToolLimits {
+                feed,
+                acceleration: Some(1000.0),
+            };
+            Curve::line(from, to).unwrap().with_tool(tool)
         })
         .collect();
     let rows = planned(&legs, STAGE, 50);

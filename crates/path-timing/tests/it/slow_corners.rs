@@ -1,9 +1,7 @@
 //! Long lines between corners that are passed next to rest: few segments take little more time than
 //! many.
 
-use core::fmt::Debug;
-
-use path_timing::{AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathFn, PlanError, Table};
+use path_timing::{AxisLimits, Corner, Curve, Knot, LookAhead, PlanError, Table};
 
 use crate::support::machine::limits;
 use crate::support::polyline::{smoothed, within};
@@ -24,15 +22,14 @@ const POINTS: [[f64; 2]; 6] = [
 ];
 
 /// Its sides, with a jump of the speed at each corner.
-fn jumping(speed: f64) -> Vec<impl Path<Axes = [f64; 2], Error: Debug + Clone> + Clone> {
-    let side = |ends: &[[f64; 2]]| {
-        let line = Curve::line(ends[0], ends[1]).unwrap();
-        PathFn::new(line.length(), move |s| line.point(s)).with_corner(Corner::Jump([speed; 2]))
-    };
-    POINTS.windows(2).map(side).collect()
+fn jumping(speed: f64) -> Vec<Curve<2>> {
+    let side = |ends: &[[f64; 2]]| Curve::line(ends[0], ends[1]).unwrap();
+    let sides = POINTS.windows(2).map(side);
+    let sides = sides.map(|side| side.with_corner(Corner::Jump([speed; 2])));
+    sides.collect()
 }
 
-fn check<P: Path<Axes = [f64; 2], Error: Debug + Clone> + Clone>(paths: &[P], what: &str) {
+fn check(paths: &[Curve<2>], what: &str) {
     let mut knots = vec![Knot::default(); 10_000];
     let many = Table::plan(paths, AXES, |_| 400, &mut knots).unwrap();
     let best_s = many.duration_s();

@@ -1,7 +1,7 @@
 //! The four kinds of machines, each with random paths.
 
 use delta_kin::{Delta, DeltaPath};
-use path_timing::{Curve, ToolLimits};
+use path_timing::{Corner, Curve, ToolLimits};
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{BodyPath, Interpolation, Locator, Platform};
 use scara_kin::{Arm, ArmPath, Elbow, Joints};
@@ -33,9 +33,9 @@ fn curve<const D: usize>(random: &mut Random, centre: [f64; D], size: f64) -> Op
     })
 }
 
-/// A gantry along smoothed points.
+/// A gantry along points: smoothed, or with velocities that jump.
 pub(super) fn attack_points(random: &mut Random, tried: &mut Tried) {
-    let (count, step) = (3 + random.below(20), random.size(-1.0, 1.5));
+    let (count, step) = (3 + random.below(20), random.size(-1.0, 2.5));
     let mut at = [0.0; 3];
     let points: Vec<_> = (0..count)
         .map(|_| {
@@ -43,7 +43,15 @@ pub(super) fn attack_points(random: &mut Random, tried: &mut Tried) {
             at
         })
         .collect();
-    let curves = smoothed(&points, random.size(-3.0, 0.0));
+    let curves = if random.below(3) == 0 {
+        let speed = random.size(-2.0, 2.0);
+        let line = |ends: &[[f64; 3]]| Curve::line(ends[0], ends[1]).unwrap();
+        let lines = points.windows(2).map(line);
+        let lines = lines.map(|line| line.with_corner(Corner::Jump([speed; 3])));
+        lines.collect()
+    } else {
+        smoothed(&points, random.size(-5.0, 0.0))
+    };
     let judge = Judge {
         bound: &Curve::departure,
         off: &|curve: &Curve<3>, part, at: &[f64; 3]| distance(curve, part, *at),
