@@ -11,6 +11,7 @@ mod cubic;
 mod curve;
 mod departure;
 mod error;
+mod feed_change;
 mod jerk;
 mod junction;
 mod knots;

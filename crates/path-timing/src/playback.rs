@@ -1,13 +1,12 @@
 //! A table that is played back under a feed override and can stop on its path.
 
 mod ceiling;
-mod change;
-mod stop;
 
 use core::convert::Infallible;
 
 use trig_kernels::SixDigits;
 
+use crate::feed_change::{At, Course, SmoothFeed};
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::passes::time_of;
 use crate::reciprocals::Reciprocals;
@@ -15,7 +14,6 @@ use crate::segment::Segment;
 use crate::stepping::Ahead;
 use crate::{Axes, Knot, PlanError, Row, Table};
 pub use ceiling::FeedCeiling;
-use change::Change;
 
 /// A feed that the override cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -65,26 +63,13 @@ pub struct Playback<'a, A: Axes> {
     leg: usize,
 }
 
-/// Where a playback is.
-#[derive(Debug, Clone, Copy)]
-struct At {
-    index: usize,
-    speed: f64,
-    /// At the knot before.
-    before: f64,
-}
-
 /// What the feed may be, without a limit of jerk and with one.
 #[derive(Debug, Clone)]
 enum Mode<'a> {
     /// At each knot up to a ceiling.
     Direct(&'a [FeedCeiling]),
-    /// The same for all knots; `change` goes on where the feed is not yet the wanted one.
-    Smooth {
-        max: f64,
-        feed: f64,
-        change: Option<Change>,
-    },
+    /// The same for all knots, up to `max`.
+    Smooth { max: f64, feed: SmoothFeed },
 }
 
 impl<'a, A: Axes> Table<'a, A> {
@@ -109,8 +94,7 @@ impl<'a, A: Axes> Table<'a, A> {
         let mode = if self.limits.has_jerk() {
             Mode::Smooth {
                 max: max.min(self.full_feed()),
-                feed: 1.0,
-                change: None,
+                feed: SmoothFeed::FULL,
             }
         } else {
             let (needed, available) = (self.len(), ceilings.len());
@@ -225,10 +209,15 @@ impl<A: Axes> Playback<'_, A> {
         }
         match self.mode {
             Mode::Direct(ceilings) => Some(self.next_direct(ceilings, at, knots)),
-            Mode::Smooth { max, feed, change } => {
-                let (speed, feed, change) = self.next_smooth(at, [max, feed], change)?;
-                self.mode = Mode::Smooth { max, feed, change };
-                Some(speed)
+            Mode::Smooth { max, mut feed } => {
+                let course = Course {
+                    knots: self.knots,
+                    limits: &self.limits,
+                    stretch: self.stretch,
+                };
+                let speed = feed.next_speed(&course, at, self.wanted.min(max));
+                self.mode = Mode::Smooth { max, feed };
+                speed
             }
         }
     }

@@ -1,10 +1,44 @@
 //! Changes of the feed with limited jerk.
+//!
+//! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant feed.
+//! Method: shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics that would run;
+//! the shortest that keeps all limits is taken. Where none is found, it is tried again a row later.
 
-use super::stop::{KAPPAS, State, Stop};
-use super::{At, Playback};
-use crate::Axes;
+mod stop;
+
 use crate::jerk::{Most, Walk};
 use crate::passes::segment_s;
+use crate::reciprocals::Reciprocals;
+use crate::{Axes, Knot};
+use stop::{KAPPAS, State, Stop};
+
+/// Knots that are passed at a feed times their speeds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Course<'a, A: Axes> {
+    pub(crate) knots: &'a [Knot<A>],
+    pub(crate) limits: &'a Reciprocals<A>,
+    /// By what all times are multiplied.
+    pub(crate) stretch: f64,
+}
+
+/// Where the machine is on a course.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct At {
+    /// The knot.
+    pub(crate) index: usize,
+    pub(crate) speed: f64,
+    /// At the knot before.
+    pub(crate) before: f64,
+}
+
+/// The feed, and the change that goes on where it is not yet the wanted one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SmoothFeed {
+    feed: f64,
+    change: Option<Change>,
+    /// Whether a change has ended at the knot handed out last: the segment after it is as it was tried.
+    is_settling: bool,
+}
 
 /// A change of the feed over some segments, with ramps of its rate at both ends.
 ///
@@ -97,10 +131,10 @@ impl FeedChange {
 
 /// How the machine goes from one speed to another.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Change {
+struct Change {
     kind: Kind,
     /// The feed that it ends with.
-    pub(super) to: f64,
+    to: f64,
     /// Segments to go.
     left: usize,
 }
@@ -141,58 +175,75 @@ const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 /// Halvings of a feed that nothing moves at.
 const HALVINGS: u32 = 64;
 
-impl<A: Axes> Playback<'_, A> {
-    /// The speed at the next knot, the feed there, and the change that goes on there; none where the
-    /// machine stays at rest.
-    pub(super) fn next_smooth(
-        &self,
+impl SmoothFeed {
+    /// At 100 %.
+    pub(crate) const FULL: Self = Self {
+        feed: 1.0,
+        change: None,
+        is_settling: false,
+    };
+
+    /// Whether the speeds ahead may be planned anew: no change was tried on them.
+    pub(crate) const fn is_constant(&self) -> bool {
+        self.change.is_none() && !self.is_settling
+    }
+
+    /// The speed at the next knot, towards a wanted feed; none where the machine stays at rest.
+    pub(crate) fn next_speed<A: Axes>(
+        &mut self,
+        course: &Course<'_, A>,
         at: At,
-        [max, feed]: [f64; 2],
-        change: Option<Change>,
-    ) -> Option<(f64, f64, Option<Change>)> {
-        let wanted = self.wanted.min(max);
+        wanted: f64,
+    ) -> Option<f64> {
+        self.turn_to(course, at, wanted);
         let next = at.index.saturating_add(1);
-        let rests = at.speed <= 0.0;
-        let begins = rests && self.planned(at.index) <= 0.0;
-        // Where the table rests, too, every feed is as good.
-        let (feed, mut change) = if begins {
-            (wanted, None)
-        } else {
-            (feed, change)
+        let planned = course.planned(next);
+        let Some(going) = &mut self.change else {
+            self.is_settling = false;
+            // At a feed of 0 nothing but the next stop is ahead.
+            let is_ahead = self.feed > 0.0 || planned <= 0.0;
+            return is_ahead.then_some(self.feed * planned);
         };
-        let feed = if rests && !begins { 0.0 } else { feed };
-        let is_other = |feed: f64| (feed - wanted).abs() > 0.0;
-        if is_other(change.map_or(feed, |change| change.to)) {
-            let found = if feed <= 0.0 {
-                self.resume(at, wanted)
-            } else if wanted <= 0.0 && change.is_none() {
-                self.stop_soonest(at, feed)
-            } else {
-                self.change_to(at, feed, wanted)
-            };
-            change = found.or(change);
-        }
-        let Some(going) = &mut change else {
-            if feed <= 0.0 {
-                // Nothing but the next stop is ahead.
-                return (self.planned(next) <= 0.0).then_some((0.0, 0.0, None));
-            }
-            return Some((feed * self.planned(next), feed, None));
-        };
-        let planned = self.planned(next);
-        let ds = self.knots.get(next).map_or(0.0, |knot| knot.ds);
-        let speed = going.step(ds, self.segment_s(next), planned);
-        let feed = if going.left == 0 {
-            going.to
-        } else if planned > 0.0 {
-            speed / planned
-        } else {
-            feed
-        };
+        let ds = course.knots.get(next).map_or(0.0, |knot| knot.ds);
+        let speed = going.step(ds, course.segment_s(next), planned);
         if going.left == 0 {
-            change = None;
+            (self.feed, self.change, self.is_settling) = (going.to, None, true);
+        } else if planned > 0.0 {
+            self.feed = speed / planned;
         }
-        Some((speed, feed, change))
+        Some(speed)
+    }
+
+    /// Begins a change to another feed where there is one.
+    fn turn_to<A: Axes>(&mut self, course: &Course<'_, A>, at: At, wanted: f64) {
+        if at.speed <= 0.0 {
+            self.feed = 0.0;
+            // Where the course rests, too, every feed is as good.
+            if course.planned(at.index) <= 0.0 {
+                (self.feed, self.change) = (wanted, None);
+            }
+        }
+        let feed = self.feed;
+        let to = self.change.map_or(feed, |change| change.to);
+        if (to - wanted).abs() <= 0.0 {
+            return;
+        }
+        let found = if feed <= 0.0 {
+            course.resume(at, wanted)
+        } else if wanted <= 0.0 && self.change.is_none() {
+            course.stop_soonest(at, feed)
+        } else {
+            course.change_to(at, feed, wanted)
+        };
+        self.change = found.or(self.change);
+    }
+}
+
+impl<A: Axes> Course<'_, A> {
+    /// The speed at a knot at a feed of 1.
+    fn planned(&self, index: usize) -> f64 {
+        let knot = self.knots.get(index);
+        knot.map_or(0.0, |knot| knot.speed / self.stretch)
     }
 
     /// Time of the table from the knot before.
@@ -330,7 +381,7 @@ impl<A: Axes> Playback<'_, A> {
         let mut walk = if at.speed > 0.0 && !is_jump {
             // From the segment before, whose acceleration it goes on from.
             let mut walk = Walk::new(at.index.saturating_sub(1), at.before).without_tool();
-            walk.advance(&self.limits, self.knots, at.speed);
+            walk.advance(self.limits, self.knots, at.speed);
             walk
         } else {
             Walk::new(at.index, at.speed).without_tool()
@@ -348,7 +399,7 @@ impl<A: Axes> Playback<'_, A> {
             } else {
                 change.step(ds, self.segment_s(next), planned)
             };
-            let Some(segment) = walk.advance(&self.limits, self.knots, speed) else {
+            let Some(segment) = walk.advance(self.limits, self.knots, speed) else {
                 return true;
             };
             segment.visit(&mut most);
