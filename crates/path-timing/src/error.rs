@@ -35,9 +35,6 @@ pub enum PlanError<E> {
         /// Largest value.
         max: f64,
     },
-    /// An axis has a limit of jerk where only speeds and accelerations are kept.
-    #[error("a limit of jerk takes a table: no window of fixed size has the path to the next stop")]
-    Jerk,
     /// A start-stop speed of a corner is neither 0 nor a number within the range of the crate.
     #[error("leg {leg}, axis {axis}: a start-stop speed of {} is not within the range of numbers", SixDigits(*.speed))]
     StartStopSpeed {
@@ -164,7 +161,6 @@ impl<E> PlanError<E> {
             | Self::TooFine { leg, .. }
             | Self::Indistinct { leg, .. } => *leg = number,
             Self::Limit { .. }
-            | Self::Jerk
             | Self::Memory { .. }
             | Self::Allowed { .. }
             | Self::TimeRatio { .. }

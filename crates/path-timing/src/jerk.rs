@@ -14,6 +14,7 @@
 
 mod barrier;
 mod newton;
+mod stream;
 
 use crate::number::{cube_root, sqrt};
 use crate::passes::segment_s;
@@ -22,36 +23,54 @@ use crate::{Axes, Knot};
 pub(crate) use barrier::Walk;
 use barrier::{Barrier, Degree, Moving, Utilisation};
 pub(crate) use newton::Equation;
+pub(crate) use stream::extend;
 
 /// Slows the fastest speeds so that all limits of jerk are kept.
 pub(crate) fn smooth<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
+    for_each_run(knots, |run| {
+        go_inside(limits, run);
+        approach(limits, run, 0, LAST_GAP);
+        scale(run, 1.0 / tightest(limits, run));
+    });
+}
+
+/// Calls a function with the knots from each rest to the next, where there is a speed to choose.
+fn for_each_run<A: Axes>(knots: &mut [Knot<A>], mut act: impl FnMut(&mut [Knot<A>])) {
     let mut rest = knots;
     while rest.len() > 1 {
-        let stop = rest.iter().skip(1).position(|knot| knot.speed <= 0.0);
-        let last = stop.map_or(rest.len(), |stop| stop.saturating_add(1));
-        let (moving, _) = rest.split_at_mut(last.saturating_add(1).min(rest.len()));
-        // From a rest to the next knot at rest there is no speed to choose.
-        if moving.iter().any(|knot| knot.speed > 0.0) {
-            smooth_moving(limits, moving);
+        let last = next_rest(rest);
+        if let Some(run) = rest.get_mut(..=last).filter(|_| last > 1) {
+            act(run);
         }
         (_, rest) = rest.split_at_mut(last.min(rest.len()));
     }
 }
 
-/// The same from rest to rest, with no rest between.
-fn smooth_moving<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
+/// The number of the next knot at rest behind the first, else of the last.
+fn next_rest<A: Axes>(knots: &[Knot<A>]) -> usize {
+    let rest = knots.iter().skip(1).position(|knot| knot.speed <= 0.0);
+    rest.map_or(knots.len().saturating_sub(1), |rest| rest.saturating_add(1))
+}
+
+/// Slows a motion so that no limit is quite used.
+fn go_inside<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     let slower = INSIDE / tightest(limits, knots);
     scale(knots, slower.min(INSIDE));
+}
+
+/// From speeds inside all limits to the fastest ones, with the first `fixed` as they are; a limit at each
+/// knot may cost the fraction `gap` of the time.
+fn approach<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, gap: f64) {
     let total_s = knots.windows(2).fold(0.0, |sum, pair| match pair {
         [from, to] => sum + segment_s(from, to),
         _ => sum,
     });
     let count = u32::try_from(knots.len()).map_or(f64::INFINITY, f64::from);
     let mut weight = count / (total_s * FIRST_GAP);
-    let last_weight = count / (total_s * LAST_GAP);
+    let last_weight = count / (total_s * gap);
     loop {
         for _ in 0..STEPS {
-            let decrease = newton::step(limits, knots, weight);
+            let decrease = newton::step(limits, knots, fixed, weight);
             // Written so that NaN ends it.
             let goes_on = decrease > count * CENTRED;
             if !goes_on {
@@ -65,24 +84,23 @@ fn smooth_moving<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
         }
         weight = (weight * GROWTH).min(last_weight);
     }
-    scale(knots, 1.0 / tightest(limits, knots));
 }
 
 /// Where the search begins, as a fraction of the tightest limit.
 const INSIDE: f64 = 0.95;
 
 /// Fractions of the time that a limit at each knot may cost, at the beginning and at the end.
-const FIRST_GAP: f64 = 0.1;
+const FIRST_GAP: f64 = 0.3;
 const LAST_GAP: f64 = 2e-4;
 
 /// By how much the weight of the time grows from one search to the next.
 const GROWTH: f64 = 6.0;
 
-/// Most Newton steps of a search.
-const STEPS: u32 = 8;
+/// Most Newton steps of a search. Where a rest is raised, most of them are short.
+const STEPS: u32 = 50;
 
 /// Decrease of F by a step, for each knot, at which the search goes on with a greater weight.
-const CENTRED: f64 = 0.01;
+const CENTRED: f64 = 0.003;
 
 /// Relative rounding of scaled speeds.
 const ROUNDING: f64 = 1.0 - 64.0 * f64::EPSILON;
@@ -97,22 +115,26 @@ fn scale<A: Axes>(knots: &mut [Knot<A>], factor: f64) {
 fn tightest<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>]) -> f64 {
     let mut most = Most::default();
     let speed_of = |knot: &Knot<A>| knot.speed;
-    visit_all(limits, knots, speed_of, |segment| segment.visit(&mut most));
+    visit_all(limits, knots, speed_of, |segment| {
+        segment.visit(&mut most);
+        true
+    });
     most.stretch
 }
 
-/// Calls a function with each segment at the speeds of its knots.
+/// Calls a function with each segment at the speeds of its knots, as long as it says so.
 fn visit_all<A: Axes>(
     limits: &Reciprocals<A>,
     knots: &[Knot<A>],
     speed_of: impl Fn(&Knot<A>) -> f64,
-    mut visit: impl FnMut(&Moving<'_, A>),
+    mut goes_on: impl FnMut(&Moving<'_, A>) -> bool,
 ) {
     let mut walk = Walk::new(0, knots.first().map_or(0.0, &speed_of));
     while let Some(next) = walk.next_knot(knots) {
         let speed = knots.get(next).map_or(0.0, &speed_of);
-        if let Some(segment) = walk.advance(limits, knots, speed) {
-            visit(&segment);
+        let segment = walk.advance(limits, knots, speed);
+        if !segment.is_some_and(|segment| goes_on(&segment)) {
+            break;
         }
     }
 }

@@ -4,10 +4,11 @@ mod window;
 
 use core::fmt::{self, Debug};
 
+use crate::feed_change::SmoothFeed;
 use crate::junction::Junction;
 use crate::knots::{LARGEST_GAP, Laying, fraction, is_resolved};
 use crate::leg::Leg;
-use crate::number::{LARGEST, SMALLEST, range};
+use crate::number::{LARGEST, SMALLEST};
 use crate::planner::{bounded, check_gap, junction_to};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, Corner, FeedError, Knot, Path, PlanError, Row};
@@ -26,7 +27,10 @@ const MIN_KNOTS: usize = 4;
 ///
 /// When half of the window has been handed out, it is filled up and its speeds are computed from its
 /// end: at most two backward evaluations and one forward for each knot, two more backward at a feed
-/// below the highest. Where the stream has no path for now, the machine comes to rest at the end of
+/// below the highest. With a limit of jerk what is in the window is planned as a whole, from the row
+/// handed out last to the end: some fifty steps of Newton's for each knot, which take a PC. A change of
+/// the feed is then smooth, as that of a [`Playback`](crate::Playback), and begins where it can be tried
+/// on the knots of the window: a hold asks for a window longer than the way to rest. Where the stream has no path for now, the machine comes to rest at the end of
 /// the last one and goes on when there is one.
 ///
 /// ```
@@ -65,6 +69,10 @@ pub struct LookAhead<'w, P: Path, I, F> {
     wanted: f64,
     /// Path speed at the row handed out last; none before the first.
     speed: Option<f64>,
+    /// The same at the row before it.
+    before: f64,
+    /// With a limit of jerk.
+    smooth: SmoothFeed,
     time_s: f64,
     /// The path on which the row handed out last lies.
     leg: usize,
@@ -89,8 +97,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// long path between slow corners takes 2 or more.
     ///
     /// # Errors
-    /// [`PlanError::Limit`]; [`PlanError::Jerk`] where an axis has a limit of jerk, which takes a
-    /// [`Table`](crate::Table); [`PlanError::Memory`] for a window of fewer than 4 knots.
+    /// [`PlanError::Limit`]; [`PlanError::Memory`] for a window of fewer than 4 knots.
     pub fn new(
         paths: impl IntoIterator<IntoIter = I>,
         limits: <P::Axes as Axes>::Of<AxisLimits>,
@@ -98,9 +105,6 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         window: &'w mut [Knot<P::Axes>],
     ) -> Result<Self, PlanError<P::Error>> {
         let limits = Reciprocals::checked(&limits)?;
-        if limits.has_jerk() {
-            return Err(PlanError::Jerk);
-        }
         if window.len() < MIN_KNOTS {
             return Err(PlanError::Memory {
                 needed: MIN_KNOTS,
@@ -120,22 +124,25 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
             max: 1.0,
             wanted: 1.0,
             speed: None,
+            before: 0.0,
+            smooth: SmoothFeed::FULL,
             time_s: 0.0,
             leg: 0,
         })
     }
 
     /// With feeds of up to `max`, 2 for 200 %, before the first row. It looks further ahead for the
-    /// higher feed.
+    /// higher feed. With a limit of jerk no feed is above 1.
     ///
     /// # Errors
     /// [`PlanError::Feed`].
     pub fn with_max_feed(mut self, max: f64) -> Result<Self, PlanError<P::Error>> {
-        if !range().contains(&max) {
+        let highest = if self.limits.has_jerk() { 1.0 } else { LARGEST };
+        if !(SMALLEST..=highest).contains(&max) {
             return Err(PlanError::Feed {
                 feed: max,
                 min: SMALLEST,
-                max: LARGEST,
+                max: highest,
             });
         }
         (self.max, self.wanted) = (max, self.wanted.min(max));
@@ -178,18 +185,29 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// last knot before that point.
     pub fn next_row(&mut self) -> Result<Option<Row<P::Axes>>, PlanError<P::Error>> {
         let filled = self.fill();
-        let feed = Feed {
-            max: self.max,
-            wanted: self.wanted,
-        };
-        self.window.look_back(&self.limits, feed);
+        if self.limits.has_jerk() {
+            self.window.look_through(&self.limits);
+        } else {
+            self.window.look_back(&self.limits, self.feed());
+        }
         filled?;
         let Some(speed) = self.speed else {
             return Ok(self.first_row());
         };
-        let Some(step) = self.window.step(&self.limits, feed, speed) else {
+        let step = if self.limits.has_jerk() {
+            let (feed, wanted) = (&mut self.smooth, self.wanted);
+            let speeds = [self.before, speed];
+            self.window
+                .step_smoothly(&self.limits, feed, wanted, speeds)
+        } else {
+            self.window.step(&self.limits, self.feed(), speed)
+        };
+        let Some(step) = step else {
             return Ok(None);
         };
+        if step.knot.ds > 0.0 {
+            self.before = speed;
+        }
         self.speed = Some(step.speed);
         self.time_s += step.duration_s;
         self.leg = self.leg.saturating_add(usize::from(step.begins_leg));
@@ -201,6 +219,13 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         }))
     }
 
+    const fn feed(&self) -> Feed {
+        Feed {
+            max: self.max,
+            wanted: self.wanted,
+        }
+    }
+
     /// The first row, at rest.
     fn first_row(&mut self) -> Option<Row<P::Axes>> {
         let first = self.window.first()?;
@@ -210,7 +235,10 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
 
     /// Fills the window when half of it is free.
     fn fill(&mut self) -> Result<(), PlanError<P::Error>> {
-        if self.is_refused || !self.window.make_room() {
+        let has_jerk = self.limits.has_jerk();
+        // A change of the feed was tried on the speeds ahead.
+        let stays = has_jerk && !self.smooth.is_constant() && !self.is_at_rest();
+        if self.is_refused || stays || !self.window.make_room(has_jerk) {
             return Ok(());
         }
         let filled = self.push_knots();

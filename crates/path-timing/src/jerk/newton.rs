@@ -106,7 +106,7 @@ impl Barrier for Value {
 /// A product far from the smallest number.
 const SMALL: f64 = 1e-200;
 
-/// F with the speeds changed by a part of the step.
+/// F with the speeds changed by a part of the step; infinite outside of the limits.
 fn value<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>], weight: f64, part: f64) -> f64 {
     let mut value = Value {
         weight,
@@ -117,7 +117,10 @@ fn value<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>], weight: f64, part:
         let square = knot.speed * knot.speed + part * knot.equation.right;
         sqrt(square.max(0.0))
     };
-    visit_all(limits, knots, speed_of, |segment| segment.visit(&mut value));
+    visit_all(limits, knots, speed_of, |segment| {
+        segment.visit(&mut value);
+        value.value.is_finite()
+    });
     value.value - libm::log(value.product)
 }
 
@@ -127,15 +130,21 @@ const HALVINGS: u32 = 30;
 /// The part of the decrease that the gradient promises which is enough.
 const ENOUGH: f64 = 0.1;
 
-/// Takes a Newton step. By how much F became smaller; nothing where no part of the step makes it so.
-pub(super) fn step<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], weight: f64) -> f64 {
+/// Takes a Newton step, with the speeds at the first `fixed` knots as they are. By how much F became
+/// smaller; nothing where no part of the step makes it so.
+pub(super) fn step<A: Axes>(
+    limits: &Reciprocals<A>,
+    knots: &mut [Knot<A>],
+    fixed: usize,
+    weight: f64,
+) -> f64 {
     let before = assemble(limits, knots, weight);
-    let promised = solve(knots);
+    let promised = solve(knots, fixed);
     let mut part = 1.0;
     for _ in 0..HALVINGS {
         let decrease = before - value(limits, knots, weight, part);
         if decrease >= ENOUGH * part * promised && is_moving(knots, part) {
-            go(knots, part);
+            go(knots, fixed, part);
             return decrease;
         }
         part *= 0.5;
@@ -149,11 +158,13 @@ fn is_moving<A: Axes>(knots: &[Knot<A>], part: f64) -> bool {
     moving.all(|knot| knot.speed * knot.speed + part * knot.equation.right > 0.0)
 }
 
-/// Changes all speeds by a part of the step; at a jump to that of the knot before.
-fn go<A: Axes>(knots: &mut [Knot<A>], part: f64) {
+/// Changes all speeds but the fixed by a part of the step; at a jump to that of the knot before.
+fn go<A: Axes>(knots: &mut [Knot<A>], fixed: usize, part: f64) {
     let mut before = 0.0;
     for (index, knot) in knots.iter_mut().enumerate() {
-        if index > 0 && knot.ds <= 0.0 {
+        if index < fixed {
+            // To the last bit.
+        } else if index > 0 && knot.ds <= 0.0 {
             knot.speed = before;
         } else if knot.speed > 0.0 {
             knot.speed = sqrt(knot.speed * knot.speed + part * knot.equation.right);
@@ -224,13 +235,13 @@ fn assemble<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], weight: f64
 
 /// Solves the system, by the product of a unit triangle, pivots and its transpose. The product of the
 /// right side and the solution.
-fn solve<A: Axes>(knots: &mut [Knot<A>]) -> f64 {
+fn solve<A: Axes>(knots: &mut [Knot<A>], fixed: usize) -> f64 {
     let is_own = |(index, knot): &(usize, &mut Knot<A>)| *index == 0 || knot.ds > 0.0;
     let mut promised = 0.0;
     let (mut one, mut two) = (Equation::default(), Equation::default());
-    for (_, knot) in knots.iter_mut().enumerate().filter(is_own) {
+    for (index, knot) in knots.iter_mut().enumerate().filter(is_own) {
         let equation = &mut knot.equation;
-        if knot.speed <= 0.0 {
+        if index < fixed || knot.speed <= 0.0 {
             *equation = Equation {
                 diagonal: 1.0,
                 ..Equation::default()

@@ -1,11 +1,12 @@
 //! The knots in the window: how fast each may be passed, and the speed at the next.
 
+use crate::feed_change::{At, Course, SmoothFeed};
 use crate::number::LARGEST;
 use crate::passes::time_of;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::stepping::Ahead;
-use crate::{Axes, Knot, ToolLimits};
+use crate::{Axes, Knot, ToolLimits, jerk};
 
 /// Feeds, 1 for 100 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,21 +68,23 @@ impl<'w, A: Axes> Window<'w, A> {
         knots.and_then(|knots| knots.last_mut())
     }
 
-    /// Where at most half of the memory holds knots: moves these to the beginning.
-    pub(super) fn make_room(&mut self) -> bool {
-        let count = self.knots().len();
+    /// Where at most half of the memory holds knots: moves these to the beginning. With a limit of jerk
+    /// the one before the first is kept.
+    pub(super) fn make_room(&mut self, has_jerk: bool) -> bool {
+        let kept = self.first.saturating_sub(usize::from(has_jerk));
+        let count = self.end.saturating_sub(kept);
         if count > self.knots.len().midpoint(1) {
             return false;
         }
-        if self.first > 0 {
+        if kept > 0 {
             for index in 0..count {
-                let knot = self.knots.get(self.first.saturating_add(index)).copied();
+                let knot = self.knots.get(kept.saturating_add(index)).copied();
                 if let (Some(knot), Some(to)) = (knot, self.knots.get_mut(index)) {
                     *to = knot;
                 }
             }
         }
-        (self.first, self.end) = (0, count);
+        (self.first, self.end) = (self.first.saturating_sub(kept), count);
         true
     }
 
@@ -137,6 +140,57 @@ impl<'w, A: Axes> Window<'w, A> {
         (self.new, self.feed) = (0, Some(feed));
     }
 
+    /// With a limit of jerk: plans the new knots, and those before them once more.
+    pub(super) fn look_through(&mut self, limits: &Reciprocals<A>) {
+        if self.new == 0 {
+            return;
+        }
+        let begin = self.first.saturating_sub(1);
+        let from = self.first.saturating_sub(begin);
+        let knots = self.knots.get_mut(begin..self.end).unwrap_or_default();
+        let old = knots.len().saturating_sub(self.new).saturating_sub(1);
+        jerk::extend(limits, knots, from, old);
+        self.new = 0;
+    }
+
+    /// With a limit of jerk: the same as [`step`](Self::step), towards a wanted feed of at most 1.
+    pub(super) fn step_smoothly(
+        &mut self,
+        limits: &Reciprocals<A>,
+        feed: &mut SmoothFeed,
+        wanted: f64,
+        [before, speed]: [f64; 2],
+    ) -> Option<Step<A>> {
+        if speed <= 0.0 && wanted <= 0.0 {
+            return None;
+        }
+        let [from, to, ..] = self.knots() else {
+            return None;
+        };
+        let begin = self.first.saturating_sub(1);
+        let course = Course {
+            knots: self.knots.get(begin..self.end).unwrap_or_default(),
+            limits,
+            stretch: 1.0,
+        };
+        let at = At {
+            index: self.first.saturating_sub(begin),
+            speed,
+            before,
+        };
+        let next = if to.ds > 0.0 {
+            feed.next_speed(&course, at, wanted)?
+        } else {
+            speed
+        };
+        let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
+            time_of(to.ds, [speed, next])
+        } else {
+            limits.rest_to_rest_s([from, to], to.tool.as_ref()) / wanted
+        };
+        self.hand_out(next, duration_s)
+    }
+
     /// The knot after the first and the speed there, coming from the first at `speed`; none where the
     /// machine stays at rest.
     pub(super) fn step(
@@ -178,9 +232,17 @@ impl<'w, A: Axes> Window<'w, A> {
         } else {
             return None;
         };
+        self.hand_out(next, duration_s)
+    }
+
+    /// The knot after the first, which is the first from now on.
+    fn hand_out(&mut self, speed: f64, duration_s: f64) -> Option<Step<A>> {
+        let [from, to, ..] = self.knots() else {
+            return None;
+        };
         let step = Step {
             knot: *to,
-            speed: next,
+            speed,
             duration_s,
             begins_leg: from.ends_leg,
         };

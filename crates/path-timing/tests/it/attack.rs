@@ -21,6 +21,9 @@ const POSITION: f64 = 1e-9;
 /// Places of a segment.
 const PLACES: u32 = 24;
 
+/// 150 %.
+const MAX_FEED: f64 = 1.5;
+
 /// The most that a plan takes over one with 400 segments.
 const SLOWEST: f64 = 3.0;
 
@@ -160,9 +163,8 @@ fn attack<P>(
             }
         }
     }
-    if !has_jerk {
-        stream(random, paths, limits, segments, tried);
-    }
+    let max_feed = if has_jerk { 1.0 } else { MAX_FEED };
+    stream(random, paths, limits, segments, max_feed, tried);
     if random.below(4) == 0 {
         depart(random, paths, limits, judge, tried);
     }
@@ -247,10 +249,10 @@ fn distance<const D: usize>(curve: &Curve<D>, [from, to]: [f64; 2], point: [f64;
 /// Feeds and holds at random rows.
 fn play<A: Axes>(random: &mut Random, table: &Table<'_, A>) -> Vec<Row<A>> {
     let mut ceilings = vec![FeedCeiling::default(); table.len()];
-    let mut playback = table.playback(1.5, &mut ceilings).unwrap();
+    let mut playback = table.playback(MAX_FEED, &mut ceilings).unwrap();
     let mut rows = Vec::new();
     for _ in 0..random.below(6) {
-        let feed = random.within(0.0, 1.5);
+        let feed = random.within(0.0, MAX_FEED);
         playback
             .set_feed(if feed < 0.4 { 0.0 } else { feed })
             .unwrap();
@@ -269,20 +271,21 @@ fn stream<P>(
     paths: &[P],
     limits: <P::Axes as Axes>::Of<AxisLimits>,
     segments: u32,
+    max_feed: f64,
     tried: &mut Tried,
 ) where
     P: Path<Error: Debug + Clone> + Clone,
 {
     let mut window = vec![Knot::default(); usize::try_from(4 + random.below(100)).unwrap()];
     let motion = LookAhead::new(paths.iter().cloned(), limits, |_| Ok(segments), &mut window);
-    let mut motion = motion.unwrap().with_max_feed(1.5).unwrap();
+    let mut motion = motion.unwrap().with_max_feed(max_feed).unwrap();
     let mut rows = Vec::new();
     let mut wishes = random.below(6);
     loop {
         let (feed, count) = if wishes == 0 {
             (1.0, usize::MAX)
         } else {
-            let feed = random.within(0.0, 1.5);
+            let feed = random.within(0.0, max_feed);
             let feed = if feed < 0.4 { 0.0 } else { feed };
             (feed, usize::try_from(1 + random.below(20)).unwrap())
         };

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use crate::support::jerk::{bits, check_jerk, feeds, run_under};
 use crate::support::limits::ROUNDING;
 use crate::support::machine::limits;
-use crate::support::polyline::{lines, smoothed, within};
+use crate::support::polyline::{lines, points, smoothed, within};
 
 /// A polar arm, and a stage.
 const ARM: [AxisLimits; 2] = [
@@ -118,17 +118,6 @@ fn the_tool_keeps_the_feed_of_each_leg() {
         assert!(fastest <= feed * ROUNDING, "{fastest} on leg {leg}");
         assert!(fastest > 0.95 * feed, "{fastest} on leg {leg}");
     }
-}
-
-/// Points of a polyline whose sides are not too short.
-fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
-    let point = prop::array::uniform2(-100.0..100.0_f64);
-    prop::collection::vec(point, 3..7).prop_filter("sides", |points| {
-        points.windows(2).all(|pair| {
-            let [from, to] = pair else { unreachable!() };
-            (to[0] - from[0]).hypot(to[1] - from[1]) > 1.0
-        })
-    })
 }
 
 proptest! {

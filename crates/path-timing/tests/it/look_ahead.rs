@@ -166,9 +166,6 @@ fn a_refused_path_is_named_once_and_the_machine_stops_before_it() {
 fn what_cannot_be_planned_is_named() {
     let paths = || lines(&POINTS, Corner::Stop, None);
     let mut window = slots(20);
-    let jerk = [limits(1.0, 1.0, Some(1.0)); 2];
-    let error = LookAhead::new(paths(), jerk, |_| Ok(8), &mut window).unwrap_err();
-    assert_eq!(error, PlanError::Jerk);
     let error = LookAhead::new(paths(), [limits(0.0, 1.0, None); 2], |_| Ok(8), &mut window);
     assert!(matches!(
         error.unwrap_err(),

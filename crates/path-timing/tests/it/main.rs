@@ -9,6 +9,7 @@ mod curves;
 mod departure;
 mod jerk;
 mod jerk_corners;
+mod jerk_stream;
 mod look_ahead;
 mod optimum;
 mod run;

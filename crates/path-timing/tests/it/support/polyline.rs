@@ -4,6 +4,7 @@ use core::convert::Infallible;
 use core::fmt::Debug;
 
 use path_timing::{Accuracy, Corner, Curve, Path, PathFn, Smoothed, ToolLimits, Vertex};
+use proptest::prelude::*;
 
 use crate::support::machine::Line;
 
@@ -48,4 +49,15 @@ pub(crate) fn smoothed<const D: usize>(points: &[[f64; D]], tolerance: f64) -> V
     let mut memory = [Vertex::default(); 32];
     let curves = Smoothed::new(points.iter().copied(), tolerance, &mut memory);
     curves.unwrap().collect::<Result<_, _>>().unwrap()
+}
+
+/// Points of a polyline whose sides are not too short.
+pub(crate) fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    let point = prop::array::uniform2(-100.0..100.0_f64);
+    prop::collection::vec(point, 3..7).prop_filter("sides", |points| {
+        points.windows(2).all(|pair| {
+            let [from, to] = pair else { unreachable!() };
+            (to[0] - from[0]).hypot(to[1] - from[1]) > 1.0
+        })
+    })
 }
