@@ -31,13 +31,12 @@ pub(crate) struct At {
     pub(crate) before: f64,
 }
 
-/// The feed, and the change that goes on where it is not yet the wanted one.
+/// The feed, and the change that goes on where it is not yet the wanted one. One that has ended stays for
+/// a segment more, which was tried with it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SmoothFeed {
     feed: f64,
     change: Option<Change>,
-    /// Whether a change has ended at the knot handed out last: the segment after it is as it was tried.
-    is_settling: bool,
 }
 
 /// A change of the feed over some segments, with ramps of its rate at both ends.
@@ -180,12 +179,11 @@ impl SmoothFeed {
     pub(crate) const FULL: Self = Self {
         feed: 1.0,
         change: None,
-        is_settling: false,
     };
 
     /// Whether the speeds ahead may be planned anew: no change was tried on them.
     pub(crate) const fn is_constant(&self) -> bool {
-        self.change.is_none() && !self.is_settling
+        self.change.is_none()
     }
 
     /// The speed at the next knot, towards a wanted feed; none where the machine stays at rest.
@@ -195,11 +193,11 @@ impl SmoothFeed {
         at: At,
         wanted: f64,
     ) -> Option<f64> {
+        self.change = self.change.filter(|change| change.left > 0);
         self.turn_to(course, at, wanted);
         let next = at.index.saturating_add(1);
         let planned = course.planned(next);
         let Some(going) = &mut self.change else {
-            self.is_settling = false;
             // At a feed of 0 nothing but the next stop is ahead.
             let is_ahead = self.feed > 0.0 || planned <= 0.0;
             return is_ahead.then_some(self.feed * planned);
@@ -207,7 +205,7 @@ impl SmoothFeed {
         let ds = course.knots.get(next).map_or(0.0, |knot| knot.ds);
         let speed = going.step(ds, course.segment_s(next), planned);
         if going.left == 0 {
-            (self.feed, self.change, self.is_settling) = (going.to, None, true);
+            self.feed = going.to;
         } else if planned > 0.0 {
             self.feed = speed / planned;
         }

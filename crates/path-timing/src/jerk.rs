@@ -29,7 +29,7 @@ pub(crate) use stream::extend;
 pub(crate) fn smooth<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     for_each_run(knots, |run| {
         go_inside(limits, run);
-        approach(limits, run, 0, LAST_GAP);
+        approach(limits, run, 0, &TABLE);
         scale(run, 1.0 / tightest(limits, run));
     });
 }
@@ -58,21 +58,42 @@ fn go_inside<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     scale(knots, slower.min(INSIDE));
 }
 
-/// From speeds inside all limits to the fastest ones, with the first `fixed` as they are; a limit at each
-/// knot may cost the fraction `gap` of the time.
-fn approach<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, gap: f64) {
+/// How far a search goes.
+struct Effort {
+    /// The fraction of the time that a limit at each knot may cost at the end.
+    last_gap: f64,
+    /// Most Newton steps with one weight.
+    steps: u32,
+    /// Decrease of F by a step, for each knot, at which the search goes on with a greater weight.
+    centred: f64,
+}
+
+/// Of a table, which begins with the shape that it ends with.
+const TABLE: Effort = Effort {
+    last_gap: 2e-4,
+    steps: 8,
+    centred: 0.03,
+};
+
+/// From speeds inside all limits to the fastest ones, with the first `fixed` as they are.
+fn approach<A: Axes>(
+    limits: &Reciprocals<A>,
+    knots: &mut [Knot<A>],
+    fixed: usize,
+    effort: &Effort,
+) {
     let total_s = knots.windows(2).fold(0.0, |sum, pair| match pair {
         [from, to] => sum + segment_s(from, to),
         _ => sum,
     });
     let count = u32::try_from(knots.len()).map_or(f64::INFINITY, f64::from);
     let mut weight = count / (total_s * FIRST_GAP);
-    let last_weight = count / (total_s * gap);
+    let last_weight = count / (total_s * effort.last_gap);
     loop {
-        for _ in 0..STEPS {
+        for _ in 0..effort.steps {
             let decrease = newton::step(limits, knots, fixed, weight);
             // Written so that NaN ends it.
-            let goes_on = decrease > count * CENTRED;
+            let goes_on = decrease > count * effort.centred;
             if !goes_on {
                 break;
             }
@@ -89,18 +110,11 @@ fn approach<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usiz
 /// Where the search begins, as a fraction of the tightest limit.
 const INSIDE: f64 = 0.95;
 
-/// Fractions of the time that a limit at each knot may cost, at the beginning and at the end.
+/// The fraction of the time that a limit at each knot may cost at the beginning.
 const FIRST_GAP: f64 = 0.3;
-const LAST_GAP: f64 = 2e-4;
 
 /// By how much the weight of the time grows from one search to the next.
 const GROWTH: f64 = 6.0;
-
-/// Most Newton steps of a search. Where a rest is raised, most of them are short.
-const STEPS: u32 = 50;
-
-/// Decrease of F by a step, for each knot, at which the search goes on with a greater weight.
-const CENTRED: f64 = 0.003;
 
 /// Relative rounding of scaled speeds.
 const ROUNDING: f64 = 1.0 - 64.0 * f64::EPSILON;

@@ -5,7 +5,7 @@
 //! is raised until nothing but the limits holds it, and both are one interior point to go on from. The
 //! speeds stay inside: the next piece begins there.
 
-use super::{approach, for_each_run, go_inside, next_rest, tightest};
+use super::{Effort, approach, for_each_run, go_inside, next_rest, tightest};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, passes};
 
@@ -29,7 +29,7 @@ pub(crate) fn extend<A: Axes>(
         begin = join(limits, knots, from, old);
     }
     if let Some(rest) = knots.get_mut(begin..) {
-        for_each_run(rest, |run| approach(limits, run, 0, GAP));
+        for_each_run(rest, |run| approach(limits, run, 0, &STREAM));
     }
 }
 
@@ -66,7 +66,7 @@ fn join<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], from: usize, ol
     if !raise(limits, run, joint) {
         return old;
     }
-    approach(limits, run, fixed, GAP);
+    approach(limits, run, fixed, &STREAM);
     end
 }
 
@@ -95,6 +95,9 @@ fn set<A: Axes>(run: &mut [Knot<A>], [old, behind]: [usize; 2], speed: f64) {
 /// Halvings of a speed that a rest may be passed at.
 const HALVINGS: u32 = 40;
 
-/// The part of the time that a limit at each knot may cost, which all of a window together cost a percent
-/// of: less would be more steps.
-const GAP: f64 = 1e-3;
+/// Where a rest is raised, most steps are short ones.
+const STREAM: Effort = Effort {
+    last_gap: 1e-3,
+    steps: 50,
+    centred: 0.003,
+};
