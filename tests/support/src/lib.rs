@@ -1,13 +1,18 @@
 //! What the tests of several crates share.
 #![expect(
     clippy::missing_panics_doc,
+    clippy::panic,
     clippy::unwrap_used,
     reason = "tests fail by panics"
 )]
 
+mod config;
 pub mod instructions;
 mod random;
 mod sizes;
+mod stored;
 
+pub use config::at_least;
 pub use random::{Random, setting};
 pub use sizes::{any_i32, any_u16, any_u32, any_u64};
+pub use stored::{not_read, stored};

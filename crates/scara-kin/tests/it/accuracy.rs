@@ -12,6 +12,8 @@ use scara_kin::{Arm, Elbow, Joints, Trig};
 use test_support::{Random, setting};
 use twofloat::TwoFloat;
 
+use crate::common::double;
+
 /// The documented figures, in machine epsilons of reach and base distance: tool errors of the
 /// inverse alone, of forward after inverse, and of forward alone.
 const DOCUMENTED: [f64; 3] = [7.0, 8.0, 4.0];
@@ -125,10 +127,6 @@ impl Case {
             distance([forward.x, forward.y], there) / unit,
         ])
     }
-}
-
-fn double<T: RealField + Trig>(number: T) -> f64 {
-    nalgebra::convert_unchecked(number)
 }
 
 fn distance(a: [TwoFloat; 2], b: [TwoFloat; 2]) -> f64 {

@@ -12,16 +12,10 @@ mod tools;
 
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
-use scara_kin::nalgebra::{self, RealField};
+use scara_kin::nalgebra::RealField;
+use test_support::at_least;
 
-/// At least a thousand cases; `PROPTEST_CASES` asks for more.
-fn config() -> ProptestConfig {
-    let given = ProptestConfig::default();
-    ProptestConfig {
-        cases: given.cases.max(1000),
-        ..given
-    }
-}
+use crate::common::{double, epsilon, single};
 
 /// Any number at all, those that go wrong most often.
 fn anything() -> impl Strategy<Value = f64> {
@@ -67,18 +61,6 @@ fn angle() -> impl Strategy<Value = f64> {
     ];
     (within_a_turn, prop_oneof![Just(0.0), any_size(0.0, 7.1)])
         .prop_map(|(angle, turns)| angle + turns.round() * 2.0 * PI)
-}
-
-fn single<T: RealField>(number: f64) -> T {
-    nalgebra::convert(number)
-}
-
-fn double<T: RealField>(number: T) -> f64 {
-    nalgebra::convert_unchecked(number)
-}
-
-fn epsilon<T: RealField>() -> f64 {
-    double(T::default_epsilon())
 }
 
 /// The power of two that every number is below.

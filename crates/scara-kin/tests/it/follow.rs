@@ -3,14 +3,12 @@
 use core::f64::consts::PI;
 
 use scara_kin::nalgebra::Point2;
-use scara_kin::{Arm, Elbow, FollowError, InverseError, Joint, JointRange, Joints, Limits};
+use scara_kin::{Arm, Elbow, FollowError, InverseError, Joint, Joints};
+
+use crate::common::{engraver, limits};
 
 /// A place is found to the shortest step, 2⁻³⁰ of a line.
 const PLACE: f64 = 1e-8;
-
-fn engraver() -> Arm {
-    Arm::new(132.0, 132.0).unwrap()
-}
 
 fn line(from: (f64, f64), to: (f64, f64)) -> [Point2<f64>; 2] {
     [Point2::new(from.0, from.1), Point2::new(to.0, to.1)]
@@ -114,10 +112,7 @@ fn dipping_into_the_inner_circle_names_the_place() {
 
 #[test]
 fn passing_a_limit_names_joint_and_place() {
-    let arm = engraver().with_limits(Limits {
-        shoulder: JointRange::new(-1.0, 1.0).unwrap(),
-        elbow: JointRange::new(-PI, PI).unwrap(),
-    });
+    let arm = engraver().with_limits(limits([-1.0, 1.0], [-PI, PI]));
     // An arc of 150 mm: the shoulder runs from -0.5 past 1.
     let arc = (0..=200).map(|k| {
         let angle = f64::from(k) * 0.01;
@@ -142,10 +137,7 @@ fn passing_a_limit_names_joint_and_place() {
 /// A range wider than a turn has an end too: the joint must not wind back in mid-stroke.
 #[test]
 fn the_end_of_a_wide_range_is_a_limit() {
-    let arm = engraver().with_limits(Limits {
-        shoulder: JointRange::new(-3.4, 3.4).unwrap(),
-        elbow: JointRange::new(-PI, PI).unwrap(),
-    });
+    let arm = engraver().with_limits(limits([-3.4, 3.4], [-PI, PI]));
     let arc = (0..=100).map(|k| arm.forward(Joints::new(3.0 + f64::from(k) * 0.01, 1.2)));
     let near = Joints::new(3.0, 1.2);
     let error = arm

@@ -4,9 +4,10 @@ use core::f64::consts::PI;
 
 use scara_kin::nalgebra::{Isometry2, Point2, Vector2};
 use scara_kin::{
-    Arm, Drives, GeometryError, InverseError, JointRange, Joints, Limits, RatesError, TangentError,
-    TangentTool,
+    Arm, Drives, GeometryError, InverseError, Joints, RatesError, TangentError, TangentTool,
 };
+
+use crate::common::{engraver, limits};
 
 /// Roundings of a few lengths of some hundred.
 const ROUNDING: f64 = 1e-12;
@@ -44,7 +45,7 @@ fn lengths_of_any_size_work() {
 
 #[test]
 fn the_keep_out_disc_is_not_entered() {
-    let arm = Arm::new(132.0, 132.0).unwrap().with_keep_out(40.0).unwrap();
+    let arm = engraver().with_keep_out(40.0).unwrap();
     assert!(arm.inverse(Point2::new(40.0, 0.0)).is_ok());
     assert_eq!(
         arm.inverse(Point2::new(0.0, 39.0)),
@@ -65,10 +66,7 @@ fn the_keep_out_disc_is_not_entered() {
 #[test]
 fn limits_cut_the_annulus() {
     let arm: Arm = Arm::new(132.0, 100.0).unwrap();
-    let limited = arm.with_limits(Limits {
-        shoulder: JointRange::new(-1.0, 1.0).unwrap(),
-        elbow: JointRange::new(0.1, 2.0).unwrap(),
-    });
+    let limited = arm.with_limits(limits([-1.0, 1.0], [0.1, 2.0]));
     let inside = arm.forward(Joints::new(0.5, 1.0));
     let outside = arm.forward(Joints::new(-2.5, 1.0));
     assert!(limited.is_reachable(inside));
@@ -101,7 +99,7 @@ fn isotropic_poses_are_found_to_the_last_digits() {
 
 #[test]
 fn the_disc_refuses_what_has_no_heading() {
-    let arm = Arm::new(132.0, 132.0).unwrap();
+    let arm = engraver();
     let joints = Joints::new(0.2, 0.9);
     let mut disc = TangentTool::new(0.3).unwrap();
     disc.follow(&arm, joints, Vector2::y()).unwrap();
@@ -119,7 +117,7 @@ fn the_disc_refuses_what_has_no_heading() {
 /// A disc that stands at nearly a whole turn goes on to it, not back to zero.
 #[test]
 fn the_disc_turns_from_where_it_stands() {
-    let arm = Arm::new(132.0, 132.0).unwrap();
+    let arm = engraver();
     let mut disc = TangentTool::new(0.3).unwrap().starting_at(6.0).unwrap();
     let turn = disc
         .follow(&arm, Joints::new(0.0, 0.0), Vector2::x())
@@ -131,7 +129,7 @@ fn the_disc_turns_from_where_it_stands() {
 /// Where a new stroke begins there is no corner, and the shorter turn is taken.
 #[test]
 fn a_lifted_disc_takes_the_shorter_turn() {
-    let arm = Arm::new(132.0, 132.0).unwrap();
+    let arm = engraver();
     let joints = Joints::new(0.0, 0.0);
     let mut disc = TangentTool::new(0.3).unwrap();
     let first = disc.follow(&arm, joints, Vector2::new(-1.0, 0.1)).unwrap();

@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod accuracy;
+mod common;
 mod each;
 mod extremes;
 mod follow;

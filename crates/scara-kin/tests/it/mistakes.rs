@@ -5,12 +5,10 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, Elbow, InverseError, JointRange, Joints, Limits};
 
+use crate::common::{engraver, limits};
+
 /// Forward and inverse of a pose away from singular ones, in radians.
 const ANGLE_ERROR: f64 = 1e-12;
-
-fn engraver() -> Arm {
-    Arm::new(132.0, 132.0).unwrap()
-}
 
 /// Poses all over the arm's range, the straight and folded ones among them.
 fn poses() -> impl Iterator<Item = Joints> {
@@ -97,18 +95,15 @@ fn own_stretched_and_folded_poses_are_reached() {
 /// Joints put exactly on their limits by our own forward function are within them.
 #[test]
 fn own_poses_on_the_limits_are_reached() {
-    let limits = Limits {
-        shoulder: JointRange::new(-1.0, 2.5).unwrap(),
-        elbow: JointRange::new(0.0, 2.6).unwrap(),
-    };
-    let arm = engraver().with_limits(limits);
+    let ranges = limits([-1.0, 2.5], [0.0, 2.6]);
+    let arm = engraver().with_limits(ranges);
     for shoulder in [-1.0, 0.3, 2.5] {
         for elbow in [0.0, 1e-9, 1e-4, 1.1, 2.6] {
             let joints = Joints::new(shoulder, elbow);
             let back = arm
                 .inverse_elbow(arm.forward(joints), Elbow::Right)
                 .unwrap();
-            assert!(limits.contains(&back), "{joints:?}: {back:?}");
+            assert!(ranges.contains(&back), "{joints:?}: {back:?}");
             let miss = arm.forward(back) - arm.forward(joints);
             assert!(miss.norm() <= 2.0 * arm.tolerance(), "{joints:?}: {back:?}");
         }
@@ -141,10 +136,7 @@ fn a_stroke_keeps_its_elbow() {
 /// Joint limits choose the other elbow instead of hitting the stop.
 #[test]
 fn limits_choose_the_other_elbow() {
-    let arm = engraver().with_limits(Limits {
-        shoulder: JointRange::new(-PI, PI).unwrap(),
-        elbow: JointRange::new(-2.6, 0.0).unwrap(),
-    });
+    let arm = engraver().with_limits(limits([-PI, PI], [-2.6, 0.0]));
     let solutions = arm.inverse(Point2::new(150.0, 80.0)).unwrap();
     assert_eq!(solutions.get(Elbow::Right), None);
     let near_right = Joints::new(-0.4, 1.7);
@@ -201,10 +193,7 @@ fn nearest_solution_counts_whole_turns() {
     assert_eq!(elbow, Elbow::Right);
     assert!((joints - wound).amax() < 0.2);
 
-    let limited = arm.with_limits(Limits {
-        shoulder: JointRange::new(-1.5 * PI, 1.5 * PI).unwrap(),
-        elbow: JointRange::new(-PI, PI).unwrap(),
-    });
+    let limited = arm.with_limits(limits([-1.5 * PI, 1.5 * PI], [-PI, PI]));
     let (_, joints) = limited.inverse_nearest(point, wound).unwrap();
     // 3.0 - 2π is in range and nearer to the wound-up shoulder than 3.0.
     assert!((joints.shoulder - (3.0 - 2.0 * PI)).abs() < ANGLE_ERROR);
@@ -221,21 +210,16 @@ fn the_centre_of_equal_links_is_said_to_be_degenerate() {
     assert_eq!(folded, (Elbow::Right, Joints::new(0.7, PI)));
 
     // A shoulder out of its range comes back to the end of it; no elbow folds to 150°.
-    let limits = Limits {
+    let folded = |limits| {
+        let limited = arm.with_limits(limits);
+        limited.inverse_nearest(Point2::origin(), stay)
+    };
+    let ranges = Limits {
         shoulder: JointRange::new(-0.5, 0.5).unwrap(),
         elbow: JointRange::unlimited(),
     };
-    let folded = arm
-        .with_limits(limits)
-        .inverse_nearest(Point2::origin(), stay);
-    assert_eq!(folded, Ok((Elbow::Right, Joints::new(0.5, PI))));
-    let limits = Limits {
-        elbow: JointRange::new(-2.6, 2.6).unwrap(),
-        ..limits
-    };
-    let refused = arm
-        .with_limits(limits)
-        .inverse_nearest(Point2::origin(), stay);
+    assert_eq!(folded(ranges), Ok((Elbow::Right, Joints::new(0.5, PI))));
+    let refused = folded(limits([-0.5, 0.5], [-2.6, 2.6]));
     assert!(matches!(refused, Err(InverseError::JointLimit { .. })));
 }
 

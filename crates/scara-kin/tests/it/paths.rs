@@ -13,6 +13,8 @@ use proptest::strategy::ValueTree as _;
 use scara_kin::nalgebra::{Isometry2, Point2, Vector2};
 use scara_kin::{Arm, ArmPath, ArmPathError, DiscPath, Elbow, Joint, JointRange, Joints, Limits};
 
+use crate::common::engraver;
+
 /// Of joints and places of an arm of 264 mm, after some turns.
 const ROUNDING: f64 = 1e-11;
 
@@ -33,10 +35,6 @@ const FEED: ToolLimits = ToolLimits {
     feed: 100.0,
     acceleration: Some(1500.0),
 };
-
-fn arm() -> Arm {
-    Arm::new(132.0, 132.0).unwrap()
-}
 
 fn line(from: [f64; 2], to: [f64; 2]) -> Curve<2> {
     Curve::line(from, to).unwrap()
@@ -112,7 +110,7 @@ fn check(table: &Table<'_, [f64; 2]>, path: &ArmPath, arm: &Arm) -> [f64; 2] {
 fn the_tool_keeps_the_tolerance_and_the_bound_is_near() {
     const TOLERANCE: f64 = 0.01;
     let arms = [
-        arm(),
+        engraver(),
         Arm::new(150.0, 110.0)
             .unwrap()
             .with_base(Isometry2::new(Vector2::new(20.0, -30.0), 2.0))
@@ -155,7 +153,7 @@ fn the_tool_keeps_the_tolerance_and_the_bound_is_near() {
 /// 0.5 mm past the base, and to a thousandth of a mm from the rim: slower, not refused.
 #[test]
 fn singularities_that_can_be_passed_are_passed() {
-    let arm = arm();
+    let arm = engraver();
     let mut knots = vec![Knot::default(); 4000];
     for (from, to, duration_s) in [
         ([-200.0, 0.5], [200.0, 0.5], 4.0..6.0),
@@ -198,7 +196,7 @@ proptest! {
         ratio in 0.0..1.0_f64,
         is_rising: bool,
     ) {
-        let arm = arm();
+        let arm = engraver();
         let Ok(path) = arm.path(curve, Elbow::Left) else { return Ok(()) };
         let s = [from, (from + share).min(1.0)].map(|share| share * curve.length());
         let speeds = if is_rising { [ratio, 1.0] } else { [1.0, ratio] };
@@ -227,7 +225,7 @@ proptest! {
         by in prop_oneof![Just(1e-6), Just(1e-3)],
         is_lower: bool,
     ) {
-        let arm = arm();
+        let arm = engraver();
         let Ok(path) = arm.path(curve, Elbow::Right) else { return Ok(()) };
         let angle = |s: f64| {
             let Joints { shoulder, elbow } = path.joints(s).unwrap();
@@ -269,7 +267,7 @@ proptest! {
     /// The joints bring the tool to the curve, go on without a jump, and the slopes are theirs.
     #[test]
     fn joints_are_continuous_and_slopes_their_derivatives(curve in any_curve(), theta3 in -9.0..9.0_f64) {
-        let arm = arm().with_base(Isometry2::new(Vector2::new(1.0, 2.0), -2.5)).unwrap();
+        let arm = engraver().with_base(Isometry2::new(Vector2::new(1.0, 2.0), -2.5)).unwrap();
         let Ok(path) = arm.path(curve, Elbow::Right) else { return Ok(()) };
         let disc = path.with_disc(theta3).unwrap();
         let start = disc.point(0.0).unwrap().position;
@@ -303,7 +301,7 @@ proptest! {
 /// Behind the base the shoulder goes on over a half turn, and round the base over whole ones.
 #[test]
 fn the_shoulder_counts_its_turns() {
-    let arm = arm();
+    let arm = engraver();
     let round = Curve::arc([200.0, 0.0], [0.0, 0.0], [0.0, 1.0], 3.0 * TAU).unwrap();
     let path = arm.path(round, Elbow::Right).unwrap();
     let [start, end] = [0.0, round.length()].map(|s| path.joints(s).unwrap());
@@ -322,7 +320,7 @@ fn the_shoulder_counts_its_turns() {
 /// A disc that turns slowly: a smoothed corner is passed slower, the lines are not.
 #[test]
 fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
-    let arm = arm();
+    let arm = engraver();
     let corners = [[100.0, 100.0], [160.0, 100.0], [160.0, 160.0]];
     let mut memory = [Vertex::default(); 8];
     let curves = Smoothed::new(corners, 0.5, &mut memory).unwrap();
@@ -382,7 +380,7 @@ fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
 /// refused.
 #[test]
 fn a_disc_goes_past_a_cusp() {
-    let arm = Arm::new(132.0, 132.0).unwrap();
+    let arm = engraver();
     for off in [0.1, 1e-3, 1e-6, 1e-9, 1e-12] {
         let points = [
             [60.0, 100.0],

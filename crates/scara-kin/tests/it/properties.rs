@@ -7,6 +7,9 @@ use scara_kin::nalgebra::{Isometry2, Point2, Vector2};
 use scara_kin::{
     Arm, Direction, Drives, Elbow, InverseError, JointRange, Joints, Limits, TangentTool,
 };
+use test_support::at_least;
+
+use crate::common::{departure, engraver};
 
 /// `forward(inverse(p))` against p, in units of reach plus base distance, for arms and points at
 /// random; the worst are found and bounded in `accuracy.rs`.
@@ -48,17 +51,8 @@ fn joints() -> impl Strategy<Value = Joints> {
     (-PI..PI, -PI..PI).prop_map(|(shoulder, elbow)| Joints::new(shoulder, elbow))
 }
 
-/// At least a thousand cases; `PROPTEST_CASES` asks for more.
-fn config() -> ProptestConfig {
-    let given = ProptestConfig::default();
-    ProptestConfig {
-        cases: given.cases.max(1000),
-        ..given
-    }
-}
-
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn forward_undoes_inverse(
@@ -107,21 +101,6 @@ proptest! {
     }
 
     #[test]
-    fn own_points_are_never_refused(
-        arm in prop_oneof![arms(), equal_arms()],
-        joints in prop_oneof![
-            joints(),
-            joints().prop_map(|j| Joints::new(j.shoulder, 0.0)),
-            joints().prop_map(|j| Joints::new(j.shoulder, PI)),
-        ],
-        (x, y, turn) in (-1e4..1e4f64, -1e4..1e4f64, -PI..PI),
-    ) {
-        let arm = arm.with_base(Isometry2::new(Vector2::new(x, y), turn)).unwrap();
-        let reached = arm.inverse_nearest(arm.forward(joints), joints);
-        prop_assert!(reached.is_ok(), "{reached:?}");
-    }
-
-    #[test]
     fn own_points_within_limits_are_never_refused(
         arm in prop_oneof![arms(), equal_arms()],
         (low1, wide1, low2, wide2) in (-4.0..3.0f64, 0.1..7.0f64, -4.0..3.0f64, 0.1..7.0f64),
@@ -142,18 +121,6 @@ proptest! {
         let (_, back) = back.unwrap();
         prop_assert!(limits.contains(&back), "{back:?}");
         prop_assert!((arm.forward(back) - tip).norm() <= arm.tolerance());
-    }
-
-    #[test]
-    fn no_input_gives_nan(x in any::<f64>(), y in any::<f64>()) {
-        let arm = Arm::new(132.0, 132.0).unwrap();
-        match arm.inverse(Point2::new(x, y)) {
-            Ok(solutions) => for (_, joints) in solutions.iter() {
-                prop_assert!(joints.shoulder.is_finite() && joints.elbow.is_finite());
-            },
-            Err(InverseError::TooFar { distance, .. }) => prop_assert!(distance.is_finite()),
-            Err(_) => {}
-        }
     }
 
     #[test]
@@ -222,13 +189,6 @@ proptest! {
     }
 
     #[test]
-    fn singularity_distance_is_the_smaller_singular_value(arm in arms(), joints in joints()) {
-        let smaller = arm.jacobian(joints).singular_values().min();
-        let distance = arm.singularity_distance(joints);
-        prop_assert!((distance - smaller).abs() <= 1e-13 * arm.reach());
-    }
-
-    #[test]
     fn chord_bound_holds_and_is_close(
         arm in arms(),
         from in joints(),
@@ -239,13 +199,7 @@ proptest! {
         let (d1, d2) = (d1 * scale, d2 * scale);
         let to = Joints::new(from.shoulder + d1, from.elbow + d2);
         let (a, b) = (arm.forward(from), arm.forward(to));
-        let worst = (0..=200)
-            .map(|k| {
-                let t = f64::from(k) / 200.0;
-                let joints = Joints::new(from.shoulder + d1 * t, from.elbow + d2 * t);
-                distance_to_line(arm.forward(joints), a, b)
-            })
-            .fold(0.0, f64::max);
+        let worst = departure(&arm, (from, to), [a, b], 200);
         let bound = arm.chord_bound(from, to);
         prop_assert!(worst <= bound + arm.tolerance(), "{worst} {bound}");
         let turns = d1.abs().powi(3).max((d1 + d2).abs().powi(3));
@@ -264,7 +218,7 @@ proptest! {
         right in any::<bool>(),
         tolerance in -3.0..0.0f64,
     ) {
-        let arm = Arm::new(132.0, 132.0).unwrap();
+        let arm = engraver();
         let tolerance = 10f64.powf(tolerance);
         let (a, b) = (at(&arm, fraction_a, heading_a), at(&arm, fraction_b, heading_b));
         let elbow = if right { Elbow::Right } else { Elbow::Left };
@@ -278,16 +232,8 @@ proptest! {
             last = arm.forward(waypoint.joints);
             prop_assert!((last - waypoint.point).norm() <= arm.tolerance());
             if let Some(from) = before {
-                let change = waypoint.joints - from;
-                for k in 0..=50 {
-                    let t = f64::from(k) / 50.0;
-                    let tool = arm.forward(Joints::new(
-                        from.shoulder + change.x * t,
-                        from.elbow + change.y * t,
-                    ));
-                    let off = distance_to_line(tool, a, b);
-                    prop_assert!(off <= tolerance, "{off} > {tolerance}");
-                }
+                let off = departure(&arm, (from, waypoint.joints), [a, b], 50);
+                prop_assert!(off <= tolerance, "{off} > {tolerance}");
             }
             before = Some(waypoint.joints);
         }
@@ -315,7 +261,7 @@ proptest! {
         turn in -PI..PI,
         poses in prop::collection::vec((joints(), -PI..PI), 1..20),
     ) {
-        let arm = Arm::new(132.0, 132.0).unwrap().with_base(Isometry2::rotation(turn)).unwrap();
+        let arm = engraver().with_base(Isometry2::rotation(turn)).unwrap();
         let mut disc = TangentTool::new(0.3).unwrap();
         let mut before = 0.0;
         for (joints, heading) in poses {
@@ -327,14 +273,4 @@ proptest! {
             before = angle;
         }
     }
-}
-
-fn distance_to_line(p: Point2<f64>, a: Point2<f64>, b: Point2<f64>) -> f64 {
-    let change = b - a;
-    let fraction = if change.norm_squared() > 0.0 {
-        ((p - a).dot(&change) / change.norm_squared()).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (p - (a + change * fraction)).norm()
 }

@@ -2,6 +2,9 @@
 
 use scara_kin::nalgebra::{Isometry2, Vector2};
 use scara_kin::{Arm, Direction, Drives, Elbow, JointRange, Joints, Limits};
+use test_support::{not_read, stored};
+
+use crate::common::engraver;
 
 #[test]
 fn an_arm_is_read_back() {
@@ -15,10 +18,9 @@ fn an_arm_is_read_back() {
         })
         .with_keep_out(40.0)
         .unwrap();
-    let text = serde_json::to_string(&arm).unwrap();
-    assert_eq!(serde_json::from_str::<Arm>(&text).unwrap(), arm);
+    stored(&arm);
     let plain: Arm = serde_json::from_str(r#"{"upper": 132.0, "fore": 132.0}"#).unwrap();
-    assert_eq!(plain, Arm::new(132.0, 132.0).unwrap());
+    assert_eq!(plain, engraver());
 }
 
 #[test]
@@ -29,32 +31,23 @@ fn drives_are_read_back() {
         .with_directions(Direction::Reversed, Direction::Forward)
         .with_coupling(1.0)
         .unwrap();
-    let text = serde_json::to_string(&drives).unwrap();
-    assert_eq!(serde_json::from_str::<Drives>(&text).unwrap(), drives);
-    assert_eq!(serde_json::to_string(&Elbow::Left).unwrap(), r#""left""#);
+    stored(&drives);
+    assert_eq!(stored(&Elbow::Left), r#""left""#);
 }
 
 #[test]
 fn wrong_values_are_refused_with_their_reason() {
-    for (text, reason) in [
+    for (upper, more, reason) in [
+        (-1.0, "", "length -1 of the upper arm"),
+        (1.0, r#", "keep_out": 2.0"#, "keep-out radius 2"),
         (
-            r#"{"upper": -1.0, "fore": 132.0}"#,
-            "length -1 of the upper arm",
-        ),
-        (
-            r#"{"upper": 1.0, "fore": 1.0, "keep_out": 2.0}"#,
-            "keep-out radius 2",
-        ),
-        (
-            r#"{"upper": 1.0, "fore": 1.0, "limits": {"elbow": {"min": 1.0, "max": 1.0}}}"#,
+            1.0,
+            r#", "limits": {"elbow": {"min": 1.0, "max": 1.0}}"#,
             "joint range 1..=1 rad is empty",
         ),
-        (
-            r#"{"upper": 1.0, "fore": 1.0, "length": 2.0}"#,
-            "unknown field `length`",
-        ),
+        (1.0, r#", "length": 2.0"#, "unknown field `length`"),
     ] {
-        let error = serde_json::from_str::<Arm>(text).unwrap_err().to_string();
+        let error = not_read::<Arm>(&format!(r#"{{"upper": {upper}, "fore": 1.0{more}}}"#));
         assert!(error.contains(reason), "{error}");
     }
 }

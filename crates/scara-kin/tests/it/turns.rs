@@ -5,6 +5,8 @@ use core::f64::consts::{PI, TAU};
 use scara_kin::nalgebra::{Point2, RealField, convert};
 use scara_kin::{Arm, Elbow, JointRange, Joints, Limits, Trig};
 
+use crate::common::{double, limits, rounding};
+
 /// Turns of both joints: from none to nearly as many as there may be.
 const TURNS: [i32; 9] = [0, 1, -3, 10, 20, -100, 400, 100_000, -10_000_000];
 
@@ -21,12 +23,6 @@ fn poses<T: RealField + Trig>() -> impl Iterator<Item = Joints<T>> {
 fn turned<T: RealField + Trig>(joints: Joints<T>, turns: i32) -> Joints<T> {
     let change: T = convert(f64::from(turns) * TAU);
     Joints::new(joints.shoulder + change, joints.elbow - change)
-}
-
-/// What rounding may move the tool by: of lengths or, many turns from zero, of angles.
-fn rounding<T: RealField + Trig>(arm: &Arm<T>, joints: Joints<T>) -> T {
-    let angles = joints.shoulder.abs() * arm.reach() + joints.elbow.abs() * arm.fore();
-    arm.tolerance().max(angles * T::default_epsilon())
 }
 
 fn reaches_its_own_points<T: RealField + Trig>(least_elbow: T) {
@@ -50,7 +46,7 @@ fn reaches_its_own_points<T: RealField + Trig>(least_elbow: T) {
             let back = back.unwrap_or_else(|error| panic!("{turns} turns, {pose:?}: {error}"));
             assert!((back - pose).amax() < T::one(), "{pose:?}: {back:?}");
             assert!(
-                (arm.forward(back) - tip).norm() <= rounding(arm, pose),
+                double((arm.forward(back) - tip).norm()) <= rounding(arm, pose),
                 "{pose:?}: {back:?}"
             );
         }
@@ -71,10 +67,10 @@ fn own_points_are_reached_at_any_turn_in_f32() {
 fn ranges_may_lie_turns_away() {
     for turns in [1.0, 16.0, 1000.0] {
         let middle = turns * TAU;
-        let arm = Arm::new(132.0, 100.0).unwrap().with_limits(Limits {
-            shoulder: JointRange::new(middle - PI, middle + PI).unwrap(),
-            elbow: JointRange::new(middle - PI, middle + PI).unwrap(),
-        });
+        let range = [middle - PI, middle + PI];
+        let arm = Arm::new(132.0, 100.0)
+            .unwrap()
+            .with_limits(limits(range, range));
         for pose in poses() {
             let tip = arm.forward(pose);
             let solutions = arm.inverse(tip).unwrap();
@@ -161,11 +157,11 @@ fn an_elbow_keeps_its_side_however_short_the_forearm() {
     for ratio in [1e3, 5e10, 1e12, 6e13] {
         let arm = Arm::new(1.0, 1.0 / ratio).unwrap();
         for (min, max, elbow) in [(-3.0, -0.1, Elbow::Left), (0.1, 3.0, Elbow::Right)] {
-            let limits = Limits {
-                elbow: JointRange::new(min, max).unwrap(),
+            let elbow_range = JointRange::new(min, max).unwrap();
+            let arm = arm.with_limits(Limits {
+                elbow: elbow_range,
                 ..Limits::unlimited()
-            };
-            let arm = arm.with_limits(limits);
+            });
             for k in 0..200 {
                 let (sin, cos) = (f64::from(k) * 0.37).sin_cos();
                 let reach = arm.reach() - arm.fore() * f64::from(k) / 100.0;

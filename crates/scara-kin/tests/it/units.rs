@@ -4,10 +4,13 @@
 use core::f64::consts::PI;
 
 use proptest::prelude::*;
-use scara_kin::nalgebra::{self, Isometry2, Point2, RealField, Vector2};
+use scara_kin::nalgebra::{Isometry2, Point2, RealField, Vector2};
 use scara_kin::{
     Arm, Elbow, FollowError, InverseError, JointRange, Joints, Limits, TangentTool, Trig,
 };
+use test_support::at_least;
+
+use crate::common::single;
 
 /// Roundings of lengths that are a product with a power of ten, of a few hundred operations,
 /// in machine epsilons.
@@ -19,10 +22,6 @@ struct Pair<T: RealField> {
     arm: Arm<T>,
     scaled: Arm<T>,
     scale: T,
-}
-
-fn single<T: RealField>(number: f64) -> T {
-    nalgebra::convert(number)
 }
 
 /// Link lengths, base coordinates and rotation, keep-out radius of an arm.
@@ -274,10 +273,7 @@ fn curves<T: RealField + Trig>(pair: &Pair<T>, from: [f64; 2], to: [f64; 2], tol
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: ProptestConfig::default().cases.max(1000),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn lengths_scale_and_angles_stay(

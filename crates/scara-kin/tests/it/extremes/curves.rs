@@ -5,45 +5,13 @@ use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Point2, RealField};
 use scara_kin::{Arm, Elbow, FollowError, Joints, Trig, Waypoint};
 
-use super::inverse::{is_true, rounding};
+use super::inverse::is_true;
 use super::machine::{Recipe, recipes};
-use super::{angle, any_size, anything, config, double, epsilon, is_readable, single};
+use super::{angle, any_size, anything, at_least, double, epsilon, is_readable, single};
+use crate::common::{departure, rounding};
 
 /// Points at which a move is compared with its chord, and waypoints of a curve.
 const SAMPLES: u32 = 32;
-
-/// The most by which the tool is seen to leave the straight line between two poses.
-fn departure<T: RealField + Trig>(arm: &Arm<T>, from: Joints<T>, to: Joints<T>) -> f64 {
-    let (a, b) = (arm.forward(from), arm.forward(to));
-    let change = to - from;
-    (0..=SAMPLES)
-        .map(|k| {
-            let t: T = single(f64::from(k) / f64::from(SAMPLES));
-            let tool = arm.forward(Joints::new(
-                from.shoulder + change.x * t,
-                from.elbow + change.y * t,
-            ));
-            distance_to_line(tool, a, b)
-        })
-        .fold(0.0, f64::max)
-}
-
-fn distance_to_line<T: RealField + Trig>(tool: Point2<T>, a: Point2<T>, b: Point2<T>) -> f64 {
-    let (along, off) = ((b - a).map(double), (tool - a).map(double));
-    // Of squares of which the sum is a number.
-    let size = along.amax().max(off.amax());
-    if size == 0.0 {
-        return 0.0;
-    }
-    let (along, off) = (along / size, off / size);
-    let square = along.norm_squared();
-    let fraction = if square > 0.0 {
-        (off.dot(&along) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (off - along * fraction).norm() * size
-}
 
 fn bound<T: RealField + Trig>(recipe: Recipe, [a, b, c, d]: [f64; 4]) -> TestCaseResult {
     let arm = recipe.arm::<T>();
@@ -55,7 +23,8 @@ fn bound<T: RealField + Trig>(recipe: Recipe, [a, b, c, d]: [f64; 4]) -> TestCas
         .all(|angle| double(single::<T>(*angle)).is_finite())
     {
         let rounding = rounding(&arm, from).max(rounding(&arm, to));
-        let departure = departure(&arm, from, to);
+        let chord = [arm.forward(from), arm.forward(to)];
+        let departure = departure(&arm, (from, to), chord, SAMPLES);
         prop_assert!(departure <= bound + 2.0 * rounding, "{departure} {bound}");
     } else {
         prop_assert!(!bound.is_finite());
@@ -168,7 +137,8 @@ fn keeps<T: RealField + Trig>(
     }
     for pair in waypoints.windows(2) {
         let [from, to] = [pair[0].joints, pair[1].joints];
-        let departure = departure(arm, from, to);
+        let chord = [arm.forward(from), arm.forward(to)];
+        let departure = departure(arm, (from, to), chord, SAMPLES);
         prop_assert!(departure <= double(tolerance), "{departure}");
     }
     Ok(())
@@ -186,7 +156,7 @@ fn points(recipe: Recipe) -> impl Strategy<Value = [[f64; 2]; 3]> {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn chords_are_bounded_or_not_finite(

@@ -6,7 +6,8 @@ use scara_kin::nalgebra::{Point2, RealField};
 use scara_kin::{Arm, Elbow, InverseError, JointRange, Joints, Trig};
 
 use super::machine::{Recipe, recipes};
-use super::{angle, anything, config, double, epsilon, is_readable, single};
+use super::{angle, anything, at_least, double, epsilon, is_readable, single};
+use crate::common::rounding;
 
 /// Roundings of forward kinematics, in machine epsilons of reach and base distance.
 const FORWARD: f64 = 8.0;
@@ -27,13 +28,6 @@ pub(crate) fn tool(arm: &Arm<impl RealField + Trig>, shoulder: f64, elbow: f64) 
         upper * c1 + fore * (c1 * c2 - s1 * s2),
         upper * s1 + fore * (s1 * c2 + c1 * s2),
     ]
-}
-
-/// What rounding may move the tool by: of lengths or, many turns from zero, of angles.
-pub(crate) fn rounding<T: RealField + Trig>(arm: &Arm<T>, joints: Joints<T>) -> f64 {
-    let angles = double(joints.shoulder).abs() * double(arm.reach())
-        + double(joints.elbow).abs() * double(arm.fore());
-    double(arm.tolerance()).max(angles * epsilon::<T>())
 }
 
 fn distance<T: RealField + Trig>(a: Point2<T>, b: Point2<T>) -> f64 {
@@ -187,7 +181,7 @@ fn is_known<T: RealField + Trig>(joints: Joints<T>) -> bool {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn tools_are_where_the_angles_say(

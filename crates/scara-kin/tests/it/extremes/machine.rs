@@ -5,7 +5,7 @@ use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{Complex, Isometry2, RealField, Translation2, UnitComplex, Vector2};
 use scara_kin::{Arm, GeometryError, JointRange, Joints, Limits, Trig};
 
-use super::{angle, any_size, anything, config, double, epsilon, is_readable, single};
+use super::{angle, any_size, anything, at_least, double, epsilon, is_readable, single};
 
 /// What an arm is made of; what its number type refuses is moved to the end of its range.
 #[derive(Debug, Clone, Copy)]
@@ -139,7 +139,7 @@ fn settings<T: RealField + Trig>(recipe: Recipe, values: [f64; 6]) -> TestCaseRe
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn settings_are_right_or_refused(

@@ -7,7 +7,7 @@ use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, ArmPath, DiscPath, Elbow, Joints};
 
 use super::machine::{Recipe, recipes};
-use super::{anything, config, is_readable};
+use super::{anything, at_least, is_readable};
 
 /// Of what rounding may leave: the arm's tolerance, and turns from zero the angles' own.
 const OFF: f64 = 4.0;
@@ -114,7 +114,7 @@ fn paths(
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn curves_of_any_size(

@@ -7,7 +7,7 @@ use scara_kin::{Arm, Joints, RatesError, Trig};
 
 use super::inverse::tool;
 use super::machine::{Recipe, recipes};
-use super::{angle, anything, config, double, epsilon, is_readable, largest, single, smallest};
+use super::{angle, anything, at_least, double, epsilon, is_readable, largest, single, smallest};
 
 /// Roundings of a product of Jacobian and rates, in machine epsilons.
 const PRODUCT: f64 = 32.0;
@@ -226,7 +226,7 @@ fn is_true<T: RealField + Trig>(
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn jacobians_are_right_at_any_scale(

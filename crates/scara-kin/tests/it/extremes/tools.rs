@@ -8,7 +8,7 @@ use scara_kin::nalgebra::{RealField, Vector2};
 use scara_kin::{Direction, DriveAngles, Drives, JointRange, Joints, TangentTool, Trig};
 
 use super::machine::{Recipe, recipes};
-use super::{angle, anything, config, double, epsilon, is_readable, single, smallest};
+use super::{angle, anything, at_least, double, epsilon, is_readable, single, smallest};
 
 fn largest_angle<T: RealField + Trig>() -> f64 {
     double(JointRange::<T>::unlimited().max())
@@ -115,7 +115,7 @@ fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCase
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn the_disc_is_tangent_or_refuses(

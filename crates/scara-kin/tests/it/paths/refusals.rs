@@ -5,11 +5,12 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use path_timing::{Cubic, Curve, Knot, LookAhead, Path as _, PlanError, Row, Span, Table};
 use scara_kin::{Arm, ArmPath, ArmPathError, Elbow, InverseError, Joint, JointRange, Limits};
 
-use crate::paths::{JOINT, arm, line, within};
+use crate::common::{engraver, limits};
+use crate::paths::{JOINT, line, within};
 
 #[test]
 fn what_cannot_be_followed_is_refused_with_its_place() {
-    let arm = arm().with_keep_out(40.0).unwrap();
+    let arm = engraver().with_keep_out(40.0).unwrap();
     let refused = |arm: &Arm, from, to| arm.path(line(from, to), Elbow::Right).unwrap_err();
     let near = |s: f64, wanted: f64| assert!((s - wanted).abs() < 0.01, "{s} {wanted}");
     // Over the rim, into the keep-out disc, through the base.
@@ -22,7 +23,7 @@ fn what_cannot_be_followed_is_refused_with_its_place() {
         panic!()
     };
     near(s, 60.0);
-    let free = Arm::new(132.0, 132.0).unwrap();
+    let free = engraver();
     let ArmPathError::Edge { s, .. } = refused(&free, [-100.0, 0.0], [100.0, 0.0]) else {
         panic!()
     };
@@ -34,10 +35,7 @@ fn what_cannot_be_followed_is_refused_with_its_place() {
         "at 0 of the curve, (300, 0): too far: distance 300 from the base is past the reach 264 by 36"
     );
     // A joint limit: the shoulder at π/2 where the tool is there by the elbow's half angle more.
-    let limited = free.with_limits(Limits {
-        shoulder: JointRange::new(-FRAC_PI_2, FRAC_PI_2).unwrap(),
-        elbow: JointRange::new(-3.0, 3.0).unwrap(),
-    });
+    let limited = free.with_limits(limits([-FRAC_PI_2, FRAC_PI_2], [-3.0, 3.0]));
     let circle = Curve::arc([200.0, 0.0], [0.0, 0.0], [0.0, 1.0], 3.0).unwrap();
     let start = limited
         .path(line([200.0, 0.0], [199.0, 0.0]), Elbow::Right)
@@ -56,10 +54,7 @@ fn what_cannot_be_followed_is_refused_with_its_place() {
         }
     ));
     // A range that has the other turn only.
-    let turned = free.with_limits(Limits {
-        shoulder: JointRange::new(-PI, PI).unwrap(),
-        elbow: JointRange::new(-3.0, 3.0).unwrap(),
-    });
+    let turned = free.with_limits(limits([-PI, PI], [-3.0, 3.0]));
     let behind = turned.path(line([-200.0, 100.0], [-200.0, -200.0]), Elbow::Right);
     assert!(
         matches!(
@@ -80,12 +75,12 @@ fn past() -> Curve<2> {
 
 /// The elbow's angle halfway.
 fn bent() -> f64 {
-    let path = arm().path(past(), Elbow::Right).unwrap();
+    let path = engraver().path(past(), Elbow::Right).unwrap();
     path.joints(40.0).unwrap().elbow
 }
 
 fn with_elbow(most: f64) -> Arm {
-    arm().with_limits(Limits {
+    engraver().with_limits(Limits {
         elbow: JointRange::new(-most, most).unwrap(),
         ..Limits::unlimited()
     })
@@ -106,7 +101,7 @@ fn a_path_through_a_joint_limit_is_refused_when_it_is_made() {
             panic!("{error}")
         };
         assert_eq!(joint, Joint::Elbow);
-        let at = arm().inverse_elbow(past().at(s).point.into(), elbow);
+        let at = engraver().inverse_elbow(past().at(s).point.into(), elbow);
         assert!((at.unwrap().elbow.abs() - 2.51).abs() < 1e-6);
     }
     // However narrow the part beyond is.
@@ -236,7 +231,7 @@ fn an_arm_too_small_for_the_curve_is_no_endless_walk() {
 
 #[test]
 fn knots_that_are_too_few_for_a_tolerance_are_refused() {
-    let path = arm()
+    let path = engraver()
         .path(line([100.0, 100.0], [150.0, 100.0]), Elbow::Left)
         .unwrap();
     let mut knots = [Knot::default(); 9];
