@@ -3,3 +3,4 @@
 pub(crate) mod arm;
 pub(crate) mod pulses;
 pub(crate) mod rows;
+pub(crate) mod timers;

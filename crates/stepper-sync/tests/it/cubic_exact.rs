@@ -52,20 +52,20 @@ impl Statistics {
     }
 }
 
-#[test]
-fn every_step_of_random_rows_is_in_its_place() {
+/// Axes of 50 rows each: the least intervals and the first knot, and the row after a knot.
+fn every_step_is_in_its_place(
+    max_steps: usize,
+    begin: impl Fn(&mut Random) -> (MinIntervals, PvtKnot),
+    row: impl Fn(&mut Random, PvtKnot, MinIntervals) -> (u32, PvtKnot),
+) {
     let rows = setting("CUBIC_ROWS", 10_000);
     let mut random = Random::new(setting("CUBIC_SEED", 1));
     let mut seen = Statistics::default();
     while seen.rows < rows {
-        let least = MinIntervals {
-            step_ticks: [1, 2, 10, 100, 1000][random.below(5) as usize],
-            reversal_ticks: [1, 4, 30, 200, 2000][random.below(5) as usize],
-        };
-        let start = knot(random.within(-1e3, 1e3), 0.0);
-        let mut axis = Axis::new(start, least, usize::MAX);
+        let (least, start) = begin(&mut random);
+        let mut axis = Axis::new(start, least, max_steps);
         for _ in 0..50 {
-            let (ticks, to) = next_row(&mut random, axis.knot, least);
+            let (ticks, to) = row(&mut random, axis.knot, least);
             // Refused: another one.
             let _ = axis.row(ticks, to, &mut seen);
             if axis.cut {
@@ -79,29 +79,29 @@ fn every_step_of_random_rows_is_in_its_place() {
 }
 
 #[test]
-fn every_step_of_any_rows_is_in_its_place() {
-    let rows = setting("CUBIC_ROWS", 10_000);
-    let mut random = Random::new(setting("CUBIC_SEED", 1));
-    let mut seen = Statistics::default();
-    while seen.rows < rows {
+fn every_step_of_random_rows_is_in_its_place() {
+    let begin = |random: &mut Random| {
         let least = MinIntervals {
-            step_ticks: any_u64(&mut random),
-            reversal_ticks: any_u64(&mut random),
+            step_ticks: [1, 2, 10, 100, 1000][random.below(5) as usize],
+            reversal_ticks: [1, 4, 30, 200, 2000][random.below(5) as usize],
+        };
+        (least, knot(random.within(-1e3, 1e3), 0.0))
+    };
+    every_step_is_in_its_place(usize::MAX, begin, next_row);
+}
+
+#[test]
+fn every_step_of_any_rows_is_in_its_place() {
+    let begin = |random: &mut Random| {
+        let least = MinIntervals {
+            step_ticks: any_u64(random),
+            reversal_ticks: any_u64(random),
         };
         let start = PvtKnot {
-            position: any_i64(&mut random),
-            velocity: any_i64(&mut random),
+            position: any_i64(random),
+            velocity: any_i64(random),
         };
-        let mut axis = Axis::new(start, least, 2000);
-        for _ in 0..50 {
-            let (ticks, to) = any_row(&mut random, axis.knot, least);
-            let _ = axis.row(ticks, to, &mut seen);
-            if axis.cut {
-                break;
-            }
-        }
-        axis.finish(&mut seen);
-    }
-    seen.print();
-    assert!(seen.worst_ticks < 1.0 && seen.joined_worst_ticks < 1.0);
+        (least, start)
+    };
+    every_step_is_in_its_place(2000, begin, any_row);
 }

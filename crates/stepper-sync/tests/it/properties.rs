@@ -1,29 +1,9 @@
 //! What holds for every train, timer and carried remainder.
 
 use proptest::prelude::*;
-use stepper_sync::{
-    CounterWidth, Edge, Level, Position, Rate, Rounding, StepCarry, Timer, TimerError, Trains,
-};
+use stepper_sync::{Edge, Level, Position, Rate, StepCarry, Timer, Trains};
 
-fn widths() -> impl Strategy<Value = CounterWidth> {
-    prop_oneof![
-        Just(CounterWidth::Bits8),
-        Just(CounterWidth::Bits16),
-        Just(CounterWidth::Bits24),
-        Just(CounterWidth::Bits32),
-    ]
-}
-
-fn timers() -> impl Strategy<Value = Timer> {
-    (1..=u32::MAX, 1..=1_u32 << 20, widths(), 0..3_u8).prop_map(|(hz, clocks, width, register)| {
-        let timer = match register {
-            0 => Timer::up_to_overflow(hz, clocks, width),
-            1 => Timer::up_to_compare(hz, clocks, width),
-            _ => Timer::down_to_zero(hz, clocks, width),
-        };
-        timer.unwrap()
-    })
-}
+use crate::common::timers::{timers, widths};
 
 /// Small, large and extreme half periods.
 fn half_periods() -> impl Strategy<Value = u64> {
@@ -55,23 +35,6 @@ proptest! {
     }
 
     #[test]
-    fn large_counts_start_at_their_places(
-        steps in prop::array::uniform2(-i32::MAX..=i32::MAX),
-        t in half_periods(),
-    ) {
-        let trains = Trains::new(steps, t).unwrap();
-        let most = u128::from(steps.map(i32::unsigned_abs).into_iter().max().unwrap());
-        for (axis, n) in trains.axes().into_iter().zip(steps) {
-            let mut ticks = 0;
-            for (k, interval) in (1_u128..=200).zip(axis) {
-                ticks += u128::from(interval);
-                let ideal = k * most * u128::from(t) / u128::from(n.unsigned_abs());
-                prop_assert_eq!(ticks, ideal);
-            }
-        }
-    }
-
-    #[test]
     fn merged_edges_are_the_sorted_edges_of_the_axes(
         steps in prop::array::uniform4(-60..=60_i32),
         t in half_periods(),
@@ -94,50 +57,6 @@ proptest! {
             .map(|Edge { ticks, axis, level, .. }| (ticks, axis, level))
             .collect();
         prop_assert_eq!(merged, expected);
-    }
-
-    #[test]
-    fn single_reload_ends_off_by_its_rounding(
-        steps in prop::array::uniform2(1..=65_535_i32),
-        t in 1..=65_536_u64,
-    ) {
-        let trains = Trains::new(steps, t).unwrap();
-        let nearest = trains.single_reload(Rounding::Nearest);
-        let down = trains.single_reload(Rounding::Down);
-        for ((nearest, down), n) in nearest.into_iter().zip(down).zip(steps) {
-            prop_assert!(nearest.skew_ticks().unsigned_abs() <= u128::from(n.unsigned_abs()));
-            prop_assert!((-2 * i128::from(n) + 1..=0).contains(&down.skew_ticks()));
-            prop_assert_eq!(
-                u128::from(trains.end_ticks()).checked_add_signed(down.skew_ticks()),
-                Some(down.end_ticks())
-            );
-        }
-    }
-
-    #[test]
-    fn reload_and_back(timer in timers(), part in 0.0..=1.0_f64) {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            clippy::cast_precision_loss,
-            reason = "any tick from 1 to 2^32"
-        )]
-        let ticks = ((timer.max_ticks() as f64 * part) as u64).max(timer.min_ticks());
-        let reload = timer.reload(ticks).unwrap();
-        prop_assert!(u64::from(reload) <= timer.width().max_value());
-        prop_assert_eq!(timer.ticks_of_reload(reload), Ok(ticks));
-        prop_assert!(timer.reload(timer.max_ticks() + ticks).is_err());
-    }
-
-    #[test]
-    fn any_reload_is_an_interval_or_too_large(timer in timers(), reload: u32) {
-        match timer.ticks_of_reload(reload) {
-            Ok(ticks) => prop_assert_eq!(timer.reload(ticks), Ok(reload)),
-            Err(TimerError::IntervalTooShort { ticks, limit }) => {
-                prop_assert_eq!((ticks, limit), (1, timer.min_ticks()));
-            }
-            Err(_) => prop_assert!(u64::from(reload) > timer.width().max_value()),
-        }
     }
 
     #[test]
@@ -166,7 +85,7 @@ proptest! {
 
     #[test]
     fn periods_are_legal_and_sum_exactly(
-        timer in timers(),
+        (timer, _) in timers(),
         full in 0..200_u64,
         rest: u32,
     ) {

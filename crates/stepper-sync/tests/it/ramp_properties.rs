@@ -2,20 +2,23 @@
 
 use proptest::prelude::*;
 use stepper_sync::{AxisRamp, Ramp, RampEnds, RampLimits, Rate};
+use test_support::{any_i32, any_u32};
 
-/// Numbers of all magnitudes up to 32 bits.
-fn magnitudes() -> impl Strategy<Value = u32> {
-    (0..=31_u32, any::<u32>()).prop_map(|(shift, bits)| bits >> shift)
-}
-
-/// Any limits and tick rates, most of them extreme.
+/// Any limits and tick rates, most of them extreme, some of which no ramp has.
 fn any_ramp() -> impl Strategy<Value = (RampLimits, Rate)> {
-    let rates = (magnitudes(), prop_oneof![Just(1), 1..=1_u32 << 20])
+    let rates = (any_u32(), prop_oneof![Just(1), 1..=1_u32 << 20, any_u32()])
         .prop_filter_map("no ticks", |(n, d)| Rate::new(n, d).ok());
-    (magnitudes(), magnitudes(), magnitudes(), rates).prop_map(|(a, b, accel, rate)| {
+    let limits = (any_u32(), any_u32(), any_u32(), 0..8_u8);
+    (limits, rates).prop_map(|((a, b, accel, order), rate)| {
+        let (least, most) = (a.min(b), a.max(b));
+        let (start, max) = if order > 0 {
+            (least, most)
+        } else {
+            (most, least)
+        };
         let limits = RampLimits {
-            start_millihertz: a.min(b),
-            max_millihertz: a.max(b),
+            start_millihertz: start,
+            max_millihertz: max,
             accel_steps_per_s2: accel,
         };
         (limits, rate)
@@ -71,26 +74,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn short_moves_at_any_limits_end_together(
+    fn short_moves_at_any_limits_make_all_steps(
         (limits, rate) in any_ramp(),
         n in prop::array::uniform3(-300..=300_i32),
-    ) {
-        if let Ok(ramp) = Ramp::new(n, &limits, rate) {
-            for (axis, n) in ramp.axes().into_iter().zip(n) {
-                steps(axis, n, ramp.end_ticks())?;
-            }
-        }
-    }
-
-    #[test]
-    fn moves_between_any_rates_make_all_steps(
-        (limits, rate) in any_ramp(),
-        n in prop::array::uniform2(-300..=300_i32),
-        entry_millihertz in magnitudes(),
-        exit_millihertz in magnitudes(),
+        (entry_millihertz, exit_millihertz) in (any_u32(), any_u32()),
     ) {
         let ends = RampEnds { entry_millihertz, exit_millihertz };
-        if let Ok(ramp) = Ramp::between(n, &limits, ends, rate) {
+        let ramps = [Ramp::new(n, &limits, rate), Ramp::between(n, &limits, ends, rate)];
+        for ramp in ramps.into_iter().flatten() {
             for (axis, n) in ramp.axes().into_iter().zip(n) {
                 steps(axis, n, ramp.end_ticks())?;
             }
@@ -98,18 +89,17 @@ proptest! {
     }
 
     #[test]
-    fn long_moves_at_any_limits_go_forward(
-        (limits, rate) in any_ramp(),
-        steps in prop::array::uniform2(magnitudes()),
-    ) {
-        let steps = steps.map(|n| i32::try_from(n >> 1).unwrap());
+    fn long_moves_at_any_limits_go_forward((limits, rate) in any_ramp(), steps in [any_i32(), any_i32()]) {
         if let Ok(ramp) = Ramp::new(steps, &limits, rate) {
+            prop_assert!(limits.start_millihertz <= limits.max_millihertz);
+            prop_assert!(limits.accel_steps_per_s2 > 0 && !steps.contains(&i32::MIN));
             let mut last = 0;
             for edge in ramp.edges().take(300).take_while(|edge| edge.ticks < PATIENCE_TICKS) {
                 prop_assert!(edge.ticks >= last && edge.ticks <= ramp.end_ticks());
                 last = edge.ticks;
             }
-            for axis in ramp.axes() {
+            for (axis, n) in ramp.axes().into_iter().zip(steps) {
+                prop_assert_eq!(axis.remaining(), 2 * u64::from(n.unsigned_abs()));
                 let mut ticks = 0;
                 for interval in axis.take(300) {
                     prop_assert!(interval > 0);

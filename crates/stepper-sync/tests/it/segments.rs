@@ -6,18 +6,15 @@ use stepper_sync::{
     SegmentPlayer, StepDirTiming,
 };
 
-use crate::common::arm;
+use crate::common::{
+    arm,
+    rows::{STEP, STEP_A_TICK, knot},
+};
 
-const STEP: i64 = 1 << 32;
-const STEP_A_TICK: i64 = 1 << 56;
 const LEAST: MinIntervals = MinIntervals {
     step_ticks: 10,
     reversal_ticks: 20,
 };
-
-const fn knot(position: i64, velocity: i64) -> PvtKnot {
-    PvtKnot { position, velocity }
-}
 
 fn encoded(segment: &Segment) -> Vec<u8> {
     segment.encode(&mut [0; Segment::MAX_ENCODED_LEN]).to_vec()
@@ -72,54 +69,49 @@ fn bytes_by_hand() {
 
 #[test]
 fn what_is_no_segment_says_why() {
-    let error = |bytes: &[u8]| Segment::decode(bytes).unwrap_err();
-    assert_eq!(error(&[]), SegmentError::Truncated { len: 0 });
-    assert_eq!(error(&[0x25, 2, 0x80]), SegmentError::Truncated { len: 3 });
-    assert_eq!(error(&[0, 0x80]), SegmentError::Truncated { len: 2 });
-    // 0 in two bytes; a tenth byte with more than the last bit; an eleventh.
-    assert_eq!(error(&[0, 0x80, 0]), SegmentError::Number { at: 2 });
-    let mut long = vec![0xFF; 9];
-    long.insert(0, 0);
-    assert_eq!(
-        error(&[long.as_slice(), &[2]].concat()),
-        SegmentError::Number { at: 10 }
-    );
-    assert_eq!(
-        error(&[long.as_slice(), &[0x81]].concat()),
-        SegmentError::Truncated { len: 11 }
-    );
-    assert!(Segment::decode(&[long.as_slice(), &[1]].concat()).is_ok());
-    // Two steps without a difference, one with, 1025.
-    let count = |count, differences| SegmentError::Count { count, differences };
-    assert_eq!(error(&[1, 5]), count(2, 0));
-    assert_eq!(error(&[0x20, 0, 0, 5, 1]), count(1, 1));
-    assert_eq!(error(&[0x20, 32, 0, 5, 1]), count(1025, 1));
-    assert_eq!(error(&[0x20, 255, 0, 5, 1]), count(8161, 1));
-    assert_eq!(
-        error(&[0x43, 0, 0, 5, 0x80, 0x14, 0]),
-        SegmentError::ZeroDifference { differences: 2 }
-    );
-    // Intervals of 127/128 and 2^31 + 1/128 ticks, and 10, 0.
-    assert_eq!(
-        error(&[0x21, 0, 0, 5, 0x7F]),
-        SegmentError::Interval { step: 1 }
-    );
+    use SegmentError as E;
+    let count = |count, differences| E::Count { count, differences };
+    for (bytes, wanted) in [
+        (&[][..], E::Truncated { len: 0 }),
+        (&[0x25, 2, 0x80], E::Truncated { len: 3 }),
+        (&[0, 0x80], E::Truncated { len: 2 }),
+        // 0 in two bytes.
+        (&[0, 0x80, 0], E::Number { at: 2 }),
+        // Two steps without a difference, one with, 1025.
+        (&[1, 5], count(2, 0)),
+        (&[0x20, 0, 0, 5, 1], count(1, 1)),
+        (&[0x20, 32, 0, 5, 1], count(1025, 1)),
+        (&[0x20, 255, 0, 5, 1], count(8161, 1)),
+        (
+            &[0x43, 0, 0, 5, 0x80, 0x14, 0],
+            E::ZeroDifference { differences: 2 },
+        ),
+        // Intervals of 127/128 and 2^31 + 1/128 ticks, and 10, 0.
+        (&[0x21, 0, 0, 5, 0x7F], E::Interval { step: 1 }),
+        (
+            &[0x21, 0, 0, 5, 0x81, 0x80, 0x80, 0x80, 0x80, 8],
+            E::Interval { step: 1 },
+        ),
+        (
+            &[0x42, 0, 0, 5, 0x80, 0x14, 0xFF, 0x27],
+            E::Interval { step: 2 },
+        ),
+        // Three steps, 2^31 ticks apart: 2^31 · 2^8 is 2^39.
+        (
+            &[0x22, 0, 0, 5, 0x80, 0x80, 0x80, 0x80, 0x80, 0x10],
+            E::Span { step: 2 },
+        ),
+    ] {
+        assert_eq!(Segment::decode(bytes), Err(wanted), "{bytes:02X?}");
+    }
     assert!(Segment::decode(&[0x21, 0, 0, 5, 0x80, 1]).is_ok());
+    // A tenth byte with more than the last bit; an eleventh.
+    let long = |last| [&[0][..], &[0xFF; 9], &[last]].concat();
+    assert_eq!(Segment::decode(&long(2)), Err(E::Number { at: 10 }));
+    assert_eq!(Segment::decode(&long(0x81)), Err(E::Truncated { len: 11 }));
+    assert!(Segment::decode(&long(1)).is_ok());
     assert_eq!(
-        error(&[0x21, 0, 0, 5, 0x81, 0x80, 0x80, 0x80, 0x80, 8]),
-        SegmentError::Interval { step: 1 }
-    );
-    assert_eq!(
-        error(&[0x42, 0, 0, 5, 0x80, 0x14, 0xFF, 0x27]),
-        SegmentError::Interval { step: 2 }
-    );
-    // Three steps, 2^31 ticks apart: 2^31 · 2^8 is 2^39.
-    assert_eq!(
-        error(&[0x22, 0, 0, 5, 0x80, 0x80, 0x80, 0x80, 0x80, 0x10]),
-        SegmentError::Span { step: 2 }
-    );
-    assert_eq!(
-        SegmentError::Interval { step: 2 }.to_string(),
+        E::Interval { step: 2 }.to_string(),
         "step 2 comes less than 1 or more than 2^31 ticks after the one before it"
     );
 }
