@@ -7,9 +7,7 @@ use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{CalibrationError, Delta, Measured, Parameter, Quantity};
 use eleven::eleven;
 
-fn nominal() -> Delta {
-    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
-}
+use crate::common::thesis::thesis;
 
 /// Up to a degree and a millimetre, as a machine from a workshop has them.
 const OFF: [f64; 11] = [
@@ -17,7 +15,7 @@ const OFF: [f64; 11] = [
 ];
 
 fn real() -> Delta {
-    let mut arms = *nominal().arms();
+    let mut arms = *thesis().arms();
     for ((arm, zero), lower) in arms.iter_mut().zip(&OFF[..3]).zip(&OFF[3..6]) {
         arm.zero += zero;
         arm.lower += lower;
@@ -27,7 +25,7 @@ fn real() -> Delta {
     }
     arms[1].azimuth += OFF[6];
     arms[2].azimuth += OFF[7];
-    nominal().with_arms(arms).unwrap()
+    thesis().with_arms(arms).unwrap()
 }
 
 /// Evenly spread numbers, and ones that look like noise of standard deviation 1.
@@ -67,7 +65,7 @@ fn measured(count: u32, sigma: f64) -> Vec<Measured> {
 /// Without noise all digits but those lost to the conditioning (about 1e-3) come back.
 #[test]
 fn exact_points_give_the_geometry_back() {
-    let found = nominal().calibrate(eleven(), &measured(60, 0.0)).unwrap();
+    let found = thesis().calibrate(eleven(), &measured(60, 0.0)).unwrap();
     for (change, off) in found.changes().iter().zip(OFF) {
         assert!((change - off).abs() < 1e-9, "{change} for {off}");
     }
@@ -81,7 +79,7 @@ fn exact_points_give_the_geometry_back() {
 /// machine is exact to 0.02 mm where nothing was measured.
 #[test]
 fn noisy_points_give_the_machine_back() {
-    let found = nominal().calibrate(eleven(), &measured(60, 0.02)).unwrap();
+    let found = thesis().calibrate(eleven(), &measured(60, 0.02)).unwrap();
     for ((change, off), deviation) in found.changes().iter().zip(OFF).zip(found.deviations()) {
         let deviation = deviation.unwrap();
         assert!(
@@ -96,7 +94,7 @@ fn noisy_points_give_the_machine_back() {
     let reached = real()
         .forward(found.delta().inverse(before).unwrap())
         .unwrap();
-    let raw = real().forward(nominal().inverse(before).unwrap()).unwrap();
+    let raw = real().forward(thesis().inverse(before).unwrap()).unwrap();
     assert!(
         (reached - before).norm() < 0.02,
         "{}",
@@ -113,9 +111,7 @@ fn what_points_cannot_tell_is_named() {
         Parameter::common(Quantity::Platform),
         Parameter::common(Quantity::Lower),
     ];
-    let found = nominal()
-        .calibrate(parameters, &measured(60, 0.02))
-        .unwrap();
+    let found = thesis().calibrate(parameters, &measured(60, 0.02)).unwrap();
     assert_eq!(found.rank(), 2);
     assert!(found.conditioning() < 1e-12);
     let undetermined: Vec<Parameter> = found.undetermined().collect();
@@ -133,7 +129,7 @@ fn what_points_cannot_tell_is_named() {
 #[test]
 fn one_pose_gives_three_numbers() {
     let one = measured(1, 0.0)[0];
-    let found = nominal().calibrate(eleven(), &[one; 20]).unwrap();
+    let found = thesis().calibrate(eleven(), &[one; 20]).unwrap();
     assert_eq!(found.rank(), 3);
     assert_eq!(found.null_space().count(), 8);
     assert!(found.largest() < 1e-9);
@@ -161,7 +157,7 @@ fn one_pose_gives_three_numbers() {
 fn bad_measurements_are_named() {
     let good = measured(4, 0.0);
     assert_eq!(
-        nominal()
+        thesis()
             .calibrate(eleven(), &good[..3])
             .unwrap_err()
             .to_string(),
@@ -170,19 +166,19 @@ fn bad_measurements_are_named() {
     let mut bad = good.clone();
     bad[2].point.y = f64::NAN;
     assert_eq!(
-        nominal().calibrate(eleven(), &bad),
+        thesis().calibrate(eleven(), &bad),
         Err(CalibrationError::NotFinite { index: 2 })
     );
     // Its square is not a number any more.
     bad[2].point.y = 1e200;
     assert_eq!(
-        nominal().calibrate(eleven(), &bad),
+        thesis().calibrate(eleven(), &bad),
         Err(CalibrationError::NotFinite { index: 2 })
     );
     let mut bad = good;
     bad[1].angles.z = f64::INFINITY;
     assert!(matches!(
-        nominal().calibrate(eleven(), &bad),
+        thesis().calibrate(eleven(), &bad),
         Err(CalibrationError::Impossible { index: 1, .. })
     ));
 }
@@ -192,9 +188,7 @@ fn bad_measurements_are_named() {
 fn other_frames_calibrate_alike() {
     use delta_kin::{Positive, ZAxis};
     let (turned, real) = (
-        nominal()
-            .with_z(ZAxis::Down)
-            .with_positive(Positive::Inward),
+        thesis().with_z(ZAxis::Down).with_positive(Positive::Inward),
         real().with_z(ZAxis::Down).with_positive(Positive::Inward),
     );
     let measured: Vec<Measured> = measured(60, 0.0)

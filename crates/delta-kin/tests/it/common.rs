@@ -1,4 +1,5 @@
 //! What several modules use.
 
 pub(crate) mod reach;
+pub(crate) mod thesis;
 pub(crate) mod uneven;

@@ -7,6 +7,7 @@ use delta_kin::{
     Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
+use test_support::at_least;
 
 /// By how much rods may miss their lengths, in machine epsilons of the span: what is taken as on an
 /// edge, and rounding.
@@ -370,16 +371,8 @@ fn everything<T: RealField + Trig>(numbers: &mut Source) -> Result<(), TestCaseE
     Ok(())
 }
 
-fn config() -> ProptestConfig {
-    let given = ProptestConfig::default();
-    ProptestConfig {
-        cases: given.cases.max(256),
-        ..given
-    }
-}
-
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(256))]
 
     #[test]
     fn anything_is_answered_rightly_or_refused(numbers in prop::collection::vec(anything(), 97)) {

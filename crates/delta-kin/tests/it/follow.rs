@@ -3,18 +3,11 @@
 use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, Path, SpeedLimits};
+use delta_kin::{Path, SpeedLimits};
 use proptest::prelude::*;
+use test_support::at_least;
 
-/// At least a thousand cases; `PROPTEST_CASES` asks for more.
-fn config() -> ProptestConfig {
-    let given = ProptestConfig::default();
-    ProptestConfig {
-        cases: given.cases.max(1000),
-        max_global_rejects: given.cases.max(1000).saturating_mul(64),
-        ..given
-    }
-}
+use crate::common::thesis::{directions, thesis};
 
 /// Points of a cylinder in which the whole machine moves.
 fn points() -> impl Strategy<Value = Point3<f64>> {
@@ -22,13 +15,6 @@ fn points() -> impl Strategy<Value = Point3<f64>> {
         let radius = 120.0 * share.sqrt();
         Point3::new(radius * heading.cos(), radius * heading.sin(), z)
     })
-}
-
-fn directions() -> impl Strategy<Value = Vector3<f64>> {
-    [-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64]
-        .prop_map(Vector3::from)
-        .prop_filter("has a length", |v| v.norm() > 0.1)
-        .prop_map(|v| v.normalize())
 }
 
 /// The distance of a point from a path, found by halving round the nearest of many points.
@@ -47,7 +33,7 @@ fn off_path(path: &Path, point: Point3<f64>, near: f64, reach: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: config().cases / 10, ..config() })]
+    #![proptest_config(at_least(100))]
 
     #[test]
     fn paths_keep_their_tolerance_and_rates(
@@ -55,7 +41,7 @@ proptest! {
         tolerance in (-3.0..0.0f64).prop_map(|e| 10f64.powf(e)),
         turn in prop_oneof![Just(0.0), -7.0..7.0f64],
     ) {
-        let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap().with_zero(FRAC_PI_2).unwrap();
+        let delta = thesis().with_zero(FRAC_PI_2).unwrap();
         let path = if turn == 0.0 {
             Path::line(from, to).unwrap()
         } else {
@@ -96,7 +82,7 @@ proptest! {
 
     #[test]
     fn the_bound_is_above_the_truth_and_near_it(from in points(), way in directions(), size in 0.1..30.0f64) {
-        let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let delta = thesis();
         let ends = (delta.pose_at(from), delta.pose_at(from + way * size));
         prop_assume!(ends.0.is_ok() && ends.1.is_ok());
         let (a, b) = (ends.0.unwrap(), ends.1.unwrap());

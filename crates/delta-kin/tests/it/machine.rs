@@ -8,12 +8,10 @@ use delta_kin::{
     PoseError, Positive, ZAxis,
 };
 
+use crate::common::thesis::thesis;
+
 /// Printed numbers have 16 digits.
 const PRINTED: f64 = 1e-14;
-
-fn thesis() -> Delta {
-    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
-}
 
 fn same(a: Vector3<f64>, b: [f64; 3], tolerance: f64) {
     assert!((a - Vector3::from(b)).amax() <= tolerance, "{a}");

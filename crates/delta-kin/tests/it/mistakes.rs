@@ -5,6 +5,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{AssemblyMode, Delta, Elbow, InverseError, Pose};
 
+use crate::common::thesis::thesis;
+
 /// Angles away from singular poses, in radians.
 const ANGLE_ERROR: f64 = 1e-13;
 
@@ -39,7 +41,7 @@ fn the_plane_of_the_hips_is_no_exception() {
 /// Some use the length of one arm for all in their forward kinematics.
 #[test]
 fn every_arm_has_its_own_length() {
-    let mut arms = *Delta::<f64>::new(42.0, 18.0, 120.0, 243.0).unwrap().arms();
+    let mut arms = *thesis().arms();
     for (arm, more) in arms.iter_mut().zip([0.0, 1.5, -2.5]) {
         arm.lower += more;
         arm.upper += more / 2.0;
@@ -68,7 +70,7 @@ fn every_arm_has_its_own_length() {
 /// An arcsine cannot see beyond 90°.
 #[test]
 fn arms_above_horizontal_are_found() {
-    let delta: Delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = thesis();
     for theta in [1.5, FRAC_PI_2, 1.6, 2.0, 2.4] {
         let angles = Vector3::new(theta, theta - 0.1, theta + 0.1);
         let back = delta.inverse(delta.forward(angles).unwrap()).unwrap();
@@ -100,7 +102,7 @@ fn straight_up_is_an_angle_like_others() {
 /// Elbow out is the solution whose elbow is farther from the base's axis, wherever A changes sign.
 #[test]
 fn knees_keep_their_names() {
-    let delta: Delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = thesis();
     for z in -340..-130 {
         let point = Point3::new(20.0, -10.0, f64::from(z));
         let out = delta.pose_at(point).unwrap();
@@ -119,7 +121,7 @@ fn knees_keep_their_names() {
 /// What `forward` made is never refused in the same modes, stretched and folded arms among it.
 #[test]
 fn own_stretched_and_folded_poses_are_reached() {
-    let delta: Delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = thesis();
     for step in 0..20_000 {
         let turn = f64::from(step) * 0.618;
         let angles = Vector3::new(turn, turn * 1.7, turn * 2.9).map(|a| a % (2.0 * PI) - PI);

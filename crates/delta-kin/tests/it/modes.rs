@@ -9,9 +9,7 @@ use delta_kin::{
     Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
 };
 
-fn thesis() -> Delta {
-    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
-}
+use crate::common::thesis::thesis;
 
 fn limits() -> SpeedLimits {
     SpeedLimits::new(100.0, [5.0; 3]).unwrap()

@@ -10,6 +10,8 @@ use path_timing::{
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 
+use crate::common::thesis::thesis;
+
 /// Of places of a machine of 400 mm.
 const ROUNDING: f64 = 1e-11;
 
@@ -30,10 +32,6 @@ const FEED: ToolLimits = ToolLimits {
     feed: 400.0,
     acceleration: Some(8000.0),
 };
-
-fn delta() -> Delta {
-    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
-}
 
 fn line(from: [f64; 3], to: [f64; 3]) -> Curve<3> {
     Curve::line(from, to).unwrap()
@@ -89,7 +87,7 @@ fn within(max_departure: f64) -> Accuracy {
 #[test]
 fn the_platform_keeps_the_tolerance_and_the_bound_is_near() {
     const TOLERANCE: f64 = 0.01;
-    let machines = [delta(), delta().with_zero(FRAC_PI_2).unwrap()];
+    let machines = [thesis(), thesis().with_zero(FRAC_PI_2).unwrap()];
     let mut ratios = Vec::new();
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let mut knots = vec![Knot::default(); 5000];
@@ -146,7 +144,7 @@ proptest! {
         ratio in 0.0..1.0_f64,
         is_rising: bool,
     ) {
-        let delta = delta().with_z(ZAxis::Up);
+        let delta = thesis().with_z(ZAxis::Up);
         let Ok(path) = delta.path(curve) else { return Ok(()) };
         let s = [from, (from + share).min(1.0)].map(|share| share * curve.length());
         let speeds = if is_rising { [ratio, 1.0] } else { [1.0, ratio] };
@@ -175,7 +173,7 @@ proptest! {
     /// The arms bring the platform to the curve, and the slopes are theirs.
     #[test]
     fn slopes_are_derivatives(curve in any_curve()) {
-        let delta = delta();
+        let delta = thesis();
         let Ok(path) = delta.path(curve) else { return Ok(()) };
         for number in 0..20 {
             let s = curve.length() * (f64::from(number) + 0.5) / 20.0;
@@ -195,7 +193,7 @@ proptest! {
 
 #[test]
 fn what_cannot_be_followed_is_refused_with_its_place() {
-    let delta = delta();
+    let delta = thesis();
     // Over the edge: the first place without clearance.
     let out = delta.path(line([0.0, 0.0, -250.0], [400.0, 0.0, -250.0]));
     let Err(DeltaPathError::Edge { s, point, .. }) = out else {
@@ -277,7 +275,7 @@ fn planners_refuse_segments_that_pass_a_limit() {
         6.0,
     )
     .unwrap();
-    let free = delta();
+    let free = thesis();
     let path = free.path(circle).unwrap();
     let places = (0..=6000).map(|number| circle.length() * f64::from(number) / 6000.0);
     let angle = |s: f64| path.point(s).unwrap().position[0];
@@ -329,7 +327,7 @@ fn planners_refuse_segments_that_pass_a_limit() {
 /// Up, over, down in one go: the machine rests at both ends only.
 #[test]
 fn pick_and_place_does_not_stop_on_the_way() {
-    let delta = delta();
+    let delta = thesis();
     let (from, to) = ([80.0, 0.0, -300.0], [-60.0, 40.0, -290.0]);
     let moves = delta
         .pick_and_place(from, to, -270.0, 3.0, Some(FEED))
@@ -339,14 +337,9 @@ fn pick_and_place_does_not_stop_on_the_way() {
         assert_eq!(end.map(f64::to_bits), start.map(f64::to_bits));
     }
     let mut knots = vec![Knot::default(); 500];
-    let table = Table::plan_within(
-        moves,
-        [ARM; 3],
-        within(0.02),
-        DeltaPath::departure,
-        &mut knots,
-    );
-    let table = table.unwrap();
+    let departure = DeltaPath::departure;
+    let table = Table::plan_within(moves, [ARM; 3], within(0.02), departure, &mut knots).unwrap();
+    let duration_s = table.duration_s();
     let rows: Vec<_> = table.rows().collect();
     let rests = |row: &&Row<[f64; 3]>| row.velocity.iter().all(|speed| speed.abs() <= 0.0);
     assert_eq!(rows.iter().filter(rests).count(), 2);
@@ -355,23 +348,9 @@ fn pick_and_place_does_not_stop_on_the_way() {
     let mut stopping_s = 0.0;
     for ends in corners.windows(2) {
         let path = delta.path(line(ends[0], ends[1]).with_tool(FEED)).unwrap();
-        let table = Table::plan_within(
-            [path],
-            [ARM; 3],
-            within(0.02),
-            DeltaPath::departure,
-            &mut knots,
-        );
+        let table = Table::plan_within([path], [ARM; 3], within(0.02), departure, &mut knots);
         stopping_s += table.unwrap().duration_s();
     }
-    let table = Table::plan_within(
-        moves,
-        [ARM; 3],
-        within(0.02),
-        DeltaPath::departure,
-        &mut knots,
-    );
-    let duration_s = table.unwrap().duration_s();
     println!("{duration_s} s, with stops {stopping_s} s");
     assert!(duration_s < 0.95 * stopping_s);
     // A huge tolerance still leaves three lines.
@@ -383,7 +362,7 @@ fn pick_and_place_does_not_stop_on_the_way() {
 
 #[test]
 fn a_curve_longer_than_any_in_the_workspace_is_no_endless_walk() {
-    let error = delta().path(line([0.0, 0.0, -250.0], [1e9, 0.0, -250.0]));
+    let error = thesis().path(line([0.0, 0.0, -250.0], [1e9, 0.0, -250.0]));
     assert_eq!(
         error.unwrap_err().to_string(),
         "the curve is 1e9 long, within the workspace at most 42300"

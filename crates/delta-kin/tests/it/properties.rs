@@ -5,8 +5,10 @@ use delta_kin::{
     Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Pose, ZAxis,
 };
 use proptest::prelude::*;
+use test_support::at_least;
 
 use crate::common::reach::reach_margins;
+use crate::common::thesis::{directions, thesis};
 use crate::common::uneven::{modes, uneven_arms};
 
 /// `forward(inverse(p))` against p, in machine epsilons of the span, times the conditioning.
@@ -59,13 +61,6 @@ fn gaps() -> impl Strategy<Value = f64> {
         (-17.0..-1.0f64).prop_map(|e| 10f64.powf(e)),
         Just(0.0),
     ]
-}
-
-fn directions() -> impl Strategy<Value = Vector3<f64>> {
-    [-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64]
-        .prop_map(Vector3::from)
-        .prop_filter("has a length", |v| v.norm() > 0.1)
-        .prop_map(|v| v.normalize())
 }
 
 /// The working mode of a pose, however it was made.
@@ -134,18 +129,8 @@ fn turning(delta: &Delta, pose: &Pose) -> bool {
     (b - a).cross(&(c - a)).z > 0.0
 }
 
-/// At least a thousand cases; `PROPTEST_CASES` asks for more.
-fn config() -> ProptestConfig {
-    let given = ProptestConfig::default();
-    ProptestConfig {
-        cases: given.cases.max(1000),
-        max_global_rejects: given.cases.max(1000).saturating_mul(64),
-        ..given
-    }
-}
-
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     #[test]
     fn forward_undoes_inverse(delta in machines(), thetas in thetas(), (mode, elbows) in modes()) {
@@ -311,7 +296,7 @@ proptest! {
     #[test]
     fn single_precision_keeps_its_digits(thetas in [0.1..1.9f32, 0.1..1.9f32, 0.1..1.9f32]) {
         let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0).unwrap();
-        let exact = Delta::<f64>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let exact = thesis();
         let point = delta.forward(Vector3::from(thetas));
         prop_assume!(point.is_ok());
         let point = point.unwrap();

@@ -8,6 +8,7 @@ use delta_kin::{
     WorkspaceError,
 };
 use proptest::prelude::*;
+use test_support::at_least;
 
 use crate::common::uneven::{modes, uneven_arms};
 
@@ -303,16 +304,8 @@ fn same(one: &Answers, other: &Answers, unit: f64, span: f64, rounding: f64) -> 
     Ok(())
 }
 
-fn config() -> ProptestConfig {
-    let given = ProptestConfig::default();
-    ProptestConfig {
-        cases: given.cases.max(1000),
-        ..given
-    }
-}
-
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(at_least(1000))]
 
     /// 10^-6 to 10^6 units to the drawing's, to rounding; and by powers of two, to the last bit.
     #[test]

@@ -5,12 +5,10 @@ use delta_kin::{
     Delta, FollowError, InverseError, JointRange, Path, PathError, SpeedLimits, WorkspaceError,
 };
 
-fn delta() -> Delta {
-    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
-}
+use crate::common::thesis::thesis;
 
 fn limited() -> Delta {
-    delta()
+    thesis()
         .with_range(JointRange::new(-0.3, 2.0).unwrap())
         .with_ball_joints(0.6)
         .unwrap()
@@ -28,8 +26,8 @@ fn directions() -> impl Iterator<Item = Vector3<f64>> {
 
 #[test]
 fn the_ball_of_a_clearance_is_reached() {
-    let stiff = delta().with_ball_joints(0.3).unwrap();
-    for delta in [delta(), limited(), stiff] {
+    let stiff = thesis().with_ball_joints(0.3).unwrap();
+    for delta in [thesis(), limited(), stiff] {
         let mut seen = 0;
         for k in 0..400u32 {
             let (sin, cos) = (f64::from(k) * 2.4).sin_cos();
@@ -56,7 +54,7 @@ fn the_ball_of_a_clearance_is_reached() {
 #[test]
 fn solids_are_as_large_as_may_be() {
     let heights = [-290.0, -230.0];
-    for delta in [delta(), limited()] {
+    for delta in [thesis(), limited()] {
         let resolution = 0.25;
         let radius = delta.largest_cylinder(heights, resolution).unwrap();
         let leaves = |radius: f64| {
@@ -70,7 +68,7 @@ fn solids_are_as_large_as_may_be() {
         assert!(!leaves(radius));
         assert!(leaves(radius + 4.0 * resolution), "{radius}");
     }
-    let delta = delta();
+    let delta = thesis();
     assert_eq!(
         delta.largest_cylinder([-400.0, -380.0], 1.0),
         Err(WorkspaceError::NoCylinder { resolution: 1.0 })
@@ -91,8 +89,8 @@ fn solids_are_as_large_as_may_be() {
 
 #[test]
 fn outlines_are_on_the_edge() {
-    let near = 1e-6 * delta().span();
-    for delta in [delta(), limited()] {
+    let near = 1e-6 * thesis().span();
+    for delta in [thesis(), limited()] {
         let edge = |point: Point3<f64>| {
             let out = (point - Point3::new(0.0, 0.0, -260.0)).normalize();
             // The ray may meet the edge at a flat angle.
@@ -163,14 +161,14 @@ fn paths_end_at_the_first_place_out_of_reach() {
         Point3::new(0.0, 0.0, -300.0),
         Point3::new(400.0, 0.0, -300.0),
     );
-    match delta().follow(line.unwrap(), 0.01, limits()) {
+    match thesis().follow(line.unwrap(), 0.01, limits()) {
         Err(FollowError::Unreachable {
             fraction,
             point,
             reason: InverseError::TooFar { .. },
         }) => {
             let before = Point3::new(400.0 * (fraction - 1e-6), 0.0, -300.0);
-            assert!(delta().inverse(point).is_err() && delta().inverse(before).is_ok());
+            assert!(thesis().inverse(point).is_err() && thesis().inverse(before).is_ok());
         }
         other => panic!("{other:?}"),
     }
@@ -235,13 +233,13 @@ fn paths_and_paces_are_checked() {
         ));
     }
     let line = Path::line(a, b).unwrap();
-    for tolerance in [0.0, -1.0, f64::NAN, 64.0 * delta().tolerance()] {
+    for tolerance in [0.0, -1.0, f64::NAN, 64.0 * thesis().tolerance()] {
         assert!(matches!(
-            delta().follow(line, tolerance, limits()),
+            thesis().follow(line, tolerance, limits()),
             Err(FollowError::Tolerance { .. })
         ));
     }
     // A path without length has one waypoint.
     let still = Path::line(a, a).unwrap();
-    assert_eq!(delta().follow(still, 0.01, limits()).unwrap().count(), 1);
+    assert_eq!(thesis().follow(still, 0.01, limits()).unwrap().count(), 1);
 }
