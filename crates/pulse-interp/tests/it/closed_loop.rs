@@ -1,17 +1,21 @@
 //! Scale, switches and homing on a simulated axis.
 
 use pulse_interp::{
-    AxisLoop, Direction, Homing, HomingError, HomingOrder, HomingSettings, HomingSpeed, LoopError,
-    LoopSettings, LostSteps, ScaleRatio, SwitchError, Switches, TravelEnd,
+    AxisLoop, Direction, Homing, HomingError, HomingOrder, HomingSettings, HomingSpeed,
+    LoopSettings, ScaleRatio, SwitchError, Switches, TravelEnd,
 };
+
+fn settings((counts, steps): (u16, u16), dead_band_counts: u32, alarm_counts: u32) -> LoopSettings {
+    LoopSettings {
+        ratio: ScaleRatio::new(counts, steps).unwrap(),
+        dead_band_counts,
+        alarm_counts,
+    }
+}
 
 /// The stage: 500 counts/mm, 100 steps/mm, dead band 3 counts.
 fn stage() -> LoopSettings {
-    LoopSettings {
-        ratio: ScaleRatio::new(5, 1).unwrap(),
-        dead_band_counts: 3,
-        alarm_counts: 50,
-    }
+    settings((5, 1), 3, 50)
 }
 
 fn commanded(settings: LoopSettings, steps: i32) -> AxisLoop {
@@ -50,21 +54,8 @@ fn the_dead_band_is_left_alone_and_the_rest_corrected() {
 fn an_alarm_says_where_and_stays_until_reset() {
     let mut axis = commanded(stage(), 20);
     let lost = axis.correction(49).unwrap_err();
-    let LostSteps {
-        error_counts,
-        counts,
-        commanded_steps,
-        alarm_counts,
-        ..
-    } = lost;
-    assert_eq!(
-        (error_counts, counts, commanded_steps, alarm_counts),
-        (-51, 49, 20, 50)
-    );
-    assert_eq!(
-        lost.to_string(),
-        "-51 counts off at 49 counts, 20 steps: above the alarm at 50"
-    );
+    let numbers = (lost.error_counts, lost.counts, lost.commanded_steps);
+    assert_eq!((numbers, lost.alarm_counts), ((-51, 49, 20), 50));
     // Back in place, but who knows since when.
     assert!(axis.correction(100).is_err());
     axis.reset();
@@ -74,35 +65,21 @@ fn an_alarm_says_where_and_stays_until_reset() {
 /// A count in 65,535 steps: 40,000 counts are more steps than an `i32` holds.
 #[test]
 fn what_no_steps_can_correct_is_lost_for_good() {
-    let settings = LoopSettings {
-        ratio: ScaleRatio::new(1, 65_535).unwrap(),
-        dead_band_counts: 20_000,
-        alarm_counts: 60_000,
-    };
-    let mut axis = AxisLoop::new(settings).unwrap();
+    let of_band = |band| AxisLoop::new(settings((1, 65_535), band, 60_000)).unwrap();
+    let mut axis = of_band(20_000);
     assert_eq!(axis.correction(30_000), Ok(-1_966_050_000));
     assert!(axis.correction(40_000).is_err());
     assert!(axis.correction(0).is_err());
-    let dead_band_counts = 50_000;
-    let mut axis = AxisLoop::new(LoopSettings {
-        dead_band_counts,
-        ..settings
-    })
-    .unwrap();
+    let mut axis = of_band(50_000);
     assert_eq!(axis.correction(40_000), Ok(0));
 }
 
 /// 7 counts in 3 steps: no whole number of counts per step.
 #[test]
 fn ratios_are_fractions() {
-    let settings = LoopSettings {
-        ratio: ScaleRatio::new(7, 3).unwrap(),
-        dead_band_counts: 2,
-        alarm_counts: 100,
-    };
     // 10 steps are 23 1/3 counts.
     for (counts, wanted) in [(22, 0), (25, 0), (26, -1), (21, 1), (0, 10), (-7, 13)] {
-        let mut axis = commanded(settings, 10);
+        let mut axis = commanded(settings((7, 3), 2, 100), 10);
         assert_eq!(axis.correction(counts), Ok(wanted), "{counts}");
     }
 }
@@ -110,11 +87,8 @@ fn ratios_are_fractions() {
 #[test]
 fn a_corrected_axis_is_in_its_dead_band() {
     for (counts, steps) in [(5_u16, 1_u16), (7, 3), (1, 4), (1000, 1)] {
-        let settings = LoopSettings {
-            ratio: ScaleRatio::new(counts, steps).unwrap(),
-            dead_band_counts: u32::from(counts.div_ceil(2 * steps)) + 1,
-            alarm_counts: u32::MAX,
-        };
+        let dead_band = u32::from(counts.div_ceil(2 * steps)) + 1;
+        let settings = settings((counts, steps), dead_band, u32::MAX);
         for lost in -20..=20 {
             let mut axis = commanded(settings, 37);
             let scale = |steps_made: i32| steps_made * i32::from(counts) / i32::from(steps);
@@ -122,27 +96,6 @@ fn a_corrected_axis_is_in_its_dead_band() {
             assert_eq!(axis.correction(scale(37 - lost + correction)), Ok(0));
         }
     }
-}
-
-#[test]
-fn settings_that_cannot_be_are_refused() {
-    assert_eq!(
-        ScaleRatio::new(5, 0),
-        Err(LoopError::Ratio {
-            counts: 5,
-            steps: 0
-        })
-    );
-    assert!(ScaleRatio::new(0, 1).is_err());
-    let error = AxisLoop::new(LoopSettings {
-        dead_band_counts: 50,
-        ..stage()
-    })
-    .unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "a dead band of 50 counts is not below the alarm at 50"
-    );
 }
 
 #[test]
@@ -160,17 +113,6 @@ fn a_closed_switch_stops_one_way_only() {
     );
     assert_eq!(upper.permit(Direction::Negative, 19_999), Ok(()));
     assert!(Switches::default().permit(Direction::Negative, 0).is_ok());
-    let both = Switches {
-        lower: true,
-        upper: true,
-    };
-    for direction in [Direction::Negative, Direction::Positive] {
-        let error = both.permit(direction, 7).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "both limit switches are closed at 7 steps"
-        );
-    }
 }
 
 const HOMING: HomingSettings = HomingSettings {
@@ -227,8 +169,4 @@ fn homing_ends_where_there_is_no_switch() {
     };
     assert_eq!(run(false), HomingError::NeverClosed { steps: 1000 });
     assert_eq!(run(true), HomingError::NeverOpened { steps: 1000 });
-    assert_eq!(
-        run(true).to_string(),
-        "the switch has not stayed open within 1000 steps back"
-    );
 }

@@ -1,3 +1,4 @@
 //! What several modules use.
 
 pub(crate) mod grid;
+pub(crate) mod walk;

@@ -3,6 +3,8 @@
 
 use pulse_interp::{Arc, Line, Move, Rule, Turn};
 
+use crate::common::walk::{Path, Walked, after, off_circle, off_line};
+
 const LEN: i32 = 64;
 
 // The deviations that the documentation states, in steps.
@@ -13,24 +15,8 @@ const ROUNDING: f64 = 1e-12;
 
 const SINGLE: [Move; 4] = [Move::Right, Move::Up, Move::Left, Move::Down];
 
-fn after(at: [i32; 2], step: Move) -> [i32; 2] {
-    [at[0] + step.dx(), at[1] + step.dy()]
-}
-
-fn path(from: [i32; 2], moves: impl IntoIterator<Item = Move>) -> Vec<[i32; 2]> {
-    let along = moves.into_iter().scan(from, |at, step| {
-        *at = after(*at, step);
-        Some(*at)
-    });
-    core::iter::once(from).chain(along).collect()
-}
-
-fn largest(of: impl Iterator<Item = f64>) -> f64 {
-    of.fold(0.0, f64::max)
-}
-
 /// The line by the definition: F and its two successors at each point.
-fn line_by_definition(to: [i32; 2], rule: Rule) -> Vec<[i32; 2]> {
+fn line_by_definition(to: [i32; 2], rule: Rule) -> Path {
     let f = |[x, y]: [i32; 2]| y * to[0].abs() - x * to[1].abs();
     let signs = to.map(i32::signum);
     let (mut at, mut path) = ([0, 0], vec![[0, 0]]);
@@ -50,7 +36,7 @@ fn line_by_definition(to: [i32; 2], rule: Rule) -> Vec<[i32; 2]> {
 }
 
 /// The other coordinate rounded at each step of the longer one.
-fn bresenham_by_definition(to: [i32; 2]) -> Vec<[i32; 2]> {
+fn bresenham_by_definition(to: [i32; 2]) -> Path {
     let [x, y] = to.map(i32::abs);
     let n = x.max(y);
     let at = |k: i32, len: i32| (2 * k * len + n) / (2 * n).max(1);
@@ -61,33 +47,16 @@ fn bresenham_by_definition(to: [i32; 2]) -> Vec<[i32; 2]> {
 
 #[test]
 fn lines_are_those_of_the_definition() {
-    let mut worst = [0.0; 3];
+    let mut worst = [0.0_f64; 3];
     for to in (-LEN..=LEN).flat_map(|x| (-LEN..=LEN).map(move |y| [x, y])) {
-        let line = Line::new(to).unwrap();
-        let paths = [
+        let defined = Walked::telling([
             line_by_definition(to, Rule::Published),
             line_by_definition(to, Rule::Nearest),
             bresenham_by_definition(to),
-        ];
-        assert_eq!(
-            path([0, 0], line.steps(Rule::Published)),
-            paths[0],
-            "{to:?}"
-        );
-        assert_eq!(path([0, 0], line.steps(Rule::Nearest)), paths[1], "{to:?}");
-        assert_eq!(path([0, 0], line.moves()), paths[2], "{to:?}");
-        assert_eq!(
-            line.steps(Rule::Nearest).remaining(),
-            paths[1].len() as u64 - 1
-        );
-        assert_eq!(line.moves().remaining(), paths[2].len() as u64 - 1);
-
-        let [xe, ye] = to.map(f64::from);
-        let off = |[x, y]: &[i32; 2]| {
-            (f64::from(*y) * xe - f64::from(*x) * ye).abs() / xe.hypot(ye).max(1.0)
-        };
-        for (worst, path) in worst.iter_mut().zip(&paths) {
-            *worst = largest(path.iter().map(off)).max(*worst);
+        ]);
+        assert_eq!(Walked::line(&Line::new(to).unwrap()), defined, "{to:?}");
+        for (worst, path) in worst.iter_mut().zip(&defined.paths) {
+            *worst = worst.max(off_line(path, to));
         }
     }
     assert_worst(worst, LINE);
@@ -122,7 +91,7 @@ fn moves_at([x, y]: [i32; 2], turn: Turn, last: Option<[Move; 2]>) -> [Move; 2] 
 }
 
 /// The full circle from `start`, F evaluated at each point.
-fn circle_by_definition(start: [i32; 2], turn: Turn, rule: Rule) -> Vec<[i32; 2]> {
+fn circle_by_definition(start: [i32; 2], turn: Turn, rule: Rule) -> Path {
     let square = |[x, y]: [i32; 2]| x * x + y * y;
     let f = |at: [i32; 2]| square(at) - square(start);
     let (mut at, mut path, mut last) = (start, vec![start], None);
@@ -142,7 +111,7 @@ fn circle_by_definition(start: [i32; 2], turn: Turn, rule: Rule) -> Vec<[i32; 2]
 }
 
 /// The full circle of moves to eight neighbours, F at each midpoint.
-fn midpoint_by_definition(start: [i32; 2], turn: Turn) -> Vec<[i32; 2]> {
+fn midpoint_by_definition(start: [i32; 2], turn: Turn) -> Path {
     let square = |[x, y]: [i32; 2]| x * x + y * y;
     // At half steps.
     let f = |doubled: [i32; 2]| square(doubled) - 4 * square(start);
@@ -174,7 +143,7 @@ fn midpoint_by_definition(start: [i32; 2], turn: Turn) -> Vec<[i32; 2]> {
 }
 
 /// All points of the grid within the largest radius, by their squares.
-fn circles(largest_square: i32) -> Vec<Vec<[i32; 2]>> {
+fn circles(largest_square: i32) -> Vec<Path> {
     let side = largest_square.isqrt();
     let mut circles = vec![Vec::new(); usize::try_from(largest_square).unwrap() + 1];
     for at in (-side..=side).flat_map(|x| (-side..=side).map(move |y| [x, y])) {
@@ -189,7 +158,7 @@ fn circles(largest_square: i32) -> Vec<Vec<[i32; 2]>> {
 /// Every arc between two points of every circle through the start.
 #[test]
 fn arcs_are_those_of_the_definition() {
-    let mut worst = [0.0; 3];
+    let mut worst = [0.0_f64; 3];
     for points in circles(LEN * LEN) {
         for (start, turn) in points
             .iter()
@@ -200,13 +169,13 @@ fn arcs_are_those_of_the_definition() {
                 circle_by_definition(start, turn, Rule::Nearest),
                 midpoint_by_definition(start, turn),
             ];
-            let radius = f64::from(start[0]).hypot(f64::from(start[1]));
-            let off = |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - radius).abs();
             for (worst, circle) in worst.iter_mut().zip(&circles) {
-                *worst = largest(circle.iter().map(off)).max(*worst);
+                *worst = worst.max(off_circle(circle, start));
             }
             for end in &points {
-                check_arc(&Arc::new(start, *end, turn).unwrap(), &circles);
+                let arc = Arc::new(start, *end, turn).unwrap();
+                let defined = [0, 1, 2].map(|of| up_to(*end, &circles[of]));
+                assert_eq!(Walked::arc(&arc), Walked::telling(defined), "{arc:?}");
             }
         }
     }
@@ -214,44 +183,20 @@ fn arcs_are_those_of_the_definition() {
 }
 
 /// An arc is the circle up to its end.
-fn check_arc(arc: &Arc, circles: &[Vec<[i32; 2]>; 3]) {
-    let (start, end) = (arc.start(), arc.end());
-    let up_to_end = |circle: &[[i32; 2]]| {
-        let len = circle.iter().skip(1).position(|at| *at == end).unwrap();
-        circle[..len + 2].to_vec()
-    };
-    for (rule, circle) in [Rule::Published, Rule::Nearest].into_iter().zip(circles) {
-        let steps = arc.steps(rule);
-        let wanted = up_to_end(circle);
-        assert_eq!(
-            steps.remaining(),
-            wanted.len() as u64 - 1,
-            "{arc:?} {rule:?}"
-        );
-        assert_eq!(path(start, steps), wanted, "{arc:?} {rule:?}");
-    }
-    let moves = arc.moves();
-    let wanted = up_to_end(&circles[2]);
-    assert_eq!(moves.remaining(), wanted.len() as u64 - 1, "{arc:?}");
-    assert_eq!(path(start, moves), wanted, "{arc:?}");
+fn up_to(end: [i32; 2], circle: &Path) -> Path {
+    let before = circle.iter().skip(1).position(|at| *at == end).unwrap();
+    circle[..before + 2].to_vec()
 }
 
 /// The bounds do not grow with the radius.
 #[test]
 fn large_circles_stay_as_close() {
-    let mut worst = [0.0; 3];
+    let mut worst = [0.0_f64; 3];
     for radius in (LEN..=800).step_by(7) {
         let start = [0, radius];
         let circle = Arc::new(start, start, Turn::Clockwise).unwrap();
-        let off =
-            |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - f64::from(radius)).abs();
-        let paths = [
-            path(start, circle.steps(Rule::Published)),
-            path(start, circle.steps(Rule::Nearest)),
-            path(start, circle.moves()),
-        ];
-        for (worst, path) in worst.iter_mut().zip(&paths) {
-            *worst = largest(path.iter().map(off)).max(*worst);
+        for (worst, path) in worst.iter_mut().zip(&Walked::arc(&circle).paths) {
+            *worst = worst.max(off_circle(path, start));
         }
     }
     assert_worst(worst, ARC);
@@ -285,24 +230,14 @@ fn ends_near_the_circle_are_met() {
 
 fn check_near(arc: &Arc) {
     let (start, end) = (arc.start(), arc.end());
-    let radius = f64::from(start[0]).hypot(f64::from(start[1]));
-    let off = |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - radius).abs();
-    let paths = [
-        path(start, arc.steps(Rule::Published)),
-        path(start, arc.steps(Rule::Nearest)),
-        path(start, arc.moves()),
-    ];
-    let told = [
-        arc.steps(Rule::Published).remaining(),
-        arc.steps(Rule::Nearest).remaining(),
-        arc.moves().remaining(),
-    ];
+    let Walked { paths, told } = Walked::arc(arc);
     for ((path, told), stated) in paths.iter().zip(told).zip(ARC) {
         assert_eq!(path.last(), Some(&end), "{arc:?}");
         assert_eq!(path.len() as u64, told + 1, "{arc:?}");
-        let worst = largest(path.iter().map(off));
+        let worst = off_circle(path, start);
         // No more than rule and end together.
-        assert!(worst <= stated + off(&end) + ROUNDING, "{arc:?}: {worst}");
+        let stated = stated + off_circle(&[end], start);
+        assert!(worst <= stated + ROUNDING, "{arc:?}: {worst}");
     }
 }
 

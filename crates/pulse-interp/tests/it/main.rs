@@ -5,10 +5,10 @@ mod axes;
 mod closed_loop;
 mod common;
 mod definition;
-mod extremes;
 mod feed;
 mod pictures;
 mod properties;
 mod reference;
+mod refusals;
 #[cfg(feature = "serde")]
 mod serialised;

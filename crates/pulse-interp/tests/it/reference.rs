@@ -2,6 +2,8 @@
 
 use pulse_interp::{Arc, ArcError, Line, Move, Rule, Turn};
 
+use crate::common::walk::{Walked, off_circle, off_line, path};
+
 /// The tables have six decimals.
 const DEVIATION: f64 = 5.1e-7;
 
@@ -31,22 +33,8 @@ fn spelled_out(runs: &str) -> String {
     text
 }
 
-fn walk(from: [i32; 2], steps: impl IntoIterator<Item = Move>) -> Vec<[i32; 2]> {
-    let mut at = from;
-    let mut path = vec![at];
-    for step in steps {
-        at = [at[0] + step.dx(), at[1] + step.dy()];
-        path.push(at);
-    }
-    path
-}
-
 fn text(steps: impl IntoIterator<Item = Move>) -> String {
     steps.into_iter().map(letter).collect()
-}
-
-fn largest(of: impl Iterator<Item = f64>) -> f64 {
-    of.fold(0.0, f64::max)
 }
 
 fn line(to: [i32; 2]) -> String {
@@ -94,14 +82,11 @@ fn line_table() {
         assert_eq!(steps.remaining(), cells[2].parse::<u64>().unwrap(), "{row}");
         assert_eq!(text(steps.clone()), spelled_out(cells[3]), "{row}");
 
-        let path = walk([0, 0], steps);
+        let path = path([0, 0], steps);
         assert_eq!(path.last(), Some(&to), "{row}");
-        let [xe, ye] = to.map(f64::from);
-        let off = path
-            .iter()
-            .map(|[x, y]| (f64::from(*y) * xe - f64::from(*x) * ye).abs() / xe.hypot(ye).max(1.0));
         let wanted: f64 = cells[5].parse().unwrap();
-        assert!((largest(off) - wanted).abs() < DEVIATION, "{row}");
+        let off = off_line(&path, to);
+        assert!((off - wanted).abs() < DEVIATION, "{row}");
         // The unrepaired rule fails along Y alone.
         assert_eq!(cells[4] == "0", to[0] == 0 && to[1] != 0, "{row}");
         rows += 1;
@@ -144,28 +129,17 @@ fn check_arc(row: &str) -> bool {
     assert_eq!(wanted.len(), cells[6].parse::<usize>().unwrap(), "{row}");
     let published_end = [number(8), number(9)];
     assert_eq!(published_end == end, hits, "{row}");
-    let radius = f64::from(start[0]).hypot(f64::from(start[1]));
-    let off = |[x, y]: &[i32; 2]| (f64::from(*x).hypot(f64::from(*y)) - radius).abs();
-
     // With end tests: the same path where it hits, else one as long that does.
     let steps = arc.steps(Rule::Published);
     assert_eq!(steps.remaining(), wanted.len() as u64, "{row}");
-    assert_eq!(text(steps.clone()) == wanted, hits, "{row}");
+    assert_eq!(text(steps) == wanted, hits, "{row}");
     let max_dev: f64 = cells[11].parse().unwrap();
-    if hits {
-        let path = walk(start, steps.clone());
-        assert!(
-            (largest(path.iter().map(off)) - max_dev).abs() < DEVIATION,
-            "{row}"
-        );
-    }
-    for path in [
-        walk(start, steps),
-        walk(start, arc.steps(Rule::Nearest)),
-        walk(start, arc.moves()),
-    ] {
+    let Walked { paths, .. } = Walked::arc(&arc);
+    let published = off_circle(&paths[0], start);
+    assert!(!hits || (published - max_dev).abs() < DEVIATION, "{row}");
+    for path in paths {
         assert_eq!(path.last(), Some(&end), "{row}");
-        assert!(largest(path.iter().map(off)) <= 1.0, "{row}");
+        assert!(off_circle(&path, start) <= 1.0, "{row}");
     }
     hits
 }

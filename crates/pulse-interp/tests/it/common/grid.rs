@@ -4,6 +4,8 @@ use core::fmt;
 
 use pulse_interp::Move;
 
+use super::walk::path;
+
 /// The points of a path in the smallest rectangle that holds them, as rows from the top.
 #[derive(PartialEq, Eq)]
 pub(crate) struct Grid(pub(crate) Vec<String>);
@@ -19,12 +21,7 @@ pub(crate) use grid;
 impl Grid {
     /// The picture of `moves` from `start`, both in steps from (0, 0).
     pub(crate) fn of(start: [i32; 2], moves: impl IntoIterator<Item = Move>) -> Self {
-        let mut path = vec![start];
-        let mut at = start;
-        for step in moves {
-            at = [at[0] + step.dx(), at[1] + step.dy()];
-            path.push(at);
-        }
+        let path = path(start, moves);
         let range = |axis: usize| {
             let along = || path.iter().map(move |at| at[axis]);
             along().min().unwrap()..=along().max().unwrap()
