@@ -15,9 +15,8 @@ use tokio::{
     time::{Instant, sleep, timeout},
 };
 
-const STX: u8 = 0x02;
-const DLE: u8 = 0x10;
-const NAK: u8 = 0x15;
+use crate::common::low_side::{DLE, NAK, STX, ms, quiet, sent_by_byte as sent};
+
 /// The block of `A`, without its STX.
 const BLOCK: [u8; 4] = [0x41, 0x10, 0x03, 0x52];
 
@@ -25,18 +24,9 @@ const HIGH: Config = Config::siemens_3964r(Priority::High, Line::Instant);
 /// Answers when its user does, within 1.5 s.
 const HELD: Config = Config {
     acknowledge_wait_ms: 1500,
-    nak_at_startup: false,
-    ..Config::siemens_3964r(Priority::Low, Line::Instant)
+    ..quiet(Priority::Low, Line::Instant)
 };
 const WAIT: Duration = Duration::from_millis(1500);
-
-const fn ms(ms: u64) -> Duration {
-    Duration::from_millis(ms)
-}
-
-fn sent(station: &mut Station<16>, now: Duration) -> Vec<u8> {
-    core::iter::from_fn(|| station.poll_transmit_byte(now)).collect()
-}
 
 /// A station that has received `A` at 0 ms and answered STX alone.
 fn holding() -> Station<16> {

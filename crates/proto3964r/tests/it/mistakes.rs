@@ -10,19 +10,7 @@ use proto3964r::{
     Rejection, Side, Station, SubmitError, Transmit, Verdict, diagnose, frame::FrameError,
 };
 
-use crate::common::low_side::{DLE, NAK, STX, hear, low, ms};
-
-/// What the station sends now, with the discards dropped.
-fn sent<const N: usize, const T: usize>(station: &mut Station<N, T>, now: Duration) -> Vec<u8> {
-    let mut all = Vec::new();
-    let mut out = [0; 300];
-    while let Some(transmit) = station.poll_transmit(now, &mut out) {
-        if let Transmit::Bytes(bytes) = transmit {
-            all.extend_from_slice(bytes);
-        }
-    }
-    all
-}
+use crate::common::low_side::{DLE, NAK, STX, hear, low, ms, sent};
 
 /// The names of all events, with their contents.
 fn events<const N: usize, const T: usize>(station: &mut Station<N, T>) -> Vec<String> {

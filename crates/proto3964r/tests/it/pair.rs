@@ -10,7 +10,7 @@ use proto3964r::{
     frame::{encode, max_encoded_len},
 };
 
-use crate::common::random::Random;
+use crate::common::{low_side::quiet, random::Random};
 
 /// A generous end for any run: no run here needs half of it.
 const HOUR_US: u64 = 3_600_000_000;
@@ -79,10 +79,7 @@ fn a_clean_line_carries_everything_once() {
 #[test]
 fn the_same_priority_on_both_sides_ends_and_is_reported() {
     for priority in [Priority::High, Priority::Low] {
-        let config = Config {
-            nak_at_startup: false,
-            ..Config::siemens_3964r(priority, Line::Instant)
-        };
+        let config = quiet(priority, Line::Instant);
         let work = [vec![b"A".to_vec()], vec![b"B".to_vec()]];
         let mut pair = Pair::new([config, config], work, Faults::default(), 1146, 1);
         assert!(pair.run(HOUR_US).is_some());

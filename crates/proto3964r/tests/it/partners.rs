@@ -5,45 +5,18 @@ mod receive;
 use core::time::Duration;
 
 use proto3964r::{
-    Cause, Config, Conflict, Event, Failure, Line, Phase, Priority, Rejection, Station, Transmit,
+    Cause, Config, Conflict, Event, Failure, Line, Phase, Priority, Rejection, Station,
     frame::FrameError,
 };
 
-const STX: u8 = 0x02;
-const DLE: u8 = 0x10;
-const NAK: u8 = 0x15;
-/// Of 11 bits at 9600 bit/s.
-const CHARACTER: Duration = Duration::from_nanos(1_145_833);
+use crate::common::low_side::{CHARACTER, DLE, NAK, STX, handed_out, ms, quiet, sent};
 
 fn low(line: Line) -> Config {
-    Config {
-        nak_at_startup: false,
-        ..Config::siemens_3964r(Priority::Low, line)
-    }
+    quiet(Priority::Low, line)
 }
 
 fn uart() -> Line {
     Line::paced(9600, 11)
-}
-
-fn ms(millis: u64) -> Duration {
-    Duration::from_millis(millis)
-}
-
-/// What the station hands out now, and whether what was handed out before is void.
-fn handed_out<const N: usize>(station: &mut Station<N>, now: Duration) -> (Vec<u8>, bool) {
-    let (mut all, mut discarded, mut out) = (Vec::new(), false, [0; 300]);
-    while let Some(transmit) = station.poll_transmit(now, &mut out) {
-        match transmit {
-            Transmit::Bytes(bytes) => all.extend_from_slice(bytes),
-            Transmit::Discard => discarded = true,
-        }
-    }
-    (all, discarded)
-}
-
-fn sent<const N: usize>(station: &mut Station<N>, now: Duration) -> Vec<u8> {
-    handed_out(station, now).0
 }
 
 /// Takes all characters, and polls each telegram as soon as it is there.
@@ -220,10 +193,7 @@ fn after_a_cancelled_request_the_partner_has_time_to_give_up() {
 /// late each time. One of the two is set wrong all the same.
 #[test]
 fn same_priority_is_reported_when_the_partner_yields_on_a_retry() {
-    let mut station = Station::<64>::new(Config {
-        priority: Priority::High,
-        ..low(uart())
-    });
+    let mut station = Station::<64>::new(quiet(Priority::High, uart()));
     let mut reports = Vec::new();
     for begin in [0, 10_000, 20_000] {
         station.submit(ms(begin), b"A").unwrap();
@@ -258,10 +228,7 @@ fn same_priority_is_reported_when_the_partner_yields_on_a_retry() {
 /// A partner of low priority gives way at once: that is what conflicts are settled by.
 #[test]
 fn conflicts_that_the_partner_settles_are_no_sign_of_the_same_priority() {
-    let mut station = Station::<64>::new(Config {
-        priority: Priority::High,
-        ..low(uart())
-    });
+    let mut station = Station::<64>::new(quiet(Priority::High, uart()));
     for begin in [0, 10_000, 20_000] {
         station.submit(ms(begin), b"A").unwrap();
         assert_eq!(sent(&mut station, ms(begin)), [STX]);
@@ -279,8 +246,7 @@ fn conflicts_that_the_partner_settles_are_no_sign_of_the_same_priority() {
 fn stx_is_repeated_in_a_conflict_after_a_silence() {
     let mut station = Station::<64>::new(Config {
         conflict: Conflict::Repeat,
-        priority: Priority::High,
-        ..low(uart())
+        ..quiet(Priority::High, uart())
     });
     station.submit(ms(0), b"A").unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);

@@ -119,29 +119,12 @@ fn exchange(config: Config, arguments: &[&str]) {
         .lines()
         .filter_map(|line| line.strip_prefix("received ").map(str::to_owned))
         .collect();
-    let outgoing: Vec<_> = (0..COUNT)
-        .map(|number| hex(&telegram(0x00, number)))
-        .collect();
-    let incoming: Vec<_> = (0..COUNT)
-        .map(|number| hex(&telegram(0x80, number)))
-        .collect();
-    assert_eq!(received, incoming);
+    let all = |side| (0..COUNT).map(move |number| hex(&telegram(side, number)));
+    assert_eq!(received, all(0x80).collect::<Vec<_>>());
+    let outgoing: Vec<_> = all(0x00).collect();
     assert_eq!(without_repeats(peer_received), outgoing);
-    assert_eq!(
-        report
-            .lines()
-            .filter(|line| line.starts_with("sent "))
-            .count(),
-        COUNT
-    );
-    assert_eq!(
-        report
-            .lines()
-            .filter(|line| line.starts_with("failed "))
-            .count(),
-        0,
-        "{report}"
-    );
+    let count = |word| report.lines().filter(|line| line.starts_with(word)).count();
+    assert_eq!((count("sent "), count("failed ")), (COUNT, 0), "{report}");
 }
 
 #[test]
@@ -166,14 +149,6 @@ fn without_bcc() {
         nak_at_startup: false,
         ..Config::siemens_3964(Priority::High, Line::Instant)
     };
-    exchange(
-        config,
-        &[
-            "--priority",
-            "low",
-            "--protocol",
-            "3964",
-            "--no-startup-nak",
-        ],
-    );
+    let plain = ["--protocol", "3964", "--no-startup-nak"];
+    exchange(config, &[&["--priority", "low"][..], &plain].concat());
 }

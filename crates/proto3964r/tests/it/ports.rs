@@ -19,6 +19,8 @@ use proto3964r::{
 };
 use serialport::{SerialPort, TTYPort};
 
+use crate::common::low_side::low;
+
 /// Telegrams in each direction.
 const COUNT: u8 = 60;
 /// Far above what any of these conversations takes.
@@ -256,20 +258,13 @@ impl embedded_io_async::Write for Canned {
     }
 }
 
-fn silent() -> Config {
-    Config {
-        nak_at_startup: false,
-        ..config(Priority::Low)
-    }
-}
-
 #[test]
 fn embedded_io_gives_both_telegrams_of_one_read() {
     let port = Canned {
         input: BOTH.to_vec(),
         output: vec![],
     };
-    let mut line = blocking::Driver::new(Station::<64>::new(silent()), port, || Duration::ZERO);
+    let mut line = blocking::Driver::new(Station::<64>::new(low()), port, || Duration::ZERO);
     assert_eq!(line.wait().unwrap(), Event::Received(b"A"));
     assert_eq!(line.wait().unwrap(), Event::Received(b"B"));
     line.step().unwrap();
@@ -283,7 +278,7 @@ fn embedded_io_async_gives_both_telegrams_of_one_read() {
         output: vec![],
     };
     let timer = SystemTimer(Clock::now());
-    let station = Station::<64>::new(silent());
+    let station = Station::<64>::new(low());
     let mut line = asynchronous::Driver::new(station, reader, Canned::default(), timer);
     block_on(async {
         assert_eq!(line.wait().await.unwrap(), Event::Received(b"A"));
@@ -294,7 +289,7 @@ fn embedded_io_async_gives_both_telegrams_of_one_read() {
 #[test]
 fn serialport_gives_both_telegrams_of_one_read() {
     let (here, mut there) = TTYPort::pair().expect("a pseudo-terminal");
-    let mut line = Driver::<64>::new(Box::new(here), silent()).unwrap();
+    let mut line = Driver::<64>::new(Box::new(here), low()).unwrap();
     there.write_all(&BOTH).unwrap();
     let patience = Duration::from_secs(5);
     assert_eq!(line.wait(patience).unwrap(), Some(Event::Received(b"A")));

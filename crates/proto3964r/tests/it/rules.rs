@@ -6,14 +6,7 @@ use proto3964r::{
     Abandoned, Cause, Config, Event, Failure, Line, Phase, Priority, Rejection, Station, Transmit,
 };
 
-use crate::common::low_side::{DLE, NAK, STX, hear, low, ms};
-
-/// Of 11 bits at 9600 bit/s.
-const CHARACTER: Duration = Duration::from_nanos(1_145_833);
-
-fn sent(station: &mut Station<16>, now: Duration) -> Vec<u8> {
-    core::iter::from_fn(|| station.poll_transmit_byte(now)).collect()
-}
+use crate::common::low_side::{CHARACTER, DLE, NAK, STX, hear, low, ms, sent_by_byte as sent};
 
 #[test]
 fn nak_at_startup_comes_before_anything_else() {

@@ -2,11 +2,10 @@
 
 use core::time::Duration;
 
-use proto3964r::{Config, Failure, Line, Phase, Priority, Station, Verdict};
+use proto3964r::{Config, Event, Line, Phase, Priority, Station, Verdict};
+use test_support::stored;
 
-fn round_trip<T: serde::Serialize + serde::de::DeserializeOwned>(value: &T) -> T {
-    serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
-}
+use crate::common::low_side::{STX, low, ms};
 
 #[test]
 fn configurations() {
@@ -18,7 +17,7 @@ fn configurations() {
         Config::linux(Priority::Low, Line::Instant),
         Config::km271(Line::paced(2400, 10)),
     ] {
-        assert_eq!(round_trip(&config), config);
+        stored(&config);
     }
 }
 
@@ -27,23 +26,21 @@ fn configurations() {
 fn zero_attempts_are_one() {
     let config = Config {
         connection_attempts: 0,
-        nak_at_startup: false,
-        ..Config::siemens_3964r(Priority::Low, Line::Instant)
+        ..low()
     };
-    let mut station = Station::<8>::new(round_trip(&config));
+    stored(&config);
+    let mut station = Station::<8>::new(config);
     station.submit(Duration::ZERO, b"A").unwrap();
-    assert_eq!(station.poll_transmit_byte(Duration::ZERO), Some(0x02));
-    station.handle_timeout(Duration::from_millis(2000));
-    let Some(proto3964r::Event::Failed(failure)) = station.poll_event() else {
+    assert_eq!(station.poll_transmit_byte(Duration::ZERO), Some(STX));
+    station.handle_timeout(ms(2000));
+    let Some(Event::Failed(failure)) = station.poll_event() else {
         panic!("no failure");
     };
-    let Failure {
-        phase, attempts, ..
-    } = round_trip(&failure);
-    assert_eq!((phase, attempts), (Phase::Connection, 1));
+    stored(&failure);
+    assert_eq!((failure.phase, failure.attempts), (Phase::Connection, 1));
 }
 
 #[test]
 fn verdicts() {
-    assert_eq!(round_trip(&Verdict::Works), Verdict::Works);
+    stored(&Verdict::Works);
 }

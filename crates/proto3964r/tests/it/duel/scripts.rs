@@ -6,6 +6,7 @@
 use core::time::Duration;
 
 use proto3964r::{Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock};
+use test_support::setting;
 
 use super::line::{Duel, Habits, Noise, Tally, Wire};
 use crate::common::random::Random;
@@ -17,20 +18,14 @@ const SPACING: u32 = 60;
 /// Jobs of one side.
 const JOBS: u32 = 3;
 
-fn number(variable: &str, default: u64) -> u64 {
-    std::env::var(variable).map_or(default, |text| text.parse().unwrap())
-}
-
 fn one_of<T: Copy>(random: &mut Random, all: &[T]) -> T {
     all[random.below(u32::try_from(all.len()).unwrap()) as usize]
 }
 
 /// The line as the stations know it, and as it is.
 fn line(random: &mut Random) -> (Line, Wire) {
-    let (baud, bits): (u32, u8) = one_of(
-        random,
-        &[(9600, 11), (1200, 11), (115_200, 10), (38_400, 10)],
-    );
+    let all: [(u32, u8); 4] = [(9600, 11), (1200, 11), (115_200, 10), (38_400, 10)];
+    let (baud, bits) = one_of(random, &all);
     let character = Duration::from_nanos(u64::from(bits) * 1_000_000_000 / u64::from(baud));
     let instant = Wire {
         character: Duration::ZERO,
@@ -186,7 +181,7 @@ fn play(script: u64, noise: Noise, habits: Habits) -> Tally {
 }
 
 fn play_all(noise: Noise, habits: Habits) -> Tally {
-    let (first, count) = (number("FIRST", 1), number("SCRIPTS", 3000));
+    let (first, count) = (setting("FIRST", 1), setting("SCRIPTS", 3000));
     let mut all = Tally::default();
     for script in first..first + count {
         let tally = play(script, noise, habits);
