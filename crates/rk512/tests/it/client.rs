@@ -36,6 +36,13 @@ fn failure(client: &mut Client<256>) -> JobError {
     }
 }
 
+fn fetched(client: &mut Client<256>) -> Vec<u8> {
+    match client.poll_event() {
+        Some(Outcome::Fetched { data, .. }) => data.to_vec(),
+        other => panic!("{other:?} instead of data"),
+    }
+}
+
 /// How a FETCH of two words or a SEND of one ends with this reaction.
 fn fault(job: Job, reaction: &[u8]) -> (JobError, Option<u16>) {
     let mut client = client();
@@ -91,47 +98,48 @@ fn fetch_of_65_words() {
     assert_eq!(client.poll_event(), Some(fetched));
 }
 
+/// The events of the manual, by their numbers.
 #[test]
-fn e0a01_reaction_out_of_step() {
-    let out_of_step = |got, expected| {
-        let fault = ReactionFault::OutOfStep { got, expected };
-        (JobError::Reaction(fault), Some(0x0A01))
-    };
-    let expected = out_of_step(Part::Continuation, Part::First);
-    assert_eq!(fault(Job::Send, &[0xFF, 0, 0, 0]), expected);
-
-    let mut client = client();
-    client.submit(send(DB5, 65), &[0; 130]).unwrap();
-    command(&mut client, NOW);
-    client.handle_block(NOW, &[0, 0, 0, 0]);
-    command(&mut client, NOW);
-    client.handle_block(NOW, &[0, 0, 0, 0]);
-    let expected = out_of_step(Part::First, Part::Continuation);
-    assert_eq!(failure(&mut client), expected.0);
-}
-
-#[test]
-fn e0a02_first_byte() {
-    let value = 0x55;
-    let expected = JobError::Reaction(ReactionFault::FirstByte { value });
-    let got = fault(Job::Fetch, &[0x55, 0, 0, 0, 1, 2, 3, 4]);
-    assert_eq!(got, (expected, Some(0x0A02)));
-}
-
-#[test]
-fn e0a03_too_much_or_too_little_data() {
-    for len in [0, 3, 5] {
-        let reaction = &[0; 9][..4 + len];
-        let expected = JobError::Reaction(ReactionFault::DataLength { len, expected: 4 });
-        assert_eq!(fault(Job::Fetch, reaction), (expected, Some(0x0A03)));
+fn e0a01_to_e0a06_wrong_reactions() {
+    use ReactionFault as F;
+    let (got, expected) = (Part::Continuation, Part::First);
+    let out_of_step = F::OutOfStep { got, expected };
+    let data_length = |len| F::DataLength { len, expected: 4 };
+    for (job, reaction, wanted, event) in [
+        (Job::Send, &[0xFF, 0, 0, 0][..], out_of_step, 0x0A01),
+        (
+            Job::Fetch,
+            &[0x55, 0, 0, 0, 1, 2, 3, 4],
+            F::FirstByte { value: 0x55 },
+            0x0A02,
+        ),
+        (Job::Fetch, &[0; 4], data_length(0), 0x0A03),
+        (Job::Fetch, &[0; 7], data_length(3), 0x0A03),
+        (Job::Fetch, &[0; 9], data_length(5), 0x0A03),
+        (
+            Job::Send,
+            &[0, 0, 0, 0, 9],
+            F::SendWithData { len: 1 },
+            0x0A04,
+        ),
+        (Job::Fetch, &[0; 3], F::TooShort { len: 3 }, 0x0A06),
+    ] {
+        let wanted = (JobError::Reaction(wanted), Some(event));
+        assert_eq!(fault(job, reaction), wanted);
     }
 }
 
 #[test]
-fn e0a04_send_reaction_with_data() {
-    let expected = JobError::Reaction(ReactionFault::SendWithData { len: 1 });
-    let got = fault(Job::Send, &[0, 0, 0, 0, 9]);
-    assert_eq!(got, (expected, Some(0x0A04)));
+fn e0a01_the_first_reaction_once_more() {
+    let mut client = client();
+    client.submit(send(DB5, 65), &[0; 130]).unwrap();
+    for _ in 0..2 {
+        command(&mut client, NOW);
+        client.handle_block(NOW, &[0, 0, 0, 0]);
+    }
+    let (got, expected) = (Part::First, Part::Continuation);
+    let out_of_step = ReactionFault::OutOfStep { got, expected };
+    assert_eq!(failure(&mut client), JobError::Reaction(out_of_step));
 }
 
 #[test]
@@ -153,13 +161,6 @@ fn e0a05_no_reaction_in_time() {
     let error = failure(&mut client);
     assert_eq!(error, JobError::NoReaction(Duration::from_secs(20)));
     assert_eq!(error.event(), Some(0x0A05));
-}
-
-#[test]
-fn e0a06_reaction_too_short() {
-    let expected = JobError::Reaction(ReactionFault::TooShort { len: 3 });
-    let got = fault(Job::Fetch, &[0, 0, 0]);
-    assert_eq!(got, (expected, Some(0x0A06)));
 }
 
 #[test]
@@ -210,11 +211,7 @@ fn a_late_reaction_is_not_the_next_jobs() {
     assert_eq!((client.dropped(), client.poll_event()), (1, None));
     command(&mut client, resync);
     client.handle_block(resync, &[0, 0, 0, 0, 6, 6]);
-    let outcome = client.poll_event();
-    assert!(matches!(
-        outcome,
-        Some(Outcome::Fetched { data: [6, 6], .. })
-    ));
+    assert_eq!(fetched(&mut client), [6, 6]);
 }
 
 #[test]
@@ -227,27 +224,18 @@ fn a_reaction_before_the_delivery_is_older() {
     assert_eq!((client.dropped(), client.poll_event()), (2, None));
     client.handle_delivered(NOW);
     client.handle_block(NOW, &[0, 0, 0, 0, 6, 6]);
-    let outcome = client.poll_event();
-    assert!(matches!(
-        outcome,
-        Some(Outcome::Fetched { data: [6, 6], .. })
-    ));
+    assert_eq!(fetched(&mut client), [6, 6]);
 }
 
 /// The documented limit, and how `quiet` closes it.
 #[test]
 fn a_repeated_reaction_passes_for_the_next_one_unless_quiet() {
-    let quiet = Duration::from_secs(3);
-    for (config, got) in [
-        (Config::DEFAULT, [5, 5]),
-        (
-            Config {
-                quiet,
-                ..Config::DEFAULT
-            },
-            [6, 6],
-        ),
-    ] {
+    let later = NOW + Duration::from_secs(3);
+    for (quiet, got) in [(Duration::ZERO, [5, 5]), (Duration::from_secs(3), [6, 6])] {
+        let config = Config {
+            quiet,
+            ..Config::DEFAULT
+        };
         let mut client = Client::<256>::new(config);
         client.submit(fetch(DB5, 1), &[]).unwrap();
         command(&mut client, NOW);
@@ -258,15 +246,11 @@ fn a_repeated_reaction_passes_for_the_next_one_unless_quiet() {
             client.handle_delivered(NOW);
         }
         client.handle_block(NOW, &[0, 0, 0, 0, 5, 5]);
-        let later = NOW + quiet;
         if client.poll_transmit(later).is_some() {
             client.handle_delivered(later);
         }
         client.handle_block(later, &[0, 0, 0, 0, 6, 6]);
-        let Some(Outcome::Fetched { data, .. }) = client.poll_event() else {
-            panic!("no data");
-        };
-        assert_eq!(data, got);
+        assert_eq!(fetched(&mut client), got);
     }
 }
 

@@ -1,7 +1,8 @@
 //! The checked frames: every telegram, its payload, and what 3964R makes of it on the wire.
 
 use rk512::{
-    Area, Command, Continuation, Message, Part, Reaction, ReactionError, Request, Telegram,
+    Area, AreaKind, Command, Continuation, Message, Part, Reaction, ReactionError, Request,
+    Telegram,
 };
 
 /// The body of a 3964R block: data with each 10h doubled, 10h 03h, and the XOR of all that.
@@ -57,94 +58,52 @@ fn continuation(request: Request, data: &[u8]) -> Telegram {
 }
 
 #[test]
-fn send_db5_dw10_1234_abcd() {
+fn commands_on_the_wire() {
     check(
         send(Area::db(5, 10), 2, &[0x12, 0x34, 0xAB, 0xCD]),
         "00 00 41 44 05 0A 00 02 FF FF 12 34 AB CD 10 03 5B",
     );
-}
-
-#[test]
-fn send_dx3_dw7_1122() {
     check(
         send(Area::dx(3, 7), 1, &[0x11, 0x22]),
         "00 00 4F 44 03 07 00 01 FF FF 11 22 10 03 2E",
     );
+    for (area, length, wire) in [
+        (Area::db(5, 0), 65, "05 00 00 41 FF FF 10 03 56"),
+        // 16 is doubled.
+        (Area::db(16, 0), 1, "10 10 00 00 01 FF FF 10 03 13"),
+    ] {
+        check(fetch(area, length), &format!("00 00 45 44 {wire}"));
+    }
+    let flags = "00 00 45 4D 00 14 00 04 FF FF 10 03 0B";
+    check(fetch(Area::flags(20), 4), flags);
 }
 
 #[test]
-fn fetch_db5_dw0_65_words() {
-    check(
-        fetch(Area::db(5, 0), 65),
-        "00 00 45 44 05 00 00 41 FF FF 10 03 56",
-    );
+fn continuations_on_the_wire() {
+    let rest = continuation(Request::SendDb, &[0x00, 0x40]);
+    check(rest, "FF 00 41 44 00 40 10 03 A9");
+    let next = continuation(Request::Fetch(AreaKind::DataBlock), &[]);
+    check(next, "FF 00 45 44 10 03 ED");
 }
 
 #[test]
-fn fetch_mb20_4_bytes() {
-    check(
-        fetch(Area::flags(20), 4),
-        "00 00 45 4D 00 14 00 04 FF FF 10 03 0B",
-    );
-}
-
-#[test]
-fn fetch_db16_dw0_1_word_doubles_the_number() {
-    check(
-        fetch(Area::db(16, 0), 1),
-        "00 00 45 44 10 10 00 00 01 FF FF 10 03 13",
-    );
-}
-
-#[test]
-fn continuation_send_data_0040() {
-    check(
-        continuation(Request::SendDb, &[0x00, 0x40]),
-        "FF 00 41 44 00 40 10 03 A9",
-    );
-}
-
-#[test]
-fn continuation_fetch() {
-    let db = rk512::AreaKind::DataBlock;
-    check(
-        continuation(Request::Fetch(db), &[]),
-        "FF 00 45 44 10 03 ED",
-    );
-}
-
-#[test]
-fn reaction_ok() {
-    check(reaction(Part::First, 0, &[]), "00 00 00 00 10 03 13");
-}
-
-#[test]
-fn continuation_reaction_ok() {
-    check(reaction(Part::Continuation, 0, &[]), "FF 00 00 00 10 03 EC");
-}
-
-#[test]
-fn fetch_continuation_reaction_data_0040() {
-    check(
-        reaction(Part::Continuation, 0, &[0x00, 0x40]),
-        "FF 00 00 00 00 40 10 03 AC",
-    );
-}
-
-#[test]
-fn reaction_32h() {
+fn reactions_on_the_wire() {
     assert_eq!(ReactionError::from_code(0x32), Some(ReactionError::Locked));
-    check(reaction(Part::First, 0x32, &[]), "00 00 00 32 10 03 21");
-}
-
-#[test]
-fn reaction_10h_doubled() {
-    check(reaction(Part::First, 0x10, &[]), "00 00 00 10 10 10 03 13");
-}
-
-#[test]
-fn reaction_36h() {
-    check(reaction(Part::First, 0x36, &[]), "00 00 00 36 10 03 25");
+    for (part, code, data, wire) in [
+        (Part::First, 0, &[][..], "00 00 00 00 10 03 13"),
+        (Part::Continuation, 0, &[], "FF 00 00 00 10 03 EC"),
+        (
+            Part::Continuation,
+            0,
+            &[0x00, 0x40],
+            "FF 00 00 00 00 40 10 03 AC",
+        ),
+        (Part::First, 0x32, &[], "00 00 00 32 10 03 21"),
+        (Part::First, 0x10, &[], "00 00 00 10 10 10 03 13"),
+        (Part::First, 0x36, &[], "00 00 00 36 10 03 25"),
+    ] {
+        check(reaction(part, code, data), wire);
+    }
 }
 
 #[test]

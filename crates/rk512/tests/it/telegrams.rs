@@ -128,38 +128,36 @@ fn every_check_of_a_command_has_its_reaction_and_event() {
 
 #[test]
 fn every_check_of_a_continuation() {
-    let decode = |block: &[u8]| Continuation::decode(block).map(|(header, _)| header);
-    let short = CommandError::TooShort { len: 3, least: 4 };
-    assert_eq!(decode(&[0xFF, 0, 0x41]), Err(short));
-    let first = CommandError::FirstByte { value: 0 };
-    assert_eq!(decode(&[0, 0, 0x41, 0x44]), Err(first));
-    let fetch = CommandError::FetchWithData { len: 1 };
-    assert_eq!(decode(&[0xFF, 0, 0x45, 0x44, 9]), Err(fetch));
-    let mut long = [0; 133];
-    long[..4].copy_from_slice(&[0xFF, 0, 0x41, 0x44]);
+    use CommandError as E;
     let (len, expected) = (129, 128);
-    let error = CommandError::ContinuationDataLength { len, expected };
-    assert_eq!(decode(&long), Err(error));
+    let long = [&[0xFF, 0, 0x41, 0x44][..], &[0; 129]].concat();
+    for (block, error) in [
+        (&[0xFF, 0, 0x41][..], E::TooShort { len: 3, least: 4 }),
+        (&[0, 0, 0x41, 0x44], E::FirstByte { value: 0 }),
+        (&[0xFF, 0, 0x45, 0x44, 9], E::FetchWithData { len: 1 }),
+        (&long, E::ContinuationDataLength { len, expected }),
+    ] {
+        let refused = Continuation::decode(block).map(|(header, _)| header);
+        assert_eq!(refused, Err(error));
+    }
 }
 
 #[test]
 fn every_check_of_a_reaction_header() {
-    let decode = |block: &[u8]| Reaction::decode(block).map(|(header, _)| header);
-    let short = ReactionFault::TooShort { len: 3 };
-    assert_eq!(decode(&[0, 0, 0]), Err(short));
-    assert_eq!(short.event(), Some(0x0A06));
-    let first = ReactionFault::FirstByte { value: 0x7F };
-    assert_eq!(decode(&[0x7F, 0, 0, 0]), Err(first));
-    assert_eq!(first.event(), Some(0x0A02));
-    let second = ReactionFault::NotZero { byte: 2, value: 1 };
-    assert_eq!(decode(&[0, 1, 0, 0]), Err(second));
-    let third = ReactionFault::NotZero { byte: 3, value: 2 };
-    assert_eq!(decode(&[0, 0, 2, 0]), Err(third));
-    let long = ReactionFault::DataLength {
-        len: 129,
-        expected: 128,
-    };
-    assert_eq!(decode(&[0; 133]), Err(long));
+    use ReactionFault as F;
+    let (len, expected) = (129, 128);
+    for (block, fault, event) in [
+        (&[0, 0, 0][..], F::TooShort { len: 3 }, 0x0A06),
+        (&[0x7F, 0, 0, 0], F::FirstByte { value: 0x7F }, 0x0A02),
+        (&[0; 133], F::DataLength { len, expected }, 0x0A03),
+    ] {
+        let refused = Reaction::decode(block).map(|(header, _)| header);
+        assert_eq!((refused, fault.event()), (Err(fault), Some(event)));
+    }
+    for (block, byte, value) in [([0, 1, 0, 0], 2, 1), ([0, 0, 2, 0], 3, 2)] {
+        let refused = Reaction::decode(&block).map(|(header, _)| header);
+        assert_eq!(refused, Err(ReactionFault::NotZero { byte, value }));
+    }
 }
 
 #[test]
@@ -195,19 +193,11 @@ fn the_end_of_time_is_late_enough() {
 #[cfg(feature = "serde")]
 #[test]
 fn serde_keeps_commands_and_refuses_wrong_ones() {
+    use test_support::{not_read, stored};
     let command = Command::send(Area::db(5, 10), 65).unwrap();
-    let json = serde_json::to_string(&command).unwrap();
-    assert_eq!(json, "[0,0,65,68,5,10,0,65,255,255]");
-    assert_eq!(serde_json::from_str::<Command>(&json).unwrap(), command);
-    let empty = "[0,0,65,68,5,10,0,0,255,255]";
-    assert!(serde_json::from_str::<Command>(empty).is_err());
-    let area = serde_json::to_string(&Area::flags(20)).unwrap();
-    assert_eq!(
-        serde_json::from_str::<Area>(&area).unwrap(),
-        Area::flags(20)
-    );
-    assert!(serde_json::from_str::<Area>(r#"["Flags",1,20]"#).is_err());
-    let config = serde_json::to_string(&Config::DEFAULT).unwrap();
-    let back: Config = serde_json::from_str(&config).unwrap();
-    assert_eq!(back, Config::DEFAULT);
+    assert_eq!(stored(&command), "[0,0,65,68,5,10,0,65,255,255]");
+    let _reason = not_read::<Command>("[0,0,65,68,5,10,0,0,255,255]");
+    stored(&Area::flags(20));
+    let _reason = not_read::<Area>(r#"["Flags",1,20]"#);
+    stored(&Config::DEFAULT);
 }
