@@ -1,8 +1,8 @@
 //! Dance frames: packings, headers, and what is refused.
 
-use pattern_codec::c_header::Dialect;
+use pattern_codec::c_header::{Dialect, HeaderErrorKind as K, WriteError};
 use pattern_codec::dance::{
-    Data, DataHeader, DecodeError, Packing, ProgramMemory, Sizes, Threshold, Timing,
+    Data, DataHeader, DecodeErrorKind as F, Packing, ProgramMemory, Sizes, Threshold, Timing,
 };
 use proptest::prelude::*;
 
@@ -28,6 +28,7 @@ fn round_trip<const N: usize>(packing: Packing, frames: &[[i8; N]]) {
     assert_eq!(decoded.unwrap(), frames);
     let sizes = Sizes::of(frames.iter().copied());
     assert_eq!(sizes.bytes(packing), u64::try_from(bytes.len()).unwrap());
+    assert!(sizes.bytes(sizes.smallest()) <= sizes.bytes(packing));
     assert_eq!(sizes.frames(), u64::try_from(frames.len()).unwrap());
 }
 
@@ -162,43 +163,23 @@ fn five_minutes_do_not_fit_raw() {
 
 #[test]
 fn bytes_that_are_no_frames_are_refused_with_their_place() {
-    fn error(packing: Packing, bytes: &[u8]) -> Option<DecodeError> {
-        let mut frames = packing.decode::<3, _>(bytes.iter().copied());
-        frames.find_map(Result::err)
-    }
-    for (packing, bytes, wanted) in [
-        (
-            Packing::Raw,
-            &[1, 2, 3, 4, 5][..],
-            "dance byte 3: the last frame or run is cut off",
-        ),
-        (
-            Packing::Runs,
-            &[2, 1, 2, 3, 0, 4, 5, 6],
-            "dance byte 4: a run of 0 frames",
-        ),
-        (
-            Packing::Runs,
-            &[2, 1, 2],
-            "dance byte 0: the last frame or run is cut off",
-        ),
+    let (mask, motors) = (8, 3);
+    for (packing, bytes, offset, kind) in [
+        (Packing::Raw, &[1, 2, 3, 4, 5][..], 3, F::Truncated),
+        (Packing::Runs, &[2, 1, 2, 3, 0, 4, 5, 6], 4, F::ZeroCount),
+        (Packing::Runs, &[2, 1, 2], 0, F::Truncated),
         (
             Packing::MaskedRuns,
             &[1, 0, 1, 8],
-            "dance byte 2: mask 0x08 names more than the 3 motors of its byte",
+            2,
+            F::Mask { mask, motors },
         ),
-        (
-            Packing::MaskedRuns,
-            &[1, 7, 1, 8],
-            "dance byte 0: the last frame or run is cut off",
-        ),
-        (
-            Packing::MaskedRuns,
-            &[1],
-            "dance byte 0: the last frame or run is cut off",
-        ),
+        (Packing::MaskedRuns, &[1, 7, 1, 8], 0, F::Truncated),
+        (Packing::MaskedRuns, &[1], 0, F::Truncated),
     ] {
-        assert_eq!(error(packing, bytes).unwrap().to_string(), wanted);
+        let mut frames = packing.decode::<3, _>(bytes.iter().copied());
+        let error = frames.find_map(Result::err).unwrap();
+        assert_eq!((error.offset, error.kind), (offset, kind), "{bytes:?}");
     }
 }
 
@@ -229,143 +210,114 @@ fn headers_by_hand_are_read() {
 
 #[test]
 fn wrong_headers_are_refused_with_line_and_column() {
-    for (text, wanted) in [
-        ("", "line 1, column 1: the text ends without the array"),
-        (
-            "/* é */ char d[] = {é};",
-            "line 1, column 21: 'é' where a number must stand",
-        ),
-        (
-            "char d[] = {\n 1, 300};",
-            "line 2, column 5: 300 does not fit into -128..=255",
-        ),
-        (
-            "char d[] =\r\n{1,\r\n 300};",
-            "line 3, column 2: 300 does not fit into -128..=255",
-        ),
-        (
-            "char d[] = {1,\n\t-129};",
-            "line 2, column 2: -129 does not fit into -128..=255",
-        ),
-        (
-            "char d[] = {1, 99999999999};",
-            "line 1, column 16: this number has more than 32 bits",
-        ),
-        (
-            "char d[] = {1, 0x};",
-            "line 1, column 16: this is not a number",
-        ),
-        (
-            "char d[] = {1, 08};",
-            "line 1, column 16: this is not a number",
-        ),
+    let not = |found, wanted| K::Unexpected { found, wanted };
+    let range = |value, min, max| K::Range { value, min, max };
+    let byte = |value| range(value, -128, 255);
+    let array = |values, declared| K::ArrayLength { values, declared };
+    let row = |values, declared| K::RowLength { values, declared };
+    let define = |name, value, wanted| K::Define {
+        name,
+        value,
+        wanted,
+    };
+    let ended = K::UnexpectedEnd { wanted: ", or }" };
+    let most = u32::MAX.into();
+    for (text, at, kind) in [
+        ("", [1, 1], K::NoArray),
+        ("/* é */ char d[] = {é};", [1, 21], not('é', "a number")),
+        ("char d[] = {\n 1, 300};", [2, 5], byte(300)),
+        ("char d[] =\r\n{1,\r\n 300};", [3, 2], byte(300)),
+        ("char d[] = {1,\n\t-129};", [2, 2], byte(-129)),
+        ("char d[] = {1, 99999999999};", [1, 16], K::TooLarge),
+        ("char d[] = {1, 0x};", [1, 16], K::NotANumber),
+        ("char d[] = {1, 08};", [1, 16], K::NotANumber),
         (
             "char d[] = {1, STOP};\n#define STOP 0",
-            "line 1, column 16: 'S' where a number must stand",
+            [1, 16],
+            not('S', "a number"),
         ),
-        (
-            "char d[] = {1,, 2};",
-            "line 1, column 15: ',' where a number must stand",
-        ),
-        (
-            "char d[] = {1 2};",
-            "line 1, column 15: '2' where , or } must stand",
-        ),
-        (
-            "char d[] = {1, (2};",
-            "line 1, column 18: '}' where ) must stand",
-        ),
-        (
-            "char d[] = {1, 2",
-            "line 1, column 17: the text ends where , or } must stand",
-        ),
-        (
-            "char d[] = {1, /* 2",
-            "line 1, column 16: this comment has no end",
-        ),
-        (
-            "char d[3] = {1, 2};",
-            "line 1, column 18: an array of 2 values, declared are 3",
-        ),
-        (
-            "char d[][2] = {{1, 2}, {3}};",
-            "line 1, column 26: a row of 1 values, declared are 2",
-        ),
-        (
-            "char d[] = {{1, 2}, {3, 4}};",
-            "line 1, column 13: a row in an array",
-        ),
-        (
-            "char d[][2][2] = {1, 2};",
-            "line 1, column 12: the array has more than two dimensions",
-        ),
-        (
-            "char d[] = {1, 2, 3};",
-            "line 1, column 20: the last frame or run is cut off",
-        ),
+        ("char d[] = {1,, 2};", [1, 15], not(',', "a number")),
+        ("char d[] = {1 2};", [1, 15], not('2', ", or }")),
+        ("char d[] = {1, (2};", [1, 18], not('}', ")")),
+        ("char d[] = {1, 2", [1, 17], ended),
+        ("char d[] = {1, /* 2", [1, 16], K::OpenComment),
+        ("char d[3] = {1, 2};", [1, 18], array(2, 3)),
+        ("char d[][2] = {{1, 2}, {3}};", [1, 26], row(1, 2)),
+        ("char d[] = {{1, 2}, {3, 4}};", [1, 13], K::Row),
+        ("char d[][2][2] = {1, 2};", [1, 12], K::Dimensions),
+        ("char d[] = {1, 2, 3};", [1, 20], K::Frames(F::Truncated)),
         (
             "char a[] = {1, 2};\nchar b[] = {1, 2};",
-            "line 2, column 12: a second array",
+            [2, 12],
+            K::SecondArray,
         ),
         (
             "#define D_MOTORS 8\nchar d[] = {1, 2};",
-            "line 1, column 1: MOTORS is 8, 2 wanted",
+            [1, 1],
+            define("MOTORS", 8, 2),
         ),
         (
             "\n#define D_FRAMES 2\nchar d[] = {1, 2};",
-            "line 2, column 1: FRAMES is 2, 1 wanted",
+            [2, 1],
+            define("FRAMES", 2, 1),
         ),
         (
             "char d[] = {1, 2};\n  #define D_BYTES 3",
-            "line 2, column 3: BYTES is 3, 2 wanted",
+            [2, 3],
+            define("BYTES", 3, 2),
         ),
         (
             "#define D_PACKING 3\nchar d[] = {1, 2};",
-            "line 1, column 1: 3 does not fit into 0..=2",
+            [1, 1],
+            range(3, 0, 2),
         ),
         (
             "#define D_FRAME_TICKS 0\nchar d[] = {1, 2};",
-            "line 1, column 1: 0 does not fit into 1..=",
+            [1, 1],
+            range(0, 1, most),
         ),
         (
             "#define D_THRESHOLD 127\nchar d[] = {1, 2};",
-            "line 1, column 1: 127 does not fit into 128..=65535",
+            [1, 1],
+            range(127, 128, 65_535),
         ),
         (
             "#define D_PACKING 1\nchar d[] = {0,\n 1, 2};",
-            "line 3, column 5: a run of 0 frames",
+            [3, 5],
+            K::Frames(F::ZeroCount),
         ),
     ] {
-        let error = Data::<2>::read(text).map(|_| ()).unwrap_err().to_string();
-        assert!(error.starts_with(wanted), "{error}: {text}");
+        let error = Data::<2>::read(text).map(|_| ()).unwrap_err();
+        let place = [error.location.line, error.location.column];
+        assert_eq!((place, error.kind), (at, kind), "{text}");
     }
 }
 
 #[test]
 fn tables_that_no_firmware_holds_are_not_written() {
     let write = |count| DataHeader::DEFAULT.write(vec![[0; 8]; count], &mut String::new());
-    assert_eq!(write(0).unwrap_err().to_string(), "a table without values");
-    let error = write(8193).unwrap_err().to_string();
-    assert_eq!(error, "a table of 65544 bytes, an 8051 addresses 65536");
+    assert_eq!(write(0), Err(WriteError::Empty));
+    let (bytes, limit) = (65_544, 65_536);
+    assert_eq!(write(8193), Err(WriteError::TooLong { bytes, limit }));
     assert!(write(8192).is_ok());
-    let error = Threshold::new(127).unwrap_err();
-    assert_eq!(error.to_string(), "a threshold of 127, min 128");
+    assert_eq!(Threshold::new(127).unwrap_err().threshold, 127);
+    let character = |character| WriteError::NameCharacter { character };
+    let length = 33;
     for (name, wanted) in [
-        ("", "the name of a table is empty"),
-        ("xdata", "a table cannot have a keyword"),
-        ("1st", "'1' cannot stand in the name"),
-        ("a b", "' ' cannot stand in the name"),
+        ("", WriteError::NameEmpty),
+        ("xdata", WriteError::NameKeyword),
+        ("1st", character('1')),
+        ("a b", character(' ')),
         (
             "abcdefghijklmnopqrstuvwxyz_abcdef",
-            "a table's name of 33 characters, max 31",
+            WriteError::NameTooLong { length },
         ),
     ] {
         let header = DataHeader {
             name,
             ..DataHeader::DEFAULT
         };
-        let error = header.write([[0; 8]], &mut String::new()).unwrap_err();
-        let error = error.to_string();
-        assert!(error.starts_with(wanted), "{error}");
+        let refused = header.write([[0; 8]], &mut String::new());
+        assert_eq!(refused, Err(wanted));
     }
 }

@@ -2,19 +2,17 @@
 //! right, against its definition in 128 bits, or an error. What parses bytes and texts has its own
 //! tests, and fuzzing.
 
-use pattern_codec::dance::{Data, DataHeader, Packing, ProgramMemory, Sizes, Threshold, Timing};
+use pattern_codec::dance::{Data, DataHeader, ProgramMemory, Threshold, Timing};
 use pattern_codec::engraving::{
     Axis, AxisCodes, Builder, Fast, JointPulses, PerAxis, Record, Slow, Statistics,
 };
 use proptest::prelude::*;
 use test_support::{any_i32, any_u16, any_u32, any_u64};
 
-fn joint_pulses() -> impl Strategy<Value = JointPulses> {
-    (any_i32(), any_i32(), any_i32()).prop_map(|(theta1, theta2, theta3)| JointPulses {
-        theta1,
-        theta2,
-        theta3,
-    })
+use crate::common::{axes, joints, per_axis};
+
+fn any_joint_pulses() -> impl Strategy<Value = JointPulses> {
+    [any_i32(), any_i32(), any_i32()].prop_map(|[a, b, c]| joints(a, b, c))
 }
 
 proptest! {
@@ -31,16 +29,7 @@ proptest! {
     }
 
     #[test]
-    fn sizes_and_memories(frames in prop::collection::vec(any::<[i8; 3]>(), 0..9), repeat in 1..700_usize, data in any_u64(), code in any_u64(), bytes in any_u64()) {
-        let frames = frames.into_iter().flat_map(|frame| core::iter::repeat_n(frame, repeat));
-        let sizes = Sizes::of(frames.clone());
-        prop_assert_eq!(sizes.frames(), frames.clone().count() as u64);
-        for packing in Packing::ALL {
-            let encoded: Vec<u8> = packing.encode(frames.clone()).collect();
-            prop_assert_eq!(sizes.bytes(packing), encoded.len() as u64);
-            prop_assert!(sizes.bytes(sizes.smallest()) <= sizes.bytes(packing));
-            prop_assert!(packing.decode(encoded).map(Result::unwrap).eq(frames.clone()));
-        }
+    fn memories(data in any_u64(), code in any_u64(), bytes in any_u64()) {
         let fits = u128::from(data) + u128::from(code) <= u128::from(bytes);
         let fit = ProgramMemory { bytes }.fit(data, code);
         prop_assert_eq!(fit.fits(), fits);
@@ -48,7 +37,7 @@ proptest! {
     }
 
     #[test]
-    fn records_of_any_motion(axis in prop::sample::select(&Axis::ALL[..]), start in any_i32(), pulses in any_i32(), joints in joint_pulses()) {
+    fn records_of_any_motion(axis in axes(), start in any_i32(), pulses in any_i32(), joints in any_joint_pulses()) {
         let fast = Fast::new(axis, pulses);
         prop_assert_eq!(fast.is_ok(), pulses.unsigned_abs() <= 65_535);
         let slow = Slow::new(joints);
@@ -102,8 +91,7 @@ proptest! {
 
     #[test]
     fn codes_and_names(codes: [u8; 4], name in "[a-zA-Z0-9_ é]{0,40}") {
-        let [theta1, theta2, theta3, vertical] = codes;
-        let all = AxisCodes::new(PerAxis { theta1, theta2, theta3, vertical });
+        let all = AxisCodes::new(per_axis(codes));
         prop_assert_eq!(all.is_ok(), (0..4).all(|code| codes.contains(&code)));
         let mut text = String::new();
         let header = DataHeader { name: &name, ..DataHeader::DEFAULT };

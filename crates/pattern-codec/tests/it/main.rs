@@ -1,6 +1,7 @@
 //! All tests of the crate: one program, which is linked once.
 #![cfg(test)]
 
+mod common;
 mod dance;
 mod extremes;
 mod headers;

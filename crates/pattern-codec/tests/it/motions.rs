@@ -2,6 +2,8 @@
 
 use pattern_codec::engraving::{Axis, Builder, Format, JointPulses, PerAxis, Record, Statistics};
 
+use crate::common::{joints, per_axis};
+
 const LIFT_FIRST: [Axis; 4] = [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2];
 
 fn pulses(records: impl Iterator<Item = Record>, axis: Axis) -> Vec<i32> {
@@ -29,13 +31,7 @@ fn a_long_fast_motion_is_full_records_and_the_rest() {
 #[test]
 fn a_slow_split_keeps_the_ratio_in_every_part() {
     let mut builder = Builder::new();
-    let records = builder
-        .slow(JointPulses {
-            theta1: 100,
-            theta2: -50,
-            theta3: 1,
-        })
-        .unwrap();
+    let records = builder.slow(joints(100, -50, 1)).unwrap();
     assert_eq!(records.size_hint(), (4, Some(4)));
     assert_eq!(pulses(records.clone(), Axis::Theta1), [25, 25, 25, 25]);
     assert_eq!(pulses(records.clone(), Axis::Theta2), [-13, -12, -13, -12]);
@@ -54,11 +50,7 @@ fn motions_without_pulses_have_no_records() {
 fn homing_undoes_every_pulse_in_the_given_order() {
     let mut builder = Builder::new();
     let mut all: Vec<_> = builder.fast(Axis::Vertical, -300).unwrap().collect();
-    let cut = JointPulses {
-        theta1: 45,
-        theta2: -7,
-        theta3: 12,
-    };
+    let cut = joints(45, -7, 12);
     all.extend(builder.slow(cut).unwrap());
     let home: Vec<_> = builder.home(LIFT_FIRST).unwrap().collect();
     let moved = home.iter().map(|record| {
@@ -96,28 +88,15 @@ fn a_homing_order_names_every_axis_once() {
 
 #[test]
 fn a_position_beyond_32_bits_is_an_error_and_changes_nothing() {
-    let start = PerAxis {
-        theta1: 5,
-        theta2: i32::MAX - 1,
-        theta3: -5,
-        vertical: i32::MIN,
-    };
+    let start = per_axis([5, i32::MAX - 1, -5, i32::MIN]);
     let mut builder = Builder::at(start);
-    let cut = JointPulses {
-        theta1: 1,
-        theta2: 2,
-        theta3: 3,
-    };
+    let cut = joints(1, 2, 3);
     let error = builder.slow(cut).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "theta2: 2 pulses from position 2147483646 leave the range of 32 bits"
-    );
+    let numbers = (error.axis, error.position, error.pulses);
+    assert_eq!(numbers, (Axis::Theta2, i32::MAX - 1, 2));
     let error = builder.fast(Axis::Vertical, -1).unwrap_err();
-    assert_eq!(
-        (error.axis, error.position, error.pulses),
-        (Axis::Vertical, i32::MIN, -1)
-    );
+    let numbers = (error.axis, error.position, error.pulses);
+    assert_eq!(numbers, (Axis::Vertical, i32::MIN, -1));
     let record = Builder::new().slow(cut).unwrap().next().unwrap();
     assert!(builder.track(record).is_err());
     assert_eq!(builder.position(), start);
@@ -127,11 +106,7 @@ fn a_position_beyond_32_bits_is_an_error_and_changes_nothing() {
 fn statistics_count_records_pulses_and_time() {
     let mut builder = Builder::new();
     let mut records: Vec<_> = builder.fast(Axis::Vertical, -70_000).unwrap().collect();
-    let cut = JointPulses {
-        theta1: -20,
-        theta2: 30,
-        theta3: 5,
-    };
+    let cut = joints(-20, 30, 5);
     records.extend(builder.slow(cut).unwrap());
     records.push(Format::new().decode([0, 0, 0]).unwrap());
     records.push(Format::new().decode([0x1F, 0, 0]).unwrap());
@@ -140,15 +115,7 @@ fn statistics_count_records_pulses_and_time() {
     assert_eq!(statistics.slow_records, 2);
     assert_eq!(statistics.idle_records, 2);
     assert_eq!((statistics.records(), statistics.bytes()), (5, 15));
-    assert_eq!(
-        statistics.pulses,
-        PerAxis {
-            theta1: 20,
-            theta2: 30,
-            theta3: 5,
-            vertical: 70_000
-        }
-    );
+    assert_eq!(statistics.pulses, per_axis([20, 30, 5, 70_000]));
     assert_eq!(statistics.fast_periods, 70_000);
     // 5 of the disc, then 30 of the faster arm.
     assert_eq!(statistics.slow_periods, 5 + 30);

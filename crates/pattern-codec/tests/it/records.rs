@@ -1,25 +1,14 @@
 //! The cases that [Engraver 2000] leaves to decide, one test each.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodeError, AxisCodes, ByteOrder, DecodeErrorKind, Decoder, Fast, Format, JointPulses,
-    Mode, PerAxis, Record, Slow,
+    Axis, AxisCodeError, AxisCodes, ByteOrder, DecodeErrorKind, Decoder, Fast, Format, Mode,
+    PerAxis, Slow,
 };
+
+use crate::common::{fast, joints, per_axis, slow};
 
 const STRICT: Format = Format::new();
 const LENIENT: Format = Format::new().with_mode(Mode::Lenient);
-
-fn fast(axis: Axis, pulses: i32) -> Record {
-    Fast::new(axis, pulses).unwrap().into()
-}
-
-fn slow(theta3: i32, theta1: i32, theta2: i32) -> Record {
-    let pulses = JointPulses {
-        theta1,
-        theta2,
-        theta3,
-    };
-    Slow::new(pulses).unwrap().into()
-}
 
 #[test]
 fn fast_has_direction_axis_and_mark_in_byte_0_and_the_count_behind() {
@@ -43,7 +32,7 @@ fn slow_stands_in_the_order_theta3_theta1_theta2() {
         ((-1, 2, -3), [0x81, 0x02, 0x83]),
         ((30, -30, 0), [0x1E, 0x9E, 0x00]),
     ] {
-        let record = slow(theta3, theta1, theta2);
+        let record = slow(theta1, theta2, theta3);
         assert_eq!(record.encode(&STRICT), bytes);
         assert_eq!(STRICT.decode(bytes), Ok(record));
     }
@@ -51,12 +40,7 @@ fn slow_stands_in_the_order_theta3_theta1_theta2() {
 
 #[test]
 fn axis_codes_are_a_setting() {
-    let codes = PerAxis {
-        theta1: 3,
-        theta2: 0,
-        theta3: 1,
-        vertical: 2,
-    };
+    let codes = per_axis([3, 0, 1, 2]);
     let format = STRICT.with_axis_codes(AxisCodes::new(codes).unwrap());
     for axis in Axis::ALL {
         let bytes = fast(axis, 7).encode(&format);
@@ -114,11 +98,11 @@ fn more_than_one_record_holds_cannot_be_built() {
     for pulses in [31, -31, 256, -226, i32::MAX, i32::MIN] {
         for axis in [Axis::Theta3, Axis::Theta1, Axis::Theta2] {
             let only = |this| if this == axis { pulses } else { 30 };
-            let error = Slow::new(JointPulses {
-                theta1: only(Axis::Theta1),
-                theta2: only(Axis::Theta2),
-                theta3: only(Axis::Theta3),
-            })
+            let error = Slow::new(joints(
+                only(Axis::Theta1),
+                only(Axis::Theta2),
+                only(Axis::Theta3),
+            ))
             .unwrap_err();
             assert_eq!((error.axis, error.pulses, error.max), (axis, pulses, 30));
         }
@@ -246,7 +230,7 @@ fn axis_bits_in_a_slow_byte_are_an_error_or_ignored() {
             assert_eq!(error.offset, place as u64);
             let byte = bytes[place];
             assert_eq!(error.kind, DecodeErrorKind::SlowAxisBits { axis, byte });
-            assert_eq!(LENIENT.decode(bytes), Ok(slow(5, -6, 7)));
+            assert_eq!(LENIENT.decode(bytes), Ok(slow(-6, 7, 5)));
             assert_eq!(LENIENT.canonical(bytes), Ok([0x05, 0x86, 0x07]));
         }
     }

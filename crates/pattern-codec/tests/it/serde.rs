@@ -1,18 +1,16 @@
 //! Serialized settings and records: names as documented, values validated when read.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, Mode, PerAxis, Record, Slow, Statistics,
+    Axis, AxisCodes, ByteOrder, Fast, Format, Mode, Record, Statistics,
 };
 use serde_json::{from_str, json, to_value};
+use test_support::{not_read, stored};
+
+use crate::common::{fast, per_axis, slow};
 
 #[test]
 fn a_format_is_read_and_written_by_name() {
-    let codes = PerAxis {
-        theta1: 3,
-        theta2: 2,
-        theta3: 1,
-        vertical: 0,
-    };
+    let codes = per_axis([3, 2, 1, 0]);
     let format = Format::new()
         .with_axis_codes(AxisCodes::new(codes).unwrap())
         .with_byte_order(ByteOrder::LittleEndian)
@@ -44,28 +42,26 @@ fn wrong_settings_are_refused_with_the_reason() {
             "unknown field `byteorder`",
         ),
     ] {
-        let error = from_str::<Format>(text).unwrap_err().to_string();
+        let error = not_read::<Format>(text);
         assert!(error.contains(reason), "{error}");
     }
 }
 
 #[test]
 fn records_are_read_within_their_range_only() {
-    let fast: Record = Fast::new(Axis::Vertical, -65_535).unwrap().into();
-    let value = json!({ "fast": { "axis": "vertical", "pulses": -65_535 } });
-    assert_eq!(to_value(fast).unwrap(), value);
-    assert_eq!(from_str::<Record>(&value.to_string()).unwrap(), fast);
-
-    let pulses = JointPulses {
-        theta1: -30,
-        theta2: 30,
-        theta3: 1,
-    };
-    let slow: Record = Slow::new(pulses).unwrap().into();
-    let value = json!({ "slow": { "theta1": -30, "theta2": 30, "theta3": 1 } });
-    assert_eq!(to_value(slow).unwrap(), value);
-    assert_eq!(from_str::<Record>(&value.to_string()).unwrap(), slow);
-
+    for (record, value) in [
+        (
+            fast(Axis::Vertical, -65_535),
+            json!({ "fast": { "axis": "vertical", "pulses": -65_535 } }),
+        ),
+        (
+            slow(-30, 30, 1),
+            json!({ "slow": { "theta1": -30, "theta2": 30, "theta3": 1 } }),
+        ),
+    ] {
+        assert_eq!(to_value(record).unwrap(), value);
+        stored(&record);
+    }
     for (text, reason) in [
         (
             r#"{"fast": {"axis": "theta1", "pulses": 65536}}"#,
@@ -76,7 +72,7 @@ fn records_are_read_within_their_range_only() {
             "theta2: -31 pulses do not fit",
         ),
     ] {
-        let error = from_str::<Record>(text).unwrap_err().to_string();
+        let error = not_read::<Record>(text);
         assert!(error.contains(reason), "{error}");
     }
 }
@@ -88,8 +84,5 @@ fn statistics_are_written_by_name() {
     let value = to_value(statistics).unwrap();
     assert_eq!(value["fast_records"], 1);
     assert_eq!(value["pulses"]["theta2"], 7);
-    assert_eq!(
-        from_str::<Statistics>(&value.to_string()).unwrap(),
-        statistics
-    );
+    stored(&statistics);
 }
