@@ -6,60 +6,24 @@ mod times;
 
 use crate::support::table::{Cut, Point, plan, points_of};
 use path_timing::{Knot, PlanError};
-use pose_pt::nalgebra::Vector3;
 use pose_pt::{AxisLimits, Path, Platform};
 use proptest::prelude::*;
 
-use crate::support::cubic::between;
+use crate::support::limits::{LIMIT, check_limits};
 use crate::support::moves::{ALL, from_rest, poses};
 use crate::support::platform::{ACCELERATION, panel_with, pose, skewed};
-
-/// Times and positions of some metres rounded off, in limits that a reader recomputes.
-const LIMIT: f64 = 1.0 + 1e-9;
 
 /// Positions of some metres rounded off.
 const ROUNDING: f64 = 1e-11;
 
-/// The largest fractions of the limits of speed, acceleration and jerk.
-fn fractions<const N: usize>(platform: &Platform<N>, points: &[Point<N>]) -> [f64; 3] {
-    let mut fractions = [0.0_f64; 3];
-    let mut before = [Vector3::<f64>::zeros(); N];
-    let mut before_s = 0.0;
-    for pair in points.windows(2) {
-        let [from, to] = pair else { unreachable!() };
-        let [_, _, starts, jerks] = between(from, to, 0.0);
-        let mean_s = (before_s + to.segment_s) / 2.0;
-        for (number, locator) in platform.locators().iter().enumerate() {
-            for (axis, limits) in locator.limits.iter().enumerate() {
-                for place in 0..=16 {
-                    let [_, speeds, accelerations, _] = between(from, to, f64::from(place) / 16.0);
-                    fractions[0] = fractions[0].max(speeds[number][axis].abs() / limits.speed);
-                    let acceleration = accelerations[number][axis].abs();
-                    fractions[1] = fractions[1].max(acceleration / limits.acceleration);
-                }
-                if let Some(limit) = limits.jerk {
-                    let step = (starts[number][axis] - before[number][axis]).abs() / mean_s;
-                    fractions[2] = fractions[2].max(step / limit);
-                    fractions[2] = fractions[2].max(jerks[number][axis].abs() / limit);
-                }
-            }
-        }
-        before = between(from, to, 1.0)[2];
-        before_s = to.segment_s;
-    }
-    // And at the end, where all stands still.
-    for (locator, before) in platform.locators().iter().zip(&before) {
-        for (limits, before) in locator.limits.iter().zip(before.iter()) {
-            if let Some(limit) = limits.jerk {
-                fractions[2] = fractions[2].max(before.abs() / (before_s / 2.0) / limit);
-            }
-        }
-    }
-    fractions
-}
-
-/// Rest at both ends, times that add up, and velocities that belong to a rigid motion.
-fn check_motion<const N: usize>(platform: &Platform<N>, points: &[Point<N>], duration_s: f64) {
+/// Limits that are kept, rest at both ends, times that add up, and velocities that belong to a rigid
+/// motion; how far the limits are used.
+fn check_motion<const N: usize>(
+    platform: &Platform<N>,
+    points: &[Point<N>],
+    duration_s: f64,
+) -> [f64; 3] {
+    let used = check_limits(platform, points);
     for end in [points.first().unwrap(), points.last().unwrap()] {
         assert!(end.velocities.iter().all(|v| v.amax() == 0.0));
     }
@@ -81,6 +45,7 @@ fn check_motion<const N: usize>(platform: &Platform<N>, points: &[Point<N>], dur
             }
         }
     }
+    used
 }
 
 #[test]
@@ -105,11 +70,6 @@ fn poses_on_the_way_are_stops() {
                 assert!((got - wanted).amax() < ROUNDING);
             }
         }
-        let fractions = fractions(&platform, &points);
-        assert!(
-            fractions.iter().all(|share| *share < LIMIT),
-            "{fractions:?}"
-        );
         check_motion(&platform, &points, table.duration_s());
     }
 }
@@ -182,10 +142,8 @@ proptest! {
             .unwrap();
         let points = points_of(table.rows());
         prop_assert_eq!(points.len(), table.len());
-        let fractions = fractions(&platform, &points);
-        prop_assert!(fractions.iter().all(|share| *share < LIMIT), "{:?}", fractions);
+        let used = check_motion(&platform, &points, table.duration_s());
         // Something is at its limit.
-        prop_assert!(fractions.iter().any(|share| *share > 0.99), "{:?}", fractions);
-        check_motion(&platform, &points, table.duration_s());
+        prop_assert!(used.iter().any(|share| *share > 0.99), "{:?}", used);
     }
 }

@@ -2,27 +2,22 @@
 
 use crate::support::table::{Cut, Point, bound, plan, points_of};
 use path_timing::Knot;
-use pose_pt::{AxisLimits, Interpolation, Path, Platform, PtTable, Segmentation};
+use pose_pt::nalgebra::Vector3;
+use pose_pt::{AxisLimits, Interpolation, Path, PtTable, Segmentation};
 use proptest::prelude::*;
 
 use crate::support::cubic::between;
-use crate::support::distance_error::distance_error;
+use crate::support::distance_error::measured;
 use crate::support::moves::{ALL, from_rest, poses};
 use crate::support::platform::{ACCELERATION, panel, panel_with, skewed};
 
 /// Positions of some metres rounded off.
 const ROUNDING: f64 = 1e-11;
 
-/// The largest distance error between points, at 1000 places of each segment.
-fn measured<const N: usize>(platform: &Platform<N>, points: &[Point<N>]) -> f64 {
-    let mut worst = 0.0_f64;
-    for pair in points.windows(2) {
-        for place in 0..=1000 {
-            let [axes, ..] = between(&pair[0], &pair[1], f64::from(place) / 1000.0);
-            worst = worst.max(distance_error(platform, &axes));
-        }
-    }
-    worst
+/// The axes on a segment as a controller runs it.
+fn axes_between<const N: usize>(from: &Point<N>, to: &Point<N>, share: f64) -> [Vector3<f64>; N] {
+    let [axes, ..] = between(from, to, share);
+    axes
 }
 
 /// From rest the fourth-order figure for constant speed does not hold: the distance error is
@@ -38,7 +33,10 @@ fn distance_error_from_rest_is_of_second_order() {
     let points = points_of(table.rows());
     let length = (platform.anchors()[1] - platform.anchors()[0]).xy().norm();
     let half = turn / 2.0;
-    let (bound, measured) = (bound(&platform, &table), measured(&platform, &points));
+    let (bound, measured) = (
+        bound(&platform, &table),
+        measured(&platform, &points, axes_between),
+    );
     let second = length * length / platform.largest_anchor_distance() * half * half / 32.0;
     assert!(
         (measured / second - 1.0).abs() < 1e-3,
@@ -65,7 +63,7 @@ fn distance_error_decides_the_number_of_points() {
             "{allowed} mm: {segments} segments, bound {most}, {} s",
             table.duration_s()
         );
-        assert!(most <= allowed && measured(&platform, &points) <= most);
+        assert!(most <= allowed && measured(&platform, &points, axes_between) <= most);
         let linear =
             PtTable::plan(&platform, &path, Segmentation::max_distance_error(allowed)).unwrap();
         println!("PT: {} segments", linear.len() - 1);
@@ -92,7 +90,7 @@ proptest! {
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();
         let points = points_of(table.rows());
-        let (bound, measured) = (bound(&platform, &table), measured(&platform, &points));
+        let (bound, measured) = (bound(&platform, &table), measured(&platform, &points, axes_between));
         prop_assert!(measured <= bound + ROUNDING, "{} {}", measured, bound);
         prop_assert!(bound <= 3.0 * measured + ROUNDING, "{} {}", measured, bound);
     }

@@ -1,16 +1,13 @@
 //! Feed override, stops on the path, and the controller's buffer.
 
-use crate::support::table::{Cut, Point, plan, points_of};
+use crate::support::table::{Cut, plan, points_of};
 use path_timing::{FeedCeiling, FeedError, Knot, PlanError, Playback};
 use pose_pt::nalgebra::Isometry3;
-use pose_pt::{AxisLimits, Interpolation, Path, Platform};
+use pose_pt::{AxisLimits, Interpolation, Path};
 use proptest::prelude::*;
 
-use crate::support::cubic::between;
+use crate::support::limits::{LIMIT, check_limits};
 use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with, pose, skewed};
-
-/// Times and positions of some metres rounded off.
-const LIMIT: f64 = 1.0 + 1e-9;
 
 /// Positions of some metres rounded off.
 const ROUNDING: f64 = 1e-11;
@@ -20,23 +17,6 @@ fn poses() -> [Isometry3<f64>; 2] {
         pose([0.0; 3], [0.0; 3]),
         pose([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]),
     ]
-}
-
-/// Speeds and accelerations of what the controller runs, as shares of the limits.
-fn check_limits<const N: usize>(platform: &Platform<N>, points: &[Point<N>]) {
-    for pair in points.windows(2) {
-        for place in 0..=16 {
-            let share = f64::from(place) / 16.0;
-            let [_, speeds, accelerations, _] = between(&pair[0], &pair[1], share);
-            for (number, locator) in platform.locators().iter().enumerate() {
-                for (axis, limits) in locator.limits.iter().enumerate() {
-                    assert!(speeds[number][axis].abs() < limits.speed * LIMIT);
-                    let acceleration = accelerations[number][axis].abs();
-                    assert!(acceleration < limits.acceleration * LIMIT, "{acceleration}");
-                }
-            }
-        }
-    }
 }
 
 #[test]
@@ -148,27 +128,15 @@ fn wrong_feeds_and_memory_are_named() {
     let table = plan(&platform, &path, Cut::Into(10), &mut knots).unwrap();
     let mut ceilings = [FeedCeiling::default(); 11];
     let error = table.playback(1.5, &mut ceilings[..10]).unwrap_err();
-    assert_eq!(
-        error,
-        PlanError::Memory {
-            needed: 11,
-            available: 10
-        }
-    );
+    let (needed, available) = (11, 10);
+    assert_eq!(error, PlanError::Memory { needed, available });
     for max in [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e-310, 1e300] {
         let error = table.playback(max, &mut ceilings).unwrap_err();
         assert!(matches!(error, PlanError::Feed { .. }), "{error}");
     }
     let mut run = table.playback(1.5, &mut ceilings).unwrap();
-    let error = run.set_feed(1.6).unwrap_err();
-    assert_eq!(
-        error,
-        FeedError {
-            feed: 1.6,
-            min: 1e-50,
-            max: 1.5
-        }
-    );
+    let (feed, min, max) = (1.6, 1e-50, 1.5);
+    assert_eq!(run.set_feed(feed), Err(FeedError { feed, min, max }));
     for feed in [-0.1, f64::NAN, 1e-310] {
         assert!(run.set_feed(feed).is_err(), "{feed}");
     }

@@ -5,6 +5,8 @@ pub(crate) mod cubic;
 pub(crate) mod distance_error;
 #[cfg(feature = "path-timing")]
 pub(crate) mod exact;
+#[cfg(feature = "path-timing")]
+pub(crate) mod limits;
 pub(crate) mod moves;
 #[cfg(feature = "path-timing")]
 pub(crate) mod optimum;
