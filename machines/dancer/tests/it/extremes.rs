@@ -6,6 +6,8 @@ use pattern_codec::dance::{Threshold, Timing};
 use proptest::prelude::*;
 use test_support::{any_i32, any_u32};
 
+use crate::{easings, laws};
+
 /// A frame of 0 ticks is one of 1.
 fn motor(law: Law, threshold: u16, frame_ticks: u32) -> Motor {
     let timing = Timing::new(1, frame_ticks.max(1)).unwrap();
@@ -32,7 +34,7 @@ proptest! {
         frame_ticks in any_u32(),
         threshold in 128..=u16::MAX,
         speed: i8,
-        law in prop::sample::select(&Law::ALL[..]),
+        law in laws(),
     ) {
         let mut motor = motor(law, threshold, frame_ticks);
         for frames in 1..4 {
@@ -47,8 +49,8 @@ proptest! {
     fn turns_end_or_say_why(
         frame_ticks in any_u32(),
         threshold in 128..=u16::MAX,
-        law in prop::sample::select(&Law::ALL[..]),
-        easing in prop::sample::select(&[Easing::Linear, Easing::In, Easing::Out, Easing::Smooth][..]),
+        law in laws(),
+        easing in easings(),
         before: i8,
         max_speed: u8,
         half_steps in any_i32(),
@@ -77,10 +79,10 @@ proptest! {
     }
 
     #[test]
-    fn eased_speeds(highest: i8, frames in prop_oneof![0..9_u16, any::<u16>(), Just(u16::MAX)], easing in prop::sample::select(&[Easing::Linear, Easing::In, Easing::Out, Easing::Smooth][..])) {
+    fn eased_speeds(highest: i8, frames in prop_oneof![0..9_u16, any::<u16>(), Just(u16::MAX)], easing in easings()) {
         let speeds = easing.speeds(highest, frames);
         prop_assert_eq!(speeds.len(), usize::from(frames));
-        for (k, speed) in (0_u16..).zip(speeds).take(300) {
+        for (k, speed) in (0_u16..).zip(speeds).take(400) {
             // At the middle of the frame.
             let t = (f64::from(k) + 0.5) / f64::from(frames);
             let part = match easing {

@@ -6,7 +6,7 @@ use dancer::{Easing, Law, Motor, TurnError};
 use pattern_codec::dance::{Threshold, Timing};
 use proptest::prelude::*;
 
-const EASINGS: [Easing; 4] = [Easing::Linear, Easing::In, Easing::Out, Easing::Smooth];
+use crate::{easings, laws};
 
 /// The firmware: one addition and one comparison per tick.
 struct Firmware {
@@ -55,14 +55,6 @@ fn motor(law: Law) -> Motor {
     Motor::new(law, Threshold::DEFAULT, Timing::DEFAULT)
 }
 
-fn laws() -> impl Strategy<Value = Law> {
-    prop::sample::select(&Law::ALL[..])
-}
-
-fn easings() -> impl Strategy<Value = Easing> {
-    prop::sample::select(&EASINGS[..])
-}
-
 proptest! {
     #[test]
     fn a_motor_is_where_the_ticks_bring_it(law in laws(), frame_ticks in 1_u32..700, threshold in 128_u16..2000, speeds in prop::collection::vec(any::<i8>(), 0..40)) {
@@ -105,30 +97,6 @@ proptest! {
             prop_assert_eq!(firmware.position, planned.position());
             let most = i64::from(law == Law::Reset);
             prop_assert!((firmware.position - wanted).abs() <= most);
-        }
-    }
-
-    #[test]
-    fn no_turn_is_made_too_fast(half_steps: i32, frames: u16, easing in easings(), law in laws()) {
-        let mut motor = motor(law);
-        if let Ok(turn) = motor.turn(half_steps, frames.min(300), easing) {
-            turn.into_iter().for_each(|speed| motor.run(speed));
-            prop_assert!(motor.position().abs_diff(half_steps.into()) <= 1);
-        }
-    }
-
-    #[test]
-    fn eased_speeds_reach_the_highest(highest: i8, frames in 1_u16..400, easing in easings()) {
-        let speeds = easing.speeds(highest, frames);
-        prop_assert_eq!(speeds.len(), usize::from(frames));
-        let speeds: Vec<i8> = speeds.collect();
-        let magnitude = speeds.iter().map(|speed| speed.unsigned_abs()).max().unwrap();
-        prop_assert!(magnitude <= highest.unsigned_abs());
-        if easing == Easing::Linear {
-            prop_assert_eq!(magnitude, highest.unsigned_abs());
-        }
-        for speed in speeds {
-            prop_assert!(speed == 0 || (speed < 0) == (highest < 0));
         }
     }
 }

@@ -2,153 +2,141 @@
 
 use super::*;
 
+/// Its one move starts in line 11.
+const GOOD: &str = "[[move]]\nmotor = 'arm'\nat_s = 0\nfor_s = 1\nto_deg = 45\n";
+
+/// What is said in one line about the good score with one part replaced.
+fn refusal(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    let text = format!("{MOTORS}\n{}", GOOD.replacen(from, to, 1));
+    let error = text
+        .parse::<Score>()
+        .and_then(|score| score.compile::<8>(Law::CarryMagnitude));
+    let error = error.unwrap_err().to_string();
+    assert_eq!(error.lines().count(), 1, "{error}");
+    error
+}
+
+fn assert_names_the_move(from: &str, to: &str, wanted: &str) {
+    let error = refusal(from, to);
+    let said = error.strip_prefix("line 11, move 1: ");
+    assert!(
+        said.is_some_and(|said| said.starts_with(wanted)),
+        "{error}\nwanted: {wanted}"
+    );
+}
+
 #[test]
-fn wrong_scores_are_refused_with_line_and_move() {
-    let good = "[[move]]\nmotor = 'arm'\nat_s = 0\nfor_s = 1\nto_deg = 45\n";
+fn wrong_times_and_motors_are_refused_with_line_and_move() {
+    let no_start = "missing field `at_s`";
+    let too_late = "it ends at 13108 s, the longest dance at 13107 s";
+    let no_frame = "at_s = 0.3 is no whole number of frames of 0.2 s";
+    let too_long = "for_s = 13107.2 is not within 65535 frames";
     for (from, to, wanted) in [
+        ("at_s = 0", "", no_start),
+        ("at_s = 0", "at_s = 0.3", no_frame),
+        ("at_s = 0", "at_s = -1", "at_s = -1 is not within 0 s"),
+        ("at_s = 0", "at_s = nan", "at_s = NaN is not within 0 s"),
+        ("0", "1e9", "at_s = 1000000000 is not within 0 s"),
+        ("at_s = 0", "at_s = 13107", too_late),
+        ("for_s = 1", "for_s = 0", "for_s = 0 is not above 0"),
+        ("for_s = 1", "for_s = 13107.2", too_long),
+        ("'arm'", "'leg'", "no motor is called \"leg\""),
+    ] {
+        assert_names_the_move(from, to, wanted);
+    }
+}
+
+#[test]
+fn wrong_ways_are_refused_with_line_and_move() {
+    let needed = "one of speed, to_deg and turn_deg must be given";
+    for (way, wanted) in [
+        ("", format!("{needed}, here are 0")),
+        ("to_deg = 45\nspeed = 1", format!("{needed}, here are 2")),
+        ("speed = -128", "speed = -128, max 127".into()),
+        ("to_deg = inf", "to_deg = inf is not finite".into()),
+        ("to_deg = 1e300", "2.2".into()),
+    ] {
+        assert_names_the_move("to_deg = 45", way, &wanted);
+    }
+    let too_fast = "\"arm\": frame 1 of 5 needs a speed of 132, max 127";
+    assert_names_the_move("to_deg = 45", "to_deg = 99", too_fast);
+}
+
+#[test]
+fn wrong_repetitions_are_refused_with_line_and_move() {
+    let behind_itself =
+        |start: &str| format!("it starts at {start} s, before move 1 of \"arm\" ends at 1 s");
+    let too_late = "it ends at 13111 s, the longest dance at 13107 s";
+    for (repetition, wanted) in [
+        ("repeat = 2", "repeat and every_s go together".into()),
+        ("repeat = 2\nevery_s = 0.8", behind_itself("0.8")),
+        ("repeat = 4000000000\nevery_s = 5", too_late.into()),
+        ("repeat = 4000000000\nevery_s = 0", behind_itself("0")),
         (
-            "to_deg",
-            "to_grad",
-            "line 15, move 1: unknown field `to_grad`",
-        ),
-        ("at_s = 0\n", "", "line 11, move 1: missing field `at_s`"),
-        (
-            "0\n",
-            "0.3\n",
-            "line 11, move 1: at_s = 0.3 is no whole number of frames of 0.2 s",
-        ),
-        (
-            "at_s = 0",
-            "at_s = -1",
-            "line 11, move 1: at_s = -1 is not within 0 s",
-        ),
-        (
-            "at_s = 0",
-            "at_s = nan",
-            "line 11, move 1: at_s = NaN is not within 0 s",
-        ),
-        (
-            "at_s = 0",
-            "at_s = 1e9",
-            "line 11, move 1: at_s = 1000000000 is not within 0 s",
-        ),
-        (
-            "at_s = 0",
-            "at_s = 13107",
-            "line 11, move 1: it ends at 13108 s, the longest dance at 13107 s",
-        ),
-        (
-            "at_s = 0",
-            "at_s = 'x'",
-            "line 13, move 1: invalid type: string",
-        ),
-        (
-            "for_s = 1",
-            "for_s = 0",
-            "line 11, move 1: for_s = 0 is not above 0",
-        ),
-        (
-            "'arm'",
-            "'leg'",
-            "line 11, move 1: no motor is called \"leg\"",
-        ),
-        (
-            "to_deg = 45",
-            "",
-            "line 11, move 1: one of speed, to_deg and turn_deg must be given, here are 0",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\nspeed = 1",
-            "line 11, move 1: one of speed, to_deg and turn_deg must be given, here are 2",
-        ),
-        (
-            "to_deg = 45",
-            "speed = -128",
-            "line 11, move 1: speed = -128, max 127",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = inf",
-            "line 11, move 1: to_deg = inf is not finite",
-        ),
-        ("to_deg = 45", "to_deg = 1e300", "line 11, move 1: 2.2"),
-        (
-            "to_deg = 45",
-            "to_deg = 45\nrepeat = 2",
-            "line 11, move 1: repeat and every_s go together",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\nrepeat = 2\nevery_s = 0.8",
-            "line 11, move 1: it starts at 0.8 s, before move 1 of \"arm\" ends at 1 s",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\nrepeat = 4000000000\nevery_s = 5",
-            "line 11, move 1: it ends at 13111 s, the longest dance at 13107 s",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\nrepeat = 4000000000\nevery_s = 0",
-            "line 11, move 1: it starts at 0 s, before move 1 of \"arm\" ends at 1 s",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\nrepeat = 0\nevery_s = 5",
-            "line 11, move 1: repeat = 0 is not above 0",
-        ),
-        (
-            "for_s = 1",
-            "for_s = 13107.2",
-            "line 11, move 1: for_s = 13107.2 is not within 65535 frames",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 99",
-            "line 11, move 1: \"arm\": frame 1 of 5 needs a speed of 132, max 127",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\neasing = 'bouncy'",
-            "line 16, move 1: unknown variant `bouncy`",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\n[[move]]\nmotor = 'wheel'\nat_s = 3\nfor_s = 1\nspeed = 101",
-            "line 16, move 2: speed = 101, max 100",
-        ),
-        (
-            "to_deg = 45",
-            "to_deg = 45\n[[move]]\nmotor = 'arm'\nat_s = 0.8\nfor_s = 1\nspeed = 1",
-            "line 16, move 2: it starts at 0.8 s, before move 1 of \"arm\" ends at 1 s",
-        ),
-        ("to_deg = 45", "to_deg = 45 46", "line 15, move 1: "),
-        (
-            "[[move]]",
-            "[[motor]]\nname = 'arm'\nhalf_step_deg = 1\n[[move]]",
-            "line 11, motor 3: the name \"arm\" is taken by motor 1",
-        ),
-        (
-            "[[move]]",
-            "[[motor]]\nname = 'head'\nhalf_step_deg = 0\n[[move]]",
-            "line 11, motor 3: half_step_deg = 0 is not above 0",
-        ),
-        (
-            "[[move]]",
-            "[[motor]]\nname = 'head'\nhalf_step_deg = 1\nmax_speed = 128\n[[move]]",
-            "line 11, motor 3: max_speed = 128 is not within 1..=127",
+            "repeat = 0\nevery_s = 5",
+            "repeat = 0 is not above 0".into(),
         ),
     ] {
-        assert!(good.contains(from), "{from}");
-        let text = format!("{MOTORS}\n{}", good.replacen(from, to, 1));
-        let error = text
-            .parse::<Score>()
-            .and_then(|score| score.compile::<8>(Law::CarryMagnitude));
-        let error = error.unwrap_err().to_string();
-        assert!(error.starts_with(wanted), "{error}\nwanted: {wanted}");
-        assert_eq!(error.lines().count(), 1, "{error}");
+        let repeated = format!("to_deg = 45\n{repetition}");
+        assert_names_the_move("to_deg = 45", &repeated, &wanted);
     }
+}
+
+#[test]
+fn what_is_wrong_in_another_line_is_refused_there() {
+    let key = "line 15, move 1: unknown field `to_grad`";
+    let start = "line 13, move 1: invalid type: string";
+    let easing = "line 16, move 1: unknown variant `bouncy`";
+    for (from, to, wanted) in [
+        ("to_deg", "to_grad", key),
+        ("at_s = 0", "at_s = 'x'", start),
+        ("= 45", "= 45 46", "line 15, move 1: "),
+        ("= 45", "= 45\neasing = 'bouncy'", easing),
+    ] {
+        let error = refusal(from, to);
+        assert!(error.starts_with(wanted), "{error}\nwanted: {wanted}");
+    }
+    for (second, wanted) in [
+        (
+            "motor = 'wheel'\nat_s = 3\nfor_s = 1\nspeed = 101",
+            "speed = 101, max 100",
+        ),
+        (
+            "motor = 'arm'\nat_s = 0.8\nfor_s = 1\nspeed = 1",
+            "it starts at 0.8 s, before move 1 of \"arm\" ends at 1 s",
+        ),
+    ] {
+        let error = refusal("= 45", &format!("= 45\n[[move]]\n{second}"));
+        let said = error.strip_prefix("line 16, move 2: ");
+        assert!(said.is_some_and(|said| said.starts_with(wanted)), "{error}");
+    }
+}
+
+#[test]
+fn wrong_motors_are_refused_with_line_and_motor() {
+    for (motor, wanted) in [
+        (
+            "name = 'arm'\nhalf_step_deg = 1",
+            "the name \"arm\" is taken by motor 1",
+        ),
+        (
+            "name = 'head'\nhalf_step_deg = 0",
+            "half_step_deg = 0 is not above 0",
+        ),
+        (
+            "name = 'head'\nhalf_step_deg = 1\nmax_speed = 128",
+            "max_speed = 128 is not within 1..=127",
+        ),
+    ] {
+        let error = refusal("[[move]]", &format!("[[motor]]\n{motor}\n[[move]]"));
+        let said = error.strip_prefix("line 11, motor 3: ");
+        assert!(said.is_some_and(|said| said.starts_with(wanted)), "{error}");
+    }
+}
+
+#[test]
+fn wrong_heads_are_refused_with_their_line() {
     for (head, wanted) in [
         (
             "length_s = 0.8",
@@ -177,7 +165,7 @@ fn wrong_scores_are_refused_with_line_and_move() {
             "line 2: a frame of 0 ticks of 500 us has no length",
         ),
     ] {
-        let error = format!("{head}\n{MOTORS}\n{good}")
+        let error = format!("{head}\n{MOTORS}\n{GOOD}")
             .parse::<Score>()
             .unwrap_err()
             .to_string();
