@@ -2,6 +2,7 @@
 //! overflows. The answer is right, against its definition in 128 bits, or an error.
 
 use proptest::prelude::*;
+use proptest::test_runner::TestCaseResult;
 use pulse_interp::{
     Arc, ArcError, AxesError, AxesLine, AxisLoop, Dda, Direction, Homing, HomingOrder,
     HomingSettings, Line, LoopSettings, Move, Rule, ScaleRatio, StepIntervals, SwitchError,
@@ -68,7 +69,7 @@ fn walks(arc: &Arc) -> [Walk; 3] {
 }
 
 /// From the start on, near its circle, and at its end where the window holds that.
-fn check_arc(arc: &Arc, end_hundredths: i128) -> Result<(), TestCaseError> {
+fn check_arc(arc: &Arc, end_hundredths: i128) -> TestCaseResult {
     let (start, end) = (arc.start().map(i128::from), arc.end().map(i128::from));
     for (moves, remaining, hundredths) in walks(arc) {
         prop_assert!(remaining > 0);
@@ -81,6 +82,17 @@ fn check_arc(arc: &Arc, end_hundredths: i128) -> Result<(), TestCaseError> {
         prop_assert_eq!(made, remaining.min(WINDOW as u64));
         prop_assert!(made < remaining || at == end);
     }
+    Ok(())
+}
+
+/// The size hint is what remains, step by step, and the end is final.
+fn counts_down<I: Iterator>(mut steps: I, remaining: impl Fn(&I) -> u64) -> TestCaseResult {
+    for left in (0..=steps.size_hint().0).rev() {
+        prop_assert_eq!(steps.size_hint(), (left, Some(left)));
+        prop_assert_eq!(remaining(&steps), left as u64);
+        prop_assert_eq!(steps.next().is_some(), left > 0);
+    }
+    prop_assert!(steps.next().is_none());
     Ok(())
 }
 
@@ -193,28 +205,22 @@ proptest! {
         }
     }
 
-    /// Size hints count down, and the end is final.
     #[test]
     fn size_hints_are_exact(start in [-40..=40, -40..=40], end in [-40..=40, -40..=40], turn in turns()) {
+        let line = Line::new(end).unwrap();
+        for rule in [Rule::Published, Rule::Nearest] {
+            counts_down(line.steps(rule), |steps| steps.remaining())?;
+        }
+        counts_down(line.moves(), |moves| moves.remaining())?;
+        counts_down(AxesLine::new(end).unwrap().steps(), |steps| steps.remaining())?;
+        counts_down(Dda::new(end).unwrap().ticks(), |ticks| ticks.remaining())?;
         let Ok(arc) = Arc::near(start, end, turn, 5000) else {
             return Ok(());
         };
         for rule in [Rule::Published, Rule::Nearest] {
-            let mut steps = arc.steps(rule);
-            for left in (0..steps.size_hint().0).rev() {
-                prop_assert!(steps.next().is_some());
-                prop_assert_eq!(steps.size_hint(), (left, Some(left)));
-                prop_assert_eq!(steps.remaining(), left as u64);
-            }
-            prop_assert!(steps.next().is_none() && steps.next().is_none());
+            counts_down(arc.steps(rule), |steps| steps.remaining())?;
         }
-        let mut moves = arc.moves();
-        for left in (0..moves.size_hint().0).rev() {
-            prop_assert!(moves.next().is_some());
-            prop_assert_eq!(moves.size_hint(), (left, Some(left)));
-            prop_assert_eq!(moves.remaining(), left as u64);
-        }
-        prop_assert!(moves.next().is_none() && moves.next().is_none());
+        counts_down(arc.moves(), |moves| moves.remaining())?;
     }
 }
 
