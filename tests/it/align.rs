@@ -14,6 +14,7 @@ use table::rows;
 use crate::tools::command::{lines, run};
 use crate::tools::example::example;
 use crate::tools::refusal::assert_refused;
+use crate::tools::report::{number, report_in};
 
 const PLATFORM: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -40,17 +41,15 @@ impl Run {
         let output = run(command.arg("--out").arg(folder.path()), b"");
         assert_eq!(lines(&output.stderr), [""; 0]);
         assert!(output.status.success());
-        let report = fs::read(folder.path().join("report.json")).unwrap();
         Self {
-            report: serde_json::from_slice(&report).unwrap(),
+            report: report_in(folder.path()),
             summary: lines(&output.stdout),
             folder,
         }
     }
 
     fn number(&self, pointer: &str) -> f64 {
-        let value = self.report.pointer(pointer).and_then(Value::as_f64);
-        value.unwrap_or_else(|| panic!("{pointer}"))
+        number(&self.report, pointer)
     }
 
     fn read(&self, name: &str) -> String {

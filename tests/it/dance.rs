@@ -10,6 +10,7 @@ use tempfile::TempDir;
 use decoded::{decoded, frames, header, steps};
 
 use crate::tools::artefacts::{assert_all_or_none, assert_refused, run_into};
+use crate::tools::report::report_in;
 
 const LAWS: [&str; 3] = ["reset", "carry", "signed"];
 const ARTEFACTS: [&str; 4] = ["data.h", "dance.vcd", "dance.svg", "report.json"];
@@ -39,7 +40,7 @@ impl Run {
             data: read("data.h"),
             dump: read("dance.vcd"),
             picture: read("dance.svg"),
-            report: serde_json::from_str(&read("report.json")).unwrap(),
+            report: report_in(folder.path()),
         }
     }
 

@@ -12,6 +12,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::tools::artefacts::{assert_all_or_none, assert_refused, run_into};
+use crate::tools::report::{number, report_in};
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -34,20 +35,30 @@ impl Run {
         let output = run_into(folder.path(), "engrave", arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{errors}");
-        let report = fs::read(folder.path().join("report.json")).unwrap();
         Self {
-            report: serde_json::from_slice(&report).unwrap(),
+            report: report_in(folder.path()),
             summary: String::from_utf8(output.stdout).unwrap(),
             notes: errors.lines().map(str::to_owned).collect(),
             folder,
         }
     }
 
+    /// Engraves a drawing that comes with the machine.
+    fn of_drawing(name: &str, options: &[&str]) -> Self {
+        let file = shipped(&format!("drawings/{name}.svg"));
+        Self::of(&[&["--svg", file.to_str().unwrap()], options].concat())
+    }
+
+    /// Engraves the text of an SVG file.
+    fn of_text(text: &str, options: &[&str]) -> Self {
+        let folder = TempDir::new().unwrap();
+        let svg = folder.path().join("some.svg");
+        fs::write(&svg, text).unwrap();
+        Self::of(&[&["--svg", svg.to_str().unwrap()], options].concat())
+    }
+
     fn number(&self, pointer: &str) -> f64 {
-        let value = self.report.pointer(pointer);
-        value
-            .and_then(Value::as_f64)
-            .unwrap_or_else(|| panic!("{pointer}"))
+        number(&self.report, pointer)
     }
 
     fn read(&self, name: &str) -> Vec<u8> {
@@ -57,6 +68,22 @@ impl Run {
     fn angle(&self, joint: &str, pulses: i32) -> f64 {
         self.number(&format!("/machine/home_rad/{joint}"))
             + f64::from(pulses) * self.number(&format!("/machine/rad_per_pulse/{joint}"))
+    }
+
+    /// Direction of the forearm.
+    fn elbow(&self, [theta1, theta2, ..]: [i32; 4]) -> f64 {
+        self.angle("theta2", theta2) + self.angle("theta1", theta1)
+    }
+
+    fn tool(&self, position: [i32; 4]) -> (f64, f64) {
+        let upper = self.number("/machine/upper_mm");
+        let fore = self.number("/machine/fore_mm");
+        let shoulder = self.angle("theta2", position[1]);
+        let elbow = self.elbow(position);
+        (
+            upper * shoulder.cos() + fore * elbow.cos(),
+            upper * shoulder.sin() + fore * elbow.sin(),
+        )
     }
 
     fn user_to_machine(&self, x: f64, y: f64) -> (f64, f64) {
@@ -91,8 +118,7 @@ fn integrate(pattern: &[u8]) -> Vec<(bool, [i32; 4])> {
 #[test]
 fn shipped_drawings_keep_their_bound() {
     for drawing in ["rosette", "lettering", "star"] {
-        let file = shipped(&format!("drawings/{drawing}.svg"));
-        let run = Run::of(&["--svg", file.to_str().unwrap()]);
+        let run = Run::of_drawing(drawing, &[]);
         let (worst, bound) = (run.number("/max_deviation_mm"), run.number("/bound_mm"));
         assert!(worst <= bound, "{drawing}: {worst} > {bound}");
         assert!(worst > 0.0 && run.number("/rms_deviation_mm") < worst);
@@ -104,34 +130,26 @@ fn shipped_drawings_keep_their_bound() {
 
 #[test]
 fn the_bytes_alone_draw_a_circle() {
-    let folder = TempDir::new().unwrap();
-    let svg = folder.path().join("circle.svg");
     // Root units are not pixels: the view box is scaled and moved.
     let text = r#"<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="-20 10 40 40">
         <g transform="translate(5 20)"><circle cx="1" cy="4" r="9"/></g></svg>"#;
-    fs::write(&svg, text).unwrap();
-    let run = Run::of(&["--svg", svg.to_str().unwrap()]);
+    let run = Run::of_text(text, &[]);
     let (x, y) = run.user_to_machine(6.0, 24.0);
     let (edge, _) = run.user_to_machine(15.0, 24.0);
     let (radius, bound) = (edge - x, run.number("/bound_mm"));
-    let (upper, fore) = (
-        run.number("/machine/upper_mm"),
-        run.number("/machine/fore_mm"),
-    );
     assert!(radius > 60.0, "{radius}: the bed is not filled");
 
     let positions = integrate(&run.read("pattern.bin"));
     let mut seen = [false; 72];
-    for (fast, [theta1, theta2, theta3, vertical]) in &positions {
-        if *fast {
+    for &(fast, position) in &positions {
+        if fast {
             continue;
         }
-        assert!(*vertical < 0, "engraved above the glass");
-        let shoulder = run.angle("theta2", *theta2);
-        let elbow = shoulder + run.angle("theta1", *theta1);
-        let disc = elbow + run.angle("theta3", *theta3);
-        let at_x = upper * shoulder.cos() + fore * elbow.cos() - x;
-        let at_y = upper * shoulder.sin() + fore * elbow.sin() - y;
+        let [.., theta3, vertical] = position;
+        assert!(vertical < 0, "engraved above the glass");
+        let disc = run.elbow(position) + run.angle("theta3", theta3);
+        let (tool_x, tool_y) = run.tool(position);
+        let (at_x, at_y) = (tool_x - x, tool_y - y);
         assert!((at_x.hypot(at_y) - radius).abs() <= bound);
         // The disc is tangent: square to the radius, to some steps of the arm and its own.
         let square = (disc.cos() * at_x + disc.sin() * at_y) / radius;
@@ -150,7 +168,7 @@ fn the_bytes_alone_draw_a_circle() {
 
 #[test]
 fn the_dump_has_every_pulse() {
-    let run = Run::of(&["--svg", shipped("drawings/star.svg").to_str().unwrap()]);
+    let run = Run::of_drawing("star", &[]);
     let dump = String::from_utf8(run.read("pulses.vcd")).unwrap();
     let (head, body) = dump.split_once("$enddefinitions").unwrap();
     for axis in ["theta1", "theta2", "theta3", "vertical"] {
@@ -203,12 +221,9 @@ fn strokes_are_ordered_and_a_huge_dump_is_asked_for() {
         let input = ["--svg", svg.to_str().unwrap()];
         let output = run_into(&out, "engrave", &[&input, options].concat());
         assert!(output.status.success(), "{output:?}");
-        let report = fs::read(out.join("report.json")).unwrap();
-        let report: Value = serde_json::from_slice(&report).unwrap();
         let dump = fs::metadata(out.join("pulses.vcd")).ok();
-        (report, dump.map(|file| file.len()))
+        (report_in(&out), dump.map(|file| file.len()))
     };
-    let number = |report: &Value, name: &str| report[name].as_f64().unwrap();
 
     let (kept, dump) = run(&["--keep-order", "--vcd"]);
     let pulses = |report: &Value| {
@@ -220,13 +235,13 @@ fn strokes_are_ordered_and_a_huge_dump_is_asked_for() {
     let (ordered, dump) = run(&[]);
     assert!(pulses(&ordered) > 500_000);
     assert_eq!(dump, None, "the run before has left its own");
-    for same in ["strokes", "length_mm"] {
+    for same in ["/strokes", "/length_mm"] {
         assert!(
             (number(&ordered, same) - number(&kept, same)).abs() < 1e-6,
             "{same}"
         );
     }
-    assert!(number(&ordered, "travel_mm") * 10.0 < number(&kept, "travel_mm"));
+    assert!(number(&ordered, "/travel_mm") * 10.0 < number(&kept, "/travel_mm"));
 }
 
 #[test]
@@ -317,37 +332,24 @@ fn a_folder_in_an_artefacts_place_is_refused_before_any_is_written() {
     );
 }
 
-/// Runs the text of an SVG file.
-fn run_text(text: &str) -> Run {
-    let folder = TempDir::new().unwrap();
-    let svg = folder.path().join("body.svg");
-    fs::write(&svg, text).unwrap();
-    Run::of(&["--svg", svg.to_str().unwrap()])
+/// An SVG body in a view box of 100 by 100.
+fn page(body: &str) -> String {
+    format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>")
 }
 
-/// Runs an SVG body in a view box of 100 by 100.
 fn run_body(body: &str) -> Run {
-    run_text(&format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>"
-    ))
+    Run::of_text(&page(body), &[])
 }
 
 /// How near the tool in the glass comes to a place of the drawing, in mm.
 fn nearest(run: &Run, x: f64, y: f64) -> f64 {
     let (x, y) = run.user_to_machine(x, y);
-    let (upper, fore) = (
-        run.number("/machine/upper_mm"),
-        run.number("/machine/fore_mm"),
-    );
     integrate(&run.read("pattern.bin"))
         .iter()
         .filter(|(_, position)| position[3] < 0)
-        .map(|(_, [theta1, theta2, ..])| {
-            let shoulder = run.angle("theta2", *theta2);
-            let elbow = shoulder + run.angle("theta1", *theta1);
-            let at_x = upper * shoulder.cos() + fore * elbow.cos() - x;
-            let at_y = upper * shoulder.sin() + fore * elbow.sin() - y;
-            at_x.hypot(at_y)
+        .map(|(_, position)| {
+            let (at_x, at_y) = run.tool(*position);
+            (at_x - x).hypot(at_y - y)
         })
         .fold(f64::INFINITY, f64::min)
 }

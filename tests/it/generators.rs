@@ -12,6 +12,7 @@ use drawings::drawings;
 use writers::WRITERS;
 
 use crate::tools::artefacts::run_into;
+use crate::tools::report::{number, report_in};
 
 /// Half a step of each axis, what the axes' cubics leave the curves, and half of a third decimal.
 const OFF_MM: f64 = 0.01 * core::f64::consts::FRAC_1_SQRT_2 + 0.0015;
@@ -25,8 +26,7 @@ fn report(example: &str, arguments: &[&str]) -> serde_json::Value {
     let output = run_into(folder.path(), example, arguments);
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {errors}");
-    let report = fs::read(folder.path().join("report.json")).unwrap();
-    serde_json::from_slice(&report).unwrap()
+    report_in(folder.path())
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn forty_programs_run_through_the_stage() {
             let file = folder.path().join(format!("{writer}-{drawing}.nc"));
             fs::write(&file, write(&parts)).unwrap();
             let report = report("stage", &["--gcode", file.to_str().unwrap()]);
-            let number = |of: &str| report.pointer(of).unwrap().as_f64().unwrap();
+            let number = |of: &str| number(&report, of);
             let worst = number("/max_deviation_mm");
             let most = number("/tolerance_mm") + OFF_MM;
             assert!(worst <= most, "{writer}, {drawing}: {worst} mm");
@@ -74,7 +74,7 @@ fn the_drawings_run_through_the_delta() {
         let file = folder.path().join(format!("{drawing}.txt"));
         fs::write(&file, text).unwrap();
         let report = report("delta", &["--input", file.to_str().unwrap()]);
-        let number = |of: &str| report.pointer(of).unwrap().as_f64().unwrap();
+        let number = |of: &str| number(&report, of);
         let worst = number("/max_path_error_mm");
         assert!(worst <= CORNER_MM + DELTA_STEP_MM, "{drawing}: {worst} mm");
         for motor in 0..3 {

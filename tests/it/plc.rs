@@ -8,6 +8,7 @@ use tempfile::TempDir;
 use crate::tools::artefacts::{assert_all_or_none, assert_refused, run_into};
 use crate::tools::command::{lines, run};
 use crate::tools::example::example;
+use crate::tools::report::report_in;
 
 const ROUNDS: u64 = 6;
 
@@ -23,8 +24,7 @@ fn plc(options: &[&str]) -> Value {
     assert!(output.status.success());
     let log = fs::read_to_string(folder.path().join("line.log")).unwrap();
     assert!(log.contains(" > ") && log.contains(" < "));
-    let report = fs::read(folder.path().join("report.json")).unwrap();
-    serde_json::from_slice(&report).unwrap()
+    report_in(folder.path())
 }
 
 fn assert_whole(report: &Value) {

@@ -8,6 +8,7 @@ use tempfile::TempDir;
 
 use crate::tools::command::{lines, run};
 use crate::tools::example::example;
+use crate::tools::report::{number, report_in};
 
 /// The arms as this test has them: azimuth, R - r, Lb, La, in degrees and mm.
 pub(crate) type Arms = [[f64; 4]; 3];
@@ -48,7 +49,7 @@ impl Run {
             answers,
             errors: Vec::new(),
             status: None,
-            report: serde_json::from_str(&text("report.json")).unwrap(),
+            report: report_in(folder),
             steps,
             picture: text("delta.svg"),
         }
@@ -112,10 +113,7 @@ impl Run {
     }
 
     pub(crate) fn number(&self, pointer: &str) -> f64 {
-        let value = self.report.pointer(pointer);
-        value
-            .and_then(Value::as_f64)
-            .unwrap_or_else(|| panic!("{pointer}"))
+        number(&self.report, pointer)
     }
 
     pub(crate) fn place(&self, arms: &Arms, steps: [i32; 3]) -> [f64; 3] {

@@ -1,17 +1,13 @@
 //! What a drawing shows and the engraver does not: one note for each kind, with its first place.
 
-use super::{nearest, run_body, run_text};
+use super::{Run, nearest, run_body};
 use crate::tools::artefacts::assert_refused;
+use crate::tools::report::without_file;
 
 /// What is said, without the name of the file.
 fn notes(body: &str) -> Vec<String> {
     let run = run_body(body);
-    let behind_file = |note: &String| {
-        let (file, note) = note.split_once(": line ").unwrap();
-        assert!(file.starts_with("note: "), "{file}");
-        format!("line {note}")
-    };
-    let notes: Vec<_> = run.notes.iter().map(behind_file).collect();
+    let notes = without_file(&run.notes);
     assert_eq!(run.report["notes"], serde_json::json!(notes));
     notes
 }
@@ -214,9 +210,10 @@ fn many_are_one_note_for_each_kind() {
             "line 4, column 1: <rect>, <use>: filled, only the outline is engraved (2 times)",
         ]
     );
-    let run = run_text(
+    let run = Run::of_text(
         "<?xml-stylesheet href='a.css'?>\n<svg xmlns='http://www.w3.org/2000/svg' width='90' \
          height='90'><path d='M5 5H9' stroke='red'/></svg>",
+        &[],
     );
     let note = "line 1, column 1: xml-stylesheet: styles that are not read, engraved as if they \
                 were not there (1 time)";
@@ -279,9 +276,8 @@ fn files_with_a_document_type_are_read() {
         ),
         ("", "", "<path d='M5 5L9 9' fill='none' stroke='red'/>"),
     ] {
-        let run = run_text(&format!(
-            "{head}<svg {attributes} viewBox='0 0 100 100'>{body}</svg>"
-        ));
+        let text = format!("{head}<svg {attributes} viewBox='0 0 100 100'>{body}</svg>");
+        let run = Run::of_text(&text, &[]);
         assert!(nearest(&run, 9.0, 9.0) <= run.number("/bound_mm"));
         assert_eq!(run.notes, [""; 0], "{head}");
     }
@@ -300,10 +296,11 @@ fn the_scale_is_said() {
         ("width='100pt' height='100pt'", Some(25.4 / 96.0)),
         ("width='100' height='100'", None),
     ] {
-        let run = run_text(&format!(
+        let text = format!(
             "<svg xmlns='http://www.w3.org/2000/svg' {attributes}>\
              <rect width='50' height='50' fill='none' stroke='red'/></svg>"
-        ));
+        );
+        let run = Run::of_text(&text, &[]);
         // The bed is 130 mm wide.
         assert!((run.number("/mm_per_unit") - 2.6).abs() < 1e-6);
         let stated = run.report["own_mm_per_unit"].as_f64();

@@ -78,15 +78,9 @@ fn a_pattern_that_is_too_fast_loses_steps_and_timed_strokes_lose_none() {
         machine.replace("process_hz = 112.8", "process_hz = 2000.0"),
     )
     .unwrap();
-    let drawing = shipped("drawings/lettering.svg");
-    let run = Run::of(&[
-        "--svg",
-        drawing.to_str().unwrap(),
-        "--machine",
-        fast.to_str().unwrap(),
-        "--controller",
-        "timed",
-    ]);
+    let machine = ["--machine", fast.to_str().unwrap()];
+    let options = [machine, ["--controller", "timed"]].concat();
+    let run = Run::of_drawing("lettering", &options);
     let lost = |of: &str| -> f64 {
         let joints = ["theta1", "theta2", "theta3"].iter();
         joints

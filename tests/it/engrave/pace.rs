@@ -7,18 +7,6 @@ use super::{Run, integrate, run_body};
 fn speed_and_dwell_are_stated() {
     let run = Run::of(&[]);
     let pulse_s = 2e-9 * run.number("/machine/half_period_ticks") * run.number("/machine/tick_ns");
-    let (upper, fore) = (
-        run.number("/machine/upper_mm"),
-        run.number("/machine/fore_mm"),
-    );
-    let tool = |[theta1, theta2, ..]: [i32; 4]| {
-        let shoulder = run.angle("theta2", theta2);
-        let elbow = shoulder + run.angle("theta1", theta1);
-        [
-            upper * shoulder.cos() + fore * elbow.cos(),
-            upper * shoulder.sin() + fore * elbow.sin(),
-        ]
-    };
     let (mut dwell_s, mut arms_s) = (0.0, 0.0);
     let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
     let mut from = [0; 4];
@@ -28,7 +16,7 @@ fn speed_and_dwell_are_stated() {
             dwell_s += ways[2] * pulse_s;
             let time_s = ways[0].max(ways[1]) * pulse_s;
             arms_s += time_s;
-            let ([x0, y0], [x1, y1]) = (tool(from), tool(to));
+            let ((x0, y0), (x1, y1)) = (run.tool(from), run.tool(to));
             if time_s > 0.0 {
                 let speed = (x1 - x0).hypot(y1 - y0) / time_s;
                 (least, greatest) = (least.min(speed), greatest.max(speed));

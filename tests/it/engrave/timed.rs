@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{Run, run_body, shipped};
+use super::{Run, page};
 
 /// Rates of `machine.toml`: the joints' largest, in Hz, and what a step may be off by beside it.
 const MAX_HZ: f64 = 800.0;
@@ -33,16 +33,14 @@ pub(super) fn pulses(dump: &str, axis: &str) -> Vec<(f64, bool)> {
 }
 
 pub(super) fn timed(drawing: &str) -> Run {
-    let file = shipped(&format!("drawings/{drawing}.svg"));
-    Run::of(&["--svg", file.to_str().unwrap(), "--controller", "timed"])
+    Run::of_drawing(drawing, &["--controller", "timed"])
 }
 
 #[test]
 fn drawings_are_nearer_and_evenly_fast() {
     for drawing in ["rosette", "lettering", "star"] {
         let run = timed(drawing);
-        let file = shipped(&format!("drawings/{drawing}.svg"));
-        let plain = Run::of(&["--svg", file.to_str().unwrap()]);
+        let plain = Run::of_drawing(drawing, &[]);
         assert_eq!(run.read("pattern.bin"), plain.read("pattern.bin"));
         assert!(plain.report["timed"].is_null());
         let (worst, bound) = (
@@ -104,12 +102,7 @@ fn drawings_of_all_kinds_are_timed() {
         <path d='M10 80h50l-3 5h-40l5 -3' stroke='black'/>\
         <path d='M10 10q20 30 40 0t40 0c5 -20 -10 20 0 30' stroke='black'/>\
         <circle cx='70' cy='70' r='12'/>";
-    let plain = run_body(body);
-    let text =
-        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
-    let svg = plain.folder.path().join("kinds.svg");
-    std::fs::write(&svg, text).unwrap();
-    let run = Run::of(&["--svg", svg.to_str().unwrap(), "--controller", "timed"]);
+    let run = Run::of_text(&page(body), &["--controller", "timed"]);
     assert!(run.number("/timed/max_deviation_mm") <= run.number("/timed/bound_mm"));
     assert!(run.number("/timed/missing_mm") <= 0.0);
 }

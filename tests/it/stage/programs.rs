@@ -6,6 +6,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 use super::run::{ROUNDING_MM, Run, STEP_MM};
+use crate::tools::report::without_file;
 
 /// Where a path of whole steps passes a programmed point: half a step in both axes, and the
 /// deviation of arcs.
@@ -33,16 +34,6 @@ fn of_sample(name: &str) -> Run {
     Run::of(&["--gcode", folder.join(name).to_str().unwrap()])
 }
 
-/// What is said, without the name of the file.
-fn notes(run: &Run) -> Vec<String> {
-    let behind_file = |note: &String| {
-        let (file, note) = note.split_once(": line ").unwrap();
-        assert!(file.starts_with("note: "), "{file}");
-        format!("line {note}")
-    };
-    run.notes.iter().map(behind_file).collect()
-}
-
 #[test]
 fn inkscape() {
     let run = of_sample("inkscape.nc");
@@ -50,7 +41,7 @@ fn inkscape() {
     let ring = "95 40, 80 55, 65 40, 80 25, 95 40, 0 0";
     assert_passes(&run, &[heart, ring]);
     assert_eq!(
-        notes(&run),
+        without_file(&run.notes),
         [
             "line 4: M3, M5: passed over, there is no spindle and no laser (2 times)",
             "line 12: Z: passed over, the stage has no such axis (10 times)",
@@ -58,7 +49,7 @@ fn inkscape() {
     );
     let reported = run.report["notes"].as_array().unwrap();
     let reported: Vec<_> = reported.iter().map(|note| note.as_str().unwrap()).collect();
-    assert_eq!(reported, notes(&run));
+    assert_eq!(reported, without_file(&run.notes));
 }
 
 #[test]
@@ -67,7 +58,7 @@ fn lightburn() {
     let cut = "10 10, 70 10, 70 50, 10 50, 10 10";
     assert_passes(&run, &[cut, "20 20, 60 20, 60 21, 20 21, 0 0"]);
     assert_eq!(
-        notes(&run),
+        without_file(&run.notes),
         [
             "line 3: G40: passed over, there are no tools to change or to measure (1 time)",
             "line 3: G54: passed over, the work offset is always 0 (1 time)",
@@ -78,7 +69,7 @@ fn lightburn() {
     );
     let run = of_sample("lightburn-relative.nc");
     assert_passes(&run, &["15 12, 45 12, 45 37, 15 37, 15 12, 0 0"]);
-    assert!(notes(&run)[2].starts_with("line 4: M4, S, M5: "));
+    assert!(without_file(&run.notes)[2].starts_with("line 4: M4, S, M5: "));
 }
 
 #[test]
@@ -88,7 +79,7 @@ fn fusion() {
     let bore = "60 41, 50 51, 40 41, 50 31, 60 41, 50 51, 40 41, 50 31, 60 41, 0 0";
     assert_passes(&run, &[outline, "10 60, 10 22, 20 12, 20 12.6", bore]);
     assert_eq!(
-        notes(&run),
+        without_file(&run.notes),
         [
             "line 2: O: a program's number, passed over (1 time)",
             "line 9: G28, Z, K: passed over, the stage has no such axis (13 times)",
@@ -108,7 +99,7 @@ fn freecad() {
     let circle = "30 40, 50 60, 70 40, 50 20, 30 40";
     assert_passes(&run, &[circle, "50 40, 90 40, 90 80"]);
     assert_eq!(
-        notes(&run),
+        without_file(&run.notes),
         [
             "line 4: G40, G49, M6, T, G43: passed over, there are no tools to change or to \
              measure (6 times)",
@@ -127,7 +118,7 @@ fn slicer() {
     let part = "40.25 40.25, 80.25 40.25, 80.25 60.25, 77.32 67.32, 70.25 70.25, 40.25 70.25";
     assert_passes(&run, &["60 0, 100 0", part, "40.25 40.25, 50 50"]);
     assert_eq!(
-        notes(&run),
+        without_file(&run.notes),
         [
             "line 4: M73, M201, M203, M204, M205, M107, M115, M104 and others: passed over, they \
              move neither X nor Y (19 times)",
@@ -253,7 +244,7 @@ fn what_comes_after_the_end_is_noted() {
     ] {
         let run = Run::of_text(program, &[]);
         assert_passes(&run, &["5 0"]);
-        assert_eq!(notes(&run), [note]);
+        assert_eq!(without_file(&run.notes), [note]);
     }
 }
 
@@ -262,7 +253,7 @@ fn what_comes_after_the_end_is_noted() {
 fn high_feeds_are_the_highest() {
     let run = Run::of_text("G20 G1 X2 F400\nF300 X0", &["--steps", "nearest"]);
     assert_eq!(
-        notes(&run),
+        without_file(&run.notes),
         ["line 1: F400, F300: above what the motors can follow, run at 6000 mm/min (2 times)"]
     );
     let wanted = 2.0 * 2.0 * 25.4 / 100.0;

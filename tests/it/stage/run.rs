@@ -6,6 +6,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::tools::artefacts::run_into;
+use crate::tools::report::{number, report_in};
 
 /// A step, in mm.
 pub(crate) const STEP_MM: f64 = 0.01;
@@ -45,11 +46,9 @@ impl Run {
     }
 
     pub(crate) fn read(folder: TempDir) -> Self {
-        let report = fs::read(folder.path().join("report.json")).unwrap();
-        let report = serde_json::from_slice(&report).unwrap();
         Self {
+            report: report_in(folder.path()),
             folder,
-            report,
             notes: Vec::new(),
         }
     }
@@ -62,8 +61,7 @@ impl Run {
     }
 
     pub(crate) fn number(&self, pointer: &str) -> f64 {
-        let value = self.report.pointer(pointer).and_then(Value::as_f64);
-        value.unwrap_or_else(|| panic!("{pointer}"))
+        number(&self.report, pointer)
     }
 
     /// Time in s, and the place after each step, in mm.
