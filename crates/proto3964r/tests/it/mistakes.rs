@@ -21,11 +21,24 @@ fn events<const N: usize, const T: usize>(station: &mut Station<N, T>) -> Vec<St
     all
 }
 
-/// A station that has sent the block of its job and awaits the answer, at 0 ms.
-fn after_block(payload: &[u8]) -> Station<64> {
-    let mut station = Station::new(low());
+/// A station that has asked for the line at 0 ms.
+fn asking<const N: usize>(config: Config, payload: &[u8]) -> Station<N> {
+    let mut station = Station::new(config);
     station.submit(ms(0), payload).unwrap();
     assert_eq!(sent(&mut station, ms(0)), [STX]);
+    station
+}
+
+/// A station that has taken these characters at 0 ms.
+fn after_hearing<const N: usize>(characters: &[u8]) -> Station<N> {
+    let mut station = Station::new(low());
+    hear(&mut station, ms(0), characters);
+    station
+}
+
+/// A station that has sent the block of its job and awaits the answer, at 0 ms.
+fn after_block(payload: &[u8]) -> Station<64> {
+    let mut station = asking(low(), payload);
     station.handle_byte(ms(0), DLE);
     assert!(!sent(&mut station, ms(0)).is_empty());
     station
@@ -37,15 +50,11 @@ fn m16_every_state_but_idle_has_a_deadline() {
     waiting_for_dle.submit(ms(0), b"A").unwrap();
     let mut receiving = Station::<64>::new(low());
     receiving.handle_byte(ms(0), STX);
-    let mut rejected = Station::<64>::new(low());
-    hear(&mut rejected, ms(0), &[STX, 0x10, 0x03, 0x00]);
-    let mut no_buffer = Station::<64>::new(low());
-    hear(&mut no_buffer, ms(0), &[STX, 0x10, 0x03, 0x13, STX]);
+    let rejected = after_hearing(&[STX, 0x10, 0x03, 0x00]);
+    let no_buffer = after_hearing(&[STX, 0x10, 0x03, 0x13, STX]);
     let mut noise = Station::<64>::new(low());
     noise.handle_byte(ms(0), 0x41);
-    let mut interrupted = Station::<64>::new(low());
-    interrupted.submit(ms(0), b"A").unwrap();
-    assert_eq!(sent(&mut interrupted, ms(0)), [STX]);
+    let mut interrupted = asking(low(), b"A");
     hear(&mut interrupted, ms(0), &[DLE, 0x41]);
     for mut station in [
         after_block(b"A"),
@@ -113,9 +122,7 @@ fn same_priority_is_reported() {
         ]
     );
     // Two low ones: DLE against DLE.
-    let mut station = Station::<8>::new(low());
-    station.submit(ms(0), b"A").unwrap();
-    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    let mut station = asking::<8>(low(), b"A");
     hear(&mut station, ms(0), &[STX, DLE]);
     station.handle_timeout(ms(220));
     assert_eq!(
@@ -139,8 +146,7 @@ fn break_ends_a_transmission_and_a_reception() {
             "Failed(Failure { phase: Transmission, cause: Break, attempts: 1 })"
         ]
     );
-    let mut station = Station::<8>::new(low());
-    hear(&mut station, ms(0), &[STX, 0x41]);
+    let mut station = after_hearing::<8>(&[STX, 0x41]);
     station.handle_break(ms(1));
     assert!(station.is_idle());
     assert_eq!(events(&mut station), ["Break"]);

@@ -4,12 +4,7 @@ use super::*;
 
 #[test]
 fn m02_dle_before_anything_else_is_an_error() {
-    let mut station = Station::<64>::new(low());
-    hear(
-        &mut station,
-        ms(0),
-        &[STX, 0x10, 0x41, 0x42, 0x10, 0x03, 0x10],
-    );
+    let mut station = after_hearing::<64>(&[STX, 0x10, 0x41, 0x42, 0x10, 0x03, 0x10]);
     assert_eq!(sent(&mut station, ms(0)), [DLE, NAK]);
     assert_eq!(
         station.poll_event(),
@@ -39,8 +34,7 @@ fn m04_the_receiver_gives_up_after_six_rejections() {
 
 #[test]
 fn m06_a_buffer_that_becomes_free_is_seen_at_once() {
-    let mut station = Station::<64>::new(low());
-    hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, 0x52]);
+    let mut station = after_hearing::<64>(&[STX, 0x41, 0x10, 0x03, 0x52]);
     assert_eq!(sent(&mut station, ms(0)), [DLE, DLE]);
     station.handle_byte(ms(10), STX);
     assert_eq!(sent(&mut station, ms(10)), [0_u8; 0]);
@@ -68,12 +62,7 @@ fn m09_every_character_restarts_the_character_delay() {
 
 #[test]
 fn m10_a_zero_byte_is_data() {
-    let mut station = Station::<64>::new(low());
-    hear(
-        &mut station,
-        ms(0),
-        &[STX, 0x00, 0x41, 0x00, 0x10, 0x03, 0x52],
-    );
+    let mut station = after_hearing::<64>(&[STX, 0x00, 0x41, 0x00, 0x10, 0x03, 0x52]);
     assert_eq!(
         station.poll_event(),
         Some(Event::Received(&[0x00, 0x41, 0x00]))
@@ -83,8 +72,7 @@ fn m10_a_zero_byte_is_data() {
 #[test]
 fn m11_a_wrong_bcc_is_answered_nak() {
     for bcc in (0..=255).filter(|&bcc| bcc != 0x52) {
-        let mut station = Station::<64>::new(low());
-        hear(&mut station, ms(0), &[STX, 0x41, 0x10, 0x03, bcc]);
+        let mut station = after_hearing::<64>(&[STX, 0x41, 0x10, 0x03, bcc]);
         assert_eq!(sent(&mut station, ms(0)), [DLE, NAK]);
         assert!(matches!(station.poll_event(), Some(Event::Rejected(_))));
         assert_eq!(station.poll_event(), None);
@@ -93,9 +81,7 @@ fn m11_a_wrong_bcc_is_answered_nak() {
 
 #[test]
 fn m12_the_bcc_covers_the_doubled_dle() {
-    let mut station = Station::<64>::new(low());
-    station.submit(ms(0), &[0x10]).unwrap();
-    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    let mut station = asking::<64>(low(), &[0x10]);
     station.handle_byte(ms(0), DLE);
     assert_eq!(sent(&mut station, ms(0)), [0x10, 0x10, 0x10, 0x03, 0x13]);
     hear(
@@ -111,12 +97,7 @@ fn m12_the_bcc_covers_the_doubled_dle() {
 
 #[test]
 fn m13_a_doubled_dle_before_03_is_data() {
-    let mut station = Station::<64>::new(low());
-    hear(
-        &mut station,
-        ms(0),
-        &[STX, 0x10, 0x10, 0x03, 0x41, 0x10, 0x03, 0x51],
-    );
+    let mut station = after_hearing::<64>(&[STX, 0x10, 0x10, 0x03, 0x41, 0x10, 0x03, 0x51]);
     assert_eq!(
         station.poll_event(),
         Some(Event::Received(&[0x10, 0x03, 0x41]))
@@ -125,12 +106,7 @@ fn m13_a_doubled_dle_before_03_is_data() {
 
 #[test]
 fn m14_a_block_too_long_is_swallowed_to_its_end() {
-    let mut station = Station::<4>::new(low());
-    hear(
-        &mut station,
-        ms(0),
-        &[STX, 1, 2, 3, 4, 5, STX, 0x41, 0x15, 0x10, 0x03],
-    );
+    let mut station = after_hearing::<4>(&[STX, 1, 2, 3, 4, 5, STX, 0x41, 0x15, 0x10, 0x03]);
     assert_eq!(sent(&mut station, ms(0)), [DLE]);
     station.handle_byte(ms(0), 0x00);
     assert_eq!(sent(&mut station, ms(0)), [NAK]);

@@ -29,9 +29,7 @@ fn m03_a_job_survives_a_collision_whatever_becomes_of_the_reception() {
         (&[0x42, 0x10, 0x03, 0x00], 4000, &[STX]),
     ];
     for (body, wait, answer) in cases {
-        let mut station = Station::<64>::new(low());
-        station.submit(ms(0), &[0x41]).unwrap();
-        assert_eq!(sent(&mut station, ms(0)), [STX]);
+        let mut station = asking::<64>(low(), &[0x41]);
         station.handle_byte(ms(0), STX);
         assert_eq!(sent(&mut station, ms(0)), [DLE]);
         hear(&mut station, ms(0), body);
@@ -69,9 +67,7 @@ fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
         }))
     ));
     // The same in the middle of the block.
-    let mut station = Station::<64>::new(low());
-    station.submit(ms(0), &[0x41]).unwrap();
-    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    let mut station = asking::<64>(low(), &[0x41]);
     station.handle_byte(ms(0), DLE);
     assert_eq!(
         station.poll_transmit(ms(5), &mut [0; 2]),
@@ -92,9 +88,7 @@ fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
 fn m07_a_burst_of_garbage_costs_one_attempt() {
     let garbage = [0x55; 40];
     for piece in [1, 7, 40] {
-        let mut station = Station::<64>::new(low());
-        station.submit(ms(0), &[0x41]).unwrap();
-        assert_eq!(sent(&mut station, ms(0)), [STX]);
+        let mut station = asking::<64>(low(), &[0x41]);
         let mut answers = Vec::new();
         for (time, bytes) in (1..).zip(garbage.chunks(piece)) {
             hear(&mut station, ms(time), bytes);
@@ -115,9 +109,7 @@ fn m07_a_burst_of_garbage_costs_one_attempt() {
 
 #[test]
 fn m07_garbage_after_a_pause_is_a_new_answer() {
-    let mut station = Station::<64>::new(low());
-    station.submit(ms(0), &[0x41]).unwrap();
-    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    let mut station = asking::<64>(low(), &[0x41]);
     for attempt in 2..=6 {
         station.handle_byte(ms(attempt * 220), 0x55);
         assert_eq!(sent(&mut station, ms(attempt * 220)), [STX]);
@@ -130,9 +122,7 @@ fn m07_garbage_after_a_pause_is_a_new_answer() {
 fn m08_the_rest_of_an_aborted_block_is_discarded() {
     // (character, what follows) after two bytes of the block.
     for (byte, silence) in [(NAK, 0), (0x55, 220), (DLE, 220), (STX, 220)] {
-        let mut station = Station::<64>::new(low());
-        station.submit(ms(0), &[1, 2, 3, 4, 5, 6]).unwrap();
-        assert_eq!(sent(&mut station, ms(0)), [STX]);
+        let mut station = asking::<64>(low(), &[1, 2, 3, 4, 5, 6]);
         station.handle_byte(ms(0), DLE);
         let mut two = [0; 2];
         assert_eq!(
