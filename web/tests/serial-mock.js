@@ -15,14 +15,10 @@ export const MOCK = `(${install})(${JSON.stringify(WASM)})`;
  * @param {import('playwright-core').Page} page
  */
 export async function connectFirmware(page) {
-  const manifest = join(ROOT, 'firmware/machine/Cargo.toml');
-  const target = join(ROOT, 'target/boards');
-  const args = ['--quiet', '--locked', '--manifest-path', manifest, '--target-dir', target];
-  const built = spawnSync('cargo', ['build', ...args, '--example', 'simulate'], {
-    stdio: 'inherit',
-  });
+  const args = ['build', '--quiet', '--locked', '--package', 'arm-machine', '--example', 'simulate'];
+  const built = spawnSync('cargo', args, { cwd: ROOT, stdio: 'inherit' });
   assert.equal(built.status, 0);
-  const firmware = spawn(join(target, 'debug/examples/simulate'), {
+  const firmware = spawn(join(ROOT, 'target/debug/examples/simulate'), {
     stdio: ['pipe', 'pipe', 'inherit'],
   });
   const ended = new Promise((end) => firmware.on('close', (status) => end(status)));
