@@ -5,7 +5,7 @@
 //! jerks concern three neighbours, so
 //!
 //! ```text
-//! F(x) = t ΣT + Σ -log(1 - g²)      g: each utilisation of a limit, T: the time of each segment
+//! F(x) = t ΣT + Σ -log(1 - g²) + Σ -log x      g: each utilisation of a limit, T: the time of each segment
 //! ```
 //!
 //! has a Newton system of five diagonals, solved in one sweep. Every step stays inside all limits and

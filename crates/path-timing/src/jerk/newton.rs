@@ -86,16 +86,22 @@ struct Value {
     product: f64,
 }
 
-impl Barrier for Value {
-    fn limit(&mut self, utilisation: &Utilisation) {
-        let rest = 1.0 - utilisation.value * utilisation.value;
+impl Value {
+    /// Adds -log of what is left: infinite where nothing is.
+    fn add(&mut self, rest: f64) {
         // Written so that NaN is outside, too.
         let is_inside = rest > 0.0;
         self.product *= if is_inside { rest } else { 0.0 };
-        if self.product < SMALL {
+        if !(SMALL..=LARGE).contains(&self.product) {
             self.value -= libm::log(self.product);
             self.product = 1.0;
         }
+    }
+}
+
+impl Barrier for Value {
+    fn limit(&mut self, utilisation: &Utilisation) {
+        self.add(1.0 - utilisation.value * utilisation.value);
     }
 
     fn time(&mut self, ds: f64, [w0, w1]: [f64; 2]) {
@@ -103,16 +109,21 @@ impl Barrier for Value {
     }
 }
 
-/// A product far from the smallest number.
+/// Products far from the smallest and the largest number.
 const SMALL: f64 = 1e-200;
+const LARGE: f64 = 1e200;
 
-/// F with the speeds changed by a part of the step; infinite outside of the limits.
+/// F with the speeds changed by a part of the step, but for the same number with each part; infinite outside
+/// of the limits.
 fn value<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>], weight: f64, part: f64) -> f64 {
     let mut value = Value {
         weight,
         value: 0.0,
         product: 1.0,
     };
+    for knot in knots.iter().filter(|knot| knot.speed > 0.0) {
+        value.add(1.0 + part * knot.equation.right / (knot.speed * knot.speed));
+    }
     let speed_of = |knot: &Knot<A>| {
         let square = knot.speed * knot.speed + part * knot.equation.right;
         sqrt(square.max(0.0))
@@ -143,19 +154,13 @@ pub(super) fn step<A: Axes>(
     let mut part = 1.0;
     for _ in 0..HALVINGS {
         let decrease = before - value(limits, knots, weight, part);
-        if decrease >= ENOUGH * part * promised && is_moving(knots, part) {
+        if decrease >= ENOUGH * part * promised {
             go(knots, fixed, part);
             return decrease;
         }
         part *= 0.5;
     }
     0.0
-}
-
-/// Whether no speed becomes zero.
-fn is_moving<A: Axes>(knots: &[Knot<A>], part: f64) -> bool {
-    let mut moving = knots.iter().filter(|knot| knot.speed > 0.0);
-    moving.all(|knot| knot.speed * knot.speed + part * knot.equation.right > 0.0)
 }
 
 /// Changes all speeds but the fixed by a part of the step; at a jump to that of the knot before.
@@ -224,6 +229,12 @@ fn assemble<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], weight: f64
             equation.right -= slope * scale;
             if number > 0 {
                 equation.diagonal -= 2.0 * block.time_slope * scale * scale * scale;
+            }
+            if number == 2 {
+                // -log x: 0.25 / w² is the square of 0.5 / w.
+                let inverse = 4.0 * scale * scale;
+                equation.diagonal += inverse * inverse;
+                equation.right += inverse;
             }
         };
         row(0, to_here, [Some(0), Some(1), Some(2)]);
