@@ -27,11 +27,13 @@ const MIN_KNOTS: usize = 4;
 ///
 /// When half of the window has been handed out, it is filled up and its speeds are computed from its
 /// end: at most two backward evaluations and one forward for each knot, two more backward at a feed
-/// below the highest. With a limit of jerk what is in the window is planned as a whole, from the row
-/// handed out last to the end: some fifty steps of Newton's for each knot, which take a PC. A change of
-/// the feed is then smooth, as that of a [`Playback`](crate::Playback), and begins where it can be tried
-/// on the knots of the window: a hold asks for a window longer than the way to rest. Where the stream has no path for now, the machine comes to rest at the end of
+/// below the highest. Where the stream has no path for now, the machine comes to rest at the end of
 /// the last one and goes on when there is one.
+///
+/// With a limit of jerk the window is planned as a whole, from the row handed out last to its end: some
+/// fifty Newton steps for each knot, which is work for a PC. No feed is above 1. A change of the feed is
+/// smooth, as that of a [`Playback`](crate::Playback), and begins where the knots of the window allow it
+/// to end: to be held at any time takes a window longer than the way to rest.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve, Knot, LookAhead};

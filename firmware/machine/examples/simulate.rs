@@ -134,10 +134,12 @@ impl ErrorType for Input<'_> {
 impl Read for Input<'_> {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, Infallible> {
         // Whoever waits is looked at again without being woken.
-        poll_fn(|_| match io::Read::read(&mut *self.0.borrow_mut(), buffer) {
-            Ok(0) | Err(_) => Poll::Pending,
-            Ok(count) => Poll::Ready(Ok(count)),
-        })
+        poll_fn(
+            |_| match io::Read::read(&mut *self.0.borrow_mut(), buffer) {
+                Ok(0) | Err(_) => Poll::Pending,
+                Ok(count) => Poll::Ready(Ok(count)),
+            },
+        )
         .await
     }
 }

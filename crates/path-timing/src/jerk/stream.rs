@@ -70,8 +70,9 @@ fn join<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], from: usize, ol
     end
 }
 
-/// Raises the speed of a rest, or of both knots of a jump, as far as all limits allow: at the next knots
-/// they do, and what a rest asks for, its two sides ask for together.
+/// Raises the speed of a rest, or of both knots of a jump, to one that all limits allow. There is one: the
+/// accelerations before and after a rest are within what jerk makes of zero in half a segment each, so
+/// their step is within what it makes in both halves.
 fn raise<A: Axes>(limits: &Reciprocals<A>, run: &mut [Knot<A>], [old, behind]: [usize; 2]) -> bool {
     let speed_of = |index: usize| run.get(index).map_or(0.0, |knot| knot.speed);
     let mut speed = speed_of(old.saturating_sub(1)).max(speed_of(behind.saturating_add(1)));
