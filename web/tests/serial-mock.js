@@ -15,7 +15,15 @@ export const MOCK = `(${install})(${JSON.stringify(WASM)})`;
  * @param {import('playwright-core').Page} page
  */
 export async function connectFirmware(page) {
-  const args = ['build', '--quiet', '--locked', '--package', 'arm-machine', '--example', 'simulate'];
+  const args = [
+    'build',
+    '--quiet',
+    '--locked',
+    '--package',
+    'arm-machine',
+    '--example',
+    'simulate',
+  ];
   const built = spawnSync('cargo', args, { cwd: ROOT, stdio: 'inherit' });
   assert.equal(built.status, 0);
   const firmware = spawn(join(ROOT, 'target/debug/examples/simulate'), {
