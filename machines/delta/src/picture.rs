@@ -16,41 +16,47 @@ const OUTLINE: u32 = 240;
 type View = fn(&Point3<f64>) -> [f64; 2];
 type Line = Vec<Point3<f64>>;
 
-pub(crate) fn picture(run: &Run<'_>) -> Result<Figure> {
-    let duration_s = seconds(run.record.duration_ticks());
-    let title = format!(
-        "Delta: {} moves, {} steps in {duration_s:.1} s",
-        run.record.moves.len(),
-        run.driven.steps
-    );
-    let note = |name: &str, driven: &Driven| {
-        let lost: u64 = driven.motors.iter().map(|motor| motor.lost_steps).sum();
-        format!(
-            "{name}: {:.1} s, at most {:.4} mm off the lines; a simulated motor loses {lost} steps.",
-            driven.duration_s, driven.max_path_error_mm
-        )
-    };
-    let tick = format!("By the {:.0} ms control tick", run.machine.tick_s * 1000.0);
-    let motion = match run.record.motion {
-        Motion::Rounded => "Round the corners, from rest to rest",
-        Motion::Trains => "Each line at its feed, without ramps",
-    };
-    let window = format!("mean over {:.0} ms", run.motion.window_s() * 1000.0);
-    let time = || Axis::new("time in s").over(0.0..=duration_s);
-    let speed = Plot::chart(time(), Axis::new("speed in mm/s").including(0.0))
-        .with_title("Speed of the platform")
-        .line("feed", Stroke::COMMANDED, feeds(run))
-        .line(&window, Stroke::ACTUAL, run.motion.speeds());
-    let acceleration = Plot::chart(time(), Axis::new("acceleration in m/s²").including(0.0))
-        .with_title("Acceleration of the platform")
-        .line(&window, Stroke::ACTUAL, accelerations(run));
-    Ok(Figure::new(title)
-        .with_note(note(motion, &run.driven))
-        .with_note(note("By trains at the feed", &run.trains))
-        .with_note(note(&tick, &run.ticked))
-        .with_row(maps(run)?)
-        .with_row([speed])
-        .with_row([acceleration]))
+impl Run<'_> {
+    /// Workspace, mechanism and paths, and the platform's speed and acceleration, as an SVG figure.
+    ///
+    /// # Errors
+    /// The machine has no workspace around its path.
+    pub fn picture(&self) -> Result<Figure> {
+        let duration_s = seconds(self.record.duration_ticks());
+        let title = format!(
+            "Delta: {} moves, {} steps in {duration_s:.1} s",
+            self.record.moves.len(),
+            self.driven.steps
+        );
+        let note = |name: &str, driven: &Driven| {
+            let lost: u64 = driven.motors.iter().map(|motor| motor.lost_steps).sum();
+            format!(
+                "{name}: {:.1} s, at most {:.4} mm off the lines; a simulated motor loses {lost} steps.",
+                driven.duration_s, driven.max_path_error_mm
+            )
+        };
+        let tick = format!("By the {:.0} ms control tick", self.machine.tick_s * 1000.0);
+        let motion = match self.record.motion {
+            Motion::Rounded => "Round the corners, from rest to rest",
+            Motion::Trains => "Each line at its feed, without ramps",
+        };
+        let window = format!("mean over {:.0} ms", self.motion.window_s() * 1000.0);
+        let time = || Axis::new("time in s").over(0.0..=duration_s);
+        let speed = Plot::chart(time(), Axis::new("speed in mm/s").including(0.0))
+            .with_title("Speed of the platform")
+            .line("feed", Stroke::COMMANDED, feeds(self))
+            .line(&window, Stroke::ACTUAL, self.motion.speeds());
+        let acceleration = Plot::chart(time(), Axis::new("acceleration in m/s²").including(0.0))
+            .with_title("Acceleration of the platform")
+            .line(&window, Stroke::ACTUAL, accelerations(self));
+        Ok(Figure::new(title)
+            .with_note(note(motion, &self.driven))
+            .with_note(note("By trains at the feed", &self.trains))
+            .with_note(note(&tick, &self.ticked))
+            .with_row(maps(self)?)
+            .with_row([speed])
+            .with_row([acceleration]))
+    }
 }
 
 /// What was asked for, over time.

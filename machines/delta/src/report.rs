@@ -70,8 +70,16 @@ impl Comparison {
     }
 }
 
+impl Run<'_> {
+    /// The numbers.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        Report::new(self)
+    }
+}
+
 impl Report {
-    pub(crate) fn new(run: &Run<'_>) -> Self {
+    fn new(run: &Run<'_>) -> Self {
         let (machine, record) = (run.machine, run.record);
         Self {
             moves: record.moves.len(),

@@ -4,18 +4,15 @@
 use std::io::BufRead;
 
 use anyhow::Result;
-use machine_sim::{Figure, Followed, MotionSampler};
+use machine_sim::{Followed, MotionSampler};
 use nalgebra::Point3;
 
 use crate::control_tick;
-use crate::course::{self, ArmsAt};
 use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::motors::Motors;
-use crate::picture;
 use crate::plan::{Plan, seconds};
 use crate::record::{Move, Record};
-use crate::report::Report;
 use crate::step_log;
 
 /// What steps may be off their places: those of cubics by a tick, those of trains by the rounding of
@@ -63,31 +60,7 @@ pub(crate) struct Driven {
     pub(crate) path: Vec<Point3<f64>>,
 }
 
-impl Run<'_> {
-    /// The numbers.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        Report::new(self)
-    }
-
-    /// Workspace, mechanism and paths, and the platform's speed and acceleration, as an SVG figure.
-    ///
-    /// # Errors
-    /// The machine has no workspace around its path.
-    pub fn picture(&self) -> Result<Figure> {
-        picture::picture(self)
-    }
-}
-
 impl<'a> Drive<'a> {
-    /// What the arms do over time, with a load on the platform in kg.
-    ///
-    /// # Errors
-    /// The rods of a pose lie in a plane, where no torque holds the platform.
-    pub fn arms(&self, load_kg: f64) -> Result<Vec<ArmsAt>> {
-        course::arms(self, load_kg)
-    }
-
     /// Time in s and speed of the platform in mm/s, the mean around it.
     pub fn speeds(&self) -> impl Iterator<Item = [f64; 2]> {
         self.motion.speeds()

@@ -7,7 +7,7 @@ use crate::drawing::{Drawing, flatten};
 use crate::machine::Machine;
 use crate::order::{Stroke, nearest_first};
 use crate::placement::Placement;
-use crate::plan::PlanSettings;
+use crate::plan_settings::PlanSettings;
 
 /// A drawing on the machine.
 pub(crate) struct Layout {

@@ -13,8 +13,11 @@ pub(crate) use self::settings::Settings;
 use self::settings::{
     DiscSettings, JointSettings, RapidSettings, TimedSettings, TimerSettings, VerticalSettings,
 };
-use crate::motors::FULL_STEP_DEG;
+use crate::numbers::{finite, positive};
 use crate::placement::Bed;
+
+/// The source prints pulses of 0.75 degrees; taken for half steps.
+const FULL_STEP_DEG: f64 = 1.5;
 
 /// The two joints of the arm as the steppers see them.
 #[derive(Debug, Clone, Copy)]
@@ -252,17 +255,4 @@ fn millihertz(name: &str, hz: f64) -> Result<u32> {
 fn whole(value: f64) -> Option<u32> {
     let whole = StepScale::new(1.0).ok()?.to_steps(value).ok()?;
     u32::try_from(whole).ok().filter(|whole| *whole > 0)
-}
-
-pub(crate) fn positive(name: &str, value: f64) -> Result<()> {
-    ensure!(
-        value.is_finite() && value > 0.0,
-        "{name} = {value} is not above zero"
-    );
-    Ok(())
-}
-
-pub(crate) fn finite(name: &str, value: f64) -> Result<()> {
-    ensure!(value.is_finite(), "{name} = {value} is not finite");
-    Ok(())
 }

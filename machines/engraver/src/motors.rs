@@ -9,9 +9,6 @@ use crate::machine::{JointScale, Machine};
 /// What a step may be off its place on a train, a ramp or a cubic: some ticks.
 const DEVIATION_STEPS: f64 = 0.01;
 
-/// The source prints pulses of 0.75 degrees; taken for half steps.
-pub(crate) const FULL_STEP_DEG: f64 = 1.5;
-
 /// The source prints no motors; these are assumed: 0.4 N m on each axis, with the inertia of rotor
 /// and gear.
 const MOTOR: Motor = Motor {

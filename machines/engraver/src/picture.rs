@@ -10,23 +10,27 @@ use crate::simulation::Run;
 const ENLARGED: f64 = 5.0;
 const WORST: Colour = Colour::rgb(0, 125, 90);
 
-pub(crate) fn picture(run: &Run) -> Figure {
-    let deviation = &run.deviation;
-    let title = format!(
-        "Engraved: {} strokes in {:.0} s",
-        run.drawing.len(),
-        run.duration_s
-    );
-    let note = format!(
-        "The path of the simulated tool is within {:.3} mm of the drawing, {:.3} mm rms; the bound is {:.3} mm.",
-        run.max_deviation_mm(),
-        deviation.rms_mm,
-        run.bound_mm
-    );
-    Figure::new(title)
-        .with_note(note)
-        .with_row(maps(run))
-        .with_row([profile(run)])
+impl Run {
+    /// The drawing and the engraved path, as an SVG figure.
+    #[must_use]
+    pub fn picture(&self) -> Figure {
+        let deviation = &self.deviation;
+        let title = format!(
+            "Engraved: {} strokes in {:.0} s",
+            self.drawing.len(),
+            self.duration_s
+        );
+        let note = format!(
+            "The path of the simulated tool is within {:.3} mm of the drawing, {:.3} mm rms; the bound is {:.3} mm.",
+            self.max_deviation_mm(),
+            deviation.rms_mm,
+            self.bound_mm
+        );
+        Figure::new(title)
+            .with_note(note)
+            .with_row(maps(self))
+            .with_row([profile(self)])
+    }
 }
 
 fn maps(run: &Run) -> Vec<Plot> {

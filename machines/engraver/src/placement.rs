@@ -6,7 +6,7 @@ use anyhow::{Context, Error, Result, anyhow, ensure};
 use kurbo::{Affine, Rect};
 use serde::{Deserialize, Serialize};
 
-use crate::machine::{finite, positive};
+use crate::numbers::{finite, positive};
 
 /// The rectangle into which a drawing is fitted, in mm.
 #[derive(Debug, Clone, Copy, Deserialize, Serialize)]

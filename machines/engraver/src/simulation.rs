@@ -1,7 +1,6 @@
 //! The simulated machine: four steppers on the controller's wires, and the arm on them.
 
 use anyhow::{Context, Result};
-use machine_sim::Figure;
 use nalgebra::Point2;
 use pattern_codec::engraving::{Axis, PerAxis};
 use stepper_sync::{Direction, Level};
@@ -58,12 +57,6 @@ impl Run {
         deviation
             .path_to_drawing_mm
             .max(deviation.drawing_to_path_mm)
-    }
-
-    /// The drawing and the engraved path, as an SVG figure.
-    #[must_use]
-    pub fn picture(&self) -> Figure {
-        crate::picture::picture(self)
     }
 
     /// Whether path and drawing are as close as tolerance and resolution allow.

@@ -20,7 +20,8 @@ use crate::drawing::Drawing;
 use crate::layout::Layout;
 use crate::machine::Machine;
 use crate::order::Stroke;
-use crate::plan::{PlanSettings, Reference};
+use crate::plan::Reference;
+use crate::plan_settings::PlanSettings;
 
 /// Largest kink between two curves that is passed without a stop, in radians: what drawing programs
 /// round off. The disc takes it in along the next curve.

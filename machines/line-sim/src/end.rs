@@ -6,10 +6,10 @@ use alloc::collections::VecDeque;
 use core::time::Duration;
 
 use machine_sim::Random;
-use proto3964r::{Event, LineError, Station, SubmitError, Transmit};
+use proto3964r::{Config, Event, LineError, Station, SubmitError, Transmit};
 
 use crate::{
-    BLOCK, Faults, StationSettings,
+    BLOCK, Faults, Frame,
     uart::{Read, Receiver, Transmitter},
 };
 
@@ -17,6 +17,16 @@ const STX: u8 = 0x02;
 const ETX: u8 = 0x03;
 const DLE: u8 = 0x10;
 const NAK: u8 = 0x15;
+
+/// Parameters of one station and of its circuits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::exhaustive_structs, reason = "what a station is set to")]
+pub struct StationSettings {
+    /// Of the procedure; its [`line`](Config::line) is what the station takes the line for.
+    pub config: Config,
+    /// Of the circuits.
+    pub frame: Frame,
+}
 
 #[derive(Clone, Debug)]
 pub(crate) struct End {

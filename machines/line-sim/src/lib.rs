@@ -24,8 +24,9 @@ mod faults;
 mod simulation;
 mod uart;
 
+pub use self::end::StationSettings;
 pub use self::faults::Faults;
-pub use self::simulation::{Happening, Simulation, StationSettings};
+pub use self::simulation::{Happening, Simulation};
 pub use self::uart::{Frame, Parity};
 
 /// Longest telegram of a station, in bytes.

@@ -2,23 +2,13 @@
 
 use core::time::Duration;
 
-use proto3964r::{Activity, Character, Config, Event, Side, SubmitError};
+use proto3964r::{Activity, Character, Event, Side, SubmitError};
 
 use crate::{
     Faults, Frame, NS_PER_STEP,
-    end::End,
+    end::{End, StationSettings},
     uart::{Read, Receiver},
 };
-
-/// Parameters of one station and of its circuits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(clippy::exhaustive_structs, reason = "what a station is set to")]
-pub struct StationSettings {
-    /// Of the procedure; its [`line`](Config::line) is what the station takes the line for.
-    pub config: Config,
-    /// Of the circuits.
-    pub frame: Frame,
-}
 
 /// An event of a station.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,14 +3,11 @@
 use anyhow::{Result, bail};
 use machine_sim::input::parse_settings;
 use nalgebra::Isometry3;
-use pose_pt::{Convention, Locator, Platform};
+use pose_pt::{Locator, Platform};
 
 use crate::panel::PanelSettings;
-use crate::pose::{Pose, vector};
+use crate::pose::{CONVENTION, Pose, vector};
 use crate::settings::Settings;
-
-/// Of all pose vectors.
-pub(crate) const CONVENTION: Convention = Convention::ExtrinsicXyz;
 
 /// An alignment platform with its panel.
 #[derive(Debug)]

@@ -1,9 +1,12 @@
 //! A pose as people write it.
 
 use anyhow::{Result, anyhow, ensure};
-use pose_pt::PoseVector;
+use pose_pt::{Convention, PoseVector};
 
 use crate::panel::PoseChange;
+
+/// Of all pose vectors.
+pub(crate) const CONVENTION: Convention = Convention::ExtrinsicXyz;
 
 /// `x y z alpha beta gamma` in mm and degrees.
 pub type Pose = [f64; 6];

@@ -6,9 +6,8 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use pose_pt::{AxisLimits, Blend, Interpolation, Locator};
 use serde::Deserialize;
 
-use crate::machine::CONVENTION;
 use crate::panel::PanelSettings;
-use crate::pose::Pose;
+use crate::pose::{CONVENTION, Pose};
 
 /// The platform file, as written.
 #[derive(Debug, Clone, Deserialize)]

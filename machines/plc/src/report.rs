@@ -6,20 +6,7 @@ use core::time::Duration;
 use anyhow::{Result, ensure};
 use serde::Serialize;
 
-use crate::side::Side;
-
-/// What a side did.
-#[derive(Debug, Default, Clone, Copy, Serialize)]
-pub(crate) struct Tally {
-    /// Data blocks that were written and read back.
-    pub(crate) done: usize,
-    /// Of their data, both ways.
-    pub(crate) bytes: usize,
-    /// Data blocks that read back otherwise than they were written.
-    pub(crate) different: usize,
-    pub(crate) jobs_repeated: usize,
-    pub(crate) blocks_rejected: usize,
-}
+use crate::side::{Side, Tally};
 
 /// What the line carried, both ways.
 #[derive(Debug, Default, Clone, Copy)]

@@ -6,9 +6,22 @@ use core::time::Duration;
 use anyhow::{Result, ensure};
 use proto3964r::{Event as LineEvent, Line, Priority};
 use rk512::{Command, Config, DataBlock, Endpoint, Event, Memory, Outcome, Telegram};
+use serde::Serialize;
 
 use crate::order::{BLOCK, Blocks, Order, expected, orders};
-use crate::report::Tally;
+
+/// What a side did.
+#[derive(Debug, Default, Clone, Copy, Serialize)]
+pub(crate) struct Tally {
+    /// Data blocks that were written and read back.
+    pub(crate) done: usize,
+    /// Of their data, both ways.
+    pub(crate) bytes: usize,
+    /// Data blocks that read back otherwise than they were written.
+    pub(crate) different: usize,
+    pub(crate) jobs_repeated: usize,
+    pub(crate) blocks_rejected: usize,
+}
 
 /// QVZ; the line may have no bit rate, so its times are short.
 const QVZ_MS: u16 = 100;

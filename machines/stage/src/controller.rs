@@ -6,10 +6,12 @@ use pulse_interp::{
     AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, ScaleRatio,
 };
 
-use crate::drive::{Drive, TICKS_PER_S};
+use crate::drive::Drive;
+use crate::gcode::Program;
+use crate::grid::{STEPS_PER_MM, seconds, to_mm};
 use crate::motion::Motion;
 use crate::motors::FollowedAxes;
-use crate::paths::{self, PathRule, STEPS_PER_MM, to_mm};
+use crate::paths::{self, PathRule};
 use crate::record::Record;
 use crate::run::Run;
 use crate::settings::{Settings, Stepping};
@@ -27,6 +29,23 @@ const AXES: [&str; 2] = ["X", "Y"];
 
 /// Takes the steps of the path: microseconds from the start, and the step of each axis.
 pub type StepObserver<'a> = &'a mut dyn FnMut(u64, [i32; 2]) -> Result<()>;
+
+/// Runs a program on a stage that has just been switched on.
+///
+/// # Errors
+/// A limit switch is met or more steps are lost than the loop corrects, with the line of the
+/// program; or the observer's.
+pub fn run(program: &Program, settings: &Settings, observer: StepObserver<'_>) -> Result<Run> {
+    let mut controller = Controller::homed(settings, observer)?;
+    let motions: Vec<_> = program.lines.iter().map(|line| line.motion).collect();
+    controller
+        .run(&motions)
+        .map_err(|BrokenOff { motion, error }| {
+            let number = program.lines.get(motion).map_or(0, |line| line.number);
+            error.context(format!("line {number}"))
+        })?;
+    controller.finish()
+}
 
 /// The closed loop over a simulated stage, and beside it a stage that gets the same pulses but for
 /// the corrections.
@@ -315,13 +334,6 @@ pub(crate) struct BrokenOff {
     /// From 0.
     pub(crate) motion: usize,
     pub(crate) error: Error,
-}
-
-/// Ticks of the clock in seconds.
-pub(crate) fn seconds(ticks: u64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "microseconds far below 2^52")]
-    let ticks = ticks as f64;
-    ticks / f64::from(TICKS_PER_S)
 }
 
 fn home(stage: &mut Stage, axis: usize) -> Result<()> {

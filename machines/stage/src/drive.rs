@@ -5,11 +5,8 @@ use kurbo::Point;
 use path_timing::Row;
 use stepper_sync::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming, StepScale};
 
-use crate::paths::STEPS_PER_MM;
+use crate::grid::{STEPS_PER_MM, TICKS_PER_S};
 use crate::timed::START_STOP_MM_S;
-
-/// Ticks of the clock in a second: microseconds.
-pub(crate) const TICKS_PER_S: u32 = 1_000_000;
 
 /// Both axes along the rows of one chain of motions after the other.
 #[derive(Debug)]

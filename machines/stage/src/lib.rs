@@ -28,6 +28,7 @@
 mod controller;
 mod drive;
 mod gcode;
+mod grid;
 mod motion;
 mod motors;
 mod paths;
@@ -41,12 +42,12 @@ mod stage;
 mod step_log;
 mod timed;
 
-pub use self::controller::StepObserver;
+pub use self::controller::{StepObserver, run};
 pub use self::gcode::Program;
 pub use self::paths::PathRule;
 pub use self::record::{Leg, Seen};
 pub use self::report::Report;
-pub use self::run::{Run, run};
+pub use self::run::Run;
 pub use self::session::Session;
 pub use self::settings::{Settings, Stepping};
 pub use self::stage::switches_mm;

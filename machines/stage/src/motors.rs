@@ -4,9 +4,9 @@ use anyhow::Result;
 use machine_sim::{DrivenAxis, Followed, MotionSampler, Motor, StepSize};
 use serde::Serialize;
 
-use crate::controller::seconds;
+use crate::grid::{STEPS_PER_MM, seconds, to_mm, to_steps};
 use crate::motion::Motion;
-use crate::paths::{self, PathRule, STEPS_PER_MM};
+use crate::paths::{self, PathRule};
 
 /// 0.4 N m on each axis. At the motor: the rotor 5.4, a screw of 12 mm by 200 mm 3.2, 5 kg of table
 /// on 4 mm of pitch 2.0, in 1e-6 kg m²; friction of a preloaded nut.
@@ -52,7 +52,7 @@ impl Motors {
                 axis.step(seconds(ticks), by);
             }
         }
-        let at = paths::to_mm(self.at);
+        let at = to_mm(self.at);
         self.motion.add(seconds(ticks), [at.x, at.y]);
     }
 
@@ -86,7 +86,7 @@ impl FollowedAxes {
     pub(crate) fn at_feed(motions: &[Motion], rule: PathRule) -> Result<Self> {
         let (mut motors, mut now) = (Motors::default(), 0);
         for motion in motions {
-            for timed in paths::at_feed(motion, paths::to_steps(motion.from), rule)? {
+            for timed in paths::at_feed(motion, to_steps(motion.from), rule)? {
                 let (ticks, step) = timed?;
                 now += ticks;
                 motors.step(now, [step.dx(), step.dy()]);

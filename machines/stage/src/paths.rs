@@ -8,12 +8,9 @@ use pulse_interp::{
     Arc, ArcMoves, ArcSteps, Factor, Line, LineMoves, LineSteps, Move, Rule, StepIntervals,
 };
 
-use crate::drive::TICKS_PER_S;
 use crate::gcode::ARC_TOLERANCE_MM;
+use crate::grid::{STEPS_PER_MM, TICKS_PER_S, to_mm, to_steps};
 use crate::motion::{Motion, Shape, angle_on};
-
-/// 4 mm pitch, 1.8 degrees a step, two microsteps.
-pub(crate) const STEPS_PER_MM: f64 = 100.0;
 
 /// Which axis steps next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,18 +57,6 @@ impl Iterator for Path {
         };
         step.map(|step| (step, factor))
     }
-}
-
-/// The nearest grid point, in steps.
-pub(crate) fn to_steps(at: Point) -> [i32; 2] {
-    // Coordinates are bounded by the parser, far below 2^31 steps.
-    #[expect(clippy::cast_possible_truncation, reason = "rounded, and saturates")]
-    [at.x, at.y].map(|mm| (mm * STEPS_PER_MM).round() as i32)
-}
-
-/// Where the stage is after these steps.
-pub(crate) fn to_mm([x, y]: [i32; 2]) -> Point {
-    Point::new(f64::from(x) / STEPS_PER_MM, f64::from(y) / STEPS_PER_MM)
 }
 
 /// The paths of a motion from where the stage was last commanded to.

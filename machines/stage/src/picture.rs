@@ -3,8 +3,8 @@
 
 use machine_sim::{Axis, Colour, Figure, Mark, Plot, Stroke};
 
+use crate::grid::STEPS_PER_MM;
 use crate::motors::FollowedAxes;
-use crate::paths::STEPS_PER_MM;
 use crate::record::{Leg, Seen};
 use crate::run::Run;
 use crate::stage::switches_mm;
@@ -15,44 +15,49 @@ const UM_PER_MM: f64 = 1000.0;
 const ENLARGED_STEPS: f64 = 10.0;
 const WORST: Colour = Colour::rgb(0, 125, 90);
 
-pub(crate) fn picture(run: &Run) -> Figure {
-    let (record, [closed_mm, open_mm]) = (&run.record, run.closing_mm);
-    let measured = |name: &str, seen: &Seen, end_mm: f64| {
-        let max = seen.worst.deviation_mm;
-        format!("{name}: {max:.3} mm off the curve at most, {end_mm:.3} mm off at the end.")
-    };
-    let [steps_x, steps_y] = record.steps;
-    let title = format!(
-        "Stage: {steps_x} + {steps_y} steps, {}, in {:.1} s",
-        run.settings.stepping.name(),
-        run.duration_s
-    );
-    let figure = Figure::new(title).with_note(measured("Closed loop", &record.closed, closed_mm));
-    let closed = deviations(run, "closed loop", Stroke::ACTUAL, &record.closed);
-    let [speed, acceleration] = motion(run);
-    if !is_lossy(run) {
-        return figure
-            .with_note(motors(run))
-            .with_row(maps(run))
+impl Run {
+    /// The programmed path and both stages' as an SVG figure.
+    #[must_use]
+    pub fn picture(&self) -> Figure {
+        let (record, [closed_mm, open_mm]) = (&self.record, self.closing_mm);
+        let measured = |name: &str, seen: &Seen, end_mm: f64| {
+            let max = seen.worst.deviation_mm;
+            format!("{name}: {max:.3} mm off the curve at most, {end_mm:.3} mm off at the end.")
+        };
+        let [steps_x, steps_y] = record.steps;
+        let title = format!(
+            "Stage: {steps_x} + {steps_y} steps, {}, in {:.1} s",
+            self.settings.stepping.name(),
+            self.duration_s
+        );
+        let figure =
+            Figure::new(title).with_note(measured("Closed loop", &record.closed, closed_mm));
+        let closed = deviations(self, "closed loop", Stroke::ACTUAL, &record.closed);
+        let [speed, acceleration] = motion(self);
+        if !is_lossy(self) {
+            return figure
+                .with_note(motors(self))
+                .with_row(maps(self))
+                .with_row([speed])
+                .with_row([acceleration])
+                .with_row([closed]);
+        }
+        let open = deviations(self, "open loop", Stroke::OTHER, &record.open);
+        let [closed_lost, open_lost] = self.lost;
+        let lost = format!(
+            "Steps lost: {closed_lost} in the closed loop, {} corrected; {open_lost} in the open loop.",
+            record.corrected
+        );
+        figure
+            .with_note(measured("Open loop", &record.open, open_mm))
+            .with_note(lost)
+            .with_row(maps(self))
+            .with_note(motors(self))
             .with_row([speed])
             .with_row([acceleration])
-            .with_row([closed]);
+            .with_row([closed, open])
+            .with_row([corrections(self)])
     }
-    let open = deviations(run, "open loop", Stroke::OTHER, &record.open);
-    let [closed_lost, open_lost] = run.lost;
-    let lost = format!(
-        "Steps lost: {closed_lost} in the closed loop, {} corrected; {open_lost} in the open loop.",
-        record.corrected
-    );
-    figure
-        .with_note(measured("Open loop", &record.open, open_mm))
-        .with_note(lost)
-        .with_row(maps(run))
-        .with_note(motors(run))
-        .with_row([speed])
-        .with_row([acceleration])
-        .with_row([closed, open])
-        .with_row([corrections(run)])
 }
 
 fn motors(run: &Run) -> String {

@@ -3,7 +3,7 @@
 use kurbo::Point;
 use machine_sim::Profile;
 
-use crate::controller::seconds;
+use crate::grid::seconds;
 use crate::motion::Motion;
 use crate::motors::Motors;
 

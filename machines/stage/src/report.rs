@@ -57,8 +57,16 @@ struct OpenLoop {
     lost_steps: u64,
 }
 
+impl Run {
+    /// The numbers.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        Report::new(self)
+    }
+}
+
 impl Report {
-    pub(crate) fn new(run: &Run) -> Self {
+    fn new(run: &Run) -> Self {
         let [steps_x, steps_y] = run.record.steps;
         let [closed_mm, open_mm] = run.closing_mm;
         let [closed_lost, open_lost] = run.lost;

@@ -1,14 +1,7 @@
-//! A whole program on the simulated stage, and what comes of it.
+//! What comes of a whole program on the simulated stage.
 
-use anyhow::Result;
-use machine_sim::Figure;
-
-use crate::controller::{BrokenOff, Controller, StepObserver};
-use crate::gcode::Program;
 use crate::motors::FollowedAxes;
-use crate::picture;
 use crate::record::{Record, Seen, over_time};
-use crate::report::Report;
 use crate::settings::Settings;
 
 /// What the stage did, in a closed loop and without corrections.
@@ -27,12 +20,6 @@ pub struct Run {
 }
 
 impl Run {
-    /// The numbers.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        Report::new(self)
-    }
-
     /// The stage whose lost steps are corrected.
     #[must_use]
     pub const fn closed_loop(&self) -> &Seen {
@@ -65,27 +52,4 @@ impl Run {
     pub fn corrections(&self) -> impl Iterator<Item = [f64; 2]> {
         over_time(&self.record.corrections).filter(|[_, steps]| steps.is_finite())
     }
-
-    /// The programmed path and both stages' as an SVG figure.
-    #[must_use]
-    pub fn picture(&self) -> Figure {
-        picture::picture(self)
-    }
-}
-
-/// Runs a program on a stage that has just been switched on.
-///
-/// # Errors
-/// A limit switch is met or more steps are lost than the loop corrects, with the line of the
-/// program; or the observer's.
-pub fn run(program: &Program, settings: &Settings, observer: StepObserver<'_>) -> Result<Run> {
-    let mut controller = Controller::homed(settings, observer)?;
-    let motions: Vec<_> = program.lines.iter().map(|line| line.motion).collect();
-    controller
-        .run(&motions)
-        .map_err(|BrokenOff { motion, error }| {
-            let number = program.lines.get(motion).map_or(0, |line| line.number);
-            error.context(format!("line {number}"))
-        })?;
-    controller.finish()
 }

@@ -4,7 +4,7 @@ use kurbo::Point;
 use machine_sim::{LimitSwitches, Scale, Stepper};
 use pulse_interp::{Direction, Switches};
 
-use crate::paths::{STEPS_PER_MM, to_mm};
+use crate::grid::{STEPS_PER_MM, to_mm};
 
 /// Counts of a scale per step: 500 counts/mm.
 pub(crate) const COUNTS_PER_STEP: u16 = 5;
