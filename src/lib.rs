@@ -1,9 +1,9 @@
 #![cfg_attr(
-    all(feature = "scara-kin", feature = "stepper-sync"),
+    all(feature = "path-timing", feature = "pvt-steps", feature = "scara-kin"),
     doc = include_str!("../README.md")
 )]
 #![cfg_attr(
-    not(all(feature = "scara-kin", feature = "stepper-sync")),
+    not(all(feature = "path-timing", feature = "pvt-steps", feature = "scara-kin")),
     doc = "The facade of pose2pulse: each crate of the family under a feature of its name."
 )]
 #![no_std]
@@ -13,6 +13,8 @@
 pub use delta_kin;
 #[cfg(feature = "handwheel")]
 pub use handwheel;
+#[cfg(feature = "motor-phases")]
+pub use motor_phases;
 #[cfg(feature = "path-timing")]
 pub use path_timing;
 #[cfg(feature = "pattern-codec")]
@@ -23,6 +25,8 @@ pub use pose_pt;
 pub use proto3964r;
 #[cfg(feature = "pulse-interp")]
 pub use pulse_interp;
+#[cfg(feature = "pvt-steps")]
+pub use pvt_steps;
 #[cfg(feature = "rk512")]
 pub use rk512;
 #[cfg(feature = "scara-kin")]

@@ -16,10 +16,10 @@ use std::hint::black_box;
 use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
-use stepper_sync::{
-    AxisRamp, AxisSegments, MinIntervals, PvtRow, PvtSteps, Ramp, RampLimits, Rate, Segment,
-    SegmentPlayer,
+use pvt_steps::{
+    AxisRamp, AxisSegments, PvtRow, PvtSteps, Ramp, RampLimits, Segment, SegmentPlayer,
 };
+use stepper_sync::{MinIntervals, Rate};
 
 /// 1024 steps at a step in 100 ticks.
 fn segment() -> Segment {

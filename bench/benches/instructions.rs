@@ -27,10 +27,11 @@ use std::hint::black_box;
 use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
+use motor_phases::{Accumulation, Accumulators, SpeedLaw};
 use pattern_codec::engraving::{Format, Record};
 use scara_kin::Arm;
 use scara_kin::nalgebra::Point2;
-use stepper_sync::{Accumulation, Accumulators, AxisTrain, Rate, SpeedLaw, Trains};
+use stepper_sync::{AxisTrain, Rate, Trains};
 
 const LINK: f64 = 132.0;
 

@@ -12,9 +12,8 @@ use std::time::Instant;
 use delta_kin::{Delta, DeltaPath};
 use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Row, Table, ToolLimits};
 use scara_kin::{Arm, ArmPath, Elbow};
-use stepper_sync::{
-    AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, Rate, SegmentPlayer, StepDirTiming, StepScale,
-};
+use pvt_steps::{AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, SegmentPlayer};
+use stepper_sync::{Rate, StepDirTiming, StepScale};
 
 const CASE: &str = "PIPELINE_CASE";
 const ROUNDS: &str = "PIPELINE_ROUNDS";

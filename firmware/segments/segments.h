@@ -1,5 +1,5 @@
 /*
- * Segments of stepper-sync on a microcontroller: a decoder and a player, C99, no library.
+ * Segments of pvt-steps on a microcontroller: a decoder and a player, C99, no library.
  *
  * The interrupt handler of an axis:
  *
@@ -9,7 +9,7 @@
  *     else
  *         load the next segment, set the direction pin, compare += player_load(...);
  *
- * Bytes and differences are described at `Segment` of stepper-sync. Segments that its `decode`
+ * Bytes and differences are described at `Segment` of pvt-steps. Segments that its `decode`
  * accepts are played forwards in time; here only what is needed to stay within the bytes is checked.
  */
 #ifndef SEGMENTS_H

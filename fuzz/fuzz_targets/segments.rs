@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use stepper_sync::{Segment, SegmentPlayer};
+use pvt_steps::{Segment, SegmentPlayer};
 
 fuzz_target!(|data: &[u8]| {
     let (mut bytes, mut player) = (data, SegmentPlayer::new());

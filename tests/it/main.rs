@@ -3,7 +3,7 @@
 
 #[cfg(unix)]
 mod align;
-#[cfg(all(feature = "pattern-codec", feature = "stepper-sync"))]
+#[cfg(all(feature = "motor-phases", feature = "pattern-codec"))]
 mod dance;
 mod delta;
 #[cfg(all(
@@ -13,11 +13,16 @@ mod delta;
 ))]
 mod engrave;
 mod generators;
-#[cfg(all(unix, feature = "pattern-codec", feature = "stepper-sync"))]
+#[cfg(all(
+    unix,
+    feature = "motor-phases",
+    feature = "pattern-codec",
+    feature = "stepper-sync"
+))]
 mod mcs51;
 #[cfg(unix)]
 mod plc;
-#[cfg(all(unix, feature = "stepper-sync"))]
+#[cfg(all(unix, feature = "pvt-steps"))]
 mod segments;
 mod stage;
 mod tools;

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use pose2pulse::stepper_sync::{
+use pose2pulse::pvt_steps::{
     Direction, JoinedSegments, MinIntervals, PvtKnot, Segment, SegmentPlayer,
 };
 

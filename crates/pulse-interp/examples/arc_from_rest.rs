@@ -5,7 +5,7 @@
 use core::error::Error;
 
 use pulse_interp::{Arc, Rule, StepIntervals, Turn};
-use stepper_sync::{Ramp, RampLimits, Rate};
+use pvt_steps::{Ramp, RampLimits, Rate};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // 100 steps/mm: up to 50 mm/s at 500 mm/s², on a timer of 1 MHz.

@@ -68,7 +68,7 @@ impl<A: Iterator<Item = u64>> Head<A> {
 /// Iterator of the edges of N axes in time order; edges of the same tick come in axis order.
 ///
 /// `A` yields the intervals of one axis in ticks, the first one counted from the start of the
-/// move: [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp). Each edge costs a
+/// move: [`AxisTrain`](crate::AxisTrain), or a ramp of `pvt-steps`. Each edge costs a
 /// comparison per axis and one interval; nothing is stored but one head per axis.
 #[derive(Clone, Debug)]
 #[must_use = "iterators are lazy"]
@@ -79,8 +79,7 @@ pub struct Edges<A, const N: usize> {
 impl<A: Iterator<Item = u64>, const N: usize> Edges<A, N> {
     /// Merges the interval iterators of N axes.
     ///
-    /// The sum of one axis' intervals must stay below 2^64 - 1, as it does for all trains and
-    /// ramps of this crate.
+    /// The sum of one axis' intervals must stay below 2^64 - 1, as it does for all trains.
     pub fn new(axes: [A; N]) -> Self {
         Self {
             heads: axes.map(Head::new),

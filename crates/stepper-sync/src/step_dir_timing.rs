@@ -1,6 +1,21 @@
 //! What driver chips ask of their pins.
 
-use crate::{MinIntervals, Rate};
+use crate::Rate;
+
+/// The least ticks from a step to the next.
+///
+/// [`StepDirTiming::min_intervals`] has those of a driver's
+/// data sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "written as a literal")]
+pub struct MinIntervals {
+    /// In the same direction: pulse and pause.
+    pub step_ticks: u64,
+    /// In the other direction: the same, or hold and setup time of the direction pin if longer.
+    pub reversal_ticks: u64,
+}
 
 /// What a driver chip asks of its step and direction inputs, in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -31,7 +31,9 @@ impl Direction {
         }
     }
 
-    pub(crate) const fn reversed(self) -> Self {
+    /// The other direction.
+    #[must_use]
+    pub const fn reversed(self) -> Self {
         match self {
             Self::Positive => Self::Negative,
             Self::Negative => Self::Positive,
@@ -276,7 +278,7 @@ impl<const N: usize> Edges<AxisTrain, N> {
 }
 
 /// The largest number of pulses of any axis.
-pub(crate) fn most_pulses<const N: usize>(steps: &[i32; N]) -> Result<u32, TrainError> {
+fn most_pulses<const N: usize>(steps: &[i32; N]) -> Result<u32, TrainError> {
     let mut most = 0;
     for (axis, &n) in steps.iter().enumerate() {
         if n == i32::MIN {

@@ -1,11 +1,9 @@
 //! A line of a two-link arm from rest to rest, as segments of steps for each joint.
 
 use path_timing::{AxisLimits, Curve, Knot, Path, Table};
+use pvt_steps::{AxisSegments, JoinedSegments, PvtQuantiser, PvtRow, Segment, SegmentPlayer};
 use scara_kin::{Arm, ArmPath, Elbow};
-use stepper_sync::{
-    AxisSegments, Direction, JoinedSegments, MinIntervals, PvtQuantiser, PvtRow, Rate, Segment,
-    SegmentPlayer, StepScale,
-};
+use stepper_sync::{Direction, MinIntervals, Rate, StepScale};
 
 /// Ticks of the player's timers.
 pub const TICK_HZ: u32 = 25_000_000;

@@ -4,7 +4,8 @@ use core::convert::Infallible;
 
 use path_timing::{AxisLimits, FeedCeiling, Knot, PathFn, PathPoint, Table};
 use pulse_interp::{Arc, Rule, Turn};
-use stepper_sync::{Ramp, RampLimits, Rate, Trains};
+use pvt_steps::{Ramp, RampLimits};
+use stepper_sync::{Rate, Trains};
 
 use crate::Hash;
 

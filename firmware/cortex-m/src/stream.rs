@@ -5,7 +5,8 @@
 //! tail is played. So a line that breaks at any moment leaves the machine at rest, on the path, with
 //! every step counted, and the PC goes on from there.
 
-use stepper_sync::{Direction, Segment, SegmentError};
+use pvt_steps::{Segment, SegmentError};
+use stepper_sync::Direction;
 
 /// Batches that the board holds: the one that is played, and those that wait.
 pub const WINDOW: usize = 3;
@@ -162,7 +163,7 @@ impl Part {
     /// Ticks since the joint's last step before, and direction of each step.
     pub fn steps(&self) -> impl Iterator<Item = (u64, Direction)> {
         self.0.iter().map_while(Option::as_ref).flat_map(|segment| {
-            let mut player = stepper_sync::SegmentPlayer::new();
+            let mut player = pvt_steps::SegmentPlayer::new();
             let first = player.load(segment);
             let next = core::iter::from_fn(move || player.next()).map(u64::from);
             let direction = segment.direction();

@@ -1,6 +1,6 @@
 //! From steps to blocks for the pins.
 
-use stepper_sync::Direction;
+use pvt_steps::Direction;
 
 use crate::panel::Panel;
 use crate::pulses::{Block, Pulses, Word};

@@ -33,8 +33,8 @@ pub(crate) async fn home(
                 break;
             };
             let direction = match direction {
-                Direction::Positive => stepper_sync::Direction::Positive,
-                Direction::Negative => stepper_sync::Direction::Negative,
+                Direction::Positive => pvt_steps::Direction::Positive,
+                Direction::Negative => pvt_steps::Direction::Negative,
             };
             writer.step(joint, ticks, direction).await;
             ticks += u64::from(match speed {

@@ -3,8 +3,8 @@
 use core::fmt::Display;
 
 use path_timing::{Curve, FeedCeiling, Knot, PathFn, PathPoint, Playback, Row, Table, ToolLimits};
+use pvt_steps::{PvtQuantiser, PvtSteps};
 use scara_kin::Joints;
-use stepper_sync::{PvtQuantiser, PvtSteps};
 
 use crate::blocks::BlockWriter;
 use crate::command::{Job, Joint};

@@ -1,7 +1,7 @@
 //! From steps to levels of pins.
 
 use heapless::Vec;
-use stepper_sync::Direction;
+use pvt_steps::Direction;
 
 use crate::settings::PinTicks;
 

@@ -2,10 +2,8 @@
 
 use path_timing::AxisLimits;
 use pulse_interp::HomingSettings;
+use pvt_steps::{KnotError, MinIntervals, Rate, RateError, ScaleError, StepDirTiming, StepScale};
 use scara_kin::{Arm, Elbow, GeometryError, JointRange, Limits};
-use stepper_sync::{
-    KnotError, MinIntervals, Rate, RateError, ScaleError, StepDirTiming, StepScale,
-};
 use thiserror::Error;
 
 /// An arm, its motors and their drivers. Arrays have the shoulder's value first, then the elbow's.
@@ -141,7 +139,7 @@ impl PinTicks {
         }
     }
 
-    /// The most steps a second that [`stepper_sync::PvtSteps`] makes with these intervals.
+    /// The most steps a second that [`pvt_steps::PvtSteps`] makes with these intervals.
     fn max_steps_s(self, tick_hz: u32) -> f64 {
         // Two ticks for the rounding of two steps, one for that of the speed's limit.
         f64::from(tick_hz) / (self.step + 3) as f64

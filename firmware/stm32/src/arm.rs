@@ -2,8 +2,8 @@
 
 use arm_machine::Settings;
 use pulse_interp::{Direction, HomingSettings};
+use pvt_steps::StepDirTiming;
 use scara_kin::Elbow;
-use stepper_sync::StepDirTiming;
 
 /// Motors of 200 steps in sixteenths, behind belts of 1 : 5.
 const STEPS_PER_TURN: f64 = 200.0 * 16.0 * 5.0;

@@ -4,8 +4,8 @@ use std::io::Write;
 
 use anyhow::Result;
 use machine_sim::{VcdWriter, Wire};
+use motor_phases::{LatchWrites, Latches};
 use pattern_codec::dance::Timing;
-use stepper_sync::{LatchWrites, Latches};
 
 use crate::MOTORS;
 

@@ -2,8 +2,8 @@
 
 use core::str::FromStr;
 
+use motor_phases::SpeedLaw;
 use serde::Serialize;
-use stepper_sync::SpeedLaw;
 use thiserror::Error;
 
 /// What the firmware does every tick with the speed v of a motor, its accumulator a and the

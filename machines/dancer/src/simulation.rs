@@ -3,10 +3,10 @@
 use std::io::Write;
 
 use anyhow::{Context as _, Result, ensure};
-use pattern_codec::dance::Data;
-use stepper_sync::{
+use motor_phases::{
     Accumulation, Accumulators, LatchWrites, Latches, Phase, Phases, Rate, Stepping, Wiring,
 };
+use pattern_codec::dance::Data;
 
 use crate::MOTORS;
 use crate::bus_log::BusLog;

@@ -6,7 +6,8 @@ use nalgebra::Point3;
 use path_timing::{
     Accuracy, Curve, Knot, Path, Promise, Smoothed, Table, ToolLimits, Verifier, Vertex, Waypoint,
 };
-use stepper_sync::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming};
+use pvt_steps::{PvtQuantiser, PvtSteps};
+use stepper_sync::{Direction, Rate, StepDirTiming};
 
 use crate::machine::Machine;
 use crate::plan::TICKS_PER_S;

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use pattern_codec::engraving::{Axis, JointPulses, Record};
-use stepper_sync::{Direction, Edge, Level, Ramp, RampLimits, Timer, Trains};
+use pvt_steps::{Ramp, RampLimits};
+use stepper_sync::{Direction, Edge, Level, Timer, Trains};
 
 use crate::machine::Machine;
 

@@ -6,8 +6,9 @@ use anyhow::{Context, Result, ensure};
 use nalgebra::Point2;
 use path_timing::ToolLimits;
 use pattern_codec::engraving::{Format, PerAxis};
+use pvt_steps::{Ramp, RampLimits};
 use scara_kin::{Arm, JointRange, Joints, Limits, TangentTool};
-use stepper_sync::{Ramp, RampLimits, Rate, StepScale, Timer};
+use stepper_sync::{Rate, StepScale, Timer};
 
 pub(crate) use self::settings::Settings;
 use self::settings::{

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use kurbo::Point;
 use path_timing::Row;
-use stepper_sync::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming, StepScale};
+use pvt_steps::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming, StepScale};
 
 use crate::grid::{STEPS_PER_MM, TICKS_PER_S};
 use crate::timed::START_STOP_MM_S;

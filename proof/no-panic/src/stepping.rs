@@ -1,14 +1,19 @@
-//! stepper-sync.
+//! stepper-sync, pvt-steps, motor-phases.
 
 use std::hint::black_box;
 
+use motor_phases::{
+    Accumulation, Accumulators, BusError, BusWrite, LatchWrites, Latches, Phase, Phases, SpeedLaw,
+    Stepping, Wiring,
+};
 use no_panic::no_panic;
+use pvt_steps::{
+    AxisRamp, AxisSegments, PvtKnot, PvtRow, PvtSteps, Ramp, RampLimits, RowError, Segment,
+    SegmentError, SegmentPlayer, Step,
+};
 use stepper_sync::{
-    Accumulation, Accumulators, AxisRamp, AxisSegments, AxisTrain, BusError, BusWrite, Direction,
-    Edge, Edges, LatchWrites, Latches, MinIntervals, Periods, Phase, Phases, Position,
-    PositionError, PvtKnot, PvtRow, PvtSteps, Ramp, RampLimits, Rate, Reload, Reloads, RowError,
-    Segment, SegmentError, SegmentPlayer, SpeedLaw, Step, Stepping, Timer, TimerError, Trains,
-    Wiring,
+    AxisTrain, Direction, Edge, Edges, MinIntervals, Periods, Position, PositionError, Rate,
+    Reload, Reloads, Timer, TimerError, Trains,
 };
 
 #[no_panic]

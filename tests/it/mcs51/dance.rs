@@ -1,10 +1,11 @@
 //! `dance.c`: the order of the writes on the bus, and how long a tick lasts.
 
+use pose2pulse::motor_phases::Rate;
+use pose2pulse::motor_phases::{
+    Accumulation, BusWrite, LatchWrites, Latches, Phases, SpeedLaw, Stepping, Wiring,
+};
 use pose2pulse::pattern_codec::c_header::Dialect;
 use pose2pulse::pattern_codec::dance::{DataHeader, Packing, Threshold, Timing};
-use pose2pulse::stepper_sync::{
-    Accumulation, BusWrite, LatchWrites, Latches, Phases, Rate, SpeedLaw, Stepping, Wiring,
-};
 
 use super::engrave::{JITTER, bounds};
 use super::simulator::{Port, Write, program_bytes, simulate};

@@ -1,5 +1,6 @@
 //! What the tests of several crates share.
 #![expect(
+    clippy::indexing_slicing,
     clippy::missing_panics_doc,
     clippy::panic,
     clippy::unwrap_used,
@@ -8,11 +9,13 @@
 
 mod config;
 pub mod instructions;
+mod pulses;
 mod random;
 mod sizes;
 mod stored;
 
 pub use config::at_least;
+pub use pulses::Pulses;
 pub use random::{Random, setting};
 pub use sizes::{any_i32, any_u16, any_u32, any_u64};
 pub use stored::{not_read, stored};

@@ -1,7 +1,7 @@
 //! Path speed: the variation at a fixed pulse rate, its cure, and speeds that change.
 
 use pulse_interp::{Arc, Factor, Line, Move, Rule, StepIntervals, Turn};
-use stepper_sync::{Ramp, RampLimits, Rate};
+use pvt_steps::{Ramp, RampLimits, Rate};
 
 /// How far the speed may be off, as a share.
 const STEADY: f64 = 0.01;

@@ -32,7 +32,7 @@ pub struct Reloads<A> {
 
 impl Timer {
     /// The reloads of an axis on this timer, from its intervals: an
-    /// [`AxisTrain`](crate::AxisTrain) or [`AxisRamp`](crate::AxisRamp).
+    /// [`AxisTrain`](crate::AxisTrain), or a ramp of `pvt-steps`.
     ///
     /// A value that the handler writes into the counter, or into a compare register without a
     /// buffer, is for the period that has just begun. A register from which hardware has reloaded

@@ -5,7 +5,8 @@ cortex_m_firmware::smallest_program!(work);
 
 use core::hint::black_box;
 
-use stepper_sync::{Ramp, RampLimits, Rate};
+use pvt_steps::{Ramp, RampLimits};
+use stepper_sync::Rate;
 
 fn work() -> Option<u64> {
     let limits = RampLimits {

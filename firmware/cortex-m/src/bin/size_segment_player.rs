@@ -5,7 +5,7 @@ cortex_m_firmware::smallest_program!(work);
 
 use core::hint::black_box;
 
-use stepper_sync::{Segment, SegmentPlayer};
+use pvt_steps::{Segment, SegmentPlayer};
 
 fn work() -> Option<u32> {
     let (segment, _) = Segment::decode(black_box(&[0x21, 0, 0, 100, 0x80, 0x80, 4])).ok()?;

@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 use arm_machine::{Machine, Motion, Panel, Settings, talk};
 use proto3964r::{Config, Event, Line, LineError, Priority, Station};
 use pulse_interp::{Direction, HomingSettings};
+use pvt_steps::StepDirTiming;
 use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, Elbow, Joints};
-use stepper_sync::StepDirTiming;
 
 pub use pins::Pins;
 use wire::Wire;

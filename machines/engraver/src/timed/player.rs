@@ -8,7 +8,8 @@ use core::cmp::Reverse;
 use anyhow::{Context, Result, ensure};
 use path_timing::Row;
 use pattern_codec::engraving::{Axis, Builder, PerAxis};
-use stepper_sync::{Direction, Level, PvtQuantiser, PvtSteps, StepDirTiming};
+use pvt_steps::{PvtQuantiser, PvtSteps};
+use stepper_sync::{Direction, Level, StepDirTiming};
 
 use super::{Move, TimedPlan};
 use crate::controller::{Controller, Wires};

@@ -2,12 +2,10 @@
 
 use core::hint::black_box;
 
+use motor_phases::{Accumulation, LatchWrites, Latches, Phases, SpeedLaw, Stepping, Wiring};
 use pulse_interp::{Arc, AxisLoop, Line, LoopSettings, Rule, ScaleRatio, StepIntervals, Turn};
-use stepper_sync::{
-    Accumulation, JoinedSegments, LatchWrites, Latches, Phases, Position, PvtQuantiser, PvtSteps,
-    Ramp, RampLimits, Rate, Segment, SpeedLaw, StepDirTiming, StepScale, Stepping, Timer, Trains,
-    Wiring,
-};
+use pvt_steps::{JoinedSegments, PvtQuantiser, PvtSteps, Ramp, RampLimits, Segment};
+use stepper_sync::{Position, Rate, StepDirTiming, StepScale, Timer, Trains};
 
 use super::holds;
 /// Trains that end together, timer reloads, positions.

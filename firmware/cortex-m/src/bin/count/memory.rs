@@ -12,11 +12,10 @@ pub fn say() {
             $(hprintln!("{};bytes;{}", stringify!($kind), size_of::<$kind>());)*
         };
     }
+    use motor_phases::Accumulators;
     use path_timing::FeedCeiling;
-    use stepper_sync::{
-        Accumulators, AxisRamp, AxisSegments, AxisTrain, Edges, JoinedSegments, PvtSteps, Segment,
-        SegmentPlayer,
-    };
+    use pvt_steps::{AxisRamp, AxisSegments, JoinedSegments, PvtSteps, Segment, SegmentPlayer};
+    use stepper_sync::{AxisTrain, Edges};
     say!(
         scara_kin::Arm<f32>,
         scara_kin::Arm<f64>,

@@ -5,10 +5,10 @@ use core::hint::black_box;
 
 use cortex_m_firmware::meter::Meter;
 use path_timing::{AxisLimits, FeedCeiling, Knot, Path, PathPoint, Table};
-use stepper_sync::{
-    AxisSegments, MinIntervals, PvtKnot, PvtQuantiser, PvtSteps, Ramp, RampLimits, Rate, Segment,
-    SegmentPlayer, StepScale,
+use pvt_steps::{
+    AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, Ramp, RampLimits, Segment, SegmentPlayer,
 };
+use stepper_sync::{MinIntervals, Rate, StepScale};
 
 use crate::next;
 

@@ -3,10 +3,9 @@
 use core::hint::black_box;
 
 use cortex_m_firmware::meter::Meter;
+use motor_phases::{Accumulation, Phases, SpeedLaw, Stepping, Wiring};
 use pulse_interp::{Arc, Dda, Line, Rule, StepIntervals, Turn};
-use stepper_sync::{
-    Accumulation, Phases, Position, Rate, SpeedLaw, Stepping, Timer, Trains, Wiring,
-};
+use stepper_sync::{Position, Rate, Timer, Trains};
 
 use crate::next;
 

@@ -3,7 +3,8 @@
 use core::sync::atomic::Ordering;
 
 use cortex_m_firmware::board::{StepTimer, Trace};
-use stepper_sync::{Direction, SegmentPlayer};
+use pvt_steps::SegmentPlayer;
+use stepper_sync::Direction;
 
 use super::{Slots, next};
 

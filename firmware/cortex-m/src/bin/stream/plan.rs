@@ -3,7 +3,7 @@
 use cortex_m_firmware::arm_line::LEAST;
 use cortex_m_firmware::stream::Joints;
 use path_timing::Playback;
-use stepper_sync::{AxisSegments, PvtQuantiser, Segment};
+use pvt_steps::{AxisSegments, PvtQuantiser, Segment};
 
 use super::Result;
 

@@ -1,0 +1,183 @@
+//! From paths to steps in one call: planned by `path-timing`, quantised, put out.
+
+use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segments_within};
+use thiserror::Error;
+
+use crate::{
+    KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
+};
+
+/// Knots in sight, of some 170 bytes for two axes: enough to brake within as many segments.
+const KNOTS: usize = 64;
+
+/// Fewest segments of a path.
+const SEGMENTS: u32 = 8;
+
+/// Why paths do not become steps. `E` is the path's own error.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum DriveError<E> {
+    /// The motion cannot be planned.
+    #[error(transparent)]
+    Plan(PlanError<E>),
+    /// A row has no whole numbers of steps and ticks.
+    #[error(transparent)]
+    Knot(#[from] KnotError),
+    /// A driver cannot take the steps of a row.
+    #[error(transparent)]
+    Row(#[from] RowError),
+}
+
+/// `N` stepper motors along paths, from rest to rest, as fast as their limits allow.
+///
+/// ```text
+/// path -> LookAhead -> rows -> PvtQuantiser -> whole steps, ticks -> PvtSteps -> edges
+/// ```
+///
+/// It plans in windows of `W` knots, which are in it: a path may be of any length, and is as fast
+/// as braking within the window allows. What is not to be decided here is done by these parts one by
+/// one: feed override, tables with jerk, edges on a wire.
+///
+/// ```
+/// use path_timing::{AxisLimits, Curve};
+/// use scara_kin::{Arm, ArmPath, Elbow};
+/// use pvt_steps::{Drive, Rate};
+///
+/// let arm = Arm::new(132.0, 132.0)?; // links, mm
+/// let line = arm.path(Curve::line([-80.0, 100.0], [80.0, 100.0])?, Elbow::Right)?;
+/// let joint = AxisLimits { speed: 3.0, acceleration: 30.0, jerk: None }; // rad, s
+/// let steps_per_rad = 32_000.0 / std::f64::consts::TAU;
+/// let mut drive = Drive::new([joint; 2], [steps_per_rad; 2], Rate::from_hz(72_000_000)?)?;
+/// for step in drive.along([line], 0.01, ArmPath::departure) {
+///     let step = step?;
+///     println!("tick {}: axis {} {:?}", step.ticks, step.axis, step.direction);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Drive<const N: usize, const W: usize = KNOTS> {
+    limits: [AxisLimits; N],
+    scales: [StepScale; N],
+    rate: Rate,
+    timing: StepDirTiming,
+    window: [Knot<[f64; N]>; W],
+}
+
+impl<const N: usize> Drive<N> {
+    /// Motors with limits and steps per unit of each axis, and the rate of the timer that makes their
+    /// steps; drivers with the timing of a DRV8825, knots for 64 segments in sight.
+    ///
+    /// # Errors
+    /// [`ScaleError`].
+    pub fn new(
+        limits: [AxisLimits; N],
+        steps_per_unit: [f64; N],
+        rate: Rate,
+    ) -> Result<Self, ScaleError> {
+        // Each is replaced, or nothing is returned.
+        let mut scales = [StepScale::new(1.0)?; N];
+        for (scale, steps_per_unit) in scales.iter_mut().zip(steps_per_unit) {
+            *scale = StepScale::new(steps_per_unit)?;
+        }
+        Ok(Self {
+            limits,
+            scales,
+            rate,
+            timing: StepDirTiming::DRV8825,
+            window: [Knot::default(); KNOTS],
+        })
+    }
+}
+
+impl<const N: usize, const W: usize> Drive<N, W> {
+    /// The same with `M` knots in sight.
+    #[must_use]
+    pub fn with_knots<const M: usize>(self) -> Drive<N, M> {
+        Drive {
+            limits: self.limits,
+            scales: self.scales,
+            rate: self.rate,
+            timing: self.timing,
+            window: [Knot::default(); M],
+        }
+    }
+
+    /// The same for drivers with another timing.
+    #[must_use]
+    pub const fn with_timing(mut self, timing: StepDirTiming) -> Self {
+        self.timing = timing;
+        self
+    }
+
+    /// The steps along `paths`, with ticks from 0 on: each path in as many segments as keep
+    /// `departure`, a bound in the unit of `tolerance`, within it at any speeds.
+    ///
+    /// The motors stand where the first path begins. After an error there are no steps, and they may
+    /// be in motion; a path that is looked at whole when it is made gives none.
+    ///
+    /// # Errors
+    /// [`DriveError`] in place of a step, the last item then.
+    pub fn along<P: Path<Axes = [f64; N]>>(
+        &mut self,
+        paths: impl IntoIterator<Item = P>,
+        tolerance: f64,
+        departure: impl Fn(&P, &Span<[f64; N]>) -> f64,
+    ) -> impl Iterator<Item = Result<Step, DriveError<P::Error>>> {
+        let segments = move |path: &P| segments_within(path, SEGMENTS, tolerance, &departure);
+        let planned = LookAhead::new(paths, self.limits, segments, &mut self.window);
+        let (rows, refused) = match planned {
+            Ok(rows) => (Some(rows), None),
+            Err(error) => (None, Some(Err(error))),
+        };
+        let mut rows = refused.into_iter().chain(rows.into_iter().flatten());
+        let (rate, scales, timing) = (self.rate, self.scales, self.timing);
+        let mut axes: Option<AxesAt<N>> = None;
+        let mut is_over = false;
+        core::iter::from_fn(move || {
+            while !is_over {
+                if let Some(step) = axes.as_mut().and_then(|axes| axes.steps.next()) {
+                    return Some(Ok(step));
+                }
+                let taken = rows.next()?.map_err(DriveError::Plan).and_then(|row| {
+                    match &mut axes {
+                        Some(axes) => axes.take(&row)?,
+                        None => axes = Some(AxesAt::new(rate, scales, timing, &row)?),
+                    }
+                    Ok(())
+                });
+                if let Err(error) = taken {
+                    is_over = true;
+                    return Some(Err(error));
+                }
+            }
+            None
+        })
+    }
+}
+
+/// Motors at the row that was taken last.
+struct AxesAt<const N: usize> {
+    quantiser: PvtQuantiser<N>,
+    steps: PvtSteps<N>,
+}
+
+impl<const N: usize> AxesAt<N> {
+    fn new(
+        rate: Rate,
+        scales: [StepScale; N],
+        timing: StepDirTiming,
+        first: &Row<[f64; N]>,
+    ) -> Result<Self, KnotError> {
+        let quantiser = PvtQuantiser::new(rate, scales, first.position)?;
+        Ok(Self {
+            steps: PvtSteps::new(quantiser.knots(), timing.min_intervals(rate)),
+            quantiser,
+        })
+    }
+
+    fn take<E>(&mut self, row: &Row<[f64; N]>) -> Result<(), DriveError<E>> {
+        let row = self.quantiser.row(row.time_s, row.position, row.velocity)?;
+        Ok(self.steps.push(&row)?)
+    }
+}

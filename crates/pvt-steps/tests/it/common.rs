@@ -1,0 +1,4 @@
+//! What several modules use.
+
+pub(crate) mod arm;
+pub(crate) mod rows;

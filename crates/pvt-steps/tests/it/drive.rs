@@ -1,0 +1,124 @@
+//! From paths to steps in one call: as its parts do it one by one.
+
+use path_timing::{AxisLimits, Curve, Knot, LookAhead, PlanError, segments_within};
+use pvt_steps::{
+    Direction, Drive, DriveError, PvtQuantiser, PvtSteps, Rate, ScaleError, Step, StepDirTiming,
+    StepScale,
+};
+
+const LIMITS: AxisLimits = AxisLimits {
+    speed: 100.0,
+    acceleration: 2000.0,
+    jerk: None,
+};
+const STEPS_PER_MM: f64 = 80.0;
+const TOLERANCE_MM: f64 = 0.01;
+
+fn rate() -> Rate {
+    Rate::from_hz(1_000_000).unwrap()
+}
+
+fn drive() -> Drive<2> {
+    Drive::new([LIMITS; 2], [STEPS_PER_MM; 2], rate()).unwrap()
+}
+
+/// A line, and an arc that it goes on to.
+fn curves() -> [Curve<2>; 2] {
+    [
+        Curve::line([0.0, 0.0], [40.0, 0.0]).unwrap(),
+        Curve::arc([40.0, 0.0], [40.0, 10.0], [1.0, 0.0], 4.0).unwrap(),
+    ]
+}
+
+fn steps(drive: &mut Drive<2>) -> Vec<Step> {
+    let steps = drive.along(curves(), TOLERANCE_MM, Curve::departure);
+    steps.map(Result::unwrap).collect()
+}
+
+const DEFAULT: usize = 64;
+
+#[test]
+fn it_is_its_parts_one_after_the_other() {
+    let mut window = [Knot::default(); DEFAULT];
+    let segments = |curve: &Curve<2>| segments_within(curve, 8, TOLERANCE_MM, Curve::departure);
+    let mut rows = LookAhead::new(curves(), [LIMITS; 2], segments, &mut window).unwrap();
+    let first = rows.next().unwrap().unwrap();
+    let scale = StepScale::new(STEPS_PER_MM).unwrap();
+    let mut quantiser = PvtQuantiser::new(rate(), [scale; 2], first.position).unwrap();
+    let timing = StepDirTiming::DRV8825.min_intervals(rate());
+    let mut edges = PvtSteps::new(quantiser.knots(), timing);
+    let mut wanted = Vec::new();
+    for row in rows.map(Result::unwrap) {
+        let row = quantiser.row(row.time_s, row.position, row.velocity);
+        edges.push(&row.unwrap()).unwrap();
+        wanted.extend(&mut edges);
+    }
+    let found = steps(&mut drive());
+    assert!(found.len() > 5000 && found == wanted);
+}
+
+/// Ends where the path ends, from tick 0 each time; back again too.
+#[test]
+fn it_goes_there_and_back() {
+    let mut drive = drive();
+    let there = steps(&mut drive);
+    let end = |steps: &[Step]| {
+        steps.iter().fold([0_i32; 2], |mut at, step| {
+            at[step.axis] += match step.direction {
+                Direction::Positive => 1,
+                Direction::Negative => -1,
+            };
+            at
+        })
+    };
+    let [x, y] = curves()[1].end().map(|mm| mm * STEPS_PER_MM);
+    let [found_x, found_y] = end(&there).map(f64::from);
+    assert!((found_x - x).abs() <= 0.5 && (found_y - y).abs() <= 0.5);
+    let [x, y] = curves()[1].end();
+    let home = Curve::line([x, y], [0.0, 0.0]).unwrap();
+    let back = drive.along([home], TOLERANCE_MM, Curve::departure);
+    let back: Vec<_> = back.map(Result::unwrap).collect();
+    assert!(back[0].ticks < there[there.len() - 1].ticks);
+    assert_eq!(end(&back), end(&there).map(|steps| -steps));
+}
+
+/// More knots in sight are never slower, fewer brake earlier.
+#[test]
+fn a_wider_window_is_no_slower() {
+    let last = |steps: Vec<Step>| steps[steps.len() - 1].ticks;
+    let few = {
+        let mut drive = drive().with_knots::<6>();
+        let steps = drive.along(curves(), TOLERANCE_MM, Curve::departure);
+        steps.map(Result::unwrap).collect()
+    };
+    let (few, many) = (last(few), last(steps(&mut drive())));
+    assert!(many < few, "{many} {few}");
+}
+
+#[test]
+fn what_is_wrong_is_named_in_place_of_a_step() {
+    let refused = Drive::new([LIMITS; 2], [80.0, 0.0], rate()).map(|_| ());
+    assert!(matches!(
+        refused,
+        Err(ScaleError::Scale {
+            steps_per_unit: 0.0
+        })
+    ));
+    let slow = AxisLimits {
+        speed: f64::NAN,
+        ..LIMITS
+    };
+    let mut drive = Drive::new([LIMITS, slow], [80.0; 2], rate()).unwrap();
+    let mut steps = drive.along(curves(), TOLERANCE_MM, Curve::departure);
+    let error = steps.next().unwrap().unwrap_err();
+    assert!(
+        matches!(error, DriveError::Plan(PlanError::Limit { axis: 1, .. })),
+        "{error}"
+    );
+    assert!(steps.next().is_none());
+    // More steps a second than the driver takes.
+    let mut drive = Drive::new([LIMITS; 2], [1e5; 2], rate()).unwrap();
+    let all = drive.along(curves(), TOLERANCE_MM, Curve::departure);
+    let error = all.last().unwrap().unwrap_err();
+    assert!(matches!(error, DriveError::Row(_)), "{error}");
+}

@@ -1,0 +1,136 @@
+//! Rows that a driver cannot follow are refused with their place.
+
+use pvt_steps::{AxisSegments, MinIntervals, PvtRow, PvtSteps, Rate, RowError, StepDirTiming};
+
+use crate::common::rows::{LEAST, STEP, STEP_A_TICK, knot, steps};
+
+#[test]
+fn a_step_back_waits_for_the_driver() {
+    // Up to 1/2 + 1/400 at a step in 100 ticks, and back at once: passed for half a tick.
+    let v = STEP_A_TICK / 100;
+    let top = knot(STEP / 2 + STEP / 400, v);
+    let back = knot(top.position, -v);
+    let rows = [(50, top), (0, back), (50, knot(STEP / 400, -v))];
+    // 30 ticks later the axis would be 0.3 steps past its place.
+    let mut axis = AxisSegments::new(knot(0, v), LEAST);
+    axis.push(50, top).unwrap();
+    assert_eq!(axis.by_ref().count(), 1);
+    axis.push(0, back).unwrap();
+    let before = axis.clone();
+    let error = RowError::ReversalTooQuick {
+        row: 2,
+        axis: 0,
+        ticks: 80,
+        min_ticks: 30,
+    };
+    assert_eq!(axis.push(50, rows[2].1), Err(error));
+    assert_eq!(axis, before);
+    assert_eq!(
+        error.to_string(),
+        "row 2, axis 0, tick 80: steps back in fewer than 30 ticks"
+    );
+    // A hundredth as fast it is past by 0.003 steps: the step waits.
+    let v = v / 100;
+    let made = steps(
+        knot(0, v),
+        &[
+            (5000, knot(STEP / 2 + 1000, v)),
+            (0, knot(STEP / 2 + 1000, -v)),
+            (5000, knot(1000, -v)),
+        ],
+    );
+    assert_eq!(made, [(5000, 1), (5030, -1)]);
+}
+
+#[test]
+fn what_is_too_fast_is_refused_with_its_place() {
+    let mut axis = AxisSegments::new(knot(0, 0), LEAST);
+    let too_fast = |ticks, interval_ticks| RowError::TooFast {
+        row: 0,
+        axis: 0,
+        ticks,
+        interval_ticks,
+        min_ticks: 12,
+    };
+    // At the end; in the middle: 150 steps in 1000 ticks from rest to rest peak at 0.225 a tick.
+    let fast = knot(STEP, STEP_A_TICK / 11);
+    assert_eq!(axis.push(1000, fast), Err(too_fast(1000, 11)));
+    assert_eq!(axis.push(1000, knot(150 * STEP, 0)), Err(too_fast(500, 4)));
+    assert_eq!(
+        axis.push(0, knot(0, -STEP_A_TICK / 11)),
+        Err(too_fast(0, 11))
+    );
+    assert_eq!(axis.push(1, knot(i64::MAX, 0)), Err(too_fast(1, 0)));
+    assert_eq!(
+        too_fast(500, 4).to_string(),
+        "row 0, axis 0, tick 500: a step every 4 ticks, fewer than 12"
+    );
+    // What begins too fast.
+    let mut axis = AxisSegments::new(knot(0, STEP_A_TICK / 11), LEAST);
+    assert_eq!(axis.push(1000, knot(STEP, 0)), Err(too_fast(0, 11)));
+    // Exactly the limit is none.
+    let v = STEP_A_TICK / 12;
+    let mut axis = AxisSegments::new(knot(0, v), LEAST);
+    assert_eq!(axis.push(1200, knot(100 * STEP, v)), Ok(()));
+}
+
+#[test]
+fn other_refusals_name_row_and_axis() {
+    let v = STEP_A_TICK / 100;
+    let mut steps = PvtSteps::new([knot(0, 0), knot(0, v)], LEAST);
+    let row = |ticks, second| PvtRow {
+        ticks,
+        knots: [knot(0, 0), second],
+    };
+    let error = steps.push(&row(0, knot(1, v))).unwrap_err();
+    assert_eq!(error, RowError::NoTime { row: 0, axis: 1 });
+    assert_eq!(error.to_string(), "row 0, axis 1: moves in 0 ticks");
+    steps.push(&row(1000, knot(10 * STEP, v))).unwrap();
+    let error = steps.push(&row(1000, knot(20 * STEP, v))).unwrap_err();
+    assert_eq!(error, RowError::Busy { row: 1, axis: 1 });
+    assert_eq!(
+        error.to_string(),
+        "row 1, axis 1: steps of the row before are still to be taken"
+    );
+    assert_eq!(steps.by_ref().count(), 10);
+    assert_eq!(steps.push(&row(1000, knot(20 * STEP, v))), Ok(()));
+    // A turn within the row that no driver could follow: 40 ticks up and down by 1.4 steps.
+    let mut axis = AxisSegments::new(knot(0, STEP_A_TICK / 12), LEAST);
+    assert_eq!(
+        axis.push(40, knot(0, -STEP_A_TICK / 12)),
+        Err(RowError::ReversalTooQuick {
+            row: 0,
+            axis: 0,
+            ticks: 20,
+            min_ticks: 30
+        })
+    );
+}
+
+#[test]
+fn data_sheets_in_ticks() {
+    let rate = Rate::from_hz(72_000_000).unwrap();
+    // 1.9 us are 136.8 ticks, 650 ns 46.8.
+    assert_eq!(
+        StepDirTiming::DRV8825.min_intervals(rate),
+        MinIntervals {
+            step_ticks: 274,
+            reversal_ticks: 274
+        }
+    );
+    let slow_turn = StepDirTiming {
+        setup_ns: 5000,
+        hold_ns: 5000,
+        ..StepDirTiming::DRV8825
+    };
+    assert_eq!(slow_turn.min_intervals(rate).reversal_ticks, 720);
+    let slowest = StepDirTiming {
+        pulse_ns: u32::MAX,
+        pause_ns: u32::MAX,
+        setup_ns: 0,
+        hold_ns: 0,
+    };
+    let fastest = Rate::from_hz(u32::MAX).unwrap();
+    // 4.294967295 s, twice.
+    assert_eq!(slowest.min_intervals(fastest).step_ticks, 36_893_488_132);
+}
