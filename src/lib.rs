@@ -13,6 +13,8 @@
 pub use delta_kin;
 #[cfg(feature = "handwheel")]
 pub use handwheel;
+#[cfg(feature = "monitor3964r")]
+pub use monitor3964r;
 #[cfg(feature = "path-timing")]
 pub use path_timing;
 #[cfg(feature = "pattern-codec")]
