@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use libfuzzer_sys::fuzz_target;
 use line3964r::capture::{self, PcapngWriter, Tap};
-use proto3964r::{Character, Config, Line, Priority};
+use monitor3964r::Character;
+use proto3964r::{Config, Line, Priority};
 
 fuzz_target!(|text: &str| {
     let Ok(record) = capture::read(text) else {

@@ -5,15 +5,16 @@ use std::time::Duration;
 
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
+use monitor3964r::{Character, Observation, Observations, Side, diagnose};
+use proto3964r::Check;
 use proto3964r::frame::{encode, max_encoded_len};
-use proto3964r::{Character, Check, Observation, Observations, Side, diagnose};
 
 /// Longest payload that is kept.
 const LONGEST: usize = 24;
 /// The most that one character means.
 const MOST_OBSERVATIONS: usize = 6;
 
-type Monitor = proto3964r::Monitor<LONGEST>;
+type Monitor = monitor3964r::Monitor<LONGEST>;
 
 fuzz_target!(|data: &[u8]| {
     let _ = run(&mut Unstructured::new(data));

@@ -7,7 +7,8 @@
 //!
 //! ```
 //! use line3964r::capture::{self, Tap};
-//! use proto3964r::{Config, Line, Priority, Verdict};
+//! use monitor3964r::Verdict;
+//! use proto3964r::{Config, Line, Priority};
 //!
 //! # fn main() -> Result<(), capture::CaptureError> {
 //! let text = "
@@ -34,7 +35,8 @@ mod tap;
 
 use core::time::Duration;
 
-use proto3964r::{Character, LineError, Side};
+use monitor3964r::{Character, Side};
+use proto3964r::LineError;
 use thiserror::Error;
 
 pub use self::{

@@ -110,7 +110,7 @@ async fn work(
     config: Config,
     hub: Arc<Hub>,
     jobs: Vec<tokio::sync::mpsc::Receiver<job::Job>>,
-    session: Option<rumqttc::v5::MqttOptions>,
+    session: Option<mqtt::Options>,
 ) -> Result<ExitCode> {
     let mut services = JoinSet::new();
     if let Some(listener) = listen(config.tcp.as_ref().map(Spanned::get_ref)).await? {
@@ -184,11 +184,7 @@ fn report_end(hub: &Hub, lines_ended: bool) -> ExitCode {
     status
 }
 
-async fn deliver(
-    session: Option<rumqttc::v5::MqttOptions>,
-    hub: Arc<Hub>,
-    finishing: CancellationToken,
-) {
+async fn deliver(session: Option<mqtt::Options>, hub: Arc<Hub>, finishing: CancellationToken) {
     if let (Some(options), Some(outbox)) = (session, &hub.outbox) {
         mqtt::run(options, &hub, outbox, &finishing).await;
     }

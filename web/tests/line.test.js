@@ -7,7 +7,7 @@ import { assertAccessible, open, ROOT, saved, shoot, VIEWS } from './browser.js'
 import { file, line3964r } from './command-line.js';
 import { connectFirmware, MOCK } from './serial-mock.js';
 
-const CAPTURES = join(ROOT, 'crates/proto3964r/tests/data/captures');
+const CAPTURES = join(ROOT, 'crates/monitor3964r/tests/data/captures');
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let browser;

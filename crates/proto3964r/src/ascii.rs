@@ -1,10 +1,10 @@
 //! The four control characters of the procedure.
 
 /// Start of text: asks the partner to receive.
-pub(crate) const STX: u8 = 0x02;
+pub const STX: u8 = 0x02;
 /// End of text: ends a block when it stands after a single [`DLE`].
-pub(crate) const ETX: u8 = 0x03;
+pub const ETX: u8 = 0x03;
 /// Data link escape: the positive answer, and the escape inside a block.
-pub(crate) const DLE: u8 = 0x10;
+pub const DLE: u8 = 0x10;
 /// Negative acknowledge: the negative answer.
-pub(crate) const NAK: u8 = 0x15;
+pub const NAK: u8 = 0x15;

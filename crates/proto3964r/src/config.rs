@@ -138,11 +138,15 @@ pub struct Config {
 }
 
 impl Config {
-    pub(crate) fn qvz(&self) -> Duration {
+    /// The acknowledgement delay time (QVZ).
+    #[must_use]
+    pub fn qvz(&self) -> Duration {
         Duration::from_millis(self.qvz_ms.into())
     }
 
-    pub(crate) fn zvz(&self) -> Duration {
+    /// The character delay time (ZVZ).
+    #[must_use]
+    pub fn zvz(&self) -> Duration {
         Duration::from_millis(self.zvz_ms.into())
     }
 

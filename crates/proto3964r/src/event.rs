@@ -4,7 +4,7 @@ use core::fmt;
 
 use thiserror::Error;
 
-use crate::{frame::FrameError, monitor::Hex};
+use crate::frame::FrameError;
 
 /// What [`Station::poll_event`](crate::Station::poll_event) hands out.
 ///
@@ -200,6 +200,21 @@ impl fmt::Display for Event<'_> {
             Self::SamePriority => f.write_str("both stations seem to have the same priority"),
             Self::Break => f.write_str("BREAK on the line"),
         }
+    }
+}
+
+/// Bytes as people write them: `41 42`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::exhaustive_structs, reason = "bytes and nothing else")]
+pub struct Hex<'a>(pub &'a [u8]);
+
+impl fmt::Display for Hex<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, byte) in self.0.iter().enumerate() {
+            let space = if at == 0 { "" } else { " " };
+            write!(f, "{space}{byte:02X}")?;
+        }
+        Ok(())
     }
 }
 

@@ -8,12 +8,11 @@ extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
-mod ascii;
+pub mod ascii;
 #[cfg(feature = "std")]
 #[cfg_attr(docsrs, doc(cfg(feature = "std")))]
 pub mod blocking;
 mod config;
-mod diagnosis;
 #[cfg(feature = "embedded-io")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
 pub mod embedded_io;
@@ -22,7 +21,6 @@ pub mod embedded_io;
 pub mod embedded_io_async;
 mod event;
 pub mod frame;
-mod monitor;
 #[cfg(any(
     feature = "embedded-io",
     feature = "embedded-io-async",
@@ -38,8 +36,6 @@ mod station;
 pub mod tokio;
 
 pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
-pub use diagnosis::{BaudRatio, Diagnosis, Formula, Totals, Verdict, diagnose};
-pub use event::{Abandoned, Cause, Event, Failure, LineError, Phase, Rejection};
+pub use event::{Abandoned, Cause, Event, Failure, Hex, LineError, Phase, Rejection};
 pub use frame::{Check, IllegalDle};
-pub use monitor::{Character, Monitor, Observation, Observations, Side};
 pub use station::{Activity, Station, SubmitError, Transmit};

@@ -6,17 +6,15 @@ use alloc::collections::VecDeque;
 use core::time::Duration;
 
 use machine_sim::Random;
-use proto3964r::{Config, Event, LineError, Station, SubmitError, Transmit};
+use proto3964r::{
+    Config, Event, LineError, Station, SubmitError, Transmit,
+    ascii::{DLE, ETX, NAK, STX},
+};
 
 use crate::{
     BLOCK, Faults, Frame,
     uart::{Read, Receiver, Transmitter},
 };
-
-const STX: u8 = 0x02;
-const ETX: u8 = 0x03;
-const DLE: u8 = 0x10;
-const NAK: u8 = 0x15;
 
 /// Parameters of one station and of its circuits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,8 @@
 //! ```
 //! use core::time::Duration;
 //! use line_sim::{Faults, Frame, Simulation, StationSettings};
-//! use proto3964r::{Config, Line, Priority, Side, Verdict, diagnose};
+//! use monitor3964r::{Side, Verdict, diagnose};
+//! use proto3964r::{Config, Line, Priority};
 //!
 //! let config = |priority| Config::siemens_3964r(priority, Line::paced(9600, 11));
 //! let a = StationSettings { config: config(Priority::High), frame: Frame::USUAL };

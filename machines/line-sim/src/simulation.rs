@@ -2,7 +2,8 @@
 
 use core::time::Duration;
 
-use proto3964r::{Activity, Character, Event, Side, SubmitError};
+use monitor3964r::{Character, Side};
+use proto3964r::{Activity, Event, SubmitError};
 
 use crate::{
     Faults, Frame, NS_PER_STEP,

@@ -1,17 +1,15 @@
-//! proto3964r.
+//! proto3964r and monitor3964r.
 
 use std::hint::black_box;
 use std::time::Duration;
 
+use monitor3964r::{Observation, Observations, Side};
 use no_panic::no_panic;
 use proto3964r::frame::{self, Check, DecodeError, EncodeError, FrameError};
-use proto3964r::{
-    Config, Event, Line, LineError, Observation, Observations, Priority, Side, SubmitError,
-    Transmit,
-};
+use proto3964r::{Config, Event, Line, LineError, Priority, SubmitError, Transmit};
 
 type Station = proto3964r::Station<128>;
-type Monitor = proto3964r::Monitor<128>;
+type Monitor = monitor3964r::Monitor<128>;
 
 #[no_panic]
 #[inline(never)]

@@ -32,6 +32,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     codecs::records,
     codecs::dance_header,
     line::stations,
+    line::monitor,
     line::read_data_block,
     unit::unit_telegrams,
     unit::wheel,

@@ -3,7 +3,8 @@
 use core::time::Duration;
 use std::io::{self, Write};
 
-use proto3964r::{Character, LineError, Side};
+use monitor3964r::{Character, Side};
+use proto3964r::LineError;
 
 use super::Step;
 

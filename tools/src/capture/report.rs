@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use proto3964r::Diagnosis;
+use monitor3964r::Diagnosis;
 use serde::Serialize;
 
 /// A verdict as `line3964r monitor --json` prints it.

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use proto3964r::{Observation, Side};
+use monitor3964r::{Observation, Side};
 
 /// One step of the conversation.
 #[derive(Clone, Debug, PartialEq, Eq)]

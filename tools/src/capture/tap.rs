@@ -2,7 +2,8 @@
 
 use core::time::Duration;
 
-use proto3964r::{Character, Config, Diagnosis, Monitor, diagnose};
+use monitor3964r::{Character, Diagnosis, Monitor, diagnose};
+use proto3964r::Config;
 
 use super::Step;
 

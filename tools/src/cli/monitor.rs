@@ -12,7 +12,8 @@ use std::{
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
-use proto3964r::{Character, Diagnosis, Line, LineError, Priority, Side, Verdict, tokio::Damage};
+use monitor3964r::{Character, Diagnosis, Side, Verdict};
+use proto3964r::{Line, LineError, Priority, tokio::Damage};
 use tokio::{io::AsyncReadExt as _, select, time::sleep};
 
 use self::saved::Saved;

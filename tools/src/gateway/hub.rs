@@ -14,7 +14,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use bytes::Bytes;
 use jiff::Timestamp;
 use log::{error, info, warn};
-use proto3964r::{Diagnosis, Event};
+use monitor3964r::Diagnosis;
+use proto3964r::Event;
 use serde::Serialize;
 use serde_json::json;
 use tokio::{

@@ -12,9 +12,8 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-use proto3964r::{
-    Character, Config, Diagnosis, Line, LineError, Side, Verdict, diagnose, tokio::Damage,
-};
+use monitor3964r::{Character, Diagnosis, Side, Verdict, diagnose};
+use proto3964r::{Config, Line, LineError, tokio::Damage};
 use tokio::{
     io::{AsyncRead, AsyncWrite, ReadBuf},
     time::Instant,

@@ -15,6 +15,7 @@ mod scale;
 mod subscriber;
 mod uart;
 mod verdicts;
+mod versions;
 
 /// The broker, or an end of the test that is seen: it must not be missed where
 /// `POSE2PULSE_REQUIRE_MOSQUITTO` is set.

@@ -8,7 +8,7 @@ import type { Desk, View } from './desk';
 /** Captures of lines with known faults, loaded when they are chosen. */
 const EXAMPLES = Object.fromEntries(
   Object.entries(
-    import.meta.glob<string>('../../../crates/proto3964r/tests/data/captures/*.txt', {
+    import.meta.glob<string>('../../../crates/monitor3964r/tests/data/captures/*.txt', {
       query: '?raw',
       import: 'default',
     }),

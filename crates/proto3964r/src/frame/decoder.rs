@@ -122,6 +122,32 @@ impl Decoder {
         let (taken, end) = self.progress.feed(self.rules, bytes, bounded(buffer));
         (taken, end.map(|end| end.map(usize::from)))
     }
+
+    /// Payload bytes in the buffer. They are the caller's now: the next ones are written from the
+    /// front again, so that a block of any length can be read in pieces.
+    ///
+    /// Lengths and offsets then count from here.
+    pub const fn take_payload(&mut self) -> usize {
+        mem::replace(&mut self.progress.len, 0) as usize
+    }
+
+    /// The XOR of the characters of the block so far; before its BCC, what that has to be.
+    #[must_use]
+    pub const fn bcc(&self) -> u8 {
+        self.progress.bcc
+    }
+
+    /// Whether nothing but the BCC of the block is missing.
+    #[must_use]
+    pub const fn awaits_bcc(&self) -> bool {
+        matches!(self.progress.next, Next::Bcc)
+    }
+
+    /// The first error of the block so far.
+    #[must_use]
+    pub const fn fault(&self) -> Option<FrameError> {
+        self.progress.fault()
+    }
 }
 
 /// As much of a buffer as a block can fill.
@@ -174,21 +200,6 @@ impl Progress {
     #[cfg(test)]
     pub(crate) fn stored(&self) -> usize {
         usize::from(self.len)
-    }
-
-    /// Whether a payload byte stands in the buffer; the next one goes in its place.
-    pub(crate) fn take_stored(&mut self) -> bool {
-        mem::take(&mut self.len) > 0
-    }
-
-    /// The XOR of the characters so far.
-    pub(crate) const fn bcc(&self) -> u8 {
-        self.bcc
-    }
-
-    /// Whether nothing but the BCC is missing.
-    pub(crate) fn awaits_bcc(&self) -> bool {
-        self.next == Next::Bcc
     }
 
     /// Whether the block consists of a single DLE so far.

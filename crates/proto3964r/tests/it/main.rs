@@ -1,7 +1,6 @@
 //! All tests of the crate: one program, which is linked once.
 #![cfg(test)]
 
-mod captures;
 mod common;
 mod duel;
 #[cfg(feature = "tokio")]
@@ -25,4 +24,3 @@ mod serde;
 #[cfg(all(unix, feature = "tokio", feature = "serialport"))]
 mod tokio;
 mod vectors;
-mod verdicts;

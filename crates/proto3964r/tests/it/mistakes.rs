@@ -6,8 +6,8 @@ mod send;
 use core::time::Duration;
 
 use proto3964r::{
-    Abandoned, Cause, Character, Config, Event, Failure, IdleNoise, Line, Monitor, Phase, Priority,
-    Rejection, Side, Station, SubmitError, Transmit, Verdict, diagnose, frame::FrameError,
+    Abandoned, Cause, Config, Event, Failure, IdleNoise, Line, Phase, Priority, Rejection, Station,
+    SubmitError, Transmit, frame::FrameError,
 };
 
 use crate::common::low_side::{DLE, NAK, STX, hear, low, ms, sent};
@@ -71,33 +71,6 @@ fn m16_every_state_but_idle_has_a_deadline() {
         station.handle_timeout(due);
         assert_ne!(station, before);
     }
-}
-
-#[test]
-fn m17_a_monitor_tells_why_the_link_does_not_come_up() {
-    let config = Config::siemens_3964r(Priority::Low, Line::Instant);
-    let mut monitor = Monitor::<64>::new(config);
-    let mut record = Vec::new();
-    for attempt in 0..6 {
-        for (at, side, byte) in [
-            (ms(10 * attempt), Side::A, STX),
-            (ms(10 * attempt + 5), Side::B, NAK),
-        ] {
-            assert_eq!(monitor.handle_byte(at, side, byte).count(), 1);
-            record.push(Character {
-                at,
-                side,
-                byte,
-                error: None,
-            });
-        }
-    }
-    let verdict = diagnose(&record, &config).verdict;
-    assert_eq!(verdict, Verdict::NoReceiveBuffer { refuser: Side::B });
-    assert_eq!(
-        verdict.to_string(),
-        "B answers NAK to STX: no receive buffer"
-    );
 }
 
 #[test]

@@ -5,8 +5,7 @@ mod line;
 use line::{Faults, Outcome, Pair};
 use proptest::prelude::*;
 use proto3964r::{
-    Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock, Verdict,
-    diagnose,
+    Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock,
     frame::{encode, max_encoded_len},
 };
 
@@ -68,11 +67,7 @@ fn a_clean_line_carries_everything_once() {
             assert_eq!(pair.ends[side].received, work[1 - side]);
             assert_eq!(pair.ends[side].outcomes, vec![Outcome::Sent; 40]);
             assert_eq!(pair.ends[side].same_priority, 0);
-            assert_eq!(pair.overheard[side], work[side]);
         }
-        let diagnosis = diagnose(&pair.record, &configs()[0]);
-        assert_eq!(diagnosis.verdict, Verdict::Works);
-        assert_eq!((diagnosis.a.telegrams, diagnosis.b.telegrams), (40, 40));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use proto3964r::{Config, Event, Line, Phase, Priority, Station, Verdict};
+use proto3964r::{Config, Event, Line, Phase, Priority, Station};
 use test_support::stored;
 
 use crate::common::low_side::{STX, low, ms};
@@ -38,9 +38,4 @@ fn zero_attempts_are_one() {
     };
     stored(&failure);
     assert_eq!((failure.phase, failure.attempts), (Phase::Connection, 1));
-}
-
-#[test]
-fn verdicts() {
-    stored(&Verdict::Works);
 }

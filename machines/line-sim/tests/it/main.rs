@@ -1,4 +1,5 @@
 //! All tests of the crate: one program, which is linked once.
 #![cfg(test)]
 
+mod overheard;
 mod verdicts;

@@ -3,6 +3,7 @@
 use core::hint::black_box;
 use core::time::Duration;
 
+use monitor3964r::{Character, Monitor, Observation, Side, Verdict, diagnose};
 use proto3964r::{Check, Config, Event, Line, Priority, Station, Transmit, frame};
 use rk512::{Area, Client, Command, DataBlock, Memory, Outcome, Server};
 
@@ -28,6 +29,38 @@ pub fn stations() -> Option<()> {
     let len = frame::encode(payload, Check::Bcc, &mut body).ok()?;
     let (decoded, rest) = frame::decode(body.get(..len)?, Check::Bcc, &mut buffer).ok()?;
     holds(decoded == payload && rest.is_empty())
+}
+
+/// A block that a monitor reads along, and what becomes of one that nobody answers.
+pub fn monitor() -> Option<()> {
+    let config = Config::siemens_3964r(Priority::Low, Line::Instant);
+    let mut monitor = Monitor::<8>::new(config);
+    let heard = |ms, side, byte| Character {
+        at: Duration::from_millis(ms),
+        side,
+        byte,
+        error: None,
+    };
+    let record = black_box([
+        heard(0, Side::A, 0x02),
+        heard(2, Side::B, 0x10),
+        heard(3, Side::A, 0x41),
+        heard(4, Side::A, 0x10),
+        heard(5, Side::A, 0x03),
+        heard(6, Side::A, 0x52),
+        heard(8, Side::B, 0x10),
+    ]);
+    let mut payloads = 0;
+    for it in record {
+        for step in monitor.handle_byte(it.at, it.side, it.byte) {
+            if let Observation::Block { payload: b"A", .. } = step {
+                payloads += 1;
+            }
+        }
+    }
+    let silent = black_box([2000, 4000, 6000].map(|ms| heard(ms, Side::A, 0x02)));
+    holds(payloads == 1 && diagnose(&record, &config).verdict == Verdict::Works)?;
+    holds(diagnose(&silent, &config).verdict == Verdict::NoAnswer { silent: Side::B })
 }
 
 /// A job of two telegrams each way.

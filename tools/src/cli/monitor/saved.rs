@@ -6,7 +6,7 @@ use std::{
     io::{self, BufWriter, Write as _},
 };
 
-use proto3964r::Character;
+use monitor3964r::Character;
 
 use crate::capture::{self, PcapngWriter, Step};
 

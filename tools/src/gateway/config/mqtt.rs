@@ -9,7 +9,7 @@ use std::{
 use anyhow::{Context as _, Result, anyhow};
 use serde::Deserialize;
 
-use crate::gateway::broker::Broker;
+use crate::gateway::{broker::Broker, mqtt::Version};
 
 /// The client of the broker takes no shorter one.
 const KEEP_ALIVE_MIN_S: u16 = 5;
@@ -25,6 +25,8 @@ const QUEUE: usize = 10_000;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Mqtt {
     pub(crate) broker: Broker,
+    /// The version; without it, the one that the broker takes.
+    pub(crate) protocol: Option<Version>,
     pub(crate) user: Option<String>,
     password: Option<String>,
     password_file: Option<PathBuf>,
@@ -122,6 +124,8 @@ impl Mqtt {
             "certificate_file and key_file go together"
         } else if !self.broker.is_tls && (self.ca_file.is_some() || self.key_file.is_some()) {
             "certificates are for mqtts://"
+        } else if self.protocol == Some(Version::Three) && self.command_max_age_s > 0 {
+            "command_max_age_s is for MQTT 5"
         } else {
             return Ok(());
         };

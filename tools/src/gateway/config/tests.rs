@@ -128,6 +128,10 @@ fn errors_name_line_and_column() {
             "mqtt: certificate_file and key_file go together",
         ),
         ("ca_file = \"x\"", "mqtt: certificates are for mqtts://"),
+        (
+            "protocol = \"3.1.1\"\ncommand_max_age_s = 1",
+            "mqtt: command_max_age_s is for MQTT 5",
+        ),
         ("keep_alive_s = 4", "mqtt: keep_alive_s: 4, at least 5"),
         (
             "queue = 10",
@@ -143,5 +147,9 @@ fn errors_name_line_and_column() {
     assert_eq!(
         error(&mqtt("prefix = \"a/#\"")),
         "line 4, column 10: `a/#` is no beginning of a topic"
+    );
+    assert_eq!(
+        error(&mqtt("protocol = \"4\"")),
+        "line 4, column 12: unknown variant `4`, expected `3.1.1` or `5`"
     );
 }

@@ -2,6 +2,7 @@
 
 use alloc::collections::VecDeque;
 
+use super::suspect::Name;
 use crate::gateway::{outbox::Outbox, store::Message};
 
 /// Messages without an acknowledgement, in the order in which they were handed over.
@@ -44,8 +45,15 @@ impl Window {
             .map(|acknowledged| acknowledged.message)
     }
 
+    /// The first message.
     pub(super) fn first(&self) -> Option<&Message> {
         self.0.front().map(|first| &first.message)
+    }
+
+    /// What tells the first message from others.
+    pub(super) fn first_name(&self) -> Option<Name> {
+        self.first()
+            .map(|message| (message.id, message.topic.clone()))
     }
 
     pub(super) fn take_first(&mut self) -> Option<Message> {

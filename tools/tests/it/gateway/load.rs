@@ -101,9 +101,19 @@ async fn send_all(link: &Link, count: u32) {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn nothing_is_lost_while_the_broker_stops_and_starts() {
+    broker_stops_and_starts("5").await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn nothing_is_lost_over_3_1_1_while_the_broker_stops_and_starts() {
+    broker_stops_and_starts("3.1.1").await;
+}
+
+async fn broker_stops_and_starts(protocol: &str) {
     let mut broker = broker_or_skip!();
     let count = u32::try_from(telegrams() / LINES).unwrap();
-    let mut config = format!("name = \"hall\"\nstop_s = 60\n{}", mqtt(broker.port));
+    let mqtt = mqtt(broker.port);
+    let mut config = format!("name = \"hall\"\nstop_s = 60\n{mqtt}protocol = \"{protocol}\"\n");
     let mut partners = Vec::new();
     for index in 0..LINES {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();

@@ -116,7 +116,7 @@ async fn a_killed_gateway_loses_nothing_that_it_acknowledged() {
     let folder = TempDir::new().unwrap();
     let store = folder.path().display();
     let mut config = format!(
-        "name = \"hall\"\n{}[store]\npath = \"{store}\"\n",
+        "name = \"hall\"\n{}protocol = \"5\"\n[store]\npath = \"{store}\"\n",
         mqtt(broker.port)
     );
     let (is_over, sent) = (

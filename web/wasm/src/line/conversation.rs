@@ -6,7 +6,8 @@ use std::cell::RefCell;
 use anyhow::{Context, Result, bail};
 use line3964r::capture::{self, Kind, Report, Step, Tap};
 use line3964r::text;
-use proto3964r::{Character, Config, Diagnosis, Side, Verdict};
+use monitor3964r::{Character, Diagnosis, Side, Verdict};
+use proto3964r::Config;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{self, Answer};

@@ -7,7 +7,8 @@ use anyhow::{Context, Result, ensure};
 use line_sim::{Faults, Frame, Happening, Parity, Simulation, StationSettings};
 use line3964r::Preset;
 use machine_sim::Random;
-use proto3964r::{Line, Priority, Side, SubmitError};
+use monitor3964r::Side;
+use proto3964r::{Line, Priority, SubmitError};
 use serde::{Deserialize, Serialize};
 
 use super::conversation::{self, Of, name};

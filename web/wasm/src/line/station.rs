@@ -8,7 +8,8 @@ use std::cell::RefCell;
 
 use anyhow::{Context, Result};
 use line3964r::Preset;
-use proto3964r::{Character, Event, Line, Side, Station, Transmit};
+use monitor3964r::{Character, Side};
+use proto3964r::{Event, Line, Station, Transmit};
 use serde::{Deserialize, Serialize};
 
 use super::conversation::{self, Conversation, Of};

@@ -4,7 +4,8 @@ use core::time::Duration;
 
 use anyhow::Result;
 use line3964r::Preset;
-use proto3964r::{Character, Line, LineError, Priority, Side};
+use monitor3964r::{Character, Side};
+use proto3964r::{Line, LineError, Priority};
 use serde::Deserialize;
 
 use super::conversation::{self, Of};

@@ -4,9 +4,7 @@ use core::time::Duration;
 
 use proto3964r::{Config, Line, Priority, Station, Transmit};
 
-pub(crate) const STX: u8 = 0x02;
-pub(crate) const DLE: u8 = 0x10;
-pub(crate) const NAK: u8 = 0x15;
+pub(crate) use proto3964r::ascii::{DLE, NAK, STX};
 /// Of 11 bits at 9600 bit/s.
 pub(crate) const CHARACTER: Duration = Duration::from_nanos(1_145_833);
 

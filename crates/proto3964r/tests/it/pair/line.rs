@@ -5,9 +5,7 @@ extern crate alloc;
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
-use proto3964r::{
-    Character, Config, Event, Failure, Line, Monitor, Observation, Side, Station, Transmit,
-};
+use proto3964r::{Config, Event, Failure, Line, Station, Transmit};
 
 use crate::common::random::Random;
 
@@ -132,12 +130,6 @@ impl End {
 pub(crate) struct Pair {
     pub(crate) ends: [End; 2],
     pub(crate) now: u64,
-    /// Listens at the transmitters.
-    pub(crate) monitor: Monitor<BLOCK>,
-    /// Telegrams that the monitor saw, by sender.
-    pub(crate) overheard: [Vec<Vec<u8>>; 2],
-    /// All that was heard there.
-    pub(crate) record: Vec<Character>,
     faults: Faults,
     character_us: u64,
     random: Random,
@@ -161,9 +153,6 @@ impl Pair {
         Self {
             ends: [End::new(a, a_jobs), End::new(b, b_jobs)],
             now: 0,
-            monitor: Monitor::new(a),
-            overheard: [Vec::new(), Vec::new()],
-            record: Vec::new(),
             faults,
             character_us: u64::from(character_us),
             random: Random::new(seed),
@@ -221,21 +210,6 @@ impl Pair {
     /// Puts a character on its way, or what the line makes of it.
     fn carry(&mut self, to: usize, byte: u8) {
         let mut arrival = self.now + self.character_us;
-        let side = if to == 1 { Side::A } else { Side::B };
-        self.record.push(Character {
-            at: Duration::from_micros(arrival),
-            side,
-            byte,
-            error: None,
-        });
-        for observation in self
-            .monitor
-            .handle_byte(Duration::from_micros(arrival), side, byte)
-        {
-            if let Observation::Block { payload, .. } = observation {
-                self.overheard[1 - to].push(payload.to_vec());
-            }
-        }
         self.characters_since_fault = self.characters_since_fault.saturating_add(1);
         let gentle = self.faults.gentle_gap.is_some();
         let spared = self

@@ -4,7 +4,8 @@ use core::time::Duration;
 
 use line_sim::{Faults, Frame, Simulation, StationSettings};
 use machine_sim::Random;
-use proto3964r::{Character, Config, Line, Priority, Side};
+use monitor3964r::{Character, Side};
+use proto3964r::{Config, Line, Priority};
 
 /// One station, what is wrong with it, and its user.
 #[derive(Clone, Debug)]

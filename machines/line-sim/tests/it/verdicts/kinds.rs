@@ -4,7 +4,8 @@ mod frames;
 
 use core::time::Duration;
 
-use proto3964r::{Character, Config, Diagnosis, Formula, Line, Priority, Verdict, diagnose};
+use monitor3964r::{Character, Diagnosis, Formula, Verdict, diagnose};
+use proto3964r::{Config, Line, Priority};
 
 pub(crate) use self::frames::{
     another_parity_of_the_tap, another_rate, another_rate_of_the_tap, no_parity, odd_parity,

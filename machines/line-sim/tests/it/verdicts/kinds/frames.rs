@@ -1,7 +1,7 @@
 //! Sides, and taps, whose characters are made otherwise: baud rate and parity.
 
 use line_sim::{Frame, Parity};
-use proto3964r::{BaudRatio, Diagnosis, Side, Verdict};
+use monitor3964r::{BaudRatio, Diagnosis, Side, Verdict};
 
 use super::Example;
 use crate::verdicts::case::{Case, pick};

@@ -10,7 +10,7 @@ mod tests;
 
 use core::time::Duration;
 
-use crate::{config::Config, event::LineError};
+use proto3964r::{Config, LineError};
 
 pub use character::Character;
 pub use observation::{Observation, Observations};
@@ -18,7 +18,7 @@ pub use side::Side;
 
 pub(crate) use character::since;
 pub(crate) use conversation::Conversation;
-pub(crate) use observation::{Hex, Mark, Millis};
+pub(crate) use observation::{Mark, Millis};
 pub(crate) use scan::BccSeen;
 pub(crate) use side::PerSide;
 
@@ -31,7 +31,8 @@ pub(crate) use side::PerSide;
 /// # Examples
 /// ```
 /// use core::time::Duration;
-/// use proto3964r::{Config, Line, Monitor, Priority, Side};
+/// use monitor3964r::{Monitor, Side};
+/// use proto3964r::{Config, Line, Priority};
 ///
 /// let mut monitor = Monitor::<64>::new(Config::siemens_3964r(Priority::Low, Line::Instant));
 /// let mut steps = monitor.handle_byte(Duration::ZERO, Side::A, 0x02);

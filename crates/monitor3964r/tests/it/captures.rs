@@ -3,9 +3,8 @@
 use core::time::Duration;
 use std::{fs, path::Path};
 
-use proto3964r::{
-    BaudRatio, Character, Config, Diagnosis, Formula, Line, Priority, Side, Verdict, diagnose,
-};
+use monitor3964r::{BaudRatio, Character, Diagnosis, Formula, Side, Verdict, diagnose};
+use proto3964r::{Config, Line, Priority};
 
 /// Lines `time_s > hex..` from A to B, `<` from B to A, as a tap at 9600 8E1 hears a simulated
 /// wire; a character with a wrong parity or stop bit reads 00.

@@ -4,18 +4,18 @@ use core::time::Duration;
 
 mod waits;
 
+use proto3964r::{
+    Config,
+    ascii::{DLE, NAK, STX},
+    frame::Check,
+};
+
 use super::{
     character::{Character, since},
     observation::{Mark, Marks, Observation},
     scan::Scan,
     side::{PerSide, Side},
 };
-use crate::{
-    ascii::{DLE, NAK, STX},
-    config::Config,
-    frame::Check,
-};
-
 /// Two STX cross if they come within this time: several characters at any baud rate from 1200
 /// upwards, and the latency of a USB adapter.
 const CROSSING: Duration = Duration::from_millis(50);
@@ -81,7 +81,7 @@ impl Conversation {
             asked: PerSide::both(None),
             owing: PerSide::both(None),
             attempts: PerSide::both(0),
-            scan: Scan::START,
+            scan: Scan::new(check),
             in_block: false,
             marks: Marks::default(),
         }
@@ -260,7 +260,7 @@ impl Conversation {
     }
 
     fn begin_block(&mut self, now: Duration, by: Side, in_conflict: bool) {
-        self.scan = Scan::START;
+        self.scan = Scan::new(self.check);
         // Until its block comes, the sender may not have heard the answer, and wait on.
         self.waiting[by.other()] = None;
         self.owing = PerSide::both(None);
@@ -285,7 +285,7 @@ impl Conversation {
         }
         self.in_block = true;
         self.waiting[by] = None;
-        let end = self.scan.push(self.check, heard.byte);
+        let end = self.scan.push(heard.byte);
         self.enter(heard.at, self.phase);
         match end {
             None => return,

@@ -2,8 +2,9 @@
 
 use core::time::Duration;
 
+use proto3964r::LineError;
+
 use super::side::Side;
-use crate::event::LineError;
 
 /// One character on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

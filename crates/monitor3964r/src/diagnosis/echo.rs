@@ -2,10 +2,9 @@
 
 use core::time::Duration;
 
-use crate::{
-    ascii::{DLE, NAK, STX},
-    monitor::{Character, Side, since},
-};
+use proto3964r::ascii::{DLE, NAK, STX};
+
+use crate::monitor::{Character, Side, since};
 
 /// Two taps on one wire show a character within this time: the latency of USB adapters.
 const TOGETHER: Duration = Duration::from_millis(20);

@@ -2,10 +2,8 @@
 
 use core::time::Duration;
 
-use proto3964r::{
-    BaudRatio, Character, Config, Diagnosis, Formula, Line, LineError, Priority, Side, Verdict,
-    diagnose,
-};
+use monitor3964r::{BaudRatio, Character, Diagnosis, Formula, Monitor, Side, Verdict, diagnose};
+use proto3964r::{Config, Line, LineError, Priority};
 
 /// Reads `ms side byte...` groups; `?` after a byte is a parity error.
 fn read(conversation: &str) -> Vec<Character> {
@@ -37,6 +35,25 @@ fn check(conversation: &str, verdict: Verdict, sentence: &str) {
     let found = diagnosis(conversation);
     assert_eq!(found.verdict, verdict, "{conversation}: {found}");
     assert_eq!(found.verdict.to_string(), sentence);
+}
+
+#[test]
+fn m17_a_monitor_tells_why_the_link_does_not_come_up() {
+    let config = Config::siemens_3964r(Priority::Low, Line::Instant);
+    let mut monitor = Monitor::<64>::new(config);
+    let record = read(
+        "0 A 02; 5 B 15; 10 A 02; 15 B 15; 20 A 02; 25 B 15; 30 A 02; 35 B 15; 40 A 02; 45 B 15; 50 A 02; 55 B 15",
+    );
+    for heard in &record {
+        let steps = monitor.handle_byte(heard.at, heard.side, heard.byte);
+        assert_eq!(steps.count(), 1);
+    }
+    let verdict = diagnose(&record, &config).verdict;
+    assert_eq!(verdict, Verdict::NoReceiveBuffer { refuser: Side::B });
+    assert_eq!(
+        verdict.to_string(),
+        "B answers NAK to STX: no receive buffer"
+    );
 }
 
 #[test]

@@ -2,8 +2,9 @@
 
 use core::{fmt, iter::FusedIterator, time::Duration};
 
+use proto3964r::{Hex, LineError, frame::FrameError};
+
 use super::side::Side;
-use crate::{event::LineError, frame::FrameError};
 
 /// One step of the conversation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -226,19 +227,6 @@ impl fmt::Display for Millis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let micros = self.0.as_micros();
         write!(f, "{}.{:03} ms", micros / 1000, micros % 1000)
-    }
-}
-
-/// `41 42`.
-pub(crate) struct Hex<'a>(pub(crate) &'a [u8]);
-
-impl fmt::Display for Hex<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (at, byte) in self.0.iter().enumerate() {
-            let space = if at == 0 { "" } else { " " };
-            write!(f, "{space}{byte:02X}")?;
-        }
-        Ok(())
     }
 }
 

@@ -3,10 +3,9 @@
 
 use core::time::Duration;
 
-use crate::{
-    ascii::{DLE, NAK, STX},
-    monitor::{Character, Side, since},
-};
+use proto3964r::ascii::{DLE, NAK, STX};
+
+use crate::monitor::{Character, Side, since};
 
 /// Characters of one side that follow each other within this time are one burst.
 pub(super) const ALONE: Duration = Duration::from_millis(20);

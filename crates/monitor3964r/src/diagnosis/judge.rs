@@ -4,6 +4,8 @@ mod blocks;
 
 use core::time::Duration;
 
+use proto3964r::{Priority, frame::Check};
+
 use super::{
     delay::tolerance,
     echo::Echo,
@@ -11,11 +13,7 @@ use super::{
     setting::Setting,
     verdict::Verdict,
 };
-use crate::{
-    config::Priority,
-    frame::Check,
-    monitor::{Character, PerSide, Side, since},
-};
+use crate::monitor::{Character, PerSide, Side, since};
 
 /// So many characters that nobody can read are no accident.
 const GARBAGE: u32 = 3;

@@ -2,13 +2,14 @@
 
 use core::time::Duration;
 
-use super::formula::Formulas;
-use crate::{
+use proto3964r::{
+    Config,
     ascii::{DLE, NAK, STX},
-    config::Config,
     frame::Check,
-    monitor::{Character, Conversation, Mark, Observation, PerSide, Side, since},
 };
+
+use super::formula::Formulas;
+use crate::monitor::{Character, Conversation, Mark, Observation, PerSide, Side, since};
 
 /// Two timers of the same length end within this time.
 const TOGETHER: Duration = Duration::from_millis(30);

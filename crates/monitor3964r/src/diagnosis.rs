@@ -11,10 +11,9 @@ mod verdict;
 
 use core::fmt;
 
-use crate::{
-    config::Config,
-    monitor::{Character, PerSide, Side},
-};
+use proto3964r::Config;
+
+use crate::monitor::{Character, PerSide, Side};
 
 pub use formula::Formula;
 pub use setting::BaudRatio;
@@ -87,7 +86,8 @@ fn delays(record: &[Character], config: &Config) -> PerSide<Option<Late>> {
 /// # Examples
 /// ```
 /// use core::time::Duration;
-/// use proto3964r::{Character, Config, Line, Priority, Side, Verdict, diagnose};
+/// use monitor3964r::{Character, Side, Verdict, diagnose};
+/// use proto3964r::{Config, Line, Priority};
 ///
 /// let record = [(0, Side::A, 0x02), (3, Side::B, 0x15), (6, Side::A, 0x02), (9, Side::B, 0x15)]
 ///     .map(|(ms, side, byte)| Character { at: Duration::from_millis(ms), side, byte, error: None });

@@ -7,9 +7,9 @@ use alloc::{
 };
 
 use proptest::prelude::*;
+use proto3964r::{Line, Priority};
 
 use super::*;
-use crate::config::{Line, Priority};
 
 /// Reads `ms side byte...` groups, `A` to `B` and back, and returns what was seen.
 fn listen(monitor: &mut Monitor<32>, capture: &str) -> Vec<String> {

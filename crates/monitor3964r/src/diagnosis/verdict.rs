@@ -2,13 +2,11 @@
 
 use core::{fmt, time::Duration};
 
+use proto3964r::Priority;
 use thiserror::Error;
 
 use super::{formula::Formula, setting::BaudRatio};
-use crate::{
-    config::Priority,
-    monitor::{Millis, Side},
-};
+use crate::monitor::{Millis, Side};
 
 /// What a diagnosis concludes. Its `Display` is the sentence for the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]

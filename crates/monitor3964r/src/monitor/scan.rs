@@ -1,15 +1,15 @@
 //! One block on the wire, of any length: its payload byte by byte, its end, and what its BCC says
 //! of the sender's formula.
 
-use crate::{
+use proto3964r::{
     ascii::DLE,
-    frame::{Check, FrameError, IllegalDle, Progress, Rules},
+    frame::{Check, Decoder, FrameError},
 };
 
 /// A block as far as it was heard.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Scan {
-    progress: Progress,
+    decoder: Decoder,
     characters: u32,
     /// Payload bytes so far.
     len: u32,
@@ -31,38 +31,37 @@ pub(crate) struct BccSeen {
 }
 
 impl Scan {
-    pub(crate) const START: Self = Self {
-        progress: Progress::START,
-        characters: 0,
-        len: 0,
-        data: None,
-        fault_offset: None,
-        has_odd_dle: false,
-        bcc: None,
-    };
+    /// Before the first character.
+    pub(crate) const fn new(check: Check) -> Self {
+        Self {
+            decoder: Decoder::new(check),
+            characters: 0,
+            len: 0,
+            data: None,
+            fault_offset: None,
+            has_odd_dle: false,
+            bcc: None,
+        }
+    }
 
     /// Takes a character; `Some` when it ended the block.
-    pub(crate) fn push(&mut self, check: Check, byte: u8) -> Option<Result<(), FrameError>> {
-        let rules = Rules {
-            check,
-            illegal_dle: IllegalDle::RejectAtEnd,
-        };
+    pub(crate) fn push(&mut self, byte: u8) -> Option<Result<(), FrameError>> {
         self.characters = self.characters.saturating_add(1);
-        if self.progress.awaits_bcc() && self.fault_offset.is_none() {
+        if self.decoder.awaits_bcc() && self.fault_offset.is_none() {
             self.bcc = Some(BccSeen {
-                difference: byte ^ self.progress.bcc(),
+                difference: byte ^ self.decoder.bcc(),
                 has_odd_dle: self.has_odd_dle,
             });
         }
         let mut slot = [0];
-        let end = self.progress.push(rules, byte, &mut slot);
+        let end = self.decoder.push(byte, &mut slot);
         self.data = None;
-        if self.progress.take_stored() {
+        if self.decoder.take_payload() > 0 {
             let [byte] = slot;
             self.data = Some(byte);
             self.len = self.len.saturating_add(1);
             self.has_odd_dle ^= byte == DLE;
-        } else if self.progress.fault().is_some() {
+        } else if self.decoder.fault().is_some() {
             self.fault_offset.get_or_insert(self.len);
         }
         end.map(|end| end.map(|_| ()).map_err(|error| self.placed(error)))
@@ -86,17 +85,17 @@ impl Scan {
 
     /// Whether a single DLE is all that came.
     pub(crate) fn is_lone_dle(&self) -> bool {
-        self.characters == 1 && self.progress.is_lone_dle()
+        self.characters == 1 && self.decoder.bcc() == DLE
     }
 
     /// Whether nothing but the BCC is missing.
     pub(crate) fn awaits_bcc(&self) -> bool {
-        self.progress.awaits_bcc()
+        self.decoder.awaits_bcc()
     }
 
     /// The BCC that would be right now.
     pub(crate) const fn expected_bcc(&self) -> u8 {
-        self.progress.bcc()
+        self.decoder.bcc()
     }
 
     /// Payload bytes so far.
