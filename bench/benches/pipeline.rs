@@ -11,8 +11,8 @@ use std::time::Instant;
 
 use delta_kin::{Delta, DeltaPath};
 use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Row, Table, ToolLimits};
-use scara_kin::{Arm, ArmPath, Elbow};
 use pvt_steps::{AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, SegmentPlayer};
+use scara_kin::{Arm, ArmPath, Elbow};
 use stepper_sync::{Rate, StepDirTiming, StepScale};
 
 const CASE: &str = "PIPELINE_CASE";
