@@ -55,7 +55,12 @@ export async function open() {
    * @param {import('playwright-core').BrowserContextOptions & { script?: string }} [options]
    */
   async function visit(path, options = {}) {
-    const { script, ...context } = { viewport: { width: 1280, height: 1000 }, ...options };
+    const { script, ...context } = {
+      viewport: { width: 1280, height: 1000 },
+      // Nothing plays by itself, unless a test wants it.
+      reducedMotion: /** @type {const} */ ('reduce'),
+      ...options,
+    };
     const page = await (await browser.newContext(context)).newPage();
     if (script) await page.addInitScript(script);
     /** @type {string[]} */

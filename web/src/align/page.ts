@@ -1,6 +1,7 @@
 // The page of the alignment platform: pose and pendant on the right, body and axes on the left.
 import '../shared/style.css';
 import './align.css';
+import '../shared/link';
 import '../shared/offline';
 import shipped from '../../../machines/platform/platform.toml?raw';
 import wasm from '../../built/align.wasm?url';
@@ -53,6 +54,10 @@ const sliders = new PoseSliders(element('sliders', HTMLElement), () => {
   changed();
 });
 const fields = new AddressFields({ mode }, changed);
+const looks = new AddressFields({ factor }, () => {
+  scene.factor = Number(factor.value);
+  toAddress(looks.values);
+});
 const settings = machineForm('align platform', shipped, changed, 'platform.toml');
 const pendant = new Pendant(
   wasm,
@@ -88,6 +93,7 @@ async function align(): Promise<void> {
 }
 
 function refuse(error: unknown): void {
+  element('main', HTMLElement).dataset.ready = '';
   status.refuse('', error);
   files.allow(false);
 }
@@ -108,7 +114,6 @@ function show(result: Result): void {
   sliders.show(result.to, result.from);
   scene.start = result.moments[0];
   showCharts(result);
-  transport.pause();
   transport.begin(report.duration_s);
   element('main', HTMLElement).dataset.ready = '';
 }
@@ -146,7 +151,6 @@ function showCharts({ moments, report }: Result): void {
 const asked = fromAddress('to')?.split(',').map(Number);
 if (asked?.length === 6 && asked.every(Number.isFinite)) pose = asked;
 scene.factor = Number(factor.value);
-factor.addEventListener('input', () => (scene.factor = Number(factor.value)));
 onClick('default-pose', () => {
   pose = undefined;
   changed();

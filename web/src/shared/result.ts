@@ -1,6 +1,7 @@
 // What a machine says of a run, and the files that it leaves.
 import { create, element, save } from './dom';
 import { type Machine, Superseded } from './machine';
+import { damage } from './store';
 
 /** The line that tells how it went, read aloud as it changes. */
 export class Status {
@@ -13,7 +14,8 @@ export class Status {
 
   /** How it went, and what is worth a note. */
   tell(verdict: string, notes: string[], isBad = false): void {
-    this.say([verdict, ...notes.map((note) => `note: ${note}`)].join('\n'), isBad);
+    const all = damage === undefined ? notes : [damage, ...notes];
+    this.say([verdict, ...all.map((note) => `note: ${note}`)].join('\n'), isBad);
   }
 
   /** As a command line says it: where, and what is wrong. */

@@ -6,8 +6,8 @@ use kurbo::{Point, Rect, Vec2};
 use super::codes;
 use super::interpreter::{Command, Interpreter};
 use super::words;
-use crate::motion::{Motion, Shape};
 use crate::grid::STEPS_PER_MM;
+use crate::motion::{Motion, Shape};
 use crate::stage::TRAVEL_MM;
 use machine_sim::input::Notes;
 
