@@ -12,7 +12,7 @@ import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { machineForm } from '../shared/settings';
 import { viewButtons } from '../shared/space';
-import { fromAddress, toAddress } from '../shared/store';
+import { fromAddress, intoAddress, linkChanged, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { momentAt, type Result } from './aligned';
 import { Pendant } from './pendant';
@@ -56,8 +56,9 @@ const sliders = new PoseSliders(element('sliders', HTMLElement), () => {
 const fields = new AddressFields({ mode }, changed);
 const looks = new AddressFields({ factor }, () => {
   scene.factor = Number(factor.value);
-  toAddress(looks.values);
+  linkChanged();
 });
+intoAddress(() => looks.values);
 const settings = machineForm('align platform', shipped, changed, 'platform.toml');
 const pendant = new Pendant(
   wasm,
@@ -78,8 +79,8 @@ function changed(): void {
 }
 
 async function align(): Promise<void> {
-  toAddress({ to: pose?.join(',') ?? null, ...fields.values });
   machine.stop();
+  await toAddress({ to: pose?.join(',') ?? null, ...fields.values });
   if (pose?.some((it) => Number.isNaN(it))) {
     refuse('pose: six numbers are needed');
     return;

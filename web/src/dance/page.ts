@@ -11,6 +11,7 @@ import { AddressFields } from '../shared/fields';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import {
+  intoAddress,
   intoLink,
   isLinked,
   keep,
@@ -95,8 +96,9 @@ const fields = new AddressFields({ law, code }, changed);
 const looks = new AddressFields({ zoom }, () => {
   timeline.zoom = Number(zoom.value);
   music.stretch(timeline.zoom);
-  toAddress(looks.values);
+  linkChanged();
 });
+intoAddress(() => looks.values);
 const trial = new Trial(KEPT);
 const perform = settled(100, run);
 
@@ -190,8 +192,8 @@ async function run(): Promise<void> {
     perform();
     return;
   }
-  toAddress({ score: text === shipped ? 'shipped' : 'own', ...fields.values });
   machine.stop();
+  await toAddress({ score: text === shipped ? 'shipped' : 'own', ...fields.values });
   const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber };
   if (fields.problem !== undefined) {
     status.refuse('', fields.problem);

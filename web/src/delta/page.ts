@@ -106,8 +106,8 @@ function changed(): void {
 }
 
 async function drive(): Promise<void> {
-  toAddress({ ...points.address, ...fields.values });
   machine.stop();
+  await toAddress({ ...points.address, ...fields.values });
   const parameters = {
     lines: editor.text,
     machine: settings.text,

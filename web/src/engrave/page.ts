@@ -76,12 +76,12 @@ function changed(): void {
 }
 
 async function engrave(): Promise<void> {
-  toAddress({
+  machine.stop();
+  await toAddress({
     ...drawing.address,
     ...fields.values,
     order: keepOrder.checked ? 'file' : null,
   });
-  machine.stop();
   const parameters = {
     name: drawing.name,
     svg: drawing.text,

@@ -113,8 +113,9 @@ export class Capture implements View {
 
   async #judge(): Promise<void> {
     const preset = this.#preset.value;
-    toAddress(this.#fields.values);
     const input = this.#supersede();
+    await toAddress(this.#fields.values);
+    if (input !== this.#input) return;
     const parameters = { name: this.#name, text: this.#text.value, preset };
     this.#trial.begin();
     try {

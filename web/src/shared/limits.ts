@@ -78,17 +78,19 @@ export class Limits {
 
   /** Seconds, and the percentage of the nearest limit. */
   get nearest(): [number[], (number | null)[]] {
+    const [all, width] = [this.#shares, this.#width];
     const step = Math.max(Math.ceil(this.#times.length / MAX_CHARTED), 1);
     const [times, most]: [number[], (number | null)[]] = [[], []];
     for (let look = 0; look < this.#times.length; look += step) {
+      const end = Math.min(look + step, this.#times.length);
       let largest = 0;
-      let hasGap = false;
-      for (let one = look; one < Math.min(look + step, this.#times.length); one += 1) {
-        const [row = 0, , ...shares] = this.#values(one);
-        hasGap ||= row - (this.#values(one - 1)[0] ?? row) > 1;
-        for (const share of shares) if (share > largest) largest = share;
+      for (let at = look * width; at < end * width; at += 1) {
+        const share = all[at] ?? 0;
+        if (at % width >= HEAD && share > largest) largest = share;
       }
-      if (hasGap) {
+      // Between timed rows there is no limit.
+      const rows = (all[look * width] ?? 0) - (all[(look - 1) * width] ?? Infinity);
+      if (rows > 1) {
         times.push(((this.#times[look - 1] ?? 0) + (this.#times[look] ?? 0)) / 2);
         most.push(null);
       }

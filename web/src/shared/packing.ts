@@ -5,12 +5,16 @@ const MAX_BYTES = 20_000_000;
 
 export type Unpacked = { values: Record<string, unknown> } | { damage: string };
 
-/** Nothing for no values. */
-export async function pack(values: Record<string, unknown>): Promise<string> {
+/** Nothing for no values; undefined for more than so many characters. */
+export async function pack(
+  values: Record<string, unknown>,
+  most: number,
+): Promise<string | undefined> {
   if (Object.keys(values).length === 0) return '';
   const json = new Blob([JSON.stringify(values)]).stream();
   const packed = json.pipeThrough(new CompressionStream('deflate-raw'));
   const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
+  if ((bytes.length * 4) / 3 > most) return undefined;
   return base64(bytes).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 

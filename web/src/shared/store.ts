@@ -7,6 +7,7 @@ export const isLinked = location.search.length > 1 || location.hash.length > 1;
 
 /** Longer links are cut by the programs that pass them on; a text that needs more stays out of them. */
 const MAX_FRAGMENT = 60_000;
+const MAX_TEXT = 1_000_000;
 /** The address is not written for each of the values that change one after the other. */
 const SETTLE_MS = 200;
 
@@ -24,10 +25,10 @@ export function fromAddress(name: string): string | null {
   return new URLSearchParams(location.search).get(name);
 }
 
-/** Puts values into the address; null takes one out. */
-export function toAddress(values: Record<string, string | null>): void {
+/** Puts values into the address; null takes one out. What else it carries is written when this ends. */
+export async function toAddress(values: Record<string, string | null>): Promise<void> {
   history.replaceState(null, '', location.pathname + queryWith(values) + location.hash);
-  linkChanged();
+  await writeLink();
 }
 
 function queryWith(values: Record<string, string | null>): string {
@@ -88,12 +89,14 @@ export async function writeLink(): Promise<{ url: string; isWhole: boolean }> {
   const named = Object.assign({}, ...namers.map((give) => give()));
   const given = [...givers].map(([name, give]) => [name, give()] as const);
   const values = Object.fromEntries(given.filter(([, value]) => value !== undefined));
-  let packed = await pack(values);
-  const isWhole = packed.length <= MAX_FRAGMENT;
-  if (!isWhole) {
-    const short = Object.entries(values).filter(([, value]) => typeof value !== 'string');
-    packed = await pack(Object.fromEntries(short));
-  }
+  // What is deflated would stay too long.
+  const isLong = Object.values(values).some(
+    (value) => typeof value === 'string' && value.length > MAX_TEXT,
+  );
+  const whole = isLong ? undefined : await pack(values, MAX_FRAGMENT);
+  const short = Object.entries(values).filter(([, value]) => typeof value !== 'string');
+  const packed = whole ?? (await pack(Object.fromEntries(short), MAX_FRAGMENT)) ?? '';
+  const isWhole = whole !== undefined;
   const path = location.pathname + queryWith(named) + (packed && `#${packed}`);
   // What was begun later has seen what came in between.
   if (write === writes) history.replaceState(null, '', path);

@@ -90,8 +90,8 @@ function changed(): void {
 }
 
 async function run(): Promise<void> {
-  toAddress({ ...program.address, ...fields.values });
   machine.stop();
+  await toAddress({ ...program.address, ...fields.values });
   const parameters = {
     name: program.name,
     gcode: editor.text,
