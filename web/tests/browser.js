@@ -89,14 +89,14 @@ export async function open() {
 }
 
 /**
- * A script for a page: an order to its machine is on its way for two seconds.
+ * A script for a page: an order to its machine is on its way for a second.
  * @param {string} operation
  */
 export const delayed = (operation) => `
   const post = Worker.prototype.postMessage;
   Worker.prototype.postMessage = function (order, ...rest) {
     if (order.operation !== '${operation}') post.call(this, order, ...rest);
-    else setTimeout(() => post.call(this, order, ...rest), 2000);
+    else setTimeout(() => post.call(this, order, ...rest), 1000);
   };`;
 
 const SIZES = /** @type {const} */ ([

@@ -213,10 +213,10 @@ function tone(seconds) {
 
 test('what comes of an older input does not hide a refusal', async () => {
   const { page, done } = await browser.visit('dance.html', { script: delayed('dance') });
-  await page.waitForTimeout(500);
+  await page.waitForTimeout(300);
   await page.getByLabel('Code in bytes').fill('');
   await refusal(page, 'Code in bytes: a number is needed');
-  await page.waitForTimeout(3000);
+  await page.waitForTimeout(1500);
   assert.match((await page.locator('#status').textContent()) ?? '', /^Code in bytes: /);
   await done();
 });

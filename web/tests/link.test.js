@@ -134,8 +134,8 @@ test('inside another page there are scene and Play alone', async () => {
   await done();
 });
 
-/** How many random states; `.ci/nightly` takes a hundred. */
-const STATES = Number(process.env.PAGE_TEST_STATES ?? 6);
+/** How many random states, of one page after the other; `.ci/nightly` takes a hundred. */
+const STATES = Number(process.env.PAGE_TEST_STATES ?? 3);
 
 /** @param {number} seed */
 function random(seed) {
@@ -156,24 +156,6 @@ function random(seed) {
  * @type {Record<string, (page: Page, from: ReturnType<typeof random>) => Promise<string>>}
  */
 const SETTERS = {
-  'index.html': async (page, { next, of }) => {
-    await page.locator('#drawing').selectOption(of(['rosette', 'star', 'lettering']));
-    await page.locator('#controller').selectOption(of(['pattern', 'timed']));
-    await page.locator('#tolerance').fill((0.02 + next() * 0.2).toFixed(3));
-    if (next() < 0.5) await machine(page, 'upper mm', (139 + next() * 3).toFixed(2));
-    await turn(page, '#scene', of);
-    await turn(page, '#lanes', of);
-    return 'report.json';
-  },
-  'dance.html': async (page, { next, of }) => {
-    await page.locator('#law').selectOption(of(['reset', 'carry', 'signed']));
-    await page.locator('#zoom').fill(String(10 + Math.floor(next() * 60)));
-    const move = page.locator('.move').nth(Math.floor(next() * 5));
-    await move.click();
-    if (next() < 0.5) await move.press('Shift+ArrowRight');
-    await turn(page, '#robot', of);
-    return 'data.h';
-  },
   'stage.html': async (page, { next, of }) => {
     await page.locator('#drawing').selectOption(of(['test', 'link', 'rosette']));
     await page.locator('#steps').selectOption(of(['timed', 'published', 'bresenham']));
@@ -183,21 +165,6 @@ const SETTERS = {
       await gcode.fill(`G21 G90 F600 (täst ${next()})\nG1 X${(next() * 100).toFixed(2)}\n`);
     await turn(page, '#scene', of);
     return 'steps.csv';
-  },
-  'delta.html': async (page, { next, of }) => {
-    await page.locator('#shipped').selectOption(of(['pick-and-place', 'spiral']));
-    await page.locator('#motion').selectOption(of(['rounded', 'trains']));
-    await page.locator('#load').fill(String(Math.floor(next() * 400)));
-    if (next() < 0.5) await machine(page, 'lower mm', (239 + next() * 2).toFixed(2));
-    await turn(page, '#scene', of);
-    return 'steps.csv';
-  },
-  'align.html': async (page, { next, of }) => {
-    await page.getByLabel('y in mm', { exact: true }).fill((next() * 20 - 20).toFixed(2));
-    await page.locator('#mode').selectOption(of(['pvt', 'pt']));
-    await page.locator('#factor').selectOption(of(['1', '5', '20']));
-    await turn(page, '#scene', of);
-    return 'report.json';
   },
   'line.html': async (page, { next, of }) => {
     if (next() < 0.5) {
@@ -216,6 +183,39 @@ const SETTERS = {
     }
     await turn(page, '#wire', of);
     return 'conversation.txt';
+  },
+  'dance.html': async (page, { next, of }) => {
+    await page.locator('#law').selectOption(of(['reset', 'carry', 'signed']));
+    await page.locator('#zoom').fill(String(10 + Math.floor(next() * 60)));
+    const move = page.locator('.move').nth(Math.floor(next() * 5));
+    await move.click();
+    if (next() < 0.5) await move.press('Shift+ArrowRight');
+    await turn(page, '#robot', of);
+    return 'data.h';
+  },
+  'index.html': async (page, { next, of }) => {
+    await page.locator('#drawing').selectOption(of(['rosette', 'star', 'lettering']));
+    await page.locator('#controller').selectOption(of(['pattern', 'timed']));
+    await page.locator('#tolerance').fill((0.02 + next() * 0.2).toFixed(3));
+    if (next() < 0.5) await machine(page, 'upper mm', (139 + next() * 3).toFixed(2));
+    await turn(page, '#scene', of);
+    await turn(page, '#lanes', of);
+    return 'report.json';
+  },
+  'delta.html': async (page, { next, of }) => {
+    await page.locator('#shipped').selectOption(of(['pick-and-place', 'spiral']));
+    await page.locator('#motion').selectOption(of(['rounded', 'trains']));
+    await page.locator('#load').fill(String(Math.floor(next() * 400)));
+    if (next() < 0.5) await machine(page, 'lower mm', (239 + next() * 2).toFixed(2));
+    await turn(page, '#scene', of);
+    return 'steps.csv';
+  },
+  'align.html': async (page, { next, of }) => {
+    await page.getByLabel('y in mm', { exact: true }).fill((next() * 20 - 20).toFixed(2));
+    await page.locator('#mode').selectOption(of(['pvt', 'pt']));
+    await page.locator('#factor').selectOption(of(['1', '5', '20']));
+    await turn(page, '#scene', of);
+    return 'report.json';
   },
 };
 
