@@ -108,7 +108,7 @@ test('the pendant is used by keys alone: a locator is jogged, and stands when it
   // It brakes.
   await page.waitForTimeout(1000);
   const rest = await display.textContent();
-  await page.waitForTimeout(1000);
+  await page.waitForTimeout(400);
   assert.equal(await display.textContent(), rest);
   await page.getByRole('button', { name: 'Switch off' }).press('Enter');
   assert.equal(await display.textContent(), '');
@@ -121,7 +121,7 @@ test('a pendant that is clicked twice is off again, and can be switched on', asy
   const display = page.locator('#display');
   await page.locator('#power').dblclick();
   // The pendant's machine has answered by then.
-  await page.waitForTimeout(1000);
+  await page.waitForTimeout(500);
   assert.equal(await display.textContent(), '');
   await page.getByRole('button', { name: 'Switch on' }).click();
   await display.filter({ hasText: '>LOCATOR  1 IDLE' }).waitFor();

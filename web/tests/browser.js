@@ -55,7 +55,12 @@ export async function open() {
    * @param {import('playwright-core').BrowserContextOptions & { script?: string }} [options]
    */
   async function visit(path, options = {}) {
-    const { script, ...context } = { viewport: { width: 1280, height: 1000 }, ...options };
+    const { script, ...context } = {
+      viewport: { width: 1280, height: 1000 },
+      // Nothing plays by itself, unless a test wants it.
+      reducedMotion: /** @type {const} */ ('reduce'),
+      ...options,
+    };
     const page = await (await browser.newContext(context)).newPage();
     if (script) await page.addInitScript(script);
     /** @type {string[]} */
@@ -84,14 +89,14 @@ export async function open() {
 }
 
 /**
- * A script for a page: an order to its machine is on its way for two seconds.
+ * A script for a page: an order to its machine is on its way for a second.
  * @param {string} operation
  */
 export const delayed = (operation) => `
   const post = Worker.prototype.postMessage;
   Worker.prototype.postMessage = function (order, ...rest) {
     if (order.operation !== '${operation}') post.call(this, order, ...rest);
-    else setTimeout(() => post.call(this, order, ...rest), 2000);
+    else setTimeout(() => post.call(this, order, ...rest), 1000);
   };`;
 
 const SIZES = /** @type {const} */ ([

@@ -134,22 +134,24 @@ const FAULTS = {
   buffer: /B answers NAK to STX: no receive buffer/,
 };
 
-for (const [fault, verdict] of Object.entries(FAULTS)) {
-  test(`a simulated fault ends in its verdict: ${fault}`, async () => {
-    const { page, done } = await browser.visit('line.html?view=simulate');
-    await page.locator('main[data-ready]').waitFor();
+test('each simulated fault ends in its verdict', async () => {
+  const { page, done } = await browser.visit('line.html?view=simulate');
+  await page.locator('main[data-ready]').waitFor();
+  const time = page.locator('#simulated-time');
+  for (const [fault, verdict] of Object.entries(FAULTS)) {
     await page.locator('#scenario').selectOption(fault);
+    await time.filter({ hasText: /^0\.0000 s/ }).waitFor();
     await page.getByRole('button', { name: 'Run 20 s' }).click();
-    await said(page, verdict);
     // The verdict may come before the end, and the files are of what was heard so far.
-    await page.locator('#simulated-time').filter({ hasText: '20.0000 s' }).waitFor();
+    await time.filter({ hasText: '20.0000 s' }).waitFor();
+    await said(page, verdict);
     // What the tap has heard is a capture, and what is told of it is what the command line tells.
     const capture = file('capture.txt', await saved(page, 'capture.txt'));
     const printed = line3964r('monitor', capture).text;
-    assert.equal((await saved(page, 'conversation.txt')).toString(), printed);
-    await done();
-  });
-}
+    assert.equal((await saved(page, 'conversation.txt')).toString(), printed, fault);
+  }
+  await done();
+});
 
 test('the procedure is seen step by step', async () => {
   const script = `window.answers = 0;

@@ -50,7 +50,7 @@ pub use self::calibration::{Calibrated, Fit};
 pub use self::course::ArmsAt;
 pub use self::machine::Machine;
 pub use self::motion::Motion;
-pub use self::record::Record;
+pub use self::record::{Record, TimedRow};
 pub use self::report::Report;
 pub use self::session::{Session, StepObserver, check};
 pub use self::simulation::{Drive, Run, drive, simulate};

@@ -10,6 +10,8 @@ use crate::motion::Motion;
 /// A line that has been answered with `ok`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Move {
+    /// Of the input, from 1.
+    pub(crate) line: usize,
     pub(crate) from: Point3<f64>,
     pub(crate) to: Point3<f64>,
     pub(crate) feed_mm_s: f64,
@@ -18,6 +20,20 @@ pub(crate) struct Move {
     pub(crate) end_ticks: u64,
     /// From when to when the curves are run that begin, pass or end on it; none where nothing moves.
     pub(crate) curves_ticks: Option<[u64; 2]>,
+}
+
+/// The end of a row of rounded lines: from one to the next each arm runs the cubic between them.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct TimedRow {
+    /// Seconds from the start.
+    pub time_s: f64,
+    /// Of the arms, in radians.
+    pub position_rad: [f64; 3],
+    /// Of the arms, in rad/s.
+    pub velocity_rad_s: [f64; 3],
+    /// The line of the input that the row ends on, from 1.
+    pub line: usize,
 }
 
 /// A line that has been answered with `error:`.
@@ -39,6 +55,8 @@ pub struct Record {
     pub(crate) smoothed_bound_mm: Option<f64>,
     pub(crate) refusals: Vec<Refusal>,
     pub(crate) notes: Notes,
+    /// Of lines with rounded corners.
+    pub(crate) rows: Vec<TimedRow>,
 }
 
 impl Record {
@@ -50,6 +68,7 @@ impl Record {
             smoothed_bound_mm: None,
             refusals: Vec::new(),
             notes: Notes::default(),
+            rows: Vec::new(),
         }
     }
 
@@ -62,6 +81,24 @@ impl Record {
     /// The numbers of the lines that were refused.
     pub fn refused_lines(&self) -> impl Iterator<Item = usize> {
         self.refusals.iter().map(|refusal| refusal.line)
+    }
+
+    /// The rows of lines with rounded corners; none where each line is run by itself.
+    #[must_use]
+    pub fn rows(&self) -> &[TimedRow] {
+        &self.rows
+    }
+
+    /// The lines of the input that are moves, from 1, and their feeds in mm/s.
+    pub fn feeds(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.moves.iter().map(|it| (it.line, it.feed_mm_s))
+    }
+
+    /// The feed of a line of the input, in mm/s, if it is a move.
+    #[must_use]
+    pub fn feed_mm_s(&self, line: usize) -> Option<f64> {
+        let found = self.moves.binary_search_by_key(&line, |it| it.line).ok()?;
+        Some(self.moves.get(found)?.feed_mm_s)
     }
 
     /// Whether all lines were done.

@@ -11,7 +11,7 @@ use stepper_sync::{Direction, Rate, StepDirTiming};
 
 use crate::machine::Machine;
 use crate::plan::TICKS_PER_S;
-use crate::record::Move;
+use crate::record::{Move, Record, TimedRow};
 
 /// Vertices of the lines in sight at a time.
 const VERTICES: usize = 32;
@@ -61,13 +61,16 @@ pub(crate) fn check(machine: &Machine, from: Point3<f64>, to: Point3<f64>) -> Re
 }
 
 /// Runs the lines of moves, from rest to rest: calls `step` with the time and the position after
-/// each step, and sets the times at which the moves end, or round their corners. Returns proven bounds
-/// in mm: how far the platform leaves its curves between whole steps, and these the lines.
+/// each step, and records the rows and the times at which the moves end, or round their corners. Returns
+/// proven bounds in mm: how far the platform leaves its curves between whole steps, and these the lines.
 pub(crate) fn run(
     machine: &Machine,
-    moves: &mut [Move],
+    record: &mut Record,
     mut step: impl FnMut(u64, [i32; 3]) -> Result<()>,
 ) -> Result<[f64; 2]> {
+    let Record {
+        moves, rows: run, ..
+    } = record;
     let legs = legs(machine, moves)?;
     let knots = legs.paths.iter();
     let knots = knots.map(|path| KNOTS + path.length() / KNOT_MM);
@@ -113,6 +116,12 @@ pub(crate) fn run(
     let mut quantiser = PvtQuantiser::new(tick_rate, [machine.scale; 3], first.position)?;
     let mut steps = PvtSteps::new(quantiser.knots(), timing);
     let mut position = machine.steps(first.position.into())?;
+    run.extend(moves.first().map(|begun| TimedRow {
+        time_s: first.time_s,
+        position_rad: first.position,
+        velocity_rad_s: first.velocity,
+        line: begun.line,
+    }));
     for row in rows {
         let begin_ticks = steps.end_ticks();
         steps.push(&quantiser.row(row.time_s, row.position, row.velocity)?)?;
@@ -133,6 +142,12 @@ pub(crate) fn run(
         let ended = legs.at(row.leg, row.s);
         if let Some(ended) = ended.and_then(|it| moves.get_mut(it)) {
             ended.end_ticks = steps.end_ticks();
+            run.push(TimedRow {
+                time_s: row.time_s,
+                position_rad: row.position,
+                velocity_rad_s: row.velocity,
+                line: ended.line,
+            });
         }
     }
     // A move that goes nowhere ends with the one before.

@@ -100,8 +100,7 @@ impl<'a> Session<'a> {
     /// A corner cannot be rounded where the machine can be, or the observer's.
     pub fn finish(mut self) -> Result<Record> {
         if self.motion == Motion::Rounded {
-            let moves = &mut self.record.moves;
-            let bounds_mm = rounded::run(self.machine, moves, &mut *self.observer)?;
+            let bounds_mm = rounded::run(self.machine, &mut self.record, &mut *self.observer)?;
             let [departure_mm, smoothed_mm] = bounds_mm.map(Some);
             self.record.departure_bound_mm = departure_mm;
             self.record.smoothed_bound_mm = smoothed_mm;
@@ -153,6 +152,7 @@ impl<'a> Session<'a> {
             Motion::Trains => plan.run(self.position, start, &mut *self.observer)?,
         };
         self.record.moves.push(Move {
+            line: self.lines,
             from: self.point,
             to,
             feed_mm_s,

@@ -56,7 +56,7 @@ pub use self::plan_settings::{PlanSettings, Tolerance};
 pub use self::pulse_log::PulseLog;
 pub use self::report::Report;
 pub use self::simulation::{Run, simulate};
-pub use self::timed::{TimedPlan, simulate_timed};
+pub use self::timed::{TimedLimits, TimedPlan, TimedRow, simulate_timed};
 
 /// The machine of the source, in TOML.
 pub const MACHINE: &str = include_str!("../machine.toml");

@@ -11,6 +11,7 @@ use crate::gauge::{Deviation, Gauge};
 use crate::machine::Machine;
 use crate::motors::{FollowedAxes, Motors};
 use crate::plan::Reference;
+use crate::timed::TimedRow;
 use crate::tool_speed::{Meter, Pace, Spread, ToolSpeed};
 use crate::track::Track;
 
@@ -40,9 +41,17 @@ pub struct Run {
     pub(crate) track: Track,
     /// The placed drawing as lines.
     pub(crate) drawing: Vec<Vec<Point2<f64>>>,
+    /// Of timed strokes.
+    pub(crate) rows: Vec<TimedRow>,
 }
 
 impl Run {
+    /// The rows of timed strokes; none of a pattern.
+    #[must_use]
+    pub fn rows(&self) -> &[TimedRow] {
+        &self.rows
+    }
+
     /// Duration in ticks of the controller's timer.
     #[must_use]
     pub const fn ticks(&self) -> u64 {
@@ -206,6 +215,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             drawing: drawing
                 .map(|outline| flatten(outline, PICTURE_MM))
                 .collect(),
+            rows: Vec::new(),
         })
     }
 }

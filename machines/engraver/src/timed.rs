@@ -45,8 +45,26 @@ pub struct TimedPlan {
 enum Move {
     /// One axis to a position in pulses from home, by its own ramp.
     Rapid { axis: Axis, to: i32 },
-    /// Shoulder, elbow and disc along these rows, in radians and seconds, from rest to rest.
-    Stroke(Vec<Row<[f64; 3]>>),
+    /// Shoulder, elbow and disc along these rows, in radians and seconds, from rest to rest; the number
+    /// of the drawing's stroke.
+    Stroke(usize, Vec<Row<[f64; 3]>>),
+}
+
+/// The end of a row of a timed stroke: from one to the next of a stroke each joint runs the cubic
+/// between them.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct TimedRow {
+    /// Seconds from the start.
+    pub time_s: f64,
+    /// Of shoulder, elbow and disc, in radians.
+    pub position_rad: [f64; 3],
+    /// Of shoulder, elbow and disc, in rad/s.
+    pub velocity_rad_s: [f64; 3],
+    /// The drawing's stroke, from 1.
+    pub stroke: usize,
+    /// It is where joints and disc begin at rest.
+    pub is_first: bool,
 }
 
 impl TimedPlan {
@@ -153,7 +171,7 @@ impl Planner<'_> {
             }
             let [shoulder, elbow, disc] = end.position;
             (self.joints, self.disc_rad) = (Joints::new(shoulder, elbow), disc);
-            self.moves.push(Move::Stroke(rows));
+            self.moves.push(Move::Stroke(stroke.number, rows));
         }
         for curve in curves {
             for fraction in [0.25, 0.5, 0.75, 1.0] {
@@ -259,7 +277,32 @@ impl Planner<'_> {
     }
 }
 
+/// What timed strokes keep.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct TimedLimits {
+    /// Of shoulder, elbow and disc the speed in rad/s and the acceleration in rad/s².
+    pub axes: [(f64, f64); 3],
+    /// Of the tool along its path, in mm/s.
+    pub feed_mm_s: f64,
+    /// Of the tool along its path, in mm/s², if there is such a limit.
+    pub acceleration_mm_s2: Option<f64>,
+}
+
 impl Machine {
+    /// What timed strokes keep.
+    #[must_use]
+    pub fn timed_limits(&self) -> TimedLimits {
+        let tool = self.tool_limits();
+        TimedLimits {
+            axes: self
+                .joint_limits()
+                .map(|axis| (axis.speed, axis.acceleration)),
+            feed_mm_s: tool.feed,
+            acceleration_mm_s2: tool.acceleration,
+        }
+    }
+
     fn joints_at_home(&self) -> Joints {
         Joints::new(self.theta2.to_rad(0), self.theta1.to_rad(0))
     }

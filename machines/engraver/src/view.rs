@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Point3};
 use pattern_codec::engraving::PerAxis;
+use scara_kin::Joints;
 
 use crate::machine::Machine;
 use crate::simulation::Run;
@@ -16,6 +17,15 @@ impl Machine {
         #[expect(clippy::cast_precision_loss, reason = "two numbers of 32 bits")]
         let height = above as f64 * self.settings.mm_per_vertical_pulse();
         Point3::new(tool.x, tool.y, height)
+    }
+}
+
+impl Machine {
+    /// Where the tool is with shoulder, elbow and disc at angles in radians, in mm.
+    #[must_use]
+    pub fn tool_at(&self, [shoulder, elbow, _]: [f64; 3]) -> [f64; 3] {
+        let tool = self.arm.forward(Joints::new(shoulder, elbow));
+        [tool.x, tool.y, 0.0]
     }
 }
 

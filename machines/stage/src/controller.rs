@@ -177,6 +177,8 @@ impl<'a> Controller<'a> {
             None => Drive::at_rest(self.ticks, self.commanded_mm())?,
         };
         drive.begin();
+        let at = self.commanded_mm();
+        self.record.row(drive.time_s(), [at.x, at.y], [0.0; 2]);
         course.rows(|row| {
             for (ticks, by) in drive.row(row)? {
                 let [first, last] = course.piece(row).map_or([0; 2], |piece| piece.motions);
@@ -187,6 +189,7 @@ impl<'a> Controller<'a> {
                 let near = chain.motions.get(first..=last).unwrap_or_default();
                 self.made(chain, near, ticks, by)?;
             }
+            self.record.row(drive.time_s(), row.position, row.velocity);
             Ok(())
         })?;
         self.drive = Some(drive);

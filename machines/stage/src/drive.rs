@@ -5,7 +5,7 @@ use kurbo::Point;
 use path_timing::Row;
 use pvt_steps::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming, StepScale};
 
-use crate::grid::{STEPS_PER_MM, TICKS_PER_S};
+use crate::grid::{STEPS_PER_MM, TICKS_PER_S, seconds};
 use crate::timed::START_STOP_MM_S;
 
 /// Both axes along the rows of one chain of motions after the other.
@@ -43,6 +43,11 @@ impl Drive {
     /// Begins a chain of rows, at rest where the last one has ended.
     pub(crate) const fn begin(&mut self) {
         self.chain_s = self.now_s;
+    }
+
+    /// The time of the last row by the clock of all steps, in s.
+    pub(crate) fn time_s(&self) -> f64 {
+        seconds(self.start_ticks) + self.now_s
     }
 
     /// Takes the next row; the steps up to it, with their ticks.

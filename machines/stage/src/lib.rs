@@ -45,14 +45,14 @@ mod timed;
 pub use self::controller::{StepObserver, run};
 pub use self::gcode::Program;
 pub use self::paths::PathRule;
-pub use self::record::{Leg, Seen};
+pub use self::record::{Leg, Seen, TimedRow};
 pub use self::report::Report;
 pub use self::run::Run;
 pub use self::session::Session;
 pub use self::settings::{Settings, Stepping};
 pub use self::stage::switches_mm;
 pub use self::step_log::StepLog;
-pub use self::timed::ACCELERATION_MM_S2;
+pub use self::timed::{ACCELERATION_MM_S2, MAX_AXIS_MM_S};
 
 /// The test path of the source: rectangle, diagonal, circle.
 pub const TEST: &str = include_str!("../drawings/test.gcode");

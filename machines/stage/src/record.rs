@@ -35,6 +35,20 @@ impl Leg {
     }
 }
 
+/// The end of a row of timed steps: from one to the next each axis runs the cubic between them.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct TimedRow {
+    /// Seconds from the start.
+    pub time_s: f64,
+    /// X and Y, in mm.
+    pub position_mm: [f64; 2],
+    /// Of X and Y, in mm/s.
+    pub velocity_mm_s: [f64; 2],
+    /// The motion that the row ends on, as the legs are numbered.
+    pub motion: usize,
+}
+
 /// The largest deviation, and the steps around it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Worst {
@@ -111,9 +125,21 @@ pub(crate) struct Record {
     pub(crate) corrections: Profile,
     pub(crate) closed: Seen,
     pub(crate) open: Seen,
+    /// Of timed steps.
+    pub(crate) rows: Vec<TimedRow>,
 }
 
 impl Record {
+    /// A row of timed steps has been run, or is where they begin.
+    pub(crate) fn row(&mut self, time_s: f64, position_mm: [f64; 2], velocity_mm_s: [f64; 2]) {
+        self.rows.push(TimedRow {
+            time_s,
+            position_mm,
+            velocity_mm_s,
+            motion: self.closed.legs.len().saturating_sub(1),
+        });
+    }
+
     /// A motion begins, with both stages at a point.
     pub(crate) fn begin(&mut self, ticks: u64, motion: &Motion, [closed, open]: [Point; 2]) {
         self.programmed.push(*motion);

@@ -1,7 +1,7 @@
 //! What comes of a whole program on the simulated stage.
 
 use crate::motors::FollowedAxes;
-use crate::record::{Record, Seen, over_time};
+use crate::record::{Record, Seen, TimedRow, over_time};
 use crate::settings::Settings;
 
 /// What the stage did, in a closed loop and without corrections.
@@ -36,6 +36,12 @@ impl Run {
     pub fn programmed(&self) -> impl Iterator<Item = Vec<[f64; 2]>> {
         let motions = self.record.programmed.iter();
         motions.map(|motion| motion.points().iter().map(|at| [at.x, at.y]).collect())
+    }
+
+    /// The rows of timed steps; none where the steps are at the feed.
+    #[must_use]
+    pub fn rows(&self) -> &[TimedRow] {
+        &self.record.rows
     }
 
     /// Time in s and the mean speed along the path around it in mm/s, by the steps.

@@ -15,7 +15,7 @@ use crate::motion::{Motion, Shape};
 pub const ACCELERATION_MM_S2: f64 = 500.0;
 /// The speed of each axis at most, in mm/s: its motor follows 70 at this acceleration, and loses steps
 /// at 80.
-pub(crate) const MAX_AXIS_MM_S: f64 = 60.0;
+pub const MAX_AXIS_MM_S: f64 = 60.0;
 /// By what an axis may change its speed at once: what its motor starts and stops with.
 pub(crate) const START_STOP_MM_S: f64 = 5.0;
 

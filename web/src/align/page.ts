@@ -1,6 +1,7 @@
 // The page of the alignment platform: pose and pendant on the right, body and axes on the left.
 import '../shared/style.css';
 import './align.css';
+import '../shared/link';
 import '../shared/offline';
 import shipped from '../../../machines/platform/platform.toml?raw';
 import wasm from '../../built/align.wasm?url';
@@ -11,7 +12,7 @@ import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { machineForm } from '../shared/settings';
 import { viewButtons } from '../shared/space';
-import { fromAddress, toAddress } from '../shared/store';
+import { fromAddress, intoAddress, linkChanged, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { momentAt, type Result } from './aligned';
 import { Pendant } from './pendant';
@@ -53,6 +54,11 @@ const sliders = new PoseSliders(element('sliders', HTMLElement), () => {
   changed();
 });
 const fields = new AddressFields({ mode }, changed);
+const looks = new AddressFields({ factor }, () => {
+  scene.factor = Number(factor.value);
+  linkChanged();
+});
+intoAddress(() => looks.values);
 const settings = machineForm('align platform', shipped, changed, 'platform.toml');
 const pendant = new Pendant(
   wasm,
@@ -73,8 +79,8 @@ function changed(): void {
 }
 
 async function align(): Promise<void> {
-  toAddress({ to: pose?.join(',') ?? null, ...fields.values });
   machine.stop();
+  await toAddress({ to: pose?.join(',') ?? null, ...fields.values });
   if (pose?.some((it) => Number.isNaN(it))) {
     refuse('pose: six numbers are needed');
     return;
@@ -88,6 +94,7 @@ async function align(): Promise<void> {
 }
 
 function refuse(error: unknown): void {
+  element('main', HTMLElement).dataset.ready = '';
   status.refuse('', error);
   files.allow(false);
 }
@@ -108,7 +115,6 @@ function show(result: Result): void {
   sliders.show(result.to, result.from);
   scene.start = result.moments[0];
   showCharts(result);
-  transport.pause();
   transport.begin(report.duration_s);
   element('main', HTMLElement).dataset.ready = '';
 }
@@ -146,7 +152,6 @@ function showCharts({ moments, report }: Result): void {
 const asked = fromAddress('to')?.split(',').map(Number);
 if (asked?.length === 6 && asked.every(Number.isFinite)) pose = asked;
 scene.factor = Number(factor.value);
-factor.addEventListener('input', () => (scene.factor = Number(factor.value)));
 onClick('default-pose', () => {
   pose = undefined;
   changed();

@@ -1,6 +1,7 @@
 // The page of the dancer: the score in the middle, what the robot makes of it above.
 import '../shared/style.css';
 import './dance.css';
+import '../shared/link';
 import '../shared/offline';
 import shipped from '../../../machines/dancer/score.toml?raw';
 import wasm from '../../built/dance.wasm?url';
@@ -9,13 +10,24 @@ import { element, onClick, save, settled, takeFiles } from '../shared/dom';
 import { AddressFields } from '../shared/fields';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
-import { keep, kept, toAddress } from '../shared/store';
+import {
+  intoAddress,
+  intoLink,
+  isLinked,
+  keep,
+  kept,
+  linkChanged,
+  numbersFromLink,
+  textFromLink,
+  toAddress,
+  Trial,
+} from '../shared/store';
 import { Transport } from '../shared/transport';
 import { Dance, type Result } from './dance';
 import { Inspector } from './inspector';
 import { Music } from './music';
 import { Robot } from './robot';
-import { type Move, type Score, snap, toText } from './score';
+import { liveliest, type Move, type Score, snap, toText } from './score';
 import { Timeline } from './timeline';
 
 interface Refused {
@@ -24,6 +36,9 @@ interface Refused {
 
 /** Of an AT89C52. */
 const MEMORY_BYTES = 8192;
+/** Of the dance that is shown when the page opens, as fast as it is. */
+const OPENING_S = 8;
+const KEPT = 'dance score';
 
 const machine = new Machine(wasm);
 const status = new Status();
@@ -65,6 +80,7 @@ const zoom = element('zoom', HTMLInputElement);
 const timeline = new Timeline(element('timeline', HTMLElement), music.canvas, Number(zoom.value), {
   select: (index) => {
     selected = index;
+    linkChanged();
     draw();
   },
   change: (index, change) => edit((moves) => Object.assign(moves[index] ?? {}, change), index),
@@ -77,6 +93,13 @@ const inspector = new Inspector((move) => {
   if (index !== undefined) edit((moves) => moves.splice(index, 1, move), index);
 });
 const fields = new AddressFields({ law, code }, changed);
+const looks = new AddressFields({ zoom }, () => {
+  timeline.zoom = Number(zoom.value);
+  music.stretch(timeline.zoom);
+  linkChanged();
+});
+intoAddress(() => looks.values);
+const trial = new Trial(KEPT);
 const perform = settled(100, run);
 
 function draw(): void {
@@ -101,7 +124,7 @@ function edit(change: (moves: Move[]) => void, then: number | undefined): void {
 }
 
 function changed(): void {
-  keep('dance score', text === shipped ? null : text);
+  keep(KEPT, text === shipped ? null : text);
   bad = undefined;
   files.allow(false);
   status.say('Dancing');
@@ -169,36 +192,49 @@ async function run(): Promise<void> {
     perform();
     return;
   }
-  toAddress(fields.values);
   machine.stop();
+  await toAddress({ score: text === shipped ? 'shipped' : 'own', ...fields.values });
   const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber };
-  if (Number.isNaN(parameters.code_bytes)) {
-    status.refuse('code', 'no number');
+  if (fields.problem !== undefined) {
+    status.refuse('', fields.problem);
     return;
   }
+  if (text !== shipped) trial.begin();
   try {
     const { value, blobs } = await machine.call<Result | Refused>('dance', parameters);
     if ('refused' in value) {
       const { message, move } = value.refused;
       bad = move === null ? undefined : move - 1;
       draw();
-      status.refuse('score.toml', message);
+      refuse(message);
     } else {
       show(new Dance({ value, blobs }));
     }
   } catch (error) {
-    if (!(error instanceof Superseded)) status.refuse('score.toml', error);
+    if (!(error instanceof Superseded)) refuse(error);
   }
+}
+
+function refuse(error: unknown): void {
+  ready();
+  status.refuse('score.toml', error);
+}
+
+/** The machine has answered. */
+function ready(): void {
+  trial.end();
+  element('main', HTMLElement).dataset.ready = '';
 }
 
 function show(danced: Dance): void {
   const isFirst = dance === undefined;
   dance = danced;
   const { report, summary, isAsAsked } = danced.result;
-  status.say(
+  status.tell(
     isAsAsked
       ? `Danced: ${report.frames} frames in ${report.duration_s} s, ${report.bytes_packed} bytes`
       : 'A turn ends more than a half step from what was asked',
+    trial.hasFailed ? ['a score of your own ended the page when it was opened last'] : [],
     !isAsAsked,
   );
   element('summary', HTMLElement).textContent = summary;
@@ -208,11 +244,16 @@ function show(danced: Dance): void {
     `${used} of ${MEMORY_BYTES} bytes: ${report.fits_at89c52 ? 'fits' : 'does not fit'}`;
   files.allow(true);
   robot.show(danced);
-  const now = isFirst ? 0 : transport.seconds;
-  transport.begin(report.duration_s);
-  transport.set(now);
+  const now = transport.seconds;
+  const fromS = liveliest(score, report.duration_s, OPENING_S);
+  transport.begin(report.duration_s, {
+    fromS,
+    toS: Math.min(fromS + OPENING_S, report.duration_s),
+  });
+  // A move that is changed does not move the time.
+  if (!isFirst) transport.set(now);
   draw();
-  element('main', HTMLElement).dataset.ready = '';
+  ready();
 }
 
 /** The angle of the chosen move's motor, and how far off it were under the other law. */
@@ -245,10 +286,6 @@ async function openMusic(file: File): Promise<void> {
 }
 
 function begin(): void {
-  zoom.addEventListener('input', () => {
-    timeline.zoom = Number(zoom.value);
-    music.stretch(timeline.zoom);
-  });
   onClick('add', add);
   onClick('copy', () => selected !== undefined && copy(selected));
   onClick('delete', () => selected !== undefined && remove(selected));
@@ -266,7 +303,19 @@ function begin(): void {
     else open(await file.text(), file.name);
   });
   takeFiles(element('robot', HTMLElement), element('music', HTMLInputElement), openMusic);
-  read(kept('dance score') ?? shipped, 'score.toml');
+  timeline.zoom = Number(zoom.value);
+  intoLink('score', () => (text === shipped ? undefined : text));
+  intoLink('selected', () => (selected === undefined ? undefined : [selected]));
+  beginWith(textFromLink('score') ?? (isLinked ? null : kept(KEPT)));
+}
+
+/** The score that is asked for, unless it has ended the page, or the one that is shipped. */
+async function beginWith(asked: string | null): Promise<void> {
+  const [index] = numbersFromLink('selected', 1) ?? [];
+  if (asked === null || trial.hasFailed) await read(shipped, 'score.toml');
+  else if (!(await read(asked, 'score.toml'))) ready();
+  selected = index !== undefined && score.move?.[index] ? index : undefined;
+  draw();
 }
 
 begin();

@@ -1,6 +1,7 @@
 // The robot on the floor, as its motors stand at a time, drawn in parallel projection.
 import { Picture, takeGestures } from '../shared/canvas';
 import { colour, onColours } from '../shared/dom';
+import { intoLink, linkChanged, numbersFromLink } from '../shared/store';
 import { type Dance, MOTOR, type MotorName } from './dance';
 import { TRACK_MM, type Stand, WHEEL_MM, roll, standAt } from './floor';
 
@@ -41,9 +42,15 @@ export class Robot {
     this.#picture = new Picture(canvas, (context, width, height) =>
       this.#draw(context, width, height),
     );
+    const [turn, zoom] = numbersFromLink('view', 2) ?? [];
+    if (turn !== undefined && zoom !== undefined) [this.#turn, this.#zoom] = [turn, held(zoom)];
+    intoLink('view', () => {
+      const isFirst = this.#turn === VIEW_RAD && this.#zoom === 1;
+      return isFirst ? undefined : [this.#turn, this.#zoom];
+    });
     takeGestures(canvas, {
       pan: (dx) => this.#look(this.#turn + dx / 150, this.#zoom),
-      zoom: (factor) => this.#look(this.#turn, Math.min(Math.max(this.#zoom * factor, 0.2), 5)),
+      zoom: (factor) => this.#look(this.#turn, held(this.#zoom * factor)),
       reset: () => this.#look(VIEW_RAD, 1),
     });
     onColours(() => this.#picture.redraw());
@@ -63,6 +70,7 @@ export class Robot {
   #look(turn: number, zoom: number): void {
     this.#turn = turn;
     this.#zoom = zoom;
+    linkChanged();
     this.#picture.redraw();
   }
 
@@ -102,6 +110,11 @@ export class Robot {
     };
     return { context, scale, project, line };
   }
+}
+
+/** A zoom that can be drawn. */
+function held(zoom: number): number {
+  return Math.min(Math.max(zoom, 0.2), 5);
 }
 
 function drawFloor({ line }: Pen, here: Stand): void {

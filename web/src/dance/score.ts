@@ -47,6 +47,27 @@ export function starts(move: Move): number[] {
   return Array.from({ length: times }, (_, time) => move.at_s + time * (move.every_s ?? 0));
 }
 
+/** When the span begins in which the most is moved. */
+export function liveliest(score: Score, lengthS: number, spanS: number): number {
+  /** How many moves there are in each second. */
+  const moved = new Float64Array(Math.ceil(lengthS) + 1);
+  for (const move of score.move ?? []) {
+    for (const at of starts(move)) {
+      const end = Math.min(at + move.for_s, lengthS);
+      for (let second = Math.floor(at); second < end; second += 1) {
+        moved[second] = (moved[second] ?? 0) + 1;
+      }
+    }
+  }
+  let [sum, most, begin] = [0, 0, 0];
+  for (const [second, count] of moved.entries()) {
+    sum += count - (moved[second - spanS] ?? 0);
+    const from = Math.max(second - spanS + 1, 0);
+    if (sum > most) [most, begin] = [sum, from];
+  }
+  return begin;
+}
+
 /** What a move does, for people. */
 export function describe(move: Move): string {
   const action = actionOf(move);

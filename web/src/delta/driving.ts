@@ -1,4 +1,5 @@
 // What the robot did with its lines, ready to be asked for any time.
+import { Limits } from '../shared/limits';
 import type { Answer } from '../shared/machine';
 import { around, countUntil, numbers } from '../shared/rows';
 import type { Point3 } from '../shared/space';
@@ -9,6 +10,8 @@ export type Arm = (typeof ARMS)[number];
 /** The JSON of the operation. */
 export interface Result {
   answers: string[];
+  /** Of each line of the input that is a move, in mm/s. */
+  feeds: Record<number, number>;
   /** Which lines were refused, in a sentence. */
   refused: string | null;
   refusedLines: number[];
@@ -18,6 +21,7 @@ export interface Result {
   arms: [Geometry, Geometry, Geometry];
   maxRateDegS: number;
   maxAccelerationDegS2: number;
+  maxPathAccelerationMmS2: number;
 }
 
 /** Of an arm. */
@@ -47,6 +51,8 @@ export interface Mechanism {
 
 export class Driving {
   readonly result: Result;
+  /** What limits lines with rounded corners. */
+  readonly limits: Limits;
   readonly times: Float64Array;
   readonly #rows: Float64Array;
   /** Ends, feed in mm/s, and seconds of the end of each line. */
@@ -58,6 +64,18 @@ export class Driving {
 
   constructor({ value, blobs }: Answer<Result>) {
     this.result = value;
+    const arms = (name: string, limit: number, unit: string) =>
+      ARMS.map((arm) => ({ name: `${name} of arm ${arm + 1}`, limit, unit }));
+    this.limits = new Limits(blobs, (line) => [
+      ...arms('rate', value.maxRateDegS, '°/s'),
+      ...arms('acceleration', value.maxAccelerationDegS2, '°/s²'),
+      { name: 'feed', limit: value.feeds[line] ?? 0, unit: 'mm/s' },
+      {
+        name: 'acceleration of the platform',
+        limit: value.maxPathAccelerationMmS2,
+        unit: 'mm/s²',
+      },
+    ]);
     this.#rows = numbers(blobs, 'arms');
     this.times = this.#rows.filter((_, index) => index % ROW === 0);
     const lines = numbers(blobs, 'lines');

@@ -1,6 +1,7 @@
 // The page of the Delta robot: points on the right, what the robot makes of them on the left.
 import '../shared/style.css';
 import './delta.css';
+import '../shared/link';
 import '../shared/offline';
 import example from '../../../machines/delta/inputs/measured.txt?raw';
 import pickAndPlace from '../../../machines/delta/inputs/pick-and-place.txt?raw';
@@ -12,13 +13,23 @@ import { element, onClick, save, settled } from '../shared/dom';
 import { Editor, linesOf } from '../shared/editor';
 import { AddressFields } from '../shared/fields';
 import { Inputs } from '../shared/inputs';
+import { LimitTeller } from '../shared/limits';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { columns, countUntil } from '../shared/rows';
 import { machineForm } from '../shared/settings';
 import { viewButtons } from '../shared/space';
-import { keep, kept, toAddress } from '../shared/store';
+import {
+  intoLink,
+  isLinked,
+  keep,
+  kept,
+  linkChanged,
+  textFromLink,
+  toAddress,
+} from '../shared/store';
 import { Transport } from '../shared/transport';
+import { Working } from '../shared/working';
 import { ARMS, Driving, type Quantity, type Result } from './driving';
 import { ARM_COLOURS, Scene } from './scene';
 
@@ -49,6 +60,7 @@ viewButtons(element('views', HTMLElement), scene.space);
 const transport = new Transport((seconds) => {
   scene.at(seconds);
   for (const chart of charts) chart.at(seconds);
+  limits.at(seconds);
 });
 const seek = (seconds: number) => transport.set(seconds);
 const chart = (id: string, unit: string) => new Chart(element(id, HTMLElement), unit, 160, seek);
@@ -57,6 +69,8 @@ const rates = chart('rates', '°/s');
 const accelerations = chart('accelerations', '°/s²');
 const torques = chart('torques', 'N m');
 const charts = [speeds, rates, accelerations, torques];
+const limits = new LimitTeller(seek, (line) => `line ${line}: ${editor.line(line).trim()}`);
+limits.watch(charts);
 
 const editor = new Editor(element('lines', HTMLElement), 'Points', () => {
   points.text = editor.text;
@@ -71,9 +85,11 @@ const points = new Inputs(
 const fields = new AddressFields({ motion, load }, changed);
 const measured = new Editor(element('measured', HTMLElement), 'Measured points', () => {
   keep('delta measured', measured.text || null);
+  linkChanged();
   measured.mark('bad', []);
 });
 const redrive = settled(150, drive);
+const working = new Working(machine, status, ['Driving'], drive);
 const settings = machineForm('delta machine', shipped, changed);
 
 /** Other points. */
@@ -90,20 +106,21 @@ function changed(): void {
 }
 
 async function drive(): Promise<void> {
-  toAddress({ ...points.address, ...fields.values });
   machine.stop();
+  await toAddress({ ...points.address, ...fields.values });
   const parameters = {
     lines: editor.text,
     machine: settings.text,
     motion: motion.value,
     load_kg: load.valueAsNumber / GRAMS_PER_KG,
   };
-  if (Number.isNaN(parameters.load_kg)) {
-    refuse('load: no number');
+  if (fields.problem !== undefined) {
+    refuse(fields.problem);
     return;
   }
   try {
-    show(new Driving(await machine.call<Result>('delta', parameters)));
+    points.begin();
+    show(new Driving(await machine.call<Result>('delta', parameters, working.begin())));
     // The other ways to drive the lines take several times as long; nothing waits for them.
     const { value } = await machine.call<string>('delta.report', null);
     summary.textContent = value;
@@ -113,7 +130,15 @@ async function drive(): Promise<void> {
   }
 }
 
+/** The machine has answered. */
+function ready(): void {
+  points.end();
+  working.end();
+  element('main', HTMLElement).dataset.ready = '';
+}
+
 function refuse(error: unknown): void {
+  ready();
   status.refuse('', error);
   files.allow(false);
 }
@@ -127,17 +152,17 @@ function show(driving: Driving): void {
     refused ??
     `Driven in ${durationS.toFixed(2)} s of the machine's time, ` +
       `at most ${maxPathErrorMm.toFixed(3)} mm off the lines`;
-  status.tell(verdict, notes, refused !== null);
+  status.tell(verdict, [...points.notes, ...notes], refused !== null);
   editor.mark('bad', refusedLines);
   editor.mark('note', linesOf(notes));
   summary.textContent = 'Comparing with other ways to drive the lines';
   scene.show(driving);
   showCharts(driving);
-  transport.pause();
+  limits.show(driving.limits);
   transport.begin(durationS);
   // A point that is dragged does not move the time.
   if (!isFirst) transport.set(before);
-  element('main', HTMLElement).dataset.ready = '';
+  ready();
 }
 
 function showCharts(driving: Driving): void {
@@ -198,7 +223,8 @@ async function calibrate(): Promise<void> {
   }
 }
 
-measured.text = kept('delta measured') ?? '';
+measured.text = textFromLink('measured') ?? (isLinked ? '' : (kept('delta measured') ?? ''));
+intoLink('measured', () => measured.text || undefined);
 element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
 onClick('calibrate', calibrate);
 onClick('example', () => measured.change(example));

@@ -1,7 +1,8 @@
 // The points of an input's lines, and the lines again when a point is dragged.
 import type { Point3 } from '../shared/space';
 
-const NUMBER = String.raw`([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)`;
+/** A digit can be read in one way alone, so that a line of any length takes a time in proportion to it. */
+const NUMBER = String.raw`([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?)`;
 const MOVE = new RegExp(String.raw`^(\s*)${NUMBER}(\s+)${NUMBER}(\s+)${NUMBER}(?=\s|#|$)`);
 
 /** A line counted from 1, and the point that it goes to. */

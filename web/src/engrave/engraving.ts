@@ -1,4 +1,5 @@
 // What the machine made of a drawing, ready to be asked for any time.
+import { Limits } from '../shared/limits';
 import type { Answer } from '../shared/machine';
 import { columns, countUntil, numbers } from '../shared/rows';
 
@@ -10,6 +11,8 @@ type Joints = Record<'theta1' | 'theta2' | 'theta3', number>;
 export interface Result {
   summary: string;
   isWithinBound: boolean;
+  /** Of shoulder, elbow and disc in rad/s and rad/s², and of the tool. */
+  limits: { axes: [number, number][]; feedMmS: number; accelerationMmS2: number | null };
   report: {
     notes: string[];
     duration_s: number;
@@ -47,6 +50,8 @@ export const PATH_STRIDE = 4;
 
 export class Engraving {
   readonly result: Result;
+  /** What limits timed strokes. */
+  readonly limits: Limits;
   readonly pins: Record<Axis, Pin>;
   /** x and y of the drawing's lines, in mm; no number between two lines. */
   readonly outlines: Float64Array;
@@ -56,6 +61,20 @@ export class Engraving {
 
   constructor({ value, blobs }: Answer<Result>) {
     this.result = value;
+    const { axes, feedMmS, accelerationMmS2 } = value.limits;
+    const joints = (name: string, of: 0 | 1, unit: string) =>
+      ['shoulder', 'elbow', 'disc'].map((joint, index) => ({
+        name: `${name} of the ${joint}`,
+        limit: axes[index]?.[of] ?? 0,
+        unit,
+      }));
+    const limits = [
+      ...joints('speed', 0, 'rad/s'),
+      ...joints('acceleration', 1, 'rad/s²'),
+      { name: 'feed of the tool', limit: feedMmS, unit: 'mm/s' },
+      { name: 'acceleration of the tool', limit: accelerationMmS2 ?? 0, unit: 'mm/s²' },
+    ];
+    this.limits = new Limits(blobs, () => limits);
     const pin = (axis: Axis) => [
       axis,
       makePin(numbers(blobs, `${axis} edges`), blobs[`${axis} steps`]),

@@ -2,6 +2,7 @@
 import { drawTimes, Picture, takeGestures, TIMES_PX } from '../shared/canvas';
 import { colour, onColours } from '../shared/dom';
 import { countUntil } from '../shared/rows';
+import { intoLink, linkChanged, numbersFromLink } from '../shared/store';
 import { AXES, type Axis, type Engraving } from './engraving';
 
 const NAMES: Record<Axis, string> = {
@@ -24,9 +25,13 @@ export class Lanes {
   #span = 1;
   #seconds = 0;
   #seek: (seconds: number) => void = () => undefined;
+  /** From when and how long, as the link has it, for the first engraving. */
+  #asked: number[] | undefined;
 
   constructor(canvas: HTMLCanvasElement, note: HTMLElement) {
     this.#note = note;
+    this.#asked = numbersFromLink('lanes', 2);
+    intoLink('lanes', () => (this.#span === this.#duration ? undefined : [this.#from, this.#span]));
     this.#picture = new Picture(canvas, (context, width, height) =>
       this.#draw(context, width, height),
     );
@@ -54,7 +59,9 @@ export class Lanes {
 
   show(engraving: Engraving): void {
     this.#engraving = engraving;
-    this.#window(0, this.#duration);
+    const [from = 0, span = this.#duration] = this.#asked ?? [];
+    this.#asked = undefined;
+    this.#window(from, Math.max(span, MIN_SPAN_S));
   }
 
   at(seconds: number): void {
@@ -74,6 +81,7 @@ export class Lanes {
       it.toFixed(Math.min(digits, 7)),
     );
     this.#note.textContent = `${low} s to ${high} s. Drag to move; zoom with Ctrl and the wheel, two fingers, or + and -; a click sets the time.`;
+    linkChanged();
     this.#picture.redraw();
   }
 

@@ -1,6 +1,7 @@
 // The page of the engraver: input on the right, what the machine makes of it on the left.
 import '../shared/style.css';
 import './engrave.css';
+import '../shared/link';
 import '../shared/offline';
 import lettering from '../../../machines/engraver/drawings/lettering.svg?raw';
 import rosette from '../../../machines/engraver/drawings/rosette.svg?raw';
@@ -11,11 +12,13 @@ import { Chart } from '../shared/chart';
 import { element, settled } from '../shared/dom';
 import { AddressFields } from '../shared/fields';
 import { Inputs } from '../shared/inputs';
+import { LimitTeller } from '../shared/limits';
 import { Machine, Superseded } from '../shared/machine';
 import { machineForm } from '../shared/settings';
 import { FileButtons, Status } from '../shared/result';
 import { fromAddress, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
+import { Working } from '../shared/working';
 import { Engraving, type Result } from './engraving';
 import { Lanes } from './lanes';
 import { Scene } from './scene';
@@ -24,7 +27,6 @@ const STAGES = ['Planning', 'Engraving'] as const;
 
 const machine = new Machine(wasm);
 const status = new Status();
-const progress = element('progress', HTMLProgressElement);
 const controller = element('controller', HTMLSelectElement);
 const tolerance = element('tolerance', HTMLInputElement);
 const placement = element('placement', HTMLInputElement);
@@ -38,10 +40,16 @@ const transport = new Transport((seconds) => {
   scene.at(seconds);
   lanes.at(seconds);
   chart.at(seconds);
+  limits.at(seconds);
 });
 const chart = new Chart(element('deviation', HTMLElement), 'mm', 180, (seconds) =>
   transport.set(seconds),
 );
+const limits = new LimitTeller(
+  (seconds) => transport.set(seconds),
+  (stroke) => `stroke ${stroke} of the drawing`,
+);
+limits.watch([chart]);
 lanes.onSeek((seconds) => transport.set(seconds));
 
 const drawing = new Inputs(
@@ -58,6 +66,7 @@ const fields = new AddressFields({ tolerance, placement, controller }, changed);
 const settings = machineForm('engrave machine', shipped, changed);
 
 const replan = settled(150, engrave);
+const working = new Working(machine, status, STAGES, engrave);
 
 /** What is shown is outdated as soon as something is typed. */
 function changed(): void {
@@ -67,13 +76,12 @@ function changed(): void {
 }
 
 async function engrave(): Promise<void> {
-  toAddress({
+  machine.stop();
+  await toAddress({
     ...drawing.address,
     ...fields.values,
     order: keepOrder.checked ? 'file' : null,
   });
-  machine.stop();
-  progress.hidden = false;
   const parameters = {
     name: drawing.name,
     svg: drawing.text,
@@ -83,40 +91,45 @@ async function engrave(): Promise<void> {
     keep_order: keepOrder.checked,
     controller: controller.value,
   };
-  if (Number.isNaN(parameters.tolerance_mm)) {
-    refuse('tolerance: no number');
+  if (fields.problem !== undefined) {
+    refuse(fields.problem);
     return;
   }
   try {
-    const answer = await machine.call<Result>('engrave', parameters, (stage, fraction) => {
-      progress.value = (stage + fraction) / STAGES.length;
-      status.say(STAGES[stage] ?? '');
-    });
+    drawing.begin();
+    const answer = await machine.call<Result>('engrave', parameters, working.begin());
     show(new Engraving(answer));
   } catch (error) {
     if (!(error instanceof Superseded)) refuse(error);
   }
 }
 
+/** The machine has answered. */
+function ready(): void {
+  drawing.end();
+  working.end();
+  element('main', HTMLElement).dataset.ready = '';
+}
+
 function refuse(error: unknown): void {
-  progress.hidden = true;
+  ready();
   status.refuse('', error);
   files.allow(false);
 }
 
 function show(engraving: Engraving): void {
-  progress.hidden = true;
   const { report, summary, isWithinBound } = engraving.result;
   const { duration_s, bound_mm } = engraving.shown;
   const verdict = isWithinBound
     ? `Engraved in ${duration_s.toFixed(0)} s of the machine's time, within ${bound_mm.toFixed(3)} mm`
     : 'The tool left the drawing by more than the bound';
-  status.tell(verdict, report.notes, !isWithinBound);
+  status.tell(verdict, [...drawing.notes, ...report.notes], !isWithinBound);
   // Columns are as wide as a terminal; here they would be broken.
   element('summary', HTMLElement).textContent = summary.replace(/ {3,}/g, '  ');
   files.allow(true);
   scene.show(engraving);
   lanes.show(engraving);
+  limits.show(engraving.limits);
   const [seconds, distance] = engraving.deviation;
   const bound = seconds.map(() => bound_mm);
   chart.show(
@@ -126,9 +139,8 @@ function show(engraving: Engraving): void {
     ],
     [seconds, distance, bound],
   );
-  transport.pause();
   transport.begin(duration_s);
-  element('main', HTMLElement).dataset.ready = '';
+  ready();
 }
 
 keepOrder.checked = fromAddress('order') === 'file';

@@ -53,7 +53,7 @@ export class Scene {
     context.strokeStyle = colour('drawing');
     context.globalAlpha = 0.5;
     context.lineWidth = 5 * px;
-    strokeLines(context, engraving.outlines);
+    strokeLines(context, engraving.outlines, px);
     context.globalAlpha = 1;
     drawPath(context, engraving, this.#seconds, px);
     drawArm(context, engraving, this.#seconds, px);
@@ -98,6 +98,7 @@ function drawPath(
   strokeParts(
     context,
     countUntil(path, until, PATH_STRIDE),
+    px,
     (point) => [at(point, 1), at(point, 2)],
     (point) =>
       at(point, 3) > 0 || at(point - 1, 3) > 0

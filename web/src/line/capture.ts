@@ -1,7 +1,16 @@
 // A capture that is pasted, dropped or chosen, judged as `line3964r monitor` judges it.
 import { element, settled, takeFiles } from '../shared/dom';
 import { AddressFields } from '../shared/fields';
-import { fromAddress, keep, kept, toAddress } from '../shared/store';
+import {
+  fromAddress,
+  intoLink,
+  isLinked,
+  keep,
+  kept,
+  textFromLink,
+  toAddress,
+  Trial,
+} from '../shared/store';
 import { Conversation, type News } from './conversation';
 import type { Desk, View } from './desk';
 
@@ -15,6 +24,7 @@ const EXAMPLES = Object.fromEntries(
   ).map(([path, load]) => [path.slice(path.lastIndexOf('/') + 1, -'.txt'.length), load]),
 );
 const FIRST = '01a_parity_B_8N1';
+const KEPT = 'line capture';
 
 export class Capture implements View {
   readonly of = 'capture';
@@ -29,6 +39,7 @@ export class Capture implements View {
   #name = 'capture.txt';
   /** Of the newest input; what is still under way for older ones is dropped. */
   #input = 0;
+  readonly #trial = new Trial(KEPT);
 
   constructor(desk: Desk) {
     this.#desk = desk;
@@ -42,6 +53,9 @@ export class Capture implements View {
       this.#own('capture.txt');
       judge();
     });
+    const isOwn = () => this.#example.value === '' && this.#text.value !== '';
+    intoLink('capture', () => (isOwn() ? this.#text.value : undefined));
+    intoLink('name', () => (isOwn() ? this.#name : undefined));
     this.#example.addEventListener('change', () => this.#open(this.#example.value));
     takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), (file) =>
       this.#take(file.text(), file.name),
@@ -51,9 +65,11 @@ export class Capture implements View {
   /** What was chosen or pasted last, else the first example. */
   async begin(): Promise<void> {
     const example = fromAddress('example');
-    const text = kept('line capture');
-    if (example !== null && example in EXAMPLES) await this.#open(example);
-    else if (text !== null) await this.#take(text, 'capture.txt');
+    const linked = textFromLink('capture') ?? null;
+    const isWanted = !isLinked || example === 'own';
+    const text = linked ?? (isWanted && !this.#trial.hasFailed ? kept(KEPT) : null);
+    if (example !== null && Object.hasOwn(EXAMPLES, example)) await this.#open(example);
+    else if (text !== null) await this.#take(text, textFromLink('name') ?? 'capture.txt');
     else await this.#open(FIRST);
   }
 
@@ -66,8 +82,8 @@ export class Capture implements View {
     this.#name = `${example}.txt`;
     this.#example.value = example;
     this.#text.value = text;
-    toAddress({ example: example === FIRST ? null : example });
-    keep('line capture', null);
+    toAddress({ example });
+    keep(KEPT, null);
     await this.#judge();
   }
 
@@ -84,8 +100,8 @@ export class Capture implements View {
   #own(name: string): void {
     this.#name = name;
     this.#example.value = '';
-    toAddress({ example: null });
-    keep('line capture', this.#text.value);
+    toAddress({ example: 'own' });
+    keep(KEPT, this.#text.value);
   }
 
   /** Another input is on its way; its number. */
@@ -97,9 +113,11 @@ export class Capture implements View {
 
   async #judge(): Promise<void> {
     const preset = this.#preset.value;
-    toAddress(this.#fields.values);
     const input = this.#supersede();
+    await toAddress(this.#fields.values);
+    if (input !== this.#input) return;
     const parameters = { name: this.#name, text: this.#text.value, preset };
+    this.#trial.begin();
     try {
       const answer = await this.#desk.machine.call<News>('line', parameters);
       if (input !== this.#input) return;
@@ -108,6 +126,8 @@ export class Capture implements View {
       this.#desk.renew(this);
     } catch (error) {
       if (input === this.#input) this.#desk.refuse(this, '', error);
+    } finally {
+      this.#trial.end();
     }
   }
 }

@@ -28,6 +28,8 @@ export class Desk {
   readonly #ladder: Ladder;
   #view: View | undefined;
   #said = '';
+  /** A refusal stays until something else is asked for. */
+  #isRefused = false;
 
   constructor(machine: Machine, status: Status) {
     this.machine = machine;
@@ -41,16 +43,20 @@ export class Desk {
   /** Shows what a view hears. */
   show(view: View): void {
     this.#view = view;
-    this.#said = '';
+    this.#renewStatus();
     this.#wire.show(view.conversation, view.follows);
     this.#ladder.show(view.conversation, view.follows);
     this.#tell();
   }
 
+  shows(view: View): boolean {
+    return view === this.#view;
+  }
+
   /** A view will have another conversation. */
   judging(view: View): void {
     if (view !== this.#view) return;
-    this.#said = '';
+    this.#renewStatus();
     this.status.say('Judging');
     this.#files.allow(false);
   }
@@ -71,8 +77,18 @@ export class Desk {
   /** What a view is refused; the others do not care. */
   refuse(view: View, where: string, error: unknown): void {
     if (view !== this.#view) return;
-    this.#said = '';
+    this.#isRefused = true;
     this.status.refuse(where, error);
+  }
+
+  /** A view is asked for something else: what it was refused has been read. */
+  goOn(view: View): void {
+    if (view === this.#view && this.#isRefused) this.#renewStatus();
+  }
+
+  #renewStatus(): void {
+    this.#said = '';
+    this.#isRefused = false;
   }
 
   #tell(): void {
@@ -80,8 +96,10 @@ export class Desk {
     const { verdict } = conversation ?? {};
     const sentence = verdict?.sentence ?? idle ?? '';
     // Read aloud: only when it is another one.
-    if (sentence !== this.#said) this.status.say(sentence, verdict?.kind === 'fault');
-    this.#said = sentence;
+    if (sentence !== this.#said && !this.#isRefused) {
+      this.status.say(sentence, verdict?.kind === 'fault');
+      this.#said = sentence;
+    }
     element('summary', HTMLElement).textContent = verdict ? `verdict: ${verdict.text}` : '';
     this.#files.allow((conversation?.steps.length ?? 0) > 0);
   }

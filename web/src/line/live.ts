@@ -6,7 +6,7 @@ import { COMMANDS, type Command } from './commands';
 import { Conversation, type News } from './conversation';
 import type { Desk, Of, View } from './desk';
 import { tell } from './events';
-import { type Damage, OpenPort, serial } from './port';
+import { type Damage, NoPortChosen, OpenPort, serial } from './port';
 import { readTelegram, type Telegram } from './station-panel';
 
 interface Pulled extends News {
@@ -123,7 +123,8 @@ export class Live implements View {
       this.#push({});
     } catch (error) {
       await this.#disconnect();
-      this.#desk.refuse(this, 'port', error);
+      if (error instanceof NoPortChosen) this.#desk.status.say('No port was chosen');
+      else this.#desk.refuse(this, 'port', error);
     }
   }
 
@@ -184,6 +185,7 @@ export class Live implements View {
   }
 
   #send(telegram: Telegram): void {
+    this.#desk.goOn(this);
     this.#waiting.push(telegram);
     this.#sendNext();
   }

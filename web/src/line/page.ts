@@ -1,6 +1,7 @@
 // The page of the serial line: a capture, two simulated stations, or real ports.
 import '../shared/style.css';
 import './line.css';
+import '../shared/link';
 import '../shared/offline';
 import wasm from '../../built/line.wasm?url';
 import { element } from '../shared/dom';
@@ -36,7 +37,7 @@ async function show(name: string): Promise<void> {
 
 async function begin(): Promise<void> {
   const asked = fromAddress('view') ?? 'capture';
-  const name = asked in views ? asked : 'capture';
+  const name = Object.hasOwn(views, asked) ? asked : 'capture';
   for (const choice of document.querySelectorAll<HTMLInputElement>('[name="view"]')) {
     choice.checked = choice.value === name;
     choice.addEventListener('change', () => show(choice.value));

@@ -30,6 +30,9 @@ export interface Listener {
   ended(why: unknown): void;
 }
 
+/** The chooser was closed without a port. */
+export class NoPortChosen extends Error {}
+
 export const serial = (navigator as unknown as { serial?: Serial }).serial;
 
 export class OpenPort {
@@ -48,7 +51,10 @@ export class OpenPort {
   /** Lets the user choose a port, and opens it. */
   static async choose(baudRate: number, parity: string, listener: Listener): Promise<OpenPort> {
     if (!serial) throw new Error('this browser has no Web Serial: Chrome, Edge and Opera have it');
-    const port = await serial.requestPort();
+    const port = await serial.requestPort().catch((error: unknown) => {
+      const isCancelled = error instanceof DOMException && error.name === 'NotFoundError';
+      throw isCancelled ? new NoPortChosen() : error;
+    });
     await port.open({ baudRate, parity, bufferSize: 4096 });
     if (!port.writable) throw new Error('the port cannot be written to');
     return new OpenPort(port, port.writable, listener);

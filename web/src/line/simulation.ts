@@ -1,6 +1,13 @@
 // Two simulated stations whose line one breaks, to learn the procedure.
 import { element, onClick } from '../shared/dom';
-import { fromAddress, toAddress } from '../shared/store';
+import {
+  fieldsFromLink,
+  fromAddress,
+  intoAddress,
+  intoLink,
+  linkChanged,
+  toAddress,
+} from '../shared/store';
 import { Conversation, type News } from './conversation';
 import type { Desk, View } from './desk';
 import { SCENARIOS } from './scenarios';
@@ -18,6 +25,8 @@ const MAX_RUN_S = 2;
 const MAX_STEP_S = 10;
 const JUDGE_MS = 250;
 const SEED = 1;
+/** What a link has run at most, in s. */
+const MAX_LINKED_S = 3600;
 
 export class Simulation implements View {
   readonly of = 'simulation';
@@ -60,11 +69,52 @@ export class Simulation implements View {
     onClick('step', () => this.#do(() => this.#step()));
     onClick('run-20', () => this.#do(() => this.#runTo(this.#nowS + 20)));
     onClick('restart', () => this.#do(() => this.#restart()));
+    intoLink('stations', () => (this.#scenario.value === '' ? this.#fields : undefined));
+    intoAddress(() => {
+      const isSeen = this.#desk.shows(this) && this.#nowS > 0;
+      return { ran: isSeen ? String(this.#nowS) : null };
+    });
   }
 
-  begin(): Promise<void> {
-    const name = fromAddress('fault') ?? 'none';
-    return this.#play(SCENARIOS.some((it) => it.name === name) ? name : 'none');
+  /** As the link has it: a scenario or all fields, and the time that the line has run. */
+  async begin(): Promise<void> {
+    const [name, ranS] = [fromAddress('fault') ?? 'none', Number(fromAddress('ran'))];
+    const fields = fieldsFromLink('stations');
+    if (fields) {
+      this.#fill(fields);
+      this.#scenario.value = '';
+      await this.#do(() => this.#restart());
+    } else {
+      await this.#play(SCENARIOS.some((it) => it.name === name) ? name : 'none');
+    }
+    if (ranS > 0 && ranS <= MAX_LINKED_S) await this.#do(() => this.#runTo(ranS));
+  }
+
+  /** All fields, as `B parity`. */
+  get #fields(): Record<string, string | boolean> {
+    const stations = this.#panels.flatMap((panel) =>
+      Object.entries(panel.values).map(([name, value]) => [`${panel.side} ${name}`, value]),
+    );
+    const line = { 'line one-wire': this.#oneWire.checked, 'line traffic': this.#traffic.checked };
+    return { ...Object.fromEntries(stations), ...line };
+  }
+
+  #fill(fields: Record<string, string | boolean>): void {
+    const value = (name: string, usual: boolean) =>
+      typeof fields[name] === 'boolean' ? fields[name] : usual;
+    this.#oneWire.checked = value('line one-wire', false);
+    this.#traffic.checked = value('line traffic', this.#traffic.checked);
+    for (const panel of this.#panels) {
+      for (const [name, before] of Object.entries(panel.values)) {
+        const given = fields[`${panel.side} ${name}`] ?? before;
+        const field = panel.field(name);
+        if (field instanceof HTMLInputElement && typeof given === 'boolean') field.checked = given;
+        else field.value = String(given);
+        if (field instanceof HTMLSelectElement && field.selectedIndex < 0) {
+          field.value = String(before);
+        }
+      }
+    }
   }
 
   /** Stops the clock. */
@@ -80,25 +130,20 @@ export class Simulation implements View {
     toAddress({ fault: name === 'none' ? null : name });
     this.#scenario.value = name;
     for (const panel of this.#panels) panel.reset();
-    this.#oneWire.checked = scenario.isOneWire ?? false;
-    for (const [path, value] of Object.entries(scenario.fields ?? {})) {
-      const [side, name = ''] = path.split(' ');
-      const field = this.#panels.find((it) => it.side === side)?.field(name);
-      if (field instanceof HTMLInputElement && typeof value === 'boolean') field.checked = value;
-      else if (field) field.value = String(value);
-    }
+    this.#fill({ ...scenario.fields, 'line one-wire': scenario.isOneWire ?? false });
     return this.#do(() => this.#restart());
   }
 
   /** A field was changed by hand: it is no scenario any more. */
   #changed(act: () => Promise<void>): void {
     this.#scenario.value = '';
-    toAddress({ fault: null });
+    toAddress({ fault: 'own' });
     this.#do(act);
   }
 
   /** Acts after what was asked for before; tells what is refused. */
   #do(act: () => Promise<void>): Promise<void> {
+    this.#desk.goOn(this);
     this.#last = this.#last.then(act).catch((error: unknown) => {
       this.pause();
       this.#desk.refuse(this, '', error);
@@ -170,6 +215,7 @@ export class Simulation implements View {
       for (const event of events) if (event.side === panel.side) panel.tell(event);
     }
     element('simulated-time', HTMLOutputElement).textContent = `${nowS.toFixed(4)} s`;
+    linkChanged();
     this.#desk.update(this);
   }
 }

@@ -58,6 +58,14 @@ export class StationPanel {
     return found;
   }
 
+  /** Settings and faults, as the fields have them. */
+  get values(): Record<string, string | boolean> {
+    const value = (field: HTMLInputElement | HTMLSelectElement) =>
+      field instanceof HTMLInputElement && field.type === 'checkbox' ? field.checked : field.value;
+    const all = this.#fields('.settings, .faults');
+    return Object.fromEntries(all.map((it) => [it.name, value(it)]));
+  }
+
   settings(): unknown {
     const { preset, priority, parity } = this.#values('.settings');
     return { preset, priority, parity, baud: Number(this.field('baud').value) };

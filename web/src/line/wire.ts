@@ -1,6 +1,7 @@
 // Both directions over time, character by character.
 import { drawTimes, Picture, takeGestures, TIMES_PX } from '../shared/canvas';
 import { colour, onColours } from '../shared/dom';
+import { intoLink, linkChanged, numbersFromLink } from '../shared/store';
 import type { Character, Conversation } from './conversation';
 
 const NAMES: Record<number, string> = { 0x02: 'STX', 0x03: 'ETX', 0x10: 'DLE', 0x15: 'NAK' };
@@ -20,9 +21,17 @@ export class Wire {
   #from = 0;
   #span = FIRST_SPAN_S;
   #follows = false;
+  /** Where a conversation begins to be seen. */
+  #firstFrom = 0;
+  /** As the link has it, for the first conversation. */
+  #asked = numbersFromLink('wire', 2);
 
   constructor(canvas: HTMLCanvasElement, note: HTMLElement) {
     this.#note = note;
+    intoLink('wire', () => {
+      const isFirst = this.#span === FIRST_SPAN_S && this.#from === this.#firstFrom;
+      return isFirst || this.#follows ? undefined : [this.#from, this.#span];
+    });
     this.#picture = new Picture(canvas, (context, width, height) =>
       this.#draw(context, width, height),
     );
@@ -45,7 +54,15 @@ export class Wire {
   show(conversation: Conversation, follows: boolean): void {
     this.#conversation = conversation;
     this.#follows = follows;
-    this.#window(conversation.requestS - 0.003, FIRST_SPAN_S);
+    this.#firstFrom = conversation.requestS - 0.003;
+    const [from, span] = (conversation.steps.length > 0 && this.#asked) || [];
+    if (from !== undefined && span !== undefined) {
+      this.#asked = undefined;
+      this.#follows = false;
+      this.#window(from, Math.max(span, MIN_SPAN_S));
+    } else {
+      this.#window(this.#firstFrom, FIRST_SPAN_S);
+    }
   }
 
   /** More of the same conversation. */
@@ -74,6 +91,7 @@ export class Wire {
       Math.max(it, 0).toFixed(digits),
     );
     this.#note.textContent = `${low} s to ${high} s. Drag to move; zoom with Ctrl and the wheel, two fingers, or + and -; 0 shows all. A click on a step shows it here.`;
+    linkChanged();
     this.#picture.redraw();
   }
 
@@ -86,8 +104,12 @@ export class Wire {
     const heard = [...(this.#conversation?.between(this.#from, end) ?? [])];
     for (const [index, side] of (['A', 'B'] as const).entries()) {
       const top = index * lane + NAME_PX;
+      let drawnTo = -Infinity;
       for (const { character, fromS, toS } of places(heard.filter((it) => it.side === side))) {
-        drawCharacter(context, character, x(fromS), x(toS), top, lane - NAME_PX);
+        // What is narrower than half a pixel is not seen beside the one before.
+        if (x(toS) < drawnTo + 0.5) continue;
+        drawnTo = x(toS);
+        drawCharacter(context, character, x(fromS), drawnTo, top, lane - NAME_PX);
       }
     }
     context.textAlign = 'left';

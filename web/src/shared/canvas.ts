@@ -76,7 +76,8 @@ export function drawTimes(
   context.textAlign = 'left';
   context.textBaseline = 'alphabetic';
   const first = Math.max(Math.ceil(fromS / step), 0);
-  for (let tick = first; tick * step < fromS + spanS; tick += 1) {
+  // Of times as large as a capture may have them, the next number may be the same.
+  for (let tick = first; tick * step < fromS + spanS && tick + 1 > tick; tick += 1) {
     const x = Math.round(((tick * step - fromS) / spanS) * width) + 0.5;
     context.beginPath();
     context.moveTo(x, 0);

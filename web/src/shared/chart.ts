@@ -19,6 +19,8 @@ export class Chart {
   #lines: Line[] = [];
   #data: uPlot.AlignedData = [[]];
   #now = 0;
+  /** Told of the time at the pointer, and of none when it has left. */
+  #hover: (seconds: number | undefined) => void = () => undefined;
 
   constructor(target: HTMLElement, unit: string, height: number, seek: (seconds: number) => void) {
     this.#target = target;
@@ -29,6 +31,10 @@ export class Chart {
       this.#plot?.setSize({ width: target.clientWidth, height });
     }).observe(target);
     onColours(() => this.#make());
+  }
+
+  onHover(hover: (seconds: number | undefined) => void): void {
+    this.#hover = hover;
   }
 
   /** Other lines: seconds first, then the values of each. */
@@ -84,7 +90,13 @@ export class Chart {
         hooks: {
           ready: [() => this.#tell()],
           draw: [(plot) => this.#drawNow(plot)],
-          setCursor: [() => this.#tell()],
+          setCursor: [
+            (plot) => {
+              this.#tell();
+              const left = plot.cursor.left ?? -1;
+              this.#hover(left >= 0 ? plot.posToVal(left, 'x') : undefined);
+            },
+          ],
         },
       },
       this.#data,

@@ -1,6 +1,6 @@
 // What a page works on: one of the inputs that are shipped, or one's own, which the browser keeps.
 import { element, takeFiles } from './dom';
-import { fromAddress, keep, kept } from './store';
+import { fromAddress, intoLink, isLinked, keep, kept, textFromLink, Trial } from './store';
 
 export interface Naming {
   /** In the address. */
@@ -17,8 +17,10 @@ export class Inputs {
   readonly #choice: HTMLSelectElement;
   readonly #shipped: Record<string, string>;
   readonly #naming: Naming;
+  readonly #trial: Trial;
   /** Also where the browser has no room to keep it. */
   #own: { text: string; name: string } | undefined;
+  #note: string | undefined;
 
   /** The first of the shipped inputs is the usual one; `opened` is told of another input. */
   constructor(
@@ -30,15 +32,21 @@ export class Inputs {
     this.#choice = choice;
     this.#shipped = shipped;
     this.#naming = naming;
-    const text = kept(naming.kept.text);
-    if (text !== null) this.#offer(text, kept(naming.kept.name) ?? `own${naming.ending}`);
-    const asked = fromAddress(naming.parameter) ?? '';
-    choice.value = Object.hasOwn(shipped, asked) ? asked : this.#own ? 'own' : this.#usual;
-    choice.addEventListener('input', opened);
+    this.#trial = new Trial(naming.kept.text);
+    const text = textFromLink('text') ?? kept(naming.kept.text);
+    const name = textFromLink('name') ?? kept(naming.kept.name) ?? `own${naming.ending}`;
+    if (text !== null) this.#offer(text, name);
+    choice.value = this.#first();
+    choice.addEventListener('input', () => {
+      this.#note = undefined;
+      opened();
+    });
     takeFiles(element('drop', HTMLElement), element('file', HTMLInputElement), async (file) => {
       this.#take(await file.text(), file.name);
       opened();
     });
+    intoLink('text', () => (this.#isOwn ? this.#own?.text : undefined));
+    intoLink('name', () => (this.#isOwn ? this.#own?.name : undefined));
   }
 
   get text(): string {
@@ -61,11 +69,37 @@ export class Inputs {
     return this.name.replace(CHANGED, '');
   }
 
-  /** For the address, which names a shipped input unless that is shown without it. */
+  /** For the address. */
   get address(): Record<string, string | null> {
-    const { value } = this.#choice;
-    const isImplied = this.#isOwn || (value === this.#usual && !this.#own);
-    return { [this.#naming.parameter]: isImplied ? null : value };
+    return { [this.#naming.parameter]: this.#choice.value };
+  }
+
+  /** Why another input was opened than the one that was asked for, if one was. */
+  get notes(): string[] {
+    return this.#note === undefined ? [] : [this.#note];
+  }
+
+  /** The machine takes it. */
+  begin(): void {
+    if (this.#isOwn) this.#trial.begin();
+  }
+
+  /** The machine has answered. */
+  end(): void {
+    this.#trial.end();
+  }
+
+  /** The input to begin with. */
+  #first(): string {
+    const asked = fromAddress(this.#naming.parameter) ?? (isLinked ? this.#usual : 'own');
+    if (Object.hasOwn(this.#shipped, asked)) return asked;
+    if (asked === 'own' && this.#own && !this.#trial.hasFailed) return asked;
+    if (asked === 'own' && this.#own) {
+      this.#note = `${this.#own.name} ended the page when it was opened last: choose it to try again`;
+    } else if (isLinked) {
+      this.#note = `the link names an input that is not in it: ${asked}`;
+    }
+    return this.#usual;
   }
 
   get #isOwn(): boolean {
@@ -77,6 +111,7 @@ export class Inputs {
   }
 
   #take(text: string, name: string): void {
+    this.#note = undefined;
     keep(this.#naming.kept.text, text);
     keep(this.#naming.kept.name, name);
     this.#offer(text, name);

@@ -19,6 +19,17 @@ interface Waiting {
 /** A call that a newer one has made useless. */
 export class Superseded extends Error {}
 
+/** From a server that calls it by another type, too. */
+async function compile(url: string): Promise<WebAssembly.Module> {
+  const name = url.slice(url.lastIndexOf('/') + 1);
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${name}: the server answers ${response.status}`);
+  const isWasm = response.headers.get('content-type') === 'application/wasm';
+  return isWasm
+    ? WebAssembly.compileStreaming(response)
+    : WebAssembly.compile(await response.arrayBuffer());
+}
+
 export class Machine {
   readonly #module: Promise<WebAssembly.Module>;
   #worker: Worker | undefined;
@@ -26,7 +37,7 @@ export class Machine {
   #calls = 0;
 
   constructor(wasm: string) {
-    this.#module = WebAssembly.compileStreaming(fetch(wasm));
+    this.#module = compile(wasm);
   }
 
   /** Asks for an operation; the error is what the machine says against it, in one line. */

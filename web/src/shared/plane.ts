@@ -1,6 +1,7 @@
 // A plane in mm, seen from above: moved and zoomed by hand.
 import { Picture, takeGestures } from './canvas';
 import { element, onColours } from './dom';
+import { intoLink, linkChanged, numbersFromLink } from './store';
 
 /** In mm. */
 export interface Bounds {
@@ -10,11 +11,11 @@ export interface Bounds {
   high: number;
 }
 
-/** Of the canvas: pixels of a mm, and where the plane's origin is. */
+/** What is in the middle of the canvas, in mm, and how much larger it is than where all is seen. */
 interface View {
-  scale: number;
   x: number;
   y: number;
+  zoom: number;
 }
 
 /** Draws in mm, y upward; a pixel is so many mm. */
@@ -31,17 +32,27 @@ export class Plane {
   constructor(canvas: HTMLCanvasElement, bounds: () => Bounds | undefined, draw: DrawPlane) {
     this.#bounds = bounds;
     this.#drawPlane = draw;
+    const [x, y, zoom] = numbersFromLink('view', 3) ?? [];
+    if (x !== undefined && y !== undefined && zoom !== undefined && zoom > 0) {
+      this.#view = { x, y, zoom };
+    }
+    intoLink('view', () => this.#view && [this.#view.x, this.#view.y, this.#view.zoom]);
     this.#picture = new Picture(canvas, (context, width, height) =>
       this.#draw(context, width, height),
     );
     takeGestures(canvas, {
-      pan: (dx, dy) => this.#change((view) => ({ ...view, x: view.x + dx, y: view.y + dy })),
-      zoom: (factor, x, y) =>
-        this.#change((view) => ({
-          scale: view.scale * factor,
-          x: x + (view.x - x) * factor,
-          y: y + (view.y - y) * factor,
+      pan: (dx, dy) =>
+        this.#change((view, scale) => ({
+          ...view,
+          x: view.x - dx / scale,
+          y: view.y + dy / scale,
         })),
+      zoom: (factor, px, py) =>
+        this.#change((view, scale) => {
+          const by = (1 - 1 / factor) / scale;
+          const [dx, dy] = [px - this.#picture.width / 2, this.#picture.height / 2 - py];
+          return { x: view.x + dx * by, y: view.y + dy * by, zoom: view.zoom * factor };
+        }),
       reset: () => this.#change(() => undefined),
     });
     onColours(() => this.#picture.redraw());
@@ -51,35 +62,38 @@ export class Plane {
     this.#picture.redraw();
   }
 
-  #change(change: (view: View) => View | undefined): void {
-    const view = this.#view ?? this.#all(this.#picture.width, this.#picture.height);
-    if (view) this.#view = change(view);
+  #change(change: (view: View, scale: number) => View | undefined): void {
+    const bounds = this.#bounds();
+    if (!bounds) return;
+    const view = this.#view ?? all(bounds);
+    const { width, height } = this.#picture;
+    this.#view = change(view, view.zoom * fit(bounds, width, height));
+    linkChanged();
     this.#picture.redraw();
   }
 
-  #all(width: number, height: number): View | undefined {
-    const bounds = this.#bounds();
-    if (!bounds) return undefined;
-    const { left, right, low, high } = bounds;
-    const scale = 0.94 * Math.min(width / (right - left), height / (high - low));
-    return {
-      scale,
-      x: width / 2 - (scale * (left + right)) / 2,
-      y: height / 2 + (scale * (low + high)) / 2,
-    };
-  }
-
   #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
-    const view = this.#view ?? this.#all(width, height);
-    if (!view || !this.#bounds()) return;
+    const bounds = this.#bounds();
+    if (!bounds) return;
+    const view = this.#view ?? all(bounds);
+    const scale = view.zoom * fit(bounds, width, height);
     context.save();
-    context.translate(view.x, view.y);
-    context.scale(view.scale, -view.scale);
+    context.translate(width / 2 - scale * view.x, height / 2 + scale * view.y);
+    context.scale(scale, -scale);
     context.lineJoin = 'round';
     context.lineCap = 'round';
-    this.#drawPlane(context, 1 / view.scale);
+    this.#drawPlane(context, 1 / scale);
     context.restore();
   }
+}
+
+function all({ left, right, low, high }: Bounds): View {
+  return { x: (left + right) / 2, y: (low + high) / 2, zoom: 1 };
+}
+
+/** Pixels of a mm with which all is seen. */
+function fit({ left, right, low, high }: Bounds, width: number, height: number): number {
+  return 0.94 * Math.min(width / (right - left), height / (high - low));
 }
 
 /** From near to far, or slow to fast; told apart by those who see no red or green too. */
@@ -102,18 +116,52 @@ export function showScale(id: string): void {
   element(id, HTMLElement).style.background = `linear-gradient(90deg, ${steps.join(', ')})`;
 }
 
+/** What is nearer to the point before is not seen, in pixels. */
+const NEAR_PX = 0.7;
+/** Points that a browser draws in a frame. */
+const MAX_POINTS = 40_000;
+
+/** How far apart points are drawn, in mm, so that there are not too many; `walk` tells each. */
+function spacing(px: number, walk: (each: (x: number, y: number) => void) => void): number {
+  const near = NEAR_PX * px;
+  let [lastX, lastY, seen] = [Infinity, Infinity, 0];
+  walk((x, y) => {
+    if (isNear(x - lastX, y - lastY, near)) return;
+    [lastX, lastY] = [x, y];
+    seen += 1;
+  });
+  return near * Math.max(seen / MAX_POINTS, 1);
+}
+
+function isNear(dx: number, dy: number, near: number): boolean {
+  return Math.abs(dx) < near && Math.abs(dy) < near;
+}
+
 /** Lines through points of a list, x and y side by side; no number between two lines. */
-export function strokeLines(context: CanvasRenderingContext2D, points: Float64Array): void {
+export function strokeLines(
+  context: CanvasRenderingContext2D,
+  points: Float64Array,
+  px: number,
+): void {
+  const near = spacing(px, (each) => {
+    for (let index = 0; index < points.length; index += 2) {
+      each(points[index] ?? Number.NaN, points[index + 1] ?? Number.NaN);
+    }
+  });
   context.beginPath();
   let isOpen = false;
+  let [lastX, lastY] = [0, 0];
   for (let index = 0; index < points.length; index += 2) {
     const [x, y] = [points[index] ?? Number.NaN, points[index + 1] ?? Number.NaN];
-    if (Number.isNaN(x)) isOpen = false;
-    else if (isOpen) context.lineTo(x, y);
-    else {
-      context.moveTo(x, y);
-      isOpen = true;
+    if (Number.isNaN(x)) {
+      isOpen = false;
+      continue;
     }
+    const isEnd = Number.isNaN(points[index + 2] ?? Number.NaN);
+    if (isOpen && !isEnd && isNear(x - lastX, y - lastY, near)) continue;
+    if (isOpen) context.lineTo(x, y);
+    else context.moveTo(x, y);
+    [isOpen, lastX, lastY] = [true, x, y];
   }
   context.stroke();
 }
@@ -122,27 +170,38 @@ export function strokeLines(context: CanvasRenderingContext2D, points: Float64Ar
 export function strokeParts(
   context: CanvasRenderingContext2D,
   points: number,
+  px: number,
   at: (point: number) => [number, number],
   part: (point: number) => number,
   look: (part: number) => void,
 ): void {
   if (points < 2) return;
+  const near = spacing(px, (each) => {
+    for (let point = 0; point < points; point += 1) each(...at(point));
+  });
   let current = part(1);
   const stroke = () => {
     look(current);
     context.stroke();
   };
+  let [lastX, lastY] = at(0);
   context.beginPath();
-  context.moveTo(...at(0));
+  context.moveTo(lastX, lastY);
   for (let point = 1; point < points; point += 1) {
     const next = part(point);
+    const [x, y] = at(point);
     if (next !== current) {
+      const [beforeX, beforeY] = at(point - 1);
+      context.lineTo(beforeX, beforeY);
       stroke();
       context.beginPath();
-      context.moveTo(...at(point - 1));
+      context.moveTo(beforeX, beforeY);
       current = next;
+    } else if (point + 1 < points && isNear(x - lastX, y - lastY, near)) {
+      continue;
     }
-    context.lineTo(...at(point));
+    context.lineTo(x, y);
+    [lastX, lastY] = [x, y];
   }
   stroke();
 }

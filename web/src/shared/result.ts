@@ -1,19 +1,24 @@
 // What a machine says of a run, and the files that it leaves.
 import { create, element, save } from './dom';
 import { type Machine, Superseded } from './machine';
+import { damage } from './store';
+
+/** Of what is told; a refusal may quote a line of any length. */
+const MAX_TOLD = 2000;
 
 /** The line that tells how it went, read aloud as it changes. */
 export class Status {
   readonly #line = element('status', HTMLElement);
 
   say(text: string, isBad = false): void {
-    this.#line.textContent = text;
+    this.#line.textContent = text.length > MAX_TOLD ? `${text.slice(0, MAX_TOLD)} …` : text;
     this.#line.classList.toggle('bad', isBad);
   }
 
   /** How it went, and what is worth a note. */
   tell(verdict: string, notes: string[], isBad = false): void {
-    this.say([verdict, ...notes.map((note) => `note: ${note}`)].join('\n'), isBad);
+    const all = damage === undefined ? notes : [damage, ...notes];
+    this.say([verdict, ...all.map((note) => `note: ${note}`)].join('\n'), isBad);
   }
 
   /** As a command line says it: where, and what is wrong. */

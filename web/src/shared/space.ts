@@ -1,6 +1,7 @@
 // Something in space in parallel projection: turned, tilted and zoomed by hand.
 import { Picture, takeGestures } from './canvas';
 import { onColours } from './dom';
+import { intoLink, linkChanged, numbersFromLink } from './store';
 
 /** In mm, z up. */
 export type Point3 = [number, number, number];
@@ -44,6 +45,12 @@ export const VIEWS = {
 export type ViewName = keyof typeof VIEWS;
 
 const RAD_PER_PX = 1 / 150;
+/** From the smallest to the largest. */
+const ZOOMS = [0.3, 20] as const;
+
+function clamp(value: number, low: number, high: number): number {
+  return Math.min(Math.max(value, low), high);
+}
 
 /** Puts points in mm on the canvas, and draws lines and dots. */
 export interface Pen {
@@ -73,6 +80,16 @@ export class Space {
     grab: Grab = () => undefined,
   ) {
     this.#ball = ball;
+    const [turn, tilt, zoom] = numbersFromLink('view', 3) ?? [];
+    if (turn !== undefined && tilt !== undefined && zoom !== undefined) {
+      this.#view = { turn, tilt: clamp(tilt, -Math.PI / 2, Math.PI / 2) };
+      this.#zoom = clamp(zoom, ...ZOOMS);
+    }
+    intoLink('view', () => {
+      const { turn, tilt } = this.#view;
+      const isFirst = this.#view === VIEWS.turned && this.#zoom === 1;
+      return isFirst ? undefined : [turn, tilt, this.#zoom];
+    });
     this.#picture = new Picture(canvas, (context) => {
       if (this.#ball()) draw(this.#pen(context));
     });
@@ -81,11 +98,12 @@ export class Space {
         const { turn, tilt } = this.#view;
         this.look({
           turn: turn - dx * RAD_PER_PX,
-          tilt: Math.min(Math.max(tilt + dy * RAD_PER_PX, -Math.PI / 2), Math.PI / 2),
+          tilt: clamp(tilt + dy * RAD_PER_PX, -Math.PI / 2, Math.PI / 2),
         });
       },
       zoom: (factor) => {
-        this.#zoom = Math.min(Math.max(this.#zoom * factor, 0.3), 20);
+        this.#zoom = clamp(this.#zoom * factor, ...ZOOMS);
+        linkChanged();
         this.redraw();
       },
       reset: () => {
@@ -102,6 +120,7 @@ export class Space {
 
   look(view: View): void {
     this.#view = view;
+    linkChanged();
     this.redraw();
   }
 

@@ -1,6 +1,7 @@
 // The page of the stage: the program on the right, what the stage makes of it on the left.
 import '../shared/style.css';
 import './stage.css';
+import '../shared/link';
 import '../shared/offline';
 import link from '../../../machines/stage/drawings/link.gcode?raw';
 import rosette from '../../../machines/stage/drawings/rosette.gcode?raw';
@@ -11,14 +12,18 @@ import { element, onClick, save, settled } from '../shared/dom';
 import { Editor, linesOf } from '../shared/editor';
 import { AddressFields } from '../shared/fields';
 import { Inputs } from '../shared/inputs';
+import { LimitTeller } from '../shared/limits';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
-import { type Result, Run } from './run';
+import { Working } from '../shared/working';
+import { Preview, type Result, Run } from './run';
 import { Scene } from './scene';
 
 const UM_PER_MM = 1000;
+/** A longer program is drawn before it is run. */
+const LONG = 50_000;
 
 const machine = new Machine(wasm);
 const status = new Status();
@@ -39,6 +44,7 @@ const scene = new Scene(element('scene', HTMLCanvasElement));
 const transport = new Transport((seconds) => {
   scene.at(seconds);
   for (const chart of charts) chart.at(seconds);
+  limits.at(seconds);
   const line = shown?.legAt(seconds)?.line;
   editor.mark('now', line === undefined ? [] : [line]);
 });
@@ -50,6 +56,11 @@ const accelerations = chart('accelerations', 'mm/s²', 150);
 const deviations = chart('deviations', 'µm', 170);
 const corrections = chart('corrections', 'steps', 140);
 const charts = [speeds, accelerations, deviations, corrections];
+const limits = new LimitTeller(seek, (leg) => {
+  const line = shown?.leg(leg)?.line ?? 0;
+  return `line ${line}: ${editor.line(line).trim()}`;
+});
+limits.watch(charts);
 
 const editor = new Editor(element('gcode', HTMLElement), 'G-code', () => {
   program.text = editor.text;
@@ -63,6 +74,7 @@ const program = new Inputs(
 );
 const fields = new AddressFields({ lose, seed, steps, tolerance }, changed);
 const rerun = settled(150, run);
+const working = new Working(machine, status, ['Running'], run);
 
 /** Another program. */
 function open(): void {
@@ -78,8 +90,8 @@ function changed(): void {
 }
 
 async function run(): Promise<void> {
-  toAddress({ ...program.address, ...fields.values });
   machine.stop();
+  await toAddress({ ...program.address, ...fields.values });
   const parameters = {
     name: program.name,
     gcode: editor.text,
@@ -88,22 +100,32 @@ async function run(): Promise<void> {
     lose_steps: lose.valueAsNumber * 0.01,
     seed: seed.valueAsNumber,
   };
-  if (!Number.isSafeInteger(parameters.seed) || parameters.seed < 0) {
-    refuse(new Error('which are lost: a whole number is needed'));
-    return;
-  }
-  if (Number.isNaN(parameters.tolerance_mm)) {
-    refuse(new Error('corners within: a number of mm is needed'));
+  if (fields.problem !== undefined) {
+    refuse(fields.problem);
     return;
   }
   try {
-    show(new Run(await machine.call<Result>('stage', parameters)));
+    program.begin();
+    const progress = working.begin();
+    const { name, gcode } = parameters;
+    if (gcode.length > LONG) {
+      scene.preview(new Preview(await machine.call('stage.preview', { name, gcode })));
+    }
+    show(new Run(await machine.call<Result>('stage', parameters, progress)));
   } catch (error) {
     if (!(error instanceof Superseded)) refuse(error);
   }
 }
 
+/** The machine has answered. */
+function ready(): void {
+  program.end();
+  working.end();
+  element('main', HTMLElement).dataset.ready = '';
+}
+
 function refuse(error: unknown): void {
+  ready();
   status.refuse('', error);
   files.allow(false);
   const [line] = linesOf([error instanceof Error ? error.message : '']);
@@ -121,16 +143,16 @@ function show(run: Run): void {
     `Run in ${report.duration_s.toFixed(1)} s of the machine's time: ` +
     `at most ${um(report.max_deviation_mm)} µm off the curve` +
     (run.isLossy ? `, without corrections ${um(report.open_loop.max_deviation_mm)} µm` : '');
-  status.tell(verdict, report.notes);
+  status.tell(verdict, [...program.notes, ...report.notes]);
   editor.mark('bad', []);
   editor.mark('note', linesOf(report.notes));
   element('summary', HTMLElement).textContent = summary;
   files.allow(true);
   scene.show(run);
   showCharts(run, accelerationMmS2);
-  transport.pause();
+  limits.show(run.limits);
   transport.begin(report.duration_s);
-  element('main', HTMLElement).dataset.ready = '';
+  ready();
 }
 
 function showCharts(run: Run, limit: number): void {

@@ -1,14 +1,15 @@
 // What the stage did with a program, ready to be asked for any time.
 import type { Answer } from '../shared/machine';
+import { Limits } from '../shared/limits';
 import { around, columns, countUntil, numbers } from '../shared/rows';
 
 /** The JSON of the operation; the report is that of the command line. */
 export interface Result {
   summary: string;
-  legs: { line: number; isRapid: boolean; feedMmS: number }[];
   /** X and Y, the lower one first. */
   switchesMm: [[number, number], [number, number]];
   accelerationMmS2: number;
+  maxAxisMmS: number;
   report: {
     notes: string[];
     duration_s: number;
@@ -21,36 +22,34 @@ export interface Result {
 
 type Column = (number | null)[];
 
+/** Seconds, x, y, and the motion it belongs to. */
+const POINT = 4;
+/** Line, whether it is a rapid one, feed in mm/s. */
+const LEG = 3;
+
+/** A programmed motion. */
+export interface Leg {
+  line: number;
+  isRapid: boolean;
+  feedMmS: number;
+}
+
 /** Where one stage was. */
 export class Track {
   readonly times: Float64Array;
-  readonly #points: [number, number][] = [];
-  /** Of each point, the motion it belongs to. */
-  readonly #legs: number[] = [];
+  readonly #rows: Float64Array;
 
   constructor(rows: Float64Array) {
-    const times: number[] = [];
-    let leg = 0;
-    for (let index = 0; index < rows.length; index += 3) {
-      const [time, x, y] = rows.subarray(index, index + 3);
-      if (time === undefined || x === undefined || y === undefined) break;
-      if (Number.isNaN(time)) {
-        leg += 1;
-        continue;
-      }
-      times.push(time);
-      this.#points.push([x, y]);
-      this.#legs.push(leg);
-    }
-    this.times = new Float64Array(times);
+    this.#rows = rows;
+    this.times = new Float64Array(rows.length / POINT).map((_, point) => rows[point * POINT] ?? 0);
   }
 
   point(index: number): [number, number] {
-    return this.#points[index] ?? [0, 0];
+    return [this.#rows[index * POINT + 1] ?? 0, this.#rows[index * POINT + 2] ?? 0];
   }
 
   leg(index: number): number {
-    return this.#legs[index] ?? 0;
+    return this.#rows[index * POINT + 3] ?? 0;
   }
 
   /** How many points have been passed at a time. */
@@ -66,8 +65,24 @@ export class Track {
   }
 }
 
+/** The lines and arcs of a program that is not run yet. */
+export class Preview {
+  readonly switchesMm: Result['switchesMm'];
+  readonly programmed: Float64Array;
+
+  constructor({ value, blobs }: Answer<Pick<Result, 'switchesMm'>>) {
+    this.switchesMm = value.switchesMm;
+    this.programmed = numbers(blobs, 'programmed');
+  }
+}
+
 export class Run {
   readonly result: Result;
+  /** What limits timed steps. */
+  readonly limits: Limits;
+  /** The largest feed of a motion that is no rapid one, in mm/s. */
+  readonly maxFeed: number;
+  readonly #legs: Float64Array;
   /** x and y of the programmed lines and arcs, in mm; no number between two. */
   readonly programmed: Float64Array;
   readonly closed: Track;
@@ -84,6 +99,15 @@ export class Run {
   constructor({ value, blobs }: Answer<Result>) {
     const pairs = (name: string) => columns(numbers(blobs, name), 2);
     this.result = value;
+    this.#legs = numbers(blobs, 'legs');
+    this.maxFeed = largestFeed(this.#legs);
+    const axes = (name: string, limit: number, unit: string) =>
+      ['X', 'Y'].map((axis) => ({ name: `${name} of ${axis}`, limit, unit }));
+    this.limits = new Limits(blobs, (leg) => [
+      ...axes('speed', value.maxAxisMmS, 'mm/s'),
+      ...axes('acceleration', value.accelerationMmS2, 'mm/s²'),
+      { name: 'feed', limit: this.leg(leg)?.feedMmS ?? 0, unit: 'mm/s' },
+    ]);
     this.programmed = numbers(blobs, 'programmed');
     this.closed = new Track(numbers(blobs, 'closed'));
     this.open = new Track(numbers(blobs, 'open'));
@@ -104,10 +128,10 @@ export class Run {
     return this.result.report.open_loop.lost_steps > 0;
   }
 
-  /** The largest feed of a motion that is no rapid one, in mm/s. */
-  get maxFeed(): number {
-    const feeds = this.result.legs.filter((leg) => !leg.isRapid).map((leg) => leg.feedMmS);
-    return Math.max(...feeds, 0);
+  leg(number: number): Leg | undefined {
+    if (number < 0 || number * LEG >= this.#legs.length) return undefined;
+    const [line = 0, isRapid = 0, feedMmS = 0] = this.#legs.subarray(number * LEG);
+    return { line, isRapid: isRapid > 0, feedMmS };
   }
 
   /** The mean speed around a time. */
@@ -118,8 +142,16 @@ export class Run {
   }
 
   /** The motion that is made at a time. */
-  legAt(seconds: number): Result['legs'][number] | undefined {
+  legAt(seconds: number): Leg | undefined {
     const point = Math.min(this.closed.passed(seconds), this.closed.times.length - 1);
-    return this.result.legs[this.closed.leg(point)];
+    return this.leg(this.closed.leg(point));
   }
+}
+
+function largestFeed(legs: Float64Array): number {
+  let most = 0;
+  for (let leg = 0; leg < legs.length; leg += LEG) {
+    if (legs[leg + 1] === 0) most = Math.max(most, legs[leg + 2] ?? 0);
+  }
+  return most;
 }

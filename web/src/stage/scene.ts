@@ -9,7 +9,7 @@ import {
   strokeLines,
   strokeParts,
 } from '../shared/plane';
-import type { Run, Track } from './run';
+import type { Preview, Run, Track } from './run';
 
 const MARGIN_MM = 3;
 const RAPID = -1;
@@ -17,19 +17,30 @@ const RAPID = -1;
 export class Scene {
   readonly #plane: Plane;
   #run: Run | undefined;
+  /** Of a program that is being run. */
+  #preview: Preview | undefined;
   #seconds = 0;
 
   constructor(canvas: HTMLCanvasElement) {
     this.#plane = new Plane(
       canvas,
-      () => this.#run && bounds(this.#run),
+      () => {
+        const switches = this.#preview?.switchesMm ?? this.#run?.result.switchesMm;
+        return switches && bounds(switches);
+      },
       (context, px) => this.#draw(context, px),
     );
     showScale('scale');
   }
 
+  preview(preview: Preview): void {
+    this.#preview = preview;
+    this.#plane.redraw();
+  }
+
   show(run: Run): void {
     this.#run = run;
+    this.#preview = undefined;
     element('scale-end', HTMLElement).textContent = `${run.maxFeed.toFixed(1)} mm/s`;
     element('open-key', HTMLElement).hidden = !run.isLossy;
     this.#plane.redraw();
@@ -42,8 +53,9 @@ export class Scene {
 
   #draw(context: CanvasRenderingContext2D, px: number): void {
     const run = this.#run;
-    if (!run) return;
-    const [[x0, x1], [y0, y1]] = run.result.switchesMm;
+    const shown = this.#preview ?? (run && { ...run.result, programmed: run.programmed });
+    if (!shown) return;
+    const [[x0, x1], [y0, y1]] = shown.switchesMm;
     context.strokeStyle = colour('limit');
     context.lineWidth = px;
     context.setLineDash([6 * px, 4 * px]);
@@ -52,8 +64,9 @@ export class Scene {
     context.strokeStyle = colour('drawing');
     context.globalAlpha = 0.5;
     context.lineWidth = 6 * px;
-    strokeLines(context, run.programmed);
+    strokeLines(context, shown.programmed, px);
     context.globalAlpha = 1;
+    if (!run || this.#preview) return;
     if (run.isLossy) {
       drawTrack(context, run.open, run, this.#seconds, px, () => 0, [colour('series-3')]);
     }
@@ -63,8 +76,7 @@ export class Scene {
   }
 }
 
-function bounds({ result }: Run): Bounds {
-  const [[left, right], [low, high]] = result.switchesMm;
+function bounds([[left, right], [low, high]]: Run['result']['switchesMm']): Bounds {
   return {
     left: left - MARGIN_MM,
     right: right + MARGIN_MM,
@@ -95,8 +107,9 @@ function drawTrack(
   strokeParts(
     context,
     track.passed(until),
+    px,
     (point) => track.point(point),
-    (point) => (run.result.legs[track.leg(point)]?.isRapid ? RAPID : part(point)),
+    (point) => (run.leg(track.leg(point))?.isRapid ? RAPID : part(point)),
     (shown) => {
       const isRapid = shown === RAPID;
       context.setLineDash(isRapid ? [4 * px, 3 * px] : []);

@@ -1,14 +1,16 @@
 //! The Delta robot: lines answered, planned and driven, and the files that this leaves.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use delta::{ArmsAt, Machine, Record, Report, Session, StepLog, drive, simulate};
 use serde::Deserialize;
 use serde_json::json;
 
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
+use crate::limits::{self, AxisMay, RowEnd, ToolMay};
 
 /// Points of an outline of the workspace.
 const OUTLINE: u32 = 72;
@@ -57,6 +59,10 @@ pub(crate) fn delta(request: &Request) -> Result<Answer> {
     }
     answers.extend(session.handle_end()?);
     let record = session.finish()?;
+    ensure!(
+        !answers.is_empty(),
+        "there is no point to drive to: a line has x y z in mm"
+    );
     let steps = log.finish()?;
     let driven = Driven {
         machine,
@@ -79,6 +85,7 @@ impl Driven {
         let [max_rate, max_acceleration] = machine.max_rate_and_acceleration();
         let value = json!({
             "answers": answers,
+            "feeds": record.feeds().collect::<BTreeMap<_, _>>(),
             "refused": record.check().err().map(|it| it.to_string()),
             "refusedLines": record.refused_lines().collect::<Vec<_>>(),
             "notes": record.notes(),
@@ -87,16 +94,46 @@ impl Driven {
             "arms": arms.collect::<Vec<_>>(),
             "maxRateDegS": max_rate,
             "maxAccelerationDegS2": max_acceleration,
+            "maxPathAccelerationMmS2": machine.max_path_acceleration_mm_s2(),
         });
         let course = drive.arms(load_kg)?;
         let lines = drive
             .lines()
             .map(|([[a, b, c], [x, y, z]], feed, end_s)| [a, b, c, x, y, z, feed, end_s]);
-        Ok(Answer::new(value)?
+        let answer = Answer::new(value)?
             .with_rows("arms", course.iter().map(row))
             .with_rows("lines", lines)
             .with_rows("speeds", drive.speeds())
-            .with_rows("workspace", self.workspace(&course)))
+            .with_rows("workspace", self.workspace(&course));
+        Ok(self.with_limits(answer))
+    }
+
+    /// What limits the rounded lines at any time; none of lines that are run one by one.
+    fn with_limits(&self, answer: Answer) -> Answer {
+        let (machine, record) = (&self.machine, &self.record);
+        let rows: Vec<_> = (0_u32..)
+            .zip(record.rows())
+            .map(|(number, row)| RowEnd {
+                time_s: row.time_s,
+                position: row.position_rad,
+                velocity: row.velocity_rad_s,
+                source: row.line,
+                is_first: number == 0,
+            })
+            .collect();
+        let [speed, acceleration] = machine.max_rate_and_acceleration().map(f64::to_radians);
+        let axes = [AxisMay {
+            speed,
+            acceleration,
+        }; 3];
+        let place = |angles: [f64; 3]| Some(machine.geometry().forward(angles.into()).ok()?.into());
+        let tool = |line| {
+            Some(ToolMay {
+                feed: record.feed_mm_s(line)?,
+                acceleration: Some(machine.max_path_acceleration_mm_s2()),
+            })
+        };
+        limits::add_to(answer, &rows, axes, place, tool)
     }
 
     /// Report and picture: the lines are driven in the other ways too.

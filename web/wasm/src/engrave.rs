@@ -15,6 +15,7 @@ use serde_json::json;
 use self::recorder::Recorder;
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
+use crate::limits::{self, AxisMay, RowEnd, ToolMay};
 use crate::progress;
 
 #[derive(Deserialize)]
@@ -97,10 +98,17 @@ impl Engraved {
 
     fn answer(&self) -> Result<Answer> {
         let report = self.report();
+        let may = self.machine.timed_limits();
+        let limits = json!({
+            "axes": may.axes,
+            "feedMmS": may.feed_mm_s,
+            "accelerationMmS2": may.acceleration_mm_s2,
+        });
         let value = json!({
             "summary": report.to_string(),
             "report": report,
             "isWithinBound": self.engraving.is_within_bound(),
+            "limits": limits,
         });
         let mut outlines = Vec::new();
         let run = self.engraving.shown();
@@ -110,9 +118,39 @@ impl Engraved {
         }
         let deviation = run.deviation_over_time();
         let deviation = deviation.flat_map(|(s, mm)| [s, mm.unwrap_or(f64::NAN)]);
-        Ok(Answer::new(value)?
+        let answer = Answer::new(value)?
             .with_numbers("outlines", outlines.into_iter().map(f64::to_le_bytes))
-            .with_numbers("deviation", deviation.map(f64::to_le_bytes)))
+            .with_numbers("deviation", deviation.map(f64::to_le_bytes));
+        Ok(self.with_limits(answer))
+    }
+
+    /// What limits timed strokes at any time; none of a pattern.
+    fn with_limits(&self, answer: Answer) -> Answer {
+        let machine = &self.machine;
+        let rows = self.engraving.shown().rows();
+        let rows: Vec<_> = rows
+            .iter()
+            .map(|row| RowEnd {
+                time_s: row.time_s,
+                position: row.position_rad,
+                velocity: row.velocity_rad_s,
+                source: row.stroke,
+                is_first: row.is_first,
+            })
+            .collect();
+        let limits = machine.timed_limits();
+        let axes = limits.axes.map(|(speed, acceleration)| AxisMay {
+            speed,
+            acceleration,
+        });
+        let place = |position| Some(machine.tool_at(position));
+        let tool = |_| {
+            Some(ToolMay {
+                feed: limits.feed_mm_s,
+                acceleration: limits.acceleration_mm_s2,
+            })
+        };
+        limits::add_to(answer, &rows, axes, place, tool)
     }
 }
 

@@ -12,9 +12,16 @@ mod dance;
 mod delta;
 #[cfg(feature = "engrave")]
 mod engrave;
+#[cfg(any(feature = "delta", feature = "engrave", feature = "stage"))]
+mod limits;
 #[cfg(feature = "line")]
 mod line;
-#[cfg(any(feature = "dance", feature = "engrave", feature = "line"))]
+#[cfg(any(
+    feature = "dance",
+    feature = "engrave",
+    feature = "line",
+    feature = "stage"
+))]
 mod progress;
 #[cfg(feature = "stage")]
 mod stage;
@@ -39,6 +46,8 @@ fn perform(request: &Request) -> Result<Answer> {
         "dance.file" => dance::file(request),
         #[cfg(feature = "stage")]
         "stage" => stage::stage(request),
+        #[cfg(feature = "stage")]
+        "stage.preview" => stage::preview(request),
         #[cfg(feature = "stage")]
         "stage.file" => stage::file(request),
         #[cfg(feature = "delta")]

@@ -11,7 +11,7 @@ use pattern_codec::engraving::{Axis, Builder, PerAxis};
 use pvt_steps::{PvtQuantiser, PvtSteps};
 use stepper_sync::{Direction, Level, StepDirTiming};
 
-use super::{Move, TimedPlan};
+use super::{Move, TimedPlan, TimedRow};
 use crate::controller::{Controller, Wires};
 use crate::machine::Machine;
 use crate::simulation::{Run, Simulation};
@@ -54,16 +54,19 @@ pub fn simulate_timed(
         machine,
         controller: Controller::new(machine),
         position: PerAxis::default(),
+        rows: Vec::new(),
     };
     let total = plan.moves.len() as u64;
     for (done, next) in (1..).zip(&plan.moves) {
         match next {
             Move::Rapid { axis, to } => player.rapid(*axis, *to, &mut simulation)?,
-            Move::Stroke(rows) => player.stroke(rows, &mut simulation)?,
+            Move::Stroke(number, rows) => player.stroke(*number, rows, &mut simulation)?,
         }
         progress(done, total);
     }
-    simulation.finish(&plan.reference)
+    let mut run = simulation.finish(&plan.reference)?;
+    run.rows = player.rows;
+    Ok(run)
 }
 
 struct Player<'a> {
@@ -71,6 +74,8 @@ struct Player<'a> {
     controller: Controller,
     /// In pulses from home.
     position: PerAxis<i32>,
+    /// What has been run so far.
+    rows: Vec<TimedRow>,
 }
 
 impl Player<'_> {
@@ -92,10 +97,11 @@ impl Player<'_> {
 
     fn stroke<P: Wires>(
         &mut self,
+        stroke: usize,
         rows: &[Row<[f64; 3]>],
         simulation: &mut Simulation<'_, P>,
     ) -> Result<()> {
-        let Some((start, rows)) = rows.split_first() else {
+        let Some((start, rest)) = rows.split_first() else {
             return Ok(());
         };
         let machine = self.machine;
@@ -118,7 +124,16 @@ impl Player<'_> {
         ensure!(is_there, "a stroke does not begin where the machine stands");
         simulation.turns_while_moving(true);
         let mut edges = Edges::new(self.controller.now(), machine);
-        for row in rows {
+        let start_s = edges.start_s(machine);
+        self.rows
+            .extend((0_u32..).zip(rows).map(|(number, row)| TimedRow {
+                time_s: start_s + row.time_s,
+                position_rad: row.position,
+                velocity_rad_s: row.velocity,
+                stroke,
+                is_first: number == 0,
+            }));
+        for row in rest {
             let position = from_home(row.position);
             steps.push(&quantiser.row(row.time_s, position, row.velocity)?)?;
             for step in &mut steps {
@@ -158,6 +173,13 @@ impl Edges {
             directions: [None; 3],
             waiting: BinaryHeap::new(),
         }
+    }
+
+    /// When the rows begin, in s.
+    fn start_s(&self, machine: &Machine) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
+        let ticks = self.start as f64;
+        ticks * machine.tick_s()
     }
 
     /// A step, and all that comes before what its direction may need.

@@ -6,6 +6,7 @@ use kurbo::{Point, Rect, Vec2};
 use super::codes;
 use super::interpreter::{Command, Interpreter};
 use super::words;
+use crate::grid::STEPS_PER_MM;
 use crate::motion::{Motion, Shape};
 use crate::stage::TRAVEL_MM;
 use machine_sim::input::Notes;
@@ -124,6 +125,23 @@ impl Program {
     /// The number of the line of each motion, from 1.
     pub fn line_numbers(&self) -> impl Iterator<Item = usize> {
         self.lines.iter().map(|line| line.number)
+    }
+
+    /// Points of each motion, X and Y in mm, near enough for a picture.
+    pub fn points(&self) -> impl Iterator<Item = Vec<[f64; 2]>> {
+        let motions = self.lines.iter().map(|line| line.motion);
+        motions.map(|motion| motion.points().iter().map(|at| [at.x, at.y]).collect())
+    }
+
+    /// Steps of both axes that the lines and arcs have, as far as their points tell.
+    #[must_use]
+    pub fn steps(&self) -> f64 {
+        let steps = |[a, b]: [f64; 2], [c, d]: [f64; 2]| (c - a).abs() + (d - b).abs();
+        let of = |points: Vec<[f64; 2]>| {
+            let pairs = points.iter().zip(points.iter().skip(1));
+            pairs.map(|(from, to)| steps(*from, *to)).sum::<f64>()
+        };
+        self.points().map(of).sum::<f64>() * STEPS_PER_MM
     }
 
     /// What it asks for that is left out or done otherwise.

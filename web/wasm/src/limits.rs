@@ -1,0 +1,147 @@
+//! What limits a timed run at any time: of each axis the speed and the acceleration, and of the tool
+//! along its path the same, as parts of what they may be.
+//!
+//! ```text
+//! Between two rows, at a time t after the first, of a duration T:
+//! q = p₀ + v₀ t + a t² + b t³     a = (3c - 2v₀ - v₁) / T    b = (v₀ + v₁ - 2c) / T²    c = (p₁ - p₀) / T
+//! ```
+
+use crate::answer::Answer;
+
+/// Looks between two rows: fewer where there are many rows.
+const LOOKS: u32 = 3;
+const MANY_ROWS: usize = 50_000;
+/// From a look to both sides for the tool's derivatives, in s, and as a part of the row.
+const NEAR_S: f64 = 1e-3;
+const NEAR_PART: f64 = 0.125;
+
+/// The end of a row of D axes.
+pub(crate) struct RowEnd<const D: usize> {
+    pub(crate) time_s: f64,
+    pub(crate) position: [f64; D],
+    pub(crate) velocity: [f64; D],
+    /// The line or stroke of the input.
+    pub(crate) source: usize,
+    /// No row comes before it, or another one that it does not go on from.
+    pub(crate) is_first: bool,
+}
+
+/// What an axis may do, per second and second².
+#[derive(Clone, Copy)]
+pub(crate) struct AxisMay {
+    pub(crate) speed: f64,
+    pub(crate) acceleration: f64,
+}
+
+/// What the tool may do along its path, in mm/s and mm/s².
+#[derive(Clone, Copy)]
+pub(crate) struct ToolMay {
+    pub(crate) feed: f64,
+    pub(crate) acceleration: Option<f64>,
+}
+
+struct Cubic<const D: usize> {
+    duration_s: f64,
+    /// Of each axis the coefficients of t⁰ to t³.
+    coefficients: [[f64; 4]; D],
+}
+
+impl<const D: usize> Cubic<D> {
+    fn between(from: &RowEnd<D>, to: &RowEnd<D>) -> Option<Self> {
+        let duration_s = to.time_s - from.time_s;
+        if to.is_first || duration_s <= 0.0 {
+            return None;
+        }
+        let mut coefficients = [[0.0; 4]; D];
+        let ends = from.position.iter().zip(to.position);
+        let speeds = from.velocity.iter().zip(to.velocity);
+        for ((it, (p0, p1)), (v0, v1)) in coefficients.iter_mut().zip(ends).zip(speeds) {
+            let mean = (p1 - p0) / duration_s;
+            let square = (3.0 * mean - 2.0 * v0 - v1) / duration_s;
+            let cube = (v0 + v1 - 2.0 * mean) / (duration_s * duration_s);
+            *it = [*p0, *v0, square, cube];
+        }
+        Some(Self {
+            duration_s,
+            coefficients,
+        })
+    }
+
+    fn position(&self, t: f64) -> [f64; D] {
+        self.coefficients
+            .map(|[p, v, a, b]| p + t * (v + t * (a + t * b)))
+    }
+}
+
+/// Adds the looks to an answer: `looks` has their times in s, `shares` for each the number of the row,
+/// the source, and the parts: of the speeds of all axes, their accelerations, feed and acceleration of
+/// the tool; no number where there is no such limit.
+///
+/// `place` is where the tool is in mm, `tool` what it may do on a source.
+pub(crate) fn add_to<const D: usize>(
+    answer: Answer,
+    rows: &[RowEnd<D>],
+    axes: [AxisMay; D],
+    place: impl Fn([f64; D]) -> Option<[f64; 3]>,
+    tool: impl Fn(usize) -> Option<ToolMay>,
+) -> Answer {
+    let looks = if rows.len() > MANY_ROWS { 1 } else { LOOKS };
+    let (mut times, mut shares) = (Vec::new(), Vec::new());
+    for (number, (from, to)) in (1_u32..).zip(rows.iter().zip(rows.iter().skip(1))) {
+        let Some(cubic) = Cubic::between(from, to) else {
+            continue;
+        };
+        for look in 0..looks {
+            let t = cubic.duration_s * (f64::from(look) + 0.5) / f64::from(looks);
+            times.push(from.time_s + t);
+            shares.extend([f64::from(number), to.source as f64]);
+            shares.extend(
+                cubic
+                    .coefficients
+                    .iter()
+                    .zip(axes)
+                    .map(|([_, v, a, b], axis)| {
+                        (v + t * (2.0 * a + t * 3.0 * b)).abs() / axis.speed
+                    }),
+            );
+            shares.extend(
+                cubic
+                    .coefficients
+                    .iter()
+                    .zip(axes)
+                    .map(|([_, _, a, b], axis)| (2.0 * a + t * 6.0 * b).abs() / axis.acceleration),
+            );
+            let [speed, acceleration] = along(&cubic, t, &place);
+            let may = tool(to.source);
+            let feed = may.map_or(f64::NAN, |may| speed / may.feed);
+            let most = may.and_then(|may| may.acceleration);
+            shares.extend([feed, most.map_or(f64::NAN, |most| acceleration / most)]);
+        }
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "shown with three digits")]
+    let shares = shares.into_iter().map(|it: f64| (it as f32).to_le_bytes());
+    answer
+        .with_numbers("looks", times.into_iter().map(f64::to_le_bytes))
+        .with_numbers("shares", shares)
+}
+
+/// Speed and the size of the acceleration along the path, in mm/s and mm/s².
+fn along<const D: usize>(
+    cubic: &Cubic<D>,
+    t: f64,
+    place: &impl Fn([f64; D]) -> Option<[f64; 3]>,
+) -> [f64; 2] {
+    let by = NEAR_S.min(cubic.duration_s * NEAR_PART);
+    let places = [t - by, t, t + by].map(|t| place(cubic.position(t)));
+    let [Some(before), Some(now), Some(after)] = places else {
+        return [f64::NAN; 2];
+    };
+    let [first, second] = [distance(before, now), distance(now, after)];
+    let acceleration = (second - first).abs() / (by * by);
+    [(first + second) / (2.0 * by), acceleration]
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f64>().sqrt()
+}
