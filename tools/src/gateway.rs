@@ -1,4 +1,4 @@
-//! Many lines to MQTT and to TCP.
+//! Many lines to MQTT, NATS and TCP.
 
 mod area;
 mod broker;
@@ -11,12 +11,14 @@ mod job;
 mod line;
 mod metrics;
 mod mqtt;
+mod nats;
 mod outbox;
 mod reload;
 mod store;
 mod tap;
 mod tcp;
 mod telegram;
+mod tls;
 
 use alloc::sync::Arc;
 use core::{net::SocketAddr, pin::pin, sync::atomic::Ordering, time::Duration};
@@ -37,7 +39,7 @@ use tokio_util::sync::CancellationToken;
 use toml::Spanned;
 
 use self::{
-    config::{Config, Listen, Sync},
+    config::{Broker, Config, Listen, Sync},
     hub::Hub,
     line::Line,
     outbox::Outbox,
@@ -46,7 +48,7 @@ use self::{
 };
 use crate::cli::{block_on, interrupted};
 
-/// Brings lines of 3964R and RK512 to MQTT and TCP, until SIGINT or SIGTERM.
+/// Brings lines of 3964R and RK512 to MQTT or NATS and TCP, until SIGINT or SIGTERM.
 ///
 /// SIGHUP reads the configuration again: lines that have changed are opened anew.
 ///
@@ -63,8 +65,9 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let config = Config::read(&options.config)?;
-    let session = match config.mqtt() {
-        Some(mqtt) => Some(mqtt::options(&config, mqtt)?),
+    let session = match config.broker() {
+        Some(Broker::Mqtt(mqtt)) => Some(Session::Mqtt(mqtt::options(&config, mqtt)?.into())),
+        Some(Broker::Nats(nats)) => Some(Session::Nats(nats::options(&config, nats)?.into())),
         None => None,
     };
     if options.check {
@@ -78,26 +81,32 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     block_on(work(&options.config, config, hub, jobs, session))
 }
 
+/// The settings of the connection to what takes the messages.
+enum Session {
+    Mqtt(Box<mqtt::Options>),
+    Nats(Box<nats::Options>),
+}
+
 /// Where messages wait for the broker, and what waits there already.
 ///
 /// # Errors
 /// Those of the store.
 fn keep(config: &Config) -> Result<(Option<Outbox>, Known)> {
-    let Some(mqtt) = config.mqtt() else {
+    let Some(broker) = config.broker() else {
         return Ok((None, Known::nothing()));
     };
     let (folder, max_bytes) = (config.store_folder(), config.store_max_bytes());
     let letters = DeadLetters::new(folder.join("dead-letters.jsonl"), max_bytes);
     if config.sync() == Sync::None {
-        let most = mqtt.queue();
+        let most = broker.queue();
         warn!(
             "messages are kept in memory, {most} at most: what waits is lost if this program ends"
         );
-        let outbox = Outbox::in_memory(most, mqtt.overflow, letters)?;
+        let outbox = Outbox::in_memory(most, broker.overflow(), letters)?;
         return Ok((Some(outbox), Known::nothing()));
     }
     let shown = folder.display();
-    let opened = Store::open(&folder, max_bytes, mqtt.overflow);
+    let opened = Store::open(&folder, max_bytes, broker.overflow());
     let (store, known) = opened.with_context(|| shown.to_string())?;
     info!("store: {shown}, {} messages wait in it", known.messages);
     let outbox = Outbox::on_disk(store, config.sync(), letters)?;
@@ -110,7 +119,7 @@ async fn work(
     config: Config,
     hub: Arc<Hub>,
     jobs: Vec<tokio::sync::mpsc::Receiver<job::Job>>,
-    session: Option<mqtt::Options>,
+    session: Option<Session>,
 ) -> Result<ExitCode> {
     let mut services = JoinSet::new();
     if let Some(listener) = listen(config.tcp.as_ref().map(Spanned::get_ref)).await? {
@@ -184,9 +193,14 @@ fn report_end(hub: &Hub, lines_ended: bool) -> ExitCode {
     status
 }
 
-async fn deliver(session: Option<mqtt::Options>, hub: Arc<Hub>, finishing: CancellationToken) {
-    if let (Some(options), Some(outbox)) = (session, &hub.outbox) {
-        mqtt::run(options, &hub, outbox, &finishing).await;
+async fn deliver(session: Option<Session>, hub: Arc<Hub>, finishing: CancellationToken) {
+    let Some(outbox) = &hub.outbox else {
+        return;
+    };
+    match session {
+        Some(Session::Mqtt(options)) => mqtt::run(*options, &hub, outbox, &finishing).await,
+        Some(Session::Nats(options)) => nats::run(*options, &hub, outbox, &finishing).await,
+        None => {}
     }
 }
 

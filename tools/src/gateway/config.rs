@@ -2,6 +2,7 @@
 
 mod mqtt;
 mod name;
+mod nats;
 mod store;
 
 use core::{net::SocketAddr, num::NonZeroU16, time::Duration};
@@ -10,7 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, anyhow};
 use proto3964r::{Priority, tokio::Link};
 use serde::{Deserialize, Deserializer, de::Error as _};
 use toml::{Spanned, Table};
@@ -18,6 +19,7 @@ use toml::{Spanned, Table};
 pub(crate) use self::{
     mqtt::{Mqtt, Overflow, Prefix},
     name::Name,
+    nats::Nats,
     store::{Settings as StoreSettings, Sync},
 };
 use super::{
@@ -36,6 +38,7 @@ pub(crate) struct Config {
     /// Of this gateway: its client identifier at the broker and first level of its topics.
     pub(crate) name: Name,
     mqtt: Option<Spanned<Mqtt>>,
+    nats: Option<Spanned<Nats>>,
     store: Option<Spanned<StoreSettings>>,
     pub(crate) tcp: Option<Spanned<Listen>>,
     pub(crate) metrics: Option<Spanned<Listen>>,
@@ -106,6 +109,44 @@ pub(crate) enum PriorityName {
     High,
 }
 
+/// What takes the messages.
+#[derive(Clone, Copy)]
+pub(crate) enum Broker<'c> {
+    Mqtt(&'c Mqtt),
+    Nats(&'c Nats),
+}
+
+impl<'c> Broker<'c> {
+    pub(crate) const fn kind(self) -> &'static str {
+        match self {
+            Self::Mqtt(_) => "mqtt",
+            Self::Nats(_) => "nats",
+        }
+    }
+
+    fn prefix(self) -> &'c Prefix {
+        match self {
+            Self::Mqtt(mqtt) => &mqtt.prefix,
+            Self::Nats(nats) => &nats.prefix,
+        }
+    }
+
+    pub(crate) const fn overflow(self) -> Overflow {
+        match self {
+            Self::Mqtt(mqtt) => mqtt.overflow,
+            Self::Nats(nats) => nats.overflow,
+        }
+    }
+
+    /// Messages that are kept in memory, where they are.
+    pub(crate) fn queue(self) -> usize {
+        match self {
+            Self::Mqtt(mqtt) => mqtt.queue(),
+            Self::Nats(_) => mqtt::QUEUE,
+        }
+    }
+}
+
 /// What runs on the line.
 #[derive(Clone, Copy, Default, Deserialize, PartialEq, Eq)]
 pub(crate) enum Procedure {
@@ -145,6 +186,9 @@ impl Config {
         if let Some(mqtt) = config.mqtt.as_mut().map(Spanned::get_mut) {
             mqtt.set_folder(folder);
         }
+        if let Some(nats) = config.nats.as_mut().map(Spanned::get_mut) {
+            nats.set_folder(folder);
+        }
         folder.clone_into(&mut config.folder);
         config.tables = text.parse().with_context(place)?;
         Ok(config)
@@ -163,8 +207,8 @@ impl Config {
         if let Err(message) = time(*self.stop_s.get_ref()) {
             return Err((self.stop_s.span().start, format!("stop_s: {message}")));
         }
-        if self.mqtt.is_none() && self.tcp.is_none() {
-            return Err((0, "neither [mqtt] nor [tcp]".to_owned()));
+        if self.broker().is_none() && self.tcp.is_none() {
+            return Err((0, "none of [mqtt], [nats] and [tcp]".to_owned()));
         }
         if self.lines.is_empty() {
             return Err((0, "no [[line]]".to_owned()));
@@ -173,13 +217,20 @@ impl Config {
             let checked = mqtt.get_ref().check();
             checked.map_err(|message| (mqtt.span().start, format!("mqtt: {message}")))?;
         }
+        if let Some(nats) = &self.nats {
+            if self.mqtt.is_some() {
+                return Err((nats.span().start, "[mqtt] and [nats]".to_owned()));
+            }
+            let checked = nats.get_ref().check();
+            checked.map_err(|message| (nats.span().start, format!("nats: {message}")))?;
+        }
         if let Some(store) = &self.store {
-            let message = match &self.mqtt {
-                None => "store: for [mqtt] alone",
-                Some(mqtt) if mqtt.get_ref().queue.is_some() && self.sync() != Sync::None => {
+            let message = match (&self.mqtt, &self.nats) {
+                (None, None) => "store: for [mqtt] and [nats]",
+                (Some(mqtt), _) if mqtt.get_ref().queue.is_some() && self.sync() != Sync::None => {
                     "store: mqtt.queue is for sync = \"none\""
                 }
-                Some(_) => "",
+                _ => "",
             };
             if !message.is_empty() {
                 return Err((store.span().start, message.to_owned()));
@@ -219,7 +270,7 @@ impl Config {
 
     /// First levels of all topics.
     pub(crate) fn topic(&self) -> String {
-        let prefix = self.mqtt().map(|mqtt| mqtt.prefix.0.as_str());
+        let prefix = self.broker().map(|broker| broker.prefix().0.as_str());
         format!("{}/{}", prefix.unwrap_or_default(), self.name)
     }
 
@@ -257,6 +308,12 @@ impl Config {
 
     pub(crate) fn mqtt(&self) -> Option<&Mqtt> {
         self.mqtt.as_ref().map(Spanned::get_ref)
+    }
+
+    /// What takes the messages.
+    pub(crate) fn broker(&self) -> Option<Broker<'_>> {
+        let nats = self.nats.as_ref().map(Spanned::get_ref);
+        self.mqtt().map(Broker::Mqtt).or(nats.map(Broker::Nats))
     }
 
     /// How long a stop may take.
@@ -379,6 +436,18 @@ fn check_fields(fields: &[Spanned<Field>], bytes: usize) -> Result<(), (usize, S
         names.push(&field.name);
     }
     Ok(())
+}
+
+/// A secret in a file of its own, without the end of its line.
+///
+/// # Errors
+/// Those of the file.
+fn secret(name: &str, path: &Path) -> Result<String> {
+    let place = || path.display().to_string();
+    let text = fs::read_to_string(path).with_context(place)?;
+    let text = text.trim_end_matches(['\r', '\n']);
+    mqtt::check_text(name, Some(text)).map_err(|message| anyhow!("{}: {message}", place()))?;
+    Ok(text.to_owned())
 }
 
 /// A time of a file.

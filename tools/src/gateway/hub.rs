@@ -105,8 +105,10 @@ struct Refusals {
 
 /// The middle of the gateway.
 pub(crate) struct Hub {
-    /// Of MQTT: prefix and name of the gateway.
+    /// Prefix and name of the gateway.
     pub(crate) topic: String,
+    /// What takes the messages, as metrics are named by it.
+    pub(crate) broker_kind: &'static str,
     pub(crate) run: String,
     pub(crate) outbox: Option<Outbox>,
     pub(crate) events: broadcast::Sender<Bytes>,
@@ -161,6 +163,7 @@ impl Hub {
         }
         let hub = Self {
             topic: config.topic(),
+            broker_kind: config.broker().map_or("", |broker| broker.kind()),
             run: known.run,
             outbox,
             events: broadcast::channel(TCP_QUEUE).0,
@@ -202,6 +205,7 @@ impl Hub {
             let message = Message {
                 topic,
                 payload: payload.clone(),
+                seq: Some(report.seq),
                 ..Message::default()
             };
             outbox.push(Entry { message, number }).await?;
@@ -410,8 +414,23 @@ impl Hub {
         }
     }
 
+    /// The broker does not take a message. What is retained is not offered again until it is another;
+    /// anything else is a dead letter.
+    pub(crate) fn refused(&self, outbox: &Outbox, message: Message, reason: &str) {
+        self.broker.refused.fetch_add(1, Ordering::Relaxed);
+        error!("broker: refused a message to {}: {reason}", message.topic);
+        if message.is_retained {
+            outbox.forget_retained(&message.topic);
+            return;
+        }
+        if let Some(desk) = self.line_of(&message.topic) {
+            desk.counts.dead.fetch_add(1, Ordering::Relaxed);
+        }
+        outbox.refused(message, reason.to_owned());
+    }
+
     /// The line that a message is about.
-    pub(crate) fn line_of(&self, topic: &str) -> Option<&Desk> {
+    fn line_of(&self, topic: &str) -> Option<&Desk> {
         let rest = topic.strip_prefix(&self.topic)?.strip_prefix('/')?;
         self.lines.get(rest.split('/').next()?)
     }

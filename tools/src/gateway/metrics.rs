@@ -154,34 +154,35 @@ fn text(hub: &Hub) -> String {
     if let Some(outbox) = &hub.outbox {
         let broker = &hub.broker;
         let load = |count: &core::sync::atomic::AtomicU64| count.load(Ordering::Relaxed);
+        let kind_of_broker = hub.broker_kind;
         let is_connected = broker.is_connected.load(Ordering::Relaxed);
         for (name, kind, help, value) in [
             (
-                "mqtt_connected",
+                &*format!("{kind_of_broker}_connected"),
                 "gauge",
                 "1 while connected",
                 is_connected.into(),
             ),
             (
-                "mqtt_connects_total",
+                &*format!("{kind_of_broker}_connects_total"),
                 "counter",
                 "connections made",
                 load(&broker.connects),
             ),
             (
-                "mqtt_published_total",
+                &*format!("{kind_of_broker}_published_total"),
                 "counter",
                 "messages acknowledged",
                 load(&broker.published),
             ),
             (
-                "mqtt_refused_total",
+                &*format!("{kind_of_broker}_refused_total"),
                 "counter",
                 "messages refused by the broker",
                 load(&broker.refused),
             ),
             (
-                "mqtt_queue",
+                &*format!("{kind_of_broker}_queue"),
                 "gauge",
                 "messages without an acknowledgement",
                 outbox.len(),
@@ -199,7 +200,7 @@ fn text(hub: &Hub) -> String {
                 outbox.dead(),
             ),
             (
-                "mqtt_dropped_total",
+                &*format!("{kind_of_broker}_dropped_total"),
                 "counter",
                 "messages given up, there was no room",
                 outbox.dropped(),

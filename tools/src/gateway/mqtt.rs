@@ -3,17 +3,17 @@
 mod connection;
 mod session;
 mod suspect;
-mod tls;
 mod v3;
 mod v5;
 mod version;
 mod window;
 
+use alloc::sync::Arc;
 use core::{mem, sync::atomic::Ordering, time::Duration};
 
 use anyhow::Result;
 use log::{info, warn};
-use rumqttc::Transport;
+use rumqttc::{TlsConfiguration, Transport};
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
@@ -28,6 +28,7 @@ use super::{
     config::{Config, Mqtt},
     hub::Hub,
     outbox::Outbox,
+    tls,
 };
 
 /// From one attempt to connect to the next: doubled with each, between these.
@@ -61,7 +62,8 @@ pub(crate) fn options(config: &Config, mqtt: &Mqtt) -> Result<Options> {
 /// Those of the files that the configuration names.
 fn transport(mqtt: &Mqtt) -> Result<Transport> {
     Ok(if mqtt.broker.is_tls {
-        Transport::Tls(tls::configuration(mqtt)?)
+        let client = tls::client(mqtt.tls())?;
+        Transport::Tls(TlsConfiguration::Rustls(Arc::new(client)))
     } else {
         Transport::Tcp
     })
@@ -171,7 +173,8 @@ impl<'h> Broker<'h> {
             && let Some(message) = session.window.take_first()
         {
             let times = suspect::SUSPICIONS;
-            session.refused(message, &format!("{times} times the end of a connection"));
+            let reason = format!("{times} times the end of a connection");
+            self.hub.refused(self.outbox, message, &reason);
         }
         session.window.restore(self.outbox);
         let name = || self.options.five.client_id();

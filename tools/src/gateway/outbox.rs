@@ -150,6 +150,15 @@ impl Outbox {
         }
     }
 
+    /// Has what is retained under a topic sent once more.
+    pub(crate) fn retain_again(&self, topic: &str) {
+        let mut state = self.shared.state();
+        if state.retained.contains_key(topic) {
+            state.unsent.insert(topic.to_owned());
+            self.shared.filled.notify_one();
+        }
+    }
+
     /// The broker does not take what it should retain under a topic.
     pub(crate) fn forget_retained(&self, topic: &str) {
         self.shared.state().retained.remove(topic);

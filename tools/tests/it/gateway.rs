@@ -6,6 +6,8 @@ mod commands;
 mod connections;
 mod health;
 mod load;
+mod nats;
+mod nats_server;
 mod partner;
 mod process;
 mod refused;

@@ -1,15 +1,13 @@
 //! The part of the file that is about the broker.
 
 use core::num::NonZeroU16;
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::Result;
 use serde::Deserialize;
 
-use crate::gateway::{broker::Broker, mqtt::Version};
+use super::secret;
+use crate::gateway::{broker::Broker, mqtt::Version, tls};
 
 /// The client of the broker takes no shorter one.
 const KEEP_ALIVE_MIN_S: u16 = 5;
@@ -18,7 +16,7 @@ const KEEP_ALIVE_MIN_S: u16 = 5;
 const MQTT_TEXT_MAX: usize = 0xFFFF;
 
 /// Messages that are kept in memory, unless configured.
-const QUEUE: usize = 10_000;
+pub(super) const QUEUE: usize = 10_000;
 
 /// The broker, and what is kept for it.
 #[derive(Deserialize)]
@@ -31,10 +29,10 @@ pub(crate) struct Mqtt {
     password: Option<String>,
     password_file: Option<PathBuf>,
     /// PEM; without it the system's certificate authorities hold.
-    pub(crate) ca_file: Option<PathBuf>,
+    ca_file: Option<PathBuf>,
     /// PEM of certificate and key of this client.
-    pub(crate) certificate_file: Option<PathBuf>,
-    pub(crate) key_file: Option<PathBuf>,
+    certificate_file: Option<PathBuf>,
+    key_file: Option<PathBuf>,
     #[serde(default = "prefix")]
     pub(crate) prefix: Prefix,
     /// Messages kept in memory until the broker has acknowledged them.
@@ -132,34 +130,36 @@ impl Mqtt {
         Err(message.to_owned())
     }
 
-    /// The password, from its file without the end of its line.
+    /// Who is trusted, and who this client is.
+    pub(crate) fn tls(&self) -> tls::Files<'_> {
+        let certificate = self.certificate_file.as_deref();
+        tls::Files {
+            authorities: self.ca_file.as_deref(),
+            identity: certificate.zip(self.key_file.as_deref()),
+        }
+    }
+
+    /// The password.
     ///
     /// # Errors
     /// Those of the file.
     pub(crate) fn password(&self) -> Result<String> {
         match &self.password_file {
-            Some(path) => {
-                let text = fs::read_to_string(path);
-                let text = text.with_context(|| path.display().to_string())?;
-                let text = text.trim_end_matches(['\r', '\n']);
-                check_text("password", Some(text))
-                    .map_err(|message| anyhow!("{}: {message}", path.display()))?;
-                Ok(text.to_owned())
-            }
+            Some(path) => secret("password", path),
             None => Ok(self.password.clone().unwrap_or_default()),
         }
     }
 }
 
 /// A text that goes to the broker.
-fn check_text(name: &str, text: Option<&str>) -> Result<(), String> {
+pub(super) fn check_text(name: &str, text: Option<&str>) -> Result<(), String> {
     match text.map_or(0, str::len) {
         0..=MQTT_TEXT_MAX => Ok(()),
         len => Err(format!("{name}: {len} bytes, at most {MQTT_TEXT_MAX}")),
     }
 }
 
-fn prefix() -> Prefix {
+pub(super) fn prefix() -> Prefix {
     Prefix("line3964r".to_owned())
 }
 

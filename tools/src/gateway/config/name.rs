@@ -23,6 +23,11 @@ impl TryFrom<String> for Name {
 }
 
 impl Name {
+    /// A name of this program's own.
+    pub(super) fn literal(text: &str) -> Self {
+        Self(text.to_owned())
+    }
+
     pub(crate) fn as_str(&self) -> &str {
         &self.0
     }

@@ -2,7 +2,7 @@
 
 use core::{pin::pin, sync::atomic::Ordering};
 
-use log::{error, info, warn};
+use log::{info, warn};
 use thiserror::Error;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
@@ -171,7 +171,7 @@ impl<'h> Session<'h> {
         let room = self.max_packet.saturating_sub(OVERHEAD);
         if message.len() > room {
             let reason = format!("{} bytes, the broker takes {room}", message.len());
-            self.refused(message, &reason);
+            self.hub.refused(self.outbox, message, &reason);
         } else {
             sender.publish(&message);
             self.window.push(message);
@@ -223,7 +223,7 @@ impl<'h> Session<'h> {
             *careful_until = None;
         }
         match answer {
-            Answer::Refused(reason) => self.refused(message, &reason),
+            Answer::Refused(reason) => self.hub.refused(self.outbox, message, &reason),
             Answer::Taken | Answer::Quota => {
                 self.outbox.done(&message);
                 self.hub.broker.published.fetch_add(1, Ordering::Relaxed);
@@ -251,19 +251,5 @@ impl<'h> Session<'h> {
             Some(line) => self.hub.command(line, &payload, reply, may_be_duplicate),
             None => {}
         }
-    }
-
-    /// The broker does not take a message. What is retained is not offered again until it is another.
-    pub(super) fn refused(&self, message: Message, reason: &str) {
-        self.hub.broker.refused.fetch_add(1, Ordering::Relaxed);
-        error!("broker: refused a message to {}: {reason}", message.topic);
-        if message.is_retained {
-            self.outbox.forget_retained(&message.topic);
-            return;
-        }
-        if let Some(desk) = self.hub.line_of(&message.topic) {
-            desk.counts.dead.fetch_add(1, Ordering::Relaxed);
-        }
-        self.outbox.refused(message, reason.to_owned());
     }
 }

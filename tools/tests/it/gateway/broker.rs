@@ -1,11 +1,16 @@
 //! A mosquitto of the test's own.
 
-use core::{net::Ipv4Addr, time::Duration};
+use core::{
+    net::Ipv4Addr,
+    sync::atomic::{AtomicU16, Ordering},
+    time::Duration,
+};
 use std::{
     env, fs,
     net::{TcpListener, TcpStream},
     path::PathBuf,
-    process::{Child, Command, Stdio},
+    process::{self, Child, Command, Stdio},
+    sync::LazyLock,
     thread,
 };
 
@@ -83,17 +88,19 @@ keyfile {shown}/broker.key
     }
 
     pub(crate) fn start_again(&mut self) {
-        let process = Command::new(program().unwrap())
+        let mut process = Command::new(program().unwrap())
             .arg("-c")
             .arg(self.folder.path().join("mosquitto.conf"))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        self.process = Some(process);
         while TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).is_err() {
+            let ended = process.try_wait().unwrap();
+            assert!(ended.is_none(), "mosquitto: {ended:?}");
             thread::sleep(Duration::from_millis(10));
         }
+        self.process = Some(process);
     }
 
     /// As an administrator stops it: it saves what it holds.
@@ -156,9 +163,22 @@ fn program() -> Option<&'static str> {
     })
 }
 
-/// Ports that nobody has right now.
+/// Ports that nobody has right now, and that no system gives to whoever asks for any.
 pub(crate) fn free_ports<const N: usize>() -> [u16; N] {
-    let listeners = [(); N].map(|()| TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap());
+    const RANGE: (u16, u16) = (10_000, 32_000);
+    /// Other test programs begin elsewhere.
+    static NEXT: LazyLock<AtomicU16> = LazyLock::new(|| {
+        let id = process::id().wrapping_mul(2_654_435_761) >> 16;
+        AtomicU16::new(u16::try_from(id).unwrap())
+    });
+    let listeners = [(); N].map(|()| {
+        loop {
+            let port = RANGE.0 + NEXT.fetch_add(1, Ordering::Relaxed) % (RANGE.1 - RANGE.0);
+            if let Ok(listener) = TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
+                break listener;
+            }
+        }
+    });
     listeners.map(|listener| listener.local_addr().unwrap().port())
 }
 

@@ -4,33 +4,37 @@ use alloc::sync::Arc;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow};
-use rumqttc::TlsConfiguration;
 use rustls::{
     ClientConfig, RootCertStore,
     crypto::ring,
     pki_types::{CertificateDer, PrivateKeyDer, pem::PemObject as _},
 };
 
-use crate::gateway::config::Mqtt;
+/// Who is trusted, and who this client is: files in PEM.
+pub(crate) struct Files<'f> {
+    /// Without it, the system's authorities.
+    pub(crate) authorities: Option<&'f Path>,
+    /// Certificate and key.
+    pub(crate) identity: Option<(&'f Path, &'f Path)>,
+}
 
-/// Who is trusted, and who this client is.
+/// The settings of a client.
 ///
 /// # Errors
 /// A file that cannot be read or holds nothing of its kind.
-pub(super) fn configuration(mqtt: &Mqtt) -> Result<TlsConfiguration> {
+pub(crate) fn client(files: Files<'_>) -> Result<ClientConfig> {
     let provider = Arc::new(ring::default_provider());
     let builder = ClientConfig::builder_with_provider(provider)
         .with_safe_default_protocol_versions()?
-        .with_root_certificates(authorities(mqtt.ca_file.as_deref())?);
-    let config = match (&mqtt.certificate_file, &mqtt.key_file) {
-        (Some(certificate), Some(key_file)) => {
+        .with_root_certificates(authorities(files.authorities)?);
+    Ok(match files.identity {
+        Some((certificate, key_file)) => {
             let key = PrivateKeyDer::from_pem_file(key_file)
                 .with_context(|| key_file.display().to_string())?;
             builder.with_client_auth_cert(certificates(certificate)?, key)?
         }
-        _ => builder.with_no_client_auth(),
-    };
-    Ok(TlsConfiguration::Rustls(Arc::new(config)))
+        None => builder.with_no_client_auth(),
+    })
 }
 
 /// Those of the file, or else of the system.
