@@ -1,5 +1,6 @@
 //! Instructions per point of a dense file, counted by callgrind: smoothing, look-ahead, rows; for arms
-//! also the path of the joints, and as many segments as keep the departure's proven bound.
+//! also the path of the joints, and as many segments as keep the departure's proven bound. And per row
+//! and impulse of a shaped motion.
 #![expect(clippy::unwrap_used, reason = "a bench fails loudly")]
 
 use core::hint::black_box;
@@ -7,7 +8,8 @@ use std::process::ExitCode;
 
 use delta_kin::{Delta, DeltaPath};
 use path_timing::{
-    AxisLimits, Curve, Knot, LookAhead, Path, Smoothed, Vertex, Waypoint, segments_within,
+    AxisLimits, Curve, Knot, LookAhead, Mode, Path, Row, Shaped, Shaper, Smoothed, Table, Vertex,
+    Waypoint, segments_within,
 };
 use scara_kin::{Arm, ArmPath, Elbow, Joints};
 use test_support::instructions::{Limit, bench};
@@ -113,7 +115,39 @@ fn delta(points: &[[f64; 2]]) {
     black_box(rows.last());
 }
 
+/// Shapers of both axes, and the most instructions for each row and impulse of an axis.
+const SHAPED: [(&str, [Make; 2], f64); 3] = [
+    ("ZV and ZV", [Shaper::zv; 2], 150.0),
+    ("ZVD and MZV", [Shaper::zvd, Shaper::mzv], 150.0),
+    ("3HUMP and EI", [Shaper::three_hump, Shaper::ei], 150.0),
+];
+
+type Make = fn(Mode) -> Result<Shaper, path_timing::ShaperError>;
+
+/// The rows of a line, shaped so often; the rows and impulses of it.
+fn shape(make: [Make; 2], rounds: u32) -> usize {
+    let modes = [40.0, 55.0].map(|hz| Mode { hz, damping: 0.05 });
+    let [x, y] = make;
+    let shapers = [x(modes[0]).unwrap(), y(modes[1]).unwrap()];
+    let line = Curve::line([0.0, 0.0], [60.0, 80.0]).unwrap();
+    let mut knots = [Knot::default(); 201];
+    let table = Table::plan([line], [LINEAR; 2], |_| 200, &mut knots).unwrap();
+    let mut memory = [Row::default(); 203];
+    let mut rows = 0;
+    for _ in 0..rounds {
+        rows = Shaped::new(table.rows(), black_box(shapers), &mut memory).count();
+    }
+    rows * shapers
+        .map(|shaper| shaper.impulses().len())
+        .iter()
+        .sum::<usize>()
+}
+
 fn run(case: &str, rounds: u32) {
+    if let Some((_, make, _)) = SHAPED.iter().find(|(name, ..)| *name == case) {
+        black_box(shape(*make, rounds));
+        return;
+    }
     let found = CASES.iter().find(|(name, ..)| *name == case);
     let (_, machine, step_mm, _) = *found.unwrap();
     let points = circle(points(machine), step_mm);
@@ -135,5 +169,13 @@ fn main() -> ExitCode {
         rounds: [1, 4],
         most,
     });
+    let shaped = SHAPED.map(|(case, make, most)| Limit {
+        case,
+        unit: "per row and impulse",
+        units: f64::from(u32::try_from(shape(make, 1)).unwrap()),
+        rounds: [1, 4],
+        most,
+    });
+    let limits: Vec<_> = limits.into_iter().chain(shaped).collect();
     bench(run, &limits)
 }

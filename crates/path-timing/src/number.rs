@@ -20,6 +20,12 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// The smaller of two numbers; a comparison where `f64::min` is a call of a library.
+#[inline]
+pub(crate) fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
 /// The larger of two numbers; not a number where either is none, unlike `f64::max`.
 pub(crate) fn larger_or_nan(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }

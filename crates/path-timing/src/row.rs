@@ -25,6 +25,19 @@ pub struct Row<A> {
     pub s: f64,
 }
 
+impl<A: Axes> Default for Row<A> {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            duration_s: 0.0,
+            position: A::zeros(),
+            velocity: A::zeros(),
+            leg: 0,
+            s: 0.0,
+        }
+    }
+}
+
 impl<A: Axes> Row<A> {
     /// Whether every axis stands still.
     #[must_use]

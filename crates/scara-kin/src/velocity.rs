@@ -171,6 +171,17 @@ impl<T: RealField + Trig> Arm<T> {
         self.solve(joints, acceleration - centripetal)
     }
 
+    /// The most by which the tool is moved where shoulder and elbow are off by at most so many radians, in
+    /// the unit of length: at any pose.
+    ///
+    /// ```text
+    /// |Δp| ≤ (l1 + l2) |Δq1| + l2 |Δq2|
+    /// ```
+    #[must_use]
+    pub fn tool_shift(&self, [shoulder, elbow]: [T; 2]) -> T {
+        self.reach() * shoulder.abs() + self.fore() * elbow.abs()
+    }
+
     /// The part of the tool's acceleration that the joint rates alone cause.
     fn centripetal(&self, joints: Joints<T>, rates: Vector2<T>) -> Vector2<T> {
         let links = self.links(joints);

@@ -13,6 +13,7 @@ mod line;
 mod paths;
 mod patterns;
 mod poses;
+mod shaping;
 mod stepping;
 mod tables;
 mod timing;
@@ -24,6 +25,7 @@ fn main() {
     delta::run();
     poses::run();
     tables::run();
+    shaping::run();
     timing::run();
     curves::run();
     stepping::run();

@@ -23,6 +23,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     timing::table,
     timing::curve,
     timing::stream,
+    timing::shaped,
     pulses::trains,
     pulses::ramp,
     pulses::cubic,

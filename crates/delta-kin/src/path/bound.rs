@@ -26,6 +26,8 @@ struct Swing<'a> {
     rate: f64,
     /// The largest that g⁗ / 2La can be.
     fourth: f64,
+    /// The largest that D · dK/dθ can be, as a fraction of La.
+    lever: f64,
 }
 
 impl<'a> Swing<'a> {
@@ -46,7 +48,7 @@ impl<'a> Swing<'a> {
         let (turn, upper) = (TurnMotion::new(&theta), prepared.upper);
         let (curve, arm) = (motion.derivatives(0.5), turn.derivatives(0.5));
         let [_, _, p3, p4] = *motion.longest();
-        let [_, _, k3, k4] = turn.longest();
+        let [turning, _, k3, k4] = turn.longest();
         let (d3, d4) = (p3 + upper * k3, p4 + upper * k4);
         // The first two are known halfway, and change by the next from there.
         let [curve_first, curve_second] = curve;
@@ -63,12 +65,19 @@ impl<'a> Swing<'a> {
             angle: theta,
             rate: d1 / prepared.lower,
             fourth: 0.0,
+            lever: 0.0,
         };
         let place = flip(motion.at(0.5).into());
-        let longest = swing.rod(0.5, &place).norm() + d1 * 0.5;
+        let rod = swing.rod(0.5, &place);
+        let longest = rod.norm() + d1 * 0.5;
+        let lever = rod
+            .dot(&prepared.tangent(sin_cos(theta.position(0.5))))
+            .abs();
+        let lever = lever + (d1 + longest * turning) * upper * 0.5;
         let fourth = longest * d4 + 4.0 * d1 * d3 + 3.0 * d2 * d2;
         Self {
             fourth: fourth / prepared.lower,
+            lever: lever / prepared.lower,
             ..swing
         }
     }
@@ -124,6 +133,49 @@ impl DeltaPath {
     pub fn departure(&self, span: &Span<[f64; 3]>) -> f64 {
         self.known(span)
             .map_or(f64::INFINITY, |known| known.departure)
+    }
+
+    /// The most by which the platform's centre leaves the curve where each arm is off its cubic by at most
+    /// so many radians, as a shaped motion is off the motion [`Shaped::delay_s`] earlier by
+    /// [`Shaper::departure`]; in the unit of length, infinite where the segment is too long or the angles
+    /// are too much to tell.
+    ///
+    /// As [`departure`](Self::departure), with the centres K moved by ΔK: what is missing from the rods
+    /// grows by at most
+    ///
+    /// ```text
+    /// |D · K'| δ / La + |D| Lb δ² / 2La + Lb² δ² / 2La
+    /// ```
+    ///
+    /// and the rows of B change by Lb δ / La. What the inverse of B halfway makes of that is known for all
+    /// signs of it.
+    ///
+    /// [`Shaped::delay_s`]: path_timing::Shaped::delay_s
+    /// [`Shaper::departure`]: path_timing::Shaper::departure
+    #[must_use]
+    pub fn shifted_departure(&self, span: &Span<[f64; 3]>, off: [f64; 3]) -> f64 {
+        let shifted = || {
+            let known = self.known(span)?;
+            let arms = zip(zip(self.delta.prepared().each_ref(), known.levers), off);
+            let stretch = 1.0 + known.miss / known.lower;
+            let missing = arms.map(|((prepared, lever), off)| {
+                let moved = prepared.upper * off.abs();
+                let square = moved * off.abs() * stretch + moved * moved / prepared.lower;
+                (lever * off.abs() + square * 0.5, moved / prepared.lower)
+            });
+            let turned = Vector3::from(missing.map(|(_, turned)| turned)).norm();
+            let rest = 1.0 - known.halfway * (known.rate * 0.5 + turned);
+            if rest <= 0.0 {
+                return None;
+            }
+            let [a, b, c] = zip(known.inverse, missing).map(|(column, (miss, _))| column * miss);
+            // Whatever the signs of the three.
+            let sums = [a + b + c, a + b - c, a - b + c, a - b - c];
+            let sum = sums.iter().map(Vector3::norm).fold(0.0, f64::max);
+            let kappa = known.halfway / rest;
+            farthest(kappa, sum / rest + kappa * known.miss, known.lower)
+        };
+        shifted().map_or(f64::INFINITY, |farthest| farthest + self.delta.tolerance())
     }
 
     /// Whether the machine may run a segment: all arms within their ranges, and no rod beside the plane
@@ -200,12 +252,12 @@ impl DeltaPath {
             return None;
         }
         let [a, b, c] = invert_rods(&rods);
-        let kappa = sqrt(a.norm_squared() + b.norm_squared() + c.norm_squared());
-        let rest = 1.0 - kappa * rate * 0.5;
+        let halfway = sqrt(a.norm_squared() + b.norm_squared() + c.norm_squared());
+        let rest = 1.0 - halfway * rate * 0.5;
         if rest <= 0.0 {
             return None;
         }
-        let kappa = kappa / rest;
+        let kappa = halfway / rest;
         let between = fourth * CurveMotion::<3>::BETWEEN;
         let misses = CurveMotion::<3>::NODES.map(|tau| {
             let place = place(tau);
@@ -214,13 +266,7 @@ impl DeltaPath {
         let miss = misses.into_iter().fold(0.0, f64::max) + between;
         let [l1, l2, l3] = delta.prepared().each_ref().map(|prepared| prepared.lower);
         let lower = l1.min(l2).min(l3);
-        let x = 2.0 * ROOT3 * kappa * kappa * miss / lower;
-        // Written so that NaN is none.
-        let is_near = x <= 1.0;
-        if !is_near {
-            return None;
-        }
-        let all = 2.0 * kappa * miss / (1.0 + sqrt(1.0 - x));
+        let all = farthest(kappa, kappa * miss, lower)?;
         let between = kappa * (between + rate * all / 32.0 + ROOT3 * all * all / lower);
         let platform = |tau| {
             let angles = Vector3::from(cubics.map(|cubic| cubic.position(tau)));
@@ -242,6 +288,12 @@ impl DeltaPath {
         (!departure.is_nan()).then_some(Known {
             departure: departure + rounding,
             sides,
+            inverse: [a, b, c],
+            halfway,
+            rate,
+            miss: miss + delta.tolerance(),
+            lower,
+            levers: swings.each_ref().map(|swing| swing.lever),
         })
     }
 }
@@ -252,6 +304,25 @@ struct Known {
     departure: f64,
     /// How far each wrist comes beside the plane of its arm.
     sides: [f64; 3],
+    /// Columns of the inverse of B halfway, and κ.
+    inverse: [Vector3<f64>; 3],
+    halfway: f64,
+    /// β
+    rate: f64,
+    /// ν
+    miss: f64,
+    /// The shortest La.
+    lower: f64,
+    levers: [f64; 3],
+}
+
+/// E: how far the platform is where it would be `off` but for the curvature of the rods' spheres; none
+/// where it cannot be told.
+fn farthest(kappa: f64, off: f64, lower: f64) -> Option<f64> {
+    let x = 2.0 * ROOT3 * kappa * off / lower;
+    // Written so that NaN is none.
+    let is_near = x <= 1.0;
+    is_near.then(|| 2.0 * off / (1.0 + sqrt(1.0 - x)))
 }
 
 /// From a node to the next, in durations of the segment.

@@ -13,6 +13,7 @@ mod jerk_stream;
 mod look_ahead;
 mod optimum;
 mod run;
+mod shaper;
 mod slow_corners;
 mod smoothed;
 mod support;

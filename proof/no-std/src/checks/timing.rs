@@ -4,8 +4,8 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use path_timing::{
-    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Smoothed, Table,
-    Vertex, segments_within,
+    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Mode, PathFn, PathPoint, Row, Shaped,
+    Shaper, Smoothed, Table, Vertex, segments_within,
 };
 
 use super::{CLOSE_MM, holds};
@@ -85,3 +85,22 @@ pub fn stream() -> Option<()> {
     let last = motion.last()?.ok()?;
     holds(last.velocity == [0.0; 2] && last.position == [20.0, 20.0])
 }
+
+/// A line whose axes are shaped for a mode each: it ends where it would, one delay later.
+pub fn shaped() -> Option<()> {
+    let line = Curve::line([0.0, 0.0], [20.0, 10.0]).ok()?;
+    let mut knots = [Knot::default(); 33];
+    let table = Table::plan([line], black_box([AXIS; 2]), |_| 32, &mut knots).ok()?;
+    let mode = |hz| Mode { hz, damping: 0.05 };
+    let shapers = [Shaper::ei(mode(40.0)).ok()?, Shaper::two_hump(mode(90.0)).ok()?];
+    holds(shapers.iter().zip([40.0, 90.0]).all(|(shaper, hz)| shaper.residual(mode(hz)) < 0.05))?;
+    let mut memory = [Row::default(); 40];
+    let mut rows = Shaped::new(table.rows(), shapers, &mut memory);
+    let last = rows.by_ref().last()?.ok()?;
+    holds(last.position == [20.0, 10.0] && last.velocity == [0.0; 2])?;
+    let late_s = last.time_s - table.duration_s();
+    holds((late_s - rows.longest_delay_s()).abs() < CLOSE_S)
+}
+
+/// Of times, in s.
+const CLOSE_S: f64 = 1e-9;
