@@ -13,6 +13,8 @@
 pub use delta_kin;
 #[cfg(feature = "handwheel")]
 pub use handwheel;
+#[cfg(feature = "machine-kin")]
+pub use machine_kin;
 #[cfg(feature = "monitor3964r")]
 pub use monitor3964r;
 #[cfg(feature = "motor-phases")]

@@ -378,6 +378,17 @@ impl<const D: usize> Curve<D> {
         }
     }
 
+    /// The longest that the fifth derivative is: polynomials have none beyond.
+    fn longest_fifth(&self, jet: &Jet<D>) -> f64 {
+        match &self.shape {
+            Shape::Arc { radius, .. } => *radius,
+            Shape::Line { .. } | Shape::Cubic(_) | Shape::Polynomial(_) => {
+                let [.., fifth] = jet;
+                norm(fifth)
+            }
+        }
+    }
+
     /// The most by which a Cartesian machine departs from the curve on a segment of a table: for
     /// [`Table::plan_within`](crate::Table::plan_within). 0 on a line.
     ///

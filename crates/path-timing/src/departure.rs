@@ -56,7 +56,10 @@ pub fn segments_within<P: Path>(
         let mut from = Knot::start(leg.point(0.0)?);
         for index in 1..=segments {
             let u = f64::from(index) / f64::from(segments);
-            let to = laying.knot(leg.length() * fraction(u, rests))?;
+            let to = match laying.knot(leg.length() * fraction(u, rests)) {
+                Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
+                to => to?,
+            };
             bound.add_any([&from, &to], index == segments, |span| {
                 departure(path, span)
             });

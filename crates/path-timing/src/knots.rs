@@ -167,7 +167,7 @@ impl<P: Path> Laying<P> {
         }
         for start in [0.0, 2.0] {
             let span = span_in_a_second([&self.last, &knot], start);
-            let refused = |reason| self.leg.refused(self.last.s, reason);
+            let refused = |reason| self.leg.refused_segment(self.last.s, reason);
             self.leg.path().check(&span).map_err(refused)?;
         }
         self.last = knot;

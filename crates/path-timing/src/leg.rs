@@ -79,6 +79,15 @@ impl<P: Path> Leg<P> {
         })
     }
 
+    /// Why the path refuses a segment that begins at `s`.
+    pub(crate) fn refused_segment(&self, s: f64, reason: P::Error) -> PlanError<P::Error> {
+        if self.path.is_too_coarse(&reason) {
+            let leg = self.number;
+            return PlanError::TooCoarse { leg, s };
+        }
+        self.refused(s, reason)
+    }
+
     /// What the path said of a place, with the number of the leg.
     pub(crate) const fn refused(&self, s: f64, reason: P::Error) -> PlanError<P::Error> {
         PlanError::Path {

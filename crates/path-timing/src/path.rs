@@ -55,6 +55,13 @@ pub trait Path {
         let _ = span;
         Ok(())
     }
+
+    /// Whether [`check`](Self::check) has refused a segment only for its length, so that shorter ones
+    /// may pass: planners that look for the number of segments take more.
+    fn is_too_coarse(&self, reason: &Self::Error) -> bool {
+        let _ = reason;
+        false
+    }
 }
 
 impl<P: Path> Path for &P {
@@ -79,6 +86,10 @@ impl<P: Path> Path for &P {
 
     fn check(&self, span: &Span<P::Axes>) -> Result<(), P::Error> {
         (**self).check(span)
+    }
+
+    fn is_too_coarse(&self, reason: &P::Error) -> bool {
+        (**self).is_too_coarse(reason)
     }
 }
 

@@ -36,6 +36,8 @@ pub struct CurveMotion<'a, const D: usize> {
     curve: &'a Curve<D>,
     parameter: Parameter,
     longest: [f64; 4],
+    /// The longest that the fifth derivative is.
+    fifth: f64,
     /// ψ, in radians.
     turn: f64,
     /// κ
@@ -116,6 +118,13 @@ fn longest_composed(longest: [f64; 4], [u1, u2, u3]: [f64; 3]) -> [f64; 4] {
     ]
 }
 
+/// The longest that the fifth can be.
+fn longest_fifth([_, c2, c3, c4]: [f64; 4], c5: f64, [u1, u2, u3]: [f64; 3]) -> f64 {
+    let square = u1 * u1;
+    let third = 15.0 * u1 * u2 * u2 + 10.0 * square * u3;
+    c5 * square * square * u1 + 10.0 * (c4 * square * u1 * u2 + c2 * u2 * u3) + c3 * third
+}
+
 /// The first two derivatives of C(u(τ)) from those of C.
 fn composed<const D: usize>(
     first: &[f64; D],
@@ -170,6 +179,7 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
             curve,
             parameter,
             longest: longest_composed(longest, parameter.largest),
+            fifth: longest_fifth(longest, curve.longest_fifth(&jet), parameter.largest),
             turn,
             curvature,
             distance,
@@ -190,10 +200,35 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         composed(&first, &second, self.parameter.derivatives(tau))
     }
 
+    /// The place and its first four derivatives by τ.
+    #[must_use]
+    pub fn jet(&self, tau: f64) -> [[f64; D]; 5] {
+        let [place, c1, c2, c3, c4, _] = self.curve.jet(self.parameter.at(tau));
+        let [u1, u2] = self.parameter.derivatives(tau);
+        let [.., u3] = self.parameter.coefficients.map(|coefficient| 6.0 * coefficient);
+        let [first, second] = composed(&c1, &c2, [u1, u2]);
+        let (square, cube) = (u1 * u1, u1 * u1 * u1);
+        let third = along(&scaled(&c3, cube), 3.0 * u1 * u2, &c2);
+        let fourth = along(&scaled(&c4, cube * u1), 6.0 * square * u2, &c3);
+        [
+            place,
+            first,
+            second,
+            along(&third, u3, &c1),
+            along(&fourth, 3.0 * u2 * u2 + 4.0 * u1 * u3, &c2),
+        ]
+    }
+
     /// The longest that derivatives 1 to 4 by τ are on the segment.
     #[must_use]
     pub const fn longest(&self) -> &[f64; 4] {
         &self.longest
+    }
+
+    /// The longest that the fifth derivative by τ is on the segment.
+    #[must_use]
+    pub const fn longest_fifth(&self) -> f64 {
+        self.fifth
     }
 
     /// The most by which a tool departs from the curve on the segment, from its place, a function

@@ -1,0 +1,75 @@
+//! Linear Delta: three carriages on columns, each with a rod to the platform.
+
+use core::f64::consts::TAU;
+use core::ops::RangeInclusive;
+
+use trig_kernels::sin_cos;
+
+use crate::machines::{GeometryError, check_lengths};
+use crate::{Axis, Machine, Number, Refusal};
+
+/// A linear Delta: columns on a circle round the z axis, seen from above
+///
+/// ```text
+///       o 3                 columns at radius r, 1 at -150°, 2 at -30°, 3 at 90°
+///                           carriage = z + √(rod² - (x - X)² - (y - Y)²)
+///   o 1     o 2
+/// ```
+///
+/// with r the distance of a column's joints from the middle less that of the platform's. Carriages are
+/// above the platform. Rods that are all in one plane make the machine singular.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearDelta {
+    rod: f64,
+    columns: [[f64; 2]; 3],
+    carriages: [f64; 2],
+}
+
+impl LinearDelta {
+    /// From the length of the rods, the radius of the columns less that of the platform, and the range of
+    /// the carriages' heights.
+    ///
+    /// # Errors
+    /// [`GeometryError`] of a length that is not above 0.
+    pub fn new(rod: f64, radius: f64, carriages: RangeInclusive<f64>) -> Result<Self, GeometryError> {
+        check_lengths([("rod", rod), ("radius", radius)])?;
+        let column = |turns: f64| {
+            let (sin, cos) = sin_cos(turns * TAU);
+            [radius * cos, radius * sin]
+        };
+        Ok(Self {
+            rod,
+            columns: [-5.0 / 12.0, -1.0 / 12.0, 0.25].map(column),
+            carriages: [*carriages.start(), *carriages.end()],
+        })
+    }
+
+    /// With each column where it was measured, less the platform's joint.
+    #[must_use]
+    pub const fn with_columns(mut self, columns: [[f64; 2]; 3]) -> Self {
+        self.columns = columns;
+        self
+    }
+}
+
+impl Machine<3> for LinearDelta {
+    type Branch = ();
+
+    fn axes(&self) -> [Axis; 3] {
+        let [min, max] = self.carriages;
+        ["carriage 1", "carriage 2", "carriage 3"].map(|name| Axis::linear(name, min..=max))
+    }
+
+    fn inverse<T: Number>(&self, [x, y, z]: [T; 3], (): ()) -> Result<[T; 3], Refusal> {
+        let carriage = |[column_x, column_y]: [f64; 2], reason| {
+            let away = (x - column_x).squared() + (y - column_y).squared();
+            Ok(z + (T::from(self.rod * self.rod) - away).root(reason)?)
+        };
+        let [first, second, third] = self.columns;
+        Ok([
+            carriage(first, "rod 1 is too short")?,
+            carriage(second, "rod 2 is too short")?,
+            carriage(third, "rod 3 is too short")?,
+        ])
+    }
+}

@@ -1,0 +1,160 @@
+//! Looking at all of a curve before it is a path.
+
+use path_timing::{Curve, CurveMotion};
+
+use super::stretch::{ROUNDING, Stretch};
+use super::turns::{LOOK, Turns, at_turns};
+use super::{MachinePath, PathError};
+use crate::matrix::{Enclosure, norm};
+use crate::{Axis, Interval, Machine, Number};
+
+/// Shortest piece of a curve, as a fraction of it: what is undecided then is refused.
+const LEAST_PIECE: f64 = 1e-9;
+
+/// Nearest to the end of the branch and to singular poses that a path may come, in each coordinate, as
+/// a fraction of its size.
+const EDGE: f64 = 1e-6;
+
+impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
+    pub(crate) fn new(
+        machine: M,
+        curve: Curve<N>,
+        branch: M::Branch,
+        previous: [f64; N],
+    ) -> Result<Self, PathError<N>> {
+        let axes = machine.axes();
+        check_ranges(&axes)?;
+        let size = curve.length() + norm(&curve.start()).max(norm(&curve.end()));
+        let mut path = Self {
+            machine,
+            axes,
+            curve,
+            branch,
+            turns: Turns::new(previous),
+            rounding: size * ROUNDING,
+        };
+        let looker = Looker {
+            edge: [size * EDGE; N],
+            least: curve.length() * LEAST_PIECE,
+        };
+        let start = looker.positions(&path, 0.0, &previous)?;
+        path.turns = Turns::new(start);
+        let (mut s, mut positions, mut step) = (0.0, start, curve.length());
+        while s < curve.length() {
+            (s, positions, step) = looker.go_on(&path, s, &positions, step)?;
+            if !path.turns.add(s, &axes, &positions) {
+                return Err(PathError::Turns { s });
+            }
+        }
+        Ok(path)
+    }
+}
+
+/// Refuses ranges of axes that are none.
+fn check_ranges<const N: usize>(axes: &[Axis; N]) -> Result<(), PathError<N>> {
+    for axis in axes {
+        // Written so that NaN is refused too.
+        let is_range = axis.min <= axis.max;
+        if !is_range {
+            let Axis { name, min, max, .. } = *axis;
+            let axis = name;
+            return Err(PathError::Range { axis, min, max });
+        }
+    }
+    Ok(())
+}
+
+/// Walks along a curve before it is a path.
+struct Looker<const N: usize> {
+    edge: [f64; N],
+    /// Shortest piece.
+    least: f64,
+}
+
+impl<const N: usize> Looker<N> {
+    /// The positions at a place, each angle at the turn nearest to `near`.
+    fn positions<M: Machine<N>>(
+        &self,
+        path: &MachinePath<M, N>,
+        s: f64,
+        near: &[f64; N],
+    ) -> Result<[f64; N], PathError<N>> {
+        let point = path.curve.at(s).point;
+        let found = path.slopes_at(point);
+        let (positions, _) =
+            found.map_err(|reason| PathError::Unreachable { s, point, reason })?;
+        Ok(at_turns(&path.axes, positions, near))
+    }
+
+    /// The next place to be looked at, the positions there, and the length of the piece to try next.
+    /// Shorter pieces lead up to the first place that is refused.
+    fn go_on<M: Machine<N>>(
+        &self,
+        path: &MachinePath<M, N>,
+        s: f64,
+        positions: &[f64; N],
+        mut step: f64,
+    ) -> Result<(f64, [f64; N], f64), PathError<N>> {
+        loop {
+            let next = (s + step).min(path.curve.length());
+            let there = self
+                .piece(path, [s, next], positions)
+                .and_then(|()| self.positions(path, next, positions));
+            match there {
+                Ok(there) => return Ok((next, there, step * 2.0)),
+                Err(error) if step <= self.least => return Err(error),
+                Err(_) => step *= 0.5,
+            }
+        }
+    }
+
+    /// Whether nothing of a piece is out of reach, singular, or beyond a range.
+    fn piece<M: Machine<N>>(
+        &self,
+        path: &MachinePath<M, N>,
+        s: [f64; 2],
+        near: &[f64; N],
+    ) -> Result<(), PathError<N>> {
+        let [from, to] = s;
+        let ends = s.map(|s| path.curve.at(s).tangent.map(|slope| slope * (to - from)));
+        let motion = CurveMotion::new(&path.curve, s, ends.each_ref(), 1.0);
+        let stretch = Stretch::new(&motion, [0.0, 1.0], path.rounding);
+        if let Some(beyond) = path.beyond_area(&stretch.places(), &[0.0; N], s) {
+            return Err(beyond);
+        }
+        let (point, s_from) = (path.curve.at(from).point, from);
+        let refused = |reason| PathError::BranchEnds {
+            s: s_from,
+            point,
+            reason,
+        };
+        let around = path.around(&stretch, &self.edge).map_err(refused)?;
+        if Enclosure::new(&around.slopes).is_none() {
+            return Err(PathError::Singular { s: from, point });
+        }
+        // Mean values: q(τ) ∈ q(½) + q' [-½, ½].
+        let middle = stretch.middle().map(Interval::from);
+        let middle = path.machine.inverse(middle, path.branch).map_err(refused)?;
+        let half = Interval::new(-0.5, 0.5);
+        let axes = path.axes.iter().zip(near);
+        for ((middle, rate), (axis, near)) in middle.into_iter().zip(around.rates).zip(axes) {
+            let way = rate * half;
+            let apart = middle - *near;
+            let turned = axis.difference(apart.middle()) - apart.middle();
+            let position = middle + turned + way;
+            if axis.is_angle && way.width() > LOOK {
+                return Err(PathError::Singular { s: from, point });
+            }
+            if let Some(position) = axis.beyond(position.low(), position.high()) {
+                return Err(PathError::Limit {
+                    s,
+                    axis: axis.name,
+                    position,
+                    min: axis.min,
+                    max: axis.max,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,140 @@
+//! Paths: slopes, turns, and each refusal with its place.
+
+use core::f64::consts::TAU;
+
+use machine_kin::path_timing::{Curve, Path};
+use machine_kin::{
+    Axis, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Number, PathError, Polar,
+    Refusal, Scara, Side,
+};
+use proptest::prelude::*;
+
+/// Step of finite differences in mm, and what they are off by.
+const STEP: f64 = 1e-3;
+const DIFFERENCES: f64 = 1e-6;
+
+const OUTWARDS: [Elbow; 2] = [Elbow::Left, Elbow::Right];
+
+fn five_bar() -> FiveBar {
+    FiveBar::new(80.0, 100.0, 160.0).unwrap()
+}
+
+fn line<const N: usize>(from: [f64; N], to: [f64; N]) -> Curve<N> {
+    Curve::line(from, to).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn slopes_are_derivatives(
+        x in -40.0..40.0_f64, y in 130.0..200.0_f64, to_x in -40.0..40.0_f64, to_y in 130.0..200.0_f64,
+        share in 0.1..0.9_f64,
+    ) {
+        prop_assume!((x - to_x).hypot(y - to_y) > 1.0);
+        let path = five_bar().path(line([x, y], [to_x, to_y]), OUTWARDS).unwrap();
+        let s = path.length() * share;
+        let [before, here, after] = [s - STEP, s, s + STEP].map(|s| path.point(s).unwrap());
+        let [_, slopes, second] = path.derivatives(s).unwrap();
+        for axis in 0..2 {
+            let slope = (after.position[axis] - before.position[axis]) / (2.0 * STEP);
+            prop_assert!((slope - here.slope[axis]).abs() < DIFFERENCES);
+            prop_assert_eq!(slopes[axis], here.slope[axis]);
+            let bend = (after.slope[axis] - before.slope[axis]) / (2.0 * STEP);
+            prop_assert!((bend - second[axis]).abs() < DIFFERENCES);
+        }
+    }
+
+    /// What is said to be free of singular poses and edges is no more than what is.
+    #[test]
+    fn a_clearance_is_a_distance_that_is_proven(x in -150.0..150.0_f64, y in -150.0..150.0_f64) {
+        let clearance = Polar::new(0.0..=300.0).clearance([x, y], Side::Front);
+        // The middle is the only such place; a box reaches it at the largest coordinate.
+        let true_clearance = x.abs().max(y.abs());
+        prop_assert!(clearance <= true_clearance && clearance > 0.4 * true_clearance, "{clearance} {true_clearance}");
+    }
+}
+
+#[test]
+fn an_arm_counts_its_turns() {
+    let polar = Polar::new(10.0..=100.0);
+    let round = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 2.75 * TAU).unwrap();
+    let path = polar.path(round, Side::Front).unwrap();
+    let [start, end] = [0.0, round.length()].map(|s| path.point(s).unwrap().position);
+    assert!((end[0] - start[0] - 2.75 * TAU).abs() < 1e-9);
+    // The next begins where this one ended, turns included.
+    let next = polar.path_from(line(round.end(), [20.0, 60.0]), Side::Front, end).unwrap();
+    assert_eq!(next.point(0.0).unwrap().position, end);
+    let many = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 9.0 * TAU).unwrap();
+    assert!(matches!(polar.path(many, Side::Front), Err(PathError::Turns { .. })));
+}
+
+/// The arc length at which a curve is refused.
+fn refused<M: Machine<N>, const N: usize>(machine: &M, curve: Curve<N>, branch: M::Branch) -> (f64, String)
+where
+    M: core::fmt::Debug,
+{
+    let error = machine.path(curve, branch).unwrap_err();
+    let s = match error {
+        PathError::Unreachable { s, .. } | PathError::BranchEnds { s, .. } | PathError::Singular { s, .. } => s,
+        PathError::Limit { s: [s, _], .. } | PathError::Area { s: [s, _], .. } => s,
+        _ => panic!("{error}"),
+    };
+    (s, error.to_string())
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused_with_its_place() {
+    // Through the middle of a polar machine, 30 mm on.
+    let (s, text) = refused(&Polar::new(-50.0..=50.0), line([30.0, 0.0], [-30.0, 0.0]), Side::Front);
+    assert!((s - 30.0).abs() < 1e-3, "{s}");
+    assert!(text.ends_with("the branch ends where the tool is in the middle"), "{text}");
+    // The five-bar's right arm is straight at 260 mm from its motor.
+    let (s, text) = refused(&five_bar(), line([0.0, 180.0], [0.0, 300.0]), OUTWARDS);
+    assert!((s - (260.0_f64.powi(2) - 1600.0).sqrt() + 180.0).abs() < 1e-2, "{s}");
+    assert!(text.contains("the branch ends where the left arm is too short or too long"), "{text}");
+    // Both forearms are in line on the way down: singular, though both arms reach.
+    let (s, text) = refused(&five_bar(), line([0.0, 200.0], [0.0, 20.0]), OUTWARDS);
+    let elbow = |y: f64| {
+        let [left, _] = five_bar().inverse([0.0, y], OUTWARDS).unwrap();
+        100.0 * left.sin()
+    };
+    let y = 200.0 - s;
+    assert!((elbow(y) - y).abs() < 1e-2, "{y}");
+    assert!(text.ends_with("the machine is singular"), "{text}");
+    // A cord that is too short, a carriage that is too high, a frame.
+    let plotter = HangingPlotter::new(1200.0, 300.0..=1000.0).unwrap();
+    let (s, text) = refused(&plotter, line([600.0, 300.0], [1000.0, 300.0]), ());
+    assert!((s - (1e6_f64 - 9e4).sqrt() + 600.0).abs() < 1e-5 || s < 355.0, "{s}");
+    assert!(text.contains("cord goes to"), "{text}");
+    let delta = LinearDelta::new(250.0, 110.0, 0.0..=400.0).unwrap();
+    let (s, text) = refused(&delta, line([0.0, 0.0, 100.0], [0.0, 0.0, 300.0]), ());
+    assert!((s - (300.0 - (250.0_f64.powi(2) - 110.0_f64.powi(2)).sqrt())).abs() < 1e-5, "{s}");
+    assert!(text.contains("carriage 1 goes to 400"), "{text}");
+    let frame = CoreXy::new(0.0..=300.0, 0.0..=200.0);
+    let (s, text) = refused(&frame, line([150.0, 100.0], [150.0, 220.0]), ());
+    assert!((s - 100.0).abs() < 1e-5 && text.contains("coordinate 1 of the tool goes to"), "{s} {text}");
+    // Along an edge and to its end is no harm.
+    assert!(frame.path(line([0.0, 0.0], [300.0, 0.0]), ()).is_ok());
+    // A start that is out of reach says by how much.
+    let scara = Scara::new(160.0, 140.0, 30.0).unwrap();
+    let (s, text) = refused(&scara, line([310.0, 0.0, 0.0, 0.0], [200.0, 0.0, 0.0, 0.0]), Elbow::Left);
+    assert!(s == 0.0 && text.contains("(310, 0, 0, 0): the arm is too short or too long, by 9.8"), "{text}");
+}
+
+#[test]
+fn ranges_that_are_none_are_refused() {
+    #[derive(Clone)]
+    struct Slide;
+    impl Machine<1> for Slide {
+        type Branch = ();
+        fn axes(&self) -> [Axis; 1] {
+            [Axis::linear("slide", 0.0..=f64::NAN)]
+        }
+        fn inverse<T: Number>(&self, tool: [T; 1], (): ()) -> Result<[T; 1], Refusal> {
+            Ok(tool)
+        }
+    }
+    let error = Slide.path(line([1.0], [2.0]), ()).unwrap_err();
+    assert_eq!(error.to_string(), "0..=NaN is no range of the slide");
+}
