@@ -12,6 +12,7 @@ use path_timing::{
     Waypoint, segments_within,
 };
 use scara_kin::{Arm, ArmPath, Elbow, Joints};
+use test_support::Random;
 use test_support::instructions::{Limit, bench};
 
 /// Who runs the points.
@@ -43,6 +44,12 @@ const fn points(machine: Machine) -> u32 {
         Machine::TwoLinks | Machine::ThreeArms => 200,
     }
 }
+
+/// A stream along so many corners with limits of jerk.
+const SMOOTH: &str = "a knot with jerk";
+const CORNERS: u32 = 100;
+/// Its rows.
+const KNOTS: u32 = 2361;
 
 /// Of smoothing, and of the joints' cubics, in mm.
 const TOLERANCE_MM: f64 = 0.01;
@@ -143,9 +150,48 @@ fn shape(make: [Make; 2], rounds: u32) -> usize {
         .sum::<usize>()
 }
 
+/// Sides of 2 to 5 mm that turn by 5 to 30 degrees.
+fn corners(count: u32) -> Vec<[f64; 2]> {
+    let mut random = Random::new(1);
+    let (mut at, mut heading) = ([0.0, 0.0], 0.0_f64);
+    (0..count)
+        .map(|_| {
+            let turn = random.within(5.0, 30.0_f64).to_radians();
+            heading += if random.below(2) == 0 { turn } else { -turn };
+            let (length, (sin, cos)) = (random.within(2.0, 5.0), heading.sin_cos());
+            at = [at[0] + length * cos, at[1] + length * sin];
+            at
+        })
+        .collect()
+}
+
+/// A stream with limits of jerk. Its rows.
+fn smooth(points: &[[f64; 2]]) -> u32 {
+    let mut vertices = [Vertex::default(); 24];
+    let mut window = vec![Knot::default(); 200];
+    let axis = AxisLimits {
+        speed: 150.0,
+        acceleration: 3000.0,
+        jerk: Some(100_000.0),
+    };
+    let waypoints = points.iter().copied().map(Waypoint::from);
+    let curves = Smoothed::new(waypoints, 0.02, &mut vertices).unwrap();
+    let curves = curves.map(Result::unwrap);
+    let rows = LookAhead::new(curves, [axis; 2], |_| Ok(8), &mut window).unwrap();
+    let rows: Result<Vec<_>, _> = rows.collect();
+    u32::try_from(rows.unwrap().len()).unwrap()
+}
+
 fn run(case: &str, rounds: u32) {
     if let Some((_, make, _)) = SHAPED.iter().find(|(name, ..)| *name == case) {
         black_box(shape(*make, rounds));
+        return;
+    }
+    if case == SMOOTH {
+        let points = corners(CORNERS);
+        for _ in 0..rounds {
+            assert_eq!(smooth(black_box(&points)), KNOTS);
+        }
         return;
     }
     let found = CASES.iter().find(|(name, ..)| *name == case);
@@ -176,6 +222,13 @@ fn main() -> ExitCode {
         rounds: [1, 4],
         most,
     });
-    let limits: Vec<_> = limits.into_iter().chain(shaped).collect();
+    let smooth = Limit {
+        case: SMOOTH,
+        unit: "per knot",
+        units: f64::from(KNOTS),
+        rounds: [1, 2],
+        most: 100_000.0,
+    };
+    let limits: Vec<_> = limits.into_iter().chain(shaped).chain([smooth]).collect();
     bench(run, &limits)
 }

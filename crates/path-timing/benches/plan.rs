@@ -63,11 +63,6 @@ fn measure<const N: usize>(criterion: &mut Criterion) {
 
 /// The same path over and over, back and forth, as a stream.
 fn measure_stream<const N: usize>(criterion: &mut Criterion) {
-    let limits = [AxisLimits {
-        speed: 1.0,
-        acceleration: 3.0,
-        jerk: None,
-    }; N];
     let back = |s: f64| {
         let mut point = swing::<N>(4.0 - s)?;
         for slope in &mut point.slope {
@@ -76,16 +71,26 @@ fn measure_stream<const N: usize>(criterion: &mut Criterion) {
         Ok(point)
     };
     let mut group = criterion.benchmark_group(format!("{N} axes, {SEGMENTS} segments"));
-    group.bench_function("look ahead, 64 slots", |bencher| {
-        let mut window = [Knot::default(); 64];
-        bencher.iter(|| {
-            let paths = [swing::<N> as fn(f64) -> _, back].map(|point| PathFn::new(4.0, point));
-            let segments = |_: &_| Ok(SEGMENTS / 2);
-            let motion = LookAhead::new(&paths, limits, segments, black_box(&mut window));
-            let motion = motion.expect("window is long enough");
-            motion.filter(|row| black_box(row).is_ok()).count()
+    for (name, jerk, slots) in [
+        ("look ahead, 64 slots", None, 64),
+        ("look ahead with jerk, 200 slots", Some(20.0), 200),
+    ] {
+        let limits = [AxisLimits {
+            speed: 1.0,
+            acceleration: 3.0,
+            jerk,
+        }; N];
+        let mut window = vec![Knot::default(); slots];
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let paths = [swing::<N> as fn(f64) -> _, back].map(|point| PathFn::new(4.0, point));
+                let segments = |_: &_| Ok(SEGMENTS / 2);
+                let motion = LookAhead::new(&paths, limits, segments, black_box(&mut window));
+                let motion = motion.expect("window is long enough");
+                motion.filter(|row| black_box(row).is_ok()).count()
+            });
         });
-    });
+    }
 }
 
 fn benches(criterion: &mut Criterion) {

@@ -5,7 +5,7 @@
 //! jerks concern three neighbours, so
 //!
 //! ```text
-//! F(x) = t ΣT + Σ -log(1 - g²) + Σ -log x      g: each utilisation of a limit, T: the time of each segment
+//! F(x) = t ΣT + Σ -log(1 - g²) + Σ -log x / 10      g: each utilisation of a limit, T: the time of each segment
 //! ```
 //!
 //! has a Newton system of five diagonals, solved in one sweep. Every step stays inside all limits and
@@ -16,6 +16,8 @@ mod barrier;
 mod newton;
 mod stream;
 
+use core::ops::Range;
+
 use crate::number::{cube_root, sqrt};
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
@@ -23,13 +25,14 @@ use crate::{Axes, Knot};
 pub(crate) use barrier::Walk;
 use barrier::{Barrier, Degree, Moving, Utilisation};
 pub(crate) use newton::Equation;
-pub(crate) use stream::extend;
+pub(crate) use stream::{Extension, extend};
 
 /// Slows the fastest speeds so that all limits of jerk are kept.
 pub(crate) fn smooth<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     for_each_run(knots, |run| {
         go_inside(limits, run);
-        approach(limits, run, 0, &TABLE);
+        let weight = centre(limits, run, 0);
+        approach(limits, run, 0..run.len(), weight, TABLE_GAP);
         scale(run, 1.0 / tightest(limits, run));
     });
 }
@@ -58,54 +61,72 @@ fn go_inside<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     scale(knots, slower.min(INSIDE));
 }
 
-/// How far a search goes.
-struct Effort {
-    /// The fraction of the time that a limit at each knot may cost at the end.
-    last_gap: f64,
-    /// Most Newton steps with one weight.
-    steps: u32,
-    /// Decrease of F by a step, for each knot, at which the search goes on with a greater weight.
-    centred: f64,
+/// The least F with a small weight, with the first `fixed` speeds as they are. The weight.
+fn centre<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize) -> f64 {
+    let weight = weight_of(knots, FIRST_GAP);
+    let all = fixed..knots.len();
+    descend(limits, knots, &all, weight);
+    weight
 }
 
-/// Of a table, which begins with the shape that it ends with.
-const TABLE: Effort = Effort {
-    last_gap: 2e-4,
-    steps: 8,
-    centred: 0.03,
-};
-
-/// From speeds inside all limits to the fastest ones, with the first `fixed` as they are.
+/// From the least F with a weight to the fastest speeds, but for a part of the time, of the knots in a
+/// range.
 fn approach<A: Axes>(
     limits: &Reciprocals<A>,
     knots: &mut [Knot<A>],
-    fixed: usize,
-    effort: &Effort,
+    range: Range<usize>,
+    mut weight: f64,
+    last_gap: f64,
 ) {
+    let last_weight = weight_of(knots, last_gap);
+    // Written so that NaN ends it.
+    while weight < last_weight {
+        let growth = GROWTH.min(last_weight / weight);
+        weight *= growth;
+        newton::step(limits, knots, &range, [weight, growth]);
+        descend(limits, knots, &range, weight);
+    }
+}
+
+/// Newton steps to the least F.
+fn descend<A: Axes>(
+    limits: &Reciprocals<A>,
+    knots: &mut [Knot<A>],
+    range: &Range<usize>,
+    weight: f64,
+) {
+    let enough = as_f64(range.len()) * CENTRED;
+    for _ in 0..STEPS {
+        let promised = newton::step(limits, knots, range, [weight, 1.0]);
+        // Written so that NaN ends it.
+        let goes_on = promised > enough;
+        if !goes_on {
+            break;
+        }
+    }
+}
+
+/// The weight with which a limit at each knot may cost a part of the time.
+fn weight_of<A: Axes>(knots: &[Knot<A>], gap: f64) -> f64 {
     let total_s = knots.windows(2).fold(0.0, |sum, pair| match pair {
         [from, to] => sum + segment_s(from, to),
         _ => sum,
     });
-    let count = u32::try_from(knots.len()).map_or(f64::INFINITY, f64::from);
-    let mut weight = count / (total_s * FIRST_GAP);
-    let last_weight = count / (total_s * effort.last_gap);
-    loop {
-        for _ in 0..effort.steps {
-            let decrease = newton::step(limits, knots, fixed, weight);
-            // Written so that NaN ends it.
-            let goes_on = decrease > count * effort.centred;
-            if !goes_on {
-                break;
-            }
-        }
-        // Written so that NaN ends it.
-        let goes_on = weight < last_weight;
-        if !goes_on {
-            break;
-        }
-        weight = (weight * GROWTH).min(last_weight);
-    }
+    as_f64(knots.len()) / (total_s * gap)
 }
+
+fn as_f64(count: usize) -> f64 {
+    u32::try_from(count).map_or(f64::INFINITY, f64::from)
+}
+
+/// The part of the time that a limit at each knot may cost at the end of a table's search.
+const TABLE_GAP: f64 = 2e-4;
+
+/// Most Newton steps with one weight.
+const STEPS: u32 = 50;
+
+/// Twice the decrease of F that a whole step promises for each knot, at which it is the last.
+const CENTRED: f64 = 0.2;
 
 /// Where the search begins, as a fraction of the tightest limit.
 const INSIDE: f64 = 0.95;
@@ -159,8 +180,8 @@ pub(crate) struct Most {
     pub(crate) stretch: f64,
 }
 
-impl Barrier for Most {
-    fn limit(&mut self, utilisation: &Utilisation) {
+impl Most {
+    fn raise<const KNOTS: usize>(&mut self, utilisation: &Utilisation<KNOTS>) {
         let value = utilisation.value.abs();
         let stretch = match utilisation.degree {
             Degree::Speed => value,
@@ -168,6 +189,16 @@ impl Barrier for Most {
             Degree::Jerk => cube_root(value),
         };
         self.stretch = self.stretch.max(stretch);
+    }
+}
+
+impl Barrier for Most {
+    fn limit(&mut self, utilisation: &Utilisation<2>) {
+        self.raise(utilisation);
+    }
+
+    fn step(&mut self, utilisation: &Utilisation<3>) {
+        self.raise(utilisation);
     }
 
     fn time(&mut self, _: f64, _: [f64; 2]) {}

@@ -30,10 +30,11 @@ const MIN_KNOTS: usize = 4;
 /// below the highest. Where the stream has no path for now, the machine comes to rest at the end of
 /// the last one and goes on when there is one.
 ///
-/// With a limit of jerk the window is planned as a whole, from the row handed out last to its end: some
-/// fifty Newton steps for each knot, which is work for a PC. No feed is above 1. A change of the feed is
-/// smooth, as that of a [`Playback`](crate::Playback), and begins where the knots of the window allow it
-/// to end: to be held at any time takes a window longer than the way to rest.
+/// With a limit of jerk speeds come from an interior point, which is work for a PC: some 15 to 30 Newton
+/// steps for each knot where half of the window is twice as long as the braking, or more. What changes is
+/// planned again, from before the braking at the window's old end on. No feed is above 1. A change of the
+/// feed is smooth, as that of a [`Playback`](crate::Playback), and begins where the knots of the window
+/// allow it to end: to be held at any time takes a window longer than the way to rest.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve, Knot, LookAhead};

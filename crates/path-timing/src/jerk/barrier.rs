@@ -12,18 +12,21 @@ pub(crate) enum Degree {
     Jerk,
 }
 
-/// A part of a limit that is used, -1 to 1, and its derivatives by the speeds at three consecutive
-/// knots: the one before a segment, and both ends of it.
+/// A part of a limit that is used, -1 to 1, and its derivatives by the speeds at consecutive knots: both
+/// ends of a segment, and with three of them the one before.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Utilisation {
+pub(crate) struct Utilisation<const KNOTS: usize> {
     pub(super) value: f64,
-    pub(super) by: [f64; 3],
+    pub(super) by: [f64; KNOTS],
     pub(super) degree: Degree,
 }
 
 /// What takes utilisations and times into account.
 pub(crate) trait Barrier {
-    fn limit(&mut self, utilisation: &Utilisation);
+    /// Of a segment.
+    fn limit(&mut self, utilisation: &Utilisation<2>);
+    /// Of the step of an acceleration where a segment begins.
+    fn step(&mut self, utilisation: &Utilisation<3>);
     /// The length of a segment and the speeds at its ends.
     fn time(&mut self, ds: f64, speeds: [f64; 2]);
 }
@@ -54,11 +57,10 @@ impl Acceleration {
         }
     }
 
-    fn utilisation(&self) -> Utilisation {
-        let [by0, by1] = self.by;
+    const fn utilisation(&self) -> Utilisation<2> {
         Utilisation {
             value: self.value,
-            by: [0.0, by0, by1],
+            by: self.by,
             degree: Degree::Acceleration,
         }
     }
@@ -193,20 +195,29 @@ impl<A: Axes> Moving<'_, A> {
         let tool = Acceleration::new([0.0, self.segment.tool()], self.speeds);
         barrier.limit(&tool.utilisation());
         let axes = A::each(self.segment.axes()).iter().zip(self.limits.axes());
+        let between = self.before.as_ref().filter(|_| !self.eased[0]);
+        let between = between.map(|before| (before, Rate::between(before, self)));
         for (axis, (load, limits)) in axes.enumerate() {
             // What rounding may add: a part of the limit that is not there.
             let sum = w0 + w1;
-            let rest = 1.0 - load.noise * sum * sum * 0.25;
+            let noise = load.noise * sum * sum * 0.25;
+            let inverse = 1.0 / (1.0 - noise);
             let ends = load
                 .accelerations
-                .map(|terms| Acceleration::new(terms.map(|term| term / rest), self.speeds));
+                .map(|terms| Acceleration::new(terms.map(|term| term * inverse), self.speeds));
             for end in &ends {
                 barrier.limit(&end.utilisation());
             }
             // The jerk as a part of its limit is this times that of the acceleration by the time.
             let time_s = limits.jerk / limits.acceleration;
             if time_s > 0.0 {
-                self.visit_jerk(axis, &ends, [time_s, 1.0 - rest], barrier);
+                self.visit_jerk(&ends, [time_s, noise], barrier);
+                if let Some((before, rate)) = &between
+                    && let Some(earlier) = A::each(&before.accelerations).get(axis)
+                {
+                    let utilisation = rate.step([earlier, &ends[0]], [time_s, noise]);
+                    barrier.step(&utilisation);
+                }
             }
         }
     }
@@ -216,7 +227,7 @@ impl<A: Axes> Moving<'_, A> {
         let mut speed = |[e, f]: [f64; 2]| {
             barrier.limit(&Utilisation {
                 value: e * w0 + f * w1,
-                by: [0.0, e, f],
+                by: [e, f],
                 degree: Degree::Speed,
             });
         };
@@ -233,28 +244,24 @@ impl<A: Axes> Moving<'_, A> {
         }
     }
 
-    /// The jerk inside, and the steps of the acceleration at the knots.
+    /// The jerk inside, and where accelerations begin or end at zero.
     ///
     /// ```text
-    /// inside (a₁ - a₀) / T     at a knot (a₀ - a₋) / ((T₋ + T) / 2)     T = 2Δs / (w₀ + w₁)
-    /// where accelerations begin or end at zero a / (T / 2)
+    /// inside (a₁ - a₀) / T     from or to zero a / (T / 2)     T = 2Δs / (w₀ + w₁)
     /// ```
     fn visit_jerk(
         &self,
-        axis: usize,
         [start, end]: &[Acceleration; 2],
         [time_s, noise]: [f64; 2],
         barrier: &mut impl Barrier,
     ) {
         let [w0, w1] = self.speeds;
         let sum = w0 + w1;
-        // Both accelerations may be off by the noise: so much less of the limit is there.
-        let with_noise = |rate: f64| rate / (1.0 - 2.0 * noise * rate * sum).max(LEAST_LIMIT);
         let mut over_time = |value: f64, [by0, by1]: [f64; 2], rate: f64| {
-            let rate = with_noise(rate);
+            let rate = with_noise(rate, 2.0 * noise * rate * sum);
             barrier.limit(&Utilisation {
                 value: value * sum * rate,
-                by: [0.0, (by0 * sum + value) * rate, (by1 * sum + value) * rate],
+                by: [(by0 * sum + value) * rate, (by1 * sum + value) * rate],
                 degree: Degree::Jerk,
             });
         };
@@ -268,27 +275,53 @@ impl<A: Axes> Moving<'_, A> {
         if eased_end {
             over_time(end.value, end.by, rate * 2.0);
         }
-        let before = self.before.as_ref().filter(|_| !eased_start);
-        let Some(before) = before else { return };
-        let Some(earlier) = A::each(&before.accelerations).get(axis) else {
-            return;
-        };
-        let [wb, wa] = before.speeds;
-        let (sum_before, step) = (wb + wa, start.value - earlier.value);
-        // One over the time between the middles: W₋ W / (Δs₋ W + Δs W₋).
-        let mixed = before.ds * sum + self.ds * sum_before;
-        let rate = time_s * sum_before * sum / mixed;
-        let rate = rate / (1.0 - 4.0 * noise * rate).max(LEAST_LIMIT);
-        let by_before = rate * before.ds * sum / (mixed * sum_before);
-        let by_here = rate * self.ds * sum_before / (mixed * sum);
-        barrier.limit(&Utilisation {
+    }
+}
+
+/// A rate with what rounding may add to two accelerations, as a part of the limit: 1 / (1 - z) ≤ 1 + 2z
+/// up to z = 1/2.
+fn with_noise(rate: f64, noise: f64) -> f64 {
+    rate * (1.0 + 2.0 * noise.min(LEAST_LIMIT))
+}
+
+/// One over the time between the middles of two segments, and its derivatives by the sums of the speeds at
+/// the ends of each.
+///
+/// ```text
+/// 1 / ((T₋ + T) / 2) = W₋ W / (Δs₋ W + Δs W₋)     W = w₀ + w₁
+/// ```
+#[derive(Debug, Clone, Copy)]
+struct Rate {
+    value: f64,
+    by_before: f64,
+    by_here: f64,
+}
+
+impl Rate {
+    fn between<A: Axes>(before: &Before<A>, here: &Moving<'_, A>) -> Self {
+        let [[wb, wa], [w0, w1]] = [before.speeds, here.speeds];
+        let (sum_before, sum) = (wb + wa, w0 + w1);
+        let inverse = 1.0 / (before.ds * sum + here.ds * sum_before);
+        Self {
+            value: sum_before * sum * inverse,
+            by_before: before.ds * (sum * inverse) * (sum * inverse),
+            by_here: here.ds * (sum_before * inverse) * (sum_before * inverse),
+        }
+    }
+
+    /// The step from an acceleration to the next, as a jerk.
+    fn step(&self, [from, to]: [&Acceleration; 2], [time_s, noise]: [f64; 2]) -> Utilisation<3> {
+        let factor = with_noise(time_s, 4.0 * noise * time_s * self.value);
+        let (step, rate) = (to.value - from.value, self.value * factor);
+        let [by_before, by_here] = [self.by_before, self.by_here].map(|by| step * by * factor);
+        Utilisation {
             value: step * rate,
             by: [
-                step * by_before - earlier.by[0] * rate,
-                step * (by_before + by_here) + (start.by[0] - earlier.by[1]) * rate,
-                step * by_here + start.by[1] * rate,
+                by_before - from.by[0] * rate,
+                by_before + by_here + (to.by[0] - from.by[1]) * rate,
+                by_here + to.by[1] * rate,
             ],
             degree: Degree::Jerk,
-        });
+        }
     }
 }

@@ -42,6 +42,8 @@ pub(super) struct Window<'w, A: Axes> {
     new: usize,
     /// What the wanted speeds were computed for.
     feed: Option<Feed>,
+    /// With a limit of jerk: whether what follows was to come.
+    is_open: bool,
 }
 
 impl<'w, A: Axes> Window<'w, A> {
@@ -52,6 +54,7 @@ impl<'w, A: Axes> Window<'w, A> {
             end: 0,
             new: 0,
             feed: None,
+            is_open: false,
         }
     }
 
@@ -140,17 +143,25 @@ impl<'w, A: Axes> Window<'w, A> {
         (self.new, self.feed) = (0, Some(feed));
     }
 
-    /// With a limit of jerk: plans the new knots, and those before them once more.
+    /// With a limit of jerk: plans the new knots, and those before them that change. Where there is room
+    /// nothing follows for now.
     pub(super) fn look_through(&mut self, limits: &Reciprocals<A>) {
-        if self.new == 0 {
+        let has_ended = self.has_room();
+        if self.new == 0 && !(self.is_open && has_ended) {
             return;
         }
         let begin = self.first.saturating_sub(1);
-        let from = self.first.saturating_sub(begin);
+        let half = self.knots.len().midpoint(1);
         let knots = self.knots.get_mut(begin..self.end).unwrap_or_default();
-        let old = knots.len().saturating_sub(self.new).saturating_sub(1);
-        jerk::extend(limits, knots, from, old);
-        self.new = 0;
+        // One more, since the window is filled a row before.
+        let handed = knots.len().saturating_sub(half).saturating_add(1);
+        let extension = jerk::Extension {
+            from: self.first.saturating_sub(begin),
+            old: knots.len().saturating_sub(self.new).saturating_sub(1),
+            handed: (!has_ended).then_some(handed),
+        };
+        jerk::extend(limits, knots, extension);
+        (self.new, self.is_open) = (0, !has_ended);
     }
 
     /// With a limit of jerk: the same as [`step`](Self::step), towards a wanted feed of at most 1.

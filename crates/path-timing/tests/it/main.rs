@@ -11,6 +11,8 @@ mod jerk;
 mod jerk_corners;
 mod jerk_stream;
 mod look_ahead;
+mod monotonic;
+mod nlp;
 mod optimum;
 mod run;
 mod shaper;

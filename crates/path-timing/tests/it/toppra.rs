@@ -2,14 +2,14 @@
 //!
 //! It runs where `python3` has it, and must where `PATH_TIMING_REQUIRE_TOPPRA` is set.
 
+use core::convert::Infallible;
 use core::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
-use std::process::{Command, Stdio};
 
-use path_timing::{Knot, Table};
+use path_timing::{AxisLimits, Knot, Path, Table};
+use test_support::{Random, setting};
 
 use crate::support::machine::{Line, limits};
+use crate::support::python::{ask, has};
 
 /// Speed and acceleration of the angle, in rad, and of the reach, in mm.
 const LIMITS: [[f64; 2]; 2] = [[2.0, 20.0], [300.0, 2000.0]];
@@ -18,7 +18,7 @@ const LIMITS: [[f64; 2]; 2] = [[2.0, 20.0], [300.0, 2000.0]];
 const CELLS: f64 = 5e-4;
 
 /// Above the optimum, by segments.
-const ABOVE: [(u32, f64); 2] = [(100, 0.006), (1000, 5e-4)];
+const ABOVE: [(u32, f64); 2] = [(100, 0.005), (1000, 5e-4)];
 
 const LINES: [[f64; 4]; 8] = [
     [-100.0, 101.0, 100.0, 99.0],
@@ -31,58 +31,113 @@ const LINES: [[f64; 4]; 8] = [
     [15.0, 80.0, -5.0, 220.0],
 ];
 
-fn is_there() -> bool {
-    let mut python = Command::new("python3");
-    let status = python
-        .args(["-c", "import toppra"])
-        .stderr(Stdio::null())
-        .status();
-    status.is_ok_and(|status| status.success())
+/// The shortest times of paths, by their limits and what the script knows them by.
+fn shortest_s(paths: impl Iterator<Item = ([AxisLimits; 2], String)>) -> Vec<f64> {
+    let mut lines = String::new();
+    for ([first, second], path) in paths {
+        let speeds = [first.speed, second.speed];
+        let accelerations = [first.acceleration, second.acceleration];
+        for limit in speeds.iter().chain(&accelerations) {
+            write!(lines, "{limit} ").unwrap();
+        }
+        writeln!(lines, "{path}").unwrap();
+    }
+    ask("toppra/duration.py", &lines)
 }
 
-/// The shortest times of all lines.
-fn durations_s() -> Vec<f64> {
-    let mut python = Command::new("python3")
-        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/toppra/duration.py"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let [[v0, a0], [v1, a1]] = LIMITS;
-    let mut input = String::new();
-    for [x0, y0, x1, y1] in LINES {
-        writeln!(input, "{x0} {y0} {x1} {y1} {v0} {v1} {a0} {a1}").unwrap();
-    }
-    let mut stdin = python.stdin.take().unwrap();
-    stdin.write_all(input.as_bytes()).unwrap();
-    drop(stdin);
-    let output = python.wait_with_output().unwrap();
-    assert!(output.status.success());
-    let output = String::from_utf8(output.stdout).unwrap();
-    output.lines().map(|line| line.parse().unwrap()).collect()
+fn has_toppra() -> bool {
+    has("toppra", "PATH_TIMING_REQUIRE_TOPPRA")
+}
+
+/// The time of a table over the shortest.
+fn share<P: Path<Axes = [f64; 2], Error = Infallible> + Clone>(
+    path: &P,
+    limits: [AxisLimits; 2],
+    segments: u32,
+    shortest_s: f64,
+) -> f64 {
+    let mut knots = [Knot::default(); 1001];
+    let table = Table::plan([path], limits, |_| segments, &mut knots).unwrap();
+    table.duration_s() / shortest_s
 }
 
 #[test]
 fn time_above_that_of_toppra() {
-    if !is_there() {
-        let is_required = std::env::var_os("PATH_TIMING_REQUIRE_TOPPRA").is_some();
-        assert!(!is_required, "python3 has no toppra");
+    if !has_toppra() {
         return;
     }
-    let shortest_s = durations_s();
-    assert_eq!(shortest_s.len(), LINES.len());
     let limits = LIMITS.map(|[speed, acceleration]| limits(speed, acceleration, None));
-    for ([x0, y0, x1, y1], shortest_s) in LINES.into_iter().zip(shortest_s) {
+    let words = LINES.map(|[x0, y0, x1, y1]| (limits, format!("line {x0} {y0} {x1} {y1}")));
+    let shortest = shortest_s(words.into_iter());
+    for ([x0, y0, x1, y1], shortest_s) in LINES.into_iter().zip(shortest) {
         let line = Line {
             from: [x0, y0],
             to: [x1, y1],
         };
         for (segments, above) in ABOVE {
-            let mut knots = [Knot::default(); 1001];
-            let table = Table::plan([line], limits, |_| segments, &mut knots).unwrap();
-            let share = table.duration_s() / shortest_s;
+            let share = share(&line, limits, segments, shortest_s);
             println!("{line:?}, {segments} segments: {share:.5} of {shortest_s:.4} s");
             assert!((1.0 - CELLS..1.0 + above).contains(&share), "{share}");
         }
     }
+}
+
+/// Above the optimum on random lines: the slopes change from row to row, and the speed of the
+/// parameter is linear in time between two.
+const ABOVE_ON_LINES: [(u32, f64); 2] = [(100, 0.015), (1000, 0.002)];
+
+/// Shares of all paths, which are within bounds: least, median and most.
+fn judge<P: Path<Axes = [f64; 2], Error = Infallible> + Clone>(
+    what: &str,
+    cases: &[(P, [AxisLimits; 2], String)],
+    bounds: [(u32, f64); 2],
+) {
+    let words = cases
+        .iter()
+        .map(|(_, limits, words)| (*limits, words.clone()));
+    let shortest = shortest_s(words);
+    for (segments, above) in bounds {
+        let found = cases.iter().zip(&shortest).filter(|(_, s)| !s.is_nan());
+        let mut shares: Vec<_> = found
+            .map(|((path, limits, words), shortest_s)| {
+                let share = share(path, *limits, segments, *shortest_s);
+                let is_near = (1.0 - CELLS..1.0 + above).contains(&share);
+                assert!(is_near, "{share}: {words} {limits:?}");
+                share
+            })
+            .collect();
+        shares.sort_by(f64::total_cmp);
+        let (median, worst) = (shares[shares.len() / 2], shares[shares.len() - 1]);
+        let count = shares.len();
+        println!("{count} {what}, {segments} segments: {median:.5} of the time, worst {worst:.5}");
+    }
+}
+
+/// `TOPPRA_PATHS` of each kind.
+#[test]
+fn time_above_that_of_toppra_on_random_paths() {
+    if !has_toppra() {
+        return;
+    }
+    let mut random = Random::new(setting("SEED", 1));
+    let mut lines = Vec::new();
+    for _ in 0..setting("TOPPRA_PATHS", 8) {
+        // The angle does not pass 180 degrees.
+        let mut end = || [random.within(-200.0, 200.0), random.within(10.0, 200.0)];
+        let line = Line {
+            from: end(),
+            to: end(),
+        };
+        let ([x0, y0], [x1, y1]) = (line.from, line.to);
+        let [own, other] = LIMITS.map(|[speed, acceleration]| {
+            limits(
+                speed * random.size(-0.5, 0.5),
+                acceleration * random.size(-0.5, 0.5),
+                None,
+            )
+        });
+        let words = format!("line {x0} {y0} {x1} {y1}");
+        lines.push((line, [own, other], words));
+    }
+    judge("lines", &lines, ABOVE_ON_LINES);
 }
