@@ -156,10 +156,12 @@ fn attack<P>(
             check(paths, &limits, &rows, "playback");
             tried.playbacks += 1;
             let duration_s = table.duration_s();
-            let mut fine = vec![Knot::default(); paths.len() * 401 + 1];
-            let fine = Table::plan(paths.iter().cloned(), limits, |_| 400, &mut fine);
-            if let (false, Ok(fine)) = (has_jerk, fine) {
-                tried.slowest = tried.slowest.max(duration_s / fine.duration_s());
+            if !has_jerk {
+                let mut fine = vec![Knot::default(); paths.len() * 401 + 1];
+                let fine = Table::plan(paths.iter().cloned(), limits, |_| 400, &mut fine);
+                if let Ok(fine) = fine {
+                    tried.slowest = tried.slowest.max(duration_s / fine.duration_s());
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use path_timing::{AxisLimits, Curve, Knot, Mode, Row, Shaper, Table};
-use stepper_sync::{Direction, MinIntervals, PvtQuantiser, PvtSteps, Rate, StepScale};
+use pvt_steps::{Direction, MinIntervals, PvtQuantiser, PvtSteps, Rate, StepScale};
 
 use super::closed_form::SHAPERS;
 use super::rows::shaped;
