@@ -229,6 +229,14 @@ impl DeltaPath {
         };
         let departure = motion.departure_between(platform, 2.0 * kappa * fourth, between);
         let rounding = 2.0 * ROOT3 * kappa * delta.tolerance();
+        let departure = departure + rounding;
+        if departure.is_nan() {
+            return None;
+        }
+        if delta.max_swivel().is_none() {
+            let sides = [0.0; 3];
+            return Some(Known { departure, sides });
+        }
         // Between nodes, and the curve's bend from one to the next: h²/8 of its second derivative.
         let [_, second, ..] = *motion.longest();
         let off = between + second * NODE * NODE / 8.0 + rounding;
@@ -239,10 +247,7 @@ impl DeltaPath {
             let places = ends.iter().chain(&nodes);
             places.fold(0.0, |most, place| larger_or_nan(most, side(place).abs())) + off
         });
-        (!departure.is_nan()).then_some(Known {
-            departure: departure + rounding,
-            sides,
-        })
+        Some(Known { departure, sides })
     }
 }
 
@@ -250,7 +255,7 @@ impl DeltaPath {
 struct Known {
     /// The most by which the platform leaves the curve.
     departure: f64,
-    /// How far each wrist comes beside the plane of its arm.
+    /// How far each wrist comes beside the plane of its arm, where its ball joints have a limit.
     sides: [f64; 3],
 }
 
@@ -263,6 +268,10 @@ fn larger_or_nan(a: f64, b: f64) -> f64 {
 
 /// The angle that is farthest beyond an end of the range, if one is.
 fn beyond(range: &JointRange, cubic: &Cubic) -> Option<f64> {
+    let mut points = cubic.control_points().into_iter();
+    if points.all(|point| range.min() <= point && point <= range.max()) {
+        return None;
+    }
     let [low, high] = cubic.extent();
     // Written so that NaN is beyond.
     let (is_above, is_below) = (low >= range.min() - TOUCH, high <= range.max() + TOUCH);
