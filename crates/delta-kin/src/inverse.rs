@@ -6,10 +6,10 @@ use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, atan2_of_length, sqrt};
 
 use crate::arm::{smallest, zip};
-use crate::prepared::{PreparedArm, Triangle, middle, thetas};
+use crate::prepared::{Heading, PreparedArm, Triangle, middle, thetas};
 use crate::range::{half, max_value};
 use crate::rounded::Rounded;
-use crate::{Arm, AssemblyMode, Delta, Elbow, ZAxis};
+use crate::{Arm, AssemblyMode, Delta, Elbow, PoseError, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
@@ -132,6 +132,12 @@ impl fmt::Display for Across {
     }
 }
 
+/// How fast the angles turn along a direction, or why they do not at a finite rate.
+type Slopes<T> = Result<Vector3<T>, PoseError<T>>;
+
+/// An arm, its triangle and heading, and one over the length of the heading.
+type Reached<'a, T> = (&'a PreparedArm<T>, Triangle<T>, Heading<T>, T);
+
 impl<T: RealField + Trig> Delta<T> {
     /// The angles that bring the platform's centre to `point`, in the machine's working and
     /// assembly modes: `forward` of them is the point.
@@ -161,8 +167,47 @@ impl<T: RealField + Trig> Delta<T> {
     #[inline]
     pub fn inverse(&self, point: Point3<T>) -> Result<Vector3<T>, InverseError<T>> {
         let local = self.flip(point.coords);
+        match self.admitted(&local) {
+            Some((angles, _)) => Ok(angles),
+            None => self.inverse_at_limits(point, local),
+        }
+    }
+
+    /// The same, and how fast each angle turns while the centre moves along `along`. With e the rod and
+    /// t the way of the elbow when its angle grows:
+    ///
+    /// ```text
+    /// θ' = (e · along) / (e · t)
+    /// ```
+    pub(crate) fn inverse_with_slopes(
+        &self,
+        point: Point3<T>,
+        along: Vector3<T>,
+    ) -> Result<(Vector3<T>, Slopes<T>), InverseError<T>> {
+        let local = self.flip(point.coords);
+        if let Some((angles, arms)) = self.admitted(&local) {
+            let along = self.flip(along);
+            let parts = arms.map(|(prepared, triangle, heading, scale)| {
+                let rod = prepared.rod(&triangle, &heading, scale);
+                let tangent = prepared.in_plane(heading.cos * scale, heading.sin * scale);
+                let lever = rod.dot(&tangent) * prepared.turn;
+                let is_free = lever.abs() > self.tolerance() * prepared.lower;
+                (is_free, rod.dot(&along) / lever)
+            });
+            let [(first, a), (second, b), (third, c)] = parts;
+            if first && second && third {
+                return Ok((angles, Ok(Vector3::new(a, b, c))));
+            }
+        }
+        let pose = self.pose_at(point)?;
+        Ok((pose.angles(), pose.joint_rates(along)))
+    }
+
+    /// The angles, and what they were found by, of a point that no arm reaches at a limit.
+    #[inline(always)]
+    fn admitted(&self, local: &Vector3<T>) -> Option<(Vector3<T>, [Reached<'_, T>; 3])> {
         let arms = zip(self.prepared().each_ref(), self.working_mode()).map(|(prepared, elbow)| {
-            let triangle = prepared.triangle(&local);
+            let triangle = prepared.triangle(local);
             (
                 prepared,
                 triangle,
@@ -185,9 +230,9 @@ impl<T: RealField + Trig> Delta<T> {
         let rods = arms
             .map(|(prepared, triangle, heading, scale)| prepared.rod(&triangle, &heading, scale));
         if first && second && third && self.is_assembled(rods) {
-            return Ok(Vector3::from(angles));
+            return Some((Vector3::from(angles), arms));
         }
-        self.inverse_at_limits(point, local)
+        None
     }
 
     /// The same where an arm is on an edge or beyond.

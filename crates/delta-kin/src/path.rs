@@ -10,7 +10,7 @@ use path_timing::{Corner, Curve, PathPoint, Span, ToolLimits};
 pub use error::DeltaPathError;
 
 use crate::arm::zip;
-use crate::{Arm, Delta, Pose, PoseError};
+use crate::{Arm, Delta};
 
 /// A curve of the platform's centre as a path of the three arms, in radians, by the curve's arc
 /// length: what [`path_timing::Table`] plans.
@@ -131,12 +131,6 @@ impl DeltaPath {
             step *= 0.5;
         }
     }
-
-    fn pose(&self, s: f64) -> Result<Pose, DeltaPathError> {
-        let point = self.centre(s);
-        let pose = self.delta.pose_at(point);
-        pose.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })
-    }
 }
 
 /// The arm whose angle jumps by a whole turn.
@@ -156,11 +150,14 @@ impl path_timing::Path for DeltaPath {
     }
 
     fn point(&self, s: f64) -> Result<PathPoint<[f64; 3]>, DeltaPathError> {
-        let pose = self.pose(s)?;
-        let slopes = pose.joint_rates(self.curve.at(s).tangent.into());
-        let slopes = slopes.map_err(|reason: PoseError| DeltaPathError::Singular { s, reason })?;
+        let at = self.curve.at(s);
+        let point = at.point.into();
+        let found = self.delta.inverse_with_slopes(point, at.tangent.into());
+        let (angles, slopes) =
+            found.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })?;
+        let slopes = slopes.map_err(|reason| DeltaPathError::Singular { s, reason })?;
         Ok(PathPoint {
-            position: pose.angles().into(),
+            position: angles.into(),
             slope: slopes.into(),
         })
     }

@@ -3,6 +3,7 @@
 use crate::jerk::Equation;
 use crate::junction::Junction;
 use crate::leg::Leg;
+use crate::number::Real;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Path, PathPoint, PlanError, Row, Span, ToolLimits};
 
@@ -179,28 +180,30 @@ impl<P: Path> Laying<P> {
 /// units of its speed limit, is that of the slopes at its ends but for a part of the steepest one. What
 /// happens to the path between two knots that do not cannot be known from them, and a cubic through
 /// them may take any time.
-pub(crate) fn is_resolved<A: Axes>(
-    limits: &Reciprocals<A>,
+pub(crate) fn is_resolved<A: Axes, R: Real>(
+    limits: &Reciprocals<A, R>,
     from: &Knot<A>,
     to: &Knot<A>,
     gap: f64,
 ) -> bool {
-    let inverse = 1.0 / to.ds;
+    let inverse = R::ONE / R::of(to.ds);
     let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
     let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
     let axes = limits.axes().iter().zip(positions.zip(slopes));
-    let (mut apart, mut steepest) = (0.0, [0.0; 3]);
+    let (mut apart, mut steepest) = (R::ZERO, [R::ZERO; 3]);
     for (limit, ((q0, q1), (p0, p1))) in axes {
-        let mean = (q1 - q0) * inverse;
-        let rounding = (q0.abs() + q1.abs()) * inverse * ROUNDING;
-        let by = ((mean - (p0 + p1) * 0.5).abs() - rounding).max(0.0) * limit.speed;
-        apart += by * by;
-        for (square, slope) in steepest.iter_mut().zip([mean, *p0, *p1]) {
-            *square += (slope * limit.speed) * (slope * limit.speed);
+        let mean = R::of(q1 - q0) * inverse;
+        let (p0, p1) = (R::of(*p0), R::of(*p1));
+        let rounding = (R::of(*q0).abs() + R::of(*q1).abs()) * inverse * R::of(ROUNDING);
+        let apart_by = (mean - (p0 + p1) * R::of(0.5)).abs() - rounding;
+        let by = apart_by.max(R::ZERO) * limit.speed;
+        apart = apart + by * by;
+        for (square, slope) in steepest.iter_mut().zip([mean, p0, p1]) {
+            *square = *square + (slope * limit.speed) * (slope * limit.speed);
         }
     }
-    let steepest = steepest.into_iter().fold(0.0, f64::max);
-    apart <= steepest * (gap * gap)
+    let steepest = steepest.into_iter().fold(R::ZERO, Real::max);
+    apart <= steepest * R::of(gap * gap)
 }
 
 /// The part of the steepest slope by which slopes may disagree. Of 5000 random paths with 2 to 39
@@ -215,25 +218,26 @@ pub(crate) const LARGEST_GAP_AT_RESTS: f64 = 0.1;
 const ROUNDING: f64 = 1e-11;
 
 /// Where each knot of a leg has to stand for all segments to take about the same time, written into
-/// the knots; their speeds are planned.
+/// the knots; the speeds of the first `planned` of them, which reach from its start to its end, are.
 ///
 /// A part of each segment's share is the same for all, so that places of high speed, where a limit may
 /// be hidden between two knots, keep theirs.
-pub(crate) fn spread_by_time<A: Axes>(knots: &mut [Knot<A>]) {
+pub(crate) fn spread_by_time<A: Axes>(knots: &mut [Knot<A>], planned: usize) {
     let count = knots.len().saturating_sub(1);
-    let Ok(segments) = u32::try_from(count) else {
-        return;
-    };
-    let segments = f64::from(segments);
-    let total_s = knots.windows(2).map(pair_s).sum::<f64>();
-    let shares = |time_s: f64| TIMED * time_s / total_s * segments + (1.0 - TIMED);
+    let [segments, own] = [count, planned.saturating_sub(1)].map(index_as_f64);
+    let pairs = knots.windows(2).take(planned.saturating_sub(1));
+    let per_second = TIMED * segments / pairs.map(pair_s).sum::<f64>();
+    let even = (1.0 - TIMED) * segments / own;
+    let shares = |time_s: f64| time_s * per_second + even;
     let mut from = 0_usize;
     // Shares of the segments before `from`.
     let mut before = 0.0;
     for index in 1..count {
         let wanted = index_as_f64(index);
         let mut s = None;
-        while let Some(pair) = knots.get(from..from.saturating_add(2)) {
+        let ends =
+            |from: usize| (from.saturating_add(1) < planned).then(|| from..from.saturating_add(2));
+        while let Some(pair) = ends(from).and_then(|range| knots.get(range)) {
             let share = shares(pair_s(pair));
             if before + share >= wanted {
                 s = Some(within(pair, (wanted - before) / share));

@@ -1,6 +1,7 @@
 //! The range of the numbers that the crate computes with, and roots of them.
 
-use core::ops::RangeInclusive;
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, RangeInclusive, Sub};
 
 /// The smallest number above 0 that the crate computes with.
 pub(crate) const SMALLEST: f64 = 1e-50;
@@ -14,9 +15,87 @@ pub(crate) fn range() -> RangeInclusive<f64> {
     SMALLEST..=LARGEST
 }
 
+/// What speeds are computed in.
+pub(crate) trait Real:
+    Copy
+    + Default
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Into<f64>
+{
+    const ZERO: Self;
+    const ONE: Self;
+    const EPSILON: Self;
+
+    /// The nearest number.
+    fn of(x: f64) -> Self;
+    fn abs(self) -> Self;
+    fn max(self, other: Self) -> Self;
+    fn min(self, other: Self) -> Self;
+    fn copysign(self, sign: Self) -> Self;
+    fn sqrt(self) -> Self;
+}
+
+macro_rules! real {
+    ($float:ident, $of:expr, $sqrt:path) => {
+        impl Real for $float {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const EPSILON: Self = Self::EPSILON;
+
+            #[inline(always)]
+            fn of(x: f64) -> Self {
+                let of: fn(f64) -> Self = $of;
+                of(x)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.max(other)
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                self.min(other)
+            }
+
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                self.copysign(sign)
+            }
+
+            #[inline]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+        }
+    };
+}
+real!(f64, |x| x, sqrt);
+real!(f32, nearest_f32, trig_kernels::sqrt);
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the nearest number is wanted"
+)]
+#[inline(always)]
+const fn nearest_f32(x: f64) -> f32 {
+    x as f32
+}
+
 /// The larger of two numbers; a comparison where `f64::max` is a call of a library.
 #[inline]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
+pub(crate) fn larger<R: PartialOrd>(a: R, b: R) -> R {
     if a > b { a } else { b }
 }
 

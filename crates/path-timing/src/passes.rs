@@ -6,20 +6,20 @@
 //! each segment and what is left allow. Where a pair of speeds keeps the limits, each slower pair of
 //! the same ratio does, so the forward pass always finds one.
 
-use crate::number::LARGEST;
+use crate::number::{LARGEST, Real};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::{Axes, Knot};
 
 /// Gives the knots the speeds of the fastest motion with which no knot passes its cap: from rest to
 /// rest where the first and the last have a cap of 0.
-pub(crate) fn fastest<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
+pub(crate) fn fastest<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) {
     backward(limits, knots);
     forward(limits, knots);
 }
 
 /// From the last knot: the highest speed at each from which the rest can be run.
-fn backward<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
+fn backward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) {
     let mut earlier = knots.iter_mut().rev();
     let Some(mut to) = earlier.next() else {
         return;
@@ -27,8 +27,10 @@ fn backward<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     to.speed = to.cap.min(LARGEST);
     for from in earlier {
         if to.ds > 0.0 {
-            let (w0, w1) = Segment::new(limits, from, to, 1.0).begin(to.speed, from.cap);
-            (from.speed, from.ratio) = (w0, if w0 > 0.0 { w1 / w0 } else { 0.0 });
+            let segment = Segment::new(limits, from, to, 1.0);
+            let (w0, w1) = segment.begin(R::of(to.speed), R::of(from.cap));
+            let ratio = if w0 > R::ZERO { w1 / w0 } else { R::ZERO };
+            (from.speed, from.ratio) = (w0.into(), ratio.into());
         } else {
             (from.speed, from.ratio) = (to.speed.min(from.cap), 1.0);
         }
@@ -37,14 +39,16 @@ fn backward<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
 }
 
 /// From the first knot: as fast as each segment and what is left allow.
-fn forward<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
+fn forward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) {
     let mut rest = knots.iter_mut();
     let Some(mut from) = rest.next() else {
         return;
     };
     for to in rest {
         to.speed = if to.ds > 0.0 {
-            Segment::new(limits, from, to, 1.0).end(from.speed, to.speed, from.ratio)
+            let segment = Segment::new(limits, from, to, 1.0);
+            let [w0, ceiling, ratio] = [from.speed, to.speed, from.ratio].map(R::of);
+            segment.end(w0, ceiling, ratio).into()
         } else {
             from.speed
         };

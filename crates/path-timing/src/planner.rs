@@ -5,6 +5,7 @@ use crate::knots::{
     LARGEST_GAP, LARGEST_GAP_AT_RESTS, Laying, fraction, is_resolved, spread_by_time,
 };
 use crate::leg::Leg;
+use crate::number::Real;
 use crate::passes::{self, segment_s};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
@@ -41,48 +42,58 @@ pub(crate) struct Place<'p, P: Path> {
     pub(crate) used: usize,
 }
 
-/// How often the knots of a leg are moved to where the machine is slow.
-const ROUNDS: u32 = 1;
+/// Segments below which all are laid to see where the machine is slow; beyond, half of them.
+const FEW: u32 = 32;
 
 impl<P: Path + Clone> Place<'_, P> {
     /// Lays the knots of the leg behind its first, which is the first of those given: dense where the
     /// fastest motion along the leg is slow.
-    pub(crate) fn lay(
+    pub(crate) fn lay<R: Real>(
         &self,
-        limits: &Reciprocals<P::Axes>,
+        limits: &Reciprocals<P::Axes, R>,
         segments: u32,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let (count, available) = (knots_of(segments), knots.len());
-        let (Some(own), Ok(last)) = (knots.get_mut(..count), usize::try_from(segments)) else {
+        let Some(own) = knots.get_mut(..count) else {
             return Err(PlanError::Memory {
                 needed: self.used.saturating_add(count),
                 available: self.used.saturating_add(available),
             });
         };
         let length = self.leg.length();
-        for (index, knot) in (0..=segments).zip(&mut *own) {
-            let u = f64::from(index) / f64::from(segments);
+        // Where the machine is slow shows on fewer knots, too.
+        let few = (segments / 2).max(segments.min(FEW));
+        let (rough, _) = own.split_at_mut(knots_of(few).min(count));
+        for (index, knot) in (0..=few).zip(&mut *rough) {
+            let u = f64::from(index) / f64::from(few);
             knot.moved_s = length * fraction(u, self.rests);
         }
-        for round in 0..=ROUNDS {
-            if round > 0 {
-                self.alone(limits, own);
-                spread_by_time(own);
-            }
-            let mut laying = Laying::new(self.leg.clone(), self.start);
-            for (index, knot) in own.iter_mut().enumerate().skip(1) {
-                let s = if index < last { knot.moved_s } else { length };
-                *knot = laying.knot(s)?;
-            }
-        }
+        self.lay_at_places(rough)?;
+        self.alone(limits, rough);
+        spread_by_time(own, knots_of(few));
+        self.lay_at_places(own)?;
         self.check_resolved(limits, own)
     }
 
+    /// Lays knots where they are to stand.
+    fn lay_at_places(&self, knots: &mut [Knot<P::Axes>]) -> Result<(), PlanError<P::Error>> {
+        let (length, last) = (self.leg.length(), knots.len().saturating_sub(1));
+        let mut laying = Laying::new(self.leg.clone(), self.start);
+        for (index, knot) in knots.iter_mut().enumerate().skip(1) {
+            let s = if index < last { knot.moved_s } else { length };
+            *knot = Knot {
+                moved_s: knot.moved_s,
+                ..laying.knot(s)?
+            };
+        }
+        Ok(())
+    }
+
     /// Refuses knots between which the path is not known.
-    fn check_resolved(
+    fn check_resolved<R: Real>(
         &self,
-        limits: &Reciprocals<P::Axes>,
+        limits: &Reciprocals<P::Axes, R>,
         knots: &[Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let mut from = Knot::start(self.start);
@@ -102,7 +113,7 @@ impl<P: Path + Clone> Place<'_, P> {
     }
 
     /// Plans the leg for itself.
-    fn alone(&self, limits: &Reciprocals<P::Axes>, knots: &mut [Knot<P::Axes>]) {
+    fn alone<R: Real>(&self, limits: &Reciprocals<P::Axes, R>, knots: &mut [Knot<P::Axes>]) {
         let before = knots.first().copied();
         let cap_of = |rests| if rests { 0.0 } else { f64::INFINITY };
         let [start, end] = self.rests.map(cap_of);
@@ -216,6 +227,11 @@ pub(crate) fn time<A: Axes, E>(
     if limits.has_jerk() {
         jerk::smooth(limits, knots);
     }
+    duration(knots)
+}
+
+/// The time of knots with speeds.
+pub(crate) fn duration<A: Axes, E>(knots: &[Knot<A>]) -> Result<f64, PlanError<E>> {
     let mut knots = knots.iter();
     let Some(mut from) = knots.next() else {
         return Ok(0.0);

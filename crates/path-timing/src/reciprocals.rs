@@ -1,42 +1,48 @@
 //! The limits of the axes as factors, with what rounding needs of them.
 
-use crate::number::{LARGEST, SMALLEST, cube_root, sqrt};
+use crate::number::{LARGEST, Real, SMALLEST, cube_root, sqrt};
 use crate::{Axes, AxisLimits, Knot, PlanError, ToolLimits};
 
 /// By how much limits are taken lower: what a dozen products round off.
-pub(crate) const MARGIN: f64 = 1.0 + 64.0 * f64::EPSILON;
+pub(crate) fn margin<R: Real>() -> R {
+    R::ONE + R::of(64.0) * R::EPSILON
+}
+
+/// The largest limit in single precision, and one over the smallest.
+const LARGEST_SINGLE: f64 = 1e8;
 
 /// One over the limits of an axis, a margin included.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reciprocal {
-    pub(crate) speed: f64,
-    pub(crate) acceleration: f64,
+pub(crate) struct Reciprocal<R = f64> {
+    pub(crate) speed: R,
+    pub(crate) acceleration: R,
     /// 0 without such a limit.
-    pub(crate) jerk: f64,
+    pub(crate) jerk: R,
 }
 
 /// The reciprocals of all axes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reciprocals<A: Axes> {
-    axes: A::Of<Reciprocal>,
+pub(crate) struct Reciprocals<A: Axes, R: Real = f64> {
+    axes: A::Of<Reciprocal<R>>,
     has_jerk: bool,
 }
 
-impl<A: Axes> Reciprocals<A> {
+impl<A: Axes, R: Real> Reciprocals<A, R> {
     pub(crate) fn new(limits: &A::Of<AxisLimits>) -> Self {
         let mut reciprocals = A::filled(Reciprocal {
-            speed: 0.0,
-            acceleration: 0.0,
-            jerk: 0.0,
+            speed: R::ZERO,
+            acceleration: R::ZERO,
+            jerk: R::ZERO,
         });
         for (reciprocal, limits) in A::each_mut(&mut reciprocals)
             .iter_mut()
             .zip(A::each(limits))
         {
+            let per = |limit: f64| margin::<R>() / R::of(limit);
             *reciprocal = Reciprocal {
-                speed: MARGIN / limits.speed,
-                acceleration: MARGIN / limits.acceleration,
-                jerk: limits.jerk.map_or(0.0, |jerk| MARGIN / jerk),
+                speed: per(limits.speed),
+                acceleration: per(limits.acceleration),
+                jerk: limits.jerk.map_or(R::ZERO, per),
             };
         }
         Self {
@@ -45,6 +51,13 @@ impl<A: Axes> Reciprocals<A> {
         }
     }
 
+    /// Those of each axis.
+    pub(crate) fn axes(&self) -> &[Reciprocal<R>] {
+        A::each(&self.axes)
+    }
+}
+
+impl<A: Axes> Reciprocals<A> {
     /// The reciprocals of limits within the range of the crate.
     pub(crate) fn checked<E>(limits: &A::Of<AxisLimits>) -> Result<Self, PlanError<E>> {
         for (axis, limits) in A::each(limits).iter().enumerate() {
@@ -59,6 +72,30 @@ impl<A: Axes> Reciprocals<A> {
             }
         }
         Ok(Self::new(limits))
+    }
+
+    /// The reciprocals in single precision, of limits that it can be computed with.
+    pub(crate) fn single<E>(
+        limits: &A::Of<AxisLimits>,
+    ) -> Result<Reciprocals<A, f32>, PlanError<E>> {
+        let (min, max) = (1.0 / LARGEST_SINGLE, LARGEST_SINGLE);
+        for (axis, limits) in A::each(limits).iter().enumerate() {
+            for (name, value) in [
+                ("speed", limits.speed),
+                ("acceleration", limits.acceleration),
+            ] {
+                if !(min..=max).contains(&value) {
+                    return Err(PlanError::Limit {
+                        axis,
+                        name,
+                        value,
+                        min,
+                        max,
+                    });
+                }
+            }
+        }
+        Ok(Reciprocals::new(limits))
     }
 
     /// The reciprocals with a fraction of each speed limit.
@@ -90,8 +127,8 @@ impl<A: Axes> Reciprocals<A> {
         let of_tool = tool.map(|tool| {
             let acceleration = tool
                 .acceleration
-                .map_or(0.0, |limit| MARGIN * to.ds / limit);
-            [MARGIN * to.ds / tool.feed, acceleration, 0.0]
+                .map_or(0.0, |limit| margin::<f64>() * to.ds / limit);
+            [margin::<f64>() * to.ds / tool.feed, acceleration, 0.0]
         });
         of_axes
             .chain(of_tool)
@@ -106,10 +143,5 @@ impl<A: Axes> Reciprocals<A> {
     /// Whether any axis has a limit of jerk.
     pub(crate) const fn has_jerk(&self) -> bool {
         self.has_jerk
-    }
-
-    /// Those of each axis.
-    pub(crate) fn axes(&self) -> &[Reciprocal] {
-        A::each(&self.axes)
     }
 }

@@ -1,7 +1,7 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
-use crate::number::{larger, sqrt};
-use crate::reciprocals::{MARGIN, Reciprocal, Reciprocals};
+use crate::number::{Real, larger};
+use crate::reciprocals::{Reciprocal, Reciprocals, margin};
 use crate::{Axes, Knot, PathPoint};
 
 /// The end of a segment whose speed is looked for.
@@ -13,13 +13,13 @@ pub(crate) enum End {
 
 /// Utilisation of the limits of one axis, as a function of the speeds w₀ and w₁.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct AxisLoad {
+pub(crate) struct AxisLoad<R = f64> {
     /// Accelerations at the start and at the end: coefficients of y and z.
-    pub(crate) accelerations: [[f64; 2]; 2],
+    pub(crate) accelerations: [[R; 2]; 2],
     /// What both may be off by rounding: coefficient of y.
-    pub(crate) noise: f64,
+    pub(crate) noise: R,
     /// Speed between the ends: coefficients of w₀ and w₁.
-    pub(crate) middle: [f64; 2],
+    pub(crate) middle: [R; 2],
 }
 
 /// All limits of one cubic segment, in the speeds w₀ and w₁ of the parameter at its ends.
@@ -40,21 +40,27 @@ pub(crate) struct AxisLoad {
 /// The controller gets speeds p w and a time T that are rounded. Its accelerations are sums of
 /// terms of the size of (|m| + |p₀| + |p₁|) y / Δs, and are off by some machine epsilons of that:
 /// where T is short, by many of the limit.
+///
+/// `R` is what all this is computed in; the change of a position is always taken in `f64`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Segment<A: Axes> {
-    axes: A::Of<AxisLoad>,
+pub(crate) struct Segment<A: Axes, R: Real = f64> {
+    axes: A::Of<AxisLoad<R>>,
     /// Largest utilisation of a speed limit per w₀, and per w₁.
-    ends: [f64; 2],
+    ends: [R; 2],
     /// Acceleration of the tool: coefficient of z.
-    tool: f64,
+    tool: R,
 }
 
 /// Relative rounding of the terms of an acceleration, from the positions on to the numbers that a
 /// controller gets, with those of a feed.
-pub(crate) const NOISE: f64 = 128.0 * f64::EPSILON;
+fn noise<R: Real>() -> R {
+    R::of(128.0) * R::EPSILON
+}
 
 /// What a root may be off by; less than the margin.
-const ROOT: f64 = 1.0 + 32.0 * f64::EPSILON;
+fn root<R: Real>() -> R {
+    R::ONE + R::of(32.0) * R::EPSILON
+}
 
 /// The part of the noise that is left where a root has its own.
 const ROOT_NOISE: f64 = 0.75;
@@ -65,50 +71,50 @@ const PASSES: u32 = 8;
 /// Halvings of the gap between a speed that holds and one that does not.
 const HALVINGS: u32 = 12;
 
-impl AxisLoad {
+impl<R: Real> AxisLoad<R> {
     const NONE: Self = Self {
-        accelerations: [[0.0; 2]; 2],
-        noise: 0.0,
-        middle: [0.0; 2],
+        accelerations: [[R::ZERO; 2]; 2],
+        noise: R::ZERO,
+        middle: [R::ZERO; 2],
     };
 
-    fn new(limit: &Reciprocal, [q0, q1]: [f64; 2], [p0, p1]: [f64; 2], inverse: f64) -> Self {
-        let mean = (q1 - q0) * inverse;
+    fn new(limit: &Reciprocal<R>, mean: R, [p0, p1]: [R; 2], inverse: R) -> Self {
+        let [two, four, six] = [2.0, 4.0, 6.0].map(R::of);
         let scale = inverse * limit.acceleration;
+        let middle = R::of(1.5) * mean;
         Self {
             accelerations: [
                 [
-                    (6.0 * mean - 4.0 * p0 - 2.0 * p1) * scale,
-                    (4.0 * p0 - 2.0 * p1) * scale,
+                    (six * mean - four * p0 - two * p1) * scale,
+                    (four * p0 - two * p1) * scale,
                 ],
                 [
-                    (2.0 * p0 + 4.0 * p1 - 6.0 * mean) * scale,
-                    (4.0 * p1 - 2.0 * p0) * scale,
+                    (two * p0 + four * p1 - six * mean) * scale,
+                    (four * p1 - two * p0) * scale,
                 ],
             ],
-            noise: NOISE * (mean.abs() + p0.abs() + p1.abs()) * scale,
-            middle: [
-                (1.5 * mean - p0) * limit.speed,
-                (1.5 * mean - p1) * limit.speed,
-            ],
+            noise: noise::<R>() * (mean.abs() + p0.abs() + p1.abs()) * scale,
+            middle: [(middle - p0) * limit.speed, (middle - p1) * limit.speed],
         }
     }
 }
 
-impl<A: Axes> Segment<A> {
+impl<A: Axes, R: Real> Segment<A, R> {
     /// The segment between two knots, with the tool's feed multiplied.
     ///
     /// ```text
     /// tool: p₀ = p₁ = m = 1, speeds w₀, w₁, acceleration 2 z / Δs = (w₁² - w₀²) / 2Δs
     /// ```
-    pub(crate) fn new(limits: &Reciprocals<A>, from: &Knot<A>, to: &Knot<A>, feed: f64) -> Self {
+    pub(crate) fn new(limits: &Reciprocals<A, R>, from: &Knot<A>, to: &Knot<A>, feed: f64) -> Self {
         let mut segment = Self::of_axes(limits, &from.point, &to.point, to.ds);
         if let Some(tool) = &to.tool {
+            let feed = margin::<R>() / R::of(tool.feed * feed);
             for end in &mut segment.ends {
-                *end = end.max(MARGIN / (tool.feed * feed));
+                *end = end.max(feed);
             }
             if let Some(acceleration) = tool.acceleration {
-                segment.tool = 2.0 * MARGIN / (to.ds * acceleration);
+                let per_second2 = R::of(to.ds) * R::of(acceleration);
+                segment.tool = R::of(2.0) * margin::<R>() / per_second2;
             }
         }
         segment
@@ -116,16 +122,16 @@ impl<A: Axes> Segment<A> {
 
     /// The segment with the limits of the axes alone.
     pub(crate) fn of_axes(
-        limits: &Reciprocals<A>,
+        limits: &Reciprocals<A, R>,
         from: &PathPoint<A>,
         to: &PathPoint<A>,
         ds: f64,
     ) -> Self {
-        let inverse = 1.0 / ds;
+        let inverse = R::ONE / R::of(ds);
         let mut segment = Self {
             axes: A::filled(AxisLoad::NONE),
-            ends: [0.0; 2],
-            tool: 0.0,
+            ends: [R::ZERO; 2],
+            tool: R::ZERO,
         };
         let [from_end, to_end] = &mut segment.ends;
         let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
@@ -133,7 +139,9 @@ impl<A: Axes> Segment<A> {
         let all = (A::each_mut(&mut segment.axes).iter_mut().zip(limits.axes()))
             .zip(positions.zip(slopes));
         for ((load, limit), ((q0, q1), (p0, p1))) in all {
-            *load = AxisLoad::new(limit, [*q0, *q1], [*p0, *p1], inverse);
+            let (p0, p1) = (R::of(*p0), R::of(*p1));
+            let mean = R::of(q1 - q0) * inverse;
+            *load = AxisLoad::new(limit, mean, [p0, p1], inverse);
             *from_end = from_end.max(p0.abs() * limit.speed);
             *to_end = to_end.max(p1.abs() * limit.speed);
         }
@@ -143,13 +151,13 @@ impl<A: Axes> Segment<A> {
     /// The largest utilisation of a limit at these speeds, squared where it is a speed:
     /// at most 1 where all hold, and growing with the square of both speeds.
     #[inline]
-    pub(crate) fn load(&self, w0: f64, w1: f64) -> f64 {
+    pub(crate) fn load(&self, w0: R, w1: R) -> R {
         let [from, to] = self.ends;
         let (y, z) = products(w0, w1);
-        let mut hardest = 0.0_f64;
+        let mut hardest = R::ZERO;
         let mut fastest = (from * w0).max(to * w1);
         for axis in A::each(&self.axes) {
-            let noise = axis.noise * y * ROOT_NOISE;
+            let noise = axis.noise * y * R::of(ROOT_NOISE);
             for [c, d] in axis.accelerations {
                 hardest = larger(hardest, (c * y + d * z).abs() + noise);
             }
@@ -161,41 +169,41 @@ impl<A: Axes> Segment<A> {
     }
 
     /// What each axis asks for.
-    pub(crate) const fn axes(&self) -> &A::Of<AxisLoad> {
+    pub(crate) const fn axes(&self) -> &A::Of<AxisLoad<R>> {
         &self.axes
     }
 
     /// Largest utilisation of a speed limit per w₀, and per w₁.
-    pub(crate) const fn ends(&self) -> [f64; 2] {
+    pub(crate) const fn ends(&self) -> [R; 2] {
         self.ends
     }
 
     /// Acceleration of the tool: coefficient of z.
-    pub(crate) const fn tool(&self) -> f64 {
+    pub(crate) const fn tool(&self) -> R {
         self.tool
     }
 
-    pub(crate) fn holds(&self, w0: f64, w1: f64) -> bool {
-        self.load(w0, w1) <= ROOT
+    pub(crate) fn holds(&self, w0: R, w1: R) -> bool {
+        self.load(w0, w1) <= root()
     }
 
     /// The highest speed at one end, at most `cap`, that the limits from above allow with the
     /// speed `other` at the other end. Where a limit asks for a higher speed, the result does
     /// not hold: the caller looks.
-    pub(crate) fn highest(&self, end: End, other: f64, cap: f64) -> f64 {
+    pub(crate) fn highest(&self, end: End, other: R, cap: R) -> R {
         let [from, to] = self.ends;
         let scale = if end == End::From { from } else { to };
         let mut speed = cap;
-        if scale * speed > 1.0 {
-            speed = 1.0 / scale;
+        if scale * speed > R::ONE {
+            speed = R::ONE / scale;
         }
         for axis in A::each(&self.axes) {
             let [e, f] = axis.middle;
             let (own, others) = if end == End::From { (e, f) } else { (f, e) };
             let value = own * speed + others * other;
-            if value.abs() > 1.0 {
-                let highest = (1.0_f64.copysign(value) - others * other) / own;
-                if highest > 0.0 && highest < speed {
+            if value.abs() > R::ONE {
+                let highest = (R::ONE.copysign(value) - others * other) / own;
+                if highest > R::ZERO && highest < speed {
                     speed = highest;
                 }
             }
@@ -205,9 +213,9 @@ impl<A: Axes> Segment<A> {
                 let d = if end == End::From { -d } else { d };
                 let (y, z) = products(other, speed);
                 let (value, noise) = (c * y + d * z, axis.noise * y);
-                if value + noise > 1.0 {
+                if value + noise > R::ONE {
                     speed = lower(c + axis.noise, d, other, speed);
-                } else if value - noise < -1.0 {
+                } else if value - noise < -R::ONE {
                     speed = lower(axis.noise - c, -d, other, speed);
                 }
             }
@@ -218,8 +226,8 @@ impl<A: Axes> Segment<A> {
             self.tool
         };
         let (_, z) = products(other, speed);
-        if (d * z).abs() > 1.0 {
-            speed = lower(0.0, d.copysign(d * z), other, speed);
+        if (d * z).abs() > R::ONE {
+            speed = lower(R::ZERO, d.copysign(d * z), other, speed);
         }
         speed
     }
@@ -230,12 +238,12 @@ impl<A: Axes> Segment<A> {
     ///
     /// Where the ceiling cannot be kept, the speeds differ at most by a factor of [`GROWTH`]: no segment
     /// is begun at a speed whose only partner is next to rest.
-    pub(crate) fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
-        if cap <= 0.0 {
-            return (0.0, ceiling.min(self.speed_from_rest()));
+    pub(crate) fn begin(&self, ceiling: R, cap: R) -> (R, R) {
+        if cap <= R::ZERO {
+            return (R::ZERO, ceiling.min(self.speed_from_rest()));
         }
-        if ceiling <= 0.0 {
-            return (cap.min(self.speed_to_rest()), 0.0);
+        if ceiling <= R::ZERO {
+            return (cap.min(self.speed_to_rest()), R::ZERO);
         }
         let fast = self.highest(End::From, ceiling, cap);
         if fast >= ceiling && self.holds(fast, ceiling) {
@@ -245,27 +253,27 @@ impl<A: Axes> Segment<A> {
     }
 
     /// The highest speed at the end after a start at rest.
-    pub(crate) fn speed_from_rest(&self) -> f64 {
-        1.0 / sqrt(self.load(0.0, 1.0))
+    pub(crate) fn speed_from_rest(&self) -> R {
+        R::ONE / Real::sqrt(self.load(R::ZERO, R::ONE))
     }
 
     /// The highest speed at the start before a rest at the end.
-    pub(crate) fn speed_to_rest(&self) -> f64 {
-        1.0 / sqrt(self.load(1.0, 0.0))
+    pub(crate) fn speed_to_rest(&self) -> R {
+        R::ONE / Real::sqrt(self.load(R::ONE, R::ZERO))
     }
 
     /// The pair of the least time.
     ///
     /// With W = w₀ + w₁ and r = (w₁ - w₀) / W each utilisation is W² times a convex function of r, so
     /// the least of their largest is found between two slopes by the cut of their tangents.
-    fn shortest(&self, ceiling: f64, cap: f64) -> (f64, f64) {
-        let at = |r: f64| self.tangent(r, [1.0 / cap, 1.0 / ceiling]);
-        let [mut low, mut high] = [-STEEPEST, STEEPEST].map(|r| (r, at(r)));
+    fn shortest(&self, ceiling: R, cap: R) -> (R, R) {
+        let at = |r: R| self.tangent(r, [R::ONE / cap, R::ONE / ceiling]);
+        let [mut low, mut high] = [-STEEPEST, STEEPEST].map(|r| (R::of(r), at(R::of(r))));
         let (r, load) = 'found: {
-            if low.1.slope >= 0.0 {
+            if low.1.slope >= R::ZERO {
                 break 'found (low.0, low.1.load);
             }
-            if high.1.slope <= 0.0 {
+            if high.1.slope <= R::ZERO {
                 break 'found (high.0, high.1.load);
             }
             let mut best = if low.1.load < high.1.load { low } else { high };
@@ -281,10 +289,10 @@ impl<A: Axes> Segment<A> {
                 if here.load < best.1.load {
                     best = (r, here);
                 }
-                if best.1.load - least <= best.1.load * CLOSE {
+                if best.1.load - least <= best.1.load * R::of(CLOSE) {
                     break;
                 }
-                if here.slope > 0.0 {
+                if here.slope > R::ZERO {
                     high = (r, here);
                 } else {
                     low = (r, here);
@@ -292,33 +300,39 @@ impl<A: Axes> Segment<A> {
             }
             (best.0, best.1.load)
         };
-        let half = 1.0 / sqrt(load);
-        ((half * (1.0 - r)).min(cap), (half * (1.0 + r)).min(ceiling))
+        let half = R::ONE / Real::sqrt(load);
+        (
+            (half * (R::ONE - r)).min(cap),
+            (half * (R::ONE + r)).min(ceiling),
+        )
     }
 
     /// The largest utilisation at w₀ = 1 - r and w₁ = 1 + r, and its derivative by r. `ends` are
     /// one over the highest speed at each end.
     #[inline]
-    fn tangent(&self, r: f64, ends: [f64; 2]) -> Tangent {
+    fn tangent(&self, r: R, ends: [R; 2]) -> Tangent<R> {
         let mut largest = Tangent::default();
         let mut fastest = Tangent::default();
         for axis in A::each(&self.axes) {
             for [c, d] in axis.accelerations {
                 let value = c + d * r;
-                largest.raise(value.abs() + axis.noise, if value < 0.0 { -d } else { d });
+                largest.raise(
+                    value.abs() + axis.noise,
+                    if value < R::ZERO { -d } else { d },
+                );
             }
             let [e, f] = axis.middle;
-            let value = e * (1.0 - r) + f * (1.0 + r);
-            fastest.raise(value.abs(), if value < 0.0 { e - f } else { f - e });
+            let value = e * (R::ONE - r) + f * (R::ONE + r);
+            fastest.raise(value.abs(), if value < R::ZERO { e - f } else { f - e });
         }
         largest.raise((self.tool * r).abs(), self.tool.copysign(r));
         let [from, to] = self.ends;
         let [from, to] = [from.max(ends[0]), to.max(ends[1])];
-        fastest.raise(from * (1.0 - r), -from);
-        fastest.raise(to * (1.0 + r), to);
+        fastest.raise(from * (R::ONE - r), -from);
+        fastest.raise(to * (R::ONE + r), to);
         largest.raise(
             fastest.load * fastest.load,
-            2.0 * fastest.load * fastest.slope,
+            R::of(2.0) * fastest.load * fastest.slope,
         );
         largest
     }
@@ -327,8 +341,8 @@ impl<A: Axes> Segment<A> {
     ///
     /// Each limit forbids an interval of speeds or all above one. Where the next lower speed that
     /// one allows is forbidden by another, the search goes on from there.
-    fn reach(&self, w0: f64, ceiling: f64) -> Option<f64> {
-        let least = w0.min(ceiling) / GROWTH;
+    fn reach(&self, w0: R, ceiling: R) -> Option<R> {
+        let least = w0.min(ceiling) / R::of(GROWTH);
         let mut speed = ceiling;
         for _ in 0..PASSES {
             let lower = self.highest(End::To, w0, speed);
@@ -348,12 +362,12 @@ impl<A: Axes> Segment<A> {
 
     /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with the speed w₀ times
     /// `ratio` the segment holds.
-    pub(crate) fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
-        if w0 <= 0.0 {
+    pub(crate) fn end(&self, w0: R, ceiling: R, ratio: R) -> R {
+        if w0 <= R::ZERO {
             return ceiling.min(self.speed_from_rest());
         }
-        if ceiling <= 0.0 {
-            return 0.0;
+        if ceiling <= R::ZERO {
+            return R::ZERO;
         }
         let known = w0 * ratio;
         self.reach(w0, ceiling)
@@ -362,7 +376,7 @@ impl<A: Axes> Segment<A> {
 
     /// The speed at the end that is nearest to `wanted` after the speed `w0`, where `known` holds:
     /// the highest below it, else the lowest above it that is found.
-    pub(crate) fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
+    pub(crate) fn toward(&self, w0: R, wanted: R, known: R) -> R {
         if self.holds(w0, wanted) {
             return wanted;
         }
@@ -373,12 +387,12 @@ impl<A: Axes> Segment<A> {
                 below
             };
         }
-        let step = (known - wanted) / f64::from(SAMPLES);
-        let mut samples = (1..SAMPLES).map(|sample| wanted + step * f64::from(sample));
+        let step = (known - wanted) / R::of(f64::from(SAMPLES));
+        let mut samples = (1..SAMPLES).map(|sample| wanted + step * R::of(f64::from(sample)));
         let mut good = samples.find(|w1| self.holds(w0, *w1)).unwrap_or(known);
         let mut bad = good - step;
         for _ in 0..HALVINGS {
-            let middle = (good + bad) * 0.5;
+            let middle = (good + bad) * R::of(0.5);
             if self.holds(w0, middle) {
                 good = middle;
             } else {
@@ -390,8 +404,8 @@ impl<A: Axes> Segment<A> {
 
     /// The lowest speed at the end after the speed `w0`, where `known` holds: at most slower by a factor
     /// of [`GROWTH`].
-    pub(crate) fn slowest(&self, w0: f64, known: f64) -> f64 {
-        let least = (w0 / GROWTH).min(known);
+    pub(crate) fn slowest(&self, w0: R, known: R) -> R {
+        let least = (w0 / R::of(GROWTH)).min(known);
         self.toward(w0, least, known)
     }
 }
@@ -414,15 +428,15 @@ const SAMPLES: u32 = 8;
 
 /// A convex function at a place.
 #[derive(Debug, Clone, Copy, Default)]
-struct Tangent {
-    load: f64,
-    slope: f64,
+struct Tangent<R> {
+    load: R,
+    slope: R,
 }
 
-impl Tangent {
+impl<R: Real> Tangent<R> {
     /// The larger one.
     #[inline]
-    fn raise(&mut self, load: f64, slope: f64) {
+    fn raise(&mut self, load: R, slope: R) {
         if load > self.load {
             *self = Self { load, slope };
         }
@@ -431,22 +445,22 @@ impl Tangent {
 
 /// y and z of the two speeds.
 #[inline]
-fn products(w0: f64, w1: f64) -> (f64, f64) {
-    let (mean, rise) = ((w0 + w1) * 0.5, (w1 - w0) * 0.5);
+fn products<R: Real>(w0: R, w1: R) -> (R, R) {
+    let (mean, rise) = ((w0 + w1) * R::of(0.5), (w1 - w0) * R::of(0.5));
     (mean * mean, mean * rise)
 }
 
 /// The speed w below `speed` at which c (w + o)²/4 + d (w² - o²)/4 = 1, if it does not hold
 /// at `speed` and holds at zero.
-fn lower(c: f64, d: f64, other: f64, speed: f64) -> f64 {
-    let rest = (c - d) * other * other - 4.0;
-    if rest >= 0.0 {
+fn lower<R: Real>(c: R, d: R, other: R, speed: R) -> R {
+    let rest = (c - d) * other * other - R::of(4.0);
+    if rest >= R::ZERO {
         return speed;
     }
     let linear = c * other;
-    let root = sqrt((linear * linear - (c + d) * rest).max(0.0));
+    let root = Real::sqrt((linear * linear - (c + d) * rest).max(R::ZERO));
     let below = -rest / (linear + root);
-    if below > 0.0 && below < speed {
+    if below > R::ZERO && below < speed {
         below
     } else {
         speed

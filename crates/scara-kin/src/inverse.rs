@@ -10,6 +10,7 @@ use trig_kernels::{Trig, atan2_of_length, atan2_of_length_lanes, sin_cos, sqrt};
 pub use error::InverseError;
 pub use solutions::Solutions;
 
+use crate::limits::two;
 use crate::range::{largest_angle, length, max_value};
 use crate::{Arm, Elbow, Joints};
 
@@ -21,6 +22,8 @@ pub(crate) struct Triangle<T> {
     s: T,
     /// r² + l1² - l2²
     k1: T,
+    /// r² - l1² + l2²
+    other_k1: T,
     /// r² - l1² - l2²
     k2: T,
     /// One over the length of the vector (k2, s), 2 l1 l2, and of the shoulders', 2 l1 r².
@@ -28,13 +31,13 @@ pub(crate) struct Triangle<T> {
     per_shoulder: T,
 }
 
+/// How fast both joints turn along a direction, if they do at a finite rate.
+type Slopes<T> = Option<Vector2<T>>;
+
 impl<T: RealField + Trig> Triangle<T> {
     #[inline]
     fn joints(&self, elbow: Elbow) -> Joints<T> {
-        let s = match elbow {
-            Elbow::Right => self.s,
-            Elbow::Left => -self.s,
-        };
+        let s = self.signed(elbow);
         let (sin, cos, inverse) = self.shoulder(s);
         let [shoulder, elbow] =
             atan2_of_length_lanes([sin, s], [cos, self.k2], [inverse, self.per_elbow]);
@@ -49,6 +52,34 @@ impl<T: RealField + Trig> Triangle<T> {
         let [right, left] =
             atan2_of_length_lanes([right.0, left.0], [right.1, left.1], [right.2, left.2]);
         [Joints::new(right, elbow), Joints::new(left, -elbow)]
+    }
+
+    /// How fast both joints turn while the tool moves along `v`, from the triangle alone.
+    ///
+    /// ```text
+    /// q1' = (f · v) / det J = ((r² - l1² + l2²) (p · v)/s + p × v) / r²     det J = s/2
+    /// q2' = -(p · v) / det J = -2 (p · v)/s
+    /// ```
+    ///
+    /// p the tool, f the forearm.
+    #[inline]
+    fn slopes(&self, upper: T, v: Vector2<T>, elbow: Elbow) -> Vector2<T> {
+        let s = self.signed(elbow);
+        let ahead = self.tool.dot(&v) / s;
+        let per_square = self.per_shoulder * upper * two();
+        Vector2::new(
+            (self.other_k1 * ahead + self.tool.perp(&v)) * per_square,
+            -ahead * two(),
+        )
+    }
+
+    /// The area with the elbow's sign.
+    #[inline(always)]
+    fn signed(&self, elbow: Elbow) -> T {
+        match elbow {
+            Elbow::Right => self.s,
+            Elbow::Left => -self.s,
+        }
     }
 
     /// Sine and cosine of the right elbow times some area, and one over that, as the next two.
@@ -186,6 +217,27 @@ impl<T: RealField + Trig> Arm<T> {
             .map_err(|miss| miss.error(elbow))
     }
 
+    /// As [`inverse_elbow_near`](Self::inverse_elbow_near), with the slopes of both joints along the
+    /// direction `along`; these are `None` within a few machine epsilons of a straight or folded arm.
+    #[inline]
+    pub(crate) fn inverse_with_slopes(
+        &self,
+        point: Point2<T>,
+        along: Vector2<T>,
+        elbow: Elbow,
+        near: Joints<T>,
+    ) -> Result<(Joints<T>, Slopes<T>), InverseError<T>> {
+        let triangle = self.triangle(point)?;
+        let joints = self
+            .admit(triangle.joints(elbow), checked(near)?, triangle.tool)
+            .map_err(|miss| miss.error(elbow))?;
+        let along = self.base().rotation.inverse() * along;
+        let rounding = T::default_epsilon() * joints.elbow.abs().max(two());
+        let is_bent = triangle.s * triangle.per_elbow > rounding;
+        let slopes = is_bent.then(|| triangle.slopes(self.upper(), along, elbow));
+        Ok((joints, slopes))
+    }
+
     // Handed on in registers: as a call it costs a third of the whole.
     #[inline(always)]
     pub(crate) fn triangle(&self, point: Point2<T>) -> Result<Triangle<T>, InverseError<T>> {
@@ -211,16 +263,17 @@ impl<T: RealField + Trig> Arm<T> {
         let s = if s2 > T::zero() { sqrt(s2) } else { T::zero() };
         // The longer link's square first: it cancels where the other link is short.
         let less = r2 - squares.longer;
-        let k1 = if squares.difference.is_sign_positive() {
-            r2 + squares.difference
+        let (k1, other_k1) = if squares.difference.is_sign_positive() {
+            (r2 + squares.difference, less + squares.shorter)
         } else {
-            less + squares.shorter
+            (less + squares.shorter, r2 - squares.difference)
         };
         let k2 = less - squares.shorter;
         Ok(Triangle {
             tool,
             s,
             k1,
+            other_k1,
             k2,
             per_elbow: squares.per_elbow,
             per_shoulder: squares.per_shoulder / r2,

@@ -33,6 +33,6 @@ pub use inverse::{InverseError, Solutions};
 pub use joints::{Elbow, Joint, Joints};
 pub use limits::{JointRange, Limits};
 #[cfg(feature = "path-timing")]
-pub use path::{ArmPath, ArmPathError, DiscPath};
+pub use path::{ArmPath, ArmPathError, ArmPathF32, DiscPath};
 pub use tangent::{TangentError, TangentTool, ToolTurn};
 pub use velocity::RatesError;

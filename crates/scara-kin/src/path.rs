@@ -2,6 +2,7 @@
 
 mod disc;
 mod error;
+mod single;
 mod swing;
 mod turns;
 mod walk;
@@ -11,9 +12,10 @@ use path_timing::{Corner, Curve, Path, PathPoint, Span, ToolLimits};
 
 pub use disc::DiscPath;
 pub use error::ArmPathError;
+pub use single::ArmPathF32;
 
 use crate::{Arm, Elbow, Joints};
-use swing::Swing;
+use swing::{Swing, TOUCH};
 use turns::Turns;
 
 /// A curve of the tool as a path of shoulder and elbow, in radians, by the curve's arc length: what
@@ -80,16 +82,20 @@ impl ArmPath {
 
     /// Joints and their slopes.
     fn turning(&self, s: f64) -> Result<(Joints, Vector2<f64>), ArmPathError> {
-        let joints = self.joints(s)?;
+        let near = Joints::new(self.shoulder.near(s), self.elbow_angle);
         let at = self.curve.at(s);
-        let slopes = self.arm.joint_rates(joints, at.tangent.into());
-        slopes
-            .map(|slopes| (joints, slopes))
-            .map_err(|_| ArmPathError::Edge {
-                s,
-                point: at.point.into(),
-                distance: 0.0,
-            })
+        let point = at.point.into();
+        let found = self
+            .arm
+            .inverse_with_slopes(point, at.tangent.into(), self.elbow, near);
+        let (joints, slopes) =
+            found.map_err(|reason| ArmPathError::Unreachable { s, point, reason })?;
+        let slopes = slopes.ok_or(ArmPathError::Edge {
+            s,
+            point,
+            distance: 0.0,
+        })?;
+        Ok((joints, slopes))
     }
 
     /// The most by which the tool leaves the curve on a segment of a table, in the unit of length. For
@@ -136,6 +142,6 @@ impl Path for ArmPath {
     }
 
     fn check(&self, span: &Span<[f64; 2]>) -> Result<(), ArmPathError> {
-        Swing::of(span, |joints| joints).check(&self.arm)
+        Swing::of(span, |joints| joints).check(&self.arm, TOUCH)
     }
 }

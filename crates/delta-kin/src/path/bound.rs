@@ -275,6 +275,23 @@ impl DeltaPath {
         };
         let departure = motion.departure_between(platform, 2.0 * kappa * fourth, between);
         let rounding = 2.0 * ROOT3 * kappa * delta.tolerance();
+        let departure = departure + rounding;
+        if departure.is_nan() {
+            return None;
+        }
+        let known = Known {
+            departure,
+            sides: [0.0; 3],
+            inverse: [a, b, c],
+            halfway,
+            rate,
+            miss: miss + delta.tolerance(),
+            lower,
+            levers: swings.each_ref().map(|swing| swing.lever),
+        };
+        if delta.max_swivel().is_none() {
+            return Some(known);
+        }
         // Between nodes, and the curve's bend from one to the next: h²/8 of its second derivative.
         let [_, second, ..] = *motion.longest();
         let off = between + second * NODE * NODE / 8.0 + rounding;
@@ -285,16 +302,7 @@ impl DeltaPath {
             let places = ends.iter().chain(&nodes);
             places.fold(0.0, |most, place| larger_or_nan(most, side(place).abs())) + off
         });
-        (!departure.is_nan()).then_some(Known {
-            departure: departure + rounding,
-            sides,
-            inverse: [a, b, c],
-            halfway,
-            rate,
-            miss: miss + delta.tolerance(),
-            lower,
-            levers: swings.each_ref().map(|swing| swing.lever),
-        })
+        Some(Known { sides, ..known })
     }
 }
 
@@ -302,7 +310,7 @@ impl DeltaPath {
 struct Known {
     /// The most by which the platform leaves the curve.
     departure: f64,
-    /// How far each wrist comes beside the plane of its arm.
+    /// How far each wrist comes beside the plane of its arm, where its ball joints have a limit.
     sides: [f64; 3],
     /// Columns of the inverse of B halfway, and κ.
     inverse: [Vector3<f64>; 3],
@@ -334,6 +342,10 @@ fn larger_or_nan(a: f64, b: f64) -> f64 {
 
 /// The angle that is farthest beyond an end of the range, if one is.
 fn beyond(range: &JointRange, cubic: &Cubic) -> Option<f64> {
+    let mut points = cubic.control_points().into_iter();
+    if points.all(|point| range.min() <= point && point <= range.max()) {
+        return None;
+    }
     let [low, high] = cubic.extent();
     // Written so that NaN is beyond.
     let (is_above, is_below) = (low >= range.min() - TOUCH, high <= range.max() + TOUCH);

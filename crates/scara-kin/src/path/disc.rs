@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
 use trig_kernels::atan2;
 
-use super::swing::Swing;
+use super::swing::{Swing, TOUCH};
 use super::turns::Turns;
 use super::{ArmPath, ArmPathError};
 use crate::limits::half_turn;
@@ -160,6 +160,6 @@ impl Path for DiscPath {
     }
 
     fn check(&self, span: &Span<[f64; 3]>) -> Result<(), ArmPathError> {
-        arm_swing(span).check(&self.arm_path.arm)
+        arm_swing(span).check(&self.arm_path.arm, TOUCH)
     }
 }

@@ -11,7 +11,7 @@ use crate::{Arm, Joint, JointRange, Joints, Limits};
 
 /// By how much a joint may pass an end of its range between two rows, in radians: rounding, and a
 /// path that touches it.
-const TOUCH: f64 = 1e-9;
+pub(super) const TOUCH: f64 = 1e-9;
 
 /// Leibniz' weights of the fourth derivative of a product.
 const LEIBNIZ: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
@@ -50,9 +50,12 @@ impl Swing {
         }
     }
 
-    /// Whether the arm may run it.
-    pub(super) fn check(&self, arm: &Arm) -> Result<(), ArmPathError> {
-        self.check_joints(arm, [0.0; 2])?;
+    /// Whether the arm may run it, its joints past an end of a range by `touch` at most.
+    pub(super) fn check(&self, arm: &Arm, touch: f64) -> Result<(), ArmPathError> {
+        if self.is_clear(arm) {
+            return Ok(());
+        }
+        self.check_joints(arm, [0.0; 2], touch)?;
         let (s, radius) = (self.s, arm.keep_out());
         let [distance, _] = distances(arm, self.elbow.extent());
         if distance >= radius {
@@ -65,8 +68,20 @@ impl Swing {
         })
     }
 
+    /// Whether the control points alone say that the arm may run it.
+    fn is_clear(&self, arm: &Arm) -> bool {
+        let within = |joint, cubic: &Cubic| {
+            let range = arm.limits().range(joint);
+            let mut points = cubic.control_points().into_iter();
+            points.all(|point| range.min() <= point && point <= range.max())
+        };
+        arm.keep_out() <= (arm.upper() - arm.fore()).abs()
+            && within(Joint::Shoulder, &self.shoulder)
+            && within(Joint::Elbow, &self.elbow)
+    }
+
     /// Whether both joints stay within their ranges, also where each is off by as much as said.
-    fn check_joints(&self, arm: &Arm, off: [f64; 2]) -> Result<(), ArmPathError> {
+    fn check_joints(&self, arm: &Arm, off: [f64; 2], touch: f64) -> Result<(), ArmPathError> {
         let joints = [
             (Joint::Shoulder, &self.shoulder),
             (Joint::Elbow, &self.elbow),
@@ -75,7 +90,7 @@ impl Swing {
             let range = arm.limits().range(joint);
             let [low, high] = cubic.extent();
             let extent = [low - off, high + off];
-            if let Some(angle) = beyond(range, extent) {
+            if let Some(angle) = beyond(range, extent, touch) {
                 return Err(ArmPathError::Limit {
                     s: self.s,
                     joint,
@@ -100,7 +115,7 @@ impl Swing {
         let motion = Motion::new(self, arm, curve);
         let apart = motion.apart() + self.rounding(arm);
         let rates = fastest(arm, [near - apart, far + apart]);
-        self.check_joints(arm, rates.map(|rate| rate * apart))
+        self.check_joints(arm, rates.map(|rate| rate * apart), TOUCH)
     }
 
     /// See [`ArmPath::departure`](super::ArmPath::departure).
@@ -124,9 +139,9 @@ impl Swing {
 }
 
 /// The joint angle that is farthest beyond an end of the range, if one is.
-fn beyond(range: &JointRange, [low, high]: [f64; 2]) -> Option<f64> {
+fn beyond(range: &JointRange, [low, high]: [f64; 2], touch: f64) -> Option<f64> {
     // Written so that NaN is beyond.
-    let (is_above, is_below) = (low >= range.min() - TOUCH, high <= range.max() + TOUCH);
+    let (is_above, is_below) = (low >= range.min() - touch, high <= range.max() + touch);
     if is_above && is_below {
         return None;
     }
@@ -210,7 +225,7 @@ impl Between {
         let mut all = ends.into_iter().zip(self.turns).zip(ranges);
         all.all(|(([from, to], turn), range)| {
             let middle = (from + to) * 0.5;
-            beyond(range, [middle - turn * 0.5, middle + turn * 0.5]).is_none()
+            beyond(range, [middle - turn * 0.5, middle + turn * 0.5], TOUCH).is_none()
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Curves as paths of the joints: the tool on the cubics that run, limits, the disc.
 
 mod refusals;
+mod single;
 
 use core::cell::RefCell;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-const TESTS: [&str; 7] = [
+const TESTS: [&str; 8] = [
     include_str!("curves.rs"),
     include_str!("inverse.rs"),
     include_str!("machine.rs"),
@@ -10,6 +10,7 @@ const TESTS: [&str; 7] = [
     include_str!("rates.rs"),
     include_str!("tools.rs"),
     include_str!("../each.rs"),
+    include_str!("../paths/single.rs"),
 ];
 
 fn sources(folder: &Path, texts: &mut Vec<String>) {
