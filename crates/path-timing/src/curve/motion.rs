@@ -205,7 +205,10 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     pub fn jet(&self, tau: f64) -> [[f64; D]; 5] {
         let [place, c1, c2, c3, c4, _] = self.curve.jet(self.parameter.at(tau));
         let [u1, u2] = self.parameter.derivatives(tau);
-        let [.., u3] = self.parameter.coefficients.map(|coefficient| 6.0 * coefficient);
+        let [.., u3] = self
+            .parameter
+            .coefficients
+            .map(|coefficient| 6.0 * coefficient);
         let [first, second] = composed(&c1, &c2, [u1, u2]);
         let (square, cube) = (u1 * u1, u1 * u1 * u1);
         let third = along(&scaled(&c3, cube), 3.0 * u1 * u2, &c2);
