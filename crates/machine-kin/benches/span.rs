@@ -42,7 +42,10 @@ fn both<P, Q, const N: usize>(
     c: &mut Criterion,
     name: &str,
     (by_hand, own): (&P, &Q),
-    departures: (impl Fn(&P, &Span<[f64; N]>) -> f64, impl Fn(&Q, &Span<[f64; N]>) -> f64),
+    departures: (
+        impl Fn(&P, &Span<[f64; N]>) -> f64,
+        impl Fn(&Q, &Span<[f64; N]>) -> f64,
+    ),
 ) where
     P: Path<Axes = [f64; N]>,
     Q: Path<Axes = [f64; N]>,
@@ -51,16 +54,36 @@ fn both<P, Q, const N: usize>(
     let spans = spans(by_hand, |path, span| departures.0(path, span));
     let mut group = c.benchmark_group(format!("{name}, {} segments", spans.len()));
     group.bench_function("by hand, check", |b| {
-        b.iter(|| spans.iter().filter(|span| by_hand.check(black_box(span)).is_ok()).count());
+        b.iter(|| {
+            spans
+                .iter()
+                .filter(|span| by_hand.check(black_box(span)).is_ok())
+                .count()
+        });
     });
     group.bench_function("by hand, bound", |b| {
-        b.iter(|| spans.iter().map(|span| departures.0(by_hand, black_box(span))).sum::<f64>());
+        b.iter(|| {
+            spans
+                .iter()
+                .map(|span| departures.0(by_hand, black_box(span)))
+                .sum::<f64>()
+        });
     });
     group.bench_function("mechanism, check", |b| {
-        b.iter(|| spans.iter().filter(|span| own.check(black_box(span)).is_ok()).count());
+        b.iter(|| {
+            spans
+                .iter()
+                .filter(|span| own.check(black_box(span)).is_ok())
+                .count()
+        });
     });
     group.bench_function("mechanism, bound", |b| {
-        b.iter(|| spans.iter().map(|span| departures.1(own, black_box(span))).sum::<f64>());
+        b.iter(|| {
+            spans
+                .iter()
+                .map(|span| departures.1(own, black_box(span)))
+                .sum::<f64>()
+        });
     });
     group.finish();
 }
@@ -69,7 +92,12 @@ fn arm(c: &mut Criterion) {
     let curves = [
         Curve::line([-80.0, 100.0], [80.0, 100.0]),
         Curve::arc([180.0, 0.0], [130.0, 0.0], [0.0, 1.0], 3.0),
-        Curve::bezier([[-100.0, 100.0], [-50.0, 220.0], [60.0, 60.0], [120.0, 150.0]]),
+        Curve::bezier([
+            [-100.0, 100.0],
+            [-50.0, 220.0],
+            [60.0, 60.0],
+            [120.0, 150.0],
+        ]),
     ];
     for (name, curve) in ["line", "arc", "curve"].into_iter().zip(curves) {
         let curve = curve.expect("a curve");
@@ -89,7 +117,12 @@ fn arm(c: &mut Criterion) {
 fn delta(c: &mut Criterion) {
     let curves = [
         Curve::line([50.0, 50.0, -300.0], [-50.0, 50.0, -280.0]),
-        Curve::arc([60.0, 0.0, -260.0], [0.0, 0.0, -260.0], [0.0, 1.0, 0.0], 3.0),
+        Curve::arc(
+            [60.0, 0.0, -260.0],
+            [0.0, 0.0, -260.0],
+            [0.0, 1.0, 0.0],
+            3.0,
+        ),
     ];
     for (name, curve) in ["line", "arc"].into_iter().zip(curves) {
         let curve = curve.expect("a curve");

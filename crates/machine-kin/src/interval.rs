@@ -4,11 +4,12 @@
 //! exact one is between the neighbours of the computed one. Those are enclosed by
 //!
 //! ```text
-//! x ± (|x| ε + m)      ε = 2⁻⁵², m the least normal number
+//! x ± (|x| ε + m)      ε = 2⁻⁵², m = 2⁻³⁰⁰
 //! ```
 //!
 //! for |x| ε is at least a unit of the last place of x, and rounding keeps the order of numbers; m is
-//! above what is lost where a result underflows. Sines, cosines and arc tangents of `trig-kernels` are
+//! above what is lost where a result underflows, and keeps numbers away from those that processors are
+//! slow with. Sines, cosines and arc tangents of `trig-kernels` are
 //! off by less than a unit of their last place, which is that of the exact number: two units of the
 //! computed one.
 
@@ -27,16 +28,19 @@ pub struct Interval {
     high: f64,
 }
 
+/// 2⁻³⁰⁰
+const LEAST: f64 = f64::from_bits((1023 - 300) << 52);
+
 /// The next number below, or one of the next few.
 #[inline]
 fn down(x: f64) -> f64 {
-    x - (x.abs() * f64::EPSILON + f64::MIN_POSITIVE)
+    x - (x.abs() * f64::EPSILON + LEAST)
 }
 
 /// The next number above, or one of the next few.
 #[inline]
 fn up(x: f64) -> f64 {
-    x + (x.abs() * f64::EPSILON + f64::MIN_POSITIVE)
+    x + (x.abs() * f64::EPSILON + LEAST)
 }
 
 /// The smaller; the second where one is not a number.

@@ -20,10 +20,7 @@ pub struct Jet<T, const K: usize> {
 }
 
 /// What divides coefficients: whole numbers.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "a handful of coefficients"
-)]
+#[expect(clippy::cast_precision_loss, reason = "a handful of coefficients")]
 const fn whole(k: usize) -> f64 {
     k as f64
 }
@@ -43,7 +40,9 @@ impl<T: Number, const K: usize> Jet<T, K> {
 
     #[inline]
     fn first(&self) -> T {
-        self.coefficients.first().map_or_else(|| T::from(0.0), |c| *c)
+        self.coefficients
+            .first()
+            .map_or_else(|| T::from(0.0), |c| *c)
     }
 
     #[inline]
@@ -109,7 +108,9 @@ impl<T: Number, const K: usize> Jet<T, K> {
     #[inline]
     fn times(self, other: Self) -> Self {
         let (a, b) = (&self.coefficients, &other.coefficients);
-        Self::new(core::array::from_fn(|k| folded(a, b, 0..k.saturating_add(1), k)))
+        Self::new(core::array::from_fn(|k| {
+            folded(a, b, 0..k.saturating_add(1), k)
+        }))
     }
 
     #[inline]

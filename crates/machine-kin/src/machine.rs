@@ -75,7 +75,11 @@ impl Axis {
         if middle.is_finite() {
             return middle;
         }
-        let end = if self.min.is_finite() { self.min } else { self.max };
+        let end = if self.min.is_finite() {
+            self.min
+        } else {
+            self.max
+        };
         if end.is_finite() { end } else { 0.0 }
     }
 
@@ -101,7 +105,7 @@ const TOUCH: f64 = 1e-9;
 ///
 /// Coordinates of the tool are lengths: an orientation is one at a radius, as in
 /// [`Scara`](crate::Scara). What is not written as a number of type `T` is exact: the geometry.
-pub trait Machine<const N: usize>: Clone {
+pub trait Machine<const N: usize>: Clone + Debug {
     /// Which of several solutions, by name: `()` where there is one.
     type Branch: Copy + Debug + PartialEq;
 
@@ -112,11 +116,7 @@ pub trait Machine<const N: usize>: Clone {
     ///
     /// # Errors
     /// [`Refusal`] where the tool cannot be there, by what [`Number`]'s functions refuse.
-    fn inverse<T: Number>(
-        &self,
-        tool: [T; N],
-        branch: Self::Branch,
-    ) -> Result<[T; N], Refusal>;
+    fn inverse<T: Number>(&self, tool: [T; N], branch: Self::Branch) -> Result<[T; N], Refusal>;
 
     /// Ranges of the tool's coordinates, where they have ends of their own: what is not a matter of any
     /// axis, such as the frame of a CoreXY.
@@ -242,5 +242,7 @@ fn slopes_within<M: Machine<N>, const N: usize>(
             Interval::around(0.0, sum * by)
         })
     });
-    Ok(both(&here, &change, Interval::UNKNOWN, |slope, change| slope + change))
+    Ok(both(&here, &change, Interval::UNKNOWN, |slope, change| {
+        slope + change
+    }))
 }

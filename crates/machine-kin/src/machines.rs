@@ -34,7 +34,11 @@ pub struct GeometryError {
 impl Display for GeometryError {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { name, value } = *self;
-        write!(f, "{name} {} is not above 0 and at most 1e50", SixDigits(value))
+        write!(
+            f,
+            "{name} {} is not above 0 and at most 1e50",
+            SixDigits(value)
+        )
     }
 }
 

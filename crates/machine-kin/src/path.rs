@@ -86,7 +86,10 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let axes = self
             .machine
             .inverse(Gradient::variables(place), self.branch)?;
-        Ok((axes.map(|axis| axis.value()), axes.map(|axis| *axis.slopes())))
+        Ok((
+            axes.map(|axis| axis.value()),
+            axes.map(|axis| *axis.slopes()),
+        ))
     }
 
     /// Positions less others, each angle at the turn at which that is smallest.

@@ -33,7 +33,10 @@ impl Machine<2> for CoreXy {
 
     fn axes(&self) -> [Axis; 2] {
         let any = f64::NEG_INFINITY..=f64::INFINITY;
-        [Axis::linear("belt a", any.clone()), Axis::linear("belt b", any)]
+        [
+            Axis::linear("belt a", any.clone()),
+            Axis::linear("belt b", any),
+        ]
     }
 
     fn area(&self) -> [RangeInclusive<f64>; 2] {

@@ -58,7 +58,13 @@ impl FiveBar {
         self
     }
 
-    fn motor<T: Number>(&self, dx: T, dy: T, elbow: Elbow, reason: &'static str) -> Result<T, Refusal> {
+    fn motor<T: Number>(
+        &self,
+        dx: T,
+        dy: T,
+        elbow: Elbow,
+        reason: &'static str,
+    ) -> Result<T, Refusal> {
         let square = dx.squared() + dy.squared();
         let (upper, fore) = (self.upper, self.fore);
         let k = (square + (upper * upper - fore * fore)) / (2.0 * upper);
@@ -76,10 +82,17 @@ impl Machine<2> for FiveBar {
 
     fn axes(&self) -> [Axis; 2] {
         let [[a, b], [c, d]] = self.ranges;
-        [Axis::angle("left motor", a..=b), Axis::angle("right motor", c..=d)]
+        [
+            Axis::angle("left motor", a..=b),
+            Axis::angle("right motor", c..=d),
+        ]
     }
 
-    fn inverse<T: Number>(&self, [x, y]: [T; 2], [left, right]: [Elbow; 2]) -> Result<[T; 2], Refusal> {
+    fn inverse<T: Number>(
+        &self,
+        [x, y]: [T; 2],
+        [left, right]: [Elbow; 2],
+    ) -> Result<[T; 2], Refusal> {
         let half = self.base / 2.0;
         Ok([
             self.motor(x + half, y, left, "the left arm is too short or too long")?,

@@ -40,7 +40,10 @@ impl Machine<2> for HangingPlotter {
 
     fn axes(&self) -> [Axis; 2] {
         let [min, max] = self.cords;
-        [Axis::linear("left cord", min..=max), Axis::linear("right cord", min..=max)]
+        [
+            Axis::linear("left cord", min..=max),
+            Axis::linear("right cord", min..=max),
+        ]
     }
 
     fn inverse<T: Number>(&self, [x, y]: [T; 2], (): ()) -> Result<[T; 2], Refusal> {

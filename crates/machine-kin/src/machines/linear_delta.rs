@@ -31,7 +31,11 @@ impl LinearDelta {
     ///
     /// # Errors
     /// [`GeometryError`] of a length that is not above 0.
-    pub fn new(rod: f64, radius: f64, carriages: RangeInclusive<f64>) -> Result<Self, GeometryError> {
+    pub fn new(
+        rod: f64,
+        radius: f64,
+        carriages: RangeInclusive<f64>,
+    ) -> Result<Self, GeometryError> {
         check_lengths([("rod", rod), ("radius", radius)])?;
         let column = |turns: f64| {
             let (sin, cos) = sin_cos(turns * TAU);

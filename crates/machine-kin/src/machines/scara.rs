@@ -60,7 +60,11 @@ impl Machine<4> for Scara {
         ]
     }
 
-    fn inverse<T: Number>(&self, [x, y, z, heading]: [T; 4], elbow: Elbow) -> Result<[T; 4], Refusal> {
+    fn inverse<T: Number>(
+        &self,
+        [x, y, z, heading]: [T; 4],
+        elbow: Elbow,
+    ) -> Result<[T; 4], Refusal> {
         const REACH: &str = "the arm is too short or too long";
         let [upper, fore] = self.links;
         let square = x.squared() + y.squared();

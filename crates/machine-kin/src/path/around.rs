@@ -36,16 +36,18 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let mut along = [Jet::new([Interval::UNKNOWN; 2]); N];
         let jets = stretch.jets();
         let places = stretch.middle().iter().zip(&jets).zip(radius);
-        for ((middle, along), ((place, jet), by)) in
-            middle.iter_mut().zip(&mut along).zip(places)
-        {
+        for ((middle, along), ((place, jet), by)) in middle.iter_mut().zip(&mut along).zip(places) {
             let within = Interval::new(-by, *by);
             *middle = Interval::around(*place, self.rounding) + within;
             let [place, first, ..] = *jet.coefficients();
             *along = Jet::new([place + within, first]);
         }
-        let middle = self.machine.inverse(Gradient::variables(middle), self.branch)?;
-        let along = self.machine.inverse(Gradient::variables(along), self.branch)?;
+        let middle = self
+            .machine
+            .inverse(Gradient::variables(middle), self.branch)?;
+        let along = self
+            .machine
+            .inverse(Gradient::variables(along), self.branch)?;
         let middle = middle.map(|axis| *axis.slopes());
         let coefficient = |k: usize| {
             along.map(|axis| {
@@ -59,7 +61,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let half = stretch.half();
         let time = Interval::new(-half, half);
         let unknown = Interval::UNKNOWN;
-        let slopes = both(&middle, &rates, unknown, |middle, rate| middle + rate * time);
+        let slopes = both(&middle, &rates, unknown, |middle, rate| {
+            middle + rate * time
+        });
         Ok(Around {
             rates: along.map(|axis| {
                 let [_, rate] = *axis.value().coefficients();

@@ -45,8 +45,7 @@ impl<const N: usize> Turns<N> {
     pub(super) fn add(&mut self, s: f64, axes: &[Axis; N], positions: &[f64; N]) -> bool {
         let near = self.near(s);
         let mut angles = axes.iter().zip(positions.iter().zip(near));
-        let is_far =
-            angles.any(|(axis, (now, near))| axis.is_angle && (now - near).abs() >= FAR);
+        let is_far = angles.any(|(axis, (now, near))| axis.is_angle && (now - near).abs() >= FAR);
         if !is_far {
             return true;
         }

@@ -15,6 +15,9 @@ const LEAST_PIECE: f64 = 1e-9;
 /// a fraction of its size.
 const EDGE: f64 = 1e-6;
 
+/// What is within so many times that of the end of the branch is said to be there.
+const NEXT: f64 = 100.0;
+
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     pub(crate) fn new(
         machine: M,
@@ -81,8 +84,7 @@ impl<const N: usize> Looker<N> {
     ) -> Result<[f64; N], PathError<N>> {
         let point = path.curve.at(s).point;
         let found = path.slopes_at(point);
-        let (positions, _) =
-            found.map_err(|reason| PathError::Unreachable { s, point, reason })?;
+        let (positions, _) = found.map_err(|reason| PathError::Unreachable { s, point, reason })?;
         Ok(at_turns(&path.axes, positions, near))
     }
 
@@ -102,10 +104,26 @@ impl<const N: usize> Looker<N> {
                 .and_then(|()| self.positions(path, next, positions));
             match there {
                 Ok(there) => return Ok((next, there, step * 2.0)),
-                Err(error) if step <= self.least => return Err(error),
+                Err(error) if step <= self.least => return Err(self.named(path, error)),
                 Err(_) => step *= 0.5,
             }
         }
+    }
+
+    /// What is singular next to the end of the branch, as that.
+    fn named<M: Machine<N>>(&self, path: &MachinePath<M, N>, error: PathError<N>) -> PathError<N> {
+        let PathError::Singular { s, point } = error else {
+            return error;
+        };
+        let mut around = point.map(Interval::from);
+        for (place, edge) in around.iter_mut().zip(self.edge) {
+            *place = *place + Interval::new(-edge, edge) * NEXT;
+        }
+        let axes = path.machine.inverse(around, path.branch);
+        axes.map_or_else(
+            |reason| PathError::BranchEnds { s, point, reason },
+            |_| error,
+        )
     }
 
     /// Whether nothing of a piece is out of reach, singular, or beyond a range.

@@ -49,12 +49,17 @@ enum Finding {
 }
 
 /// Whether the tool may be at a place, and the sign of the determinant there.
-fn sign_at<M: Machine<N>, const N: usize>(machine: &M, tool: [f64; N], branch: M::Branch) -> Option<bool> {
+fn sign_at<M: Machine<N>, const N: usize>(
+    machine: &M,
+    tool: [f64; N],
+    branch: M::Branch,
+) -> Option<bool> {
     let (_, slopes) = slopes(machine, tool, branch)?;
     let areas = machine.area();
-    let is_inside = tool.iter().zip(areas).all(|(x, area)| {
-        *x >= area.start() - TOUCH && *x <= area.end() + TOUCH
-    });
+    let is_inside = tool
+        .iter()
+        .zip(areas)
+        .all(|(x, area)| *x >= area.start() - TOUCH && *x <= area.end() + TOUCH);
     let volume = sign_of(slopes.map(|slope| slope));
     is_inside.then_some(volume)
 }
@@ -81,13 +86,19 @@ fn sign_of<const N: usize>(matrix: scara_kin::nalgebra::SMatrix<f64, N, N>) -> b
     is_positive
 }
 
-fn sampled<M: Machine<N>, const N: usize>(machine: &M, curve: &Curve<N>, branch: M::Branch) -> Finding {
+fn sampled<M: Machine<N>, const N: usize>(
+    machine: &M,
+    curve: &Curve<N>,
+    branch: M::Branch,
+) -> Finding {
     let axes = machine.axes();
     let reach = |point: [f64; N]| point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let margin = MARGIN * (curve.length() + reach(curve.start()).max(reach(curve.end())));
     let (mut last, mut first_sign, mut is_close) = (None::<[f64; N]>, None, false);
     for number in 0..=SAMPLES {
-        let point = curve.at(curve.length() * f64::from(number) / f64::from(SAMPLES)).point;
+        let point = curve
+            .at(curve.length() * f64::from(number) / f64::from(SAMPLES))
+            .point;
         let Some(sign) = sign_at(machine, point, branch) else {
             return Finding::Bad("out of reach");
         };
@@ -123,11 +134,15 @@ fn sampled<M: Machine<N>, const N: usize>(machine: &M, curve: &Curve<N>, branch:
         }
         last = Some(positions);
     }
-    if is_close { Finding::Close } else { Finding::Good }
+    if is_close {
+        Finding::Close
+    } else {
+        Finding::Good
+    }
 }
 
 impl Tally {
-    fn try_path<M: Machine<N> + core::fmt::Debug, const N: usize>(
+    fn try_path<M: Machine<N>, const N: usize>(
         &mut self,
         random: &mut Random,
         machine: &M,
@@ -153,19 +168,36 @@ impl Tally {
             Err(error) => {
                 if finding == Finding::Good {
                     self.needless += 1;
-                    println!("refused needlessly: {error}; clearance {}", machine.clearance(curve.at(0.0).point, branch));
+                    println!(
+                        "refused needlessly: {error}; clearance {}",
+                        machine.clearance(curve.at(0.0).point, branch)
+                    );
                 }
                 return;
             }
         };
         let tolerance = random.size(-3.0, -1.0);
         let limits = machine.axes().map(|axis| {
-            let (speed, acceleration) = if axis.is_angle() { (4.0, 60.0) } else { (300.0, 4000.0) };
-            AxisLimits { speed, acceleration, jerk: None }
+            let (speed, acceleration) = if axis.is_angle() {
+                (4.0, 60.0)
+            } else {
+                (300.0, 4000.0)
+            };
+            AxisLimits {
+                speed,
+                acceleration,
+                jerk: None,
+            }
         });
         let mut knots = vec![Knot::default(); 4000];
         let departure = machine_kin::MachinePath::departure;
-        let table = Table::plan_within([&path], limits, within(tolerance), |path, span| departure(path, span), &mut knots);
+        let table = Table::plan_within(
+            [&path],
+            limits,
+            within(tolerance),
+            |path, span| departure(path, span),
+            &mut knots,
+        );
         let table = match table {
             Ok(table) => table,
             Err(error) => {
@@ -193,7 +225,10 @@ impl Tally {
                 let tool = forward(machine, &axes, positions, branch, curve.at(at).point);
                 let tool = tool.expect("the tool is on its branch");
                 let off = distance(&curve, tool, at);
-                assert!(off <= bound + ROUNDING, "{off} {bound} {machine:?} {curve:?} {span:?}");
+                assert!(
+                    off <= bound + ROUNDING,
+                    "{off} {bound} {machine:?} {curve:?} {span:?}"
+                );
                 for (x, area) in tool.iter().zip(machine.area()) {
                     assert!(*x >= area.start() - TOUCH && *x <= area.end() + TOUCH);
                 }
@@ -221,7 +256,11 @@ fn any_curve<const N: usize>(random: &mut Random, low: [f64; N], high: [f64; N])
 }
 
 fn elbow(random: &mut Random) -> Elbow {
-    if random.below(2) == 0 { Elbow::Left } else { Elbow::Right }
+    if random.below(2) == 0 {
+        Elbow::Left
+    } else {
+        Elbow::Right
+    }
 }
 
 /// A range of angles, or none.
@@ -245,17 +284,31 @@ fn any_path(random: &mut Random, tally: &mut Tally) {
             tally.try_path(random, &machine, curve, ());
         }
         1 => {
-            let sizes = [random.within(10.0, 120.0), random.within(80.0, 140.0), random.within(100.0, 200.0)];
+            let sizes = [
+                random.within(10.0, 120.0),
+                random.within(80.0, 140.0),
+                random.within(100.0, 200.0),
+            ];
             let [base, upper, fore] = sizes;
             let ranges = [angles(random), angles(random)];
-            let machine = FiveBar::new(base, upper, fore).unwrap().with_ranges(ranges[0], ranges[1]);
-            let branch = if random.below(2) == 0 { [Elbow::Left, Elbow::Right] } else { [elbow(random), elbow(random)] };
+            let machine = FiveBar::new(base, upper, fore)
+                .unwrap()
+                .with_ranges(ranges[0], ranges[1]);
+            let branch = if random.below(2) == 0 {
+                [Elbow::Left, Elbow::Right]
+            } else {
+                [elbow(random), elbow(random)]
+            };
             let curve = any_curve(random, [-100.0, 40.0], [100.0, 260.0]);
             tally.try_path(random, &machine, curve, branch);
         }
         2 => {
             let machine = Polar::new(random.within(-150.0, 40.0)..=random.within(50.0, 200.0));
-            let side = if random.below(2) == 0 { Side::Front } else { Side::Behind };
+            let side = if random.below(2) == 0 {
+                Side::Front
+            } else {
+                Side::Behind
+            };
             let curve = any_curve(random, [-120.0; 2], [120.0; 2]);
             tally.try_path(random, &machine, curve, side);
         }
@@ -266,14 +319,25 @@ fn any_path(random: &mut Random, tally: &mut Tally) {
             tally.try_path(random, &machine, curve, ());
         }
         4 => {
-            let machine = HangingPlotter::new(1200.0, random.within(100.0, 500.0)..=random.within(1000.0, 1500.0)).unwrap();
+            let machine = HangingPlotter::new(
+                1200.0,
+                random.within(100.0, 500.0)..=random.within(1000.0, 1500.0),
+            )
+            .unwrap();
             let curve = any_curve(random, [-20.0, -10.0], [1220.0, 900.0]);
             tally.try_path(random, &machine, curve, ());
         }
         _ => {
             let (upper, fore) = (random.within(120.0, 200.0), random.within(120.0, 200.0));
-            let ranges = [angles(random), angles(random), [-10.0, 60.0], angles(random)];
-            let machine = Scara::new(upper, fore, 30.0).unwrap().with_ranges(ranges.map(|[min, max]| min..=max));
+            let ranges = [
+                angles(random),
+                angles(random),
+                [-10.0, 60.0],
+                angles(random),
+            ];
+            let machine = Scara::new(upper, fore, 30.0)
+                .unwrap()
+                .with_ranges(ranges.map(|[min, max]| min..=max));
             let by = random.within(150.0, 320.0);
             let curve = any_curve(random, [-by, -by, -11.0, -60.0], [by, by, 61.0, 60.0]);
             let branch = elbow(random);
@@ -284,7 +348,7 @@ fn any_path(random: &mut Random, tally: &mut Tally) {
 
 #[test]
 fn what_sampling_finds_wrong_is_refused_and_nothing_else() {
-    let paths = setting("MACHINE_KIN_PATHS", 300);
+    let paths = setting("MACHINE_KIN_PATHS", 100);
     let mut random = Random::new(setting("MACHINE_KIN_SEED", 1));
     let mut tally = Tally::default();
     for _ in 0..paths {

