@@ -5,7 +5,11 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use path_timing::{AxisLimits, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Table};
+use path_timing::{
+    AxisLimits, Curve, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, Table, TorqueCurve,
+    TorqueLimits,
+};
+use scara_kin::{Arm, ArmMasses, Elbow, JointDrive, LinkMass};
 
 /// Segments of the path.
 const SEGMENTS: u32 = 1000;
@@ -93,11 +97,61 @@ fn measure_stream<const N: usize>(criterion: &mut Criterion) {
     }
 }
 
+/// A line of a two-link arm, with limits of its joints and with the torques of its motors.
+fn measure_torque(criterion: &mut Criterion) {
+    let arm = Arm::new(300.0, 300.0).expect("links are good");
+    let link = LinkMass {
+        mass_kg: 2.5,
+        centre_m: 0.14,
+        inertia_kg_m2: 0.03,
+    };
+    let drive = JointDrive {
+        rotor_kg_m2: 0.08,
+        viscous_nm_s: 0.3,
+        coulomb_nm: 0.8,
+    };
+    let masses = ArmMasses {
+        upper: link,
+        fore: link,
+        payload_kg: 1.0,
+        shoulder: drive,
+        elbow: drive,
+        gravity_m_s2: 0.0,
+    };
+    let motors = [30.0, 12.0].map(|torque| TorqueCurve::constant(torque, 30.0));
+    let torque = TorqueLimits {
+        dynamics: arm.dynamics(1e-3, masses).expect("masses are good"),
+        motors: motors.map(|motor| motor.expect("motor is good")),
+    };
+    let curve = Curve::line([-200.0, 300.0], [250.0, 300.0]).expect("line is good");
+    let line = arm.path(curve, Elbow::Right).expect("line is reached");
+    let joint = [AxisLimits {
+        speed: 30.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 2];
+    let mut knots = vec![Knot::default(); 1001];
+    let mut group = criterion.benchmark_group(format!("arm, {SEGMENTS} segments"));
+    group.bench_function("plan", |bencher| {
+        bencher.iter(|| {
+            let table = Table::plan([line], joint, |_| SEGMENTS, black_box(&mut knots));
+            table.expect("plan is good").duration_s()
+        });
+    });
+    group.bench_function("plan with torque", |bencher| {
+        bencher.iter(|| {
+            let table = torque.plan([line], joint, |_| SEGMENTS, black_box(&mut knots));
+            table.expect("plan is good").duration_s()
+        });
+    });
+}
+
 fn benches(criterion: &mut Criterion) {
     measure::<3>(criterion);
     measure::<9>(criterion);
     measure_stream::<3>(criterion);
     measure_stream::<9>(criterion);
+    measure_torque(criterion);
 }
 
 criterion_group!(all, benches);

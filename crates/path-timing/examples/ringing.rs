@@ -48,7 +48,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut memory = [Row::default(); 44];
         let rows = Shaped::new(table.rows(), [shaper], &mut memory);
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
-        let (time_s, left_um) = (rows[rows.len() - 1].time_s, left_mm(&rows) * 1000.0);
+        let time_s = rows.last().ok_or("no rows")?.time_s;
+        let left_um = left_mm(&rows) * 1000.0;
         let departs = shaper.departure(axis.acceleration);
         println!("{name:>4}: {time_s:.4} s, at most {departs:.3} mm off, {left_um:.1} um left");
     }

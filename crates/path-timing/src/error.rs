@@ -135,6 +135,14 @@ pub enum PlanError<E> {
         /// The lowest scale.
         min: f64,
     },
+    /// A motor has not the torque to hold what it carries against gravity and friction, at any speed.
+    #[error("leg {leg}, at {}: a motor has not the torque for what it carries, at any speed", SixDigits(*.s))]
+    Overload {
+        /// The leg, from 0.
+        leg: usize,
+        /// The parameter at which the segment begins.
+        s: f64,
+    },
     /// A highest feed that is beyond the range of the crate.
     #[error("a highest feed of {} is not within {}..={}", SixDigits(*.feed), SixDigits(*.min), SixDigits(*.max))]
     Feed {
@@ -159,6 +167,7 @@ impl<E> PlanError<E> {
             | Self::Gap { leg, .. }
             | Self::TooCoarse { leg, .. }
             | Self::TooFine { leg, .. }
+            | Self::Overload { leg, .. }
             | Self::Indistinct { leg, .. } => *leg = number,
             Self::Limit { .. }
             | Self::Memory { .. }

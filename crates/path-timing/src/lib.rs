@@ -30,6 +30,7 @@ mod shaper;
 mod span;
 mod stepping;
 mod table;
+mod torque;
 mod verify;
 
 pub use axes::{Axes, AxisLimits, ToolLimits};
@@ -49,4 +50,5 @@ pub use rows::Rows;
 pub use shaper::{Impulse, Mode, Shaped, ShapedError, Shaper, ShaperError, TryRow};
 pub use span::Span;
 pub use table::{Accuracy, Table};
+pub use torque::{Dynamics, Friction, TorqueCurve, TorqueCurveError, TorqueLimits, TorqueTable};
 pub use verify::{Promise, Verifier, Violation};

@@ -183,7 +183,7 @@ impl<'a, A: Axes> Table<'a, A> {
         }
     }
 
-    fn new(knots: &'a [Knot<A>], limits: Reciprocals<A>, duration_s: f64) -> Self {
+    pub(crate) fn new(knots: &'a [Knot<A>], limits: Reciprocals<A>, duration_s: f64) -> Self {
         Self {
             knots,
             limits,

@@ -9,6 +9,7 @@ extern crate std;
 mod arm;
 mod digits;
 mod drives;
+mod dynamics;
 mod each;
 mod follow;
 mod forward;
@@ -28,6 +29,7 @@ pub use trig_kernels::Trig;
 
 pub use arm::{Arm, GeometryError};
 pub use drives::{Direction, DriveAngles, Drives};
+pub use dynamics::{ArmDynamics, ArmMasses, DynamicsError, JointDrive, LinkMass};
 pub use follow::{Follow, FollowError, Waypoint};
 pub use inverse::{InverseError, Solutions};
 pub use joints::{Elbow, Joint, Joints};

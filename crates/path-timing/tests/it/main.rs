@@ -21,4 +21,5 @@ mod smoothed;
 mod support;
 mod table;
 mod toppra;
+mod torque;
 mod verify;

@@ -2,6 +2,7 @@
 //! as small as there are. What comes back is an error, is not finite itself, or is right.
 
 mod curves;
+mod dynamics;
 mod inverse;
 mod machine;
 mod names;

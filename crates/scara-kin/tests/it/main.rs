@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod common;
+mod dynamics;
 mod each;
 mod extremes;
 mod follow;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 const TESTS: [&str; 8] = [
     include_str!("curves.rs"),
+    include_str!("dynamics.rs"),
     include_str!("inverse.rs"),
     include_str!("machine.rs"),
     include_str!("paths.rs"),

@@ -1,0 +1,176 @@
+//! The fastest speeds at the knots, with limits of torque.
+//!
+//! As in `passes`: backward the highest speed from which the rest can be run, with a speed after it that
+//! goes with it, then forward. Where a motor has at a speed at least what friction and gravity take, and
+//! no more at higher speeds, what holds for a pair of speeds holds for each slower pair of the same
+//! ratio: on a ray a torque is a W² + b W + c, and b W + c is within the limit.
+
+use super::load::Load;
+use super::{Dynamics, TorqueLimits};
+use crate::number::{LARGEST, sqrt};
+use crate::reciprocals::Reciprocals;
+use crate::segment::Segment;
+use crate::{Axes, Knot};
+
+/// The rays of pairs that are chosen for the least time alone: speeds differ by a factor of 8 at most.
+const STEEPEST: f64 = 7.0 / 9.0;
+
+/// The steepest ray that a motion brakes or starts by.
+const STEEPEST_TO_A_SPEED: f64 = 1.0 - 1e-3;
+
+/// Halvings of an interval of rays.
+const HALVINGS: u32 = 20;
+
+/// Cuts of it by the golden ratio.
+const CUTS: u32 = 24;
+
+/// (√5 - 1) / 2
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// A segment with the limits of its axes and motors.
+struct Pair<'a, A: Axes> {
+    axes: Segment<A>,
+    load: Load<'a, A>,
+}
+
+impl<'a, A: Axes> Pair<'a, A> {
+    fn new<D: Dynamics<Axes = A>>(
+        torque: &'a TorqueLimits<D>,
+        limits: &Reciprocals<A>,
+        from: &Knot<A>,
+        to: &Knot<A>,
+    ) -> Self {
+        Self {
+            axes: Segment::new(limits, from, to, 1.0),
+            load: Load::new(torque, from, to),
+        }
+    }
+
+    fn holds(&self, w0: f64, w1: f64) -> bool {
+        self.axes.holds(w0, w1) && self.load.holds(w0, w1)
+    }
+
+    /// The pair on the ray of r that takes the least time.
+    fn widest(&self, r: f64) -> (f64, f64) {
+        let axes = 2.0 / sqrt(self.axes.load(1.0 - r, 1.0 + r));
+        let half = axes.min(self.load.widest(r)).min(LARGEST) * 0.5;
+        (half * (1.0 - r), half * (1.0 + r))
+    }
+
+    /// The pair on the ray, with both speeds capped.
+    fn within(&self, r: f64, [cap, ceiling]: [f64; 2]) -> (f64, f64) {
+        let (w0, w1) = self.widest(r);
+        let scale = [cap / w0, ceiling / w1].into_iter().fold(1.0, f64::min);
+        (w0 * scale, w1 * scale)
+    }
+
+    /// The pair of speeds at the start and at the end with which the rest is run in the least time.
+    fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
+        if cap <= 0.0 {
+            return (0.0, self.widest(1.0).1.min(ceiling));
+        }
+        if ceiling <= 0.0 {
+            return (self.widest(-1.0).0.min(cap), 0.0);
+        }
+        if cap >= ceiling && self.holds(ceiling, ceiling) {
+            // As fast at the start as it can brake from.
+            let lowest = ((ceiling - cap) / (ceiling + cap)).max(-STEEPEST_TO_A_SPEED);
+            let start = |r: f64| ceiling * (1.0 - r) / (1.0 + r);
+            let r = farthest(0.0, lowest, |r| self.holds(start(r), ceiling));
+            return (start(r).min(cap), ceiling);
+        }
+        self.shortest([cap, ceiling])
+    }
+
+    /// The pair of the least time: its sum has one maximum over the rays.
+    fn shortest(&self, caps: [f64; 2]) -> (f64, f64) {
+        let at = |r: f64| {
+            let (w0, w1) = self.within(r, caps);
+            (w0 + w1, (w0, w1))
+        };
+        let [mut low, mut high] = [-STEEPEST, STEEPEST];
+        let inner =
+            |low: f64, high: f64| [high - (high - low) * GOLDEN, low + (high - low) * GOLDEN];
+        let [mut a, mut b] = inner(low, high).map(|r| (r, at(r)));
+        for _ in 0..CUTS {
+            if a.1.0 < b.1.0 {
+                (low, a) = (a.0, b);
+                let [_, r] = inner(low, high);
+                b = (r, at(r));
+            } else {
+                (high, b) = (b.0, a);
+                let [r, _] = inner(low, high);
+                a = (r, at(r));
+            }
+        }
+        if a.1.0 < b.1.0 { b.1.1 } else { a.1.1 }
+    }
+
+    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with w₀ times `ratio` the
+    /// segment holds.
+    fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
+        if w0 <= 0.0 {
+            return self.widest(1.0).1.min(ceiling);
+        }
+        if ceiling <= 0.0 {
+            return 0.0;
+        }
+        let ray = |w1: f64| (w1 - w0) / (w1 + w0);
+        let known = w0 * ratio;
+        let highest = ray(ceiling).min(STEEPEST_TO_A_SPEED);
+        let end = |r: f64| w0 * (1.0 + r) / (1.0 - r);
+        let r = farthest(ray(known), highest, |r| self.holds(w0, end(r)));
+        end(r).min(ceiling).max(known.min(ceiling))
+    }
+}
+
+/// The ray nearest to `wanted` that holds, from one that does.
+fn farthest(known: f64, wanted: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    if holds(wanted) {
+        return wanted;
+    }
+    let (mut good, mut bad) = (known, wanted);
+    for _ in 0..HALVINGS {
+        let middle = (good + bad) * 0.5;
+        if holds(middle) {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    good
+}
+
+/// Gives the knots the speeds of the fastest motion with which no knot passes its cap.
+pub(super) fn fastest<D: Dynamics>(
+    torque: &TorqueLimits<D>,
+    limits: &Reciprocals<D::Axes>,
+    knots: &mut [Knot<D::Axes>],
+) {
+    let mut earlier = knots.iter_mut().rev();
+    let Some(mut to) = earlier.next() else {
+        return;
+    };
+    to.speed = to.cap.min(LARGEST);
+    for from in earlier {
+        (from.speed, from.ratio) = if to.ds > 0.0 {
+            let (w0, w1) = Pair::new(torque, limits, from, to).begin(to.speed, from.cap);
+            (w0, if w0 > 0.0 { w1 / w0 } else { 0.0 })
+        } else {
+            (to.speed.min(from.cap), 1.0)
+        };
+        to = from;
+    }
+    let mut rest = knots.iter_mut();
+    let Some(mut from) = rest.next() else {
+        return;
+    };
+    for to in rest {
+        to.speed = if to.ds > 0.0 {
+            Pair::new(torque, limits, from, to).end(from.speed, to.speed, from.ratio)
+        } else {
+            from.speed
+        };
+        from = to;
+    }
+}

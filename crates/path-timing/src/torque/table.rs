@@ -1,0 +1,112 @@
+//! Tables within the torque of their motors.
+
+use super::{Dynamics, TorqueLimits, passes};
+use crate::number::{larger_or_nan, sqrt};
+use crate::passes::segment_s;
+use crate::planner::{Place, bounded, lay_all};
+use crate::reciprocals::Reciprocals;
+use crate::{Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
+
+/// A position-velocity-time table with which no motor gives more torque than it has.
+///
+/// It is run at its own feed, or evenly slower: a feed that changes from row to row, as that of a
+/// [`Playback`](crate::Playback), takes accelerations of its own, for which no torque is planned.
+#[derive(Debug, Clone, Copy)]
+pub struct TorqueTable<'a, A: Axes> {
+    table: Table<'a, A>,
+}
+
+impl<'a, A: Axes> TorqueTable<'a, A> {
+    /// The rows in their order.
+    #[must_use]
+    pub fn rows(&self) -> Rows<'a, A> {
+        self.table.rows()
+    }
+
+    /// The segments in their order.
+    pub fn spans(&self) -> impl Iterator<Item = Span<A>> + use<'a, A> {
+        self.table.spans()
+    }
+
+    /// Seconds from the first row to the last.
+    #[must_use]
+    pub const fn duration_s(&self) -> f64 {
+        self.table.duration_s()
+    }
+}
+
+/// Rounds of slowing a table by the little that its cubics ask for between the ends of its segments.
+const ROUNDS: u32 = 40;
+
+impl<D: Dynamics> TorqueLimits<D> {
+    /// Plans the fastest table along paths, as [`Table::plan`] does, that keeps the limits of the axes and
+    /// the torques of the motors. Jerk is not limited: `limits` with a jerk are planned without it.
+    ///
+    /// Where an axis has no limit of its own, give it a speed and an acceleration that it never reaches;
+    /// knots are dense where these make the motion slow.
+    ///
+    /// # Errors
+    /// [`PlanError`]; [`PlanError::Overload`] where a motor cannot hold what it carries against gravity and
+    /// friction.
+    pub fn plan<'a, P: Path<Axes = D::Axes> + Clone>(
+        &self,
+        paths: impl IntoIterator<Item = P>,
+        limits: <D::Axes as Axes>::Of<AxisLimits>,
+        segments: impl Fn(&P) -> u32,
+        knots: &'a mut [Knot<D::Axes>],
+    ) -> Result<TorqueTable<'a, D::Axes>, PlanError<P::Error>> {
+        let limits = Reciprocals::checked(&limits)?;
+        let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
+            let segments = segments(place.leg.path());
+            let segments = bounded(place.leg.number, segments, place.rests)?;
+            place.lay(&limits, segments, free)?;
+            Ok(segments)
+        };
+        let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
+        passes::fastest(self, &limits, knots);
+        let duration_s = check_moves(knots)?;
+        let mut table = Table::new(knots, limits, duration_s);
+        for _ in 0..ROUNDS {
+            let spans = table.spans().map(|span| self.utilisation(&span));
+            let most = spans.fold(0.0, larger_or_nan);
+            if most <= 1.0 {
+                return Ok(TorqueTable { table });
+            }
+            // Inertia asks for the square of the speed.
+            let scale = (1.0 - f64::EPSILON) / sqrt(most);
+            let Ok(slower) = table.at_speed(scale) else {
+                break;
+            };
+            table = slower;
+        }
+        Err(overload(knots))
+    }
+}
+
+/// The time of the knots' speeds, all of which let the machine move.
+fn check_moves<A: Axes, E>(knots: &[Knot<A>]) -> Result<f64, PlanError<E>> {
+    let mut time_s = 0.0;
+    for (from, to) in knots.iter().zip(knots.iter().skip(1)) {
+        let segment_s = segment_s(from, to);
+        if !segment_s.is_finite() {
+            return Err(overload(knots));
+        }
+        time_s += segment_s;
+    }
+    Ok(time_s)
+}
+
+/// The place at which no speed is low enough.
+fn overload<A: Axes, E>(knots: &[Knot<A>]) -> PlanError<E> {
+    let mut leg = 0_usize;
+    for (from, to) in knots.iter().zip(knots.iter().skip(1)) {
+        leg = leg.saturating_add(usize::from(from.ends_leg));
+        if to.ds > 0.0 && !segment_s(from, to).is_finite() {
+            return PlanError::Overload {
+                leg,
+                s: from.next_start(),
+            };
+        }
+    }
+    PlanError::Overload { leg: 0, s: 0.0 }
+}
