@@ -3,7 +3,7 @@
 circles of files that need each other.
 
 `.ci/house.py` fails where it finds what `.ci/house.accepted` has not; it also tells what is accepted and
-gone. `.ci/house.py list` prints what it finds.
+gone, which `.ci/house.py tidy` takes out. `.ci/house.py list` prints what it finds.
 
 It reads the sources as text, in a second or two, and expands no macro. What is `pub` can be reached: the
 workspace's lint `unreachable_pub` sees to that. A module may need those around it, as a part does.
@@ -331,8 +331,23 @@ def is_new(head, entry, known):
     return not any(set(rest) <= set(it.split()[1:]) for it in known)
 
 
+def tidy(house):
+    """Writes the accepted lists without what is gone."""
+    lines, head, found = [], None, {}
+    for line in ACCEPTED.read_text().splitlines():
+        if line.startswith('== '):
+            head = line[3:]
+            found[head] = set(HEADS[head](house))
+        entry = line.partition('#')[0].strip()
+        if head is None or line == f'== {head}' or not entry or entry in found[head]:
+            lines.append(line)
+    ACCEPTED.write_text('\n'.join(lines) + '\n')
+
+
 def main():
     house, known, grown = House(), accepted(), False
+    if sys.argv[1:] == ['tidy']:
+        return tidy(house)
     for head, find in HEADS.items():
         found = find(house)
         if sys.argv[1:] == ['list']:
