@@ -26,10 +26,12 @@ fn next_row<I: Iterator<Item = Given>>(
 }
 
 pub fn run() {
-    let impulses = black_box([Impulse {
-        time_s: 0.1,
-        amplitude: 0.5,
-    }; 3]);
+    let impulses = black_box(
+        [Impulse {
+            time_s: 0.1,
+            amplitude: 0.5,
+        }; 3],
+    );
     let shaper = Shaper::from_impulses(&impulses).unwrap_or(Shaper::none());
     let mut given = black_box([Ok(Row::default()), Err(3)]).into_iter().cycle();
     let rows = core::iter::from_fn(move || black_box(given.next()));

@@ -4,8 +4,8 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use path_timing::{
-    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Mode, PathFn, PathPoint, Row, Shaped,
-    Shaper, Smoothed, Table, Vertex, segments_within,
+    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Mode, PathFn, PathPoint, Row,
+    Shaped, Shaper, Smoothed, Table, Vertex, segments_within,
 };
 
 use super::{CLOSE_MM, holds};
@@ -92,8 +92,16 @@ pub fn shaped() -> Option<()> {
     let mut knots = [Knot::default(); 33];
     let table = Table::plan([line], black_box([AXIS; 2]), |_| 32, &mut knots).ok()?;
     let mode = |hz| Mode { hz, damping: 0.05 };
-    let shapers = [Shaper::ei(mode(40.0)).ok()?, Shaper::two_hump(mode(90.0)).ok()?];
-    holds(shapers.iter().zip([40.0, 90.0]).all(|(shaper, hz)| shaper.residual(mode(hz)) < 0.05))?;
+    let shapers = [
+        Shaper::ei(mode(40.0)).ok()?,
+        Shaper::two_hump(mode(90.0)).ok()?,
+    ];
+    holds(
+        shapers
+            .iter()
+            .zip([40.0, 90.0])
+            .all(|(shaper, hz)| shaper.residual(mode(hz)) < 0.05),
+    )?;
     let mut memory = [Row::default(); 40];
     let mut rows = Shaped::new(table.rows(), shapers, &mut memory);
     let last = rows.by_ref().last()?.ok()?;
