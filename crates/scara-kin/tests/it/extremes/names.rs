@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-const TESTS: [&str; 8] = [
+const TESTS: [&str; 9] = [
     include_str!("curves.rs"),
     include_str!("dynamics.rs"),
     include_str!("inverse.rs"),
