@@ -2,6 +2,7 @@
 
 mod input;
 mod monitor;
+mod probe;
 pub(crate) mod settings;
 mod simulate;
 mod station;
@@ -25,6 +26,7 @@ struct Options {
 enum Program {
     Station(station::Options),
     Monitor(monitor::Options),
+    Probe(probe::Options),
     Simulate(simulate::Options),
     #[cfg(feature = "gateway")]
     Gateway(crate::gateway::Options),
@@ -36,6 +38,7 @@ pub fn main() -> ExitCode {
     let ended = match Options::parse().program {
         Program::Station(options) => station::run(&options),
         Program::Monitor(options) => monitor::run(&options),
+        Program::Probe(options) => probe::run(&options),
         Program::Simulate(options) => simulate::run(&options),
         #[cfg(feature = "gateway")]
         Program::Gateway(options) => crate::gateway::run(&options),

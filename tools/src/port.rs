@@ -22,6 +22,6 @@ mod tty;
 #[cfg(feature = "ports")]
 pub use self::stream::Port;
 pub use self::{
-    address::{Address, AddressError, Target},
+    address::{Address, AddressError, Target, Wire},
     frame::{Frame, Parity},
 };

@@ -4,9 +4,6 @@ use crate::lcd::LcdCommands;
 use crate::number::Led;
 use crate::report::{DecodeError, EncodeError, LCD, Model, put};
 
-/// Bytes of the longest telegram to any unit: a display block of the HBAS.
-pub const MAX_COMMAND: usize = Model::Hbas.max_lcd_block();
-
 pub(crate) const STATUS_REQUEST: u8 = 0x23;
 
 /// What an LED does.
@@ -70,7 +67,7 @@ impl<'a> Command<'a> {
         }
     }
 
-    /// Writes the telegram into the head of `buffer`; [`MAX_COMMAND`] bytes hold every one.
+    /// Writes the telegram into the head of `buffer`; [`MAX_COMMAND`](crate::MAX_COMMAND) bytes hold every one.
     ///
     /// # Errors
     /// [`EncodeError`]: the buffer is too short, or the unit has no such telegram.

@@ -6,20 +6,25 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+mod cells;
 mod command;
 mod driver;
+mod error;
 mod lcd;
 mod number;
 mod report;
 mod text;
 mod wheel;
 
-pub use command::{Command, LedState, MAX_COMMAND};
+pub use cells::{Cell, Rect};
+pub use command::{Command, LedState};
 pub use driver::{Driver, Event, Failure, Job, SubmitError, Timing};
-pub use lcd::{Cell, Font, LcdBlock, LcdCommand, LcdCommands, LcdError, Rect};
+pub use error::LcdError;
+pub use lcd::{Font, LcdBlock, LcdCommand, LcdCommands};
 pub use number::{AreaNumber, Column, Key, Led, Line, NumberError, Position, TextNumber};
 pub use report::{
-    DecodeError, EncodeError, LcdAnswer, MAX_REPORT, Model, Report, RotarySwitch, Status,
+    DecodeError, EncodeError, LcdAnswer, MAX_COMMAND, MAX_REPORT, Model, Report, RotarySwitch,
+    Status,
 };
 pub use text::Text;
 pub use wheel::{WheelError, WheelQuantiser, WheelSampler};

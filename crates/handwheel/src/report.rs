@@ -7,6 +7,9 @@ use crate::number::{Key, NumberError, Position};
 /// Bytes of the longest report.
 pub const MAX_REPORT: usize = 3;
 
+/// Bytes of the longest telegram to any unit: a display block of the HBAS.
+pub const MAX_COMMAND: usize = Model::Hbas.max_lcd_block();
+
 /// First byte of everything about the display.
 pub(crate) const LCD: u8 = 0x6C;
 const KEY_0: u8 = 0x30;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::lcd::LcdError;
+use crate::error::LcdError;
 
 /// Display code of a character less its ASCII code: inferred from the manual's examples, whose
 /// eleven letters all fit.

@@ -20,11 +20,13 @@
 //! assert_eq!(diagnosis.verdict, Verdict::NotHeard { speaker: Side::B, listener: Side::A });
 //! ```
 
+mod bench;
 mod end;
 mod faults;
 mod simulation;
 mod uart;
 
+pub use self::bench::Bench;
 pub use self::end::StationSettings;
 pub use self::faults::Faults;
 pub use self::simulation::{Happening, Simulation};

@@ -43,12 +43,12 @@ pub struct Simulation {
 const SIDES: [Side; 2] = [Side::A, Side::B];
 
 /// Time of a step since the begin, rounded down to a nanosecond.
-const fn time(step: u64) -> Duration {
+pub(crate) const fn time(step: u64) -> Duration {
     Duration::from_nanos(step.saturating_mul(NS_PER_STEP.0) / NS_PER_STEP.1)
 }
 
 /// The first step at this time or later.
-fn step_at(time: Duration) -> u64 {
+pub(crate) fn step_at(time: Duration) -> u64 {
     let (ns, steps) = NS_PER_STEP;
     let step = (time.as_nanos() * u128::from(steps)).div_ceil(ns.into());
     u64::try_from(step).unwrap_or(u64::MAX)

@@ -2,6 +2,7 @@
 
 mod answers;
 mod heating;
+mod paced;
 mod pendant;
 mod plc;
 
@@ -14,20 +15,26 @@ use std::{
 
 use anyhow::{Context as _, Result, anyhow};
 use clap::{Args, ValueEnum};
-use proto3964r::{Config, Event, Priority, tokio::driver};
-use tokio::{select, sync::mpsc::Receiver, time::sleep};
+use proto3964r::{Config, Event, Line, Priority, tokio::driver};
+use tokio::{
+    io::{AsyncRead, AsyncWrite},
+    select,
+    sync::mpsc::Receiver,
+    time::sleep,
+};
 
-use self::{answers::Answers, heating::Heating, pendant::Pendant, plc::Plc};
+use self::{answers::Answers, heating::Heating, paced::paced, pendant::Pendant, plc::Plc};
 use super::{
     input::{self, InputLine},
     station::{BLOCK, PriorityName, describe},
 };
-use crate::{Address, Port, Preset, Target, text};
+use crate::{Address, Frame, Preset, Target, Wire, text};
 
 /// Is the machine at the other end of a line.
 ///
 /// What happens is printed as by `station`; lines of standard input tell the machine what to do. A
-/// program that connects (tcp-listen) may go and come again.
+/// program that connects (tcp-listen) may go and come again; it hears a serial server: characters
+/// take their time (baud=9600), unless the port has line=instant.
 ///
 ///   3964r  sends hexadecimal lines of standard input; --data has answers, `HEX = HEX` a line
 ///   rk512  a PLC that serves SEND and FETCH; --data has its memory, as TOML with bytes in
@@ -133,7 +140,7 @@ fn partner(machine: Machine, path: Option<&str>) -> Result<Box<dyn Partner>> {
 }
 
 /// The parameters of the machine's own station.
-fn config(options: &Options) -> Config {
+fn config(options: &Options) -> Result<Config> {
     let (preset, priority) = match options.machine {
         Machine::Any | Machine::Km271 => (Preset::Siemens3964r, Priority::Low),
         Machine::Rk512 => (Preset::Siemens3964r, Priority::High),
@@ -141,7 +148,18 @@ fn config(options: &Options) -> Config {
     };
     let priority = options.priority.map_or(priority, Priority::from);
     let preset = options.preset.unwrap_or(preset);
-    preset.config(priority, options.port.line())
+    let line = match paced_frame(&options.port) {
+        Some(frame) => Line::buffered(frame.baud, frame.bits()),
+        None => options.port.line()?,
+    };
+    Ok(preset.config(priority, line))
+}
+
+/// How fast characters go to a program that takes this machine for a serial server: `None` where
+/// they go at once.
+fn paced_frame(port: &Address) -> Option<Frame> {
+    let is_server = matches!(port.target, Target::TcpListen(_));
+    (is_server && port.wire != Some(Wire::Instant)).then_some(port.frame)
 }
 
 /// Serves one connection after the other, or the one port that there is.
@@ -149,9 +167,16 @@ async fn work(options: &Options, mut partner: Box<dyn Partner>) -> Result<()> {
     let name = || options.port.target.to_string();
     let mut orders = input::lines();
     let epoch = Instant::now();
+    let config = config(options)?;
     loop {
         let port = options.port.open().await.with_context(name)?;
-        let ended = serve(port, config(options), partner.as_mut(), &mut orders, epoch).await;
+        let ended = match paced_frame(&options.port) {
+            Some(frame) => {
+                let port = paced(port, frame);
+                serve(port, config, partner.as_mut(), &mut orders, epoch).await
+            }
+            None => serve(port, config, partner.as_mut(), &mut orders, epoch).await,
+        };
         match ended {
             Err(_) if matches!(options.port.target, Target::TcpListen(_)) => {
                 // What was under way to the one that has gone.
@@ -164,7 +189,7 @@ async fn work(options: &Options, mut partner: Box<dyn Partner>) -> Result<()> {
 }
 
 async fn serve(
-    port: Port,
+    port: impl AsyncRead + AsyncWrite + Send + 'static,
     config: Config,
     partner: &mut dyn Partner,
     orders: &mut Receiver<InputLine>,

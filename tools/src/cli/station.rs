@@ -83,10 +83,10 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
 async fn work(options: &Options) -> Result<ExitCode> {
     let Options { port: address, .. } = options;
     let name = || address.target.to_string();
-    let port = address.open().await.with_context(name)?;
     let config = options
         .preset
-        .config(options.priority.into(), address.line());
+        .config(options.priority.into(), address.line()?);
+    let port = address.open().await.with_context(name)?;
     let mut line = driver::<BLOCK>(port, config);
     let mut input = input::lines();
     let mut code = ExitCode::SUCCESS;

@@ -258,6 +258,9 @@ impl Config {
                 return Err((table, format!("a second line on `{port}`")));
             }
             ports.push(port);
+            if let Err(error) = line.port.line() {
+                return Err((table, error.to_string()));
+            }
             let (name, start) = (line.name.get_ref(), line.name.span().start);
             if names.contains(&name) {
                 return Err((start, format!("a second line `{name}`")));
@@ -376,7 +379,9 @@ impl Line {
             PriorityName::Low => Priority::Low,
             PriorityName::High => Priority::High,
         };
-        let config = self.preset.config(priority, self.port.line());
+        // Whose rate is not known was refused when the file was read.
+        let line = self.port.line().unwrap_or(proto3964r::Line::Instant);
+        let config = self.preset.config(priority, line);
         proto3964r::Config {
             qvz_ms: self.qvz_ms.map_or(config.qvz_ms, NonZeroU16::get),
             ..config

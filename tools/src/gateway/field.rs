@@ -28,6 +28,11 @@ pub(crate) struct Field {
     pub(crate) unit: Option<String>,
     /// Home Assistant's class of the quantity, `temperature` for instance.
     pub(crate) device_class: Option<String>,
+    /// Home Assistant's class of its course, `total_increasing` for instance.
+    state_class: Option<String>,
+    /// What may be written, where it is less than the type holds.
+    min: Option<f64>,
+    max: Option<f64>,
 }
 
 /// A value with its unit, as JSON shows it.
@@ -76,11 +81,51 @@ impl Field {
         if end > bytes {
             return Err(format!("ends at byte {end} of {bytes}"));
         }
+        if !self.min.is_none_or(f64::is_finite) || !self.max.is_none_or(f64::is_finite) {
+            return Err("min and max are numbers".to_owned());
+        }
         match self.scale {
             Some(_) if !kind.is_number() => Err("only numbers have a scale".to_owned()),
             Some(scale) if !scale.is_normal() => Err(format!("{scale} is no scale")),
             _ => Ok(()),
         }
+    }
+
+    /// Home Assistant's class of its course: that of any number is a measurement.
+    pub(crate) fn state_class(&self) -> Option<&str> {
+        let given = self.state_class.as_deref();
+        given.or_else(|| self.kind.is_number().then_some("measurement"))
+    }
+
+    /// Whether it begins and ends with a word.
+    pub(crate) fn is_made_of_words(&self) -> bool {
+        let range = self.range();
+        range.start.is_multiple_of(2) && range.len().is_multiple_of(2)
+    }
+
+    /// The least and the largest value, and the step from one to the next, of what may be written
+    /// alone: a number of whole words.
+    pub(crate) fn scale_to_write(&self) -> Option<(f64, f64, f64)> {
+        if !self.is_made_of_words() {
+            return None;
+        }
+        let range = self.range();
+        let scale = self.scale.unwrap_or(1.0);
+        let holds = self.kind.holds(range.len());
+        let (one, other) = holds.map_or((None, None), |(least, largest)| {
+            (Some(rounded(least * scale)), Some(rounded(largest * scale)))
+        });
+        let (least, largest) = if scale < 0.0 {
+            (other, one)
+        } else {
+            (one, other)
+        };
+        let step = if self.kind.is_whole() {
+            scale.abs()
+        } else {
+            0.001
+        };
+        Some((self.min.or(least)?, self.max.or(largest)?, step))
     }
 
     /// The bytes that it takes.

@@ -1,4 +1,4 @@
-//! Counts for Prometheus, over HTTP.
+//! Counts for Prometheus, and what lines carried for Wireshark, over HTTP.
 
 use alloc::sync::Arc;
 use core::{convert::Infallible, sync::atomic::Ordering, time::Duration};
@@ -11,7 +11,10 @@ use hyper::{
 };
 use hyper_util::rt::{TokioIo, TokioTimer};
 use log::debug;
-use tokio::{net::TcpListener, task::JoinSet};
+use tokio::{
+    net::TcpListener,
+    task::{JoinSet, spawn_blocking},
+};
 
 use super::{
     accept,
@@ -24,7 +27,7 @@ const MAX_CLIENTS: usize = 8;
 /// How long a client may take for its request.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Serves `GET /metrics` until the gateway ends.
+/// Serves `GET /metrics` and `GET /capture/LINE.pcapng` until the gateway ends.
 pub(crate) async fn serve(listener: TcpListener, hub: Arc<Hub>) {
     let mut clients = JoinSet::new();
     loop {
@@ -35,8 +38,8 @@ pub(crate) async fn serve(listener: TcpListener, hub: Arc<Hub>) {
         let hub = Arc::clone(&hub);
         clients.spawn(async move {
             let answer = service_fn(|request| {
-                let answer = answer(&request, &hub);
-                async { Ok::<_, Infallible>(answer) }
+                let hub = Arc::clone(&hub);
+                async move { Ok::<_, Infallible>(answer(&request, &hub).await) }
             });
             let served = http1::Builder::new()
                 .timer(TokioTimer::new())
@@ -50,16 +53,34 @@ pub(crate) async fn serve(listener: TcpListener, hub: Arc<Hub>) {
     }
 }
 
-fn answer(request: &Request<Incoming>, hub: &Hub) -> Response<Full<Bytes>> {
-    let is_asked = request.method() == Method::GET && request.uri().path() == "/metrics";
-    let text = if is_asked { text(hub) } else { String::new() };
-    let mut answer = Response::new(Full::from(text));
-    if !is_asked {
+async fn answer(request: &Request<Incoming>, hub: &Hub) -> Response<Full<Bytes>> {
+    let path = match *request.method() {
+        Method::GET => request.uri().path(),
+        _ => "",
+    };
+    let found = if path == "/metrics" {
+        Some((Bytes::from(text(hub)), "text/plain; version=0.0.4"))
+    } else {
+        let capture = capture(path, hub).await;
+        capture.map(|bytes| (Bytes::from(bytes), "application/octet-stream"))
+    };
+    let is_found = found.is_some();
+    let (body, kind) = found.unwrap_or((Bytes::new(), "text/plain"));
+    let mut answer = Response::new(Full::from(body));
+    if !is_found {
         *answer.status_mut() = StatusCode::NOT_FOUND;
     }
-    let kind = hyper::header::HeaderValue::from_static("text/plain; version=0.0.4");
+    let kind = hyper::header::HeaderValue::from_static(kind);
     answer.headers_mut().insert(CONTENT_TYPE, kind);
     answer
+}
+
+/// What a line carried last; in a thread of its own, since the lines go on meanwhile.
+async fn capture(path: &str, hub: &Hub) -> Option<Vec<u8>> {
+    let line = path.strip_prefix("/capture/")?.strip_suffix(".pcapng")?;
+    let tap = Arc::clone(&hub.lines.get(line)?.tap);
+    let made = spawn_blocking(move || tap.pcapng()).await;
+    made.ok().flatten()
 }
 
 /// One metric: name, type, help, and how it is read from a line.

@@ -10,6 +10,7 @@ use core::{
 use std::{
     io,
     sync::{Mutex, MutexGuard, PoisonError},
+    time::SystemTime,
 };
 
 use monitor3964r::{Character, Diagnosis, Side, Verdict, diagnose};
@@ -19,7 +20,10 @@ use tokio::{
     time::Instant,
 };
 
-use crate::Port;
+use crate::{
+    Port,
+    capture::{self, PcapngWriter},
+};
 
 /// The gateway's side in a verdict; the partner is B.
 const GATEWAY: Side = Side::A;
@@ -32,8 +36,11 @@ const RECENT: Duration = Duration::from_secs(60);
 /// long as many telegrams.
 const UNDISTURBED: Duration = Duration::from_secs(300);
 
-/// Characters that are kept, at most: some 50 telegrams of 32 bytes.
-const KEPT: usize = 2048;
+/// Characters that are kept, at most: of a telegram of 32 bytes a second the last three minutes.
+const KEPT: usize = 8192;
+
+/// Characters that a verdict looks at, at most: some 50 telegrams of 32 bytes.
+const JUDGED: usize = 2048;
 
 /// Listens to one line.
 #[derive(Default)]
@@ -43,6 +50,8 @@ pub(crate) struct Tap(Mutex<Record>);
 struct Record {
     /// Of the station; `None` before the port is open.
     config: Option<Config>,
+    /// When the port was opened, since 1970.
+    epoch: Duration,
     heard: VecDeque<Character>,
     /// When the last character of the gateway has left.
     busy_until: Duration,
@@ -68,6 +77,8 @@ impl Tap {
     pub(crate) fn listen(self: &Arc<Self>, port: Port, config: Config) -> Tapped {
         let mut record = self.record();
         record.config = Some(config);
+        let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+        record.epoch = since_1970.unwrap_or_default();
         record.heard.clear();
         record.busy_until = Duration::ZERO;
         record.worked_at = None;
@@ -94,7 +105,11 @@ impl Tap {
             if is_undisturbed || !mem::take(&mut record.is_news) {
                 return None;
             }
-            (record.config?, Vec::from_iter(record.heard.iter().copied()))
+            let skipped = record.heard.len().saturating_sub(JUDGED);
+            (
+                record.config?,
+                Vec::from_iter(record.heard.iter().skip(skipped).copied()),
+            )
         };
         // What was written for a slow wire leaves later than what came meanwhile.
         heard.sort_by_key(|heard| heard.at);
@@ -115,6 +130,26 @@ impl Tap {
         }
         record.told = Some((diagnosis, Instant::now()));
         Some(diagnosis)
+    }
+
+    /// What was heard last, as pcapng with its meaning and a verdict; `None` before the port was open.
+    pub(crate) fn pcapng(&self) -> Option<Vec<u8>> {
+        let (config, epoch, mut heard) = {
+            let record = self.record();
+            let heard = Vec::from_iter(record.heard.iter().copied());
+            (record.config?, record.epoch, heard)
+        };
+        heard.sort_by_key(|heard| heard.at);
+        let (mut bytes, mut tap) = (Vec::new(), capture::Tap::new(config));
+        let mut file = PcapngWriter::new(&mut bytes, epoch).ok()?;
+        for piece in capture::pieces(&heard) {
+            let steps = piece.iter().flat_map(|&heard| tap.hear(heard));
+            let steps: Vec<_> = steps.collect();
+            file.piece(piece, &steps).ok()?;
+        }
+        let last = heard.last().map_or(Duration::ZERO, |last| last.at);
+        file.note(last, &tap.verdict().to_string()).ok()?;
+        Some(bytes)
     }
 
     /// Whether the last verdict that was told names a fault.

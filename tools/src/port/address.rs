@@ -22,7 +22,7 @@ use super::{Frame, Parity};
 ///
 /// | setting | values | default |
 /// |---|---|---|
-/// | `baud` | bits per second | 9600 |
+/// | `baud` | bits per second | 9600; of `tcp://` none, since its line has one that is not known here |
 /// | `parity` | `none`, `even`, `odd` | `even` |
 /// | `stop` | stop bits: `1`, `2` | 1 |
 /// | `line` | `instant` where no wire is in between, `buffered` at these bits per second | see above |
@@ -38,7 +38,7 @@ use super::{Frame, Parity};
 /// # fn main() -> Result<(), line3964r::AddressError> {
 /// let address: Address = "tcp://192.168.0.7:4001?baud=19200".parse()?;
 /// assert_eq!(address.target, Target::Tcp("192.168.0.7:4001".to_owned()));
-/// assert_eq!(address.line(), Line::buffered(19200, 11));
+/// assert_eq!(address.line()?, Line::buffered(19200, 11));
 ///
 /// let error = "tcp://plc?baud=fast".parse::<Address>().unwrap_err();
 /// assert_eq!(error.to_string(), "`tcp://plc?baud=fast`: `plc` is not HOST:PORT");
@@ -53,10 +53,22 @@ pub struct Address {
     pub target: Target,
     /// How its characters are made.
     pub frame: Frame,
-    /// Whether no wire is in between: answers may come at once.
-    pub is_instant: bool,
+    /// Whether the rate of the line is known: of `tcp://` where it was given.
+    pub has_rate: bool,
+    /// What is in between, where it was given.
+    pub wire: Option<Wire>,
     /// Whether each side hears itself, and that is to be removed.
     pub has_echo: bool,
+}
+
+/// What lies between this program and its partner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(clippy::exhaustive_enums, reason = "a wire or none")]
+pub enum Wire {
+    /// None: answers may come at once.
+    Instant,
+    /// One behind a buffer.
+    Buffered,
 }
 
 /// What an address names.
@@ -88,13 +100,28 @@ pub struct AddressError {
 
 impl Address {
     /// What a station has to know of the line: see the table above.
-    #[must_use]
-    pub const fn line(&self) -> Line {
-        if self.is_instant {
-            Line::Instant
+    ///
+    /// # Errors
+    /// The rate of the line behind a serial server in raw mode, where it was not given: with another
+    /// one answers are taken for old ones, or late ones for new.
+    pub fn line(&self) -> Result<Line, AddressError> {
+        if self.is_instant() {
+            Ok(Line::Instant)
+        } else if self.has_rate {
+            Ok(Line::buffered(self.frame.baud, self.frame.bits()))
         } else {
-            Line::buffered(self.frame.baud, self.frame.bits())
+            Err(AddressError {
+                address: self.to_string(),
+                message: "the rate of its serial line is not known: `?baud=9600`, or \
+                          `?line=instant` where no wire is in between"
+                    .to_owned(),
+            })
         }
+    }
+
+    fn is_instant(&self) -> bool {
+        let given = self.wire.map(|wire| wire == Wire::Instant);
+        given.unwrap_or_else(|| self.target.is_instant())
     }
 }
 
@@ -162,7 +189,8 @@ fn parse(text: &str) -> Result<Address, String> {
     };
     let target = Target::parse(target)?;
     let mut address = Address {
-        is_instant: target.is_instant(),
+        has_rate: !matches!(target, Target::Tcp(_)),
+        wire: None,
         target,
         frame: Frame::DEFAULT,
         has_echo: false,
@@ -188,7 +216,7 @@ impl Address {
         match (name, value) {
             ("baud", _) => match value.parse() {
                 Ok(0) | Err(_) => return Err(format!("baud: `{value}` is no number of bit/s")),
-                Ok(baud) => self.frame.baud = baud,
+                Ok(baud) => (self.frame.baud, self.has_rate) = (baud, true),
             },
             ("parity", "none") => self.frame.parity = Parity::None,
             ("parity", "even") => self.frame.parity = Parity::Even,
@@ -197,8 +225,8 @@ impl Address {
             ("stop", "1") => self.frame.stop_bits = 1,
             ("stop", "2") => self.frame.stop_bits = 2,
             ("stop", _) => return is_none_of("1, 2"),
-            ("line", "instant") => self.is_instant = true,
-            ("line", "buffered") => self.is_instant = false,
+            ("line", "instant") => self.wire = Some(Wire::Instant),
+            ("line", "buffered") => self.wire = Some(Wire::Buffered),
             ("line", _) => return is_none_of("instant, buffered"),
             ("echo", "keep") => self.has_echo = false,
             ("echo", "remove") => self.has_echo = true,
@@ -227,12 +255,13 @@ impl fmt::Display for Address {
             Parity::None => Some("parity=none"),
             Parity::Odd => Some("parity=odd"),
         };
-        let line = match self.is_instant {
-            same if same == self.target.is_instant() => None,
-            true => Some("line=instant"),
-            false => Some("line=buffered"),
-        };
-        let baud = (baud != Frame::DEFAULT.baud).then(|| format!("baud={baud}"));
+        let line = self.wire.map(|wire| match wire {
+            Wire::Instant => "line=instant",
+            Wire::Buffered => "line=buffered",
+        });
+        let is_given = matches!(self.target, Target::Tcp(_)) && self.has_rate;
+        let is_shown = is_given || baud != Frame::DEFAULT.baud;
+        let baud = is_shown.then(|| format!("baud={baud}"));
         let settings = [
             baud.as_deref(),
             parity,
@@ -279,7 +308,8 @@ mod tests {
             stop_bits: 2,
         };
         assert_eq!((address.frame, address.frame.bits()), (frame, 12));
-        assert_eq!((address.line(), address.has_echo), (Line::Instant, true));
+        assert_eq!(address.line(), Ok(Line::Instant));
+        assert!(address.has_echo);
     }
 
     #[test]
@@ -287,16 +317,31 @@ mod tests {
         let buffered = Line::buffered(9600, 11);
         for (text, line) in [
             ("COM3", buffered),
-            ("tcp://plc.local:4001", buffered),
+            ("tcp://plc.local:4001?baud=9600", buffered),
             ("rfc2217://[::1]:2217", buffered),
             ("tcp-listen://127.0.0.1:0", Line::Instant),
             ("pty:/tmp/line", Line::Instant),
             ("pty:/tmp/line?line=buffered", buffered),
         ] {
             let address: Address = text.parse().unwrap();
-            assert_eq!(address.line(), line, "{text}");
+            assert_eq!(address.line(), Ok(line), "{text}");
             assert_eq!(address.to_string(), text);
         }
+    }
+
+    /// At 19200 bit/s a station that took 9600 for granted failed 7 of 10 jobs.
+    #[test]
+    fn no_rate_is_guessed() {
+        let text = "tcp://plc.local:4001?parity=none";
+        let address: Address = text.parse().unwrap();
+        let error = address.line().unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "`{text}`: the rate of its serial line is not known: `?baud=9600`, or \
+                 `?line=instant` where no wire is in between"
+            )
+        );
     }
 
     #[test]

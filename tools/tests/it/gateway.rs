@@ -4,6 +4,7 @@ mod basics;
 mod broker;
 mod commands;
 mod connections;
+mod discovery;
 mod health;
 mod load;
 mod nats;

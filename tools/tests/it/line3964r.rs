@@ -4,6 +4,7 @@ mod exchange;
 #[cfg(feature = "gateway")]
 mod gateway;
 mod monitor;
+mod probe;
 mod program;
 mod simulate;
 mod station;

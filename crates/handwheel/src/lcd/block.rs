@@ -2,9 +2,10 @@
 
 use core::fmt;
 
-use super::{Cell, Font, LcdCommand, LcdCommands, LcdError, Rect};
-use crate::command::MAX_COMMAND;
-use crate::report::{LCD, Model};
+use super::{Font, LcdCommand, LcdCommands};
+use crate::cells::{Cell, Rect};
+use crate::error::LcdError;
+use crate::report::{LCD, MAX_COMMAND, Model};
 use crate::text::Text;
 
 /// Code of number, line and column 0.

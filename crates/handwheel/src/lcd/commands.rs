@@ -3,7 +3,9 @@
 use core::iter::FusedIterator;
 
 use super::block::{TEXT_END, ZERO};
-use super::{Cell, Font, LcdCommand, LcdError, Rect};
+use super::{Font, LcdCommand};
+use crate::cells::{Cell, Rect};
+use crate::error::LcdError;
 use crate::number::{AreaNumber, Column, Line, NumberError, TextNumber};
 use crate::report::Model;
 use crate::text::Text;

@@ -284,7 +284,7 @@ impl<'c> Case<'c> {
             .then_some(verdict)
     }
 
-    fn late(&self, side: Side) -> Option<Verdict> {
+    pub(super) fn late(&self, side: Side) -> Option<Verdict> {
         let sender = self.side(side.other());
         let Late {
             delay,

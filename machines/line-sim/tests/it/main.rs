@@ -2,4 +2,5 @@
 #![cfg(test)]
 
 mod overheard;
+mod probe;
 mod verdicts;

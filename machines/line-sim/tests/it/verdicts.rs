@@ -5,7 +5,7 @@
 //! verdicts: `CASES=400 cargo test --release -p line-sim --test it verdicts::shares --
 //! --ignored --nocapture`.
 
-mod case;
+pub(crate) mod case;
 mod kinds;
 
 use std::env;
@@ -83,6 +83,7 @@ kinds! {
     another_bcc,
     late_answers,
     late_for_a_short_qvz,
+    late_answers_of_3964,
     echo,
     own_echo,
     pauses,

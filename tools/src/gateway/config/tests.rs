@@ -3,7 +3,7 @@ use std::fs;
 use super::Config;
 
 const HEAD: &str = "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:0\"\n";
-const LINE: &str = "[[line]]\nname = \"a\"\nport = \"tcp://h:1\"\npriority = \"low\"\n";
+const LINE: &str = "[[line]]\nname = \"a\"\nport = \"tcp://h:1?baud=9600\"\npriority = \"low\"\n";
 
 fn error(text: &str) -> String {
     match Config::parse(text) {
@@ -48,7 +48,7 @@ fn errors_name_line_and_column() {
         ),
         (
             &LINE.replace("h:1", "h"),
-            "line 6, column 8: `tcp://h`: `h` is not HOST:PORT",
+            "line 6, column 8: `tcp://h?baud=9600`: `h` is not HOST:PORT",
         ),
         (
             &(LINE.to_owned() + &LINE.replace("h:1", "h:2")),
@@ -72,6 +72,11 @@ fn errors_name_line_and_column() {
                  [[line.telegram]]\nname = \"y\"\nstarts_with = \"57 01\"\nlength = 3"
             ),
             "line 11, column 1: telegram `y`: `x` describes all of them before",
+        ),
+        (
+            &LINE.replace("?baud=9600", ""),
+            "line 4, column 1: `tcp://h:1`: the rate of its serial line is not known: \
+             `?baud=9600`, or `?line=instant` where no wire is in between",
         ),
         (
             &format!("{LINE}silent_after_s = 0"),

@@ -60,6 +60,27 @@ impl Kind {
         !matches!(self, Self::Text | Self::Bit)
     }
 
+    pub(super) const fn is_whole(self) -> bool {
+        self.is_number() && !matches!(self, Self::F32Be | Self::F32Le)
+    }
+
+    /// The least and the largest whole number of so many bytes.
+    pub(super) fn holds(self, length: usize) -> Option<(f64, f64)> {
+        Some(match self {
+            Self::U8 => (0.0, u8::MAX.into()),
+            Self::I8 => (i8::MIN.into(), i8::MAX.into()),
+            Self::U16Be | Self::U16Le => (0.0, u16::MAX.into()),
+            Self::I16Be | Self::I16Le => (i16::MIN.into(), i16::MAX.into()),
+            Self::U32Be | Self::U32Le => (0.0, u32::MAX.into()),
+            Self::I32Be | Self::I32Le => (i32::MIN.into(), i32::MAX.into()),
+            Self::Bcd => {
+                let digits = i32::try_from(2 * length).ok()?;
+                (0.0, 10_f64.powi(digits) - 1.0)
+            }
+            Self::F32Be | Self::F32Le | Self::Bit | Self::Text => return None,
+        })
+    }
+
     /// Bytes, where the type says it.
     pub(super) const fn size(self) -> Option<usize> {
         match self {

@@ -207,14 +207,13 @@ impl Area {
             let field = fields
                 .find(|field| field.name.as_str() == name)
                 .ok_or_else(|| format!("no field `{name}` in `{}`", self.name))?;
-            let range = field.range();
-            if range.start % 2 != 0 || range.len() % 2 != 0 {
+            if !field.is_made_of_words() {
                 return Err(format!("`{name}` is not made of whole words"));
             }
             let bytes = field
                 .encode(value)
                 .map_err(|error| format!("`{name}`: {error}"))?;
-            blocks.push((self.place(range.start / 2)?, bytes));
+            blocks.push((self.place(field.range().start / 2)?, bytes));
         }
         Ok(blocks)
     }

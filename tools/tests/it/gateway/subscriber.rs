@@ -12,6 +12,7 @@ use rumqttc::v5::{
 use serde_json::Value;
 use tokio::{
     sync::mpsc,
+    task::JoinHandle,
     time::{sleep, timeout},
 };
 
@@ -24,6 +25,14 @@ use super::{
 pub(crate) struct Subscriber {
     client: AsyncClient,
     heard: mpsc::UnboundedReceiver<Publish>,
+    task: JoinHandle<()>,
+}
+
+impl Drop for Subscriber {
+    /// The next one has its identifier: this one must not take the connection back.
+    fn drop(&mut self) {
+        self.task.abort();
+    }
 }
 
 impl Subscriber {
@@ -41,7 +50,7 @@ impl Subscriber {
         for topics in ["line3964r/#", "homeassistant/#"] {
             client.try_subscribe(topics, QoS::AtLeastOnce).unwrap();
         }
-        tokio::spawn(async move {
+        let task = tokio::spawn(async move {
             loop {
                 match events.poll().await {
                     Ok(Event::Incoming(Incoming::Publish(publish))) => {
@@ -58,7 +67,11 @@ impl Subscriber {
         for _ in 0..2 {
             is_subscribed.recv().await.unwrap();
         }
-        Self { client, heard }
+        Self {
+            client,
+            heard,
+            task,
+        }
     }
 
     /// The next message as it came.

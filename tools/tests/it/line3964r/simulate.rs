@@ -108,6 +108,43 @@ fn wait_for(path: &Path) {
     }
 }
 
+/// A client with its defaults takes the machine for a serial server at 9600 bit/s: its answers come
+/// no sooner than a wire could carry them.
+#[cfg(feature = "gateway")]
+#[tokio::test(flavor = "multi_thread")]
+async fn a_client_of_rk512_finds_a_serial_server() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let host = listener.local_addr().unwrap();
+    drop(listener);
+    let folder = TempDir::new().unwrap();
+    let data = folder.path().join("data");
+    fs::write(&data, "db.10 = \"0001 0203\"\n").unwrap();
+    let machine = program("simulate")
+        .args(["rk512", "--port", &format!("tcp-listen://{host}"), "--data"])
+        .arg(data)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let _machine = Machine {
+        child: machine,
+        orders: None,
+        folder,
+    };
+    let begin = std::time::Instant::now();
+    let plc = loop {
+        match rk512::tokio::connect(&format!("tcp://{host}")).await {
+            Ok(plc) => break plc,
+            Err(error) => assert!(begin.elapsed() < Duration::from_secs(60), "{error}"),
+        }
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    };
+    for _ in 0..5 {
+        let words = plc.fetch(rk512::Area::db(10, 0), 2).await.unwrap();
+        assert_eq!(words, [0, 1, 2, 3]);
+    }
+}
+
 const LOW: &[&str] = &["--priority", "low", "--preset", "siemens-3964r"];
 const HIGH: &[&str] = &["--priority", "high", "--preset", "siemens-3964r"];
 const PENDANT: &[&str] = &["--priority", "high", "--preset", "hbls"];

@@ -9,6 +9,10 @@ use crate::{
 impl Case<'_> {
     pub(super) fn without_bcc(&self, side: Side) -> Option<Verdict> {
         let own = self.side(side);
+        // An answer that is too late says nothing of the block before it.
+        if self.late(side.other()).is_some() {
+            return None;
+        }
         let as_sender = most(own.without_bcc, own.blocks());
         let noticed = own.bcc_not_awaited.max(own.nak_after_dle);
         let as_receiver = most(noticed, self.side(side.other()).blocks());

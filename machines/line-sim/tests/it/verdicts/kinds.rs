@@ -5,7 +5,7 @@ mod frames;
 use core::time::Duration;
 
 use monitor3964r::{Character, Diagnosis, Formula, Verdict, diagnose};
-use proto3964r::{Config, Line, Priority};
+use proto3964r::{Check, Config, Line, Priority};
 
 pub(crate) use self::frames::{
     another_parity_of_the_tap, another_rate, another_rate_of_the_tap, no_parity, odd_parity,
@@ -17,6 +17,8 @@ use crate::verdicts::case::{Case, Plan, between, other, pick};
 pub(crate) struct Example {
     pub(crate) record: Vec<Character>,
     pub(crate) is_right: Box<dyn Fn(&Diagnosis) -> bool>,
+    /// What the monitor expects.
+    check: Check,
 }
 
 /// What says whether a verdict is right.
@@ -33,11 +35,16 @@ impl Example {
         Self {
             record,
             is_right: Box::new(is_right),
+            check: Check::Bcc,
         }
     }
 
     pub(crate) fn diagnosis(&self) -> Diagnosis {
-        let config = Config::siemens_3964r(Priority::Low, Line::paced(9600, 11));
+        let preset = match self.check {
+            Check::Bcc => Config::siemens_3964r,
+            Check::None => Config::siemens_3964,
+        };
+        let config = preset(Priority::Low, Line::paced(9600, 11));
         diagnose(&self.record, &config)
     }
 }
@@ -274,6 +281,30 @@ pub(crate) fn late_for_a_short_qvz(case: Case) -> Example {
     late(case, between(&mut case.random(), 600, 1500), 550)
 }
 
+/// Plain 3964, whose blocks a late answer must not make a fault of; whichever is expected.
+pub(crate) fn late_answers_of_3964(case: Case) -> Example {
+    let mut random = case.random();
+    let case = Case {
+        sends: [false, true],
+        seconds: 40,
+        ..case
+    };
+    let delay_ms = between(&mut random, 600, 1500);
+    let plans = case.plans().map(|mut plan| {
+        let Config { priority, line, .. } = plan.settings.config;
+        plan.settings.config = Config::siemens_3964(priority, line);
+        plan
+    });
+    let [mut faulty, partner] = plans;
+    faulty.faults.delay = Duration::from_millis(delay_ms);
+    let example = Example::new(&case, [faulty, partner], move |found| {
+        matches!(found.verdict, Verdict::Late { side, delay, .. }
+            if side == case.faulty && delay.as_millis().abs_diff(delay_ms.into()) < 5)
+    });
+    let check = *pick(&mut random, &[Check::Bcc, Check::None]);
+    Example { check, ..example }
+}
+
 pub(crate) fn echo(case: Case) -> Example {
     let record = case.record(case.plans(), true);
     Example::of(record, |found| {
@@ -364,7 +395,7 @@ pub(crate) fn a_request_for_an_answer(case: Case) -> Example {
             }
         };
         let mut block = vec![0; proto3964r::frame::max_encoded_len(job.len())];
-        let check = proto3964r::Check::Bcc;
+        let check = Check::Bcc;
         let len = proto3964r::frame::encode(&job, check, &mut block).unwrap();
         say(sender, 1146, &[0x02]);
         say(receiver, 2292, &[0x10]);
