@@ -4,6 +4,7 @@
 mod accuracy;
 mod calibration;
 mod common;
+mod dynamics;
 mod extremes;
 mod follow;
 mod machine;

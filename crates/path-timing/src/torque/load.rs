@@ -1,7 +1,7 @@
 //! The torques at both ends of a segment, as forms of the speeds of the parameter there.
 
 use super::{Dynamics, TorqueCurve, TorqueLimits, heading, sign};
-use crate::number::sqrt;
+use crate::number::{larger_or_nan, sqrt};
 use crate::{Axes, Knot};
 
 /// The torque of an axis at an end of a segment.
@@ -95,14 +95,20 @@ impl<'a, A: Axes> Load<'a, A> {
         })
     }
 
-    /// Whether no motor gives more than it has, at these speeds.
-    pub(super) fn holds(&self, w0: f64, w1: f64) -> bool {
+    /// The largest part of what a motor has that these speeds ask for.
+    pub(super) fn used(&self, w0: f64, w1: f64) -> f64 {
         let sum = w0 + w1;
         let r = if sum > 0.0 { (w1 - w0) / sum } else { 0.0 };
-        self.each(r).all(|(form, motor, part)| {
+        self.each(r).fold(0.0, |most, (form, motor, part)| {
             let [a, b, c] = form.on_ray(r, part);
-            let torque = (a * sum + b) * sum + c;
-            torque.abs() + form.either <= motor.at(form.slope * part * sum)
+            let torque = ((a * sum + b) * sum + c).abs() + form.either;
+            // Not a number where a motor has nothing and nothing is asked.
+            let used = if torque > 0.0 {
+                torque / motor.at(form.slope * part * sum)
+            } else {
+                0.0
+            };
+            larger_or_nan(most, used)
         })
     }
 

@@ -7,7 +7,7 @@
 
 use super::load::Load;
 use super::{Dynamics, TorqueLimits};
-use crate::number::{LARGEST, sqrt};
+use crate::number::{LARGEST, larger_or_nan, sqrt};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::{Axes, Knot};
@@ -18,8 +18,9 @@ const STEEPEST: f64 = 7.0 / 9.0;
 /// The steepest ray that a motion brakes or starts by.
 const STEEPEST_TO_A_SPEED: f64 = 1.0 - 1e-3;
 
-/// Halvings of an interval of rays.
-const HALVINGS: u32 = 20;
+/// Cuts of an interval of rays in search of the one on which a limit is reached, and what is close to it.
+const CUTS_OF_A_RAY: u32 = 24;
+const CLOSE: f64 = 1e-8;
 
 /// Cuts of it by the golden ratio.
 const CUTS: u32 = 24;
@@ -46,8 +47,9 @@ impl<'a, A: Axes> Pair<'a, A> {
         }
     }
 
-    fn holds(&self, w0: f64, w1: f64) -> bool {
-        self.axes.holds(w0, w1) && self.load.holds(w0, w1)
+    /// The largest part of a limit that a pair of speeds takes.
+    fn used(&self, w0: f64, w1: f64) -> f64 {
+        larger_or_nan(self.axes.load(w0, w1), self.load.used(w0, w1))
     }
 
     /// The pair on the ray of r that takes the least time.
@@ -72,11 +74,11 @@ impl<'a, A: Axes> Pair<'a, A> {
         if ceiling <= 0.0 {
             return (self.widest(-1.0).0.min(cap), 0.0);
         }
-        if cap >= ceiling && self.holds(ceiling, ceiling) {
+        if cap >= ceiling && self.used(ceiling, ceiling) <= 1.0 {
             // As fast at the start as it can brake from.
             let lowest = ((ceiling - cap) / (ceiling + cap)).max(-STEEPEST_TO_A_SPEED);
             let start = |r: f64| ceiling * (1.0 - r) / (1.0 + r);
-            let r = farthest(0.0, lowest, |r| self.holds(start(r), ceiling));
+            let r = farthest(0.0, lowest, |r| self.used(start(r), ceiling));
             return (start(r).min(cap), ceiling);
         }
         self.shortest([cap, ceiling])
@@ -119,26 +121,43 @@ impl<'a, A: Axes> Pair<'a, A> {
         let known = w0 * ratio;
         let highest = ray(ceiling).min(STEEPEST_TO_A_SPEED);
         let end = |r: f64| w0 * (1.0 + r) / (1.0 - r);
-        let r = farthest(ray(known), highest, |r| self.holds(w0, end(r)));
+        let r = farthest(ray(known), highest, |r| self.used(w0, end(r)));
         end(r).min(ceiling).max(known.min(ceiling))
     }
 }
 
-/// The ray nearest to `wanted` that holds, from one that does.
-fn farthest(known: f64, wanted: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    if holds(wanted) {
+/// The ray nearest to `wanted` on which no limit is passed, from one on which none is: by regula falsi,
+/// with the value of an end that stays halved (Illinois).
+fn farthest(known: f64, wanted: f64, used: impl Fn(f64) -> f64) -> f64 {
+    let over = |r: f64| used(r) - 1.0;
+    let mut bad = (wanted, over(wanted));
+    if bad.1 <= 0.0 {
         return wanted;
     }
-    let (mut good, mut bad) = (known, wanted);
-    for _ in 0..HALVINGS {
-        let middle = (good + bad) * 0.5;
-        if holds(middle) {
-            good = middle;
+    let mut good = (known, over(known));
+    let mut best = known;
+    for _ in 0..CUTS_OF_A_RAY {
+        let gap = bad.0 - good.0;
+        let r = good.0 - good.1 * gap / (bad.1 - good.1);
+        let r = if (r - good.0) * (r - bad.0) < 0.0 {
+            r
         } else {
-            bad = middle;
+            good.0 + gap * 0.5
+        };
+        let here = over(r);
+        if here <= 0.0 {
+            best = r;
+            if here > -CLOSE {
+                break;
+            }
+            good = (r, here);
+            bad.1 *= 0.5;
+        } else {
+            bad = (r, here);
+            good.1 *= 0.5;
         }
     }
-    good
+    best
 }
 
 /// Gives the knots the speeds of the fastest motion with which no knot passes its cap.

@@ -5,6 +5,7 @@ use std::io::Write as _;
 use std::path::Path as File;
 use std::process::{Command, Stdio};
 
+use delta_kin::{Delta, DeltaMasses};
 use path_timing::{
     AxisLimits, Cubic, Curve, Knot, PlanError, Row, Table, TorqueCurve, TorqueCurveError,
     TorqueLimits,
@@ -324,6 +325,75 @@ fn curves_of_motors() {
         Err(TorqueCurveError::Value { .. })
     ));
     assert!(motor.geared(0.0).is_err() && motor.scaled(f64::NAN).is_err());
+}
+
+/// The same arms as in the examples, each with a stepper behind a gear.
+#[test]
+fn a_delta_keeps_the_torque_of_its_motors() {
+    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let masses = DeltaMasses {
+        arm_kg_m2: 4e-3,
+        arm_kg_m: 0.012,
+        rods_kg: 0.06,
+        platform_kg: 0.15,
+        payload_kg: 0.3,
+        viscous_nm_s: 0.02,
+        coulomb_nm: 0.05,
+        gravity_m_s2: 9.806_65,
+    };
+    let dynamics = delta.dynamics(1e-3, masses).unwrap();
+    let motors = [TorqueCurve::holding(4.0, 4.0, 40.0).unwrap(); 3];
+    let limits = TorqueLimits { dynamics, motors };
+    for (from, to) in [
+        ([-60.0, 20.0, -280.0], [60.0, -10.0, -280.0]),
+        ([0.0, 0.0, -310.0], [0.0, 0.0, -230.0]),
+        ([40.0, 60.0, -260.0], [-30.0, -50.0, -320.0]),
+    ] {
+        let path = delta.path(Curve::line(from, to).unwrap()).unwrap();
+        let mut times = Vec::new();
+        for segments in [200, 2000] {
+            let mut knots = vec![Knot::default(); 2001];
+            let table = limits
+                .plan([path], [FREE; 3], |_| segments, &mut knots)
+                .unwrap();
+            times.push(table.duration_s());
+            let mut most = 0.0_f64;
+            for span in table.spans() {
+                // Between its rows a segment is the same motion in parts.
+                let [from, to] = span.rows;
+                let cubics: Vec<_> = Cubic::between(&from, &to).collect();
+                for sample in 0..20 {
+                    let u = (f64::from(sample) + 0.5) / 20.0;
+                    let each = |of: &dyn Fn(&Cubic) -> f64| {
+                        core::array::from_fn::<_, 3, _>(|axis| of(&cubics[axis]))
+                    };
+                    let accelerations = each(&|cubic| {
+                        let [a0, a1] = cubic.accelerations();
+                        a0 + (a1 - a0) * u
+                    });
+                    let rates = each(&|cubic| {
+                        let [a0, a1] = cubic.accelerations();
+                        cubic.v0 + (a0 + (a1 - a0) * u * 0.5) * u * cubic.duration_s
+                    });
+                    let pose = delta
+                        .pose_of(each(&|cubic| cubic.position(u)).into())
+                        .unwrap();
+                    let torques = dynamics
+                        .torques(&pose, rates.into(), accelerations.into())
+                        .unwrap();
+                    for ((torque, rate), motor) in torques.iter().zip(rates).zip(&motors) {
+                        most = most.max(torque.abs() / motor.at(rate));
+                    }
+                }
+            }
+            println!(
+                "Delta, {segments} segments: {:.4} s, {most:.5} used",
+                table.duration_s()
+            );
+            assert!(most <= WITHIN && most > 0.97, "{most}");
+        }
+        assert!(times[0] <= times[1] * 1.02, "{times:?}");
+    }
 }
 
 proptest! {
