@@ -17,6 +17,8 @@ pub const ROWS: usize = 100;
 pub const STEPS_PER_TURN: f64 = 32_000.0;
 pub const START_MM: [f64; 2] = [60.0, 150.0];
 pub const END_MM: [f64; 2] = [200.0, -50.0];
+/// The most by which the tool may leave the line.
+pub const TOLERANCE_MM: f64 = 0.01;
 /// Of both joints, in radians.
 pub const JOINT: AxisLimits = AxisLimits {
     speed: 3.0,
@@ -68,7 +70,12 @@ pub fn quantiser(path: &ArmPath) -> PvtQuantiser<2> {
 pub fn plan(planner: Planner, wire: &mut [[u8; MAX_BYTES]; 2]) -> [usize; 2] {
     let path = path();
     let mut knots = [Knot::default(); ROWS + 1];
-    let table = Table::plan([path], [JOINT; 2], |_| ROWS as u32, &mut knots).expect("good limits");
+    let table = match planner {
+        Planner::Pc => {
+            Table::plan([path], [JOINT; 2], |_| ROWS as u32, &mut knots).expect("good limits")
+        }
+        Planner::Board => plan_in_f32(&path, &mut knots),
+    };
 
     let mut quantiser = quantiser(&path);
     let mut steps = match planner {
@@ -84,6 +91,19 @@ pub fn plan(planner: Planner, wire: &mut [[u8; MAX_BYTES]; 2]) -> [usize; 2] {
     }
     steps.finish(wire, &mut lens);
     lens
+}
+
+/// The table that the microcontroller plans, the departure looked at.
+///
+/// # Panics
+/// Never: the line is within reach, and its rows are dense.
+pub fn plan_in_f32<'k>(path: &ArmPath, knots: &'k mut [Knot<[f64; 2]>]) -> Table<'k, [f64; 2]> {
+    let path = path.in_f32().expect("lengths of f32");
+    let table = Table::plan_in_f32([path], [JOINT; 2], |_| ROWS as u32, knots);
+    let table = table.expect("good limits");
+    let departures = table.spans().map(|span| path.departure(&span));
+    assert!(departures.fold(0.0, f64::max) <= TOLERANCE_MM);
+    table
 }
 
 /// Both joints' rows on their way to segments.

@@ -169,8 +169,9 @@ impl<'m> Motion<'m> {
         if (start - joints).amax() > START_TOLERANCE {
             return Err(refused("the elbow is on the other side, jog it over"));
         }
+        let path = path.in_f32().map_err(refused)?;
         let segments = (line.length() / SEGMENT_MM) as u32;
-        let table = Table::plan(
+        let table = Table::plan_in_f32(
             [path],
             machine.limits,
             |_| segments.clamp(MIN_SEGMENTS, MAX_SEGMENTS),
@@ -214,7 +215,7 @@ impl<'m> Motion<'m> {
             let position = [from[0] + slope[0] * s, from[1] + slope[1] * s];
             Ok::<_, core::convert::Infallible>(PathPoint { position, slope })
         });
-        let table = Table::plan([path], machine.limits, |_| MIN_SEGMENTS, &mut self.knots);
+        let table = Table::plan_in_f32([path], machine.limits, |_| MIN_SEGMENTS, &mut self.knots);
         let table = table.map_err(refused)?;
         let playback = table.playback(1.0, &mut self.ceilings).map_err(refused)?;
         self.panel

@@ -54,6 +54,8 @@ fn each_step_is_in_its_tick() {
     let line = Curve::line(from, to).unwrap();
     let path = arm()
         .path_from(line, Elbow::Right, Joints::new(start[0], start[1]))
+        .unwrap()
+        .in_f32()
         .unwrap();
     let limits = AxisLimits {
         speed: SPEED_DEG_S.to_radians(),
@@ -61,7 +63,7 @@ fn each_step_is_in_its_tick() {
         jerk: None,
     };
     let mut knots = [Knot::default(); SEGMENTS as usize + 1];
-    let table = Table::plan([path], [limits; 2], |_| SEGMENTS, &mut knots).unwrap();
+    let table = Table::plan_in_f32([path], [limits; 2], |_| SEGMENTS, &mut knots).unwrap();
     let rows: Vec<_> = table.rows().collect();
 
     let mut steps = START_STEPS;

@@ -3,6 +3,7 @@
 use core::convert::Infallible;
 use core::hint::black_box;
 
+use cortex_m_firmware::arm_line::{JOINT, ROWS, path, plan_in_f32};
 use cortex_m_firmware::meter::Meter;
 use path_timing::{AxisLimits, FeedCeiling, Knot, Path, PathPoint, Table};
 use pvt_steps::{
@@ -19,6 +20,7 @@ const LEAST: MinIntervals = MinIntervals {
 };
 
 pub fn count(meter: &Meter) {
+    line(meter);
     tables(meter);
     rows(meter);
     segments(meter);
@@ -43,6 +45,29 @@ impl Path for Parabola {
             slope: [1.0, 0.02 * s],
         })
     }
+}
+
+/// The line of an arm that `play` plays.
+fn line(meter: &Meter) {
+    meter.count("Arm::path, 244 mm", "f64", 1, || {
+        black_box(path());
+    });
+    let path = black_box(path());
+    let mut knots = [Knot::default(); ROWS + 1];
+    meter.count("Table::plan_in_f32, the line, 100 rows", "f64", 1, || {
+        black_box(plan_in_f32(&path, &mut knots).len());
+    });
+    meter.count("Table::plan, the line, 100 rows", "f64", 1, || {
+        let table = Table::plan([path], black_box([JOINT; 2]), |_| ROWS as u32, &mut knots);
+        black_box(table.is_ok());
+    });
+    meter.count("ArmPath::point", "f64", 4, || {
+        let _ = black_box(path.point(black_box(100.0)));
+    });
+    let single = path.in_f32().expect("lengths of f32");
+    meter.count("ArmPathF32::point", "f32", 4, || {
+        let _ = black_box(single.point(black_box(100.0)));
+    });
 }
 
 fn tables(meter: &Meter) {
