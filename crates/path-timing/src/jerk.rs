@@ -24,7 +24,6 @@ use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot};
 pub(crate) use barrier::Walk;
 use barrier::{Barrier, Degree, Moving, Utilisation};
-pub(crate) use newton::Equation;
 pub(crate) use stream::{Extension, extend};
 
 /// Slows the fastest speeds so that all limits of jerk are kept.

@@ -14,6 +14,7 @@ mod error;
 mod feed_change;
 mod jerk;
 mod junction;
+mod knot;
 mod knots;
 mod leg;
 mod look_ahead;
@@ -41,7 +42,7 @@ pub use curve::{
 pub use departure::segments_within;
 pub use error::PlanError;
 pub use junction::Corner;
-pub use knots::Knot;
+pub use knot::Knot;
 pub use look_ahead::LookAhead;
 pub use path::{Path, PathFn, PathPoint};
 pub use playback::{FeedCeiling, FeedError, Playback};

@@ -6,10 +6,10 @@
 //! each segment and what is left allow. Where a pair of speeds keeps the limits, each slower pair of
 //! the same ratio does, so the forward pass always finds one.
 
-use crate::number::{LARGEST, Real};
-use crate::reciprocals::Reciprocals;
+use crate::number::{LARGEST, Real, cube_root, sqrt};
+use crate::reciprocals::{Reciprocals, margin};
 use crate::segment::Segment;
-use crate::{Axes, Knot};
+use crate::{Axes, Knot, ToolLimits};
 
 /// Gives the knots the speeds of the fastest motion with which no knot passes its cap: from rest to
 /// rest where the first and the last have a cap of 0.
@@ -64,4 +64,35 @@ pub(crate) fn segment_s<A: Axes>(from: &Knot<A>, to: &Knot<A>) -> f64 {
 /// The time of a length between two speeds; none where only velocities jump.
 pub(crate) fn time_of(ds: f64, [w0, w1]: [f64; 2]) -> f64 {
     if ds > 0.0 { 2.0 * ds / (w0 + w1) } else { 0.0 }
+}
+
+/// The shortest time of a segment that starts and ends at rest.
+///
+/// ```text
+/// speed 3Δq / 2T   acceleration 6Δq / T²   jerk 12Δq / T³
+/// ```
+pub(crate) fn rest_to_rest_s<A: Axes>(
+    limits: &Reciprocals<A>,
+    [from, to]: [&Knot<A>; 2],
+    tool: Option<&ToolLimits>,
+) -> f64 {
+    let [starts, ends] = [from, to].map(|knot| knot.point.position.as_slice());
+    let distances = starts.iter().zip(ends).map(|(q0, q1)| (q1 - q0).abs());
+    let of_axes = (limits.axes().iter().zip(distances)).map(|(limits, distance)| {
+        [limits.speed, limits.acceleration, limits.jerk].map(|limit| distance * limit)
+    });
+    let of_tool = tool.map(|tool| {
+        let acceleration = tool
+            .acceleration
+            .map_or(0.0, |limit| margin::<f64>() * to.ds / limit);
+        [margin::<f64>() * to.ds / tool.feed, acceleration, 0.0]
+    });
+    of_axes
+        .chain(of_tool)
+        .fold(0.0, |time_s: f64, [speed, acceleration, jerk]| {
+            time_s
+                .max(1.5 * speed)
+                .max(sqrt(6.0 * acceleration))
+                .max(cube_root(12.0 * jerk))
+        })
 }

@@ -270,7 +270,7 @@ pub(crate) fn check_single_segments<A: Axes, E>(
         time_s += segment_s;
         let is_single = to.ends_leg && to.ds >= to.s;
         if is_single {
-            let own_s = segment_s - limits.rest_to_rest_s([from, to], to.tool.as_ref());
+            let own_s = segment_s - passes::rest_to_rest_s(limits, [from, to], to.tool.as_ref());
             lost_s += own_s.max(0.0);
             if own_s > most_s {
                 (most_s, worst) = (own_s, leg);

@@ -8,7 +8,7 @@ use trig_kernels::SixDigits;
 
 use crate::feed_change::{At, Course, SmoothFeed};
 use crate::number::{LARGEST, SMALLEST, range};
-use crate::passes::time_of;
+use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::stepping::Ahead;
@@ -185,7 +185,7 @@ impl<A: Axes> Playback<'_, A> {
         let duration_s = if is_jump || at.speed + speed > 0.0 {
             time_of(to.ds, [at.speed, speed])
         } else {
-            self.limits.rest_to_rest_s([from, to], None) / self.wanted.min(1.0)
+            rest_to_rest_s(&self.limits, [from, to], None) / self.wanted.min(1.0)
         };
         self.time_s += duration_s;
         self.leg = self.leg.saturating_add(usize::from(from.ends_leg));

@@ -1,7 +1,7 @@
 //! The limits of the axes as factors, with what rounding needs of them.
 
-use crate::number::{LARGEST, Real, SMALLEST, cube_root, sqrt};
-use crate::{Axes, AxisLimits, Knot, PlanError, ToolLimits};
+use crate::number::{LARGEST, Real, SMALLEST};
+use crate::{Axes, AxisLimits, PlanError};
 
 /// By how much limits are taken lower: what a dozen products round off.
 pub(crate) fn margin<R: Real>() -> R {
@@ -105,39 +105,6 @@ impl<A: Axes> Reciprocals<A> {
             limits.speed /= feed;
         }
         slower
-    }
-
-    /// The shortest time of a segment that starts and ends at rest.
-    ///
-    /// ```text
-    /// speed 3Δq / 2T   acceleration 6Δq / T²   jerk 12Δq / T³
-    /// ```
-    pub(crate) fn rest_to_rest_s(
-        &self,
-        [from, to]: [&Knot<A>; 2],
-        tool: Option<&ToolLimits>,
-    ) -> f64 {
-        let ends = [from, to].map(|knot| knot.point.position.as_slice());
-        let [starts, ends] = ends;
-        let distances = starts.iter().zip(ends);
-        let distances = distances.map(|(q0, q1)| (q1 - q0).abs());
-        let of_axes = (A::each(&self.axes).iter().zip(distances)).map(|(limits, distance)| {
-            [limits.speed, limits.acceleration, limits.jerk].map(|limit| distance * limit)
-        });
-        let of_tool = tool.map(|tool| {
-            let acceleration = tool
-                .acceleration
-                .map_or(0.0, |limit| margin::<f64>() * to.ds / limit);
-            [margin::<f64>() * to.ds / tool.feed, acceleration, 0.0]
-        });
-        of_axes
-            .chain(of_tool)
-            .fold(0.0, |time_s: f64, [speed, acceleration, jerk]| {
-                time_s
-                    .max(1.5 * speed)
-                    .max(sqrt(6.0 * acceleration))
-                    .max(cube_root(12.0 * jerk))
-            })
     }
 
     /// Whether any axis has a limit of jerk.

@@ -3,9 +3,9 @@
 use core::iter::FusedIterator;
 
 use crate::passes::segment_s;
-use crate::{Axes, Knot, Row, Table};
+use crate::{Axes, Knot, Row};
 
-/// The rows of a [`Table`].
+/// The rows of a [`Table`](crate::Table).
 #[derive(Debug, Clone)]
 pub struct Rows<'a, A: Axes> {
     /// Those that are still to come.
@@ -17,11 +17,12 @@ pub struct Rows<'a, A: Axes> {
 }
 
 impl<'a, A: Axes> Rows<'a, A> {
-    pub(crate) fn new(table: &Table<'a, A>) -> Self {
+    /// With all times multiplied.
+    pub(crate) const fn new(knots: &'a [Knot<A>], stretch: f64) -> Self {
         Self {
-            knots: table.knots,
+            knots,
             before: None,
-            stretch: table.stretch,
+            stretch,
             time_s: 0.0,
             leg: 0,
         }

@@ -230,7 +230,7 @@ impl<'a, A: Axes> Table<'a, A> {
     /// The rows in their order.
     #[must_use]
     pub fn rows(&self) -> Rows<'a, A> {
-        Rows::new(self)
+        Rows::new(self.knots, self.stretch)
     }
 
     /// The segments in their order; which path each lies on is the `leg` of its second row.

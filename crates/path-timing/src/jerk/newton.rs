@@ -4,20 +4,10 @@ use core::ops::Range;
 
 use super::barrier::{Barrier, Utilisation, Walk};
 use super::visit_all;
+use crate::knot::Equation;
 use crate::number::sqrt;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot};
-
-/// A knot's row of the Newton system, whose matrix is symmetric with two diagonals on each side.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Equation {
-    /// The matrix at the knot; factorised, the pivot.
-    diagonal: f64,
-    /// The matrix beside it, towards the next two knots; factorised, those of the unit triangle.
-    next: [f64; 2],
-    /// The right side; solved, the step of the square of the speed.
-    pub(super) right: f64,
-}
 
 /// -Σ log of factors, by few logarithms: those of their products. Infinite where one is not positive.
 #[derive(Debug)]

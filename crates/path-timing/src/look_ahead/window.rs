@@ -2,7 +2,7 @@
 
 use crate::feed_change::{At, Course, SmoothFeed};
 use crate::number::LARGEST;
-use crate::passes::time_of;
+use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::stepping::Ahead;
@@ -197,7 +197,7 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else {
-            limits.rest_to_rest_s([from, to], to.tool.as_ref()) / wanted
+            rest_to_rest_s(limits, [from, to], to.tool.as_ref()) / wanted
         };
         self.hand_out(next, duration_s)
     }
@@ -239,7 +239,7 @@ impl<'w, A: Axes> Window<'w, A> {
                 feed: tool.feed * feed.max,
                 ..tool
             });
-            limits.rest_to_rest_s([from, to], faster.as_ref()) / feed.wanted.min(1.0)
+            rest_to_rest_s(limits, [from, to], faster.as_ref()) / feed.wanted.min(1.0)
         } else {
             return None;
         };

@@ -1,0 +1,109 @@
+//! A knot: a point of a path at which its speed is chosen.
+
+use crate::junction::Junction;
+use crate::{Axes, PathPoint, Row, ToolLimits};
+
+/// Memory for one row: of a [`Table`](crate::Table) while it is planned and as long as it lives, and
+/// of the window of a [`LookAhead`](crate::LookAhead).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knot<A: Axes> {
+    /// Positions, and slopes on arrival.
+    pub(crate) point: PathPoint<A>,
+    /// Parameter of its leg on arrival.
+    pub(crate) s: f64,
+    /// Length of the segment before; 0 where only the slopes are others than at the knot before.
+    pub(crate) ds: f64,
+    /// Limits of the tool on the segment before.
+    pub(crate) tool: Option<ToolLimits>,
+    /// Whether its leg ends here.
+    pub(crate) ends_leg: bool,
+    /// The highest speed of the parameter, by a corner: 0 at a stop.
+    pub(crate) cap: f64,
+    /// Speed of the parameter: the highest from which the rest can be run, then the one planned.
+    pub(crate) speed: f64,
+    /// Speed at the next knot that goes with the highest here, as a ratio.
+    pub(crate) ratio: f64,
+    /// The highest speed at a feed below the highest.
+    pub(crate) wanted: f64,
+    /// The parameter at which it is to stand instead.
+    pub(crate) moved_s: f64,
+    /// With a limit of jerk: its row of the system that the speeds are found by.
+    pub(crate) equation: Equation,
+}
+
+impl<A: Axes> Default for Knot<A> {
+    fn default() -> Self {
+        Self {
+            point: PathPoint {
+                position: A::zeros(),
+                slope: A::zeros(),
+            },
+            s: 0.0,
+            ds: 0.0,
+            tool: None,
+            ends_leg: false,
+            cap: f64::INFINITY,
+            speed: 0.0,
+            ratio: 0.0,
+            wanted: 0.0,
+            moved_s: 0.0,
+            equation: Equation::default(),
+        }
+    }
+}
+
+impl<A: Axes> Knot<A> {
+    /// A knot at which the machine begins.
+    pub(crate) fn start(point: PathPoint<A>) -> Self {
+        Self {
+            point,
+            cap: 0.0,
+            ..Self::default()
+        }
+    }
+
+    /// The parameter at which the segment after it begins.
+    pub(crate) const fn next_start(&self) -> f64 {
+        if self.ends_leg { 0.0 } else { self.s }
+    }
+
+    /// The knot passed at a speed of the parameter.
+    pub(crate) fn row(&self, speed: f64) -> Row<A> {
+        Row {
+            time_s: 0.0,
+            duration_s: 0.0,
+            position: self.point.position,
+            velocity: self.point.slope.scaled(speed),
+            leg: 0,
+            s: self.s,
+        }
+    }
+
+    /// Joins the end of a leg to the next, which begins with the slopes `start`. The knot after it,
+    /// where velocities jump.
+    pub(crate) fn join(&mut self, junction: &Junction<A>, start: &PathPoint<A>) -> Option<Self> {
+        match junction {
+            Junction::Stop => self.cap = 0.0,
+            Junction::Smooth(slope) => self.point.slope = *slope,
+            Junction::Jump(speed) => {
+                self.cap = *speed;
+                return Some(Self {
+                    cap: *speed,
+                    ..Self::start(*start)
+                });
+            }
+        }
+        None
+    }
+}
+
+/// A knot's row of the Newton system, whose matrix is symmetric with two diagonals on each side.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Equation {
+    /// The matrix at the knot; factorised, the pivot.
+    pub(crate) diagonal: f64,
+    /// The matrix beside it, towards the next two knots; factorised, those of the unit triangle.
+    pub(crate) next: [f64; 2],
+    /// The right side; solved, the step of the square of the speed.
+    pub(crate) right: f64,
+}
