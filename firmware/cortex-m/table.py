@@ -82,7 +82,9 @@ def counts():
     rows = []
     for name, kind in calls:
         _, mean, most, stack = by_core["m4"][name, kind]
-        means = [by_core[core][name, kind][1] for core in ("m3", "m0")]
+        # What was counted on the M4F alone stays blank.
+        none = ["", "", "", ""]
+        means = [by_core[core].get((name, kind), none)[1] for core in ("m3", "m0")]
         goal, before, before_m0 = GOALS.get((name, kind), ("", "", ""))
         title = f"{name}, `{kind}`" if kind.startswith("f") else name
         rows.append([title, *map(number, [mean, goal, before, most, stack, *means, before_m0])])
