@@ -91,7 +91,9 @@ impl Bench {
         let mut read = None;
         if !self.rests() {
             let (to_station, to_port) = (self.transmitter.step(), self.end.transmitter.step());
-            if let Some(read) = self.end.receiver.step(to_station) {
+            let hears_both = self.end.faults.hears_itself;
+            let level = to_station && (to_port || !hears_both);
+            if let Some(read) = self.end.receiver.step(level) {
                 self.end.hear(now, read);
             }
             read = self.receiver.step(to_port);

@@ -25,6 +25,9 @@ use super::{
 /// From one telegram of a side to the next.
 const PAUSE: Duration = Duration::from_millis(150);
 
+/// How late the answers of one are.
+const LATE: Duration = Duration::from_millis(900);
+
 /// What is wrong with a partner.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Fault {
@@ -37,6 +40,8 @@ enum Fault {
     WithoutBcc,
     /// No receive buffer.
     Refuses,
+    /// Answers come after the gateway's QVZ of 500 ms.
+    Late,
 }
 
 /// A line, who sends on it, and its verdict.
@@ -81,6 +86,12 @@ fn cases() -> Vec<Case> {
             Fault::WithoutBcc,
             both,
             json!({ "WithoutBcc": { "side": "B" } }),
+        ),
+        case(
+            "late",
+            Fault::Late,
+            gateway,
+            json!({ "Late": { "side": "B" } }),
         ),
         case(
             "full",
@@ -160,6 +171,9 @@ async fn carry(
     while let Ok(byte) = from.read_u8().await {
         let is_bcc = last == [0x10, 0x03];
         last = if is_bcc { [0; 2] } else { [last[1], byte] };
+        if fault == Fault::Late && !is_to_partner {
+            sleep(LATE).await;
+        }
         let carried = match (fault, is_to_partner) {
             (Fault::Dead, _) | (Fault::Deaf, true) => continue,
             (Fault::Bcc(change), false) if is_bcc => byte ^ change,
