@@ -4,8 +4,11 @@ use super::{Dynamics, TorqueLimits, heading, sign};
 use crate::number::larger_or_nan;
 use crate::{Axes, Cubic, Row, Span};
 
-/// Parts that a segment is looked at in.
-const PARTS: u32 = 4;
+/// Parts that a segment is looked at in, and more where these leave much open.
+const PARTS: [u32; 3] = [4, 16, 64];
+
+/// What may be left open.
+const OPEN: f64 = 1e-4;
 
 impl<D: Dynamics> TorqueLimits<D> {
     /// The largest part of what a motor has at its speed that is asked of any motor anywhere on a segment:
@@ -16,11 +19,24 @@ impl<D: Dynamics> TorqueLimits<D> {
     /// its largest value, and a motor has at least what it has at the largest speed.
     #[must_use]
     pub fn utilisation(&self, span: &Span<D::Axes>) -> f64 {
+        let bend = self.dynamics.bend(span);
+        let mut bound = f64::NAN;
+        for parts in PARTS {
+            let at_nodes;
+            [bound, at_nodes] = self.bound(span, &bend, parts);
+            if bound <= 1.0 || bound - at_nodes <= OPEN {
+                break;
+            }
+        }
+        bound
+    }
+
+    /// The bound, and the largest part at the ends of so many parts of a segment.
+    fn bound(&self, span: &Span<D::Axes>, bend: &D::Axes, parts: u32) -> [f64; 2] {
         let [from, to] = &span.rows;
         let duration_s = to.duration_s;
-        let part_s = duration_s / f64::from(PARTS);
+        let part_s = duration_s / f64::from(parts);
         let eighth = part_s * part_s * 0.125;
-        let bend = self.dynamics.bend(span);
         let friction = self.dynamics.friction();
         let jerk_of = |axis: usize| {
             let cubic = Cubic::between(from, to).nth(axis);
@@ -29,10 +45,10 @@ impl<D: Dynamics> TorqueLimits<D> {
                 (a1 - a0).abs() / duration_s
             })
         };
-        let mut most = 0.0;
+        let [mut most, mut at_nodes] = [0.0; 2];
         let mut before = self.at(from, to, 0.0);
-        for part in 1..=PARTS {
-            let here = self.at(from, to, f64::from(part) / f64::from(PARTS));
+        for part in 1..=parts {
+            let here = self.at(from, to, f64::from(part) / f64::from(parts));
             let motors = A::<D>::each(&self.motors).iter();
             let axes = motors.zip(A::<D>::each(&friction)).zip(bend.as_slice());
             for (axis, ((motor, friction), bend)) in axes.enumerate() {
@@ -55,18 +71,25 @@ impl<D: Dynamics> TorqueLimits<D> {
                         .abs()
                         .max(if turns { (torque - coulomb).abs() } else { 0.0 })
                 };
-                let torque = with(v0, t0, v1).max(with(v1, t1, v0)) + bent;
                 // Not a number where a motor has nothing and nothing is asked.
-                let part = if torque > 0.0 {
-                    torque / motor.at(speed)
-                } else {
-                    0.0
+                let used = |torque: f64, speed: f64| {
+                    if torque > 0.0 {
+                        torque / motor.at(speed)
+                    } else {
+                        0.0
+                    }
                 };
-                most = larger_or_nan(most, part);
+                let ends = [(with(v0, t0, v1), v0), (with(v1, t1, v0), v1)];
+                let torque = ends.into_iter().map(|(torque, _)| torque);
+                let torque = torque.fold(0.0, larger_or_nan) + bent;
+                most = larger_or_nan(most, used(torque, speed));
+                for (torque, speed) in ends {
+                    at_nodes = larger_or_nan(at_nodes, used(torque, speed));
+                }
             }
             before = here;
         }
-        most
+        [most, at_nodes]
     }
 
     /// Velocities, and torques without friction, at a fraction of a segment.

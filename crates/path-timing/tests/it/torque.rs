@@ -157,7 +157,7 @@ fn sampled(limits: &TorqueLimits<ArmDynamics>, rows: &[Row<[f64; 2]>], samples: 
 fn no_cubic_takes_more_torque_than_its_motor_has() {
     for (name, motors, tight) in [
         ("constant", constant(), 0.999),
-        ("stepper", stepper(), 0.97),
+        ("stepper", stepper(), 0.998),
     ] {
         for payload_kg in [0.0, 3.0] {
             let limits = limits(payload_kg, motors);
@@ -173,7 +173,11 @@ fn no_cubic_takes_more_torque_than_its_motor_has() {
 
 /// Time above that of 4000 segments, by segments; where a motor's torque falls with its speed, it is
 /// taken at the largest speed of a part of a segment.
-const ABOVE: [(u32, f64, f64); 3] = [(100, 1.008, 1.02), (200, 1.004, 1.01), (400, 1.002, 1.005)];
+const ABOVE: [(u32, f64, f64); 3] = [
+    (100, 1.008, 1.012),
+    (200, 1.004, 1.006),
+    (400, 1.002, 1.003),
+];
 
 #[test]
 fn segments_cost_little_time() {
@@ -390,7 +394,7 @@ fn a_delta_keeps_the_torque_of_its_motors() {
                 "Delta, {segments} segments: {:.4} s, {most:.5} used",
                 table.duration_s()
             );
-            assert!(most <= WITHIN && most > 0.97, "{most}");
+            assert!(most <= WITHIN && most > 0.999, "{most}");
         }
         assert!(times[0] <= times[1] * 1.02, "{times:?}");
     }
