@@ -173,12 +173,6 @@ impl Machine {
         ]
     }
 
-    /// What the platform's acceleration along its path may be, in mm/s².
-    #[must_use]
-    pub const fn max_path_acceleration_mm_s2(&self) -> f64 {
-        self.acceleration_mm_s2
-    }
-
     /// The theta of each arm at home, in radians from straight down.
     pub(crate) fn home_rad(&self) -> [f64; 3] {
         self.delta.arms().map(|arm| arm.zero)

@@ -34,6 +34,10 @@ pub struct TimedRow {
     pub velocity_rad_s: [f64; 3],
     /// The line of the input that the row ends on, from 1.
     pub line: usize,
+    /// What the platform may do along the curve that the row ends on, in mm/s.
+    pub feed_mm_s: f64,
+    /// As the feed, in mm/s², if there is such a limit.
+    pub acceleration_mm_s2: Option<f64>,
 }
 
 /// A line that has been answered with `error:`.
@@ -87,18 +91,6 @@ impl Record {
     #[must_use]
     pub fn rows(&self) -> &[TimedRow] {
         &self.rows
-    }
-
-    /// The lines of the input that are moves, from 1, and their feeds in mm/s.
-    pub fn feeds(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.moves.iter().map(|it| (it.line, it.feed_mm_s))
-    }
-
-    /// The feed of a line of the input, in mm/s, if it is a move.
-    #[must_use]
-    pub fn feed_mm_s(&self, line: usize) -> Option<f64> {
-        let found = self.moves.binary_search_by_key(&line, |it| it.line).ok()?;
-        Some(self.moves.get(found)?.feed_mm_s)
     }
 
     /// Whether all lines were done.

@@ -4,7 +4,8 @@ use anyhow::{Context, Result};
 use delta_kin::DeltaPath;
 use nalgebra::Point3;
 use path_timing::{
-    Accuracy, Curve, Knot, Path, Promise, Smoothed, Table, ToolLimits, Verifier, Vertex, Waypoint,
+    Accuracy, Curve, Knot, Path, Promise, Row, Smoothed, Table, ToolLimits, Verifier, Vertex,
+    Waypoint,
 };
 use pvt_steps::{PvtQuantiser, PvtSteps};
 use stepper_sync::{Direction, Rate, StepDirTiming};
@@ -116,12 +117,7 @@ pub(crate) fn run(
     let mut quantiser = PvtQuantiser::new(tick_rate, [machine.scale; 3], first.position)?;
     let mut steps = PvtSteps::new(quantiser.knots(), timing);
     let mut position = machine.steps(first.position.into())?;
-    run.extend(moves.first().map(|begun| TimedRow {
-        time_s: first.time_s,
-        position_rad: first.position,
-        velocity_rad_s: first.velocity,
-        line: begun.line,
-    }));
+    run.extend(moves.first().map(|begun| timed(&first, begun.line, None)));
     for row in rows {
         let begin_ticks = steps.end_ticks();
         steps.push(&quantiser.row(row.time_s, row.position, row.velocity)?)?;
@@ -142,12 +138,8 @@ pub(crate) fn run(
         let ended = legs.at(row.leg, row.s);
         if let Some(ended) = ended.and_then(|it| moves.get_mut(it)) {
             ended.end_ticks = steps.end_ticks();
-            run.push(TimedRow {
-                time_s: row.time_s,
-                position_rad: row.position,
-                velocity_rad_s: row.velocity,
-                line: ended.line,
-            });
+            let tool = legs.paths.get(row.leg).and_then(DeltaPath::tool);
+            run.push(timed(&row, ended.line, tool));
         }
     }
     // A move that goes nowhere ends with the one before.
@@ -161,6 +153,18 @@ pub(crate) fn run(
         Some(legs.paths.get(to.leg)?.departure(&span))
     });
     Ok([departures.fold(0.0, f64::max), legs.departure_mm])
+}
+
+/// A row as it is recorded.
+fn timed(row: &Row<[f64; 3]>, line: usize, tool: Option<ToolLimits>) -> TimedRow {
+    TimedRow {
+        time_s: row.time_s,
+        position_rad: row.position,
+        velocity_rad_s: row.velocity,
+        line,
+        feed_mm_s: tool.map_or(f64::INFINITY, |tool| tool.feed),
+        acceleration_mm_s2: tool.and_then(|tool| tool.acceleration),
+    }
 }
 
 /// The curves along the lines, each at the feed of its move.

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Error, Result, bail};
 use kurbo::Point;
+use path_timing::Path as _;
 use pulse_interp::{
     AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, ScaleRatio,
 };
@@ -16,7 +17,7 @@ use crate::record::Record;
 use crate::run::Run;
 use crate::settings::{Settings, Stepping};
 use crate::stage::{COUNTS_PER_STEP, SWITCHES, Stage};
-use crate::timed::Course;
+use crate::timed::{Course, Piece};
 
 /// A step's counts are more, a count or two of noise less.
 const DEAD_BAND_COUNTS: u32 = 3;
@@ -178,7 +179,8 @@ impl<'a> Controller<'a> {
         };
         drive.begin();
         let at = self.commanded_mm();
-        self.record.row(drive.time_s(), [at.x, at.y], [0.0; 2]);
+        self.record
+            .row(drive.time_s(), [[at.x, at.y], [0.0; 2]], f64::INFINITY);
         course.rows(|row| {
             for (ticks, by) in drive.row(row)? {
                 let [first, last] = course.piece(row).map_or([0; 2], |piece| piece.motions);
@@ -189,7 +191,10 @@ impl<'a> Controller<'a> {
                 let near = chain.motions.get(first..=last).unwrap_or_default();
                 self.made(chain, near, ticks, by)?;
             }
-            self.record.row(drive.time_s(), row.position, row.velocity);
+            let tool = course.piece(row).and_then(Piece::tool);
+            let feed_mm_s = tool.map_or(f64::INFINITY, |tool| tool.feed);
+            let at = [row.position, row.velocity];
+            self.record.row(drive.time_s(), at, feed_mm_s);
             Ok(())
         })?;
         self.drive = Some(drive);

@@ -47,6 +47,8 @@ pub struct TimedRow {
     pub velocity_mm_s: [f64; 2],
     /// The motion that the row ends on, as the legs are numbered.
     pub motion: usize,
+    /// What the stage may do along the curve that the row ends on, in mm/s.
+    pub feed_mm_s: f64,
 }
 
 /// The largest deviation, and the steps around it.
@@ -131,11 +133,17 @@ pub(crate) struct Record {
 
 impl Record {
     /// A row of timed steps has been run, or is where they begin.
-    pub(crate) fn row(&mut self, time_s: f64, position_mm: [f64; 2], velocity_mm_s: [f64; 2]) {
+    pub(crate) fn row(
+        &mut self,
+        time_s: f64,
+        [position_mm, velocity_mm_s]: [[f64; 2]; 2],
+        feed_mm_s: f64,
+    ) {
         self.rows.push(TimedRow {
             time_s,
             position_mm,
             velocity_mm_s,
+            feed_mm_s,
             motion: self.closed.legs.len().saturating_sub(1),
         });
     }

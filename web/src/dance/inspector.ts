@@ -27,6 +27,8 @@ export class Inspector {
   show(score: Score, index: number | undefined): void {
     const move = index === undefined ? undefined : score.move?.[index];
     this.#all.disabled = !move;
+    element('move-fields', HTMLElement).hidden = !move;
+    element('choose', HTMLElement).hidden = move !== undefined;
     this.#title.textContent = move ? `Move ${(index ?? 0) + 1}` : 'No move is chosen';
     if (!move) return;
     const names = score.motor.map((it) => create('option', { textContent: it.name }));

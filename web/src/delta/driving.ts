@@ -10,8 +10,6 @@ export type Arm = (typeof ARMS)[number];
 /** The JSON of the operation. */
 export interface Result {
   answers: string[];
-  /** Of each line of the input that is a move, in mm/s. */
-  feeds: Record<number, number>;
   /** Which lines were refused, in a sentence. */
   refused: string | null;
   refusedLines: number[];
@@ -21,7 +19,6 @@ export interface Result {
   arms: [Geometry, Geometry, Geometry];
   maxRateDegS: number;
   maxAccelerationDegS2: number;
-  maxPathAccelerationMmS2: number;
 }
 
 /** Of an arm. */
@@ -66,15 +63,9 @@ export class Driving {
     this.result = value;
     const arms = (name: string, limit: number, unit: string) =>
       ARMS.map((arm) => ({ name: `${name} of arm ${arm + 1}`, limit, unit }));
-    this.limits = new Limits(blobs, (line) => [
+    this.limits = new Limits(blobs, [
       ...arms('rate', value.maxRateDegS, '°/s'),
       ...arms('acceleration', value.maxAccelerationDegS2, '°/s²'),
-      { name: 'feed', limit: value.feeds[line] ?? 0, unit: 'mm/s' },
-      {
-        name: 'acceleration of the platform',
-        limit: value.maxPathAccelerationMmS2,
-        unit: 'mm/s²',
-      },
     ]);
     this.#rows = numbers(blobs, 'arms');
     this.times = this.#rows.filter((_, index) => index % ROW === 0);

@@ -1,6 +1,14 @@
 // The robot in space: workspace, lines, path, and the mechanism at a time. Points can be dragged.
 import { colour } from '../shared/dom';
-import { type Ball, closed, extent, type Pen, type Point3, Space } from '../shared/space';
+import {
+  type Ball,
+  closed,
+  drawFloor,
+  extent,
+  type Pen,
+  type Point3,
+  Space,
+} from '../shared/space';
 import type { Driving } from './driving';
 import { moved, type Waypoint, waypoints } from './points';
 
@@ -62,8 +70,7 @@ export class Scene {
     const driving = this.#driving;
     if (!driving) return;
     const { context } = pen;
-    context.globalAlpha = 0.55;
-    for (const outline of driving.workspace) pen.line(colour('limit'), 1, outline);
+    drawWorkspace(pen, driving.workspace);
     context.globalAlpha = 0.6;
     for (const line of driving.lines) pen.line(colour('drawing'), 5, [line.from, line.to]);
     context.globalAlpha = 1;
@@ -72,6 +79,36 @@ export class Scene {
     for (const { line, point } of this.#points) {
       pen.dot(colour(this.#bad.has(line) ? 'bad' : 'text'), this.#bad.has(line) ? 6 : 4, point);
     }
+  }
+}
+
+/** Of the squares of the floor. */
+const SQUARE_MM = 50;
+
+/** The rings at heights as a surface, above the floor that it stands on. */
+function drawWorkspace(pen: Pen, outlines: Point3[][]): void {
+  const isRing = (outline: Point3[]) => outline.every((it) => it[2] === outline[0]?.[2]);
+  const height = (ring: Point3[]) => ring[0]?.[2] ?? 0;
+  const rings = outlines.filter(isRing).sort((a, b) => height(a) - height(b));
+  const [lowest] = rings;
+  if (!lowest) return;
+  const { middle, half } = extent(rings.flat());
+  const floor: Point3 = [middle[0], middle[1], height(lowest)];
+  drawFloor(pen, colour('line'), colour('quiet'), floor, Math.max(half[0], half[1]), SQUARE_MM);
+  const fill = colour('accent');
+  pen.face(fill, 0.1, lowest);
+  for (const [index, upper] of rings.slice(1).entries()) {
+    const lower = rings[index] ?? [];
+    if (lower.length !== upper.length) continue;
+    for (let at = 1; at < upper.length; at += 1) {
+      const corners = [lower[at - 1], lower[at], upper[at], upper[at - 1]];
+      pen.face(fill, 0.05, corners as Point3[]);
+    }
+  }
+  for (const ring of [lowest, rings.at(-1) ?? lowest]) {
+    pen.context.globalAlpha = 0.5;
+    pen.line(fill, 1, ring);
+    pen.context.globalAlpha = 1;
   }
 }
 

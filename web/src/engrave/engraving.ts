@@ -11,8 +11,8 @@ type Joints = Record<'theta1' | 'theta2' | 'theta3', number>;
 export interface Result {
   summary: string;
   isWithinBound: boolean;
-  /** Of shoulder, elbow and disc in rad/s and rad/s², and of the tool. */
-  limits: { axes: [number, number][]; feedMmS: number; accelerationMmS2: number | null };
+  /** What timed strokes may have of shoulder, elbow and disc, in rad/s and rad/s². */
+  axesMay: [number, number][];
   report: {
     notes: string[];
     duration_s: number;
@@ -61,20 +61,16 @@ export class Engraving {
 
   constructor({ value, blobs }: Answer<Result>) {
     this.result = value;
-    const { axes, feedMmS, accelerationMmS2 } = value.limits;
     const joints = (name: string, of: 0 | 1, unit: string) =>
       ['shoulder', 'elbow', 'disc'].map((joint, index) => ({
         name: `${name} of the ${joint}`,
-        limit: axes[index]?.[of] ?? 0,
+        limit: value.axesMay[index]?.[of] ?? 0,
         unit,
       }));
-    const limits = [
+    this.limits = new Limits(blobs, [
       ...joints('speed', 0, 'rad/s'),
       ...joints('acceleration', 1, 'rad/s²'),
-      { name: 'feed of the tool', limit: feedMmS, unit: 'mm/s' },
-      { name: 'acceleration of the tool', limit: accelerationMmS2 ?? 0, unit: 'mm/s²' },
-    ];
-    this.limits = new Limits(blobs, () => limits);
+    ]);
     const pin = (axis: Axis) => [
       axis,
       makePin(numbers(blobs, `${axis} edges`), blobs[`${axis} steps`]),

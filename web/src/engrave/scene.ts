@@ -30,7 +30,7 @@ export class Scene {
       () => this.#bounds,
       (context, px) => this.#draw(context, px),
     );
-    showScale('scale');
+    showScale('scale', 'distance');
   }
 
   show(engraving: Engraving): void {
@@ -105,7 +105,7 @@ function drawPath(
         ? LIFTED
         : scalePart(engraving.deviationAt(at(point, 0)) / bound),
     (part) => {
-      context.strokeStyle = part === LIFTED ? colour('quiet') : scaleColour(part);
+      context.strokeStyle = part === LIFTED ? colour('quiet') : scaleColour('distance', part);
       context.lineWidth = (part === LIFTED ? 0.5 : 1.8) * px;
     },
   );

@@ -26,8 +26,8 @@ export interface Look {
   shares: Share[];
 }
 
-/** Row and source come before the shares. */
-const HEAD = 2;
+/** Row, source, feed and acceleration that the tool may have come before the shares. */
+const HEAD = 4;
 /** Of a chart; more are not told apart. */
 const MAX_CHARTED = 2000;
 /** What is so near to a limit is at it: looks are between the ends of rows. */
@@ -37,14 +37,14 @@ export class Limits {
   readonly #times: Float64Array;
   readonly #shares: Float32Array;
   readonly #width: number;
-  readonly #limits: (source: number) => Limit[];
+  readonly #axes: Limit[];
 
-  /** `limits` are those of a source, in the order of the machine's shares. */
-  constructor(blobs: Answer<unknown>['blobs'], limits: (source: number) => Limit[]) {
+  /** `axes` are in the order of the machine's shares: all speeds, then all accelerations. */
+  constructor(blobs: Answer<unknown>['blobs'], axes: Limit[]) {
     this.#times = numbers(blobs, 'looks');
     this.#shares = new Float32Array(blobs.shares ?? new ArrayBuffer(0));
     this.#width = this.#times.length > 0 ? this.#shares.length / this.#times.length : HEAD;
-    this.#limits = limits;
+    this.#axes = axes;
   }
 
   /** Whether the run is a timed one. */
@@ -59,12 +59,16 @@ export class Limits {
     const isBefore = after > 0 && seconds - time(after - 1) <= time(after) - seconds;
     const look = isBefore ? after - 1 : after;
     if (look >= this.#times.length) return undefined;
-    const [row = 0, source = 0, ...shares] = this.#values(look);
+    const [row = 0, source = 0, feed = 0, acceleration = 0, ...shares] = this.#values(look);
     // Within a row no time is farther from a look than half of what two looks are apart.
     const beside = [look - 1, look + 1].filter((it) => this.#values(it)[0] === row);
     const apart = beside.map((it) => Math.abs(time(it) - time(look)));
     if (Math.abs(seconds - time(look)) > (apart[0] ?? Infinity)) return undefined;
-    const limits = this.#limits(source);
+    const limits = [
+      ...this.#axes,
+      { name: 'feed', limit: feed, unit: 'mm/s' },
+      { name: 'acceleration along the path', limit: acceleration, unit: 'mm/s²' },
+    ];
     const known = shares.map((share, index) => ({ share, ...limits[index] }));
     return {
       seconds,

@@ -96,22 +96,29 @@ function fit({ left, right, low, high }: Bounds, width: number, height: number):
   return 0.94 * Math.min(width / (right - left), height / (high - low));
 }
 
-/** From near to far, or slow to fast; told apart by those who see no red or green too. */
-const SCALE = ['#2563eb', '#0891b2', '#65a30d', '#eab308', '#f97316', '#dc2626'];
+/** Colours that are told apart by those who see no red or green, too. */
+const SCALES = {
+  /** From near to far: the last is at the bound. */
+  distance: ['#2563eb', '#0891b2', '#65a30d', '#eab308', '#f97316', '#dc2626'],
+  /** From slow to fast: none is wrong. */
+  speed: ['#7c3aed', '#4f6bed', '#2f8fdd', '#16a5b8', '#1db58b', '#4cc35a'],
+};
+export type ScaleName = keyof typeof SCALES;
+const PARTS = 6;
 
 /** The part of the scale of a value from 0 to its end. */
 export function scalePart(value: number): number {
-  return Math.min(Math.max(Math.floor(value * SCALE.length), 0), SCALE.length - 1);
+  return Math.min(Math.max(Math.floor(value * PARTS), 0), PARTS - 1);
 }
 
-export function scaleColour(part: number): string {
-  return SCALE[part] ?? '';
+export function scaleColour(scale: ScaleName, part: number): string {
+  return SCALES[scale][part] ?? '';
 }
 
 /** Shows the scale beside its ends in a legend. */
-export function showScale(id: string): void {
-  const steps = SCALE.map(
-    (it, index) => `${it} ${(index / SCALE.length) * 100}% ${((index + 1) / SCALE.length) * 100}%`,
+export function showScale(id: string, scale: ScaleName): void {
+  const steps = SCALES[scale].map(
+    (it, index) => `${it} ${(index / PARTS) * 100}% ${((index + 1) / PARTS) * 100}%`,
   );
   element(id, HTMLElement).style.background = `linear-gradient(90deg, ${steps.join(', ')})`;
 }

@@ -58,6 +58,9 @@ export interface Pen {
   project(point: Point3): [number, number];
   line(stroke: string, widthPx: number, points: Point3[]): void;
   dot(fill: string, radiusPx: number, point: Point3): void;
+  /** A face; opacity from 0 to 1. */
+  face(fill: string, opacity: number, points: Point3[]): void;
+  text(fill: string, text: string, point: Point3): void;
 }
 
 /** Drags what is at a place of the canvas by a stretch in the plane of the view, in mm. */
@@ -178,6 +181,21 @@ export class Space {
         for (const point of points) context.lineTo(...project(point));
         context.stroke();
       },
+      face: (fill, opacity, points) => {
+        context.fillStyle = fill;
+        context.globalAlpha = opacity;
+        context.beginPath();
+        for (const point of points) context.lineTo(...project(point));
+        context.fill();
+        context.globalAlpha = 1;
+      },
+      text: (fill, text, point) => {
+        context.fillStyle = fill;
+        context.font = '13px system-ui, sans-serif';
+        context.textAlign = 'center';
+        context.textBaseline = 'middle';
+        context.fillText(text, ...project(point));
+      },
       dot: (fill, radiusPx, point) => {
         context.fillStyle = fill;
         context.beginPath();
@@ -185,6 +203,43 @@ export class Space {
         context.fill();
       },
     };
+  }
+}
+
+/** A floor of squares around a middle, with the axes at its corner. */
+export function drawFloor(
+  pen: Pen,
+  stroke: string,
+  ink: string,
+  [x, y, z]: Point3,
+  half: number,
+  square: number,
+): void {
+  const round = (value: number) => Math.round(value / square) * square;
+  const count = Math.ceil(half / square);
+  const [left, near] = [round(x) - count * square, round(y) - count * square];
+  const size = 2 * count * square;
+  for (let line = 0; line <= 2 * count; line += 1) {
+    const at = line * square;
+    pen.line(stroke, 1, [
+      [left + at, near, z],
+      [left + at, near + size, z],
+    ]);
+    pen.line(stroke, 1, [
+      [left, near + at, z],
+      [left + size, near + at, z],
+    ]);
+  }
+  const corner: Point3 = [left, near, z];
+  for (const [name, axis] of [
+    ['x', 0],
+    ['y', 1],
+    ['z', 2],
+  ] as const) {
+    const along = (length: number) =>
+      corner.map((it, index) => it + (index === axis ? length : 0)) as Point3;
+    pen.line(ink, 2, [corner, along(1.5 * square)]);
+    pen.text(ink, name, along(1.9 * square));
   }
 }
 

@@ -103,10 +103,9 @@ export class Run {
     this.maxFeed = largestFeed(this.#legs);
     const axes = (name: string, limit: number, unit: string) =>
       ['X', 'Y'].map((axis) => ({ name: `${name} of ${axis}`, limit, unit }));
-    this.limits = new Limits(blobs, (leg) => [
+    this.limits = new Limits(blobs, [
       ...axes('speed', value.maxAxisMmS, 'mm/s'),
       ...axes('acceleration', value.accelerationMmS2, 'mm/s²'),
-      { name: 'feed', limit: this.leg(leg)?.feedMmS ?? 0, unit: 'mm/s' },
     ]);
     this.programmed = numbers(blobs, 'programmed');
     this.closed = new Track(numbers(blobs, 'closed'));

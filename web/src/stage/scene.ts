@@ -30,7 +30,7 @@ export class Scene {
       },
       (context, px) => this.#draw(context, px),
     );
-    showScale('scale');
+    showScale('scale', 'speed');
   }
 
   preview(preview: Preview): void {
@@ -113,7 +113,9 @@ function drawTrack(
     (shown) => {
       const isRapid = shown === RAPID;
       context.setLineDash(isRapid ? [4 * px, 3 * px] : []);
-      context.strokeStyle = isRapid ? colour('quiet') : (colours?.[shown] ?? scaleColour(shown));
+      context.strokeStyle = isRapid
+        ? colour('quiet')
+        : (colours?.[shown] ?? scaleColour('speed', shown));
       context.lineWidth = (isRapid ? 1 : 2) * px;
     },
   );

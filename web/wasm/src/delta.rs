@@ -1,7 +1,6 @@
 //! The Delta robot: lines answered, planned and driven, and the files that this leaves.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, bail, ensure};
 use delta::{ArmsAt, Machine, Record, Report, Session, StepLog, drive, simulate};
@@ -85,7 +84,6 @@ impl Driven {
         let [max_rate, max_acceleration] = machine.max_rate_and_acceleration();
         let value = json!({
             "answers": answers,
-            "feeds": record.feeds().collect::<BTreeMap<_, _>>(),
             "refused": record.check().err().map(|it| it.to_string()),
             "refusedLines": record.refused_lines().collect::<Vec<_>>(),
             "notes": record.notes(),
@@ -94,7 +92,6 @@ impl Driven {
             "arms": arms.collect::<Vec<_>>(),
             "maxRateDegS": max_rate,
             "maxAccelerationDegS2": max_acceleration,
-            "maxPathAccelerationMmS2": machine.max_path_acceleration_mm_s2(),
         });
         let course = drive.arms(load_kg)?;
         let lines = drive
@@ -118,6 +115,10 @@ impl Driven {
                 position: row.position_rad,
                 velocity: row.velocity_rad_s,
                 source: row.line,
+                tool: ToolMay {
+                    feed: row.feed_mm_s,
+                    acceleration: row.acceleration_mm_s2,
+                },
                 is_first: number == 0,
             })
             .collect();
@@ -127,13 +128,7 @@ impl Driven {
             acceleration,
         }; 3];
         let place = |angles: [f64; 3]| Some(machine.geometry().forward(angles.into()).ok()?.into());
-        let tool = |line| {
-            Some(ToolMay {
-                feed: record.feed_mm_s(line)?,
-                acceleration: Some(machine.max_path_acceleration_mm_s2()),
-            })
-        };
-        limits::add_to(answer, &rows, axes, place, tool)
+        limits::add_to(answer, &rows, axes, place)
     }
 
     /// Report and picture: the lines are driven in the other ways too.

@@ -98,17 +98,11 @@ impl Engraved {
 
     fn answer(&self) -> Result<Answer> {
         let report = self.report();
-        let may = self.machine.timed_limits();
-        let limits = json!({
-            "axes": may.axes,
-            "feedMmS": may.feed_mm_s,
-            "accelerationMmS2": may.acceleration_mm_s2,
-        });
         let value = json!({
             "summary": report.to_string(),
             "report": report,
             "isWithinBound": self.engraving.is_within_bound(),
-            "limits": limits,
+            "axesMay": self.machine.timed_limits().axes,
         });
         let mut outlines = Vec::new();
         let run = self.engraving.shown();
@@ -127,6 +121,7 @@ impl Engraved {
     /// What limits timed strokes at any time; none of a pattern.
     fn with_limits(&self, answer: Answer) -> Answer {
         let machine = &self.machine;
+        let limits = machine.timed_limits();
         let rows = self.engraving.shown().rows();
         let rows: Vec<_> = rows
             .iter()
@@ -135,22 +130,19 @@ impl Engraved {
                 position: row.position_rad,
                 velocity: row.velocity_rad_s,
                 source: row.stroke,
+                tool: ToolMay {
+                    feed: limits.feed_mm_s,
+                    acceleration: limits.acceleration_mm_s2,
+                },
                 is_first: row.is_first,
             })
             .collect();
-        let limits = machine.timed_limits();
         let axes = limits.axes.map(|(speed, acceleration)| AxisMay {
             speed,
             acceleration,
         });
         let place = |position| Some(machine.tool_at(position));
-        let tool = |_| {
-            Some(ToolMay {
-                feed: limits.feed_mm_s,
-                acceleration: limits.acceleration_mm_s2,
-            })
-        };
-        limits::add_to(answer, &rows, axes, place, tool)
+        limits::add_to(answer, &rows, axes, place)
     }
 }
 

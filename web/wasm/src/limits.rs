@@ -11,17 +11,18 @@ use crate::answer::Answer;
 /// Looks between two rows: fewer where there are many rows.
 const LOOKS: u32 = 3;
 const MANY_ROWS: usize = 50_000;
-/// From a look to both sides for the tool's derivatives, in s, and as a part of the row.
-const NEAR_S: f64 = 1e-3;
-const NEAR_PART: f64 = 0.125;
+/// The part of a row over which the tool's speed is taken.
+const NEAR_PART: f64 = 0.01;
 
 /// The end of a row of D axes.
 pub(crate) struct RowEnd<const D: usize> {
     pub(crate) time_s: f64,
     pub(crate) position: [f64; D],
     pub(crate) velocity: [f64; D],
-    /// The line or stroke of the input.
+    /// The line, motion or stroke of the input.
     pub(crate) source: usize,
+    /// What the tool may do along the curve that it ends on.
+    pub(crate) tool: ToolMay,
     /// No row comes before it, or another one that it does not go on from.
     pub(crate) is_first: bool,
 }
@@ -74,16 +75,15 @@ impl<const D: usize> Cubic<D> {
 }
 
 /// Adds the looks to an answer: `looks` has their times in s, `shares` for each the number of the row,
-/// the source, and the parts: of the speeds of all axes, their accelerations, feed and acceleration of
+/// the source, feed and acceleration that the tool may have, and the parts: of the speeds of all axes, their accelerations, feed and acceleration of
 /// the tool; no number where there is no such limit.
 ///
-/// `place` is where the tool is in mm, `tool` what it may do on a source.
+/// `place` is where the tool is, in mm.
 pub(crate) fn add_to<const D: usize>(
     answer: Answer,
     rows: &[RowEnd<D>],
     axes: [AxisMay; D],
     place: impl Fn([f64; D]) -> Option<[f64; 3]>,
-    tool: impl Fn(usize) -> Option<ToolMay>,
 ) -> Answer {
     let looks = if rows.len() > MANY_ROWS { 1 } else { LOOKS };
     let (mut times, mut shares) = (Vec::new(), Vec::new());
@@ -94,7 +94,9 @@ pub(crate) fn add_to<const D: usize>(
         for look in 0..looks {
             let t = cubic.duration_s * (f64::from(look) + 0.5) / f64::from(looks);
             times.push(from.time_s + t);
-            shares.extend([f64::from(number), to.source as f64]);
+            let ToolMay { feed, acceleration } = to.tool;
+            let most = acceleration.unwrap_or(f64::NAN);
+            shares.extend([f64::from(number), to.source as f64, feed, most]);
             shares.extend(
                 cubic
                     .coefficients
@@ -112,10 +114,7 @@ pub(crate) fn add_to<const D: usize>(
                     .map(|([_, _, a, b], axis)| (2.0 * a + t * 6.0 * b).abs() / axis.acceleration),
             );
             let [speed, acceleration] = along(&cubic, t, &place);
-            let may = tool(to.source);
-            let feed = may.map_or(f64::NAN, |may| speed / may.feed);
-            let most = may.and_then(|may| may.acceleration);
-            shares.extend([feed, most.map_or(f64::NAN, |most| acceleration / most)]);
+            shares.extend([speed / feed, acceleration / most]);
         }
     }
     #[expect(clippy::cast_possible_truncation, reason = "shown with three digits")]
@@ -125,20 +124,23 @@ pub(crate) fn add_to<const D: usize>(
         .with_numbers("shares", shares)
 }
 
-/// Speed and the size of the acceleration along the path, in mm/s and mm/s².
+/// Speed, and the size of the mean acceleration along the path from row to row, which is what planners
+/// limit, in mm/s and mm/s².
 fn along<const D: usize>(
     cubic: &Cubic<D>,
     t: f64,
     place: &impl Fn([f64; D]) -> Option<[f64; 3]>,
 ) -> [f64; 2] {
-    let by = NEAR_S.min(cubic.duration_s * NEAR_PART);
-    let places = [t - by, t, t + by].map(|t| place(cubic.position(t)));
-    let [Some(before), Some(now), Some(after)] = places else {
+    let by = cubic.duration_s * NEAR_PART;
+    let end = cubic.duration_s - by;
+    let speed = |t: f64| {
+        let [from, to] = [t, t + by].map(|t| place(cubic.position(t)));
+        Some(distance(from?, to?) / by)
+    };
+    let [Some(first), Some(now), Some(last)] = [0.0, t - by / 2.0, end].map(speed) else {
         return [f64::NAN; 2];
     };
-    let [first, second] = [distance(before, now), distance(now, after)];
-    let acceleration = (second - first).abs() / (by * by);
-    [(first + second) / (2.0 * by), acceleration]
+    [now, (last - first).abs() / end]
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {

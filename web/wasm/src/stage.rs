@@ -148,6 +148,10 @@ impl Ran {
                 position: row.position_mm,
                 velocity: row.velocity_mm_s,
                 source: row.motion,
+                tool: ToolMay {
+                    feed: row.feed_mm_s,
+                    acceleration: None,
+                },
                 is_first: number == 0,
             })
             .collect();
@@ -155,14 +159,7 @@ impl Ran {
             speed: MAX_AXIS_MM_S,
             acceleration: ACCELERATION_MM_S2,
         }; 2];
-        let legs = self.run.closed_loop().legs();
-        let tool = |motion: usize| {
-            Some(ToolMay {
-                feed: legs.get(motion)?.feed_mm_s,
-                acceleration: None,
-            })
-        };
-        limits::add_to(answer, &rows, axes, |[x, y]| Some([x, y, 0.0]), tool)
+        limits::add_to(answer, &rows, axes, |[x, y]| Some([x, y, 0.0]))
     }
 
     /// The steps of the path: all is run once more.
