@@ -3,7 +3,8 @@
 circles of files that need each other.
 
 `.ci/house.py` fails where it finds what `.ci/house.accepted` has not; it also tells what is accepted and
-gone, which `.ci/house.py tidy` takes out. `.ci/house.py list` prints what it finds.
+gone, which `.ci/house.py tidy` takes out. `.ci/house.py accept` also writes what is new to it, which
+then wants a reason; `.ci/house.py list` prints what it finds.
 
 It reads the sources as text, in a second or two, and expands no macro. What is `pub` can be reached: the
 workspace's lint `unreachable_pub` sees to that. A module may need those around it, as a part does.
@@ -331,23 +332,29 @@ def is_new(head, entry, known):
     return not any(set(rest) <= set(it.split()[1:]) for it in known)
 
 
-def tidy(house):
-    """Writes the accepted lists without what is gone."""
-    lines, head, found = [], None, {}
-    for line in ACCEPTED.read_text().splitlines():
-        if line.startswith('== '):
-            head = line[3:]
-            found[head] = set(HEADS[head](house))
-        entry = line.partition('#')[0].strip()
-        if head is None or line == f'== {head}' or not entry or entry in found[head]:
-            lines.append(line)
-    ACCEPTED.write_text('\n'.join(lines) + '\n')
+def rewrite(house, takes_new):
+    """Writes the accepted lists without what is gone, and with what is new where it is asked for."""
+    sections = []
+    for section in re.split(r'^(?=== )', ACCEPTED.read_text(), flags=re.MULTILINE):
+        lines = section.rstrip().split('\n')
+        if head := lines[0].removeprefix('== ') if lines[0].startswith('== ') else None:
+            found = HEADS[head](house)
+            serves = lambda entry: any(not is_new(head, it, [entry]) for it in found)
+            kept = [it for it in lines[1:] if not (entry := it.partition('#')[0].strip()) or serves(entry)]
+            new = [entry for entry in found if takes_new and is_new(head, entry, kept_entries(kept))]
+            lines = [lines[0], *kept, *(['# New: each wants a reason, or goes.'] if new else []), *new]
+        sections.append('\n'.join(lines) + '\n')
+    ACCEPTED.write_text('\n'.join(sections))
+
+
+def kept_entries(lines):
+    return [entry for line in lines if (entry := line.partition('#')[0].strip())]
 
 
 def main():
     house, known, grown = House(), accepted(), False
-    if sys.argv[1:] == ['tidy']:
-        return tidy(house)
+    if sys.argv[1:] in (['tidy'], ['accept']):
+        return rewrite(house, takes_new=sys.argv[1] == 'accept')
     for head, find in HEADS.items():
         found = find(house)
         if sys.argv[1:] == ['list']:
