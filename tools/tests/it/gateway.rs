@@ -5,6 +5,7 @@ mod broker;
 mod commands;
 mod connections;
 mod discovery;
+mod faults;
 mod health;
 mod load;
 mod nats;

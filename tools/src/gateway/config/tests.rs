@@ -20,15 +20,13 @@ fn the_page_on_the_gateway_has_a_configuration_that_holds() {
         eprintln!("skipped: there is no docs/gateway.md");
         return;
     };
-    let text = page
-        .split("```toml\n")
-        .nth(1)
-        .unwrap()
-        .split("```")
-        .next()
-        .unwrap();
-    let config = Config::parse(text).unwrap();
+    let blocks = page.split("```toml\n").skip(1);
+    let mut blocks = blocks.map(|block| block.split("```").next().unwrap());
+    let config = Config::parse(blocks.next().unwrap()).unwrap();
     assert_eq!(config.lines.len(), 2);
+    let nats = blocks.next().unwrap();
+    let config = Config::parse(&format!("name = \"hall-3\"\n{nats}{LINE}")).unwrap();
+    assert_eq!(config.broker().unwrap().kind(), "nats");
 }
 
 #[test]
@@ -144,6 +142,43 @@ fn errors_name_line_and_column() {
         ),
     ] {
         assert_eq!(error(&mqtt(rest)), format!("line 2, column 1: {message}"));
+    }
+    let nats =
+        |servers, rest| format!("name = \"hall\"\n[nats]\nservers = [{servers}]\n{rest}\n{LINE}");
+    for (servers, rest, message) in [
+        ("", "", "line 2, column 1: nats: servers: none"),
+        (
+            "\"http://h\"",
+            "",
+            "line 3, column 11: `http://h` is not nats://HOST[:PORT] or tls://HOST[:PORT]",
+        ),
+        (
+            "\"nats://h\"",
+            "password = \"x\"",
+            "line 2, column 1: nats: a password without a user",
+        ),
+        (
+            "\"nats://h\"",
+            "ca_file = \"x\"",
+            "line 2, column 1: nats: certificates are for tls://",
+        ),
+        (
+            "\"nats://h\"",
+            "prefix = \"a.b\"",
+            "line 2, column 1: nats: prefix: no level of a subject has `.`, `*`, `>` or a space",
+        ),
+        (
+            "\"nats://h\"",
+            "duplicate_window_s = 0",
+            "line 2, column 1: nats: duplicate_window_s: 0 is no time in seconds, up to 1000000000",
+        ),
+        (
+            "\"nats://h\"",
+            "[mqtt]\nbroker = \"mqtt://h\"",
+            "line 2, column 1: [mqtt] and [nats]",
+        ),
+    ] {
+        assert_eq!(error(&nats(servers, rest)), message);
     }
     assert_eq!(
         error(&mqtt("[metrics]\nlisten = \"[::1]:0\"").replacen('[', "stop_s = -1\n[", 1)),

@@ -1,0 +1,312 @@
+//! The faults of `line-sim` that a partner can have, each through a running gateway.
+//!
+//! `cargo test -p line3964r --test it gateway::faults -- --ignored --nocapture`
+
+use alloc::collections::BTreeMap;
+use core::time::Duration;
+
+use line_sim::{Bench, Faults, Frame, Parity, StationSettings};
+use proto3964r::{Config, Line, Priority};
+use rumqttc::v5::mqttbytes::QoS;
+use serde_json::{Value, json};
+use tokio::{
+    io::{AsyncReadExt as _, AsyncWriteExt as _},
+    net::TcpListener,
+    time::{Instant, MissedTickBehavior, interval},
+};
+
+use super::{
+    broker_or_skip,
+    process::{Gateway, mqtt},
+    subscriber::Subscriber,
+};
+
+/// How long each line is at work.
+const SECONDS: u64 = 75;
+/// When the side that dies does so.
+const DEATH: Duration = Duration::from_secs(25);
+/// From one telegram of a side to the next.
+const GATEWAY_SENDS: Duration = Duration::from_millis(1500);
+const PARTNER_SENDS_MS: u64 = 1300;
+
+/// A line, and the verdicts that are right.
+struct Kind {
+    name: &'static str,
+    frame: Frame,
+    config: fn(Priority, Line) -> Config,
+    /// The partner's; the gateway's is low.
+    priority: Priority,
+    faults: Faults,
+    dies: bool,
+    /// Whether the gateway sends, and the partner.
+    sends: [bool; 2],
+    qvz_ms: u16,
+    right: Vec<Value>,
+}
+
+impl Kind {
+    fn new(name: &'static str, faults: Faults, sends: [bool; 2], right: Vec<Value>) -> Self {
+        Self {
+            name,
+            frame: Frame::USUAL,
+            config: Config::siemens_3964r,
+            priority: Priority::High,
+            faults,
+            dies: false,
+            sends,
+            qvz_ms: 2000,
+            right,
+        }
+    }
+
+    /// Whether a verdict is one of those, about the right side.
+    fn is_right(&self, found: &Value) -> bool {
+        self.right.iter().any(|right| match right.as_object() {
+            None => {
+                found == right
+                    || right == &json!("Repeats") && found.get("WorksWithRepeats").is_some()
+            }
+            Some(right) => right.iter().all(|(name, fields)| {
+                let fields = fields.as_object().unwrap();
+                found.get(name).is_some()
+                    && fields
+                        .iter()
+                        .all(|(field, value)| found[name][field] == *value)
+            }),
+        })
+    }
+
+    fn line(&self, port: u16) -> String {
+        let (name, qvz_ms) = (self.name, self.qvz_ms);
+        format!(
+            "[[line]]\nname = \"{name}\"\nport = \"tcp://127.0.0.1:{port}?baud=9600\"\npriority = \"low\"\nqvz_ms = {qvz_ms}\n"
+        )
+    }
+
+    fn bench(&self, seed: u64) -> Bench {
+        let config = (self.config)(self.priority, Line::paced(9600, self.frame.bits()));
+        let frame = self.frame;
+        let mut bench = Bench::new(StationSettings { config, frame }, seed);
+        bench.set_faults(self.faults);
+        if self.sends[1] {
+            for number in 0..SECONDS * 1000 / PARTNER_SENDS_MS {
+                let at = Duration::from_millis(400 + number * PARTNER_SENDS_MS);
+                let [.., byte] = number.to_be_bytes();
+                bench.plan(at, &[0x57, byte, 0x10, 0x33, 0x41]).unwrap();
+            }
+        }
+        bench
+    }
+}
+
+fn frame(baud: u32, parity: Parity) -> Frame {
+    Frame::new(baud, parity).unwrap()
+}
+
+fn kinds() -> Vec<Kind> {
+    let none = Faults::NONE;
+    let (both, gateway, partner) = ([true; 2], [true, false], [false, true]);
+    let of_b = |name: &str, field: &str| json!({ name: { field: "B" } });
+    let works = || vec![json!("Works"), json!("Repeats")];
+    let bad = || json!({ "BadBlocks": { "sender": "B" } });
+    let noise = |bit_error_rate| Faults {
+        bit_error_rate,
+        ..none
+    };
+    let late = |ms| Faults {
+        delay: Duration::from_millis(ms),
+        ..none
+    };
+    let late_b = || vec![of_b("Late", "side")];
+    let mut kinds = vec![
+        Kind::new("nothing_is_wrong", none, both, vec![json!("Works")]),
+        Kind::new("noise", noise(1e-4), both, works()),
+        Kind::new(
+            "a_noisy_wire",
+            noise(8e-4),
+            both,
+            [works(), vec![bad()]].concat(),
+        ),
+        Kind::new(
+            "an_open_wire",
+            Faults {
+                is_deaf: true,
+                ..none
+            },
+            partner,
+            vec![json!({ "NotHeard": { "speaker": "A", "listener": "B" } })],
+        ),
+        Kind::new(
+            "a_dead_side",
+            Faults {
+                is_dead: true,
+                ..none
+            },
+            gateway,
+            vec![of_b("NoAnswer", "silent")],
+        ),
+        Kind::new(
+            "another_bcc",
+            Faults {
+                bcc_change: [0x03, 0x03],
+                ..none
+            },
+            partner,
+            vec![of_b("OtherBcc", "sender")],
+        ),
+        Kind::new("late_answers", late(2600), gateway, late_b()),
+        Kind {
+            qvz_ms: 550,
+            ..Kind::new("late_for_a_short_qvz", late(900), gateway, late_b())
+        },
+        Kind::new(
+            "pauses",
+            Faults {
+                pause: Duration::from_millis(400),
+                ..none
+            },
+            partner,
+            vec![of_b("Gaps", "sender")],
+        ),
+        Kind::new(
+            "no_receive_buffer",
+            Faults {
+                keeps_telegrams: true,
+                ..none
+            },
+            gateway,
+            vec![of_b("NoReceiveBuffer", "refuser")],
+        ),
+        Kind::new(
+            "a_bad_receiver",
+            Faults {
+                receiver_error_rate: 0.15,
+                ..none
+            },
+            gateway,
+            vec![of_b("GoodBlocksRejected", "refuser")],
+        ),
+        Kind::new(
+            "own_echo",
+            Faults {
+                hears_itself: true,
+                ..none
+            },
+            both,
+            vec![of_b("OwnEcho", "side")],
+        ),
+        Kind {
+            dies: true,
+            ..Kind::new(
+                "a_side_that_dies",
+                none,
+                both,
+                vec![of_b("NoLongerAnswers", "silent")],
+            )
+        },
+        Kind {
+            priority: Priority::Low,
+            ..Kind::new(
+                "the_same_priority",
+                none,
+                both,
+                vec![json!({ "SamePriority": { "priority": "Low" } })],
+            )
+        },
+        Kind {
+            config: Config::siemens_3964,
+            ..Kind::new("without_bcc", none, both, vec![of_b("WithoutBcc", "side")])
+        },
+    ];
+    for (name, frame, right) in [
+        ("no_parity", frame(9600, Parity::None), "NoParity"),
+        ("odd_parity", frame(9600, Parity::Odd), "OtherParity"),
+        ("another_rate", frame(4800, Parity::Even), "OtherRate"),
+        ("a_higher_rate", frame(19_200, Parity::Even), "OtherRate"),
+    ] {
+        let right = vec![of_b(right, "side"), of_b("Garbage", "side")];
+        kinds.push(Kind {
+            frame,
+            ..Kind::new(name, none, both, right)
+        });
+    }
+    kinds
+}
+
+/// The simulated line in real time, behind a serial server.
+async fn serve(listener: TcpListener, mut bench: Bench, dies: bool, faults: Faults) {
+    let (stream, _) = listener.accept().await.unwrap();
+    stream.set_nodelay(true).unwrap();
+    let (mut from_gateway, mut to_gateway) = stream.into_split();
+    let begin = Instant::now();
+    let mut ticks = interval(Duration::from_millis(1));
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut piece = [0; 256];
+    let mut lives = true;
+    loop {
+        tokio::select! {
+            _ = ticks.tick() => {}
+            len = from_gateway.read(&mut piece) => match len {
+                Ok(len @ 1..) => piece[..len].iter().for_each(|&byte| bench.send(byte)),
+                _ => return,
+            },
+        }
+        if dies && lives && begin.elapsed() > DEATH {
+            lives = false;
+            bench.set_faults(Faults {
+                is_dead: true,
+                ..faults
+            });
+        }
+        let mut heard = Vec::new();
+        while let Some((byte, error)) = bench.hear(begin.elapsed()) {
+            heard.push(if error.is_some() { 0 } else { byte });
+        }
+        if !heard.is_empty() && to_gateway.write_all(&heard).await.is_err() {
+            return;
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "a minute in real time"]
+async fn faults_of_simulated_partners() {
+    let broker = broker_or_skip!();
+    let mut config = format!("name = \"hall\"\n{}", mqtt(broker.port));
+    let kinds = kinds();
+    for (seed, kind) in (1..).zip(&kinds) {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        config += &kind.line(listener.local_addr().unwrap().port());
+        tokio::spawn(serve(listener, kind.bench(seed), kind.dies, kind.faults));
+    }
+    let mut subscriber = Subscriber::new(broker.port).await;
+    let gateway = Gateway::start(&config);
+    gateway.logs("broker: connected");
+    let (begin, mut found) = (Instant::now(), BTreeMap::new());
+    while begin.elapsed() < Duration::from_secs(SECONDS) {
+        for kind in kinds.iter().filter(|kind| kind.sends[0]) {
+            let topic = format!("line3964r/hall/{}/command", kind.name);
+            let command = r#"{"send": "41 10 42 43"}"#;
+            subscriber.publish(&topic, QoS::AtLeastOnce, command).await;
+        }
+        let step = Instant::now();
+        while let Some(rest) = GATEWAY_SENDS.checked_sub(step.elapsed()) {
+            if let Some((topic, payload)) = subscriber.next_within(rest).await
+                && let Some(name) = topic.strip_suffix("/verdict")
+            {
+                let told: Value = serde_json::from_slice(&payload).unwrap();
+                found.insert(name.rsplit('/').next().unwrap().to_owned(), told);
+            }
+        }
+    }
+    let mut right = 0;
+    for kind in &kinds {
+        let told = found.get(kind.name).cloned().unwrap_or_default();
+        let is_right = kind.is_right(&told["verdict"]);
+        right += usize::from(is_right);
+        let mark = if is_right { "right" } else { "WRONG" };
+        println!("{:<22} {mark}  {}", kind.name, told["sentence"]);
+    }
+    println!("{right} of {} right", kinds.len());
+    assert!(right * 10 >= kinds.len() * 9, "{}", gateway.log());
+}
