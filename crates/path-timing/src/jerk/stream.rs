@@ -97,7 +97,7 @@ fn plan<A: Axes>(
 const OVERLAP: usize = 2;
 
 /// The part of the time that a limit at each knot may cost.
-const STREAM_GAP: f64 = 3e-3;
+const STREAM_GAP: f64 = 1e-3;
 
 /// The fastest motion from rest to rest, slowed until it is inside all limits of each of its parts.
 fn rest_to_rest<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
