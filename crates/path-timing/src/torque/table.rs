@@ -35,6 +35,10 @@ impl<'a, A: Axes> TorqueTable<'a, A> {
     }
 }
 
+/// By how much more than inertia asks for a table is slowed: enough where friction and gravity take up to a
+/// fifth of a torque.
+const MORE: f64 = 1.25;
+
 /// Rounds of slowing a table by the little that its cubics ask for between the ends of its segments.
 const ROUNDS: u32 = 40;
 
@@ -72,8 +76,8 @@ impl<D: Dynamics> TorqueLimits<D> {
             if most <= 1.0 {
                 return Ok(TorqueTable { table });
             }
-            // Inertia asks for the square of the speed.
-            let scale = (1.0 - f64::EPSILON) / sqrt(most);
+            // Inertia asks for the square of the speed; a little more, for friction and gravity do not.
+            let scale = 1.0 / sqrt(1.0 + (most - 1.0) * MORE + f64::EPSILON);
             let Ok(slower) = table.at_speed(scale) else {
                 break;
             };

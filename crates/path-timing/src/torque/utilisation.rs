@@ -7,8 +7,8 @@ use crate::{Axes, Cubic, Row, Span};
 /// Parts that a segment is looked at in, and more where these leave much open.
 const PARTS: [u32; 3] = [4, 16, 64];
 
-/// What may be left open.
-const OPEN: f64 = 1e-4;
+/// What may be left open: half of it in time.
+const OPEN: f64 = 5e-4;
 
 impl<D: Dynamics> TorqueLimits<D> {
     /// The largest part of what a motor has at its speed that is asked of any motor anywhere on a segment:
@@ -38,26 +38,25 @@ impl<D: Dynamics> TorqueLimits<D> {
         let part_s = duration_s / f64::from(parts);
         let eighth = part_s * part_s * 0.125;
         let friction = self.dynamics.friction();
-        let jerk_of = |axis: usize| {
-            let cubic = Cubic::between(from, to).nth(axis);
-            cubic.map_or(0.0, |cubic| {
-                let [a0, a1] = cubic.accelerations();
-                (a1 - a0).abs() / duration_s
-            })
-        };
+        let mut jerks = D::Axes::zeros();
+        for (jerk, cubic) in (jerks.as_mut_slice().iter_mut()).zip(Cubic::between(from, to)) {
+            let [a0, a1] = cubic.accelerations();
+            *jerk = (a1 - a0).abs() / duration_s;
+        }
         let [mut most, mut at_nodes] = [0.0; 2];
         let mut before = self.at(from, to, 0.0);
         for part in 1..=parts {
             let here = self.at(from, to, f64::from(part) / f64::from(parts));
             let motors = A::<D>::each(&self.motors).iter();
             let axes = motors.zip(A::<D>::each(&friction)).zip(bend.as_slice());
-            for (axis, ((motor, friction), bend)) in axes.enumerate() {
+            let axes = axes.zip(jerks.as_slice()).enumerate();
+            for (axis, (((motor, friction), bend), jerk)) in axes {
                 let [(v0, t0), (v1, t1)] = [&before, &here].map(|(velocity, torque)| {
                     let of = |numbers: &D::Axes| numbers.as_slice().get(axis).copied();
                     (of(velocity).unwrap_or(0.0), of(torque).unwrap_or(0.0))
                 });
-                let speed = v0.abs().max(v1.abs()) + eighth * jerk_of(axis);
-                let bent = eighth * (bend + friction.viscous * jerk_of(axis));
+                let speed = v0.abs().max(v1.abs()) + eighth * jerk;
+                let bent = eighth * (bend + friction.viscous * jerk);
                 // The sign of a speed that may be 0 between both places is not known.
                 let turns = sign(v0) * sign(v1) < 0.0;
                 let with = |v: f64, t: f64, other: f64| {

@@ -15,6 +15,7 @@ mod monotonic;
 mod nlp;
 mod optimum;
 mod run;
+mod set_points;
 mod shaper;
 mod slow_corners;
 mod smoothed;
