@@ -18,7 +18,7 @@ use std::task::{Context, Poll, Waker};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use arm_machine::{Block, BlockEnd, Machine, Motion, Panel, talk};
+use arm_machine::{Block, BlockEnd, Machine, Motion, Panel, PlanMemory, talk};
 use embedded_io_async::{ErrorType, Read, Write};
 use proto3964r::Line;
 
@@ -33,7 +33,8 @@ const LOOK: Duration = Duration::from_micros(500);
 fn main() -> Result<(), Box<dyn Error>> {
     let machine = Machine::new(&arm::SETTINGS, TICK_HZ)?;
     let panel = Panel::new();
-    let motion = Motion::new(&machine, &panel)?;
+    let mut memory = PlanMemory::new();
+    let motion = Motion::new(&machine, &panel, &mut memory)?;
     let from_switches = Cell::new(FROM_SWITCHES);
     let input = RefCell::new(VecDeque::new());
     let received = receive();

@@ -6,29 +6,33 @@ use crate::panel::Panel;
 use crate::pulses::{Block, Pulses, Word};
 use crate::settings::Machine;
 
-/// Blocks a second, at least: a block is closed when it takes longer, however few words it has.
-const BLOCK_HZ: u32 = 200;
+/// Longest words a second. A block that takes half as long as one is closed before another one, however
+/// few words it has: so none is too short for the next one to be there in time.
+const LONGEST_WORD_HZ: u32 = 200;
 
 /// Puts the edges of steps into blocks, and these on the panel.
 pub(crate) struct BlockWriter<'p> {
     panel: &'p Panel,
     pulses: Pulses,
     block: Block,
-    block_ticks: u32,
-    max_block_ticks: u32,
+    max_word_ticks: u32,
     levels: u8,
     steps: [i32; 2],
 }
 
+/// The longest word of a machine.
+pub(crate) fn max_word_ticks(machine: &Machine) -> u32 {
+    (machine.tick_hz / LONGEST_WORD_HZ).max(1)
+}
+
 impl<'p> BlockWriter<'p> {
     pub(crate) fn new(machine: &Machine, panel: &'p Panel) -> Self {
-        let max_block_ticks = (machine.tick_hz / BLOCK_HZ).max(1);
+        let max_word_ticks = max_word_ticks(machine);
         Self {
             panel,
-            pulses: Pulses::new(machine.pins, max_block_ticks),
+            pulses: Pulses::new(machine.pins, max_word_ticks),
             block: Block::default(),
-            block_ticks: 0,
-            max_block_ticks,
+            max_word_ticks,
             levels: 0,
             steps: [0; 2],
         }
@@ -55,6 +59,22 @@ impl<'p> BlockWriter<'p> {
 
     /// All edges go out, and the machine rests until `ticks`, from where times count on.
     pub(crate) async fn rest(&mut self, ticks: u64) {
+        self.wait(ticks).await;
+        if !self.block.words.is_empty() {
+            self.block.end.rests = true;
+            self.put().await;
+        }
+    }
+
+    /// All edges go out, with the time until a tick before `ticks`; there, more will follow in time.
+    pub(crate) async fn go_on(&mut self, ticks: u64) {
+        self.wait(ticks - 1).await;
+        if !self.block.words.is_empty() {
+            self.put().await;
+        }
+    }
+
+    async fn wait(&mut self, ticks: u64) {
         while let Some(word) = self.pulses.next_before(u64::MAX) {
             self.push(word).await;
         }
@@ -62,16 +82,13 @@ impl<'p> BlockWriter<'p> {
             self.push(word).await;
         }
         self.pulses.restart(ticks);
-        if !self.block.words.is_empty() {
-            self.block.end.rests = true;
-            self.put().await;
-        }
     }
 
     async fn push(&mut self, word: Word) {
-        let is_long = self.block_ticks + word.ticks > self.max_block_ticks;
+        let ticks = self.block.end.ticks;
+        let is_long = ticks >= self.max_word_ticks / 2 && ticks + word.ticks > self.max_word_ticks;
         // Not before there is another word: the last block says that the machine rests.
-        if self.block.words.is_full() || (is_long && !self.block.words.is_empty()) {
+        if self.block.words.is_full() || is_long {
             self.put().await;
         }
         for (joint, steps) in self.steps.iter_mut().enumerate() {
@@ -82,14 +99,13 @@ impl<'p> BlockWriter<'p> {
             }
         }
         self.levels = word.levels;
-        self.block_ticks += word.ticks;
+        self.block.end.ticks += word.ticks;
         // There is room.
         let _ = self.block.words.push(word);
     }
 
     async fn put(&mut self) {
         self.block.end.steps = self.steps;
-        self.block_ticks = 0;
         self.panel.put(core::mem::take(&mut self.block)).await;
     }
 }

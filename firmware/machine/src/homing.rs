@@ -1,8 +1,13 @@
 //! Both joints to their switches, one after the other.
+//!
+//! What is handed out is ahead of the pins by the longest word, so that no step is late: when that has
+//! been played, as much again follows. A fast step is decided some steps before it is made. A slow one
+//! has to be decided with the switch as the step before has left it: where slow steps are not that far
+//! apart, the pins rest between them.
 
 use pulse_interp::{Direction, Homing, HomingError, HomingOrder, HomingSpeed};
 
-use crate::blocks::BlockWriter;
+use crate::blocks::{BlockWriter, max_word_ticks};
 use crate::panel::{Panel, Wanted};
 use crate::settings::Machine;
 
@@ -12,38 +17,72 @@ pub(crate) enum NoHome {
     Switch { joint: usize, error: HomingError },
 }
 
-/// Steps to each switch: a step, its time, a look at the switch. `closed` says which are.
+/// Both joints to their switches. `closed` says which are.
 pub(crate) async fn home(
     machine: &Machine,
     panel: &Panel,
     writer: &mut BlockWriter<'_>,
     closed: &mut impl FnMut() -> [bool; 2],
 ) -> Result<(), NoHome> {
-    let mut ticks = 0;
-    writer.restart(ticks);
+    writer.restart(0);
+    // A word takes a tick at least.
+    let mut ticks = 1;
+    let mut found = Ok(());
     for joint in 0..2 {
-        let mut homing = Homing::new(machine.homing[joint]);
-        loop {
-            if panel.wanted().0 == Wanted::Stop {
-                return Err(NoHome::Stopped);
-            }
-            let order = homing.next(closed()[joint]);
-            let order = order.map_err(|error| NoHome::Switch { joint, error })?;
-            let HomingOrder::Step { direction, speed } = order else {
-                break;
-            };
-            let direction = match direction {
-                Direction::Positive => pvt_steps::Direction::Positive,
-                Direction::Negative => pvt_steps::Direction::Negative,
-            };
-            writer.step(joint, ticks, direction).await;
-            ticks += u64::from(match speed {
-                HomingSpeed::Fast => machine.homing_fast_ticks,
-                HomingSpeed::Slow => machine.homing_slow_ticks,
-            });
-            writer.rest(ticks).await;
-            panel.all_played().await;
+        if found.is_ok() {
+            found = home_joint(machine, panel, writer, joint, &mut ticks, closed).await;
         }
     }
-    Ok(())
+    // The blocks before have said that others follow.
+    writer
+        .rest(ticks + u64::from(max_word_ticks(machine)))
+        .await;
+    panel.all_played().await;
+    found
+}
+
+async fn home_joint(
+    machine: &Machine,
+    panel: &Panel,
+    writer: &mut BlockWriter<'_>,
+    joint: usize,
+    ticks: &mut u64,
+    closed: &mut impl FnMut() -> [bool; 2],
+) -> Result<(), NoHome> {
+    let mut homing = Homing::new(machine.homing[joint]);
+    loop {
+        if panel.wanted().0 == Wanted::Stop {
+            return Err(NoHome::Stopped);
+        }
+        let order = homing.next(closed()[joint]);
+        let order = order.map_err(|error| NoHome::Switch { joint, error })?;
+        let HomingOrder::Step { direction, speed } = order else {
+            return Ok(());
+        };
+        let direction = match direction {
+            Direction::Positive => pvt_steps::Direction::Positive,
+            Direction::Negative => pvt_steps::Direction::Negative,
+        };
+        writer.step(joint, *ticks, direction).await;
+        let interval = match speed {
+            HomingSpeed::Fast => machine.homing_fast_ticks,
+            HomingSpeed::Slow => machine.homing_slow_ticks,
+        };
+        *ticks += u64::from(interval);
+        let ahead = max_word_ticks(machine);
+        match speed {
+            HomingSpeed::Fast => {
+                writer.go_on(*ticks).await;
+                panel.all_played_but(2 * ahead).await;
+            }
+            HomingSpeed::Slow if interval >= 2 * ahead => {
+                writer.go_on(*ticks).await;
+                panel.all_played_but(ahead).await;
+            }
+            HomingSpeed::Slow => {
+                writer.rest(*ticks).await;
+                panel.all_played().await;
+            }
+        }
+    }
 }

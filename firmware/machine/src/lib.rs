@@ -8,11 +8,12 @@ mod homing;
 mod motion;
 mod panel;
 mod pulses;
+mod reason;
 mod settings;
 mod talk;
 
 pub use command::{Command, CommandError, Job, Joint};
-pub use motion::Motion;
+pub use motion::{Motion, PlanMemory};
 pub use panel::{Panel, State};
 pub use pulses::{Block, BlockEnd, Word};
 pub use settings::{Machine, Settings, SettingsError};

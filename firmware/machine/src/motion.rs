@@ -2,23 +2,33 @@
 
 use core::fmt::Display;
 
-use path_timing::{Curve, FeedCeiling, Knot, PathFn, PathPoint, Playback, Row, Table, ToolLimits};
+use path_timing::{
+    Curve, FeedCeiling, Knot, PathFn, PathPoint, PlanError, Playback, Row, Table, ToolLimits,
+};
 use pvt_steps::{PvtQuantiser, PvtSteps};
-use scara_kin::Joints;
+use scara_kin::{ArmPath, ArmPathError, ArmPathF32, Joints};
+use trig_kernels::sqrt;
 
 use crate::blocks::BlockWriter;
 use crate::command::{Job, Joint};
 use crate::homing::{NoHome, home};
 use crate::panel::{Panel, State, Wanted};
+use crate::reason::Reason;
 use crate::settings::{Machine, SettingsError};
 use crate::{Text, text};
 
-/// Most segments of a motion.
-const MAX_SEGMENTS: u32 = 100;
-/// Segments of a short one.
-const MIN_SEGMENTS: u32 = 12;
-/// Length of a segment of a line, until there are too many.
-const SEGMENT_MM: f64 = 3.0;
+/// Memory for tables, in rows: of all attempts at a line.
+const ROWS: usize = 100;
+/// Segments of a jog.
+const JOG_SEGMENTS: u32 = 12;
+/// Segments of a line: so many, and others for what the joints turn, shoulder and elbow added up. At a
+/// constant feed a third of them would do; where a hold ends, the joints go straight from row to row.
+const LEAST_SEGMENTS: f64 = 6.0;
+const SEGMENTS_PER_RAD: f64 = 6.0;
+/// Places between which the joints are looked at for what they turn.
+const LOOKS: u32 = 4;
+/// More than what the fourth power says, for an attempt that is to be the last.
+const FINER: f64 = 1.15;
 /// Farthest that a line may begin from the joints, in radians: rounding.
 const START_TOLERANCE: f64 = 1e-6;
 
@@ -27,8 +37,31 @@ pub struct Motion<'m> {
     machine: &'m Machine,
     panel: &'m Panel,
     axes: Axes<'m>,
-    knots: [Knot<[f64; 2]>; MAX_SEGMENTS as usize + 1],
-    ceilings: [FeedCeiling; MAX_SEGMENTS as usize + 1],
+    memory: &'m mut PlanMemory,
+}
+
+/// Memory for the table of a motion: apart from [`Motion`], too large for a stack.
+#[derive(Clone, Debug)]
+pub struct PlanMemory {
+    knots: [Knot<[f64; 2]>; ROWS],
+    ceilings: [FeedCeiling; ROWS],
+}
+
+impl PlanMemory {
+    /// Memory that nothing is in yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            knots: [Knot::default(); _],
+            ceilings: [FeedCeiling::default(); _],
+        }
+    }
+}
+
+impl Default for PlanMemory {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 /// Where the joints are, and the way from there to the pins.
@@ -103,13 +136,16 @@ impl<'m> Motion<'m> {
     ///
     /// # Errors
     /// [`SettingsError`]: home is past 2^31 steps.
-    pub fn new(machine: &'m Machine, panel: &'m Panel) -> Result<Self, SettingsError> {
+    pub fn new(
+        machine: &'m Machine,
+        panel: &'m Panel,
+        memory: &'m mut PlanMemory,
+    ) -> Result<Self, SettingsError> {
         Ok(Self {
             machine,
             panel,
             axes: Axes::home(machine, BlockWriter::new(machine, panel))?,
-            knots: [Knot::default(); _],
-            ceilings: [FeedCeiling::default(); _],
+            memory,
         })
     }
 
@@ -164,29 +200,19 @@ impl<'m> Motion<'m> {
             });
         }
         let path = machine.arm.path_from(line, machine.elbow, joints);
-        let path = path.map_err(refused)?;
-        let start = path.joints(0.0).map_err(refused)?;
+        let path = path.map_err(|error| refused(Reason(error)))?;
+        let start = path.joints(0.0);
+        let start = start.map_err(|error| refused(Reason(error)))?;
         if (start - joints).amax() > START_TOLERANCE {
             return Err(refused("the elbow is on the other side, jog it over"));
         }
+        let segments = LEAST_SEGMENTS + SEGMENTS_PER_RAD * turned(&path);
         let path = path.in_f32().map_err(refused)?;
-        let segments = (line.length() / SEGMENT_MM) as u32;
-        let table = Table::plan_in_f32(
-            [path],
-            machine.limits,
-            |_| segments.clamp(MIN_SEGMENTS, MAX_SEGMENTS),
-            &mut self.knots,
-        );
-        let table = table.map_err(refused)?;
-        let departures = table.spans().map(|span| path.departure(&span));
-        let departure = departures.fold(0.0, f64::max);
-        if departure > machine.tolerance_mm {
-            let allowed = machine.tolerance_mm;
-            return Err(refused(format_args!(
-                "the tool would leave the line by up to {departure:.3} mm, {allowed:.3} are allowed"
-            )));
-        }
-        let playback = table.playback(1.0, &mut self.ceilings).map_err(refused)?;
+        let table = plan(machine, &path, segments, &mut self.memory.knots);
+        let (table, departure) = table.map_err(refused)?;
+        let playback = table
+            .playback(1.0, &mut self.memory.ceilings)
+            .map_err(refused)?;
         self.panel.answer(text!(
             "ok, {:.3} mm in {:.3} s, within {departure:.4} mm",
             line.length(),
@@ -215,9 +241,16 @@ impl<'m> Motion<'m> {
             let position = [from[0] + slope[0] * s, from[1] + slope[1] * s];
             Ok::<_, core::convert::Infallible>(PathPoint { position, slope })
         });
-        let table = Table::plan_in_f32([path], machine.limits, |_| MIN_SEGMENTS, &mut self.knots);
+        let table = Table::plan_in_f32(
+            [path],
+            machine.limits,
+            |_| JOG_SEGMENTS,
+            &mut self.memory.knots,
+        );
         let table = table.map_err(refused)?;
-        let playback = table.playback(1.0, &mut self.ceilings).map_err(refused)?;
+        let playback = table
+            .playback(1.0, &mut self.memory.ceilings)
+            .map_err(refused)?;
         self.panel
             .answer(text!("ok, in {:.3} s", table.duration_s()));
         self.axes.run(machine, self.panel, playback).await
@@ -237,6 +270,53 @@ impl<'m> Motion<'m> {
         self.panel.set_state(state);
         self.panel.answer(answer);
     }
+}
+
+/// Why there is no table of a line.
+#[derive(Debug, thiserror::Error)]
+enum NoTable {
+    #[error("{}", Reason(*.0))]
+    Plan(#[from] PlanError<ArmPathError>),
+    #[error("the tool would leave the line by up to {departure:.3} mm, {allowed:.3} are allowed")]
+    Departs { departure: f64, allowed: f64 },
+}
+
+/// The table of a line with its largest departure, within the tolerance: in about so many segments.
+fn plan<'k>(
+    machine: &Machine,
+    path: &ArmPathF32,
+    mut segments: f64,
+    mut free: &'k mut [Knot<[f64; 2]>],
+) -> Result<(Table<'k, [f64; 2]>, f64), NoTable> {
+    let allowed = machine.tolerance_mm;
+    loop {
+        let rows = (segments as usize + 1).min(free.len());
+        let (own, rest) = free.split_at_mut(rows);
+        let count = rows as u32 - 1;
+        let table = Table::plan_in_f32([path], machine.limits, |_| count, own)?;
+        let departures = table.spans().map(|span| path.departure(&span));
+        let departure = departures.fold(0.0, f64::max);
+        if departure <= allowed {
+            return Ok((table, departure));
+        }
+        // It falls with the fourth power of the number of segments.
+        segments = f64::from(count) * sqrt(sqrt(departure / allowed)) * FINER + 1.0;
+        if rest.len() <= rows {
+            return Err(NoTable::Departs { departure, allowed });
+        }
+        free = rest;
+    }
+}
+
+/// By how much the joints turn along a path, in radians, as some places tell.
+fn turned(path: &ArmPath) -> f64 {
+    let step = path.curve().length() / f64::from(LOOKS);
+    let places = (0..=LOOKS).filter_map(|look| path.joints(f64::from(look) * step).ok());
+    let turns = places.clone().zip(places.skip(1)).map(|(from, to)| {
+        let turn = to - from;
+        turn.x.abs() + turn.y.abs()
+    });
+    turns.sum()
 }
 
 impl Axes<'_> {

@@ -58,8 +58,8 @@ struct Shared {
     feed_percent: u8,
     /// Steps of both joints from zero that the pins have made.
     steps: [i32; 2],
-    blocks_put: u32,
-    blocks_played: u32,
+    /// Of the blocks that are put and not played.
+    ticks_ahead: u32,
     underruns: u32,
 }
 
@@ -90,8 +90,7 @@ impl Panel {
                 wanted: Wanted::Run,
                 feed_percent: 100,
                 steps: [0; 2],
-                blocks_put: 0,
-                blocks_played: 0,
+                ticks_ahead: 0,
                 underruns: 0,
             })),
             jobs: Signal::new(),
@@ -153,7 +152,7 @@ impl Panel {
     pub fn played(&self, end: BlockEnd) {
         self.change(|shared| {
             shared.steps = end.steps;
-            shared.blocks_played = shared.blocks_played.wrapping_add(1);
+            shared.ticks_ahead = shared.ticks_ahead.saturating_sub(end.ticks);
         });
         self.played.signal(());
     }
@@ -174,17 +173,19 @@ impl Panel {
     }
 
     pub(crate) async fn put(&self, block: Block) {
-        self.change(|shared| shared.blocks_put = shared.blocks_put.wrapping_add(1));
+        let ticks = block.end.ticks;
+        self.change(|shared| shared.ticks_ahead = shared.ticks_ahead.saturating_add(ticks));
         self.blocks.send(block).await;
     }
 
     /// Returns when all blocks are played.
     pub(crate) async fn all_played(&self) {
-        loop {
-            let shared = self.shared();
-            if shared.blocks_put == shared.blocks_played {
-                return;
-            }
+        self.all_played_but(0).await;
+    }
+
+    /// Returns when blocks of at most so many ticks are left to be played.
+    pub(crate) async fn all_played_but(&self, ticks: u32) {
+        while self.shared().ticks_ahead > ticks {
             self.played.wait().await;
         }
     }

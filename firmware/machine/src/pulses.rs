@@ -29,6 +29,8 @@ pub struct Block {
 pub struct BlockEnd {
     /// Steps of both joints from zero.
     pub(crate) steps: [i32; 2],
+    /// The time of the block.
+    pub(crate) ticks: u32,
     /// Whether the machine rests: no block needs to follow at once.
     pub(crate) rests: bool,
 }

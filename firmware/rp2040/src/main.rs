@@ -5,10 +5,9 @@
 mod arm;
 mod pins;
 
-use arm_machine::{Machine, Motion, Panel, talk};
+use arm_machine::{Machine, Motion, Panel, PlanMemory, talk};
 use cortex_m_rt::entry;
 use embassy_executor::{Executor, InterruptExecutor};
-use embassy_rp::clocks::clk_sys_freq;
 use embassy_rp::gpio::{Input, Pull};
 use embassy_rp::interrupt;
 use embassy_rp::interrupt::{InterruptExt, Priority};
@@ -32,6 +31,7 @@ bind_interrupts!(struct Irqs {
 
 static PANEL: Panel = Panel::new();
 static MACHINE: StaticCell<Machine> = StaticCell::new();
+static MEMORY: StaticCell<PlanMemory> = StaticCell::new();
 static PLAYS: InterruptExecutor = InterruptExecutor::new();
 static TALKS: InterruptExecutor = InterruptExecutor::new();
 static PLANS: StaticCell<Executor> = StaticCell::new();
@@ -48,9 +48,9 @@ fn main() -> ! {
     let (tx, rx) = (p.PIN_0, p.PIN_1);
 
     let player = Player::new(p.PIO0, Irqs, drivers, dma::Channel::new(p.DMA_CH0, Irqs));
-    let tick_hz = clk_sys_freq() / Player::CYCLES_PER_TICK;
-    let machine: &Machine =
-        MACHINE.init(Machine::new(&arm::SETTINGS, tick_hz).expect("good settings"));
+    let machine = Machine::new(&arm::SETTINGS, player.tick_hz()).expect("good settings");
+    let machine: &Machine = MACHINE.init(machine);
+    let memory = MEMORY.init_with(PlanMemory::new);
 
     static BUFFERS: ConstStaticCell<[[u8; 256]; 2]> = ConstStaticCell::new([[0; 256]; 2]);
     let [tx_buffer, rx_buffer] = BUFFERS.take();
@@ -71,7 +71,7 @@ fn main() -> ! {
         .spawn(converse(machine, tx, rx).expect("spawned once"));
     let switches = [shoulder_switch, elbow_switch];
     PLANS.init(Executor::new()).run(|spawner| {
-        spawner.spawn(plan(machine, switches).expect("spawned once"));
+        spawner.spawn(plan(machine, memory, switches).expect("spawned once"));
     })
 }
 
@@ -104,8 +104,12 @@ async fn converse(machine: &'static Machine, tx: BufferedUartTx, rx: BufferedUar
 }
 
 #[embassy_executor::task]
-async fn plan(machine: &'static Machine, switches: [Input<'static>; 2]) {
-    let motion = Motion::new(machine, &PANEL).expect("home is within 2^31 steps");
+async fn plan(
+    machine: &'static Machine,
+    memory: &'static mut PlanMemory,
+    switches: [Input<'static>; 2],
+) {
+    let motion = Motion::new(machine, &PANEL, memory).expect("home is within 2^31 steps");
     // Closed to ground.
     motion.run(|| switches.each_ref().map(Input::is_low)).await
 }

@@ -1,8 +1,8 @@
 //! Step and direction pins, by a state machine of the PIO.
 
-use arm_machine::{Block, Panel, Word};
-use embassy_rp::Peri;
-use embassy_rp::dma::Channel;
+use arm_machine::{Block, BlockEnd, Panel, Word};
+use embassy_futures::select::{Either, select};
+use embassy_rp::clocks::clk_sys_freq;
 use embassy_rp::interrupt::typelevel::Binding;
 use embassy_rp::peripherals::{PIN_2, PIN_3, PIN_4, PIN_5, PIO0};
 use embassy_rp::pio::program::pio_asm;
@@ -10,7 +10,10 @@ use embassy_rp::pio::{
     Common, Config, Direction, FifoJoin, InterruptHandler, Pio, ShiftConfig, ShiftDirection,
     StateMachine,
 };
-use embassy_time::Timer;
+use embassy_rp::{Peri, dma};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use embassy_sync::channel::Channel;
+use embassy_time::{Instant, Timer};
 
 /// Step and direction of the shoulder, step and direction of the elbow.
 pub type Drivers = (
@@ -23,7 +26,8 @@ pub type Drivers = (
 /// Plays words: each waits, then sets the pins, to the cycle.
 pub struct Player {
     machine: StateMachine<'static, PIO0, 0>,
-    dma: Channel<'static>,
+    dma: dma::Channel<'static>,
+    tick_hz: u32,
     /// The program lives as long as this.
     _pio: Common<'static, PIO0>,
 }
@@ -33,15 +37,21 @@ const LEAST_CYCLES: u32 = 3;
 /// Bits of a word for the cycles.
 const WAIT_BITS: u32 = 28;
 
-impl Player {
-    /// Cycles of the system's clock in a tick. A word takes three at least.
-    pub const CYCLES_PER_TICK: u32 = 10;
+/// Cycles of the system's clock in a tick. A word takes three at least.
+const CYCLES_PER_TICK: u32 = 10;
+/// From here to the first word's begin, at most.
+const DMA_MICROS: u64 = 10;
 
+/// Blocks that are put into the FIFO: at which time they will have been played, and what is so then.
+/// The FIFO has room for eight.
+type Played = Channel<NoopRawMutex, (u64, BlockEnd), 10>;
+
+impl Player {
     pub fn new(
         pio: Peri<'static, PIO0>,
         irqs: impl Binding<<PIO0 as embassy_rp::pio::Instance>::Interrupt, InterruptHandler<PIO0>>,
         (a, b, c, d): Drivers,
-        dma: Channel<'static>,
+        dma: dma::Channel<'static>,
     ) -> Self {
         let Pio {
             mut common,
@@ -78,40 +88,75 @@ impl Player {
         Self {
             machine,
             dma,
+            tick_hz: clk_sys_freq() / CYCLES_PER_TICK,
             _pio: common,
         }
     }
 
+    /// Ticks a second.
+    pub const fn tick_hz(&self) -> u32 {
+        self.tick_hz
+    }
+
     /// Plays the blocks of a panel. While the planner is late the pins stay as they are: what comes
     /// then comes later, and nothing is lost.
-    pub async fn play(mut self, panel: &Panel) -> ! {
+    pub async fn play(self, panel: &Panel) -> ! {
+        let played = Played::new();
+        match select(self.push(panel, &played), tell(panel, &played)).await {
+            Either::First(never) | Either::Second(never) => never,
+        }
+    }
+
+    /// Puts the words into the FIFO, and says until when they will be played: a FIFO of long words is
+    /// far ahead of the pins.
+    async fn push(mut self, panel: &Panel, played: &Played) -> ! {
+        let micros_of = |ticks: u64| (ticks * 1_000_000).div_ceil(self.tick_hz.into());
+        let (mut begin_micros, mut ticks) = (0, 0);
+        let mut last: Option<BlockEnd> = None;
         loop {
             let block = panel.next_block().await;
+            if has_run_dry(&mut self.machine) {
+                if let Some(last) = last {
+                    panel.ran_out_after(last);
+                }
+                (begin_micros, ticks) = (Instant::now().as_micros() + DMA_MICROS, 0);
+            }
             let mut words = [0; Block::MAX_WORDS];
             for (place, word) in words.iter_mut().zip(&block.words) {
                 *place = encoded(word);
+                ticks += u64::from(word.ticks);
             }
+            played
+                .send((begin_micros + micros_of(ticks), block.end))
+                .await;
+            last = Some(block.end);
             let words = &words[..block.words.len()];
             self.machine
                 .tx()
                 .dma_push(&mut self.dma, words, false)
                 .await;
-            // Of what the state machine has seen before, nothing counts.
-            self.machine.tx().stalled();
-            while panel.has_no_block() {
-                if self.machine.tx().empty() && self.machine.tx().stalled() {
-                    panel.ran_out_after(block.end);
-                    break;
-                }
-                Timer::after_micros(20).await;
-            }
-            panel.played(block.end);
         }
     }
 }
 
+/// Tells the panel what has been played.
+async fn tell(panel: &Panel, played: &Played) -> ! {
+    loop {
+        let (micros, end) = played.receive().await;
+        Timer::at(Instant::from_micros(micros)).await;
+        panel.played(end);
+    }
+}
+
+/// Whether the state machine waits for a word.
+fn has_run_dry(machine: &mut StateMachine<'static, PIO0, 0>) -> bool {
+    // What has been is cleared first: it comes back at once where it still is so.
+    machine.tx().stalled();
+    machine.tx().stalled()
+}
+
 /// `out x, 28` takes the low bits, `out pins, 4` the others.
 fn encoded(word: &Word) -> u32 {
-    let cycles = word.ticks * Player::CYCLES_PER_TICK - LEAST_CYCLES;
+    let cycles = word.ticks * CYCLES_PER_TICK - LEAST_CYCLES;
     cycles | u32::from(word.levels) << WAIT_BITS
 }

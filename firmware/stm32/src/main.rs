@@ -5,7 +5,7 @@
 mod arm;
 mod pins;
 
-use arm_machine::{Machine, Motion, Panel, talk};
+use arm_machine::{Machine, Motion, Panel, PlanMemory, talk};
 use cortex_m_rt::entry;
 use embassy_executor::{Executor, InterruptExecutor};
 use embassy_stm32::gpio::{Input, Pull};
@@ -31,6 +31,7 @@ bind_interrupts!(struct Irqs {
 
 static PANEL: Panel = Panel::new();
 static MACHINE: StaticCell<Machine> = StaticCell::new();
+static MEMORY: StaticCell<PlanMemory> = StaticCell::new();
 static PLAYS: InterruptExecutor = InterruptExecutor::new();
 static TALKS: InterruptExecutor = InterruptExecutor::new();
 static PLANS: StaticCell<Executor> = StaticCell::new();
@@ -50,6 +51,7 @@ fn main() -> ! {
     let player = Player::new(p.TIM1, p.DMA2_CH5, Irqs, drivers);
     let machine = Machine::new(&arm::SETTINGS, Player::TICK_HZ).expect("good settings");
     let machine: &Machine = MACHINE.init(machine);
+    let memory = MEMORY.init_with(PlanMemory::new);
 
     static BUFFERS: ConstStaticCell<[[u8; 256]; 2]> = ConstStaticCell::new([[0; 256]; 2]);
     let [tx_buffer, rx_buffer] = BUFFERS.take();
@@ -72,7 +74,7 @@ fn main() -> ! {
         .spawn(converse(machine, tx, rx).expect("spawned once"));
     let switches = [shoulder_switch, elbow_switch];
     PLANS.init(Executor::new()).run(|spawner| {
-        spawner.spawn(plan(machine, switches).expect("spawned once"));
+        spawner.spawn(plan(machine, memory, switches).expect("spawned once"));
     })
 }
 
@@ -126,8 +128,12 @@ async fn converse(
 }
 
 #[embassy_executor::task]
-async fn plan(machine: &'static Machine, switches: [Input<'static>; 2]) {
-    let motion = Motion::new(machine, &PANEL).expect("home is within 2^31 steps");
+async fn plan(
+    machine: &'static Machine,
+    memory: &'static mut PlanMemory,
+    switches: [Input<'static>; 2],
+) {
+    let motion = Motion::new(machine, &PANEL, memory).expect("home is within 2^31 steps");
     // Closed to ground.
     motion.run(|| switches.each_ref().map(Input::is_low)).await
 }

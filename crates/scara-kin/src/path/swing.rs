@@ -57,6 +57,10 @@ impl Swing {
         }
         self.check_joints(arm, [0.0; 2], touch)?;
         let (s, radius) = (self.s, arm.keep_out());
+        if radius == 0.0 {
+            // No distance is less.
+            return Ok(());
+        }
         let [distance, _] = distances(arm, self.elbow.extent());
         if distance >= radius {
             return Ok(());

@@ -9,8 +9,8 @@ use crate::rig::{
     ACCELERATION_DEG_S2, Rig, SPEED_DEG_S, START_STEPS, STEPS_PER_TURN, TICK_HZ, arm, forward,
 };
 
-/// Of the line: the most that the firmware makes.
-const SEGMENTS: u32 = 100;
+/// Of the line: what the firmware makes of it.
+const SEGMENTS: u32 = 26;
 /// All pulses come that much after their steps: the direction's setup time.
 const SETUP_TICKS: u64 = 1;
 /// A step is less than a tick off, and the tick at which it is played rounds once more.

@@ -1,5 +1,6 @@
 //! The machine from outside: its commands, its settings, and all of it with pins that are looked at.
 
+mod boards;
 mod commands;
 mod edges;
 mod motion;

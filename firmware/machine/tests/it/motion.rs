@@ -165,6 +165,24 @@ fn what_cannot_be_done_is_refused_and_nothing_moves() {
 }
 
 #[test]
+fn a_joint_beyond_its_range_is_named_with_by_how_much() {
+    let mut rig = Rig::homed();
+    // The elbow is at the end of its range: on, the arm would have to be straighter.
+    for (line, message) in [
+        (
+            "line 244.33 -88.9",
+            "refused: after 0.000 mm elbow is beyond 20.000 to 160.000 degrees by ",
+        ),
+        ("line 250 -91", "refused: after 0.000 mm elbow is beyond "),
+    ] {
+        let answer = rig.ask(line);
+        assert!(answer.starts_with(message), "{line}: {answer}");
+        let by = answer.rsplit(' ').next().unwrap();
+        assert!(by.parse::<f64>().unwrap() > 0.0, "{answer}");
+    }
+}
+
+#[test]
 fn a_planner_that_is_late_is_seen() {
     let mut rig = Rig::homed();
     rig.ask("line 60 150");

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
-use arm_machine::{Machine, Motion, Panel, Settings, talk};
+use arm_machine::{Machine, Motion, Panel, PlanMemory, Settings, talk};
 use proto3964r::{Config, Event, Line, LineError, Priority, Station};
 use pulse_interp::{Direction, HomingSettings};
 use pvt_steps::StepDirTiming;
@@ -89,13 +89,19 @@ pub struct Rig {
 impl Rig {
     /// The joints are so many steps from their switches.
     pub fn new(from_switches: [i32; 2]) -> Self {
+        Self::with_settings(&SETTINGS, TICK_HZ, from_switches)
+    }
+
+    /// The same for other settings and ticks.
+    pub fn with_settings(settings: &Settings, tick_hz: u32, from_switches: [i32; 2]) -> Self {
         let panel: &Panel = Box::leak(Box::new(Panel::new()));
-        let machine: &Machine = Box::leak(Box::new(Machine::new(&SETTINGS, TICK_HZ).unwrap()));
+        let machine: &Machine = Box::leak(Box::new(Machine::new(settings, tick_hz).unwrap()));
         let from_switches = Rc::new(Cell::new(from_switches));
         let (to_firmware, from_firmware) = (Wire::default(), Wire::default());
 
         let switches = Rc::clone(&from_switches);
-        let motion = Motion::new(machine, panel).unwrap();
+        let memory = Box::leak(Box::new(PlanMemory::new()));
+        let motion = Motion::new(machine, panel, memory).unwrap();
         let plan = async move {
             motion.run(|| switches.get().map(|steps| steps <= 0)).await;
         };
@@ -115,7 +121,7 @@ impl Rig {
             answers: VecDeque::new(),
             log: Vec::new(),
             start: Instant::now(),
-            pins: Pins::new(from_switches),
+            pins: Pins::new(tick_hz, from_switches),
         }
     }
 

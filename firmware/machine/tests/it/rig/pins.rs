@@ -6,13 +6,11 @@ use std::rc::Rc;
 
 use arm_machine::Block;
 
-use super::{ACCELERATION_DEG_S2, HOME_STEPS, STEPS_PER_TURN, TICK_HZ, forward};
+use super::{ACCELERATION_DEG_S2, HOME_STEPS, STEPS_PER_TURN, forward};
 
-/// Ticks of a DRV8825 at 1 MHz: 1.9 us and 0.65 us, rounded up.
-const PULSE_TICKS: u64 = 2;
-const SETUP_TICKS: u64 = 1;
-/// From a step to the next one.
-const STEP_TICKS: u64 = 4;
+/// Of a DRV8825.
+const PULSE_NS: u64 = 1900;
+const SETUP_NS: u64 = 650;
 /// Speeds near a rest are those between two steps, from half a step to one and a half away.
 const SPEED_MARGIN: f64 = 1.2;
 
@@ -27,24 +25,29 @@ pub struct Made {
 }
 
 pub struct Pins {
+    tick_hz: u32,
     levels: u8,
     pub ticks: u64,
     pub steps: [i32; 2],
     from_switches: Rc<Cell<[i32; 2]>>,
     pub made: Vec<Made>,
+    /// When the levels have changed, and to what.
+    pub changes: Vec<(u64, u8)>,
     /// Time and bit of each edge.
     edges: Vec<(u64, u8, bool)>,
 }
 
 impl Pins {
-    pub fn new(from_switches: Rc<Cell<[i32; 2]>>) -> Self {
+    pub fn new(tick_hz: u32, from_switches: Rc<Cell<[i32; 2]>>) -> Self {
         let away = from_switches.get();
         Self {
+            tick_hz,
             levels: 0,
             ticks: 0,
             steps: [0, 1].map(|joint| HOME_STEPS[joint] + away[joint]),
             from_switches,
             made: Vec::new(),
+            changes: Vec::new(),
             edges: Vec::new(),
         }
     }
@@ -57,6 +60,7 @@ impl Pins {
     /// Forgets what has been seen so far.
     pub fn forget(&mut self) {
         self.made.clear();
+        self.changes.clear();
         self.edges.clear();
     }
 
@@ -68,15 +72,23 @@ impl Pins {
         assert!(!block.words.is_empty(), "an empty block");
         for word in &block.words {
             assert!(word.ticks > 0, "a word of no time");
-            self.ticks += u64::from(word.ticks);
-            let changed = word.levels ^ self.levels;
-            self.levels = word.levels;
-            for bit in (0..4).filter(|bit| changed >> bit & 1 == 1) {
-                let high = word.levels >> bit & 1 == 1;
-                self.edges.push((self.ticks, bit, high));
-                if bit % 2 == 0 && high {
-                    self.step(usize::from(bit / 2));
-                }
+            self.set(self.ticks + u64::from(word.ticks), word.levels);
+        }
+    }
+
+    /// The levels of all pins from a tick on.
+    pub fn set(&mut self, ticks: u64, levels: u8) {
+        self.ticks = ticks;
+        let changed = levels ^ self.levels;
+        self.levels = levels;
+        if changed != 0 {
+            self.changes.push((ticks, levels));
+        }
+        for bit in (0..4).filter(|bit| changed >> bit & 1 == 1) {
+            let high = levels >> bit & 1 == 1;
+            self.edges.push((ticks, bit, high));
+            if bit % 2 == 0 && high {
+                self.step(usize::from(bit / 2));
             }
         }
     }
@@ -130,7 +142,7 @@ impl Pins {
             let tail = steps.windows(2).rev().take(50);
             for (left, pair) in tail.enumerate() {
                 let ticks = (pair[1].ticks - pair[0].ticks) as f64;
-                let speed = f64::from(TICK_HZ) / ticks;
+                let speed = f64::from(self.tick_hz) / ticks;
                 let max = (2.0 * acceleration * (left as f64 + 2.0)).sqrt() * SPEED_MARGIN;
                 assert!(speed <= max, "{speed} steps/s, {left} steps before the end");
             }
@@ -139,19 +151,21 @@ impl Pins {
 
     /// What a driver asks for.
     pub fn assert_driver_times(&self) {
+        let ticks = |ns: u64| (ns * u64::from(self.tick_hz)).div_ceil(1_000_000_000);
+        let (setup, pulse) = (ticks(SETUP_NS), ticks(PULSE_NS));
         for joint in 0..2 {
             let (mut rise, mut turn) = (None, None);
             for &(ticks, bit, high) in self.edges.iter().filter(|edge| edge.1 / 2 == joint) {
                 let since = |before: Option<u64>| before.map_or(u64::MAX, |before| ticks - before);
                 match (bit % 2, high) {
                     (0, true) => {
-                        assert!(since(rise) >= STEP_TICKS, "steps too near at {ticks}");
-                        assert!(since(turn) >= SETUP_TICKS, "direction too late at {ticks}");
+                        assert!(since(rise) >= 2 * pulse, "steps too near at {ticks}");
+                        assert!(since(turn) >= setup, "direction too late at {ticks}");
                         rise = Some(ticks);
                     }
-                    (0, false) => assert!(since(rise) >= PULSE_TICKS, "short pulse at {ticks}"),
+                    (0, false) => assert!(since(rise) >= pulse, "short pulse at {ticks}"),
                     _ => {
-                        assert!(since(rise) >= SETUP_TICKS, "direction too early at {ticks}");
+                        assert!(since(rise) >= setup, "direction too early at {ticks}");
                         turn = Some(ticks);
                     }
                 }
