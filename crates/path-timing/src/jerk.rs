@@ -94,7 +94,7 @@ fn descend<A: Axes>(
     range: &Range<usize>,
     weight: f64,
 ) {
-    let enough = as_f64(range.len()) * CENTRED;
+    let enough = as_f64(range.end.saturating_sub(range.start)) * CENTRED;
     for _ in 0..STEPS {
         let promised = newton::step(limits, knots, range, [weight, 1.0]);
         // Written so that NaN ends it.
