@@ -1,8 +1,10 @@
 //! From a curve of the tool to the last edge: a two-link arm and a rotary Delta at 72 MHz.
 //!
-//! Path, plan and edges on one core: steps a second, the best of several rounds, and instructions a
-//! step by callgrind, for which the bench runs itself under valgrind where there is one. The curves
-//! are lines of 100 to 190 mm from rest to rest at 300 mm/s, 0.01 mm off at most.
+//! What a user calls, on one core: the path of a curve, which is looked at whole, `plan_within`, rows
+//! and edges. Steps a second, the best of several rounds, and instructions a step by callgrind, for
+//! which the bench runs itself under valgrind where there is one; with `--times` the steps alone, for
+//! `klipper/run`. The curves are lines of 100 to 190 mm from rest to rest at 300 mm/s, 0.01 mm off at
+//! most.
 
 use core::hint::black_box;
 use std::env;
@@ -10,7 +12,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use delta_kin::{Delta, DeltaPath};
-use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Row, Table, ToolLimits};
+use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Row, Span, Table, ToolLimits};
 use pvt_steps::{AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, SegmentPlayer};
 use scara_kin::{Arm, ArmPath, Elbow};
 use stepper_sync::{Rate, StepDirTiming, StepScale};
@@ -18,9 +20,9 @@ use stepper_sync::{Rate, StepDirTiming, StepScale};
 const CASE: &str = "PIPELINE_CASE";
 const ROUNDS: &str = "PIPELINE_ROUNDS";
 
-/// So that a line takes hardly longer than it has to.
+/// That of the READMEs.
 const ACCURACY: Accuracy = Accuracy {
-    min_segments: 32,
+    min_segments: 8,
     max_departure: 0.01,
     max_time_ratio: f64::INFINITY,
 };
@@ -109,18 +111,38 @@ impl<const N: usize> Emitter<N> {
     }
 }
 
-/// Plans a path and makes its edges; returns steps and segments.
+/// What came of some lines.
+#[derive(Clone, Copy, Default)]
+struct Made {
+    steps: u64,
+    segments: usize,
+    /// Of the motion.
+    duration_s: f64,
+}
+
+impl Made {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            steps: self.steps + other.steps,
+            segments: self.segments + other.segments,
+            duration_s: self.duration_s + other.duration_s,
+        }
+    }
+}
+
+/// Plans a path and makes its edges.
 fn run<
     P: Path<Axes = [f64; N], Error: core::fmt::Debug> + Clone + core::fmt::Debug,
     const N: usize,
 >(
-    path: &P,
-    segments: u32,
+    path: P,
+    departure: fn(&P, &Span<[f64; N]>) -> f64,
     case: Case,
     knots: &mut [Knot<[f64; N]>],
-) -> u64 {
+) -> Made {
     let limits = [LIMITS; N];
-    let table = Table::plan([path], limits, |_| segments, knots).expect("within limits");
+    let table = Table::plan_within([path], limits, case.accuracy, departure, knots);
+    let table = table.expect("within limits");
     let mut rows = table.rows();
     let start = rows.next().expect("a row");
     let mut emitter = Emitter::new(start.position, case);
@@ -128,72 +150,72 @@ fn run<
         emitter.row(&row);
     }
     black_box(emitter.ticks);
-    emitter.steps
+    Made {
+        steps: emitter.steps,
+        segments: table.len() - 1,
+        duration_s: table.duration_s(),
+    }
 }
 
-/// A line of an arm, and the segments that keep it within the tolerance.
-fn arm_lines() -> Vec<(Curve<2>, u32)> {
-    let arm = arm();
-    let mut knots = vec![Knot::default(); 400];
+fn arm_lines() -> Vec<Curve<2>> {
     let ends = (0..12_u32).map(|k| {
         let k = f64::from(k);
         [[-90.0 + 4.0 * k, 90.0 + 9.0 * k], [95.0, 190.0 - 9.0 * k]]
     });
-    ends.map(|[from, to]| {
-        let curve = Curve::line(from, to).expect("a line").with_tool(TOOL);
-        let path = arm.path(curve, Elbow::Right).expect("in reach");
-        let limits = [LIMITS; 2];
-        let table = Table::plan_within([path], limits, ACCURACY, ArmPath::departure, &mut knots);
-        (curve, table.expect("within limits").len() as u32 - 1)
-    })
-    .collect()
+    ends.map(|[from, to]| Curve::line(from, to).expect("a line").with_tool(TOOL))
+        .collect()
 }
 
-fn arm() -> Arm {
-    Arm::new(black_box(132.0), black_box(132.0)).expect("lengths")
-}
-
-fn arm_steps(lines: &[(Curve<2>, u32)], case: Case, knots: &mut [Knot<[f64; 2]>]) -> u64 {
-    let arm = arm();
-    let lines = lines.iter().map(|(curve, segments)| {
-        let path = arm.path(black_box(*curve), Elbow::Right).expect("in reach");
-        run(&path, *segments, case, knots)
-    });
-    lines.sum()
-}
-
-/// A line of a Delta, and the segments that keep it within the tolerance.
-fn delta_lines() -> Vec<(Curve<3>, u32)> {
-    let delta = delta();
-    let mut knots = vec![Knot::default(); 400];
+fn delta_lines() -> Vec<Curve<3>> {
     let lines = (0..12_u32).map(|k| {
         let k = f64::from(k);
         let from = [-80.0 + 3.0 * k, -40.0 + 5.0 * k, -260.0];
         let to = [80.0, 40.0 - 5.0 * k, -285.0 + 2.0 * k];
         Curve::line(from, to).expect("a line").with_tool(TOOL)
     });
-    lines
-        .map(|curve| {
-            let path = delta.path(curve).expect("in reach");
-            let limits = [LIMITS; 3];
-            let table =
-                Table::plan_within([path], limits, ACCURACY, DeltaPath::departure, &mut knots);
-            (curve, table.expect("within limits").len() as u32 - 1)
-        })
-        .collect()
+    lines.collect()
 }
 
-fn delta() -> Delta {
-    Delta::new(black_box(42.0), 18.0, 120.0, 243.0).expect("lengths")
+/// The machines, and the memory for their knots.
+struct Machines {
+    arm: Arm,
+    delta: Delta,
+    arm_knots: Vec<Knot<[f64; 2]>>,
+    delta_knots: Vec<Knot<[f64; 3]>>,
+    arm_lines: Vec<Curve<2>>,
+    delta_lines: Vec<Curve<3>>,
 }
 
-fn delta_steps(lines: &[(Curve<3>, u32)], case: Case, knots: &mut [Knot<[f64; 3]>]) -> u64 {
-    let delta = delta();
-    let lines = lines.iter().map(|(curve, segments)| {
-        let path = delta.path(black_box(*curve)).expect("in reach");
-        run(&path, *segments, case, knots)
-    });
-    lines.sum()
+impl Machines {
+    fn new() -> Self {
+        Self {
+            arm: Arm::new(132.0, 132.0).expect("lengths"),
+            delta: Delta::new(42.0, 18.0, 120.0, 243.0).expect("lengths"),
+            arm_knots: vec![Knot::default(); 400],
+            delta_knots: vec![Knot::default(); 400],
+            arm_lines: arm_lines(),
+            delta_lines: delta_lines(),
+        }
+    }
+
+    /// All lines of a machine.
+    fn run(&mut self, case: Case) -> Made {
+        let mut made = Made::default();
+        if case.is_arm {
+            for line in &self.arm_lines {
+                let path = black_box(&self.arm).path(black_box(*line), Elbow::Right);
+                let path = path.expect("in reach");
+                made = made.plus(run(path, ArmPath::departure, case, &mut self.arm_knots));
+            }
+        } else {
+            for line in &self.delta_lines {
+                let path = black_box(&self.delta).path(black_box(*line));
+                let path = path.expect("in reach");
+                made = made.plus(run(path, DeltaPath::departure, case, &mut self.delta_knots));
+            }
+        }
+        made
+    }
 }
 
 /// What is run.
@@ -202,6 +224,7 @@ struct Case {
     is_arm: bool,
     steps_per_turn: f64,
     edges: Edges,
+    accuracy: Accuracy,
 }
 
 fn cases() -> impl Iterator<Item = (String, Case)> {
@@ -219,6 +242,7 @@ fn cases() -> impl Iterator<Item = (String, Case)> {
                 is_arm,
                 steps_per_turn,
                 edges,
+                accuracy: ACCURACY,
             };
             (
                 format!("{name}, {steps_per_turn} steps a turn, {how}"),
@@ -228,26 +252,16 @@ fn cases() -> impl Iterator<Item = (String, Case)> {
     })
 }
 
-/// Rounds of a case: steps of all of them, segments of one, and the seconds of the fastest.
-fn rounds(case: Case, rounds: u32) -> (u64, u32, f64) {
-    let mut arm_knots = vec![Knot::default(); 400];
-    let mut delta_knots = vec![Knot::default(); 400];
-    let (mut steps, mut fastest_s) = (0, f64::INFINITY);
-    let (arm, delta) = match case.is_arm {
-        true => (arm_lines(), Vec::new()),
-        false => (Vec::new(), delta_lines()),
-    };
+/// What a case makes in a round, and the seconds of the fastest of some rounds.
+fn rounds(case: Case, rounds: u32) -> (Made, f64) {
+    let mut machines = Machines::new();
+    let (mut made, mut fastest_s) = (Made::default(), f64::INFINITY);
     for _ in 0..rounds {
         let start = Instant::now();
-        steps += arm_steps(&arm, case, &mut arm_knots);
-        steps += delta_steps(&delta, case, &mut delta_knots);
+        made = machines.run(case);
         fastest_s = fastest_s.min(start.elapsed().as_secs_f64());
     }
-    let segments = arm
-        .iter()
-        .map(|line| line.1)
-        .chain(delta.iter().map(|line| line.1));
-    (steps, segments.sum(), fastest_s)
+    (made, fastest_s)
 }
 
 /// Instructions of a whole run, from callgrind's report.
@@ -272,18 +286,34 @@ fn main() {
         rounds(case, count.parse().expect("a number"));
         return;
     }
+    let only_times = env::args().any(|argument| argument == "--times");
     const FEW: u32 = 2;
     const MANY: u32 = 12;
     for (name, case) in cases() {
-        let (steps, segments, fastest_s) = rounds(case, 30);
-        let steps = steps as f64 / 30.0;
+        let (made, fastest_s) = rounds(case, 30);
+        let steps = made.steps as f64;
         let millions = steps / fastest_s / 1e6;
-        let a_segment = steps / f64::from(segments);
+        if only_times {
+            println!("{name};{millions}");
+            continue;
+        }
+        let a_segment = steps / made.segments as f64;
         let counted = instructions(&name, MANY).zip(instructions(&name, FEW));
         let counted = counted.map_or("no valgrind".to_owned(), |(many, few)| {
             let a_step = (many - few) / f64::from(MANY - FEW) / steps;
             format!("{a_step:.0} instructions a step")
         });
-        println!("{name}: {millions:.0} million steps/s, {counted}, {a_segment:.0} a segment");
+        let finest = Case {
+            accuracy: Accuracy {
+                min_segments: 399,
+                ..ACCURACY
+            },
+            ..case
+        };
+        let slower = made.duration_s / Machines::new().run(finest).duration_s;
+        println!(
+            "{name}: {millions:.0} million steps/s, {counted}, {a_segment:.0} a segment, \
+             {slower:.4} of the time of 399 segments"
+        );
     }
 }
