@@ -87,7 +87,10 @@ export class Simulation implements View {
     } else {
       await this.#play(SCENARIOS.some((it) => it.name === name) ? name : 'none');
     }
-    if (ranS > 0 && ranS <= MAX_LINKED_S) await this.#do(() => this.#runTo(ranS));
+    if (!(ranS > 0 && ranS <= MAX_LINKED_S)) return;
+    await this.#do(() => this.#runTo(ranS));
+    // Where the link looks at the wire, there are characters now.
+    this.#desk.renew(this);
   }
 
   /** All fields, as `B parity`. */
