@@ -59,8 +59,18 @@ impl<T: Number, const K: usize> Jet<T, K> {
         Self::new(coefficients)
     }
 
+    /// Each coefficient from its number.
+    #[inline(always)]
+    fn by_number(of: impl Fn(usize) -> T) -> Self {
+        let mut coefficients = [T::from(0.0); K];
+        for (k, coefficient) in coefficients.iter_mut().enumerate() {
+            *coefficient = of(k);
+        }
+        Self::new(coefficients)
+    }
+
     /// Coefficients each of which follows from those before it.
-    #[inline]
+    #[inline(always)]
     fn one_by_one(first: T, next: impl Fn(usize, &[T; K]) -> T) -> Self {
         let mut coefficients = [first; K];
         for k in 1..K {
@@ -108,9 +118,7 @@ impl<T: Number, const K: usize> Jet<T, K> {
     #[inline]
     fn times(self, other: Self) -> Self {
         let (a, b) = (&self.coefficients, &other.coefficients);
-        Self::new(core::array::from_fn(|k| {
-            folded(a, b, 0..k.saturating_add(1), k)
-        }))
+        Self::by_number(|k| folded(a, b, 0..k.saturating_add(1), k))
     }
 
     #[inline]
@@ -126,27 +134,31 @@ impl<T: Number, const K: usize> Jet<T, K> {
     #[inline]
     fn derivative(self) -> Self {
         let next = |k: usize| k.saturating_add(1);
-        Self::new(core::array::from_fn(|k| {
-            at(&self.coefficients, next(k)) * whole(next(k))
-        }))
+        Self::by_number(|k| at(&self.coefficients, next(k)) * whole(next(k)))
     }
 }
 
-#[inline]
+#[inline(always)]
 fn at<T: Number, const K: usize>(coefficients: &[T; K], k: usize) -> T {
     coefficients.get(k).map_or_else(|| T::from(0.0), |c| *c)
 }
 
 /// Σ aⱼ bₖ₋ⱼ over a range of j up to k.
-#[inline]
+#[inline(always)]
 fn folded<T: Number, const K: usize>(
     a: &[T; K],
     b: &[T; K],
     range: core::ops::Range<usize>,
     k: usize,
 ) -> T {
-    let terms = range.map(|j| at(a, j) * at(b, k.saturating_sub(j)));
-    let sum = terms.reduce(|sum, term| sum + term);
+    let mut sum = None;
+    for j in range {
+        let term = at(a, j) * at(b, k.saturating_sub(j));
+        sum = Some(match sum {
+            None => term,
+            Some(sum) => sum + term,
+        });
+    }
     sum.unwrap_or_else(|| T::from(0.0))
 }
 
@@ -167,7 +179,7 @@ impl<T: Number, const K: usize> Number for Jet<T, K> {
     #[inline]
     fn squared(self) -> Self {
         let a = &self.coefficients;
-        Self::new(core::array::from_fn(|k| {
+        Self::by_number(|k| {
             // Each pair once, and the square in the middle.
             let pairs = folded(a, a, 0..k.div_ceil(2), k) * 2.0;
             if k % 2 == 0 {
@@ -175,7 +187,7 @@ impl<T: Number, const K: usize> Number for Jet<T, K> {
             } else {
                 pairs
             }
-        }))
+        })
     }
 
     fn root(self, reason: &'static str) -> Result<Self, Refusal> {

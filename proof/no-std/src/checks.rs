@@ -5,6 +5,7 @@ mod body;
 mod codecs;
 mod delta;
 mod line;
+mod machine;
 mod pulses;
 mod timing;
 mod trig;
@@ -18,6 +19,7 @@ pub const ALL: &[fn() -> Option<()>] = &[
     delta::delta,
     delta::calibration,
     delta::path,
+    machine::path,
     body::pose,
     body::tables,
     timing::table,

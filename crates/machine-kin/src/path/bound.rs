@@ -11,17 +11,20 @@ use crate::{Interval, Machine, Number};
 const NODES: usize = 15;
 
 /// Shortest pieces of a segment that are looked at, as parts of it.
-pub(super) const FINEST: u32 = 64;
+const FINEST: u32 = 64;
 
 /// Pieces whose slopes are known better than this are not halved.
-const GOOD: f64 = 0.05;
+const GOOD: f64 = 0.5;
 
 /// Pieces are not halved where what their fourth derivatives leave between nodes is a smaller part than
 /// this of what nodes are off by.
 const SMALL: f64 = 0.1;
 
-/// What is left between nodes, as a part of the largest fourth derivative.
-const BETWEEN: f64 = CurveMotion::<1>::BETWEEN;
+/// What fourth derivatives leave between nodes: 5/64 h⁴.
+const FOURTH_BETWEEN: f64 = 5.0 / 64.0 / 65_536.0;
+
+/// Pieces are halved where slopes change by more than this part of themselves from node to node.
+const CHANGED: f64 = 0.2;
 
 /// How far, as a part of 1 and of itself, a row may be from the path.
 const SAME: f64 = 1e-6;
@@ -70,18 +73,21 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// with its velocity, so c are the Hermite cubics of q(P(τ)), and with ε = c - q(P)
     ///
     /// ```text
-    /// |ε| ≤ max |d⁴q/dτ⁴| τ² (1 - τ)²/24,   linear between nodes τ = k/16 but for max |d⁴q/dτ⁴|/24576
+    /// |ε⁗| ≤ Q = max |d⁴q/dτ⁴|     |ε"| ≤ S/h² + 5/8 Q h²     between nodes τ = k h, h = 1/16,
+    ///                              ε is linear but for h²/8 max |ε"| = S/8 + 5/64 Q h⁴
     /// ```
     ///
-    /// where the derivative is enclosed by jets of intervals. The tool is where q(P + e) = c, that is
+    /// where Q is enclosed by jets of intervals, and S is the largest of |ε₁ - 2 ε₀ + ε₋₁| of three nodes
+    /// and of |8 ε₁ - ε₂|/2 at the ends, where ε and ε' are 0: by Taylor's formula ε" is off from these
+    /// over h² by Q h²/12 and Q h²/2 at most, and from a line between nodes by Q h²/8. The tool is where q(P + e) = c, that is
     /// J e = ε with J the mean of the inverse's Jacobian from P to P + e. Where the enclosure of all
     /// Jacobians within a radius of the curve is regular, and what it says of e is within that radius,
     /// Newton's map takes the box round P into itself and contracts: there is one such place, and since
     /// it moves continuously from the start it is the tool, on its branch.
     ///
     /// At the nodes e is found by Newton's step and what that leaves of ε, by intervals. Between nodes,
-    /// J e = ε put in from both sides, e is linear but for what the enclosure makes of M/24576 and of the
-    /// change of J times the largest e. The rest is [`CurveMotion`].
+    /// J e = ε put in from both sides, e is linear but for what the enclosure makes of what ε is, and of
+    /// the change of J times the largest e. The rest is [`CurveMotion`].
     #[must_use]
     pub fn departure(&self, span: &Span<[f64; N]>) -> f64 {
         self.known(span).unwrap_or(f64::INFINITY)
@@ -92,22 +98,21 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let (before, after) = (self.velocity(start, from)?, self.velocity(end, to)?);
         let motion = CurveMotion::new(&self.curve, span.s, [&before, &after], to.duration_s);
         let nodes = self.nodes(&motion, &cubics(span))?;
-        let fourth = self.fourth(&motion, &nodes)?;
-        let mut errors = nodes.errors;
-        for (error, fourth) in errors.iter_mut().zip(&fourth) {
-            *error += fourth * BETWEEN;
-        }
-        let mut radius = nodes.off.map(|off| off * 1.5 + self.rounding);
+        let known = nodes.known(&self.fourth(&motion, &nodes)?);
+        let mut radius = nodes.off.map(|off| off * 2.0 + self.rounding);
         for _ in 0..4 {
             let (enclosure, changes) = self.slopes_within(&motion, &radius)?;
-            let off = enclosure.off(&errors);
+            let off = enclosure.off(&known.errors);
             // Written so that NaN is none.
             if off.iter().zip(&radius).all(|(off, radius)| off <= radius) {
-                let fourth = norm(&enclosure.off(&fourth));
-                let changed = norm(&enclosure.between(&changes, largest(&nodes.off)));
-                let between = fourth * BETWEEN + changed + norm(&enclosure.off(&nodes.rests));
-                let tool = |tau| nodes.tool(tau);
-                let departure = motion.departure_between(tool, fourth, between);
+                let changed = enclosure.between(&changes, largest(&nodes.off));
+                let [between, rests] =
+                    [&known.between, &nodes.rests].map(|axes| norm(&enclosure.off(axes)));
+                let departure = motion.departure_between(
+                    |tau| nodes.tool(tau),
+                    norm(&enclosure.off(&known.fourth)),
+                    between + rests + norm(&changed),
+                );
                 let departure = departure + self.rounding;
                 return (!departure.is_nan()).then_some(departure);
             }
@@ -141,7 +146,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             if fourth.iter().any(|fourth| !fourth.is_finite()) {
                 return None;
             }
-            let between = fourth.map(|fourth| fourth * BETWEEN);
+            let between = fourth.map(|fourth| fourth * FOURTH_BETWEEN);
             if can_halve && norm(&product(&nodes.inverse, &between)) > enough {
                 return Some(false);
             }
@@ -157,17 +162,18 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let mut nodes = Nodes {
             tools: [[0.0; N]; NODES],
             off: [0.0; N],
-            errors: [0.0; N],
+            errors: [[0.0; N]; NODES],
             rests: [0.0; N],
             inverse: [[0.0; N]; N],
         };
-        for (tau, tool) in CurveMotion::<N>::NODES.into_iter().zip(&mut nodes.tools) {
+        let places = nodes.tools.iter_mut().zip(&mut nodes.errors);
+        for (tau, (tool, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
             let place = motion.at(tau);
             let (axes, slopes) = self.slopes_at(place).ok()?;
             let positions = cubics.map(|cubic| cubic.position(tau));
-            let errors = self.apart(&positions, &axes);
+            *errors = self.apart(&positions, &axes);
             let inverse = inverse(slopes)?;
-            let off = product(&inverse, &errors);
+            let off = product(&inverse, errors);
             for (most, row) in nodes.inverse.iter_mut().zip(&inverse) {
                 raise(most, row);
             }
@@ -177,16 +183,12 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             }
             let rests = self.rests(tool, &positions)?;
             raise(&mut nodes.off, &off);
-            raise(&mut nodes.errors, &errors);
             raise(&mut nodes.rests, &rests);
         }
         // What the positions on the cubics are rounded by, and those at the places on the curve.
         for (rest, cubic) in nodes.rests.iter_mut().zip(cubics) {
             let size = cubic.control_points().map(f64::abs).iter().sum::<f64>();
             *rest += size * ROUNDING;
-        }
-        for (error, rest) in nodes.errors.iter_mut().zip(nodes.rests) {
-            *error += rest;
         }
         Some(nodes)
     }
@@ -217,7 +219,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             let stretch = Stretch::new(motion, part, self.rounding);
             let around = self.around(&stretch, radius).ok()?;
             let enclosure = Enclosure::new(&around.slopes)?;
-            if can_halve && enclosure.spread() > GOOD {
+            let changed = norm(&enclosure.between(&around.changes, 1.0));
+            if can_halve && (enclosure.spread() > GOOD || changed > CHANGED) {
                 return Some(false);
             }
             changes = both(&changes, &around.changes, 0.0, larger_or_nan);
@@ -241,18 +244,83 @@ struct Nodes<const N: usize> {
     tools: [[f64; N]; NODES],
     /// The most that it is off the curve by in each coordinate.
     off: [f64; N],
-    /// The most that each axis is off by at a place of the curve.
-    errors: [f64; N],
-    /// The most that each axis is off by at the tool.
+    /// What each axis is off by at each place of the curve.
+    errors: [[f64; N]; NODES],
+    /// The most that each axis is off by at the tool, which is more than what rounding is.
     rests: [f64; N],
     /// The sizes of the inverse of the axes' slopes.
     inverse: Matrix<N>,
 }
 
+/// What is known of the axes on all of a segment.
+struct Known<const N: usize> {
+    /// The most that each is off by.
+    errors: [f64; N],
+    /// The most that it is off by from linear between nodes.
+    between: [f64; N],
+    /// The least M found for which it is off by at most M τ² (1 - τ)²/24.
+    fourth: [f64; N],
+}
+
 impl<const N: usize> Nodes<N> {
+    /// From the largest fourth derivatives.
+    fn known(&self, fourth: &[f64; N]) -> Known<N> {
+        let mut known = Known {
+            errors: [0.0; N],
+            between: [0.0; N],
+            fourth: *fourth,
+        };
+        for axis in 0..N {
+            let at = |values: &[f64; N]| values.get(axis).copied().unwrap_or(f64::NAN);
+            let (rest, q) = (at(&self.rests), at(fourth));
+            let mut errors = [0.0; NODES + 2];
+            for (error, node) in errors.iter_mut().skip(1).zip(&self.errors) {
+                *error = at(node);
+            }
+            let known_axis = along(&errors, rest, q);
+            let places = (known.errors.iter_mut().zip(&mut known.between)).zip(&mut known.fourth);
+            if let Some(((error, between), fourth)) = places.into_iter().nth(axis) {
+                (*error, *between) = (known_axis[0], known_axis[1]);
+                *fourth = larger_or_nan(0.0, known_axis[2]).min(q);
+            }
+        }
+        known
+    }
+
     fn tool(&self, tau: f64) -> [f64; N] {
         let mut nodes = CurveMotion::<N>::NODES.iter().zip(&self.tools);
         let found = nodes.find(|(node, _)| **node >= tau);
         found.map_or([f64::NAN; N], |(_, tool)| *tool)
     }
+}
+
+/// Of one axis that is off by so much at the ends and the nodes of a segment, with rounding, and has a
+/// largest fourth derivative: see [`Known`].
+fn along(errors: &[f64; NODES + 2], rounding: f64, q: f64) -> [f64; 3] {
+    let (mut bend, mut most) = (0.0, 0.0);
+    for three in errors.windows(3) {
+        if let [a, b, c] = three {
+            bend = larger_or_nan(bend, (a - 2.0 * b + c).abs());
+            most = larger_or_nan(most, b.abs());
+        }
+    }
+    let ([_, first, second, ..], [.., before, last, _]) = (errors, errors);
+    for [near, far] in [[first, second], [last, before]] {
+        bend = larger_or_nan(bend, (8.0 * near - far).abs() * 0.5);
+    }
+    let bend = bend + 4.5 * rounding;
+    let between = bend / 8.0 + q * FOURTH_BETWEEN;
+    // At the ends by the second derivative, elsewhere by the nodes.
+    let second = bend * 256.0 + q * (5.0 / 8.0 / 256.0);
+    let mut fourth = 12.0 * second / ((15.0 / 16.0) * (15.0 / 16.0));
+    let taus = CurveMotion::<1>::NODES;
+    let inner = errors.get(1..=NODES).unwrap_or_default();
+    for (pair, taus) in inner.windows(2).zip(taus.windows(2)) {
+        if let ([a, b], [from, to]) = (pair, taus) {
+            let weight = |tau: f64| tau * tau * (1.0 - tau) * (1.0 - tau);
+            let off = larger_or_nan(a.abs(), b.abs()) + rounding + between;
+            fourth = larger_or_nan(fourth, 24.0 * off / weight(*from).min(weight(*to)));
+        }
+    }
+    [most + rounding + between, between, fourth]
 }

@@ -71,6 +71,18 @@ impl<const N: usize> Stretch<N> {
         transposed(&self.middle).map(jet)
     }
 
+    /// The first Taylor coefficients in the middle.
+    pub(super) fn middle_jets(&self) -> [Jet<Interval, 3>; N] {
+        let [l1, l2, ..] = self.longest;
+        transposed(&self.middle).map(|[p, p1, p2, ..]| {
+            Jet::new([
+                Interval::around(p, self.rounding),
+                Interval::around(p1, l1 * ROUNDING),
+                Interval::around(p2, l2 * ROUNDING) * 0.5,
+            ])
+        })
+    }
+
     /// Every place of the part.
     pub(super) fn places(&self) -> [Interval; N] {
         self.jets().map(|jet| {

@@ -2,11 +2,11 @@
 
 use path_timing::{CurveMotion, Path as _, Span};
 
-use super::bound::{FINEST, cubics, pieces};
+use super::bound::{cubics, pieces};
 use super::stretch::Stretch;
 use super::{MachinePath, PathError};
 use crate::matrix::{Enclosure, inverse, larger_or_nan, product};
-use crate::{Interval, Jet, Machine, Number};
+use crate::{Interval, Jet, Machine};
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The first coordinate with which the tool may leave the area.
@@ -37,14 +37,17 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// Whether the machine may run a segment: all axes within their ranges, which is exact, and the tool
     /// on its branch and within the area, at these speeds and all others with the same mean.
     ///
-    /// Proof. At the ends of the segment the axes are on the path. With σ(τ) the cubic that has the
-    /// speeds of the parameter there, the axes run the Hermite cubics of q(P(σ(τ))), so that each is
-    /// off by ε ≤ max |d⁴q/dτ⁴|/384. That is found from the derivatives of P by σ over the segment, and
-    /// those of σ of all cubics in question: with the mean speed 1 and v₀ + v₁ = 2
+    /// Proof. At the ends of the segment the axes are on the path. With σ(τ) the cubic from 0 to 1 that has
+    /// the speeds of the parameter there, the axes run the Hermite cubics of q(P(σ(τ))), which are linear in
+    /// what they interpolate. With q' to q‴ the derivatives by σ, of q‴ the largest, Taylor's formula from
+    /// the middle of the segment has a linear part, which is met; a square, which is off by what σ² is; and
+    /// a rest R with |R| ≤ q‴/48 and |R'| ≤ q‴/8, of which the cubic is at most |R| + 4/27 |v₀ R'₀ + v₁ R'₁|:
     ///
     /// ```text
-    /// 0 ≤ σ' ≤ 2     |σ"| ≤ 2     σ‴ = 0
+    /// |ε| ≤ |q"(½)|/2 max |(σ²)⁗|/384 + q‴ (1/24 + (v₀ + v₁)/54)
     /// ```
+    ///
+    /// For all cubics with the mean speed 1 and v₀ + v₁ = 2, (σ²)⁗ = 6 σ"² ≤ 24.
     ///
     /// The tool is then within what [`Enclosure`] says, where the inverse is defined on its branch, and
     /// regular, all over that: Newton's map takes this box into itself, so there is one such place, and
@@ -71,18 +74,18 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let coarse = PathError::TooCoarse { s };
         let ends = s.map(|s| self.curve.at(s).tangent.map(|slope| slope * (to - from)));
         let motion = CurveMotion::new(&self.curve, s, ends.each_ref(), 1.0);
-        let sigma = self.parameter(span)?;
+        let parameter = self.parameter(span)?;
         let (_, slopes) = self.slopes_at(motion.at(0.5)).map_err(|_| coarse)?;
         let y = inverse(slopes).ok_or(coarse)?.map(|row| row.map(f64::abs));
         // Shorter pieces are known better.
-        for coarsest in [1, 4, 16] {
-            let Some(errors) = self.errors(&motion, &sigma, coarsest) else {
+        for (coarsest, finest) in [(1, 4), (4, 16)] {
+            let Some(errors) = self.errors(&motion, parameter, coarsest) else {
                 continue;
             };
             // What Newton's first step makes of it, and some more.
-            let mut radius = product(&y, &errors).map(|off| off * 1.5 + self.rounding);
+            let mut radius = product(&y, &errors).map(|off| off * 2.0 + self.rounding);
             for _ in 0..2 {
-                let Some(off) = self.off(&motion, &errors, &radius, s) else {
+                let Some(off) = self.off(&motion, &errors, &radius, finest) else {
                     break;
                 };
                 // Written so that NaN is none.
@@ -95,24 +98,35 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         Err(coarse)
     }
 
-    /// The most that each axis is off by from the path at the same time.
+    /// The most that each axis is off by from the path at the same time: see
+    /// [`check_span`](Self::check_span).
     fn errors(
         &self,
         motion: &CurveMotion<'_, N>,
-        sigma: &[Interval; 3],
+        [speeds, square]: [f64; 2],
         coarsest: u32,
     ) -> Option<[f64; N]> {
+        let middle = Stretch::new(motion, [0.0, 1.0], self.rounding).middle_jets();
+        let middle = self.machine.inverse(middle, self.branch).ok()?;
         let mut errors = [0.0; N];
-        pieces(coarsest, FINEST, |part, _| {
-            let sigma = within(sigma, part);
+        pieces(coarsest, 16, |part, _| {
             let jets = Stretch::new(motion, part, self.rounding).jets();
+            let jets = jets.map(|jet| {
+                let [c0, c1, c2, c3, _] = *jet.coefficients();
+                Jet::new([c0, c1, c2, c3])
+            });
             let axes = self.machine.inverse(jets, self.branch).ok()?;
             for (error, axis) in errors.iter_mut().zip(axes) {
-                let fourth = fourth_composed(&axis, &sigma);
-                *error = larger_or_nan(*error, fourth.magnitude() * (24.0 / 384.0));
+                let [.., third] = *axis.coefficients();
+                let third = third.magnitude() * 6.0;
+                *error = larger_or_nan(*error, third * (1.0 / 24.0 + speeds / 54.0));
             }
             errors.iter().all(|error| error.is_finite()).then_some(true)
         })?;
+        for (error, axis) in errors.iter_mut().zip(middle) {
+            let [.., second] = *axis.coefficients();
+            *error += second.magnitude() * square / 384.0;
+        }
         Some(errors)
     }
 
@@ -123,10 +137,10 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         motion: &CurveMotion<'_, N>,
         errors: &[f64; N],
         radius: &[f64; N],
-        s: [f64; 2],
+        finest: u32,
     ) -> Option<[f64; N]> {
         let mut most = [0.0; N];
-        pieces(1, FINEST, |part, can_halve| {
+        pieces(1, finest, |part, can_halve| {
             let stretch = Stretch::new(motion, part, self.rounding);
             let around = self.around(&stretch, radius).ok()?;
             let enclosure = Enclosure::new(&around.slopes)?;
@@ -134,7 +148,10 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
                 return Some(false);
             }
             let off = enclosure.off(errors);
-            if self.beyond_area(&stretch.places(), &off, s).is_some() {
+            if self
+                .beyond_area(&stretch.places(), &off, [0.0; 2])
+                .is_some()
+            {
                 return None;
             }
             for (most, off) in most.iter_mut().zip(off) {
@@ -145,9 +162,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         Some(most)
     }
 
-    /// Taylor coefficients of the parameter, in lengths of the segment, at any time, for these speeds
-    /// at its ends and all others with their mean.
-    fn parameter(&self, span: &Span<[f64; N]>) -> Result<[Interval; 3], PathError<N>> {
+    /// The most that the speeds at both ends of a segment add up to, in its lengths, and that (σ²)⁗ is, for
+    /// these speeds and all others with the mean 1.
+    fn parameter(&self, span: &Span<[f64; N]>) -> Result<[f64; 2], PathError<N>> {
         let ([s0, s1], [from, to]) = (span.s, &span.rows);
         let mut speeds = [0.0; 2];
         for (speed, (s, row)) in speeds.iter_mut().zip([(s0, from), (s1, to)]) {
@@ -159,45 +176,21 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             *speed = along / square * to.duration_s / (s1 - s0);
         }
         let [a, b] = speeds;
-        let (bend, third) = (3.0 - 2.0 * a - b, a + b - 2.0);
-        let hull = |low: f64, high: f64, with: [f64; 3]| {
-            // Not a number, and so nothing known, where one is none.
-            let low = -(with.into_iter()).fold(-low, |low, x| larger_or_nan(low, -x));
-            Interval::new(low, with.into_iter().fold(high, larger_or_nan))
-        };
-        // Hodographs lie between their control points.
-        Ok([
-            hull(0.0, 2.0, [a, b, 3.0 - a - b]),
-            hull(-1.0, 1.0, [bend, bend + 3.0 * third, 0.0]),
-            hull(-MEAN, MEAN, [third, 0.0, 0.0]),
-        ])
+        // σ" at both ends, σ‴, and the largest σ', which lies between control points.
+        let ends = [6.0 - 4.0 * a - 2.0 * b, 4.0 * b + 2.0 * a - 6.0].map(f64::abs);
+        let third = 6.0 * (a + b - 2.0);
+        let fastest = [a, b, 3.0 - a - b].map(f64::abs);
+        let [second, first] = [
+            ends.into_iter().fold(2.0, larger_or_nan),
+            fastest.into_iter().fold(2.0, larger_or_nan),
+        ];
+        let square = 6.0 * second * second + 8.0 * first * third.abs();
+        Ok([larger_or_nan(2.0, a.abs() + b.abs()), square * (1.0 + MEAN)])
     }
 }
 
 /// Pieces whose slopes are known better than this are not halved.
-const GOOD: f64 = 0.25;
+const GOOD: f64 = 0.5;
 
-/// What v₀ + v₁ is off by from 2 where it is 2.
+/// What rounding is of speeds.
 const MEAN: f64 = 1e-9;
-
-/// What the coefficients of the parameter are where it is a part of the segment.
-///
-/// ```text
-/// σ'² = v₀² + 2 σ" σ,  σ" = 2 - 2v₀     of v₀ from 0 to 2 largest at an end: 4σ or 4 (1 - σ)
-/// ```
-fn within(sigma: &[Interval; 3], [from, to]: [f64; 2]) -> [Interval; 3] {
-    let [s1, s2, s3] = *sigma;
-    // Only where the mean speed is 1.
-    if s3.magnitude() > MEAN * 2.0 {
-        return *sigma;
-    }
-    let fastest = 2.0 * trig_kernels::sqrt(larger_or_nan(to, 1.0 - from)) + MEAN;
-    [Interval::new(0.0, fastest).and(s1), s2, s3]
-}
-
-/// The fourth Taylor coefficient of q(σ(τ)) from those of q by σ and of σ by τ.
-fn fourth_composed(q: &Jet<Interval, 5>, [s1, s2, s3]: &[Interval; 3]) -> Interval {
-    let [_, _, q2, q3, q4] = *q.coefficients();
-    let square = s1.squared();
-    q2 * (s2.squared() + *s1 * *s3 * 2.0) + q3 * (square * *s2 * 3.0) + q4 * square.squared()
-}
