@@ -2,12 +2,17 @@
 
 use core::f64::consts::TAU;
 
-use machine_kin::path_timing::{Curve, Path};
+use machine_kin::path_timing::{
+    AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier,
+    segments_within,
+};
 use machine_kin::{
-    Axis, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Number, PathError, Polar,
-    Refusal, Scara, Side,
+    Axis, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, MachinePath, Number,
+    PathError, Polar, Refusal, Scara, Side,
 };
 use proptest::prelude::*;
+
+use crate::common::within;
 
 /// Step of finite differences in mm, and what they are off by.
 const STEP: f64 = 1e-3;
@@ -171,4 +176,102 @@ fn ranges_that_are_none_are_refused() {
     }
     let error = Slide.path(line([1.0], [2.0]), ()).unwrap_err();
     assert_eq!(error.to_string(), "0..=NaN is no range of the slide");
+}
+
+/// Holds, feeds and streams keep the limits and the tolerance on every row, as the verifier sees them.
+fn runs<M: Machine<N>, const N: usize>(machine: &M, curves: [Curve<N>; 2], branch: M::Branch) {
+    const TOLERANCE: f64 = 0.02;
+    let limits = machine.axes().map(|axis| {
+        let (speed, acceleration) = if axis.is_angle() {
+            (4.0, 60.0)
+        } else {
+            (300.0, 4000.0)
+        };
+        AxisLimits {
+            speed,
+            acceleration,
+            jerk: None,
+        }
+    });
+    let first = machine.path(curves[0], branch).unwrap();
+    let end = first.point(first.length()).unwrap().position;
+    let paths = [first, machine.path_from(curves[1], branch, end).unwrap()];
+    let departure = MachinePath::<M, N>::departure;
+    let promise = Promise {
+        limits,
+        start_stop: [0.0; N],
+        max_departure: TOLERANCE,
+        max_slowness: f64::INFINITY,
+    };
+    let verify = |rows: &[Row<[f64; N]>]| {
+        let mut verifier = Verifier::new(promise);
+        for row in rows {
+            let path = |leg: usize| paths.get(leg).cloned();
+            verifier.add(row, path, departure).unwrap();
+        }
+        assert!(rows.len() >= 5);
+        let [.., last] = rows else { panic!("no rows") };
+        assert!(last.is_at_rest() && last.leg == 1);
+    };
+    let mut knots = vec![Knot::default(); 2000];
+    let accuracy = within(TOLERANCE);
+    let table = Table::plan_within_at_any_feed(
+        paths.iter().cloned(),
+        limits,
+        accuracy,
+        departure,
+        &mut knots,
+    );
+    let table = table.unwrap();
+    let mut ceilings = vec![FeedCeiling::default(); table.len()];
+    let mut playback = table.playback(1.0, &mut ceilings).unwrap();
+    let mut rows: Vec<_> = playback.by_ref().take(4).collect();
+    playback.stop();
+    rows.extend(playback.by_ref());
+    playback.set_feed(0.7).unwrap();
+    rows.extend(playback);
+    verify(&rows);
+    let mut window = vec![Knot::default(); 100];
+    let segments = |path: &MachinePath<M, N>| segments_within(path, 4, TOLERANCE, departure);
+    let stream = LookAhead::new(paths.iter().cloned(), limits, segments, &mut window).unwrap();
+    let rows: Vec<_> = stream.map(Result::unwrap).collect();
+    verify(&rows);
+}
+
+#[test]
+fn every_machine_runs_holds_and_streams() {
+    let flat = [
+        line([-40.0, 150.0], [30.0, 170.0]),
+        line([30.0, 170.0], [10.0, 140.0]),
+    ];
+    runs(&five_bar(), flat, OUTWARDS);
+    runs(&Polar::new(0.0..=200.0), flat, Side::Front);
+    runs(&CoreXy::new(-50.0..=50.0, 100.0..=200.0), flat, ());
+    let hung = [
+        line([300.0, 500.0], [500.0, 600.0]),
+        line([500.0, 600.0], [700.0, 500.0]),
+    ];
+    runs(
+        &HangingPlotter::new(1200.0, 200.0..=1500.0).unwrap(),
+        hung,
+        (),
+    );
+    let room = [
+        line([40.0, 30.0, 20.0], [-30.0, 50.0, 60.0]),
+        line([-30.0, 50.0, 60.0], [-40.0, 0.0, 60.0]),
+    ];
+    runs(
+        &LinearDelta::new(250.0, 110.0, 0.0..=450.0).unwrap(),
+        room,
+        (),
+    );
+    let turned = [
+        line([100.0, 150.0, 0.0, 0.0], [-50.0, 180.0, 20.0, 30.0]),
+        line([-50.0, 180.0, 20.0, 30.0], [-90.0, 120.0, 20.0, 0.0]),
+    ];
+    runs(
+        &Scara::new(160.0, 140.0, 30.0).unwrap(),
+        turned,
+        Elbow::Right,
+    );
 }
