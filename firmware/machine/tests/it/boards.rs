@@ -32,7 +32,7 @@ const LINES: [&str; 6] = [
     "line 60 150 40",
 ];
 /// From the end of a telegram to the first edge.
-const MOST_UNTIL_EDGE_S: f64 = 1.0;
+const MOST_UNTIL_EDGE_S: f64 = 0.25;
 
 /// A board, the variable that has the command of its emulator, and its ticks.
 struct Kind {
