@@ -23,6 +23,7 @@ pub fn path() -> Option<()> {
     let table = Table::plan_within([path], [motor; 2], accuracy, departure, &mut knots).ok()?;
     let down = Curve::line([0.0, 200.0], [0.0, 20.0]).ok()?;
     let refused = machine.path(down, outwards);
-    let is_known = matches!(refused, Err(PathError::BranchEnds { s, .. }) if s > 155.0 && s < 156.0);
+    let is_known =
+        matches!(refused, Err(PathError::BranchEnds { s, .. }) if s > 155.0 && s < 156.0);
     (table.len() > 8 && is_known).then_some(())
 }
