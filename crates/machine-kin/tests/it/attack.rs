@@ -214,16 +214,19 @@ impl Tally {
             path.check(&span).unwrap();
             let bound = path.departure(&span);
             assert!(bound <= tolerance);
-            for number in 0..=20 {
-                let share = f64::from(number) / 20.0;
+            // From each place to the next: near singular poses Newton needs a near start.
+            let mut near = curve.at(span.s[0]).point;
+            for number in 0..=40 {
+                let share = f64::from(number) / 40.0;
                 let at = span.s[0] + (span.s[1] - span.s[0]) * share;
                 let positions = cubics(&span).map(|cubic| cubic.position(share));
                 for (axis, position) in axes.iter().zip(positions) {
                     let range = axis.range();
                     assert!(position >= range.start() - TOUCH && position <= range.end() + TOUCH);
                 }
-                let tool = forward(machine, &axes, positions, branch, curve.at(at).point);
+                let tool = forward(machine, &axes, positions, branch, near);
                 let tool = tool.expect("the tool is on its branch");
+                near = tool;
                 let off = distance(&curve, tool, at);
                 assert!(
                     off <= bound + ROUNDING,

@@ -26,12 +26,17 @@ pub(crate) fn forward<M: Machine<N>, const N: usize>(
     near: [f64; N],
 ) -> Option<[f64; N]> {
     let mut tool = SVector::from(near);
-    for _ in 0..50 {
+    // Next to singular poses rounding is more than the last digits.
+    for round in 0..50 {
         let (found, slopes) = slopes(machine, tool.into(), branch)?;
         let off = SVector::from_fn(|row, _| apart(&axes[row], positions[row] - found[row]));
-        let step = slopes.try_inverse()? * off;
+        let mut step = slopes.try_inverse()? * off;
+        // Newton's step may lead over the end of the branch.
+        while machine.inverse((tool + step).into(), branch).is_err() && step.norm() > 0.0 {
+            step *= 0.5;
+        }
         tool += step;
-        if step.norm() <= 1e-13 * (1.0 + tool.norm()) {
+        if step.norm() <= (if round < 20 { 1e-13 } else { 1e-10 }) * (1.0 + tool.norm()) {
             return Some(tool.into());
         }
     }
