@@ -31,7 +31,9 @@ pub(crate) fn smooth<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     for_each_run(knots, |run| {
         go_inside(limits, run);
         let weight = centre(limits, run, 0);
-        approach(limits, run, 0..run.len(), weight, TABLE_GAP);
+        let all = 0..run.len();
+        let weight = approach(limits, run, all.clone(), weight, TABLE_GAP);
+        descend(limits, run, &all, weight, SETTLED);
         scale(run, 1.0 / tightest(limits, run));
     });
 }
@@ -64,27 +66,28 @@ fn go_inside<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
 fn centre<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize) -> f64 {
     let weight = weight_of(knots, FIRST_GAP);
     let all = fixed..knots.len();
-    descend(limits, knots, &all, weight);
+    descend(limits, knots, &all, weight, CENTRED);
     weight
 }
 
 /// From the least F with a weight to the fastest speeds, but for a part of the time, of the knots in a
-/// range.
+/// range. The last weight.
 fn approach<A: Axes>(
     limits: &Reciprocals<A>,
     knots: &mut [Knot<A>],
     range: Range<usize>,
     mut weight: f64,
     last_gap: f64,
-) {
+) -> f64 {
     let last_weight = weight_of(knots, last_gap);
     // Written so that NaN ends it.
     while weight < last_weight {
         let growth = GROWTH.min(last_weight / weight);
         weight *= growth;
         newton::step(limits, knots, &range, [weight, growth]);
-        descend(limits, knots, &range, weight);
+        descend(limits, knots, &range, weight, CENTRED);
     }
+    weight
 }
 
 /// Newton steps to the least F.
@@ -93,8 +96,9 @@ fn descend<A: Axes>(
     knots: &mut [Knot<A>],
     range: &Range<usize>,
     weight: f64,
+    centred: f64,
 ) {
-    let enough = as_f64(range.end.saturating_sub(range.start)) * CENTRED;
+    let enough = as_f64(range.end.saturating_sub(range.start)) * centred;
     for _ in 0..STEPS {
         let promised = newton::step(limits, knots, range, [weight, 1.0]);
         // Written so that NaN ends it.
@@ -126,6 +130,9 @@ const STEPS: u32 = 50;
 
 /// Twice the decrease of F that a whole step promises for each knot, at which it is the last.
 const CENTRED: f64 = 0.2;
+
+/// The same at the end of a table's search, whose answer is not to hang on the rounding of the way there.
+const SETTLED: f64 = 0.001;
 
 /// Where the search begins, as a fraction of the tightest limit.
 const INSIDE: f64 = 0.95;
