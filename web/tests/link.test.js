@@ -88,7 +88,7 @@ const PERMITTED = { permissions: ['clipboard-read', 'clipboard-write'] };
 
 test('a capture of 20 KB is in a link of less than 8 KB', async () => {
   const capture = readFileSync(
-    join(ROOT, 'crates/proto3964r/tests/data/captures/00_good.txt'),
+    join(ROOT, 'crates/monitor3964r/tests/data/captures/00_good.txt'),
     'utf8',
   );
   const lines = capture.split('\n').filter((it) => /^\d/.test(it));
