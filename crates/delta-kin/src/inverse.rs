@@ -5,11 +5,13 @@ use core::fmt;
 use nalgebra::{Point3, RealField, Vector3};
 use trig_kernels::{Trig, atan2_of_length, sqrt};
 
+#[cfg(feature = "path-timing")]
+use crate::PoseError;
 use crate::arm::{smallest, zip};
 use crate::prepared::{Heading, PreparedArm, Triangle, middle, thetas};
 use crate::range::{half, max_value};
 use crate::rounded::Rounded;
-use crate::{Arm, AssemblyMode, Delta, Elbow, PoseError, ZAxis};
+use crate::{Arm, AssemblyMode, Delta, Elbow, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
@@ -132,6 +134,7 @@ impl fmt::Display for Across {
     }
 }
 
+#[cfg(feature = "path-timing")]
 /// How fast the angles turn along a direction, or why they do not at a finite rate.
 type Slopes<T> = Result<Vector3<T>, PoseError<T>>;
 
@@ -173,6 +176,7 @@ impl<T: RealField + Trig> Delta<T> {
         }
     }
 
+    #[cfg(feature = "path-timing")]
     /// The same, and how fast each angle turns while the centre moves along `along`. With e the rod and
     /// t the way of the elbow when its angle grows:
     ///

@@ -10,6 +10,7 @@ use trig_kernels::{Trig, atan2_of_length, atan2_of_length_lanes, sin_cos, sqrt};
 pub use error::InverseError;
 pub use solutions::Solutions;
 
+#[cfg(feature = "path-timing")]
 use crate::limits::two;
 use crate::range::{largest_angle, length, max_value};
 use crate::{Arm, Elbow, Joints};
@@ -23,6 +24,10 @@ pub(crate) struct Triangle<T> {
     /// r² + l1² - l2²
     k1: T,
     /// r² - l1² + l2²
+    #[cfg_attr(
+        not(feature = "path-timing"),
+        expect(dead_code, reason = "slopes of paths")
+    )]
     other_k1: T,
     /// r² - l1² - l2²
     k2: T,
@@ -31,6 +36,7 @@ pub(crate) struct Triangle<T> {
     per_shoulder: T,
 }
 
+#[cfg(feature = "path-timing")]
 /// How fast both joints turn along a direction, if they do at a finite rate.
 type Slopes<T> = Option<Vector2<T>>;
 
@@ -54,6 +60,7 @@ impl<T: RealField + Trig> Triangle<T> {
         [Joints::new(right, elbow), Joints::new(left, -elbow)]
     }
 
+    #[cfg(feature = "path-timing")]
     /// How fast both joints turn while the tool moves along `v`, from the triangle alone.
     ///
     /// ```text
@@ -217,6 +224,7 @@ impl<T: RealField + Trig> Arm<T> {
             .map_err(|miss| miss.error(elbow))
     }
 
+    #[cfg(feature = "path-timing")]
     /// As [`inverse_elbow_near`](Self::inverse_elbow_near), with the slopes of both joints along the
     /// direction `along`; these are `None` within a few machine epsilons of a straight or folded arm.
     #[inline]
