@@ -301,6 +301,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "--tolerance: 1e-300 is below 1e-6 mm",
         ),
         (
+            &["--tolerance", "1e300"],
+            "--tolerance: 1e300 is above 10 mm",
+        ),
+        (
             &["--tolerance", "x"],
             "invalid value 'x' for '--tolerance <MM>'",
         ),

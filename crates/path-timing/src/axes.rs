@@ -130,7 +130,9 @@ pub struct AxisLimits {
 pub struct ToolLimits {
     /// Largest speed along the path, per second.
     pub feed: f64,
-    /// Largest acceleration along the path, per second², if there is such a limit.
+    /// Largest acceleration along the path, per second², if there is such a limit. Across the path,
+    /// where it bends, the tool is accelerated by curvature and squared speed, which this does not
+    /// limit.
     pub acceleration: Option<f64>,
 }
 

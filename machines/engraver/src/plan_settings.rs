@@ -16,13 +16,17 @@ impl Tolerance {
     /// A thousandth of what fine mechanics hold; the work grows without end below it.
     const MIN_MM: f64 = 1e-6;
 
+    /// A drawing that is followed within more is another one.
+    const MAX_MM: f64 = 10.0;
+
     /// A tolerance in mm.
     ///
     /// # Errors
-    /// It is no number, or below a millionth of a millimetre.
+    /// It is no number, below a millionth of a millimetre, or above 10 mm.
     pub fn from_mm(mm: f64) -> Result<Self> {
         ensure!(mm.is_finite() && mm > 0.0, "{mm} is not above 0 mm");
         ensure!(mm >= Self::MIN_MM, "{mm:e} is below {:e} mm", Self::MIN_MM);
+        ensure!(mm <= Self::MAX_MM, "{mm:e} is above {} mm", Self::MAX_MM);
         Ok(Self { mm })
     }
 
