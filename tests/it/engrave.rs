@@ -275,7 +275,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
     let wide =
         "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><path d='M0 0H9'/></svg>";
     let wide = write("wide.svg", wide);
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 15] = [
         (&["--svg", "nowhere.svg"], "nowhere.svg: No such file"),
         (&["--svg", &broken], "broken.svg: "),
         (&["--svg", &empty], "empty.svg: there is nothing to draw"),

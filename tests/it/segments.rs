@@ -1,109 +1,75 @@
 //! `firmware/segments` against the crate's own player, step by step.
 
-use std::io::Write;
-use std::process::{Command, Stdio};
+mod avr;
+mod replay;
 
 use pose2pulse::pvt_steps::{
     Direction, JoinedSegments, MinIntervals, PvtKnot, Segment, SegmentPlayer,
 };
 
-/// Rows that start, cruise, turn round and rest; one at half a step a millisecond.
-fn segments() -> Vec<Segment> {
-    let knot = |steps: i64, thousandths: i64| PvtKnot {
-        position: steps << 32,
-        velocity: (thousandths << 56) / 1000,
-    };
-    let rows = [
-        (20_000, knot(100, 10)),
-        (500_000, knot(5100, 10)),
-        (40_000, knot(5200, -8)),
-        (300_000, knot(2800, -8)),
-        (1_000_000, knot(100, 0)),
-        (3_000_000_000, knot(90, 0)),
-        (50_000, knot(91, 0)),
-        (50_000, knot(90, 0)),
-        (1000, knot(94, 3)),
-    ];
-    let least = MinIntervals {
-        step_ticks: 20,
-        reversal_ticks: 40,
-    };
-    let mut axis = JoinedSegments::new(knot(0, 0), least);
-    let mut segments = Vec::new();
-    for (ticks, knot) in rows {
-        axis.push(ticks, knot).unwrap();
-        segments.extend(axis.by_ref());
-    }
-    axis.finish();
-    segments.extend(axis);
-    segments
+/// A row: its ticks, and where it ends, in steps and thousandths of a step per tick.
+type Row = (u32, i64, i64);
+
+/// Bytes of a wire, and the tick and the sign of each step that they stand for.
+struct Wire {
+    bytes: Vec<u8>,
+    steps: Vec<(u64, char)>,
+    /// Steps of each segment.
+    counts: Vec<u16>,
 }
 
-#[test]
-fn the_player_in_c_makes_the_same_steps() {
-    let segments = segments();
-    let mut bytes = Vec::new();
-    let mut wanted = String::new();
-    let mut ticks = 0;
-    for segment in &segments {
-        bytes.extend_from_slice(segment.encode(&mut [0; Segment::MAX_ENCODED_LEN]));
-        let sign = if segment.direction() == Direction::Positive {
-            '+'
-        } else {
-            '-'
+impl Wire {
+    fn of_rows(rows: &[Row]) -> Self {
+        let knot = |steps: i64, thousandths: i64| PvtKnot {
+            position: steps << 32,
+            velocity: (thousandths << 56) / 1000,
         };
+        let least = MinIntervals {
+            step_ticks: 20,
+            reversal_ticks: 40,
+        };
+        let mut axis = JoinedSegments::new(knot(0, 0), least);
+        let mut wire = Self {
+            bytes: Vec::new(),
+            steps: Vec::new(),
+            counts: Vec::new(),
+        };
+        for &(ticks, steps, thousandths) in rows {
+            axis.push(ticks, knot(steps, thousandths)).unwrap();
+            axis.by_ref().for_each(|segment| wire.push(&segment));
+        }
+        axis.finish();
+        axis.for_each(|segment| wire.push(&segment));
+        wire
+    }
+
+    fn push(&mut self, segment: &Segment) {
+        let mut buffer = [0; Segment::MAX_ENCODED_LEN];
+        self.bytes.extend_from_slice(segment.encode(&mut buffer));
+        self.counts.push(segment.count());
+        let sign = match segment.direction() {
+            Direction::Positive => '+',
+            Direction::Negative => '-',
+        };
+        let mut ticks = self.steps.last().map_or(0, |&(ticks, _)| ticks);
         let mut player = SegmentPlayer::new();
         let mut interval = Some(player.load(segment));
         while let Some(next) = interval {
             ticks += next;
-            wanted.push_str(&format!("{ticks} {sign}\n"));
+            self.steps.push((ticks, sign));
             interval = player.next().map(u64::from);
         }
     }
-    assert!(segments.iter().any(|segment| segment.count() > 500));
-    assert!(segments.iter().any(|segment| segment.count() == 1));
+}
 
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("replay");
-    let compiled = Command::new("cc")
-        .args([
-            "-std=c99",
-            "-O2",
-            "-Wall",
-            "-Wextra",
-            "-Wconversion",
-            "-Werror",
-            "-o",
-        ])
-        .arg(&program)
-        .arg(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/firmware/segments/replay.c"
-        ))
-        .status()
-        .expect("cc, which links Rust programs too");
-    assert!(compiled.success());
-    let mut replay = Command::new(&program)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    replay.stdin.take().unwrap().write_all(&bytes).unwrap();
-    let output = replay.wait_with_output().unwrap();
-    assert!(output.status.success());
-    assert!(String::from_utf8(output.stdout).unwrap() == wanted);
+/// Lines of a number and a sign.
+fn steps_of(text: &str) -> Vec<(u64, char)> {
+    let lines = text.lines().filter_map(|line| line.split_once(' '));
+    let steps = lines.filter_map(|(number, sign)| Some((number.parse().ok()?, sign.parse().ok()?)));
+    steps.collect()
+}
 
-    // A piece is no segment.
-    let mut replay = Command::new(&program)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
-    replay
-        .stdin
-        .take()
-        .unwrap()
-        .write_all(&bytes[..bytes.len() - 1])
-        .unwrap();
-    assert_eq!(replay.wait().unwrap().code(), Some(1));
+/// A file of `firmware/segments`.
+fn file(name: &str) -> String {
+    format!("{}/firmware/segments/{name}", env!("CARGO_MANIFEST_DIR"))
 }

@@ -2,7 +2,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "segments.h"
+#include "../src/segments.h"
 
 static uint8_t bytes[1 << 24];
 
