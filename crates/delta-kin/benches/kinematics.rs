@@ -18,14 +18,20 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, JointRange, Measured, Path, SpeedLimits};
+use delta_kin::{Delta, Dimensions, JointRange, Measured, Path, SpeedLimits};
 
 use bare::{BASE, LOWER, PLATFORM, UPPER};
 use eleven::eleven;
 use points::{POINTS, points};
 
 fn delta() -> Delta {
-    Delta::new(BASE, PLATFORM, UPPER, LOWER).expect("lengths are good")
+    Delta::new(Dimensions {
+        base: BASE,
+        platform: PLATFORM,
+        upper: UPPER,
+        lower: LOWER,
+    })
+    .expect("lengths are good")
 }
 
 fn inverse(c: &mut Criterion) {

@@ -6,7 +6,7 @@ use trig_kernels::{Trig, sin_cos_lanes};
 use crate::arm::zip;
 use crate::geometry::checked_span;
 use crate::prepared::PreparedArm;
-use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange};
+use crate::{Arm, ArmGeometry, AssemblyMode, Dimensions, Elbow, GeometryError, JointRange};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
@@ -19,10 +19,10 @@ use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange};
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_2;
-/// use delta_kin::{Delta, JointRange};
+/// use delta_kin::{Delta, Dimensions, JointRange};
 ///
 /// // Angles read zero with the arms horizontal, and may go 90° down and 30° up.
-/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?
+/// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?
 ///     .with_zero(FRAC_PI_2)?
 ///     .with_range(JointRange::new(-FRAC_PI_2, 0.52)?)
 ///     .with_ball_joints(0.6)?;
@@ -79,13 +79,12 @@ pub enum Positive {
 const ROUNDING_STEPS: f64 = 16.0;
 
 impl<T: RealField + Trig> Delta<T> {
-    /// A machine of three equal arms, 120° apart, without limits: base radius R, platform
-    /// radius r, upper arm Lb, lower arm La.
+    /// A machine of three equal arms, 120° apart, without limits.
     ///
     /// # Errors
     /// As for [`from_arms`](Self::from_arms).
-    pub fn new(base: T, platform: T, upper: T, lower: T) -> Result<Self, GeometryError<T>> {
-        Self::from_arms(Arm::ALL.map(|arm| ArmGeometry::nominal(arm, base, platform, upper, lower)))
+    pub fn new(dimensions: Dimensions<T>) -> Result<Self, GeometryError<T>> {
+        Self::from_arms(Arm::ALL.map(|arm| ArmGeometry::nominal(arm, dimensions)))
     }
 
     /// A machine of three arms as they are, each with its own lengths, azimuth and zero.

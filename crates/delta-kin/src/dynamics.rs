@@ -29,9 +29,9 @@ use crate::{Delta, Pose, PoseError};
 ///
 /// ```
 /// use delta_kin::nalgebra::{Point3, Vector3};
-/// use delta_kin::{Delta, DeltaMasses};
+/// use delta_kin::{Delta, DeltaMasses, Dimensions};
 ///
-/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+/// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?; // mm
 /// let dynamics = delta.dynamics(1e-3, DeltaMasses { // 1 mm in m
 ///     arm_kg_m2: 2e-3,   // about the shoulder, with the rotor through its gear
 ///     arm_kg_m: 0.01,    // mass times the distance of its centre from the shoulder

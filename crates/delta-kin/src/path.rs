@@ -19,10 +19,10 @@ use crate::{Arm, Delta};
 /// a stop where the directions of their curves agree, as those of a line and a blend do.
 ///
 /// ```
-/// use delta_kin::{Delta, DeltaPath};
+/// use delta_kin::{Delta, DeltaPath, Dimensions};
 /// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
 ///
-/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+/// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?; // mm
 /// let line = Curve::line([50.0, 50.0, -300.0], [-50.0, 50.0, -300.0])?;
 /// let path = delta.path(line)?;
 /// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s

@@ -62,7 +62,13 @@ impl Default for Random {
 #[must_use]
 pub fn delta<T: Real>() -> delta_kin::Delta<T> {
     let [base, platform, upper, lower] = [42.0, 18.0, 120.0, 243.0].map(T::of);
-    delta_kin::Delta::new(base, platform, upper, lower).expect("the lengths are good")
+    delta_kin::Delta::new(delta_kin::Dimensions {
+        base,
+        platform,
+        upper,
+        lower,
+    })
+    .expect("the lengths are good")
 }
 
 /// A panel of 3 m on three locators.

@@ -4,7 +4,8 @@ use std::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, Follow, ForwardError, InverseError, Path, Pose, PoseError, SpeedLimits, Waypoint,
+    Delta, Dimensions, Follow, ForwardError, InverseError, Path, Pose, PoseError, SpeedLimits,
+    Waypoint,
 };
 use no_panic::no_panic;
 
@@ -45,7 +46,12 @@ fn follow_next(follow: &mut Follow) -> Option<Waypoint> {
 }
 
 pub fn run() {
-    let Ok(delta) = Delta::new(black_box(42.0), 18.0, 120.0, 243.0) else {
+    let Ok(delta) = Delta::new(Dimensions {
+        base: black_box(42.0),
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    }) else {
         return;
     };
     let delta = &black_box(delta);

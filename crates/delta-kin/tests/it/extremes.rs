@@ -3,8 +3,8 @@
 
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Measured, Parameter,
-    Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
+    Arm, ArmGeometry, AssemblyMode, Delta, Dimensions, Elbow, InverseError, JointRange, Measured,
+    Parameter, Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -101,7 +101,15 @@ fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
     let lengths = [0.42, 0.18, 1.2, 2.43].map(|length| length * size);
     let mut arms = Arm::ALL.map(|arm| {
         let [base, platform, upper, lower] = lengths.map(nalgebra::convert);
-        ArmGeometry::nominal(arm, base, platform, upper, lower)
+        ArmGeometry::nominal(
+            arm,
+            Dimensions {
+                base,
+                platform,
+                upper,
+                lower,
+            },
+        )
     });
     // One in two machines has one odd number.
     if numbers.pick(&[true, false]) {

@@ -5,8 +5,8 @@ use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, AssemblyMode, CalibrationError, Delta, Elbow, FollowError, InverseError, JointRange,
-    Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
+    Arm, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow, FollowError, InverseError,
+    JointRange, Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
 };
 
 use crate::common::thesis::thesis;
@@ -75,7 +75,13 @@ fn the_other_assembly_mode_is_asked_for_by_name() {
 /// Rods that can come level with the platform: the singular surface lies below the base plane.
 #[test]
 fn a_point_beyond_the_singular_surface_is_refused() {
-    let flat = Delta::new(60.0, 20.0, 120.0, 130.0).unwrap();
+    let flat = Delta::new(Dimensions {
+        base: 60.0,
+        platform: 20.0,
+        upper: 120.0,
+        lower: 130.0,
+    })
+    .unwrap();
     // On the axis the elbows are above the platform or below it.
     let reached = |z: f64| flat.inverse(Point3::new(0.0, 0.0, z));
     let height = |z: f64| {
@@ -132,7 +138,13 @@ fn lower_is_lower() {
     let mut both = 0;
     for k in 0..20_000u32 {
         let at = |n: u32| (f64::from(k) * f64::from(n).sqrt()).fract();
-        let machine = Delta::new(100.0 * at(2), 80.0 * at(3), 40.0 + 160.0 * at(5), 250.0).unwrap();
+        let machine = Delta::new(Dimensions {
+            base: 100.0 * at(2),
+            platform: 80.0 * at(3),
+            upper: 40.0 + 160.0 * at(5),
+            lower: 250.0,
+        })
+        .unwrap();
         let angles = Vector3::new(at(7), at(11), at(13)) * 5.0 - Vector3::repeat(2.0);
         let upper = machine.with_assembly_mode(AssemblyMode::Upper);
         let points = [machine, upper].map(|machine| machine.forward(angles));
@@ -314,9 +326,14 @@ fn the_working_mode_is_asked_for_by_name() {
 /// angle in its working mode.
 #[test]
 fn the_other_elbow_s_angle_is_no_end_of_a_range() {
-    let delta = Delta::new(0.42, 0.18, 1.2, 2.43)
-        .unwrap()
-        .with_assembly_mode(AssemblyMode::Upper);
+    let delta = Delta::new(Dimensions {
+        base: 0.42,
+        platform: 0.18,
+        upper: 1.2,
+        lower: 2.43,
+    })
+    .unwrap()
+    .with_assembly_mode(AssemblyMode::Upper);
     let point = Point3::new(0.05, -0.04, 1.27);
     let out = delta.inverse(point).unwrap();
     let inner = delta

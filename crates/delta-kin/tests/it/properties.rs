@@ -2,7 +2,7 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Pose, ZAxis,
+    Arm, ArmGeometry, AssemblyMode, Delta, Dimensions, Elbow, InverseError, JointRange, Pose, ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -37,7 +37,15 @@ fn machines() -> impl Strategy<Value = Delta> {
         .prop_map(|(size, (base, platform, lower), off)| {
             let size = 10f64.powf(size);
             let mut arms = Arm::ALL.map(|arm| {
-                ArmGeometry::nominal(arm, base * size, platform * size, size, lower * size)
+                ArmGeometry::nominal(
+                    arm,
+                    Dimensions {
+                        base: base * size,
+                        platform: platform * size,
+                        upper: size,
+                        lower: lower * size,
+                    },
+                )
             });
             for (arm, (base, upper, lower, azimuth, zero)) in arms.iter_mut().zip(off) {
                 arm.base *= base;
@@ -295,7 +303,7 @@ proptest! {
 
     #[test]
     fn single_precision_keeps_its_digits(thetas in [0.1..1.9f32, 0.1..1.9f32, 0.1..1.9f32]) {
-        let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let delta = Delta::<f32>::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 }).unwrap();
         let exact = thesis();
         let point = delta.forward(Vector3::from(thetas));
         prop_assume!(point.is_ok());

@@ -1,7 +1,7 @@
 //! Every row of the reference cases: solutions of 60-digit arithmetic.
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, AssemblyMode, Delta, Elbow, ForwardError, InverseError, Pose};
+use delta_kin::{Arm, AssemblyMode, Delta, Dimensions, Elbow, ForwardError, InverseError, Pose};
 
 use crate::common::reach::reach_margins;
 
@@ -33,7 +33,13 @@ impl Row<'_> {
 
     fn delta(&self) -> Delta {
         let [base, platform, lower, upper] = [3, 4, 5, 6].map(|k| self.number(k));
-        Delta::new(base, platform, upper, lower).unwrap()
+        Delta::new(Dimensions {
+            base,
+            platform,
+            upper,
+            lower,
+        })
+        .unwrap()
     }
 
     fn point(&self) -> Point3<f64> {

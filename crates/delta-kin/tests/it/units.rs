@@ -3,8 +3,8 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, CalibrationError, Delta, Elbow, FollowError, ForwardError,
-    InverseError, JointRange, Measured, Parameter, Path, Pose, Quantity, SpeedLimits,
+    Arm, ArmGeometry, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow, FollowError,
+    ForwardError, InverseError, JointRange, Measured, Parameter, Path, Pose, Quantity, SpeedLimits,
     WorkspaceError,
 };
 use proptest::prelude::*;
@@ -324,9 +324,14 @@ proptest! {
 #[test]
 fn paths_workspace_and_calibration_scale() {
     let delta = |unit: f64| {
-        Delta::new(42.0 * unit, 18.0 * unit, 120.0 * unit, 243.0 * unit)
-            .unwrap()
-            .with_range(JointRange::new(-0.5, 2.2).unwrap())
+        Delta::new(Dimensions {
+            base: 42.0 * unit,
+            platform: 18.0 * unit,
+            upper: 120.0 * unit,
+            lower: 243.0 * unit,
+        })
+        .unwrap()
+        .with_range(JointRange::new(-0.5, 2.2).unwrap())
     };
     let one = slow_answers(&delta(1.0), 1.0);
     for k in -6..=6 {

@@ -2,7 +2,8 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, FollowError, InverseError, JointRange, Path, PathError, SpeedLimits, WorkspaceError,
+    Delta, Dimensions, FollowError, InverseError, JointRange, Path, PathError, SpeedLimits,
+    WorkspaceError,
 };
 
 use crate::common::thesis::thesis;
@@ -177,7 +178,13 @@ fn paths_end_at_the_first_place_out_of_reach() {
 #[test]
 fn a_path_through_a_singularity_is_refused() {
     // Rods level with the platform at z = 0, where the two assemblies meet.
-    let flat = Delta::new(60.0, 20.0, 120.0, 159.0).unwrap();
+    let flat = Delta::new(Dimensions {
+        base: 60.0,
+        platform: 20.0,
+        upper: 120.0,
+        lower: 159.0,
+    })
+    .unwrap();
     let line = Path::line(Point3::new(0.0, 0.0, -30.0), Point3::new(0.0, 0.0, 30.0)).unwrap();
     assert!(matches!(
         flat.follow(line, 0.01, limits()),

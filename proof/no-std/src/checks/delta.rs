@@ -3,12 +3,18 @@
 use core::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, DeltaPath, Measured, Parameter, Path, Quantity, SpeedLimits};
+use delta_kin::{Delta, DeltaPath, Dimensions, Measured, Parameter, Path, Quantity, SpeedLimits};
 use path_timing::{Accuracy, AxisLimits, Knot, Table};
 
 use super::{CLOSE_MM, holds};
 fn thesis() -> Option<Delta> {
-    Delta::new(black_box(42.0), 18.0, 120.0, 243.0).ok()
+    Delta::new(Dimensions {
+        base: black_box(42.0),
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .ok()
 }
 
 /// Inverse and forward kinematics of a Delta, rates, a line, a cylinder.

@@ -1,6 +1,6 @@
 //! Machines whose arms differ widely, and anything that they may be set to.
 
-use delta_kin::{Arm, ArmGeometry, AssemblyMode, Elbow};
+use delta_kin::{Arm, ArmGeometry, AssemblyMode, Dimensions, Elbow};
 use proptest::prelude::*;
 
 /// 10 to the power of what is between two ends.
@@ -29,7 +29,17 @@ pub(crate) fn uneven_arms() -> impl Strategy<Value = [ArmGeometry; 3]> {
     let (alike, apart) = (lengths(), [lengths(), lengths(), lengths()]);
     (alike, apart, any::<bool>(), [off(), off(), off()]).prop_map(
         |(alike, apart, is_alike, off)| {
-            let mut arms = Arm::ALL.map(|arm| ArmGeometry::nominal(arm, 1.0, 1.0, 1.0, 1.0));
+            let mut arms = Arm::ALL.map(|arm| {
+                ArmGeometry::nominal(
+                    arm,
+                    Dimensions {
+                        base: 1.0,
+                        platform: 1.0,
+                        upper: 1.0,
+                        lower: 1.0,
+                    },
+                )
+            });
             for ((arm, apart), (azimuth, zero, part)) in arms.iter_mut().zip(apart).zip(off) {
                 let (base, platform, upper, lower) = if is_alike { alike } else { apart };
                 arm.azimuth += azimuth;

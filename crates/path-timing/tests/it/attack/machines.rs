@@ -1,6 +1,6 @@
 //! The four kinds of machines, each with random paths.
 
-use delta_kin::{Delta, DeltaPath};
+use delta_kin::{Delta, DeltaPath, Dimensions};
 use path_timing::{Corner, Curve, ToolLimits};
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{BodyPath, Interpolation, Locator, Platform};
@@ -81,7 +81,13 @@ pub(super) fn attack_arm(random: &mut Random, tried: &mut Tried) {
 }
 
 pub(super) fn attack_delta(random: &mut Random, tried: &mut Tried) {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let [x, y] = [(); 2].map(|()| random.within(-60.0, 60.0));
     let size = random.size(0.5, 1.8);
     let path = curve(random, [x, y, -250.0], size).and_then(|it| delta.path(it).ok());
