@@ -9,7 +9,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use path_timing::{Accuracy, FeedCeiling, Knot, Table};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Vector3};
 use pose_pt::{
-    AxisLimits, BodyPath, Convention, Interpolation, Locator, Path, Platform, PtTable, Segmentation,
+    BodyPath, Convention, Interpolation, Locator, LocatorAxis, Path, Platform, PtTable,
+    Segmentation,
 };
 
 const POINTS: u32 = 10_000;
@@ -17,7 +18,13 @@ const POINTS: u32 = 10_000;
 const ROOM: usize = POINTS as usize + 1;
 
 fn platform(axes: Matrix3<f64>) -> Platform<3> {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 50.0],

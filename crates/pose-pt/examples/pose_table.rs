@@ -4,12 +4,18 @@
 use core::error::Error;
 
 use path_timing::{Accuracy, Knot, Table};
-use pose_pt::{AxisLimits, BodyPath, Convention, Interpolation, Locator};
+use pose_pt::{BodyPath, Convention, Interpolation, Locator, LocatorAxis};
 use pose_pt::{Path, Platform, PoseVector};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Stroke in mm, speed in mm/s, acceleration in mm/s²; zero where the panel is at rest.
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 0.0],

@@ -24,7 +24,7 @@ pub use trig_kernels::Trig;
 pub use angles::{Convention, PoseVector, Resolved};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
 pub use fit::{FitError, RigidFit, Side, rigid_fit};
-pub use locator::{Axis, AxisLimits, Locator};
+pub use locator::{Axis, Locator, LocatorAxis};
 pub use platform::{BodyFit, DistanceError, LimitError, Platform, PlatformError};
 pub use rotation::{
     NotARotation, angle_between, from_matrix, from_rotation_vector, rotation_vector,

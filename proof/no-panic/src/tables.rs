@@ -6,7 +6,7 @@ use no_panic::no_panic;
 use path_timing::{Accuracy, Knot, PlanError, Table};
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    AxisLimits, BodyPath, BodyPathError, Convention, Interpolation, Locator, Path, Platform,
+    BodyPath, BodyPathError, Convention, Interpolation, Locator, LocatorAxis, Path, Platform,
     PoseVector, PtPoint, PtPoints, PtTable, Segmentation,
 };
 
@@ -39,7 +39,13 @@ fn plan<'a>(
 }
 
 pub fn run() {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = black_box([
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 0.0],

@@ -94,11 +94,17 @@ mod tests {
 
     use super::*;
     use crate::course::Course;
-    use crate::{AxisLimits, Interpolation, Locator, Path};
+    use crate::{Interpolation, Locator, LocatorAxis, Path};
 
     /// L = 4000 mm across the axis of every turn, which is Z.
     fn flat() -> Platform<3> {
-        let limits = AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0);
+        let limits = LocatorAxis {
+            min: -9000.0,
+            max: 9000.0,
+            speed: 1.0,
+            acceleration: 1.0,
+            jerk: None,
+        };
         let anchors = [[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [1800.0, 1500.0, 0.0]];
         Platform::new(
             anchors.map(|anchor| Locator::new(Point3::from(anchor), Point3::origin(), [limits; 3])),

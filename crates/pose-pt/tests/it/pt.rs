@@ -2,7 +2,7 @@
 
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, Convention, Interpolation, LimitError, Path, PathError, PlanError, Platform,
+    Axis, Convention, Interpolation, LimitError, LocatorAxis, Path, PathError, PlanError, Platform,
     PoseVector, PtPoint, PtTable, Segmentation,
 };
 use proptest::prelude::*;
@@ -68,7 +68,13 @@ fn points_follow_the_leg() {
         pose([1.0, 2.0, 3.0], [0.1, 0.0, 0.3]),
         pose([130.0, -12.0, 7.0], [0.2, -0.15, 1.15]),
     ];
-    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
+    let platform = panel_with(LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1.0,
+        acceleration: 1.0,
+        jerk: None,
+    });
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
         let leg = path.leg(0).unwrap();
@@ -143,7 +149,13 @@ fn distance_error_of_the_panel() {
 fn a_stroke_passed_between_the_ends_is_named() {
     // Half a turn of 100 mm about the first locator, seen as two poses: in between the
     // others swing far out.
-    let limits = AxisLimits::new(-600.0, 600.0, 10.0, 25.0);
+    let limits = LocatorAxis {
+        min: -600.0,
+        max: 600.0,
+        speed: 10.0,
+        acceleration: 25.0,
+        jerk: None,
+    };
     let platform = panel_with(limits);
     let poses = [
         PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -225,7 +237,13 @@ fn wrong_input_is_named() {
 #[test]
 fn a_body_that_stays_is_one_point() {
     let still = [pose([1.0; 3], [0.1; 3]); 3];
-    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
+    let platform = panel_with(LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1.0,
+        acceleration: 1.0,
+        jerk: None,
+    });
     for kind in ALL {
         let path = Path::new(&still, kind).unwrap();
         let table =

@@ -6,7 +6,7 @@ mod times;
 
 use crate::support::table::{Cut, Point, plan, points_of};
 use path_timing::{Knot, PlanError};
-use pose_pt::{AxisLimits, Path, Platform};
+use pose_pt::{LocatorAxis, Path, Platform};
 use proptest::prelude::*;
 
 use crate::support::limits::{LIMIT, check_limits};
@@ -78,13 +78,55 @@ fn poses_on_the_way_are_stops() {
 #[test]
 fn tiny_moves_and_odd_limits_give_finite_tables() {
     let odd = [
-        AxisLimits::new(-1500.0, 1500.0, 1e-3, 1e6),
-        AxisLimits::new(-1500.0, 1500.0, 1e6, 1e-3),
-        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e9),
-        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e-2),
-        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e-30).with_jerk(1e30),
-        AxisLimits::new(-1500.0, 1500.0, 1e-30, 1e30).with_jerk(1e30),
-        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e30).with_jerk(1e-30),
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e-3,
+            acceleration: 1e6,
+            jerk: None,
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e6,
+            acceleration: 1e-3,
+            jerk: None,
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 10.0,
+            acceleration: 25.0,
+            jerk: Some(1e9),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 10.0,
+            acceleration: 25.0,
+            jerk: Some(1e-2),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e30,
+            acceleration: 1e-30,
+            jerk: Some(1e30),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e-30,
+            acceleration: 1e30,
+            jerk: Some(1e30),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e30,
+            acceleration: 1e30,
+            jerk: Some(1e-30),
+        },
     ];
     for limits in odd {
         let platform = panel_with(limits);
@@ -133,7 +175,7 @@ proptest! {
         jerk in prop::option::of(20.0..2000.0),
         speed in 1.0..1000.0, skew in any::<bool>(),
     ) {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        let mut limits = LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None };
         limits.jerk = jerk;
         let platform = if skew { skewed() } else { panel_with(limits) };
         let path = Path::new(&poses, ALL[kind]).unwrap();

@@ -3,7 +3,7 @@
 use crate::support::table::{Cut, Point, bound, plan, points_of};
 use path_timing::Knot;
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{AxisLimits, Interpolation, Path, PtTable, Segmentation};
+use pose_pt::{Interpolation, LocatorAxis, Path, PtTable, Segmentation};
 use proptest::prelude::*;
 
 use crate::support::cubic::between;
@@ -82,7 +82,7 @@ proptest! {
         poses in poses(), kind in 0..4_usize, segments in 2..12_u32, speed in 1.0..1000.0,
         jerk in prop::option::of(20.0..2000.0), skew in any::<bool>(),
     ) {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        let mut limits = LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None };
         limits.jerk = jerk;
         let platform = if skew { skewed() } else { panel_with(limits) };
         let path = Path::new(&poses, ALL[kind]).unwrap();

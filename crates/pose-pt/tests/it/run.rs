@@ -3,7 +3,7 @@
 use crate::support::table::{Cut, plan, points_of};
 use path_timing::{FeedCeiling, FeedError, Knot, PlanError, Playback};
 use pose_pt::nalgebra::Isometry3;
-use pose_pt::{AxisLimits, Interpolation, Path};
+use pose_pt::{Interpolation, LocatorAxis, Path};
 use proptest::prelude::*;
 
 use crate::support::limits::{LIMIT, check_limits};
@@ -100,7 +100,13 @@ fn a_stop_is_on_the_path_and_can_go_on() {
 /// Braking as hard as it can before the last segment, the machine would crawl on it.
 #[test]
 fn no_stop_crawls() {
-    let platform = panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, 2.0));
+    let platform = panel_with(LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: 2.0,
+        jerk: None,
+    });
     let poses = poses();
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 51];
@@ -170,7 +176,7 @@ proptest! {
         on in prop::array::uniform3(-300.0..300.0), on_turn in prop::array::uniform3(-1.5..1.5),
         segments in 2..30_u32, scale in 0.3..1.0, feed in 1.0..3.0, speed in 5.0..1e4,
     ) {
-        let platform = panel_with(AxisLimits::new(-1e5, 1e5, speed, ACCELERATION));
+        let platform = panel_with(LocatorAxis { min: -1e5, max: 1e5, speed, acceleration: ACCELERATION, jerk: None });
         let poses = [pose([0.0; 3], [0.0; 3]), pose(translation, turn), pose(on, on_turn)];
         let Ok(path) = Path::new(&poses, Interpolation::Screw) else { return Ok(()) };
         let mut knots = [Knot::default(); 62];
@@ -196,7 +202,7 @@ proptest! {
         let platform = if skew {
             skewed()
         } else {
-            panel_with(AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION))
+            panel_with(LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None })
         };
         let poses = poses();
         let path = Path::new(&poses, Interpolation::Screw).unwrap();

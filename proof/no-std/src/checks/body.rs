@@ -4,14 +4,20 @@ use core::hint::black_box;
 
 use path_timing::{Knot, Table};
 use pose_pt::{
-    AxisLimits, Convention, Interpolation, Locator, Path, Platform, PoseVector, PtTable,
+    Convention, Interpolation, Locator, LocatorAxis, Path, Platform, PoseVector, PtTable,
     Segmentation,
 };
 
 use super::{CLOSE_MM, holds};
 /// A panel on three locators.
 fn platform() -> Option<Platform<3>> {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, black_box(-1000.0), 0.0],

@@ -107,7 +107,13 @@ pub(super) fn attack_delta(random: &mut Random, tried: &mut Tried) {
 
 /// A body on three locators, through some poses; the distances between the locators are to stay.
 pub(super) fn attack_platform(random: &mut Random, tried: &mut Tried) {
-    let limits = [pose_pt::AxisLimits::new(-9e3, 9e3, 20.0, 100.0); 3];
+    let limits = [pose_pt::LocatorAxis {
+        min: -9e3,
+        max: 9e3,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 50.0],

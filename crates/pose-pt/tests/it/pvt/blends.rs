@@ -4,7 +4,7 @@ use crate::support::table::{Cut, Point, bound, plan, points_of};
 use path_timing::Knot;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    AxisLimits, Blend, Convention, Interpolation, Path, PathError, Platform, PoseVector,
+    Blend, Convention, Interpolation, LocatorAxis, Path, PathError, Platform, PoseVector,
     angle_between,
 };
 use proptest::prelude::*;
@@ -179,7 +179,13 @@ fn a_part_that_does_not_change_needs_no_tolerance() {
 
 #[test]
 fn blends_with_a_limit_of_jerk_are_passed() {
-    let limits = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(200.0);
+    let limits = LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: Some(200.0),
+    };
     let platform = panel_with(limits);
     let allowed = 0.01;
     for segmentation in [Cut::Into(40), Cut::Within(allowed)] {

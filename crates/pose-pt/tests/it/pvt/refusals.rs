@@ -7,7 +7,7 @@ use crate::support::table::{Cut, plan, points_of};
 use path_timing::{Knot, PlanError};
 use pose_pt::nalgebra::Point3;
 use pose_pt::{
-    Axis, AxisLimits, BodyPathError, Interpolation, LimitError, Locator, Path, Platform,
+    Axis, BodyPathError, Interpolation, LimitError, Locator, LocatorAxis, Path, Platform,
 };
 
 /// A swing by ±0.3 rad carries the first two locators out to 1000 mm in its middle, where three
@@ -17,8 +17,20 @@ fn a_stroke_left_between_points_is_named() {
     let poses = [-0.3, 0.3].map(|turn| pose([0.0; 3], [0.0, 0.0, turn]));
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let plan = |min: f64, max: f64| {
-        let limits = AxisLimits::new(min, max, SPEED, ACCELERATION);
-        let wide = AxisLimits::new(-2000.0, 2000.0, SPEED, ACCELERATION);
+        let limits = LocatorAxis {
+            min,
+            max,
+            speed: SPEED,
+            acceleration: ACCELERATION,
+            jerk: None,
+        };
+        let wide = LocatorAxis {
+            min: -2000.0,
+            max: 2000.0,
+            speed: SPEED,
+            acceleration: ACCELERATION,
+            jerk: None,
+        };
         let anchors = [[1000.0, 0.0, 0.0], [-1000.0, 0.0, 0.0], [0.0, 1000.0, 0.0]];
         let platform = Platform::new(
             anchors
@@ -61,7 +73,13 @@ fn a_stroke_left_between_points_is_named() {
 
 #[test]
 fn wrong_input_is_named() {
-    let platform = panel_with(AxisLimits::new(-100.0, 100.0, SPEED, ACCELERATION));
+    let platform = panel_with(LocatorAxis {
+        min: -100.0,
+        max: 100.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: None,
+    });
     let poses = from_rest([30.0, 0.0, 0.0], [0.0; 3]);
     let path = Path::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 64];

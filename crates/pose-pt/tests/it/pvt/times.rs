@@ -5,7 +5,7 @@ use crate::support::moves::{ALL, from_rest};
 use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with};
 use crate::support::table::{Cut, plan, points_of};
 use path_timing::Knot;
-use pose_pt::{AxisLimits, Interpolation, Path, Platform};
+use pose_pt::{Interpolation, LocatorAxis, Path, Platform};
 use proptest::prelude::*;
 
 #[test]
@@ -32,8 +32,13 @@ fn a_straight_move_takes_the_closed_form() {
 #[test]
 fn a_straight_move_with_jerk_takes_the_closed_form() {
     let jerk = 100.0;
-    let platform =
-        panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(jerk));
+    let platform = panel_with(LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: Some(jerk),
+    });
     let rise = ACCELERATION / jerk;
     // Whole S-curve; acceleration reached but not the speed; only jerk counts.
     let short: f64 = 0.5;
@@ -62,7 +67,13 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
 /// need without a limit of jerk is the least that they can need with one.
 #[test]
 fn jerk_costs_a_turn_little() {
-    let limits = AxisLimits::new(-9000.0, 9000.0, 20.0, 50.0);
+    let limits = LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 20.0,
+        acceleration: 50.0,
+        jerk: None,
+    };
     for (turn, way, jerk, most) in [
         (0.5, 500.0, 25.0, 1.02),
         (0.5, 500.0, 100.0, 1.01),
@@ -80,7 +91,11 @@ fn jerk_costs_a_turn_little() {
             table.duration_s()
         };
         let least = plan(&panel_with(limits));
-        let ratio = plan(&panel_with(limits.with_jerk(jerk))) / least;
+        let jerky = LocatorAxis {
+            jerk: Some(jerk),
+            ..limits
+        };
+        let ratio = plan(&panel_with(jerky)) / least;
         println!("turn by {turn}, {way} mm, jerk {jerk}: {ratio}");
         assert!(
             (1.0..most).contains(&ratio),
@@ -92,9 +107,21 @@ fn jerk_costs_a_turn_little() {
 /// Moves whose optimum a fine phase plane gives.
 #[test]
 fn no_slower_than_the_optimum_by_a_thousandth() {
-    let slow = AxisLimits::new(-9000.0, 9000.0, 10.0, 25.0);
+    let slow = LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 10.0,
+        acceleration: 25.0,
+        jerk: None,
+    };
     // No speed is reached: the accelerations of a turning body decide.
-    let fast = AxisLimits::new(-9000.0, 9000.0, 1e5, 25.0);
+    let fast = LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1e5,
+        acceleration: 25.0,
+        jerk: None,
+    };
     for (name, limits, poses) in [
         ("small turn", slow, from_rest([0.0; 3], [0.0, 0.0, 0.02])),
         ("large turn", slow, from_rest([0.0; 3], [0.0, 0.0, 1.5])),
@@ -128,7 +155,13 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
 /// allow are far below the highest one.
 #[test]
 fn near_the_optimum_of_a_turn_of_126_degrees() {
-    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1e5, ACCELERATION));
+    let platform = panel_with(LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1e5,
+        acceleration: ACCELERATION,
+        jerk: None,
+    });
     let poses = from_rest([0.3, -0.9, 0.0], [0.3, -0.9, 2.2]);
     for kind in ALL {
         let path = Path::new(&poses, kind).unwrap();
@@ -153,7 +186,7 @@ proptest! {
         turn in prop::array::uniform3(-1.2..1.2),
         kind in 0..4_usize, speed in 20.0..1e5,
     ) {
-        let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, speed, ACCELERATION));
+        let platform = panel_with(LocatorAxis { min: -9000.0, max: 9000.0, speed, acceleration: ACCELERATION, jerk: None });
         let poses = from_rest(translation, turn);
         let path = Path::new(&poses, ALL[kind]).unwrap();
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 8000);

@@ -4,7 +4,7 @@ use crate::support::table::{Cut, plan};
 use path_timing::{FeedCeiling, Knot, Row};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose_pt::{
-    AxisLimits, FitError, LimitError, Locator, Path, PlanError, Platform, PlatformError,
+    FitError, LimitError, Locator, LocatorAxis, Path, PlanError, Platform, PlatformError,
     PoseVector, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
 };
 
@@ -32,7 +32,13 @@ pub(crate) struct Scene {
 impl Scene {
     /// All results where a length of 1 mm is `unit`.
     pub(crate) fn numbers(&self, unit: f64) -> Vec<Number> {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION);
+        let mut limits = LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: SPEED,
+            acceleration: ACCELERATION,
+            jerk: None,
+        };
         limits.jerk = self.jerk;
         let platform = if self.is_skewed {
             skewed()
@@ -60,7 +66,13 @@ pub(crate) fn scaled_platform(platform: &Platform<3>, unit: f64) -> Platform<3> 
         let limits = locator.limits.map(|limits| {
             let [min, max] = [limits.min, limits.max].map(|end| end * unit);
             let (speed, acceleration) = (limits.speed * unit, limits.acceleration * unit);
-            let mut scaled = AxisLimits::new(min, max, speed, acceleration);
+            let mut scaled = LocatorAxis {
+                min,
+                max,
+                speed,
+                acceleration,
+                jerk: None,
+            };
             scaled.jerk = limits.jerk.map(|jerk| jerk * unit);
             scaled
         });
