@@ -18,7 +18,7 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, Dimensions, JointRange, Measured, Path, SpeedLimits};
+use delta_kin::{ArmRange, Delta, Dimensions, Measured, Path, SpeedLimits};
 
 use bare::{BASE, LOWER, PLATFORM, UPPER};
 use eleven::eleven;
@@ -37,7 +37,7 @@ fn delta() -> Delta {
 fn inverse(c: &mut Criterion) {
     let (points, arms) = (points(), bare::directions());
     let limited = delta()
-        .with_range(JointRange::new(-1.0, 3.0).expect("range is good"))
+        .with_range(ArmRange::new(-1.0, 3.0).expect("range is good"))
         .with_ball_joints(1.0)
         .expect("angle is good");
     let mut group = c.benchmark_group("inverse, three arms");

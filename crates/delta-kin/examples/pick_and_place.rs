@@ -5,7 +5,7 @@ use core::error::Error;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, Dimensions, JointRange, Path, SpeedLimits};
+use delta_kin::{ArmRange, Delta, Dimensions, Path, SpeedLimits};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Radii of base and platform, upper and lower arm, mm; angles read zero with the arms
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         lower: 243.0,
     })?
     .with_zero(FRAC_PI_2)?
-    .with_range(JointRange::new(-FRAC_PI_2, 0.52)?);
+    .with_range(ArmRange::new(-FRAC_PI_2, 0.52)?);
     println!(
         "a cylinder of radius {:.0} mm between z = -300 and -240 is all reached\n",
         delta.largest_cylinder([-300.0, -240.0], 1.0)?

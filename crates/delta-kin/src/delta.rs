@@ -6,7 +6,7 @@ use trig_kernels::{Trig, sin_cos_lanes};
 use crate::arm::zip;
 use crate::geometry::checked_span;
 use crate::prepared::PreparedArm;
-use crate::{Arm, ArmGeometry, AssemblyMode, Dimensions, Elbow, GeometryError, JointRange};
+use crate::{Arm, ArmGeometry, ArmRange, AssemblyMode, Dimensions, Elbow, GeometryError};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
@@ -19,12 +19,12 @@ use crate::{Arm, ArmGeometry, AssemblyMode, Dimensions, Elbow, GeometryError, Jo
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_2;
-/// use delta_kin::{Delta, Dimensions, JointRange};
+/// use delta_kin::{ArmRange, Delta, Dimensions};
 ///
 /// // Angles read zero with the arms horizontal, and may go 90° down and 30° up.
 /// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?
 ///     .with_zero(FRAC_PI_2)?
-///     .with_range(JointRange::new(-FRAC_PI_2, 0.52)?)
+///     .with_range(ArmRange::new(-FRAC_PI_2, 0.52)?)
 ///     .with_ball_joints(0.6)?;
 /// # Ok::<(), delta_kin::GeometryError<f64>>(())
 /// ```
@@ -33,7 +33,7 @@ pub struct Delta<T: RealField = f64> {
     arms: [ArmGeometry<T>; 3],
     z: ZAxis,
     positive: Positive,
-    ranges: [JointRange<T>; 3],
+    ranges: [ArmRange<T>; 3],
     max_swivel: Option<T>,
     working_mode: [Elbow; 3],
     assembly_mode: AssemblyMode,
@@ -102,13 +102,12 @@ impl<T: RealField + Trig> Delta<T> {
             arms,
             z: ZAxis::default(),
             positive: Positive::default(),
-            ranges: [JointRange::unlimited(); 3],
+            ranges: [ArmRange::unlimited(); 3],
             max_swivel: None,
             working_mode: [Elbow::Out; 3],
             assembly_mode: AssemblyMode::Lower,
-            prepared: arms.map(|arm| {
-                PreparedArm::new(&arm, JointRange::unlimited(), None, Positive::Outward)
-            }),
+            prepared: arms
+                .map(|arm| PreparedArm::new(&arm, ArmRange::unlimited(), None, Positive::Outward)),
             span,
             tolerance: T::zero(),
             least_product: T::zero(),
@@ -158,13 +157,13 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// The machine with the same joint range for all arms, as their angles read.
     #[must_use]
-    pub fn with_range(self, range: JointRange<T>) -> Self {
+    pub fn with_range(self, range: ArmRange<T>) -> Self {
         self.with_ranges([range; 3])
     }
 
     /// The machine with a joint range for each arm, as their angles read.
     #[must_use]
-    pub fn with_ranges(mut self, ranges: [JointRange<T>; 3]) -> Self {
+    pub fn with_ranges(mut self, ranges: [ArmRange<T>; 3]) -> Self {
         self.ranges = ranges;
         self.prepare()
     }
@@ -240,7 +239,7 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// The joint ranges, as the angles read.
     #[must_use]
-    pub const fn ranges(&self) -> &[JointRange<T>; 3] {
+    pub const fn ranges(&self) -> &[ArmRange<T>; 3] {
         &self.ranges
     }
 

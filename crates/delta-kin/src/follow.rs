@@ -125,7 +125,7 @@ pub enum FollowError<T: RealField + Copy = f64> {
         point: Point3<T>,
     },
     /// An arm would have to jump by a whole turn: at π from straight down, or from one end of a
-    /// range of a whole turn to the other. A [`JointRange`](crate::JointRange) that holds the
+    /// range of a whole turn to the other. An [`ArmRange`](crate::ArmRange) that holds the
     /// path avoids it.
     #[error("{}: {arm} would have to jump by a whole turn", At(*.fraction, *.point))]
     Turn {

@@ -38,7 +38,7 @@ pub use follow::{Follow, FollowError, Path, PathError, SpeedLimits, Waypoint};
 pub use forward::ForwardError;
 pub use geometry::GeometryError;
 pub use inverse::InverseError;
-pub use limits::JointRange;
+pub use limits::ArmRange;
 #[cfg(feature = "path-timing")]
 pub use path::{DeltaPath, DeltaPathError};
 pub use pose::{Pose, PoseError};

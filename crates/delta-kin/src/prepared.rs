@@ -4,7 +4,7 @@ use nalgebra::{RealField, Vector2, Vector3};
 use trig_kernels::{Trig, atan2_of_length, atan2_of_length_lanes, sin_cos, sqrt};
 
 use crate::range::{half, length, max_value, norm, two};
-use crate::{ArmGeometry, Elbow, JointRange, Positive};
+use crate::{ArmGeometry, ArmRange, Elbow, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ pub(crate) struct Heading<T> {
 impl<T: RealField + Trig> PreparedArm<T> {
     pub(crate) fn new(
         arm: &ArmGeometry<T>,
-        range: JointRange<T>,
+        range: ArmRange<T>,
         max_swivel: Option<T>,
         positive: Positive,
     ) -> Self {

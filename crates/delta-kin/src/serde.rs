@@ -4,7 +4,7 @@ use nalgebra::RealField;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use trig_kernels::Trig;
 
-use crate::{ArmGeometry, AssemblyMode, Delta, Elbow, GeometryError, JointRange, Positive, ZAxis};
+use crate::{ArmGeometry, ArmRange, AssemblyMode, Delta, Elbow, GeometryError, Positive, ZAxis};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
@@ -25,7 +25,7 @@ macro_rules! serialise_as {
     };
 }
 
-serialise_as!(JointRange, PlainRange);
+serialise_as!(ArmRange, PlainRange);
 serialise_as!(Delta, PlainDelta);
 
 #[derive(Serialize, Deserialize)]
@@ -35,8 +35,8 @@ struct PlainRange<T> {
     max: T,
 }
 
-impl<T: RealField + Trig> From<JointRange<T>> for PlainRange<T> {
-    fn from(range: JointRange<T>) -> Self {
+impl<T: RealField + Trig> From<ArmRange<T>> for PlainRange<T> {
+    fn from(range: ArmRange<T>) -> Self {
         Self {
             min: range.min(),
             max: range.max(),
@@ -44,7 +44,7 @@ impl<T: RealField + Trig> From<JointRange<T>> for PlainRange<T> {
     }
 }
 
-impl<T: RealField + Trig> TryFrom<PlainRange<T>> for JointRange<T> {
+impl<T: RealField + Trig> TryFrom<PlainRange<T>> for ArmRange<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainRange<T>) -> Result<Self, Self::Error> {
@@ -67,7 +67,7 @@ struct PlainDelta<T> {
     #[serde(default)]
     positive: Positive,
     #[serde(default)]
-    ranges: [Option<JointRange<T>>; 3],
+    ranges: [Option<ArmRange<T>>; 3],
     #[serde(default)]
     max_swivel: Option<T>,
     #[serde(default = "elbows_out")]
@@ -88,7 +88,7 @@ impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {
             positive: delta.positive(),
             ranges: delta
                 .ranges()
-                .map(|range| (range != JointRange::unlimited()).then_some(range)),
+                .map(|range| (range != ArmRange::unlimited()).then_some(range)),
             max_swivel: delta.max_swivel(),
             working_mode: delta.working_mode(),
             assembly_mode: delta.assembly_mode(),
@@ -106,7 +106,7 @@ impl<T: RealField + Trig> TryFrom<PlainDelta<T>> for Delta<T> {
             .with_ranges(
                 plain
                     .ranges
-                    .map(|range| range.unwrap_or_else(JointRange::unlimited)),
+                    .map(|range| range.unwrap_or_else(ArmRange::unlimited)),
             )
             .with_working_mode(plain.working_mode)
             .with_assembly_mode(plain.assembly_mode);

@@ -9,7 +9,7 @@ use crate::arm::zip;
 use crate::pose::{invert_rods, smallest_sine};
 use crate::prepared::PreparedArm;
 use crate::range::sqrt;
-use crate::{Arm, JointRange, Pose};
+use crate::{Arm, ArmRange, Pose};
 
 /// By how much an arm may pass an end of its range between two rows, in radians: rounding, and a path
 /// that touches it.
@@ -341,7 +341,7 @@ fn larger_or_nan(a: f64, b: f64) -> f64 {
 }
 
 /// The angle that is farthest beyond an end of the range, if one is.
-fn beyond(range: &JointRange, cubic: &Cubic) -> Option<f64> {
+fn beyond(range: &ArmRange, cubic: &Cubic) -> Option<f64> {
     let mut points = cubic.control_points().into_iter();
     if points.all(|point| range.min() <= point && point <= range.max()) {
         return None;

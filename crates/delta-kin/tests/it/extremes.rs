@@ -3,7 +3,7 @@
 
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, Dimensions, Elbow, InverseError, JointRange, Measured,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, Elbow, InverseError, Measured,
     Parameter, Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
@@ -131,14 +131,14 @@ fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
         .with_working_mode([0; 3].map(|_| numbers.pick(&[Elbow::Out, Elbow::In])));
     delta = read(delta.with_zero(numbers.mostly(0.3))).unwrap_or(delta);
     delta = read(delta.with_ball_joints(numbers.mostly(1.5))).unwrap_or(delta);
-    if let Some(range) = read(JointRange::new(numbers.mostly(-3.0), numbers.mostly(3.1))) {
+    if let Some(range) = read(ArmRange::new(numbers.mostly(-3.0), numbers.mostly(3.1))) {
         prop_assert_range(&range, numbers);
         delta = delta.with_range(range);
     }
     Some(delta)
 }
 
-fn prop_assert_range<T: RealField + Trig>(range: &JointRange<T>, numbers: &mut Source) {
+fn prop_assert_range<T: RealField + Trig>(range: &ArmRange<T>, numbers: &mut Source) {
     assert!(range.min() < range.max() && (range.max() - range.min()).is_finite());
     let angle: T = numbers.next();
     assert_eq!(

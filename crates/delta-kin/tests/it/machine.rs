@@ -4,8 +4,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, Delta, Dimensions, Elbow, ForwardError, GeometryError, InverseError,
-    JointRange, PoseError, Positive, ZAxis,
+    Arm, ArmGeometry, ArmRange, Delta, Dimensions, Elbow, ForwardError, GeometryError,
+    InverseError, PoseError, Positive, ZAxis,
 };
 
 use crate::common::thesis::thesis;
@@ -114,7 +114,7 @@ fn z_may_point_down_and_angles_inward() {
 #[test]
 fn limits_are_told_by_arm_and_amount() {
     let point = Point3::new(50.0, 50.0, -300.0);
-    let range = JointRange::new(0.6, 2.0).unwrap();
+    let range = ArmRange::new(0.6, 2.0).unwrap();
     let delta = thesis().with_range(range);
     let theta = 0.526_452_217_253_15;
     match delta.inverse(point) {
@@ -154,7 +154,7 @@ fn limits_are_told_by_arm_and_amount() {
 /// By radians, not by their ratio to the end of the range.
 #[test]
 fn of_two_arms_outside_the_farther_is_named() {
-    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| JointRange::new(-1.0, max).unwrap());
+    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| ArmRange::new(-1.0, max).unwrap());
     let delta = thesis().with_ranges([first, second, third]);
     let refused = delta.inverse(Point3::new(50.0, 50.0, -300.0));
     let arm = Arm::First;
@@ -169,7 +169,7 @@ fn a_range_chooses_the_turn() {
     let knees_in = bent.inverse(Point3::new(0.0, 0.0, -130.0)).unwrap();
     assert!(knees_in.max() < -2.0);
     let turned = bent
-        .with_range(JointRange::new(1.0, 6.0).unwrap())
+        .with_range(ArmRange::new(1.0, 6.0).unwrap())
         .inverse(Point3::new(0.0, 0.0, -130.0))
         .unwrap();
     same(
@@ -179,7 +179,7 @@ fn a_range_chooses_the_turn() {
     );
     // Two turns on.
     let point = Point3::new(50.0, 50.0, -300.0);
-    let wound = delta.with_range(JointRange::new(13.0, 14.0).unwrap());
+    let wound = delta.with_range(ArmRange::new(13.0, 14.0).unwrap());
     let angles = delta.inverse(point).unwrap();
     let turned = wound.inverse(point).unwrap();
     same(
@@ -193,7 +193,13 @@ fn a_range_chooses_the_turn() {
 #[test]
 fn a_thin_triangle_of_knees_keeps_the_lengths() {
     // Far out, where the elbows have changed their order round the axis.
-    let delta = Delta::<f32>::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 }).unwrap();
+    let delta = Delta::<f32>::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let point = Point3::new(198.061_14, 29.537_943, -255.231_63);
     let made = delta.forward(delta.inverse(point).unwrap()).unwrap();
     assert!(delta.inverse(made).is_ok(), "{made}");
@@ -311,7 +317,7 @@ fn geometry_is_checked() {
         (f64::NAN, 1.0),
         (0.0, f64::INFINITY),
     ] {
-        assert!(JointRange::new(min, max).is_err());
+        assert!(ArmRange::new(min, max).is_err());
     }
     for swivel in [0.0, -0.1, 1.6, f64::NAN] {
         assert!(thesis().with_ball_joints(swivel).is_err());

@@ -5,8 +5,9 @@ use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow, FollowError, InverseError,
-    JointRange, Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
+    Arm, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow, FollowError,
+    InverseError, Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError,
+    ZAxis,
 };
 
 use crate::common::thesis::thesis;
@@ -44,7 +45,7 @@ fn a_point_above_the_base_is_refused_with_the_likely_cause() {
         })
     ));
     // Joint ranges do not hide the cause.
-    let ranged = thesis().with_range(JointRange::new(-0.3, 2.0).unwrap());
+    let ranged = thesis().with_range(ArmRange::new(-0.3, 2.0).unwrap());
     assert_eq!(ranged.inverse(above), Err(refused));
     assert!(thesis().pose_at(above).is_err());
 }
@@ -309,7 +310,7 @@ fn the_working_mode_is_asked_for_by_name() {
         assert!((inward.inverse(point).unwrap() + pose.angles()).amax() < 1e-15);
         // A range that holds the angles holds the ball of the clearance.
         let [low, high] = [pose.angles().min() - 0.05, pose.angles().max() + 0.05];
-        let ranged = bent.with_range(JointRange::new(low, high).unwrap());
+        let ranged = bent.with_range(ArmRange::new(low, high).unwrap());
         let clearance = ranged.clearance(point);
         assert!(clearance > 0.5, "{clearance}");
         for k in 0..100 {
@@ -342,8 +343,8 @@ fn the_other_elbow_s_angle_is_no_end_of_a_range() {
         .unwrap();
     for (arm, angle) in out.iter().copied().enumerate() {
         assert!(f64::abs(angle - inner[arm]) < FRAC_PI_2);
-        let mut ranges = [JointRange::unlimited(); 3];
-        ranges[arm] = JointRange::new(inner[arm], inner[arm] + 1.0).unwrap();
+        let mut ranges = [ArmRange::unlimited(); 3];
+        ranges[arm] = ArmRange::new(inner[arm], inner[arm] + 1.0).unwrap();
         let [min, max] = [ranges[arm].min(), ranges[arm].max()];
         let refused = InverseError::JointLimit {
             arm: Arm::ALL[arm],
@@ -352,7 +353,7 @@ fn the_other_elbow_s_angle_is_no_end_of_a_range() {
             max,
         };
         assert_eq!(delta.with_ranges(ranges).inverse(point), Err(refused));
-        ranges[arm] = JointRange::new(angle, inner[arm]).unwrap();
+        ranges[arm] = ArmRange::new(angle, inner[arm]).unwrap();
         assert_eq!(delta.with_ranges(ranges).inverse(point), Ok(out));
     }
 }

@@ -2,7 +2,7 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, Dimensions, Elbow, InverseError, JointRange, Pose, ZAxis,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, Elbow, InverseError, Pose, ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -223,7 +223,7 @@ proptest! {
         (low, wide) in (-1.0..1.0f64, 0.1..3.0f64),
         shares in (0.0..=1.0f64, gaps(), gaps()).prop_map(|(a, b, c)| [a, b, 1.0 - c]),
     ) {
-        let range = JointRange::new(low, low + wide).unwrap();
+        let range = ArmRange::new(low, low + wide).unwrap();
         let angles = Vector3::from(shares).map(|share| (low + share * wide).min(range.max()));
         let pose = delta.pose_of(angles);
         prop_assume!(pose.is_ok());

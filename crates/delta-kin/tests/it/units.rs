@@ -3,9 +3,9 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow, FollowError,
-    ForwardError, InverseError, JointRange, Measured, Parameter, Path, Pose, Quantity, SpeedLimits,
-    WorkspaceError,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow,
+    FollowError, ForwardError, InverseError, Measured, Parameter, Path, Pose, Quantity,
+    SpeedLimits, WorkspaceError,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -92,7 +92,7 @@ impl Case {
         if !self.is_limited {
             return Some(delta);
         }
-        let range = |angle: f64| JointRange::new(angle - 1.0, angle + 0.5).unwrap();
+        let range = |angle: f64| ArmRange::new(angle - 1.0, angle + 0.5).unwrap();
         Some(
             delta
                 .with_ranges(self.angles.map(range))
@@ -331,7 +331,7 @@ fn paths_workspace_and_calibration_scale() {
             lower: 243.0 * unit,
         })
         .unwrap()
-        .with_range(JointRange::new(-0.5, 2.2).unwrap())
+        .with_range(ArmRange::new(-0.5, 2.2).unwrap())
     };
     let one = slow_answers(&delta(1.0), 1.0);
     for k in -6..=6 {

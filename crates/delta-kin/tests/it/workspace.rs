@@ -2,7 +2,7 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, Dimensions, FollowError, InverseError, JointRange, Path, PathError, SpeedLimits,
+    ArmRange, Delta, Dimensions, FollowError, InverseError, Path, PathError, SpeedLimits,
     WorkspaceError,
 };
 
@@ -10,7 +10,7 @@ use crate::common::thesis::thesis;
 
 fn limited() -> Delta {
     thesis()
-        .with_range(JointRange::new(-0.3, 2.0).unwrap())
+        .with_range(ArmRange::new(-0.3, 2.0).unwrap())
         .with_ball_joints(0.6)
         .unwrap()
 }
