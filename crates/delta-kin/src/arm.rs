@@ -46,7 +46,7 @@ impl fmt::Display for Arm {
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "two circles meet in two points")]
-pub enum Elbow {
+pub enum ElbowSide {
     /// Outside, as Delta robots are built.
     Out,
     /// Inside, towards the axis of the base.

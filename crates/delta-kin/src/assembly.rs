@@ -8,7 +8,7 @@ use trig_kernels::Trig;
 use crate::arm::zip;
 use crate::prepared::PreparedArm;
 use crate::range::{half, norm, two};
-use crate::{Delta, Elbow, InverseError, ZAxis};
+use crate::{Delta, ElbowSide, InverseError, ZAxis};
 
 /// Which of the two points where the lower arms meet the platform takes.
 ///
@@ -161,7 +161,7 @@ pub(crate) fn from_above<T: RealField + Trig>([c1, c2, c3]: [Vector3<T>; 3]) -> 
 fn rod_at_edge<T: RealField + Trig>(
     prepared: &PreparedArm<T>,
     point: &Vector3<T>,
-    elbow: Elbow,
+    elbow: ElbowSide,
 ) -> Vector3<T> {
     let triangle = prepared.triangle(point).at_edge();
     prepared.rod(&triangle, &triangle.heading(elbow), triangle.scale())

@@ -6,7 +6,7 @@ use trig_kernels::{Trig, sin_cos_lanes};
 use crate::arm::zip;
 use crate::geometry::checked_span;
 use crate::prepared::PreparedArm;
-use crate::{Arm, ArmGeometry, ArmRange, AssemblyMode, Dimensions, Elbow, GeometryError};
+use crate::{Arm, ArmGeometry, ArmRange, AssemblyMode, Dimensions, ElbowSide, GeometryError};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
@@ -35,7 +35,7 @@ pub struct Delta<T: RealField = f64> {
     positive: Positive,
     ranges: [ArmRange<T>; 3],
     max_swivel: Option<T>,
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     assembly_mode: AssemblyMode,
     /// What follows from the above, ready for use.
     prepared: [PreparedArm<T>; 3],
@@ -104,7 +104,7 @@ impl<T: RealField + Trig> Delta<T> {
             positive: Positive::default(),
             ranges: [ArmRange::unlimited(); 3],
             max_swivel: None,
-            working_mode: [Elbow::Out; 3],
+            working_mode: [ElbowSide::Out; 3],
             assembly_mode: AssemblyMode::Lower,
             prepared: arms
                 .map(|arm| PreparedArm::new(&arm, ArmRange::unlimited(), None, Positive::Outward)),
@@ -187,7 +187,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// The machine with each elbow on the side named: the working mode in which it is built, elbows
     /// out unless set. It is left only through a serial singularity, an arm stretched or folded.
     #[must_use]
-    pub const fn with_working_mode(mut self, working_mode: [Elbow; 3]) -> Self {
+    pub const fn with_working_mode(mut self, working_mode: [ElbowSide; 3]) -> Self {
         self.working_mode = working_mode;
         self
     }
@@ -251,7 +251,7 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// On which side of the line from shoulder to wrist each elbow is.
     #[must_use]
-    pub const fn working_mode(&self) -> [Elbow; 3] {
+    pub const fn working_mode(&self) -> [ElbowSide; 3] {
         self.working_mode
     }
 

@@ -84,7 +84,7 @@ impl<T: RealField + Trig> Delta<T> {
 
 /// An elbow in motion, by the time derivatives of its place.
 #[derive(Clone, Copy)]
-struct Elbow<T> {
+struct ElbowSide<T> {
     /// Its place's derivative by the arm's angle.
     tangent: Vector3<T>,
     velocity: Vector3<T>,
@@ -155,7 +155,7 @@ impl<T: RealField + Trig> DeltaDynamics<T> {
             let (sin, cos) = sin_cos(theta);
             let tangent = delta.flip(prepared.tangent((sin, cos))) * prepared.turn;
             let inward = prepared.in_plane(-prepared.upper * sin, prepared.upper * cos);
-            Elbow {
+            ElbowSide {
                 tangent,
                 velocity: tangent * rate,
                 acceleration: tangent * acceleration + delta.flip(inward) * (rate * rate),

@@ -29,7 +29,7 @@ mod workspace;
 pub use nalgebra;
 pub use trig_kernels::Trig;
 
-pub use arm::{Arm, ArmGeometry, Dimensions, Elbow};
+pub use arm::{Arm, ArmGeometry, Dimensions, ElbowSide};
 pub use assembly::AssemblyMode;
 pub use calibrate::{Calibration, CalibrationError, Measured, Parameter, Quantity};
 pub use delta::{Delta, Positive, ZAxis};

@@ -4,7 +4,9 @@ use nalgebra::RealField;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use trig_kernels::Trig;
 
-use crate::{ArmGeometry, ArmRange, AssemblyMode, Delta, Elbow, GeometryError, Positive, ZAxis};
+use crate::{
+    ArmGeometry, ArmRange, AssemblyMode, Delta, ElbowSide, GeometryError, Positive, ZAxis,
+};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
@@ -71,13 +73,13 @@ struct PlainDelta<T> {
     #[serde(default)]
     max_swivel: Option<T>,
     #[serde(default = "elbows_out")]
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     #[serde(default)]
     assembly_mode: AssemblyMode,
 }
 
-const fn elbows_out() -> [Elbow; 3] {
-    [Elbow::Out; 3]
+const fn elbows_out() -> [ElbowSide; 3] {
+    [ElbowSide::Out; 3]
 }
 
 impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {

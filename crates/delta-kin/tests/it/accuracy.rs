@@ -3,7 +3,7 @@
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
-use delta_kin::{ArmGeometry, AssemblyMode, Delta, Dimensions, Elbow, ForwardError, Trig};
+use delta_kin::{ArmGeometry, AssemblyMode, Delta, Dimensions, ElbowSide, ForwardError, Trig};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -117,7 +117,7 @@ struct Case {
     arms: [ArmGeometry; 3],
     angles: [f64; 3],
     assembly_mode: AssemblyMode,
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     direction: [f64; 3],
     /// How far along the direction, in what there is up to the edge of the reach.
     share: f64,

@@ -3,7 +3,7 @@
 
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, Elbow, InverseError, Measured,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Measured,
     Parameter, Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
@@ -128,7 +128,7 @@ fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
         .with_z(numbers.pick(&[ZAxis::Up, ZAxis::Down]))
         .with_positive(numbers.pick(&[Positive::Outward, Positive::Inward]))
         .with_assembly_mode(numbers.pick(&[AssemblyMode::Lower, AssemblyMode::Upper]))
-        .with_working_mode([0; 3].map(|_| numbers.pick(&[Elbow::Out, Elbow::In])));
+        .with_working_mode([0; 3].map(|_| numbers.pick(&[ElbowSide::Out, ElbowSide::In])));
     delta = read(delta.with_zero(numbers.mostly(0.3))).unwrap_or(delta);
     delta = read(delta.with_ball_joints(numbers.mostly(1.5))).unwrap_or(delta);
     if let Some(range) = read(ArmRange::new(numbers.mostly(-3.0), numbers.mostly(3.1))) {

@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, ArmRange, Delta, Dimensions, Elbow, ForwardError, GeometryError,
+    Arm, ArmGeometry, ArmRange, Delta, Dimensions, ElbowSide, ForwardError, GeometryError,
     InverseError, PoseError, Positive, ZAxis,
 };
 
@@ -165,7 +165,7 @@ fn of_two_arms_outside_the_farther_is_named() {
 #[test]
 fn a_range_chooses_the_turn() {
     let delta = thesis();
-    let bent = delta.with_working_mode([Elbow::In; 3]);
+    let bent = delta.with_working_mode([ElbowSide::In; 3]);
     let knees_in = bent.inverse(Point3::new(0.0, 0.0, -130.0)).unwrap();
     assert!(knees_in.max() < -2.0);
     let turned = bent

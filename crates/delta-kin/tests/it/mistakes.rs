@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{AssemblyMode, Delta, Dimensions, Elbow, InverseError, Pose};
+use delta_kin::{AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Pose};
 
 use crate::common::thesis::thesis;
 
@@ -12,7 +12,7 @@ const ANGLE_ERROR: f64 = 1e-13;
 
 /// The pose with the elbows in, in the one assembly mode that has it there.
 fn bent_in(delta: &Delta, point: Point3<f64>) -> Pose {
-    let bent = delta.with_working_mode([Elbow::In; 3]);
+    let bent = delta.with_working_mode([ElbowSide::In; 3]);
     let lower = bent.pose_at(point);
     let upper = bent.with_assembly_mode(AssemblyMode::Upper).pose_at(point);
     assert!(lower.is_ok() != upper.is_ok(), "{lower:?} {upper:?}");
@@ -141,8 +141,13 @@ fn own_stretched_and_folded_poses_are_reached() {
             let Ok(pose) = delta.pose_of(angles) else {
                 continue;
             };
-            let elbows = <[f64; 3]>::from(pose.levers())
-                .map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out });
+            let elbows = <[f64; 3]>::from(pose.levers()).map(|lever| {
+                if lever > 0.0 {
+                    ElbowSide::In
+                } else {
+                    ElbowSide::Out
+                }
+            });
             let reached = delta.with_working_mode(elbows).inverse(pose.point());
             assert!(reached.is_ok(), "{angles}: {reached:?}");
         }
@@ -156,7 +161,7 @@ fn own_stretched_and_folded_poses_are_reached() {
     })
     .unwrap();
     for theta in [-10f64.atan2(300.0), 10f64.atan2(100.0)] {
-        for elbow in [Elbow::Out, Elbow::In] {
+        for elbow in [ElbowSide::Out, ElbowSide::In] {
             let machine = plain.with_working_mode([elbow; 3]);
             let made = machine.forward(Vector3::repeat(theta)).unwrap();
             let back = machine.inverse(made).unwrap();

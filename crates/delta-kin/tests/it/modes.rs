@@ -5,7 +5,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow, FollowError,
+    Arm, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, ElbowSide, FollowError,
     InverseError, Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError,
     ZAxis,
 };
@@ -127,8 +127,14 @@ fn the_lower_mode_is_below_also_where_arms_hang_inward() {
     assert!(upper.forward(angles).unwrap().z > lower.z + 100.0);
     // Elbows 1 and 3 were pushed in.
     let elbows = <[f64; 3]>::from(delta.pose_of(angles).unwrap().levers());
-    let elbows = elbows.map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out });
-    assert_eq!(elbows, [Elbow::In, Elbow::Out, Elbow::In]);
+    let elbows = elbows.map(|lever| {
+        if lever > 0.0 {
+            ElbowSide::In
+        } else {
+            ElbowSide::Out
+        }
+    });
+    assert_eq!(elbows, [ElbowSide::In, ElbowSide::Out, ElbowSide::In]);
     let bent = delta.with_working_mode(elbows);
     assert!((bent.inverse(lower).unwrap() - angles).amax() < 1e-12);
 }
@@ -260,7 +266,7 @@ fn the_workspace_is_that_of_the_modes() {
     let above = Point3::new(0.0, 0.0, 250.0);
     let upper = thesis()
         .with_assembly_mode(AssemblyMode::Upper)
-        .with_working_mode([Elbow::In; 3]);
+        .with_working_mode([ElbowSide::In; 3]);
     let (lower, upper) = (thesis(), upper);
     let mirrored = upper.largest_cylinder([230.0, 290.0], 1.0);
     assert_eq!(lower.largest_cylinder([-290.0, -230.0], 1.0), mirrored);
@@ -287,9 +293,9 @@ fn the_workspace_is_that_of_the_modes() {
 fn the_working_mode_is_asked_for_by_name() {
     let point = Point3::new(20.0, -10.0, -280.0);
     for elbows in [
-        [Elbow::Out, Elbow::In, Elbow::Out],
-        [Elbow::In, Elbow::In, Elbow::Out],
-        [Elbow::In; 3],
+        [ElbowSide::Out, ElbowSide::In, ElbowSide::Out],
+        [ElbowSide::In, ElbowSide::In, ElbowSide::Out],
+        [ElbowSide::In; 3],
     ] {
         let bent = thesis().with_working_mode(elbows);
         let [lower, upper] =
@@ -301,7 +307,7 @@ fn the_working_mode_is_asked_for_by_name() {
         };
         let pose = bent.pose_at(point).unwrap();
         for (lever, elbow) in pose.levers().iter().zip(elbows) {
-            assert_eq!(*lever > 0.0, elbow == Elbow::In);
+            assert_eq!(*lever > 0.0, elbow == ElbowSide::In);
         }
         assert!((bent.forward(pose.angles()).unwrap() - point).norm() < 1e-11);
         assert_eq!(bent.working_mode(), elbows);
@@ -338,7 +344,7 @@ fn the_other_elbow_s_angle_is_no_end_of_a_range() {
     let point = Point3::new(0.05, -0.04, 1.27);
     let out = delta.inverse(point).unwrap();
     let inner = delta
-        .with_working_mode([Elbow::In; 3])
+        .with_working_mode([ElbowSide::In; 3])
         .inverse(point)
         .unwrap();
     for (arm, angle) in out.iter().copied().enumerate() {

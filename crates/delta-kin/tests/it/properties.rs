@@ -2,7 +2,8 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, Elbow, InverseError, Pose, ZAxis,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Pose,
+    ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -72,8 +73,14 @@ fn gaps() -> impl Strategy<Value = f64> {
 }
 
 /// The working mode of a pose, however it was made.
-fn working_mode(pose: &Pose) -> [Elbow; 3] {
-    <[f64; 3]>::from(pose.levers()).map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out })
+fn working_mode(pose: &Pose) -> [ElbowSide; 3] {
+    <[f64; 3]>::from(pose.levers()).map(|lever| {
+        if lever > 0.0 {
+            ElbowSide::In
+        } else {
+            ElbowSide::Out
+        }
+    })
 }
 
 /// The machine in its two assembly modes.

@@ -3,7 +3,7 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, Elbow,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, ElbowSide,
     FollowError, ForwardError, InverseError, Measured, Parameter, Path, Pose, Quantity,
     SpeedLimits, WorkspaceError,
 };
@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-9;
 struct Case {
     arms: [ArmGeometry; 3],
     assembly_mode: AssemblyMode,
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     angles: [f64; 3],
     other: [f64; 3],
     is_limited: bool,

@@ -1,6 +1,6 @@
 //! Machines whose arms differ widely, and anything that they may be set to.
 
-use delta_kin::{Arm, ArmGeometry, AssemblyMode, Dimensions, Elbow};
+use delta_kin::{Arm, ArmGeometry, AssemblyMode, Dimensions, ElbowSide};
 use proptest::prelude::*;
 
 /// 10 to the power of what is between two ends.
@@ -55,8 +55,8 @@ pub(crate) fn uneven_arms() -> impl Strategy<Value = [ArmGeometry; 3]> {
 }
 
 /// An assembly and a working mode.
-pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [Elbow; 3])> {
+pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [ElbowSide; 3])> {
     let assembly_mode = prop_oneof![Just(AssemblyMode::Lower), Just(AssemblyMode::Upper)];
-    let elbow = || prop_oneof![Just(Elbow::Out), Just(Elbow::In)];
+    let elbow = || prop_oneof![Just(ElbowSide::Out), Just(ElbowSide::In)];
     (assembly_mode, [elbow(), elbow(), elbow()])
 }
