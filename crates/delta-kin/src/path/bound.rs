@@ -13,7 +13,7 @@ use crate::{Arm, ArmRange, Pose};
 
 /// By how much an arm may pass an end of its range between two rows, in radians: rounding, and a path
 /// that touches it.
-const TOUCH: f64 = 1e-9;
+const RANGE_SLACK: f64 = 1e-9;
 
 /// √3, upwards.
 const ROOT3: f64 = 1.732_050_807_568_877_4;
@@ -348,7 +348,10 @@ fn beyond(range: &ArmRange, cubic: &Cubic) -> Option<f64> {
     }
     let [low, high] = cubic.extent();
     // Written so that NaN is beyond.
-    let (is_above, is_below) = (low >= range.min() - TOUCH, high <= range.max() + TOUCH);
+    let (is_above, is_below) = (
+        low >= range.min() - RANGE_SLACK,
+        high <= range.max() + RANGE_SLACK,
+    );
     if is_above && is_below {
         return None;
     }

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
 use trig_kernels::atan2;
 
-use super::swing::{Swing, TOUCH};
+use super::swing::{RANGE_SLACK, Swing};
 use super::turns::Turns;
 use super::{ArmPath, ArmPathError};
 use crate::limits::half_turn;
@@ -44,7 +44,7 @@ const STEPS: f64 = 128.0;
 const STEP: f64 = 0.5;
 
 /// Shortest step, as a fraction of the curve: next to a cusp the curvature knows no bound.
-const LEAST_STEP: f64 = 1e-12;
+const MIN_STEP: f64 = 1e-12;
 
 impl ArmPath {
     /// The path with a disc that stands at the angle `theta3` before, in radians: it begins at the
@@ -89,7 +89,7 @@ fn headings(path: &ArmPath, start: f64) -> Result<Turns, ArmPathError> {
     while s < curve.length() {
         let at = curve.at(s);
         let (first, second) = (Vector2::from(at.tangent), Vector2::from(at.curvature));
-        let (most, least) = (curve.length() / STEPS, curve.length() * LEAST_STEP);
+        let (most, least) = (curve.length() / STEPS, curve.length() * MIN_STEP);
         let step = (STEP * first.norm() / second.norm()).max(least).min(most);
         s = (s + step).min(curve.length());
         last += half_turn(direction(curve.at(s).tangent) - last);
@@ -160,6 +160,6 @@ impl Path for DiscPath {
     }
 
     fn check(&self, span: &Span<[f64; 3]>) -> Result<(), ArmPathError> {
-        arm_swing(span).check(&self.arm_path.arm, TOUCH)
+        arm_swing(span).check(&self.arm_path.arm, RANGE_SLACK)
     }
 }
