@@ -77,7 +77,7 @@ fn sums_agree(items: &[Item]) {
     let (mut sum, mut pulses, mut records) = ([0_i64; 4], [0_u64; 4], 0);
     for located in items.iter().flatten() {
         let moved = located.record.pulses();
-        let moved = [moved.theta1, moved.theta2, moved.theta3, moved.vertical];
+        let moved = [moved.elbow, moved.shoulder, moved.disc, moved.vertical];
         if builder.track(located.record).is_err() {
             return;
         }
@@ -90,14 +90,14 @@ fn sums_agree(items: &[Item]) {
     }
     let at = builder.position();
     assert_eq!(
-        [at.theta1, at.theta2, at.theta3, at.vertical].map(i64::from),
+        [at.elbow, at.shoulder, at.disc, at.vertical].map(i64::from),
         sum
     );
     let counted = statistics.pulses;
     let counted = [
-        counted.theta1,
-        counted.theta2,
-        counted.theta3,
+        counted.elbow,
+        counted.shoulder,
+        counted.disc,
         counted.vertical,
     ];
     assert_eq!((counted, statistics.records()), (pulses, records));

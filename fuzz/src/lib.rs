@@ -27,9 +27,9 @@ pub fn format(u: &mut Unstructured<'_>) -> Result<Format> {
     let mut left = vec![0, 1, 2, 3];
     let mut code = || -> Result<u8> { Ok(left.swap_remove(u.choose_index(left.len())?)) };
     let codes = PerAxis {
-        theta1: code()?,
-        theta2: code()?,
-        theta3: code()?,
+        elbow: code()?,
+        shoulder: code()?,
+        disc: code()?,
         vertical: code()?,
     };
     Ok(Format::default()

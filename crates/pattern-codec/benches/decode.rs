@@ -33,9 +33,9 @@ fn drawing(format: &Format) -> Vec<u8> {
         }
         for _ in 0..60 {
             let pulses = JointPulses {
-                theta1: random(30),
-                theta2: random(30),
-                theta3: random(4),
+                elbow: random(30),
+                shoulder: random(30),
+                disc: random(4),
             };
             let cut = builder.slow(pulses).unwrap();
             bytes.extend(cut.flat_map(|record| record.encode(format)));
@@ -47,9 +47,9 @@ fn drawing(format: &Format) -> Vec<u8> {
 /// A cheap use of every record that the optimiser cannot drop.
 fn used(sum: i32, record: Record) -> i32 {
     let pulses = record.pulses();
-    sum.wrapping_add(pulses.theta1)
-        .wrapping_add(pulses.theta2)
-        .wrapping_add(pulses.theta3)
+    sum.wrapping_add(pulses.elbow)
+        .wrapping_add(pulses.shoulder)
+        .wrapping_add(pulses.disc)
         .wrapping_add(pulses.vertical)
 }
 

@@ -239,7 +239,7 @@ impl<P: Wires> Wires for Simulation<'_, P> {
             self.motors.step(ticks, axis, step);
             self.has_moved = true;
         }
-        if axis == Axis::Theta3 && !self.turns_while_moving {
+        if axis == Axis::Disc && !self.turns_while_moving {
             self.meter.disc_edge(ticks);
         }
         self.probe.step(ticks, axis, level)

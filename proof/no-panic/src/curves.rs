@@ -111,8 +111,8 @@ fn arm_check(path: &ArmPath, span: &Span<[f64; 2]>) -> Result<(), ArmPathError> 
 
 #[no_panic]
 #[inline(never)]
-fn with_disc(path: ArmPath, theta3: f64) -> Result<DiscPath, ArmPathError> {
-    path.with_disc(theta3)
+fn with_disc(path: ArmPath, tool_angle: f64) -> Result<DiscPath, ArmPathError> {
+    path.with_disc(tool_angle)
 }
 
 #[no_panic]

@@ -10,7 +10,7 @@ impl Format {
     /// The record of three bytes.
     ///
     /// # Errors
-    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of theta1 or theta2 in a SLOW record; D6 or D5 set in a SLOW byte in [`Mode::Strict`].
+    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of elbow or shoulder in a SLOW record; D6 or D5 set in a SLOW byte in [`Mode::Strict`].
     #[inline]
     pub fn decode(&self, bytes: [u8; Record::LEN]) -> Result<Record, DecodeError> {
         let [first, second, third] = bytes;
@@ -66,11 +66,11 @@ impl Format {
 
 /// The first error of a SLOW record.
 #[cold]
-fn slow_error(mode: Mode, [theta3, theta1, theta2]: [u8; Record::LEN]) -> Option<DecodeError> {
+fn slow_error(mode: Mode, [disc, elbow, shoulder]: [u8; Record::LEN]) -> Option<DecodeError> {
     [
-        (0, Axis::Theta3, theta3),
-        (1, Axis::Theta1, theta1),
-        (2, Axis::Theta2, theta2),
+        (0, Axis::Disc, disc),
+        (1, Axis::Elbow, elbow),
+        (2, Axis::Shoulder, shoulder),
     ]
     .into_iter()
     .find_map(|(offset, axis, byte)| {
@@ -315,7 +315,7 @@ impl DecodeError {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
-    /// The mark of a FAST record, 31 pulses, as the count of theta1 or theta2 in a SLOW record.
+    /// The mark of a FAST record, 31 pulses, as the count of elbow or shoulder in a SLOW record.
     #[error("{byte:#04X} has 31 pulses for {axis} in a SLOW record, which holds at most 30")]
     SlowCount {
         /// The axis of the byte.

@@ -6,7 +6,7 @@ use super::{Axis, PerAxis};
 
 /// Which two-bit code in D6 D5 of a FAST record names which axis: distinct, 0..=3.
 ///
-/// The default is 0 theta1, 1 theta2, 2 theta3, 3 vertical; [Engraver 2000] does not print the
+/// The default is 0 elbow, 1 shoulder, 2 disc, 3 vertical; [Engraver 2000] does not print the
 /// codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,9 +24,9 @@ pub struct AxisCodes {
 impl AxisCodes {
     const DEFAULT: Self = Self {
         codes: PerAxis {
-            theta1: 0,
-            theta2: 1,
-            theta3: 2,
+            elbow: 0,
+            shoulder: 1,
+            disc: 2,
             vertical: 3,
         },
         axes: 0b11_10_01_00,

@@ -5,19 +5,19 @@ use pattern_codec::engraving::{
 };
 use proptest::prelude::*;
 
-pub(crate) fn joints(theta1: i32, theta2: i32, theta3: i32) -> JointPulses {
+pub(crate) fn joints(elbow: i32, shoulder: i32, disc: i32) -> JointPulses {
     JointPulses {
-        theta1,
-        theta2,
-        theta3,
+        elbow,
+        shoulder,
+        disc,
     }
 }
 
-pub(crate) fn per_axis<T>([theta1, theta2, theta3, vertical]: [T; 4]) -> PerAxis<T> {
+pub(crate) fn per_axis<T>([elbow, shoulder, disc, vertical]: [T; 4]) -> PerAxis<T> {
     PerAxis {
-        theta1,
-        theta2,
-        theta3,
+        elbow,
+        shoulder,
+        disc,
         vertical,
     }
 }
@@ -26,8 +26,8 @@ pub(crate) fn fast(axis: Axis, pulses: i32) -> Record {
     Fast::new(axis, pulses).unwrap().into()
 }
 
-pub(crate) fn slow(theta1: i32, theta2: i32, theta3: i32) -> Record {
-    Slow::new(joints(theta1, theta2, theta3)).unwrap().into()
+pub(crate) fn slow(elbow: i32, shoulder: i32, disc: i32) -> Record {
+    Slow::new(joints(elbow, shoulder, disc)).unwrap().into()
 }
 
 pub(crate) fn axes() -> impl Strategy<Value = Axis> {
@@ -48,7 +48,7 @@ pub(crate) fn formats() -> impl Strategy<Value = Format> {
 
 pub(crate) fn joint_pulses(most: i32) -> impl Strategy<Value = JointPulses> {
     let one = move || -most..=most;
-    (one(), one(), one()).prop_map(|(theta1, theta2, theta3)| joints(theta1, theta2, theta3))
+    (one(), one(), one()).prop_map(|(elbow, shoulder, disc)| joints(elbow, shoulder, disc))
 }
 
 pub(crate) fn records() -> impl Strategy<Value = Record> {

@@ -266,7 +266,7 @@ proptest! {
         let mut before = 0.0;
         for (joints, heading) in poses {
             let direction = Vector2::new(heading.cos(), heading.sin());
-            let angle = disc.follow(&arm, joints, direction).unwrap().theta3;
+            let angle = disc.follow(&arm, joints, direction).unwrap().tool_angle;
             let off = angle + turn + joints.shoulder + joints.elbow - heading;
             prop_assert!((off - (off / (2.0 * PI)).round() * 2.0 * PI).abs() < ANGLE);
             prop_assert!((angle - before).abs() <= PI + ANGLE);
