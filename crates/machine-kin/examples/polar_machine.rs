@@ -1,6 +1,6 @@
 //! A line past the middle of a polar machine: the steps of table and carriage, to a tick of 72 MHz.
 //!
-//! `cargo run -p machine-kin --example polar_line`
+//! `cargo run -p machine-kin --example polar_machine`
 
 use core::error::Error;
 use core::f64::consts::TAU;
