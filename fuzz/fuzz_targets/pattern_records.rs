@@ -4,7 +4,7 @@
 use arbitrary::Unstructured;
 use libfuzzer_sys::fuzz_target;
 use pattern_codec::engraving::{
-    Builder, DecodeError, DecodeErrorKind, Decoder, Format, Located, Mode, Statistics,
+    Builder, DecodeError, DecodeErrorKind, Decoder, Format, Located, Statistics, Strictness,
 };
 use pose2pulse_fuzz::Cuts;
 
@@ -28,7 +28,7 @@ fuzz_target!(|data: &[u8]| {
 fn size_hint_holds(format: &Format, bytes: &[u8], count: usize) {
     let (least, most) = format.records(bytes).size_hint();
     assert!(least <= count && most.is_some_and(|most| count <= most));
-    if format.mode == Mode::Lenient {
+    if format.strictness == Strictness::Lenient {
         assert_eq!(count, least);
     }
 }
@@ -53,7 +53,7 @@ fn stream_agrees(format: &Format, bytes: &[u8], cuts: &Cuts, items: &[Item]) {
         )
     };
     let last_error = match items.last() {
-        Some(Err(error)) if format.mode == Mode::Strict => Some(*error),
+        Some(Err(error)) if format.strictness == Strictness::Strict => Some(*error),
         Some(Err(error)) => Some(*error).filter(|_| items.last().as_ref().is_some_and(truncated)),
         _ => None,
     };

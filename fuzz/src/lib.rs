@@ -1,7 +1,7 @@
 //! Settings and cuts that the fuzzer chooses, for more than one target.
 
 use arbitrary::{Arbitrary, Result, Unstructured};
-use pattern_codec::engraving::{AxisCodes, ByteOrder, Format, Mode, PerAxis};
+use pattern_codec::engraving::{AxisCodes, ByteOrder, Format, PerAxis, Strictness};
 use proto3964r::{
     Check, Config, Conflict, IdleNoise, IllegalDle, Line, LineError, Priority, SilenceInBlock,
 };
@@ -22,7 +22,7 @@ impl Cuts {
     }
 }
 
-/// Any format: one of the 24 orders of the axis codes, byte order, mode.
+/// Any format: one of the 24 orders of the axis codes, byte order, strictness.
 pub fn format(u: &mut Unstructured<'_>) -> Result<Format> {
     let mut left = vec![0, 1, 2, 3];
     let mut code = || -> Result<u8> { Ok(left.swap_remove(u.choose_index(left.len())?)) };
@@ -35,7 +35,7 @@ pub fn format(u: &mut Unstructured<'_>) -> Result<Format> {
     Ok(Format::default()
         .with_axis_codes(AxisCodes::new(codes).expect("codes are distinct"))
         .with_byte_order(*u.choose(&[ByteOrder::BigEndian, ByteOrder::LittleEndian])?)
-        .with_mode(*u.choose(&[Mode::Strict, Mode::Lenient])?))
+        .with_strictness(*u.choose(&[Strictness::Strict, Strictness::Lenient])?))
 }
 
 pub fn check(u: &mut Unstructured<'_>) -> Result<Check> {

@@ -5,7 +5,7 @@
 use core::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pattern_codec::engraving::{
-    Axis, Builder, Decoder, Format, JointPulses, Mode, Record, Statistics,
+    Axis, Builder, Decoder, Format, JointPulses, Record, Statistics, Strictness,
 };
 
 /// Small enough for the second-level cache, so that decoding is measured and not memory.
@@ -58,8 +58,11 @@ fn decode(criterion: &mut Criterion) {
     let bytes = drawing(&strict);
     let mut group = criterion.benchmark_group("decode");
     group.throughput(Throughput::Bytes(bytes.len().try_into().unwrap()));
-    for (name, mode) in [("strict", Mode::Strict), ("lenient", Mode::Lenient)] {
-        let format = strict.with_mode(mode);
+    for (name, strictness) in [
+        ("strict", Strictness::Strict),
+        ("lenient", Strictness::Lenient),
+    ] {
+        let format = strict.with_strictness(strictness);
         group.bench_function(format!("slice, {name}"), |bench| {
             bench.iter(|| {
                 let format = black_box(format);

@@ -40,7 +40,7 @@ mod statistics;
 pub use axis::{Axis, PerAxis};
 pub use build::{Builder, PositionError, RepeatedAxis};
 pub use decode::{DecodeError, DecodeErrorKind, Decoder, Located, Records};
-pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Mode};
+pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Strictness};
 pub use pattern_header::{PatternData, PatternHeader};
 pub use record::{Fast, JointPulses, PulsesError, Record, Slow};
 pub use reload_header::{ReloadData, ReloadHeader, TimerPeriod};

@@ -148,9 +148,9 @@ pub enum ByteOrder {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(
     clippy::exhaustive_enums,
-    reason = "a caller must know what each mode lets pass"
+    reason = "a caller must know what each strictness lets pass"
 )]
-pub enum Mode {
+pub enum Strictness {
     /// D6 or D5 set in a SLOW byte is an error, and decoding ends at the first error.
     #[default]
     Strict,
@@ -171,7 +171,7 @@ pub struct Format {
     /// Byte order of the pulse count of FAST records.
     pub byte_order: ByteOrder,
     /// How strictly bytes are decoded. Encoding does not depend on it.
-    pub mode: Mode,
+    pub strictness: Strictness,
 }
 
 impl Format {
@@ -181,7 +181,7 @@ impl Format {
         Self {
             axis_codes: AxisCodes::DEFAULT,
             byte_order: ByteOrder::BigEndian,
-            mode: Mode::Strict,
+            strictness: Strictness::Strict,
         }
     }
 
@@ -197,10 +197,10 @@ impl Format {
         Self { byte_order, ..self }
     }
 
-    /// The same format with another mode.
+    /// The same format with another strictness.
     #[must_use]
-    pub const fn with_mode(self, mode: Mode) -> Self {
-        Self { mode, ..self }
+    pub const fn with_strictness(self, strictness: Strictness) -> Self {
+        Self { strictness, ..self }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What several modules use.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, Mode, PerAxis, Record, Slow,
+    Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, PerAxis, Record, Slow, Strictness,
 };
 use proptest::prelude::*;
 
@@ -38,11 +38,11 @@ pub(crate) fn formats() -> impl Strategy<Value = Format> {
     let codes = Just([0_u8, 1, 2, 3]).prop_shuffle();
     (codes, any::<bool>(), any::<bool>()).prop_map(|(codes, little, lenient)| {
         let order = [ByteOrder::BigEndian, ByteOrder::LittleEndian][usize::from(little)];
-        let mode = [Mode::Strict, Mode::Lenient][usize::from(lenient)];
+        let strictness = [Strictness::Strict, Strictness::Lenient][usize::from(lenient)];
         Format::new()
             .with_axis_codes(AxisCodes::new(per_axis(codes)).unwrap())
             .with_byte_order(order)
-            .with_mode(mode)
+            .with_strictness(strictness)
     })
 }
 

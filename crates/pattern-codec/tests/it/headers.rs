@@ -2,7 +2,7 @@
 
 use pattern_codec::c_header::{Dialect, HeaderErrorKind as K, Item, items};
 use pattern_codec::engraving::{
-    Axis, Format, Mode, PatternData, PatternHeader, ReloadData, ReloadHeader, TimerPeriod,
+    Axis, Format, PatternData, PatternHeader, ReloadData, ReloadHeader, Strictness, TimerPeriod,
 };
 use proptest::prelude::*;
 
@@ -28,7 +28,7 @@ proptest! {
         // What the header says counts, not what the reader expects.
         let data = PatternData::read(&text, other).unwrap();
         prop_assert_eq!(data.name(), "rosette");
-        prop_assert_eq!(data.format(), format.with_mode(other.mode));
+        prop_assert_eq!(data.format(), format.with_strictness(other.strictness));
         prop_assert_eq!(data.record_count(), records.len() as u64);
         prop_assert!(data.records().eq(records.iter().copied()));
     }
@@ -168,7 +168,7 @@ fn wrong_patterns_are_refused_with_line_and_column() {
             .unwrap_err();
         assert!(error.to_string().starts_with(wanted), "{error}: {text}");
     }
-    let lenient = Format::new().with_mode(Mode::Lenient);
+    let lenient = Format::new().with_strictness(Strictness::Lenient);
     assert!(PatternData::read("char p[] = {0x20, 0, 0};", lenient).is_ok());
     assert!(PatternData::read("char p[] = {2, 0x1F, 1};", lenient).is_err());
 }

@@ -1,14 +1,14 @@
 //! The cases that [Engraver 2000] leaves to decide, one test each.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodeError, AxisCodes, ByteOrder, DecodeErrorKind, Decoder, Fast, Format, Mode,
-    PerAxis, Slow,
+    Axis, AxisCodeError, AxisCodes, ByteOrder, DecodeErrorKind, Decoder, Fast, Format, PerAxis,
+    Slow, Strictness,
 };
 
 use crate::common::{fast, joints, per_axis, slow};
 
 const STRICT: Format = Format::new();
-const LENIENT: Format = Format::new().with_mode(Mode::Lenient);
+const LENIENT: Format = Format::new().with_strictness(Strictness::Lenient);
 
 #[test]
 fn fast_has_direction_axis_and_mark_in_byte_0_and_the_count_behind() {
@@ -249,7 +249,7 @@ fn the_first_error_of_a_record_is_the_one_reported() {
 }
 
 /// Written from the bit table alone.
-fn canonical_by_bits(bytes: [u8; 3], mode: Mode) -> Option<[u8; 3]> {
+fn canonical_by_bits(bytes: [u8; 3], strictness: Strictness) -> Option<[u8; 3]> {
     let [first, second, third] = bytes;
     if first & 0x1F == 0x1F {
         let empty = second == 0 && third == 0;
@@ -257,7 +257,7 @@ fn canonical_by_bits(bytes: [u8; 3], mode: Mode) -> Option<[u8; 3]> {
     }
     let full = |byte: u8| byte & 0x1F == 0x1F;
     let marked = bytes.iter().any(|byte| byte & 0x60 != 0);
-    if full(second) || full(third) || (mode == Mode::Strict && marked) {
+    if full(second) || full(third) || (strictness == Strictness::Strict && marked) {
         return None;
     }
     Some(bytes.map(|byte| if byte & 0x1F == 0 { 0 } else { byte & 0x9F }))
@@ -267,7 +267,7 @@ fn check_all_records(format: &Format) {
     for word in 0..1_u32 << 24 {
         let [_, a, b, c] = word.to_be_bytes();
         let bytes = [a, b, c];
-        let expected = canonical_by_bits(bytes, format.mode);
+        let expected = canonical_by_bits(bytes, format.strictness);
         assert_eq!(format.canonical(bytes).ok(), expected, "{bytes:02X?}");
     }
 }

@@ -1,7 +1,7 @@
 //! Serialized settings and records: names as documented, values validated when read.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodes, ByteOrder, Fast, Format, Mode, Record, Statistics,
+    Axis, AxisCodes, ByteOrder, Fast, Format, Record, Statistics, Strictness,
 };
 use serde_json::{from_str, json, to_value};
 use test_support::{not_read, stored};
@@ -14,11 +14,11 @@ fn a_format_is_read_and_written_by_name() {
     let format = Format::new()
         .with_axis_codes(AxisCodes::new(codes).unwrap())
         .with_byte_order(ByteOrder::LittleEndian)
-        .with_mode(Mode::Lenient);
+        .with_strictness(Strictness::Lenient);
     let value = json!({
         "axis_codes": { "elbow": 3, "shoulder": 2, "disc": 1, "vertical": 0 },
         "byte_order": "little_endian",
-        "mode": "lenient",
+        "strictness": "lenient",
     });
     assert_eq!(to_value(format).unwrap(), value);
     assert_eq!(from_str::<Format>(&value.to_string()).unwrap(), format);
