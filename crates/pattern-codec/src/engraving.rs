@@ -38,7 +38,7 @@ mod split;
 mod statistics;
 
 pub use axis::{Axis, PerAxis};
-pub use build::{Builder, PositionError, RepeatedAxis};
+pub use build::{Builder, PositionOverflow, RepeatedAxis};
 pub use decode::{DecodeError, DecodeErrorKind, Decoder, Located, Records};
 pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Strictness};
 pub use pattern_header::{PatternData, PatternHeader};

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use pattern_codec::engraving::{
-    Axis, Builder, DecodeError, Decoder, Format, JointPulses, Located, PositionError, Record,
+    Axis, Builder, DecodeError, Decoder, Format, JointPulses, Located, PositionOverflow, Record,
     Records,
 };
 
@@ -34,7 +34,7 @@ fn encode(record: Record, format: &Format) -> [u8; Record::LEN] {
 
 #[no_panic]
 #[inline(never)]
-fn track(builder: &mut Builder, record: Record) -> Result<(), PositionError> {
+fn track(builder: &mut Builder, record: Record) -> Result<(), PositionOverflow> {
     builder.track(record)
 }
 

@@ -47,12 +47,13 @@ impl Builder {
     /// records.
     ///
     /// # Errors
-    /// [`PositionError`] when the position would leave the range of `i32`; it stays as it was.
+    /// [`PositionOverflow`] when the position would leave the range of `i32`; it stays as it was.
     pub fn fast(
         &mut self,
         axis: Axis,
         pulses: i32,
-    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionError> {
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionOverflow>
+    {
         self.advance(axis, pulses)?;
         Ok(FastRecords::new(axis, pulses < 0, pulses.unsigned_abs()))
     }
@@ -74,11 +75,12 @@ impl Builder {
     /// before the arms start.
     ///
     /// # Errors
-    /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
+    /// [`PositionOverflow`] when a position would leave the range of `i32`; all stay as they were.
     pub fn slow(
         &mut self,
         pulses: JointPulses,
-    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionError> {
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionOverflow>
+    {
         let mut next = *self;
         next.advance(Axis::Disc, pulses.disc)?;
         next.advance(Axis::Elbow, pulses.elbow)?;
@@ -90,8 +92,8 @@ impl Builder {
     /// Counts a record from elsewhere, such as a decoded one.
     ///
     /// # Errors
-    /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
-    pub fn track(&mut self, record: Record) -> Result<(), PositionError> {
+    /// [`PositionOverflow`] when a position would leave the range of `i32`; all stay as they were.
+    pub fn track(&mut self, record: Record) -> Result<(), PositionOverflow> {
         match record {
             Record::Fast(fast) => self.advance(fast.axis(), fast.pulses()),
             Record::Slow(slow) => self.slow(slow.pulses()).map(drop),
@@ -135,9 +137,9 @@ impl Builder {
         Ok(HomeRecords { runs })
     }
 
-    fn advance(&mut self, axis: Axis, pulses: i32) -> Result<(), PositionError> {
+    fn advance(&mut self, axis: Axis, pulses: i32) -> Result<(), PositionOverflow> {
         let position = self.position.get_mut(axis);
-        *position = position.checked_add(pulses).ok_or(PositionError {
+        *position = position.checked_add(pulses).ok_or(PositionOverflow {
             axis,
             position: *position,
             pulses,
@@ -173,7 +175,7 @@ impl FusedIterator for HomeRecords {}
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[error("{axis}: {pulses} pulses from position {position} leave the range of 32 bits")]
 #[non_exhaustive]
-pub struct PositionError {
+pub struct PositionOverflow {
     /// The axis.
     pub axis: Axis,
     /// Where it is, in pulses from home.
