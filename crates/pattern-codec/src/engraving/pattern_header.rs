@@ -133,7 +133,7 @@ pub struct PatternData<'t> {
 
 impl<'t> PatternData<'t> {
     /// Reads a header with one array. Axis codes and byte order that it does not define, and the
-    /// mode, are those of `format`.
+    /// strictness, are those of `format`.
     ///
     /// # Errors
     /// [`HeaderError`] names a location and what is wrong there.
