@@ -3,7 +3,7 @@
 use arbitrary::{Arbitrary, Result, Unstructured};
 use pattern_codec::engraving::{AxisCodes, ByteOrder, Format, PerAxis, Strictness};
 use proto3964r::{
-    Check, Config, Conflict, IdleNoise, IllegalDle, Line, LineError, Priority, SilenceInBlock,
+    CharacterError, Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock,
 };
 
 /// The pieces of a slice: lengths over and over, at least one byte each.
@@ -51,8 +51,12 @@ pub fn illegal_dle(u: &mut Unstructured<'_>) -> Result<IllegalDle> {
     u.choose(&rules).copied()
 }
 
-pub fn line_error(u: &mut Unstructured<'_>) -> Result<LineError> {
-    let errors = [LineError::Parity, LineError::Framing, LineError::Overrun];
+pub fn line_error(u: &mut Unstructured<'_>) -> Result<CharacterError> {
+    let errors = [
+        CharacterError::Parity,
+        CharacterError::Framing,
+        CharacterError::Overrun,
+    ];
     u.choose(&errors).copied()
 }
 

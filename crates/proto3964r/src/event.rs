@@ -97,7 +97,7 @@ pub enum Cause {
     Unexpected(u8),
     /// A damaged character.
     #[error("{0}")]
-    Line(LineError),
+    Line(CharacterError),
     /// The partner sent STX as well and nothing came of it.
     #[error("initialization conflict")]
     Conflict,
@@ -117,7 +117,7 @@ pub enum Cause {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum LineError {
+pub enum CharacterError {
     /// The parity bit is wrong.
     #[error("parity")]
     Parity,
@@ -143,7 +143,7 @@ pub enum Rejection {
     Frame(FrameError),
     /// A character of the block was damaged.
     #[error("{0} error")]
-    Line(LineError),
+    Line(CharacterError),
     /// A gap longer than the character delay time (ZVZ) in the block.
     #[error("character delay time exceeded")]
     CharacterDelay,

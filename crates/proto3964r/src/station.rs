@@ -26,7 +26,7 @@ use self::{
 };
 use crate::{
     config::Config,
-    event::{Cause, Event, LineError, Rejection},
+    event::{Cause, CharacterError, Event, Rejection},
     frame::Rules,
 };
 
@@ -350,7 +350,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     ///
     /// In a block the error is noted and the block rejected at its end; in place of an answer it
     /// is a wrong answer; in idle it is noise.
-    pub fn handle_damaged(&mut self, now: Duration, byte: u8, error: LineError) {
+    pub fn handle_damaged(&mut self, now: Duration, byte: u8, error: CharacterError) {
         self.handle_timeout(now);
         self.character(now, byte, Some(error));
     }

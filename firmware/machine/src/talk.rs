@@ -7,7 +7,7 @@ use embassy_futures::select::{Either, select};
 use embedded_io_async::{Read, Write};
 use heapless::Deque;
 use proto3964r::embedded_io_async::{Driver, Timer};
-use proto3964r::{Config, Event, Line, LineError, Priority, Station};
+use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
 use scara_kin::Joints;
 
 use crate::command::{Command, Joint};
@@ -43,7 +43,7 @@ pub async fn talk<R, W>(
     panel: &Panel,
     line: Line,
     (reader, writer): (R, W),
-    line_error: impl Fn(R::Error) -> Option<LineError>,
+    line_error: impl Fn(R::Error) -> Option<CharacterError>,
 ) -> !
 where
     R: Read,

@@ -6,7 +6,7 @@ use core::{
 };
 use std::sync::{Mutex, PoisonError};
 
-use proto3964r::{Cause, Event, LineError, Phase, Rejection, frame::FrameError};
+use proto3964r::{Cause, CharacterError, Event, Phase, Rejection, frame::FrameError};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use tokio::{task::yield_now, time::sleep};
@@ -101,9 +101,9 @@ fn fault(event: Event<'_>) -> Option<&'static str> {
             Rejection::Frame(FrameError::Bcc { .. }) => "bcc",
             Rejection::Frame(FrameError::TooLong { .. }) => "too_long",
             Rejection::Frame(_) => "illegal_dle",
-            Rejection::Line(LineError::Parity) => "parity",
-            Rejection::Line(LineError::Overrun) => "overrun",
-            Rejection::Line(LineError::Collision) => "collision",
+            Rejection::Line(CharacterError::Parity) => "parity",
+            Rejection::Line(CharacterError::Overrun) => "overrun",
+            Rejection::Line(CharacterError::Collision) => "collision",
             Rejection::Line(_) => "framing",
             Rejection::CharacterDelay => "zvz",
             Rejection::Noise { .. } => "noise",

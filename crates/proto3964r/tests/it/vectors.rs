@@ -3,8 +3,8 @@
 use core::time::Duration;
 
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, Line, LineError, Phase, Priority, Rejection, Station,
-    Transmit, frame::FrameError,
+    Abandoned, Cause, CharacterError, Config, Event, Failure, Line, Phase, Priority, Rejection,
+    Station, Transmit, frame::FrameError,
 };
 
 const VECTORS: &str = include_str!("../data/vectors.txt");
@@ -152,7 +152,7 @@ impl<const N: usize> Bench<N> {
                     Some((bytes, _)) => {
                         let bytes = hex(bytes);
                         self.station
-                            .handle_damaged(self.now(), bytes[0], LineError::Parity);
+                            .handle_damaged(self.now(), bytes[0], CharacterError::Parity);
                         self.receive(&bytes[1..]);
                     }
                 }
