@@ -36,6 +36,6 @@ mod station;
 pub mod tokio;
 
 pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
-pub use event::{Abandoned, Cause, CharacterError, Event, Failure, Hex, Phase, Rejection};
+pub use event::{Abandoned, Cause, CharacterError, Event, Failure, Hex, JobPhase, Rejection};
 pub use frame::{Check, IllegalDle};
 pub use station::{Activity, Station, SubmitError, Transmit};

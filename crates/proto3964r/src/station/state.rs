@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use crate::{
-    event::{Cause, Phase, Rejection},
+    event::{Cause, JobPhase, Rejection},
     frame::{Encoder, Progress},
 };
 
@@ -96,11 +96,11 @@ impl State {
     }
 
     /// The phase of the job that is under way; `None` when the line is not the job's.
-    pub(super) const fn phase(&self) -> Option<Phase> {
+    pub(super) const fn phase(&self) -> Option<JobPhase> {
         match self {
-            Self::Request { .. } | Self::AwaitDle { .. } => Some(Phase::Connection),
+            Self::Request { .. } | Self::AwaitDle { .. } => Some(JobPhase::Connection),
             Self::Sending { .. } | Self::Interrupted { .. } | Self::AwaitAck { .. } => {
-                Some(Phase::Transmission)
+                Some(JobPhase::Transmission)
             }
             Self::Idle
             | Self::Noise { .. }

@@ -14,7 +14,7 @@ use std::{
 };
 
 use proto3964r::{
-    Cause, CharacterError, Config, Event, Line, Phase, Priority, SubmitError,
+    Cause, CharacterError, Config, Event, JobPhase, Line, Priority, SubmitError,
     serialport::Driver,
     tokio::{Damage, Link, SendError},
 };
@@ -122,7 +122,7 @@ async fn a_dead_partner_is_a_failure_of_the_connection_phase() {
     };
     assert_eq!(
         (failure.phase, failure.cause),
-        (Phase::Connection, Cause::Timeout)
+        (JobPhase::Connection, Cause::Timeout)
     );
 }
 

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use proto3964r::{
-    Abandoned, Cause, CharacterError, Config, Event, Failure, Line, Phase, Priority, Rejection,
+    Abandoned, Cause, CharacterError, Config, Event, Failure, JobPhase, Line, Priority, Rejection,
     Station, Transmit, frame::FrameError,
 };
 
@@ -195,8 +195,8 @@ fn name(event: Event<'_>) -> Option<String> {
         Event::Sent { len } => format!("Sent({len})"),
         Event::Failed(Failure { phase, cause, .. }) => {
             let phase = match phase {
-                Phase::Connection => "setup",
-                Phase::Transmission => "transfer",
+                JobPhase::Connection => "setup",
+                JobPhase::Transmission => "transfer",
             };
             match cause {
                 Cause::Timeout => format!("SendFailed({phase}:QVZ)"),
