@@ -20,7 +20,7 @@ const OUTPUT: usize = 16;
 const INPUT: usize = 32;
 
 /// A clock, and how to wait for a time of it.
-pub trait Timer {
+pub trait AsyncClock {
     /// The time since any epoch.
     fn now(&mut self) -> Duration;
 
@@ -37,10 +37,10 @@ pub trait Timer {
 /// # Examples
 /// ```no_run
 /// use embedded_io_async::{Read, Write};
-/// use proto3964r::embedded_io_async::{Driver, Timer};
+/// use proto3964r::embedded_io_async::{Driver, AsyncClock};
 /// use proto3964r::{Config, Event, Line, Priority, Station};
 ///
-/// async fn tare<R, W>(rx: R, tx: W, timer: impl Timer) -> Result<(), R::Error>
+/// async fn tare<R, W>(rx: R, tx: W, timer: impl AsyncClock) -> Result<(), R::Error>
 /// where
 ///     R: Read,
 ///     W: Write<Error = R::Error>,
@@ -78,7 +78,7 @@ impl<R, W, M, const N: usize, const T: usize> Driver<R, W, M, N, T>
 where
     R: Read,
     W: Write<Error = R::Error>,
-    M: Timer,
+    M: AsyncClock,
 {
     /// Puts a station on a port.
     pub fn new(station: Station<N, T>, reader: R, writer: W, timer: M) -> Self {
