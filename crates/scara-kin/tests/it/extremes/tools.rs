@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{RealField, Vector2};
-use scara_kin::{Direction, DriveAngles, Drives, JointRange, Joints, TangentTool, Trig};
+use scara_kin::{DriveAngles, DriveSense, Drives, JointRange, Joints, TangentTool, Trig};
 
 use super::machine::{Recipe, recipes};
 use super::{angle, anything, at_least, double, epsilon, is_readable, single, smallest};
@@ -78,7 +78,7 @@ fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCase
     let [shoulder, elbow] = joints.map(single::<T>);
     let zero = Joints::new(zero1, zero2);
     let drives = Drives::default()
-        .with_directions(Direction::Reversed, Direction::Forward)
+        .with_senses(DriveSense::Reversed, DriveSense::Forward)
         .with_zero(zero)
         .and_then(|drives| drives.with_coupling(coupling));
     let drives = match drives {
@@ -90,10 +90,7 @@ fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCase
         }
     };
     prop_assert!(drives.zero() == zero && drives.coupling() == coupling);
-    prop_assert_eq!(
-        drives.directions(),
-        (Direction::Reversed, Direction::Forward)
-    );
+    prop_assert_eq!(drives.senses(), (DriveSense::Reversed, DriveSense::Forward));
     let joints = Joints::new(shoulder, elbow);
     let angles = drives.from_joints(joints);
     let back = drives.to_joints(angles);
