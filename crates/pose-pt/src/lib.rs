@@ -23,7 +23,7 @@ pub use trig_kernels::Trig;
 
 pub use angles::{Convention, PoseVector, Resolved};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
-pub use fit::{FitError, RigidFit, Side, rigid_fit};
+pub use fit::{FitError, PointSet, RigidFit, rigid_fit};
 pub use locator::{Axis, Locator, LocatorAxis};
 pub use platform::{BodyFit, DistanceError, LimitError, Platform, PlatformError};
 pub use rotation::{

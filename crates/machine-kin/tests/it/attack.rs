@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 
 use machine_kin::path_timing::{AxisLimits, Curve, Knot, Path, Table, ToolLimits};
 use machine_kin::{
-    CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Polar, Scara, Side, WithZ,
+    CarriageSide, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Polar, Scara, WithZ,
 };
 use test_support::{Random, setting};
 
@@ -311,9 +311,9 @@ fn any_path(random: &mut Random, tally: &mut Tally) {
         2 => {
             let machine = Polar::new(random.within(-150.0, 40.0)..=random.within(50.0, 200.0));
             let side = if random.below(2) == 0 {
-                Side::Front
+                CarriageSide::Front
             } else {
-                Side::Behind
+                CarriageSide::Behind
             };
             let curve = any_curve(random, [-120.0; 2], [120.0; 2]);
             tally.try_path(random, &machine, curve, side);

@@ -5,7 +5,7 @@ mod fits;
 use pose_pt::nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use pose_pt::{
     Axis, Convention, FitError, LimitError, Locator, LocatorAxis, Platform, PlatformError,
-    PoseVector, Side,
+    PointSet, PoseVector,
 };
 
 /// Lengths of some metres in f64, after a fit: mm.
@@ -145,7 +145,7 @@ fn coordinates_that_are_not_finite_are_refused() {
         assert!(matches!(
             platform.pose(&axes),
             Err(FitError::Coordinate {
-                side: Side::To,
+                set: PointSet::To,
                 point: 1,
                 ..
             })
