@@ -84,7 +84,7 @@ pub fn config(u: &mut Unstructured<'_>, least_ms: u16) -> Result<Config> {
         buffer_wait_ms: u.int_in_range(least_ms..=1000)?,
         acknowledge_wait_ms: u.int_in_range(0..=1000)? * u16::from(u.arbitrary::<bool>()?),
         line: line(u)?,
-        babble_s: u.int_in_range(1..=10)?,
+        max_noise_s: u.int_in_range(1..=10)?,
         connection_attempts: u.int_in_range(0..=7)?,
         transmission_attempts: u.int_in_range(0..=7)?,
         priority: *u.choose(&[Priority::Low, Priority::High])?,

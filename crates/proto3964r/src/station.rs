@@ -337,8 +337,10 @@ impl<const N: usize, const T: usize> Station<N, T> {
         match self.state {
             // A bad block is swallowed no slower than it must.
             State::Spoiled {
-                gap_at, babble_at, ..
-            } if now < gap_at && now < babble_at => self.block_character(now, byte, None),
+                gap_at,
+                noise_end_at,
+                ..
+            } if now < gap_at && now < noise_end_at => self.block_character(now, byte, None),
             _ => {
                 self.handle_timeout(now);
                 self.character(now, byte, None);

@@ -23,7 +23,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.state = State::Noise {
                     first,
                     silent_at: now.saturating_add(self.zvz),
-                    babble_at: now.saturating_add(self.config.babble()),
+                    noise_end_at: now.saturating_add(self.config.max_noise()),
                 };
             }
         }
@@ -130,7 +130,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 block,
                 rejection,
                 gap_at,
-                babble_at: now.saturating_add(self.config.babble()),
+                noise_end_at: now.saturating_add(self.config.max_noise()),
             };
         }
     }

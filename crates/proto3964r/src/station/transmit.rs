@@ -111,7 +111,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let end = self.end_of_rest(now);
         self.state = State::Interrupted {
             silent_at: end.saturating_add(self.zvz),
-            babble_at: end.saturating_add(self.config.babble()),
+            noise_end_at: end.saturating_add(self.config.max_noise()),
         };
     }
 
@@ -168,7 +168,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let end = self.end_of_rest(now);
         self.state = State::Settling {
             silent_at: end.saturating_add(self.zvz),
-            babble_at: end.saturating_add(self.config.babble()),
+            noise_end_at: end.saturating_add(self.config.max_noise()),
         };
     }
 
