@@ -33,8 +33,8 @@ pub use rotation::{
 
 #[cfg(feature = "path-timing")]
 mod body_path;
-mod course;
 mod distance_error;
+mod leg_axes;
 mod path;
 mod plan_error;
 mod pt;

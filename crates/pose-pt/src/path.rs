@@ -110,7 +110,7 @@ const HALF_TURN_EPSILONS: f64 = 64.0;
 
 /// Poses that the caller keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Stations<'a> {
+enum PathPoses<'a> {
     Poses(&'a [Isometry3<f64>], Interpolation),
     Vectors(&'a [PoseVector], Convention),
 }
@@ -118,7 +118,7 @@ enum Stations<'a> {
 /// A checked path: a first pose, any number of poses between, a last pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path<'a> {
-    stations: Stations<'a>,
+    poses: PathPoses<'a>,
     /// For each pose between the first and the last, or none for stops.
     blends: &'a [Blend],
 }
@@ -137,7 +137,7 @@ impl<'a> Path<'a> {
             check_rotation(number, &pose.rotation)
         })?;
         let path = Self {
-            stations: Stations::Poses(poses, interpolation),
+            poses: PathPoses::Poses(poses, interpolation),
             blends: &[],
         };
         if !matches!(interpolation, Interpolation::Vector(_)) {
@@ -160,7 +160,7 @@ impl<'a> Path<'a> {
             check_angles(number, &vector.angles())
         })?;
         Ok(Self {
-            stations: Stations::Vectors(vectors, convention),
+            poses: PathPoses::Vectors(vectors, convention),
             blends: &[],
         })
     }
@@ -177,7 +177,7 @@ impl<'a> Path<'a> {
             let given = blends.len();
             return Err(PathError::Blends { given, poses });
         }
-        if matches!(self.stations, Stations::Poses(_, Interpolation::Screw)) {
+        if matches!(self.poses, PathPoses::Poses(_, Interpolation::Screw)) {
             return Err(PathError::ScrewBlend);
         }
         for (number, blend) in blends.iter().enumerate() {
@@ -200,9 +200,9 @@ impl<'a> Path<'a> {
     /// The number of legs: one fewer than poses.
     #[must_use]
     pub const fn legs(&self) -> usize {
-        let poses = match self.stations {
-            Stations::Poses(poses, _) => poses.len(),
-            Stations::Vectors(vectors, _) => vectors.len(),
+        let poses = match self.poses {
+            PathPoses::Poses(poses, _) => poses.len(),
+            PathPoses::Vectors(vectors, _) => vectors.len(),
         };
         poses.saturating_sub(1)
     }
@@ -211,11 +211,11 @@ impl<'a> Path<'a> {
     #[must_use]
     pub fn leg(&self, number: usize) -> Option<Leg> {
         let next = number.checked_add(1)?;
-        Some(match self.stations {
-            Stations::Poses(poses, interpolation) => {
+        Some(match self.poses {
+            PathPoses::Poses(poses, interpolation) => {
                 Leg::new(poses.get(number)?, poses.get(next)?, interpolation)
             }
-            Stations::Vectors(vectors, convention) => {
+            PathPoses::Vectors(vectors, convention) => {
                 Leg::of_vectors(vectors.get(number)?, vectors.get(next)?, convention)
             }
         })
@@ -232,9 +232,9 @@ impl<'a> Path<'a> {
         platform: &Platform<N>,
         number: usize,
     ) -> Option<[Vector3<f64>; N]> {
-        Some(match self.stations {
-            Stations::Poses(poses, _) => platform.axes(poses.get(number)?),
-            Stations::Vectors(vectors, convention) => {
+        Some(match self.poses {
+            PathPoses::Poses(poses, _) => platform.axes(poses.get(number)?),
+            PathPoses::Vectors(vectors, convention) => {
                 let vector = vectors.get(number)?;
                 platform.axes_at(&vector.to_rotation(convention), &vector.position())
             }
@@ -253,16 +253,14 @@ impl<'a> Path<'a> {
 }
 
 fn check<S>(
-    stations: &[S],
+    poses: &[S],
     check: impl Fn(usize, &S) -> Result<(), PathError>,
 ) -> Result<(), PathError> {
-    if stations.len() < 2 {
-        return Err(PathError::TooFew {
-            poses: stations.len(),
-        });
+    if poses.len() < 2 {
+        return Err(PathError::TooFew { poses: poses.len() });
     }
-    let mut numbered = stations.iter().enumerate();
-    numbered.try_for_each(|(number, station)| check(number, station))
+    let mut numbered = poses.iter().enumerate();
+    numbered.try_for_each(|(number, pose)| check(number, pose))
 }
 
 fn check_position(pose: usize, position: &Vector3<f64>) -> Result<(), PathError> {

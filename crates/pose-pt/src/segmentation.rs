@@ -2,8 +2,8 @@
 
 use trig_kernels::atan2;
 
-use crate::course::is_still;
 use crate::distance_error::pairs;
+use crate::leg_axes::is_still;
 use crate::number::{ceil, epsilons, floor, sqrt};
 use crate::path::{Leg, Path};
 use crate::{PlanError, Platform};

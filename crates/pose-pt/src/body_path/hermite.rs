@@ -93,7 +93,7 @@ mod tests {
     use nalgebra::{Isometry3, Point3};
 
     use super::*;
-    use crate::course::Course;
+    use crate::leg_axes::LegAxes;
     use crate::{Interpolation, Locator, LocatorAxis, Path};
 
     /// L = 4000 mm across the axis of every turn, which is Z.
@@ -121,10 +121,10 @@ mod tests {
             Isometry3::new(Vector3::zeros(), Vector3::z() * turn),
         ];
         let path = Path::new(&poses, Interpolation::Straight).unwrap();
-        let course = Course::new(&platform, &path.leg(0).unwrap());
+        let leg_axes = LegAxes::new(&platform, &path.leg(0).unwrap());
         // The mean speed is 1, and so is the time.
         let point = |s, speed| {
-            let at = course.point(s);
+            let at = leg_axes.point(s);
             Row {
                 time_s: s,
                 duration_s: s,
