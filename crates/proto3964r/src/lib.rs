@@ -12,6 +12,12 @@ pub mod ascii;
 #[cfg(feature = "std")]
 #[cfg_attr(docsrs, doc(cfg(feature = "std")))]
 pub mod blocking;
+#[cfg(any(
+    feature = "embedded-io",
+    feature = "embedded-io-async",
+    feature = "std"
+))]
+mod character_buffer;
 mod config;
 #[cfg(feature = "embedded-io")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
@@ -21,12 +27,6 @@ pub mod embedded_io;
 pub mod embedded_io_async;
 mod event;
 pub mod frame;
-#[cfg(any(
-    feature = "embedded-io",
-    feature = "embedded-io-async",
-    feature = "std"
-))]
-mod piece;
 #[cfg(feature = "serialport")]
 #[cfg_attr(docsrs, doc(cfg(feature = "serialport")))]
 pub mod serialport;
