@@ -9,7 +9,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use path_timing::{Accuracy, FeedCeiling, Knot, Table};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Vector3};
 use pose_pt::{
-    BodyPath, Convention, Interpolation, Locator, LocatorAxis, Path, Platform, PtTable,
+    BodyPath, Convention, Interpolation, Locator, LocatorAxis, Platform, PosePath, PtTable,
     Segmentation,
 };
 
@@ -65,7 +65,7 @@ fn pt(c: &mut Criterion) {
     let mut group = c.benchmark_group("PT points");
     group.throughput(Throughput::Elements(u64::from(POINTS)));
     for (name, kind) in KINDS {
-        let path = Path::new(&poses, kind).expect("poses are good");
+        let path = PosePath::new(&poses, kind).expect("poses are good");
         let table =
             PtTable::plan(&platform, &path, Segmentation::segments(POINTS)).expect("plan is good");
         group.bench_function(name, |b| {
@@ -86,7 +86,7 @@ fn pvt(c: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(POINTS)));
     group.sample_size(20);
     for (name, kind) in KINDS {
-        let path = Path::new(&poses, kind).expect("poses are good");
+        let path = PosePath::new(&poses, kind).expect("poses are good");
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
             b.iter(|| {
                 let paths = platform.paths(black_box(&path));
@@ -96,7 +96,7 @@ fn pvt(c: &mut Criterion) {
             });
         });
     }
-    let path = Path::new(&poses, Interpolation::Straight).expect("poses are good");
+    let path = PosePath::new(&poses, Interpolation::Straight).expect("poses are good");
     group.bench_function("straight, from a distance error of 0.01", |b| {
         b.iter(|| {
             let accuracy = Accuracy {

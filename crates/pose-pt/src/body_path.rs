@@ -15,12 +15,12 @@ pub use hermite::hermite_distance_error;
 
 use crate::leg_axes::{LegAxes, is_still, travel};
 use crate::number::larger;
-use crate::path::{Leg, Path};
+use crate::path::{Leg, PosePath};
 use crate::{LimitError, Platform};
 use motion::AxesPoint;
 use rounding::Rounding;
 
-/// A leg of a [`Path`], or the rounding of one of its poses, as a path of all axes: what
+/// A leg of a [`PosePath`], or the rounding of one of its poses, as a path of all axes: what
 /// [`path_timing::Table`] and [`path_timing::LookAhead`] plan.
 ///
 /// It is made by [`Platform::paths`]. Its parameter has no unit.
@@ -51,9 +51,9 @@ impl<const N: usize> Platform<N> {
     /// the poses between them.
     ///
     /// Every pose where the direction changes is a stop, but for those that are rounded: see
-    /// [`Path::with_blends`]. Strokes are checked by what plans, for whole segments.
+    /// [`PosePath::with_blends`]. Strokes are checked by what plans, for whole segments.
     #[must_use]
-    pub fn paths<'a>(&'a self, path: &Path<'a>) -> BodyPaths<'a, N> {
+    pub fn paths<'a>(&'a self, path: &PosePath<'a>) -> BodyPaths<'a, N> {
         let travels = path.numbered_legs().map(|(_, leg)| travel(self, &leg));
         BodyPaths {
             platform: self,
@@ -159,11 +159,11 @@ impl<const N: usize> path_timing::Path for BodyPath<'_, N> {
     }
 }
 
-/// The paths of all axes along a [`Path`], by [`Platform::paths`].
+/// The paths of all axes along a [`PosePath`], by [`Platform::paths`].
 #[derive(Debug, Clone, Copy)]
 pub struct BodyPaths<'a, const N: usize> {
     platform: &'a Platform<N>,
-    path: Path<'a>,
+    path: PosePath<'a>,
     /// The longest travel of a leg, which the common parameter takes 1 to run.
     longest: f64,
     /// The first part that is still to come: 2 n is leg n, 2 n + 1 the blend after it.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::number::{epsilons, larger};
 use crate::path::leg::{Shape, Turning, VectorLeg};
-use crate::path::{Leg, Path};
+use crate::path::{Leg, PosePath};
 use crate::rotation::to_matrix;
 use crate::turn::{Sweep, Turn};
 use crate::{Platform, PoseVector};
@@ -34,7 +34,7 @@ const STILL_EPSILONS: f64 = 64.0;
 /// it.
 pub(crate) fn is_still<const N: usize>(
     platform: &Platform<N>,
-    path: &Path<'_>,
+    path: &PosePath<'_>,
     number: usize,
 ) -> bool {
     let ends = path

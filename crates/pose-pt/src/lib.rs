@@ -43,7 +43,7 @@ mod turn;
 
 #[cfg(feature = "path-timing")]
 pub use body_path::{BodyPath, BodyPathError, BodyPaths, hermite_distance_error};
-pub use path::{Blend, Interpolation, Leg, Path, PathError};
+pub use path::{Blend, Interpolation, Leg, PosePath, PosePathError};
 pub use plan_error::PlanError;
 pub use pt::{PtPoint, PtPoints, PtTable};
 pub use segmentation::Segmentation;

@@ -35,7 +35,7 @@ pub enum Interpolation {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PathError {
+pub enum PosePathError {
     /// A path has at least a first and a last pose.
     #[error("{poses} poses do not make a path, at least 2 do")]
     TooFew {
@@ -117,21 +117,21 @@ enum PathPoses<'a> {
 
 /// A checked path: a first pose, any number of poses between, a last pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Path<'a> {
+pub struct PosePath<'a> {
     poses: PathPoses<'a>,
     /// For each pose between the first and the last, or none for stops.
     blends: &'a [Blend],
 }
 
-impl<'a> Path<'a> {
+impl<'a> PosePath<'a> {
     /// A path through poses, each leg by the same `interpolation`.
     ///
     /// # Errors
-    /// [`PathError`].
+    /// [`PosePathError`].
     pub fn new(
         poses: &'a [Isometry3<f64>],
         interpolation: Interpolation,
-    ) -> Result<Self, PathError> {
+    ) -> Result<Self, PosePathError> {
         check(poses, |number, pose| {
             check_position(number, &pose.translation.vector)?;
             check_rotation(number, &pose.rotation)
@@ -150,11 +150,11 @@ impl<'a> Path<'a> {
     /// an angle may run through more than half a turn.
     ///
     /// # Errors
-    /// [`PathError`].
+    /// [`PosePathError`].
     pub fn of_vectors(
         vectors: &'a [PoseVector],
         convention: Convention,
-    ) -> Result<Self, PathError> {
+    ) -> Result<Self, PosePathError> {
         check(vectors, |number, vector| {
             check_position(number, &vector.position())?;
             check_angles(number, &vector.angles())
@@ -170,21 +170,21 @@ impl<'a> Path<'a> {
     /// [`leg`](Self::leg) stay unrounded.
     ///
     /// # Errors
-    /// [`PathError::Blends`], [`PathError::Blend`], [`PathError::ScrewBlend`].
-    pub fn with_blends(self, blends: &'a [Blend]) -> Result<Self, PathError> {
+    /// [`PosePathError::Blends`], [`PosePathError::Blend`], [`PosePathError::ScrewBlend`].
+    pub fn with_blends(self, blends: &'a [Blend]) -> Result<Self, PosePathError> {
         let poses = self.legs().saturating_sub(1);
         if blends.len() != poses {
             let given = blends.len();
-            return Err(PathError::Blends { given, poses });
+            return Err(PosePathError::Blends { given, poses });
         }
         if matches!(self.poses, PathPoses::Poses(_, Interpolation::Screw)) {
-            return Err(PathError::ScrewBlend);
+            return Err(PosePathError::ScrewBlend);
         }
         for (number, blend) in blends.iter().enumerate() {
             for value in [blend.distance, blend.rotation_rad] {
                 if !(value >= 0.0 && value.is_finite()) {
                     let pose = number.saturating_add(1);
-                    return Err(PathError::Blend { pose, value });
+                    return Err(PosePathError::Blend { pose, value });
                 }
             }
         }
@@ -241,11 +241,11 @@ impl<'a> Path<'a> {
         })
     }
 
-    fn check_turns(&self) -> Result<(), PathError> {
+    fn check_turns(&self) -> Result<(), PosePathError> {
         for (pose, leg) in self.numbered_legs() {
             let angle = leg.turn();
             if angle >= PI * (1.0 - epsilons::<f64>(HALF_TURN_EPSILONS)) {
-                return Err(PathError::HalfTurn { pose, angle });
+                return Err(PosePathError::HalfTurn { pose, angle });
             }
         }
         Ok(())
@@ -254,32 +254,34 @@ impl<'a> Path<'a> {
 
 fn check<S>(
     poses: &[S],
-    check: impl Fn(usize, &S) -> Result<(), PathError>,
-) -> Result<(), PathError> {
+    check: impl Fn(usize, &S) -> Result<(), PosePathError>,
+) -> Result<(), PosePathError> {
     if poses.len() < 2 {
-        return Err(PathError::TooFew { poses: poses.len() });
+        return Err(PosePathError::TooFew { poses: poses.len() });
     }
     let mut numbered = poses.iter().enumerate();
     numbered.try_for_each(|(number, pose)| check(number, pose))
 }
 
-fn check_position(pose: usize, position: &Vector3<f64>) -> Result<(), PathError> {
+fn check_position(pose: usize, position: &Vector3<f64>) -> Result<(), PosePathError> {
     let max = largest();
     first_beyond(position, max).map_or(Ok(()), |value| {
-        Err(PathError::Coordinate { pose, value, max })
+        Err(PosePathError::Coordinate { pose, value, max })
     })
 }
 
-fn check_angles(pose: usize, angles: &Vector3<f64>) -> Result<(), PathError> {
+fn check_angles(pose: usize, angles: &Vector3<f64>) -> Result<(), PosePathError> {
     let max = largest_angle();
-    first_beyond(angles, max).map_or(Ok(()), |value| Err(PathError::Angle { pose, value, max }))
+    first_beyond(angles, max).map_or(Ok(()), |value| {
+        Err(PosePathError::Angle { pose, value, max })
+    })
 }
 
-fn check_rotation(pose: usize, rotation: &UnitQuaternion<f64>) -> Result<(), PathError> {
+fn check_rotation(pose: usize, rotation: &UnitQuaternion<f64>) -> Result<(), PosePathError> {
     let length = rotation.as_vector().norm();
     let [min, max] = ROTATION_LENGTH;
     if length >= min && length <= max {
         return Ok(());
     }
-    Err(PathError::Rotation { pose, length })
+    Err(PosePathError::Rotation { pose, length })
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::distance_error::linear_distance_error;
 use crate::leg_axes::{LegAxes, Walk};
 use crate::number::{larger, magnitude};
-use crate::path::{Leg, Path};
+use crate::path::{Leg, PosePath};
 use crate::{Locator, PlanError, Platform, Segmentation};
 
 /// A line of a PT table: where every axis is at a time. Between two lines it moves linearly.
@@ -38,7 +38,7 @@ pub struct PtPoint<const N: usize> {
 #[derive(Debug, Clone, Copy)]
 pub struct PtTable<'a, const N: usize> {
     platform: &'a Platform<N>,
-    path: Path<'a>,
+    path: PosePath<'a>,
     segmentation: Segmentation,
     points: usize,
     duration_s: f64,
@@ -52,7 +52,7 @@ impl<'a, const N: usize> PtTable<'a, N> {
     /// [`PlanError`].
     pub fn plan(
         platform: &'a Platform<N>,
-        path: &Path<'a>,
+        path: &PosePath<'a>,
         segmentation: Segmentation,
     ) -> Result<Self, PlanError> {
         segmentation.check(platform)?;

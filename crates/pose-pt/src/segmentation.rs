@@ -5,7 +5,7 @@ use trig_kernels::atan2;
 use crate::distance_error::pairs;
 use crate::leg_axes::is_still;
 use crate::number::{ceil, epsilons, floor, sqrt};
-use crate::path::{Leg, Path};
+use crate::path::{Leg, PosePath};
 use crate::{PlanError, Platform};
 
 /// Into how many segments the leg from one pose to the next is divided.
@@ -105,7 +105,7 @@ impl Segmentation {
     pub(crate) fn linear_segments<const N: usize>(
         &self,
         platform: &Platform<N>,
-        path: &Path<'_>,
+        path: &PosePath<'_>,
         number: usize,
     ) -> u32 {
         let leg = match path.leg(number) {
@@ -132,7 +132,7 @@ impl Segmentation {
     pub(crate) fn checked_segments<const N: usize>(
         &self,
         platform: &Platform<N>,
-        path: &Path<'_>,
+        path: &PosePath<'_>,
         number: usize,
     ) -> Result<u32, PlanError> {
         match self.linear_segments(platform, path, number) {

@@ -94,7 +94,7 @@ mod tests {
 
     use super::*;
     use crate::leg_axes::LegAxes;
-    use crate::{Interpolation, Locator, LocatorAxis, Path};
+    use crate::{Interpolation, Locator, LocatorAxis, PosePath};
 
     /// L = 4000 mm across the axis of every turn, which is Z.
     fn flat() -> Platform<3> {
@@ -120,7 +120,7 @@ mod tests {
             Isometry3::identity(),
             Isometry3::new(Vector3::zeros(), Vector3::z() * turn),
         ];
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let leg_axes = LegAxes::new(&platform, &path.leg(0).unwrap());
         // The mean speed is 1, and so is the time.
         let point = |s, speed| {

@@ -6,7 +6,7 @@ mod times;
 
 use crate::support::table::{Cut, Point, plan, points_of};
 use path_timing::{Knot, PlanError};
-use pose_pt::{LocatorAxis, Path, Platform};
+use pose_pt::{LocatorAxis, Platform, PosePath};
 use proptest::prelude::*;
 
 use crate::support::limits::{LIMIT, check_limits};
@@ -58,7 +58,7 @@ fn poses_on_the_way_are_stops() {
         pose([5.0, -5.0, 0.0], [0.0, 0.0, 0.02]),
     ];
     for kind in ALL {
-        let path = Path::new(&poses, kind).unwrap();
+        let path = PosePath::new(&poses, kind).unwrap();
         let mut knots = [Knot::default(); 202];
         let table = plan(&platform, &path, Cut::Into(100), &mut knots).unwrap();
         let points = points_of(table.rows());
@@ -139,7 +139,7 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
         ] {
             let poses = from_rest([way, 0.0, -way], [0.0, turn, turn]);
             for kind in ALL {
-                let path = Path::new(&poses, kind).unwrap();
+                let path = PosePath::new(&poses, kind).unwrap();
                 let mut knots = [Knot::default(); 33];
                 let table = plan(&platform, &path, Cut::Into(32), &mut knots);
                 // What rounding is most of may be too coarse to be known.
@@ -178,7 +178,7 @@ proptest! {
         let mut limits = LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None };
         limits.jerk = jerk;
         let platform = if skew { skewed() } else { panel_with(limits) };
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let mut knots = [Knot::default(); 121];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();

@@ -2,7 +2,7 @@
 
 use crate::support::table::{Cut, Point, plan, points_of};
 use path_timing::{FeedCeiling, Knot};
-use pose_pt::{LocatorAxis, Path, Platform};
+use pose_pt::{LocatorAxis, Platform, PosePath};
 use proptest::prelude::*;
 
 use crate::support::exact::Exact;
@@ -34,7 +34,7 @@ fn limits_hold_to_the_last_digit() {
             &[by(0.0), by(0.01), by(-0.03)],
         ] {
             for (segments, kind) in [(40, 0), (1024, 1), (8192, 2), (20_000, 3)] {
-                let path = Path::new(poses, ALL[kind]).unwrap();
+                let path = PosePath::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
                 let table = plan(&platform, &path, Cut::Into(segments), &mut knots);
                 let table = table.unwrap();
@@ -100,7 +100,7 @@ proptest! {
         limits.jerk = jerk;
         let platform = panel_with(limits);
         let poses = [first, second].concat();
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let mut knots = vec![Knot::default(); 1203];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();

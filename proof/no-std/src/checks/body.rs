@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use path_timing::{Knot, Table};
 use pose_pt::{
-    Convention, Interpolation, Locator, LocatorAxis, Path, Platform, PoseVector, PtTable,
+    Convention, Interpolation, Locator, LocatorAxis, Platform, PosePath, PoseVector, PtTable,
     Segmentation,
 };
 
@@ -50,7 +50,7 @@ pub fn tables() -> Option<()> {
     let poses = [0.0, black_box(0.02)].map(|gamma| {
         PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::ExtrinsicXyz)
     });
-    let path = Path::new(&poses, Interpolation::Straight).ok()?;
+    let path = PosePath::new(&poses, Interpolation::Straight).ok()?;
     let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).ok()?;
     holds(table.points().count() == 5 && table.distance_error_bound() <= 0.01)?;
     let mut knots = [Knot::default(); 33];

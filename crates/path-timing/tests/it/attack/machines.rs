@@ -131,7 +131,7 @@ pub(super) fn attack_platform(random: &mut Random, tried: &mut Tried) {
     let poses: Vec<_> = (0..2 + random.below(3))
         .map(|_| Isometry3::new(three(random, way), three(random, turn)))
         .collect();
-    let path = pose_pt::Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = pose_pt::PosePath::new(&poses, Interpolation::Straight).unwrap();
     let blend = pose_pt::Blend {
         distance: way * random.within(0.0, 0.1),
         rotation_rad: turn * random.within(0.0, 0.1),

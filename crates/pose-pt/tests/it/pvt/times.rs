@@ -5,7 +5,7 @@ use crate::support::moves::{ALL, from_rest};
 use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with};
 use crate::support::table::{Cut, plan, points_of};
 use path_timing::Knot;
-use pose_pt::{Interpolation, LocatorAxis, Path, Platform};
+use pose_pt::{Interpolation, LocatorAxis, Platform, PosePath};
 use proptest::prelude::*;
 
 #[test]
@@ -19,7 +19,7 @@ fn a_straight_move_takes_the_closed_form() {
     ] {
         let poses = from_rest([0.0, -way, 0.0], [0.0; 3]);
         for kind in ALL {
-            let path = Path::new(&poses, kind).unwrap();
+            let path = PosePath::new(&poses, kind).unwrap();
             let mut knots = [Knot::default(); 257];
             let table = plan(&platform, &path, Cut::Into(256), &mut knots).unwrap();
             let ratio = table.duration_s() / seconds;
@@ -51,7 +51,7 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
         (short, 4.0 * (short / (2.0 * jerk)).cbrt()),
     ] {
         let poses = from_rest([0.0, way, 0.0], [0.0; 3]);
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 65];
         let table = plan(&platform, &path, Cut::Into(64), &mut knots).unwrap();
         let ratio = table.duration_s() / seconds;
@@ -82,7 +82,7 @@ fn jerk_costs_a_turn_little() {
         (2.6, 500.0, 1000.0, 1.005),
     ] {
         let poses = from_rest([way, 0.0, 0.0], [0.0, 0.0, turn]);
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 513];
         let mut plan = |platform: &Platform<3>| {
             let table = plan(platform, &path, Cut::Into(512), &mut knots).unwrap();
@@ -139,7 +139,7 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
     ] {
         let platform = panel_with(limits);
         for kind in ALL {
-            let path = Path::new(&poses, kind).unwrap();
+            let path = PosePath::new(&poses, kind).unwrap();
             let leg = path.leg(0).unwrap();
             let mut knots = vec![Knot::default(); 4001];
             let optimum = crate::support::optimum::seconds(&platform, &leg, 40_000);
@@ -164,7 +164,7 @@ fn near_the_optimum_of_a_turn_of_126_degrees() {
     });
     let poses = from_rest([0.3, -0.9, 0.0], [0.3, -0.9, 2.2]);
     for kind in ALL {
-        let path = Path::new(&poses, kind).unwrap();
+        let path = PosePath::new(&poses, kind).unwrap();
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 40_000);
         for (segments, max) in [(1000, 1.0005), (16_000, 1.000_15)] {
             let mut knots = vec![Knot::default(); 16_001];
@@ -188,7 +188,7 @@ proptest! {
     ) {
         let platform = panel_with(LocatorAxis { min: -9000.0, max: 9000.0, speed, acceleration: ACCELERATION, jerk: None });
         let poses = from_rest(translation, turn);
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 8000);
         let mut knots = [Knot::default(); 1001];
         let table = plan(&platform, &path, Cut::Into(1000), &mut knots)
@@ -205,7 +205,7 @@ fn a_pure_turn_takes_the_closed_form() {
     let platform = panel();
     let angle = 0.002_f64;
     let poses = from_rest([0.0; 3], [0.0, 0.0, angle]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
     let table = plan(&platform, &path, Cut::Into(200), &mut knots).unwrap();
     let seconds = 4000.0 * angle / SPEED + SPEED / ACCELERATION;

@@ -4,7 +4,7 @@ use crate::support::table::{Cut, plan};
 use path_timing::{FeedCeiling, Knot, Row};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose_pt::{
-    FitError, LimitError, Locator, LocatorAxis, Path, PlanError, Platform, PlatformError,
+    FitError, LimitError, Locator, LocatorAxis, PlanError, Platform, PlatformError, PosePath,
     PoseVector, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
 };
 
@@ -51,7 +51,7 @@ impl Scene {
         numbers.body(&platform, &poses, unit);
         numbers.measured(unit);
         numbers.refused(&platform, unit);
-        let path = Path::new(&poses, ALL[self.kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[self.kind]).unwrap();
         numbers.tables(&platform, &path, self.segments, unit);
         numbers.0
     }
@@ -190,7 +190,7 @@ impl Numbers {
             Isometry3::identity(),
             Isometry3::translation(unit, 0.0, 0.0),
         ];
-        let path = Path::new(&poses, ALL[0]).unwrap();
+        let path = PosePath::new(&poses, ALL[0]).unwrap();
         match PtTable::plan(
             platform,
             &path,
@@ -204,7 +204,7 @@ impl Numbers {
     }
 
     /// Paths, tables, runs.
-    fn tables(&mut self, platform: &Platform<3>, path: &Path<'_>, segments: u32, unit: f64) {
+    fn tables(&mut self, platform: &Platform<3>, path: &PosePath<'_>, segments: u32, unit: f64) {
         let leg = path.leg(0).unwrap();
         self.put("way", 1, [leg.length()]);
         self.put("leg's turn", 0, [leg.turn()]);
