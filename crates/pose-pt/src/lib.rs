@@ -36,14 +36,14 @@ mod body_path;
 mod distance_error;
 mod leg_axes;
 mod path;
-mod plan_error;
 mod pt;
+mod pt_error;
 mod segmentation;
 mod turn;
 
 #[cfg(feature = "path-timing")]
 pub use body_path::{BodyPath, BodyPathError, BodyPaths, hermite_distance_error};
 pub use path::{Blend, Interpolation, Leg, PosePath, PosePathError};
-pub use plan_error::PlanError;
 pub use pt::{PtPoint, PtPoints, PtTable};
+pub use pt_error::PtError;
 pub use segmentation::Segmentation;

@@ -8,7 +8,7 @@ use crate::distance_error::linear_distance_error;
 use crate::leg_axes::{LegAxes, Walk};
 use crate::number::{larger, magnitude};
 use crate::path::{Leg, PosePath};
-use crate::{Locator, PlanError, Platform, Segmentation};
+use crate::{Locator, Platform, PtError, Segmentation};
 
 /// A line of a PT table: where every axis is at a time. Between two lines it moves linearly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,12 +49,12 @@ impl<'a, const N: usize> PtTable<'a, N> {
     /// every position between, where the axes move linearly.
     ///
     /// # Errors
-    /// [`PlanError`].
+    /// [`PtError`].
     pub fn plan(
         platform: &'a Platform<N>,
         path: &PosePath<'a>,
         segmentation: Segmentation,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, PtError> {
         segmentation.check(platform)?;
         let mut points = 1_usize;
         for number in 0..path.legs() {
@@ -62,7 +62,7 @@ impl<'a, const N: usize> PtTable<'a, N> {
             points = usize::try_from(segments)
                 .ok()
                 .and_then(|segments| points.checked_add(segments))
-                .ok_or(PlanError::TooManyPoints {
+                .ok_or(PtError::TooManyPoints {
                     needed: usize::MAX,
                     available: usize::MAX,
                 })?;
@@ -85,10 +85,10 @@ impl<'a, const N: usize> PtTable<'a, N> {
             let (leg, point) = (walk.leg, walk.index);
             platform
                 .check_axes(&axes)
-                .map_err(|reason| PlanError::Limit { leg, point, reason })?;
+                .map_err(|reason| PtError::Limit { leg, point, reason })?;
             let takes_time = |last_s| segment_s > 0.0 && time_s > last_s;
             if last_s.is_some_and(|last_s| !takes_time(last_s)) {
-                return Err(PlanError::Indistinct { leg, point });
+                return Err(PtError::Indistinct { leg, point });
             }
             last_s = Some(time_s);
         }
@@ -108,12 +108,12 @@ impl<'a, const N: usize> PtTable<'a, N> {
     /// Refuses a table of more points than the controller has memory for.
     ///
     /// # Errors
-    /// [`PlanError::TooManyPoints`].
-    pub const fn fits(&self, available: usize) -> Result<(), PlanError> {
+    /// [`PtError::TooManyPoints`].
+    pub const fn fits(&self, available: usize) -> Result<(), PtError> {
         if self.points <= available {
             return Ok(());
         }
-        Err(PlanError::TooManyPoints {
+        Err(PtError::TooManyPoints {
             needed: self.points,
             available,
         })

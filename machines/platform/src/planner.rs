@@ -96,8 +96,8 @@ impl<const N: usize> Planner<N> {
     /// A table for linear motion between its points: how many there are, and the bound.
     fn linear(&self, path: &PosePath<'_>, csv: &mut String) -> Result<(usize, f64)> {
         let segmentation = Segmentation::max_distance_error(self.settings.max_distance_error_mm());
-        let placed = |error: pose_pt::PlanError| match error {
-            pose_pt::PlanError::Limit { .. } => anyhow!(error),
+        let placed = |error: pose_pt::PtError| match error {
+            pose_pt::PtError::Limit { .. } => anyhow!(error),
             _ => self.too_accurate(error),
         };
         let table = PtTable::plan(&self.platform, path, segmentation).map_err(placed)?;

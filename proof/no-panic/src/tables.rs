@@ -16,7 +16,7 @@ fn pt_plan<'a>(
     platform: &'a Platform<3>,
     path: &PosePath<'a>,
     segmentation: Segmentation,
-) -> Result<PtTable<'a, 3>, pose_pt::PlanError> {
+) -> Result<PtTable<'a, 3>, pose_pt::PtError> {
     PtTable::plan(platform, path, segmentation)
 }
 

@@ -2,8 +2,8 @@
 
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{
-    Axis, Convention, Interpolation, LimitError, LocatorAxis, PlanError, Platform, PosePath,
-    PosePathError, PoseVector, PtPoint, PtTable, Segmentation,
+    Axis, Convention, Interpolation, LimitError, LocatorAxis, Platform, PosePath, PosePathError,
+    PoseVector, PtError, PtPoint, PtTable, Segmentation,
 };
 use proptest::prelude::*;
 use twofloat::TwoFloat;
@@ -163,7 +163,7 @@ fn a_stroke_passed_between_the_ends_is_named() {
     ];
     let path = PosePath::of_vectors(&poses, Convention::ExtrinsicXyz).unwrap();
     let error = PtTable::plan(&platform, &path, Segmentation::segments(360)).unwrap_err();
-    let PlanError::Limit {
+    let PtError::Limit {
         leg: 0,
         point,
         reason,
@@ -218,15 +218,12 @@ fn wrong_input_is_named() {
         Segmentation::steps(1.0, f64::INFINITY),
     ] {
         let error = PtTable::plan(&platform, &path, segmentation).unwrap_err();
-        assert!(matches!(error, PlanError::Segmentation { .. }), "{error}");
+        assert!(matches!(error, PtError::Segmentation { .. }), "{error}");
     }
     let error = PtTable::plan(&platform, &path, Segmentation::steps(1e-12, 1.0)).unwrap_err();
-    assert!(
-        matches!(error, PlanError::TooFine { leg: 0, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PtError::TooFine { leg: 0, .. }), "{error}");
     let table = PtTable::plan(&platform, &path, Segmentation::segments(512)).unwrap();
-    let error = PlanError::TooManyPoints {
+    let error = PtError::TooManyPoints {
         needed: 513,
         available: 512,
     };
@@ -279,7 +276,7 @@ fn points_that_cannot_be_told_apart_are_refused() {
     );
     let error = PtTable::plan(&platform, &path, Segmentation::segments(1000)).unwrap_err();
     assert!(
-        matches!(error, PlanError::Indistinct { leg: 0, .. }),
+        matches!(error, PtError::Indistinct { leg: 0, .. }),
         "{error}"
     );
     // A way that no axis sees is none: each is at 500 mm.

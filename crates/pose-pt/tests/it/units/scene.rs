@@ -4,8 +4,8 @@ use crate::support::table::{Cut, plan};
 use path_timing::{FeedCeiling, Knot, Row};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose_pt::{
-    FitError, LimitError, Locator, LocatorAxis, PlanError, Platform, PlatformError, PosePath,
-    PoseVector, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
+    FitError, LimitError, Locator, LocatorAxis, Platform, PlatformError, PosePath, PoseVector,
+    PtError, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
 };
 
 use crate::support::moves::ALL;
@@ -196,7 +196,7 @@ impl Numbers {
             &path,
             Segmentation::max_distance_error(1e-15 * unit),
         ) {
-            Err(PlanError::DistanceError { allowed, min }) => {
+            Err(PtError::DistanceError { allowed, min }) => {
                 self.put("min", 1, [allowed, min]);
             }
             other => panic!("{other:?}"),
