@@ -18,7 +18,7 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{ArmRange, Delta, Dimensions, Measured, Path, SpeedLimits};
+use delta_kin::{ArmRange, Delta, Dimensions, Measured, PlatformPath, SpeedLimits};
 
 use bare::{BASE, LOWER, PLATFORM, UPPER};
 use eleven::eleven;
@@ -122,7 +122,7 @@ fn calibrate(c: &mut Criterion) {
 
 fn follow(c: &mut Criterion) {
     let delta = delta();
-    let line = Path::line(
+    let line = PlatformPath::line(
         Point3::new(-80.0, 20.0, -280.0),
         Point3::new(80.0, 20.0, -280.0),
     );

@@ -5,7 +5,7 @@ use core::error::Error;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{ArmRange, Delta, Dimensions, Path, SpeedLimits};
+use delta_kin::{ArmRange, Delta, Dimensions, PlatformPath, SpeedLimits};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Radii of base and platform, upper and lower arm, mm; angles read zero with the arms
@@ -29,17 +29,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let lift = Vector3::new(0.0, 0.0, 20.0);
     let moves = [
-        ("up", Path::line(pick, pick + lift)?),
+        ("up", PlatformPath::line(pick, pick + lift)?),
         (
             "over",
-            Path::arc(
+            PlatformPath::arc(
                 pick + lift,
                 Point3::new(0.0, 20.0, -280.0),
                 Vector3::y(),
                 PI,
             )?,
         ),
-        ("down", Path::line(place + lift, place)?),
+        ("down", PlatformPath::line(place + lift, place)?),
     ];
     let limits = SpeedLimits::new(500.0, [6.0; 3])?; // mm/s; rad/s
     for (name, path) in moves {

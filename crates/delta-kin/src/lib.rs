@@ -34,7 +34,7 @@ pub use assembly::AssemblyMode;
 pub use calibrate::{Calibration, CalibrationError, Measured, Parameter, Quantity};
 pub use delta::{Delta, Positive, ZAxis};
 pub use dynamics::{DeltaDynamics, DeltaMasses, DynamicsError};
-pub use follow::{Follow, FollowError, Path, PathError, SpeedLimits, Waypoint};
+pub use follow::{Follow, FollowError, PlatformPath, PlatformPathError, SpeedLimits, Waypoint};
 pub use forward::ForwardError;
 pub use geometry::GeometryError;
 pub use inverse::InverseError;

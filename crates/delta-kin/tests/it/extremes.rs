@@ -4,7 +4,7 @@
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
     Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Measured,
-    Parameter, Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
+    Parameter, PlatformPath, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -213,7 +213,7 @@ fn follows<T: RealField + Trig>(
         numbers.mostly(0.0),
         numbers.mostly(1.0),
     );
-    let arc = Path::arc(near, centre, axis, numbers.mostly(0.7));
+    let arc = PlatformPath::arc(near, centre, axis, numbers.mostly(0.7));
     let limits = SpeedLimits::new(
         numbers.mostly(span),
         [
@@ -228,7 +228,10 @@ fn follows<T: RealField + Trig>(
     if is_fine && wide(tolerance) > 64.0 * wide(delta.tolerance()) {
         tolerance = nalgebra::convert(1e-6 * span);
     }
-    for path in [Path::line(near, to), arc].into_iter().filter_map(read) {
+    for path in [PlatformPath::line(near, to), arc]
+        .into_iter()
+        .filter_map(read)
+    {
         finite([&path.length()])?;
         let share: T = numbers.mostly(0.5);
         if let Some(place) = path.point_at(share) {

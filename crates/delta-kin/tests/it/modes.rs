@@ -6,8 +6,8 @@ use core::f64::consts::FRAC_PI_2;
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
     Arm, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, ElbowSide, FollowError,
-    InverseError, Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError,
-    ZAxis,
+    InverseError, Measured, Parameter, PlatformPath, Positive, Quantity, SpeedLimits,
+    WorkspaceError, ZAxis,
 };
 
 use crate::common::thesis::thesis;
@@ -66,7 +66,7 @@ fn the_other_assembly_mode_is_asked_for_by_name() {
          ZAxis::Down would put it where the machine works"
     );
     let (line, cylinder) = (
-        Path::line(above, Point3::new(-30.0, 20.0, 300.0)).unwrap(),
+        PlatformPath::line(above, Point3::new(-30.0, 20.0, 300.0)).unwrap(),
         [230.0, 290.0],
     );
     assert!(upper.follow(line, 0.01, limits()).unwrap().count() > 2);
@@ -183,7 +183,7 @@ fn a_plane_of_elbows_past_upright_is_the_other_mode() {
     assert!((upper.forward(angles).unwrap() - far).norm() < 1e-11);
     let lower = delta.forward(angles).unwrap();
     assert!(lower.z < far.z && (lower - far).norm() > 1.0);
-    let line = Path::line(corner, far).unwrap();
+    let line = PlatformPath::line(corner, far).unwrap();
     let refused = delta.follow(line, 0.1, limits()).unwrap_err();
     let FollowError::Singular { fraction, .. } = refused else {
         panic!("{refused:?}");
@@ -216,7 +216,7 @@ fn middle_of(a: Point3<f64>, b: Point3<f64>) -> Point3<f64> {
 #[test]
 fn a_path_in_the_other_mode_is_refused() {
     let at = |x: f64, z: f64| Point3::new(x, 20.0, z);
-    let above = Path::line(at(30.0, 300.0), at(-30.0, 300.0)).unwrap();
+    let above = PlatformPath::line(at(30.0, 300.0), at(-30.0, 300.0)).unwrap();
     match thesis().follow(above, 0.01, limits()) {
         Err(FollowError::Unreachable {
             fraction, reason, ..

@@ -4,7 +4,7 @@
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
     Arm, ArmGeometry, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, ElbowSide,
-    FollowError, ForwardError, InverseError, Measured, Parameter, Path, Pose, Quantity,
+    FollowError, ForwardError, InverseError, Measured, Parameter, PlatformPath, Pose, Quantity,
     SpeedLimits, WorkspaceError,
 };
 use proptest::prelude::*;
@@ -178,8 +178,8 @@ fn pose_answers(pose: &Pose, unit: f64, answers: &mut Answers) {
 fn slow_answers(delta: &Delta, unit: f64) -> Answers {
     let mut answers = Answers::default();
     let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z) * unit;
-    let line = Path::line(at(80.0, 20.0, -280.0), at(-70.0, 30.0, -250.0)).unwrap();
-    let arc = Path::arc(
+    let line = PlatformPath::line(at(80.0, 20.0, -280.0), at(-70.0, 30.0, -250.0)).unwrap();
+    let arc = PlatformPath::arc(
         at(80.0, 20.0, -280.0),
         at(0.0, 0.0, -280.0),
         Vector3::z() * unit,
@@ -198,7 +198,7 @@ fn slow_answers(delta: &Delta, unit: f64) -> Answers {
             answers.number("duration", waypoint.duration_s, 0);
         }
     }
-    let out = Path::line(at(0.0, 0.0, -280.0), at(400.0, 0.0, -280.0)).unwrap();
+    let out = PlatformPath::line(at(0.0, 0.0, -280.0), at(400.0, 0.0, -280.0)).unwrap();
     match delta.follow(out, 0.05 * unit, limits) {
         Err(FollowError::Unreachable {
             fraction, point, ..

@@ -3,7 +3,9 @@
 use core::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, DeltaPath, Dimensions, Measured, Parameter, Path, Quantity, SpeedLimits};
+use delta_kin::{
+    Delta, DeltaPath, Dimensions, Measured, Parameter, PlatformPath, Quantity, SpeedLimits,
+};
 use path_timing::{Accuracy, AxisLimits, Knot, Table};
 
 use super::{CLOSE_MM, holds};
@@ -31,7 +33,7 @@ pub fn delta() -> Option<()> {
             .inverse(Point3::new(50.0, 50.0, black_box(100.0)))
             .is_err(),
     )?;
-    let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
+    let line = PlatformPath::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
     let speed_limits = SpeedLimits::new(200.0, [3.0; 3]).ok()?;
     let last = delta.follow(line, 0.01, speed_limits).ok()?.last()?;
     holds((last.point - line.point_at(1.0)?).norm() < CLOSE_MM)?;
