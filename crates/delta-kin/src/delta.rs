@@ -6,7 +6,9 @@ use trig_kernels::{Trig, sin_cos_lanes};
 use crate::arm::zip;
 use crate::geometry::checked_span;
 use crate::prepared::PreparedArm;
-use crate::{Arm, ArmGeometry, ArmRange, AssemblyMode, Dimensions, ElbowSide, GeometryError};
+use crate::{
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Dimensions, ElbowSide, GeometryError, Positive, ZAxis,
+};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
@@ -43,35 +45,6 @@ pub struct Delta<T: RealField = f64> {
     tolerance: T,
     /// See [`Self::is_assembled`].
     least_product: T,
-}
-
-/// Which way the z axis points. X, Y and the azimuths stay as they are: with z down the frame
-/// is left-handed, as on machines that count depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "an axis has two directions")]
-pub enum ZAxis {
-    /// Up: the platform hangs at z < 0.
-    #[default]
-    Up,
-    /// Down: the platform hangs at z > 0.
-    Down,
-}
-
-/// Which way an arm turns when its angle grows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "a joint has two directions")]
-pub enum Positive {
-    /// Outward from straight down, and so up from horizontal.
-    #[default]
-    Outward,
-    /// Inward, and so down from horizontal.
-    Inward,
 }
 
 /// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of the sum of

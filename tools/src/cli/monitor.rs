@@ -80,7 +80,7 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
     };
     let verdict = match &options.capture {
         Some(path) => replay(path, options, teller)?,
-        None => super::block_on(listen(options, teller))?,
+        None => crate::runtime::block_on(listen(options, teller))?,
     };
     Ok(if verdict.is_fault() {
         ExitCode::FAILURE
@@ -195,7 +195,7 @@ async fn listen(options: &Options, mut teller: Teller) -> Result<Verdict> {
     };
     let ended = select! {
         ended = tell([&mut ear_a, &mut ear_b], begin, &mut teller) => ended,
-        ended = super::interrupted() => ended,
+        ended = crate::runtime::interrupted() => ended,
         () = end => Ok(()),
     };
     // Also where a port has gone.
