@@ -143,9 +143,7 @@ fn records() -> Vec<u8> {
     for _ in 0..RECORDS {
         match below(32) {
             31 => bytes.extend([below(8) << 5 | 31, below(256), below(256)]),
-            theta3 => {
-                bytes.extend([theta3, below(31), below(31)].map(|count| count | below(2) << 7))
-            }
+            disc => bytes.extend([disc, below(31), below(31)].map(|count| count | below(2) << 7)),
         }
     }
     bytes
@@ -158,7 +156,7 @@ fn decoded_records(bytes: Vec<u8>) -> i32 {
     for located in format.records(&bytes) {
         match located.expect("all are records").record {
             Record::Fast(fast) => sum ^= fast.pulses(),
-            Record::Slow(slow) => sum ^= slow.pulses().theta1,
+            Record::Slow(slow) => sum ^= slow.pulses().elbow,
         }
     }
     // Freeing them is no decoding.

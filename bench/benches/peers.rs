@@ -8,7 +8,7 @@ mod points;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use delta_kin::Delta;
+use delta_kin::{Delta, Dimensions};
 use oxictl::kinematics::serial::delta::{DeltaConfig, DeltaRobot};
 use oxictl::kinematics::serial::scara::{ScaraConfig, ScaraRobot};
 use scara_kin::{Arm, Elbow};
@@ -52,7 +52,13 @@ fn inverse(c: &mut Criterion) {
 
 fn delta(c: &mut Criterion) {
     let points = delta_points::points();
-    let ours = Delta::new(42.0, 18.0, 120.0, 243.0).expect("lengths are good");
+    let ours = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .expect("lengths are good");
     let mut peer = DeltaRobot::new(DeltaConfig {
         r_f: 42.0,
         r_e: 18.0,

@@ -1,6 +1,6 @@
 /* Plays the records of pattern.h on step and direction pins, two axes at once on timers 0 and 1.
  *
- *   P1.0..P1.3   step: theta1, theta2, theta3, vertical; a pulse is high, then low
+ *   P1.0..P1.3   step: elbow, shoulder, disc, vertical; a pulse is high, then low
  *   P1.4..P1.7   direction of the same, high for negative
  *   P0.0         high while axes turn
  *   P3           written once, at the end
@@ -37,9 +37,9 @@
 #define COUNT_BITS 0x1F
 #define NEGATIVE 0x80
 
-#define THETA1 0x01
-#define THETA2 0x02
-#define THETA3 0x04
+#define ELBOW 0x01
+#define SHOULDER 0x02
+#define DISC 0x04
 #define VERTICAL 0x08
 
 #if RESTART == RESTART_ADD
@@ -196,12 +196,12 @@ static void turn(unsigned char axis0, unsigned int count0, unsigned char axis1, 
 static unsigned char axis_of(unsigned char byte)
 {
     switch ((byte >> 5) & 3) {
-    case PATTERN_THETA1_CODE:
-        return THETA1;
-    case PATTERN_THETA2_CODE:
-        return THETA2;
-    case PATTERN_THETA3_CODE:
-        return THETA3;
+    case PATTERN_ELBOW_CODE:
+        return ELBOW;
+    case PATTERN_SHOULDER_CODE:
+        return SHOULDER;
+    case PATTERN_DISC_CODE:
+        return DISC;
     default:
         return VERTICAL;
     }
@@ -227,11 +227,11 @@ void main(void)
             turn(axis, (unsigned int)byte[2] << 8 | byte[1], 0, 0);
 #endif
         } else {
-            set_direction(THETA3, byte[0]);
-            turn(THETA3, byte[0] & COUNT_BITS, 0, 0);
-            set_direction(THETA1, byte[1]);
-            set_direction(THETA2, byte[2]);
-            turn(THETA1, byte[1] & COUNT_BITS, THETA2, byte[2] & COUNT_BITS);
+            set_direction(DISC, byte[0]);
+            turn(DISC, byte[0] & COUNT_BITS, 0, 0);
+            set_direction(ELBOW, byte[1]);
+            set_direction(SHOULDER, byte[2]);
+            turn(ELBOW, byte[1] & COUNT_BITS, SHOULDER, byte[2] & COUNT_BITS);
         }
         byte += 3;
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use handwheel::{
     Command, Driver, Event, Job, LcdBlock, LcdCommand, MAX_COMMAND, MAX_REPORT, Model, Report,
-    Text, Timing, WheelQuantiser,
+    Text, Timeouts, WheelQuantiser,
 };
 use libfuzzer_sys::fuzz_target;
 
@@ -40,7 +40,7 @@ fuzz_target!(|data: &[u8]| {
     let model = [Model::Hbls, Model::Hbas][usize::from(head & 1)];
     let max = u32::from(head) + 1;
     let wheel = WheelQuantiser::new(max, 1 + u16::from(head) / 2).unwrap();
-    let mut driver = Driver::new(model, Timing::DEFAULT);
+    let mut driver = Driver::new(model, Timeouts::DEFAULT);
     let (mut now, mut jobs) = (Duration::ZERO, 0);
     while let Some((&[happening, value], rest)) = input.split_first_chunk() {
         input = rest;

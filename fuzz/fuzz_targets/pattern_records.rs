@@ -4,7 +4,7 @@
 use arbitrary::Unstructured;
 use libfuzzer_sys::fuzz_target;
 use pattern_codec::engraving::{
-    Builder, DecodeError, DecodeErrorKind, Decoder, Format, Located, Mode, Statistics,
+    Builder, DecodeError, DecodeErrorKind, Decoder, Format, Located, Statistics, Strictness,
 };
 use pose2pulse_fuzz::Cuts;
 
@@ -28,7 +28,7 @@ fuzz_target!(|data: &[u8]| {
 fn size_hint_holds(format: &Format, bytes: &[u8], count: usize) {
     let (least, most) = format.records(bytes).size_hint();
     assert!(least <= count && most.is_some_and(|most| count <= most));
-    if format.mode == Mode::Lenient {
+    if format.strictness == Strictness::Lenient {
         assert_eq!(count, least);
     }
 }
@@ -53,7 +53,7 @@ fn stream_agrees(format: &Format, bytes: &[u8], cuts: &Cuts, items: &[Item]) {
         )
     };
     let last_error = match items.last() {
-        Some(Err(error)) if format.mode == Mode::Strict => Some(*error),
+        Some(Err(error)) if format.strictness == Strictness::Strict => Some(*error),
         Some(Err(error)) => Some(*error).filter(|_| items.last().as_ref().is_some_and(truncated)),
         _ => None,
     };
@@ -77,7 +77,7 @@ fn sums_agree(items: &[Item]) {
     let (mut sum, mut pulses, mut records) = ([0_i64; 4], [0_u64; 4], 0);
     for located in items.iter().flatten() {
         let moved = located.record.pulses();
-        let moved = [moved.theta1, moved.theta2, moved.theta3, moved.vertical];
+        let moved = [moved.elbow, moved.shoulder, moved.disc, moved.vertical];
         if builder.track(located.record).is_err() {
             return;
         }
@@ -90,14 +90,14 @@ fn sums_agree(items: &[Item]) {
     }
     let at = builder.position();
     assert_eq!(
-        [at.theta1, at.theta2, at.theta3, at.vertical].map(i64::from),
+        [at.elbow, at.shoulder, at.disc, at.vertical].map(i64::from),
         sum
     );
     let counted = statistics.pulses;
     let counted = [
-        counted.theta1,
-        counted.theta2,
-        counted.theta3,
+        counted.elbow,
+        counted.shoulder,
+        counted.disc,
         counted.vertical,
     ];
     assert_eq!((counted, statistics.records()), (pulses, records));

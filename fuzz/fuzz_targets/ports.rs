@@ -5,7 +5,7 @@ extern crate alloc;
 
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use proto3964r::LineError;
+use proto3964r::CharacterError;
 use proto3964r::tokio::Damage;
 
 use port::{Frame, Heard, Marks, Telnet};
@@ -65,7 +65,7 @@ fn terminal(u: &mut Unstructured<'_>) -> Result<()> {
         let wanted = match (heard(u)?, u.arbitrary()?) {
             (Ok(byte), true) if byte != 0 => Err(Damage::Character {
                 byte,
-                error: LineError::Parity,
+                error: CharacterError::Parity,
             }),
             (heard, _) => heard,
         };

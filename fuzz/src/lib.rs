@@ -1,9 +1,9 @@
 //! Settings and cuts that the fuzzer chooses, for more than one target.
 
 use arbitrary::{Arbitrary, Result, Unstructured};
-use pattern_codec::engraving::{AxisCodes, ByteOrder, Format, Mode, PerAxis};
+use pattern_codec::engraving::{AxisCodes, ByteOrder, Format, PerAxis, Strictness};
 use proto3964r::{
-    Check, Config, Conflict, IdleNoise, IllegalDle, Line, LineError, Priority, SilenceInBlock,
+    CharacterError, Check, Config, Conflict, IdleNoise, IllegalDle, Line, Priority, SilenceInBlock,
 };
 
 /// The pieces of a slice: lengths over and over, at least one byte each.
@@ -22,20 +22,20 @@ impl Cuts {
     }
 }
 
-/// Any format: one of the 24 orders of the axis codes, byte order, mode.
+/// Any format: one of the 24 orders of the axis codes, byte order, strictness.
 pub fn format(u: &mut Unstructured<'_>) -> Result<Format> {
     let mut left = vec![0, 1, 2, 3];
     let mut code = || -> Result<u8> { Ok(left.swap_remove(u.choose_index(left.len())?)) };
     let codes = PerAxis {
-        theta1: code()?,
-        theta2: code()?,
-        theta3: code()?,
+        elbow: code()?,
+        shoulder: code()?,
+        disc: code()?,
         vertical: code()?,
     };
     Ok(Format::default()
         .with_axis_codes(AxisCodes::new(codes).expect("codes are distinct"))
         .with_byte_order(*u.choose(&[ByteOrder::BigEndian, ByteOrder::LittleEndian])?)
-        .with_mode(*u.choose(&[Mode::Strict, Mode::Lenient])?))
+        .with_strictness(*u.choose(&[Strictness::Strict, Strictness::Lenient])?))
 }
 
 pub fn check(u: &mut Unstructured<'_>) -> Result<Check> {
@@ -51,8 +51,12 @@ pub fn illegal_dle(u: &mut Unstructured<'_>) -> Result<IllegalDle> {
     u.choose(&rules).copied()
 }
 
-pub fn line_error(u: &mut Unstructured<'_>) -> Result<LineError> {
-    let errors = [LineError::Parity, LineError::Framing, LineError::Overrun];
+pub fn line_error(u: &mut Unstructured<'_>) -> Result<CharacterError> {
+    let errors = [
+        CharacterError::Parity,
+        CharacterError::Framing,
+        CharacterError::Overrun,
+    ];
     u.choose(&errors).copied()
 }
 
@@ -80,7 +84,7 @@ pub fn config(u: &mut Unstructured<'_>, least_ms: u16) -> Result<Config> {
         buffer_wait_ms: u.int_in_range(least_ms..=1000)?,
         acknowledge_wait_ms: u.int_in_range(0..=1000)? * u16::from(u.arbitrary::<bool>()?),
         line: line(u)?,
-        babble_s: u.int_in_range(1..=10)?,
+        max_noise_s: u.int_in_range(1..=10)?,
         connection_attempts: u.int_in_range(0..=7)?,
         transmission_attempts: u.int_in_range(0..=7)?,
         priority: *u.choose(&[Priority::Low, Priority::High])?,

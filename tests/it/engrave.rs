@@ -71,14 +71,14 @@ impl Run {
     }
 
     /// Direction of the forearm.
-    fn elbow(&self, [theta1, theta2, ..]: [i32; 4]) -> f64 {
-        self.angle("theta2", theta2) + self.angle("theta1", theta1)
+    fn elbow(&self, [elbow, shoulder, ..]: [i32; 4]) -> f64 {
+        self.angle("shoulder", shoulder) + self.angle("elbow", elbow)
     }
 
     fn tool(&self, position: [i32; 4]) -> (f64, f64) {
         let upper = self.number("/machine/upper_mm");
         let fore = self.number("/machine/fore_mm");
-        let shoulder = self.angle("theta2", position[1]);
+        let shoulder = self.angle("shoulder", position[1]);
         let elbow = self.elbow(position);
         (
             upper * shoulder.cos() + fore * elbow.cos(),
@@ -93,7 +93,7 @@ impl Run {
     }
 }
 
-/// Positions of theta1, theta2, theta3 and the vertical axis after each record.
+/// Positions of elbow, shoulder, disc and the vertical axis after each record.
 fn integrate(pattern: &[u8]) -> Vec<(bool, [i32; 4])> {
     let mut position = [0; 4];
     pattern
@@ -105,7 +105,7 @@ fn integrate(pattern: &[u8]) -> Vec<(bool, [i32; 4])> {
                 let count = i32::from(record[1]) << 8 | i32::from(record[2]);
                 position[usize::from(record[0] >> 5 & 3)] += signed(record[0], count);
             } else {
-                // In the order theta3, theta1, theta2.
+                // In the order disc, elbow, shoulder.
                 for (axis, byte) in [2, 0, 1].into_iter().zip(record) {
                     position[axis] += signed(*byte, i32::from(byte & 0x1F));
                 }
@@ -145,9 +145,9 @@ fn the_bytes_alone_draw_a_circle() {
         if fast {
             continue;
         }
-        let [.., theta3, vertical] = position;
+        let [.., disc, vertical] = position;
         assert!(vertical < 0, "engraved above the glass");
-        let disc = run.elbow(position) + run.angle("theta3", theta3);
+        let disc = run.elbow(position) + run.angle("disc", disc);
         let (tool_x, tool_y) = run.tool(position);
         let (at_x, at_y) = (tool_x - x, tool_y - y);
         assert!((at_x.hypot(at_y) - radius).abs() <= bound);
@@ -171,7 +171,7 @@ fn the_dump_has_every_pulse() {
     let run = Run::of_drawing("star", &[]);
     let dump = String::from_utf8(run.read("pulses.vcd")).unwrap();
     let (head, body) = dump.split_once("$enddefinitions").unwrap();
-    for axis in ["theta1", "theta2", "theta3", "vertical"] {
+    for axis in ["elbow", "shoulder", "disc", "vertical"] {
         let name = format!("{axis}_step");
         assert!(head.contains(&format!("{axis}_dir")));
         let declared = head.lines().find(|line| line.contains(&name)).unwrap();
@@ -266,7 +266,10 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         "endless.toml",
         &machine.replace("corner_deg = 25.0", "corner_deg = inf"),
     );
-    let codes = write("codes.toml", &machine.replace("theta2 = 1", "theta2 = 0"));
+    let codes = write(
+        "codes.toml",
+        &machine.replace("shoulder = 1", "shoulder = 0"),
+    );
     let broken = write(
         "broken.svg",
         "<svg xmlns='http://www.w3.org/2000/svg'><path d=",
@@ -293,7 +296,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         ),
         (
             &["--machine", &codes],
-            "theta1 and theta2: both have the axis code 0",
+            "elbow and shoulder: both have the axis code 0",
         ),
         (&["--tolerance", "-1"], "--tolerance: -1 is not above 0 mm"),
         (
@@ -314,7 +317,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         ),
         (
             &["--machine", &endless],
-            "endless.toml: [theta3]: corner_deg = inf is not finite",
+            "endless.toml: [disc]: corner_deg = inf is not finite",
         ),
         (&["--machine", &slow], "slow.toml: [rapid]: start rate"),
         (

@@ -36,7 +36,7 @@ mod tap;
 use core::time::Duration;
 
 use monitor3964r::{Character, Side};
-use proto3964r::LineError;
+use proto3964r::CharacterError;
 use thiserror::Error;
 
 pub use self::{
@@ -109,11 +109,11 @@ fn read_line(line: &str, record: &mut Vec<Character>) -> Result<Duration, String
 }
 
 /// `41`, `4142`, or a damaged byte with its mark.
-fn read_word(word: &str, mut push: impl FnMut(u8, Option<LineError>)) -> Result<(), String> {
+fn read_word(word: &str, mut push: impl FnMut(u8, Option<CharacterError>)) -> Result<(), String> {
     let (digits, error) = if let Some(digits) = word.strip_suffix('?') {
-        (digits, Some(LineError::Parity))
+        (digits, Some(CharacterError::Parity))
     } else if let Some(digits) = word.strip_suffix('!') {
-        (digits, Some(LineError::Framing))
+        (digits, Some(CharacterError::Framing))
     } else {
         (word, None)
     };
@@ -148,7 +148,7 @@ pub fn line(character: &Character) -> String {
     };
     let mark = match character.error {
         None => "",
-        Some(LineError::Framing) => "!",
+        Some(CharacterError::Framing) => "!",
         Some(_) => "?",
     };
     let at = text::time(character.at);
@@ -165,8 +165,8 @@ mod tests {
         let record = read(text).unwrap();
         let written: String = record.iter().map(|heard| line(heard) + "\n").collect();
         assert_eq!(written, text);
-        assert_eq!(record[1].error, Some(LineError::Parity));
-        assert_eq!(record[2].error, Some(LineError::Framing));
+        assert_eq!(record[1].error, Some(CharacterError::Parity));
+        assert_eq!(record[2].error, Some(CharacterError::Framing));
     }
 
     #[test]

@@ -46,7 +46,7 @@ use self::{
     reload::{Hangups, Reload},
     store::{DeadLetters, Known, Store},
 };
-use crate::cli::{block_on, interrupted};
+use crate::runtime::{block_on, interrupted};
 
 /// Brings lines of 3964R and RK512 to MQTT or NATS and TCP, until SIGINT or SIGTERM.
 ///

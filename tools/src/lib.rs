@@ -14,6 +14,10 @@ mod gateway;
 mod port;
 mod preset;
 pub mod probe;
+#[cfg(feature = "cli")]
+mod runtime;
+#[cfg(feature = "cli")]
+mod settings;
 pub mod text;
 
 #[cfg(feature = "ports")]

@@ -15,6 +15,8 @@ mod pty;
 #[cfg(feature = "ports")]
 mod stream;
 #[cfg(feature = "ports")]
+mod tcp;
+#[cfg(feature = "ports")]
 mod telnet;
 #[cfg(all(feature = "ports", unix))]
 mod tty;

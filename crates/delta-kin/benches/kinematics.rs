@@ -18,20 +18,26 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, JointRange, Measured, Path, SpeedLimits};
+use delta_kin::{ArmRange, Delta, Dimensions, Measured, PlatformPath, SpeedLimits};
 
 use bare::{BASE, LOWER, PLATFORM, UPPER};
 use eleven::eleven;
 use points::{POINTS, points};
 
 fn delta() -> Delta {
-    Delta::new(BASE, PLATFORM, UPPER, LOWER).expect("lengths are good")
+    Delta::new(Dimensions {
+        base: BASE,
+        platform: PLATFORM,
+        upper: UPPER,
+        lower: LOWER,
+    })
+    .expect("lengths are good")
 }
 
 fn inverse(c: &mut Criterion) {
     let (points, arms) = (points(), bare::directions());
     let limited = delta()
-        .with_range(JointRange::new(-1.0, 3.0).expect("range is good"))
+        .with_range(ArmRange::new(-1.0, 3.0).expect("range is good"))
         .with_ball_joints(1.0)
         .expect("angle is good");
     let mut group = c.benchmark_group("inverse, three arms");
@@ -116,7 +122,7 @@ fn calibrate(c: &mut Criterion) {
 
 fn follow(c: &mut Criterion) {
     let delta = delta();
-    let line = Path::line(
+    let line = PlatformPath::line(
         Point3::new(-80.0, 20.0, -280.0),
         Point3::new(80.0, 20.0, -280.0),
     );

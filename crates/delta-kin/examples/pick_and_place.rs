@@ -5,14 +5,19 @@ use core::error::Error;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, JointRange, Path, SpeedLimits};
+use delta_kin::{ArmRange, Delta, Dimensions, PlatformPath, SpeedLimits};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Radii of base and platform, upper and lower arm, mm; angles read zero with the arms
     // horizontal, and may go 90° down and 30° up.
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?
-        .with_zero(FRAC_PI_2)?
-        .with_range(JointRange::new(-FRAC_PI_2, 0.52)?);
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })?
+    .with_zero(FRAC_PI_2)?
+    .with_range(ArmRange::new(-FRAC_PI_2, 0.52)?);
     println!(
         "a cylinder of radius {:.0} mm between z = -300 and -240 is all reached\n",
         delta.largest_cylinder([-300.0, -240.0], 1.0)?
@@ -24,17 +29,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let lift = Vector3::new(0.0, 0.0, 20.0);
     let moves = [
-        ("up", Path::line(pick, pick + lift)?),
+        ("up", PlatformPath::line(pick, pick + lift)?),
         (
             "over",
-            Path::arc(
+            PlatformPath::arc(
                 pick + lift,
                 Point3::new(0.0, 20.0, -280.0),
                 Vector3::y(),
                 PI,
             )?,
         ),
-        ("down", Path::line(place + lift, place)?),
+        ("down", PlatformPath::line(place + lift, place)?),
     ];
     let limits = SpeedLimits::new(500.0, [6.0; 3])?; // mm/s; rad/s
     for (name, path) in moves {

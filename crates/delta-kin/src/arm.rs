@@ -46,11 +46,28 @@ impl fmt::Display for Arm {
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "two circles meet in two points")]
-pub enum Elbow {
+pub enum ElbowSide {
     /// Outside, as Delta robots are built.
     Out,
     /// Inside, towards the axis of the base.
     In,
+}
+
+/// The four lengths of a Delta whose arms are equal, in one unit, as in [`ArmGeometry`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(clippy::exhaustive_structs, reason = "these four determine a Delta")]
+pub struct Dimensions<T = f64> {
+    /// R: base radius, from the base's axis to a shoulder.
+    pub base: T,
+    /// r: platform radius, from the platform's centre to a wrist.
+    pub platform: T,
+    /// Lb: upper arm, from shoulder to elbow.
+    pub upper: T,
+    /// La: lower arm, the rods from elbow to wrist.
+    pub lower: T,
 }
 
 /// The geometry of one arm; lengths in one unit, the same throughout, angles in radians.
@@ -89,7 +106,13 @@ pub struct ArmGeometry<T = f64> {
 impl<T: RealField + Copy> ArmGeometry<T> {
     /// An arm as designed: at its nominal azimuth, its angle zero straight down.
     #[must_use]
-    pub fn nominal(arm: Arm, base: T, platform: T, upper: T, lower: T) -> Self {
+    pub fn nominal(arm: Arm, dimensions: Dimensions<T>) -> Self {
+        let Dimensions {
+            base,
+            platform,
+            upper,
+            lower,
+        } = dimensions;
         let sixths = nalgebra::convert::<f64, T>(f64::from(4 * arm.number() - 3));
         Self {
             azimuth: sixths * T::frac_pi_6(),

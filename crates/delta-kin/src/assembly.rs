@@ -1,54 +1,12 @@
 //! Assembly modes: whether the platform is at the lower or the higher of its two points.
 
-use core::fmt;
-
 use nalgebra::{RealField, Vector3};
 use trig_kernels::Trig;
 
 use crate::arm::zip;
 use crate::prepared::PreparedArm;
 use crate::range::{half, norm, two};
-use crate::{Delta, Elbow, InverseError, ZAxis};
-
-/// Which of the two points where the lower arms meet the platform takes.
-///
-/// They are mirror images in the plane of the elbows (each moved inward by the platform's radius),
-/// and of the two one is lower than the other, unless that plane is upright. The platform comes
-/// from one to the other through a parallel singularity, the rods in that plane, or where the plane
-/// turns past upright: far out and high, or where arms swing inward beyond the axis. There a pose
-/// has no mode, and on the other side the other one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "three spheres meet in two points")]
-pub enum AssemblyMode {
-    /// The point with the smaller z, in the thesis' frame with z up: as Delta robots hang.
-    #[default]
-    Lower,
-    /// The point with the larger z.
-    Upper,
-}
-
-impl AssemblyMode {
-    /// The other one.
-    #[must_use]
-    pub const fn other(self) -> Self {
-        match self {
-            Self::Lower => Self::Upper,
-            Self::Upper => Self::Lower,
-        }
-    }
-}
-
-impl fmt::Display for AssemblyMode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Lower => "lower",
-            Self::Upper => "upper",
-        })
-    }
-}
+use crate::{AssemblyMode, Delta, ElbowSide, InverseError, ZAxis};
 
 /// The platform above the plane of the spheres' centres.
 struct Tripod<T> {
@@ -161,7 +119,7 @@ pub(crate) fn from_above<T: RealField + Trig>([c1, c2, c3]: [Vector3<T>; 3]) -> 
 fn rod_at_edge<T: RealField + Trig>(
     prepared: &PreparedArm<T>,
     point: &Vector3<T>,
-    elbow: Elbow,
+    elbow: ElbowSide,
 ) -> Vector3<T> {
     let triangle = prepared.triangle(point).at_edge();
     prepared.rod(&triangle, &triangle.heading(elbow), triangle.scale())

@@ -6,7 +6,9 @@ use trig_kernels::{Trig, sin_cos_lanes};
 use crate::arm::zip;
 use crate::geometry::checked_span;
 use crate::prepared::PreparedArm;
-use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange};
+use crate::{
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Dimensions, ElbowSide, GeometryError, Positive, ZAxis,
+};
 
 /// A rotary Delta robot, in any unit of length, the same throughout.
 ///
@@ -19,12 +21,12 @@ use crate::{Arm, ArmGeometry, AssemblyMode, Elbow, GeometryError, JointRange};
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_2;
-/// use delta_kin::{Delta, JointRange};
+/// use delta_kin::{ArmRange, Delta, Dimensions};
 ///
 /// // Angles read zero with the arms horizontal, and may go 90° down and 30° up.
-/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?
+/// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?
 ///     .with_zero(FRAC_PI_2)?
-///     .with_range(JointRange::new(-FRAC_PI_2, 0.52)?)
+///     .with_range(ArmRange::new(-FRAC_PI_2, 0.52)?)
 ///     .with_ball_joints(0.6)?;
 /// # Ok::<(), delta_kin::GeometryError<f64>>(())
 /// ```
@@ -33,9 +35,9 @@ pub struct Delta<T: RealField = f64> {
     arms: [ArmGeometry<T>; 3],
     z: ZAxis,
     positive: Positive,
-    ranges: [JointRange<T>; 3],
+    ranges: [ArmRange<T>; 3],
     max_swivel: Option<T>,
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     assembly_mode: AssemblyMode,
     /// What follows from the above, ready for use.
     prepared: [PreparedArm<T>; 3],
@@ -45,47 +47,17 @@ pub struct Delta<T: RealField = f64> {
     least_product: T,
 }
 
-/// Which way the z axis points. X, Y and the azimuths stay as they are: with z down the frame
-/// is left-handed, as on machines that count depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "an axis has two directions")]
-pub enum ZAxis {
-    /// Up: the platform hangs at z < 0.
-    #[default]
-    Up,
-    /// Down: the platform hangs at z > 0.
-    Down,
-}
-
-/// Which way an arm turns when its angle grows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(clippy::exhaustive_enums, reason = "a joint has two directions")]
-pub enum Positive {
-    /// Outward from straight down, and so up from horizontal.
-    #[default]
-    Outward,
-    /// Inward, and so down from horizontal.
-    Inward,
-}
-
 /// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of the sum of
 /// an arm's lengths: a sine, two products and two sums for each of three spheres.
 const ROUNDING_STEPS: f64 = 16.0;
 
 impl<T: RealField + Trig> Delta<T> {
-    /// A machine of three equal arms, 120° apart, without limits: base radius R, platform
-    /// radius r, upper arm Lb, lower arm La.
+    /// A machine of three equal arms, 120° apart, without limits.
     ///
     /// # Errors
     /// As for [`from_arms`](Self::from_arms).
-    pub fn new(base: T, platform: T, upper: T, lower: T) -> Result<Self, GeometryError<T>> {
-        Self::from_arms(Arm::ALL.map(|arm| ArmGeometry::nominal(arm, base, platform, upper, lower)))
+    pub fn new(dimensions: Dimensions<T>) -> Result<Self, GeometryError<T>> {
+        Self::from_arms(Arm::ALL.map(|arm| ArmGeometry::nominal(arm, dimensions)))
     }
 
     /// A machine of three arms as they are, each with its own lengths, azimuth and zero.
@@ -103,13 +75,12 @@ impl<T: RealField + Trig> Delta<T> {
             arms,
             z: ZAxis::default(),
             positive: Positive::default(),
-            ranges: [JointRange::unlimited(); 3],
+            ranges: [ArmRange::unlimited(); 3],
             max_swivel: None,
-            working_mode: [Elbow::Out; 3],
+            working_mode: [ElbowSide::Out; 3],
             assembly_mode: AssemblyMode::Lower,
-            prepared: arms.map(|arm| {
-                PreparedArm::new(&arm, JointRange::unlimited(), None, Positive::Outward)
-            }),
+            prepared: arms
+                .map(|arm| PreparedArm::new(&arm, ArmRange::unlimited(), None, Positive::Outward)),
             span,
             tolerance: T::zero(),
             least_product: T::zero(),
@@ -159,13 +130,13 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// The machine with the same joint range for all arms, as their angles read.
     #[must_use]
-    pub fn with_range(self, range: JointRange<T>) -> Self {
+    pub fn with_range(self, range: ArmRange<T>) -> Self {
         self.with_ranges([range; 3])
     }
 
     /// The machine with a joint range for each arm, as their angles read.
     #[must_use]
-    pub fn with_ranges(mut self, ranges: [JointRange<T>; 3]) -> Self {
+    pub fn with_ranges(mut self, ranges: [ArmRange<T>; 3]) -> Self {
         self.ranges = ranges;
         self.prepare()
     }
@@ -189,7 +160,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// The machine with each elbow on the side named: the working mode in which it is built, elbows
     /// out unless set. It is left only through a serial singularity, an arm stretched or folded.
     #[must_use]
-    pub const fn with_working_mode(mut self, working_mode: [Elbow; 3]) -> Self {
+    pub const fn with_working_mode(mut self, working_mode: [ElbowSide; 3]) -> Self {
         self.working_mode = working_mode;
         self
     }
@@ -241,7 +212,7 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// The joint ranges, as the angles read.
     #[must_use]
-    pub const fn ranges(&self) -> &[JointRange<T>; 3] {
+    pub const fn ranges(&self) -> &[ArmRange<T>; 3] {
         &self.ranges
     }
 
@@ -253,7 +224,7 @@ impl<T: RealField + Trig> Delta<T> {
 
     /// On which side of the line from shoulder to wrist each elbow is.
     #[must_use]
-    pub const fn working_mode(&self) -> [Elbow; 3] {
+    pub const fn working_mode(&self) -> [ElbowSide; 3] {
         self.working_mode
     }
 

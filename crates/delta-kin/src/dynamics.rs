@@ -29,9 +29,9 @@ use crate::{Delta, Pose, PoseError};
 ///
 /// ```
 /// use delta_kin::nalgebra::{Point3, Vector3};
-/// use delta_kin::{Delta, DeltaMasses};
+/// use delta_kin::{Delta, DeltaMasses, Dimensions};
 ///
-/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+/// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?; // mm
 /// let dynamics = delta.dynamics(1e-3, DeltaMasses { // 1 mm in m
 ///     arm_kg_m2: 2e-3,   // about the shoulder, with the rotor through its gear
 ///     arm_kg_m: 0.01,    // mass times the distance of its centre from the shoulder
@@ -84,7 +84,7 @@ impl<T: RealField + Trig> Delta<T> {
 
 /// An elbow in motion, by the time derivatives of its place.
 #[derive(Clone, Copy)]
-struct Elbow<T> {
+struct ElbowSide<T> {
     /// Its place's derivative by the arm's angle.
     tangent: Vector3<T>,
     velocity: Vector3<T>,
@@ -155,7 +155,7 @@ impl<T: RealField + Trig> DeltaDynamics<T> {
             let (sin, cos) = sin_cos(theta);
             let tangent = delta.flip(prepared.tangent((sin, cos))) * prepared.turn;
             let inward = prepared.in_plane(-prepared.upper * sin, prepared.upper * cos);
-            Elbow {
+            ElbowSide {
                 tangent,
                 velocity: tangent * rate,
                 acceleration: tangent * acceleration + delta.flip(inward) * (rate * rate),

@@ -14,7 +14,7 @@ use trig_kernels::Trig;
 use crate::range::largest_rate;
 use crate::rounded::Rounded;
 use crate::{Arm, Delta, InverseError};
-pub use path::{Path, PathError};
+pub use path::{PlatformPath, PlatformPathError};
 use walk::Walk;
 
 /// A point of the path with the angles that reach it, and the time of the move to it.
@@ -125,7 +125,7 @@ pub enum FollowError<T: RealField + Copy = f64> {
         point: Point3<T>,
     },
     /// An arm would have to jump by a whole turn: at π from straight down, or from one end of a
-    /// range of a whole turn to the other. A [`JointRange`](crate::JointRange) that holds the
+    /// range of a whole turn to the other. An [`ArmRange`](crate::ArmRange) that holds the
     /// path avoids it.
     #[error("{}: {arm} would have to jump by a whole turn", At(*.fraction, *.point))]
     Turn {
@@ -172,7 +172,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// [`FollowError`]; the point named is the first along the path.
     pub fn follow(
         &self,
-        path: Path<T>,
+        path: PlatformPath<T>,
         tolerance: T,
         limits: SpeedLimits<T>,
     ) -> Result<Follow<T>, FollowError<T>> {

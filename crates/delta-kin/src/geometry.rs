@@ -41,12 +41,12 @@ pub enum GeometryError<T: RealField + Copy = f64> {
         /// Largest angle allowed, either way.
         largest: T,
     },
-    /// A joint range is empty, not finite, too far from zero or wider than a turn.
+    /// An arm's range is empty, not finite, too far from zero or wider than a turn.
     #[error(
-        "joint range {}..={} rad is empty, wider than a turn or not within ±{} rad",
+        "arm range {}..={} rad is empty, wider than a turn or not within ±{} rad",
         Rounded(*.min), Rounded(*.max), Rounded(*.largest)
     )]
-    JointRange {
+    ArmRange {
         /// Lower end given, in radians.
         min: T,
         /// Upper end given, in radians.

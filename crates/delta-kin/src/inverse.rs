@@ -11,7 +11,7 @@ use crate::arm::{smallest, zip};
 use crate::prepared::{Heading, PreparedArm, Triangle, middle, thetas};
 use crate::range::{half, max_value};
 use crate::rounded::Rounded;
-use crate::{Arm, AssemblyMode, Delta, Elbow, ZAxis};
+use crate::{Arm, AssemblyMode, Delta, ElbowSide, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
@@ -391,7 +391,7 @@ fn triangle<T: RealField + Trig>(prepared: &PreparedArm<T>, local: &Vector3<T>) 
 fn theta<T: RealField + Trig>(
     prepared: &PreparedArm<T>,
     triangle: &Triangle<T>,
-    elbow: Elbow,
+    elbow: ElbowSide,
 ) -> T {
     let heading = triangle.heading(elbow);
     let per_heading = prepared.per_heading(triangle.scale());

@@ -16,6 +16,7 @@ mod forward;
 mod geometry;
 mod inverse;
 mod limits;
+mod modes;
 #[cfg(feature = "path-timing")]
 mod path;
 mod pose;
@@ -29,16 +30,16 @@ mod workspace;
 pub use nalgebra;
 pub use trig_kernels::Trig;
 
-pub use arm::{Arm, ArmGeometry, Elbow};
-pub use assembly::AssemblyMode;
+pub use arm::{Arm, ArmGeometry, Dimensions, ElbowSide};
 pub use calibrate::{Calibration, CalibrationError, Measured, Parameter, Quantity};
-pub use delta::{Delta, Positive, ZAxis};
+pub use delta::Delta;
 pub use dynamics::{DeltaDynamics, DeltaMasses, DynamicsError};
-pub use follow::{Follow, FollowError, Path, PathError, SpeedLimits, Waypoint};
+pub use follow::{Follow, FollowError, PlatformPath, PlatformPathError, SpeedLimits, Waypoint};
 pub use forward::ForwardError;
 pub use geometry::GeometryError;
 pub use inverse::InverseError;
-pub use limits::JointRange;
+pub use limits::ArmRange;
+pub use modes::{AssemblyMode, Positive, ZAxis};
 #[cfg(feature = "path-timing")]
 pub use path::{DeltaPath, DeltaPathError};
 pub use pose::{Pose, PoseError};

@@ -8,23 +8,23 @@ use crate::range::{is_within, largest_angle, max_value};
 /// The closed range of one arm's angle, in radians, at most a whole turn wide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct JointRange<T = f64> {
+pub struct ArmRange<T = f64> {
     min: T,
     max: T,
 }
 
-impl<T: RealField + Copy> JointRange<T> {
+impl<T: RealField + Copy> ArmRange<T> {
     /// A range from `min` to `max`, in radians.
     ///
     /// # Errors
-    /// [`GeometryError::JointRange`] unless both are within ±1/√ε and `min < max <= min + 2π`.
+    /// [`GeometryError::ArmRange`] unless both are within ±1/√ε and `min < max <= min + 2π`.
     pub fn new(min: T, max: T) -> Result<Self, GeometryError<T>> {
         let are_angles = is_within(min, largest_angle()) && is_within(max, largest_angle());
         if are_angles && min < max && max - min <= T::two_pi() {
             Ok(Self { min, max })
         } else {
             let largest = largest_angle();
-            Err(GeometryError::JointRange { min, max, largest })
+            Err(GeometryError::ArmRange { min, max, largest })
         }
     }
 

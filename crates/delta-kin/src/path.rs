@@ -19,10 +19,10 @@ use crate::{Arm, Delta};
 /// a stop where the directions of their curves agree, as those of a line and a blend do.
 ///
 /// ```
-/// use delta_kin::{Delta, DeltaPath};
+/// use delta_kin::{Delta, DeltaPath, Dimensions};
 /// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
 ///
-/// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+/// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?; // mm
 /// let line = Curve::line([50.0, 50.0, -300.0], [-50.0, 50.0, -300.0])?;
 /// let path = delta.path(line)?;
 /// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s
@@ -49,7 +49,7 @@ const EDGE: f64 = 1e-6;
 const LONGEST: f64 = 100.0;
 
 /// Shortest step along the curve, as a fraction of it.
-const LEAST_STEP: f64 = 1e-12;
+const MIN_STEP: f64 = 1e-12;
 
 impl Delta {
     /// The path of the arms that brings the platform's centre along `curve`, in the machine's modes.
@@ -71,7 +71,7 @@ impl Delta {
         };
         let (mut s, mut angles) = (0.0, path.free_angles(0.0)?);
         while s < curve.length() {
-            (s, angles) = path.go_on(s, angles)?;
+            (s, angles) = path.advance(s, angles)?;
         }
         Ok(path)
     }
@@ -109,8 +109,8 @@ impl DeltaPath {
         }
     }
 
-    /// The next place to be looked at. Shorter steps lead up to the first place that is refused.
-    fn go_on(&self, s: f64, angles: Vector3<f64>) -> Result<(f64, Vector3<f64>), DeltaPathError> {
+    /// The next place of the survey. Shorter steps lead up to the first place that is refused.
+    fn advance(&self, s: f64, angles: Vector3<f64>) -> Result<(f64, Vector3<f64>), DeltaPathError> {
         let mut step = self.clearance(s) / (1.0 + self.curve.speed_error());
         loop {
             let next = (s + step).min(self.curve.length());
@@ -125,7 +125,7 @@ impl DeltaPath {
                 },
                 Err(error) => error,
             };
-            if step <= self.curve.length() * LEAST_STEP {
+            if step <= self.curve.length() * MIN_STEP {
                 return Err(refused);
             }
             step *= 0.5;

@@ -4,7 +4,7 @@ use nalgebra::{RealField, Vector2, Vector3};
 use trig_kernels::{Trig, atan2_of_length, atan2_of_length_lanes, sin_cos, sqrt};
 
 use crate::range::{half, length, max_value, norm, two};
-use crate::{ArmGeometry, Elbow, JointRange, Positive};
+use crate::{ArmGeometry, ArmRange, ElbowSide, Positive};
 
 /// An arm ready for use. Angles named `theta` are the thesis', `angle` is what is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ pub(crate) struct Heading<T> {
 impl<T: RealField + Trig> PreparedArm<T> {
     pub(crate) fn new(
         arm: &ArmGeometry<T>,
-        range: JointRange<T>,
+        range: ArmRange<T>,
         max_swivel: Option<T>,
         positive: Positive,
     ) -> Self {
@@ -244,12 +244,12 @@ impl<T: RealField + Trig> Triangle<T> {
 
     /// The upper arm with the elbow on the given side; not a number out of reach.
     #[inline(always)]
-    pub(crate) fn heading(&self, elbow: Elbow) -> Heading<T> {
+    pub(crate) fn heading(&self, elbow: ElbowSide) -> Heading<T> {
         let along = self.along;
         let across = sqrt(self.across2);
         let across = match elbow {
-            Elbow::Out => across,
-            Elbow::In => -across,
+            ElbowSide::Out => across,
+            ElbowSide::In => -across,
         };
         Heading {
             sin: along * self.inward - across * self.z,

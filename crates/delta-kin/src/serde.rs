@@ -4,7 +4,9 @@ use nalgebra::RealField;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use trig_kernels::Trig;
 
-use crate::{ArmGeometry, AssemblyMode, Delta, Elbow, GeometryError, JointRange, Positive, ZAxis};
+use crate::{
+    ArmGeometry, ArmRange, AssemblyMode, Delta, ElbowSide, GeometryError, Positive, ZAxis,
+};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
@@ -25,7 +27,7 @@ macro_rules! serialise_as {
     };
 }
 
-serialise_as!(JointRange, PlainRange);
+serialise_as!(ArmRange, PlainRange);
 serialise_as!(Delta, PlainDelta);
 
 #[derive(Serialize, Deserialize)]
@@ -35,8 +37,8 @@ struct PlainRange<T> {
     max: T,
 }
 
-impl<T: RealField + Trig> From<JointRange<T>> for PlainRange<T> {
-    fn from(range: JointRange<T>) -> Self {
+impl<T: RealField + Trig> From<ArmRange<T>> for PlainRange<T> {
+    fn from(range: ArmRange<T>) -> Self {
         Self {
             min: range.min(),
             max: range.max(),
@@ -44,7 +46,7 @@ impl<T: RealField + Trig> From<JointRange<T>> for PlainRange<T> {
     }
 }
 
-impl<T: RealField + Trig> TryFrom<PlainRange<T>> for JointRange<T> {
+impl<T: RealField + Trig> TryFrom<PlainRange<T>> for ArmRange<T> {
     type Error = GeometryError<T>;
 
     fn try_from(plain: PlainRange<T>) -> Result<Self, Self::Error> {
@@ -67,17 +69,17 @@ struct PlainDelta<T> {
     #[serde(default)]
     positive: Positive,
     #[serde(default)]
-    ranges: [Option<JointRange<T>>; 3],
+    ranges: [Option<ArmRange<T>>; 3],
     #[serde(default)]
     max_swivel: Option<T>,
     #[serde(default = "elbows_out")]
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     #[serde(default)]
     assembly_mode: AssemblyMode,
 }
 
-const fn elbows_out() -> [Elbow; 3] {
-    [Elbow::Out; 3]
+const fn elbows_out() -> [ElbowSide; 3] {
+    [ElbowSide::Out; 3]
 }
 
 impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {
@@ -88,7 +90,7 @@ impl<T: RealField + Trig> From<Delta<T>> for PlainDelta<T> {
             positive: delta.positive(),
             ranges: delta
                 .ranges()
-                .map(|range| (range != JointRange::unlimited()).then_some(range)),
+                .map(|range| (range != ArmRange::unlimited()).then_some(range)),
             max_swivel: delta.max_swivel(),
             working_mode: delta.working_mode(),
             assembly_mode: delta.assembly_mode(),
@@ -106,7 +108,7 @@ impl<T: RealField + Trig> TryFrom<PlainDelta<T>> for Delta<T> {
             .with_ranges(
                 plain
                     .ranges
-                    .map(|range| range.unwrap_or_else(JointRange::unlimited)),
+                    .map(|range| range.unwrap_or_else(ArmRange::unlimited)),
             )
             .with_working_mode(plain.working_mode)
             .with_assembly_mode(plain.assembly_mode);

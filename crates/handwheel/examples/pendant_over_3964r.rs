@@ -1,7 +1,7 @@
 //! What goes between a 3964R station and a pendant's driver, here at the end of a silent line.
 
 use core::time::Duration;
-use handwheel::{Driver, Event, MAX_COMMAND, Model, Timing};
+use handwheel::{Driver, Event, MAX_COMMAND, Model, Timeouts};
 use proto3964r::{Config, Line, Station, SubmitError};
 
 /// Whenever the station has been handed bytes or time.
@@ -35,7 +35,7 @@ fn exchange(
 fn main() -> Result<(), SubmitError> {
     let line = Config::euchner_hbls(Line::Instant);
     let (mut station, mut now) = (Station::new(line), Duration::ZERO);
-    let mut driver = Driver::new(Model::Hbls, Timing::DEFAULT);
+    let mut driver = Driver::new(Model::Hbls, Timeouts::DEFAULT);
     while now < Duration::from_secs(5) {
         exchange(&mut station, &mut driver, now, |event| {
             println!("{event:?}");

@@ -16,7 +16,7 @@ use crate::report::{LcdAnswer, Model, Report, Status};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_structs, reason = "plain settings")]
-pub struct Timing {
+pub struct Timeouts {
     /// From the delivery of a request to its reply. Longer than the unit's own attempts take:
     /// 3 transfers, each of up to 3 set-ups and one acknowledgement of 128 ms, are 1536 ms.
     pub reply: Duration,
@@ -28,13 +28,13 @@ pub struct Timing {
     pub keep_alive: Option<Duration>,
 }
 
-impl Default for Timing {
+impl Default for Timeouts {
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
-impl Timing {
+impl Timeouts {
     /// Reply 2 s, retry 1 s, keep-alive 2 s.
     pub const DEFAULT: Self = Self {
         reply: Duration::from_secs(2),
@@ -93,7 +93,7 @@ enum Pending {
 #[derive(Clone)]
 pub struct Driver {
     model: Model,
-    timing: Timing,
+    timeouts: Timeouts,
     state: State,
     /// The job that waits or is under way.
     pending: Option<Pending>,
@@ -114,10 +114,10 @@ pub struct Driver {
 impl Driver {
     /// A driver for a unit that may have been switched on just now.
     #[must_use]
-    pub const fn new(model: Model, timing: Timing) -> Self {
+    pub const fn new(model: Model, timeouts: Timeouts) -> Self {
         Self {
             model,
-            timing,
+            timeouts,
             state: State::Idle,
             pending: None,
             lcd_open: false,
@@ -210,7 +210,7 @@ impl Driver {
                 self.lcd_open = true;
                 self.poll(now);
             }
-            _ => self.state = State::Reply(request, now.saturating_add(self.timing.reply)),
+            _ => self.state = State::Reply(request, now.saturating_add(self.timeouts.reply)),
         }
     }
 
@@ -226,7 +226,7 @@ impl Driver {
         if let State::Reply(request, deadline) = self.state
             && deadline <= now
         {
-            self.fail(now, request, Failure::NoReply(self.timing.reply));
+            self.fail(now, request, Failure::NoReply(self.timeouts.reply));
         }
     }
 
@@ -298,7 +298,7 @@ impl Driver {
                 self.end(Event::Failed(failure));
             }
             Request::Status => {
-                self.poll(now.saturating_add(self.timing.retry));
+                self.poll(now.saturating_add(self.timeouts.retry));
                 if self.lcd_open {
                     self.lcd_open = false;
                     self.end(Event::Failed(failure));
@@ -326,7 +326,7 @@ impl Driver {
     /// The unit is there: its status is asked for when it has been silent.
     fn poll_later(&mut self, now: Duration) {
         self.poll_at = self
-            .timing
+            .timeouts
             .keep_alive
             .map(|quiet| now.saturating_add(quiet));
     }

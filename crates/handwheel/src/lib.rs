@@ -18,7 +18,7 @@ mod wheel;
 
 pub use cells::{Cell, Rect};
 pub use command::{Command, LedState};
-pub use driver::{Driver, Event, Failure, Job, SubmitError, Timing};
+pub use driver::{Driver, Event, Failure, Job, SubmitError, Timeouts};
 pub use error::LcdError;
 pub use lcd::{Font, LcdBlock, LcdCommand, LcdCommands};
 pub use number::{AreaNumber, Column, Key, Led, Line, NumberError, Position, TextNumber};

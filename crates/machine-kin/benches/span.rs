@@ -8,7 +8,7 @@ mod arms;
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use delta_kin::{Delta, DeltaPath};
+use delta_kin::{Delta, DeltaPath, Dimensions};
 use machine_kin::path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Span, Table};
 use machine_kin::{Elbow, Machine, MachinePath};
 use scara_kin::{Arm, ArmPath};
@@ -126,7 +126,13 @@ fn delta(c: &mut Criterion) {
     ];
     for (name, curve) in ["line", "arc"].into_iter().zip(curves) {
         let curve = curve.expect("a curve");
-        let delta = Delta::new(42.0, 18.0, 120.0, 243.0).expect("lengths");
+        let delta = Delta::new(Dimensions {
+            base: 42.0,
+            platform: 18.0,
+            upper: 120.0,
+            lower: 243.0,
+        })
+        .expect("lengths");
         let by_hand = delta.path(curve).expect("a path");
         let machine = RotaryDelta {
             radius: 24.0,

@@ -22,8 +22,8 @@ pub use interval::Interval;
 pub use jet::Jet;
 pub use machine::{Axis, Machine};
 pub use machines::{
-    CoreXy, Elbow, FiveBar, GeometryError, HBot, HangingPlotter, LinearDelta, Polar, Scara, Side,
-    WithZ,
+    CarriageSide, CoreXy, Elbow, FiveBar, GeometryError, HBot, HangingPlotter, LinearDelta, Polar,
+    Scara, WithZ,
 };
 pub use number::{Number, Refusal};
 pub use path::{MachinePath, PathError};

@@ -85,7 +85,7 @@ impl Axis {
 
     /// By how much a position may be beyond an end: rounding, and a path that touches it.
     pub(crate) fn beyond(&self, low: f64, high: f64) -> Option<f64> {
-        let slack = |end: f64| TOUCH * (1.0 + end.abs());
+        let slack = |end: f64| RANGE_SLACK * (1.0 + end.abs());
         // Written so that NaN is beyond.
         let is_above = self.min == f64::NEG_INFINITY || low >= self.min - slack(self.min);
         let is_below = self.max == f64::INFINITY || high <= self.max + slack(self.max);
@@ -98,7 +98,7 @@ impl Axis {
 }
 
 /// By how much an axis may pass an end of its range, as a fraction of it and of 1.
-const TOUCH: f64 = 1e-9;
+const RANGE_SLACK: f64 = 1e-9;
 
 /// A machine with `N` axes that move a tool of `N` coordinates: its inverse kinematics, written once for
 /// all [`Number`]s.

@@ -16,7 +16,7 @@ pub use core_xy::{CoreXy, HBot};
 pub use five_bar::{Elbow, FiveBar};
 pub use hanging_plotter::HangingPlotter;
 pub use linear_delta::LinearDelta;
-pub use polar::{Polar, Side};
+pub use polar::{CarriageSide, Polar};
 pub use scara::Scara;
 pub use with_z::WithZ;
 

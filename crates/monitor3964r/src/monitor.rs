@@ -10,7 +10,7 @@ mod tests;
 
 use core::time::Duration;
 
-use proto3964r::{Config, LineError};
+use proto3964r::{CharacterError, Config};
 
 pub use character::Character;
 pub use observation::{Observation, Observations};
@@ -75,7 +75,7 @@ impl<const N: usize> Monitor<N> {
         now: Duration,
         side: Side,
         byte: u8,
-        error: LineError,
+        error: CharacterError,
     ) -> Observations<'_> {
         self.handle(Character {
             at: now,

@@ -6,7 +6,7 @@
 use core::hint::black_box;
 use std::process::ExitCode;
 
-use delta_kin::{Delta, DeltaPath};
+use delta_kin::{Delta, DeltaPath, Dimensions};
 use path_timing::{
     AxisLimits, Curve, Knot, LookAhead, Mode, Path, Row, Shaped, Shaper, Smoothed, Table, Vertex,
     Waypoint, segments_within,
@@ -113,7 +113,13 @@ fn arm(points: &[[f64; 2]]) {
 }
 
 fn delta(points: &[[f64; 2]]) {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let (mut vertices, mut window) = ([Vertex::default(); 24], [Knot::default(); 64]);
     let points = points.iter().map(|[x, y]| [*x, *y, -300.0]);
     let paths = smoothed(points, &mut vertices).map(|curve| delta.path(curve).unwrap());

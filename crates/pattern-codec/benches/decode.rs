@@ -5,7 +5,7 @@
 use core::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pattern_codec::engraving::{
-    Axis, Builder, Decoder, Format, JointPulses, Mode, Record, Statistics,
+    Axis, Builder, Decoder, Format, JointPulses, Record, Statistics, Strictness,
 };
 
 /// Small enough for the second-level cache, so that decoding is measured and not memory.
@@ -33,9 +33,9 @@ fn drawing(format: &Format) -> Vec<u8> {
         }
         for _ in 0..60 {
             let pulses = JointPulses {
-                theta1: random(30),
-                theta2: random(30),
-                theta3: random(4),
+                elbow: random(30),
+                shoulder: random(30),
+                disc: random(4),
             };
             let cut = builder.slow(pulses).unwrap();
             bytes.extend(cut.flat_map(|record| record.encode(format)));
@@ -47,9 +47,9 @@ fn drawing(format: &Format) -> Vec<u8> {
 /// A cheap use of every record that the optimiser cannot drop.
 fn used(sum: i32, record: Record) -> i32 {
     let pulses = record.pulses();
-    sum.wrapping_add(pulses.theta1)
-        .wrapping_add(pulses.theta2)
-        .wrapping_add(pulses.theta3)
+    sum.wrapping_add(pulses.elbow)
+        .wrapping_add(pulses.shoulder)
+        .wrapping_add(pulses.disc)
         .wrapping_add(pulses.vertical)
 }
 
@@ -58,8 +58,11 @@ fn decode(criterion: &mut Criterion) {
     let bytes = drawing(&strict);
     let mut group = criterion.benchmark_group("decode");
     group.throughput(Throughput::Bytes(bytes.len().try_into().unwrap()));
-    for (name, mode) in [("strict", Mode::Strict), ("lenient", Mode::Lenient)] {
-        let format = strict.with_mode(mode);
+    for (name, strictness) in [
+        ("strict", Strictness::Strict),
+        ("lenient", Strictness::Lenient),
+    ] {
+        let format = strict.with_strictness(strictness);
         group.bench_function(format!("slice, {name}"), |bench| {
             bench.iter(|| {
                 let format = black_box(format);

@@ -29,11 +29,12 @@ mod read;
 mod scan;
 mod style;
 mod write;
+mod write_error;
 
 pub use error::{HeaderError, HeaderErrorKind, Location};
 pub use items::{Item, items};
 pub use style::Dialect;
-pub use write::WriteError;
+pub use write_error::WriteError;
 
 pub(crate) use read::{ArrayValues, BYTE, Bytes, Checked, Source, WORD};
 pub(crate) use write::{Element, Layout, Table, Value};

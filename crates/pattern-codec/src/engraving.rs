@@ -6,16 +6,16 @@
 //!   byte 0    D7 direction | D6 D5 axis code | D4..D0 = 11111
 //!   byte 1,2  pulse count 0..=65535
 //!
-//! SLOW  theta3 first, then theta1 and theta2 together
-//!   byte 0    D7 direction | D6 D5 zero | D4..D0 theta3 pulses 0..=30
-//!   byte 1    the same for theta1
-//!   byte 2    the same for theta2
+//! SLOW  disc first, then elbow and shoulder together
+//!   byte 0    D7 direction | D6 D5 zero | D4..D0 disc pulses 0..=30
+//!   byte 1    the same for elbow
+//!   byte 2    the same for shoulder
 //! ```
 //!
 //! | case | decoded | encoded |
 //! |---|---|---|
 //! | low five bits of a record's first byte all ones | the record is FAST | |
-//! | low five bits all ones in the theta1 or theta2 byte | error | cannot be built |
+//! | low five bits all ones in the elbow or shoulder byte | error | cannot be built |
 //! | D7 set | negative direction | the same |
 //! | D7 set on a zero count | zero; [`Located::is_canonical`] is `false` | D7 clear |
 //! | D6 or D5 set in a SLOW byte | strict: error; lenient: ignored | both clear |
@@ -38,9 +38,9 @@ mod split;
 mod statistics;
 
 pub use axis::{Axis, PerAxis};
-pub use build::{Builder, PositionError, RepeatedAxis};
+pub use build::{Builder, PositionOverflow, RepeatedAxis};
 pub use decode::{DecodeError, DecodeErrorKind, Decoder, Located, Records};
-pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Mode};
+pub use format::{AxisCodeError, AxisCodes, ByteOrder, Format, Strictness};
 pub use pattern_header::{PatternData, PatternHeader};
 pub use record::{Fast, JointPulses, PulsesError, Record, Slow};
 pub use reload_header::{ReloadData, ReloadHeader, TimerPeriod};

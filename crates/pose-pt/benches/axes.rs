@@ -7,7 +7,7 @@ use core::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Vector3};
-use pose_pt::{AxisLimits, Convention, Locator, Platform, PoseVector, rigid_fit, slerp};
+use pose_pt::{Convention, Locator, LocatorAxis, Platform, PoseVector, rigid_fit, slerp};
 
 const POSES: u32 = 256;
 
@@ -18,7 +18,13 @@ const ANCHORS: [[f64; 3]; 3] = [
 ];
 
 fn platform(axes: Matrix3<f64>) -> Platform<3> {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let locators =
         ANCHORS.map(|anchor| Locator::new(anchor.into(), anchor.into(), limits).with_axes(axes));
     Platform::new(locators).expect("locators are good")

@@ -9,7 +9,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use path_timing::{Accuracy, FeedCeiling, Knot, Table};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Vector3};
 use pose_pt::{
-    AxisLimits, BodyPath, Convention, Interpolation, Locator, Path, Platform, PtTable, Segmentation,
+    BodyPath, Convention, Interpolation, Locator, LocatorAxis, Platform, PosePath, PtTable,
+    Segmentation,
 };
 
 const POINTS: u32 = 10_000;
@@ -17,7 +18,13 @@ const POINTS: u32 = 10_000;
 const ROOM: usize = POINTS as usize + 1;
 
 fn platform(axes: Matrix3<f64>) -> Platform<3> {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 50.0],
@@ -58,7 +65,7 @@ fn pt(c: &mut Criterion) {
     let mut group = c.benchmark_group("PT points");
     group.throughput(Throughput::Elements(u64::from(POINTS)));
     for (name, kind) in KINDS {
-        let path = Path::new(&poses, kind).expect("poses are good");
+        let path = PosePath::new(&poses, kind).expect("poses are good");
         let table =
             PtTable::plan(&platform, &path, Segmentation::segments(POINTS)).expect("plan is good");
         group.bench_function(name, |b| {
@@ -79,7 +86,7 @@ fn pvt(c: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(POINTS)));
     group.sample_size(20);
     for (name, kind) in KINDS {
-        let path = Path::new(&poses, kind).expect("poses are good");
+        let path = PosePath::new(&poses, kind).expect("poses are good");
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
             b.iter(|| {
                 let paths = platform.paths(black_box(&path));
@@ -89,7 +96,7 @@ fn pvt(c: &mut Criterion) {
             });
         });
     }
-    let path = Path::new(&poses, Interpolation::Straight).expect("poses are good");
+    let path = PosePath::new(&poses, Interpolation::Straight).expect("poses are good");
     group.bench_function("straight, from a distance error of 0.01", |b| {
         b.iter(|| {
             let accuracy = Accuracy {

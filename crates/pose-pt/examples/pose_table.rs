@@ -4,12 +4,18 @@
 use core::error::Error;
 
 use path_timing::{Accuracy, Knot, Table};
-use pose_pt::{AxisLimits, BodyPath, Convention, Interpolation, Locator};
-use pose_pt::{Path, Platform, PoseVector};
+use pose_pt::{BodyPath, Convention, Interpolation, Locator, LocatorAxis};
+use pose_pt::{Platform, PosePath, PoseVector};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Stroke in mm, speed in mm/s, acceleration in mm/s²; zero where the panel is at rest.
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 0.0],
@@ -21,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rest = PoseVector::default();
     let lifted = PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, 0.02);
     let poses = [rest, lifted].map(|vector| vector.to_isometry(Convention::ExtrinsicXyz));
-    let path = Path::new(&poses, Interpolation::Straight)?;
+    let path = PosePath::new(&poses, Interpolation::Straight)?;
     let mut knots = [Knot::default(); 65];
     let accuracy = Accuracy {
         min_segments: 16,

@@ -13,21 +13,21 @@ use path_timing::{Corner, PathPoint, Span};
 pub use error::BodyPathError;
 pub use hermite::hermite_distance_error;
 
-use crate::course::{Course, is_still, travel};
+use crate::leg_axes::{LegAxes, is_still, travel};
 use crate::number::larger;
-use crate::path::{Leg, Path};
+use crate::path::{Leg, PosePath};
 use crate::{LimitError, Platform};
-use motion::CoursePoint;
+use motion::AxesPoint;
 use rounding::Rounding;
 
-/// A leg of a [`Path`], or the rounding of one of its poses, as a path of all axes: what
+/// A leg of a [`PosePath`], or the rounding of one of its poses, as a path of all axes: what
 /// [`path_timing::Table`] and [`path_timing::LookAhead`] plan.
 ///
 /// It is made by [`Platform::paths`]. Its parameter has no unit.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyPath<'a, const N: usize> {
     platform: &'a Platform<N>,
-    piece: Piece<'a, N>,
+    part: Part<'a, N>,
     /// The leg, or that before the rounding.
     leg: usize,
     /// In the parameter that is common to all.
@@ -40,9 +40,9 @@ pub struct BodyPath<'a, const N: usize> {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Piece<'a, const N: usize> {
+enum Part<'a, const N: usize> {
     /// The part of a leg between two of its parameters.
-    Leg(Course<'a, N>, [f64; 2]),
+    Leg(LegAxes<'a, N>, [f64; 2]),
     Blend(Rounding),
 }
 
@@ -51,9 +51,9 @@ impl<const N: usize> Platform<N> {
     /// the poses between them.
     ///
     /// Every pose where the direction changes is a stop, but for those that are rounded: see
-    /// [`Path::with_blends`]. Strokes are checked by what plans, for whole segments.
+    /// [`PosePath::with_blends`]. Strokes are checked by what plans, for whole segments.
     #[must_use]
-    pub fn paths<'a>(&'a self, path: &Path<'a>) -> BodyPaths<'a, N> {
+    pub fn paths<'a>(&'a self, path: &PosePath<'a>) -> BodyPaths<'a, N> {
         let travels = path.numbered_legs().map(|(_, leg)| travel(self, &leg));
         BodyPaths {
             platform: self,
@@ -90,29 +90,29 @@ impl<const N: usize> BodyPath<'_, N> {
         hermite_distance_error(self.platform, &span.rows)
     }
 
-    fn course_point(&self, s: f64) -> CoursePoint<N> {
-        match &self.piece {
-            Piece::Leg(course, [from, to]) => {
+    fn axes_point(&self, s: f64) -> AxesPoint<N> {
+        match &self.part {
+            Part::Leg(leg_axes, [from, to]) => {
                 let rate = (to - from) / self.length;
-                let point = course.point(from + s * rate);
-                CoursePoint {
+                let point = leg_axes.point(from + s * rate);
+                AxesPoint {
                     slope: point.slope.map(|slope| slope * rate),
                     ..point
                 }
             }
-            Piece::Blend(rounding) => CoursePoint::of(self.platform, &rounding.motion(s)),
+            Part::Blend(rounding) => AxesPoint::of(self.platform, &rounding.motion(s)),
         }
     }
 
     fn refused(&self, s: f64, reason: LimitError) -> BodyPathError {
         let part = s / self.length;
-        match self.piece {
-            Piece::Leg(..) => BodyPathError::Leg {
+        match self.part {
+            Part::Leg(..) => BodyPathError::Leg {
                 leg: self.leg,
                 part,
                 reason,
             },
-            Piece::Blend(_) => BodyPathError::Blend {
+            Part::Blend(_) => BodyPathError::Blend {
                 pose: self.leg.saturating_add(1),
                 part,
                 reason,
@@ -130,7 +130,7 @@ impl<const N: usize> path_timing::Path for BodyPath<'_, N> {
     }
 
     fn point(&self, s: f64) -> Result<PathPoint<[[f64; 3]; N]>, BodyPathError> {
-        let CoursePoint { axes, slope } = self.course_point(s);
+        let AxesPoint { axes, slope } = self.axes_point(s);
         let [start, end] = self.ends;
         let axes = if s <= 0.0 {
             start
@@ -159,14 +159,14 @@ impl<const N: usize> path_timing::Path for BodyPath<'_, N> {
     }
 }
 
-/// The paths of all axes along a [`Path`], by [`Platform::paths`].
+/// The paths of all axes along a [`PosePath`], by [`Platform::paths`].
 #[derive(Debug, Clone, Copy)]
 pub struct BodyPaths<'a, const N: usize> {
     platform: &'a Platform<N>,
-    path: Path<'a>,
+    path: PosePath<'a>,
     /// The longest travel of a leg, which the common parameter takes 1 to run.
     longest: f64,
-    /// The first piece that is still to come: 2 n is leg n, 2 n + 1 the blend after it.
+    /// The first part that is still to come: 2 n is leg n, 2 n + 1 the blend after it.
     first: usize,
 }
 
@@ -180,16 +180,16 @@ impl<'a, const N: usize> BodyPaths<'a, N> {
         }
     }
 
-    fn pieces(self) -> impl Iterator<Item = usize> {
+    fn parts(self) -> impl Iterator<Item = usize> {
         let end = self.path.legs().saturating_mul(2);
-        (self.first..end).filter(move |piece| self.has(*piece))
+        (self.first..end).filter(move |part| self.has(*part))
     }
 
-    fn has(&self, piece: usize) -> bool {
-        if piece.is_multiple_of(2) {
-            !self.is_still(piece / 2)
+    fn has(&self, part: usize) -> bool {
+        if part.is_multiple_of(2) {
+            !self.is_still(part / 2)
         } else {
-            self.rounding(piece / 2).is_some()
+            self.rounding(part / 2).is_some()
         }
     }
 
@@ -227,13 +227,13 @@ impl<'a, const N: usize> BodyPaths<'a, N> {
             self.path.axes(self.platform, number.checked_add(1)?)
         } else {
             let leg = self.path.leg(number)?;
-            Some(Course::new(self.platform, &leg).point(s).axes)
+            Some(LegAxes::new(self.platform, &leg).point(s).axes)
         }
     }
 
-    fn track(&self, piece: usize) -> Option<BodyPath<'a, N>> {
-        let number = piece / 2;
-        if piece.is_multiple_of(2) {
+    fn path_of(&self, part: usize) -> Option<BodyPath<'a, N>> {
+        let number = part / 2;
+        if part.is_multiple_of(2) {
             self.leg(number)
         } else {
             self.blend(number)
@@ -245,7 +245,7 @@ impl<'a, const N: usize> BodyPaths<'a, N> {
         let [from, to] = self.rest(number, &leg);
         Some(BodyPath {
             platform: self.platform,
-            piece: Piece::Leg(Course::new(self.platform, &leg), [from, to]),
+            part: Part::Leg(LegAxes::new(self.platform, &leg), [from, to]),
             leg: number,
             length: (to - from) * self.size(&leg),
             ends: [self.axes(number, from)?, self.axes(number, to)?],
@@ -260,7 +260,7 @@ impl<'a, const N: usize> BodyPaths<'a, N> {
         let [to, _] = self.rest(next, &self.path.leg(next)?);
         Some(BodyPath {
             platform: self.platform,
-            piece: Piece::Blend(rounding),
+            part: Part::Blend(rounding),
             leg: number,
             length: 2.0 * rounding.reach(),
             ends: [self.axes(number, from)?, self.axes(next, to)?],
@@ -273,8 +273,8 @@ impl<'a, const N: usize> Iterator for BodyPaths<'a, N> {
     type Item = BodyPath<'a, N>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let piece = self.pieces().next()?;
-        self.first = piece.saturating_add(1);
-        self.track(piece)
+        let part = self.parts().next()?;
+        self.first = part.saturating_add(1);
+        self.path_of(part)
     }
 }

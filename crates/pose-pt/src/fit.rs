@@ -11,14 +11,14 @@ use crate::svd::Svd;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "a motion has two ends")]
-pub enum Side {
+pub enum PointSet {
     /// The points that are moved: the body's.
     From,
     /// The points that are met: the measured ones.
     To,
 }
 
-impl core::fmt::Display for Side {
+impl core::fmt::Display for PointSet {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::From => "moved",
@@ -47,10 +47,10 @@ pub enum FitError<T: RealField + Copy = f64> {
         count: usize,
     },
     /// A coordinate is not finite, or beyond the range of the crate.
-    #[error("coordinate {} of the {side} point {point} is not within ±{}", short(.value), short(.max))]
+    #[error("coordinate {} of the {set} point {point} is not within ±{}", short(.value), short(.max))]
     Coordinate {
         /// The set.
-        side: Side,
+        set: PointSet,
         /// The point, from 0.
         point: usize,
         /// Its coordinate.
@@ -59,10 +59,10 @@ pub enum FitError<T: RealField + Copy = f64> {
         max: T,
     },
     /// All points are the same within rounding, or below the range of the crate.
-    #[error("the {side} points coincide within {}, more than {} is needed", short(.length), short(.needed))]
+    #[error("the {set} points coincide within {}, more than {} is needed", short(.length), short(.needed))]
     Coincident {
         /// The set.
-        side: Side,
+        set: PointSet,
         /// Largest distance from their mean.
         length: T,
         /// Distance needed.
@@ -70,12 +70,12 @@ pub enum FitError<T: RealField + Copy = f64> {
     },
     /// All points are on a line within rounding: the rotation about it is free.
     #[error(
-        "the {side} points are on a line: {} wide, {} long, more than {} is needed",
+        "the {set} points are on a line: {} wide, {} long, more than {} is needed",
         short(.width), short(.length), short(.needed)
     )]
     Collinear {
         /// The set.
-        side: Side,
+        set: PointSet,
         /// Largest distance from the line.
         width: T,
         /// Largest distance from their mean.
@@ -142,8 +142,8 @@ pub(crate) struct Shape<T: RealField> {
 }
 
 impl<T: RealField + Copy> Shape<T> {
-    pub(crate) fn new(points: &[Point3<T>], side: Side) -> Result<Self, FitError<T>> {
-        let far = largest_coordinate(points, side)?;
+    pub(crate) fn new(points: &[Point3<T>], set: PointSet) -> Result<Self, FitError<T>> {
+        let far = largest_coordinate(points, set)?;
         let needed = (epsilons::<T>(ROUNDING_EPSILONS) * far).max(smallest());
         let mean = mean(points.iter().map(|point| point.coords));
         let arms = || points.iter().map(|point| point.coords - mean);
@@ -151,7 +151,7 @@ impl<T: RealField + Copy> Shape<T> {
         let length = farthest.norm();
         if length <= needed {
             return Err(FitError::Coincident {
-                side,
+                set,
                 length,
                 needed,
             });
@@ -161,7 +161,7 @@ impl<T: RealField + Copy> Shape<T> {
         let width = widest.norm();
         if width <= needed {
             return Err(FitError::Collinear {
-                side,
+                set,
                 width,
                 length,
                 needed,
@@ -190,13 +190,13 @@ impl<T: RealField + Copy> Shape<T> {
 
 fn largest_coordinate<T: RealField + Copy>(
     points: &[Point3<T>],
-    side: Side,
+    set: PointSet,
 ) -> Result<T, FitError<T>> {
     let (max, mut far) = (largest::<T>(), T::zero());
     for (point, position) in points.iter().enumerate() {
         if let Some(value) = first_beyond(position.iter(), max) {
             return Err(FitError::Coordinate {
-                side,
+                set,
                 point,
                 value,
                 max,
@@ -267,7 +267,10 @@ pub fn rigid_fit<T: RealField + Copy>(
     if from.len() < 3 {
         return Err(FitError::TooFew { count: from.len() });
     }
-    let (a, b) = (Shape::new(from, Side::From)?, Shape::new(to, Side::To)?);
+    let (a, b) = (
+        Shape::new(from, PointSet::From)?,
+        Shape::new(to, PointSet::To)?,
+    );
     let pairs = || from.iter().zip(to).map(|(p, q)| (a.local(p), b.local(q)));
     let h: Matrix3<T> = pairs().map(|(p, q)| q * p.transpose()).sum();
     let svd = Svd::new(&h);

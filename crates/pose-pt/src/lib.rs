@@ -23,8 +23,8 @@ pub use trig_kernels::Trig;
 
 pub use angles::{Convention, PoseVector, Resolved};
 pub use calibrate::{Calibration, CalibrationError, calibrate};
-pub use fit::{FitError, RigidFit, Side, rigid_fit};
-pub use locator::{Axis, AxisLimits, Locator};
+pub use fit::{FitError, PointSet, RigidFit, rigid_fit};
+pub use locator::{Axis, Locator, LocatorAxis};
 pub use platform::{BodyFit, DistanceError, LimitError, Platform, PlatformError};
 pub use rotation::{
     NotARotation, angle_between, from_matrix, from_rotation_vector, rotation_vector,
@@ -33,17 +33,17 @@ pub use rotation::{
 
 #[cfg(feature = "path-timing")]
 mod body_path;
-mod course;
 mod distance_error;
+mod leg_axes;
 mod path;
-mod plan_error;
 mod pt;
+mod pt_error;
 mod segmentation;
 mod turn;
 
 #[cfg(feature = "path-timing")]
 pub use body_path::{BodyPath, BodyPathError, BodyPaths, hermite_distance_error};
-pub use path::{Blend, Interpolation, Leg, Path, PathError};
-pub use plan_error::PlanError;
+pub use path::{Blend, Interpolation, Leg, PosePath, PosePathError};
 pub use pt::{PtPoint, PtPoints, PtTable};
+pub use pt_error::PtError;
 pub use segmentation::Segmentation;

@@ -37,7 +37,8 @@ impl core::fmt::Display for Axis {
     }
 }
 
-/// What one axis can do, in the unit of length and seconds.
+/// The stroke of one axis and the limits of its motion, in the unit of length and seconds. Checked
+/// by [`Platform::new`](crate::Platform::new).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -45,8 +46,8 @@ impl core::fmt::Display for Axis {
     serde(deny_unknown_fields)
 )]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub struct AxisLimits<T = f64> {
+#[expect(clippy::exhaustive_structs, reason = "named fields")]
+pub struct LocatorAxis<T = f64> {
     /// Lower end of the stroke.
     pub min: T,
     /// Upper end of the stroke.
@@ -57,28 +58,6 @@ pub struct AxisLimits<T = f64> {
     pub acceleration: T,
     /// Largest jerk, per second³, if the drive has one.
     pub jerk: Option<T>,
-}
-
-impl<T: RealField + Copy> AxisLimits<T> {
-    /// Stroke from `min` to `max`, rated `speed` per second, `acceleration` per second²,
-    /// any jerk. Checked by [`Platform::new`](crate::Platform::new).
-    #[must_use]
-    pub const fn new(min: T, max: T, speed: T, acceleration: T) -> Self {
-        Self {
-            min,
-            max,
-            speed,
-            acceleration,
-            jerk: None,
-        }
-    }
-
-    /// The limits with a largest jerk, per second³.
-    #[must_use]
-    pub const fn with_jerk(mut self, jerk: T) -> Self {
-        self.jerk = Some(jerk);
-        self
-    }
 }
 
 /// A three-axis locator that holds one point of the body.
@@ -108,8 +87,8 @@ pub struct Locator<T: RealField = f64> {
     /// vectors but for errors of scale, not necessarily orthogonal.
     #[cfg_attr(feature = "serde", serde(default = "Matrix3::identity"))]
     pub axes: Matrix3<T>,
-    /// Limits of the three axes.
-    pub limits: [AxisLimits<T>; 3],
+    /// Stroke and limits of the three axes.
+    pub limits: [LocatorAxis<T>; 3],
 }
 
 impl<T: RealField + Copy> Locator<T> {
@@ -119,7 +98,7 @@ impl<T: RealField + Copy> Locator<T> {
     /// `anchor` is the point of the body that it holds, in the body's frame; `origin` is
     /// where that point is in the world when the three axes are at zero.
     #[must_use]
-    pub fn new(anchor: Point3<T>, origin: Point3<T>, limits: [AxisLimits<T>; 3]) -> Self {
+    pub fn new(anchor: Point3<T>, origin: Point3<T>, limits: [LocatorAxis<T>; 3]) -> Self {
         Self {
             anchor,
             origin,

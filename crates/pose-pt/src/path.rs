@@ -35,7 +35,7 @@ pub enum Interpolation {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PathError {
+pub enum PosePathError {
     /// A path has at least a first and a last pose.
     #[error("{poses} poses do not make a path, at least 2 do")]
     TooFew {
@@ -110,34 +110,34 @@ const HALF_TURN_EPSILONS: f64 = 64.0;
 
 /// Poses that the caller keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Stations<'a> {
+enum PathPoses<'a> {
     Poses(&'a [Isometry3<f64>], Interpolation),
     Vectors(&'a [PoseVector], Convention),
 }
 
 /// A checked path: a first pose, any number of poses between, a last pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Path<'a> {
-    stations: Stations<'a>,
+pub struct PosePath<'a> {
+    poses: PathPoses<'a>,
     /// For each pose between the first and the last, or none for stops.
     blends: &'a [Blend],
 }
 
-impl<'a> Path<'a> {
+impl<'a> PosePath<'a> {
     /// A path through poses, each leg by the same `interpolation`.
     ///
     /// # Errors
-    /// [`PathError`].
+    /// [`PosePathError`].
     pub fn new(
         poses: &'a [Isometry3<f64>],
         interpolation: Interpolation,
-    ) -> Result<Self, PathError> {
+    ) -> Result<Self, PosePathError> {
         check(poses, |number, pose| {
             check_position(number, &pose.translation.vector)?;
             check_rotation(number, &pose.rotation)
         })?;
         let path = Self {
-            stations: Stations::Poses(poses, interpolation),
+            poses: PathPoses::Poses(poses, interpolation),
             blends: &[],
         };
         if !matches!(interpolation, Interpolation::Vector(_)) {
@@ -150,17 +150,17 @@ impl<'a> Path<'a> {
     /// an angle may run through more than half a turn.
     ///
     /// # Errors
-    /// [`PathError`].
+    /// [`PosePathError`].
     pub fn of_vectors(
         vectors: &'a [PoseVector],
         convention: Convention,
-    ) -> Result<Self, PathError> {
+    ) -> Result<Self, PosePathError> {
         check(vectors, |number, vector| {
             check_position(number, &vector.position())?;
             check_angles(number, &vector.angles())
         })?;
         Ok(Self {
-            stations: Stations::Vectors(vectors, convention),
+            poses: PathPoses::Vectors(vectors, convention),
             blends: &[],
         })
     }
@@ -170,21 +170,21 @@ impl<'a> Path<'a> {
     /// [`leg`](Self::leg) stay unrounded.
     ///
     /// # Errors
-    /// [`PathError::Blends`], [`PathError::Blend`], [`PathError::ScrewBlend`].
-    pub fn with_blends(self, blends: &'a [Blend]) -> Result<Self, PathError> {
+    /// [`PosePathError::Blends`], [`PosePathError::Blend`], [`PosePathError::ScrewBlend`].
+    pub fn with_blends(self, blends: &'a [Blend]) -> Result<Self, PosePathError> {
         let poses = self.legs().saturating_sub(1);
         if blends.len() != poses {
             let given = blends.len();
-            return Err(PathError::Blends { given, poses });
+            return Err(PosePathError::Blends { given, poses });
         }
-        if matches!(self.stations, Stations::Poses(_, Interpolation::Screw)) {
-            return Err(PathError::ScrewBlend);
+        if matches!(self.poses, PathPoses::Poses(_, Interpolation::Screw)) {
+            return Err(PosePathError::ScrewBlend);
         }
         for (number, blend) in blends.iter().enumerate() {
             for value in [blend.distance, blend.rotation_rad] {
                 if !(value >= 0.0 && value.is_finite()) {
                     let pose = number.saturating_add(1);
-                    return Err(PathError::Blend { pose, value });
+                    return Err(PosePathError::Blend { pose, value });
                 }
             }
         }
@@ -200,9 +200,9 @@ impl<'a> Path<'a> {
     /// The number of legs: one fewer than poses.
     #[must_use]
     pub const fn legs(&self) -> usize {
-        let poses = match self.stations {
-            Stations::Poses(poses, _) => poses.len(),
-            Stations::Vectors(vectors, _) => vectors.len(),
+        let poses = match self.poses {
+            PathPoses::Poses(poses, _) => poses.len(),
+            PathPoses::Vectors(vectors, _) => vectors.len(),
         };
         poses.saturating_sub(1)
     }
@@ -211,11 +211,11 @@ impl<'a> Path<'a> {
     #[must_use]
     pub fn leg(&self, number: usize) -> Option<Leg> {
         let next = number.checked_add(1)?;
-        Some(match self.stations {
-            Stations::Poses(poses, interpolation) => {
+        Some(match self.poses {
+            PathPoses::Poses(poses, interpolation) => {
                 Leg::new(poses.get(number)?, poses.get(next)?, interpolation)
             }
-            Stations::Vectors(vectors, convention) => {
+            PathPoses::Vectors(vectors, convention) => {
                 Leg::of_vectors(vectors.get(number)?, vectors.get(next)?, convention)
             }
         })
@@ -232,20 +232,20 @@ impl<'a> Path<'a> {
         platform: &Platform<N>,
         number: usize,
     ) -> Option<[Vector3<f64>; N]> {
-        Some(match self.stations {
-            Stations::Poses(poses, _) => platform.axes(poses.get(number)?),
-            Stations::Vectors(vectors, convention) => {
+        Some(match self.poses {
+            PathPoses::Poses(poses, _) => platform.axes(poses.get(number)?),
+            PathPoses::Vectors(vectors, convention) => {
                 let vector = vectors.get(number)?;
                 platform.axes_at(&vector.to_rotation(convention), &vector.position())
             }
         })
     }
 
-    fn check_turns(&self) -> Result<(), PathError> {
+    fn check_turns(&self) -> Result<(), PosePathError> {
         for (pose, leg) in self.numbered_legs() {
             let angle = leg.turn();
             if angle >= PI * (1.0 - epsilons::<f64>(HALF_TURN_EPSILONS)) {
-                return Err(PathError::HalfTurn { pose, angle });
+                return Err(PosePathError::HalfTurn { pose, angle });
             }
         }
         Ok(())
@@ -253,35 +253,35 @@ impl<'a> Path<'a> {
 }
 
 fn check<S>(
-    stations: &[S],
-    check: impl Fn(usize, &S) -> Result<(), PathError>,
-) -> Result<(), PathError> {
-    if stations.len() < 2 {
-        return Err(PathError::TooFew {
-            poses: stations.len(),
-        });
+    poses: &[S],
+    check: impl Fn(usize, &S) -> Result<(), PosePathError>,
+) -> Result<(), PosePathError> {
+    if poses.len() < 2 {
+        return Err(PosePathError::TooFew { poses: poses.len() });
     }
-    let mut numbered = stations.iter().enumerate();
-    numbered.try_for_each(|(number, station)| check(number, station))
+    let mut numbered = poses.iter().enumerate();
+    numbered.try_for_each(|(number, pose)| check(number, pose))
 }
 
-fn check_position(pose: usize, position: &Vector3<f64>) -> Result<(), PathError> {
+fn check_position(pose: usize, position: &Vector3<f64>) -> Result<(), PosePathError> {
     let max = largest();
     first_beyond(position, max).map_or(Ok(()), |value| {
-        Err(PathError::Coordinate { pose, value, max })
+        Err(PosePathError::Coordinate { pose, value, max })
     })
 }
 
-fn check_angles(pose: usize, angles: &Vector3<f64>) -> Result<(), PathError> {
+fn check_angles(pose: usize, angles: &Vector3<f64>) -> Result<(), PosePathError> {
     let max = largest_angle();
-    first_beyond(angles, max).map_or(Ok(()), |value| Err(PathError::Angle { pose, value, max }))
+    first_beyond(angles, max).map_or(Ok(()), |value| {
+        Err(PosePathError::Angle { pose, value, max })
+    })
 }
 
-fn check_rotation(pose: usize, rotation: &UnitQuaternion<f64>) -> Result<(), PathError> {
+fn check_rotation(pose: usize, rotation: &UnitQuaternion<f64>) -> Result<(), PosePathError> {
     let length = rotation.as_vector().norm();
     let [min, max] = ROTATION_LENGTH;
     if length >= min && length <= max {
         return Ok(());
     }
-    Err(PathError::Rotation { pose, length })
+    Err(PosePathError::Rotation { pose, length })
 }

@@ -4,11 +4,11 @@ use core::iter::FusedIterator;
 
 use nalgebra::Vector3;
 
-use crate::course::{Course, Walk};
 use crate::distance_error::linear_distance_error;
+use crate::leg_axes::{LegAxes, Walk};
 use crate::number::{larger, magnitude};
-use crate::path::{Leg, Path};
-use crate::{Locator, PlanError, Platform, Segmentation};
+use crate::path::{Leg, PosePath};
+use crate::{Locator, Platform, PtError, Segmentation};
 
 /// A line of a PT table: where every axis is at a time. Between two lines it moves linearly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub struct PtPoint<const N: usize> {
 #[derive(Debug, Clone, Copy)]
 pub struct PtTable<'a, const N: usize> {
     platform: &'a Platform<N>,
-    path: Path<'a>,
+    path: PosePath<'a>,
     segmentation: Segmentation,
     points: usize,
     duration_s: f64,
@@ -49,12 +49,12 @@ impl<'a, const N: usize> PtTable<'a, N> {
     /// every position between, where the axes move linearly.
     ///
     /// # Errors
-    /// [`PlanError`].
+    /// [`PtError`].
     pub fn plan(
         platform: &'a Platform<N>,
-        path: &Path<'a>,
+        path: &PosePath<'a>,
         segmentation: Segmentation,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, PtError> {
         segmentation.check(platform)?;
         let mut points = 1_usize;
         for number in 0..path.legs() {
@@ -62,7 +62,7 @@ impl<'a, const N: usize> PtTable<'a, N> {
             points = usize::try_from(segments)
                 .ok()
                 .and_then(|segments| points.checked_add(segments))
-                .ok_or(PlanError::TooManyPoints {
+                .ok_or(PtError::TooManyPoints {
                     needed: usize::MAX,
                     available: usize::MAX,
                 })?;
@@ -85,10 +85,10 @@ impl<'a, const N: usize> PtTable<'a, N> {
             let (leg, point) = (walk.leg, walk.index);
             platform
                 .check_axes(&axes)
-                .map_err(|reason| PlanError::Limit { leg, point, reason })?;
+                .map_err(|reason| PtError::Limit { leg, point, reason })?;
             let takes_time = |last_s| segment_s > 0.0 && time_s > last_s;
             if last_s.is_some_and(|last_s| !takes_time(last_s)) {
-                return Err(PlanError::Indistinct { leg, point });
+                return Err(PtError::Indistinct { leg, point });
             }
             last_s = Some(time_s);
         }
@@ -108,12 +108,12 @@ impl<'a, const N: usize> PtTable<'a, N> {
     /// Refuses a table of more points than the controller has memory for.
     ///
     /// # Errors
-    /// [`PlanError::TooManyPoints`].
-    pub const fn fits(&self, available: usize) -> Result<(), PlanError> {
+    /// [`PtError::TooManyPoints`].
+    pub const fn fits(&self, available: usize) -> Result<(), PtError> {
         if self.points <= available {
             return Ok(());
         }
-        Err(PlanError::TooManyPoints {
+        Err(PtError::TooManyPoints {
             needed: self.points,
             available,
         })
@@ -150,18 +150,18 @@ impl<'a, const N: usize> PtTable<'a, N> {
     }
 
     fn leg_distance_error(&self, number: usize, leg: &Leg) -> f64 {
-        let course = Course::new(self.platform, leg);
+        let leg_axes = LegAxes::new(self.platform, leg);
         let segments = self.segments(number);
         let looked_at = if leg.is_even() {
             segments.min(1)
         } else {
             segments
         };
-        let mut walk = course.walk(segments);
-        let mut from = course.axes(&walk);
+        let mut walk = leg_axes.walk(segments);
+        let mut from = leg_axes.axes(&walk);
         (0..looked_at).fold(0.0, |worst, _| {
             walk.advance();
-            let to = course.axes(&walk);
+            let to = leg_axes.axes(&walk);
             let distance_error = linear_distance_error(self.platform, &from, &to);
             from = to;
             worst.max(distance_error)
@@ -176,10 +176,10 @@ impl<'a, const N: usize> PtTable<'a, N> {
             let segments = self.segments(leg);
             match u32::try_from(number) {
                 Ok(index) if index <= segments => {
-                    let course = Course::new(self.platform, &self.path.leg(leg)?);
-                    let mut walk = course.walk(segments);
+                    let leg_axes = LegAxes::new(self.platform, &self.path.leg(leg)?);
+                    let mut walk = leg_axes.walk(segments);
                     walk.seek(index);
-                    return Some(course.axes(&walk));
+                    return Some(leg_axes.axes(&walk));
                 }
                 _ => number = number.saturating_sub(usize::try_from(segments).ok()?),
             }
@@ -195,7 +195,7 @@ impl<'a, const N: usize> PtTable<'a, N> {
             leg: 0,
             index: 0,
             segments: 0,
-            course: None,
+            leg_axes: None,
             axes: [Vector3::zeros(); N],
             clock: Clock::zero(),
             remaining: self.points,
@@ -232,7 +232,7 @@ pub struct PtPoints<'a, const N: usize> {
     leg: usize,
     index: u32,
     segments: u32,
-    course: Option<(Course<'a, N>, Walk)>,
+    leg_axes: Option<(LegAxes<'a, N>, Walk)>,
     axes: [Vector3<f64>; N],
     clock: Clock,
     remaining: usize,
@@ -273,9 +273,9 @@ impl<'a, const N: usize> PtPoints<'a, N> {
         self.segments = self.table.segments(leg);
         self.leg = leg;
         self.index = 0;
-        let course = Course::new(self.table.platform, &self.table.path.leg(leg)?);
-        let walk = course.walk(self.segments);
-        self.course = Some((course, walk));
+        let leg_axes = LegAxes::new(self.table.platform, &self.table.path.leg(leg)?);
+        let walk = leg_axes.walk(self.segments);
+        self.leg_axes = Some((leg_axes, walk));
         Some(())
     }
 
@@ -286,11 +286,11 @@ impl<'a, const N: usize> PtPoints<'a, N> {
             // Nothing moves anywhere: the first pose is the whole table.
             self.leg = 0;
             let leg = self.table.path.leg(0)?;
-            let course = Course::new(self.table.platform, &leg);
-            self.course = Some((course, course.walk(1)));
+            let leg_axes = LegAxes::new(self.table.platform, &leg);
+            self.leg_axes = Some((leg_axes, leg_axes.walk(1)));
         }
-        let (course, walk) = self.course.as_ref()?;
-        Some(course.axes(walk))
+        let (leg_axes, walk) = self.leg_axes.as_ref()?;
+        Some(leg_axes.axes(walk))
     }
 }
 
@@ -300,7 +300,7 @@ impl<'a, const N: usize> Iterator for PtPoints<'a, N> {
     #[inline]
     fn next(&mut self) -> Option<PtPoint<N>> {
         self.remaining = self.remaining.checked_sub(1)?;
-        if self.course.is_none() {
+        if self.leg_axes.is_none() {
             self.axes = self.first()?;
             return Some(PtPoint {
                 time_s: self.clock.time_s,
@@ -311,10 +311,10 @@ impl<'a, const N: usize> Iterator for PtPoints<'a, N> {
         if self.index == self.segments {
             self.begin(self.leg.saturating_add(1))?;
         }
-        let (course, walk) = self.course.as_mut()?;
+        let (leg_axes, walk) = self.leg_axes.as_mut()?;
         walk.advance();
         self.index = self.index.saturating_add(1);
-        let axes = course.axes(walk);
+        let axes = leg_axes.axes(walk);
         let segment_s = slowest(self.table.platform.locators(), &self.axes, &axes);
         self.clock.advance(segment_s);
         self.axes = axes;

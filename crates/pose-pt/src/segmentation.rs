@@ -2,11 +2,11 @@
 
 use trig_kernels::atan2;
 
-use crate::course::is_still;
 use crate::distance_error::pairs;
+use crate::leg_axes::is_still;
 use crate::number::{ceil, epsilons, floor, sqrt};
-use crate::path::{Leg, Path};
-use crate::{PlanError, Platform};
+use crate::path::{Leg, PosePath};
+use crate::{Platform, PtError};
 
 /// Into how many segments the leg from one pose to the next is divided.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +75,7 @@ impl Segmentation {
     }
 
     /// Whether the numbers make sense.
-    pub(crate) fn check<const N: usize>(&self, platform: &Platform<N>) -> Result<(), PlanError> {
+    pub(crate) fn check<const N: usize>(&self, platform: &Platform<N>) -> Result<(), PtError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let bad = match self.rule {
             Rule::Segments(0) => Some(0.0),
@@ -89,12 +89,12 @@ impl Segmentation {
             Rule::DistanceError(allowed) => (!positive(allowed)).then_some(allowed),
         };
         if let Some(value) = bad {
-            return Err(PlanError::Segmentation { value });
+            return Err(PtError::Segmentation { value });
         }
         let min = platform.largest_anchor_distance() * epsilons::<f64>(DISTANCE_ERROR_EPSILONS);
         match self.rule {
             Rule::DistanceError(allowed) if allowed < min => {
-                Err(PlanError::DistanceError { allowed, min })
+                Err(PtError::DistanceError { allowed, min })
             }
             _ => Ok(()),
         }
@@ -105,7 +105,7 @@ impl Segmentation {
     pub(crate) fn linear_segments<const N: usize>(
         &self,
         platform: &Platform<N>,
-        path: &Path<'_>,
+        path: &PosePath<'_>,
         number: usize,
     ) -> u32 {
         let leg = match path.leg(number) {
@@ -132,12 +132,12 @@ impl Segmentation {
     pub(crate) fn checked_segments<const N: usize>(
         &self,
         platform: &Platform<N>,
-        path: &Path<'_>,
+        path: &PosePath<'_>,
         number: usize,
-    ) -> Result<u32, PlanError> {
+    ) -> Result<u32, PtError> {
         match self.linear_segments(platform, path, number) {
             segments if segments <= MAX_SEGMENTS => Ok(segments),
-            _ => Err(PlanError::TooFine {
+            _ => Err(PtError::TooFine {
                 leg: number,
                 max: MAX_SEGMENTS,
             }),

@@ -4,9 +4,9 @@ use core::{fmt, time::Duration};
 use std::{io, net::TcpStream, time::Instant};
 
 use crate::{
+    character_buffer::CharacterBuffer,
     config::Config,
     event::Event,
-    piece::Piece,
     station::{Station, SubmitError, Transmit},
 };
 
@@ -71,7 +71,7 @@ pub struct Driver<P, const N: usize, const T: usize = N> {
     station: Station<N, T>,
     port: P,
     epoch: Instant,
-    input: Piece<INPUT>,
+    input: CharacterBuffer<INPUT>,
 }
 
 impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
@@ -85,7 +85,7 @@ impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
             station: Station::with_buffers(config),
             port,
             epoch: Instant::now(),
-            input: Piece::EMPTY,
+            input: CharacterBuffer::EMPTY,
         })
     }
 

@@ -114,7 +114,7 @@ pub struct Config {
     /// Longest time that a block which is already known to be bad, or noise, may go on without a
     /// pause before NAK is sent into it, in s: a total deadline where Siemens knows only gaps.
     /// 10, longer than a block of 4096 bytes at 9600 bit/s.
-    pub babble_s: u8,
+    pub max_noise_s: u8,
     /// Connection attempts: STX per transmission attempt. Siemens: 6.
     pub connection_attempts: u8,
     /// Transmission attempts: blocks per job, and rejected receptions in a row. Siemens: 6.
@@ -154,8 +154,8 @@ impl Config {
         Duration::from_millis(self.bwz_ms.into())
     }
 
-    pub(crate) fn babble(&self) -> Duration {
-        Duration::from_secs(self.babble_s.into())
+    pub(crate) fn max_noise(&self) -> Duration {
+        Duration::from_secs(self.max_noise_s.into())
     }
 
     /// `min(buffer_wait, QVZ - 10 ms)`.

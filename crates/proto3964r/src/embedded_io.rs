@@ -5,8 +5,8 @@ use core::time::Duration;
 use embedded_io::{Read, ReadReady, Write};
 
 use crate::{
+    character_buffer::CharacterBuffer,
     event::Event,
-    piece::Piece,
     station::{Station, SubmitError, Transmit},
 };
 
@@ -44,7 +44,7 @@ pub struct Driver<P, C, const N: usize, const T: usize = N> {
     station: Station<N, T>,
     port: P,
     clock: C,
-    input: Piece<INPUT>,
+    input: CharacterBuffer<INPUT>,
 }
 
 impl<P, C, const N: usize, const T: usize> Driver<P, C, N, T>
@@ -58,7 +58,7 @@ where
             station,
             port,
             clock,
-            input: Piece::EMPTY,
+            input: CharacterBuffer::EMPTY,
         }
     }
 

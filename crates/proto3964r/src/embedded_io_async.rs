@@ -10,8 +10,8 @@ use core::{
 use embedded_io_async::{Read, Write};
 
 use crate::{
+    character_buffer::CharacterBuffer,
     event::Event,
-    piece::Piece,
     station::{Station, SubmitError, Transmit},
 };
 
@@ -20,7 +20,7 @@ const OUTPUT: usize = 16;
 const INPUT: usize = 32;
 
 /// A clock, and how to wait for a time of it.
-pub trait Timer {
+pub trait AsyncClock {
     /// The time since any epoch.
     fn now(&mut self) -> Duration;
 
@@ -37,10 +37,10 @@ pub trait Timer {
 /// # Examples
 /// ```no_run
 /// use embedded_io_async::{Read, Write};
-/// use proto3964r::embedded_io_async::{Driver, Timer};
+/// use proto3964r::embedded_io_async::{Driver, AsyncClock};
 /// use proto3964r::{Config, Event, Line, Priority, Station};
 ///
-/// async fn tare<R, W>(rx: R, tx: W, timer: impl Timer) -> Result<(), R::Error>
+/// async fn tare<R, W>(rx: R, tx: W, timer: impl AsyncClock) -> Result<(), R::Error>
 /// where
 ///     R: Read,
 ///     W: Write<Error = R::Error>,
@@ -60,9 +60,9 @@ pub struct Driver<R, W, M, const N: usize, const T: usize = N> {
     reader: R,
     writer: W,
     timer: M,
-    input: Piece<INPUT>,
+    input: CharacterBuffer<INPUT>,
     /// What the station handed out and the port has not taken: a dropped `wait` loses none of it.
-    output: Piece<OUTPUT>,
+    output: CharacterBuffer<OUTPUT>,
     flushed: bool,
 }
 
@@ -78,7 +78,7 @@ impl<R, W, M, const N: usize, const T: usize> Driver<R, W, M, N, T>
 where
     R: Read,
     W: Write<Error = R::Error>,
-    M: Timer,
+    M: AsyncClock,
 {
     /// Puts a station on a port.
     pub fn new(station: Station<N, T>, reader: R, writer: W, timer: M) -> Self {
@@ -87,8 +87,8 @@ where
             reader,
             writer,
             timer,
-            input: Piece::EMPTY,
-            output: Piece::EMPTY,
+            input: CharacterBuffer::EMPTY,
+            output: CharacterBuffer::EMPTY,
             flushed: true,
         }
     }
@@ -173,21 +173,21 @@ where
         Ok(())
     }
 
-    /// Fetches the next piece when the port has taken the last one, or when that one is void.
+    /// Fetches the next characters when the port has taken the last ones, or when those are void.
     fn refill(&mut self, now: Duration) {
-        let mut piece = [0; OUTPUT];
+        let mut buffer = [0; OUTPUT];
         let free: &mut [u8] = if self.output.waiting().is_empty() {
-            &mut piece
+            &mut buffer
         } else {
             &mut []
         };
         match self.station.poll_transmit(now, free) {
             Some(Transmit::Discard) => {
-                self.output = Piece::EMPTY;
+                self.output = CharacterBuffer::EMPTY;
                 self.refill(now); // a discard never comes twice in a row
             }
             Some(Transmit::Bytes(bytes)) => {
-                self.output = Piece::of(bytes);
+                self.output = CharacterBuffer::of(bytes);
                 self.flushed = false;
             }
             None => {}

@@ -51,7 +51,7 @@ pub enum Event<'a> {
 #[non_exhaustive]
 pub struct Failure {
     /// The phase whose attempts are used up.
-    pub phase: Phase,
+    pub phase: JobPhase,
     /// The first error of this job. Siemens reports the first one too: the later ones are often
     /// its consequence.
     pub cause: Cause,
@@ -64,14 +64,14 @@ pub struct Failure {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "the procedure has these two")]
-pub enum Phase {
+pub enum JobPhase {
     /// From STX to DLE.
     Connection,
     /// From DLE to the answer to the block.
     Transmission,
 }
 
-impl fmt::Display for Phase {
+impl fmt::Display for JobPhase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Connection => "connection",
@@ -97,7 +97,7 @@ pub enum Cause {
     Unexpected(u8),
     /// A damaged character.
     #[error("{0}")]
-    Line(LineError),
+    Line(CharacterError),
     /// The partner sent STX as well and nothing came of it.
     #[error("initialization conflict")]
     Conflict,
@@ -117,7 +117,7 @@ pub enum Cause {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum LineError {
+pub enum CharacterError {
     /// The parity bit is wrong.
     #[error("parity")]
     Parity,
@@ -143,7 +143,7 @@ pub enum Rejection {
     Frame(FrameError),
     /// A character of the block was damaged.
     #[error("{0} error")]
-    Line(LineError),
+    Line(CharacterError),
     /// A gap longer than the character delay time (ZVZ) in the block.
     #[error("character delay time exceeded")]
     CharacterDelay,
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn events_are_lines_for_a_person() {
         let failure = Failure {
-            phase: Phase::Connection,
+            phase: JobPhase::Connection,
             cause: Cause::Timeout,
             attempts: 6,
         };

@@ -12,6 +12,12 @@ pub mod ascii;
 #[cfg(feature = "std")]
 #[cfg_attr(docsrs, doc(cfg(feature = "std")))]
 pub mod blocking;
+#[cfg(any(
+    feature = "embedded-io",
+    feature = "embedded-io-async",
+    feature = "std"
+))]
+mod character_buffer;
 mod config;
 #[cfg(feature = "embedded-io")]
 #[cfg_attr(docsrs, doc(cfg(feature = "embedded-io")))]
@@ -21,12 +27,6 @@ pub mod embedded_io;
 pub mod embedded_io_async;
 mod event;
 pub mod frame;
-#[cfg(any(
-    feature = "embedded-io",
-    feature = "embedded-io-async",
-    feature = "std"
-))]
-mod piece;
 #[cfg(feature = "serialport")]
 #[cfg_attr(docsrs, doc(cfg(feature = "serialport")))]
 pub mod serialport;
@@ -36,6 +36,6 @@ mod station;
 pub mod tokio;
 
 pub use config::{Config, Conflict, IdleNoise, Line, Priority, SilenceInBlock};
-pub use event::{Abandoned, Cause, Event, Failure, Hex, LineError, Phase, Rejection};
+pub use event::{Abandoned, Cause, CharacterError, Event, Failure, Hex, JobPhase, Rejection};
 pub use frame::{Check, IllegalDle};
 pub use station::{Activity, Station, SubmitError, Transmit};

@@ -26,7 +26,7 @@ use self::{
 };
 use crate::{
     config::Config,
-    event::{Cause, Event, LineError, Rejection},
+    event::{Cause, CharacterError, Event, Rejection},
     frame::Rules,
 };
 
@@ -337,8 +337,10 @@ impl<const N: usize, const T: usize> Station<N, T> {
         match self.state {
             // A bad block is swallowed no slower than it must.
             State::Spoiled {
-                gap_at, babble_at, ..
-            } if now < gap_at && now < babble_at => self.block_character(now, byte, None),
+                gap_at,
+                noise_end_at,
+                ..
+            } if now < gap_at && now < noise_end_at => self.block_character(now, byte, None),
             _ => {
                 self.handle_timeout(now);
                 self.character(now, byte, None);
@@ -350,7 +352,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     ///
     /// In a block the error is noted and the block rejected at its end; in place of an answer it
     /// is a wrong answer; in idle it is noise.
-    pub fn handle_damaged(&mut self, now: Duration, byte: u8, error: LineError) {
+    pub fn handle_damaged(&mut self, now: Duration, byte: u8, error: CharacterError) {
         self.handle_timeout(now);
         self.character(now, byte, Some(error));
     }

@@ -37,7 +37,7 @@ pub struct Arm<T: RealField = f64> {
     base: Isometry2<T>,
     limits: Limits<T>,
     /// The part of the limits in which an angle is at its turn.
-    window: Limits<T>,
+    principal_range: Limits<T>,
     keep_out: T,
     tolerance: T,
     squares: Squares<T>,
@@ -124,7 +124,7 @@ impl<T: RealField + Trig> Arm<T> {
             fore,
             base: Isometry2::identity(),
             limits: Limits::unlimited(),
-            window: Limits::unlimited().window(),
+            principal_range: Limits::unlimited().principal_range(),
             keep_out: T::zero(),
             tolerance: T::zero(),
             squares: Squares::new([upper, fore], T::zero(), T::zero()),
@@ -163,7 +163,7 @@ impl<T: RealField + Trig> Arm<T> {
     #[must_use]
     pub fn with_limits(mut self, limits: Limits<T>) -> Self {
         self.limits = limits;
-        self.window = limits.window();
+        self.principal_range = limits.principal_range();
         self
     }
 
@@ -212,8 +212,8 @@ impl<T: RealField + Trig> Arm<T> {
         &self.limits
     }
 
-    pub(crate) const fn window(&self) -> &Limits<T> {
-        &self.window
+    pub(crate) const fn principal_range(&self) -> &Limits<T> {
+        &self.principal_range
     }
 
     pub(crate) const fn squares(&self) -> &Squares<T> {

@@ -14,7 +14,7 @@ use crate::{GeometryError, Joints};
     clippy::exhaustive_enums,
     reason = "a joint turns one way or the other"
 )]
-pub enum Direction {
+pub enum DriveSense {
     /// Counter-clockwise drive, counter-clockwise joint.
     #[default]
     Forward,
@@ -51,8 +51,8 @@ pub struct DriveAngles<T = f64> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drives<T = f64> {
     zero: Joints<T>,
-    shoulder: Direction,
-    elbow: Direction,
+    shoulder: DriveSense,
+    elbow: DriveSense,
     coupling: T,
 }
 
@@ -61,8 +61,8 @@ impl<T: RealField + Copy> Default for Drives<T> {
     fn default() -> Self {
         Self {
             zero: Joints::new(T::zero(), T::zero()),
-            shoulder: Direction::Forward,
-            elbow: Direction::Forward,
+            shoulder: DriveSense::Forward,
+            elbow: DriveSense::Forward,
             coupling: T::zero(),
         }
     }
@@ -83,7 +83,7 @@ impl<T: RealField + Copy> Drives<T> {
 
     /// The senses of turning of shoulder and elbow.
     #[must_use]
-    pub const fn with_directions(mut self, shoulder: Direction, elbow: Direction) -> Self {
+    pub const fn with_senses(mut self, shoulder: DriveSense, elbow: DriveSense) -> Self {
         self.shoulder = shoulder;
         self.elbow = elbow;
         self
@@ -107,7 +107,7 @@ impl<T: RealField + Copy> Drives<T> {
 
     /// The senses of turning of shoulder and elbow.
     #[must_use]
-    pub const fn directions(&self) -> (Direction, Direction) {
+    pub const fn senses(&self) -> (DriveSense, DriveSense) {
         (self.shoulder, self.elbow)
     }
 
@@ -139,7 +139,7 @@ impl<T: RealField + Copy> Drives<T> {
     }
 }
 
-impl Direction {
+impl DriveSense {
     fn of<T: RealField>(self, angle: T) -> T {
         match self {
             Self::Forward => angle,

@@ -28,7 +28,7 @@ pub use nalgebra;
 pub use trig_kernels::Trig;
 
 pub use arm::{Arm, GeometryError};
-pub use drives::{Direction, DriveAngles, Drives};
+pub use drives::{DriveAngles, DriveSense, Drives};
 pub use dynamics::{ArmDynamics, ArmMasses, DynamicsError, JointDrive, LinkMass};
 pub use follow::{Follow, FollowError, Waypoint};
 pub use inverse::{InverseError, Solutions};

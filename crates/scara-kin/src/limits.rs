@@ -90,7 +90,7 @@ impl<T: RealField + Copy> JointRange<T> {
     }
 
     /// The part of the range in which each angle is at the turn nearest to the middle.
-    pub(crate) fn window(&self) -> Self {
+    pub(crate) fn principal_range(&self) -> Self {
         Self {
             min: self.min.max(self.middle() - T::pi()),
             max: self.max.min(self.middle() + T::pi()),
@@ -137,10 +137,10 @@ impl<T: RealField + Copy> Limits<T> {
             && self.elbow.holds_near(joints.elbow, near.elbow)
     }
 
-    pub(crate) fn window(&self) -> Self {
+    pub(crate) fn principal_range(&self) -> Self {
         Self {
-            shoulder: self.shoulder.window(),
-            elbow: self.elbow.window(),
+            shoulder: self.shoulder.principal_range(),
+            elbow: self.elbow.principal_range(),
         }
     }
 

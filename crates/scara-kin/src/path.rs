@@ -15,7 +15,7 @@ pub use error::ArmPathError;
 pub use single::ArmPathF32;
 
 use crate::{Arm, Elbow, Joints};
-use swing::{Swing, TOUCH};
+use swing::{RANGE_SLACK, Swing};
 use turns::Turns;
 
 /// A curve of the tool as a path of shoulder and elbow, in radians, by the curve's arc length: what
@@ -142,6 +142,6 @@ impl Path for ArmPath {
     }
 
     fn check(&self, span: &Span<[f64; 2]>) -> Result<(), ArmPathError> {
-        Swing::of(span, |joints| joints).check(&self.arm, TOUCH)
+        Swing::of(span, |joints| joints).check(&self.arm, RANGE_SLACK)
     }
 }

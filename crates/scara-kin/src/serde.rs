@@ -4,7 +4,7 @@ use nalgebra::{Isometry2, RealField, Vector2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use trig_kernels::{Trig, atan2};
 
-use crate::{Arm, Direction, Drives, GeometryError, JointRange, Joints, Limits};
+use crate::{Arm, DriveSense, Drives, GeometryError, JointRange, Joints, Limits};
 
 /// Serialises `$checked` as `$plain`.
 macro_rules! serialise_as {
@@ -155,9 +155,9 @@ struct PlainDrives<T> {
     #[serde(default = "no_offset")]
     zero: Joints<T>,
     #[serde(default)]
-    shoulder: Direction,
+    shoulder: DriveSense,
     #[serde(default)]
-    elbow: Direction,
+    elbow: DriveSense,
     #[serde(default = "T::zero")]
     coupling: T,
 }
@@ -168,7 +168,7 @@ fn no_offset<T: RealField>() -> Joints<T> {
 
 impl<T: RealField + Trig> From<Drives<T>> for PlainDrives<T> {
     fn from(drives: Drives<T>) -> Self {
-        let (shoulder, elbow) = drives.directions();
+        let (shoulder, elbow) = drives.senses();
         Self {
             zero: drives.zero(),
             shoulder,
@@ -184,7 +184,7 @@ impl<T: RealField + Trig> TryFrom<PlainDrives<T>> for Drives<T> {
     fn try_from(plain: PlainDrives<T>) -> Result<Self, Self::Error> {
         Self::default()
             .with_zero(plain.zero)?
-            .with_directions(plain.shoulder, plain.elbow)
+            .with_senses(plain.shoulder, plain.elbow)
             .with_coupling(plain.coupling)
     }
 }

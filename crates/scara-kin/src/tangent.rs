@@ -30,13 +30,13 @@ use crate::{Arm, Joints};
 /// let along_y = disc.follow(&arm, joints, Vector2::y())?;
 /// assert!(along_x.corner.is_none());
 /// assert!(along_y.corner.is_some()); // 90° is over the threshold: lift, turn, lower
-/// assert!((along_y.theta3 - along_x.theta3 - 90f64.to_radians()).abs() < 1e-15);
+/// assert!((along_y.tool_angle - along_x.tool_angle - 90f64.to_radians()).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentTool<T = f64> {
     corner: T,
-    theta3: T,
+    tool_angle: T,
     heading: Option<T>,
 }
 
@@ -46,7 +46,7 @@ pub struct TangentTool<T = f64> {
 #[non_exhaustive]
 pub struct ToolTurn<T = f64> {
     /// Angle of the tool against the forearm, in radians, unwrapped.
-    pub theta3: T,
+    pub tool_angle: T,
     /// The change of heading in -π..=π rad where it is a corner: above the threshold,
     /// so that the tool must be lifted and turned before it goes on.
     pub corner: Option<T>,
@@ -118,7 +118,7 @@ impl<T: RealField + Trig> TangentTool<T> {
         if corner > T::zero() {
             Ok(Self {
                 corner,
-                theta3: T::zero(),
+                tool_angle: T::zero(),
                 heading: None,
             })
         } else {
@@ -129,17 +129,17 @@ impl<T: RealField + Trig> TangentTool<T> {
     /// The tool at the angle at which it stands now, in radians, instead of 0.
     ///
     /// # Errors
-    /// [`TangentError::OutOfRange`] unless `theta3` is within ±1/√ε (f64: 6.7e7, f32: 2896).
-    pub fn starting_at(mut self, theta3: T) -> Result<Self, TangentError<T>> {
-        within("starting angle", theta3)?;
-        self.theta3 = theta3;
+    /// [`TangentError::OutOfRange`] unless `tool_angle` is within ±1/√ε (f64: 6.7e7, f32: 2896).
+    pub fn starting_at(mut self, tool_angle: T) -> Result<Self, TangentError<T>> {
+        within("starting angle", tool_angle)?;
+        self.tool_angle = tool_angle;
         Ok(self)
     }
 
     /// The tool's angle now, in radians.
     #[must_use]
-    pub const fn theta3(&self) -> T {
-        self.theta3
+    pub const fn tool_angle(&self) -> T {
+        self.tool_angle
     }
 
     /// Begins a new stroke: the next direction is no corner, whatever it is. The angle
@@ -171,13 +171,13 @@ impl<T: RealField + Trig> TangentTool<T> {
         let base = arm.base().rotation;
         let base = atan2(base.im, base.re);
         let wanted = heading - base - joints.shoulder - joints.elbow;
-        let turns = ((self.theta3 - wanted) / T::two_pi()).round();
-        let theta3 = turned(wanted, turns);
-        within("tool angle", theta3)?;
-        self.theta3 = theta3;
+        let turns = ((self.tool_angle - wanted) / T::two_pi()).round();
+        let tool_angle = turned(wanted, turns);
+        within("tool angle", tool_angle)?;
+        self.tool_angle = tool_angle;
         self.heading = Some(heading);
         Ok(ToolTurn {
-            theta3,
+            tool_angle,
             corner: change.filter(|change| change.abs() > self.corner),
         })
     }

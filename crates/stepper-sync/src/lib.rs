@@ -12,6 +12,7 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+mod axis_train;
 mod edges;
 mod polarity;
 mod position;
@@ -23,6 +24,7 @@ mod step_dir_timing;
 mod timer;
 mod trains;
 
+pub use axis_train::AxisTrain;
 pub use edges::{Edge, Edges, Level};
 pub use polarity::Polarity;
 pub use position::{Position, PositionError, ScaleError, StepCarry, StepScale};
@@ -33,4 +35,4 @@ pub use single_reload::{Rounding, SingleReload};
 pub use step_dir::{StepDir, StepDirError};
 pub use step_dir_timing::{MinIntervals, StepDirTiming};
 pub use timer::{CounterWidth, ExactInterval, Periods, Reload, Reloads, Timer, TimerError};
-pub use trains::{AxisTrain, Direction, TrainError, Trains};
+pub use trains::{Direction, TrainError, Trains};

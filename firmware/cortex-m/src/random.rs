@@ -62,7 +62,13 @@ impl Default for Random {
 #[must_use]
 pub fn delta<T: Real>() -> delta_kin::Delta<T> {
     let [base, platform, upper, lower] = [42.0, 18.0, 120.0, 243.0].map(T::of);
-    delta_kin::Delta::new(base, platform, upper, lower).expect("the lengths are good")
+    delta_kin::Delta::new(delta_kin::Dimensions {
+        base,
+        platform,
+        upper,
+        lower,
+    })
+    .expect("the lengths are good")
 }
 
 /// A panel of 3 m on three locators.
@@ -72,7 +78,13 @@ pub fn delta<T: Real>() -> delta_kin::Delta<T> {
 #[must_use]
 pub fn platform<T: Real>() -> pose_pt::Platform<3, T> {
     let limits = [-300.0, 300.0, 20.0, 100.0].map(T::of);
-    let limits = [pose_pt::AxisLimits::new(limits[0], limits[1], limits[2], limits[3]); 3];
+    let limits = [pose_pt::LocatorAxis {
+        min: limits[0],
+        max: limits[1],
+        speed: limits[2],
+        acceleration: limits[3],
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 50.0],

@@ -6,8 +6,8 @@ use core::time::Duration;
 use embassy_futures::select::{Either, select};
 use embedded_io_async::{Read, Write};
 use heapless::Deque;
-use proto3964r::embedded_io_async::{Driver, Timer};
-use proto3964r::{Config, Event, Line, LineError, Priority, Station};
+use proto3964r::embedded_io_async::{AsyncClock, Driver};
+use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
 use scara_kin::Joints;
 
 use crate::command::{Command, Joint};
@@ -23,7 +23,7 @@ const ANSWERS: usize = 8;
 /// The clock of `embassy-time`.
 struct Clock;
 
-impl Timer for Clock {
+impl AsyncClock for Clock {
     fn now(&mut self) -> Duration {
         Duration::from_micros(embassy_time::Instant::now().as_micros())
     }
@@ -43,7 +43,7 @@ pub async fn talk<R, W>(
     panel: &Panel,
     line: Line,
     (reader, writer): (R, W),
-    line_error: impl Fn(R::Error) -> Option<LineError>,
+    line_error: impl Fn(R::Error) -> Option<CharacterError>,
 ) -> !
 where
     R: Read,

@@ -15,7 +15,7 @@ use embassy_rp::peripherals::{DMA_CH0, PIO0, UART0};
 use embassy_rp::uart::{self, BufferedUart, BufferedUartRx, BufferedUartTx};
 use embassy_rp::{bind_interrupts, dma, pio};
 use panic_probe as _;
-use proto3964r::{Line, LineError};
+use proto3964r::{CharacterError, Line};
 use static_cell::{ConstStaticCell, StaticCell};
 
 use crate::pins::Player;
@@ -95,10 +95,10 @@ async fn play(player: Player) {
 #[embassy_executor::task]
 async fn converse(machine: &'static Machine, tx: BufferedUartTx, rx: BufferedUartRx) {
     let line_error = |error| match error {
-        uart::Error::Overrun => Some(LineError::Overrun),
+        uart::Error::Overrun => Some(CharacterError::Overrun),
         uart::Error::Break => None,
-        uart::Error::Parity => Some(LineError::Parity),
-        _ => Some(LineError::Framing),
+        uart::Error::Parity => Some(CharacterError::Parity),
+        _ => Some(CharacterError::Framing),
     };
     talk(machine, &PANEL, Line::paced(BAUD, 11), (rx, tx), line_error).await
 }

@@ -16,7 +16,7 @@ use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, Pll, PllMul, PllPDiv,
 use embassy_stm32::usart::{self, BufferedUart, BufferedUartRx, BufferedUartTx};
 use embassy_stm32::{bind_interrupts, dma};
 use panic_probe as _;
-use proto3964r::{Line, LineError};
+use proto3964r::{CharacterError, Line};
 use static_cell::{ConstStaticCell, StaticCell};
 
 use crate::pins::Player;
@@ -120,9 +120,9 @@ async fn converse(
     rx: BufferedUartRx<'static>,
 ) {
     let line_error = |error| match error {
-        usart::Error::Overrun | usart::Error::BufferTooLong => Some(LineError::Overrun),
-        usart::Error::Parity => Some(LineError::Parity),
-        _ => Some(LineError::Framing),
+        usart::Error::Overrun | usart::Error::BufferTooLong => Some(CharacterError::Overrun),
+        usart::Error::Parity => Some(CharacterError::Parity),
+        _ => Some(CharacterError::Framing),
     };
     talk(machine, &PANEL, Line::paced(BAUD, 11), (rx, tx), line_error).await
 }

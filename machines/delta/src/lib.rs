@@ -32,9 +32,9 @@
 mod calibration;
 mod command;
 mod control_tick;
-mod course;
 mod line_reader;
 mod machine;
+mod moments;
 mod motion;
 mod motors;
 mod picture;
@@ -47,8 +47,8 @@ mod simulation;
 mod step_log;
 
 pub use self::calibration::{Calibrated, Fit};
-pub use self::course::ArmsAt;
 pub use self::machine::Machine;
+pub use self::moments::ArmsAt;
 pub use self::motion::Motion;
 pub use self::record::{Record, TimedRow};
 pub use self::report::Report;

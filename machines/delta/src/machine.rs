@@ -1,7 +1,7 @@
 //! The machine: from its settings in TOML to checked numbers.
 
 use anyhow::{Context, Result, bail, ensure};
-use delta_kin::{Arm, ArmGeometry, Delta, InverseError, JointRange, SpeedLimits};
+use delta_kin::{Arm, ArmGeometry, ArmRange, Delta, Dimensions, InverseError, SpeedLimits};
 use machine_sim::input::parse_settings;
 use nalgebra::{Point3, Vector3};
 use path_timing::AxisLimits;
@@ -242,8 +242,17 @@ impl Settings {
             self.arm.len()
         );
         let (base, platform) = (self.base_mm, self.platform_mm);
-        let mut arms = Arm::ALL
-            .map(|arm| ArmGeometry::nominal(arm, base, platform, self.upper_mm, self.lower_mm));
+        let mut arms = Arm::ALL.map(|arm| {
+            ArmGeometry::nominal(
+                arm,
+                Dimensions {
+                    base,
+                    platform,
+                    upper: self.upper_mm,
+                    lower: self.lower_mm,
+                },
+            )
+        });
         for arm in &mut arms {
             arm.zero = self.motor.home_deg.to_radians();
         }
@@ -259,7 +268,7 @@ impl Settings {
         let delta = Delta::from_arms(arms)?;
         let (min, max) = (self.motor.min_deg, self.motor.max_deg);
         let range = |zero: f64| {
-            JointRange::new(min.to_radians() - zero, max.to_radians() - zero)
+            ArmRange::new(min.to_radians() - zero, max.to_radians() - zero)
                 .with_context(|| format!("min_deg = {min}, max_deg = {max}"))
         };
         let [first, second, third] = arms.map(|arm| arm.zero);

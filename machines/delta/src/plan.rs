@@ -1,7 +1,7 @@
 //! From a line in space to the times of single steps.
 
 use anyhow::{Context, Result, bail};
-use delta_kin::{Arm, Path};
+use delta_kin::{Arm, PlatformPath};
 use nalgebra::Point3;
 use stepper_sync::{Level, Trains};
 
@@ -27,7 +27,7 @@ impl Plan {
     ) -> Result<Self> {
         // The end first: a point that cannot be reached is the better reason.
         machine.angles_at(to)?;
-        let line = Path::line(from, to)?;
+        let line = PlatformPath::line(from, to)?;
         let speed_limits = machine.speed_limits(feed_mm_s)?;
         let min_step_s = machine.rad_per_step / machine.max_rate_rad_s;
         let mut trains = Vec::new();

@@ -88,13 +88,13 @@ impl Controller {
             }
             Record::Slow(slow) => {
                 let JointPulses {
-                    theta1,
-                    theta2,
-                    theta3,
+                    elbow,
+                    shoulder,
+                    disc,
                 } = slow.pulses();
                 // The disc turns first, then both arms together.
-                self.process([Axis::Theta3], [theta3], wires)?;
-                self.process([Axis::Theta1, Axis::Theta2], [theta1, theta2], wires)?;
+                self.process([Axis::Disc], [disc], wires)?;
+                self.process([Axis::Elbow, Axis::Shoulder], [elbow, shoulder], wires)?;
             }
         }
         Ok(self.now)

@@ -74,12 +74,12 @@ pub(crate) struct Deviation {
 }
 
 /// A short straight piece of the drawing.
-struct Piece {
+struct DrawnSegment {
     line: Segment,
     index: usize,
 }
 
-impl RTreeObject for Piece {
+impl RTreeObject for DrawnSegment {
     type Envelope = AABB<[f64; 2]>;
 
     fn envelope(&self) -> Self::Envelope {
@@ -87,7 +87,7 @@ impl RTreeObject for Piece {
     }
 }
 
-impl PointDistance for Piece {
+impl PointDistance for DrawnSegment {
     fn distance_2(&self, point: &[f64; 2]) -> f64 {
         self.line.distance_2((*point).into())
     }
@@ -95,7 +95,7 @@ impl PointDistance for Piece {
 
 /// Compares a path, move by move, with a drawing.
 pub(crate) struct Gauge {
-    pieces: RTree<Piece>,
+    pieces: RTree<DrawnSegment>,
     lengths: Vec<f64>,
     /// Squared distance of the path from the beginning of each piece, as far as seen.
     nearest_2: Vec<f64>,
@@ -183,7 +183,7 @@ impl Gauge {
         }
         let around = Vector2::repeat(self.reach);
         let envelope = AABB::from_corners((low - around).into(), (high + around).into());
-        let near: Vec<&Piece> = self
+        let near: Vec<&DrawnSegment> = self
             .pieces
             .locate_in_envelope_intersecting(envelope)
             .collect();
@@ -229,11 +229,11 @@ impl Gauge {
 
 /// Pieces of a stroke, none above `longest`; its end is a piece without length, so that
 /// it is looked at too.
-fn cut_up(points: &[Point2<f64>], longest: f64, pieces: &mut Vec<Piece>) {
+fn cut_up(points: &[Point2<f64>], longest: f64, pieces: &mut Vec<DrawnSegment>) {
     let mut add = |from, to| {
         let index = pieces.len();
         let line = Segment::new(from, to);
-        pieces.push(Piece { line, index });
+        pieces.push(DrawnSegment { line, index });
     };
     for (a, b) in points.iter().zip(points.iter().skip(1)) {
         let parts = ((b - a).norm() / longest).ceil().max(1.0);

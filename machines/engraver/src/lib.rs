@@ -42,7 +42,7 @@ mod report;
 mod simulation;
 mod timed;
 mod tool_speed;
-mod track;
+mod tool_trace;
 mod view;
 
 pub use self::controller::Wires;

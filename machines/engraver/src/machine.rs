@@ -69,10 +69,10 @@ impl JointScale {
 pub struct Machine {
     pub(crate) settings: Settings,
     pub(crate) arm: Arm,
-    pub(crate) theta1: JointScale,
-    pub(crate) theta2: JointScale,
-    pub(crate) theta3: JointScale,
-    pub(crate) disc: TangentTool,
+    pub(crate) elbow: JointScale,
+    pub(crate) shoulder: JointScale,
+    pub(crate) disc: JointScale,
+    pub(crate) tangent: TangentTool,
     /// Pulses from home down into the glass.
     pub(crate) lift_pulses: i32,
     pub(crate) format: Format,
@@ -107,9 +107,9 @@ impl Machine {
     fn check(settings: Settings) -> Result<Self> {
         let Settings {
             arm,
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
             vertical,
             timer,
             rapid,
@@ -118,19 +118,19 @@ impl Machine {
             timed,
         } = &settings;
         let limits = Limits {
-            shoulder: range(theta2).context("[theta2]")?,
-            elbow: range(theta1).context("[theta1]")?,
+            shoulder: range(shoulder).context("[shoulder]")?,
+            elbow: range(elbow).context("[elbow]")?,
         };
         let timing = timing(timer).context("[timer]")?;
         Ok(Self {
             arm: Arm::new(arm.upper_mm, arm.fore_mm)
                 .and_then(|checked| checked.with_limits(limits).with_keep_out(arm.keep_out_mm))
                 .context("[arm]")?,
-            theta1: joint(theta1).context("[theta1]")?,
-            theta2: joint(theta2).context("[theta2]")?,
-            theta3: JointScale::new(theta3.step_deg, theta3.gear_ratio, theta3.home_deg)
-                .context("[theta3]")?,
-            disc: disc(theta3).context("[theta3]")?,
+            elbow: joint(elbow).context("[elbow]")?,
+            shoulder: joint(shoulder).context("[shoulder]")?,
+            disc: JointScale::new(disc.step_deg, disc.gear_ratio, disc.home_deg)
+                .context("[disc]")?,
+            tangent: tangent_tool(disc).context("[disc]")?,
             lift_pulses: lift(vertical).context("[vertical]")?,
             format: Format::new()
                 .with_axis_codes(pattern.axis_codes)
@@ -163,8 +163,8 @@ impl Machine {
     /// The arm's joints at a position of the steppers.
     pub(crate) fn joints(&self, position: PerAxis<i32>) -> Joints {
         Joints::new(
-            self.theta2.to_rad(position.theta2),
-            self.theta1.to_rad(position.theta1),
+            self.shoulder.to_rad(position.shoulder),
+            self.elbow.to_rad(position.elbow),
         )
     }
 
@@ -172,8 +172,8 @@ impl Machine {
     /// step of each joint through the Jacobian at the tool's position, and the second order.
     pub(crate) fn half_step_mm(&self, tool: Point2<f64>) -> f64 {
         let (upper, fore) = (self.arm.upper(), self.arm.fore());
-        let shoulder = self.theta2.rad_per_pulse / 2.0;
-        let elbow = self.theta1.rad_per_pulse / 2.0;
+        let shoulder = self.shoulder.rad_per_pulse / 2.0;
+        let elbow = self.elbow.rad_per_pulse / 2.0;
         let curved = upper * shoulder.powi(2) + fore * (shoulder + elbow).powi(2);
         shoulder * tool.coords.norm() + elbow * fore + curved / 2.0
     }
@@ -189,7 +189,7 @@ fn joint(settings: &JointSettings) -> Result<JointScale> {
     JointScale::new(settings.step_deg, settings.gear_ratio, settings.home_deg)
 }
 
-fn disc(settings: &DiscSettings) -> Result<TangentTool> {
+fn tangent_tool(settings: &DiscSettings) -> Result<TangentTool> {
     ensure!(
         settings.corner_deg.is_finite(),
         "corner_deg = {} is not finite; 180 lifts at no corner",

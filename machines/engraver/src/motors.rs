@@ -52,9 +52,9 @@ impl Motors {
         };
         Self {
             axes: PerAxis {
-                theta1: DrivenAxis::new(motor(machine.theta1, fore_kg_m2)),
-                theta2: DrivenAxis::new(motor(machine.theta2, arm_kg_m2)),
-                theta3: DrivenAxis::new(motor(machine.theta3, FORK_KG_M2)),
+                elbow: DrivenAxis::new(motor(machine.elbow, fore_kg_m2)),
+                shoulder: DrivenAxis::new(motor(machine.shoulder, arm_kg_m2)),
+                disc: DrivenAxis::new(motor(machine.disc, FORK_KG_M2)),
                 vertical: DrivenAxis::new(lift),
             },
             tick_s: machine.tick_s(),
@@ -75,16 +75,16 @@ impl Motors {
             axis.finish(DEVIATION_STEPS, StepSize::Degrees(deg))
         };
         let PerAxis {
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
             vertical,
         } = self.axes;
         let lift = StepSize::Millimetres(machine.settings.mm_per_vertical_pulse());
         FollowedAxes {
-            theta1: joint(theta1, machine.theta1),
-            theta2: joint(theta2, machine.theta2),
-            theta3: joint(theta3, machine.theta3),
+            elbow: joint(elbow, machine.elbow),
+            shoulder: joint(shoulder, machine.shoulder),
+            disc: joint(disc, machine.disc),
             vertical: vertical.finish(DEVIATION_STEPS, lift),
         }
     }
@@ -104,28 +104,28 @@ fn motor(joint: JointScale, load_kg_m2: f64) -> Motor {
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct FollowedAxes {
     /// The joints behind their gears.
-    theta1: Followed,
-    theta2: Followed,
-    theta3: Followed,
+    elbow: Followed,
+    shoulder: Followed,
+    disc: Followed,
     vertical: Followed,
 }
 
 impl FollowedAxes {
     /// Of all motors.
     pub(crate) const fn lost_steps(&self) -> u64 {
-        let joints = self.theta1.lost_steps + self.theta2.lost_steps + self.theta3.lost_steps;
+        let joints = self.elbow.lost_steps + self.shoulder.lost_steps + self.disc.lost_steps;
         joints + self.vertical.lost_steps
     }
 
     /// Proven of either joint of the arm, in degrees a second.
     pub(crate) fn max_speed_jump_deg_s(&self) -> f64 {
-        let [a, b] = [self.theta1, self.theta2].map(|joint| joint.speed_jump.proven());
+        let [a, b] = [self.elbow, self.shoulder].map(|joint| joint.speed_jump.proven());
         a.max(b)
     }
 
     /// Proven of either joint of the arm, in deg/s².
     pub(crate) fn max_acceleration_deg_s2(&self) -> f64 {
-        let joints = [self.theta1, self.theta2];
+        let joints = [self.elbow, self.shoulder];
         let [a, b] = joints.map(|joint| joint.acceleration.proven());
         a.max(b)
     }

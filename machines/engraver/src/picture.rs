@@ -37,7 +37,7 @@ fn maps(run: &Run) -> Vec<Plot> {
     let [x, y] = ["x in mm", "y in mm"].map(Axis::new);
     let whole = drawn(run, Plot::map(x, y), true)
         .with_weight(2.2)
-        .start(run.track.start.into());
+        .start(run.trace.start.into());
     let Some(at) = run.deviation.worst_at else {
         return vec![whole];
     };
@@ -59,8 +59,8 @@ fn drawn(run: &Run, plot: Plot, is_explained: bool) -> Plot {
     };
     let name = |name: &'static str| if is_explained { name } else { "" };
     let drawing = run.drawing.iter().map(line);
-    let rapids = run.track.travels.iter().map(line);
-    let moved = run.track.engraved.iter();
+    let rapids = run.trace.travels.iter().map(line);
+    let moved = run.trace.engraved.iter();
     let moved = moved.filter_map(|piece| Some((piece.speed_mm_s?, line(&piece.points))));
     plot.lines(name("drawing"), Stroke::COMMANDED, drawing)
         .lines(name("rapid, tool lifted"), Stroke::RAPID, rapids)

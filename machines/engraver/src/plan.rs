@@ -65,7 +65,7 @@ impl Plan {
         let mut planner = Planner {
             machine,
             builder: Builder::new(),
-            disc: machine.disc,
+            disc: machine.tangent,
             joints: home,
             plan: Self {
                 pattern: Vec::new(),
@@ -99,7 +99,7 @@ impl Plan {
     #[must_use]
     pub const fn pulses(&self) -> u64 {
         let pulses = self.statistics.pulses;
-        pulses.theta1 + pulses.theta2 + pulses.theta3 + pulses.vertical
+        pulses.elbow + pulses.shoulder + pulses.disc + pulses.vertical
     }
 
     /// What the engraved path is measured against.
@@ -216,9 +216,9 @@ impl Planner<'_> {
         let turn = self.disc.follow(&machine.arm, joints, direction)?;
         let position = self.builder.position();
         Ok(JointPulses {
-            theta1: machine.theta1.to_pulses(joints.elbow)? - position.theta1,
-            theta2: machine.theta2.to_pulses(joints.shoulder)? - position.theta2,
-            theta3: machine.theta3.to_pulses(turn.theta3)? - position.theta3,
+            elbow: machine.elbow.to_pulses(joints.elbow)? - position.elbow,
+            shoulder: machine.shoulder.to_pulses(joints.shoulder)? - position.shoulder,
+            disc: machine.disc.to_pulses(turn.tool_angle)? - position.disc,
         })
     }
 
@@ -230,15 +230,15 @@ impl Planner<'_> {
         for record in builder.slow(pulses)? {
             let Record::Slow(slow) = record else { continue };
             let by = slow.pulses();
-            let steps = [by.theta1, by.theta2];
+            let steps = [by.elbow, by.shoulder];
             let mut edges = Trains::new(steps, machine.half_period_ticks)?
                 .edges()
                 .peekable();
             while let Some(edge) = edges.next() {
                 if edge.level == Level::High {
                     match edge.axis {
-                        0 => position.theta1 += by.theta1.signum(),
-                        _ => position.theta2 += by.theta2.signum(),
+                        0 => position.elbow += by.elbow.signum(),
+                        _ => position.shoulder += by.shoulder.signum(),
                     }
                 }
                 // Steps on the same tick are one.
@@ -264,16 +264,16 @@ impl Planner<'_> {
     /// Turns the lifted disc.
     fn turn(&mut self, joints: Joints, direction: Vector2<f64>) -> Result<()> {
         let pulses = self.pulses_to(joints, direction)?;
-        self.rapid(Axis::Theta3, pulses.theta3)
+        self.rapid(Axis::Disc, pulses.disc)
     }
 
     /// Moves the lifted tool.
     fn travel(&mut self, to: Joints) -> Result<()> {
         let (machine, position) = (self.machine, self.builder.position());
-        let theta2 = machine.theta2.to_pulses(to.shoulder)? - position.theta2;
-        let theta1 = machine.theta1.to_pulses(to.elbow)? - position.theta1;
-        self.rapid(Axis::Theta2, theta2)?;
-        self.rapid(Axis::Theta1, theta1)
+        let shoulder = machine.shoulder.to_pulses(to.shoulder)? - position.shoulder;
+        let elbow = machine.elbow.to_pulses(to.elbow)? - position.elbow;
+        self.rapid(Axis::Shoulder, shoulder)?;
+        self.rapid(Axis::Elbow, elbow)
     }
 
     fn vertical(&mut self, pulses: i32) -> Result<()> {
@@ -302,7 +302,7 @@ impl Planner<'_> {
     fn finish(mut self) -> Result<Plan> {
         let records =
             self.builder
-                .home([Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2])?;
+                .home([Axis::Vertical, Axis::Disc, Axis::Elbow, Axis::Shoulder])?;
         self.write(records);
         Ok(self.plan)
     }

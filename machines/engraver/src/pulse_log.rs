@@ -49,9 +49,9 @@ impl<W: Write> PulseLog<W> {
 
 /// The wires of step pins; those of direction pins come after all of them.
 const STEP: PerAxis<usize> = PerAxis {
-    theta1: 0,
-    theta2: 1,
-    theta3: 2,
+    elbow: 0,
+    shoulder: 1,
+    disc: 2,
     vertical: 3,
 };
 

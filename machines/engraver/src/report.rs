@@ -91,13 +91,13 @@ struct MachineReport<'a> {
     settings: &'a Settings,
 }
 
-/// theta2 the upper arm against the body, theta1 the forearm against the upper arm,
-/// theta3 the disc against the forearm.
+/// Angles of the forearm against the upper arm, the upper arm against the body, the disc against
+/// the forearm.
 #[derive(Debug, Clone, Serialize)]
 struct Joints {
-    theta1: f64,
-    theta2: f64,
-    theta3: f64,
+    elbow: f64,
+    shoulder: f64,
+    disc: f64,
 }
 
 impl<'a> Report<'a> {
@@ -209,7 +209,7 @@ impl fmt::Display for Report<'_> {
         writeln!(
             f,
             "simulated from the bytes alone: {} + {} + {} + {} pulses, {:.1} s",
-            pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical, self.duration_s
+            pulses.elbow, pulses.shoulder, pulses.disc, pulses.vertical, self.duration_s
         )?;
         if let Some([min, max]) = self.tool_speed_mm_s {
             writeln!(
@@ -247,22 +247,22 @@ impl fmt::Display for Report<'_> {
 
 impl<'a> MachineReport<'a> {
     fn new(machine: &'a Machine) -> Self {
-        let joints = [machine.theta1, machine.theta2, machine.theta3];
-        let [theta1, theta2, theta3] = joints.map(|joint| joint.rad_per_pulse);
+        let joints = [machine.elbow, machine.shoulder, machine.disc];
+        let [elbow, shoulder, disc] = joints.map(|joint| joint.rad_per_pulse);
         let rad_per_pulse = Joints {
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
         };
-        let [theta1, theta2, theta3] = joints.map(|joint| joint.home_rad);
+        let [elbow, shoulder, disc] = joints.map(|joint| joint.home_rad);
         Self {
             upper_mm: machine.arm.upper(),
             fore_mm: machine.arm.fore(),
             rad_per_pulse,
             home_rad: Joints {
-                theta1,
-                theta2,
-                theta3,
+                elbow,
+                shoulder,
+                disc,
             },
             mm_per_vertical_pulse: machine.settings.mm_per_vertical_pulse(),
             lift_pulses: machine.lift_pulses,

@@ -13,7 +13,7 @@ use crate::motors::{FollowedAxes, Motors};
 use crate::plan::Reference;
 use crate::timed::TimedRow;
 use crate::tool_speed::{Meter, Pace, Spread, ToolSpeed};
-use crate::track::Track;
+use crate::tool_trace::ToolTrace;
 
 /// How far around the tool the drawing is looked for, in bounds.
 const REACH: f64 = 1.25;
@@ -38,7 +38,7 @@ pub struct Run {
     pub(crate) tool_speed: ToolSpeed,
     pub(crate) spread: Option<Spread>,
     pub(crate) motors: FollowedAxes,
-    pub(crate) track: Track,
+    pub(crate) trace: ToolTrace,
     /// The placed drawing as lines.
     pub(crate) drawing: Vec<Vec<Point2<f64>>>,
     /// Of timed strokes.
@@ -110,7 +110,7 @@ pub(crate) struct Simulation<'a, P> {
     meter: Meter,
     pace: Pace,
     motors: Motors,
-    track: Track,
+    trace: ToolTrace,
     now: u64,
     position: PerAxis<i32>,
     is_negative: PerAxis<bool>,
@@ -136,7 +136,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             meter: Meter::default(),
             pace: Pace::default(),
             motors: Motors::new(machine),
-            track: Track::new(home, reference.bound_mm * PICTURE_SPACING),
+            trace: ToolTrace::new(home, reference.bound_mm * PICTURE_SPACING),
             now: 0,
             position,
             is_negative: PerAxis::default(),
@@ -164,7 +164,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
         }
         let tool = self.tool();
         let in_glass = self.position.vertical <= -self.machine.lift_pulses;
-        self.track.at(tool, in_glass);
+        self.trace.at(tool, in_glass);
         if !in_glass {
             self.engraving = None;
             self.pace.lifted();
@@ -189,13 +189,13 @@ impl<'a, P: Wires> Simulation<'a, P> {
         self.settle();
         let speed = self.meter.record(ticks, self.engraving);
         let speed_mm_s = speed.map(|speed| speed / self.machine.tick_s());
-        self.track.record(self.tool(), speed_mm_s);
+        self.trace.record(self.tool(), speed_mm_s);
         self.records += 1;
     }
 
     pub(crate) fn finish(mut self, reference: &Reference) -> Result<Run> {
         self.settle();
-        self.track.finish(self.tool());
+        self.trace.finish(self.tool());
         let ns = self.machine.timer.ticks_to_ns(self.now);
         let ns = u64::try_from(ns).context("the pattern lasts over 500 years")?;
         let drawing = reference.outlines.iter();
@@ -211,7 +211,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
             tool_speed: self.meter.finish(self.machine.tick_s()),
             spread: self.pace.finish(self.machine.tick_s()),
             motors: self.motors.finish(self.machine),
-            track: self.track,
+            trace: self.trace,
             drawing: drawing
                 .map(|outline| flatten(outline, PICTURE_MM))
                 .collect(),
@@ -239,7 +239,7 @@ impl<P: Wires> Wires for Simulation<'_, P> {
             self.motors.step(ticks, axis, step);
             self.has_moved = true;
         }
-        if axis == Axis::Theta3 && !self.turns_while_moving {
+        if axis == Axis::Disc && !self.turns_while_moving {
             self.meter.disc_edge(ticks);
         }
         self.probe.step(ticks, axis, level)

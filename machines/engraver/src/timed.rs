@@ -92,7 +92,7 @@ impl TimedPlan {
             machine,
             tolerance_mm: tolerance_mm / 4.0,
             joints: home,
-            disc_rad: machine.theta3.to_rad(0),
+            disc_rad: machine.disc.to_rad(0),
             moves: Vec::new(),
             bound_mm: 0.0,
         };
@@ -110,7 +110,7 @@ impl TimedPlan {
             planned.with_context(|| format!("stroke {} of {total}", stroke.number))?;
             progress(done as u64 + 1, total as u64);
         }
-        for axis in [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2] {
+        for axis in [Axis::Vertical, Axis::Disc, Axis::Elbow, Axis::Shoulder] {
             planner.moves.push(Move::Rapid { axis, to: 0 });
         }
         Ok(Self {
@@ -157,17 +157,17 @@ impl Planner<'_> {
                 bail!("a run has no rows");
             };
             let [shoulder, elbow, disc] = start.position;
-            let disc = self.machine.theta3.to_pulses(disc)?;
+            let disc = self.machine.disc.to_pulses(disc)?;
             if number == 0 {
-                self.rapid(Axis::Theta3, disc);
+                self.rapid(Axis::Disc, disc);
                 self.travel(Joints::new(shoulder, elbow))?;
                 self.rapid(Axis::Vertical, -self.machine.lift_pulses);
             } else if run.first().is_some_and(Leg::is_corner) {
                 self.rapid(Axis::Vertical, 0);
-                self.rapid(Axis::Theta3, disc);
+                self.rapid(Axis::Disc, disc);
                 self.rapid(Axis::Vertical, -self.machine.lift_pulses);
             } else {
-                self.rapid(Axis::Theta3, disc);
+                self.rapid(Axis::Disc, disc);
             }
             let [shoulder, elbow, disc] = end.position;
             (self.joints, self.disc_rad) = (Joints::new(shoulder, elbow), disc);
@@ -263,8 +263,8 @@ impl Planner<'_> {
 
     fn travel(&mut self, to: Joints) -> Result<()> {
         let machine = self.machine;
-        self.rapid(Axis::Theta2, machine.theta2.to_pulses(to.shoulder)?);
-        self.rapid(Axis::Theta1, machine.theta1.to_pulses(to.elbow)?);
+        self.rapid(Axis::Shoulder, machine.shoulder.to_pulses(to.shoulder)?);
+        self.rapid(Axis::Elbow, machine.elbow.to_pulses(to.elbow)?);
         Ok(())
     }
 
@@ -304,12 +304,12 @@ impl Machine {
     }
 
     fn joints_at_home(&self) -> Joints {
-        Joints::new(self.theta2.to_rad(0), self.theta1.to_rad(0))
+        Joints::new(self.shoulder.to_rad(0), self.elbow.to_rad(0))
     }
 
     /// A rate in pulses a second for shoulder, elbow and disc, in radians a second.
     fn rates(&self, hz: f64) -> [f64; 3] {
-        [self.theta2, self.theta1, self.theta3].map(|joint| hz * joint.rad_per_pulse)
+        [self.shoulder, self.elbow, self.disc].map(|joint| hz * joint.rad_per_pulse)
     }
 
     /// What the motors of shoulder, elbow and disc start and stop with, in rad/s.

@@ -5,7 +5,7 @@ extern crate alloc;
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
-use proto3964r::{LineError, SubmitError};
+use proto3964r::{CharacterError, SubmitError};
 
 use crate::{
     Faults, Frame, StationSettings,
@@ -70,7 +70,7 @@ impl Bench {
     }
 
     /// Runs until the port has read a character, at most until a time.
-    pub fn hear(&mut self, until: Duration) -> Option<(u8, Option<LineError>)> {
+    pub fn hear(&mut self, until: Duration) -> Option<(u8, Option<CharacterError>)> {
         let end = step_at(until);
         while self.step < end {
             if let Some(Read { byte, error }) = self.advance(end) {

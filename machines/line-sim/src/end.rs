@@ -7,7 +7,7 @@ use core::time::Duration;
 
 use machine_sim::Random;
 use proto3964r::{
-    Config, Event, LineError, Station, SubmitError, Transmit,
+    CharacterError, Config, Event, Station, SubmitError, Transmit,
     ascii::{DLE, ETX, NAK, STX},
 };
 
@@ -201,7 +201,7 @@ impl End {
             return;
         }
         let is_lost = self.random.happens(self.faults.receiver_error_rate);
-        let error = read.error.or(is_lost.then_some(LineError::Parity));
+        let error = read.error.or(is_lost.then_some(CharacterError::Parity));
         match error {
             None => self.station.handle_byte(now, read.byte),
             Some(error) => self.station.handle_damaged(now, read.byte, error),

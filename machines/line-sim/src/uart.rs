@@ -1,6 +1,6 @@
 //! Transmitter and receiver circuits on a wire that is simulated in steps.
 
-use proto3964r::LineError;
+use proto3964r::CharacterError;
 
 use crate::STEPS_PER_SECOND;
 
@@ -122,7 +122,7 @@ pub(crate) struct Receiver {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Read {
     pub(crate) byte: u8,
-    pub(crate) error: Option<LineError>,
+    pub(crate) error: Option<CharacterError>,
 }
 
 impl Receiver {
@@ -162,9 +162,9 @@ impl Receiver {
         self.is_ready = level;
         let [_, byte] = (self.bits >> 1).to_be_bytes();
         let error = if !level {
-            Some(LineError::Framing)
+            Some(CharacterError::Framing)
         } else if self.bits != self.frame.of(byte) {
-            Some(LineError::Parity)
+            Some(CharacterError::Parity)
         } else {
             None
         };
@@ -176,7 +176,7 @@ impl Receiver {
 mod tests {
     use super::*;
 
-    type Passed = Vec<(u8, Option<LineError>)>;
+    type Passed = Vec<(u8, Option<CharacterError>)>;
 
     fn pass(from: Frame, to: Frame, byte: u8, flipped: u16) -> Passed {
         let mut transmitter = Transmitter::new(from);
@@ -213,7 +213,7 @@ mod tests {
     fn parity_and_stop_bit_are_checked() {
         let even = Frame::USUAL;
         let odd = Frame::new(9600, Parity::Odd).unwrap();
-        let (parity, framing) = (Some(LineError::Parity), Some(LineError::Framing));
+        let (parity, framing) = (Some(CharacterError::Parity), Some(CharacterError::Framing));
         assert_eq!(pass(odd, even, 0x41, 0), [(0x41, parity)]);
         assert_eq!(pass(even, even, 0x41, 1 << 3), [(0x45, parity)]);
         assert_eq!(pass(even, even, 0x41, 1 << 10), [(0x41, framing)]);

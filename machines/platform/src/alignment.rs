@@ -4,11 +4,11 @@ use anyhow::{Context as _, Result};
 use machine_sim::Figure;
 use pose_pt::Platform;
 
-use crate::course::{self, PlatformAt};
 use crate::examination::Examination;
 use crate::line::Wire;
 use crate::machine::{Locators, Machine, isometry};
 use crate::mode::Mode;
+use crate::moments::{self, PlatformAt};
 use crate::operator::{self, Task};
 use crate::picture;
 use crate::planner::Planner;
@@ -38,7 +38,7 @@ pub struct Run {
     align: Figure,
     report: Report,
     note: Option<String>,
-    course: Vec<PlatformAt>,
+    moments: Vec<PlatformAt>,
 }
 
 impl Run {
@@ -68,8 +68,8 @@ impl Run {
 
     /// The locators and the body over the time of the table.
     #[must_use]
-    pub fn course(&self) -> &[PlatformAt] {
-        &self.course
+    pub fn moments(&self) -> &[PlatformAt] {
+        &self.moments
     }
 
     /// The numbers.
@@ -153,7 +153,7 @@ fn align<const N: usize>(
         ),
         report,
         note: task.rounding_note(),
-        course: course::of_table(&examination, platform, &machine.settings)?,
+        moments: moments::of_table(&examination, platform, &machine.settings)?,
         table: plan.csv.clone(),
         line_log: done.line_log,
     })

@@ -4,9 +4,9 @@ use anyhow::{Context as _, Result};
 use handwheel::{Key, LedState, Position, RotarySwitch};
 use pose_pt::Platform;
 
-use crate::course::PlatformAt;
 use crate::machine::{Locators, Machine, isometry};
 use crate::mode::Mode;
+use crate::moments::PlatformAt;
 use crate::planner::Planner;
 use crate::screen::LINES;
 use crate::world::World;

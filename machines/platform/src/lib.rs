@@ -55,13 +55,13 @@ extern crate alloc;
 
 mod alignment;
 mod arbiter;
-mod course;
 mod desk;
 mod drives;
 mod examination;
 mod line;
 mod machine;
 mod mode;
+mod moments;
 mod operator;
 mod panel;
 mod pendant;
@@ -77,11 +77,11 @@ mod world;
 
 pub use self::alignment::{Alignment, Run, run};
 pub use self::arbiter::{Arbiter, PendantId, Refused, Target};
-pub use self::course::PlatformAt;
 pub use self::desk::{Desk, Hand, Seen};
 pub use self::line::{Side, Wire};
 pub use self::machine::Machine;
 pub use self::mode::Mode;
+pub use self::moments::PlatformAt;
 pub use self::panel::{
     Action, Axis, Input, Panel, PanelSettings, PanelSettingsError, PoseChange, Refusal,
 };

@@ -5,7 +5,9 @@ use core::fmt::{Display, Write as _};
 use anyhow::{Error, Result, anyhow, ensure};
 use nalgebra::Vector3;
 use path_timing::{Accuracy, Knot, PlanError, Promise, Table, Verifier};
-use pose_pt::{Blend, BodyPath, BodyPathError, Path, PathError, Platform, PtTable, Segmentation};
+use pose_pt::{
+    Blend, BodyPath, BodyPathError, Platform, PosePath, PosePathError, PtTable, Segmentation,
+};
 
 use crate::machine::isometry;
 use crate::mode::Mode;
@@ -56,19 +58,19 @@ impl<const N: usize> Planner<N> {
         let (via, blends): (Vec<Pose>, Vec<Blend>) = self.via.iter().copied().unzip();
         let poses = core::iter::once(from).chain(via).chain([to]);
         let poses: Vec<_> = poses.map(isometry).collect();
-        let path = Path::new(&poses, self.settings.interpolation());
+        let path = PosePath::new(&poses, self.settings.interpolation());
         let path = match path {
             Ok(path) if !blends.is_empty() => path.with_blends(&blends),
             other => other,
         };
         let path = path.map_err(|error| match error {
-            PathError::HalfTurn { angle, .. } => {
+            PosePathError::HalfTurn { angle, .. } => {
                 anyhow!(
                     "the body would turn by {angle} rad, half a turn: either direction is as short"
                 )
             }
-            PathError::Blend { pose, .. } => Error::new(error).context(format!("via {pose}")),
-            PathError::ScrewBlend => Error::new(error).context("[[path.via]]"),
+            PosePathError::Blend { pose, .. } => Error::new(error).context(format!("via {pose}")),
+            PosePathError::ScrewBlend => Error::new(error).context("[[path.via]]"),
             other => other.into(),
         })?;
         let mut csv = self.header();
@@ -92,10 +94,10 @@ impl<const N: usize> Planner<N> {
     }
 
     /// A table for linear motion between its points: how many there are, and the bound.
-    fn linear(&self, path: &Path<'_>, csv: &mut String) -> Result<(usize, f64)> {
+    fn linear(&self, path: &PosePath<'_>, csv: &mut String) -> Result<(usize, f64)> {
         let segmentation = Segmentation::max_distance_error(self.settings.max_distance_error_mm());
-        let placed = |error: pose_pt::PlanError| match error {
-            pose_pt::PlanError::Limit { .. } => anyhow!(error),
+        let placed = |error: pose_pt::PtError| match error {
+            pose_pt::PtError::Limit { .. } => anyhow!(error),
             _ => self.too_accurate(error),
         };
         let table = PtTable::plan(&self.platform, path, segmentation).map_err(placed)?;
@@ -108,7 +110,7 @@ impl<const N: usize> Planner<N> {
     }
 
     /// A table for cubics between its points, each of which the verifier has passed.
-    fn cubic(&self, path: &Path<'_>, csv: &mut String) -> Result<(usize, f64)> {
+    fn cubic(&self, path: &PosePath<'_>, csv: &mut String) -> Result<(usize, f64)> {
         let max_departure = self.settings.max_distance_error_mm();
         let accuracy = Accuracy {
             min_segments: 2,

@@ -11,7 +11,7 @@ use crate::mode::Mode;
 use crate::planner::Plan;
 use crate::table::Table;
 use crate::workstation::Telegrams;
-use crate::world::Course;
+use crate::world::Outcome;
 
 /// `report.json`; displayed, a summary in lines.
 #[derive(Debug, Clone, Serialize)]
@@ -46,7 +46,7 @@ const ROUNDING: f64 = 1e-7;
 
 impl Report {
     pub(crate) fn new<const N: usize>(
-        course: &Course,
+        outcome: &Outcome,
         plan: &Plan,
         table: &Table<N>,
         examination: &Examination<N>,
@@ -67,8 +67,8 @@ impl Report {
             pose_error_mm: offset.norm(),
             pose_error_rad: angle_between(&end.rotation, &target.rotation),
             via: Vec::new(),
-            telegrams: course.telegrams,
-            line_bytes: course.line_bytes,
+            telegrams: outcome.telegrams,
+            line_bytes: outcome.line_bytes,
         }
     }
 

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, ensure};
 use handwheel::WheelQuantiser;
 use nalgebra::{Matrix3, Point3, Vector3};
-use pose_pt::{AxisLimits, Blend, Interpolation, Locator};
+use pose_pt::{Blend, Interpolation, Locator, LocatorAxis};
 use serde::Deserialize;
 
 use crate::panel::PanelSettings;
@@ -206,15 +206,12 @@ impl LocatorSettings {
     fn locator(&self) -> Locator {
         let limits = [0, 1, 2].map(|axis: usize| {
             let of = |numbers: &Numbers<3>| numbers.values().get(axis).copied().unwrap_or_default();
-            let limits = AxisLimits::new(
-                of(&self.min_mm),
-                of(&self.max_mm),
-                of(&self.speed_mm_s),
-                of(&self.acceleration_mm_s2),
-            );
-            match &self.jerk_mm_s3 {
-                Some(jerk) => limits.with_jerk(of(jerk)),
-                None => limits,
+            LocatorAxis {
+                min: of(&self.min_mm),
+                max: of(&self.max_mm),
+                speed: of(&self.speed_mm_s),
+                acceleration: of(&self.acceleration_mm_s2),
+                jerk: self.jerk_mm_s3.as_ref().map(of),
             }
         });
         let point = |numbers: &Numbers<3>| Point3::from(numbers.values());

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use handwheel::{
-    Command, Driver, Event, Job, LcdAnswer, Led, LedState, MAX_COMMAND, Model, Timing,
+    Command, Driver, Event, Job, LcdAnswer, Led, LedState, MAX_COMMAND, Model, Timeouts,
 };
 use proto3964r::{Config, Station};
 use serde::Serialize;
@@ -58,7 +58,7 @@ impl<const N: usize> Workstation<N> {
     pub(crate) fn new(settings: PanelSettings) -> Result<Self, PanelSettingsError> {
         Ok(Self {
             station: Station::new(Config::euchner_hbls(PACED)),
-            driver: Driver::new(MODEL, Timing::DEFAULT),
+            driver: Driver::new(MODEL, Timeouts::DEFAULT),
             panel: Panel::new(PendantId(1), settings)?,
             arbiter: Arbiter::new(),
             shown: Shown::UNKNOWN,

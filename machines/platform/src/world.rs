@@ -31,7 +31,7 @@ pub(crate) struct Jog {
 }
 
 /// What has come of it all.
-pub(crate) struct Course {
+pub(crate) struct Outcome {
     pub(crate) jog: Jog,
     /// The plan that was run.
     pub(crate) plan: Option<Plan>,
@@ -159,7 +159,7 @@ impl<'a, const N: usize> World<'a, N> {
         residuals.fold(0.0, f64::max)
     }
 
-    pub(crate) fn finish(mut self) -> Result<Course> {
+    pub(crate) fn finish(mut self) -> Result<Outcome> {
         self.wait_until("quiet line", 10, |world| {
             world.pendant.is_quiet() && world.workstation.station.is_idle()
         })?;
@@ -168,7 +168,7 @@ impl<'a, const N: usize> World<'a, N> {
             "{} telegrams did not reach or leave the pendant",
             self.pendant.faults
         );
-        Ok(Course {
+        Ok(Outcome {
             jog: self.jog,
             plan: self.plan,
             telegrams: self.workstation.telegrams,

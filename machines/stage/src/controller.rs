@@ -17,7 +17,7 @@ use crate::record::Record;
 use crate::run::Run;
 use crate::settings::{Settings, Stepping};
 use crate::stage::{COUNTS_PER_STEP, SWITCHES, Stage};
-use crate::timed::{Course, Piece};
+use crate::timed::{ChainCurve, ChainPath};
 
 /// A step's counts are more, a count or two of noise less.
 const DEAD_BAND_COUNTS: u32 = 3;
@@ -170,8 +170,8 @@ impl<'a> Controller<'a> {
 
     /// Along the curves of a chain, each axis by itself.
     fn follow(&mut self, chain: &mut Chain<'_>) -> Result<()> {
-        let course = Course::new(chain.motions, self.settings.tolerance_mm)?;
-        self.record.departure_mm = self.record.departure_mm.max(course.departure_mm);
+        let path = ChainPath::new(chain.motions, self.settings.tolerance_mm)?;
+        self.record.departure_mm = self.record.departure_mm.max(path.departure_mm);
         // Put back when the chain has come to its end.
         let mut drive = match self.drive.take() {
             Some(drive) => drive,
@@ -181,9 +181,9 @@ impl<'a> Controller<'a> {
         let at = self.commanded_mm();
         self.record
             .row(drive.time_s(), [[at.x, at.y], [0.0; 2]], f64::INFINITY);
-        course.rows(|row| {
+        path.rows(|row| {
             for (ticks, by) in drive.row(row)? {
-                let [first, last] = course.piece(row).map_or([0; 2], |piece| piece.motions);
+                let [first, last] = path.curve(row).map_or([0; 2], |curve| curve.motions);
                 let mut next = self.begun(chain, first);
                 while next < last && chain.is_past(next, self.commanded_mm()) {
                     next = self.begun(chain, next + 1);
@@ -191,7 +191,7 @@ impl<'a> Controller<'a> {
                 let near = chain.motions.get(first..=last).unwrap_or_default();
                 self.made(chain, near, ticks, by)?;
             }
-            let tool = course.piece(row).and_then(Piece::tool);
+            let tool = path.curve(row).and_then(ChainCurve::tool);
             let feed_mm_s = tool.map_or(f64::INFINITY, |tool| tool.feed);
             let at = [row.position, row.velocity];
             self.record.row(drive.time_s(), at, feed_mm_s);

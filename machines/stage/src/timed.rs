@@ -23,21 +23,21 @@ pub(crate) const START_STOP_MM_S: f64 = 5.0;
 const VERTICES: usize = 64;
 /// Knots in sight: the braking distance of 3.6 mm twice, in segments of points 0.01 mm apart.
 const KNOTS: usize = 1024;
-/// A segment for each of so many mm, and at least so many a piece.
+/// A segment for each of so many mm, and at least so many a curve.
 const SEGMENT_MM: f64 = 0.5;
 const LEAST_SEGMENTS: u32 = 2;
 /// By what the axes' cubics leave the curves at most, in mm: a tenth of a step.
 const CUBICS_MM: f64 = 0.001;
 
-/// A curve of the course.
+/// A curve of a chain of motions.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Piece {
+pub(crate) struct ChainCurve {
     curve: Curve<2>,
     /// The motions on which it begins and ends.
     pub(crate) motions: [usize; 2],
 }
 
-impl Path for Piece {
+impl Path for ChainCurve {
     type Axes = [f64; 2];
     type Error = <Curve<2> as Path>::Error;
 
@@ -58,7 +58,7 @@ impl Path for Piece {
     }
 }
 
-impl Piece {
+impl ChainCurve {
     fn departure(&self, span: &Span<[f64; 2]>) -> f64 {
         self.curve.departure(span)
     }
@@ -81,21 +81,21 @@ impl Piece {
 
 /// The curves along a chain of motions, from rest to rest.
 #[derive(Debug, Default)]
-pub(crate) struct Course {
-    pieces: Vec<Piece>,
+pub(crate) struct ChainPath {
+    curves: Vec<ChainCurve>,
     /// How far they leave lines at most, by the proof.
     pub(crate) departure_mm: f64,
 }
 
-impl Course {
+impl ChainPath {
     /// The curves along `motions`: lines within a tolerance, arcs as they are.
     ///
     /// # Errors
     /// A number that is too large to compute with.
     pub(crate) fn new(motions: &[Motion], tolerance_mm: f64) -> Result<Self> {
-        let mut course = Self::default();
+        let mut path = Self::default();
         let Some(first) = motions.first() else {
-            return Ok(course);
+            return Ok(path);
         };
         // Where the curves so far end: of an arc, but for rounding.
         let mut end = first.from;
@@ -104,17 +104,17 @@ impl Course {
             let is_line = |motion: &&Motion| matches!(motion.shape, Shape::Line);
             let lines = rest.iter().take_while(is_line).count();
             if lines > 0 {
-                course.add_lines(end, rest.iter().take(lines), begun, tolerance_mm)?;
+                path.add_lines(end, rest.iter().take(lines), begun, tolerance_mm)?;
             } else if let Some(motion) = rest.first() {
-                course.add_arc(end, motion, begun)?;
+                path.add_arc(end, motion, begun)?;
             }
-            end = course.pieces.last().map_or(end, |piece| {
-                let [x, y] = piece.curve.end();
+            end = path.curves.last().map_or(end, |curve| {
+                let [x, y] = curve.curve.end();
                 Point::new(x, y)
             });
             begun += lines.max(1);
         }
-        Ok(course)
+        Ok(path)
     }
 
     fn add_lines<'m>(
@@ -136,7 +136,7 @@ impl Course {
             let curve = curve?;
             let [from, to] = curve.between().context("a smoothed curve has its points")?;
             let last = to.saturating_sub(1).max(from);
-            self.pieces.push(Piece {
+            self.curves.push(ChainCurve {
                 curve,
                 motions: [first + from, first + last],
             });
@@ -147,7 +147,7 @@ impl Course {
 
     fn add_arc(&mut self, from: Point, motion: &Motion, number: usize) -> Result<()> {
         for curve in arcs::curves(from, motion)? {
-            self.pieces.push(Piece {
+            self.curves.push(ChainCurve {
                 curve: curve.with_tool(tool(motion)),
                 motions: [number; 2],
             });
@@ -156,15 +156,15 @@ impl Course {
     }
 
     /// The curve of a row.
-    pub(crate) fn piece(&self, row: &Row<[f64; 2]>) -> Option<&Piece> {
-        self.pieces.get(row.leg)
+    pub(crate) fn curve(&self, row: &Row<[f64; 2]>) -> Option<&ChainCurve> {
+        self.curves.get(row.leg)
     }
 
-    /// Calls `each` with every row after the first, which is where the course begins, when the verifier has
+    /// Calls `each` with every row after the first, which is where the path begins, when the verifier has
     /// passed it.
     ///
     /// # Errors
-    /// The course cannot be planned; or the error of `each`.
+    /// The path cannot be planned; or the error of `each`.
     pub(crate) fn rows(&self, mut each: impl FnMut(&Row<[f64; 2]>) -> Result<()>) -> Result<()> {
         let limits = [AxisLimits {
             speed: MAX_AXIS_MM_S,
@@ -172,8 +172,8 @@ impl Course {
             jerk: None,
         }; 2];
         let mut window = vec![Knot::default(); KNOTS];
-        let segments = |piece: &&Piece| piece.segments();
-        let rows = LookAhead::new(self.pieces.iter(), limits, segments, &mut window)?;
+        let segments = |curve: &&ChainCurve| curve.segments();
+        let rows = LookAhead::new(self.curves.iter(), limits, segments, &mut window)?;
         let mut verifier = Verifier::new(Promise {
             limits,
             start_stop: [START_STOP_MM_S; 2],
@@ -185,8 +185,8 @@ impl Course {
             let row = row?;
             verifier.add(
                 &row,
-                |leg| self.pieces.get(leg),
-                |piece, span| piece.departure(span),
+                |leg| self.curves.get(leg),
+                |curve, span| curve.departure(span),
             )?;
             if number > 0 {
                 each(&row)?;

@@ -5,7 +5,7 @@ use std::array::IntoIter;
 use std::hint::black_box;
 use std::iter::Flatten;
 
-use delta_kin::{Delta, DeltaPath, DeltaPathError};
+use delta_kin::{Delta, DeltaPath, DeltaPathError, Dimensions};
 use no_panic::no_panic;
 use path_timing::{
     Accuracy, AxisLimits, Curve, CurveError, CurvePoint, Knot, LookAhead, Path, PathPoint,
@@ -111,8 +111,8 @@ fn arm_check(path: &ArmPath, span: &Span<[f64; 2]>) -> Result<(), ArmPathError> 
 
 #[no_panic]
 #[inline(never)]
-fn with_disc(path: ArmPath, theta3: f64) -> Result<DiscPath, ArmPathError> {
-    path.with_disc(theta3)
+fn with_disc(path: ArmPath, tool_angle: f64) -> Result<DiscPath, ArmPathError> {
+    path.with_disc(tool_angle)
 }
 
 #[no_panic]
@@ -201,7 +201,12 @@ pub fn run() {
         run_curve(&black_box(curve), limits);
     }
     let ends = black_box([[50.0, 50.0, -300.0], [-50.0, 50.0, -300.0]]);
-    let Ok(delta) = Delta::new(black_box(42.0), 18.0, 120.0, 243.0) else {
+    let Ok(delta) = Delta::new(Dimensions {
+        base: black_box(42.0),
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    }) else {
         return;
     };
     let delta = black_box(delta);

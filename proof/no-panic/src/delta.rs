@@ -4,7 +4,8 @@ use std::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, Follow, ForwardError, InverseError, Path, Pose, PoseError, SpeedLimits, Waypoint,
+    Delta, Dimensions, Follow, ForwardError, InverseError, PlatformPath, Pose, PoseError,
+    SpeedLimits, Waypoint,
 };
 use no_panic::no_panic;
 
@@ -45,7 +46,12 @@ fn follow_next(follow: &mut Follow) -> Option<Waypoint> {
 }
 
 pub fn run() {
-    let Ok(delta) = Delta::new(black_box(42.0), 18.0, 120.0, 243.0) else {
+    let Ok(delta) = Delta::new(Dimensions {
+        base: black_box(42.0),
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    }) else {
         return;
     };
     let delta = &black_box(delta);
@@ -59,7 +65,7 @@ pub fn run() {
         let _ = black_box(holding_torques(pose, vector()));
         black_box(chord_bound(delta, pose, pose));
     }
-    let line = Path::line(point(), Point3::new(-50.0, 50.0, -300.0));
+    let line = PlatformPath::line(point(), Point3::new(-50.0, 50.0, -300.0));
     let speed_limits = SpeedLimits::new(black_box(200.0), [3.0; 3]);
     if let (Ok(line), Ok(speed_limits)) = (line, speed_limits)
         && let Ok(follow) = delta.follow(line, 0.01, speed_limits)

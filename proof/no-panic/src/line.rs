@@ -6,7 +6,7 @@ use std::time::Duration;
 use monitor3964r::{Observation, Observations, Side};
 use no_panic::no_panic;
 use proto3964r::frame::{self, Check, DecodeError, EncodeError, FrameError};
-use proto3964r::{Config, Event, Line, LineError, Priority, SubmitError, Transmit};
+use proto3964r::{CharacterError, Config, Event, Line, Priority, SubmitError, Transmit};
 
 type Station = proto3964r::Station<128>;
 type Monitor = monitor3964r::Monitor<128>;
@@ -37,7 +37,7 @@ fn handle_bytes(station: &mut Station, now: Duration, bytes: &[u8]) -> usize {
 
 #[no_panic]
 #[inline(never)]
-fn handle_damaged(station: &mut Station, now: Duration, byte: u8, error: LineError) {
+fn handle_damaged(station: &mut Station, now: Duration, byte: u8, error: CharacterError) {
     station.handle_damaged(now, byte, error);
 }
 
@@ -130,7 +130,7 @@ fn monitor_damaged(
     now: Duration,
     side: Side,
     byte: u8,
-    error: LineError,
+    error: CharacterError,
 ) -> Observations<'_> {
     monitor.handle_damaged(now, side, byte, error)
 }
@@ -165,7 +165,12 @@ pub fn run() {
     black_box(cancel(black_box(station), now));
     handle_byte(black_box(station), now, black_box(0x02));
     black_box(handle_bytes(black_box(station), now, bytes));
-    handle_damaged(black_box(station), now, 0x41, black_box(LineError::Parity));
+    handle_damaged(
+        black_box(station),
+        now,
+        0x41,
+        black_box(CharacterError::Parity),
+    );
     handle_break(black_box(station), now);
     handle_timeout(black_box(station), now);
     black_box(poll_timeout(black_box(station)));
@@ -191,7 +196,7 @@ pub fn run() {
         now,
         side,
         0x41,
-        black_box(LineError::Framing),
+        black_box(CharacterError::Framing),
     ));
     let mut observations = black_box(monitor_timeout(black_box(monitor), now));
     black_box(observations_next(&mut observations));

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use no_panic::no_panic;
 use pattern_codec::engraving::{
-    Axis, Builder, DecodeError, Decoder, Format, JointPulses, Located, PositionError, Record,
+    Axis, Builder, DecodeError, Decoder, Format, JointPulses, Located, PositionOverflow, Record,
     Records,
 };
 
@@ -34,7 +34,7 @@ fn encode(record: Record, format: &Format) -> [u8; Record::LEN] {
 
 #[no_panic]
 #[inline(never)]
-fn track(builder: &mut Builder, record: Record) -> Result<(), PositionError> {
+fn track(builder: &mut Builder, record: Record) -> Result<(), PositionOverflow> {
     builder.track(record)
 }
 
@@ -54,9 +54,9 @@ pub fn run() {
     let _ = black_box(decoder_finish(black_box(decoder)));
     let mut builder = black_box(Builder::new());
     let pulses = JointPulses {
-        theta1: 45,
-        theta2: -90,
-        theta3: 6,
+        elbow: 45,
+        shoulder: -90,
+        disc: 6,
     };
     let fast = builder.fast(black_box(Axis::Vertical), black_box(-70_000));
     if let Some(record) = fast.ok().and_then(|fast| motion_next(&mut black_box(fast))) {

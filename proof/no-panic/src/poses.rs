@@ -5,7 +5,7 @@ use std::hint::black_box;
 use no_panic::no_panic;
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use pose_pt::{
-    AxisLimits, BodyFit, Convention, FitError, LimitError, Locator, NotARotation, Platform,
+    BodyFit, Convention, FitError, LimitError, Locator, LocatorAxis, NotARotation, Platform,
     PoseVector, Resolved, RigidFit, from_matrix, rigid_fit, slerp,
 };
 
@@ -75,7 +75,13 @@ fn fit(from: &[Point3<f64>], to: &[Point3<f64>]) -> Result<RigidFit, FitError> {
 }
 
 pub fn run() {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = black_box([
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 0.0],

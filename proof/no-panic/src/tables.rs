@@ -6,7 +6,7 @@ use no_panic::no_panic;
 use path_timing::{Accuracy, Knot, PlanError, Table};
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    AxisLimits, BodyPath, BodyPathError, Convention, Interpolation, Locator, Path, Platform,
+    BodyPath, BodyPathError, Convention, Interpolation, Locator, LocatorAxis, Platform, PosePath,
     PoseVector, PtPoint, PtPoints, PtTable, Segmentation,
 };
 
@@ -14,9 +14,9 @@ use pose_pt::{
 #[inline(never)]
 fn pt_plan<'a>(
     platform: &'a Platform<3>,
-    path: &Path<'a>,
+    path: &PosePath<'a>,
     segmentation: Segmentation,
-) -> Result<PtTable<'a, 3>, pose_pt::PlanError> {
+) -> Result<PtTable<'a, 3>, pose_pt::PtError> {
     PtTable::plan(platform, path, segmentation)
 }
 
@@ -30,7 +30,7 @@ fn pt_next(points: &mut PtPoints<'_, 3>) -> Option<PtPoint<3>> {
 #[inline(never)]
 fn plan<'a>(
     platform: &Platform<3>,
-    path: &Path<'_>,
+    path: &PosePath<'_>,
     accuracy: Accuracy,
     knots: &'a mut [Knot<[[f64; 3]; 3]>],
 ) -> Result<Table<'a, [[f64; 3]; 3]>, PlanError<BodyPathError>> {
@@ -39,7 +39,13 @@ fn plan<'a>(
 }
 
 pub fn run() {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = black_box([
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 0.0],
@@ -56,7 +62,7 @@ pub fn run() {
         vector.to_isometry(Convention::ExtrinsicXyz),
     ]);
     let kind = black_box(Interpolation::Straight);
-    let Ok(path) = Path::new(black_box(poses.as_slice()), kind) else {
+    let Ok(path) = PosePath::new(black_box(poses.as_slice()), kind) else {
         return;
     };
     let segmentation = || black_box(Segmentation::max_distance_error(0.01));

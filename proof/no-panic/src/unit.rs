@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use handwheel::{
     Command, DecodeError, Driver, EncodeError, Event, Job, LcdBlock, LcdCommand, LcdError, Model,
-    Report, SubmitError, Timing, WheelQuantiser, WheelSampler,
+    Report, SubmitError, Timeouts, WheelQuantiser, WheelSampler,
 };
 use no_panic::no_panic;
 
@@ -114,7 +114,7 @@ pub fn run() {
     let block = &mut black_box(LcdBlock::new(model));
     let _ = push(block, black_box(LcdCommand::Home));
 
-    let driver = &mut black_box(Driver::new(model, Timing::DEFAULT));
+    let driver = &mut black_box(Driver::new(model, Timeouts::DEFAULT));
     let _ = black_box(driver_submit(driver, black_box(Job::Lcd(*block))));
     black_box(driver_transmit(black_box(driver), now));
     driver_delivered(black_box(driver), now);

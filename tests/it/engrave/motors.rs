@@ -6,9 +6,9 @@ use super::timed::{pulses, timed};
 use super::{Run, shipped};
 
 const AXES: [(&str, &str); 4] = [
-    ("theta1", "deg"),
-    ("theta2", "deg"),
-    ("theta3", "deg"),
+    ("elbow", "deg"),
+    ("shoulder", "deg"),
+    ("disc", "deg"),
     ("vertical", "mm"),
 ];
 
@@ -82,7 +82,7 @@ fn a_pattern_that_is_too_fast_loses_steps_and_timed_strokes_lose_none() {
     let options = [machine, ["--controller", "timed"]].concat();
     let run = Run::of_drawing("lettering", &options);
     let lost = |of: &str| -> f64 {
-        let joints = ["theta1", "theta2", "theta3"].iter();
+        let joints = ["elbow", "shoulder", "disc"].iter();
         joints
             .map(|axis| run.number(&format!("{of}/motors/{axis}/lost_steps")))
             .sum()

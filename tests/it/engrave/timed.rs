@@ -69,7 +69,7 @@ fn drawings_are_nearer_and_evenly_fast() {
 fn the_dump_has_every_pulse_and_no_motor_is_too_fast() {
     let run = timed("star");
     let dump = String::from_utf8(run.read("pulses.vcd")).unwrap();
-    for axis in ["theta1", "theta2", "theta3", "vertical"] {
+    for axis in ["elbow", "shoulder", "disc", "vertical"] {
         let pulses = pulses(&dump, axis);
         let counted = run.report.pointer(&format!("/timed/pulses/{axis}"));
         let counted = counted.and_then(Value::as_u64);

@@ -25,12 +25,12 @@ type Move = Vec<(usize, i32)>;
 /// Edges of one axis: cycles since the start of the move.
 pub(super) type Edges = Vec<u64>;
 
-fn slow(theta3: i32, theta1: i32, theta2: i32) -> Record {
+fn slow(disc: i32, elbow: i32, shoulder: i32) -> Record {
     Record::Slow(
         Slow::new(JointPulses {
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
         })
         .unwrap(),
     )
@@ -40,7 +40,7 @@ fn fast(axis: Axis, pulses: i32) -> Record {
     Record::Fast(Fast::new(axis, pulses).unwrap())
 }
 
-/// What `engrave.c` does for a record: theta3 before the arms, nothing where nothing turns.
+/// What `engrave.c` does for a record: disc before the arms, nothing where nothing turns.
 fn moves(record: Record) -> Vec<Move> {
     let mut moves = match record {
         Record::Fast(fast) => {
@@ -49,8 +49,8 @@ fn moves(record: Record) -> Vec<Move> {
         }
         Record::Slow(slow) => {
             let pulses = slow.pulses();
-            let arms = vec![(0, pulses.theta1), (1, pulses.theta2)];
-            vec![vec![(2, pulses.theta3)], arms]
+            let arms = vec![(0, pulses.elbow), (1, pulses.shoulder)];
+            vec![vec![(2, pulses.disc)], arms]
         }
     };
     for axes in &mut moves {
@@ -111,10 +111,10 @@ fn engrave(records: &[Record], format: Format, defines: &[&str]) -> Option<Vec<P
     Some(played(&trace))
 }
 
-/// One slow record of both arms; the edges of theta1 and theta2.
+/// One slow record of both arms; the edges of elbow and shoulder.
 fn arms(pulses: [i32; 2], defines: &[&str]) -> Option<[Edges; 2]> {
-    let [theta1, theta2] = pulses;
-    let mut moves = engrave(&[slow(0, theta1, theta2)], Format::default(), defines)?;
+    let [elbow, shoulder] = pulses;
+    let mut moves = engrave(&[slow(0, elbow, shoulder)], Format::default(), defines)?;
     assert_eq!(moves.len(), 1);
     let [edges1, edges2, ..] = moves.remove(0).edges;
     Some([edges1, edges2])
@@ -207,8 +207,8 @@ fn assert_plays(records: &[Record], format: Format, half_period: u64) {
 fn every_edge_of_a_pattern_is_where_the_trains_have_it() {
     let records = [
         fast(Axis::Vertical, -300),
-        fast(Axis::Theta1, 40),
-        fast(Axis::Theta3, 3),
+        fast(Axis::Elbow, 40),
+        fast(Axis::Disc, 3),
         slow(2, 30, -1),
         slow(-3, 17, 1),
         slow(0, -1, 16),
@@ -218,7 +218,7 @@ fn every_edge_of_a_pattern_is_where_the_trains_have_it() {
         slow(5, 0, 0),
         slow(-1, 0, 11),
         slow(0, 8, 8),
-        fast(Axis::Theta2, -25),
+        fast(Axis::Shoulder, -25),
         fast(Axis::Vertical, 300),
     ];
     assert_plays(&records, Format::default(), T);
@@ -227,18 +227,18 @@ fn every_edge_of_a_pattern_is_where_the_trains_have_it() {
 #[test]
 fn other_codes_byte_order_and_half_period() {
     let codes = AxisCodes::new(PerAxis {
-        theta1: 3,
-        theta2: 0,
-        theta3: 1,
+        elbow: 3,
+        shoulder: 0,
+        disc: 1,
         vertical: 2,
     });
     let format = Format::default()
         .with_axis_codes(codes.unwrap())
         .with_byte_order(ByteOrder::LittleEndian);
     let mut records = vec![
-        fast(Axis::Theta1, -259),
-        fast(Axis::Theta2, 2),
-        fast(Axis::Theta3, -2),
+        fast(Axis::Elbow, -259),
+        fast(Axis::Shoulder, 2),
+        fast(Axis::Disc, -2),
         fast(Axis::Vertical, 258),
     ];
     records.extend((1..=30).map(|n| slow(0, n, 31 - n)));
@@ -247,7 +247,7 @@ fn other_codes_byte_order_and_half_period() {
 
 #[test]
 fn a_fast_train_keeps_its_mean_interval_to_the_cycle() {
-    let records = [fast(Axis::Theta1, 400)];
+    let records = [fast(Axis::Elbow, 400)];
     // Cycles from the first to the last edge, beyond 799 intervals.
     let excess = |defines: &[&str]| {
         let moves = engrave(&records, Format::default(), defines)?;

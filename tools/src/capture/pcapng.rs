@@ -4,7 +4,7 @@ use core::time::Duration;
 use std::io::{self, Write};
 
 use monitor3964r::{Character, Side};
-use proto3964r::LineError;
+use proto3964r::CharacterError;
 
 use super::Step;
 
@@ -102,8 +102,8 @@ impl<W: Write> PcapngWriter<W> {
         let event = match (first.error, first.side) {
             (None, Side::A) => Event::FromA,
             (None, Side::B) => Event::FromB,
-            (Some(LineError::Framing), _) => Event::Framing,
-            (Some(LineError::Overrun), _) => Event::Overflow,
+            (Some(CharacterError::Framing), _) => Event::Framing,
+            (Some(CharacterError::Overrun), _) => Event::Overflow,
             (Some(_), _) => Event::Parity,
         };
         let bytes: Vec<_> = piece.iter().map(|heard| heard.byte).collect();

@@ -13,7 +13,7 @@ use std::{
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 use monitor3964r::{Character, Diagnosis, Side, Verdict};
-use proto3964r::{Line, LineError, Priority, tokio::Damage};
+use proto3964r::{CharacterError, Line, Priority, tokio::Damage};
 use tokio::{io::AsyncReadExt as _, select, time::sleep};
 
 use self::saved::Saved;
@@ -80,7 +80,7 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
     };
     let verdict = match &options.capture {
         Some(path) => replay(path, options, teller)?,
-        None => super::block_on(listen(options, teller))?,
+        None => crate::runtime::block_on(listen(options, teller))?,
     };
     Ok(if verdict.is_fault() {
         ExitCode::FAILURE
@@ -195,7 +195,7 @@ async fn listen(options: &Options, mut teller: Teller) -> Result<Verdict> {
     };
     let ended = select! {
         ended = tell([&mut ear_a, &mut ear_b], begin, &mut teller) => ended,
-        ended = super::interrupted() => ended,
+        ended = crate::runtime::interrupted() => ended,
         () = end => Ok(()),
     };
     // Also where a port has gone.
@@ -258,7 +258,7 @@ impl Ear {
                 Some(Damage::Character { byte, error }) => {
                     return Ok(vec![self.character(byte, Some(error))]);
                 }
-                Some(_) => return Ok(vec![self.character(0, Some(LineError::Framing))]), // BREAK
+                Some(_) => return Ok(vec![self.character(0, Some(CharacterError::Framing))]), // BREAK
                 None => return Err(error).with_context(|| self.name.clone()),
             },
         };
@@ -266,7 +266,7 @@ impl Ear {
         Ok(intact.collect())
     }
 
-    const fn character(&self, byte: u8, error: Option<LineError>) -> Character {
+    const fn character(&self, byte: u8, error: Option<CharacterError>) -> Character {
         Character {
             at: Duration::ZERO,
             side: self.side,

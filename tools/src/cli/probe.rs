@@ -70,10 +70,10 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
         let name = || options.port.target.to_string();
         tokio::select! {
             found = probe::probe(&mut bench, &settings) => found.map(Some).with_context(name),
-            ended = super::interrupted() => ended.map(|()| None),
+            ended = crate::runtime::interrupted() => ended.map(|()| None),
         }
     };
-    let found = super::block_on(work)?.unwrap_or_default();
+    let found = crate::runtime::block_on(work)?.unwrap_or_default();
     print(options, &found);
     Ok(if found.frame.is_some() {
         ExitCode::SUCCESS

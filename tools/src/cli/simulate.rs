@@ -112,11 +112,11 @@ pub(super) fn run(options: &Options) -> Result<ExitCode> {
     let work = async {
         select! {
             done = work(options, partner) => done,
-            ended = super::interrupted() => ended,
+            ended = crate::runtime::interrupted() => ended,
             () = wait(Instant::now(), options.seconds) => Ok(()),
         }
     };
-    super::block_on(work)?;
+    crate::runtime::block_on(work)?;
     Ok(ExitCode::SUCCESS)
 }
 

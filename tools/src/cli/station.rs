@@ -77,7 +77,7 @@ impl From<PriorityName> for Priority {
 }
 
 pub(super) fn run(options: &Options) -> Result<ExitCode> {
-    super::block_on(work(options))
+    crate::runtime::block_on(work(options))
 }
 
 async fn work(options: &Options) -> Result<ExitCode> {

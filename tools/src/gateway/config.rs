@@ -26,7 +26,7 @@ use super::{
     area::Area,
     field::{Field, Pattern},
 };
-use crate::{Address, Preset, Target, cli::settings};
+use crate::{Address, Preset, Target, settings};
 
 /// The longest time: 30 years, which every clock bears.
 const TIME_MAX_S: f64 = 1e9;

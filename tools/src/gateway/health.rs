@@ -6,7 +6,7 @@ use core::{
 };
 use std::sync::{Mutex, PoisonError};
 
-use proto3964r::{Cause, Event, LineError, Phase, Rejection, frame::FrameError};
+use proto3964r::{Cause, CharacterError, Event, JobPhase, Rejection, frame::FrameError};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use tokio::{task::yield_now, time::sleep};
@@ -93,17 +93,17 @@ fn fault(event: Event<'_>) -> Option<&'static str> {
         Event::Received(_) | Event::Sent { .. } => return None,
         Event::Failed(failure) => match (failure.cause, failure.phase) {
             (Cause::Timeout, _) => "send_qvz",
-            (Cause::Nak, Phase::Connection) => "send_nak",
-            (Cause::Nak, Phase::Transmission) => "send_block_nak",
+            (Cause::Nak, JobPhase::Connection) => "send_nak",
+            (Cause::Nak, JobPhase::Transmission) => "send_block_nak",
             _ => "send_other",
         },
         Event::Rejected(rejection) => match rejection {
             Rejection::Frame(FrameError::Bcc { .. }) => "bcc",
             Rejection::Frame(FrameError::TooLong { .. }) => "too_long",
             Rejection::Frame(_) => "illegal_dle",
-            Rejection::Line(LineError::Parity) => "parity",
-            Rejection::Line(LineError::Overrun) => "overrun",
-            Rejection::Line(LineError::Collision) => "collision",
+            Rejection::Line(CharacterError::Parity) => "parity",
+            Rejection::Line(CharacterError::Overrun) => "overrun",
+            Rejection::Line(CharacterError::Collision) => "collision",
             Rejection::Line(_) => "framing",
             Rejection::CharacterDelay => "zvz",
             Rejection::Noise { .. } => "noise",

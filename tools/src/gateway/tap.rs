@@ -14,7 +14,7 @@ use std::{
 };
 
 use monitor3964r::{Character, Diagnosis, Side, Verdict, diagnose};
-use proto3964r::{Config, Line, LineError, tokio::Damage};
+use proto3964r::{CharacterError, Config, Line, tokio::Damage};
 use tokio::{
     io::{AsyncRead, AsyncWrite, ReadBuf},
     time::Instant,
@@ -164,7 +164,7 @@ impl Tap {
 }
 
 impl Record {
-    fn push(&mut self, at: Duration, side: Side, byte: u8, error: Option<LineError>) {
+    fn push(&mut self, at: Duration, side: Side, byte: u8, error: Option<CharacterError>) {
         if self.heard.len() >= KEPT {
             self.heard.pop_front();
         }
@@ -179,7 +179,7 @@ impl Record {
 }
 
 impl Tapped {
-    fn came(&self, bytes: &[u8], error: Option<LineError>) {
+    fn came(&self, bytes: &[u8], error: Option<CharacterError>) {
         let now = self.begin.elapsed();
         let mut record = self.tap.record();
         for &byte in bytes {
@@ -211,7 +211,7 @@ impl AsyncRead for Tapped {
             Err(error) => match Damage::of(error) {
                 Some(Damage::Character { byte, error }) => self.came(&[byte], Some(error)),
                 // BREAK.
-                Some(_) => self.came(&[0], Some(LineError::Framing)),
+                Some(_) => self.came(&[0], Some(CharacterError::Framing)),
                 None => {}
             },
         }

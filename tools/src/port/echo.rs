@@ -4,7 +4,7 @@ use alloc::collections::VecDeque;
 use core::time::Duration;
 use std::time::Instant;
 
-use proto3964r::{LineError, tokio::Damage};
+use proto3964r::{CharacterError, tokio::Damage};
 
 use super::heard::Heard;
 
@@ -52,7 +52,7 @@ impl Echo {
             Ok(byte) if byte == awaited => None,
             Ok(byte) => Some(Err(Damage::Character {
                 byte,
-                error: LineError::Collision,
+                error: CharacterError::Collision,
             })),
             Err(damage) => Some(Err(damage)),
         }
@@ -106,7 +106,7 @@ mod tests {
         echo.sent(now, &[0x02, 0x41]);
         let collision = Err(Damage::Character {
             byte: 0x12,
-            error: LineError::Collision,
+            error: CharacterError::Collision,
         });
         let heard = left(&mut echo, now, &[0x12, 0x41, 0x10]);
         assert_eq!(heard, [collision, Ok(0x10)]);

@@ -1,6 +1,6 @@
 //! The marks of a Unix terminal whose input flag `PARMRK` is set.
 
-use proto3964r::{LineError, tokio::Damage};
+use proto3964r::{CharacterError, tokio::Damage};
 
 use super::heard::Heard;
 
@@ -44,7 +44,7 @@ impl Marks {
 const fn damaged(byte: u8) -> Heard {
     Err(Damage::Character {
         byte,
-        error: LineError::Parity,
+        error: CharacterError::Parity,
     })
 }
 

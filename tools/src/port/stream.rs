@@ -15,7 +15,7 @@ use tokio::{
     time::{Instant, Interval, interval_at},
 };
 
-use super::{echo::Echo, heard::Heard, open::set_options, telnet::Telnet};
+use super::{echo::Echo, heard::Heard, tcp::set_options, telnet::Telnet};
 #[cfg(unix)]
 use super::{marks::Marks, pty::OtherEnd};
 

@@ -3,9 +3,9 @@ import { Limits } from '../shared/limits';
 import type { Answer } from '../shared/machine';
 import { columns, countUntil, numbers } from '../shared/rows';
 
-export const AXES = ['theta1', 'theta2', 'theta3', 'vertical'] as const;
+export const AXES = ['elbow', 'shoulder', 'disc', 'vertical'] as const;
 export type Axis = (typeof AXES)[number];
-type Joints = Record<'theta1' | 'theta2' | 'theta3', number>;
+type Joints = Record<'elbow' | 'shoulder' | 'disc', number>;
 
 /** The JSON of the operation; the report is that of the command line. */
 export interface Result {
@@ -98,14 +98,14 @@ export class Engraving {
     const { upper_mm, fore_mm, home_rad, rad_per_pulse } = this.result.report.machine;
     const angle = (axis: keyof Joints) =>
       home_rad[axis] + this.position(axis, seconds) * rad_per_pulse[axis];
-    const upper = angle('theta2');
-    const fore = upper + angle('theta1');
+    const upper = angle('shoulder');
+    const fore = upper + angle('elbow');
     const elbow: [number, number] = [upper_mm * Math.cos(upper), upper_mm * Math.sin(upper)];
     const tool: [number, number] = [
       elbow[0] + fore_mm * Math.cos(fore),
       elbow[1] + fore_mm * Math.sin(fore),
     ];
-    return { elbow, tool, disc: fore + angle('theta3') };
+    return { elbow, tool, disc: fore + angle('disc') };
   }
 
   /** The distance of the tool from the drawing around a time, in mm. */

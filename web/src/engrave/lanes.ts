@@ -6,9 +6,9 @@ import { intoLink, linkChanged, numbersFromLink } from '../shared/store';
 import { AXES, type Axis, type Engraving } from './engraving';
 
 const NAMES: Record<Axis, string> = {
-  theta1: 'theta1, forearm',
-  theta2: 'theta2, upper arm',
-  theta3: 'theta3, disc',
+  elbow: 'elbow, forearm',
+  shoulder: 'shoulder, upper arm',
+  disc: 'disc',
   vertical: 'vertical, lift',
 };
 const LABEL_PX = 16;

@@ -83,7 +83,7 @@ pub(crate) fn align(request: &Request) -> Result<Answer> {
         "note": run.note(),
         "from": from,
         "to": to,
-        "moments": run.course().iter().map(moment).collect::<Vec<_>>(),
+        "moments": run.moments().iter().map(moment).collect::<Vec<_>>(),
     });
     let answer = Answer::new(value)?;
     LAST.set(Some(Aligned { mode, run }));

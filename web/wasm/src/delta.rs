@@ -93,15 +93,15 @@ impl Driven {
             "maxRateDegS": max_rate,
             "maxAccelerationDegS2": max_acceleration,
         });
-        let course = drive.arms(load_kg)?;
+        let moments = drive.arms(load_kg)?;
         let lines = drive
             .lines()
             .map(|([[a, b, c], [x, y, z]], feed, end_s)| [a, b, c, x, y, z, feed, end_s]);
         let answer = Answer::new(value)?
-            .with_rows("arms", course.iter().map(row))
+            .with_rows("arms", moments.iter().map(row))
             .with_rows("lines", lines)
             .with_rows("speeds", drive.speeds())
-            .with_rows("workspace", self.workspace(&course));
+            .with_rows("workspace", self.workspace(&moments));
         Ok(self.with_limits(answer))
     }
 
@@ -145,8 +145,8 @@ impl Driven {
 
     /// Outlines around the heights of a path; no number after each. Those that there are not are
     /// left out.
-    fn workspace(&self, course: &[ArmsAt]) -> Vec<[f64; 3]> {
-        let heights = course.iter().map(|it| it.platform_mm[2]);
+    fn workspace(&self, moments: &[ArmsAt]) -> Vec<[f64; 3]> {
+        let heights = moments.iter().map(|it| it.platform_mm[2]);
         let lowest = heights.clone().fold(f64::INFINITY, f64::min);
         let highest = heights.fold(f64::NEG_INFINITY, f64::max);
         let geometry = self.machine.geometry();

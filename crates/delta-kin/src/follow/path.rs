@@ -8,7 +8,7 @@ use crate::rounded::Rounded;
 
 /// A path of the platform's centre in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Path<T: RealField = f64> {
+pub struct PlatformPath<T: RealField = f64> {
     shape: Shape<T>,
 }
 
@@ -32,7 +32,7 @@ enum Shape<T: RealField> {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PathError<T: RealField + Copy = f64> {
+pub enum PlatformPathError<T: RealField + Copy = f64> {
     /// A number of the path is not one of the stated size.
     #[error("{name} {} of the path is not within ±{}", Rounded(*.value), Rounded(*.largest))]
     OutOfRange {
@@ -61,13 +61,13 @@ pub enum PathError<T: RealField + Copy = f64> {
 /// in, and some roundings of `T`.
 const OUT_OF_PLANE: f64 = 1e-9;
 
-impl<T: RealField + Trig> Path<T> {
+impl<T: RealField + Trig> PlatformPath<T> {
     /// A straight line. Coordinates are within ±4 h, h the fourth root of the largest number
     /// divided by 32 (f64: ±1.4e76, f32: ±5.4e8).
     ///
     /// # Errors
-    /// [`PathError::OutOfRange`].
-    pub fn line(from: Point3<T>, to: Point3<T>) -> Result<Self, PathError<T>> {
+    /// [`PlatformPathError::OutOfRange`].
+    pub fn line(from: Point3<T>, to: Point3<T>) -> Result<Self, PlatformPathError<T>> {
         within("coordinate", from.coords, largest_coordinate())?;
         within("coordinate", to.coords, largest_coordinate())?;
         Ok(Self {
@@ -80,13 +80,13 @@ impl<T: RealField + Trig> Path<T> {
     /// [`line`](Self::line), the angle within ±1/√ε (f64: 6.7e7, f32: 2900).
     ///
     /// # Errors
-    /// [`PathError`].
+    /// [`PlatformPathError`].
     pub fn arc(
         start: Point3<T>,
         centre: Point3<T>,
         axis: Vector3<T>,
         angle: T,
-    ) -> Result<Self, PathError<T>> {
+    ) -> Result<Self, PlatformPathError<T>> {
         within("coordinate", start.coords, largest_coordinate())?;
         within("coordinate", centre.coords, largest_coordinate())?;
         within("axis component", axis, largest_coordinate())?;
@@ -94,7 +94,7 @@ impl<T: RealField + Trig> Path<T> {
         if !is_within(angle, largest) {
             let name = "angle";
             let value = angle;
-            return Err(PathError::OutOfRange {
+            return Err(PlatformPathError::OutOfRange {
                 name,
                 value,
                 largest,
@@ -103,18 +103,18 @@ impl<T: RealField + Trig> Path<T> {
         let out = start - centre;
         let radius = length(&out);
         if radius <= T::zero() {
-            return Err(PathError::NoRadius);
+            return Err(PlatformPathError::NoRadius);
         }
         let largest = axis.amax();
         if largest <= T::zero() {
-            return Err(PathError::NoAxis);
+            return Err(PlatformPathError::NoAxis);
         }
         let axis = (axis / largest).normalize();
         let rounding = T::default_epsilon() * nalgebra::convert(64.0);
         let slack = rounding.max(nalgebra::convert(OUT_OF_PLANE));
         let by = out.dot(&axis).abs();
         if by > radius * slack {
-            return Err(PathError::Helix { by });
+            return Err(PlatformPathError::Helix { by });
         }
         Ok(Self {
             shape: Shape::Arc {
@@ -179,10 +179,10 @@ fn within<T: RealField + Copy>(
     name: &'static str,
     vector: Vector3<T>,
     largest: T,
-) -> Result<(), PathError<T>> {
+) -> Result<(), PlatformPathError<T>> {
     for value in vector.iter().copied() {
         if !is_within(value, largest) {
-            return Err(PathError::OutOfRange {
+            return Err(PlatformPathError::OutOfRange {
                 name,
                 value,
                 largest,

@@ -4,7 +4,7 @@ use nalgebra::{Point3, RealField};
 use trig_kernels::Trig;
 
 use super::bisect::Bisection;
-use super::{FollowError, Path, SpeedLimits, Waypoint};
+use super::{FollowError, PlatformPath, SpeedLimits, Waypoint};
 use crate::arm::zip;
 use crate::{Arm, Delta};
 
@@ -12,7 +12,7 @@ use crate::{Arm, Delta};
 #[derive(Debug, Clone)]
 pub(super) struct Walk<T: RealField> {
     delta: Delta<T>,
-    path: Path<T>,
+    path: PlatformPath<T>,
     tolerance: T,
     limits: SpeedLimits<T>,
     state: State<T>,
@@ -30,7 +30,7 @@ type Step<T> = Result<Waypoint<T>, FollowError<T>>;
 impl<T: RealField + Trig> Walk<T> {
     pub(super) const fn new(
         delta: Delta<T>,
-        path: Path<T>,
+        path: PlatformPath<T>,
         tolerance: T,
         limits: SpeedLimits<T>,
     ) -> Self {

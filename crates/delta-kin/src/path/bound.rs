@@ -9,11 +9,11 @@ use crate::arm::zip;
 use crate::pose::{invert_rods, smallest_sine};
 use crate::prepared::PreparedArm;
 use crate::range::sqrt;
-use crate::{Arm, JointRange, Pose};
+use crate::{Arm, ArmRange, Pose};
 
 /// By how much an arm may pass an end of its range between two rows, in radians: rounding, and a path
 /// that touches it.
-const TOUCH: f64 = 1e-9;
+const RANGE_SLACK: f64 = 1e-9;
 
 /// √3, upwards.
 const ROOT3: f64 = 1.732_050_807_568_877_4;
@@ -341,14 +341,17 @@ fn larger_or_nan(a: f64, b: f64) -> f64 {
 }
 
 /// The angle that is farthest beyond an end of the range, if one is.
-fn beyond(range: &JointRange, cubic: &Cubic) -> Option<f64> {
+fn beyond(range: &ArmRange, cubic: &Cubic) -> Option<f64> {
     let mut points = cubic.control_points().into_iter();
     if points.all(|point| range.min() <= point && point <= range.max()) {
         return None;
     }
     let [low, high] = cubic.extent();
     // Written so that NaN is beyond.
-    let (is_above, is_below) = (low >= range.min() - TOUCH, high <= range.max() + TOUCH);
+    let (is_above, is_below) = (
+        low >= range.min() - RANGE_SLACK,
+        high <= range.max() + RANGE_SLACK,
+    );
     if is_above && is_below {
         return None;
     }

@@ -18,10 +18,10 @@ impl Delta {
     /// tenth of the shortest line.
     ///
     /// ```
-    /// use delta_kin::{Delta, DeltaPath};
+    /// use delta_kin::{Delta, DeltaPath, Dimensions};
     /// use path_timing::{Accuracy, AxisLimits, Knot, Table};
     ///
-    /// let delta = Delta::new(42.0, 18.0, 120.0, 243.0)?; // mm
+    /// let delta = Delta::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 })?; // mm
     /// let moves = delta.pick_and_place([80.0, 0.0, -300.0], [-60.0, 40.0, -290.0], -270.0, 3.0, None)?;
     /// let arm = AxisLimits { speed: 6.0, acceleration: 100.0, jerk: None }; // rad, s
     /// let accuracy = Accuracy { min_segments: 4, max_departure: 0.05, max_time_ratio: f64::INFINITY };

@@ -8,7 +8,7 @@ use crate::assembly::from_above;
 use crate::pose::invert_rods;
 use crate::prepared::PreparedArm;
 use crate::range::two;
-use crate::{Delta, Elbow, Pose};
+use crate::{Delta, ElbowSide, Pose};
 
 impl<T: RealField + Trig> Delta<T> {
     /// How far the platform can be moved from `point` in any direction, in the unit of length: the
@@ -68,7 +68,7 @@ impl<T: RealField + Trig> Delta<T> {
 
 fn arm_clearance<T: RealField + Trig>(
     prepared: &PreparedArm<T>,
-    elbow: Elbow,
+    elbow: ElbowSide,
     local: &Vector3<T>,
 ) -> T {
     let side = local.dot(&prepared.sideways()).abs();
@@ -83,8 +83,8 @@ fn arm_clearance<T: RealField + Trig>(
         let shoulder = prepared.centre(direction) - prepared.spoke(direction);
         let ahead = (local - shoulder).dot(&prepared.tangent(direction)) / prepared.upper;
         let other = match elbow {
-            Elbow::Out => ahead,
-            Elbow::In => -ahead,
+            ElbowSide::Out => ahead,
+            ElbowSide::In => -ahead,
         };
         prepared.stretch(local, theta).abs().max(other)
     };

@@ -3,7 +3,7 @@
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
-use delta_kin::{ArmGeometry, AssemblyMode, Delta, Elbow, ForwardError, Trig};
+use delta_kin::{ArmGeometry, AssemblyMode, Delta, Dimensions, ElbowSide, ForwardError, Trig};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -117,7 +117,7 @@ struct Case {
     arms: [ArmGeometry; 3],
     angles: [f64; 3],
     assembly_mode: AssemblyMode,
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     direction: [f64; 3],
     /// How far along the direction, in what there is up to the edge of the reach.
     share: f64,
@@ -310,9 +310,14 @@ fn single_precision_is_as_exact_as_claimed() {
 #[test]
 fn short_and_unequal_rods_keep_their_digits() {
     let mut consts = Consts::new().unwrap();
-    let short = Delta::new(23.06, 29.57, 94.54, 7.80)
-        .unwrap()
-        .with_assembly_mode(AssemblyMode::Upper);
+    let short = Delta::new(Dimensions {
+        base: 23.06,
+        platform: 29.57,
+        upper: 94.54,
+        lower: 7.80,
+    })
+    .unwrap()
+    .with_assembly_mode(AssemblyMode::Upper);
     let point = Point3::new(0.402, -3.630, -90.38);
     let angles = short.inverse(point).unwrap();
     let unit = f64::EPSILON * short.span();
@@ -320,7 +325,14 @@ fn short_and_unequal_rods_keep_their_digits() {
         let off = miss(arm, *angle, point, &mut consts);
         assert!(off.abs() <= INVERSE * unit, "{off:e}");
     }
-    let mut arms = *Delta::new(30.0, 25.0, 20.0, 154.6).unwrap().arms();
+    let mut arms = *Delta::new(Dimensions {
+        base: 30.0,
+        platform: 25.0,
+        upper: 20.0,
+        lower: 154.6,
+    })
+    .unwrap()
+    .arms();
     arms[0].upper = 130.0;
     arms[1].lower = 30.9;
     arms[2].lower = 11.4;

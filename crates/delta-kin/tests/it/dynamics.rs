@@ -1,7 +1,7 @@
 //! Torques of the arms against the energy of all bodies, from places alone.
 
 use delta_kin::nalgebra::Vector3;
-use delta_kin::{Delta, DeltaMasses, Positive, ZAxis};
+use delta_kin::{Delta, DeltaMasses, Dimensions, Positive, ZAxis};
 use proptest::prelude::*;
 
 /// Steps of the differences, in s, and what they leave, in W of some tens.
@@ -20,7 +20,13 @@ const MASSES: DeltaMasses = DeltaMasses {
 };
 
 fn machines() -> [Delta; 3] {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     [
         delta,
         delta.with_z(ZAxis::Down),

@@ -3,8 +3,8 @@
 
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Measured, Parameter,
-    Path, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Measured,
+    Parameter, PlatformPath, Pose, Positive, Quantity, SpeedLimits, Trig, ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -101,7 +101,15 @@ fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
     let lengths = [0.42, 0.18, 1.2, 2.43].map(|length| length * size);
     let mut arms = Arm::ALL.map(|arm| {
         let [base, platform, upper, lower] = lengths.map(nalgebra::convert);
-        ArmGeometry::nominal(arm, base, platform, upper, lower)
+        ArmGeometry::nominal(
+            arm,
+            Dimensions {
+                base,
+                platform,
+                upper,
+                lower,
+            },
+        )
     });
     // One in two machines has one odd number.
     if numbers.pick(&[true, false]) {
@@ -120,17 +128,17 @@ fn machine<T: RealField + Trig>(numbers: &mut Source) -> Option<Delta<T>> {
         .with_z(numbers.pick(&[ZAxis::Up, ZAxis::Down]))
         .with_positive(numbers.pick(&[Positive::Outward, Positive::Inward]))
         .with_assembly_mode(numbers.pick(&[AssemblyMode::Lower, AssemblyMode::Upper]))
-        .with_working_mode([0; 3].map(|_| numbers.pick(&[Elbow::Out, Elbow::In])));
+        .with_working_mode([0; 3].map(|_| numbers.pick(&[ElbowSide::Out, ElbowSide::In])));
     delta = read(delta.with_zero(numbers.mostly(0.3))).unwrap_or(delta);
     delta = read(delta.with_ball_joints(numbers.mostly(1.5))).unwrap_or(delta);
-    if let Some(range) = read(JointRange::new(numbers.mostly(-3.0), numbers.mostly(3.1))) {
+    if let Some(range) = read(ArmRange::new(numbers.mostly(-3.0), numbers.mostly(3.1))) {
         prop_assert_range(&range, numbers);
         delta = delta.with_range(range);
     }
     Some(delta)
 }
 
-fn prop_assert_range<T: RealField + Trig>(range: &JointRange<T>, numbers: &mut Source) {
+fn prop_assert_range<T: RealField + Trig>(range: &ArmRange<T>, numbers: &mut Source) {
     assert!(range.min() < range.max() && (range.max() - range.min()).is_finite());
     let angle: T = numbers.next();
     assert_eq!(
@@ -205,7 +213,7 @@ fn follows<T: RealField + Trig>(
         numbers.mostly(0.0),
         numbers.mostly(1.0),
     );
-    let arc = Path::arc(near, centre, axis, numbers.mostly(0.7));
+    let arc = PlatformPath::arc(near, centre, axis, numbers.mostly(0.7));
     let limits = SpeedLimits::new(
         numbers.mostly(span),
         [
@@ -220,7 +228,10 @@ fn follows<T: RealField + Trig>(
     if is_fine && wide(tolerance) > 64.0 * wide(delta.tolerance()) {
         tolerance = nalgebra::convert(1e-6 * span);
     }
-    for path in [Path::line(near, to), arc].into_iter().filter_map(read) {
+    for path in [PlatformPath::line(near, to), arc]
+        .into_iter()
+        .filter_map(read)
+    {
         finite([&path.length()])?;
         let share: T = numbers.mostly(0.5);
         if let Some(place) = path.point_at(share) {

@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Path, SpeedLimits};
+use delta_kin::{PlatformPath, SpeedLimits};
 use proptest::prelude::*;
 use test_support::at_least;
 
@@ -18,7 +18,7 @@ fn points() -> impl Strategy<Value = Point3<f64>> {
 }
 
 /// The distance of a point from a path, found by halving round the nearest of many points.
-fn off_path(path: &Path, point: Point3<f64>, near: f64, reach: f64) -> f64 {
+fn off_path(path: &PlatformPath, point: Point3<f64>, near: f64, reach: f64) -> f64 {
     let distance = |share: f64| (path.point_at(share).unwrap() - point).norm();
     let (mut low, mut high) = ((near - reach).max(0.0), (near + reach).min(1.0));
     for _ in 0..60 {
@@ -43,12 +43,12 @@ proptest! {
     ) {
         let delta = thesis().with_zero(FRAC_PI_2).unwrap();
         let path = if turn == 0.0 {
-            Path::line(from, to).unwrap()
+            PlatformPath::line(from, to).unwrap()
         } else {
             // Round the base's axis, in a plane that tilts with the ends.
             let centre = Point3::new(0.0, 0.0, from.z);
             prop_assume!((from - centre).norm() > 1.0);
-            Path::arc(from, centre, Vector3::z(), turn).unwrap()
+            PlatformPath::arc(from, centre, Vector3::z(), turn).unwrap()
         };
         let limits = SpeedLimits::new(500.0, [2.0, 2.0, 1.5]).unwrap();
         let follow = delta.follow(path, tolerance, limits);

@@ -4,8 +4,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, Delta, Elbow, ForwardError, GeometryError, InverseError, JointRange,
-    PoseError, Positive, ZAxis,
+    Arm, ArmGeometry, ArmRange, Delta, Dimensions, ElbowSide, ForwardError, GeometryError,
+    InverseError, PoseError, Positive, ZAxis,
 };
 
 use crate::common::thesis::thesis;
@@ -114,7 +114,7 @@ fn z_may_point_down_and_angles_inward() {
 #[test]
 fn limits_are_told_by_arm_and_amount() {
     let point = Point3::new(50.0, 50.0, -300.0);
-    let range = JointRange::new(0.6, 2.0).unwrap();
+    let range = ArmRange::new(0.6, 2.0).unwrap();
     let delta = thesis().with_range(range);
     let theta = 0.526_452_217_253_15;
     match delta.inverse(point) {
@@ -154,7 +154,7 @@ fn limits_are_told_by_arm_and_amount() {
 /// By radians, not by their ratio to the end of the range.
 #[test]
 fn of_two_arms_outside_the_farther_is_named() {
-    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| JointRange::new(-1.0, max).unwrap());
+    let [first, second, third] = [0.6, 0.3, 2.0].map(|max| ArmRange::new(-1.0, max).unwrap());
     let delta = thesis().with_ranges([first, second, third]);
     let refused = delta.inverse(Point3::new(50.0, 50.0, -300.0));
     let arm = Arm::First;
@@ -165,11 +165,11 @@ fn of_two_arms_outside_the_farther_is_named() {
 #[test]
 fn a_range_chooses_the_turn() {
     let delta = thesis();
-    let bent = delta.with_working_mode([Elbow::In; 3]);
+    let bent = delta.with_working_mode([ElbowSide::In; 3]);
     let knees_in = bent.inverse(Point3::new(0.0, 0.0, -130.0)).unwrap();
     assert!(knees_in.max() < -2.0);
     let turned = bent
-        .with_range(JointRange::new(1.0, 6.0).unwrap())
+        .with_range(ArmRange::new(1.0, 6.0).unwrap())
         .inverse(Point3::new(0.0, 0.0, -130.0))
         .unwrap();
     same(
@@ -179,7 +179,7 @@ fn a_range_chooses_the_turn() {
     );
     // Two turns on.
     let point = Point3::new(50.0, 50.0, -300.0);
-    let wound = delta.with_range(JointRange::new(13.0, 14.0).unwrap());
+    let wound = delta.with_range(ArmRange::new(13.0, 14.0).unwrap());
     let angles = delta.inverse(point).unwrap();
     let turned = wound.inverse(point).unwrap();
     same(
@@ -193,7 +193,13 @@ fn a_range_chooses_the_turn() {
 #[test]
 fn a_thin_triangle_of_knees_keeps_the_lengths() {
     // Far out, where the elbows have changed their order round the axis.
-    let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::<f32>::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let point = Point3::new(198.061_14, 29.537_943, -255.231_63);
     let made = delta.forward(delta.inverse(point).unwrap()).unwrap();
     assert!(delta.inverse(made).is_ok(), "{made}");
@@ -201,7 +207,13 @@ fn a_thin_triangle_of_knees_keeps_the_lengths() {
 
 #[test]
 fn impossible_angles_are_refused() {
-    let short = Delta::new(100.0, 20.0, 120.0, 150.0).unwrap();
+    let short = Delta::new(Dimensions {
+        base: 100.0,
+        platform: 20.0,
+        upper: 120.0,
+        lower: 150.0,
+    })
+    .unwrap();
     match short.forward(Vector3::repeat(FRAC_PI_2)) {
         // Elbows 200 from the axis, rods of 150.
         Err(ForwardError::Apart { arm, by }) => {
@@ -210,7 +222,13 @@ fn impossible_angles_are_refused() {
         other => panic!("{other:?}"),
     }
     // Base and platform equal, arms straight down: the three centres are one.
-    let narrow = Delta::new(50.0, 50.0, 100.0, 200.0).unwrap();
+    let narrow = Delta::new(Dimensions {
+        base: 50.0,
+        platform: 50.0,
+        upper: 100.0,
+        lower: 200.0,
+    })
+    .unwrap();
     assert_eq!(
         narrow.forward(Vector3::zeros()),
         Err(ForwardError::Collinear)
@@ -244,16 +262,45 @@ fn impossible_angles_are_refused() {
 #[test]
 fn geometry_is_checked() {
     assert!(matches!(
-        Delta::new(42.0, 18.0, -120.0, 243.0),
+        Delta::new(Dimensions {
+            base: 42.0,
+            platform: 18.0,
+            upper: -120.0,
+            lower: 243.0
+        }),
         Err(GeometryError::Length {
             arm: Arm::First,
             name: "upper arm",
             ..
         })
     ));
-    assert!(Delta::new(f64::NAN, 18.0, 120.0, 243.0).is_err());
-    assert!(Delta::new(42.0, -1.0, 120.0, 243.0).is_err());
-    assert!(Delta::new(42.0, 18.0, 120.0, f64::INFINITY).is_err());
+    assert!(
+        Delta::new(Dimensions {
+            base: f64::NAN,
+            platform: 18.0,
+            upper: 120.0,
+            lower: 243.0
+        })
+        .is_err()
+    );
+    assert!(
+        Delta::new(Dimensions {
+            base: 42.0,
+            platform: -1.0,
+            upper: 120.0,
+            lower: 243.0
+        })
+        .is_err()
+    );
+    assert!(
+        Delta::new(Dimensions {
+            base: 42.0,
+            platform: 18.0,
+            upper: 120.0,
+            lower: f64::INFINITY
+        })
+        .is_err()
+    );
     let mut arms = *thesis().arms();
     arms[2].azimuth = f64::NAN;
     assert!(matches!(
@@ -270,12 +317,20 @@ fn geometry_is_checked() {
         (f64::NAN, 1.0),
         (0.0, f64::INFINITY),
     ] {
-        assert!(JointRange::new(min, max).is_err());
+        assert!(ArmRange::new(min, max).is_err());
     }
     for swivel in [0.0, -0.1, 1.6, f64::NAN] {
         assert!(thesis().with_ball_joints(swivel).is_err());
     }
-    let arm = ArmGeometry::nominal(Arm::Third, 1.0, 1.0, 1.0, 1.0);
+    let arm = ArmGeometry::nominal(
+        Arm::Third,
+        Dimensions {
+            base: 1.0,
+            platform: 1.0,
+            upper: 1.0,
+            lower: 1.0,
+        },
+    );
     assert!((arm.azimuth - 1.5 * PI).abs() < 1e-15);
 }
 
@@ -283,7 +338,13 @@ fn geometry_is_checked() {
 #[test]
 fn singular_poses_are_told() {
     // Stretched straight: shoulder to wrist is Lb + La along the line through the shoulder.
-    let delta = Delta::new(50.0, 40.0, 100.0, 200.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 50.0,
+        platform: 40.0,
+        upper: 100.0,
+        lower: 200.0,
+    })
+    .unwrap();
     let down = -(300f64 * 300.0 - 10.0 * 10.0).sqrt();
     let stretched = delta.pose_at(Point3::new(0.0, 0.0, down)).unwrap();
     assert!(stretched.serial_distance().1 < 1e-4);
@@ -294,7 +355,13 @@ fn singular_poses_are_told() {
         other => panic!("{other:?}"),
     }
     // Rods level with the platform: La = D + Lb.
-    let flat = Delta::new(42.0, 18.0, 120.0, 144.0).unwrap();
+    let flat = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 144.0,
+    })
+    .unwrap();
     let pose = flat.pose_of(Vector3::repeat(FRAC_PI_2)).unwrap();
     assert!(pose.parallel_distance() < 1e-6);
     let force = Vector3::new(0.0, 0.0, -1.0);

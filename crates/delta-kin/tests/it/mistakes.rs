@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{AssemblyMode, Delta, Elbow, InverseError, Pose};
+use delta_kin::{AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Pose};
 
 use crate::common::thesis::thesis;
 
@@ -12,7 +12,7 @@ const ANGLE_ERROR: f64 = 1e-13;
 
 /// The pose with the elbows in, in the one assembly mode that has it there.
 fn bent_in(delta: &Delta, point: Point3<f64>) -> Pose {
-    let bent = delta.with_working_mode([Elbow::In; 3]);
+    let bent = delta.with_working_mode([ElbowSide::In; 3]);
     let lower = bent.pose_at(point);
     let upper = bent.with_assembly_mode(AssemblyMode::Upper).pose_at(point);
     assert!(lower.is_ok() != upper.is_ok(), "{lower:?} {upper:?}");
@@ -24,9 +24,14 @@ fn bent_in(delta: &Delta, point: Point3<f64>) -> Pose {
 #[test]
 fn the_plane_of_the_hips_is_no_exception() {
     // Rods short enough for the platform to come up between the shoulders, above its elbows.
-    let delta: Delta = Delta::new(60.0, 20.0, 120.0, 130.0)
-        .unwrap()
-        .with_assembly_mode(AssemblyMode::Upper);
+    let delta: Delta = Delta::new(Dimensions {
+        base: 60.0,
+        platform: 20.0,
+        upper: 120.0,
+        lower: 130.0,
+    })
+    .unwrap()
+    .with_assembly_mode(AssemblyMode::Upper);
     let level = delta.inverse(Point3::new(3.0, -2.0, 0.0)).unwrap();
     assert!(level.iter().all(|angle| angle.is_finite()));
     for z in [1e-12, -1e-12, 1e-300, -0.0] {
@@ -83,7 +88,13 @@ fn arms_above_horizontal_are_found() {
 #[test]
 fn straight_up_is_an_angle_like_others() {
     // A platform wider than the base, for which an elbow straight up is out.
-    let delta: Delta = Delta::new(18.0, 42.0, 120.0, 243.0).unwrap();
+    let delta: Delta = Delta::new(Dimensions {
+        base: 18.0,
+        platform: 42.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     for off in [-1e-3, -1e-9, 0.0, 1e-9, 1e-3] {
         let angles = Vector3::repeat(PI + off);
         let point = delta.forward(angles).unwrap();
@@ -130,16 +141,27 @@ fn own_stretched_and_folded_poses_are_reached() {
             let Ok(pose) = delta.pose_of(angles) else {
                 continue;
             };
-            let elbows = <[f64; 3]>::from(pose.levers())
-                .map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out });
+            let elbows = <[f64; 3]>::from(pose.levers()).map(|lever| {
+                if lever > 0.0 {
+                    ElbowSide::In
+                } else {
+                    ElbowSide::Out
+                }
+            });
             let reached = delta.with_working_mode(elbows).inverse(pose.point());
             assert!(reached.is_ok(), "{angles}: {reached:?}");
         }
     }
     // All arms stretched or folded in their planes, where elbow out and elbow in are one.
-    let plain: Delta = Delta::new(50.0, 40.0, 100.0, 200.0).unwrap();
+    let plain: Delta = Delta::new(Dimensions {
+        base: 50.0,
+        platform: 40.0,
+        upper: 100.0,
+        lower: 200.0,
+    })
+    .unwrap();
     for theta in [-10f64.atan2(300.0), 10f64.atan2(100.0)] {
-        for elbow in [Elbow::Out, Elbow::In] {
+        for elbow in [ElbowSide::Out, ElbowSide::In] {
             let machine = plain.with_working_mode([elbow; 3]);
             let made = machine.forward(Vector3::repeat(theta)).unwrap();
             let back = machine.inverse(made).unwrap();
@@ -151,7 +173,13 @@ fn own_stretched_and_folded_poses_are_reached() {
 /// Some answer where all elbows meet on the axis: three rods beside each other hold nothing.
 #[test]
 fn knees_on_one_place_hold_no_platform() {
-    let plain: Delta = Delta::new(50.0, 50.0, 100.0, 200.0).unwrap();
+    let plain: Delta = Delta::new(Dimensions {
+        base: 50.0,
+        platform: 50.0,
+        upper: 100.0,
+        lower: 200.0,
+    })
+    .unwrap();
     for z in [-300.0, -100.0, 100.0, 300.0] {
         let refused = plain.inverse(Point3::new(0.0, 0.0, z));
         assert_eq!(refused, Err(InverseError::Collinear), "{z}");
@@ -161,12 +189,24 @@ fn knees_on_one_place_hold_no_platform() {
 /// A wrist on the motor's axis is reached by every angle, or by none.
 #[test]
 fn a_wrist_on_the_motors_axis_is_said_to_be_indefinite() {
-    let delta: Delta = Delta::new(50.0, 50.0, 100.0, 100.0).unwrap();
+    let delta: Delta = Delta::new(Dimensions {
+        base: 50.0,
+        platform: 50.0,
+        upper: 100.0,
+        lower: 100.0,
+    })
+    .unwrap();
     assert!(matches!(
         delta.inverse(Point3::origin()),
         Err(InverseError::AnyAngle { .. })
     ));
-    let delta: Delta = Delta::new(50.0, 50.0, 100.0, 120.0).unwrap();
+    let delta: Delta = Delta::new(Dimensions {
+        base: 50.0,
+        platform: 50.0,
+        upper: 100.0,
+        lower: 120.0,
+    })
+    .unwrap();
     assert!(matches!(
         delta.inverse(Point3::origin()),
         Err(InverseError::TooNear { by, .. }) if (by - 20.0).abs() < 1e-12

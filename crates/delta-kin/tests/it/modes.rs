@@ -5,8 +5,9 @@ use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, AssemblyMode, CalibrationError, Delta, Elbow, FollowError, InverseError, JointRange,
-    Measured, Parameter, Path, Positive, Quantity, SpeedLimits, WorkspaceError, ZAxis,
+    Arm, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, ElbowSide, FollowError,
+    InverseError, Measured, Parameter, PlatformPath, Positive, Quantity, SpeedLimits,
+    WorkspaceError, ZAxis,
 };
 
 use crate::common::thesis::thesis;
@@ -44,7 +45,7 @@ fn a_point_above_the_base_is_refused_with_the_likely_cause() {
         })
     ));
     // Joint ranges do not hide the cause.
-    let ranged = thesis().with_range(JointRange::new(-0.3, 2.0).unwrap());
+    let ranged = thesis().with_range(ArmRange::new(-0.3, 2.0).unwrap());
     assert_eq!(ranged.inverse(above), Err(refused));
     assert!(thesis().pose_at(above).is_err());
 }
@@ -65,7 +66,7 @@ fn the_other_assembly_mode_is_asked_for_by_name() {
          ZAxis::Down would put it where the machine works"
     );
     let (line, cylinder) = (
-        Path::line(above, Point3::new(-30.0, 20.0, 300.0)).unwrap(),
+        PlatformPath::line(above, Point3::new(-30.0, 20.0, 300.0)).unwrap(),
         [230.0, 290.0],
     );
     assert!(upper.follow(line, 0.01, limits()).unwrap().count() > 2);
@@ -75,7 +76,13 @@ fn the_other_assembly_mode_is_asked_for_by_name() {
 /// Rods that can come level with the platform: the singular surface lies below the base plane.
 #[test]
 fn a_point_beyond_the_singular_surface_is_refused() {
-    let flat = Delta::new(60.0, 20.0, 120.0, 130.0).unwrap();
+    let flat = Delta::new(Dimensions {
+        base: 60.0,
+        platform: 20.0,
+        upper: 120.0,
+        lower: 130.0,
+    })
+    .unwrap();
     // On the axis the elbows are above the platform or below it.
     let reached = |z: f64| flat.inverse(Point3::new(0.0, 0.0, z));
     let height = |z: f64| {
@@ -120,8 +127,14 @@ fn the_lower_mode_is_below_also_where_arms_hang_inward() {
     assert!(upper.forward(angles).unwrap().z > lower.z + 100.0);
     // Elbows 1 and 3 were pushed in.
     let elbows = <[f64; 3]>::from(delta.pose_of(angles).unwrap().levers());
-    let elbows = elbows.map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out });
-    assert_eq!(elbows, [Elbow::In, Elbow::Out, Elbow::In]);
+    let elbows = elbows.map(|lever| {
+        if lever > 0.0 {
+            ElbowSide::In
+        } else {
+            ElbowSide::Out
+        }
+    });
+    assert_eq!(elbows, [ElbowSide::In, ElbowSide::Out, ElbowSide::In]);
     let bent = delta.with_working_mode(elbows);
     assert!((bent.inverse(lower).unwrap() - angles).amax() < 1e-12);
 }
@@ -132,7 +145,13 @@ fn lower_is_lower() {
     let mut both = 0;
     for k in 0..20_000u32 {
         let at = |n: u32| (f64::from(k) * f64::from(n).sqrt()).fract();
-        let machine = Delta::new(100.0 * at(2), 80.0 * at(3), 40.0 + 160.0 * at(5), 250.0).unwrap();
+        let machine = Delta::new(Dimensions {
+            base: 100.0 * at(2),
+            platform: 80.0 * at(3),
+            upper: 40.0 + 160.0 * at(5),
+            lower: 250.0,
+        })
+        .unwrap();
         let angles = Vector3::new(at(7), at(11), at(13)) * 5.0 - Vector3::repeat(2.0);
         let upper = machine.with_assembly_mode(AssemblyMode::Upper);
         let points = [machine, upper].map(|machine| machine.forward(angles));
@@ -164,7 +183,7 @@ fn a_plane_of_elbows_past_upright_is_the_other_mode() {
     assert!((upper.forward(angles).unwrap() - far).norm() < 1e-11);
     let lower = delta.forward(angles).unwrap();
     assert!(lower.z < far.z && (lower - far).norm() > 1.0);
-    let line = Path::line(corner, far).unwrap();
+    let line = PlatformPath::line(corner, far).unwrap();
     let refused = delta.follow(line, 0.1, limits()).unwrap_err();
     let FollowError::Singular { fraction, .. } = refused else {
         panic!("{refused:?}");
@@ -197,7 +216,7 @@ fn middle_of(a: Point3<f64>, b: Point3<f64>) -> Point3<f64> {
 #[test]
 fn a_path_in_the_other_mode_is_refused() {
     let at = |x: f64, z: f64| Point3::new(x, 20.0, z);
-    let above = Path::line(at(30.0, 300.0), at(-30.0, 300.0)).unwrap();
+    let above = PlatformPath::line(at(30.0, 300.0), at(-30.0, 300.0)).unwrap();
     match thesis().follow(above, 0.01, limits()) {
         Err(FollowError::Unreachable {
             fraction, reason, ..
@@ -247,7 +266,7 @@ fn the_workspace_is_that_of_the_modes() {
     let above = Point3::new(0.0, 0.0, 250.0);
     let upper = thesis()
         .with_assembly_mode(AssemblyMode::Upper)
-        .with_working_mode([Elbow::In; 3]);
+        .with_working_mode([ElbowSide::In; 3]);
     let (lower, upper) = (thesis(), upper);
     let mirrored = upper.largest_cylinder([230.0, 290.0], 1.0);
     assert_eq!(lower.largest_cylinder([-290.0, -230.0], 1.0), mirrored);
@@ -274,9 +293,9 @@ fn the_workspace_is_that_of_the_modes() {
 fn the_working_mode_is_asked_for_by_name() {
     let point = Point3::new(20.0, -10.0, -280.0);
     for elbows in [
-        [Elbow::Out, Elbow::In, Elbow::Out],
-        [Elbow::In, Elbow::In, Elbow::Out],
-        [Elbow::In; 3],
+        [ElbowSide::Out, ElbowSide::In, ElbowSide::Out],
+        [ElbowSide::In, ElbowSide::In, ElbowSide::Out],
+        [ElbowSide::In; 3],
     ] {
         let bent = thesis().with_working_mode(elbows);
         let [lower, upper] =
@@ -288,7 +307,7 @@ fn the_working_mode_is_asked_for_by_name() {
         };
         let pose = bent.pose_at(point).unwrap();
         for (lever, elbow) in pose.levers().iter().zip(elbows) {
-            assert_eq!(*lever > 0.0, elbow == Elbow::In);
+            assert_eq!(*lever > 0.0, elbow == ElbowSide::In);
         }
         assert!((bent.forward(pose.angles()).unwrap() - point).norm() < 1e-11);
         assert_eq!(bent.working_mode(), elbows);
@@ -297,7 +316,7 @@ fn the_working_mode_is_asked_for_by_name() {
         assert!((inward.inverse(point).unwrap() + pose.angles()).amax() < 1e-15);
         // A range that holds the angles holds the ball of the clearance.
         let [low, high] = [pose.angles().min() - 0.05, pose.angles().max() + 0.05];
-        let ranged = bent.with_range(JointRange::new(low, high).unwrap());
+        let ranged = bent.with_range(ArmRange::new(low, high).unwrap());
         let clearance = ranged.clearance(point);
         assert!(clearance > 0.5, "{clearance}");
         for k in 0..100 {
@@ -314,19 +333,24 @@ fn the_working_mode_is_asked_for_by_name() {
 /// angle in its working mode.
 #[test]
 fn the_other_elbow_s_angle_is_no_end_of_a_range() {
-    let delta = Delta::new(0.42, 0.18, 1.2, 2.43)
-        .unwrap()
-        .with_assembly_mode(AssemblyMode::Upper);
+    let delta = Delta::new(Dimensions {
+        base: 0.42,
+        platform: 0.18,
+        upper: 1.2,
+        lower: 2.43,
+    })
+    .unwrap()
+    .with_assembly_mode(AssemblyMode::Upper);
     let point = Point3::new(0.05, -0.04, 1.27);
     let out = delta.inverse(point).unwrap();
     let inner = delta
-        .with_working_mode([Elbow::In; 3])
+        .with_working_mode([ElbowSide::In; 3])
         .inverse(point)
         .unwrap();
     for (arm, angle) in out.iter().copied().enumerate() {
         assert!(f64::abs(angle - inner[arm]) < FRAC_PI_2);
-        let mut ranges = [JointRange::unlimited(); 3];
-        ranges[arm] = JointRange::new(inner[arm], inner[arm] + 1.0).unwrap();
+        let mut ranges = [ArmRange::unlimited(); 3];
+        ranges[arm] = ArmRange::new(inner[arm], inner[arm] + 1.0).unwrap();
         let [min, max] = [ranges[arm].min(), ranges[arm].max()];
         let refused = InverseError::JointLimit {
             arm: Arm::ALL[arm],
@@ -335,7 +359,7 @@ fn the_other_elbow_s_angle_is_no_end_of_a_range() {
             max,
         };
         assert_eq!(delta.with_ranges(ranges).inverse(point), Err(refused));
-        ranges[arm] = JointRange::new(angle, inner[arm]).unwrap();
+        ranges[arm] = ArmRange::new(angle, inner[arm]).unwrap();
         assert_eq!(delta.with_ranges(ranges).inverse(point), Ok(out));
     }
 }

@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, Delta, DeltaPath, DeltaPathError, InverseError, JointRange, ZAxis};
+use delta_kin::{Arm, ArmRange, Delta, DeltaPath, DeltaPathError, InverseError, ZAxis};
 use path_timing::{
     Accuracy, AxisLimits, Cubic, Curve, Knot, Path, PlanError, Row, Span, Table, ToolLimits,
 };
@@ -216,7 +216,7 @@ fn what_cannot_be_followed_is_refused_with_its_place() {
     // A joint range, met on the way.
     let at = |x: f64| Point3::new(x, 0.0, -250.0);
     let angle = delta.inverse(at(60.0)).unwrap()[0];
-    let range = JointRange::new(angle - 4.0, angle).unwrap();
+    let range = ArmRange::new(angle - 4.0, angle).unwrap();
     let limited = delta.with_range(range);
     let stopped = limited.path(line([0.0, 0.0, -250.0], [100.0, 0.0, -250.0]));
     let Err(DeltaPathError::Edge { s, .. }) = stopped else {
@@ -282,7 +282,7 @@ fn planners_refuse_segments_that_pass_a_limit() {
     let highest = places.clone().map(angle).fold(f64::MIN, f64::max);
     // Half a millimetre beyond where the platform is farthest beside an arm's plane.
     let swivel = (100.5_f64 / 243.0).asin();
-    let range = JointRange::new(-1.5, highest + 2e-3).unwrap();
+    let range = ArmRange::new(-1.5, highest + 2e-3).unwrap();
     let machines = [
         free.with_range(range),
         free.with_ball_joints(swivel).unwrap(),

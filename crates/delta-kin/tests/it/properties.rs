@@ -2,7 +2,8 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, Delta, Elbow, InverseError, JointRange, Pose, ZAxis,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, Delta, Dimensions, ElbowSide, InverseError, Pose,
+    ZAxis,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -37,7 +38,15 @@ fn machines() -> impl Strategy<Value = Delta> {
         .prop_map(|(size, (base, platform, lower), off)| {
             let size = 10f64.powf(size);
             let mut arms = Arm::ALL.map(|arm| {
-                ArmGeometry::nominal(arm, base * size, platform * size, size, lower * size)
+                ArmGeometry::nominal(
+                    arm,
+                    Dimensions {
+                        base: base * size,
+                        platform: platform * size,
+                        upper: size,
+                        lower: lower * size,
+                    },
+                )
             });
             for (arm, (base, upper, lower, azimuth, zero)) in arms.iter_mut().zip(off) {
                 arm.base *= base;
@@ -64,8 +73,14 @@ fn gaps() -> impl Strategy<Value = f64> {
 }
 
 /// The working mode of a pose, however it was made.
-fn working_mode(pose: &Pose) -> [Elbow; 3] {
-    <[f64; 3]>::from(pose.levers()).map(|lever| if lever > 0.0 { Elbow::In } else { Elbow::Out })
+fn working_mode(pose: &Pose) -> [ElbowSide; 3] {
+    <[f64; 3]>::from(pose.levers()).map(|lever| {
+        if lever > 0.0 {
+            ElbowSide::In
+        } else {
+            ElbowSide::Out
+        }
+    })
 }
 
 /// The machine in its two assembly modes.
@@ -215,7 +230,7 @@ proptest! {
         (low, wide) in (-1.0..1.0f64, 0.1..3.0f64),
         shares in (0.0..=1.0f64, gaps(), gaps()).prop_map(|(a, b, c)| [a, b, 1.0 - c]),
     ) {
-        let range = JointRange::new(low, low + wide).unwrap();
+        let range = ArmRange::new(low, low + wide).unwrap();
         let angles = Vector3::from(shares).map(|share| (low + share * wide).min(range.max()));
         let pose = delta.pose_of(angles);
         prop_assume!(pose.is_ok());
@@ -295,7 +310,7 @@ proptest! {
 
     #[test]
     fn single_precision_keeps_its_digits(thetas in [0.1..1.9f32, 0.1..1.9f32, 0.1..1.9f32]) {
-        let delta = Delta::<f32>::new(42.0, 18.0, 120.0, 243.0).unwrap();
+        let delta = Delta::<f32>::new(Dimensions { base: 42.0, platform: 18.0, upper: 120.0, lower: 243.0 }).unwrap();
         let exact = thesis();
         let point = delta.forward(Vector3::from(thetas));
         prop_assume!(point.is_ok());

@@ -1,7 +1,9 @@
 //! Every row of the reference cases: solutions of 60-digit arithmetic.
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Arm, AssemblyMode, Delta, Elbow, ForwardError, InverseError, Pose};
+use delta_kin::{
+    Arm, AssemblyMode, Delta, Dimensions, ElbowSide, ForwardError, InverseError, Pose,
+};
 
 use crate::common::reach::reach_margins;
 
@@ -33,7 +35,13 @@ impl Row<'_> {
 
     fn delta(&self) -> Delta {
         let [base, platform, lower, upper] = [3, 4, 5, 6].map(|k| self.number(k));
-        Delta::new(base, platform, upper, lower).unwrap()
+        Delta::new(Dimensions {
+            base,
+            platform,
+            upper,
+            lower,
+        })
+        .unwrap()
     }
 
     fn point(&self) -> Point3<f64> {
@@ -62,7 +70,7 @@ fn both(delta: &Delta, angles: Vector3<f64>) -> Result<[Point3<f64>; 2], Forward
 }
 
 /// The pose with all elbows as named, in the assembly mode that has it.
-fn pose(delta: &Delta, point: Point3<f64>, elbow: Elbow) -> Pose {
+fn pose(delta: &Delta, point: Point3<f64>, elbow: ElbowSide) -> Pose {
     let delta = delta.with_working_mode([elbow; 3]);
     let upper = delta.with_assembly_mode(AssemblyMode::Upper);
     delta
@@ -109,7 +117,7 @@ fn angles_are_exact_to_the_arms_lever() {
     let (mut worst_angle, mut worst_length) = (0f64, 0f64);
     for row in rows().filter(|row| row.is("ik", "ok")) {
         let delta = row.delta();
-        for (elbow, column) in [(Elbow::Out, 13), (Elbow::In, 16)] {
+        for (elbow, column) in [(ElbowSide::Out, 13), (ElbowSide::In, 16)] {
             let pose = pose(&delta, row.point(), elbow);
             let errors = pose.angles() - row.numbers(column);
             let unit = f64::EPSILON * delta.span();
@@ -156,7 +164,7 @@ fn forward_of_inverse_is_the_point() {
     let mut worst = 0f64;
     for row in rows().filter(|row| row.is("ik", "ok")) {
         let (delta, point) = (row.delta(), row.point());
-        for elbows in [Elbow::Out, Elbow::In] {
+        for elbows in [ElbowSide::Out, ElbowSide::In] {
             let pose = pose(&delta, point, elbows);
             let found = both(&delta, pose.angles()).unwrap();
             let error = found.map(|place| (place - point).norm());

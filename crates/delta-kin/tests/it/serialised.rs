@@ -1,7 +1,7 @@
 //! Machine files: what is written is read back, what is wrong is refused.
 
 use delta_kin::{
-    Arm, AssemblyMode, Delta, Elbow, JointRange, Measured, Parameter, Positive, Quantity, ZAxis,
+    Arm, ArmRange, AssemblyMode, Delta, ElbowSide, Measured, Parameter, Positive, Quantity, ZAxis,
 };
 use test_support::{not_read, stored};
 
@@ -16,13 +16,13 @@ fn a_machine_is_read_back() {
         .with_z(ZAxis::Down)
         .with_positive(Positive::Inward)
         .with_ranges([
-            JointRange::unlimited(),
-            JointRange::new(-1.0, 2.0).unwrap(),
-            JointRange::unlimited(),
+            ArmRange::unlimited(),
+            ArmRange::new(-1.0, 2.0).unwrap(),
+            ArmRange::unlimited(),
         ])
         .with_ball_joints(0.6)
         .unwrap()
-        .with_working_mode([Elbow::Out, Elbow::In, Elbow::Out])
+        .with_working_mode([ElbowSide::Out, ElbowSide::In, ElbowSide::Out])
         .with_assembly_mode(AssemblyMode::Upper);
     stored(&delta);
     let parameter = stored(&Parameter::of(Quantity::Zero, Arm::Second));

@@ -3,9 +3,9 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Arm, ArmGeometry, AssemblyMode, CalibrationError, Delta, Elbow, FollowError, ForwardError,
-    InverseError, JointRange, Measured, Parameter, Path, Pose, Quantity, SpeedLimits,
-    WorkspaceError,
+    Arm, ArmGeometry, ArmRange, AssemblyMode, CalibrationError, Delta, Dimensions, ElbowSide,
+    FollowError, ForwardError, InverseError, Measured, Parameter, PlatformPath, Pose, Quantity,
+    SpeedLimits, WorkspaceError,
 };
 use proptest::prelude::*;
 use test_support::at_least;
@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-9;
 struct Case {
     arms: [ArmGeometry; 3],
     assembly_mode: AssemblyMode,
-    working_mode: [Elbow; 3],
+    working_mode: [ElbowSide; 3],
     angles: [f64; 3],
     other: [f64; 3],
     is_limited: bool,
@@ -92,7 +92,7 @@ impl Case {
         if !self.is_limited {
             return Some(delta);
         }
-        let range = |angle: f64| JointRange::new(angle - 1.0, angle + 0.5).unwrap();
+        let range = |angle: f64| ArmRange::new(angle - 1.0, angle + 0.5).unwrap();
         Some(
             delta
                 .with_ranges(self.angles.map(range))
@@ -178,8 +178,8 @@ fn pose_answers(pose: &Pose, unit: f64, answers: &mut Answers) {
 fn slow_answers(delta: &Delta, unit: f64) -> Answers {
     let mut answers = Answers::default();
     let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z) * unit;
-    let line = Path::line(at(80.0, 20.0, -280.0), at(-70.0, 30.0, -250.0)).unwrap();
-    let arc = Path::arc(
+    let line = PlatformPath::line(at(80.0, 20.0, -280.0), at(-70.0, 30.0, -250.0)).unwrap();
+    let arc = PlatformPath::arc(
         at(80.0, 20.0, -280.0),
         at(0.0, 0.0, -280.0),
         Vector3::z() * unit,
@@ -198,7 +198,7 @@ fn slow_answers(delta: &Delta, unit: f64) -> Answers {
             answers.number("duration", waypoint.duration_s, 0);
         }
     }
-    let out = Path::line(at(0.0, 0.0, -280.0), at(400.0, 0.0, -280.0)).unwrap();
+    let out = PlatformPath::line(at(0.0, 0.0, -280.0), at(400.0, 0.0, -280.0)).unwrap();
     match delta.follow(out, 0.05 * unit, limits) {
         Err(FollowError::Unreachable {
             fraction, point, ..
@@ -324,9 +324,14 @@ proptest! {
 #[test]
 fn paths_workspace_and_calibration_scale() {
     let delta = |unit: f64| {
-        Delta::new(42.0 * unit, 18.0 * unit, 120.0 * unit, 243.0 * unit)
-            .unwrap()
-            .with_range(JointRange::new(-0.5, 2.2).unwrap())
+        Delta::new(Dimensions {
+            base: 42.0 * unit,
+            platform: 18.0 * unit,
+            upper: 120.0 * unit,
+            lower: 243.0 * unit,
+        })
+        .unwrap()
+        .with_range(ArmRange::new(-0.5, 2.2).unwrap())
     };
     let one = slow_answers(&delta(1.0), 1.0);
     for k in -6..=6 {

@@ -2,14 +2,15 @@
 
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{
-    Delta, FollowError, InverseError, JointRange, Path, PathError, SpeedLimits, WorkspaceError,
+    ArmRange, Delta, Dimensions, FollowError, InverseError, PlatformPath, PlatformPathError,
+    SpeedLimits, WorkspaceError,
 };
 
 use crate::common::thesis::thesis;
 
 fn limited() -> Delta {
     thesis()
-        .with_range(JointRange::new(-0.3, 2.0).unwrap())
+        .with_range(ArmRange::new(-0.3, 2.0).unwrap())
         .with_ball_joints(0.6)
         .unwrap()
 }
@@ -137,13 +138,13 @@ fn limits() -> SpeedLimits {
 #[test]
 fn paths_are_where_they_were_asked() {
     let (from, to) = (Point3::new(1.0, -2.0, 3.0), Point3::new(9.0, 6.0, -13.0));
-    let line = Path::line(from, to).unwrap();
+    let line = PlatformPath::line(from, to).unwrap();
     for share in [0.0, 0.125, 0.375, 0.5, 0.625, 0.75, 1.0] {
         assert_eq!(line.point_at(share).unwrap(), from + (to - from) * share);
     }
     assert!((line.length() - 384f64.sqrt()).abs() < 1e-14);
     // A quarter from X over -Y: clockwise from above.
-    let arc = Path::arc(from, from - Vector3::x() * 5.0, Vector3::z() * 2.0, -1.5).unwrap();
+    let arc = PlatformPath::arc(from, from - Vector3::x() * 5.0, Vector3::z() * 2.0, -1.5).unwrap();
     for share in [0.0, 0.3, 0.8, 1.0_f64] {
         let (sin, cos) = (-1.5 * share).sin_cos();
         let wanted = Point3::new(-4.0 + 5.0 * cos, -2.0 + 5.0 * sin, 3.0);
@@ -157,7 +158,7 @@ fn paths_are_where_they_were_asked() {
 
 #[test]
 fn paths_end_at_the_first_place_out_of_reach() {
-    let line = Path::line(
+    let line = PlatformPath::line(
         Point3::new(0.0, 0.0, -300.0),
         Point3::new(400.0, 0.0, -300.0),
     );
@@ -177,8 +178,15 @@ fn paths_end_at_the_first_place_out_of_reach() {
 #[test]
 fn a_path_through_a_singularity_is_refused() {
     // Rods level with the platform at z = 0, where the two assemblies meet.
-    let flat = Delta::new(60.0, 20.0, 120.0, 159.0).unwrap();
-    let line = Path::line(Point3::new(0.0, 0.0, -30.0), Point3::new(0.0, 0.0, 30.0)).unwrap();
+    let flat = Delta::new(Dimensions {
+        base: 60.0,
+        platform: 20.0,
+        upper: 120.0,
+        lower: 159.0,
+    })
+    .unwrap();
+    let line =
+        PlatformPath::line(Point3::new(0.0, 0.0, -30.0), Point3::new(0.0, 0.0, 30.0)).unwrap();
     assert!(matches!(
         flat.follow(line, 0.01, limits()),
         Err(FollowError::Singular { .. } | FollowError::Unreachable { .. })
@@ -192,28 +200,36 @@ fn paths_and_paces_are_checked() {
         Point3::new(0.0, 0.0, -250.0),
     );
     let nan = Point3::new(f64::NAN, 0.0, 0.0);
-    let out_of_range = |path: Result<Path, PathError>, name: &str| {
-        assert!(matches!(path, Err(PathError::OutOfRange { name: given, .. }) if given == name));
+    let out_of_range = |path: Result<PlatformPath, PlatformPathError>, name: &str| {
+        assert!(
+            matches!(path, Err(PlatformPathError::OutOfRange { name: given, .. }) if given == name)
+        );
     };
-    out_of_range(Path::line(a, nan), "coordinate");
-    out_of_range(Path::line(a, Point3::new(1e80, 0.0, 0.0)), "coordinate");
-    out_of_range(Path::arc(a, nan, Vector3::z(), 1.0), "coordinate");
-    out_of_range(Path::arc(a, b, nan.coords, 1.0), "axis component");
-    out_of_range(Path::arc(a, b, Vector3::z(), f64::NAN), "angle");
-    out_of_range(Path::arc(a, b, Vector3::z(), 1e9), "angle");
-    assert_eq!(Path::arc(a, a, Vector3::z(), 1.0), Err(PathError::NoRadius));
+    out_of_range(PlatformPath::line(a, nan), "coordinate");
+    out_of_range(
+        PlatformPath::line(a, Point3::new(1e80, 0.0, 0.0)),
+        "coordinate",
+    );
+    out_of_range(PlatformPath::arc(a, nan, Vector3::z(), 1.0), "coordinate");
+    out_of_range(PlatformPath::arc(a, b, nan.coords, 1.0), "axis component");
+    out_of_range(PlatformPath::arc(a, b, Vector3::z(), f64::NAN), "angle");
+    out_of_range(PlatformPath::arc(a, b, Vector3::z(), 1e9), "angle");
     assert_eq!(
-        Path::arc(a, b, Vector3::zeros(), 1.0),
-        Err(PathError::NoAxis)
+        PlatformPath::arc(a, a, Vector3::z(), 1.0),
+        Err(PlatformPathError::NoRadius)
+    );
+    assert_eq!(
+        PlatformPath::arc(a, b, Vector3::zeros(), 1.0),
+        Err(PlatformPathError::NoAxis)
     );
     assert!(matches!(
-        Path::arc(a, b, Vector3::x(), 1.0),
-        Err(PathError::Helix { .. })
+        PlatformPath::arc(a, b, Vector3::x(), 1.0),
+        Err(PlatformPathError::Helix { .. })
     ));
     // Squares that are below the least number.
-    let tiny = Path::arc(a * 1e-200, Point3::origin(), Vector3::x() * 1e-200, 1.0);
-    assert!(matches!(tiny, Err(PathError::Helix { .. })));
-    let tiny = Path::arc(
+    let tiny = PlatformPath::arc(a * 1e-200, Point3::origin(), Vector3::x() * 1e-200, 1.0);
+    assert!(matches!(tiny, Err(PlatformPathError::Helix { .. })));
+    let tiny = PlatformPath::arc(
         Point3::new(1e-200, 0.0, 0.0),
         Point3::origin(),
         Vector3::z() * 1e-200,
@@ -232,7 +248,7 @@ fn paths_and_paces_are_checked() {
             Err(FollowError::SpeedLimits { .. })
         ));
     }
-    let line = Path::line(a, b).unwrap();
+    let line = PlatformPath::line(a, b).unwrap();
     for tolerance in [0.0, -1.0, f64::NAN, 64.0 * thesis().tolerance()] {
         assert!(matches!(
             thesis().follow(line, tolerance, limits()),
@@ -240,6 +256,6 @@ fn paths_and_paces_are_checked() {
         ));
     }
     // A path without length has one waypoint.
-    let still = Path::line(a, a).unwrap();
+    let still = PlatformPath::line(a, a).unwrap();
     assert_eq!(thesis().follow(still, 0.01, limits()).unwrap().count(), 1);
 }

@@ -2,16 +2,12 @@
 
 use core::fmt;
 
+use super::commands::{TEXT_END, ZERO};
 use super::{Font, LcdCommand, LcdCommands};
 use crate::cells::{Cell, Rect};
 use crate::error::LcdError;
 use crate::report::{LCD, MAX_COMMAND, Model};
 use crate::text::Text;
-
-/// Code of number, line and column 0.
-pub(super) const ZERO: u8 = 0x30;
-/// End of a stored text of the HBLS.
-pub(super) const TEXT_END: u8 = 0x0A;
 
 /// One telegram of display commands, built up command by command.
 ///

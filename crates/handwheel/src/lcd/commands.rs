@@ -2,13 +2,17 @@
 
 use core::iter::FusedIterator;
 
-use super::block::{TEXT_END, ZERO};
 use super::{Font, LcdCommand};
 use crate::cells::{Cell, Rect};
 use crate::error::LcdError;
 use crate::number::{AreaNumber, Column, Line, NumberError, TextNumber};
 use crate::report::Model;
 use crate::text::Text;
+
+/// Code of number, line and column 0.
+pub(super) const ZERO: u8 = 0x30;
+/// End of a stored text of the HBLS.
+pub(super) const TEXT_END: u8 = 0x0A;
 
 /// The commands of a display block, one after the other; an error ends them.
 ///

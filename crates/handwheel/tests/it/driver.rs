@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use handwheel::{
     DecodeError, Driver, Event, Failure, Job, Key, LcdAnswer, LcdBlock, LcdCommand, Led, LedState,
-    Model, Position, Status, SubmitError, Timing,
+    Model, Position, Status, SubmitError, Timeouts,
 };
 use proptest::prelude::*;
 
@@ -64,7 +64,7 @@ fn assert_connects(driver: &mut Driver, now: Duration, reply: &[u8]) {
 }
 
 fn online(model: Model) -> Driver {
-    let mut driver = Driver::new(model, Timing::DEFAULT);
+    let mut driver = Driver::new(model, Timeouts::DEFAULT);
     assert_eq!(sent(&mut driver, at(0)), STATUS);
     assert_eq!(delivered(&mut driver, at(0)), None);
     let reply: &[u8] = match model {
@@ -77,7 +77,7 @@ fn online(model: Model) -> Driver {
 
 #[test]
 fn the_unit_is_dead_until_its_status_is_asked_for() {
-    let mut driver = Driver::new(Model::Hbls, Timing::DEFAULT);
+    let mut driver = Driver::new(Model::Hbls, Timeouts::DEFAULT);
     driver.submit(led(LedState::On)).unwrap();
     assert_eq!(sent(&mut driver, at(0)), STATUS);
     assert_eq!(failed(&mut driver, at(400)), None);
@@ -146,7 +146,7 @@ fn a_status_request_follows_a_failure() {
     assert_eq!(sent(&mut driver, at(4060)), [0x6C, 0x25]);
     assert_eq!(delivered(&mut driver, at(4070)), None);
     let event = timeout(&mut driver, at(6070));
-    let failure = Failure::NoReply(Timing::DEFAULT.reply);
+    let failure = Failure::NoReply(Timeouts::DEFAULT.reply);
     assert_eq!(event, Some(Event::Failed(failure)));
     assert_eq!(sent(&mut driver, at(6070)), STATUS);
 }
@@ -208,7 +208,7 @@ proptest! {
         inputs in prop::collection::vec((0u8..12, 0u64..3000), 1..200),
     ) {
         let model = if hbas { Model::Hbas } else { Model::Hbls };
-        let mut driver = Driver::new(model, Timing::DEFAULT);
+        let mut driver = Driver::new(model, Timeouts::DEFAULT);
         let mut seen = Observer { must_ask: true, ..Observer::default() };
         let mut now = 0;
         for (input, millis) in inputs {

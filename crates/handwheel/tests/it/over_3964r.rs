@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use handwheel::{
     Cell, Column, Command, Driver, Event, Job, LcdAnswer, LcdBlock, LcdCommand, Line as Row,
-    MAX_COMMAND, Model, Position, Report, Status, Text, Timing,
+    MAX_COMMAND, Model, Position, Report, Status, Text, Timeouts,
 };
 use proptest::prelude::*;
 use proto3964r::{Config, Line, Priority, Station, Transmit};
@@ -114,7 +114,7 @@ fn blocks(rows: &[String]) -> [LcdBlock; 2] {
 /// before one is lost or changed.
 fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
     let mut station = End::new(config(Priority::High));
-    let mut driver = Driver::new(MODEL, Timing::DEFAULT);
+    let mut driver = Driver::new(MODEL, Timeouts::DEFAULT);
     let mut unit = Unit::new();
     let mut damage = damage.iter();
     let mut next = damage.next();
@@ -169,7 +169,7 @@ fn show(texts: [&str; 2], damage: &[(u16, u8)]) -> Result<(), TestCaseError> {
         }
         // A new driver's clock begins at zero, and so does a new line's.
         station = End::new(config(Priority::High));
-        driver = Driver::new(MODEL, Timing::DEFAULT);
+        driver = Driver::new(MODEL, Timeouts::DEFAULT);
         unit.station = End::new(config(Priority::Low));
     }
     Ok(())

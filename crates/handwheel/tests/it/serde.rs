@@ -1,6 +1,6 @@
 //! Serialised numbers are checked when they are read.
 
-use handwheel::{Key, Position, Report, Status, Timing};
+use handwheel::{Key, Position, Report, Status, Timeouts};
 
 #[test]
 fn reports_come_back_and_numbers_are_checked() {
@@ -11,7 +11,7 @@ fn reports_come_back_and_numbers_are_checked() {
     assert_eq!(serde_json::from_str::<Report>(&text).unwrap(), report);
     let error = serde_json::from_str::<Key>("21").unwrap_err().to_string();
     assert!(error.starts_with("key 21 is not within 1..=20"), "{error}");
-    let timing = serde_json::to_string(&Timing::DEFAULT).unwrap();
-    let read: Timing = serde_json::from_str(&timing).unwrap();
-    assert_eq!(read, Timing::DEFAULT);
+    let timeouts = serde_json::to_string(&Timeouts::DEFAULT).unwrap();
+    let read: Timeouts = serde_json::from_str(&timeouts).unwrap();
+    assert_eq!(read, Timeouts::DEFAULT);
 }

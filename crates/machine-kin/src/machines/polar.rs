@@ -8,7 +8,7 @@ use crate::{Axis, Machine, Number, Refusal};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_enums, reason = "a line has two ends")]
-pub enum Side {
+pub enum CarriageSide {
     /// At a radius above 0.
     Front,
     /// At a radius below 0, the arm half a turn further.
@@ -40,7 +40,7 @@ impl Polar {
 }
 
 impl Machine<2> for Polar {
-    type Branch = Side;
+    type Branch = CarriageSide;
 
     fn axes(&self) -> [Axis; 2] {
         let [min, max] = self.radius;
@@ -48,12 +48,12 @@ impl Machine<2> for Polar {
         [Axis::angle("arm", any), Axis::linear("carriage", min..=max)]
     }
 
-    fn inverse<T: Number>(&self, [x, y]: [T; 2], side: Side) -> Result<[T; 2], Refusal> {
+    fn inverse<T: Number>(&self, [x, y]: [T; 2], side: CarriageSide) -> Result<[T; 2], Refusal> {
         const MIDDLE: &str = "the tool is in the middle";
         let radius = (x.squared() + y.squared()).root(MIDDLE)?;
         Ok(match side {
-            Side::Front => [T::atan2(y, x, MIDDLE)?, radius],
-            Side::Behind => [T::atan2(-y, -x, MIDDLE)?, -radius],
+            CarriageSide::Front => [T::atan2(y, x, MIDDLE)?, radius],
+            CarriageSide::Behind => [T::atan2(-y, -x, MIDDLE)?, -radius],
         })
     }
 }

@@ -10,8 +10,8 @@ const ANCHORS: usize = 8;
 /// How far an angle turns from a known place before the next is noted, in radians.
 const FAR: f64 = 2.4;
 
-/// Most that an angle turns from one place that is taken in to the next, in radians.
-pub(super) const LOOK: f64 = 0.6;
+/// The largest turn of an angle from one place of the survey to the next, in radians.
+pub(super) const MAX_TURN: f64 = 0.6;
 
 /// The whole turns of the angles along a path: what is continuous when it is walked along stays so when
 /// places are asked for in any order.

@@ -3,13 +3,13 @@
 use path_timing::{Curve, CurveMotion};
 
 use super::stretch::{ROUNDING, Stretch};
-use super::turns::{LOOK, Turns, at_turns};
+use super::turns::{MAX_TURN, Turns, at_turns};
 use super::{MachinePath, PathError};
 use crate::matrix::{Enclosure, norm};
 use crate::{Axis, Interval, Machine, Number};
 
 /// Shortest piece of a curve, as a fraction of it: what is undecided then is refused.
-const LEAST_PIECE: f64 = 1e-9;
+const MIN_PIECE: f64 = 1e-9;
 
 /// Nearest to the end of the branch and to singular poses that a path may come, in each coordinate, as
 /// a fraction of its size.
@@ -36,15 +36,15 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             turns: Turns::new(previous),
             rounding: size * ROUNDING,
         };
-        let looker = Looker {
+        let survey = Survey {
             edge: [size * EDGE; N],
-            least: curve.length() * LEAST_PIECE,
+            least: curve.length() * MIN_PIECE,
         };
-        let start = looker.positions(&path, 0.0, &previous)?;
+        let start = survey.positions(&path, 0.0, &previous)?;
         path.turns = Turns::new(start);
         let (mut s, mut positions, mut step) = (0.0, start, curve.length());
         while s < curve.length() {
-            (s, positions, step) = looker.go_on(&path, s, &positions, step)?;
+            (s, positions, step) = survey.advance(&path, s, &positions, step)?;
             if !path.turns.add(s, &axes, &positions) {
                 return Err(PathError::Turns { s });
             }
@@ -68,13 +68,13 @@ fn check_ranges<const N: usize>(axes: &[Axis; N]) -> Result<(), PathError<N>> {
 }
 
 /// Walks along a curve before it is a path.
-struct Looker<const N: usize> {
+struct Survey<const N: usize> {
     edge: [f64; N],
     /// Shortest piece.
     least: f64,
 }
 
-impl<const N: usize> Looker<N> {
+impl<const N: usize> Survey<N> {
     /// The positions at a place, each angle at the turn nearest to `near`.
     fn positions<M: Machine<N>>(
         &self,
@@ -88,9 +88,9 @@ impl<const N: usize> Looker<N> {
         Ok(at_turns(&path.axes, positions, near))
     }
 
-    /// The next place to be looked at, the positions there, and the length of the piece to try next.
+    /// The next place of the survey, the positions there, and the length of the piece to try next.
     /// Shorter pieces lead up to the first place that is refused.
-    fn go_on<M: Machine<N>>(
+    fn advance<M: Machine<N>>(
         &self,
         path: &MachinePath<M, N>,
         s: f64,
@@ -160,7 +160,7 @@ impl<const N: usize> Looker<N> {
             let apart = middle - *near;
             let turned = axis.difference(apart.middle()) - apart.middle();
             let position = middle + turned + way;
-            if axis.is_angle && way.width() > LOOK {
+            if axis.is_angle && way.width() > MAX_TURN {
                 return Err(PathError::Singular { s: from, point });
             }
             if let Some(position) = axis.beyond(position.low(), position.high()) {

@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 
 use machine_kin::path_timing::{AxisLimits, Curve, Knot, Path, Table, ToolLimits};
 use machine_kin::{
-    CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Polar, Scara, Side, WithZ,
+    CarriageSide, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Polar, Scara, WithZ,
 };
 use test_support::{Random, setting};
 
@@ -21,7 +21,7 @@ const SAMPLES: u32 = 400;
 const MARGIN: f64 = 1e-5;
 
 /// By how much a position may be beyond a range: what is allowed to paths that touch it.
-const TOUCH: f64 = 1e-8;
+const RANGE_SLACK: f64 = 1e-8;
 
 /// Of places of machines of some hundred mm.
 const ROUNDING: f64 = 1e-9;
@@ -59,7 +59,7 @@ fn sign_at<M: Machine<N>, const N: usize>(
     let is_inside = tool
         .iter()
         .zip(areas)
-        .all(|(x, area)| *x >= area.start() - TOUCH && *x <= area.end() + TOUCH);
+        .all(|(x, area)| *x >= area.start() - RANGE_SLACK && *x <= area.end() + RANGE_SLACK);
     let volume = sign_of(slopes.map(|slope| slope));
     is_inside.then_some(volume)
 }
@@ -127,7 +127,7 @@ fn sampled<M: Machine<N>, const N: usize>(
         });
         for (axis, position) in axes.iter().zip(positions) {
             let range = axis.range();
-            if position < range.start() - TOUCH || position > range.end() + TOUCH {
+            if position < range.start() - RANGE_SLACK || position > range.end() + RANGE_SLACK {
                 return Finding::Bad("beyond a range");
             }
             is_close |= position < range.start() + margin || position > range.end() - margin;
@@ -222,7 +222,10 @@ impl Tally {
                 let positions = cubics(&span).map(|cubic| cubic.position(share));
                 for (axis, position) in axes.iter().zip(positions) {
                     let range = axis.range();
-                    assert!(position >= range.start() - TOUCH && position <= range.end() + TOUCH);
+                    assert!(
+                        position >= range.start() - RANGE_SLACK
+                            && position <= range.end() + RANGE_SLACK
+                    );
                 }
                 let tool = forward(machine, &axes, positions, branch, near);
                 let tool = tool.expect("the tool is on its branch");
@@ -233,7 +236,7 @@ impl Tally {
                     "{off} {bound} {machine:?} {curve:?} {span:?}"
                 );
                 for (x, area) in tool.iter().zip(machine.area()) {
-                    assert!(*x >= area.start() - TOUCH && *x <= area.end() + TOUCH);
+                    assert!(*x >= area.start() - RANGE_SLACK && *x <= area.end() + RANGE_SLACK);
                 }
             }
         }
@@ -308,9 +311,9 @@ fn any_path(random: &mut Random, tally: &mut Tally) {
         2 => {
             let machine = Polar::new(random.within(-150.0, 40.0)..=random.within(50.0, 200.0));
             let side = if random.below(2) == 0 {
-                Side::Front
+                CarriageSide::Front
             } else {
-                Side::Behind
+                CarriageSide::Behind
             };
             let curve = any_curve(random, [-120.0; 2], [120.0; 2]);
             tally.try_path(random, &machine, curve, side);

@@ -4,7 +4,7 @@
 use core::f64::consts::FRAC_PI_2;
 use core::fmt::Debug;
 
-use delta_kin::{Delta, DeltaPath};
+use delta_kin::{Delta, DeltaPath, Dimensions};
 use machine_kin::path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Span, Table, ToolLimits};
 use machine_kin::{Elbow, Machine, MachinePath, PathError};
 use proptest::prelude::*;
@@ -177,7 +177,13 @@ fn the_arm_s_bound_is_near_the_one_by_hand() {
 
 #[test]
 fn the_delta_s_bound_is_near_the_one_by_hand() {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let machines = [
         (delta, 0.0),
         (delta.with_zero(FRAC_PI_2).unwrap(), FRAC_PI_2),

@@ -3,8 +3,8 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use machine_kin::{
-    CoreXy, Elbow, FiveBar, GeometryError, HangingPlotter, LinearDelta, Machine, Polar, Scara,
-    Side, WithZ,
+    CarriageSide, CoreXy, Elbow, FiveBar, GeometryError, HangingPlotter, LinearDelta, Machine,
+    Polar, Scara, WithZ,
 };
 use proptest::prelude::*;
 
@@ -72,7 +72,7 @@ proptest! {
 
     #[test]
     fn a_polar_machine_is_there_from_both_sides(x in -90.0..90.0_f64, y in -90.0..90.0_f64, is_front: bool) {
-        let side = if is_front { Side::Front } else { Side::Behind };
+        let side = if is_front { CarriageSide::Front } else { CarriageSide::Behind };
         let [angle, radius] = Polar::new(-130.0..=130.0).inverse([x, y], side).unwrap();
         let (sin, cos) = angle.sin_cos();
         prop_assert!(near([radius * cos, radius * sin], [x, y]));

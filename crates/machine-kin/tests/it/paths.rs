@@ -7,8 +7,8 @@ use machine_kin::path_timing::{
     segments_within,
 };
 use machine_kin::{
-    Axis, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, MachinePath, Number,
-    PathError, Polar, Refusal, Scara, Side,
+    Axis, CarriageSide, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, MachinePath,
+    Number, PathError, Polar, Refusal, Scara,
 };
 use proptest::prelude::*;
 
@@ -54,7 +54,7 @@ proptest! {
     #[test]
     fn a_clearance_is_a_distance_that_is_proven(x in -150.0..150.0_f64, y in -150.0..150.0_f64) {
         prop_assume!(x.abs().max(y.abs()) > 0.1);
-        let clearance = Polar::new(0.0..=300.0).clearance([x, y], Side::Front);
+        let clearance = Polar::new(0.0..=300.0).clearance([x, y], CarriageSide::Front);
         // The middle is the only such place; a box reaches it at the largest coordinate.
         let true_clearance = x.abs().max(y.abs());
         prop_assert!(clearance <= true_clearance && clearance > 0.25 * true_clearance, "{clearance} {true_clearance}");
@@ -65,18 +65,18 @@ proptest! {
 fn an_arm_counts_its_turns() {
     let polar = Polar::new(0.0..=100.0);
     let round = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 2.75 * TAU).unwrap();
-    let path = polar.path(round, Side::Front).unwrap();
+    let path = polar.path(round, CarriageSide::Front).unwrap();
     let [start, end] = [0.0, round.length()].map(|s| path.point(s).unwrap().position);
     assert!((end[0] - start[0] - 2.75 * TAU).abs() < 1e-9);
     // The next begins where this one ended, turns included.
     let next = polar
-        .path_from(line(round.end(), [20.0, 60.0]), Side::Front, end)
+        .path_from(line(round.end(), [20.0, 60.0]), CarriageSide::Front, end)
         .unwrap();
     let begun = next.point(0.0).unwrap().position;
     assert!((begun[0] - end[0]).abs() < 1e-12 && (begun[1] - end[1]).abs() < 1e-12);
     let many = Curve::arc([50.0, 0.0], [0.0, 0.0], [0.0, 1.0], 9.0 * TAU).unwrap();
     assert!(matches!(
-        polar.path(many, Side::Front),
+        polar.path(many, CarriageSide::Front),
         Err(PathError::Turns { .. })
     ));
 }
@@ -104,7 +104,7 @@ fn what_cannot_be_followed_is_refused_with_its_place() {
     let (s, text) = refused(
         &Polar::new(-50.0..=50.0),
         line([30.0, 0.0], [-30.0, 0.0]),
-        Side::Front,
+        CarriageSide::Front,
     );
     assert!((s - 30.0).abs() < 1e-3, "{s}");
     assert!(
@@ -245,7 +245,7 @@ fn every_machine_runs_holds_and_streams() {
         line([30.0, 170.0], [10.0, 140.0]),
     ];
     runs(&five_bar(), flat, OUTWARDS);
-    runs(&Polar::new(0.0..=200.0), flat, Side::Front);
+    runs(&Polar::new(0.0..=200.0), flat, CarriageSide::Front);
     runs(&CoreXy::new(-50.0..=50.0, 100.0..=200.0), flat, ());
     let hung = [
         line([300.0, 500.0], [500.0, 600.0]),

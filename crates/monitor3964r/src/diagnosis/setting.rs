@@ -135,10 +135,10 @@ impl Fit {
     fn of(record: &[Character], side: Side, words: &[Word]) -> Self {
         let (mut hits, mut telling, mut misses) = (0_u32, 0_u32, 0_u32);
         let mut rest = record.iter().filter(move |heard| heard.side == side);
-        while let Some(piece) = Piece::take(&mut rest, words) {
-            hits = hits.saturating_add(piece.is_hit.into());
-            misses = misses.saturating_add((!piece.is_hit).into());
-            telling = telling.saturating_add((piece.is_whole && piece.is_telling).into());
+        while let Some(burst) = Burst::take(&mut rest, words) {
+            hits = hits.saturating_add(burst.is_hit.into());
+            misses = misses.saturating_add((!burst.is_hit).into());
+            telling = telling.saturating_add((burst.is_whole && burst.is_telling).into());
         }
         Self {
             hits,
@@ -161,7 +161,7 @@ impl Fit {
 }
 
 /// What one side sent between two silences.
-struct Piece {
+struct Burst {
     /// It begins with a word.
     is_hit: bool,
     /// It is made of one word or two.
@@ -170,14 +170,14 @@ struct Piece {
     is_telling: bool,
 }
 
-impl Piece {
+impl Burst {
     /// Takes the next one; `None` at the end.
     fn take<'c>(
         rest: &mut (impl Iterator<Item = &'c Character> + Clone),
         words: &[Word],
     ) -> Option<Self> {
         let mut before = rest.clone().next()?.at;
-        let mut piece = Self {
+        let mut burst = Self {
             is_hit: false,
             is_whole: true,
             is_telling: false,
@@ -189,20 +189,20 @@ impl Piece {
             .next()
             .is_some_and(|next| goes_on(before, next))
         {
-            let mut words = words.iter().filter(|_| piece.is_whole && left > 0);
+            let mut words = words.iter().filter(|_| burst.is_whole && left > 0);
             let word = words.find_map(|word| Some((word.len(), spells(rest.clone(), word)?)));
             let len = if let Some((len, is_telling)) = word {
                 left = left.saturating_sub(1);
-                piece.is_hit = true;
-                piece.is_telling |= is_telling;
+                burst.is_hit = true;
+                burst.is_telling |= is_telling;
                 len
             } else {
-                piece.is_whole = false;
+                burst.is_whole = false;
                 1
             };
             before = rest.nth(len.checked_sub(1)?)?.at;
         }
-        Some(piece)
+        Some(burst)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use proto3964r::LineError;
+use proto3964r::CharacterError;
 
 use super::side::Side;
 
@@ -22,7 +22,7 @@ pub struct Character {
     /// What was read.
     pub byte: u8,
     /// What the receiver circuit says.
-    pub error: Option<LineError>,
+    pub error: Option<CharacterError>,
 }
 
 impl Character {

@@ -2,7 +2,7 @@
 
 use core::{fmt, iter::FusedIterator, time::Duration};
 
-use proto3964r::{Hex, LineError, frame::FrameError};
+use proto3964r::{CharacterError, Hex, frame::FrameError};
 
 use super::side::Side;
 
@@ -143,7 +143,7 @@ pub enum Observation<'a> {
         /// What was read.
         byte: u8,
         /// What the receiver circuit says.
-        error: LineError,
+        error: CharacterError,
     },
 }
 

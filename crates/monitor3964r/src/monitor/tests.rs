@@ -104,7 +104,12 @@ fn a_damaged_character_is_no_answer() {
     let mut monitor = monitor();
     listen(&mut monitor, "0 A 02");
     let seen: Vec<_> = monitor
-        .handle_damaged(Duration::from_millis(1), Side::B, 0x10, LineError::Parity)
+        .handle_damaged(
+            Duration::from_millis(1),
+            Side::B,
+            0x10,
+            CharacterError::Parity,
+        )
         .map(|observation| observation.to_string())
         .collect();
     assert_eq!(seen, vec!["B parity error in 10", "B stray 10"]);

@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use monitor3964r::{BaudRatio, Character, Diagnosis, Formula, Monitor, Side, Verdict, diagnose};
-use proto3964r::{Config, Line, LineError, Priority};
+use proto3964r::{CharacterError, Config, Line, Priority};
 
 /// Reads `ms side byte...` groups; `?` after a byte is a parity error.
 fn read(conversation: &str) -> Vec<Character> {
@@ -20,7 +20,7 @@ fn read(conversation: &str) -> Vec<Character> {
             at,
             side,
             byte: u8::from_str_radix(word.trim_end_matches('?'), 16).unwrap(),
-            error: word.ends_with('?').then_some(LineError::Parity),
+            error: word.ends_with('?').then_some(CharacterError::Parity),
         }));
     }
     record

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::Path as File;
 use std::process::{Command, Stdio};
 
-use delta_kin::{Delta, DeltaMasses};
+use delta_kin::{Delta, DeltaMasses, Dimensions};
 use path_timing::{
     AxisLimits, Cubic, Curve, Knot, PlanError, Row, Table, TorqueCurve, TorqueCurveError,
     TorqueLimits,
@@ -334,7 +334,13 @@ fn curves_of_motors() {
 /// The same arms as in the examples, each with a stepper behind a gear.
 #[test]
 fn a_delta_keeps_the_torque_of_its_motors() {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let masses = DeltaMasses {
         arm_kg_m2: 4e-3,
         arm_kg_m: 0.012,

@@ -1,6 +1,6 @@
 //! What a caller chooses for a header: the compiler, and a name that compilers take.
 
-use super::WriteError;
+use super::write_error::{MAX_NAME, WriteError};
 
 /// The compiler that a header is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -15,9 +15,6 @@ pub enum Dialect {
     /// SDCC: `const __code unsigned char dance[8]`.
     Sdcc,
 }
-
-/// Highest number of characters in a name; every C compiler tells so long ones apart.
-pub(super) const MAX_NAME: usize = 31;
 
 /// Refuses what is no C identifier, too long, or a word that no table can have as a name in C51 or
 /// SDCC.

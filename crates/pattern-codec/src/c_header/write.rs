@@ -2,10 +2,8 @@
 
 use core::fmt::{self, Write};
 
-use thiserror::Error;
-
-use super::Dialect;
-use super::style::{MAX_NAME, check_name};
+use super::style::check_name;
+use super::{Dialect, WriteError};
 
 /// Name and compiler of a table; in upper case the name starts those of the include guard and the
 /// `#define`s.
@@ -37,51 +35,6 @@ impl Table<'_> {
         }
         tables(&mut Layout { name, dialect, out })?;
         Ok(out.write_str("\n#endif\n")?)
-    }
-}
-
-/// Why a header is not written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum WriteError {
-    /// A name without a character.
-    #[error("the name of a table is empty")]
-    NameEmpty,
-    /// A character that C does not allow there.
-    #[error("{character:?} cannot stand in the name of a table, or not first")]
-    NameCharacter {
-        /// The first such character.
-        character: char,
-    },
-    /// A word that means something else in C.
-    #[error("a table cannot have a keyword of the compiler as its name")]
-    NameKeyword,
-    /// Too many characters.
-    #[error("a table's name of {length} characters, max {MAX_NAME}")]
-    NameTooLong {
-        /// Its length.
-        length: usize,
-    },
-    /// Nothing to write: C has no empty arrays.
-    #[error("a table without values")]
-    Empty,
-    /// More than the address space of code memory.
-    #[error("a table of {bytes} bytes, an 8051 addresses {limit}")]
-    TooLong {
-        /// Bytes of the table.
-        bytes: u64,
-        /// The highest number of them.
-        limit: u64,
-    },
-    /// The writer refused.
-    #[error("the header could not be written")]
-    Format,
-}
-
-impl From<fmt::Error> for WriteError {
-    fn from(_: fmt::Error) -> Self {
-        Self::Format
     }
 }
 

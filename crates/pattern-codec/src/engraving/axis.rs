@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// One of the engraver's four axes, named as in [Engraver 2000].
+/// One of the engraver's four axes. [Engraver 2000] calls the first three theta1, theta2 and theta3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -10,26 +10,26 @@ use core::fmt;
 #[expect(clippy::exhaustive_enums, reason = "two bits name four axes, no more")]
 pub enum Axis {
     /// The forearm against the upper arm.
-    Theta1,
+    Elbow,
     /// The upper arm against the body.
-    Theta2,
+    Shoulder,
     /// The grinding disc, which follows the tangent of the curve.
-    Theta3,
+    Disc,
     /// The lift of the arm.
     Vertical,
 }
 
 impl Axis {
     /// All axes, in the order of the fields of [`PerAxis`].
-    pub const ALL: [Self; 4] = [Self::Theta1, Self::Theta2, Self::Theta3, Self::Vertical];
+    pub const ALL: [Self; 4] = [Self::Elbow, Self::Shoulder, Self::Disc, Self::Vertical];
 
-    /// The name as a word: `theta1`, `theta2`, `theta3` or `vertical`.
+    /// The name as a word: `elbow`, `shoulder`, `disc` or `vertical`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Theta1 => "theta1",
-            Self::Theta2 => "theta2",
-            Self::Theta3 => "theta3",
+            Self::Elbow => "elbow",
+            Self::Shoulder => "shoulder",
+            Self::Disc => "disc",
             Self::Vertical => "vertical",
         }
     }
@@ -37,9 +37,9 @@ impl Axis {
     /// Index in [`Axis::ALL`], 0..=3.
     pub(super) const fn index(self) -> u8 {
         match self {
-            Self::Theta1 => 0,
-            Self::Theta2 => 1,
-            Self::Theta3 => 2,
+            Self::Elbow => 0,
+            Self::Shoulder => 1,
+            Self::Disc => 2,
             Self::Vertical => 3,
         }
     }
@@ -48,9 +48,9 @@ impl Axis {
     #[inline]
     pub(super) const fn from_index(index: u8) -> Self {
         match index & 3 {
-            0 => Self::Theta1,
-            1 => Self::Theta2,
-            2 => Self::Theta3,
+            0 => Self::Elbow,
+            1 => Self::Shoulder,
+            2 => Self::Disc,
             _ => Self::Vertical,
         }
     }
@@ -69,12 +69,12 @@ impl fmt::Display for Axis {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_structs, reason = "the format has four axes")]
 pub struct PerAxis<T> {
-    /// The value of [`Axis::Theta1`].
-    pub theta1: T,
-    /// The value of [`Axis::Theta2`].
-    pub theta2: T,
-    /// The value of [`Axis::Theta3`].
-    pub theta3: T,
+    /// The value of [`Axis::Elbow`].
+    pub elbow: T,
+    /// The value of [`Axis::Shoulder`].
+    pub shoulder: T,
+    /// The value of [`Axis::Disc`].
+    pub disc: T,
     /// The value of [`Axis::Vertical`].
     pub vertical: T,
 }
@@ -85,9 +85,9 @@ impl<T> PerAxis<T> {
     #[inline]
     pub const fn get(&self, axis: Axis) -> &T {
         match axis {
-            Axis::Theta1 => &self.theta1,
-            Axis::Theta2 => &self.theta2,
-            Axis::Theta3 => &self.theta3,
+            Axis::Elbow => &self.elbow,
+            Axis::Shoulder => &self.shoulder,
+            Axis::Disc => &self.disc,
             Axis::Vertical => &self.vertical,
         }
     }
@@ -97,9 +97,9 @@ impl<T> PerAxis<T> {
     #[inline]
     pub const fn get_mut(&mut self, axis: Axis) -> &mut T {
         match axis {
-            Axis::Theta1 => &mut self.theta1,
-            Axis::Theta2 => &mut self.theta2,
-            Axis::Theta3 => &mut self.theta3,
+            Axis::Elbow => &mut self.elbow,
+            Axis::Shoulder => &mut self.shoulder,
+            Axis::Disc => &mut self.disc,
             Axis::Vertical => &mut self.vertical,
         }
     }

@@ -24,9 +24,9 @@ impl Builder {
     #[must_use]
     pub const fn new() -> Self {
         Self::at(PerAxis {
-            theta1: 0,
-            theta2: 0,
-            theta3: 0,
+            elbow: 0,
+            shoulder: 0,
+            disc: 0,
             vertical: 0,
         })
     }
@@ -47,12 +47,13 @@ impl Builder {
     /// records.
     ///
     /// # Errors
-    /// [`PositionError`] when the position would leave the range of `i32`; it stays as it was.
+    /// [`PositionOverflow`] when the position would leave the range of `i32`; it stays as it was.
     pub fn fast(
         &mut self,
         axis: Axis,
         pulses: i32,
-    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionError> {
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionOverflow>
+    {
         self.advance(axis, pulses)?;
         Ok(FastRecords::new(axis, pulses < 0, pulses.unsigned_abs()))
     }
@@ -69,20 +70,21 @@ impl Builder {
     /// each axis is within half a pulse of the straight line between start and end, which no other
     /// whole numbers do better; and the parts sum to T exactly.
     ///
-    /// Splitting changes the path a little: within each record theta3 moves first and alone, so a split
+    /// Splitting changes the path a little: within each record disc moves first and alone, so a split
     /// motion turns the disc in n small turns, where one record would make the whole turn
     /// before the arms start.
     ///
     /// # Errors
-    /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
+    /// [`PositionOverflow`] when a position would leave the range of `i32`; all stay as they were.
     pub fn slow(
         &mut self,
         pulses: JointPulses,
-    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionError> {
+    ) -> Result<impl FusedIterator<Item = Record> + Clone + fmt::Debug + use<>, PositionOverflow>
+    {
         let mut next = *self;
-        next.advance(Axis::Theta3, pulses.theta3)?;
-        next.advance(Axis::Theta1, pulses.theta1)?;
-        next.advance(Axis::Theta2, pulses.theta2)?;
+        next.advance(Axis::Disc, pulses.disc)?;
+        next.advance(Axis::Elbow, pulses.elbow)?;
+        next.advance(Axis::Shoulder, pulses.shoulder)?;
         *self = next;
         Ok(SlowRecords::new(pulses))
     }
@@ -90,8 +92,8 @@ impl Builder {
     /// Counts a record from elsewhere, such as a decoded one.
     ///
     /// # Errors
-    /// [`PositionError`] when a position would leave the range of `i32`; all stay as they were.
-    pub fn track(&mut self, record: Record) -> Result<(), PositionError> {
+    /// [`PositionOverflow`] when a position would leave the range of `i32`; all stay as they were.
+    pub fn track(&mut self, record: Record) -> Result<(), PositionOverflow> {
         match record {
             Record::Fast(fast) => self.advance(fast.axis(), fast.pulses()),
             Record::Slow(slow) => self.slow(slow.pulses()).map(drop),
@@ -104,12 +106,12 @@ impl Builder {
     /// ```
     /// use pattern_codec::engraving::{Axis, Builder, PerAxis};
     ///
-    /// let mut builder = Builder::at(PerAxis { theta1: 70_000, theta2: -5, theta3: 0, vertical: -90 });
-    /// let lift_first = [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2];
+    /// let mut builder = Builder::at(PerAxis { elbow: 70_000, shoulder: -5, disc: 0, vertical: -90 });
+    /// let lift_first = [Axis::Vertical, Axis::Disc, Axis::Elbow, Axis::Shoulder];
     /// let home: Vec<_> = builder.home(lift_first)?.map(|record| record.pulses()).collect();
     /// assert_eq!(home[0].vertical, 90);
-    /// assert_eq!((home[1].theta1, home[2].theta1), (-65_535, -4_465));
-    /// assert_eq!(home[3].theta2, 5);
+    /// assert_eq!((home[1].elbow, home[2].elbow), (-65_535, -4_465));
+    /// assert_eq!(home[3].shoulder, 5);
     /// # Ok::<(), pattern_codec::engraving::RepeatedAxis>(())
     /// ```
     /// The order is the caller's, because where home is decides what must go first: with the
@@ -135,9 +137,9 @@ impl Builder {
         Ok(HomeRecords { runs })
     }
 
-    fn advance(&mut self, axis: Axis, pulses: i32) -> Result<(), PositionError> {
+    fn advance(&mut self, axis: Axis, pulses: i32) -> Result<(), PositionOverflow> {
         let position = self.position.get_mut(axis);
-        *position = position.checked_add(pulses).ok_or(PositionError {
+        *position = position.checked_add(pulses).ok_or(PositionOverflow {
             axis,
             position: *position,
             pulses,
@@ -173,7 +175,7 @@ impl FusedIterator for HomeRecords {}
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[error("{axis}: {pulses} pulses from position {position} leave the range of 32 bits")]
 #[non_exhaustive]
-pub struct PositionError {
+pub struct PositionOverflow {
     /// The axis.
     pub axis: Axis,
     /// Where it is, in pulses from home.

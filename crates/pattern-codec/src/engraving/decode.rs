@@ -4,13 +4,13 @@ use core::iter::FusedIterator;
 use thiserror::Error;
 
 use super::record::{AXIS_BITS, COUNT_BITS, NEGATIVE};
-use super::{Axis, ByteOrder, Fast, Format, Mode, Record, Slow};
+use super::{Axis, ByteOrder, Fast, Format, Record, Slow, Strictness};
 
 impl Format {
     /// The record of three bytes.
     ///
     /// # Errors
-    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of theta1 or theta2 in a SLOW record; D6 or D5 set in a SLOW byte in [`Mode::Strict`].
+    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of elbow or shoulder in a SLOW record; D6 or D5 set in a SLOW byte in [`Strictness::Strict`].
     #[inline]
     pub fn decode(&self, bytes: [u8; Record::LEN]) -> Result<Record, DecodeError> {
         let [first, second, third] = bytes;
@@ -26,7 +26,7 @@ impl Format {
         let axis_bits = (first | second | third) & AXIS_BITS != 0;
         let count = second & COUNT_BITS == COUNT_BITS || third & COUNT_BITS == COUNT_BITS;
         if (axis_bits || count)
-            && let Some(error) = slow_error(self.mode, bytes)
+            && let Some(error) = slow_error(self.strictness, bytes)
         {
             return Err(error);
         }
@@ -34,7 +34,7 @@ impl Format {
     }
 
     /// The canonical spelling of three bytes: `encode(decode(bytes))`. It differs where a zero
-    /// count has a direction bit and, in [`Mode::Lenient`], where a SLOW byte has D6 or D5 set.
+    /// count has a direction bit and, in [`Strictness::Lenient`], where a SLOW byte has D6 or D5 set.
     ///
     /// # Errors
     /// As [`Format::decode`].
@@ -66,17 +66,20 @@ impl Format {
 
 /// The first error of a SLOW record.
 #[cold]
-fn slow_error(mode: Mode, [theta3, theta1, theta2]: [u8; Record::LEN]) -> Option<DecodeError> {
+fn slow_error(
+    strictness: Strictness,
+    [disc, elbow, shoulder]: [u8; Record::LEN],
+) -> Option<DecodeError> {
     [
-        (0, Axis::Theta3, theta3),
-        (1, Axis::Theta1, theta1),
-        (2, Axis::Theta2, theta2),
+        (0, Axis::Disc, disc),
+        (1, Axis::Elbow, elbow),
+        (2, Axis::Shoulder, shoulder),
     ]
     .into_iter()
     .find_map(|(offset, axis, byte)| {
         let kind = if byte & COUNT_BITS == COUNT_BITS {
             DecodeErrorKind::SlowCount { axis, byte }
-        } else if mode == Mode::Strict && byte & AXIS_BITS != 0 {
+        } else if strictness == Strictness::Strict && byte & AXIS_BITS != 0 {
             DecodeErrorKind::SlowAxisBits { axis, byte }
         } else {
             return None;
@@ -109,7 +112,7 @@ impl Located {
 /// Decoding iterator over a slice, made by [`Format::records`]. It copies nothing but the three
 /// bytes of the record under way.
 ///
-/// In [`Mode::Strict`] the iterator ends after the first error, in [`Mode::Lenient`] it goes on
+/// In [`Strictness::Strict`] the iterator ends after the first error, in [`Strictness::Lenient`] it goes on
 /// three bytes later. One or two bytes too many at the end are an error in both.
 #[derive(Debug, Clone)]
 #[must_use = "iterators are lazy"]
@@ -133,18 +136,18 @@ impl Iterator for Records<'_> {
         self.rest = rest;
         self.offset = after(offset);
         let item = self.format.decode_at(offset, *bytes);
-        if item.is_err() && self.format.mode == Mode::Strict {
+        if item.is_err() && self.format.strictness == Strictness::Strict {
             self.rest = &[];
         }
         Some(item)
     }
 
-    /// Exact in [`Mode::Lenient`]; in [`Mode::Strict`] an error may end the records early.
+    /// Exact in [`Strictness::Lenient`]; in [`Strictness::Strict`] an error may end the records early.
     fn size_hint(&self) -> (usize, Option<usize>) {
         let max = self.rest.chunks(Record::LEN).len();
-        let min = match self.format.mode {
-            Mode::Strict => max.min(1),
-            Mode::Lenient => max,
+        let min = match self.format.strictness {
+            Strictness::Strict => max.min(1),
+            Strictness::Lenient => max,
         };
         (min, Some(max))
     }
@@ -197,7 +200,7 @@ impl Decoder {
     /// Takes bytes off the front of `input` up to the end of the next record and decodes it.
     ///
     /// `None` when `input` is used up: go on with the next chunk, or call [`Decoder::finish`].
-    /// After an error in [`Mode::Strict`] it is `None` for ever and `input` stays as it is.
+    /// After an error in [`Strictness::Strict`] it is `None` for ever and `input` stays as it is.
     #[inline]
     pub fn decode(&mut self, input: &mut &[u8]) -> Option<Result<Located, DecodeError>> {
         if self.failed.is_some() {
@@ -206,7 +209,7 @@ impl Decoder {
         let bytes = self.held.complete(input)?;
         let item = self.format.decode_at(self.offset, bytes);
         self.offset = after(self.offset);
-        if self.format.mode == Mode::Strict {
+        if self.format.strictness == Strictness::Strict {
             self.failed = item.err();
         }
         Some(item)
@@ -215,7 +218,7 @@ impl Decoder {
     /// Ends the stream: the number of bytes decoded.
     ///
     /// # Errors
-    /// [`DecodeErrorKind::Truncated`] when the last record is incomplete; in [`Mode::Strict`] the
+    /// [`DecodeErrorKind::Truncated`] when the last record is incomplete; in [`Strictness::Strict`] the
     /// error that ended decoding, so that it cannot be lost.
     pub const fn finish(self) -> Result<u64, DecodeError> {
         if let Some(error) = self.failed {
@@ -315,7 +318,7 @@ impl DecodeError {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
-    /// The mark of a FAST record, 31 pulses, as the count of theta1 or theta2 in a SLOW record.
+    /// The mark of a FAST record, 31 pulses, as the count of elbow or shoulder in a SLOW record.
     #[error("{byte:#04X} has 31 pulses for {axis} in a SLOW record, which holds at most 30")]
     SlowCount {
         /// The axis of the byte.
@@ -323,7 +326,7 @@ pub enum DecodeErrorKind {
         /// The byte.
         byte: u8,
     },
-    /// D6 or D5 set in a SLOW byte, [`Mode::Strict`] only.
+    /// D6 or D5 set in a SLOW byte, [`Strictness::Strict`] only.
     #[error("{byte:#04X} has D6 or D5 set for {axis} in a SLOW record")]
     SlowAxisBits {
         /// The axis of the byte.

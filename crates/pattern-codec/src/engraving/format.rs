@@ -6,7 +6,7 @@ use super::{Axis, PerAxis};
 
 /// Which two-bit code in D6 D5 of a FAST record names which axis: distinct, 0..=3.
 ///
-/// The default is 0 theta1, 1 theta2, 2 theta3, 3 vertical; [Engraver 2000] does not print the
+/// The default is 0 elbow, 1 shoulder, 2 disc, 3 vertical; [Engraver 2000] does not print the
 /// codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,9 +24,9 @@ pub struct AxisCodes {
 impl AxisCodes {
     const DEFAULT: Self = Self {
         codes: PerAxis {
-            theta1: 0,
-            theta2: 1,
-            theta3: 2,
+            elbow: 0,
+            shoulder: 1,
+            disc: 2,
             vertical: 3,
         },
         axes: 0b11_10_01_00,
@@ -148,9 +148,9 @@ pub enum ByteOrder {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(
     clippy::exhaustive_enums,
-    reason = "a caller must know what each mode lets pass"
+    reason = "a caller must know what each strictness lets pass"
 )]
-pub enum Mode {
+pub enum Strictness {
     /// D6 or D5 set in a SLOW byte is an error, and decoding ends at the first error.
     #[default]
     Strict,
@@ -171,7 +171,7 @@ pub struct Format {
     /// Byte order of the pulse count of FAST records.
     pub byte_order: ByteOrder,
     /// How strictly bytes are decoded. Encoding does not depend on it.
-    pub mode: Mode,
+    pub strictness: Strictness,
 }
 
 impl Format {
@@ -181,7 +181,7 @@ impl Format {
         Self {
             axis_codes: AxisCodes::DEFAULT,
             byte_order: ByteOrder::BigEndian,
-            mode: Mode::Strict,
+            strictness: Strictness::Strict,
         }
     }
 
@@ -197,10 +197,10 @@ impl Format {
         Self { byte_order, ..self }
     }
 
-    /// The same format with another mode.
+    /// The same format with another strictness.
     #[must_use]
-    pub const fn with_mode(self, mode: Mode) -> Self {
-        Self { mode, ..self }
+    pub const fn with_strictness(self, strictness: Strictness) -> Self {
+        Self { strictness, ..self }
     }
 }
 

@@ -27,7 +27,7 @@ use crate::c_header::{
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 /// The `#define`s, each after the name of the table in upper case: `RECORDS` and `BYTES`; the axis
-/// codes `THETA1_CODE`, `THETA2_CODE`, `THETA3_CODE`, `VERTICAL_CODE`; `HIGH_BYTE_FIRST`, 1 or 0.
+/// codes `ELBOW_CODE`, `SHOULDER_CODE`, `DISC_CODE`, `VERTICAL_CODE`; `HIGH_BYTE_FIRST`, 1 or 0.
 /// One record a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -46,9 +46,9 @@ pub struct PatternHeader<'n> {
 
 /// Ends of the names of the axis codes.
 const CODES: PerAxis<&str> = PerAxis {
-    theta1: "THETA1_CODE",
-    theta2: "THETA2_CODE",
-    theta3: "THETA3_CODE",
+    elbow: "ELBOW_CODE",
+    shoulder: "SHOULDER_CODE",
+    disc: "DISC_CODE",
     vertical: "VERTICAL_CODE",
 };
 
@@ -85,22 +85,22 @@ impl PatternHeader<'_> {
         let (count, bytes) = (statistics.records(), statistics.bytes());
         let comment = format_args!(
             "{count} records, {fast} FAST and {slow} SLOW, {bytes} bytes.\n   \
-             Pulses: theta1 {}, theta2 {}, theta3 {}, vertical {}.",
-            pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical
+             Pulses: elbow {}, shoulder {}, disc {}, vertical {}.",
+            pulses.elbow, pulses.shoulder, pulses.disc, pulses.vertical
         );
         let Format {
             axis_codes,
             byte_order,
             ..
         } = self.format;
-        let [theta1, theta2, theta3, vertical] =
+        let [elbow, shoulder, disc, vertical] =
             Axis::ALL.map(|axis| (*CODES.get(axis), axis_codes.code(axis).into()));
         let defines = [
             ("RECORDS", count),
             ("BYTES", bytes),
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
             vertical,
             (
                 "HIGH_BYTE_FIRST",
@@ -133,7 +133,7 @@ pub struct PatternData<'t> {
 
 impl<'t> PatternData<'t> {
     /// Reads a header with one array. Axis codes and byte order that it does not define, and the
-    /// mode, are those of `format`.
+    /// strictness, are those of `format`.
     ///
     /// # Errors
     /// [`HeaderError`] names a location and what is wrong there.

@@ -47,9 +47,9 @@ impl Record {
                 }
             }
             Self::Slow(slow) => [
-                sign_and_count(slow.theta3),
-                sign_and_count(slow.theta1),
-                sign_and_count(slow.theta2),
+                sign_and_count(slow.disc),
+                sign_and_count(slow.elbow),
+                sign_and_count(slow.shoulder),
             ],
         }
     }
@@ -62,16 +62,16 @@ impl Record {
             Self::Fast(Fast { axis, pulses }) => {
                 let of = |this: Axis| if this == axis { pulses } else { 0 };
                 PerAxis {
-                    theta1: of(Axis::Theta1),
-                    theta2: of(Axis::Theta2),
-                    theta3: of(Axis::Theta3),
+                    elbow: of(Axis::Elbow),
+                    shoulder: of(Axis::Shoulder),
+                    disc: of(Axis::Disc),
                     vertical: of(Axis::Vertical),
                 }
             }
             Self::Slow(slow) => PerAxis {
-                theta1: slow.theta1.into(),
-                theta2: slow.theta2.into(),
-                theta3: slow.theta3.into(),
+                elbow: slow.elbow.into(),
+                shoulder: slow.shoulder.into(),
+                disc: slow.disc.into(),
                 vertical: 0,
             },
         }
@@ -169,8 +169,8 @@ impl TryFrom<UncheckedFast> for Fast {
     }
 }
 
-/// Cutting motion of the three turning axes, -30..=30 pulses each: theta3 first, then theta1 and
-/// theta2 together.
+/// Cutting motion of the three turning axes, -30..=30 pulses each: disc first, then elbow and
+/// shoulder together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -179,9 +179,9 @@ impl TryFrom<UncheckedFast> for Fast {
 )]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Slow {
-    theta1: i8,
-    theta2: i8,
-    theta3: i8,
+    elbow: i8,
+    shoulder: i8,
+    disc: i8,
 }
 
 impl Slow {
@@ -194,19 +194,19 @@ impl Slow {
     /// [`PulsesError`] beyond -30..=30, naming the first such axis in the order of the bytes.
     pub const fn new(pulses: JointPulses) -> Result<Self, PulsesError> {
         let JointPulses {
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
         } = pulses;
         match (
-            small(Axis::Theta3, theta3),
-            small(Axis::Theta1, theta1),
-            small(Axis::Theta2, theta2),
+            small(Axis::Disc, disc),
+            small(Axis::Elbow, elbow),
+            small(Axis::Shoulder, shoulder),
         ) {
-            (Ok(theta3), Ok(theta1), Ok(theta2)) => Ok(Self {
-                theta1,
-                theta2,
-                theta3,
+            (Ok(disc), Ok(elbow), Ok(shoulder)) => Ok(Self {
+                elbow,
+                shoulder,
+                disc,
             }),
             (Err(error), _, _) | (_, Err(error), _) | (_, _, Err(error)) => Err(error),
         }
@@ -214,11 +214,11 @@ impl Slow {
 
     /// From the three bytes of a SLOW record whose counts are at most 30; D6 and D5 are ignored.
     #[inline]
-    pub(super) const fn from_bytes([theta3, theta1, theta2]: [u8; Record::LEN]) -> Self {
+    pub(super) const fn from_bytes([disc, elbow, shoulder]: [u8; Record::LEN]) -> Self {
         Self {
-            theta1: signed(theta1),
-            theta2: signed(theta2),
-            theta3: signed(theta3),
+            elbow: signed(elbow),
+            shoulder: signed(shoulder),
+            disc: signed(disc),
         }
     }
 
@@ -227,9 +227,9 @@ impl Slow {
     #[inline]
     pub fn pulses(self) -> JointPulses {
         JointPulses {
-            theta1: self.theta1.into(),
-            theta2: self.theta2.into(),
-            theta3: self.theta3.into(),
+            elbow: self.elbow.into(),
+            shoulder: self.shoulder.into(),
+            disc: self.disc.into(),
         }
     }
 }
@@ -278,11 +278,11 @@ impl From<Slow> for JointPulses {
 #[expect(clippy::exhaustive_structs, reason = "a SLOW record has three axes")]
 pub struct JointPulses {
     /// Pulses of the forearm.
-    pub theta1: i32,
+    pub elbow: i32,
     /// Pulses of the upper arm.
-    pub theta2: i32,
+    pub shoulder: i32,
     /// Pulses of the disc.
-    pub theta3: i32,
+    pub disc: i32,
 }
 
 /// More pulses than one record holds.

@@ -54,9 +54,9 @@ impl FusedIterator for FastRecords {}
 /// [`Builder::slow`](super::Builder::slow).
 #[derive(Debug, Clone)]
 pub(super) struct SlowRecords {
-    theta1: Distribution,
-    theta2: Distribution,
-    theta3: Distribution,
+    elbow: Distribution,
+    shoulder: Distribution,
+    disc: Distribution,
     parts: u32,
     left: u32,
 }
@@ -64,19 +64,19 @@ pub(super) struct SlowRecords {
 impl SlowRecords {
     pub(super) fn new(pulses: JointPulses) -> Self {
         let JointPulses {
-            theta1,
-            theta2,
-            theta3,
+            elbow,
+            shoulder,
+            disc,
         } = pulses;
-        let max = theta1
+        let max = elbow
             .unsigned_abs()
-            .max(theta2.unsigned_abs())
-            .max(theta3.unsigned_abs());
+            .max(shoulder.unsigned_abs())
+            .max(disc.unsigned_abs());
         let parts = max.div_ceil(Slow::MAX.unsigned_abs());
         Self {
-            theta1: Distribution::new(theta1, parts),
-            theta2: Distribution::new(theta2, parts),
-            theta3: Distribution::new(theta3, parts),
+            elbow: Distribution::new(elbow, parts),
+            shoulder: Distribution::new(shoulder, parts),
+            disc: Distribution::new(disc, parts),
             parts,
             left: parts,
         }
@@ -88,10 +88,10 @@ impl Iterator for SlowRecords {
 
     fn next(&mut self) -> Option<Record> {
         self.left = self.left.checked_sub(1)?;
-        let theta3 = self.theta3.next(self.parts);
-        let theta1 = self.theta1.next(self.parts);
-        let theta2 = self.theta2.next(self.parts);
-        Some(Slow::from_bytes([theta3, theta1, theta2]).into())
+        let disc = self.disc.next(self.parts);
+        let elbow = self.elbow.next(self.parts);
+        let shoulder = self.shoulder.next(self.parts);
+        Some(Slow::from_bytes([disc, elbow, shoulder]).into())
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

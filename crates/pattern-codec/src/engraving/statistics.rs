@@ -37,7 +37,7 @@ pub struct Statistics {
     pub pulses: PerAxis<u64>,
     /// Pulse periods that FAST records take.
     pub fast_periods: u64,
-    /// Pulse periods that SLOW records take: those of theta3, then those of the arm with more
+    /// Pulse periods that SLOW records take: those of disc, then those of the arm with more
     /// pulses, for which the other waits.
     pub slow_periods: u64,
 }
@@ -47,11 +47,11 @@ impl Statistics {
     #[inline]
     pub fn add(&mut self, record: Record) {
         let pulses = record.pulses();
-        let [theta1, theta2, theta3, vertical] =
-            [pulses.theta1, pulses.theta2, pulses.theta3, pulses.vertical]
+        let [elbow, shoulder, disc, vertical] =
+            [pulses.elbow, pulses.shoulder, pulses.disc, pulses.vertical]
                 .map(|pulses| u64::from(pulses.unsigned_abs()));
-        let periods = theta3
-            .saturating_add(theta1.max(theta2))
+        let periods = disc
+            .saturating_add(elbow.max(shoulder))
             .saturating_add(vertical);
         let (records, kind_periods) = match record {
             Record::Fast(_) => (&mut self.fast_records, &mut self.fast_periods),
@@ -62,9 +62,9 @@ impl Statistics {
         if periods == 0 {
             add_to(&mut self.idle_records, 1);
         }
-        add_to(&mut self.pulses.theta1, theta1);
-        add_to(&mut self.pulses.theta2, theta2);
-        add_to(&mut self.pulses.theta3, theta3);
+        add_to(&mut self.pulses.elbow, elbow);
+        add_to(&mut self.pulses.shoulder, shoulder);
+        add_to(&mut self.pulses.disc, disc);
         add_to(&mut self.pulses.vertical, vertical);
     }
 

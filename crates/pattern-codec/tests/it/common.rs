@@ -1,23 +1,23 @@
 //! What several modules use.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, Mode, PerAxis, Record, Slow,
+    Axis, AxisCodes, ByteOrder, Fast, Format, JointPulses, PerAxis, Record, Slow, Strictness,
 };
 use proptest::prelude::*;
 
-pub(crate) fn joints(theta1: i32, theta2: i32, theta3: i32) -> JointPulses {
+pub(crate) fn joints(elbow: i32, shoulder: i32, disc: i32) -> JointPulses {
     JointPulses {
-        theta1,
-        theta2,
-        theta3,
+        elbow,
+        shoulder,
+        disc,
     }
 }
 
-pub(crate) fn per_axis<T>([theta1, theta2, theta3, vertical]: [T; 4]) -> PerAxis<T> {
+pub(crate) fn per_axis<T>([elbow, shoulder, disc, vertical]: [T; 4]) -> PerAxis<T> {
     PerAxis {
-        theta1,
-        theta2,
-        theta3,
+        elbow,
+        shoulder,
+        disc,
         vertical,
     }
 }
@@ -26,8 +26,8 @@ pub(crate) fn fast(axis: Axis, pulses: i32) -> Record {
     Fast::new(axis, pulses).unwrap().into()
 }
 
-pub(crate) fn slow(theta1: i32, theta2: i32, theta3: i32) -> Record {
-    Slow::new(joints(theta1, theta2, theta3)).unwrap().into()
+pub(crate) fn slow(elbow: i32, shoulder: i32, disc: i32) -> Record {
+    Slow::new(joints(elbow, shoulder, disc)).unwrap().into()
 }
 
 pub(crate) fn axes() -> impl Strategy<Value = Axis> {
@@ -38,17 +38,17 @@ pub(crate) fn formats() -> impl Strategy<Value = Format> {
     let codes = Just([0_u8, 1, 2, 3]).prop_shuffle();
     (codes, any::<bool>(), any::<bool>()).prop_map(|(codes, little, lenient)| {
         let order = [ByteOrder::BigEndian, ByteOrder::LittleEndian][usize::from(little)];
-        let mode = [Mode::Strict, Mode::Lenient][usize::from(lenient)];
+        let strictness = [Strictness::Strict, Strictness::Lenient][usize::from(lenient)];
         Format::new()
             .with_axis_codes(AxisCodes::new(per_axis(codes)).unwrap())
             .with_byte_order(order)
-            .with_mode(mode)
+            .with_strictness(strictness)
     })
 }
 
 pub(crate) fn joint_pulses(most: i32) -> impl Strategy<Value = JointPulses> {
     let one = move || -most..=most;
-    (one(), one(), one()).prop_map(|(theta1, theta2, theta3)| joints(theta1, theta2, theta3))
+    (one(), one(), one()).prop_map(|(elbow, shoulder, disc)| joints(elbow, shoulder, disc))
 }
 
 pub(crate) fn records() -> impl Strategy<Value = Record> {

@@ -41,7 +41,7 @@ proptest! {
         let fast = Fast::new(axis, pulses);
         prop_assert_eq!(fast.is_ok(), pulses.unsigned_abs() <= 65_535);
         let slow = Slow::new(joints);
-        let most = [joints.theta1, joints.theta2, joints.theta3].map(i32::unsigned_abs);
+        let most = [joints.elbow, joints.shoulder, joints.disc].map(i32::unsigned_abs);
         prop_assert_eq!(slow.is_ok(), most.iter().all(|pulses| *pulses <= 30));
         let mut position = PerAxis::default();
         *position.get_mut(axis) = start;

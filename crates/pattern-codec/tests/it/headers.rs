@@ -2,7 +2,7 @@
 
 use pattern_codec::c_header::{Dialect, HeaderErrorKind as K, Item, items};
 use pattern_codec::engraving::{
-    Axis, Format, Mode, PatternData, PatternHeader, ReloadData, ReloadHeader, TimerPeriod,
+    Axis, Format, PatternData, PatternHeader, ReloadData, ReloadHeader, Strictness, TimerPeriod,
 };
 use proptest::prelude::*;
 
@@ -28,7 +28,7 @@ proptest! {
         // What the header says counts, not what the reader expects.
         let data = PatternData::read(&text, other).unwrap();
         prop_assert_eq!(data.name(), "rosette");
-        prop_assert_eq!(data.format(), format.with_mode(other.mode));
+        prop_assert_eq!(data.format(), format.with_strictness(other.strictness));
         prop_assert_eq!(data.record_count(), records.len() as u64);
         prop_assert!(data.records().eq(records.iter().copied()));
     }
@@ -36,10 +36,10 @@ proptest! {
     #[test]
     fn reloads_are_read_as_written(periods in prop::collection::vec((any::<u16>(), any::<bool>()), 1..60), sdcc: bool) {
         let periods = periods.into_iter().map(|(reload, toggles)| TimerPeriod { reload, toggles });
-        let header = ReloadHeader { name: "theta1", dialect: dialect(sdcc) };
+        let header = ReloadHeader { name: "elbow", dialect: dialect(sdcc) };
         let mut text = String::new();
         header.write(periods.clone(), &mut text).unwrap();
-        let data = ReloadData::read(&text, "theta1").unwrap();
+        let data = ReloadData::read(&text, "elbow").unwrap();
         prop_assert_eq!(data.period_count(), periods.len() as u64);
         prop_assert!(data.periods().eq(periods));
     }
@@ -64,15 +64,15 @@ fn a_pattern_looks_like_this() {
     header.write(records, &mut text).unwrap();
     let wanted = "\
 /* pattern: 2 records, 1 FAST and 1 SLOW, 6 bytes.
-   Pulses: theta1 15, theta2 30, theta3 2, vertical 400. */
+   Pulses: elbow 15, shoulder 30, disc 2, vertical 400. */
 #ifndef PATTERN_H
 #define PATTERN_H
 
 #define PATTERN_RECORDS 2
 #define PATTERN_BYTES 6
-#define PATTERN_THETA1_CODE 0
-#define PATTERN_THETA2_CODE 1
-#define PATTERN_THETA3_CODE 2
+#define PATTERN_ELBOW_CODE 0
+#define PATTERN_SHOULDER_CODE 1
+#define PATTERN_DISC_CODE 2
 #define PATTERN_VERTICAL_CODE 3
 #define PATTERN_HIGH_BYTE_FIRST 1
 
@@ -120,7 +120,7 @@ unsigned char code reloads_toggles[2] = {
 fn a_pattern_by_hand_is_read() {
     let text = "
         #define PATH_VERTICAL_CODE 0   /* swapped */
-        #define PATH_THETA1_CODE   3
+        #define PATH_ELBOW_CODE   3
         #define PATH_HIGH_BYTE_FIRST 0
         code unsigned char path[][3] = {
             { 0x9F, 0x90, 0x01 },      // lift by -400
@@ -136,7 +136,7 @@ fn wrong_patterns_are_refused_with_line_and_column() {
     for (text, wanted) in [
         (
             "char p[] = {2, 0x1F, 1};",
-            "line 1, column 22: pattern byte 1: 0x1F has 31 pulses for theta1 in a SLOW record",
+            "line 1, column 22: pattern byte 1: 0x1F has 31 pulses for elbow in a SLOW record",
         ),
         (
             "char p[] = {2, 1, 1,\n0x20, 0, 0};",
@@ -147,12 +147,12 @@ fn wrong_patterns_are_refused_with_line_and_column() {
             "line 1, column 17: pattern byte 0: the record that starts with 0x02 is cut off after 2 of 3",
         ),
         (
-            "#define P_THETA1_CODE 4\nchar p[] = {2, 1, 1};",
+            "#define P_ELBOW_CODE 4\nchar p[] = {2, 1, 1};",
             "line 1, column 1: 4 does not fit into 0..=3",
         ),
         (
-            "#define P_THETA1_CODE 3\nchar p[] = {2, 1, 1};",
-            "line 2, column 12: theta1 and vertical: both have the axis code 3",
+            "#define P_ELBOW_CODE 3\nchar p[] = {2, 1, 1};",
+            "line 2, column 12: elbow and vertical: both have the axis code 3",
         ),
         (
             "#define P_RECORDS 2\nchar p[] = {2, 1, 1};",
@@ -168,7 +168,7 @@ fn wrong_patterns_are_refused_with_line_and_column() {
             .unwrap_err();
         assert!(error.to_string().starts_with(wanted), "{error}: {text}");
     }
-    let lenient = Format::new().with_mode(Mode::Lenient);
+    let lenient = Format::new().with_strictness(Strictness::Lenient);
     assert!(PatternData::read("char p[] = {0x20, 0, 0};", lenient).is_ok());
     assert!(PatternData::read("char p[] = {2, 0x1F, 1};", lenient).is_err());
 }
@@ -194,8 +194,8 @@ fn reloads_stand_eight_in_a_row() {
 
 #[test]
 fn reloads_by_hand_are_read() {
-    let text = "unsigned int code theta2[] = { -4096, 0xF00B, 0 };\nchar other[] = { 1 };";
-    let data = ReloadData::read(text, "theta2").unwrap();
+    let text = "unsigned int code shoulder[] = { -4096, 0xF00B, 0 };\nchar other[] = { 1 };";
+    let data = ReloadData::read(text, "shoulder").unwrap();
     let periods = [0xF000, 0xF00B, 0].map(period);
     assert!(data.periods().eq(periods));
     let array = |values, declared| K::ArrayLength { values, declared };

@@ -4,7 +4,7 @@ use pattern_codec::engraving::{Axis, Builder, Format, JointPulses, PerAxis, Reco
 
 use crate::common::{joints, per_axis};
 
-const LIFT_FIRST: [Axis; 4] = [Axis::Vertical, Axis::Theta3, Axis::Theta1, Axis::Theta2];
+const LIFT_FIRST: [Axis; 4] = [Axis::Vertical, Axis::Disc, Axis::Elbow, Axis::Shoulder];
 
 fn pulses(records: impl Iterator<Item = Record>, axis: Axis) -> Vec<i32> {
     records.map(|record| *record.pulses().get(axis)).collect()
@@ -13,18 +13,21 @@ fn pulses(records: impl Iterator<Item = Record>, axis: Axis) -> Vec<i32> {
 #[test]
 fn a_long_fast_motion_is_full_records_and_the_rest() {
     let mut builder = Builder::new();
-    let records = builder.fast(Axis::Theta2, -150_000).unwrap();
+    let records = builder.fast(Axis::Shoulder, -150_000).unwrap();
     assert_eq!(records.size_hint(), (3, Some(3)));
-    assert_eq!(pulses(records, Axis::Theta2), [-65_535, -65_535, -18_930]);
-    assert_eq!(builder.position().theta2, -150_000);
+    assert_eq!(pulses(records, Axis::Shoulder), [-65_535, -65_535, -18_930]);
+    assert_eq!(builder.position().shoulder, -150_000);
     // From the least position to zero, the longest way home.
     let mut builder = Builder::at(PerAxis {
-        theta2: i32::MIN,
+        shoulder: i32::MIN,
         ..PerAxis::default()
     });
     let home = builder.home(LIFT_FIRST).unwrap();
     assert_eq!(home.size_hint().0, 32_769);
-    let sum: i64 = pulses(home, Axis::Theta2).into_iter().map(i64::from).sum();
+    let sum: i64 = pulses(home, Axis::Shoulder)
+        .into_iter()
+        .map(i64::from)
+        .sum();
     assert_eq!(sum, 1 << 31);
 }
 
@@ -33,15 +36,18 @@ fn a_slow_split_keeps_the_ratio_in_every_part() {
     let mut builder = Builder::new();
     let records = builder.slow(joints(100, -50, 1)).unwrap();
     assert_eq!(records.size_hint(), (4, Some(4)));
-    assert_eq!(pulses(records.clone(), Axis::Theta1), [25, 25, 25, 25]);
-    assert_eq!(pulses(records.clone(), Axis::Theta2), [-13, -12, -13, -12]);
-    assert_eq!(pulses(records, Axis::Theta3), [0, 1, 0, 0]);
+    assert_eq!(pulses(records.clone(), Axis::Elbow), [25, 25, 25, 25]);
+    assert_eq!(
+        pulses(records.clone(), Axis::Shoulder),
+        [-13, -12, -13, -12]
+    );
+    assert_eq!(pulses(records, Axis::Disc), [0, 1, 0, 0]);
 }
 
 #[test]
 fn motions_without_pulses_have_no_records() {
     let mut builder = Builder::new();
-    assert_eq!(builder.fast(Axis::Theta1, 0).unwrap().count(), 0);
+    assert_eq!(builder.fast(Axis::Elbow, 0).unwrap().count(), 0);
     assert_eq!(builder.slow(JointPulses::default()).unwrap().count(), 0);
     assert_eq!(builder.home(LIFT_FIRST).unwrap().count(), 0);
 }
@@ -61,9 +67,9 @@ fn homing_undoes_every_pulse_in_the_given_order() {
     });
     assert!(moved.eq([
         (Axis::Vertical, 300),
-        (Axis::Theta3, -12),
-        (Axis::Theta1, -45),
-        (Axis::Theta2, 7),
+        (Axis::Disc, -12),
+        (Axis::Elbow, -45),
+        (Axis::Shoulder, 7),
     ]));
     assert_eq!(builder.position(), PerAxis::default());
 
@@ -77,13 +83,13 @@ fn homing_undoes_every_pulse_in_the_given_order() {
 #[test]
 fn a_homing_order_names_every_axis_once() {
     let mut builder = Builder::at(PerAxis {
-        theta1: 3,
+        elbow: 3,
         ..PerAxis::default()
     });
-    let order = [Axis::Vertical, Axis::Theta3, Axis::Theta2, Axis::Theta3];
+    let order = [Axis::Vertical, Axis::Disc, Axis::Shoulder, Axis::Disc];
     let error = builder.home(order).unwrap_err();
-    assert_eq!(error.to_string(), "theta3 comes twice in the homing order");
-    assert_eq!(builder.position().theta1, 3);
+    assert_eq!(error.to_string(), "disc comes twice in the homing order");
+    assert_eq!(builder.position().elbow, 3);
 }
 
 #[test]
@@ -93,7 +99,7 @@ fn a_position_beyond_32_bits_is_an_error_and_changes_nothing() {
     let cut = joints(1, 2, 3);
     let error = builder.slow(cut).unwrap_err();
     let numbers = (error.axis, error.position, error.pulses);
-    assert_eq!(numbers, (Axis::Theta2, i32::MAX - 1, 2));
+    assert_eq!(numbers, (Axis::Shoulder, i32::MAX - 1, 2));
     let error = builder.fast(Axis::Vertical, -1).unwrap_err();
     let numbers = (error.axis, error.position, error.pulses);
     assert_eq!(numbers, (Axis::Vertical, i32::MIN, -1));

@@ -1,8 +1,8 @@
 //! Properties of the engraving records: round trips, any bytes, splits.
 
 use pattern_codec::engraving::{
-    Axis, Builder, DecodeError, DecodeErrorKind, Decoder, Format, Located, Mode, PerAxis, Record,
-    Statistics,
+    Axis, Builder, DecodeError, DecodeErrorKind, Decoder, Format, Located, PerAxis, Record,
+    Statistics, Strictness,
 };
 use proptest::prelude::*;
 
@@ -94,7 +94,7 @@ proptest! {
         }
         let all = bytes.len().div_ceil(3);
         let failed = items.last().is_some_and(Result::is_err);
-        prop_assert!(items.len() == all || (failed && format.mode == Mode::Strict));
+        prop_assert!(items.len() == all || (failed && format.strictness == Strictness::Strict));
         let (least, most) = format.records(&bytes).size_hint();
         prop_assert!((least..=most.unwrap()).contains(&items.len()));
     }

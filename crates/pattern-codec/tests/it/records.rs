@@ -1,22 +1,22 @@
 //! The cases that [Engraver 2000] leaves to decide, one test each.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodeError, AxisCodes, ByteOrder, DecodeErrorKind, Decoder, Fast, Format, Mode,
-    PerAxis, Slow,
+    Axis, AxisCodeError, AxisCodes, ByteOrder, DecodeErrorKind, Decoder, Fast, Format, PerAxis,
+    Slow, Strictness,
 };
 
 use crate::common::{fast, joints, per_axis, slow};
 
 const STRICT: Format = Format::new();
-const LENIENT: Format = Format::new().with_mode(Mode::Lenient);
+const LENIENT: Format = Format::new().with_strictness(Strictness::Lenient);
 
 #[test]
 fn fast_has_direction_axis_and_mark_in_byte_0_and_the_count_behind() {
     for (axis, pulses, bytes) in [
-        (Axis::Theta1, 1, [0x1F, 0x00, 0x01]),
-        (Axis::Theta1, -1, [0x9F, 0x00, 0x01]),
-        (Axis::Theta2, 256, [0x3F, 0x01, 0x00]),
-        (Axis::Theta3, -4097, [0xDF, 0x10, 0x01]),
+        (Axis::Elbow, 1, [0x1F, 0x00, 0x01]),
+        (Axis::Elbow, -1, [0x9F, 0x00, 0x01]),
+        (Axis::Shoulder, 256, [0x3F, 0x01, 0x00]),
+        (Axis::Disc, -4097, [0xDF, 0x10, 0x01]),
         (Axis::Vertical, 65_535, [0x7F, 0xFF, 0xFF]),
         (Axis::Vertical, -65_535, [0xFF, 0xFF, 0xFF]),
     ] {
@@ -26,13 +26,13 @@ fn fast_has_direction_axis_and_mark_in_byte_0_and_the_count_behind() {
 }
 
 #[test]
-fn slow_stands_in_the_order_theta3_theta1_theta2() {
-    for ((theta3, theta1, theta2), bytes) in [
+fn slow_stands_in_the_order_disc_elbow_shoulder() {
+    for ((disc, elbow, shoulder), bytes) in [
         ((1, 2, 3), [0x01, 0x02, 0x03]),
         ((-1, 2, -3), [0x81, 0x02, 0x83]),
         ((30, -30, 0), [0x1E, 0x9E, 0x00]),
     ] {
-        let record = slow(theta1, theta2, theta3);
+        let record = slow(elbow, shoulder, disc);
         assert_eq!(record.encode(&STRICT), bytes);
         assert_eq!(STRICT.decode(bytes), Ok(record));
     }
@@ -58,50 +58,50 @@ fn default_axis_codes_are_those_that_new_makes() {
 #[test]
 fn axis_codes_must_fit_and_differ() {
     let good = AxisCodes::default().codes();
-    let too_large = AxisCodes::new(PerAxis { theta3: 4, ..good }).unwrap_err();
+    let too_large = AxisCodes::new(PerAxis { disc: 4, ..good }).unwrap_err();
     assert_eq!(
         too_large,
         AxisCodeError::TooLarge {
-            axis: Axis::Theta3,
+            axis: Axis::Disc,
             code: 4
         }
     );
-    assert_eq!(too_large.to_string(), "theta3: axis code 4 is above 3");
+    assert_eq!(too_large.to_string(), "disc: axis code 4 is above 3");
     let repeated = AxisCodes::new(PerAxis {
         vertical: 1,
         ..good
     });
     assert_eq!(
         repeated.unwrap_err().to_string(),
-        "theta2 and vertical: both have the axis code 1"
+        "shoulder and vertical: both have the axis code 1"
     );
 }
 
 #[test]
 fn byte_order_is_a_setting() {
     let format = STRICT.with_byte_order(ByteOrder::LittleEndian);
-    let bytes = fast(Axis::Theta1, 0x1234).encode(&format);
+    let bytes = fast(Axis::Elbow, 0x1234).encode(&format);
     assert_eq!(bytes, [0x1F, 0x34, 0x12]);
-    assert_eq!(format.decode(bytes), Ok(fast(Axis::Theta1, 0x1234)));
-    assert_eq!(STRICT.decode(bytes), Ok(fast(Axis::Theta1, 0x3412)));
+    assert_eq!(format.decode(bytes), Ok(fast(Axis::Elbow, 0x1234)));
+    assert_eq!(STRICT.decode(bytes), Ok(fast(Axis::Elbow, 0x3412)));
 }
 
 #[test]
 fn more_than_one_record_holds_cannot_be_built() {
     for pulses in [65_536, -65_536, i32::MAX, i32::MIN] {
-        let error = Fast::new(Axis::Theta2, pulses).unwrap_err();
+        let error = Fast::new(Axis::Shoulder, pulses).unwrap_err();
         assert_eq!(
             (error.axis, error.pulses, error.max),
-            (Axis::Theta2, pulses, 65_535)
+            (Axis::Shoulder, pulses, 65_535)
         );
     }
     for pulses in [31, -31, 256, -226, i32::MAX, i32::MIN] {
-        for axis in [Axis::Theta3, Axis::Theta1, Axis::Theta2] {
+        for axis in [Axis::Disc, Axis::Elbow, Axis::Shoulder] {
             let only = |this| if this == axis { pulses } else { 30 };
             let error = Slow::new(joints(
-                only(Axis::Theta1),
-                only(Axis::Theta2),
-                only(Axis::Theta3),
+                only(Axis::Elbow),
+                only(Axis::Shoulder),
+                only(Axis::Disc),
             ))
             .unwrap_err();
             assert_eq!((error.axis, error.pulses, error.max), (axis, pulses, 30));
@@ -125,19 +125,19 @@ fn the_fast_mark_counts_only_in_the_first_byte() {
         assert_eq!(
             error.kind,
             DecodeErrorKind::SlowCount {
-                axis: Axis::Theta1,
+                axis: Axis::Elbow,
                 byte: 0x9F
             }
         );
         assert_eq!(
             error.to_string(),
-            "pattern byte 4: 0x9F has 31 pulses for theta1 in a SLOW record, which holds at most 30"
+            "pattern byte 4: 0x9F has 31 pulses for elbow in a SLOW record, which holds at most 30"
         );
     }
     // A FAST record may hold any bytes behind its mark.
     assert_eq!(
         STRICT.decode([0x1F, 0x1F, 0x1F]),
-        Ok(fast(Axis::Theta1, 0x1F1F))
+        Ok(fast(Axis::Elbow, 0x1F1F))
     );
 }
 
@@ -195,9 +195,9 @@ fn a_truncated_record_is_an_error_at_its_start() {
 
 #[test]
 fn fast_zero_and_slow_zero_are_records_without_motion() {
-    assert_eq!(STRICT.decode([0x3F, 0, 0]), Ok(fast(Axis::Theta2, 0)));
+    assert_eq!(STRICT.decode([0x3F, 0, 0]), Ok(fast(Axis::Shoulder, 0)));
     assert_eq!(STRICT.decode([0, 0, 0]), Ok(slow(0, 0, 0)));
-    assert_eq!(fast(Axis::Theta2, 0).pulses(), PerAxis::default());
+    assert_eq!(fast(Axis::Shoulder, 0).pulses(), PerAxis::default());
     assert_eq!(slow(0, 0, 0).pulses(), PerAxis::default());
 }
 
@@ -222,7 +222,7 @@ fn a_negative_zero_is_zero_and_reported() {
 
 #[test]
 fn axis_bits_in_a_slow_byte_are_an_error_or_ignored() {
-    for (place, axis) in [(0, Axis::Theta3), (1, Axis::Theta1), (2, Axis::Theta2)] {
+    for (place, axis) in [(0, Axis::Disc), (1, Axis::Elbow), (2, Axis::Shoulder)] {
         for bits in [0x20, 0x40, 0x60] {
             let mut bytes = [0x05, 0x86, 0x07];
             bytes[place] |= bits;
@@ -236,7 +236,7 @@ fn axis_bits_in_a_slow_byte_are_an_error_or_ignored() {
     }
     assert_eq!(
         STRICT.decode([0x05, 0x06, 0x47]).unwrap_err().to_string(),
-        "pattern byte 2: 0x47 has D6 or D5 set for theta2 in a SLOW record"
+        "pattern byte 2: 0x47 has D6 or D5 set for shoulder in a SLOW record"
     );
 }
 
@@ -249,7 +249,7 @@ fn the_first_error_of_a_record_is_the_one_reported() {
 }
 
 /// Written from the bit table alone.
-fn canonical_by_bits(bytes: [u8; 3], mode: Mode) -> Option<[u8; 3]> {
+fn canonical_by_bits(bytes: [u8; 3], strictness: Strictness) -> Option<[u8; 3]> {
     let [first, second, third] = bytes;
     if first & 0x1F == 0x1F {
         let empty = second == 0 && third == 0;
@@ -257,7 +257,7 @@ fn canonical_by_bits(bytes: [u8; 3], mode: Mode) -> Option<[u8; 3]> {
     }
     let full = |byte: u8| byte & 0x1F == 0x1F;
     let marked = bytes.iter().any(|byte| byte & 0x60 != 0);
-    if full(second) || full(third) || (mode == Mode::Strict && marked) {
+    if full(second) || full(third) || (strictness == Strictness::Strict && marked) {
         return None;
     }
     Some(bytes.map(|byte| if byte & 0x1F == 0 { 0 } else { byte & 0x9F }))
@@ -267,7 +267,7 @@ fn check_all_records(format: &Format) {
     for word in 0..1_u32 << 24 {
         let [_, a, b, c] = word.to_be_bytes();
         let bytes = [a, b, c];
-        let expected = canonical_by_bits(bytes, format.mode);
+        let expected = canonical_by_bits(bytes, format.strictness);
         assert_eq!(format.canonical(bytes).ok(), expected, "{bytes:02X?}");
     }
 }

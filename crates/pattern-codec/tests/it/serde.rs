@@ -1,7 +1,7 @@
 //! Serialized settings and records: names as documented, values validated when read.
 
 use pattern_codec::engraving::{
-    Axis, AxisCodes, ByteOrder, Fast, Format, Mode, Record, Statistics,
+    Axis, AxisCodes, ByteOrder, Fast, Format, Record, Statistics, Strictness,
 };
 use serde_json::{from_str, json, to_value};
 use test_support::{not_read, stored};
@@ -14,11 +14,11 @@ fn a_format_is_read_and_written_by_name() {
     let format = Format::new()
         .with_axis_codes(AxisCodes::new(codes).unwrap())
         .with_byte_order(ByteOrder::LittleEndian)
-        .with_mode(Mode::Lenient);
+        .with_strictness(Strictness::Lenient);
     let value = json!({
-        "axis_codes": { "theta1": 3, "theta2": 2, "theta3": 1, "vertical": 0 },
+        "axis_codes": { "elbow": 3, "shoulder": 2, "disc": 1, "vertical": 0 },
         "byte_order": "little_endian",
-        "mode": "lenient",
+        "strictness": "lenient",
     });
     assert_eq!(to_value(format).unwrap(), value);
     assert_eq!(from_str::<Format>(&value.to_string()).unwrap(), format);
@@ -29,11 +29,11 @@ fn a_format_is_read_and_written_by_name() {
 fn wrong_settings_are_refused_with_the_reason() {
     for (text, reason) in [
         (
-            r#"{"axis_codes": {"theta1": 0, "theta2": 1, "theta3": 1, "vertical": 3}}"#,
-            "theta2 and theta3: both have the axis code 1",
+            r#"{"axis_codes": {"elbow": 0, "shoulder": 1, "disc": 1, "vertical": 3}}"#,
+            "shoulder and disc: both have the axis code 1",
         ),
         (
-            r#"{"axis_codes": {"theta1": 0, "theta2": 1, "theta3": 2, "vertical": 9}}"#,
+            r#"{"axis_codes": {"elbow": 0, "shoulder": 1, "disc": 2, "vertical": 9}}"#,
             "vertical: axis code 9 is above 3",
         ),
         (r#"{"byte_order": "middle"}"#, "unknown variant `middle`"),
@@ -56,7 +56,7 @@ fn records_are_read_within_their_range_only() {
         ),
         (
             slow(-30, 30, 1),
-            json!({ "slow": { "theta1": -30, "theta2": 30, "theta3": 1 } }),
+            json!({ "slow": { "elbow": -30, "shoulder": 30, "disc": 1 } }),
         ),
     ] {
         assert_eq!(to_value(record).unwrap(), value);
@@ -64,12 +64,12 @@ fn records_are_read_within_their_range_only() {
     }
     for (text, reason) in [
         (
-            r#"{"fast": {"axis": "theta1", "pulses": 65536}}"#,
-            "theta1: 65536 pulses do not fit",
+            r#"{"fast": {"axis": "elbow", "pulses": 65536}}"#,
+            "elbow: 65536 pulses do not fit",
         ),
         (
-            r#"{"slow": {"theta1": 0, "theta2": -31, "theta3": 0}}"#,
-            "theta2: -31 pulses do not fit",
+            r#"{"slow": {"elbow": 0, "shoulder": -31, "disc": 0}}"#,
+            "shoulder: -31 pulses do not fit",
         ),
     ] {
         let error = not_read::<Record>(text);
@@ -79,10 +79,10 @@ fn records_are_read_within_their_range_only() {
 
 #[test]
 fn statistics_are_written_by_name() {
-    let fast = Fast::new(Axis::Theta2, -7).unwrap();
+    let fast = Fast::new(Axis::Shoulder, -7).unwrap();
     let statistics: Statistics = [fast.into()].into_iter().collect();
     let value = to_value(statistics).unwrap();
     assert_eq!(value["fast_records"], 1);
-    assert_eq!(value["pulses"]["theta2"], 7);
+    assert_eq!(value["pulses"]["shoulder"], 7);
     stored(&statistics);
 }

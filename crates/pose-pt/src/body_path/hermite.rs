@@ -93,12 +93,18 @@ mod tests {
     use nalgebra::{Isometry3, Point3};
 
     use super::*;
-    use crate::course::Course;
-    use crate::{AxisLimits, Interpolation, Locator, Path};
+    use crate::leg_axes::LegAxes;
+    use crate::{Interpolation, Locator, LocatorAxis, PosePath};
 
     /// L = 4000 mm across the axis of every turn, which is Z.
     fn flat() -> Platform<3> {
-        let limits = AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0);
+        let limits = LocatorAxis {
+            min: -9000.0,
+            max: 9000.0,
+            speed: 1.0,
+            acceleration: 1.0,
+            jerk: None,
+        };
         let anchors = [[0.0, 0.0, 0.0], [4000.0, 0.0, 0.0], [1800.0, 1500.0, 0.0]];
         Platform::new(
             anchors.map(|anchor| Locator::new(Point3::from(anchor), Point3::origin(), [limits; 3])),
@@ -114,11 +120,11 @@ mod tests {
             Isometry3::identity(),
             Isometry3::new(Vector3::zeros(), Vector3::z() * turn),
         ];
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
-        let course = Course::new(&platform, &path.leg(0).unwrap());
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
+        let leg_axes = LegAxes::new(&platform, &path.leg(0).unwrap());
         // The mean speed is 1, and so is the time.
         let point = |s, speed| {
-            let at = course.point(s);
+            let at = leg_axes.point(s);
             Row {
                 time_s: s,
                 duration_s: s,

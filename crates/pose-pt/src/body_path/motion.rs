@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Rotation3, Vector3};
 use trig_kernels::sin_cos;
 
-use crate::course::{Course, TurningCourse};
+use crate::leg_axes::{LegAxes, TurningAxes};
 use crate::turn::Turn;
 use crate::{Convention, Platform};
 
@@ -20,12 +20,12 @@ pub(super) struct Motion {
 
 /// Axis coordinates and their derivative by the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct CoursePoint<const N: usize> {
+pub(super) struct AxesPoint<const N: usize> {
     pub(super) axes: [Vector3<f64>; N],
     pub(super) slope: [Vector3<f64>; N],
 }
 
-impl<const N: usize> CoursePoint<N> {
+impl<const N: usize> AxesPoint<N> {
     /// The axes of a body that moves.
     pub(super) fn of(platform: &Platform<N>, motion: &Motion) -> Self {
         let velocity = |anchor: Point3<f64>| {
@@ -38,15 +38,15 @@ impl<const N: usize> CoursePoint<N> {
     }
 }
 
-impl<const N: usize> Course<'_, N> {
+impl<const N: usize> LegAxes<'_, N> {
     /// Axes and slopes at a parameter.
-    pub(super) fn point(&self, s: f64) -> CoursePoint<N> {
+    pub(super) fn point(&self, s: f64) -> AxesPoint<N> {
         match self {
-            Self::Turning(course) => {
-                let turn = Turn::of(course.angle * s);
-                CoursePoint {
-                    axes: course.axes(s, turn),
-                    slope: course.slope(turn),
+            Self::Turning(leg_axes) => {
+                let turn = Turn::of(leg_axes.angle * s);
+                AxesPoint {
+                    axes: leg_axes.axes(s, turn),
+                    slope: leg_axes.slope(turn),
                 }
             }
             Self::Vector(platform, leg) => {
@@ -55,7 +55,7 @@ impl<const N: usize> Course<'_, N> {
                 let angular =
                     angular_velocity(leg.convention, &vector.angles(), &leg.angles_change());
                 let (position, linear) = (vector.position(), leg.slide());
-                CoursePoint::of(
+                AxesPoint::of(
                     platform,
                     &Motion {
                         rotation,
@@ -69,7 +69,7 @@ impl<const N: usize> Course<'_, N> {
     }
 }
 
-impl<const N: usize> TurningCourse<N> {
+impl<const N: usize> TurningAxes<N> {
     fn slope(&self, turn: Turn) -> [Vector3<f64>; N] {
         let mut slope = self.slide;
         for (slope, (sine, versine)) in slope.iter_mut().zip(self.sine.iter().zip(&self.versine)) {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, RealField, Vector3};
 
-use crate::fit::{FitError, Shape, Side};
+use crate::fit::{FitError, PointSet, Shape};
 use crate::number::{epsilons, first_beyond, largest, smallest};
 use crate::{Axis, LimitError, Locator, PlatformError};
 
@@ -132,7 +132,7 @@ pub(super) fn anchors<T: RealField + Copy>(anchors: &[Point3<T>]) -> Result<T, P
             largest = largest.max(distance);
         }
     }
-    match Shape::new(anchors, Side::From) {
+    match Shape::new(anchors, PointSet::From) {
         Err(FitError::Collinear {
             width,
             length,

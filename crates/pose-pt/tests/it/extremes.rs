@@ -8,7 +8,7 @@ mod pvt;
 
 use calls::{Call, Inputs, Outcome};
 use pose_pt::nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3};
-use pose_pt::{Convention, Path, PoseVector, Trig, slerp, to_matrix};
+use pose_pt::{Convention, PosePath, PoseVector, Trig, slerp, to_matrix};
 
 /// Of numbers that a tiny one is added to: what cancels in a fit or a plan.
 const ROUNDING: f64 = 1e-5;
@@ -114,7 +114,7 @@ fn tiny_numbers_do_what_zero_does() {
 /// by its own factor and nothing else.
 fn check_huge<T: RealField + Trig>(calls: &[Call<T>], large: T, huge: T) {
     // Sines of huge angles, and quaternions that are no rotations, see below.
-    let other = ["PoseVector::to_*", "slerp", "Path of vectors"];
+    let other = ["PoseVector::to_*", "slerp", "PosePath of vectors"];
     let factor = huge / large;
     let rounding: T = T::from_subset(&1e-3);
     for call in calls.iter().filter(|call| !other.contains(&call.name)) {
@@ -178,7 +178,7 @@ fn huge_angles_are_reduced_or_refused() {
     assert!(off < 1e7 * f64::EPSILON, "{off}");
     assert!(near(1e8).gamma.is_nan() && near(1e300).gamma.is_nan());
     let vectors = [vector; 2];
-    let path = Path::of_vectors(&vectors, Convention::ExtrinsicXyz).unwrap_err();
+    let path = PosePath::of_vectors(&vectors, Convention::ExtrinsicXyz).unwrap_err();
     assert_eq!(
         path.to_string(),
         "angle 1e300 of pose 0 is not within ±6.71089e7 rad"

@@ -4,15 +4,21 @@ mod fits;
 
 use pose_pt::nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, Convention, FitError, LimitError, Locator, Platform, PlatformError,
-    PoseVector, Side,
+    Axis, Convention, FitError, LimitError, Locator, LocatorAxis, Platform, PlatformError,
+    PointSet, PoseVector,
 };
 
 /// Lengths of some metres in f64, after a fit: mm.
 const ROUNDING_MM: f64 = 1e-11;
 
-fn limits() -> [AxisLimits; 3] {
-    [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3]
+fn limits() -> [LocatorAxis; 3] {
+    [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3]
 }
 
 /// Three locators under a panel of 3 m by 2 m; each is at zero where the panel is at rest.
@@ -104,7 +110,13 @@ fn a_pose_of_axes_at_their_ends_is_not_refused() {
 fn each_end_of_a_stroke_is_as_sharp_as_the_other() {
     for far in [1e15, 1e300, f64::MAX] {
         let platform = with(1, |l| {
-            l.limits[0] = AxisLimits::new(-10.0, far, 20.0, 100.0);
+            l.limits[0] = LocatorAxis {
+                min: -10.0,
+                max: far,
+                speed: 20.0,
+                acceleration: 100.0,
+                jerk: None,
+            };
         });
         let refused = platform
             .unwrap()
@@ -133,7 +145,7 @@ fn coordinates_that_are_not_finite_are_refused() {
         assert!(matches!(
             platform.pose(&axes),
             Err(FitError::Coordinate {
-                side: Side::To,
+                set: PointSet::To,
                 point: 1,
                 ..
             })
@@ -154,7 +166,7 @@ fn what_makes_no_platform_is_named() {
         refused.to_string(),
         "locator 1, axis Z: speed is 0, not within 1e-50..=1e50"
     );
-    let rating = |change: &dyn Fn(&mut AxisLimits), wanted: &str| {
+    let rating = |change: &dyn Fn(&mut LocatorAxis), wanted: &str| {
         let refused = with(0, |l| change(&mut l.limits[1])).unwrap_err();
         assert!(
             matches!(refused, E::Rating { locator: 0, axis: Axis::Y, name, .. } if name == wanted),
@@ -164,7 +176,7 @@ fn what_makes_no_platform_is_named() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 5e-324, f64::MAX] {
         rating(&|l| l.speed = bad, "speed");
         rating(&|l| l.acceleration = bad, "acceleration");
-        rating(&|l| *l = l.with_jerk(bad), "jerk");
+        rating(&|l| l.jerk = Some(bad), "jerk");
     }
     for (min, max) in [
         (1.0, 1.0),

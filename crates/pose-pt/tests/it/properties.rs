@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion, Vector3, Vector4};
 use pose_pt::{
-    AxisLimits, Convention, FitError, Locator, Platform, PoseVector, angle_between,
+    Convention, FitError, Locator, LocatorAxis, Platform, PoseVector, angle_between,
     from_rotation_vector, rigid_fit, rotation_vector, rotation_vector_between, slerp, to_matrix,
 };
 use proptest::prelude::*;
@@ -56,8 +56,14 @@ fn frames() -> impl Strategy<Value = Matrix3<f64>> {
     })
 }
 
-fn limits() -> [AxisLimits; 3] {
-    [AxisLimits::new(-500.0, 500.0, 50.0, 200.0); 3]
+fn limits() -> [LocatorAxis; 3] {
+    [LocatorAxis {
+        min: -500.0,
+        max: 500.0,
+        speed: 50.0,
+        acceleration: 200.0,
+        jerk: None,
+    }; 3]
 }
 
 /// Anchors at least a tenth of their extent wide.
@@ -158,7 +164,7 @@ proptest! {
         let locators = platform.locators().map(|mut locator| {
             for (limits, end) in locator.limits.iter_mut().zip(ends.next().unwrap()) {
                 let (min, max) = if upper { (end - 9.0, *end) } else { (*end, end + 9.0) };
-                *limits = AxisLimits::new(min, max, 50.0, 200.0);
+                *limits = LocatorAxis { min, max, speed: 50.0, acceleration: 200.0, jerk: None };
             }
             locator
         });
@@ -306,7 +312,7 @@ proptest! {
     #[test]
     fn single_precision_agrees(platform in platforms(), pose in poses()) {
         let single = Platform::<4, f32>::new(platform.locators().map(|locator| {
-            let limits = AxisLimits::new(-500.0, 500.0, 50.0, 200.0);
+            let limits = LocatorAxis { min: -500.0, max: 500.0, speed: 50.0, acceleration: 200.0, jerk: None };
             Locator::new(
                 locator.anchor.cast(),
                 locator.origin.cast(),

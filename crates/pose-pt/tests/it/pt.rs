@@ -2,8 +2,8 @@
 
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{
-    Axis, AxisLimits, Convention, Interpolation, LimitError, Path, PathError, PlanError, Platform,
-    PoseVector, PtPoint, PtTable, Segmentation,
+    Axis, Convention, Interpolation, LimitError, LocatorAxis, Platform, PosePath, PosePathError,
+    PoseVector, PtError, PtPoint, PtTable, Segmentation,
 };
 use proptest::prelude::*;
 use twofloat::TwoFloat;
@@ -41,7 +41,7 @@ fn all_kinds_meet_the_poses_and_keep_the_body_rigid() {
     ];
     for platform in [panel(), skewed()] {
         for kind in ALL {
-            let path = Path::new(&poses, kind).unwrap();
+            let path = PosePath::new(&poses, kind).unwrap();
             let table = PtTable::plan(&platform, &path, Segmentation::segments(700)).unwrap();
             let points: Vec<_> = table.points().collect();
             assert_eq!(points.len(), 1401);
@@ -68,9 +68,15 @@ fn points_follow_the_leg() {
         pose([1.0, 2.0, 3.0], [0.1, 0.0, 0.3]),
         pose([130.0, -12.0, 7.0], [0.2, -0.15, 1.15]),
     ];
-    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
+    let platform = panel_with(LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1.0,
+        acceleration: 1.0,
+        jerk: None,
+    });
     for kind in ALL {
-        let path = Path::new(&poses, kind).unwrap();
+        let path = PosePath::new(&poses, kind).unwrap();
         let leg = path.leg(0).unwrap();
         let table = PtTable::plan(&platform, &path, Segmentation::segments(333)).unwrap();
         for (number, point) in (0..).zip(table.points()) {
@@ -86,7 +92,7 @@ fn points_follow_the_leg() {
 fn the_slowest_axis_runs_at_its_rated_speed() {
     for platform in [panel(), skewed()] {
         let poses = from_rest([30.0, -12.0, 7.0], [0.0, 0.02, 0.03]);
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let table = PtTable::plan(&platform, &path, Segmentation::segments(100)).unwrap();
         let points: Vec<_> = table.points().collect();
         for pair in points.windows(2) {
@@ -110,12 +116,12 @@ fn the_slowest_axis_runs_at_its_rated_speed() {
 fn steps_are_smaller_than_the_accuracy() {
     let platform = panel();
     let poses = from_rest([10.0, 0.0, 0.0], [0.0; 3]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let table = PtTable::plan(&platform, &path, Segmentation::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 1002);
     assert!((table.duration_s() - 10.0 / SPEED).abs() < 1e-12);
     let poses = from_rest([0.1, 0.0, 0.0], [0.0, 0.0, 0.05]);
-    let path = Path::new(&poses, Interpolation::Screw).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Screw).unwrap();
     let table = PtTable::plan(&platform, &path, Segmentation::steps(0.01, 1e-4)).unwrap();
     assert_eq!(table.len(), 502);
 }
@@ -127,7 +133,7 @@ fn distance_error_of_the_panel() {
     let platform = panel();
     let turn = 4.0 * anchors_apart;
     let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).unwrap();
     let points: Vec<_> = table.points().collect();
     let (bound, measured) = (
@@ -143,15 +149,21 @@ fn distance_error_of_the_panel() {
 fn a_stroke_passed_between_the_ends_is_named() {
     // Half a turn of 100 mm about the first locator, seen as two poses: in between the
     // others swing far out.
-    let limits = AxisLimits::new(-600.0, 600.0, 10.0, 25.0);
+    let limits = LocatorAxis {
+        min: -600.0,
+        max: 600.0,
+        speed: 10.0,
+        acceleration: 25.0,
+        jerk: None,
+    };
     let platform = panel_with(limits);
     let poses = [
         PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         PoseVector::new(0.0, 0.0, 0.0, 0.0, 0.0, core::f64::consts::TAU),
     ];
-    let path = Path::of_vectors(&poses, Convention::ExtrinsicXyz).unwrap();
+    let path = PosePath::of_vectors(&poses, Convention::ExtrinsicXyz).unwrap();
     let error = PtTable::plan(&platform, &path, Segmentation::segments(360)).unwrap_err();
-    let PlanError::Limit {
+    let PtError::Limit {
         leg: 0,
         point,
         reason,
@@ -179,25 +191,25 @@ fn a_stroke_passed_between_the_ends_is_named() {
 fn wrong_input_is_named() {
     let platform = panel();
     let good = from_rest([1.0, 0.0, 0.0], [0.0; 3]);
-    let one = Path::new(&good[..1], Interpolation::Straight).unwrap_err();
-    assert_eq!(one, PathError::TooFew { poses: 1 });
+    let one = PosePath::new(&good[..1], Interpolation::Straight).unwrap_err();
+    assert_eq!(one, PosePathError::TooFew { poses: 1 });
     let bad = [good[0], pose([f64::NAN, 0.0, 0.0], [0.0; 3])];
-    let bad = Path::new(&bad, Interpolation::Screw).unwrap_err();
+    let bad = PosePath::new(&bad, Interpolation::Screw).unwrap_err();
     assert_eq!(
         bad.to_string(),
         "coordinate NaN of pose 1 is not within ±1e50"
     );
     let far = [good[0], pose([0.0, -1e160, 0.0], [0.0; 3])];
-    let far = Path::new(&far, Interpolation::Straight).unwrap_err();
+    let far = PosePath::new(&far, Interpolation::Straight).unwrap_err();
     assert_eq!(
         far.to_string(),
         "coordinate -1e160 of pose 1 is not within ±1e50"
     );
     let half = [good[0], pose([0.0; 3], [0.0, core::f64::consts::PI, 0.0])];
-    let half = Path::new(&half, Interpolation::Straight).unwrap_err();
-    assert!(matches!(half, PathError::HalfTurn { pose: 0, .. }));
+    let half = PosePath::new(&half, Interpolation::Straight).unwrap_err();
+    assert!(matches!(half, PosePathError::HalfTurn { pose: 0, .. }));
 
-    let path = Path::new(&good, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&good, Interpolation::Straight).unwrap();
     for segmentation in [
         Segmentation::segments(0),
         Segmentation::max_distance_error(0.0),
@@ -206,15 +218,12 @@ fn wrong_input_is_named() {
         Segmentation::steps(1.0, f64::INFINITY),
     ] {
         let error = PtTable::plan(&platform, &path, segmentation).unwrap_err();
-        assert!(matches!(error, PlanError::Segmentation { .. }), "{error}");
+        assert!(matches!(error, PtError::Segmentation { .. }), "{error}");
     }
     let error = PtTable::plan(&platform, &path, Segmentation::steps(1e-12, 1.0)).unwrap_err();
-    assert!(
-        matches!(error, PlanError::TooFine { leg: 0, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PtError::TooFine { leg: 0, .. }), "{error}");
     let table = PtTable::plan(&platform, &path, Segmentation::segments(512)).unwrap();
-    let error = PlanError::TooManyPoints {
+    let error = PtError::TooManyPoints {
         needed: 513,
         available: 512,
     };
@@ -225,9 +234,15 @@ fn wrong_input_is_named() {
 #[test]
 fn a_body_that_stays_is_one_point() {
     let still = [pose([1.0; 3], [0.1; 3]); 3];
-    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1.0, 1.0));
+    let platform = panel_with(LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1.0,
+        acceleration: 1.0,
+        jerk: None,
+    });
     for kind in ALL {
-        let path = Path::new(&still, kind).unwrap();
+        let path = PosePath::new(&still, kind).unwrap();
         let table =
             PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).unwrap();
         assert_eq!(table.points().count(), 1);
@@ -237,7 +252,7 @@ fn a_body_that_stays_is_one_point() {
             pose([2.0; 3], [0.1; 3]),
             pose([2.0; 3], [0.1; 3]),
         ];
-        let path = Path::new(&moved, kind).unwrap();
+        let path = PosePath::new(&moved, kind).unwrap();
         let table = PtTable::plan(&platform, &path, Segmentation::segments(3)).unwrap();
         assert_eq!(table.points().count(), 4);
         assert_eq!(table.len(), 4);
@@ -252,7 +267,7 @@ fn points_that_cannot_be_told_apart_are_refused() {
         pose([1000.0, 0.0, 0.0], [0.0; 3]),
         pose([1000.0 + 1e-11, 0.0, 0.0], [0.0; 3]),
     ];
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     assert_eq!(
         PtTable::plan(&platform, &path, Segmentation::segments(10))
             .unwrap()
@@ -261,7 +276,7 @@ fn points_that_cannot_be_told_apart_are_refused() {
     );
     let error = PtTable::plan(&platform, &path, Segmentation::segments(1000)).unwrap_err();
     assert!(
-        matches!(error, PlanError::Indistinct { leg: 0, .. }),
+        matches!(error, PtError::Indistinct { leg: 0, .. }),
         "{error}"
     );
     // A way that no axis sees is none: each is at 500 mm.
@@ -271,7 +286,7 @@ fn points_that_cannot_be_told_apart_are_refused() {
     }))
     .unwrap();
     let poses = [0.0, 1e-14, 1.0].map(|y| pose([0.0, y, 0.0], [0.0; 3]));
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     assert_eq!(
         PtTable::plan(&platform, &path, Segmentation::segments(3))
             .unwrap()
@@ -288,7 +303,7 @@ fn times_lose_nothing_to_rounding() {
         Isometry3::identity(),
         Isometry3::translation(100.0, 30.0, -20.0),
     ];
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let table = PtTable::plan(&platform, &path, Segmentation::segments(100_000)).unwrap();
     let exact = table
         .points()
@@ -305,7 +320,7 @@ proptest! {
         poses in poses(), kind in 0..4_usize, allowed in 0.001..0.5,
     ) {
         for platform in [panel(), skewed()] {
-            let path = Path::new(&poses, ALL[kind]).unwrap();
+            let path = PosePath::new(&poses, ALL[kind]).unwrap();
             let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(allowed))
                 .unwrap();
             let points: Vec<_> = table.points().collect();

@@ -6,7 +6,7 @@ mod times;
 
 use crate::support::table::{Cut, Point, plan, points_of};
 use path_timing::{Knot, PlanError};
-use pose_pt::{AxisLimits, Path, Platform};
+use pose_pt::{LocatorAxis, Platform, PosePath};
 use proptest::prelude::*;
 
 use crate::support::limits::{LIMIT, check_limits};
@@ -58,7 +58,7 @@ fn poses_on_the_way_are_stops() {
         pose([5.0, -5.0, 0.0], [0.0, 0.0, 0.02]),
     ];
     for kind in ALL {
-        let path = Path::new(&poses, kind).unwrap();
+        let path = PosePath::new(&poses, kind).unwrap();
         let mut knots = [Knot::default(); 202];
         let table = plan(&platform, &path, Cut::Into(100), &mut knots).unwrap();
         let points = points_of(table.rows());
@@ -78,13 +78,55 @@ fn poses_on_the_way_are_stops() {
 #[test]
 fn tiny_moves_and_odd_limits_give_finite_tables() {
     let odd = [
-        AxisLimits::new(-1500.0, 1500.0, 1e-3, 1e6),
-        AxisLimits::new(-1500.0, 1500.0, 1e6, 1e-3),
-        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e9),
-        AxisLimits::new(-1500.0, 1500.0, 10.0, 25.0).with_jerk(1e-2),
-        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e-30).with_jerk(1e30),
-        AxisLimits::new(-1500.0, 1500.0, 1e-30, 1e30).with_jerk(1e30),
-        AxisLimits::new(-1500.0, 1500.0, 1e30, 1e30).with_jerk(1e-30),
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e-3,
+            acceleration: 1e6,
+            jerk: None,
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e6,
+            acceleration: 1e-3,
+            jerk: None,
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 10.0,
+            acceleration: 25.0,
+            jerk: Some(1e9),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 10.0,
+            acceleration: 25.0,
+            jerk: Some(1e-2),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e30,
+            acceleration: 1e-30,
+            jerk: Some(1e30),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e-30,
+            acceleration: 1e30,
+            jerk: Some(1e30),
+        },
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 1e30,
+            acceleration: 1e30,
+            jerk: Some(1e-30),
+        },
     ];
     for limits in odd {
         let platform = panel_with(limits);
@@ -97,7 +139,7 @@ fn tiny_moves_and_odd_limits_give_finite_tables() {
         ] {
             let poses = from_rest([way, 0.0, -way], [0.0, turn, turn]);
             for kind in ALL {
-                let path = Path::new(&poses, kind).unwrap();
+                let path = PosePath::new(&poses, kind).unwrap();
                 let mut knots = [Knot::default(); 33];
                 let table = plan(&platform, &path, Cut::Into(32), &mut knots);
                 // What rounding is most of may be too coarse to be known.
@@ -133,10 +175,10 @@ proptest! {
         jerk in prop::option::of(20.0..2000.0),
         speed in 1.0..1000.0, skew in any::<bool>(),
     ) {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        let mut limits = LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None };
         limits.jerk = jerk;
         let platform = if skew { skewed() } else { panel_with(limits) };
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let mut knots = [Knot::default(); 121];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();

@@ -3,7 +3,7 @@
 use crate::support::table::{Cut, Point, bound, plan, points_of};
 use path_timing::Knot;
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{AxisLimits, Interpolation, Path, PtTable, Segmentation};
+use pose_pt::{Interpolation, LocatorAxis, PosePath, PtTable, Segmentation};
 use proptest::prelude::*;
 
 use crate::support::cubic::between;
@@ -27,7 +27,7 @@ fn distance_error_from_rest_is_of_second_order() {
     let platform = panel();
     let turn = 0.01;
     let poses = from_rest([0.0; 3], [0.0, 0.0, turn]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 3];
     let table = plan(&platform, &path, Cut::Into(2), &mut knots).unwrap();
     let points = points_of(table.rows());
@@ -53,7 +53,7 @@ fn distance_error_from_rest_is_of_second_order() {
 fn distance_error_decides_the_number_of_points() {
     let platform = panel();
     let poses = from_rest([30.0, -12.0, 7.0], [0.01, -0.02, 0.08]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     for allowed in [0.1, 0.01, 0.001] {
         let mut knots = vec![Knot::default(); 2000];
         let table = plan(&platform, &path, Cut::Within(allowed), &mut knots).unwrap();
@@ -82,10 +82,10 @@ proptest! {
         poses in poses(), kind in 0..4_usize, segments in 2..12_u32, speed in 1.0..1000.0,
         jerk in prop::option::of(20.0..2000.0), skew in any::<bool>(),
     ) {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        let mut limits = LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None };
         limits.jerk = jerk;
         let platform = if skew { skewed() } else { panel_with(limits) };
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let mut knots = [Knot::default(); 13];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();

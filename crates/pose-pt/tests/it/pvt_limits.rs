@@ -2,7 +2,7 @@
 
 use crate::support::table::{Cut, Point, plan, points_of};
 use path_timing::{FeedCeiling, Knot};
-use pose_pt::{AxisLimits, Path, Platform};
+use pose_pt::{LocatorAxis, Platform, PosePath};
 use proptest::prelude::*;
 
 use crate::support::exact::Exact;
@@ -14,7 +14,13 @@ use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with, pose, ske
 #[test]
 fn limits_hold_to_the_last_digit() {
     let turn = [0.01, 0.02, 0.05];
-    let jerk = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(100.0);
+    let jerk = LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: Some(100.0),
+    };
     for (name, platform) in [
         ("panel", panel()),
         ("jerk", panel_with(jerk)),
@@ -28,7 +34,7 @@ fn limits_hold_to_the_last_digit() {
             &[by(0.0), by(0.01), by(-0.03)],
         ] {
             for (segments, kind) in [(40, 0), (1024, 1), (8192, 2), (20_000, 3)] {
-                let path = Path::new(poses, ALL[kind]).unwrap();
+                let path = PosePath::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
                 let table = plan(&platform, &path, Cut::Into(segments), &mut knots);
                 let table = table.unwrap();
@@ -90,11 +96,11 @@ proptest! {
         first in poses(), second in poses(), kind in 0..4_usize, segments in 7..400_u32,
         jerk in prop::option::of(20.0..2000.0), speed in 1.0..1000.0, scale in 0.1..1.0,
     ) {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION);
+        let mut limits = LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None };
         limits.jerk = jerk;
         let platform = panel_with(limits);
         let poses = [first, second].concat();
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let mut knots = vec![Knot::default(); 1203];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();

@@ -19,7 +19,7 @@ use crate::support::table;
 use check::{check_run, check_table};
 use linear::check_linear;
 use path_timing::{FeedCeiling, Knot};
-use pose_pt::{Path, Platform};
+use pose_pt::{Platform, PosePath};
 use scene::{Draw, Scene};
 use test_support::{Random, setting};
 
@@ -57,7 +57,7 @@ fn plan(scene: &Scene, draw: &mut Draw, counts: &mut Counts) {
         Ok(platform) => platform,
         Err(error) => return counts.refuse(&error),
     };
-    let path = match Path::new(&scene.poses, scene.kind) {
+    let path = match PosePath::new(&scene.poses, scene.kind) {
         Ok(path) => path,
         Err(error) => return counts.refuse(&error),
     };

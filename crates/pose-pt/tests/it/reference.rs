@@ -4,7 +4,7 @@ use pose_pt::nalgebra::{
     Isometry3, Matrix3, Point3, Quaternion, Rotation3, UnitQuaternion, Vector3,
 };
 use pose_pt::{
-    AxisLimits, Convention, Locator, Platform, PoseVector, angle_between, from_matrix, rigid_fit,
+    Convention, Locator, LocatorAxis, Platform, PoseVector, angle_between, from_matrix, rigid_fit,
     slerp, to_matrix,
 };
 
@@ -131,7 +131,13 @@ fn anchors_are_where_the_pose_puts_them() {
                 let moved = rotation * anchor + vector.position();
                 matrix.check(&row, (moved - wanted).norm(), span * ROUNDING);
             }
-            let limits = [AxisLimits::new(-1.0, 1.0, 1.0, 1.0); 3];
+            let limits = [LocatorAxis {
+                min: -1.0,
+                max: 1.0,
+                speed: 1.0,
+                acceleration: 1.0,
+                jerk: None,
+            }; 3];
             let locators = anchors.map(|anchor| Locator::new(anchor, Point3::origin(), limits));
             let Ok(held) = Platform::new(locators) else {
                 assert_eq!(row.text("class"), "collinear");

@@ -3,7 +3,7 @@
 use crate::support::table::{Cut, plan, points_of};
 use path_timing::{FeedCeiling, FeedError, Knot, PlanError, Playback};
 use pose_pt::nalgebra::Isometry3;
-use pose_pt::{AxisLimits, Interpolation, Path};
+use pose_pt::{Interpolation, LocatorAxis, PosePath};
 use proptest::prelude::*;
 
 use crate::support::limits::{LIMIT, check_limits};
@@ -23,7 +23,7 @@ fn poses() -> [Isometry3<f64>; 2] {
 fn at_full_feed_it_is_the_table() {
     for platform in [panel(), skewed()] {
         let poses = poses();
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 101];
         let table = plan(&platform, &path, Cut::Into(100), &mut knots).unwrap();
         let mut ceilings = [FeedCeiling::default(); 101];
@@ -48,7 +48,7 @@ fn at_full_feed_it_is_the_table() {
 fn a_table_at_its_limits_cannot_go_faster_and_one_below_can() {
     let platform = panel();
     let poses = poses();
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
     let table = plan(&platform, &path, Cut::Into(200), &mut knots).unwrap();
     let slow = table.at_speed(0.5).unwrap();
@@ -68,7 +68,7 @@ fn a_table_at_its_limits_cannot_go_faster_and_one_below_can() {
 fn a_stop_is_on_the_path_and_can_go_on() {
     let platform = panel();
     let poses = [pose([0.0; 3], [0.0; 3]), pose([100.0, 0.0, 0.0], [0.0; 3])];
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 401];
     let table = plan(&platform, &path, Cut::Into(400), &mut knots).unwrap();
     let mut ceilings = [FeedCeiling::default(); 401];
@@ -100,9 +100,15 @@ fn a_stop_is_on_the_path_and_can_go_on() {
 /// Braking as hard as it can before the last segment, the machine would crawl on it.
 #[test]
 fn no_stop_crawls() {
-    let platform = panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, 2.0));
+    let platform = panel_with(LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: 2.0,
+        jerk: None,
+    });
     let poses = poses();
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 51];
     let table = plan(&platform, &path, Cut::Into(50), &mut knots).unwrap();
     for moving in 2..50 {
@@ -123,7 +129,7 @@ fn no_stop_crawls() {
 fn wrong_feeds_and_memory_are_named() {
     let platform = panel();
     let poses = poses();
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 11];
     let table = plan(&platform, &path, Cut::Into(10), &mut knots).unwrap();
     let mut ceilings = [FeedCeiling::default(); 11];
@@ -170,9 +176,9 @@ proptest! {
         on in prop::array::uniform3(-300.0..300.0), on_turn in prop::array::uniform3(-1.5..1.5),
         segments in 2..30_u32, scale in 0.3..1.0, feed in 1.0..3.0, speed in 5.0..1e4,
     ) {
-        let platform = panel_with(AxisLimits::new(-1e5, 1e5, speed, ACCELERATION));
+        let platform = panel_with(LocatorAxis { min: -1e5, max: 1e5, speed, acceleration: ACCELERATION, jerk: None });
         let poses = [pose([0.0; 3], [0.0; 3]), pose(translation, turn), pose(on, on_turn)];
-        let Ok(path) = Path::new(&poses, Interpolation::Screw) else { return Ok(()) };
+        let Ok(path) = PosePath::new(&poses, Interpolation::Screw) else { return Ok(()) };
         let mut knots = [Knot::default(); 62];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots);
         // Few segments may be too coarse.
@@ -196,10 +202,10 @@ proptest! {
         let platform = if skew {
             skewed()
         } else {
-            panel_with(AxisLimits::new(-1500.0, 1500.0, speed, ACCELERATION))
+            panel_with(LocatorAxis { min: -1500.0, max: 1500.0, speed, acceleration: ACCELERATION, jerk: None })
         };
         let poses = poses();
-        let path = Path::new(&poses, Interpolation::Screw).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Screw).unwrap();
         let mut knots = [Knot::default(); 151];
         let table = plan(&platform, &path, Cut::Into(segments), &mut knots)
             .unwrap();

@@ -1,11 +1,17 @@
 //! Platform files: what is written is read back, what is wrong is refused.
 
 use pose_pt::nalgebra::Point3;
-use pose_pt::{Axis, AxisLimits, Convention, Locator, Platform, PoseVector};
+use pose_pt::{Axis, Convention, Locator, LocatorAxis, Platform, PoseVector};
 use test_support::{not_read, stored};
 
 fn panel() -> Platform<3> {
-    let limits = AxisLimits::new(-300.0, 300.0, 20.0, 100.0).with_jerk(1000.0);
+    let limits = LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: Some(1000.0),
+    };
     let anchors = [[0.0, 0.0, 0.0], [3000.0, 0.0, 0.0], [0.0, 2000.0, 10.0]];
     Platform::new(anchors.map(|anchor| Locator::new(anchor.into(), Point3::origin(), [limits; 3])))
         .unwrap()

@@ -5,7 +5,7 @@ mod scene;
 
 use crate::support::table::{Cut, bound, plan, points_of};
 use path_timing::Knot;
-use pose_pt::{Interpolation, Path};
+use pose_pt::{Interpolation, PosePath};
 use proptest::prelude::*;
 use scene::{Number, Scene, scaled_platform, scaled_pose};
 
@@ -53,7 +53,7 @@ fn the_bound_on_the_distance_error_holds_in_every_unit() {
         let unit = apart / SPAN;
         let platform = scaled_platform(&panel(), unit);
         let poses = poses.map(|pose| scaled_pose(&pose, unit));
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let allowed = 1e-6 * apart;
         let mut knots = [Knot::default(); 100];
         let table = plan(&platform, &path, Cut::Within(allowed), &mut knots).unwrap();

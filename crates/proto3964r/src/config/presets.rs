@@ -16,7 +16,7 @@ impl Config {
             buffer_wait_ms: 400,
             acknowledge_wait_ms: 0,
             line,
-            babble_s: 10,
+            max_noise_s: 10,
             connection_attempts: 6,
             transmission_attempts: 6,
             priority,

@@ -6,7 +6,7 @@ use super::{Station, state::State};
 use crate::{
     ascii::{DLE, NAK, STX},
     config::Config,
-    event::{Abandoned, Cause, LineError},
+    event::{Abandoned, Cause, CharacterError},
     frame::encoded_len,
 };
 
@@ -21,7 +21,7 @@ enum Symbol {
 }
 
 impl Symbol {
-    const fn of(byte: u8, damage: Option<LineError>) -> Self {
+    const fn of(byte: u8, damage: Option<CharacterError>) -> Self {
         match (byte, damage) {
             (STX, None) => Self::Stx,
             (DLE, None) => Self::Dle,
@@ -33,7 +33,7 @@ impl Symbol {
 
 impl<const N: usize, const T: usize> Station<N, T> {
     /// One character, in any state.
-    pub(super) fn character(&mut self, now: Duration, byte: u8, damage: Option<LineError>) {
+    pub(super) fn character(&mut self, now: Duration, byte: u8, damage: Option<CharacterError>) {
         use Symbol::{Dle, Nak, Other, Stx};
         let symbol = Symbol::of(byte, damage);
         match (&self.state, symbol) {
@@ -130,7 +130,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
 }
 
 /// What is wrong with a character in place of an answer.
-fn wrong(byte: u8, damage: Option<LineError>) -> Cause {
+fn wrong(byte: u8, damage: Option<CharacterError>) -> Cause {
     match (byte, damage) {
         (NAK, None) => Cause::Nak,
         (byte, None) => Cause::Unexpected(byte),

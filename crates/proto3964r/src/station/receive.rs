@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     config::{IdleNoise, SilenceInBlock},
-    event::{Abandoned, LineError, Rejection},
+    event::{Abandoned, CharacterError, Rejection},
     frame::{FrameError, Progress},
 };
 
@@ -23,7 +23,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 self.state = State::Noise {
                     first,
                     silent_at: now.saturating_add(self.zvz),
-                    babble_at: now.saturating_add(self.config.babble()),
+                    noise_end_at: now.saturating_add(self.config.max_noise()),
                 };
             }
         }
@@ -75,7 +75,12 @@ impl<const N: usize, const T: usize> Station<N, T> {
 
     /// A character of the block. Damage is noted, like an error in the frame.
     #[inline]
-    pub(super) fn block_character(&mut self, now: Duration, byte: u8, damage: Option<LineError>) {
+    pub(super) fn block_character(
+        &mut self,
+        now: Duration,
+        byte: u8,
+        damage: Option<CharacterError>,
+    ) {
         if let Some(error) = damage {
             self.spoil(now, Rejection::Line(error));
         }
@@ -125,7 +130,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 block,
                 rejection,
                 gap_at,
-                babble_at: now.saturating_add(self.config.babble()),
+                noise_end_at: now.saturating_add(self.config.max_noise()),
             };
         }
     }

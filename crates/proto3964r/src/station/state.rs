@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use crate::{
-    event::{Cause, Phase, Rejection},
+    event::{Cause, JobPhase, Rejection},
     frame::{Encoder, Progress},
 };
 
@@ -38,7 +38,7 @@ pub(super) enum State {
     Noise {
         first: u8,
         silent_at: Duration,
-        babble_at: Duration,
+        noise_end_at: Duration,
     },
     /// STX came, the receive buffer is in use.
     AwaitBuffer { refuse_at: Duration },
@@ -51,7 +51,7 @@ pub(super) enum State {
         block: Progress,
         rejection: Rejection,
         gap_at: Duration,
-        babble_at: Duration,
+        noise_end_at: Duration,
     },
     /// The block came in and is good; the user has yet to accept or refuse it.
     Held { refuse_at: Duration },
@@ -72,13 +72,13 @@ pub(super) enum State {
     /// The block was interrupted; it is repeated when the line is silent.
     Interrupted {
         silent_at: Duration,
-        babble_at: Duration,
+        noise_end_at: Duration,
     },
     /// The job was given up while it had the line; what the partner still answers belongs to no
     /// other.
     Settling {
         silent_at: Duration,
-        babble_at: Duration,
+        noise_end_at: Duration,
     },
     /// The block is out, its answer is awaited.
     AwaitAck { answer_at: Duration },
@@ -96,11 +96,11 @@ impl State {
     }
 
     /// The phase of the job that is under way; `None` when the line is not the job's.
-    pub(super) const fn phase(&self) -> Option<Phase> {
+    pub(super) const fn phase(&self) -> Option<JobPhase> {
         match self {
-            Self::Request { .. } | Self::AwaitDle { .. } => Some(Phase::Connection),
+            Self::Request { .. } | Self::AwaitDle { .. } => Some(JobPhase::Connection),
             Self::Sending { .. } | Self::Interrupted { .. } | Self::AwaitAck { .. } => {
-                Some(Phase::Transmission)
+                Some(JobPhase::Transmission)
             }
             Self::Idle
             | Self::Noise { .. }

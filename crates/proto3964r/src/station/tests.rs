@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::{Activity, Station, Transmit};
 use crate::{
     config::{Config, Line, Priority},
-    event::{Event, LineError},
+    event::{CharacterError, Event},
 };
 
 /// Bytes of a station beside its two buffers.
@@ -144,7 +144,7 @@ proptest! {
             now += Duration::from_micros(wait * 100);
             match kind {
                 0 => open += u8::from(station.submit(now, &[byte; 5]).is_ok()),
-                1 => station.handle_damaged(now, byte, LineError::Framing),
+                1 => station.handle_damaged(now, byte, CharacterError::Framing),
                 2 => station.handle_break(now),
                 3 => _ = station.cancel(now),
                 4 => station.handle_timeout(now),

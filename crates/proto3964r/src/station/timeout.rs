@@ -24,21 +24,23 @@ impl<const N: usize, const T: usize> Station<N, T> {
             State::AwaitBuffer { refuse_at } | State::Held { refuse_at } => refuse_at,
             State::Noise {
                 silent_at,
-                babble_at,
+                noise_end_at,
                 ..
             }
             | State::Interrupted {
                 silent_at,
-                babble_at,
+                noise_end_at,
             }
             | State::Settling {
                 silent_at,
-                babble_at,
-            } => silent_at.min(babble_at),
+                noise_end_at,
+            } => silent_at.min(noise_end_at),
             State::Invited { gap_at } | State::Receiving { gap_at, .. } => gap_at,
             State::Spoiled {
-                gap_at, babble_at, ..
-            } => gap_at.min(babble_at),
+                gap_at,
+                noise_end_at,
+                ..
+            } => gap_at.min(noise_end_at),
             State::AwaitRepeat { give_up_at } => give_up_at,
             State::Request { stalled_at, .. } => stalled_at,
             State::AwaitDle { answer_at, .. } | State::AwaitAck { answer_at } => answer_at,

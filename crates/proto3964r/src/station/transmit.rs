@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     config::{Conflict, Priority},
-    event::{Cause, Failure, Phase},
+    event::{Cause, Failure, JobPhase},
     frame::Encoder,
 };
 
@@ -37,7 +37,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn next_connection(&mut self, now: Duration, cause: Cause, burst: Burst) {
         let cause = *self.job.first_cause.get_or_insert(cause);
         if self.job.connection_attempts >= self.config.connection_attempts {
-            self.fail(now, Phase::Connection, cause);
+            self.fail(now, JobPhase::Connection, cause);
         } else {
             self.request(now, burst);
         }
@@ -47,7 +47,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn next_transmission(&mut self, now: Duration, cause: Cause, burst: Burst) {
         let cause = *self.job.first_cause.get_or_insert(cause);
         if self.job.transmission_attempts >= self.config.transmission_attempts {
-            self.fail(now, Phase::Transmission, cause);
+            self.fail(now, JobPhase::Transmission, cause);
         } else {
             self.job.transmission_attempts = self.job.transmission_attempts.saturating_add(1);
             self.job.connection_attempts = 0;
@@ -111,7 +111,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let end = self.end_of_rest(now);
         self.state = State::Interrupted {
             silent_at: end.saturating_add(self.zvz),
-            babble_at: end.saturating_add(self.config.babble()),
+            noise_end_at: end.saturating_add(self.config.max_noise()),
         };
     }
 
@@ -129,16 +129,16 @@ impl<const N: usize, const T: usize> Station<N, T> {
     }
 
     /// The last attempt is used up: NAK puts the partner into idle.
-    fn fail(&mut self, now: Duration, phase: Phase, cause: Cause) {
+    fn fail(&mut self, now: Duration, phase: JobPhase, cause: Cause) {
         self.replies.push(Reply::Nak);
         self.close_failed(phase, cause);
         self.go_idle(now);
     }
 
-    fn close_failed(&mut self, phase: Phase, cause: Cause) {
+    fn close_failed(&mut self, phase: JobPhase, cause: Cause) {
         let attempts = match phase {
-            Phase::Connection => self.job.connection_attempts,
-            Phase::Transmission => self.job.transmission_attempts,
+            JobPhase::Connection => self.job.connection_attempts,
+            JobPhase::Transmission => self.job.transmission_attempts,
         };
         self.close(Note::Failed(Failure {
             phase,
@@ -157,10 +157,10 @@ impl<const N: usize, const T: usize> Station<N, T> {
     pub(super) fn end_job(&mut self, now: Duration, cause: Cause) {
         let cause = *self.job.first_cause.get_or_insert(cause);
         let Some(phase) = self.state.phase() else {
-            self.close_failed(Phase::Connection, cause);
+            self.close_failed(JobPhase::Connection, cause);
             return;
         };
-        if phase == Phase::Transmission {
+        if phase == JobPhase::Transmission {
             self.discard_rest();
         }
         self.replies.push(Reply::Nak);
@@ -168,7 +168,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
         let end = self.end_of_rest(now);
         self.state = State::Settling {
             silent_at: end.saturating_add(self.zvz),
-            babble_at: end.saturating_add(self.config.babble()),
+            noise_end_at: end.saturating_add(self.config.max_noise()),
         };
     }
 

@@ -5,7 +5,7 @@ use std::io;
 use thiserror::Error;
 
 use super::{Clock, Reader, Writer};
-use crate::{embedded_io_async::Driver, event::LineError};
+use crate::{embedded_io_async::Driver, event::CharacterError};
 
 /// What a receiver circuit reports in place of a character.
 ///
@@ -15,9 +15,9 @@ use crate::{embedded_io_async::Driver, event::LineError};
 /// # Examples
 /// ```
 /// use std::io;
-/// use proto3964r::{LineError, tokio::Damage};
+/// use proto3964r::{CharacterError, tokio::Damage};
 ///
-/// let error = io::Error::from(Damage::Character { byte: 0x41, error: LineError::Parity });
+/// let error = io::Error::from(Damage::Character { byte: 0x41, error: CharacterError::Parity });
 /// assert_eq!(error.to_string(), "parity error in 41");
 /// assert!(Damage::of(&error).is_some());
 /// ```
@@ -30,7 +30,7 @@ pub enum Damage {
         /// What was read.
         byte: u8,
         /// What is wrong with it.
-        error: LineError,
+        error: CharacterError,
     },
     /// BREAK.
     #[error("BREAK")]

@@ -10,7 +10,7 @@ use ::tokio::{
 };
 use embedded_io_async::{ErrorType, Read, Write};
 
-use crate::{blocking::closed, embedded_io_async::Timer};
+use crate::{blocking::closed, embedded_io_async::AsyncClock};
 
 /// A stream of any kind.
 trait Stream: AsyncRead + AsyncWrite + Send {}
@@ -81,7 +81,7 @@ impl Clock {
     }
 }
 
-impl Timer for Clock {
+impl AsyncClock for Clock {
     fn now(&mut self) -> Duration {
         self.0.elapsed()
     }

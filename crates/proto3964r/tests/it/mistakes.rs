@@ -6,8 +6,8 @@ mod send;
 use core::time::Duration;
 
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, IdleNoise, Line, Phase, Priority, Rejection, Station,
-    SubmitError, Transmit, frame::FrameError,
+    Abandoned, Cause, Config, Event, Failure, IdleNoise, JobPhase, Line, Priority, Rejection,
+    Station, SubmitError, Transmit, frame::FrameError,
 };
 
 use crate::common::low_side::{DLE, NAK, STX, hear, low, ms, sent};

@@ -159,7 +159,7 @@ fn any_config(priority: Priority) -> impl Strategy<Value = Config> {
                     qvz_ms: qvz,
                     zvz_ms: zvz,
                     bwz_ms: bwz,
-                    babble_s: 1,
+                    max_noise_s: 1,
                     connection_attempts: connection,
                     transmission_attempts: transmission,
                     idle_noise: noise,

@@ -5,7 +5,7 @@ mod receive;
 use core::time::Duration;
 
 use proto3964r::{
-    Cause, Config, Conflict, Event, Failure, Line, Phase, Priority, Rejection, Station,
+    Cause, Config, Conflict, Event, Failure, JobPhase, Line, Priority, Rejection, Station,
     frame::FrameError,
 };
 
@@ -85,7 +85,7 @@ fn each_nak_after_a_pause_is_an_answer_of_its_own() {
     let Some(Event::Failed(Failure { phase, cause, .. })) = station.poll_event() else {
         panic!("six refusals end the job");
     };
-    assert_eq!((phase, cause), (Phase::Connection, Cause::Nak));
+    assert_eq!((phase, cause), (JobPhase::Connection, Cause::Nak));
 }
 
 /// The answer to an STX long before, or to a data byte 02h: the end of the block is still to come.

@@ -303,7 +303,7 @@ fn serialport_gives_both_telegrams_of_one_read() {
 
 struct SystemTimer(Clock);
 
-impl asynchronous::Timer for SystemTimer {
+impl asynchronous::AsyncClock for SystemTimer {
     fn now(&mut self) -> Duration {
         self.0.elapsed()
     }

@@ -3,7 +3,8 @@
 use core::time::Duration;
 
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, Line, Phase, Priority, Rejection, Station, Transmit,
+    Abandoned, Cause, Config, Event, Failure, JobPhase, Line, Priority, Rejection, Station,
+    Transmit,
 };
 
 use crate::common::low_side::{CHARACTER, DLE, NAK, STX, hear, low, ms, sent_by_byte as sent};
@@ -50,7 +51,7 @@ fn a_dle_into_the_block_waits_for_silence() {
     };
     assert_eq!(
         (phase, cause),
-        (Phase::Transmission, Cause::Unexpected(DLE))
+        (JobPhase::Transmission, Cause::Unexpected(DLE))
     );
 }
 
@@ -151,7 +152,7 @@ fn asking_first_and_delivering_nothing_costs_attempts() {
             last = Some((phase, cause, attempts));
         }
     }
-    assert_eq!(last, Some((Phase::Connection, Cause::Conflict, 6)));
+    assert_eq!(last, Some((JobPhase::Connection, Cause::Conflict, 6)));
 }
 
 /// Earlier than one and a half characters after STX: it left the partner before STX was there.

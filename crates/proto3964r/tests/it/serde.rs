@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use proto3964r::{Config, Event, Line, Phase, Priority, Station};
+use proto3964r::{Config, Event, JobPhase, Line, Priority, Station};
 use test_support::stored;
 
 use crate::common::low_side::{STX, low, ms};
@@ -37,5 +37,5 @@ fn zero_attempts_are_one() {
         panic!("no failure");
     };
     stored(&failure);
-    assert_eq!((failure.phase, failure.attempts), (Phase::Connection, 1));
+    assert_eq!((failure.phase, failure.attempts), (JobPhase::Connection, 1));
 }

@@ -14,7 +14,7 @@ use std::{
 };
 
 use proto3964r::{
-    Cause, Config, Event, Line, LineError, Phase, Priority, SubmitError,
+    Cause, CharacterError, Config, Event, JobPhase, Line, Priority, SubmitError,
     serialport::Driver,
     tokio::{Damage, Link, SendError},
 };
@@ -122,7 +122,7 @@ async fn a_dead_partner_is_a_failure_of_the_connection_phase() {
     };
     assert_eq!(
         (failure.phase, failure.cause),
-        (Phase::Connection, Cause::Timeout)
+        (JobPhase::Connection, Cause::Timeout)
     );
 }
 
@@ -337,7 +337,7 @@ async fn damaged_characters_reach_the_station() {
     let (stream, mut partner) = duplex(64);
     let damaged = Damage::Character {
         byte: 0x41,
-        error: LineError::Parity,
+        error: CharacterError::Parity,
     };
     let block = [Ok(0x02), Err(damaged), Ok(0x10), Ok(0x03), Ok(0x52)];
     let script = [Err(Damage::Break)].into_iter().chain(block).collect();

@@ -3,8 +3,8 @@
 use core::time::Duration;
 
 use proto3964r::{
-    Abandoned, Cause, Config, Event, Failure, Line, LineError, Phase, Priority, Rejection, Station,
-    Transmit, frame::FrameError,
+    Abandoned, Cause, CharacterError, Config, Event, Failure, JobPhase, Line, Priority, Rejection,
+    Station, Transmit, frame::FrameError,
 };
 
 const VECTORS: &str = include_str!("../data/vectors.txt");
@@ -152,7 +152,7 @@ impl<const N: usize> Bench<N> {
                     Some((bytes, _)) => {
                         let bytes = hex(bytes);
                         self.station
-                            .handle_damaged(self.now(), bytes[0], LineError::Parity);
+                            .handle_damaged(self.now(), bytes[0], CharacterError::Parity);
                         self.receive(&bytes[1..]);
                     }
                 }
@@ -195,8 +195,8 @@ fn name(event: Event<'_>) -> Option<String> {
         Event::Sent { len } => format!("Sent({len})"),
         Event::Failed(Failure { phase, cause, .. }) => {
             let phase = match phase {
-                Phase::Connection => "setup",
-                Phase::Transmission => "transfer",
+                JobPhase::Connection => "setup",
+                JobPhase::Transmission => "transfer",
             };
             match cause {
                 Cause::Timeout => format!("SendFailed({phase}:QVZ)"),

@@ -30,7 +30,7 @@ impl<T: RealField + Trig> Solutions<T> {
         [right, left]: [Joints<T>; 2],
         tool: Vector2<T>,
     ) -> Result<Self, InverseError<T>> {
-        if arm.window().hold_both(&right, &left) {
+        if arm.principal_range().hold_both(&right, &left) {
             return Ok(Self {
                 right,
                 left,

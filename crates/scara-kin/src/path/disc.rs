@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
 use trig_kernels::atan2;
 
-use super::swing::{Swing, TOUCH};
+use super::swing::{RANGE_SLACK, Swing};
 use super::turns::Turns;
 use super::{ArmPath, ArmPathError};
 use crate::limits::half_turn;
@@ -44,26 +44,26 @@ const STEPS: f64 = 128.0;
 const STEP: f64 = 0.5;
 
 /// Shortest step, as a fraction of the curve: next to a cusp the curvature knows no bound.
-const LEAST_STEP: f64 = 1e-12;
+const MIN_STEP: f64 = 1e-12;
 
 impl ArmPath {
-    /// The path with a disc that stands at the angle `theta3` before, in radians: it begins at the
+    /// The path with a disc that stands at the angle `tool_angle` before, in radians: it begins at the
     /// nearest whole turn to that, or there to the last bit where only rounding is between.
     ///
     /// # Errors
     /// [`ArmPathError::Turns`], [`ArmPathError::Disc`] for an angle that is not finite.
-    pub fn with_disc(self, theta3: f64) -> Result<DiscPath, ArmPathError> {
+    pub fn with_disc(self, tool_angle: f64) -> Result<DiscPath, ArmPathError> {
         let start = self.joints(0.0)?;
         let heading = direction(self.curve.at(0.0).tangent);
         let base = self.arm.base().rotation;
         let raw = heading - atan2(base.im, base.re) - start.shoulder - start.elbow;
         // What the disc turns by at the start: at most half a turn.
-        let turned = half_turn(raw - theta3);
-        let offset = turned + theta3 - raw;
+        let turned = half_turn(raw - tool_angle);
+        let offset = turned + tool_angle - raw;
         if !offset.is_finite() {
             let reason = TangentError::OutOfRange {
                 name: "starting angle",
-                value: theta3,
+                value: tool_angle,
                 largest: crate::range::largest_angle(),
             };
             return Err(ArmPathError::Disc { s: 0.0, reason });
@@ -74,9 +74,9 @@ impl ArmPath {
             arm_path: self,
             offset,
             start: if turned.abs() <= SAME {
-                theta3
+                tool_angle
             } else {
-                theta3 + turned
+                tool_angle + turned
             },
         })
     }
@@ -89,7 +89,7 @@ fn headings(path: &ArmPath, start: f64) -> Result<Turns, ArmPathError> {
     while s < curve.length() {
         let at = curve.at(s);
         let (first, second) = (Vector2::from(at.tangent), Vector2::from(at.curvature));
-        let (most, least) = (curve.length() / STEPS, curve.length() * LEAST_STEP);
+        let (most, least) = (curve.length() / STEPS, curve.length() * MIN_STEP);
         let step = (STEP * first.norm() / second.norm()).max(least).min(most);
         s = (s + step).min(curve.length());
         last += half_turn(direction(curve.at(s).tangent) - last);
@@ -140,13 +140,13 @@ impl Path for DiscPath {
         let heading = near + half_turn(direction(at.tangent) - near);
         let (first, second) = (Vector2::from(at.tangent), Vector2::from(at.curvature));
         let bend = first.perp(&second) / first.norm_squared();
-        let theta3 = if s <= 0.0 {
+        let tool_angle = if s <= 0.0 {
             self.start
         } else {
             heading + self.offset - shoulder - elbow
         };
         Ok(PathPoint {
-            position: [shoulder, elbow, theta3],
+            position: [shoulder, elbow, tool_angle],
             slope: [slopes.x, slopes.y, bend - slopes.x - slopes.y],
         })
     }
@@ -160,6 +160,6 @@ impl Path for DiscPath {
     }
 
     fn check(&self, span: &Span<[f64; 3]>) -> Result<(), ArmPathError> {
-        arm_swing(span).check(&self.arm_path.arm, TOUCH)
+        arm_swing(span).check(&self.arm_path.arm, RANGE_SLACK)
     }
 }

@@ -47,7 +47,7 @@ const ROUNDED_UP: f32 = 1.0 + 64.0 * f32::EPSILON;
 const CLEAR: f32 = 1e-3;
 
 /// By how much a joint may pass an end of its range between two rows, in radians: rounding.
-const TOUCH: f64 = 4e-6;
+const RANGE_SLACK: f64 = 4e-6;
 
 impl ArmPath {
     /// The path with its points found in single precision.
@@ -226,6 +226,6 @@ impl Path for ArmPathF32 {
         if self.is_clear(span) {
             return Ok(());
         }
-        Swing::of(span, |joints| joints).check(&self.path.arm, TOUCH)
+        Swing::of(span, |joints| joints).check(&self.path.arm, RANGE_SLACK)
     }
 }

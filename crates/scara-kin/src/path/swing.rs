@@ -11,7 +11,7 @@ use crate::{Arm, Joint, JointRange, Joints, Limits};
 
 /// By how much a joint may pass an end of its range between two rows, in radians: rounding, and a
 /// path that touches it.
-pub(super) const TOUCH: f64 = 1e-9;
+pub(super) const RANGE_SLACK: f64 = 1e-9;
 
 /// Leibniz' weights of the fourth derivative of a product.
 const LEIBNIZ: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
@@ -119,7 +119,7 @@ impl Swing {
         let motion = Motion::new(self, arm, curve);
         let apart = motion.apart() + self.rounding(arm);
         let rates = fastest(arm, [near - apart, far + apart]);
-        self.check_joints(arm, rates.map(|rate| rate * apart), TOUCH)
+        self.check_joints(arm, rates.map(|rate| rate * apart), RANGE_SLACK)
     }
 
     /// See [`ArmPath::departure`](super::ArmPath::departure).
@@ -229,7 +229,12 @@ impl Between {
         let mut all = ends.into_iter().zip(self.turns).zip(ranges);
         all.all(|(([from, to], turn), range)| {
             let middle = (from + to) * 0.5;
-            beyond(range, [middle - turn * 0.5, middle + turn * 0.5], TOUCH).is_none()
+            beyond(
+                range,
+                [middle - turn * 0.5, middle + turn * 0.5],
+                RANGE_SLACK,
+            )
+            .is_none()
         })
     }
 }

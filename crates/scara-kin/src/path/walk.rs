@@ -16,16 +16,16 @@ const EDGE: f64 = 1e-6;
 /// too small for the digits of the curve, and would be walked on without end.
 const LONGEST: f64 = 100.0;
 
-/// Most that a joint turns from one look at the path to the next, in radians.
-const LOOK: f64 = 1.0;
+/// The largest turn of a joint from one place of the survey to the next, in radians.
+const MAX_TURN: f64 = 1.0;
 
 /// Shortest step along the curve, as a fraction of it: between two places this near, one allowed and
 /// one not, is the first that is not.
-const LEAST_STEP: f64 = 1e-12;
+const MIN_STEP: f64 = 1e-12;
 
 /// Joints that turn by no more than this, in radians, and may still pass an end of a range: there
 /// rounding is all that is left to tell.
-const LEAST_TURN: f64 = 1e-4;
+const MIN_TURN: f64 = 1e-4;
 
 impl Arm {
     /// The path of the joints that brings the tool along `curve` with one elbow.
@@ -57,12 +57,12 @@ impl Arm {
         if length > max {
             return Err(ArmPathError::TooLong { length, max });
         }
-        let looker = Looker {
+        let survey = Survey {
             arm: self,
             curve: &curve,
             elbow,
         };
-        let start = looker.joints(0.0, previous)?;
+        let start = survey.joints(0.0, previous)?;
         let mut path = ArmPath {
             arm: *self,
             curve,
@@ -72,7 +72,7 @@ impl Arm {
         };
         let (mut s, mut joints) = (0.0, start);
         while s < curve.length() {
-            (s, joints) = looker.go_on(s, joints)?;
+            (s, joints) = survey.advance(s, joints)?;
             if !path.shoulder.add(s, joints.shoulder) {
                 return Err(ArmPathError::Turns { s });
             }
@@ -82,13 +82,13 @@ impl Arm {
 }
 
 /// Walks along a curve before it is a path.
-struct Looker<'a> {
+struct Survey<'a> {
     arm: &'a Arm,
     curve: &'a Curve<2>,
     elbow: Elbow,
 }
 
-impl Looker<'_> {
+impl Survey<'_> {
     /// The joints at a place, if the tool is within the workspace by more than [`EDGE`].
     fn joints(&self, s: f64, near: Joints) -> Result<Joints, ArmPathError> {
         let joints = joints_at(self.arm, self.curve, self.elbow, s, near)?;
@@ -111,25 +111,25 @@ impl Looker<'_> {
         (distance - self.arm.inner_reach()).min(self.arm.reach() - distance)
     }
 
-    /// The next place to be looked at, and the joints there. Shorter steps lead up to the first
+    /// The next place of the survey, and the joints there. Shorter steps lead up to the first
     /// place that is refused.
-    fn go_on(&self, s: f64, joints: Joints) -> Result<(f64, Joints), ArmPathError> {
+    fn advance(&self, s: f64, joints: Joints) -> Result<(f64, Joints), ArmPathError> {
         let mut step = self.clearance(s) / (1.0 + self.curve.speed_error());
         loop {
             let next = (s + step).min(self.curve.length());
             let refused = match self.joints(next, joints) {
-                Ok(there) if (there - joints).amax() <= LOOK => {
+                Ok(there) if (there - joints).amax() <= MAX_TURN => {
                     let between = self.between([s, next]);
                     match self.check_between(&between, [joints, there]) {
                         Ok(()) => return Ok((next, there)),
-                        Err(error) if between.turn() <= LEAST_TURN => return Err(error),
+                        Err(error) if between.turn() <= MIN_TURN => return Err(error),
                         Err(error) => error,
                     }
                 }
                 Ok(there) => self.jump(next, joints, there),
                 Err(error) => error,
             };
-            if step <= self.curve.length() * LEAST_STEP {
+            if step <= self.curve.length() * MIN_STEP {
                 return Err(refused);
             }
             step *= 0.5;

@@ -122,7 +122,7 @@ fn the_disc_turns_from_where_it_stands() {
     let turn = disc
         .follow(&arm, Joints::new(0.0, 0.0), Vector2::x())
         .unwrap();
-    assert!((turn.theta3 - core::f64::consts::TAU).abs() < ROUNDING);
+    assert!((turn.tool_angle - core::f64::consts::TAU).abs() < ROUNDING);
     assert!(disc.starting_at(f64::NAN).is_err());
 }
 
@@ -136,5 +136,5 @@ fn a_lifted_disc_takes_the_shorter_turn() {
     disc.lift();
     let second = disc.follow(&arm, joints, Vector2::new(-1.0, -0.1)).unwrap();
     assert!(second.corner.is_none());
-    assert!(second.theta3 > first.theta3 && second.theta3 > PI);
+    assert!(second.tool_angle > first.tool_angle && second.tool_angle > PI);
 }

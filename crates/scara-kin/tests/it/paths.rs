@@ -267,21 +267,21 @@ proptest! {
 
     /// The joints bring the tool to the curve, go on without a jump, and the slopes are theirs.
     #[test]
-    fn joints_are_continuous_and_slopes_their_derivatives(curve in any_curve(), theta3 in -9.0..9.0_f64) {
+    fn joints_are_continuous_and_slopes_their_derivatives(curve in any_curve(), tool_angle in -9.0..9.0_f64) {
         let arm = engraver().with_base(Isometry2::new(Vector2::new(1.0, 2.0), -2.5)).unwrap();
         let Ok(path) = arm.path(curve, Elbow::Right) else { return Ok(()) };
-        let disc = path.with_disc(theta3).unwrap();
+        let disc = path.with_disc(tool_angle).unwrap();
         let start = disc.point(0.0).unwrap().position;
-        prop_assert!((start[2] - theta3).abs() <= PI + ROUNDING);
+        prop_assert!((start[2] - tool_angle).abs() <= PI + ROUNDING);
         let mut last = start;
         for number in 0..=400 {
             let s = curve.length() * f64::from(number) / 400.0;
             let point = disc.point(s).unwrap();
-            let [shoulder, elbow, theta3] = point.position;
+            let [shoulder, elbow, tool_angle] = point.position;
             let at = curve.at(s);
             let tool = arm.forward(Joints::new(shoulder, elbow));
             prop_assert!((tool - Point2::from(at.point)).norm() < ROUNDING);
-            let along = theta3 + shoulder + elbow - 2.5 - at.tangent[1].atan2(at.tangent[0]);
+            let along = tool_angle + shoulder + elbow - 2.5 - at.tangent[1].atan2(at.tangent[0]);
             prop_assert!((along / TAU - (along / TAU).round()).abs() < ROUNDING);
             for (now, before) in point.position.iter().zip(last) {
                 prop_assert!((now - before).abs() < PI, "{s}: {now} {before}");
@@ -326,7 +326,7 @@ fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
     let mut memory = [Vertex::default(); 8];
     let curves = Smoothed::new(corners, 0.5, &mut memory).unwrap();
     let curves: Vec<_> = curves.map(Result::unwrap).collect();
-    let (mut joints, mut theta3) = (
+    let (mut joints, mut tool_angle) = (
         arm.inverse_elbow(corners[0].into(), Elbow::Left).unwrap(),
         0.0,
     );
@@ -336,9 +336,9 @@ fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
             let path = arm
                 .path_from(curve.with_tool(FEED), Elbow::Left, joints)
                 .unwrap();
-            let disc = path.with_disc(theta3).unwrap();
+            let disc = path.with_disc(tool_angle).unwrap();
             joints = path.joints(curve.length()).unwrap();
-            [.., theta3] = disc.point(curve.length()).unwrap().position;
+            [.., tool_angle] = disc.point(curve.length()).unwrap().position;
             disc
         })
         .collect();

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use proptest::prelude::*;
 use scara_kin::nalgebra::{Isometry2, Point2, Vector2};
 use scara_kin::{
-    Arm, Direction, Drives, Elbow, InverseError, JointRange, Joints, Limits, TangentTool,
+    Arm, DriveSense, Drives, Elbow, InverseError, JointRange, Joints, Limits, TangentTool,
 };
 use test_support::at_least;
 
@@ -247,10 +247,10 @@ proptest! {
         coupling in -2.0..2.0f64,
         (reverse1, reverse2) in (any::<bool>(), any::<bool>()),
     ) {
-        let sense = |reversed| if reversed { Direction::Reversed } else { Direction::Forward };
+        let sense = |reversed| if reversed { DriveSense::Reversed } else { DriveSense::Forward };
         let drives = Drives::default()
             .with_zero(zero).unwrap()
-            .with_directions(sense(reverse1), sense(reverse2))
+            .with_senses(sense(reverse1), sense(reverse2))
             .with_coupling(coupling).unwrap();
         let back = drives.to_joints(drives.from_joints(joints));
         prop_assert!((back - joints).amax() < ANGLE);
@@ -266,7 +266,7 @@ proptest! {
         let mut before = 0.0;
         for (joints, heading) in poses {
             let direction = Vector2::new(heading.cos(), heading.sin());
-            let angle = disc.follow(&arm, joints, direction).unwrap().theta3;
+            let angle = disc.follow(&arm, joints, direction).unwrap().tool_angle;
             let off = angle + turn + joints.shoulder + joints.elbow - heading;
             prop_assert!((off - (off / (2.0 * PI)).round() * 2.0 * PI).abs() < ANGLE);
             prop_assert!((angle - before).abs() <= PI + ANGLE);

@@ -1,7 +1,7 @@
 //! Machine files: what is written is read back, what is wrong is refused.
 
 use scara_kin::nalgebra::{Isometry2, Vector2};
-use scara_kin::{Arm, Direction, Drives, Elbow, JointRange, Joints, Limits};
+use scara_kin::{Arm, DriveSense, Drives, Elbow, JointRange, Joints, Limits};
 use test_support::{not_read, stored};
 
 use crate::common::engraver;
@@ -28,7 +28,7 @@ fn drives_are_read_back() {
     let drives = Drives::default()
         .with_zero(Joints::new(0.1, 0.2))
         .unwrap()
-        .with_directions(Direction::Reversed, Direction::Forward)
+        .with_senses(DriveSense::Reversed, DriveSense::Forward)
         .with_coupling(1.0)
         .unwrap();
     stored(&drives);

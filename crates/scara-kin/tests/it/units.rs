@@ -212,7 +212,7 @@ fn rates<T: RealField + Trig>(pair: &Pair<T>, pose: [f64; 2], given: [f64; 4]) {
     let [plain, other] = &mut discs;
     let plain = plain.follow(arm, joints, velocity).unwrap();
     let other = other.follow(scaled, joints, velocity * scale).unwrap();
-    same([plain.theta3; 2], [other.theta3; 2], T::pi());
+    same([plain.tool_angle; 2], [other.tool_angle; 2], T::pi());
 }
 
 fn curves<T: RealField + Trig>(pair: &Pair<T>, from: [f64; 2], to: [f64; 2], tolerance: f64) {

@@ -6,11 +6,11 @@ cortex_m_firmware::smallest_program!(work);
 use core::hint::black_box;
 use core::time::Duration;
 
-use handwheel::{Driver, Model, Timing, WheelQuantiser};
+use handwheel::{Driver, Model, Timeouts, WheelQuantiser};
 
 fn work() -> Option<i64> {
     let now = Duration::ZERO;
-    let mut driver = Driver::new(Model::Hbls, Timing::DEFAULT);
+    let mut driver = Driver::new(Model::Hbls, Timeouts::DEFAULT);
     black_box(driver.poll_transmit(now)?);
     driver.handle_delivered(now);
     driver.handle_block(now, black_box(&[0x30, 0x43, 0x52]));

@@ -10,7 +10,7 @@ use pattern_codec::engraving::Format;
 fn work() -> Option<i32> {
     let mut sum = 0;
     for located in Format::default().records(black_box(&[0x02, 0x0F, 0x9E])) {
-        sum += located.ok()?.record.pulses().theta1;
+        sum += located.ok()?.record.pulses().elbow;
     }
     Some(sum)
 }

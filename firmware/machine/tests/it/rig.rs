@@ -11,7 +11,7 @@ use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
 use arm_machine::{Machine, Motion, Panel, PlanMemory, Settings, talk};
-use proto3964r::{Config, Event, Line, LineError, Priority, Station};
+use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
 use pulse_interp::{Direction, HomingSettings};
 use pvt_steps::StepDirTiming;
 use scara_kin::nalgebra::Point2;
@@ -108,7 +108,7 @@ impl Rig {
         let port = (to_firmware.clone(), from_firmware.clone());
         let converse = async move {
             talk(machine, panel, Line::Instant, port, |_| {
-                Some(LineError::Parity)
+                Some(CharacterError::Parity)
             })
             .await;
         };

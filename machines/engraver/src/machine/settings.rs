@@ -10,9 +10,9 @@ use crate::placement::Bed;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Settings {
     pub(super) arm: ArmSettings,
-    pub(super) theta2: JointSettings,
-    pub(super) theta1: JointSettings,
-    pub(super) theta3: DiscSettings,
+    pub(super) shoulder: JointSettings,
+    pub(super) elbow: JointSettings,
+    pub(super) disc: DiscSettings,
     pub(super) vertical: VerticalSettings,
     pub(super) timer: TimerSettings,
     pub(super) rapid: RapidSettings,
@@ -100,7 +100,7 @@ impl Default for TimedSettings {
 
 impl Settings {
     pub(super) const fn corner_rad(&self) -> f64 {
-        self.theta3.corner_deg.to_radians()
+        self.disc.corner_deg.to_radians()
     }
 
     pub(crate) const fn mm_per_vertical_pulse(&self) -> f64 {

@@ -25,7 +25,7 @@ const TIMING: StepDirTiming = StepDirTiming {
 };
 
 /// Shoulder, elbow and disc, as the rows have them.
-const AXES: [Axis; 3] = [Axis::Theta2, Axis::Theta1, Axis::Theta3];
+const AXES: [Axis; 3] = [Axis::Shoulder, Axis::Elbow, Axis::Disc];
 
 /// What happens at a tick, in the order in which it does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -105,7 +105,7 @@ impl Player<'_> {
             return Ok(());
         };
         let machine = self.machine;
-        let joints = [machine.theta2, machine.theta1, machine.theta3];
+        let joints = [machine.shoulder, machine.elbow, machine.disc];
         let home = joints.map(|joint| joint.home_rad);
         let from_home = |position: [f64; 3]| {
             let [q0, q1, q2] = position;

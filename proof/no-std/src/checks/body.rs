@@ -4,14 +4,20 @@ use core::hint::black_box;
 
 use path_timing::{Knot, Table};
 use pose_pt::{
-    AxisLimits, Convention, Interpolation, Locator, Path, Platform, PoseVector, PtTable,
+    Convention, Interpolation, Locator, LocatorAxis, Platform, PosePath, PoseVector, PtTable,
     Segmentation,
 };
 
 use super::{CLOSE_MM, holds};
 /// A panel on three locators.
 fn platform() -> Option<Platform<3>> {
-    let limits = [AxisLimits::new(-300.0, 300.0, 20.0, 100.0); 3];
+    let limits = [LocatorAxis {
+        min: -300.0,
+        max: 300.0,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, black_box(-1000.0), 0.0],
@@ -44,7 +50,7 @@ pub fn tables() -> Option<()> {
     let poses = [0.0, black_box(0.02)].map(|gamma| {
         PoseVector::new(0.0, 0.0, 100.0, 0.0, 0.0, gamma).to_isometry(Convention::ExtrinsicXyz)
     });
-    let path = Path::new(&poses, Interpolation::Straight).ok()?;
+    let path = PosePath::new(&poses, Interpolation::Straight).ok()?;
     let table = PtTable::plan(&platform, &path, Segmentation::max_distance_error(0.01)).ok()?;
     holds(table.points().count() == 5 && table.distance_error_bound() <= 0.01)?;
     let mut knots = [Knot::default(); 33];

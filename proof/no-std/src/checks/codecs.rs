@@ -12,9 +12,9 @@ pub fn records() -> Option<()> {
     let mut builder = Builder::new();
     let mut bytes = [0; 15];
     let slow = JointPulses {
-        theta1: 45,
-        theta2: -90,
-        theta3: 6,
+        elbow: 45,
+        shoulder: -90,
+        disc: 6,
     };
     let records = builder
         .fast(Axis::Vertical, black_box(-70_000))

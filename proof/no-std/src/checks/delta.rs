@@ -3,12 +3,20 @@
 use core::hint::black_box;
 
 use delta_kin::nalgebra::{Point3, Vector3};
-use delta_kin::{Delta, DeltaPath, Measured, Parameter, Path, Quantity, SpeedLimits};
+use delta_kin::{
+    Delta, DeltaPath, Dimensions, Measured, Parameter, PlatformPath, Quantity, SpeedLimits,
+};
 use path_timing::{Accuracy, AxisLimits, Knot, Table};
 
 use super::{CLOSE_MM, holds};
 fn thesis() -> Option<Delta> {
-    Delta::new(black_box(42.0), 18.0, 120.0, 243.0).ok()
+    Delta::new(Dimensions {
+        base: black_box(42.0),
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .ok()
 }
 
 /// Inverse and forward kinematics of a Delta, rates, a line, a cylinder.
@@ -25,7 +33,7 @@ pub fn delta() -> Option<()> {
             .inverse(Point3::new(50.0, 50.0, black_box(100.0)))
             .is_err(),
     )?;
-    let line = Path::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
+    let line = PlatformPath::line(point, Point3::new(-50.0, 50.0, -300.0)).ok()?;
     let speed_limits = SpeedLimits::new(200.0, [3.0; 3]).ok()?;
     let last = delta.follow(line, 0.01, speed_limits).ok()?.last()?;
     holds((last.point - line.point_at(1.0)?).norm() < CLOSE_MM)?;

@@ -9,9 +9,9 @@ use super::holds;
 
 /// Status request, reply, and a text on the display.
 pub fn unit_telegrams() -> Option<()> {
-    use handwheel::{Command, Event, Job, LcdCommand, Model, Text, Timing};
+    use handwheel::{Command, Event, Job, LcdCommand, Model, Text, Timeouts};
     let (now, model) = (Duration::ZERO, Model::Hbls);
-    let mut driver = Driver::new(model, Timing::DEFAULT);
+    let mut driver = Driver::new(model, Timeouts::DEFAULT);
     holds(driver.poll_transmit(now) == Some(&[0x23]))?;
     driver.handle_delivered(now);
     driver.handle_block(now, black_box(&[0x30, 0x43, 0x52]));

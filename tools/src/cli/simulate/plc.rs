@@ -8,7 +8,7 @@ use rk512::{AbandonCause, Config, DataBlock, Memory, Server, ServerEvent};
 use serde::Deserialize;
 
 use super::Partner;
-use crate::{cli::settings, text};
+use crate::{settings, text};
 
 /// Data blocks that a file may have.
 const BLOCKS: usize = 64;

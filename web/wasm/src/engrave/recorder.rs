@@ -35,9 +35,9 @@ impl<'a> Recorder<'a> {
             edges: PerAxis::default(),
             steps: PerAxis::default(),
             direction: PerAxis {
-                theta1: 1,
-                theta2: 1,
-                theta3: 1,
+                elbow: 1,
+                shoulder: 1,
+                disc: 1,
                 vertical: 1,
             },
             position: PerAxis::default(),
@@ -127,9 +127,9 @@ impl Recorded {
     pub(crate) fn add_to(self, answer: Answer) -> Answer {
         let mut answer = answer.with_numbers("path", self.path.iter().map(|it| it.to_le_bytes()));
         let names = [
-            (Axis::Theta1, "theta1 edges", "theta1 steps"),
-            (Axis::Theta2, "theta2 edges", "theta2 steps"),
-            (Axis::Theta3, "theta3 edges", "theta3 steps"),
+            (Axis::Elbow, "elbow edges", "elbow steps"),
+            (Axis::Shoulder, "shoulder edges", "shoulder steps"),
+            (Axis::Disc, "disc edges", "disc steps"),
             (Axis::Vertical, "vertical edges", "vertical steps"),
         ];
         for (axis, edges, steps) in names {

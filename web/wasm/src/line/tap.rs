@@ -5,7 +5,7 @@ use core::time::Duration;
 use anyhow::Result;
 use line3964r::Preset;
 use monitor3964r::{Character, Side};
-use proto3964r::{Line, LineError, Priority};
+use proto3964r::{CharacterError, Line, Priority};
 use serde::Deserialize;
 
 use super::conversation::{self, Of};
@@ -22,7 +22,7 @@ pub(super) enum Damage {
     Overrun,
 }
 
-impl From<Damage> for LineError {
+impl From<Damage> for CharacterError {
     fn from(damage: Damage) -> Self {
         match damage {
             Damage::Parity => Self::Parity,

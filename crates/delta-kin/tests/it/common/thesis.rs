@@ -1,11 +1,17 @@
 //! The machine of [Delta thesis], in mm.
 
-use delta_kin::Delta;
 use delta_kin::nalgebra::Vector3;
+use delta_kin::{Delta, Dimensions};
 use proptest::prelude::*;
 
 pub(crate) fn thesis() -> Delta {
-    Delta::new(42.0, 18.0, 120.0, 243.0).unwrap()
+    Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap()
 }
 
 /// Unit vectors.

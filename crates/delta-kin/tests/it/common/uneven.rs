@@ -1,6 +1,6 @@
 //! Machines whose arms differ widely, and anything that they may be set to.
 
-use delta_kin::{Arm, ArmGeometry, AssemblyMode, Elbow};
+use delta_kin::{Arm, ArmGeometry, AssemblyMode, Dimensions, ElbowSide};
 use proptest::prelude::*;
 
 /// 10 to the power of what is between two ends.
@@ -29,7 +29,17 @@ pub(crate) fn uneven_arms() -> impl Strategy<Value = [ArmGeometry; 3]> {
     let (alike, apart) = (lengths(), [lengths(), lengths(), lengths()]);
     (alike, apart, any::<bool>(), [off(), off(), off()]).prop_map(
         |(alike, apart, is_alike, off)| {
-            let mut arms = Arm::ALL.map(|arm| ArmGeometry::nominal(arm, 1.0, 1.0, 1.0, 1.0));
+            let mut arms = Arm::ALL.map(|arm| {
+                ArmGeometry::nominal(
+                    arm,
+                    Dimensions {
+                        base: 1.0,
+                        platform: 1.0,
+                        upper: 1.0,
+                        lower: 1.0,
+                    },
+                )
+            });
             for ((arm, apart), (azimuth, zero, part)) in arms.iter_mut().zip(apart).zip(off) {
                 let (base, platform, upper, lower) = if is_alike { alike } else { apart };
                 arm.azimuth += azimuth;
@@ -45,8 +55,8 @@ pub(crate) fn uneven_arms() -> impl Strategy<Value = [ArmGeometry; 3]> {
 }
 
 /// An assembly and a working mode.
-pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [Elbow; 3])> {
+pub(crate) fn modes() -> impl Strategy<Value = (AssemblyMode, [ElbowSide; 3])> {
     let assembly_mode = prop_oneof![Just(AssemblyMode::Lower), Just(AssemblyMode::Upper)];
-    let elbow = || prop_oneof![Just(Elbow::Out), Just(Elbow::In)];
+    let elbow = || prop_oneof![Just(ElbowSide::Out), Just(ElbowSide::In)];
     (assembly_mode, [elbow(), elbow(), elbow()])
 }

@@ -1,6 +1,6 @@
 //! The four kinds of machines, each with random paths.
 
-use delta_kin::{Delta, DeltaPath};
+use delta_kin::{Delta, DeltaPath, Dimensions};
 use path_timing::{Corner, Curve, ToolLimits};
 use pose_pt::nalgebra::{Isometry3, Vector3};
 use pose_pt::{BodyPath, Interpolation, Locator, Platform};
@@ -81,7 +81,13 @@ pub(super) fn attack_arm(random: &mut Random, tried: &mut Tried) {
 }
 
 pub(super) fn attack_delta(random: &mut Random, tried: &mut Tried) {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let [x, y] = [(); 2].map(|()| random.within(-60.0, 60.0));
     let size = random.size(0.5, 1.8);
     let path = curve(random, [x, y, -250.0], size).and_then(|it| delta.path(it).ok());
@@ -101,7 +107,13 @@ pub(super) fn attack_delta(random: &mut Random, tried: &mut Tried) {
 
 /// A body on three locators, through some poses; the distances between the locators are to stay.
 pub(super) fn attack_platform(random: &mut Random, tried: &mut Tried) {
-    let limits = [pose_pt::AxisLimits::new(-9e3, 9e3, 20.0, 100.0); 3];
+    let limits = [pose_pt::LocatorAxis {
+        min: -9e3,
+        max: 9e3,
+        speed: 20.0,
+        acceleration: 100.0,
+        jerk: None,
+    }; 3];
     let anchors = [
         [-1500.0, -1000.0, 0.0],
         [1500.0, -1000.0, 50.0],
@@ -119,7 +131,7 @@ pub(super) fn attack_platform(random: &mut Random, tried: &mut Tried) {
     let poses: Vec<_> = (0..2 + random.below(3))
         .map(|_| Isometry3::new(three(random, way), three(random, turn)))
         .collect();
-    let path = pose_pt::Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = pose_pt::PosePath::new(&poses, Interpolation::Straight).unwrap();
     let blend = pose_pt::Blend {
         distance: way * random.within(0.0, 0.1),
         rotation_rad: turn * random.within(0.0, 0.1),

@@ -1,6 +1,6 @@
 //! How far a shaped tool departs, and what is said of it before anything runs.
 
-use delta_kin::{Delta, nalgebra::Vector3};
+use delta_kin::{Delta, Dimensions, nalgebra::Vector3};
 use path_timing::{AxisLimits, Curve, Knot, Mode, Row, Table};
 use scara_kin::{Arm, Elbow, Joints};
 
@@ -98,7 +98,13 @@ fn the_tool_of_an_arm_departs_by_at_most_the_bound() {
 
 #[test]
 fn the_platform_of_a_delta_departs_by_at_most_the_bound() {
-    let delta = Delta::new(42.0, 18.0, 120.0, 243.0).unwrap();
+    let delta = Delta::new(Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    })
+    .unwrap();
     let lines = [
         [[-60.0, 20.0, -280.0], [60.0, -10.0, -280.0]],
         [[0.0, 0.0, -300.0], [0.0, 0.0, -230.0]],

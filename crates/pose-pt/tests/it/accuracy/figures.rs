@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 use pose_pt::{
-    AxisLimits, Convention, Locator, Platform, PoseVector, angle_between, from_rotation_vector,
+    Convention, Locator, LocatorAxis, Platform, PoseVector, angle_between, from_rotation_vector,
     rigid_fit, slerp, to_matrix,
 };
 use twofloat::TwoFloat;
@@ -246,7 +246,13 @@ struct Body {
 
 impl Body {
     fn new(draw: &mut Draw) -> Option<Self> {
-        let limits = [AxisLimits::new(-1.0, 1.0, 1.0, 1.0); 3];
+        let limits = [LocatorAxis {
+            min: -1.0,
+            max: 1.0,
+            speed: 1.0,
+            acceleration: 1.0,
+            jerk: None,
+        }; 3];
         let sizes = [(); 3].map(|()| draw.size(-2.0, 2.0));
         let locators = [(); 3].map(|()| {
             let (anchor, origin) = (vector(draw, sizes[0]), vector(draw, sizes[1]));

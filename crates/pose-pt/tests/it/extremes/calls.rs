@@ -5,7 +5,7 @@ use pose_pt::nalgebra::{
     Isometry3, Matrix3, Point3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3,
 };
 use pose_pt::{
-    AxisLimits, Convention, Locator, Platform, PoseVector, Trig, angle_between, calibrate,
+    Convention, Locator, LocatorAxis, Platform, PoseVector, Trig, angle_between, calibrate,
     from_matrix, from_rotation_vector, rigid_fit, rotation_vector, rotation_vector_between, slerp,
     to_matrix,
 };
@@ -71,9 +71,15 @@ impl<'a, T: RealField + Trig> Inputs<'a, T> {
         PoseVector::new(p.x, p.y, p.z, a.x, a.y, a.z)
     }
 
-    fn limits(&mut self) -> AxisLimits<T> {
+    fn limits(&mut self) -> LocatorAxis<T> {
         let [min, max, speed] = [(); 3].map(|()| self.next());
-        AxisLimits::new(min, max, speed, self.next()).with_jerk(self.next())
+        LocatorAxis {
+            min,
+            max,
+            speed,
+            acceleration: self.next(),
+            jerk: Some(self.next()),
+        }
     }
 
     pub(crate) fn platform(&mut self) -> Result<Platform<3, T>, String> {

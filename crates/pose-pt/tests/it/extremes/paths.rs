@@ -1,6 +1,6 @@
 //! The functions of paths and PT tables as functions of numbers.
 
-use pose_pt::{Convention, Interpolation, Path, PtTable, Segmentation};
+use pose_pt::{Convention, Interpolation, PosePath, PtTable, Segmentation};
 
 use crate::extremes::calls::{
     ANGLES, CONVENTIONS, Call, TRANSLATION, flat, message, of_pose, platform, two_poses,
@@ -22,18 +22,21 @@ pub(crate) fn all() -> Vec<Call<f64>> {
     };
     let platform = &platform();
     vec![
-        call("Path of poses", &[&two_poses(), &[0.375]], |x| {
+        call("PosePath of poses", &[&two_poses(), &[0.375]], |x| {
             let (poses, s) = ([x.pose(), x.pose()], x.next());
             let mut all = Vec::new();
             for kind in KINDS {
-                let leg = Path::new(&poses, kind).map_err(message)?.leg(0).unwrap();
+                let leg = PosePath::new(&poses, kind)
+                    .map_err(message)?
+                    .leg(0)
+                    .unwrap();
                 all.extend(of_pose(&leg.pose(s)));
                 all.extend([leg.turn(), leg.length()]);
             }
             Ok(all)
         }),
         call(
-            "Path of vectors",
+            "PosePath of vectors",
             &[
                 &TRANSLATION,
                 &ANGLES,
@@ -45,7 +48,7 @@ pub(crate) fn all() -> Vec<Call<f64>> {
                 let (vectors, s) = ([x.pose_vector(), x.pose_vector()], x.next());
                 let mut all = Vec::new();
                 for convention in CONVENTIONS {
-                    let path = Path::of_vectors(&vectors, convention).map_err(message)?;
+                    let path = PosePath::of_vectors(&vectors, convention).map_err(message)?;
                     let leg = path.leg(0).unwrap();
                     all.extend(of_pose(&leg.pose(s)));
                     all.extend([leg.turn(), leg.length()]);
@@ -64,7 +67,7 @@ pub(crate) fn all() -> Vec<Call<f64>> {
                 ];
                 let mut all = Vec::new();
                 for kind in KINDS {
-                    let path = Path::new(&poses, kind).map_err(message)?;
+                    let path = PosePath::new(&poses, kind).map_err(message)?;
                     for segmentation in segmentations {
                         let table =
                             PtTable::plan(&platform, &path, segmentation).map_err(message)?;

@@ -3,7 +3,7 @@
 use crate::support::table::{BodyTable, Cut, bound, plan, points_of};
 use path_timing::{FeedCeiling, Knot};
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{Blend, Interpolation, Path, Platform, hermite_distance_error};
+use pose_pt::{Blend, Interpolation, Platform, PosePath, hermite_distance_error};
 
 use crate::extremes::calls::{Call, Outcome, flat, message, platform, two_poses};
 
@@ -21,7 +21,7 @@ pub(crate) fn all() -> Vec<Call<f64>> {
     vec![
         call("PVT", &[platform, poses, &[0.05]], |x| {
             let (platform, poses) = (x.platform()?, [x.pose(), x.pose()]);
-            let path = Path::new(&poses, Interpolation::Screw).map_err(message)?;
+            let path = PosePath::new(&poses, Interpolation::Screw).map_err(message)?;
             let mut knots = [Knot::default(); 200];
             let table = plan(&platform, &path, Cut::Within(x.next()), &mut knots);
             let table = table.map_err(message)?;
@@ -42,7 +42,7 @@ pub(crate) fn all() -> Vec<Call<f64>> {
                     distance: x.next(),
                     rotation_rad: x.next(),
                 };
-                let path = Path::new(&poses, Interpolation::Straight).map_err(message)?;
+                let path = PosePath::new(&poses, Interpolation::Straight).map_err(message)?;
                 let blends = [blend];
                 let path = path.with_blends(&blends).map_err(message)?;
                 let mut knots = [Knot::default(); 40];
@@ -93,7 +93,7 @@ fn with_table(run: impl FnOnce(&Platform<3>, BodyTable<'_, 3>) -> Outcome<f64>) 
     let numbers = [platform(), two_poses()].concat();
     let mut inputs = crate::extremes::calls::Inputs::new(&numbers);
     let (platform, poses) = (inputs.platform()?, [inputs.pose(), inputs.pose()]);
-    let path = Path::new(&poses, Interpolation::Straight).map_err(message)?;
+    let path = PosePath::new(&poses, Interpolation::Straight).map_err(message)?;
     let mut knots = [Knot::default(); 21];
     let table = plan(&platform, &path, Cut::Into(20), &mut knots).map_err(message)?;
     run(&platform, table)

@@ -1,7 +1,7 @@
 //! Fits of points and of locators' frames: what is found, and what is refused.
 
 use pose_pt::nalgebra::{Matrix3, Point3, Vector3};
-use pose_pt::{CalibrationError, FitError, Locator, Side, calibrate, rigid_fit};
+use pose_pt::{CalibrationError, FitError, Locator, PointSet, calibrate, rigid_fit};
 
 use super::{ROUNDING_MM, limits, locators};
 
@@ -10,10 +10,10 @@ fn points_that_determine_no_motion_are_refused() {
     let line = [0.0, 1.0, 3.0].map(|x| Point3::new(x * 1000.0, x * 200.0, 7.0));
     let plane = locators().map(|locator| locator.anchor);
     let fit = |a: &[Point3<f64>], b: &[Point3<f64>]| rigid_fit(a, b).unwrap_err();
-    let side =
-        |wanted| move |error| matches!(error, FitError::Collinear { side, .. } if side == wanted);
-    assert!(side(Side::From)(fit(&line, &plane)));
-    assert!(side(Side::To)(fit(&plane, &line)));
+    let set =
+        |wanted| move |error| matches!(error, FitError::Collinear { set, .. } if set == wanted);
+    assert!(set(PointSet::From)(fit(&line, &plane)));
+    assert!(set(PointSet::To)(fit(&plane, &line)));
     for (error, words) in [
         (fit(&line, &plane), "the moved points are on a line: "),
         (fit(&plane, &line), "the met points are on a line: "),
@@ -24,7 +24,7 @@ fn points_that_determine_no_motion_are_refused() {
     assert!(matches!(
         fit(&same, &plane),
         FitError::Coincident {
-            side: Side::From,
+            set: PointSet::From,
             ..
         }
     ));

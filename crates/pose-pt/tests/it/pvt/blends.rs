@@ -4,7 +4,7 @@ use crate::support::table::{Cut, Point, bound, plan, points_of};
 use path_timing::Knot;
 use pose_pt::nalgebra::Isometry3;
 use pose_pt::{
-    AxisLimits, Blend, Convention, Interpolation, Path, PathError, Platform, PoseVector,
+    Blend, Convention, Interpolation, LocatorAxis, Platform, PosePath, PosePathError, PoseVector,
     angle_between,
 };
 use proptest::prelude::*;
@@ -42,7 +42,7 @@ fn rounded<const N: usize>(
     segmentation: Cut,
 ) -> (Vec<Point<N>>, f64, f64) {
     let (poses, blends) = (corners(), [blend; 2]);
-    let path = Path::new(&poses, kind).unwrap();
+    let path = PosePath::new(&poses, kind).unwrap();
     let path = path.with_blends(&blends).unwrap();
     let mut knots = vec![Knot::default(); 2000];
     let table = plan(platform, &path, segmentation, &mut knots).unwrap();
@@ -55,7 +55,7 @@ fn rounded<const N: usize>(
 
 /// How far a pose is from a path, as a fraction of a blend: the larger of both of its bounds, at the
 /// best point of the path.
-fn off(path: &Path<'_>, found: &Isometry3<f64>, blend: &Blend) -> f64 {
+fn off(path: &PosePath<'_>, found: &Isometry3<f64>, blend: &Blend) -> f64 {
     const SAMPLES: u32 = 200;
     let at = |leg: usize, s: f64| {
         let wanted = path.leg(leg).unwrap().pose(s);
@@ -101,7 +101,7 @@ fn poses_are_passed_within_their_tolerance_and_limits_without_a_stop() {
                     .all(|it| it.velocities.iter().any(|v| v.norm() > 0.0))
             );
             let poses = corners();
-            let path = Path::new(&poses, kind).unwrap();
+            let path = PosePath::new(&poses, kind).unwrap();
             let worst = points.iter().map(|point| {
                 let found = platform.pose(&point.axes).unwrap().pose;
                 off(&path, &found, &BLEND)
@@ -141,12 +141,12 @@ fn a_pose_on_a_line_costs_nothing() {
     let poses = [ends[0], pose([100.0, 0.0, 0.0], [0.0; 3]), ends[1]];
     let platform = panel();
     let mut knots = [Knot::default(); 1000];
-    let mut seconds = |path: &Path<'_>| {
+    let mut seconds = |path: &PosePath<'_>| {
         let table = plan(&platform, path, Cut::Into(200), &mut knots);
         table.unwrap().duration_s()
     };
-    let one = seconds(&Path::new(&ends, Interpolation::Straight).unwrap());
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let one = seconds(&PosePath::new(&ends, Interpolation::Straight).unwrap());
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let two = seconds(&path.with_blends(&[BLEND]).unwrap());
     assert!((two / one - 1.0).abs() < 1e-3, "{one} {two}");
     assert!(seconds(&path) > 1.01 * one);
@@ -161,7 +161,7 @@ fn a_part_that_does_not_change_needs_no_tolerance() {
         pose([100.0, 0.0, 0.0], [0.0; 3]),
         pose([100.0, 100.0, 0.0], [0.0; 3]),
     ];
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let platform = panel();
     let seconds = |distance, rotation_rad| {
         let blend = [Blend {
@@ -179,7 +179,13 @@ fn a_part_that_does_not_change_needs_no_tolerance() {
 
 #[test]
 fn blends_with_a_limit_of_jerk_are_passed() {
-    let limits = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(200.0);
+    let limits = LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: Some(200.0),
+    };
     let platform = panel_with(limits);
     let allowed = 0.01;
     for segmentation in [Cut::Into(40), Cut::Within(allowed)] {
@@ -203,9 +209,9 @@ fn blends_with_a_limit_of_jerk_are_passed() {
 #[test]
 fn wrong_blends_are_named() {
     let poses = corners();
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let error = path.with_blends(&[BLEND]).unwrap_err();
-    assert_eq!(error, PathError::Blends { given: 1, poses: 2 });
+    assert_eq!(error, PosePathError::Blends { given: 1, poses: 2 });
     let bad = Blend {
         distance: -0.5,
         ..BLEND
@@ -220,9 +226,15 @@ fn wrong_blends_are_named() {
         ..BLEND
     };
     let error = path.with_blends(&[bad, BLEND]).unwrap_err();
-    assert!(matches!(error, PathError::Blend { pose: 1, .. }), "{error}");
-    let screw = Path::new(&poses, Interpolation::Screw).unwrap();
-    assert_eq!(screw.with_blends(&[BLEND; 2]), Err(PathError::ScrewBlend));
+    assert!(
+        matches!(error, PosePathError::Blend { pose: 1, .. }),
+        "{error}"
+    );
+    let screw = PosePath::new(&poses, Interpolation::Screw).unwrap();
+    assert_eq!(
+        screw.with_blends(&[BLEND; 2]),
+        Err(PosePathError::ScrewBlend)
+    );
 }
 
 proptest! {
@@ -249,7 +261,7 @@ proptest! {
             .iter()
             .map(|vector| vector.to_isometry(Convention::ExtrinsicXyz))
             .collect();
-        let path = Path::new(&poses, KINDS[kind]).unwrap();
+        let path = PosePath::new(&poses, KINDS[kind]).unwrap();
         let blends: Vec<_> = blends[..poses.len() - 2]
             .iter()
             .map(|(distance, rotation_rad)| Blend { distance: *distance, rotation_rad: *rotation_rad })

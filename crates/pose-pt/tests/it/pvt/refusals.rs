@@ -7,7 +7,7 @@ use crate::support::table::{Cut, plan, points_of};
 use path_timing::{Knot, PlanError};
 use pose_pt::nalgebra::Point3;
 use pose_pt::{
-    Axis, AxisLimits, BodyPathError, Interpolation, LimitError, Locator, Path, Platform,
+    Axis, BodyPathError, Interpolation, LimitError, Locator, LocatorAxis, Platform, PosePath,
 };
 
 /// A swing by ±0.3 rad carries the first two locators out to 1000 mm in its middle, where three
@@ -15,10 +15,22 @@ use pose_pt::{
 #[test]
 fn a_stroke_left_between_points_is_named() {
     let poses = [-0.3, 0.3].map(|turn| pose([0.0; 3], [0.0, 0.0, turn]));
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let plan = |min: f64, max: f64| {
-        let limits = AxisLimits::new(min, max, SPEED, ACCELERATION);
-        let wide = AxisLimits::new(-2000.0, 2000.0, SPEED, ACCELERATION);
+        let limits = LocatorAxis {
+            min,
+            max,
+            speed: SPEED,
+            acceleration: ACCELERATION,
+            jerk: None,
+        };
+        let wide = LocatorAxis {
+            min: -2000.0,
+            max: 2000.0,
+            speed: SPEED,
+            acceleration: ACCELERATION,
+            jerk: None,
+        };
         let anchors = [[1000.0, 0.0, 0.0], [-1000.0, 0.0, 0.0], [0.0, 1000.0, 0.0]];
         let platform = Platform::new(
             anchors
@@ -61,9 +73,15 @@ fn a_stroke_left_between_points_is_named() {
 
 #[test]
 fn wrong_input_is_named() {
-    let platform = panel_with(AxisLimits::new(-100.0, 100.0, SPEED, ACCELERATION));
+    let platform = panel_with(LocatorAxis {
+        min: -100.0,
+        max: 100.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: None,
+    });
     let poses = from_rest([30.0, 0.0, 0.0], [0.0; 3]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 64];
     let error = plan(&platform, &path, Cut::Into(64), &mut knots).unwrap_err();
     let wanted = PlanError::Memory {
@@ -85,7 +103,7 @@ fn wrong_input_is_named() {
     assert_eq!(error, PlanError::TooFine { leg: 0, max });
 
     let turning = from_rest([0.0; 3], [0.0, 0.0, 0.02]);
-    let turning = Path::new(&turning, Interpolation::Straight).unwrap();
+    let turning = PosePath::new(&turning, Interpolation::Straight).unwrap();
     let few = &mut knots[..9];
     let error = plan(&platform, &turning, Cut::Within(1e-6), few).unwrap_err();
     let PlanError::Memory {
@@ -108,7 +126,7 @@ fn wrong_input_is_named() {
     );
 
     let far = from_rest([0.0, 0.0, 130.0], [0.0; 3]);
-    let far = Path::new(&far, Interpolation::Straight).unwrap();
+    let far = PosePath::new(&far, Interpolation::Straight).unwrap();
     let error = plan(&platform, &far, Cut::Into(20), &mut knots).unwrap_err();
     assert!(
         error

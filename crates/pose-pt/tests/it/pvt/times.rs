@@ -5,7 +5,7 @@ use crate::support::moves::{ALL, from_rest};
 use crate::support::platform::{ACCELERATION, SPEED, panel, panel_with};
 use crate::support::table::{Cut, plan, points_of};
 use path_timing::Knot;
-use pose_pt::{AxisLimits, Interpolation, Path, Platform};
+use pose_pt::{Interpolation, LocatorAxis, Platform, PosePath};
 use proptest::prelude::*;
 
 #[test]
@@ -19,7 +19,7 @@ fn a_straight_move_takes_the_closed_form() {
     ] {
         let poses = from_rest([0.0, -way, 0.0], [0.0; 3]);
         for kind in ALL {
-            let path = Path::new(&poses, kind).unwrap();
+            let path = PosePath::new(&poses, kind).unwrap();
             let mut knots = [Knot::default(); 257];
             let table = plan(&platform, &path, Cut::Into(256), &mut knots).unwrap();
             let ratio = table.duration_s() / seconds;
@@ -32,8 +32,13 @@ fn a_straight_move_takes_the_closed_form() {
 #[test]
 fn a_straight_move_with_jerk_takes_the_closed_form() {
     let jerk = 100.0;
-    let platform =
-        panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION).with_jerk(jerk));
+    let platform = panel_with(LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: Some(jerk),
+    });
     let rise = ACCELERATION / jerk;
     // Whole S-curve; acceleration reached but not the speed; only jerk counts.
     let short: f64 = 0.5;
@@ -46,7 +51,7 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
         (short, 4.0 * (short / (2.0 * jerk)).cbrt()),
     ] {
         let poses = from_rest([0.0, way, 0.0], [0.0; 3]);
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 65];
         let table = plan(&platform, &path, Cut::Into(64), &mut knots).unwrap();
         let ratio = table.duration_s() / seconds;
@@ -62,7 +67,13 @@ fn a_straight_move_with_jerk_takes_the_closed_form() {
 /// need without a limit of jerk is the least that they can need with one.
 #[test]
 fn jerk_costs_a_turn_little() {
-    let limits = AxisLimits::new(-9000.0, 9000.0, 20.0, 50.0);
+    let limits = LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 20.0,
+        acceleration: 50.0,
+        jerk: None,
+    };
     for (turn, way, jerk, most) in [
         (0.5, 500.0, 25.0, 1.02),
         (0.5, 500.0, 100.0, 1.01),
@@ -71,7 +82,7 @@ fn jerk_costs_a_turn_little() {
         (2.6, 500.0, 1000.0, 1.005),
     ] {
         let poses = from_rest([way, 0.0, 0.0], [0.0, 0.0, turn]);
-        let path = Path::new(&poses, Interpolation::Straight).unwrap();
+        let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
         let mut knots = [Knot::default(); 513];
         let mut plan = |platform: &Platform<3>| {
             let table = plan(platform, &path, Cut::Into(512), &mut knots).unwrap();
@@ -80,7 +91,11 @@ fn jerk_costs_a_turn_little() {
             table.duration_s()
         };
         let least = plan(&panel_with(limits));
-        let ratio = plan(&panel_with(limits.with_jerk(jerk))) / least;
+        let jerky = LocatorAxis {
+            jerk: Some(jerk),
+            ..limits
+        };
+        let ratio = plan(&panel_with(jerky)) / least;
         println!("turn by {turn}, {way} mm, jerk {jerk}: {ratio}");
         assert!(
             (1.0..most).contains(&ratio),
@@ -92,9 +107,21 @@ fn jerk_costs_a_turn_little() {
 /// Moves whose optimum a fine phase plane gives.
 #[test]
 fn no_slower_than_the_optimum_by_a_thousandth() {
-    let slow = AxisLimits::new(-9000.0, 9000.0, 10.0, 25.0);
+    let slow = LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 10.0,
+        acceleration: 25.0,
+        jerk: None,
+    };
     // No speed is reached: the accelerations of a turning body decide.
-    let fast = AxisLimits::new(-9000.0, 9000.0, 1e5, 25.0);
+    let fast = LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1e5,
+        acceleration: 25.0,
+        jerk: None,
+    };
     for (name, limits, poses) in [
         ("small turn", slow, from_rest([0.0; 3], [0.0, 0.0, 0.02])),
         ("large turn", slow, from_rest([0.0; 3], [0.0, 0.0, 1.5])),
@@ -112,7 +139,7 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
     ] {
         let platform = panel_with(limits);
         for kind in ALL {
-            let path = Path::new(&poses, kind).unwrap();
+            let path = PosePath::new(&poses, kind).unwrap();
             let leg = path.leg(0).unwrap();
             let mut knots = vec![Knot::default(); 4001];
             let optimum = crate::support::optimum::seconds(&platform, &leg, 40_000);
@@ -128,10 +155,16 @@ fn no_slower_than_the_optimum_by_a_thousandth() {
 /// allow are far below the highest one.
 #[test]
 fn near_the_optimum_of_a_turn_of_126_degrees() {
-    let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, 1e5, ACCELERATION));
+    let platform = panel_with(LocatorAxis {
+        min: -9000.0,
+        max: 9000.0,
+        speed: 1e5,
+        acceleration: ACCELERATION,
+        jerk: None,
+    });
     let poses = from_rest([0.3, -0.9, 0.0], [0.3, -0.9, 2.2]);
     for kind in ALL {
-        let path = Path::new(&poses, kind).unwrap();
+        let path = PosePath::new(&poses, kind).unwrap();
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 40_000);
         for (segments, max) in [(1000, 1.0005), (16_000, 1.000_15)] {
             let mut knots = vec![Knot::default(); 16_001];
@@ -153,9 +186,9 @@ proptest! {
         turn in prop::array::uniform3(-1.2..1.2),
         kind in 0..4_usize, speed in 20.0..1e5,
     ) {
-        let platform = panel_with(AxisLimits::new(-9000.0, 9000.0, speed, ACCELERATION));
+        let platform = panel_with(LocatorAxis { min: -9000.0, max: 9000.0, speed, acceleration: ACCELERATION, jerk: None });
         let poses = from_rest(translation, turn);
-        let path = Path::new(&poses, ALL[kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[kind]).unwrap();
         let optimum = crate::support::optimum::seconds(&platform, &path.leg(0).unwrap(), 8000);
         let mut knots = [Knot::default(); 1001];
         let table = plan(&platform, &path, Cut::Into(1000), &mut knots)
@@ -172,7 +205,7 @@ fn a_pure_turn_takes_the_closed_form() {
     let platform = panel();
     let angle = 0.002_f64;
     let poses = from_rest([0.0; 3], [0.0, 0.0, angle]);
-    let path = Path::new(&poses, Interpolation::Straight).unwrap();
+    let path = PosePath::new(&poses, Interpolation::Straight).unwrap();
     let mut knots = [Knot::default(); 201];
     let table = plan(&platform, &path, Cut::Into(200), &mut knots).unwrap();
     let seconds = 4000.0 * angle / SPEED + SPEED / ACCELERATION;

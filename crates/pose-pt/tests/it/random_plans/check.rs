@@ -3,7 +3,7 @@
 use crate::support::table::{BodyTable, Point, bound, points_of};
 use path_timing::Playback;
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{AxisLimits, Platform};
+use pose_pt::{LocatorAxis, Platform};
 
 use crate::random_plans::scene::{Draw, Scene};
 use crate::support::exact::Exact;
@@ -30,7 +30,7 @@ fn cubics<'a>(
     platform: &'a Platform<3>,
     from: &'a Point<3>,
     to: &'a Point<3>,
-) -> impl Iterator<Item = (Cubic, &'a AxisLimits)> {
+) -> impl Iterator<Item = (Cubic, &'a LocatorAxis)> {
     (0..9)
         .map(|number| (number / 3, number % 3))
         .map(move |(number, axis)| {
@@ -60,7 +60,7 @@ impl Cubic {
 
     /// Speed, acceleration and jerk, in 32 digits: the speed at its extreme is
     /// v₀ + a₀² T / 2 (a₀ - a₁).
-    fn check_limits(&self, limits: &AxisLimits, heeds_jerk: bool) {
+    fn check_limits(&self, limits: &LocatorAxis, heeds_jerk: bool) {
         let time = Exact::from(self.time);
         let [a0, a1] = self.accelerations();
         let allowed = Exact::from(limits.acceleration) * time * time;

@@ -1,7 +1,7 @@
 //! What a PT table promises.
 
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{Path, Platform, PtTable};
+use pose_pt::{Platform, PosePath, PtTable};
 
 use crate::random_plans::scene::Scene;
 
@@ -19,7 +19,7 @@ pub(crate) fn check_linear(scene: &Scene) -> bool {
     let Ok(platform) = Platform::new(scene.locators) else {
         return false;
     };
-    let Ok(path) = Path::new(&scene.poses, scene.kind) else {
+    let Ok(path) = PosePath::new(&scene.poses, scene.kind) else {
         return false;
     };
     let table = match PtTable::plan(&platform, &path, scene.segmentation) {

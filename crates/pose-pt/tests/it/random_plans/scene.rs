@@ -1,7 +1,7 @@
 //! A random body on random locators, its way, limits and unit; now and then a number that is none.
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, Vector3};
-use pose_pt::{AxisLimits, Convention, Interpolation, Locator, Platform, Segmentation};
+use pose_pt::{Convention, Interpolation, Locator, LocatorAxis, Platform, Segmentation};
 
 use crate::support::table::Cut;
 use test_support::Random;
@@ -159,11 +159,13 @@ fn locators(draw: &mut Draw, unit: f64, reach: f64) -> [Locator<f64>; 3] {
             let far = 1e4 * (unit + off);
             let speed = unit / time * draw.size(-1.0, 1.0);
             let acceleration = unit / (time * time) * draw.size(-2.0, 2.0);
-            let limits = AxisLimits::new(-far, far, speed, acceleration);
-            if has_jerk && !draw.one_in(4) {
-                limits.with_jerk(unit / (time * time * time) * draw.size(-3.0, 3.0))
-            } else {
-                limits
+            let with_jerk = has_jerk && !draw.one_in(4);
+            LocatorAxis {
+                min: -far,
+                max: far,
+                speed,
+                acceleration,
+                jerk: with_jerk.then(|| unit / (time * time * time) * draw.size(-3.0, 3.0)),
             }
         });
         Locator::new(Point3::from(anchor), Point3::from(origin), limits).with_axes(axes)

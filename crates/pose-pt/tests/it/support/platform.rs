@@ -1,17 +1,23 @@
 //! A platform like that of a panel line, paths on it, and what its controller would run.
 
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
-use pose_pt::{AxisLimits, Locator, Platform};
+use pose_pt::{Locator, LocatorAxis, Platform};
 
 pub(crate) const SPEED: f64 = 10.0;
 pub(crate) const ACCELERATION: f64 = 25.0;
 
 /// Three locators up to 4.3 m apart, strokes of a metre and more, 10 mm/s, 25 mm/s².
 pub(crate) fn panel() -> Platform<3> {
-    panel_with(AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION))
+    panel_with(LocatorAxis {
+        min: -1500.0,
+        max: 1500.0,
+        speed: SPEED,
+        acceleration: ACCELERATION,
+        jerk: None,
+    })
 }
 
-pub(crate) fn panel_with(limits: AxisLimits) -> Platform<3> {
+pub(crate) fn panel_with(limits: LocatorAxis) -> Platform<3> {
     let anchors = [
         [0.0, 0.0, 0.0],
         [4000.0, 0.0, 50.0],
@@ -28,7 +34,13 @@ pub(crate) fn panel_with(limits: AxisLimits) -> Platform<3> {
 pub(crate) fn skewed() -> Platform<3> {
     let mut limits = (1..).map(|n| {
         let n = f64::from(n);
-        AxisLimits::new(-1500.0, 1500.0, 5.0 + n, 40.0 - 3.0 * n)
+        LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: 5.0 + n,
+            acceleration: 40.0 - 3.0 * n,
+            jerk: None,
+        }
     });
     let mut next = || limits.next().unwrap();
     let anchors = [

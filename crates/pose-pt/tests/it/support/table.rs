@@ -2,7 +2,7 @@
 
 use path_timing::{Accuracy, Knot, PlanError, Row, Table};
 use pose_pt::nalgebra::Vector3;
-use pose_pt::{BodyPath, BodyPathError, Path, Platform, hermite_distance_error};
+use pose_pt::{BodyPath, BodyPathError, Platform, PosePath, hermite_distance_error};
 
 /// A row, with the axes of each locator as a vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,7 @@ pub(crate) type BodyTable<'a, const N: usize> = Table<'a, [[f64; 3]; N]>;
 /// The table of a platform along a path.
 pub(crate) fn plan<'a, const N: usize>(
     platform: &Platform<N>,
-    path: &Path<'_>,
+    path: &PosePath<'_>,
     cut: Cut,
     knots: &'a mut [Knot<[[f64; 3]; N]>],
 ) -> Result<BodyTable<'a, N>, PlanError<BodyPathError>> {

@@ -4,8 +4,8 @@ use crate::support::table::{Cut, plan};
 use path_timing::{FeedCeiling, Knot, Row};
 use pose_pt::nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use pose_pt::{
-    AxisLimits, FitError, LimitError, Locator, Path, PlanError, Platform, PlatformError,
-    PoseVector, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
+    FitError, LimitError, Locator, LocatorAxis, Platform, PlatformError, PosePath, PoseVector,
+    PtError, PtTable, Segmentation, calibrate, hermite_distance_error, rigid_fit,
 };
 
 use crate::support::moves::ALL;
@@ -32,7 +32,13 @@ pub(crate) struct Scene {
 impl Scene {
     /// All results where a length of 1 mm is `unit`.
     pub(crate) fn numbers(&self, unit: f64) -> Vec<Number> {
-        let mut limits = AxisLimits::new(-1500.0, 1500.0, SPEED, ACCELERATION);
+        let mut limits = LocatorAxis {
+            min: -1500.0,
+            max: 1500.0,
+            speed: SPEED,
+            acceleration: ACCELERATION,
+            jerk: None,
+        };
         limits.jerk = self.jerk;
         let platform = if self.is_skewed {
             skewed()
@@ -45,7 +51,7 @@ impl Scene {
         numbers.body(&platform, &poses, unit);
         numbers.measured(unit);
         numbers.refused(&platform, unit);
-        let path = Path::new(&poses, ALL[self.kind]).unwrap();
+        let path = PosePath::new(&poses, ALL[self.kind]).unwrap();
         numbers.tables(&platform, &path, self.segments, unit);
         numbers.0
     }
@@ -60,7 +66,13 @@ pub(crate) fn scaled_platform(platform: &Platform<3>, unit: f64) -> Platform<3> 
         let limits = locator.limits.map(|limits| {
             let [min, max] = [limits.min, limits.max].map(|end| end * unit);
             let (speed, acceleration) = (limits.speed * unit, limits.acceleration * unit);
-            let mut scaled = AxisLimits::new(min, max, speed, acceleration);
+            let mut scaled = LocatorAxis {
+                min,
+                max,
+                speed,
+                acceleration,
+                jerk: None,
+            };
             scaled.jerk = limits.jerk.map(|jerk| jerk * unit);
             scaled
         });
@@ -178,13 +190,13 @@ impl Numbers {
             Isometry3::identity(),
             Isometry3::translation(unit, 0.0, 0.0),
         ];
-        let path = Path::new(&poses, ALL[0]).unwrap();
+        let path = PosePath::new(&poses, ALL[0]).unwrap();
         match PtTable::plan(
             platform,
             &path,
             Segmentation::max_distance_error(1e-15 * unit),
         ) {
-            Err(PlanError::DistanceError { allowed, min }) => {
+            Err(PtError::DistanceError { allowed, min }) => {
                 self.put("min", 1, [allowed, min]);
             }
             other => panic!("{other:?}"),
@@ -192,7 +204,7 @@ impl Numbers {
     }
 
     /// Paths, tables, runs.
-    fn tables(&mut self, platform: &Platform<3>, path: &Path<'_>, segments: u32, unit: f64) {
+    fn tables(&mut self, platform: &Platform<3>, path: &PosePath<'_>, segments: u32, unit: f64) {
         let leg = path.leg(0).unwrap();
         self.put("way", 1, [leg.length()]);
         self.put("leg's turn", 0, [leg.turn()]);

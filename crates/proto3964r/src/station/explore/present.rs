@@ -14,20 +14,22 @@ impl State {
             Self::AwaitAck { answer_at } => vec![answer_at],
             Self::Noise {
                 silent_at,
-                babble_at,
+                noise_end_at,
                 ..
             }
             | Self::Interrupted {
                 silent_at,
-                babble_at,
+                noise_end_at,
             }
             | Self::Settling {
                 silent_at,
-                babble_at,
-            } => vec![silent_at, babble_at],
+                noise_end_at,
+            } => vec![silent_at, noise_end_at],
             Self::Spoiled {
-                gap_at, babble_at, ..
-            } => vec![gap_at, babble_at],
+                gap_at,
+                noise_end_at,
+                ..
+            } => vec![gap_at, noise_end_at],
             Self::Request { stalled_at, burst } => vec![stalled_at, &mut burst.until],
             Self::AwaitDle {
                 answer_at, burst, ..

@@ -65,7 +65,7 @@ fn config(random: &mut Random, priority: Priority, line: Line) -> Config {
         // In every second script, telegrams are acknowledged when their user takes them.
         acknowledge_wait_ms: ms(100, 1000) * ms(0, 2),
         line,
-        babble_s: u8::try_from(1 + random.below(10)).unwrap(),
+        max_noise_s: u8::try_from(1 + random.below(10)).unwrap(),
         connection_attempts: u8::try_from(random.below(8)).unwrap(),
         transmission_attempts: u8::try_from(random.below(8)).unwrap(),
         priority,

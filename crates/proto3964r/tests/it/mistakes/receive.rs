@@ -137,7 +137,7 @@ fn m15_a_nak_while_idle_is_never_answered() {
     }
 }
 
-/// The reception of a babbling partner ends, and so does every job.
+/// The reception of a partner that never stops sending ends, and so does every job.
 #[test]
 fn endless_input_does_not_hang() {
     for prefix in [&[STX, 0x10, 0x41][..], &[0x41], &[STX]] {

@@ -60,7 +60,7 @@ fn m05_a_line_that_takes_nothing_does_not_stop_the_timers() {
     assert!(matches!(
         failure,
         Some(Event::Failed(Failure {
-            phase: Phase::Connection,
+            phase: JobPhase::Connection,
             cause: Cause::Stalled,
             attempts: 6,
             ..

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use scara_kin::nalgebra::{RealField, Vector2};
-use scara_kin::{Direction, DriveAngles, Drives, JointRange, Joints, TangentTool, Trig};
+use scara_kin::{DriveAngles, DriveSense, Drives, JointRange, Joints, TangentTool, Trig};
 
 use super::machine::{Recipe, recipes};
 use super::{angle, anything, at_least, double, epsilon, is_readable, single, smallest};
@@ -43,9 +43,12 @@ fn tangent<T: RealField + Trig>(
         let before = disc;
         match disc.follow(&arm, joints, direction) {
             Ok(turn) => {
-                let theta3 = double(turn.theta3);
-                prop_assert!(turn.theta3 == disc.theta3() && theta3.abs() <= largest_angle::<T>());
-                let angles = [double(joints.shoulder), double(joints.elbow), theta3];
+                let tool_angle = double(turn.tool_angle);
+                prop_assert!(
+                    turn.tool_angle == disc.tool_angle()
+                        && tool_angle.abs() <= largest_angle::<T>()
+                );
+                let angles = [double(joints.shoulder), double(joints.elbow), tool_angle];
                 let size: f64 = angles.into_iter().map(f64::abs).sum();
                 let rounding = 4.0 * epsilon::<T>() * (size + PI);
                 let heading = double(direction.y).atan2(double(direction.x));
@@ -53,7 +56,7 @@ fn tangent<T: RealField + Trig>(
                 let base = double(base.im).atan2(double(base.re));
                 let off = angles.into_iter().sum::<f64>() + base - heading;
                 prop_assert!((off / 2.0).sin().abs() <= rounding, "{off}");
-                let change = theta3 - double(before.theta3());
+                let change = tool_angle - double(before.tool_angle());
                 prop_assert!(change.abs() <= PI + rounding, "{change}");
                 let corner = turn.corner.map_or(0.0, double);
                 prop_assert!(corner.abs() <= PI + rounding, "{corner}");
@@ -75,7 +78,7 @@ fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCase
     let [shoulder, elbow] = joints.map(single::<T>);
     let zero = Joints::new(zero1, zero2);
     let drives = Drives::default()
-        .with_directions(Direction::Reversed, Direction::Forward)
+        .with_senses(DriveSense::Reversed, DriveSense::Forward)
         .with_zero(zero)
         .and_then(|drives| drives.with_coupling(coupling));
     let drives = match drives {
@@ -87,10 +90,7 @@ fn drives<T: RealField + Trig>(settings: [f64; 3], joints: [f64; 2]) -> TestCase
         }
     };
     prop_assert!(drives.zero() == zero && drives.coupling() == coupling);
-    prop_assert_eq!(
-        drives.directions(),
-        (Direction::Reversed, Direction::Forward)
-    );
+    prop_assert_eq!(drives.senses(), (DriveSense::Reversed, DriveSense::Forward));
     let joints = Joints::new(shoulder, elbow);
     let angles = drives.from_joints(joints);
     let back = drives.to_joints(angles);

@@ -47,9 +47,9 @@ fn records(meter: &Meter) {
     let mut builder = Builder::new();
     let mut pattern = [0; 3 * 64];
     let slow = JointPulses {
-        theta1: 25,
-        theta2: -11,
-        theta3: 3,
+        elbow: 25,
+        shoulder: -11,
+        disc: 3,
     };
     let mut places = pattern.chunks_exact_mut(3);
     for _ in 0..32 {

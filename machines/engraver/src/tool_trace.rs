@@ -2,10 +2,10 @@
 
 use nalgebra::Point2;
 
-/// A piece of the path in the glass.
+/// A line of the path in the glass.
 #[derive(Debug, Clone)]
-pub(crate) struct Piece {
-    /// In mm; the first is the last of the piece before, if that is of the same stroke.
+pub(crate) struct EngravedLine {
+    /// In mm; the first is the last of the line before, if that is of the same stroke.
     pub(crate) points: Vec<Point2<f64>>,
     /// Mean speed in mm/s, where the arms move.
     pub(crate) speed_mm_s: Option<f64>,
@@ -13,10 +13,10 @@ pub(crate) struct Piece {
 
 /// The path: in the glass by records, above it by travels.
 #[derive(Debug, Clone)]
-pub(crate) struct Track {
+pub(crate) struct ToolTrace {
     /// Where the tool is at home.
     pub(crate) start: Point2<f64>,
-    pub(crate) engraved: Vec<Piece>,
+    pub(crate) engraved: Vec<EngravedLine>,
     pub(crate) travels: Vec<Vec<Point2<f64>>>,
     /// Points nearer to each other are one.
     spacing_mm: f64,
@@ -25,7 +25,7 @@ pub(crate) struct Track {
     in_glass: bool,
 }
 
-impl Track {
+impl ToolTrace {
     pub(crate) fn new(start: Point2<f64>, spacing_mm: f64) -> Self {
         Self {
             start,
@@ -60,7 +60,7 @@ impl Track {
         if points.last() != Some(&tool) {
             points.push(tool);
         }
-        self.engraved.push(Piece { points, speed_mm_s });
+        self.engraved.push(EngravedLine { points, speed_mm_s });
     }
 
     /// The run is over.

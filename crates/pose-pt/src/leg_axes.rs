@@ -4,21 +4,21 @@ use nalgebra::Vector3;
 
 use crate::number::{epsilons, larger};
 use crate::path::leg::{Shape, Turning, VectorLeg};
-use crate::path::{Leg, Path};
+use crate::path::{Leg, PosePath};
 use crate::rotation::to_matrix;
 use crate::turn::{Sweep, Turn};
 use crate::{Platform, PoseVector};
 
 /// Axis coordinates as a function of the leg's parameter s, 0..=1.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Course<'a, const N: usize> {
-    Turning(TurningCourse<N>),
+pub(crate) enum LegAxes<'a, const N: usize> {
+    Turning(TurningAxes<N>),
     Vector(&'a Platform<N>, VectorLeg),
 }
 
 /// Every axis is start + s slide + sin θ sine + (1 - cos θ) versine, θ = s · angle.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TurningCourse<const N: usize> {
+pub(crate) struct TurningAxes<const N: usize> {
     start: [Vector3<f64>; N],
     pub(crate) slide: [Vector3<f64>; N],
     pub(crate) sine: [Vector3<f64>; N],
@@ -34,7 +34,7 @@ const STILL_EPSILONS: f64 = 64.0;
 /// it.
 pub(crate) fn is_still<const N: usize>(
     platform: &Platform<N>,
-    path: &Path<'_>,
+    path: &PosePath<'_>,
     number: usize,
 ) -> bool {
     let ends = path
@@ -54,17 +54,17 @@ pub(crate) fn travel<const N: usize>(platform: &Platform<N>, leg: &Leg) -> f64 {
     leg.length() + leg.turn() * arms.fold(0.0, larger)
 }
 
-/// The state of a walk along a course by equal segments.
+/// The state of a walk along a leg by equal segments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Walk {
     Turning(Sweep<1>),
     Vector(Sweep<3>),
 }
 
-impl<'a, const N: usize> Course<'a, N> {
+impl<'a, const N: usize> LegAxes<'a, N> {
     pub(crate) fn new(platform: &'a Platform<N>, leg: &Leg) -> Self {
         match &leg.shape {
-            Shape::Turning(leg) => Self::Turning(TurningCourse::new(platform, leg)),
+            Shape::Turning(leg) => Self::Turning(TurningAxes::new(platform, leg)),
             Shape::Vector(leg) => Self::Vector(platform, *leg),
         }
     }
@@ -72,7 +72,7 @@ impl<'a, const N: usize> Course<'a, N> {
     /// The start of a walk by `segments` equal segments.
     pub(crate) fn walk(&self, segments: u32) -> Walk {
         match self {
-            Self::Turning(course) => Walk::Turning(Sweep::new([0.0], [course.angle], segments)),
+            Self::Turning(leg_axes) => Walk::Turning(Sweep::new([0.0], [leg_axes.angle], segments)),
             Self::Vector(_, leg) => Walk::Vector(Sweep::new(
                 leg.from.angles().into(),
                 leg.angles_change().into(),
@@ -85,9 +85,9 @@ impl<'a, const N: usize> Course<'a, N> {
     #[inline]
     pub(crate) fn axes(&self, walk: &Walk) -> [Vector3<f64>; N] {
         match (self, walk) {
-            (Self::Turning(course), Walk::Turning(sweep)) => {
+            (Self::Turning(leg_axes), Walk::Turning(sweep)) => {
                 let [turn] = *sweep.now();
-                course.axes(sweep.fraction(), turn)
+                leg_axes.axes(sweep.fraction(), turn)
             }
             (Self::Vector(platform, leg), Walk::Vector(sweep)) => {
                 let [alpha, beta, gamma] = sweep.now().map(|turn| (turn.sin, turn.cos()));
@@ -95,7 +95,7 @@ impl<'a, const N: usize> Course<'a, N> {
                 let position = leg.from.position() + leg.slide() * sweep.fraction();
                 platform.axes_at(&rotation, &position)
             }
-            // A walk belongs to its course.
+            // A walk belongs to its leg.
             _ => [Vector3::zeros(); N],
         }
     }
@@ -118,7 +118,7 @@ impl Walk {
     }
 }
 
-impl<const N: usize> TurningCourse<N> {
+impl<const N: usize> TurningAxes<N> {
     fn new(platform: &Platform<N>, leg: &Turning) -> Self {
         let rotation = to_matrix(&leg.rotation);
         let arms = platform.anchors().map(|anchor| rotation * anchor.coords);

@@ -7,7 +7,7 @@ use crate::short::short;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PlanError {
+pub enum PtError {
     /// An axis would leave its stroke between two poses; the first such point.
     #[error("leg {leg}, point {point}: {reason}")]
     Limit {

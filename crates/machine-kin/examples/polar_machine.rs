@@ -1,12 +1,12 @@
 //! A line past the middle of a polar machine: the steps of table and carriage, to a tick of 72 MHz.
 //!
-//! `cargo run -p machine-kin --example polar_line`
+//! `cargo run -p machine-kin --example polar_machine`
 
 use core::error::Error;
 use core::f64::consts::TAU;
 
 use machine_kin::path_timing::{AxisLimits, Curve, ToolLimits};
-use machine_kin::{Machine, MachinePath, Polar, Side};
+use machine_kin::{CarriageSide, Machine, MachinePath, Polar};
 use pvt_steps::{Drive, Rate};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         feed: 100.0,
         acceleration: Some(2000.0),
     }; // mm, s
-    let path = machine.path(curve.with_tool(feed), Side::Front)?; // or why not, and where
+    let path = machine.path(curve.with_tool(feed), CarriageSide::Front)?; // or why not, and where
     let limits = [
         AxisLimits {
             speed: 4.0,

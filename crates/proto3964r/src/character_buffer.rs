@@ -6,28 +6,28 @@ use crate::station::Station;
 
 /// Characters in a buffer, first in, first out.
 #[derive(Debug)]
-pub(crate) struct Piece<const LEN: usize> {
+pub(crate) struct CharacterBuffer<const LEN: usize> {
     bytes: [u8; LEN],
     begin: usize,
     end: usize,
 }
 
-impl<const LEN: usize> Piece<LEN> {
+impl<const LEN: usize> CharacterBuffer<LEN> {
     pub(crate) const EMPTY: Self = Self {
         bytes: [0; LEN],
         begin: 0,
         end: 0,
     };
 
-    /// As many of the characters as a piece holds.
+    /// As many of the characters as the buffer holds.
     #[cfg(feature = "embedded-io-async")]
     pub(crate) fn of(characters: &[u8]) -> Self {
-        let mut piece = Self::EMPTY;
-        for (to, &from) in piece.bytes.iter_mut().zip(characters) {
+        let mut buffer = Self::EMPTY;
+        for (to, &from) in buffer.bytes.iter_mut().zip(characters) {
             *to = from;
         }
-        piece.filled(characters.len());
-        piece
+        buffer.filled(characters.len());
+        buffer
     }
 
     /// The characters that wait.
