@@ -135,7 +135,7 @@ def items(text):
             impls.append((found.end() - 1, closing(text, found.end() - 1), name[-1], found[1]))
     for found in ITEM.finditer(text):
         inside = [it for it in impls if it[0] < found.start() < it[1]]
-        end = re.compile(r'[;{=]').search(text, found.end())
+        end = re.compile(r'[;{]' if found[1] == 'fn' else r'[;{=]').search(text, found.end())
         end = end.start() if end else len(text)
         if found[1] in ('struct', 'enum', 'trait') and text[end : end + 1] == '{':
             end = closing(text, end)

@@ -17,7 +17,15 @@ const SPEEDS: [[i8; 8]; 3] = [
 
 fn main() -> Result<(), Box<dyn Error>> {
     let tick_rate = Rate::from_hz(1000)?;
-    let mut motors = Accumulation::new(SpeedLaw::CarrySigned, 600, tick_rate)?.motors::<8>();
+    let accumulation = Accumulation::new(SpeedLaw::CarrySigned, 600, tick_rate)?;
+    for speed in [15, 120, -128] {
+        let (per_tick, millihertz) = (
+            accumulation.steps_per_tick(speed),
+            accumulation.millihertz(speed),
+        );
+        println!("speed {speed}: {per_tick} half steps a tick, {millihertz} mHz");
+    }
+    let mut motors = accumulation.motors::<8>();
     let windings = Phases::new(Stepping::Half, Wiring::UNIPOLAR)?;
     let mut phases = [windings.start(); 8];
     let mut latches = Latches::<8>::new();
@@ -40,5 +48,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("half steps {:?}", position.steps());
         println!("windings   {:?}", latches.outputs());
     }
+    println!("towards the next step {:?}", motors.sums());
+    let nibbles = phases.map(|phase| format!("{:04b}", windings.nibble(phase)));
+    println!(
+        "windings {}; off: {:04b}, the byte {:#04x}",
+        nibbles.join(" "),
+        windings.off_nibble(),
+        windings.off_byte()
+    );
     Ok(())
 }

@@ -5,7 +5,7 @@ use core::error::Error;
 
 use path_timing::{Accuracy, Knot, Table};
 use pose_pt::{BodyPath, Convention, Interpolation, Locator, LocatorAxis};
-use pose_pt::{Platform, PosePath, PoseVector};
+use pose_pt::{Platform, PosePath, PoseVector, PtTable, Segmentation, hermite_distance_error};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Stroke in mm, speed in mm/s, acceleration in mm/s²; zero where the panel is at rest.
@@ -37,7 +37,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (paths, limits) = (platform.paths(&path), platform.axis_limits());
     let table = Table::plan_within(paths, limits, accuracy, BodyPath::departure, &mut knots)?;
 
+    let mut before = None;
+    let mut largest = 0.0_f64;
     for row in table.rows() {
+        if let Some(before) = before.replace(row) {
+            largest = largest.max(hermite_distance_error(&platform, &[before, row]));
+        }
         print!("{:8.4} s", row.time_s);
         let axes = row.position.iter().zip(&row.velocity);
         for (position, velocity) in axes.flat_map(|(q, v)| q.iter().zip(v)) {
@@ -45,6 +50,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         println!();
     }
-    println!("{} rows, {:.3} s", table.len(), table.duration_s());
+    println!(
+        "{} rows, {:.3} s, the body strained by up to {largest:.4} mm",
+        table.len(),
+        table.duration_s()
+    );
+
+    // For a controller that takes positions and times alone.
+    let segments = Segmentation::max_distance_error(0.01).at_least(4);
+    let straight = PtTable::plan(&platform, &path, segments)?;
+    println!("{} rows without velocities", straight.points().count());
     Ok(())
 }

@@ -34,8 +34,7 @@ impl LcdBlock {
     }
 
     /// The unit it is for.
-    #[must_use]
-    pub const fn model(&self) -> Model {
+    pub(crate) const fn model(&self) -> Model {
         self.model
     }
 

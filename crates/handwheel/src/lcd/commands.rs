@@ -37,8 +37,7 @@ impl<'a> LcdCommands<'a> {
     }
 
     /// The unit they are for.
-    #[must_use]
-    pub const fn model(&self) -> Model {
+    pub(crate) const fn model(&self) -> Model {
         self.model
     }
 
