@@ -67,7 +67,7 @@ pub enum CalibrationError {
         reason: ForwardError,
     },
     /// The residuals still shrink after the largest number of iterations, or the rods of a
-    /// measured pose lie in a plane, where no change of a parameter tells how the platform moves.
+    /// measured pose lie in a plane, where no change of a parameter shows how the platform moves.
     #[error("not converged after {iterations} iterations, rms {}", Rounded(*.rms))]
     NotConverged {
         /// Iterations made.
@@ -77,7 +77,7 @@ pub enum CalibrationError {
     },
 }
 
-/// A calibrated machine, how well it fits, and what the points do not tell.
+/// A calibrated machine, how well it fits, and what the points do not determine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calibration<const N: usize> {
     delta: Delta,

@@ -114,7 +114,7 @@ impl<T: RealField + Trig> Delta<T> {
         self.with_arms(self.arms.map(|arm| ArmGeometry { zero: theta, ..arm }))
     }
 
-    /// The machine with angles that grow the given way.
+    /// The machine with angles that grow in the given direction.
     #[must_use]
     pub fn with_positive(mut self, positive: Positive) -> Self {
         self.positive = positive;

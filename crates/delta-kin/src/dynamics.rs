@@ -100,7 +100,7 @@ impl<T: RealField + Trig> DeltaDynamics<T> {
         &self.masses
     }
 
-    /// The same with another payload, in kg.
+    /// The dynamics with another payload, in kg.
     ///
     /// # Errors
     /// [`DynamicsError`] for a negative number or one that is not finite.

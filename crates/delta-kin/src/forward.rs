@@ -37,7 +37,7 @@ pub enum ForwardError<T: RealField + Copy = f64> {
     #[error("the elbows, moved inward by the platform's radius, lie on a line")]
     Collinear,
     /// The plane of the elbows is upright: of the two points where the lower arms meet neither is
-    /// the lower, so that no assembly mode tells which is meant.
+    /// the lower, so that no assembly mode names the one that is meant.
     #[error(
         "the plane of the elbows is upright: neither of the platform's two points is the lower"
     )]

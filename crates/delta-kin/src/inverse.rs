@@ -145,7 +145,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// The angles that bring the platform's centre to `point`, in the machine's working and
     /// assembly modes: `forward` of them is the point.
     ///
-    /// For each arm, with u the point along its azimuth, w beside it, D = R - r:
+    /// For each arm, with u the point along its azimuth, w across it, D = R - r:
     ///
     /// ```text
     /// p = D - u,   h² = p² + z²,   L² = La² - w²
@@ -177,8 +177,8 @@ impl<T: RealField + Trig> Delta<T> {
     }
 
     #[cfg(feature = "path-timing")]
-    /// The same, and how fast each angle turns while the centre moves along `along`. With e the rod and
-    /// t the way of the elbow when its angle grows:
+    /// The angles, and how fast each of them turns while the centre moves along `along`. With e the rod and
+    /// t the direction of the elbow when its angle grows:
     ///
     /// ```text
     /// θ' = (e · along) / (e · t)
@@ -239,7 +239,7 @@ impl<T: RealField + Trig> Delta<T> {
         None
     }
 
-    /// The same where an arm is on an edge or beyond.
+    /// The angles where an arm is on an edge or beyond.
     #[cold]
     fn inverse_at_limits(
         &self,

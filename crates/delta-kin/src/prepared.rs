@@ -23,10 +23,10 @@ pub(crate) struct PreparedArm<T> {
     /// Smallest and largest angle as it reads.
     pub(crate) min: T,
     pub(crate) max: T,
-    /// The same as theta.
+    /// The lower end as theta.
     pub(crate) low: T,
     pub(crate) high: T,
-    /// How far the wrist may lie beside the arm's plane.
+    /// How far the wrist may lie off the arm's plane.
     pub(crate) max_side: T,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Triangle<T> {
     /// From the wrist inward to the shoulder.
     pub(crate) inward: T,
     pub(crate) z: T,
-    /// Wrist beside the arm's plane.
+    /// Distance of the wrist from the arm's plane.
     pub(crate) side: T,
     /// h², the square of the distance between shoulder and wrist in the plane.
     pub(crate) h2: T,
@@ -234,7 +234,7 @@ impl<T: RealField + Trig> Triangle<T> {
         (self.h2 * two()).recip()
     }
 
-    /// The same on the edge, from what may be a little beyond.
+    /// The triangle on the edge, from one that may be a little beyond.
     pub(crate) fn at_edge(self) -> Self {
         Self {
             across2: self.across2.max(T::zero()),

@@ -81,7 +81,7 @@ enum Pending {
 /// something happens, and pull [`poll_event`](Self::poll_event) after each. Then, **while the
 /// transport receives nothing**, pull [`poll_transmit`](Self::poll_transmit) and hand the telegram
 /// to the transport, which answers exactly once with `handle_delivered` or `handle_failed`.
-/// [`poll_timeout`](Self::poll_timeout) tells when to call `handle_timeout` and `poll_transmit`
+/// [`poll_timeout`](Self::poll_timeout) says when to call `handle_timeout` and `poll_transmit`
 /// next; too early does nothing, too late only delays. Times are `Duration`s since an epoch of the
 /// caller and must not run backwards.
 ///
@@ -97,7 +97,7 @@ pub struct Driver {
     state: State,
     /// The job that waits or is under way.
     pending: Option<Pending>,
-    /// The HBAS has a display block whose fate its next status tells; `must_poll` is set then.
+    /// The HBAS has a display block whose fate its next status reports; `must_poll` is set then.
     lcd_open: bool,
     /// The next status request; `None` for never.
     poll_at: Option<Duration>,

@@ -115,7 +115,7 @@ impl LcdAnswer {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Status {
-    /// Of the HBLS, 3 bytes.
+    /// The status of an HBLS, 3 bytes.
     Hbls {
         /// The key that is down.
         key: Option<Key>,
@@ -124,7 +124,7 @@ pub enum Status {
         /// Where the second rotary switch stands.
         w2: Position,
     },
-    /// Of the HBAS, 2 bytes.
+    /// The status of an HBAS, 2 bytes.
     Hbas {
         /// The key that is down.
         key: Option<Key>,

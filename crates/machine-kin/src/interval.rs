@@ -197,7 +197,7 @@ impl Interval {
         ])
     }
 
-    /// Of a function that trig-kernels is off by less than a unit of the last place.
+    /// The interval of a function that trig-kernels is off by less than a unit of the last place.
     fn of_kernel(low: f64, high: f64) -> Self {
         Self::new(down(down(low)), up(up(high)))
     }

@@ -187,7 +187,7 @@ pub trait Machine<const N: usize>: Clone + Debug {
 const LEAST_CLEARANCE: f64 = 1e-9;
 const MOST_CLEARANCE: f64 = 1e6;
 
-/// How often a box is halved in each coordinate where it cannot be told.
+/// How often a box is halved in each coordinate where it cannot be decided.
 const DEEPEST: u32 = 2;
 
 /// Whether the inverse is defined and regular within a distance of a place in each coordinate.

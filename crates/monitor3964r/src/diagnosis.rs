@@ -36,7 +36,7 @@ const LATEST: u32 = 4;
 pub struct Diagnosis {
     /// Why the line does not work, or that it does.
     pub verdict: Verdict,
-    /// What looks the same in this record; [`Verdict::measurement`] tells the two apart.
+    /// What looks the same in this record; [`Verdict::measurement`] separates the two.
     pub or: Option<Verdict>,
     /// Telegrams from A to B.
     pub a: Totals,

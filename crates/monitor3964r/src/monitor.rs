@@ -26,7 +26,7 @@ pub(crate) use side::PerSide;
 ///
 /// `N` is the longest payload that is kept. Feed it each character with its time, or the lines of
 /// a capture; it sends nothing. Times and check come from a [`Config`]; the other settings do not
-/// matter. Why a line fails is what [`diagnose`](crate::diagnose) tells.
+/// matter. Why a line fails is what [`diagnose`](crate::diagnose) finds.
 ///
 /// # Examples
 /// ```

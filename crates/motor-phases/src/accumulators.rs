@@ -96,7 +96,7 @@ impl<const N: usize> Accumulators<N> {
         }
     }
 
-    /// Adds to each sum, and lets the law tell sum and step from sum and sign.
+    /// Adds to each sum, and lets the law make sum and step of sum and sign.
     #[inline]
     fn each(&mut self, law: impl Fn(i16, i16) -> (i16, i16)) -> [i32; N] {
         let mut steps = [0; N];

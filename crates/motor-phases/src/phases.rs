@@ -81,7 +81,7 @@ impl Wiring {
         ..Self::UNIPOLAR
     };
 
-    /// The same with the order of the four bits reversed.
+    /// The wiring with the order of the four bits reversed.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {

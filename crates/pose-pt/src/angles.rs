@@ -21,7 +21,7 @@ pub enum Convention {
     #[default]
     ExtrinsicXyz,
     /// About X, then the new Y, then the new Z: R = Rx(α) Ry(β) Rz(γ), the words
-    /// beside the printed matrix.
+    /// next to the printed matrix.
     IntrinsicXyz,
 }
 

@@ -33,7 +33,7 @@ pub struct BodyPath<'a, const N: usize> {
     /// In the parameter that is common to all.
     length: f64,
     /// Exactly where its neighbours have them: a controller gets one position for the end of one and
-    /// the start of the next, while each by itself would round it anew.
+    /// the start of the next, while each by itself would round it once more.
     ends: [[Vector3<f64>; N]; 2],
     /// Whether the next one is entered without a stop.
     goes_on: bool,

@@ -48,7 +48,7 @@ pub enum PtError {
         /// The smallest distance error that can be asked for.
         min: f64,
     },
-    /// Two points of a leg cannot be told apart: so near are they, or so late, that the float
+    /// Two points of a leg are not distinct: so near are they, or so late, that the float
     /// type has the same numbers for both.
     #[error("leg {leg}: point {point} and the one before have the same positions or times")]
     Indistinct {

@@ -77,7 +77,7 @@ pub fn angle_between<T: RealField + Trig>(a: &UnitQuaternion<T>, b: &UnitQuatern
 /// `t` = 0 gives `a` and 1 gives `b` to the last bit (up to the sign of the quaternion);
 /// the turn from `b` to `a` at 1 - `t` is the same. Other values go on beyond the ends, to the
 /// angle between both times `t` as it is rounded.
-/// Of two arcs of π, that of the quaternions as they are is taken.
+/// Where both arcs are π, the arc of the quaternions as they are is taken.
 #[must_use]
 pub fn slerp<T: RealField + Trig>(
     a: &UnitQuaternion<T>,

@@ -67,7 +67,7 @@ impl Segmentation {
         }
     }
 
-    /// The same with at least `segments` of a leg.
+    /// The segmentation with at least `segments` of a leg.
     #[must_use]
     pub const fn at_least(mut self, segments: u32) -> Self {
         self.at_least = segments;
@@ -128,7 +128,7 @@ impl Segmentation {
         segments.max(self.at_least).max(1)
     }
 
-    /// The same, if a leg can have that number.
+    /// The segments of a leg, if it can have that number.
     pub(crate) fn checked_segments<const N: usize>(
         &self,
         platform: &Platform<N>,

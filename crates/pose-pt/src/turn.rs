@@ -38,7 +38,7 @@ impl Turn {
     }
 }
 
-/// Equal steps after which the angle is computed anew. Each step rounds off less than
+/// Equal steps after which the angle is computed again. Each step rounds off less than
 /// two machine epsilons, so that a point is never off by more than 128 of its arm.
 const RENEWAL: u32 = 64;
 

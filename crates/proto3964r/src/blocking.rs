@@ -20,13 +20,13 @@ pub trait Port: io::Read + io::Write {
     /// Lets `read` wait for at most this time, which is not zero.
     ///
     /// # Errors
-    /// Those of the port.
+    /// The errors of the port.
     fn set_timeout(&mut self, timeout: Duration) -> io::Result<()>;
 
     /// Drops what has come in and was not read; nothing where a port cannot.
     ///
     /// # Errors
-    /// Those of the port.
+    /// The errors of the port.
     fn discard_input(&mut self) -> io::Result<()> {
         Ok(())
     }
@@ -34,7 +34,7 @@ pub trait Port: io::Read + io::Write {
     /// Drops what was written and has not left; nothing where a port cannot.
     ///
     /// # Errors
-    /// Those of the port.
+    /// The errors of the port.
     fn discard_output(&mut self) -> io::Result<()> {
         Ok(())
     }
@@ -78,7 +78,7 @@ impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
     /// Puts a station on an open port and drops what the port has received so far.
     ///
     /// # Errors
-    /// Those of the port.
+    /// The errors of the port.
     pub fn new(mut port: P, config: Config) -> io::Result<Self> {
         port.discard_input()?;
         Ok(Self {
@@ -101,7 +101,7 @@ impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
     /// Takes a job; it goes out while [`wait`](Self::wait) runs.
     ///
     /// # Errors
-    /// Those of [`Station::submit`].
+    /// The errors of [`Station::submit`].
     pub fn submit(&mut self, payload: &[u8]) -> Result<(), SubmitError> {
         self.station.submit(self.now(), payload)
     }
@@ -132,7 +132,7 @@ impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
     /// Works until there is an event, at most for `patience`; `None` when that has passed.
     ///
     /// # Errors
-    /// Those of the port.
+    /// The errors of the port.
     pub fn wait(&mut self, patience: Duration) -> io::Result<Option<Event<'_>>> {
         let end = self.now().saturating_add(patience);
         loop {

@@ -75,7 +75,7 @@ where
     /// Takes a job.
     ///
     /// # Errors
-    /// Those of [`Station::submit`].
+    /// The errors of [`Station::submit`].
     pub fn submit(&mut self, payload: &[u8]) -> Result<(), SubmitError> {
         self.station.submit((self.clock)(), payload)
     }
@@ -107,8 +107,8 @@ where
     /// Call it often, or call [`wait`](Self::wait).
     ///
     /// # Errors
-    /// Those of the port. A receiver error (parity, framing, overrun) is one of them on most
-    /// ports: tell the station with [`Station::handle_damaged`] and go on.
+    /// The errors of the port. A receiver error (parity, framing, overrun) is one of them on most
+    /// ports: report it to the station with [`Station::handle_damaged`] and go on.
     pub fn step(&mut self) -> Result<(), P::Error> {
         let mut out = [0; OUTPUT];
         self.read()?;
@@ -133,7 +133,7 @@ where
     /// Steps until there is an event.
     ///
     /// # Errors
-    /// Those of [`step`](Self::step).
+    /// The errors of [`step`](Self::step).
     pub fn wait(&mut self) -> Result<Event<'_>, P::Error> {
         let note = loop {
             if let Some(note) = self.station.take_note() {

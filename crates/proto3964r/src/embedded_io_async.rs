@@ -107,7 +107,7 @@ where
     /// Takes a job; it goes out while [`wait`](Self::wait) is polled.
     ///
     /// # Errors
-    /// Those of [`Station::submit`].
+    /// The errors of [`Station::submit`].
     pub fn submit(&mut self, payload: &[u8]) -> Result<(), SubmitError> {
         self.station.submit(self.timer.now(), payload)
     }
@@ -138,8 +138,8 @@ where
     /// Works until there is an event. May be dropped and called again.
     ///
     /// # Errors
-    /// Those of the port. A receiver error (parity, framing, overrun) is one of them on most
-    /// ports: tell the station with [`Station::handle_damaged`] and go on.
+    /// The errors of the port. A receiver error (parity, framing, overrun) is one of them on most
+    /// ports: report it to the station with [`Station::handle_damaged`] and go on.
     pub async fn wait(&mut self) -> Result<Event<'_>, R::Error> {
         let note = loop {
             if let Some(note) = self.station.take_note() {
@@ -150,7 +150,7 @@ where
         Ok(self.station.event(note))
     }
 
-    /// Waits for whatever comes first and tells the station. May be dropped and called again.
+    /// Waits for whatever comes first and hands it to the station. May be dropped and called again.
     pub(crate) async fn round(&mut self) -> Result<(), R::Error> {
         let now = self.timer.now();
         self.station.handle_timeout(now);

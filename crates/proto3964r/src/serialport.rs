@@ -1,6 +1,6 @@
 //! The blocking driver on a port of [`serialport`](https://docs.rs/serialport) 4.
 //!
-//! That crate does not tell which characters came in damaged: parity protects only as far as the
+//! That crate does not report which characters came in damaged: parity protects only as far as the
 //! operating system drops or replaces them, and the BCC has to see the rest.
 
 use alloc::boxed::Box;

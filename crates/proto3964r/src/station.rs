@@ -56,7 +56,7 @@ use crate::{
 /// one only delays. No call takes longer than its bytes need.
 ///
 /// Times are `Duration`s since an epoch of the caller, the same in all calls, and must not run
-/// backwards. How fine the clock must be, [`Line`](crate::Line) tells.
+/// backwards. How fine the clock must be, [`Line`](crate::Line) says.
 ///
 /// # Jobs
 /// A station holds one job: from [`submit`](Self::submit) until its outcome has been polled. A job

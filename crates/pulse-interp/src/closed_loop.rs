@@ -227,7 +227,7 @@ impl AxisLoop {
         }
     }
 
-    /// Starts anew at 0 steps and 0 counts, as after homing; ends an alarm.
+    /// Starts again at 0 steps and 0 counts, as after homing; ends an alarm.
     pub fn reset(&mut self) {
         (self.commanded, self.lost) = (0, false);
     }

@@ -93,7 +93,7 @@ pub struct StepIntervals<U = Repeat<u32>> {
     unit_ticks: u32,
     /// What the path has not gone of the unit in hand, in 65536ths of a step length.
     left_q16: u32,
-    /// Of a tick, in 65536ths, below 65536.
+    /// The fraction of a tick, in 65536ths, below 65536.
     fraction: u32,
 }
 

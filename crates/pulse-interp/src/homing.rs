@@ -92,7 +92,7 @@ pub enum HomingError {
 pub struct Homing {
     settings: HomingSettings,
     phase: Phase,
-    /// Of this phase.
+    /// Steps of this phase.
     made: u32,
 }
 

@@ -269,7 +269,7 @@ mod tests {
     use proptest::strategy::ValueTree as _;
     use proptest::test_runner::TestRunner;
 
-    /// Any number of up to so many bits, all lengths as often.
+    /// Any number of up to this many bits, all lengths as often.
     fn sized(bits: u32) -> impl Strategy<Value = i64> {
         (any::<u64>(), 64 - bits..64).prop_map(|(number, shift)| (number >> shift).cast_signed())
     }

@@ -54,7 +54,7 @@ pub struct Client<P> {
 /// even parity. The partner has the high priority, as a Siemens communication processor by default.
 ///
 /// # Errors
-/// Those of the connection.
+/// The errors of the connection.
 pub fn connect(address: impl ToSocketAddrs) -> io::Result<Client<TcpStream>> {
     let line = proto3964r::Config::siemens_3964r(Priority::Low, Line::buffered(9600, 11));
     let stream = TcpStream::connect(address)?;
@@ -66,7 +66,7 @@ impl<P: Port> Client<P> {
     /// Puts a client and its station on an open port.
     ///
     /// # Errors
-    /// Those of the port.
+    /// The errors of the port.
     pub fn new(port: P, line: proto3964r::Config, config: Config) -> io::Result<Self> {
         Ok(Self {
             line: Driver::new(port, line)?,

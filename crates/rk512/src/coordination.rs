@@ -59,7 +59,7 @@ pub enum CoordinationError {
         /// Low nibble of byte 10.
         bit: u8,
     },
-    /// CPUs are 1 to 4; 0h stands beside a flag, Fh where there is no flag.
+    /// CPUs are 1 to 4; 0h stands next to a flag, Fh where there is no flag.
     #[error("CPU number (high nibble of byte 10): {nibble:X}h")]
     Cpu {
         /// High nibble of byte 10.

@@ -128,7 +128,7 @@ impl<const N: usize> Endpoint<N> {
 
     /// A block came from the partner.
     ///
-    /// One that is too short to tell goes to the client if a reaction is due, else to the server.
+    /// A block that is too short to decide goes to the client if a reaction is due, else to the server.
     pub fn handle_block<D: DataSource + ?Sized>(
         &mut self,
         now: Duration,

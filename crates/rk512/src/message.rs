@@ -11,7 +11,7 @@ use crate::telegram::{EncodeError, Telegram, is_continuation, is_reaction};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeError {
-    /// It is a command, or too short to tell, and wrong.
+    /// It is a command, or too short to decide, and wrong.
     #[error("command: {0}")]
     Command(#[from] CommandError),
     /// It is a reaction, and wrong.

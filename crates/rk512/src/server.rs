@@ -41,7 +41,7 @@ struct Job {
     done: usize,
 }
 
-/// The side that answers commands from a [`DataSource`], which every call gets anew.
+/// The side that answers commands from a [`DataSource`], which every call gets again.
 ///
 /// Memory: at most 288 bytes, whatever the length of the jobs: data go straight to the source.
 ///
@@ -58,7 +58,7 @@ struct Job {
 /// earns [`ReactionError::Synchronisation`](crate::ReactionError::Synchronisation); a reaction that
 /// the transport has not taken yet is replaced by it, one that it has should be
 /// [taken back](Self::wants_recall). A first telegram in the middle of a job
-/// begins anew: the partner has lost a reaction and given its old job up.
+/// begins again: the partner has lost a reaction and given its old job up.
 #[derive(Debug)]
 pub struct Server {
     config: Config,

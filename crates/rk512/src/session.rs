@@ -101,7 +101,7 @@ impl Session {
         self.endpoint.cancel(now);
     }
 
-    /// Gives the job up, of whose outcome nobody is told.
+    /// Gives the job up; its outcome is not reported.
     #[cfg(feature = "blocking")]
     pub(crate) fn abandon(&mut self, now: Duration) {
         self.endpoint.cancel(now);

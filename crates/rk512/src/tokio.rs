@@ -75,8 +75,9 @@ impl Client {
         Self::with_observer(stream, line, config, |_| {})
     }
 
-    /// The same, and tells an observer each event of the station when it happens, diagnosis too. It
-    /// is called by the task that answers the partner, and must not wait.
+    /// Puts a station on a stream as [`new`](Self::new) does, with an observer that gets each event
+    /// of the station when it happens, diagnosis too. It is called by the task that answers the
+    /// partner, and must not wait.
     ///
     /// # Panics
     /// Outside of a runtime of tokio.

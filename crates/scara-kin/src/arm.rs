@@ -46,14 +46,14 @@ pub struct Arm<T: RealField = f64> {
 /// Squares that follow from the geometry, of which each `inverse` takes all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Squares<T> {
-    /// Of the distances from the base between which the tool can be, a rounding past the edges
+    /// Squares of the distances from the base between which the tool can be, a rounding past the edges
     /// included; zero where there is no inner one.
     pub(crate) nearest: T,
     pub(crate) farthest: T,
-    /// Of the links' difference and of their sum.
+    /// Squares of the links' difference and of their sum.
     pub(crate) folded: T,
     pub(crate) reach: T,
-    /// Of the links.
+    /// Squares of the links.
     pub(crate) longer: T,
     pub(crate) shorter: T,
     /// That of the upper arm less that of the forearm.

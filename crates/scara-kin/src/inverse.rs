@@ -105,7 +105,8 @@ impl<T: RealField + Trig> Triangle<T> {
         self.shoulder(-self.s)
     }
 
-    /// Those of the shoulder, for the area `s` with the elbow's sign.
+    /// Both sides of the shoulder's angle and one over their length, for the area `s` with the elbow's
+    /// sign.
     #[inline(always)]
     fn shoulder(&self, s: T) -> (T, T, T) {
         let (x, y) = (self.tool.x, self.tool.y);

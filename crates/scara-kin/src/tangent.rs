@@ -70,7 +70,7 @@ pub enum TangentError<T = f64> {
         y: T,
     },
     /// An angle is not a number within the range of angles: the tool's after many turns, where
-    /// [`TangentTool::starting_at`] begins anew.
+    /// [`TangentTool::starting_at`] begins again.
     OutOfRange {
         /// The angle.
         name: &'static str,

@@ -171,7 +171,7 @@ impl<T: RealField + Trig> Arm<T> {
         self.solve(joints, acceleration - centripetal)
     }
 
-    /// The most by which the tool is moved where shoulder and elbow are off by at most so many radians, in
+    /// The most by which the tool is moved where shoulder and elbow are off by at most these radians, in
     /// the unit of length: at any pose.
     ///
     /// ```text

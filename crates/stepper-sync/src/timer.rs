@@ -31,7 +31,7 @@ const NS_PER_S: NonZeroU128 = NonZeroU128::MIN.saturating_add(999_999_999);
 /// | constructor | register | shortest T |
 /// |---|---|---|
 /// | [`up_to_overflow`](Self::up_to_overflow) | (2^w - T) mod 2^w: the count that the interval starts from | 1 |
-/// | [`up_to_compare`](Self::up_to_compare) | T - 1: the last count before the counter starts anew at 0 | 2 |
+/// | [`up_to_compare`](Self::up_to_compare) | T - 1: the last count before the counter starts again at 0 | 2 |
 /// | [`down_to_zero`](Self::down_to_zero) | T - 1: the count that is loaded after 0 | 2 |
 ///
 /// N is the prescaler:
@@ -103,7 +103,7 @@ impl Timer {
     }
 
     /// A counter that counts up from 0 to its auto-reload, compare or period register, and starts
-    /// anew at the tick after.
+    /// again at the tick after.
     ///
     /// ```text
     /// reload = T - 1

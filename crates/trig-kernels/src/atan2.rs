@@ -181,7 +181,7 @@ macro_rules! atan2 {
             }
         }
 
-        /// One copy of it: memory is dear where there are no vectors, and beside vectors it is rare.
+        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is rare.
         #[inline(never)]
         fn atan2_alone(y: $float, x: $float) -> $float {
             let Sides { small, large, .. } = sides(y, x);

@@ -63,7 +63,7 @@ macro_rules! known_length {
             }
         }
 
-        /// One copy of it: memory is dear where there are no vectors, and beside vectors it is rare.
+        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is rare.
         #[inline(never)]
         fn of_length_alone(y: $float, x: $float, inverse_length: $float) -> $float {
             let unit = unit(y, x, inverse_length);

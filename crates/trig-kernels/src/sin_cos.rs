@@ -102,7 +102,7 @@ macro_rules! sin_cos {
             }
         }
 
-        /// One copy of it: memory is dear where there are no vectors, and beside vectors it is rare.
+        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is rare.
         #[inline(never)]
         fn sin_cos_alone(x: $float) -> ($float, $float) {
             evaluate(any_reduced(x))

@@ -172,7 +172,7 @@ mod tests {
         }
     }
 
-    /// Arguments at and beside the ends of 2^14 intervals, squares of short numbers and of halves
+    /// Arguments at and next to the ends of 2^14 intervals, squares of short numbers and of halves
     /// between numbers, and any bits.
     #[test]
     fn roots_of_f64_are_the_nearest() {

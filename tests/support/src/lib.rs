@@ -7,6 +7,9 @@
     reason = "tests fail by panics"
 )]
 
+extern crate alloc;
+
+mod board;
 mod config;
 pub mod instructions;
 mod pulses;
@@ -14,6 +17,7 @@ mod random;
 mod sizes;
 mod stored;
 
+pub use board::{Board, Pin};
 pub use config::at_least;
 pub use pulses::Pulses;
 pub use random::{Random, setting};

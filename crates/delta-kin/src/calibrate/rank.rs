@@ -33,7 +33,7 @@ const MAX_SWEEPS: usize = 40;
 const UNDETERMINED: f64 = 1e-4;
 
 impl<const N: usize> Rank<N> {
-    /// Of a triangularised system of `rows` rows, `sum` the sum of its squared residuals.
+    /// The rank of a triangularised system of `rows` rows, `sum` the sum of its squared residuals.
     pub(super) fn new(system: &LeastSquares<N>, sum: f64, rows: usize, units: &[f64; N]) -> Self {
         let scales = system.scales();
         let mut u = system.r;

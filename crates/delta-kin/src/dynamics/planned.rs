@@ -19,9 +19,9 @@ const GROWTH: f64 = 1.25;
 struct Turning {
     /// Largest derivatives 1 to 3 of its angle.
     angle: Largest<3>,
-    /// Of its elbow's place, 1 to 4.
+    /// Derivatives 1 to 4 of its elbow's position.
     elbow: Largest<4>,
-    /// Of the elbow's tangent, 0 to 2.
+    /// Derivatives 0 to 2 of the elbow's tangent.
     tangent: Largest<3>,
 }
 
@@ -42,7 +42,7 @@ impl Turning {
 }
 
 impl DeltaDynamics {
-    /// The bound of [`Dynamics::bend`]; none where the segment is too long to tell.
+    /// The bound of [`Dynamics::bend`]; none where the segment is too long to know.
     ///
     /// With κ the norm of the inverse of the matrix of the rods' directions everywhere on the segment, all
     /// derivatives of the platform's place follow from those of the elbows by the constant lengths of the

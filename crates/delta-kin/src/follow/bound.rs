@@ -26,7 +26,7 @@ struct Swing<T> {
 impl<T: RealField + Trig> Delta<T> {
     /// A bound on how far the platform leaves the straight line between two poses of this machine
     /// while all arms turn linearly from one to the other, in the unit of length; `None` where
-    /// the move is too long to tell, or a pose is another machine's. The platform stays in its
+    /// the move is too long to know, or a pose is another machine's. The platform stays in its
     /// assembly mode throughout.
     ///
     /// Proof. Let the platform be on the line, P(s) = P0 + s V over s = 0..=1, and the elbows where

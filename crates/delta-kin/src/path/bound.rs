@@ -96,7 +96,7 @@ impl<'a> Swing<'a> {
 
 impl DeltaPath {
     /// The most by which the platform's centre leaves the curve on a segment of a table, in the unit
-    /// of length; infinite where the segment is too long to tell. For
+    /// of length; infinite where the segment is too long to know. For
     /// [`Table::plan_within`](path_timing::Table::plan_within).
     ///
     /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], K the centres of the rods' spheres as
@@ -136,7 +136,7 @@ impl DeltaPath {
     }
 
     /// The most by which the platform's centre leaves the curve where each arm is off its cubic by at most
-    /// so many radians, as a shaped motion is off the motion [`Shaped::delay_s`] earlier by
+    /// `off` radians, as a shaped motion is off the motion [`Shaped::delay_s`] earlier by
     /// [`Shaper::departure`]; in the unit of length, infinite where the segment is too long or the angles
     /// are too much to tell.
     ///
@@ -178,8 +178,8 @@ impl DeltaPath {
         shifted().map_or(f64::INFINITY, |farthest| farthest + self.delta.tolerance())
     }
 
-    /// Whether the machine may run a segment: all arms within their ranges, and no rod beside the plane
-    /// of its arm by more than its ball joints let it. How far beside it is depends on the platform's
+    /// Whether the machine may run a segment: all arms within their ranges, and no rod out of the plane
+    /// of its arm by more than its ball joints let it. How far out it is depends on the platform's
     /// place alone, which is known at the nodes of [`departure`](Self::departure) and linear between
     /// them but for what it departs by there and the curve's own bend.
     pub(super) fn check_span(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
@@ -218,7 +218,7 @@ impl DeltaPath {
         Ok(())
     }
 
-    /// None where it cannot be told.
+    /// None where it cannot be known.
     fn known(&self, span: &Span<[f64; 3]>) -> Option<Known> {
         let (delta, [from, to]) = (&self.delta, &span.rows);
         let mut cubics = Cubic::between(from, to);
@@ -310,7 +310,7 @@ impl DeltaPath {
 struct Known {
     /// The most by which the platform leaves the curve.
     departure: f64,
-    /// How far each wrist comes beside the plane of its arm, where its ball joints have a limit.
+    /// How far each wrist comes out of the plane of its arm, where its ball joints have a limit.
     sides: [f64; 3],
     /// Columns of the inverse of B halfway, and κ.
     inverse: [Vector3<f64>; 3],
@@ -325,7 +325,7 @@ struct Known {
 }
 
 /// E: how far the platform is where it would be `off` but for the curvature of the rods' spheres; none
-/// where it cannot be told.
+/// where it cannot be known.
 fn farthest(kappa: f64, off: f64, lower: f64) -> Option<f64> {
     let x = 2.0 * ROOT3 * kappa * off / lower;
     // Written so that NaN is none.

@@ -82,7 +82,7 @@ pub enum Event {
     /// The job may not have been done. A status request follows by itself, which resets the unit;
     /// what the display shows is not known.
     Failed(Failure),
-    /// The unit does not answer. Requests go on; the next [`Status`](Self::Status) tells when it
+    /// The unit does not answer. Requests go on; the next [`Status`](Self::Status) reports when it
     /// is back.
     Lost,
     /// A telegram that means nothing.

@@ -1,4 +1,4 @@
-//! A machine in a plane, and a height beside it.
+//! A machine in a plane with a height of its own.
 
 use core::ops::RangeInclusive;
 

@@ -65,7 +65,7 @@ pub(super) fn pieces(
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The most by which the tool leaves the curve on a segment of a table, in the unit of length;
-    /// infinite where the segment is too long to tell. For
+    /// infinite where the segment is too long to know. For
     /// [`Table::plan_within`](path_timing::Table::plan_within).
     ///
     /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], q the inverse on the path's branch, c

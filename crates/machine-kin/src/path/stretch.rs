@@ -12,7 +12,7 @@ pub(super) struct Stretch<const N: usize> {
     longest: [f64; 5],
     /// Half of the part.
     half: f64,
-    /// Of places.
+    /// Rounding of a position, in the unit of length.
     rounding: f64,
 }
 

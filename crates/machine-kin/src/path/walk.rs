@@ -15,7 +15,7 @@ const MIN_PIECE: f64 = 1e-9;
 /// a fraction of its size.
 const EDGE: f64 = 1e-6;
 
-/// What is within so many times that of the end of the branch is said to be there.
+/// A place within this many times [`EDGE`] of the end of the branch is reported as that end.
 const NEXT: f64 = 100.0;
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {

@@ -13,10 +13,10 @@ pub(super) const ALONE: Duration = Duration::from_millis(20);
 /// An STX without any character before it for so long is no reaction to one.
 const QUIET: Duration = Duration::from_millis(300);
 
-/// So many answers are looked at, the last ones: more would tell nothing else, and take time.
+/// The number of answers that are looked at, the last ones: more would show nothing else, and take time.
 const LAST: usize = 128;
 
-/// Of those, answers and questions that are tried for a delay.
+/// The number of answers and questions that are tried for a delay.
 const ANSWERS: usize = 16;
 const QUESTIONS: usize = 12;
 

@@ -15,7 +15,7 @@ pub(super) struct Echo {
     characters: usize,
     /// Pairs of the same character, one of each side.
     pairs: usize,
-    /// Of them, other than STX, DLE and NAK.
+    /// Those of the pairs that are not STX, DLE or NAK.
     data: usize,
 }
 

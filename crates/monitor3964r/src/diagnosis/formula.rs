@@ -105,7 +105,7 @@ impl Formulas {
         }
     }
 
-    /// The rule, unless it is that of the procedure or cannot be told.
+    /// The rule, unless it is that of the procedure or cannot be decided.
     pub(super) fn rule(self) -> Option<Formula> {
         let wrong = |vote: Vote| vote.winner().is_some_and(|difference| difference != 0);
         let mut blocks = 0_u32;

@@ -67,7 +67,7 @@ impl<'c> Case<'c> {
         Self::garbage,
     ];
 
-    /// The verdict, and the other cause where the sentence alone cannot tell.
+    /// The verdict, and the other cause where the sentence alone cannot decide.
     pub(super) fn verdict(&self) -> (Verdict, Option<Verdict>) {
         let (a, b) = (self.side(Side::A), self.side(Side::B));
         if a.characters == 0 && b.characters == 0 {

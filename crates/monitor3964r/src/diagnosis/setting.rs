@@ -22,7 +22,7 @@ pub enum BaudRatio {
     Half,
     /// 2.
     Double,
-    /// 2 or more: how many bits the tap has missed cannot be told.
+    /// 2 or more: how many bits the tap has missed cannot be known.
     DoubleOrMore,
 }
 
@@ -59,7 +59,7 @@ use Read::{Damaged as D, Good as G};
 /// What one STX, DLE or NAK reads as.
 type Word = &'static [Read];
 
-/// Of each setting, what STX, DLE and NAK read as, with even, odd and no parity; longer words first.
+/// What STX, DLE and NAK of each setting read as, with even, odd and no parity; longer words first.
 /// At a whole multiple of its rate a receiver looks where two bits meet, and may take either; there
 /// two characters without a pause read as one of half their rate.
 const SETTINGS: [(Setting, &[Word]); 7] = [
@@ -125,7 +125,7 @@ impl Setting {
 struct Fit {
     /// Pieces that begin with a word.
     hits: u32,
-    /// Of those, made of one word or two, one of which can be nothing else.
+    /// Hits made of one word or two, one of which can be nothing else.
     telling: u32,
     /// At least half of all pieces begin so.
     is_most: bool,
@@ -206,7 +206,7 @@ impl Burst {
     }
 }
 
-/// Whether the characters begin with this word, and if so, whether that tells anything.
+/// Whether the characters begin with this word, and if so, whether that proves anything.
 fn spells<'c>(mut heard: impl Iterator<Item = &'c Character>, word: Word) -> Option<bool> {
     let mut is_telling = false;
     let mut before: Option<Duration> = None;

@@ -23,7 +23,7 @@ pub struct Totals {
     pub telegrams: u32,
     /// Blocks that were not, and had to be repeated.
     pub repeats: u32,
-    /// Of those, answered NAK.
+    /// Repeats that were answered NAK.
     pub rejected: u32,
     /// Longest time from its STX to DLE.
     pub worst_answer: Option<Duration>,

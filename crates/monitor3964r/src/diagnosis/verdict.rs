@@ -32,7 +32,7 @@ pub enum Verdict {
         sender: Side,
         /// Blocks that were not accepted.
         repeated: u32,
-        /// Of them, those that were heard damaged.
+        /// Those of the repeated ones that were heard damaged.
         damaged: u32,
         /// All its blocks.
         blocks: u32,
@@ -257,7 +257,7 @@ impl Verdict {
         !matches!(self, Self::Silent | Self::Open | Self::Works)
     }
 
-    /// What tells the causes in the sentence apart, where it names more than one.
+    /// The measurement that separates the causes in the sentence, where it names more than one.
     #[must_use]
     pub const fn measurement(&self) -> Option<&'static str> {
         Some(match self {

@@ -1,58 +1,9 @@
 //! Winding pins that log what they do.
 
-use alloc::rc::Rc;
-use core::{cell::RefCell, convert::Infallible, fmt};
 use std::collections::HashMap;
 
-use embedded_hal::delay::DelayNs;
-use embedded_hal::digital::{ErrorType, OutputPin};
 use motor_phases::{Phases, Polarity, Stepping, WindingPins, Wiring};
-
-/// All pins and the clock of a test: `name+`, `name-`, and waits in nanoseconds.
-#[derive(Clone, Default)]
-struct Board(Rc<RefCell<Vec<String>>>);
-
-impl Board {
-    fn pin(&self, name: &'static str) -> Pin {
-        let board = self.clone();
-        Pin { name, board }
-    }
-
-    fn log(&self, entry: impl fmt::Display) {
-        self.0.borrow_mut().push(entry.to_string());
-    }
-
-    fn take(&self) -> String {
-        self.0.borrow_mut().split_off(0).join(" ")
-    }
-}
-
-impl DelayNs for Board {
-    fn delay_ns(&mut self, ns: u32) {
-        self.log(ns);
-    }
-}
-
-struct Pin {
-    name: &'static str,
-    board: Board,
-}
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl OutputPin for Pin {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.board.log(format_args!("{}-", self.name));
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.board.log(format_args!("{}+", self.name));
-        Ok(())
-    }
-}
+use test_support::Board;
 
 #[test]
 fn windings_go_off_before_others_go_on() {

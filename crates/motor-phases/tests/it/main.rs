@@ -1,9 +1,6 @@
 //! All tests of the crate: one program, which is linked once.
 #![cfg(test)]
 
-#[cfg(feature = "embedded-hal")]
-extern crate alloc;
-
 mod accumulators;
 #[cfg(feature = "embedded-hal")]
 mod embedded_hal;

@@ -126,7 +126,7 @@ fn array<'t>(
 pub(crate) struct ArrayValues<'t> {
     items: Items<'t>,
     range: (i64, i64),
-    /// Of the array, then of the last value, at last of the end.
+    /// Location of the array, then of the last value, at last of the end.
     pub(crate) location: Location,
     error: Option<HeaderError>,
 }

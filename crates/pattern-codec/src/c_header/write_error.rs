@@ -4,7 +4,7 @@ use core::fmt;
 
 use thiserror::Error;
 
-/// Highest number of characters in a name; every C compiler tells so long ones apart.
+/// Highest number of characters in a name; every C compiler distinguishes names of that length.
 pub(super) const MAX_NAME: usize = 31;
 
 /// Why a header is not written.

@@ -110,7 +110,7 @@ impl Located {
 }
 
 /// Decoding iterator over a slice, made by [`Format::records`]. It copies nothing but the three
-/// bytes of the record under way.
+/// bytes of the record that is being read.
 ///
 /// In [`Strictness::Strict`] the iterator ends after the first error, in [`Strictness::Lenient`] it goes on
 /// three bytes later. One or two bytes too many at the end are an error in both.
@@ -179,7 +179,7 @@ impl FusedIterator for Records<'_> {}
 )]
 pub struct Decoder {
     format: Format,
-    /// Of the record under way.
+    /// Offset of the record that is being read.
     offset: u64,
     held: Held,
     failed: Option<DecodeError>,

@@ -50,8 +50,8 @@ impl Iterator for FastRecords {
 
 impl FusedIterator for FastRecords {}
 
-/// SLOW records that together make one cutting motion; how it is split, tells
-/// [`Builder::slow`](super::Builder::slow).
+/// SLOW records that together make one cutting motion, split as
+/// [`Builder::slow`](super::Builder::slow) says.
 #[derive(Debug, Clone)]
 pub(super) struct SlowRecords {
     elbow: Distribution,

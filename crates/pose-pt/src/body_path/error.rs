@@ -13,7 +13,7 @@ pub enum BodyPathError {
     Leg {
         /// The leg, from 0, which begins at the pose of the same number.
         leg: usize,
-        /// What of the leg is done where the segment begins, 0..=1.
+        /// The fraction of the leg where the segment begins, 0..=1.
         part: f64,
         /// Locator, axis, value and by how much it is out.
         reason: LimitError,
@@ -23,7 +23,7 @@ pub enum BodyPathError {
     Blend {
         /// The pose, from 0.
         pose: usize,
-        /// What of the rounding is done where the segment begins, 0..=1.
+        /// The fraction of the rounding where the segment begins, 0..=1.
         part: f64,
         /// Locator, axis, value and by how much it is out.
         reason: LimitError,

@@ -8,10 +8,10 @@ use crate::path::leg::{Leg, Shape};
 use crate::rotation::{from_rotation_vector, to_matrix};
 use crate::{Blend, Convention, PoseVector};
 
-/// What of a leg a blend takes at most: two blends leave a tenth of it.
+/// The largest fraction of a leg that a blend takes: two blends leave a tenth of it.
 const LARGEST_FRACTION: f64 = 0.45;
 
-/// What of a leg a blend takes at least: a smaller one is a stop.
+/// The smallest fraction of a leg that a blend takes: a smaller one is a stop.
 const SMALLEST_FRACTION: f64 = 1e-6;
 
 /// By how much angles of the same rotation, whole turns aside, differ by rounding, in radians.
@@ -55,7 +55,7 @@ struct Rates {
 }
 
 impl Rates {
-    /// Of a leg that the common parameter takes `size` to run.
+    /// The rates of a leg that the common parameter takes `size` to run.
     fn of(leg: &Leg, size: f64) -> Self {
         let (linear, angular) = match &leg.shape {
             Shape::Turning(leg) => (leg.slide, leg.axis * leg.angle),

@@ -5,7 +5,7 @@ use core::fmt;
 use super::{Station, state::State};
 
 /// What a station does, and for what it waits. Its `Display` is a line for a person, with the timer
-/// that runs; [`Station::poll_timeout`] tells until when.
+/// that runs; [`Station::poll_timeout`] says until when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

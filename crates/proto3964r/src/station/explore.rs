@@ -18,7 +18,7 @@
 //! The graph must have no cycle, so that every course ends, and each property is checked in every
 //! world or at every end. (The `stateright` crate would search the same graph, but its `eventually`
 //! is documented as sound only where paths neither join nor cycle, and these paths join all the
-//! time; the absence of cycles, which is the livelock question, is what it cannot tell.)
+//! time; the absence of cycles, which is the livelock question, is what it cannot answer.)
 
 mod courses;
 mod present;
@@ -350,7 +350,7 @@ impl Scope {
         self.configs[0].acknowledge_wait_ms > 0
     }
 
-    /// The same with users that accept, refuse or forget.
+    /// The search with users that accept, refuse or forget.
     fn held(mut self) -> Self {
         for config in &mut self.configs {
             config.acknowledge_wait_ms = 1500;
@@ -358,7 +358,7 @@ impl Scope {
         self
     }
 
-    /// The same on a UART.
+    /// The search on a UART.
     fn paced(mut self) -> Self {
         let character_ns = u32::try_from(2 * HALF_CHARACTER.as_nanos()).unwrap();
         for config in &mut self.configs {

@@ -9,7 +9,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Hands out characters for the line, as many as `out` takes; `None` when there are none.
     ///
     /// The answer timer runs from the last character of the block, so hand on to the line what
-    /// you get; [`Config::line`](crate::Config::line) tells how long it takes there. When
+    /// you get; [`Config::line`](crate::Config::line) says how long it takes there. When
     /// [`Transmit::Discard`] comes, drop what the line has not taken yet.
     #[must_use]
     pub fn poll_transmit<'o>(&mut self, now: Duration, out: &'o mut [u8]) -> Option<Transmit<'o>> {

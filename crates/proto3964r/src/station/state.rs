@@ -148,7 +148,7 @@ pub(super) enum JobState {
     None,
     /// Waiting or under way.
     Open,
-    /// The same, and it gave way to the partner, of which no telegram has come yet.
+    /// Waiting or under way, after it gave way to the partner, of which no telegram has come yet.
     Yielded,
     /// The outcome has not been polled.
     Ended,

@@ -11,7 +11,7 @@ use crate::{
     event::{CharacterError, Event},
 };
 
-/// Bytes of a station beside its two buffers.
+/// Bytes of a station without its two buffers.
 const OVERHEAD: usize = 168;
 
 /// A station of low priority that says nothing at start-up.

@@ -10,7 +10,7 @@ use crate::{embedded_io_async::Driver, event::CharacterError};
 /// What a receiver circuit reports in place of a character.
 ///
 /// A stream hands it out as an [`io::Error`] made of it, once, in its place among the characters;
-/// a [`Link`](super::Link) tells its station and goes on.
+/// a [`Link`](super::Link) reports it to its station and goes on.
 ///
 /// # Examples
 /// ```

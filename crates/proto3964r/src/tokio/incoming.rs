@@ -18,7 +18,7 @@ pub struct Incoming {
     accepting: Option<oneshot::Sender<Accepted>>,
 }
 
-/// Who is told whether the acknowledgement came in time.
+/// The receiver of the news whether the acknowledgement came in time.
 pub(super) type Accepted = oneshot::Sender<bool>;
 
 /// The task's end of a telegram that is held.

@@ -85,8 +85,9 @@ impl Link {
         Self::with_observer(stream, config, |_| {})
     }
 
-    /// The same, and tells an observer each event when it happens, diagnosis too. It is called by the
-    /// task that answers the partner, and must not wait.
+    /// Puts a station on a stream as [`new`](Self::new) does, with an observer that gets each event
+    /// when it happens, diagnosis too. It is called by the task that answers the partner, and must
+    /// not wait.
     ///
     /// # Panics
     /// Outside of a runtime of tokio.
@@ -178,7 +179,7 @@ struct Job {
 /// Works until the link is dropped.
 ///
 /// # Errors
-/// Those of the stream.
+/// The errors of the stream.
 async fn work<const N: usize>(
     mut driver: StreamDriver<N>,
     mut jobs: mpsc::Receiver<Job>,

@@ -242,7 +242,7 @@ impl ArcMoves {
         true
     }
 
-    /// The next move, where the octant alone does not tell it.
+    /// The next move, where the octant alone does not determine it.
     #[cold]
     #[inline(never)]
     fn beyond(mut self) -> (Self, Option<Move>) {

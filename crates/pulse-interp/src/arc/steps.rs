@@ -226,7 +226,7 @@ impl ArcSteps {
         true
     }
 
-    /// The next step, where the passage alone does not tell it.
+    /// The next step, where the passage alone does not determine it.
     #[cold]
     #[inline(never)]
     fn beyond(mut self) -> (Self, Option<Move>) {

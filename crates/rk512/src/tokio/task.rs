@@ -23,7 +23,7 @@ type LineDriver = StreamDriver<MAX_TELEGRAM>;
 /// Works until the client is dropped.
 ///
 /// # Errors
-/// Those of the stream.
+/// The errors of the stream.
 pub(super) async fn work(
     mut line: LineDriver,
     mut jobs: mpsc::Receiver<Job>,

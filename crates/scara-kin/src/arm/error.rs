@@ -17,9 +17,9 @@ pub enum GeometryError<T = f64> {
         link: &'static str,
         /// The length given.
         length: T,
-        /// Shortest length that is accurate in `T`, for the forearm beside this upper arm.
+        /// Shortest length that is accurate in `T`, for the forearm with this upper arm.
         min: T,
-        /// Longest length that is accurate in `T`, for the forearm beside this upper arm.
+        /// Longest length that is accurate in `T`, for the forearm with this upper arm.
         max: T,
     },
     /// A joint range is empty, or an end of it is not a number within the range of angles.

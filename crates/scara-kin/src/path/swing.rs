@@ -171,7 +171,7 @@ fn distances(arm: &Arm, [low, high]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// How fast both joints turn at most, in radians per unit of the tool's way, where its distance from
+/// How fast both joints turn at most, in radians per unit of the tool's distance, where its distance from
 /// the base is between two: infinite where the arm may be straight or folded.
 ///
 /// ```text
@@ -207,7 +207,7 @@ pub(super) struct Between {
 }
 
 impl Between {
-    /// On a way of the tool that is `way` long at most.
+    /// The bounds between two places where the tool goes by `way` at most.
     pub(super) fn new(arm: &Arm, s: [f64; 2], distances: [f64; 2], way: f64) -> Self {
         Self {
             s,
@@ -221,7 +221,7 @@ impl Between {
         shoulder.max(elbow)
     }
 
-    /// Whether both joints are within their ranges all the way, because they cannot turn far enough
+    /// Whether both joints are within their ranges all along, because they cannot turn far enough
     /// from the joints at both ends.
     pub(super) fn holds(&self, limits: &Limits, [start, end]: [Joints; 2]) -> bool {
         let ends = [[start.shoulder, end.shoulder], [start.elbow, end.elbow]];

@@ -24,7 +24,7 @@ const MAX_TURN: f64 = 1.0;
 const MIN_STEP: f64 = 1e-12;
 
 /// Joints that turn by no more than this, in radians, and may still pass an end of a range: there
-/// rounding is all that is left to tell.
+/// the rest is rounding.
 const MIN_TURN: f64 = 1e-4;
 
 impl Arm {

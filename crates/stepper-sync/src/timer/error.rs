@@ -87,9 +87,9 @@ pub enum TimerError {
         /// Interval asked for, in ticks.
         ticks: u64,
     },
-    /// The latency of a counter that starts anew by itself is not to be made up for.
+    /// A counter that starts again by itself loses no latency that could be made up for.
     #[error(
         "a counter that starts anew at its compare register loses no latency: `reload` is exact"
     )]
-    StartsAnew,
+    StartsAgain,
 }

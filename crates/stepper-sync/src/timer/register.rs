@@ -7,7 +7,7 @@ use super::{Timer, TimerError};
 pub(super) enum Register {
     /// The count from which the counter runs up to its overflow.
     Overflow,
-    /// The last count before the counter starts anew at 0.
+    /// The last count before the counter starts again at 0.
     Compare,
     /// The count from which the counter runs down to 0.
     Down,
@@ -73,8 +73,8 @@ impl Timer {
     /// the latency.
     ///
     /// # Errors
-    /// Those of [`reload`](Self::reload); [`TimerError::CountTooLarge`]; [`TimerError::TooLate`]
-    /// when the interval is over already; [`TimerError::StartsAnew`] for a counter that does so at
+    /// The errors of [`reload`](Self::reload); [`TimerError::CountTooLarge`]; [`TimerError::TooLate`]
+    /// when the interval is over already; [`TimerError::StartsAgain`] for a counter that does so at
     /// its compare register: no latency is lost there.
     pub fn compensated_reload(
         &self,
@@ -91,7 +91,7 @@ impl Timer {
         let since_wrap = match self.register {
             Register::Overflow => value,
             Register::Down => limit.wrapping_sub(value),
-            Register::Compare => return Err(TimerError::StartsAnew),
+            Register::Compare => return Err(TimerError::StartsAgain),
         };
         let elapsed = since_wrap.saturating_add(u64::from(stopped_ticks));
         match ticks.checked_sub(elapsed) {

@@ -233,7 +233,7 @@ fn latency_is_lost_by_the_plain_reload_and_kept_by_the_compensated_one() {
     let stm32 = Timer::up_to_compare(1_000_000, 1, CounterWidth::Bits16).unwrap();
     assert_eq!(
         stm32.compensated_reload(15, 20, 5),
-        Err(TimerError::StartsAnew)
+        Err(TimerError::StartsAgain)
     );
 }
 

@@ -1,57 +1,8 @@
 //! Pin drivers on pins that log what they do.
 
-use alloc::rc::Rc;
-use core::{cell::RefCell, convert::Infallible, fmt};
-
-use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, OutputPin, PinState};
 use stepper_sync::{Direction, Level, Polarity, StepDir, StepDirError, StepDirTiming};
-
-/// All pins and the clock of a test: `name+`, `name-`, and waits in nanoseconds.
-#[derive(Clone, Default)]
-struct Board(Rc<RefCell<Vec<String>>>);
-
-impl Board {
-    fn pin(&self, name: &'static str) -> Pin {
-        let board = self.clone();
-        Pin { name, board }
-    }
-
-    fn log(&self, entry: impl fmt::Display) {
-        self.0.borrow_mut().push(entry.to_string());
-    }
-
-    fn take(&self) -> String {
-        self.0.borrow_mut().split_off(0).join(" ")
-    }
-}
-
-impl DelayNs for Board {
-    fn delay_ns(&mut self, ns: u32) {
-        self.log(ns);
-    }
-}
-
-struct Pin {
-    name: &'static str,
-    board: Board,
-}
-
-impl ErrorType for Pin {
-    type Error = Infallible;
-}
-
-impl OutputPin for Pin {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.board.log(format_args!("{}-", self.name));
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.board.log(format_args!("{}+", self.name));
-        Ok(())
-    }
-}
+use test_support::{Board, Pin};
 
 const TIMING: StepDirTiming = StepDirTiming {
     pulse_ns: 11,
@@ -133,7 +84,7 @@ impl Flaky {
     fn set(&mut self, state: PinState) -> Result<(), Gone> {
         self.settings += 1;
         if self.refused.contains(&self.settings) {
-            self.pin.board.log("x");
+            self.pin.log("x");
             return Err(Gone);
         }
         self.pin.set_state(state).map_err(|never| match never {})

@@ -117,7 +117,7 @@ proptest! {
                 prop_assert_eq!(since_wrap + u64::from(stopped) + interval(register), ticks);
             }
             Err(TimerError::TooLate { elapsed, ticks }) => prop_assert!(elapsed >= ticks),
-            Err(TimerError::StartsAnew) => prop_assert!(!to_overflow),
+            Err(TimerError::StartsAgain) => prop_assert!(!to_overflow),
             Err(_) => prop_assert!(!legal || u64::from(count) >= max),
         }
         match timer.periods(ticks) {

@@ -1,8 +1,6 @@
 //! All tests of the crate: one program, which is linked once.
 #![cfg(test)]
 
-extern crate alloc;
-
 mod common;
 #[cfg(feature = "embedded-hal")]
 mod embedded_hal;
