@@ -53,7 +53,7 @@ impl<T: RealField + Trig> Delta<T> {
     #[inline(always)]
     pub(crate) fn is_assembled(&self, rods: [Vector3<T>; 3]) -> bool {
         let tripod = Tripod::new(rods);
-        tripod.volume * tripod.normal.z * self.side() > self.least_product()
+        tripod.volume * tripod.normal.z * self.side() > self.min_product()
     }
 
     /// Whether `forward` of these angles is the platform's position, or why it is not.

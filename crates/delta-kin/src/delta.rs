@@ -44,7 +44,7 @@ pub struct Delta<T: RealField = f64> {
     span: T,
     tolerance: T,
     /// See [`Self::is_assembled`].
-    least_product: T,
+    min_product: T,
 }
 
 /// Rounding steps allowed between `forward` and `inverse`, in machine epsilons of the sum of
@@ -83,7 +83,7 @@ impl<T: RealField + Trig> Delta<T> {
                 .map(|arm| PreparedArm::new(&arm, ArmRange::unlimited(), None, Positive::Outward)),
             span,
             tolerance: T::zero(),
-            least_product: T::zero(),
+            min_product: T::zero(),
         };
         Ok(delta.prepare())
     }
@@ -188,7 +188,7 @@ impl<T: RealField + Trig> Delta<T> {
             first.max(second).max(third)
         });
         let sixteen: T = nalgebra::convert(16.0);
-        self.least_product = sixteen * self.tolerance * (out + rods) * out * out * out;
+        self.min_product = sixteen * self.tolerance * (out + rods) * out * out * out;
         self
     }
 
@@ -259,8 +259,8 @@ impl<T: RealField + Trig> Delta<T> {
         }
     }
 
-    pub(crate) const fn least_product(&self) -> T {
-        self.least_product
+    pub(crate) const fn min_product(&self) -> T {
+        self.min_product
     }
 
     pub(crate) const fn prepared(&self) -> &[PreparedArm<T>; 3] {

@@ -76,15 +76,15 @@ pub(crate) fn checked_span<T: RealField + Copy>(
 
 fn check_lengths<T: RealField + Copy>(
     arms: &[ArmGeometry<T>; 3],
-    least_arm: T,
+    min_arm: T,
 ) -> Result<(), GeometryError<T>> {
     let max = largest_length();
     for (arm, geometry) in zip(Arm::ALL, *arms) {
         for (name, length, min) in [
             ("base radius", geometry.base, T::zero()),
             ("platform radius", geometry.platform, T::zero()),
-            ("upper arm", geometry.upper, least_arm),
-            ("lower arm", geometry.lower, least_arm),
+            ("upper arm", geometry.upper, min_arm),
+            ("lower arm", geometry.lower, min_arm),
         ] {
             // Written so that NaN is refused too.
             if !(length >= min && length <= max) {

@@ -12,7 +12,7 @@ pub struct HomingSettings {
     /// The direction to the switch.
     pub direction: Direction,
     /// The most steps of any of the three ways, more than the travel.
-    pub most_steps: u32,
+    pub max_steps: u32,
     /// How many steps beyond the opening of the switch the slow approach begins.
     pub clear_steps: u32,
 }
@@ -78,7 +78,7 @@ pub enum HomingError {
 /// use pulse_interp::{Direction, Homing, HomingOrder, HomingSettings};
 /// let mut homing = Homing::new(HomingSettings {
 ///     direction: Direction::Negative,
-///     most_steps: 20_000,
+///     max_steps: 20_000,
 ///     clear_steps: 50,
 /// });
 /// let mut position = 731;
@@ -138,7 +138,7 @@ impl Homing {
             Phase::Approach(speed) => (self.settings.direction, speed),
             Phase::BackOff(_) => (self.settings.direction.reversed(), HomingSpeed::Fast),
         };
-        if self.made >= self.settings.most_steps {
+        if self.made >= self.settings.max_steps {
             let error = self.lost();
             self.phase = Phase::Lost(error);
             return Err(error);

@@ -123,13 +123,13 @@ impl<A: Iterator<Item = u64>, const N: usize> Iterator for Edges<A, N> {
 
     fn size_hint(&self) -> (usize, Option<usize>) {
         let none = (0_usize, Some(0_usize));
-        self.heads.iter().fold(none, |(least, most), head| {
-            let (more_least, more_most) = head.axis.size_hint();
+        self.heads.iter().fold(none, |(min, max), head| {
+            let (more_min, more_max) = head.axis.size_hint();
             let own = usize::from(head.ticks != NEVER);
-            let most = most.zip(more_most);
+            let max = max.zip(more_max);
             (
-                least.saturating_add(more_least).saturating_add(own),
-                most.and_then(|(most, more)| most.checked_add(more)?.checked_add(own)),
+                min.saturating_add(more_min).saturating_add(own),
+                max.and_then(|(max, more)| max.checked_add(more)?.checked_add(own)),
             )
         })
     }

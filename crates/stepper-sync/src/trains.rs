@@ -120,7 +120,7 @@ impl<const N: usize> Trains<N> {
         if half_period_ticks == 0 {
             return Err(TrainError::ZeroHalfPeriod);
         }
-        let pulses = most_pulses(&steps)?;
+        let pulses = max_pulses(&steps)?;
         let half_ticks = u64::from(pulses).checked_mul(half_period_ticks);
         let ends = half_ticks.and_then(|half| Some((half, half.checked_mul(2)?)));
         let (half_ticks, end_ticks) = ends.ok_or(TrainError::TooLong {
@@ -179,7 +179,7 @@ impl<const N: usize> Edges<AxisTrain, N> {
 }
 
 /// The largest number of pulses of any axis.
-fn most_pulses<const N: usize>(steps: &[i32; N]) -> Result<u32, TrainError> {
+fn max_pulses<const N: usize>(steps: &[i32; N]) -> Result<u32, TrainError> {
     let mut most = 0;
     for (axis, &n) in steps.iter().enumerate() {
         if n == i32::MIN {

@@ -10,7 +10,7 @@ const STEPS_PER_TURN: f64 = 200.0 * 16.0 * 5.0;
 
 const HOMING: HomingSettings = HomingSettings {
     direction: Direction::Negative,
-    most_steps: STEPS_PER_TURN as u32,
+    max_steps: STEPS_PER_TURN as u32,
     clear_steps: 100,
 };
 

@@ -347,7 +347,7 @@ pub(crate) struct BrokenOff {
 fn home(stage: &mut Stage, axis: usize) -> Result<()> {
     let mut homing = Homing::new(HomingSettings {
         direction: Direction::Negative,
-        most_steps: 15_000,
+        max_steps: 15_000,
         clear_steps: 50,
     });
     let closed = |stage: &Stage| stage.switches().get(axis).is_some_and(|it| it.lower);

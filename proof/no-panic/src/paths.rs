@@ -134,7 +134,7 @@ pub fn run() {
     ));
     let mut homing = black_box(Homing::new(HomingSettings {
         direction: Direction::Negative,
-        most_steps: black_box(100),
+        max_steps: black_box(100),
         clear_steps: black_box(5),
     }));
     let _ = black_box(homing_next(&mut homing, black_box(true)));

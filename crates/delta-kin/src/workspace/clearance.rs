@@ -107,10 +107,10 @@ fn assembly_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> 
             + ((T::one() - along) * (T::one() + along))
                 .max(T::zero())
                 .sqrt();
-        let least_y = along / (nine_quarters / prepared.lower + both / prepared.upper);
+        let min_y = along / (nine_quarters / prepared.lower + both / prepared.upper);
         // η for δ = 1.
         let turn = (T::one() + two::<T>() / along) / prepared.lower;
-        (least_y * along / two(), turn, along)
+        (min_y * along / two(), turn, along)
     });
     let held = first.0.min(second.0).min(third.0);
     let held = held.min(upright_clearance(delta, pose, [first.2, second.2, third.2]));

@@ -128,7 +128,7 @@ struct Fit {
     /// Hits made of one word or two, one of which can be nothing else.
     telling: u32,
     /// At least half of all pieces begin so.
-    is_most: bool,
+    is_majority: bool,
 }
 
 impl Fit {
@@ -143,7 +143,7 @@ impl Fit {
         Self {
             hits,
             telling,
-            is_most: hits >= misses,
+            is_majority: hits >= misses,
         }
     }
 
@@ -151,12 +151,12 @@ impl Fit {
         Self {
             hits: self.hits.saturating_add(other.hits),
             telling: self.telling.saturating_add(other.telling),
-            is_most: self.is_most && other.is_most,
+            is_majority: self.is_majority && other.is_majority,
         }
     }
 
     const fn is_sure(&self) -> bool {
-        self.is_most && self.telling >= TELLING
+        self.is_majority && self.telling >= TELLING
     }
 }
 

@@ -117,7 +117,7 @@ fn a_closed_switch_stops_one_way_only() {
 
 const HOMING: HomingSettings = HomingSettings {
     direction: Direction::Negative,
-    most_steps: 1000,
+    max_steps: 1000,
     clear_steps: 20,
 };
 

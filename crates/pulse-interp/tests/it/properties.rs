@@ -305,12 +305,12 @@ proptest! {
     #[test]
     fn homing_and_switches(
         direction in directions(),
-        most_steps in any_u32(),
+        max_steps in any_u32(),
         clear_steps in any_u32(),
         levels in prop::collection::vec(any::<bool>(), 1..40),
         position in any_i32(),
     ) {
-        let settings = HomingSettings { direction, most_steps, clear_steps };
+        let settings = HomingSettings { direction, max_steps, clear_steps };
         let mut homing = Homing::new(settings);
         let mut ended = None;
         let mut steps = 0;
@@ -323,7 +323,7 @@ proptest! {
                 }
                 end => prop_assert_eq!(*ended.get_or_insert(end), end),
             }
-            prop_assert!(steps <= 3 * u64::from(most_steps));
+            prop_assert!(steps <= 3 * u64::from(max_steps));
         }
         for (lower, upper) in [(false, false), (true, false), (false, true), (true, true)] {
             let permitted = Switches { lower, upper }.permit(direction, position);

@@ -14,7 +14,7 @@ fn settings_come_back() {
     assert_eq!(stored(&settings), text);
     stored(&HomingSettings {
         direction: Direction::Negative,
-        most_steps: 9,
+        max_steps: 9,
         clear_steps: 2,
     });
     stored(&(Move::UpLeft, Rule::Nearest));

@@ -32,7 +32,7 @@ pub const ACCELERATION_DEG_S2: f64 = 1500.0;
 
 const HOMING: HomingSettings = HomingSettings {
     direction: Direction::Negative,
-    most_steps: 16_000,
+    max_steps: 16_000,
     clear_steps: 20,
 };
 
