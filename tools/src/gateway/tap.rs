@@ -61,6 +61,8 @@ struct Record {
     worked_at: Option<(Instant, u64)>,
     /// The last verdict that was told, and when.
     told: Option<(Diagnosis, Instant)>,
+    /// What verdicts have taken.
+    taken: Duration,
 }
 
 /// An open port that is listened to.
@@ -97,6 +99,7 @@ impl Tap {
     /// The verdict, where that is news: of another kind than the last one, or the same with other
     /// numbers a minute later. `faults` is what the station has counted.
     pub(crate) fn news(&self, faults: u64) -> Option<Diagnosis> {
+        let start = Instant::now();
         let (config, mut heard) = {
             let mut record = self.record();
             let worked_at = record.worked_at;
@@ -118,6 +121,7 @@ impl Tap {
         let begin = heard.partition_point(|heard| heard.at < from);
         let diagnosis = diagnose(heard.get(begin..).unwrap_or_default(), &config);
         let mut record = self.record();
+        record.taken += start.elapsed();
         let works = diagnosis.verdict == Verdict::Works;
         record.worked_at = works.then(|| (Instant::now(), faults));
         let is_news = record.told.is_none_or(|(told, at)| {
@@ -150,6 +154,11 @@ impl Tap {
         let last = heard.last().map_or(Duration::ZERO, |last| last.at);
         file.note(last, &tap.verdict().to_string()).ok()?;
         Some(bytes)
+    }
+
+    /// What verdicts have taken, in microseconds.
+    pub(crate) fn taken_us(&self) -> u64 {
+        u64::try_from(self.record().taken.as_micros()).unwrap_or(u64::MAX)
     }
 
     /// Whether the last verdict that was told names a fault.
