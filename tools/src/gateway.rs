@@ -14,6 +14,7 @@ mod mqtt;
 mod nats;
 mod outbox;
 mod reload;
+mod served;
 mod store;
 mod tap;
 mod tcp;

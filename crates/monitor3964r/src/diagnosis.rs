@@ -4,6 +4,7 @@ mod delay;
 mod echo;
 mod evidence;
 mod formula;
+mod frames;
 mod judge;
 mod setting;
 mod totals;
@@ -38,6 +39,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// What looks the same in this record; [`Verdict::measurement`] separates the two.
     pub or: Option<Verdict>,
+    /// A second fault, which the first does not explain.
+    pub also: Option<Verdict>,
     /// Telegrams from A to B.
     pub a: Totals,
     /// Telegrams from B to A.
@@ -49,6 +52,9 @@ impl fmt::Display for Diagnosis {
         write!(f, "{}", self.verdict)?;
         if let Some(or) = self.or {
             write!(f, "; or {or}")?;
+        }
+        if let Some(also) = self.also {
+            write!(f, "; and {also}")?;
         }
         if let Some(measurement) = self.verdict.measurement() {
             write!(f, "\nto be sure: {measurement}")?;
@@ -110,6 +116,7 @@ pub fn diagnose(record: &[Character], config: &Config) -> Diagnosis {
     Diagnosis {
         verdict,
         or,
+        also: case.also(verdict),
         a: Totals::of(&evidence, Side::A),
         b: Totals::of(&evidence, Side::B),
     }

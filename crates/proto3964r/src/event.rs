@@ -92,7 +92,13 @@ pub enum Cause {
     /// The partner answered NAK.
     #[error("nak")]
     Nak,
-    /// A character that is no answer, or an answer in the middle of the block.
+    /// DLE came before what it answers can have left at the rate of [`Config::line`]: the line is
+    /// faster than that, or it was noise.
+    ///
+    /// [`Config::line`]: crate::Config::line
+    #[error("answer sooner than the baud rate allows")]
+    TooSoon,
+    /// A character that is no answer.
     #[error("unexpected {0:02X}")]
     Unexpected(u8),
     /// A damaged character.

@@ -17,7 +17,7 @@ use crate::{
     area::Area,
     command::Command,
     config::Config,
-    session::{CallError, Session, Transport, send_command},
+    session::{CallError, Nothing, Session, Transport, send_command},
     telegram::MAX_TELEGRAM,
 };
 
@@ -46,7 +46,7 @@ type LineDriver<P> = Driver<P, MAX_TELEGRAM>;
 #[derive(Debug)]
 pub struct Client<P> {
     line: LineDriver<P>,
-    session: Session,
+    session: Session<Nothing>,
     epoch: Instant,
 }
 

@@ -5,6 +5,7 @@ use core::time::Duration;
 use crate::client::{Client, Outcome, SubmitError};
 use crate::command::Command;
 use crate::config::Config;
+use crate::reaction::ReactionError;
 use crate::server::{Server, ServerEvent};
 use crate::source::DataSource;
 use crate::telegram::{SHORT_HEADER, Telegram, is_reaction};
@@ -124,6 +125,15 @@ impl<const N: usize> Endpoint<N> {
             Some(Side::Server) => self.server.handle_failed(source),
             None => {}
         }
+    }
+
+    /// Ends the partner's job that the source holds; see [`Server::confirm`].
+    pub fn confirm<D: DataSource + ?Sized>(
+        &mut self,
+        result: Result<(), ReactionError>,
+        source: &mut D,
+    ) -> bool {
+        self.server.confirm(result, source)
     }
 
     /// A block came from the partner.

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use crate::command::{Command, CommandError, Continuation};
 use crate::config::Config;
-use crate::reaction::Reaction;
+use crate::reaction::{Reaction, ReactionError};
 use crate::source::DataSource;
 use crate::telegram::{Part, SHORT_HEADER, Telegram, is_continuation};
 
@@ -26,6 +26,8 @@ pub enum AbandonCause {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ServerEvent {
+    /// All data moved; the last reaction waits for [`Server::confirm`].
+    Held(Command),
     /// All data moved; the last reaction waits for the transport.
     Served(Command),
     /// It was refused with [`CommandError::reaction`].
@@ -66,6 +68,8 @@ pub struct Server {
     /// The job ends then; set while a continuation is due.
     deadline: Option<Duration>,
     reaction: Option<Telegram>,
+    /// Whose last reaction that is, which waits to be confirmed.
+    held: Option<Command>,
     in_transfer: bool,
     event: Option<ServerEvent>,
 }
@@ -79,6 +83,7 @@ impl Server {
             job: None,
             deadline: None,
             reaction: None,
+            held: None,
             in_transfer: false,
             event: None,
         }
@@ -107,7 +112,7 @@ impl Server {
     /// The reaction for the transport, if there is one.
     #[must_use]
     pub fn poll_transmit(&mut self) -> Option<Telegram> {
-        if self.in_transfer {
+        if self.in_transfer || self.held.is_some() {
             return None;
         }
         let reaction = self.reaction.take()?;
@@ -134,6 +139,38 @@ impl Server {
         self.abandon(source, AbandonCause::Transport);
     }
 
+    /// Ends the job that the source [holds](DataSource::holds): its last reaction goes out, or this
+    /// error in place of it. `false`: nothing is held, or no longer, since the partner's next command
+    /// came before.
+    ///
+    /// Without this call the reaction never comes; the partner waits for its reaction monitoring
+    /// time.
+    pub fn confirm<D: DataSource + ?Sized>(
+        &mut self,
+        result: Result<(), ReactionError>,
+        source: &mut D,
+    ) -> bool {
+        let Some(command) = self.held.take() else {
+            return false;
+        };
+        if result.is_err() {
+            source.abort(&command);
+        }
+        self.event = Some(match result.and_then(|()| source.close(&command)) {
+            Ok(()) => ServerEvent::Served(command),
+            Err(error) => {
+                let part = match &self.reaction {
+                    Some(reaction) if is_continuation(reaction) => Part::Continuation,
+                    _ => Part::First,
+                };
+                let result = Err(error);
+                self.reaction = Some(Telegram::with_room(Reaction { part, result }.encode(), 0));
+                ServerEvent::Refused(CommandError::Refused(error))
+            }
+        });
+        true
+    }
+
     /// A block came from the partner: it is executed and its reaction made.
     pub fn handle_block<D: DataSource + ?Sized>(&mut self, block: &[u8], source: &mut D) {
         self.deadline = None;
@@ -152,8 +189,9 @@ impl Server {
         self.reaction = Some(match answer {
             Ok(reaction) => reaction,
             Err(error) => {
-                if let Some(job) = self.job.take() {
-                    source.abort(&job.command);
+                let begun = self.job.take().map(|job| job.command);
+                if let Some(command) = self.held.take().or(begun) {
+                    source.abort(&command);
                 }
                 self.event = Some(ServerEvent::Refused(error));
                 let result = Err(error.reaction());
@@ -250,8 +288,13 @@ impl Server {
             self.job = Some(Job { command, done });
         } else {
             self.job = None;
-            source.close(&command).map_err(CommandError::Refused)?;
-            self.event = Some(ServerEvent::Served(command));
+            self.event = Some(if source.holds(&command) {
+                self.held = Some(command);
+                ServerEvent::Held(command)
+            } else {
+                source.close(&command).map_err(CommandError::Refused)?;
+                ServerEvent::Served(command)
+            });
         }
         Ok(reaction)
     }

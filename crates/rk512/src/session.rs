@@ -14,7 +14,10 @@ use crate::{
     config::Config,
     endpoint::{Endpoint, Event},
     memory::Memory,
+    source::DataSource,
 };
+#[cfg(feature = "tokio")]
+use crate::{reaction::ReactionError, server::ServerEvent, telegram::is_reaction};
 
 /// The longest job in bytes of data.
 const MAX_JOB: usize = 4096;
@@ -67,21 +70,50 @@ pub(crate) trait Transport {
     fn cancel(&mut self);
 }
 
-/// One side of an RK512 line that serves nothing: what the partner asks for is refused.
+/// The source of a side that serves nothing: what the partner asks for is refused.
+pub(crate) type Nothing = Memory<'static, 0>;
+
+/// One side of an RK512 line.
 #[derive(Debug)]
-pub(crate) struct Session {
+pub(crate) struct Session<D> {
     endpoint: Endpoint<MAX_JOB>,
-    served: Memory<'static, 0>,
+    served: D,
     /// Why the last telegram was not delivered.
     failure: Option<Failure>,
+    #[cfg(feature = "tokio")]
+    partner: PartnerJob,
 }
 
-impl Session {
+/// What is to be told of the partner's last job.
+#[cfg(feature = "tokio")]
+#[derive(Debug, Default)]
+struct PartnerJob {
+    /// Its reaction waits for the user.
+    held: Option<Command>,
+    /// The telegram under way is a reaction.
+    reaction_is_sent: bool,
+    /// Whether the reaction was delivered.
+    ended: Option<bool>,
+}
+
+impl Session<Nothing> {
     pub(crate) const fn new(config: Config) -> Self {
+        Self::with_source(config, Memory::new([]))
+    }
+}
+
+impl<D: DataSource> Session<D> {
+    pub(crate) const fn with_source(config: Config, served: D) -> Self {
         Self {
             endpoint: Endpoint::new(config),
-            served: Memory::new([]),
+            served,
             failure: None,
+            #[cfg(feature = "tokio")]
+            partner: PartnerJob {
+                held: None,
+                reaction_is_sent: false,
+                ended: None,
+            },
         }
     }
 
@@ -121,15 +153,24 @@ impl Session {
         self.endpoint.handle_timeout(now, &mut self.served);
         let mut result = None;
         while let Some(event) = self.endpoint.poll_event() {
-            if let Event::Own(outcome) = event {
-                result = Some(match outcome {
-                    Outcome::Sent { .. } => Ok(Vec::new()),
-                    Outcome::Fetched { data, .. } => Ok(data.to_vec()),
-                    Outcome::Failed { error, .. } => Err(match (error, self.failure.take()) {
-                        (JobError::Transport, Some(failure)) => CallError::NotDelivered(failure),
-                        (error, _) => error.into(),
-                    }),
-                });
+            match event {
+                Event::Own(outcome) => {
+                    result = Some(match outcome {
+                        Outcome::Sent { .. } => Ok(Vec::new()),
+                        Outcome::Fetched { data, .. } => Ok(data.to_vec()),
+                        Outcome::Failed { error, .. } => Err(match (error, self.failure.take()) {
+                            (JobError::Transport, Some(failure)) => {
+                                CallError::NotDelivered(failure)
+                            }
+                            (error, _) => error.into(),
+                        }),
+                    });
+                }
+                #[cfg(feature = "tokio")]
+                Event::Partner(ServerEvent::Held(command)) => self.partner.held = Some(command),
+                #[cfg(feature = "tokio")]
+                Event::Partner(ServerEvent::Refused(_)) => self.partner.ended = Some(false),
+                Event::Partner(_) => {}
             }
         }
         if self.endpoint.wants_recall() {
@@ -138,9 +179,32 @@ impl Session {
         if !line.is_busy()
             && let Some(telegram) = self.endpoint.poll_transmit(now)
         {
+            #[cfg(feature = "tokio")]
+            {
+                self.partner.reaction_is_sent = is_reaction(&telegram);
+            }
             line.submit(&telegram).map_err(io::Error::other)?;
         }
         Ok(result)
+    }
+
+    /// The partner's job whose reaction waits for [`confirm`](Self::confirm), once.
+    #[cfg(feature = "tokio")]
+    pub(crate) const fn take_held(&mut self) -> Option<Command> {
+        self.partner.held.take()
+    }
+
+    /// Whether the partner has the reaction to its last job, once, when that is known.
+    #[cfg(feature = "tokio")]
+    pub(crate) const fn take_ended(&mut self) -> Option<bool> {
+        self.partner.ended.take()
+    }
+
+    /// Lets the reaction go out, or an error; `false` when that is too late.
+    #[cfg(feature = "tokio")]
+    pub(crate) fn confirm(&mut self, result: Result<(), ReactionError>) -> bool {
+        self.partner.ended = None;
+        self.endpoint.confirm(result, &mut self.served)
     }
 
     /// An event of the station.
@@ -149,11 +213,18 @@ impl Session {
             endpoint,
             served,
             failure,
+            ..
         } = self;
         match event {
             LineEvent::Received(block) => endpoint.handle_block(now, block, served),
-            LineEvent::Sent { .. } => endpoint.handle_delivered(now),
+            LineEvent::Sent { .. } => {
+                endpoint.handle_delivered(now);
+                #[cfg(feature = "tokio")]
+                self.partner.reaction_ends(true);
+            }
             LineEvent::Failed(cause) => {
+                #[cfg(feature = "tokio")]
+                self.partner.reaction_ends(false);
                 *failure = Some(cause);
                 endpoint.handle_failed(now, served);
             }
@@ -164,5 +235,16 @@ impl Session {
     /// When [`step`](Self::step) is due next.
     pub(crate) fn poll_timeout(&self) -> Option<Duration> {
         self.endpoint.poll_timeout()
+    }
+}
+
+#[cfg(feature = "tokio")]
+impl PartnerJob {
+    /// The telegram under way has ended.
+    const fn reaction_ends(&mut self, is_delivered: bool) {
+        if self.reaction_is_sent {
+            self.reaction_is_sent = false;
+            self.ended = Some(is_delivered);
+        }
     }
 }

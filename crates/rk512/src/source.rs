@@ -9,7 +9,7 @@ use crate::reaction::ReactionError;
 /// `open` that succeeded, [`read`](Self::read) or [`write`](Self::write) once for each telegram,
 /// then exactly one of [`close`](Self::close) and [`abort`](Self::abort). The reaction goes out
 /// when the call has returned: a SEND that `write` and `close` accepted is a SEND that the partner
-/// may rely on.
+/// may rely on. A source that needs time until that is true [`holds`](Self::holds) the job.
 ///
 /// Every error becomes the reaction's error number and ends the job.
 pub trait DataSource {
@@ -51,6 +51,13 @@ pub trait DataSource {
     /// Any; the job ends.
     fn write(&mut self, command: &Command, offset: usize, data: &[u8])
     -> Result<(), ReactionError>;
+
+    /// Whether the last reaction of the job waits for [`Server::confirm`](crate::Server::confirm),
+    /// before which `close` is not called.
+    fn holds(&self, command: &Command) -> bool {
+        let _ = command;
+        false
+    }
 
     /// All data of the job have moved; here the coordination flag is set.
     ///

@@ -1,28 +1,35 @@
 //! A client over 3964R in a task of its own, on any stream of [`tokio`](https://docs.rs/tokio) 1.
 
+mod held;
 mod task;
 
 use alloc::vec::Vec;
 use std::io;
 
-use ::tokio::io::{AsyncRead, AsyncWrite};
+use ::tokio::{
+    io::{AsyncRead, AsyncWrite},
+    sync::{Mutex, mpsc},
+};
 use proto3964r::{
     Event, Line, Priority,
-    tokio::{Caller, Task, driver, tcp},
+    tokio::{Caller, Lost, Task, driver, tcp},
 };
+
+pub use self::held::HeldJob;
 
 use crate::{
     area::Area,
     command::Command,
     config::Config,
     session::{CallError, Session, send_command},
+    source::DataSource,
 };
 
 /// A client and its station, which work in a task of their own.
 ///
 /// All methods take `&self`; several jobs at once run in the order of their calls. Dropping the
 /// future of a job gives it up: it may have been done in part or in whole. What the partner asks for
-/// is refused: this side serves nothing.
+/// is refused, unless there is a [source](Self::with_source) that serves it.
 ///
 /// A lost connection is final: every call reports it as [`CallError::Lost`], and whether and when to
 /// connect again is the caller's decision.
@@ -41,6 +48,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Client {
     task: Task<Job>,
+    held: Mutex<mpsc::Receiver<HeldJob>>,
 }
 
 /// A job for the task.
@@ -91,10 +99,59 @@ impl Client {
     where
         S: AsyncRead + AsyncWrite + Send + 'static,
     {
+        Self::with_session(stream, line, Session::new(config), observer)
+    }
+
+    /// The same, and serves the partner's SEND and FETCH from a source. What the source
+    /// [holds](DataSource::holds) is to be [asked for](Self::held) and answered.
+    ///
+    /// # Panics
+    /// Outside of a runtime of tokio.
+    #[must_use]
+    pub fn with_source<S, D>(
+        stream: S,
+        line: proto3964r::Config,
+        config: Config,
+        source: D,
+        observer: impl FnMut(Event<'_>) + Send + 'static,
+    ) -> Self
+    where
+        S: AsyncRead + AsyncWrite + Send + 'static,
+        D: DataSource + Send + 'static,
+    {
+        Self::with_session(stream, line, Session::with_source(config, source), observer)
+    }
+
+    fn with_session<S, D>(
+        stream: S,
+        line: proto3964r::Config,
+        session: Session<D>,
+        observer: impl FnMut(Event<'_>) + Send + 'static,
+    ) -> Self
+    where
+        S: AsyncRead + AsyncWrite + Send + 'static,
+        D: DataSource + Send + 'static,
+    {
         let driver = driver(stream, line);
-        let session = Session::new(config);
+        let (holding, held) = mpsc::channel(1);
         Self {
-            task: Task::spawn(|jobs| task::work(driver, jobs, session, observer)),
+            task: Task::spawn(|jobs| task::work(driver, jobs, session, holding, observer)),
+            held: Mutex::new(held),
+        }
+    }
+
+    /// The partner's next job that the source holds. Dropping the future loses none.
+    ///
+    /// # Errors
+    /// [`Lost`].
+    pub async fn held(&self) -> Result<HeldJob, Lost> {
+        let mut held = self.held.lock().await;
+        loop {
+            match held.recv().await {
+                Some(job) if job.is_void() => {}
+                Some(job) => return Ok(job),
+                None => return Err(self.task.lost().await),
+            }
         }
     }
 

@@ -155,6 +155,12 @@ impl End {
             return;
         }
         self.queue.pop_front();
+        if self.faults.doubles_no_dle && byte == DLE && self.ends_with_dle() {
+            self.sent.push(byte);
+            self.fetch(now);
+            self.load(now);
+            return;
+        }
         let change = self.bcc_change();
         if change.is_some() {
             self.sent.clear();
@@ -177,8 +183,17 @@ impl End {
         let dles = before.iter().rev().take_while(|&&byte| byte == DLE);
         let is_end = dles.count() % 2 == 1;
         let payload_dles = self.sent.iter().filter(|&&byte| byte == DLE).count() / 2;
-        let [odd, even] = self.faults.bcc_change;
+        let [mut odd, even] = self.faults.bcc_change;
+        if self.faults.doubles_no_dle {
+            odd ^= DLE;
+        }
         is_end.then_some(if payload_dles % 2 == 1 { odd } else { even })
+    }
+
+    /// Whether a DLE of the payload has left that is to be doubled.
+    fn ends_with_dle(&self) -> bool {
+        let dles = self.sent.iter().rev().take_while(|&&byte| byte == DLE);
+        self.sent.first() == Some(&STX) && dles.count() % 2 == 1
     }
 
     /// Bits of a character that noise inverts.

@@ -25,6 +25,8 @@ pub struct Faults {
     pub pause: Duration,
     /// XOR on its check characters: where its payload has an odd and an even number of 10h.
     pub bcc_change: [u8; 2],
+    /// It sends each 10h of its payload once; its check character is over what it sends.
+    pub doubles_no_dle: bool,
     /// Bit error rate of its transmit wire: the probability that a bit arrives inverted.
     pub bit_error_rate: f64,
     /// The probability that its receiver takes a character for damaged.
@@ -41,6 +43,7 @@ impl Faults {
         delay: Duration::ZERO,
         pause: Duration::ZERO,
         bcc_change: [0; 2],
+        doubles_no_dle: false,
         bit_error_rate: 0.0,
         receiver_error_rate: 0.0,
     };

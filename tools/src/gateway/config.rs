@@ -352,7 +352,7 @@ impl Line {
             }
         }
         let mut names = Vec::new();
-        for area in &self.areas {
+        for (index, area) in self.areas.iter().enumerate() {
             let start = area.span().start;
             let area = area.get_ref();
             if self.procedure != Procedure::Rk512 {
@@ -364,6 +364,13 @@ impl Line {
                 return Err((start, format!("a second area `{}`", area.name)));
             }
             names.push(&area.name);
+            let mut before = self.areas.iter().take(index).map(Spanned::get_ref);
+            if area.served
+                && let Some(other) = before.find(|other| other.served && other.overlaps(area))
+            {
+                let (name, other) = (&area.name, &other.name);
+                return Err((start, format!("area `{name}`: `{other}` has some of it")));
+            }
         }
         Ok(())
     }

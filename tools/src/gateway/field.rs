@@ -172,6 +172,30 @@ impl Field {
         }
     }
 
+    /// Puts a value into what it is a part of; a bit is `true` or `false`.
+    ///
+    /// # Errors
+    /// A value of another type, or that does not fit.
+    pub(crate) fn put(&self, value: &Value, bytes: &mut [u8]) -> Result<(), String> {
+        let range = self.range();
+        let end = range.end;
+        let place = bytes
+            .get_mut(range)
+            .ok_or_else(|| format!("ends at byte {end}"))?;
+        if self.kind != Kind::Bit {
+            place.copy_from_slice(&self.encode(value)?);
+            return Ok(());
+        }
+        let is_set = value
+            .as_bool()
+            .ok_or_else(|| format!("{value} is not true or false"))?;
+        let mask = 1 << self.bit.unwrap_or(0);
+        for byte in place {
+            *byte = if is_set { *byte | mask } else { *byte & !mask };
+        }
+        Ok(())
+    }
+
     /// The bytes that a value takes: `raw = value / scale`, rounded to the nearest.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ use super::hub::{Desk, Hub, now};
 const PAUSE: Duration = Duration::from_secs(5);
 
 /// Names of what is counted, in the order of [`index`].
-pub(crate) const FAULTS: [&str; 20] = [
+pub(crate) const FAULTS: [&str; 21] = [
     "bcc",
     "illegal_dle",
     "too_long",
@@ -37,6 +37,7 @@ pub(crate) const FAULTS: [&str; 20] = [
     "send_qvz",
     "send_nak",
     "send_block_nak",
+    "send_too_soon",
     "send_other",
 ];
 
@@ -95,6 +96,7 @@ fn fault(event: Event<'_>) -> Option<&'static str> {
             (Cause::Timeout, _) => "send_qvz",
             (Cause::Nak, JobPhase::Connection) => "send_nak",
             (Cause::Nak, JobPhase::Transmission) => "send_block_nak",
+            (Cause::TooSoon, _) => "send_too_soon",
             _ => "send_other",
         },
         Event::Rejected(rejection) => match rejection {

@@ -188,7 +188,7 @@ impl Hub {
     pub(crate) async fn report(
         &self,
         report: &Report<'_>,
-        telegram: Option<&[u8]>,
+        number: Number,
     ) -> Result<(), StoreError> {
         let payload = json(report);
         if let Some(outbox) = &self.outbox {
@@ -197,17 +197,13 @@ impl Hub {
                 Some(name) => format!("{}/{line}/{event}/{name}", self.topic),
                 None => format!("{}/{line}/{event}", self.topic),
             };
-            let number = telegram.map(|telegram| Number {
-                line: report.line.to_owned(),
-                seq: report.seq,
-                telegram: telegram.to_vec(),
-            });
             let message = Message {
                 topic,
                 payload: payload.clone(),
                 seq: Some(report.seq),
                 ..Message::default()
             };
+            let number = Some(number);
             outbox.push(Entry { message, number }).await?;
         }
         self.tell(payload);
@@ -409,8 +405,13 @@ impl Hub {
 
     /// Tells that something of a line is not safe; the same again within a second is counted.
     pub(crate) fn not_stored(&self, line: &str, error: &StoreError) {
+        self.log_refusal(line, &format!("not stored: {error}"));
+    }
+
+    /// Tells that something was refused on a line; the same again within a second is counted.
+    pub(crate) fn log_refusal(&self, line: &str, message: &str) {
         if let Some(desk) = self.lines.get(line) {
-            lock(&desk.refusals).log(&format!("{line}: not stored: {error}"));
+            lock(&desk.refusals).log(&format!("{line}: {message}"));
         }
     }
 

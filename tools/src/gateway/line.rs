@@ -1,5 +1,6 @@
 //! One line: opened, served, and opened again.
 
+mod numbers;
 mod rk512;
 mod telegrams;
 
@@ -18,11 +19,12 @@ use tokio::{
 };
 use tokio_util::sync::CancellationToken;
 
-use self::telegrams::Numbers;
+use self::numbers::Numbers;
 use super::{
     config::{self, Procedure},
     hub::Hub,
     job::Job,
+    served::Memory,
     tap::Tap,
 };
 use crate::Port;
@@ -39,6 +41,8 @@ pub(crate) struct Line {
     pub(super) hub: Arc<Hub>,
     pub(super) jobs: mpsc::Receiver<Job>,
     numbers: Numbers,
+    /// What stands in the areas that are served.
+    memory: Memory,
     tap: Arc<Tap>,
 }
 
@@ -52,6 +56,7 @@ impl Line {
         let name = config.name.get_ref().to_string();
         let desk = hub.lines.get(&name);
         let numbers = desk.map(|desk| Numbers::after(&desk.last));
+        let areas = desk.map(|desk| desk.last.areas.clone());
         let tap = desk.map(|desk| Arc::clone(&desk.tap));
         Self {
             name,
@@ -60,6 +65,7 @@ impl Line {
             hub,
             jobs,
             numbers: numbers.unwrap_or_default(),
+            memory: Memory::new(areas.unwrap_or_default()),
             tap: tap.unwrap_or_default(),
         }
     }

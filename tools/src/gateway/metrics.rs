@@ -86,7 +86,7 @@ async fn capture(path: &str, hub: &Hub) -> Option<Vec<u8>> {
 /// One metric: name, type, help, and how it is read from a line.
 type OfLine = (&'static str, &'static str, &'static str, fn(&Desk) -> u64);
 
-const OF_LINES: [OfLine; 10] = [
+const OF_LINES: [OfLine; 11] = [
     (
         "line_up",
         "gauge",
@@ -134,6 +134,12 @@ const OF_LINES: [OfLine; 10] = [
         "counter",
         "commands that were not begun",
         |desk| desk.counts.refused.load(Ordering::Relaxed),
+    ),
+    (
+        "line_verdict_us_total",
+        "counter",
+        "microseconds that verdicts have taken",
+        |desk| desk.tap.taken_us(),
     ),
     (
         "line_not_stored_total",

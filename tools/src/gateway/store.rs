@@ -38,6 +38,8 @@ use super::config::Overflow;
 const MESSAGES: TableDefinition<'_, u64, &[u8]> = TableDefinition::new("messages");
 /// By line: the number of its last telegram, and the telegram.
 const LINES: TableDefinition<'_, &str, (u64, &[u8])> = TableDefinition::new("lines");
+/// By line and area that is served: what it holds.
+const AREAS: TableDefinition<'_, (&str, &str), &[u8]> = TableDefinition::new("areas");
 /// What is known of the whole: below.
 const ABOUT: TableDefinition<'_, &str, u64> = TableDefinition::new("about");
 
@@ -75,12 +77,14 @@ pub(crate) struct Entry {
     pub(crate) number: Option<Number>,
 }
 
-/// The number of a telegram on its line, and the telegram, by which its repeat is known.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// The highest number of a line, and the telegram that came last, by which its repeat is known.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Number {
     pub(crate) line: String,
     pub(crate) seq: u64,
     pub(crate) telegram: Vec<u8>,
+    /// An area that the gateway serves, and what it holds now.
+    pub(crate) area: Option<Box<(String, Vec<u8>)>>,
 }
 
 /// The last telegram of a line.
@@ -88,6 +92,8 @@ pub(crate) struct Number {
 pub(crate) struct Last {
     pub(crate) seq: u64,
     pub(crate) telegram: Vec<u8>,
+    /// What the areas hold that the gateway serves, by their names.
+    pub(crate) areas: BTreeMap<String, Vec<u8>>,
 }
 
 /// What a store holds when it is opened.
@@ -236,8 +242,19 @@ impl Store {
                 let (name, last) = line?;
                 let (seq, telegram) = last.value();
                 let telegram = telegram.to_vec();
-                let last = Last { seq, telegram };
+                let areas = BTreeMap::new();
+                let last = Last {
+                    seq,
+                    telegram,
+                    areas,
+                };
                 known.lines.insert(name.value().to_owned(), last);
+            }
+            for area in write.open_table(AREAS)?.iter()? {
+                let (name, bytes) = area?;
+                let (line, name) = name.value();
+                let last = known.lines.entry(line.to_owned()).or_default();
+                last.areas.insert(name.to_owned(), bytes.value().to_vec());
             }
             known
         };
@@ -293,6 +310,7 @@ impl Store {
     ) -> Result<Committed, redb::Error> {
         let mut messages = write.open_table(MESSAGES)?;
         let mut lines = write.open_table(LINES)?;
+        let mut areas = write.open_table(AREAS)?;
         let mut committed = Committed::default();
         for id in forget {
             if let Some(gone) = messages.remove(id)? {
@@ -325,9 +343,13 @@ impl Store {
                 line,
                 seq,
                 telegram,
+                area,
             }) = &entry.number
             {
                 lines.insert(line.as_str(), (*seq, telegram.as_slice()))?;
+                if let Some((name, bytes)) = area.as_deref() {
+                    areas.insert((line.as_str(), name.as_str()), bytes.as_slice())?;
+                }
             }
         }
         let mut about = write.open_table(ABOUT)?;

@@ -16,6 +16,7 @@ mod refused;
 mod reload;
 mod safe;
 mod scale;
+mod served;
 mod subscriber;
 mod uart;
 mod verdicts;

@@ -5,10 +5,10 @@ use core::time::Duration;
 use proto3964r::{
     Config,
     ascii::{DLE, NAK, STX},
-    frame::Check,
+    frame::{Check, FrameError},
 };
 
-use super::formula::Formulas;
+use super::{formula::Formulas, frames::Frames};
 use crate::monitor::{Character, Conversation, Mark, Observation, PerSide, Side, since};
 
 /// Two timers of the same length end within this time.
@@ -54,6 +54,7 @@ pub(super) struct Conduct {
     pub(super) longest_accepted: u32,
     pub(super) shortest_rejected: Option<u32>,
     pub(super) formulas: Formulas,
+    pub(super) frames: Frames,
 
     /// As the receiver: reactions to the other, and moments in which one was missing.
     pub(super) reacted: u32,
@@ -136,14 +137,18 @@ impl Evidence {
                 {
                     evidence.is_damaged = false;
                     evidence.last_in_block = None;
+                    for side in Side::BOTH {
+                        evidence.sides[side].frames.begin();
+                    }
                 }
             }
             evidence.character(heard, &conversation);
             for mark in conversation.marks().iter() {
                 match mark {
                     Mark::Block { by, len } => evidence.end_of_block(by, Some(len), &conversation),
-                    Mark::Other(Observation::BadBlock { by, .. }) => {
+                    Mark::Other(Observation::BadBlock { by, error }) => {
                         evidence.end_of_block(by, None, &conversation);
+                        evidence.bad_block(by, heard.at, error);
                     }
                     Mark::Other(observation) => evidence.observe(heard, observation),
                 }
@@ -166,12 +171,23 @@ impl Evidence {
             if let Some(before) = self.last_in_block.replace(at) {
                 conduct.longest_gap = conduct.longest_gap.max(since(before, at));
             }
+            conduct.frames.take(byte);
             self.is_damaged |= heard.error.is_some();
             if self.invited.take() == Some(side) {
                 count(&mut conduct.reacted);
             }
-        } else if matches!(heard.intact(), Some(STX | DLE | NAK)) {
-            count(&mut conduct.control);
+        } else {
+            conduct.frames.after_block(heard);
+            if matches!(heard.intact(), Some(STX | DLE | NAK)) {
+                count(&mut conduct.control);
+            }
+        }
+    }
+
+    fn bad_block(&mut self, by: Side, at: Duration, error: FrameError) {
+        if !self.is_damaged {
+            let has_illegal_dle = matches!(error, FrameError::IllegalDle { .. });
+            self.sides[by].frames.is_bad(at, has_illegal_dle);
         }
     }
 
@@ -180,6 +196,7 @@ impl Evidence {
         self.block = Some(match len {
             Some(len) if !self.is_damaged => {
                 count(&mut conduct.good);
+                conduct.frames.is_good();
                 Block::Good { len }
             }
             _ => {

@@ -1,5 +1,6 @@
 //! From the evidence to a verdict: the rules, in the order in which one fault shows as another.
 
+mod also;
 mod blocks;
 
 use core::time::Duration;
@@ -50,7 +51,7 @@ type Rule<'c> = fn(&Case<'c>, Side) -> Option<Verdict>;
 
 impl<'c> Case<'c> {
     /// What can be said of one side, after what concerns both.
-    const RULES: [Rule<'c>; 14] = [
+    const RULES: [Rule<'c>; 15] = [
         Self::without_bcc,
         Self::late,
         Self::not_heard,
@@ -63,6 +64,7 @@ impl<'c> Case<'c> {
         Self::request_for_answer,
         Self::no_acknowledgement,
         Self::gaps,
+        Self::same_damage,
         Self::bad_blocks,
         Self::garbage,
     ];
@@ -75,6 +77,13 @@ impl<'c> Case<'c> {
         }
         if self.echo.is_everywhere() && self.echo.has_data() {
             return (Verdict::Echo, None);
+        }
+        // What goes on after its end reads as characters outside the procedure.
+        if let Some(verdict) = Side::BOTH
+            .into_iter()
+            .find_map(|side| self.not_doubled(side))
+        {
+            return (verdict, None);
         }
         match Side::BOTH.map(|side| self.unreadable(side)) {
             [Some(a), Some(b)] => return (self.both_unreadable(a, b), None),

@@ -123,6 +123,28 @@ pub enum Verdict {
         /// Its rule.
         formula: Formula,
     },
+    /// Blocks in which 10h stands alone.
+    #[error(
+        "{sender} does not double 10h in its data: {blocks} of its blocks go on after their end, or hold a single DLE that is in their BCC"
+    )]
+    NotDoubled {
+        /// Whose blocks they are.
+        sender: Side,
+        /// Those that show it.
+        blocks: u32,
+    },
+    /// Blocks that are damaged in the same way each time.
+    #[error(
+        "{bad} of {blocks} blocks of {sender} are wrong, and repeats in the same way: no noise; it checks or frames them by another rule"
+    )]
+    SameDamage {
+        /// Whose blocks they are.
+        sender: Side,
+        /// Wrong ones.
+        bad: u32,
+        /// All its blocks.
+        blocks: u32,
+    },
     /// One side speaks 3964, the other 3964R.
     #[error(
         "{side} neither awaits a BCC nor sends one: it is set to 3964, {} to 3964R",
@@ -286,6 +308,10 @@ impl Verdict {
                 "halve the baud rate: noise becomes rare, a wrong setting stays"
             }
             Self::OtherBcc { formula, .. } => return formula.measurement(),
+            Self::NotDoubled { .. } => "let it send a telegram without 10h: that gets through",
+            Self::SameDamage { .. } => {
+                "compare one of its blocks on the line with what it should send, byte by byte"
+            }
             Self::GoodBlocksRejected { .. } => {
                 "tap at the connector of the one that rejects: if the blocks are good there, its settings or its receiver are at fault"
             }

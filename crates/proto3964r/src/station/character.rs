@@ -5,7 +5,7 @@ use core::time::Duration;
 use super::{Station, state::State};
 use crate::{
     ascii::{DLE, NAK, STX},
-    config::Config,
+    config::{Config, Line},
     event::{Abandoned, Cause, CharacterError},
     frame::encoded_len,
 };
@@ -88,6 +88,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             // wrong one: STX again. What comes too soon is none, and a burst is one wrong answer.
             (State::AwaitDle { .. }, Stx) => self.conflict(now),
             (State::AwaitDle { .. }, Dle) if self.may_be_answer(now) => self.connected(now),
+            (State::AwaitDle { .. }, Dle) => self.answered_too_soon(now),
             (State::AwaitDle { burst, .. }, _) if burst.has(now, symbol == Nak) => {
                 self.extend_burst(now, symbol == Nak);
             }
@@ -95,15 +96,24 @@ impl<const N: usize, const T: usize> Station<N, T> {
             // The block goes out: NAK breaks it off, anything else too, until the line is silent
             // (0704h, 0706h).
             (State::Sending { .. }, Nak) => self.broken_off(now),
+            (State::Sending { .. }, Dle) => self.interrupted(now, self.dle_too_soon()),
             (State::Sending { .. }, _) => self.interrupted(now, wrong(byte, damage)),
             // The answer to the block: DLE is the acknowledgement, unless it comes before the
             // block can have ended. NAK and anything else: all again from STX.
             (State::AwaitAck { .. }, Dle) if self.may_be_acknowledgement(now) => self.sent(now),
             (State::AwaitAck { .. }, Nak) => self.broken_off(now),
-            (State::AwaitAck { .. }, Dle) => self.interrupted(now, wrong(byte, damage)),
+            (State::AwaitAck { .. }, Dle) => self.interrupted(now, self.dle_too_soon()),
             (State::AwaitAck { .. }, Other | Stx) => {
                 self.wrong_answer_to_block(now, wrong(byte, damage));
             }
+        }
+    }
+
+    /// What DLE before the end of the block says of the line, if that has a rate.
+    fn dle_too_soon(&self) -> Cause {
+        match self.config.line {
+            Line::Instant => Cause::Unexpected(DLE),
+            Line::Paced { .. } | Line::Buffered { .. } => Cause::TooSoon,
         }
     }
 

@@ -78,6 +78,14 @@ impl<const N: usize, const T: usize> Station<N, T> {
         }
     }
 
+    /// DLE that is no answer to STX, since that has not left. If nothing else comes, this is why.
+    pub(super) fn answered_too_soon(&mut self, now: Duration) {
+        if self.replies.is_empty() {
+            self.job.first_cause.get_or_insert(Cause::TooSoon);
+        }
+        self.extend_burst(now, false);
+    }
+
     /// One more character that is no answer.
     pub(super) fn extend_burst(&mut self, now: Duration, is_nak: bool) {
         let until = now.saturating_add(self.zvz);

@@ -260,3 +260,52 @@ fn stx_is_repeated_in_a_conflict_after_a_silence() {
     station.handle_byte(ms(224), DLE);
     assert_eq!(sent(&mut station, ms(224)).len(), 4);
 }
+
+/// A line that is faster than it is said to be: the cause says so, not what comes of it.
+#[test]
+fn answers_that_come_sooner_than_the_rate_allows_are_a_cause_of_their_own() {
+    let mut station = Station::<64>::new(low(uart()));
+    station.submit(ms(0), b"tare").unwrap();
+    let mut now = ms(0);
+    let failure = loop {
+        if sent(&mut station, now) == [STX] {
+            // STX and DLE at twice the rate.
+            station.handle_byte(now + CHARACTER, DLE);
+        }
+        if let Some(Event::Failed(failure)) = station.poll_event() {
+            break failure;
+        }
+        now = station.poll_timeout().unwrap();
+        station.handle_timeout(now);
+    };
+    let Failure {
+        phase,
+        cause,
+        attempts,
+        ..
+    } = failure;
+    assert_eq!(
+        (phase, cause, attempts),
+        (JobPhase::Connection, Cause::TooSoon, 6)
+    );
+
+    // Likewise the acknowledgement.
+    let mut station = Station::<64>::new(low(uart()));
+    station.submit(ms(0), b"tare").unwrap();
+    assert_eq!(sent(&mut station, ms(0)), [STX]);
+    station.handle_byte(3 * CHARACTER, DLE);
+    sent(&mut station, 3 * CHARACTER);
+    station.handle_byte(7 * CHARACTER, DLE);
+    station.cancel(8 * CHARACTER);
+    let event = station.poll_event();
+    assert!(
+        matches!(
+            event,
+            Some(Event::Failed(Failure {
+                cause: Cause::TooSoon,
+                ..
+            }))
+        ),
+        "{event:?}"
+    );
+}

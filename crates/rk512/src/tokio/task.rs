@@ -12,9 +12,14 @@ use proto3964r::{
     tokio::{Caller, StreamDriver},
 };
 
-use super::Job;
+use super::{
+    Job,
+    held::{HeldJob, Holding},
+};
 use crate::{
+    reaction::ReactionError,
     session::{Session, Transport},
+    source::DataSource,
     telegram::MAX_TELEGRAM,
 };
 
@@ -24,17 +29,30 @@ type LineDriver = StreamDriver<MAX_TELEGRAM>;
 ///
 /// # Errors
 /// The errors of the stream.
-pub(super) async fn work(
+pub(super) async fn work<D: DataSource>(
     mut line: LineDriver,
     mut jobs: mpsc::Receiver<Job>,
-    mut session: Session,
+    mut session: Session<D>,
+    held: mpsc::Sender<HeldJob>,
     mut observer: impl FnMut(Event<'_>),
 ) -> io::Result<()> {
     let epoch = Instant::now();
     let mut caller = Caller::NONE;
+    // Of the partner's job whose reaction waits.
+    let mut holding = Holding::NOTHING;
     loop {
         if let Some(outcome) = session.step(epoch.elapsed(), &mut line)? {
             caller.tell(outcome);
+        }
+        if let Some(is_delivered) = session.take_ended() {
+            holding.ends(is_delivered);
+        }
+        if let Some(command) = session.take_held()
+            && held.try_send(holding.about(command)).is_err()
+        {
+            // Its user does not ask.
+            session.confirm(Err(ReactionError::JobFailed));
+            continue;
         }
         let (due, is_idle) = (session.poll_timeout(), !session.is_busy());
         ::tokio::select! {
@@ -55,6 +73,11 @@ pub(super) async fn work(
                 }
             }
             () = caller.gone() => session.cancel(epoch.elapsed()),
+            result = holding.answered() => {
+                if !session.confirm(result) {
+                    holding.ends(false);
+                }
+            }
             () = sleep(epoch, due) => {}
         }
     }

@@ -309,3 +309,81 @@ fn a_reaction_that_is_not_delivered_ends_the_job() {
     assert_eq!(event, Some(ServerEvent::Abandoned(command, cause)));
     assert_eq!(source.aborted, 1);
 }
+
+/// Memory whose jobs wait for their user.
+struct Holding<'a>(Memory<'a, 2>);
+
+impl DataSource for Holding<'_> {
+    fn size(&mut self, command: &Command) -> Result<usize, ReactionError> {
+        self.0.size(command)
+    }
+
+    fn open(&mut self, command: &Command) -> Result<(), ReactionError> {
+        self.0.open(command)
+    }
+
+    fn read(&mut self, command: &Command, at: usize, data: &mut [u8]) -> Result<(), ReactionError> {
+        self.0.read(command, at, data)
+    }
+
+    fn write(&mut self, command: &Command, at: usize, data: &[u8]) -> Result<(), ReactionError> {
+        self.0.write(command, at, data)
+    }
+
+    fn holds(&self, _: &Command) -> bool {
+        true
+    }
+
+    fn close(&mut self, command: &Command) -> Result<(), ReactionError> {
+        self.0.close(command)
+    }
+}
+
+#[test]
+fn the_last_reaction_of_a_job_that_is_held_waits_for_its_user() {
+    let (mut db5, mut dx3, mut flags) = ([0; 200], [0; 2], [0; 32]);
+    let blocks = [DataBlock::db(5, &mut db5), DataBlock::dx(3, &mut dx3)];
+    let flags = &mut flags;
+    let mut plc = Holding(Memory {
+        flags,
+        ..Memory::new(blocks)
+    });
+    let mut server = Server::new(Config::DEFAULT);
+    let deliver = |server: &mut Server| {
+        let reaction = server.poll_transmit().map(|reaction| reaction.to_vec());
+        server.handle_delivered(NOW);
+        reaction
+    };
+    let flag = CoordinationFlag::new(7, 2).unwrap();
+    let command = Command::send(Area::db(5, 0), 65).unwrap();
+    let command = command.with_coordination(flag.into());
+    let data = pattern(130);
+    let first = command.telegram(&data[..MAX_DATA]).unwrap();
+    let rest = Continuation::new(command.request());
+    let rest = rest.telegram(&data[MAX_DATA..]).unwrap();
+    for error in [Some(ReactionError::Stopped), None] {
+        server.handle_block(&first, &mut plc);
+        assert_eq!(deliver(&mut server).unwrap(), [0, 0, 0, 0]);
+        server.handle_block(&rest, &mut plc);
+        assert_eq!(server.poll_event(), Some(ServerEvent::Held(command)));
+        assert_eq!((deliver(&mut server), plc.0.flags[7]), (None, 0));
+        // Only after that is the flag set.
+        assert!(server.confirm(error.map_or(Ok(()), Err), &mut plc));
+        let code = error.map_or(0, ReactionError::code);
+        assert_eq!(deliver(&mut server).unwrap(), [0xFF, 0, 0, code]);
+        assert!(!server.confirm(Ok(()), &mut plc), "once");
+    }
+    assert_eq!(server.poll_event(), Some(ServerEvent::Served(command)));
+    assert_eq!(plc.0.flags[7], flag.mask());
+
+    let words = fetch(Area::db(5, 0), 1);
+    server.handle_block(&words, &mut plc);
+    assert_eq!(deliver(&mut server), None);
+    // A partner that does not wait has lost the count of what it asked.
+    server.handle_block(&words, &mut plc);
+    assert_eq!(deliver(&mut server).unwrap(), [0, 0, 0, 0x36]);
+    assert!(!server.confirm(Ok(()), &mut plc), "too late");
+    server.handle_block(&words, &mut plc);
+    assert!(server.confirm(Ok(()), &mut plc));
+    assert_eq!(deliver(&mut server).unwrap(), [0, 0, 0, 0, 0, 1]);
+}

@@ -8,7 +8,8 @@ use proto3964r::{
     tokio::{Link, SendError},
 };
 use rk512::{
-    Area, CallError, Config, DataBlock, JobError, Memory, ReactionError, Server,
+    Area, CallError, Command, Config, DataBlock, DataSource, JobError, Memory, ReactionError,
+    Server,
     tokio::{Client, connect},
 };
 use tokio::{
@@ -154,7 +155,7 @@ async fn a_dropped_job_is_given_up_and_its_late_reaction_is_not_the_next_ones() 
 async fn what_the_partner_asks_for_is_refused() {
     let (here, there) = duplex(1024);
     let (line, _client) = (Link::new(there, HIGH), client(here));
-    let fetch = rk512::Command::fetch(Area::flags(0), 1).unwrap();
+    let fetch = Command::fetch(Area::flags(0), 1).unwrap();
     line.send(&fetch.telegram(&[]).unwrap()).await.unwrap();
     let refused = ReactionError::RequestType.code();
     assert_eq!(line.receive().await.unwrap(), [0, 0, 0, refused]);
@@ -219,4 +220,71 @@ async fn noise_costs_repeats_and_what_is_fetched_is_what_was_sent() {
         };
         assert_eq!(fetched, data);
     }
+}
+
+/// Data block 10 of the side that also asks, each job of which waits for its user.
+struct Held(Vec<u8>);
+
+impl Held {
+    fn memory(&mut self) -> Memory<'_, 1> {
+        Memory::new([DataBlock::db(10, &mut self.0)])
+    }
+}
+
+impl DataSource for Held {
+    fn size(&mut self, command: &Command) -> Result<usize, ReactionError> {
+        self.memory().size(command)
+    }
+
+    fn read(&mut self, command: &Command, at: usize, data: &mut [u8]) -> Result<(), ReactionError> {
+        self.memory().read(command, at, data)
+    }
+
+    fn write(&mut self, command: &Command, at: usize, data: &[u8]) -> Result<(), ReactionError> {
+        self.memory().write(command, at, data)
+    }
+
+    fn holds(&self, command: &Command) -> bool {
+        command.is_send()
+    }
+}
+
+#[tokio::test]
+async fn both_sides_ask_and_serve_and_a_reaction_waits_for_the_user() {
+    let (here, there) = duplex(1024);
+    let side = |stream, line| {
+        Client::with_source(stream, line, Config::DEFAULT, Held(vec![0; 20]), |_| {})
+    };
+    let (low, high) = (side(here, LOW), side(there, HIGH));
+    let (area, data) = (Area::db(10, 2), *b"abcd");
+    let answering = async {
+        for error in [Some(ReactionError::Stopped), None] {
+            let job = low.held().await.unwrap();
+            assert_eq!(job.command(), Command::send(area, 2).unwrap());
+            // Its own job meanwhile.
+            assert_eq!(low.fetch(Area::db(10, 0), 1).await.unwrap(), [0, 0]);
+            match error {
+                Some(error) => assert!(!job.refuse(error).await),
+                None => assert!(job.accept().await),
+            }
+        }
+        drop(low.held().await.unwrap());
+    };
+    let asking = async {
+        let refusal = |result: Result<(), CallError>| match result {
+            Err(CallError::Failed(JobError::Refused(error))) => Some(error),
+            other => panic!("{other:?}"),
+        };
+        let refused = refusal(high.send(area, &data).await);
+        assert_eq!(refused, Some(ReactionError::Stopped));
+        high.send(area, &data).await.unwrap();
+        let refused = refusal(high.send(area, &data).await);
+        assert_eq!(refused, Some(ReactionError::JobFailed));
+        assert_eq!(high.fetch(area, 2).await.unwrap(), data);
+    };
+    timeout(Duration::from_secs(60), async {
+        tokio::join!(answering, asking)
+    })
+    .await
+    .unwrap();
 }

@@ -73,6 +73,7 @@ fn cause_word(cause: Cause) -> String {
         Cause::Unexpected(_) => "char".to_owned(),
         Cause::Line(_) => "line".to_owned(),
         Cause::Conflict => "conflict".to_owned(),
+        Cause::TooSoon => "too-soon".to_owned(),
         other => other.to_string(),
     }
 }

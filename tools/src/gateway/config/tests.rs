@@ -4,6 +4,8 @@ use super::Config;
 
 const HEAD: &str = "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:0\"\n";
 const LINE: &str = "[[line]]\nname = \"a\"\nport = \"tcp://h:1?baud=9600\"\npriority = \"low\"\n";
+const RK512: &str = "[[line]]\nname = \"a\"\nport = \"tcp://h:1?baud=9600\"\npriority = \"low\"\n\
+                     procedure = \"rk512\"\n[[line.area]]\nname = \"x\"\nstart = \"DB 1.0\"\nlength = 4\n";
 
 fn error(text: &str) -> String {
     match Config::parse(text) {
@@ -96,6 +98,25 @@ fn errors_name_line_and_column() {
                  field = [{{ name = \"y\", offset = 1, type = \"u16be\" }}]"
             ),
             "line 13, column 10: field `y`: ends at byte 3 of 2",
+        ),
+        (
+            &format!("{RK512}served = true\npoll_s = 1"),
+            "line 9, column 1: poll_s: a served area is not fetched",
+        ),
+        (
+            &format!("{RK512}served = true\ncoordination_flag = \"1.2\""),
+            "line 9, column 1: coordination_flag: the partner's commands bring it",
+        ),
+        (
+            &format!("{RK512}coordination_flag = \"1.8\""),
+            "line 13, column 21: `1.8` is not BYTE.BIT, 0.0 to 254.7",
+        ),
+        (
+            &format!(
+                "{RK512}served = true\n[[line.area]]\nname = \"y\"\nstart = \"DB 1.3\"\nlength = 9\n\
+                 served = true"
+            ),
+            "line 14, column 1: area `y`: `x` has some of it",
         ),
         (
             &format!("{LINE}[[line.area]]\nname = \"x\"\nstart = \"DB 1.0\"\nlength = 1"),

@@ -9,12 +9,15 @@ use proto3964r::tokio::{Incoming, Link, Lost, SendError};
 use tokio::{sync::mpsc, time::Instant};
 use tokio_util::sync::CancellationToken;
 
-use super::Line;
+use super::{
+    Line,
+    numbers::{Arrival, Numbers},
+};
 use crate::gateway::{
     config,
     hub::{self, Counts, Hub},
     job::{Action, Job},
-    store::{Last, StoreError},
+    store::{Number, StoreError},
     tap::Tapped,
     telegram::{Report, decode, describe, hex},
 };
@@ -110,57 +113,6 @@ async fn send_jobs(
     }
 }
 
-/// The numbers of a line's telegrams.
-#[derive(Debug, Default)]
-pub(super) struct Numbers {
-    /// Of the last telegram or area.
-    seq: u64,
-    /// The last telegram that was acknowledged.
-    last: Option<Acknowledged>,
-    /// One that was numbered and not acknowledged: its repeat has the same number.
-    open: Option<Arrival>,
-}
-
-#[derive(Debug)]
-struct Acknowledged {
-    telegram: Vec<u8>,
-    /// `None` before the line was lost: the partner may not have heard of it.
-    at: Option<Instant>,
-}
-
-/// A telegram and its number.
-#[derive(Clone, Debug)]
-struct Arrival {
-    telegram: Vec<u8>,
-    seq: u64,
-    possible_repeat: bool,
-    is_stored: bool,
-}
-
-impl Numbers {
-    /// Goes on after the last telegram of the run before.
-    pub(super) fn after(last: &Last) -> Self {
-        let is_first = last.seq == 0;
-        let telegram = last.telegram.clone();
-        Self {
-            seq: last.seq,
-            last: (!is_first).then_some(Acknowledged { telegram, at: None }),
-            open: None,
-        }
-    }
-
-    pub(super) fn next(&mut self) -> u64 {
-        self.seq += 1;
-        self.seq
-    }
-
-    fn line_was_lost(&mut self) {
-        if let Some(last) = &mut self.last {
-            last.at = None;
-        }
-    }
-}
-
 /// Where telegrams are written down.
 struct Desk<'d> {
     hub: &'d Hub,
@@ -194,35 +146,19 @@ impl Desk<'_> {
             if arrival.possible_repeat {
                 self.count(|counts| &counts.repeats);
             }
-            let at = Some(Instant::now());
-            self.numbers.last = Some(Acknowledged { telegram, at });
+            self.numbers.acknowledged(telegram, Some(Instant::now()));
         } else {
             self.numbers.open = Some(arrival);
         }
     }
 
-    /// The number of a telegram: that of the one before, if that is the same and was not
-    /// acknowledged.
     fn number(&mut self, telegram: &[u8]) -> Arrival {
-        if let Some(open) = self.numbers.open.take()
-            && open.telegram == telegram
-        {
-            return open;
-        }
         let character = Duration::from_secs(self.line.port.frame.bits().into())
             / self.line.port.frame.baud.max(1);
         let block = u32::try_from(telegram.len()).unwrap_or(u32::MAX);
         let within = self.repeat_within + character.saturating_mul(block.saturating_mul(2));
-        let possible_repeat = self.line.mark_repeats
-            && self.numbers.last.as_ref().is_some_and(|last| {
-                last.telegram == telegram && last.at.is_none_or(|at| at.elapsed() <= within)
-            });
-        Arrival {
-            telegram: telegram.to_vec(),
-            seq: self.numbers.next(),
-            possible_repeat,
-            is_stored: false,
-        }
+        let within = self.line.mark_repeats.then_some(within);
+        self.numbers.arrival(telegram, within)
     }
 
     async fn keep(&self, telegram: &[u8], arrival: &Arrival) -> Result<(), StoreError> {
@@ -241,7 +177,13 @@ impl Desk<'_> {
             fields,
             errors,
         };
-        let stored = self.hub.report(&report, Some(telegram)).await;
+        let number = Number {
+            line: self.name.to_owned(),
+            seq: arrival.seq,
+            telegram: telegram.to_vec(),
+            area: None,
+        };
+        let stored = self.hub.report(&report, number).await;
         if let Err(error) = &stored {
             self.hub.not_stored(self.name, error);
         }

@@ -24,6 +24,10 @@ fn entry(seq: u32) -> Entry {
             line: "scale".to_owned(),
             seq: seq.into(),
             telegram: seq.to_be_bytes().to_vec(),
+            area: Some(Box::new((
+                "orders".to_owned(),
+                vec![seq.to_be_bytes()[3]; 4],
+            ))),
         }),
     }
 }
@@ -60,6 +64,7 @@ fn what_was_stored_is_there_after_a_restart() {
     assert_eq!((&known.run, known.messages), (&first.run, 2));
     let last = &known.lines["scale"];
     assert_eq!((last.seq, &last.telegram[..]), (3, &[0, 0, 0, 3][..]));
+    assert_eq!(last.areas["orders"], [3; 4]);
     assert_eq!(messages(&mut store), [(1, 1), (3, 3)]);
     assert_eq!(store.bytes(), 2 * MESSAGE);
     // An identifier is not used again, though the last one was forgotten.

@@ -7,7 +7,7 @@ use proto3964r::{
     tokio::{Link, SendError},
 };
 use rk512::{DataBlock, Memory, Server};
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpStream};
 
 /// What a partner runs on: it repeats soon.
 pub(crate) const PARTNER: Config = Config {
@@ -30,9 +30,14 @@ impl Partner {
 
     /// The line, once the gateway has opened it.
     pub(crate) async fn link(&self) -> Link {
+        Link::new(self.stream().await, PARTNER)
+    }
+
+    /// The same, without a station.
+    pub(crate) async fn stream(&self) -> TcpStream {
         let (stream, _) = self.listener.accept().await.unwrap();
         stream.set_nodelay(true).unwrap();
-        Link::new(stream, PARTNER)
+        stream
     }
 
     /// Serves data block 10 of 100 words, `7` in the first, to whoever connects.

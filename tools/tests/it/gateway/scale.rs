@@ -7,13 +7,13 @@ use proto3964r::tokio::SendError;
 use tempfile::TempDir;
 use tokio::{
     sync::watch,
-    task::JoinSet,
+    task::{JoinSet, spawn_blocking},
     time::{Instant, MissedTickBehavior, interval_at, sleep},
 };
 
 use super::{
-    broker::Broker,
-    process::{Gateway, mqtt},
+    broker::{Broker, free_ports},
+    process::{Gateway, metric, mqtt},
     uart::{Answers, Pace, Uart},
 };
 
@@ -49,9 +49,9 @@ fn words<T: FromStr>(name: &str, default: &str) -> Vec<T> {
 #[ignore = "measures for minutes, on Linux"]
 async fn busy_lines() {
     println!(
-        "| bit/s | pieces | lines | telegrams/s | failed | CPU s/s | us/telegram | answers ms: 50 %, 99 %, all | MB |"
+        "| bit/s | pieces | lines | telegrams/s | failed | CPU s/s | us/telegram | answers ms: 50 %, 99 %, all | MB | verdicts, % of CPU |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let seconds = Duration::from_secs(words("GATEWAY_SECONDS", "10")[0]);
     for pause_s in words("GATEWAY_PAUSES_S", "1 0") {
         let pause = Some(Duration::from_secs(pause_s)).filter(|pause| !pause.is_zero());
@@ -73,7 +73,11 @@ impl Case {
     async fn measure(&self, time: Duration) -> String {
         let broker = Broker::start().expect("a broker");
         let folder = TempDir::new().unwrap();
-        let mut config = format!("name = \"hall\"\n{}", mqtt(broker.port));
+        let [port] = free_ports();
+        let mut config = format!(
+            "name = \"hall\"\n{}[metrics]\nlisten = \"127.0.0.1:{port}\"\n",
+            mqtt(broker.port)
+        );
         let mut uarts = Vec::new();
         for index in 0..self.lines {
             let name = format!("line{index}");
@@ -109,6 +113,14 @@ impl Case {
         let (after, cpu) = (total(), cpu_s(gateway.id()) - cpu);
         let elapsed = begin.elapsed().as_secs_f64();
         let memory = resident_mb(gateway.id());
+        let lines = self.lines;
+        let verdicts = spawn_blocking(move || {
+            let of = |line| format!("line3964r_line_verdict_us_total{{line=\"line{line}\"}}");
+            (0..lines).map(|line| metric(port, &of(line))).sum::<u64>()
+        });
+        let verdicts = Duration::from_micros(verdicts.await.unwrap()).as_secs_f64();
+        // Since the start: each line's first look is in it.
+        let verdicts = verdicts / cpu_s(gateway.id()) * 100.0;
         let mut times: Vec<_> = answers.iter().flat_map(Answers::take).collect();
         times.sort_unstable();
 
@@ -118,7 +130,7 @@ impl Case {
         let sent = f64::from(after.sent - before.sent);
         let at = |percent: usize| times[(times.len() - 1) * percent / 100].as_secs_f64() * 1e3;
         format!(
-            "| {} | {:?} | {} | {:.0} | {} | {:.3} | {:.0} | {:.1}, {:.1}, {:.1} | {memory:.1} |",
+            "| {} | {:?} | {} | {:.0} | {} | {:.3} | {:.0} | {:.1}, {:.1}, {:.1} | {memory:.1} | {verdicts:.1} |",
             self.pace.baud,
             self.pace.every,
             self.lines,

@@ -148,7 +148,7 @@ fn the_times_are_those_of_the_preset() {
             "1.300000s A sends no block after DLE, 700.000 ms",
             "1.300000s A pauses in the block, ZVZ exceeded: 700.000 ms",
             "1.300000s A block of 1: 41",
-            "verdict: B answers 600.000 ms after the question, later than A waits (QVZ, 550.000 ms): too late by 50.000 ms",
+            "verdict: B answers 600.000 ms after the question, later than A waits (QVZ, 550.000 ms): too late by 50.000 ms; and A pauses in its blocks for longer than the character delay time (ZVZ): 700.000 ms",
             "A to B: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts, worst answer to STX 600.000 ms, longest gap 700.000 ms",
             "B to A: 0 telegrams, 0 repeats, 0 rejected, 0 conflicts",
         ]

@@ -24,6 +24,25 @@ impl Case<'_> {
         Some(Verdict::OtherBcc { sender, formula })
     }
 
+    pub(super) fn not_doubled(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        let blocks = own.frames.undoubled;
+        let bad = own.bad.saturating_add(own.unfinished);
+        // Noise takes one half of a pair now and then.
+        let is_rule = blocks > 1 && blocks > own.frames.doubled;
+        (is_rule && most(blocks, bad)).then_some(Verdict::NotDoubled { sender, blocks })
+    }
+
+    pub(super) fn same_damage(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        let (bad, blocks) = (own.bad, own.blocks());
+        (own.frames.same > 1 && most(own.frames.same, bad)).then_some(Verdict::SameDamage {
+            sender,
+            bad,
+            blocks,
+        })
+    }
+
     pub(super) fn no_receive_buffer(&self, refuser: Side) -> Option<Verdict> {
         let Conduct {
             refused, requests, ..

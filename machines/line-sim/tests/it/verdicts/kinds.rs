@@ -254,6 +254,53 @@ pub(crate) fn another_bcc(case: Case) -> Example {
     })
 }
 
+/// The check character is over what is sent, so that nothing but the single 10h is wrong.
+pub(crate) fn undoubled_dle(case: Case) -> Example {
+    let case = Case {
+        sends: [true, false],
+        longest: case.longest.min(48),
+        ..case
+    };
+    let [mut faulty, partner] = case.plans();
+    for (number, (_, job)) in faulty.jobs.iter_mut().enumerate() {
+        job.retain(|&byte| byte != 0x10);
+        if number % 3 != 0 {
+            let after = [0x41, 0x03][number % 2];
+            job.extend([0x10, after, 0x42, 0x43]);
+        }
+    }
+    faulty.faults.doubles_no_dle = true;
+    Example::new(
+        &case,
+        [faulty, partner],
+        move |found| matches!(found.verdict, Verdict::NotDoubled { sender, .. } if sender == case.faulty),
+    )
+}
+
+/// A check character that follows no rule that has a name, and repeats that are equal.
+pub(crate) fn the_same_damage(case: Case) -> Example {
+    let case = Case {
+        sends: [true, case.sends[1]],
+        longest: case.longest.min(12),
+        ..case
+    };
+    let [mut faulty, partner] = case.plans();
+    for (number, (_, job)) in faulty.jobs.iter_mut().enumerate() {
+        job.retain(|&byte| byte != 0x10);
+        job.push(u8::try_from(number).unwrap() | 0x80);
+        if number % 2 == 0 {
+            job.extend([0x10, 0x41]);
+        }
+    }
+    // Right for half of the telegrams, and no difference that a rule makes for the others.
+    faulty.faults.bcc_change = [0x5A, 0];
+    Example::new(
+        &case,
+        [faulty, partner],
+        move |found| matches!(found.verdict, Verdict::SameDamage { sender, .. } if sender == case.faulty),
+    )
+}
+
 fn late(case: Case, delay_ms: u64, qvz_ms: u16) -> Example {
     let case = Case {
         sends: [false, true],
