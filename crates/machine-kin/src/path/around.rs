@@ -1,13 +1,10 @@
 //! The inverse and its Jacobian within a radius of a piece of a curve.
 
 use super::MachinePath;
-use super::stretch::Stretch;
+use super::stretch::{K, Stretch};
 use crate::matrix::{Intervals, Matrix};
 use crate::model::Model;
 use crate::{Gradient, Machine, Refusal};
-
-/// Coefficients of the Taylor models.
-pub(super) const K: usize = 4;
 
 /// What is known of a machine within a radius of a piece of its path.
 pub(super) struct Around<const N: usize> {

@@ -2,7 +2,6 @@
 
 use path_timing::CurveMotion;
 
-use super::around::K;
 use crate::model::Model;
 use crate::{Interval, Jet};
 
@@ -17,6 +16,9 @@ pub(super) struct Stretch<const N: usize> {
     /// Of places.
     rounding: f64,
 }
+
+/// Coefficients of the Taylor models.
+pub(super) const K: usize = 4;
 
 /// One over k!
 const FACTORIALS: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
