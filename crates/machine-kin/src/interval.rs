@@ -1,17 +1,17 @@
-//! Intervals whose ends are rounded outwards.
-//!
-//! Sums, products, quotients and roots of `f64` are off by at most half a unit of the last place, so the
-//! exact one is between the neighbours of the computed one. Those are enclosed by
+//! Intervals as a middle and a radius, which is rounded up.
 //!
 //! ```text
-//! x ± (|x| ε + m)      ε = 2⁻⁵², m = 2⁻³⁰⁰
+//! a ± r     sum      a + b,   r + s
+//!           product  a b,     |a| s + r (|b| + s)
+//!           quotient a / b,   (r + |a / b| s) / (|b| - s)
 //! ```
 //!
-//! for |x| ε is at least a unit of the last place of x, and rounding keeps the order of numbers; m is
-//! above what is lost where a result underflows, and keeps numbers away from those that processors are
-//! slow with. Sines, cosines and arc tangents of `trig-kernels` are
-//! off by less than a unit of their last place, which is that of the exact number: two units of the
-//! computed one.
+//! The middle of a result is off by at most half a unit of its last place, that is ε/2 of it with
+//! ε = 2⁻⁵², or by less than m = 2⁻³⁰⁰ where it underflows: its radius has ε times the middle and m in
+//! it. A radius is computed of numbers that are not negative in less than ten steps, each off by at most
+//! ε/2 of its result: times 1 + 8 ε it is too large. m also keeps numbers away from those that processors
+//! are slow with. Sines, cosines and arc tangents of `trig-kernels` are off by less than a unit of their
+//! last place, which is that of the exact number: 2 ε.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -24,12 +24,19 @@ use crate::number::{Number, Refusal, operators};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Interval {
-    low: f64,
-    high: f64,
+    middle: f64,
+    /// Infinite or not a number where nothing is known.
+    radius: f64,
 }
 
 /// 2⁻³⁰⁰
-const LEAST: f64 = f64::from_bits((1023 - 300) << 52);
+pub(crate) const LEAST: f64 = f64::from_bits((1023 - 300) << 52);
+
+/// What a radius may have lost in its computation.
+pub(crate) const LOST: f64 = 1.0 + 8.0 * f64::EPSILON;
+
+/// Radius of an angle, in radians, up to which it is looked at from its middle.
+const SHORT: f64 = 0.25;
 
 /// The next number below, or one of the next few.
 #[inline]
@@ -55,158 +62,184 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// A sum rounded down, which is exact where it can be.
+fn sum_down(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    // What rounding has lost, exactly (Knuth).
+    let of_b = sum - a;
+    let lost = (a - (sum - of_b)) + (b - of_b);
+    if lost < 0.0 { down(sum) } else { sum }
+}
+
 impl Interval {
     /// Nothing is known.
     pub const UNKNOWN: Self = Self {
-        low: f64::NAN,
-        high: f64::NAN,
+        middle: f64::NAN,
+        radius: f64::NAN,
     };
 
     /// From the lower to the upper end; [`UNKNOWN`](Self::UNKNOWN) where these are not in their order
     /// or not finite.
     #[must_use]
-    #[inline]
     pub fn new(low: f64, high: f64) -> Self {
-        // Infinite ends would make NaN of products with 0, which comparisons lose.
         let is_known = low <= high && high - low < f64::INFINITY;
-        if is_known {
-            Self { low, high }
-        } else {
-            Self::UNKNOWN
+        if !is_known {
+            return Self::UNKNOWN;
         }
+        let middle = low * 0.5 + high * 0.5;
+        let radius = larger(middle - low, high - middle);
+        let is_exact = low == 0.0 || high == 0.0 || high - low == 0.0 || high + low == 0.0;
+        let radius = if is_exact { radius } else { up(radius) };
+        Self { middle, radius }
     }
 
-    /// Around a number, by so much to both sides, rounded outwards.
+    /// Around a number, by so much to both sides.
     #[must_use]
     #[inline]
-    pub fn around(middle: f64, by: f64) -> Self {
-        Self::rounded(middle - by, middle + by)
+    pub const fn around(middle: f64, by: f64) -> Self {
+        // Of what is infinite or not a number nothing is known.
+        let radius = by + middle * 0.0;
+        Self { middle, radius }
     }
 
     /// Lower end.
     #[must_use]
-    #[inline]
-    pub const fn low(&self) -> f64 {
-        self.low
+    pub fn low(&self) -> f64 {
+        -self.negated().high()
     }
 
     /// Upper end.
     #[must_use]
-    #[inline]
-    pub const fn high(&self) -> f64 {
-        self.high
+    pub fn high(&self) -> f64 {
+        if self.is_known() {
+            -sum_down(-self.middle, -self.radius)
+        } else {
+            f64::NAN
+        }
     }
 
     /// The largest distance from 0.
     #[must_use]
     #[inline]
-    pub fn magnitude(&self) -> f64 {
-        larger(-self.low, self.high)
+    pub const fn magnitude(&self) -> f64 {
+        (self.middle.abs() + self.radius) * LOST
     }
 
     /// From the lower to the upper end, rounded up.
     #[must_use]
     #[inline]
-    pub fn width(&self) -> f64 {
-        up(self.high - self.low)
+    pub const fn width(&self) -> f64 {
+        self.radius * 2.0
     }
 
-    /// What is in both of two intervals that hold the same number; of one that is not known, the other.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        if self.low.is_nan() {
-            return other;
-        }
-        // An end that is not a number is beyond none.
-        let low = larger(other.low, self.low);
-        Self::new(low, smaller(other.high, self.high))
+    /// Half of that, rounded up.
+    #[inline]
+    pub(crate) const fn radius(&self) -> f64 {
+        self.radius
     }
 
     #[inline]
-    fn rounded(low: f64, high: f64) -> Self {
-        Self::new(down(low), up(high))
+    fn is_known(&self) -> bool {
+        // Written so that NaN is not.
+        self.radius < f64::INFINITY
+    }
+
+    /// Around what was computed as `middle`, with a radius that was computed as `radius`, of a product.
+    #[inline]
+    fn of_product(middle: f64, radius: f64) -> Self {
+        Self {
+            middle,
+            radius: (radius + (middle.abs() * f64::EPSILON + LEAST)) * LOST,
+        }
+    }
+
+    /// The same of a sum, which does not underflow.
+    #[inline]
+    fn of_sum(middle: f64, radius: f64) -> Self {
+        Self {
+            middle,
+            radius: (radius + middle.abs() * f64::EPSILON) * LOST,
+        }
+    }
+
+    /// Of a number that is not below 0.
+    #[inline]
+    fn not_below_0(self) -> Self {
+        if self.radius > self.middle {
+            let half = up((self.middle + self.radius) * 0.5);
+            return Self::around(half, half);
+        }
+        self
     }
 
     #[inline]
     fn plus(self, other: Self) -> Self {
-        Self::rounded(self.low + other.low, self.high + other.high)
+        Self::of_sum(self.middle + other.middle, self.radius + other.radius)
     }
 
     #[inline]
     fn minus(self, other: Self) -> Self {
-        Self::rounded(self.low - other.high, self.high - other.low)
+        Self::of_sum(self.middle - other.middle, self.radius + other.radius)
     }
 
     #[inline]
     fn shifted(self, by: f64) -> Self {
-        Self::rounded(self.low + by, self.high + by)
+        Self::of_sum(self.middle + by, self.radius)
     }
 
     #[inline]
-    fn negated(self) -> Self {
+    const fn negated(self) -> Self {
         Self {
-            low: -self.high,
-            high: -self.low,
+            middle: -self.middle,
+            radius: self.radius,
         }
-    }
-
-    #[inline]
-    fn hull([a, b, c, d]: [f64; 4]) -> Self {
-        let low = smaller(smaller(a, b), smaller(c, d));
-        let high = larger(larger(a, b), larger(c, d));
-        Self::rounded(low, high)
     }
 
     #[inline]
     fn times(self, other: Self) -> Self {
-        Self::hull([
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        ])
+        let radius =
+            self.middle.abs() * other.radius + self.radius * (other.middle.abs() + other.radius);
+        Self::of_product(self.middle * other.middle, radius)
     }
 
     #[inline]
     fn scaled(self, by: f64) -> Self {
-        let (a, b) = (self.low * by, self.high * by);
-        Self::rounded(smaller(a, b), larger(a, b))
+        Self::of_product(self.middle * by, self.radius * by.abs())
     }
 
     #[inline]
     fn divided(self, by: f64) -> Self {
-        if by == 0.0 {
-            return Self::UNKNOWN;
-        }
-        let (a, b) = (self.low / by, self.high / by);
-        Self::rounded(smaller(a, b), larger(a, b))
+        Self::of_product(self.middle / by, self.radius / by.abs())
     }
 
     #[inline]
     fn over(self, other: Self) -> Self {
         // Written so that NaN is unknown too.
-        let is_apart = other.low > 0.0 || other.high < 0.0;
+        let is_apart = other.middle.abs() > other.radius;
         if !is_apart {
             return Self::UNKNOWN;
         }
-        Self::hull([
-            self.low / other.low,
-            self.low / other.high,
-            self.high / other.low,
-            self.high / other.high,
-        ])
+        let middle = self.middle / other.middle;
+        let apart = self.radius + middle.abs() * other.radius;
+        Self::of_product(middle, apart / (other.middle.abs() - other.radius))
     }
 
     /// The interval of a function that trig-kernels is off by less than a unit of the last place.
     fn of_kernel(low: f64, high: f64) -> Self {
         Self::new(down(down(low)), up(up(high)))
     }
+
+    /// The same around its value in the middle.
+    #[inline]
+    fn around_kernel(middle: f64, radius: f64) -> Self {
+        Self::of_product(middle, radius + middle.abs() * f64::EPSILON)
+    }
 }
 
 impl From<f64> for Interval {
     #[inline]
     fn from(value: f64) -> Self {
-        Self::new(value, value)
+        Self::around(value, 0.0)
     }
 }
 
@@ -217,7 +250,7 @@ fn may_meet(interval: &Interval, phase: f64) -> bool {
     // Far more than what rounding is off by.
     const SLACK: f64 = 1e-9;
     let turns = |x: f64| (x - phase) / TAU;
-    let (from, to) = (turns(interval.low), turns(interval.high));
+    let (from, to) = (turns(interval.low()), turns(interval.high()));
     let slack = SLACK + larger(from.abs(), to.abs()) * SLACK;
     let is_between = libm::floor(to + slack) > libm::floor(from - slack);
     is_between || slack > 0.25
@@ -225,87 +258,144 @@ fn may_meet(interval: &Interval, phase: f64) -> bool {
 
 /// The angles of a box right of the axis of y.
 fn angles_right(y: Interval, x: Interval) -> Interval {
+    let ([x_low, x_high], [y_low, y_high]) = ([x.low(), x.high()], [y.low(), y.high()]);
     // The angle falls with x above the axis and rises with it below.
-    let low = atan2(y.low, if y.low >= 0.0 { x.high } else { x.low });
-    let high = atan2(y.high, if y.high >= 0.0 { x.low } else { x.high });
+    let low = atan2(y_low, if y_low >= 0.0 { x_high } else { x_low });
+    let high = atan2(y_high, if y_high >= 0.0 { x_low } else { x_high });
     Interval::of_kernel(low, high)
+}
+
+/// The angles of a box that is small beside its distance from 0, from its middle v.
+///
+/// ```text
+/// tan |angle of v + d to v| = |v × d| / v·(v + d) ≤ k / w      k = |x| r_y + |y| r_x
+///                                                             w = v² - |x| r_x - |y| r_y
+/// ```
+///
+/// w is at least half of v², so that it is off by at most 12 ε of itself.
+fn angles_around(y: Interval, x: Interval) -> Option<Interval> {
+    let (across, down) = (x.middle.abs(), y.middle.abs());
+    let square = across * across + down * down;
+    let nearer = across * x.radius + down * y.radius;
+    let turned = across * y.radius + down * x.radius;
+    let least = square - nearer;
+    // Written so that NaN is none.
+    let is_small = square > LEAST
+        && square < f64::INFINITY
+        && nearer <= square * 0.5
+        && turned <= least * SHORT;
+    is_small.then(|| {
+        let radius = turned / least * (1.0 + 32.0 * f64::EPSILON);
+        Interval::around_kernel(atan2(y.middle, x.middle), radius)
+    })
+}
+
+/// Sine and cosine of an angle that is not short, from those of its ends.
+fn sines_between(angle: Interval) -> (Interval, Interval) {
+    // Written so that NaN is any angle.
+    let is_short = angle.radius < PI;
+    if !is_short {
+        let any = Interval::around(0.0, 1.0);
+        return (any, any);
+    }
+    let (from, to) = (sin_cos(angle.low()), sin_cos(angle.high()));
+    let hull = |a: f64, b: f64, top: f64| {
+        let between = Interval::of_kernel(smaller(a, b), larger(a, b));
+        let low = if may_meet(&angle, top + PI) {
+            -1.0
+        } else {
+            larger(-1.0, between.low())
+        };
+        let high = if may_meet(&angle, top) {
+            1.0
+        } else {
+            smaller(1.0, between.high())
+        };
+        Interval::new(low, high)
+    };
+    (hull(from.0, to.0, FRAC_PI_2), hull(from.1, to.1, 0.0))
 }
 
 impl Number for Interval {
     #[inline]
     fn squared(self) -> Self {
-        let (a, b) = (self.low * self.low, self.high * self.high);
-        let least = if self.low > 0.0 || self.high < 0.0 {
-            smaller(a, b)
-        } else {
-            0.0
-        };
-        let square = Self::rounded(least, larger(a, b));
-        // A square is not below 0, unless it is unknown.
-        Self::new(larger(0.0, square.low), square.high)
+        // (a ± r)² is from (|a| - r)² to (|a| + r)².
+        let (a, r) = (self.middle.abs(), self.radius);
+        if a >= r {
+            let (square, middle) = (a * a, a * a + r * r);
+            return Self::of_product(middle, 2.0 * a * r + square * f64::EPSILON).not_below_0();
+        }
+        let half = up(up((a + r) * (a + r))) * 0.5;
+        Self::around(half, half)
     }
 
+    #[inline]
     fn root(self, reason: &'static str) -> Result<Self, Refusal> {
-        if self.low >= 0.0 {
-            let root = Self::rounded(sqrt(self.low), sqrt(self.high));
-            return Ok(Self::new(larger(0.0, root.low), root.high));
+        let Self { middle, radius } = self;
+        if middle >= radius {
+            if middle == 0.0 {
+                return Ok(Self::from(0.0));
+            }
+            // Half of √b - √a is half of (b - a) / (√a + √b).
+            let sum = sqrt(middle - radius) + sqrt(middle + radius);
+            let half = sum * 0.5;
+            let root = Self::of_product(half, radius / sum + 2.0 * half * f64::EPSILON);
+            return Ok(root.not_below_0());
         }
-        if self.high < 0.0 {
-            return Err(Refusal::proven(reason, -self.high));
+        if -middle > radius {
+            return Err(Refusal::proven(reason, -self.high()));
         }
         Err(Refusal::undecided(reason))
     }
 
+    #[inline]
     fn sin_cos(self) -> (Self, Self) {
+        let r = self.radius;
         // Written so that NaN is any angle.
-        let is_short = self.high - self.low < TAU;
+        let is_short = r <= SHORT;
         if !is_short {
-            let any = Self::new(-1.0, 1.0);
-            return (any, any);
+            return sines_between(self);
         }
-        let (from, to) = (sin_cos(self.low), sin_cos(self.high));
-        let hull = |a: f64, b: f64, top: f64| {
-            let between = Self::of_kernel(smaller(a, b), larger(a, b));
-            let low = if may_meet(&self, top + PI) {
-                -1.0
-            } else {
-                larger(-1.0, between.low)
-            };
-            let high = if may_meet(&self, top) {
-                1.0
-            } else {
-                smaller(1.0, between.high)
-            };
-            Self::new(low, high)
-        };
-        (hull(from.0, to.0, FRAC_PI_2), hull(from.1, to.1, 0.0))
+        // |f(a + d) - f(a)| ≤ |f'(a)| |d| + d²/2, and what the other of both is off by.
+        let (sin, cos) = sin_cos(self.middle);
+        let rest = r * r * 0.5 + r * f64::EPSILON * 2.0;
+        (
+            Self::around_kernel(sin, cos.abs() * r + rest),
+            Self::around_kernel(cos, sin.abs() * r + rest),
+        )
     }
 
+    #[inline]
     fn atan2(y: Self, x: Self, reason: &'static str) -> Result<Self, Refusal> {
-        if x.low > 0.0 {
+        if let Some(angles) = angles_around(y, x) {
+            return Ok(angles);
+        }
+        if x.middle > x.radius {
             Ok(angles_right(y, x))
-        } else if y.low > 0.0 {
+        } else if y.middle > y.radius {
             Ok(angles_right(-x, y) + Self::around(FRAC_PI_2, f64::EPSILON))
-        } else if y.high < 0.0 {
+        } else if -y.middle > y.radius {
             Ok(angles_right(x, -y) - Self::around(FRAC_PI_2, f64::EPSILON))
-        } else if x.high < 0.0 {
+        } else if -x.middle > x.radius {
             Ok(angles_right(-y, -x) + Self::around(PI, f64::EPSILON))
         } else {
             Err(Refusal::undecided(reason))
         }
     }
 
+    #[inline]
     fn is_positive(self, reason: &'static str) -> Result<bool, Refusal> {
-        if self.low > 0.0 {
+        if self.middle > self.radius {
             Ok(true)
-        } else if self.high <= 0.0 {
+        } else if -self.middle >= self.radius && self.is_known() {
             Ok(false)
         } else {
             Err(Refusal::undecided(reason))
         }
     }
 
+    #[inline]
     fn middle(self) -> f64 {
-        self.low * 0.5 + self.high * 0.5
+        self.middle
     }
 }

@@ -12,6 +12,7 @@ mod jet;
 mod machine;
 mod machines;
 mod matrix;
+mod model;
 mod number;
 mod path;
 

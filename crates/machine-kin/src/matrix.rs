@@ -83,6 +83,11 @@ impl<const N: usize> Enclosure<N> {
     /// None where some of them may be singular.
     pub(crate) fn new(slopes: &Intervals<N>) -> Option<Self> {
         let y = inverse(slopes.map(|row| row.map(Number::middle)))?;
+        Self::by(&y, slopes)
+    }
+
+    /// The same by an inverse of one of them, or about one.
+    pub(crate) fn by(y: &Matrix<N>, slopes: &Intervals<N>) -> Option<Self> {
         let mut rest = [0.0; N];
         for (number, (y, rest)) in y.iter().zip(&mut rest).enumerate() {
             for column in 0..N {

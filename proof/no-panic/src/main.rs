@@ -10,6 +10,7 @@ mod frames;
 mod jobs;
 mod kinematics;
 mod line;
+mod machines;
 mod paths;
 mod patterns;
 mod poses;
@@ -28,6 +29,7 @@ fn main() {
     shaping::run();
     timing::run();
     curves::run();
+    machines::run();
     stepping::run();
     paths::run();
     patterns::run();

@@ -2,8 +2,9 @@
 
 use path_timing::{Cubic, CurveMotion, Row, Span};
 
-use super::MachinePath;
+use super::around::Around;
 use super::stretch::{ROUNDING, Stretch};
+use super::{MachinePath, of};
 use crate::matrix::{Enclosure, Matrix, both, inverse, larger_or_nan, largest, norm, product};
 use crate::{Interval, Machine, Number};
 
@@ -22,6 +23,9 @@ const SMALL: f64 = 0.1;
 
 /// What fourth derivatives leave between nodes: 5/64 h⁴.
 const FOURTH_BETWEEN: f64 = 5.0 / 64.0 / 65_536.0;
+
+/// Steps to where the tool is at a node: each leaves about what slopes change by on a piece.
+const STEPS: usize = 3;
 
 /// Pieces are halved where slopes change by more than this part of themselves from node to node.
 const CHANGED: f64 = 0.2;
@@ -85,7 +89,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// Newton's map takes the box round P into itself and contracts: there is one such place, and since
     /// it moves continuously from the start it is the tool, on its branch.
     ///
-    /// At the nodes e is found by Newton's step and what that leaves of ε, by intervals. Between nodes,
+    /// At the nodes ε is known but for rounding, by intervals, and e by some Jacobian there and the most
+    /// that those from P to P + e are apart from it. Between nodes,
     /// J e = ε put in from both sides, e is linear but for what the enclosure makes of what ε is, and of
     /// the change of J times the largest e. The rest is [`CurveMotion`].
     #[must_use]
@@ -98,18 +103,24 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let (before, after) = (self.velocity(start, from)?, self.velocity(end, to)?);
         let motion = CurveMotion::new(&self.curve, span.s, [&before, &after], to.duration_s);
         let nodes = self.nodes(&motion, &cubics(span))?;
-        let known = nodes.known(&self.fourth(&motion, &nodes)?);
-        let mut radius = nodes.off.map(|off| off * 2.0 + self.rounding);
+        let (_, slopes) = self.slopes_at(motion.at(0.5)).ok()?;
+        let inverse = inverse(slopes)?.map(|row| row.map(f64::abs));
+        // About what the tool is off by.
+        let off = product(&inverse, &nodes.largest);
+        let enough = norm(&off) * SMALL + self.rounding;
+        let known = nodes.known(&self.fourth(&motion, &inverse, enough)?);
+        let mut radius = off.map(|off| off * 2.0 + self.rounding);
         for _ in 0..4 {
-            let (enclosure, changes) = self.slopes_within(&motion, &radius)?;
+            let tools = self.tools(&motion, &radius, &nodes)?;
+            let enclosure = tools.enclosure?;
             let off = enclosure.off(&known.errors);
             // Written so that NaN is none.
             if off.iter().zip(&radius).all(|(off, radius)| off <= radius) {
-                let changed = enclosure.between(&changes, largest(&nodes.off));
+                let changed = enclosure.between(&tools.changes, largest(&tools.off));
                 let [between, rests] =
-                    [&known.between, &nodes.rests].map(|axes| norm(&enclosure.off(axes)));
+                    [&known.between, &tools.rests].map(|axes| norm(&enclosure.off(axes)));
                 let departure = motion.departure_between(
-                    |tau| nodes.tool(tau),
+                    |tau| tools.at(tau),
                     norm(&enclosure.off(&known.fourth)),
                     between + rests + norm(&changed),
                 );
@@ -121,23 +132,32 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         None
     }
 
-    /// The velocity of the tool at an end that is on the path.
+    /// The velocity of the tool along the curve at an end that is on the path.
     fn velocity(&self, s: f64, row: &Row<[f64; N]>) -> Option<[f64; N]> {
-        let (positions, slopes) = self.slopes_at(self.curve.at(s).point).ok()?;
-        let apart = self.apart(&row.position, &positions);
+        let jets = self.jets::<2>(s).ok()?;
+        let apart = self.apart(&row.position, &of(&jets, 0));
         let mut pairs = apart.iter().zip(&row.position);
         // Written so that NaN is apart.
         let is_on_path = pairs.all(|(apart, at)| apart.abs() <= SAME * (1.0 + at.abs()));
-        is_on_path.then(|| Some(product(&inverse(slopes)?, &row.velocity)))?
+        let (mut along, mut square) = (0.0, 0.0);
+        for (slope, velocity) in of(&jets, 1).iter().zip(row.velocity) {
+            (along, square) = (along + slope * velocity, square + slope * slope);
+        }
+        let tangent = self.curve.at(s).tangent;
+        is_on_path.then(|| tangent.map(|slope| slope * (along / square)))
     }
 
-    /// The largest that the fourth derivatives of the axes can be; known well where it matters less than
-    /// what the nodes are off by.
-    fn fourth(&self, motion: &CurveMotion<'_, N>, nodes: &Nodes<N>) -> Option<[f64; N]> {
+    /// The largest that the fourth derivatives of the axes can be; known well where the tool is off by
+    /// less than `enough` for it between nodes.
+    fn fourth(
+        &self,
+        motion: &CurveMotion<'_, N>,
+        inverse: &Matrix<N>,
+        enough: f64,
+    ) -> Option<[f64; N]> {
         let mut largest = [0.0; N];
-        let enough = norm(&nodes.off) * SMALL + self.rounding;
         pieces(1, FINEST, |part, can_halve| {
-            let jets = Stretch::new(motion, part, self.rounding).jets();
+            let jets = Stretch::new(motion, part, self.rounding).jets::<5>();
             let axes = self.machine.inverse(jets, self.branch).ok()?;
             let fourth = axes.map(|axis| {
                 let [.., fourth] = *axis.coefficients();
@@ -147,7 +167,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
                 return None;
             }
             let between = fourth.map(|fourth| fourth * FOURTH_BETWEEN);
-            if can_halve && norm(&product(&nodes.inverse, &between)) > enough {
+            if can_halve && norm(&product(inverse, &between)) > enough {
                 return Some(false);
             }
             for (largest, fourth) in largest.iter_mut().zip(fourth) {
@@ -160,74 +180,61 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
 
     fn nodes(&self, motion: &CurveMotion<'_, N>, cubics: &[Cubic; N]) -> Option<Nodes<N>> {
         let mut nodes = Nodes {
-            tools: [[0.0; N]; NODES],
-            off: [0.0; N],
+            places: [[0.0; N]; NODES],
             errors: [[0.0; N]; NODES],
-            rests: [0.0; N],
-            inverse: [[0.0; N]; N],
+            largest: [0.0; N],
+            rounding: [0.0; N],
         };
-        let places = nodes.tools.iter_mut().zip(&mut nodes.errors);
-        for (tau, (tool, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
-            let place = motion.at(tau);
-            let (axes, slopes) = self.slopes_at(place).ok()?;
+        let places = nodes.places.iter_mut().zip(&mut nodes.errors);
+        for (tau, (place, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
+            *place = motion.at(tau);
+            let axes = place.map(Interval::from);
+            let axes = self.machine.inverse(axes, self.branch).ok()?;
             let positions = cubics.map(|cubic| cubic.position(tau));
-            *errors = self.apart(&positions, &axes);
-            let inverse = inverse(slopes)?;
-            let off = product(&inverse, errors);
-            for (most, row) in nodes.inverse.iter_mut().zip(&inverse) {
-                raise(most, row);
-            }
-            *tool = place;
-            for (tool, off) in tool.iter_mut().zip(off) {
-                *tool += off;
-            }
-            let rests = self.rests(tool, &positions)?;
-            raise(&mut nodes.off, &off);
-            raise(&mut nodes.rests, &rests);
+            *errors = self.apart(&positions, &axes.map(Number::middle));
+            raise(&mut nodes.largest, errors);
+            let rounding = axes.map(|axis| axis.radius() + axis.middle().abs() * ROUNDING);
+            raise(&mut nodes.rounding, &rounding);
         }
-        // What the positions on the cubics are rounded by, and those at the places on the curve.
-        for (rest, cubic) in nodes.rests.iter_mut().zip(cubics) {
+        // What the positions on the cubics are rounded by.
+        for (rounding, cubic) in nodes.rounding.iter_mut().zip(cubics) {
             let size = cubic.control_points().map(f64::abs).iter().sum::<f64>();
-            *rest += size * ROUNDING;
+            *rounding += size * ROUNDING;
         }
         Some(nodes)
     }
 
-    /// What is left between the axes of a tool and the positions that they have.
-    fn rests(&self, tool: &[f64; N], positions: &[f64; N]) -> Option<[f64; N]> {
-        let place = tool.map(Interval::from);
-        let axes = self.machine.inverse(place, self.branch).ok()?;
-        let mut rests = [0.0; N];
-        let pairs = axes.into_iter().zip(positions).zip(&self.axes);
-        for (rest, ((found, position), axis)) in rests.iter_mut().zip(pairs) {
-            let apart = found - *position;
-            let turned = axis.difference(apart.middle()) - apart.middle();
-            *rest = (apart + turned).magnitude();
-        }
-        Some(rests)
-    }
-
-    /// What the Jacobians within a radius of the curve are, and the most that they change by.
-    fn slopes_within(
+    /// Where the tool is at the nodes, by all Jacobians within a radius of the curve.
+    fn tools(
         &self,
         motion: &CurveMotion<'_, N>,
         radius: &[f64; N],
-    ) -> Option<(Enclosure<N>, Matrix<N>)> {
-        let mut known: Option<Enclosure<N>> = None;
-        let mut changes = [[0.0; N]; N];
+        nodes: &Nodes<N>,
+    ) -> Option<Tools<N>> {
+        let mut tools = Tools {
+            enclosure: None,
+            changes: [[0.0; N]; N],
+            places: nodes.places,
+            off: [0.0; N],
+            rests: [0.0; N],
+        };
         pieces(1, FINEST, |part, can_halve| {
             let stretch = Stretch::new(motion, part, self.rounding);
             let around = self.around(&stretch, radius).ok()?;
-            let enclosure = Enclosure::new(&around.slopes)?;
-            let changed = norm(&enclosure.between(&around.changes, 1.0));
+            let y = inverse(around.at(0.0))?;
+            let enclosure = Enclosure::by(&y, &around.slopes())?;
+            let changes = around.changes();
+            let changed = norm(&enclosure.between(&changes, 1.0));
             if can_halve && (enclosure.spread() > GOOD || changed > CHANGED) {
                 return Some(false);
             }
-            changes = both(&changes, &around.changes, 0.0, larger_or_nan);
-            known = Some(known.map_or(enclosure, |known| known.and(&enclosure)));
+            tools.changes = both(&tools.changes, &changes, 0.0, larger_or_nan);
+            tools.add(part, &around, &y, nodes);
+            let known = tools.enclosure;
+            tools.enclosure = Some(known.map_or(enclosure, |known| known.and(&enclosure)));
             Some(true)
         })?;
-        Some((known?, changes))
+        Some(tools)
     }
 }
 
@@ -238,18 +245,75 @@ fn raise<const N: usize>(most: &mut [f64; N], values: &[f64; N]) {
     }
 }
 
-/// What is known at the nodes.
+/// What is known of the axes at the nodes.
 struct Nodes<const N: usize> {
-    /// The tool, but for what the rests make of it.
-    tools: [[f64; N]; NODES],
-    /// The most that it is off the curve by in each coordinate.
-    off: [f64; N],
-    /// What each axis is off by at each place of the curve.
+    /// The places of the curve.
+    places: [[f64; N]; NODES],
+    /// What each axis is off by there.
     errors: [[f64; N]; NODES],
-    /// The most that each axis is off by at the tool, which is more than what rounding is.
+    /// The most of that.
+    largest: [f64; N],
+    /// What that is rounded by at most.
+    rounding: [f64; N],
+}
+
+/// What is known of the tool within a radius of the curve.
+struct Tools<const N: usize> {
+    /// All Jacobians.
+    enclosure: Option<Enclosure<N>>,
+    /// The most that they change by from node to node.
+    changes: Matrix<N>,
+    /// The tool at the nodes, but for what the rests make of it.
+    places: [[f64; N]; NODES],
+    /// The most that it is off the curve by there in each coordinate.
+    off: [f64; N],
+    /// The most that is left of what each axis is off by there.
     rests: [f64; N],
-    /// The sizes of the inverse of the axes' slopes.
-    inverse: Matrix<N>,
+}
+
+impl<const N: usize> Tools<N> {
+    /// Takes the nodes of a part in.
+    ///
+    /// ```text
+    /// J e = ε     with K near J:  e = Y ε + ...,  |ε - K e| + |J - K| |e| is left
+    /// ```
+    fn add(&mut self, [from, to]: [f64; 2], around: &Around<N>, y: &Matrix<N>, nodes: &Nodes<N>) {
+        let (middle, apart) = ((from + to) * 0.5, around.apart());
+        let places = self.places.iter_mut().zip(&nodes.errors);
+        for (tau, (place, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
+            if tau < from || tau >= to {
+                continue;
+            }
+            let slopes = around.at(tau - middle);
+            let mut off = [0.0; N];
+            let mut left = *errors;
+            for _ in 0..STEPS {
+                for (off, step) in off.iter_mut().zip(product(y, &left)) {
+                    *off += step;
+                }
+                let made = product(&slopes, &off);
+                for (left, (error, made)) in left.iter_mut().zip(errors.iter().zip(made)) {
+                    *left = error - made;
+                }
+            }
+            let by_slopes = product(&apart, &off.map(f64::abs));
+            let rounding = nodes.rounding.iter().zip(by_slopes);
+            for (left, (rounding, by_slopes)) in left.iter_mut().zip(rounding) {
+                *left = left.abs() + rounding + by_slopes * (1.0 + ROUNDING);
+            }
+            for (place, off) in place.iter_mut().zip(off) {
+                *place += off;
+            }
+            raise(&mut self.off, &off);
+            raise(&mut self.rests, &left);
+        }
+    }
+
+    fn at(&self, tau: f64) -> [f64; N] {
+        let mut nodes = CurveMotion::<N>::NODES.iter().zip(&self.places);
+        let found = nodes.find(|(node, _)| **node >= tau);
+        found.map_or([f64::NAN; N], |(_, place)| *place)
+    }
 }
 
 /// What is known of the axes on all of a segment.
@@ -272,7 +336,7 @@ impl<const N: usize> Nodes<N> {
         };
         for axis in 0..N {
             let at = |values: &[f64; N]| values.get(axis).copied().unwrap_or(f64::NAN);
-            let (rest, q) = (at(&self.rests), at(fourth));
+            let (rest, q) = (at(&self.rounding), at(fourth));
             let mut errors = [0.0; NODES + 2];
             for (error, node) in errors.iter_mut().skip(1).zip(&self.errors) {
                 *error = at(node);
@@ -285,12 +349,6 @@ impl<const N: usize> Nodes<N> {
             }
         }
         known
-    }
-
-    fn tool(&self, tau: f64) -> [f64; N] {
-        let mut nodes = CurveMotion::<N>::NODES.iter().zip(&self.tools);
-        let found = nodes.find(|(node, _)| **node >= tau);
-        found.map_or([f64::NAN; N], |(_, tool)| *tool)
     }
 }
 

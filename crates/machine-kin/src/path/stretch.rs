@@ -2,7 +2,8 @@
 
 use path_timing::CurveMotion;
 
-use crate::{Interval, Jet, Number};
+use crate::model::Model;
+use crate::{Interval, Jet};
 
 /// Where a point that runs along a curve is, and how it moves, over a part of its time.
 pub(super) struct Stretch<const N: usize> {
@@ -15,6 +16,12 @@ pub(super) struct Stretch<const N: usize> {
     /// Rounding of a position, in the unit of length.
     rounding: f64,
 }
+
+/// Coefficients of the Taylor models.
+pub(super) const K: usize = 4;
+
+/// One over k!
+const FACTORIALS: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
 
 /// What values, and derivatives of the same length, may be off by.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -31,64 +38,76 @@ impl<const N: usize> Stretch<N> {
         }
     }
 
-    /// The place in the middle.
-    pub(super) const fn middle(&self) -> &[f64; N] {
-        let [middle, ..] = &self.middle;
-        middle
-    }
-
     /// Half of the part.
     pub(super) const fn half(&self) -> f64 {
         self.half
     }
 
-    /// Taylor coefficients at every τ of the part, each from the next.
+    /// Taylor coefficients at every τ of the part, each derivative from the next two and what bounds the
+    /// one after.
     ///
     /// ```text
-    /// P⁗(τ) ∈ P⁗(m) + t [P⁽⁵⁾]     P‴(τ) ∈ P‴(m) + t P⁗(m) + t²/2 [P⁽⁵⁾]     ...     t = τ - m
+    /// |P⁽ᵏ⁾(τ) - P⁽ᵏ⁾(m)| ≤ |P⁽ᵏ⁺¹⁾(m)| t + |P⁽ᵏ⁺²⁾(m)| t²/2 + max |P⁽ᵏ⁺³⁾| t³/6      t = max |τ - m|
     /// ```
-    pub(super) fn jets(&self) -> [Jet<Interval, 5>; N] {
-        let [l1, l2, l3, l4, l5] = self.longest;
-        let t = Interval::new(-self.half, self.half);
-        let square = t.squared();
-        let t2 = square * 0.5;
-        let (t3, t4) = (t2 * t / 3.0, square.squared() / 24.0);
-        let fifth = Interval::new(-l5, l5);
-        let [rest, rest2, rest3, rest4] = [t, t2, t3, t4].map(|power| fifth * power);
-        let rest5 = rest4 * (t / 5.0);
+    pub(super) fn jets<const K: usize>(&self) -> [Jet<Interval, K>; N] {
+        let [_, _, l3, l4, l5] = self.longest;
+        let (t, t2) = (self.half, self.half * self.half / 2.0);
+        let t3 = t2 * t / 3.0;
         let jet = |[p, p1, p2, p3, p4]: [f64; 5]| {
-            let [first, second, third, fourth] = [(p1, l1), (p2, l2), (p3, l3), (p4, l4)]
-                .map(|(value, longest)| Interval::around(value, longest * ROUNDING));
-            let place = Interval::around(p, self.rounding);
-            Jet::new([
-                place + first * t + second * t2 + third * t3 + fourth * t4 + rest5,
-                first + second * t + third * t2 + fourth * t3 + rest4,
-                (second + third * t + fourth * t2 + rest3) * 0.5,
-                (third + fourth * t + rest2) / 6.0,
-                (fourth + rest) / 24.0,
+            let [a1, a2, a3, a4] = [p1, p2, p3, p4].map(f64::abs);
+            self.coefficients([
+                (p, a1 * t + a2 * t2 + l3 * t3),
+                (p1, a2 * t + a3 * t2 + l4 * t3),
+                (p2, a3 * t + a4 * t2 + l5 * t3),
+                (p3, a4 * t + l5 * t2),
+                (p4, l5 * t),
             ])
         };
         transposed(&self.middle).map(jet)
     }
 
-    /// The first Taylor coefficients in the middle.
-    pub(super) fn middle_jets(&self) -> [Jet<Interval, 3>; N] {
-        let [l1, l2, ..] = self.longest;
-        transposed(&self.middle).map(|[p, p1, p2, ..]| {
-            Jet::new([
-                Interval::around(p, self.rounding),
-                Interval::around(p1, l1 * ROUNDING),
-                Interval::around(p2, l2 * ROUNDING) * 0.5,
-            ])
-        })
+    /// The same in the middle.
+    pub(super) fn middle_jets<const K: usize>(&self) -> [Jet<Interval, K>; N] {
+        transposed(&self.middle).map(|values| self.coefficients(values.map(|value| (value, 0.0))))
+    }
+
+    /// From derivatives in the middle and what they change by, with what they are rounded by.
+    fn coefficients<const K: usize>(&self, derivatives: [(f64, f64); 5]) -> Jet<Interval, K> {
+        let mut coefficients = [Interval::UNKNOWN; K];
+        let known = derivatives.iter().zip(self.roundings()).zip(FACTORIALS);
+        for (coefficient, (((value, by), rounding), factor)) in coefficients.iter_mut().zip(known) {
+            let by = by * (1.0 + ROUNDING) + rounding;
+            *coefficient = Interval::around(*value, by) * factor;
+        }
+        Jet::new(coefficients)
+    }
+
+    /// Every place within a radius of the part, along its time from -1 to 1.
+    pub(super) fn models(&self, radius: &[f64; N]) -> [Model<K>; N] {
+        let [.., l5] = self.longest;
+        let (t, t2) = (self.half, self.half * self.half / 2.0);
+        let (t3, t4) = (t2 * t / 3.0, t2 * t2 / 6.0);
+        let [_, l1, l2, l3, _] = self.roundings();
+        let rounding = self.rounding + l1 * t + l2 * t2 + l3 * t3;
+        let mut models = [Model::from(0.0); N];
+        let known = transposed(&self.middle).into_iter().zip(radius);
+        for (model, ([p, p1, p2, p3, p4], by)) in models.iter_mut().zip(known) {
+            let rest = (p4.abs() + l5 * t) * t4 + by + rounding;
+            *model = Model::new([p, p1 * t, p2 * t2, p3 * t3], rest * (1.0 + ROUNDING));
+        }
+        models
     }
 
     /// Every place of the part.
     pub(super) fn places(&self) -> [Interval; N] {
-        self.jets().map(|jet| {
-            let [place, ..] = *jet.coefficients();
-            place
-        })
+        self.models(&[0.0; N]).map(|model| model.range())
+    }
+
+    /// What the place and each derivative are rounded by.
+    fn roundings(&self) -> [f64; 5] {
+        let [l1, l2, l3, l4, _] = self.longest;
+        let [l1, l2, l3, l4] = [l1, l2, l3, l4].map(|longest| longest * ROUNDING);
+        [self.rounding, l1, l2, l3, l4]
     }
 }
 

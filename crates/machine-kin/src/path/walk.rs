@@ -147,20 +147,17 @@ impl<const N: usize> Survey<N> {
             reason,
         };
         let around = path.around(&stretch, &self.edge).map_err(refused)?;
-        if Enclosure::new(&around.slopes).is_none() {
+        if Enclosure::new(&around.slopes()).is_none() {
             return Err(PathError::Singular { s: from, point });
         }
-        // Mean values: q(τ) ∈ q(½) + q' [-½, ½].
-        let middle = stretch.middle().map(Interval::from);
-        let middle = path.machine.inverse(middle, path.branch).map_err(refused)?;
-        let half = Interval::new(-0.5, 0.5);
+        let positions = path.axes(&stretch).map_err(refused)?;
         let axes = path.axes.iter().zip(near);
-        for ((middle, rate), (axis, near)) in middle.into_iter().zip(around.rates).zip(axes) {
-            let way = rate * half;
-            let apart = middle - *near;
-            let turned = axis.difference(apart.middle()) - apart.middle();
-            let position = middle + turned + way;
-            if axis.is_angle && way.width() > MAX_TURN {
+        for (position, (axis, near)) in positions.into_iter().zip(axes) {
+            let position = position.range();
+            let apart = position.middle() - near;
+            let position = position + (axis.difference(apart) - apart);
+            let way = position.width();
+            if axis.is_angle && way > MAX_TURN {
                 return Err(PathError::Singular { s: from, point });
             }
             if let Some(position) = axis.beyond(position.low(), position.high()) {

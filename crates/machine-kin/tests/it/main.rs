@@ -6,4 +6,5 @@ mod common;
 mod hand_made;
 mod machines;
 mod numbers;
+mod own;
 mod paths;
