@@ -56,7 +56,7 @@ fn wrong_values_are_refused_with_their_reason() {
         (
             arm,
             r#","ranges":[null,null,{"min":1,"max":1}]"#,
-            "joint range 1..=1 rad",
+            "arm range 1..=1 rad",
         ),
         (arm, r#","reach":2.0"#, "unknown field `reach`"),
         (
