@@ -43,7 +43,8 @@ pub use stepper_sync;
     doctest,
     feature = "path-timing",
     feature = "pvt-steps",
-    feature = "scara-kin"
+    feature = "scara-kin",
+    feature = "stepper-sync"
 ))]
 mod book {
     #[doc = include_str!("../docs/book/src/start.md")]
