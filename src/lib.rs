@@ -37,3 +37,18 @@ pub use rk512;
 pub use scara_kin;
 #[cfg(feature = "stepper-sync")]
 pub use stepper_sync;
+
+/// The programs of the book that are no examples.
+#[cfg(all(
+    doctest,
+    feature = "path-timing",
+    feature = "pvt-steps",
+    feature = "scara-kin",
+    feature = "stepper-sync"
+))]
+mod book {
+    #[doc = include_str!("../docs/book/src/start.md")]
+    #[doc = include_str!("../docs/book/src/arm.md")]
+    #[doc = include_str!("../docs/book/src/limits.md")]
+    mod programs {}
+}

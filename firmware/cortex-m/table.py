@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Compares what was counted with what is committed, and writes docs/metal.md.
+"""Compares what was counted with what is committed, and writes docs/book/src/metal.md.
 
     table.py check m4 m3 m0 boards    no count, stack or size is more than 5 % above the committed
-                                      one, and docs/metal.md says what is committed
+                                      one, and docs/book/src/metal.md says what is committed
     table.py accept m4 m3 m0 boards   what was counted is what will be committed
 """
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 COUNTED, COMMITTED = HERE / "target", HERE / "measured"
-PAGE = HERE.parent.parent / "docs" / "metal.md"
+PAGE = HERE.parent.parent / "docs" / "book" / "src" / "metal.md"
 # The tables that are kept; lines are played on an M3 and an M0+ as well.
 KEPT = {
     "m4": ("count", "play", "sizes"),
@@ -168,7 +168,7 @@ def main(verb, *cores):
     assert verb == "check" and found, __doc__
     worse = [line for core, kind in found for line in compare(core, kind)]
     if PAGE.read_text() != page():
-        worse.append("docs/metal.md is not what table.py writes: table.py accept")
+        worse.append("docs/book/src/metal.md is not what table.py writes: table.py accept")
     print("\n".join(worse) if worse else f"ok: {len(found)} tables, nothing above {MOST:.0%}")
     return 1 if worse else 0
 

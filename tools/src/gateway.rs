@@ -57,7 +57,7 @@ use crate::runtime::{block_on, interrupted};
 /// `debug` logs more, to `warn` less.
 #[derive(Args)]
 pub(crate) struct Options {
-    /// Configuration: see the README and docs/gateway.md.
+    /// Configuration: see the README, and the book on the gateway.
     config: PathBuf,
     /// Only reads the configuration and the files that it names.
     #[arg(long)]

@@ -147,7 +147,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// # Errors
     /// [`ForwardError`].
     #[inline]
-    pub fn forward(&self, angles: Vector3<T>) -> Result<Point3<T>, ForwardError<T>> {
+    pub fn forward(&self, angles: impl Into<Vector3<T>>) -> Result<Point3<T>, ForwardError<T>> {
+        let angles = angles.into();
         let thetas = self.thetas(angles);
         let lowers = self.prepared().each_ref().map(|prepared| prepared.lower);
         let (shortest, _) = smallest(lowers);

@@ -168,7 +168,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// # Errors
     /// [`InverseError`].
     #[inline]
-    pub fn inverse(&self, point: Point3<T>) -> Result<Vector3<T>, InverseError<T>> {
+    pub fn inverse(&self, point: impl Into<Point3<T>>) -> Result<Vector3<T>, InverseError<T>> {
+        let point = point.into();
         let local = self.flip(point.coords);
         match self.admitted(&local) {
             Some((angles, _)) => Ok(angles),

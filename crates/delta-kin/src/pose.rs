@@ -37,7 +37,8 @@ impl<T: RealField + Trig> Delta<T> {
     ///
     /// # Errors
     /// [`InverseError`].
-    pub fn pose_at(&self, point: Point3<T>) -> Result<Pose<T>, InverseError<T>> {
+    pub fn pose_at(&self, point: impl Into<Point3<T>>) -> Result<Pose<T>, InverseError<T>> {
+        let point = point.into();
         Ok(Pose::new(self, self.inverse(point)?, point))
     }
 

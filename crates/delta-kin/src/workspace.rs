@@ -61,7 +61,7 @@ impl<T: RealField + Trig> Delta<T> {
     /// Whether the platform's centre can be at `point` in the machine's modes and within its limits:
     /// [`inverse`](Self::inverse) says why not.
     #[must_use]
-    pub fn is_reachable(&self, point: Point3<T>) -> bool {
+    pub fn is_reachable(&self, point: impl Into<Point3<T>>) -> bool {
         self.inverse(point).is_ok()
     }
 

@@ -180,7 +180,18 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         self.speed.is_none_or(|speed| speed <= 0.0)
     }
 
-    /// The next row; `None` where the machine rests: held, or at the end of the last path for now.
+    /// Whether all paths have been run and the machine rests at the end of the last one, or before one
+    /// that was refused: what a `None` of [`next_row`](Self::next_row) means, which else is a hold.
+    ///
+    /// A stream that had no path may have one later: the next call of `next_row` asks it again.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        let has_path = self.entering.is_some() || self.following.is_some();
+        self.is_at_rest() && !self.window.goes_on() && (self.is_refused || !has_path)
+    }
+
+    /// The next row; `None` where the machine rests: held, or at the end of the last path for now, which
+    /// [`is_finished`](Self::is_finished) tells apart.
     ///
     /// # Errors
     /// [`PlanError`] with the place, once, when a path is refused; no other path is taken then. It

@@ -266,6 +266,9 @@ impl Shaper {
     /// |qₛ(t) - q(t - τ)| ≤ s²/2 max |q"|    s² = Σ Aᵢ (τᵢ - τ)²
     /// ```
     ///
+    /// Proof. The shaped position is the mean Σ Aᵢ q(t - τᵢ). By Taylor's formula each q(t - τᵢ) is off
+    /// q(t - τ) - (τᵢ - τ) q'(t - τ) by at most (τᵢ - τ)²/2 max |q"|, and the linear part has the mean 0.
+    ///
     /// Across axes: a Cartesian tool departs by at most the root of the sum of the squares, or by this
     /// bound of its own acceleration where all axes have one shaper.
     #[must_use]

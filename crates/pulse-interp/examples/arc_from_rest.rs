@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arc = Arc::new([400, 0], [-400, 0], Turn::CounterClockwise)?;
     let mut steps = arc.steps(Rule::Nearest);
     // The length of the path is an axis of its own: pi · 400 step lengths, rounded up.
-    let [ramp] = Ramp::new([1257], &limits, Rate::from_hz(1_000_000)?)?.axes();
+    let length = i32::try_from(arc.length())?;
+    let [ramp] = Ramp::new([length], &limits, Rate::from_hz(1_000_000)?)?.axes();
     let mut intervals = StepIntervals::from_units(periods(ramp));
 
     println!("    tick      x      y");

@@ -10,8 +10,10 @@ pub use steps::ArcSteps;
 
 use crate::{Rule, Turn};
 use core::cmp::Ordering;
+use core::f64::consts::TAU;
 use geometry::Sweep;
 use thiserror::Error;
+use trig_kernels::{atan2, sqrt};
 
 /// Why an arc is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -157,6 +159,39 @@ impl Arc {
     #[must_use]
     pub const fn radius_squared(&self) -> u64 {
         self.radius_squared
+    }
+
+    /// The length of the arc on its circle, in steps, rounded up: what a ramp along it takes.
+    ///
+    /// ```text
+    /// R φ,   φ = atan2(x ye - y xe, x xe + y ye) counter-clockwise, 0 < φ <= 2π
+    /// ```
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "53 bits of products below 2^63; a length below 2^33"
+    )]
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        let [x, y] = self.start.map(i64::from);
+        let [xe, ye] = self.end.map(i64::from);
+        // Below 2^30 · 2^31 each.
+        let cross = x.wrapping_mul(ye).wrapping_sub(y.wrapping_mul(xe));
+        let dot = x.wrapping_mul(xe).wrapping_add(y.wrapping_mul(ye));
+        let across = match self.turn {
+            Turn::CounterClockwise => cross,
+            Turn::Clockwise => cross.wrapping_neg(),
+        };
+        let angle = atan2(across as f64, dot as f64);
+        let angle = if across < 0 || (across == 0 && dot > 0) {
+            angle + TAU
+        } else {
+            angle
+        };
+        let length = sqrt(self.radius_squared as f64) * angle;
+        let down = length as u64;
+        down.wrapping_add(u64::from((down as f64) < length))
     }
 
     /// The arc as single steps of one axis: in each quadrant as many as |dx| + |dy|, a full circle

@@ -71,6 +71,14 @@ impl Line {
         self.to
     }
 
+    /// The length of the line, in steps, rounded up: what a ramp along it takes.
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        let square = self.square();
+        let down = square.isqrt();
+        down.wrapping_add(u64::from(down.wrapping_mul(down) < square))
+    }
+
     /// The line as single steps of one axis, |xe| + |ye| of them.
     ///
     /// At most 1 step off the line by [`Rule::Published`], 0.7072 by [`Rule::Nearest`].

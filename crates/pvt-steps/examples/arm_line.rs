@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let table = Table::plan_within([line], [joint; 2], accuracy, departure, &mut knots)?;
 
     let tick_rate = Rate::from_hz(72_000_000)?;
-    let steps_per_rad = StepScale::new(32_000.0 / core::f64::consts::TAU)?;
+    let steps_per_rad = StepScale::of_motor(200, 16, 10.0, core::f64::consts::TAU)?;
     let start = line.point(0.0)?.position;
     let mut rows = PvtQuantiser::new(tick_rate, [steps_per_rad; 2], start)?;
     let timing = StepDirTiming::DRV8825.min_intervals(tick_rate);

@@ -43,7 +43,7 @@ const TOLERANCE: u64 = 7 << 28;
 /// is at most what the axis moves in a tick, and u. Here u is 2^-40 steps, or 2^-47 of the greatest
 /// of the row's travel and its duration times its velocities, if that is more than 128 steps.
 ///
-/// No root is searched for each step. Let s be the fraction of the row's time, and
+/// Proof. No root is searched for each step. Let s be the fraction of the row's time, and
 /// q = d0 + d1 σ + d2 σ² + d3 σ³ round a centre `s_c` = s - σ with d1 > 0. For the positions
 /// d0 + h x, |x| <= 1, put w = h / d1 and σ = w y:
 /// ```text

@@ -138,8 +138,8 @@ impl<T: RealField + Trig> Arm<T> {
     /// # Errors
     /// [`InverseError`]; with limits, only if neither elbow keeps them.
     #[inline]
-    pub fn inverse(&self, point: Point2<T>) -> Result<Solutions<T>, InverseError<T>> {
-        let triangle = self.triangle(point)?;
+    pub fn inverse(&self, point: impl Into<Point2<T>>) -> Result<Solutions<T>, InverseError<T>> {
+        let triangle = self.triangle(point.into())?;
         Solutions::new(self, triangle.both(), triangle.tool)
     }
 
@@ -149,10 +149,10 @@ impl<T: RealField + Trig> Arm<T> {
     /// [`InverseError`]; with limits, if this elbow does not keep them.
     pub fn inverse_elbow(
         &self,
-        point: Point2<T>,
+        point: impl Into<Point2<T>>,
         elbow: Elbow,
     ) -> Result<Joints<T>, InverseError<T>> {
-        self.elbow_near(point, elbow, self.limits().middle())
+        self.elbow_near(point.into(), elbow, self.limits().middle())
     }
 
     /// As [`inverse_elbow`](Self::inverse_elbow), each joint at the whole turn nearest
@@ -164,11 +164,11 @@ impl<T: RealField + Trig> Arm<T> {
     #[inline]
     pub fn inverse_elbow_near(
         &self,
-        point: Point2<T>,
+        point: impl Into<Point2<T>>,
         elbow: Elbow,
         previous: Joints<T>,
     ) -> Result<Joints<T>, InverseError<T>> {
-        self.elbow_near(point, elbow, checked(previous)?)
+        self.elbow_near(point.into(), elbow, checked(previous)?)
     }
 
     /// Joint angles that bring the tool to `point` with the least joint travel from
@@ -181,11 +181,11 @@ impl<T: RealField + Trig> Arm<T> {
     /// [`InverseError`], but never [`InverseError::AnyAngle`].
     pub fn inverse_nearest(
         &self,
-        point: Point2<T>,
+        point: impl Into<Point2<T>>,
         previous: Joints<T>,
     ) -> Result<(Elbow, Joints<T>), InverseError<T>> {
         let previous = checked(previous)?;
-        match self.triangle(point) {
+        match self.triangle(point.into()) {
             Ok(triangle) => Solutions::near(self, triangle.both(), previous, triangle.tool)
                 .map(|solutions| solutions.nearest_to(previous)),
             Err(InverseError::AnyAngle) => self.folded(previous),
@@ -195,7 +195,7 @@ impl<T: RealField + Trig> Arm<T> {
 
     /// Whether `point` can be reached within the limits.
     #[must_use]
-    pub fn is_reachable(&self, point: Point2<T>) -> bool {
+    pub fn is_reachable(&self, point: impl Into<Point2<T>>) -> bool {
         self.inverse_nearest(point, self.limits().middle()).is_ok()
     }
 

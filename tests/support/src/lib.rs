@@ -18,6 +18,11 @@ mod sizes;
 mod stored;
 
 pub use board::{Board, Pin};
+/// The programs of a README whose crate cannot depend on what they need.
+#[cfg(doctest)]
+#[doc = include_str!("../../../crates/path-timing/README.md")]
+mod path_timing_readme {}
+
 pub use config::at_least;
 pub use pulses::Pulses;
 pub use random::{Random, setting};

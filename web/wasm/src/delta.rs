@@ -127,7 +127,7 @@ impl Driven {
             speed,
             acceleration,
         }; 3];
-        let place = |angles: [f64; 3]| Some(machine.geometry().forward(angles.into()).ok()?.into());
+        let place = |angles: [f64; 3]| Some(machine.geometry().forward(angles).ok()?.into());
         limits::add_to(answer, &rows, axes, place)
     }
 

@@ -140,7 +140,7 @@ impl DeltaPath {
     /// [`Shaper::departure`]; in the unit of length, infinite where the segment is too long or the angles
     /// are too much to tell.
     ///
-    /// As [`departure`](Self::departure), with the centres K moved by ΔK: what is missing from the rods
+    /// Proof. As that of [`departure`](Self::departure), with the centres K moved by ΔK: what is missing from the rods
     /// grows by at most
     ///
     /// ```text

@@ -53,7 +53,8 @@ impl<T: RealField + Trig> Delta<T> {
     ///
     /// and while that is less than it was the plane of the elbows does not come upright.
     #[must_use]
-    pub fn clearance(&self, point: Point3<T>) -> T {
+    pub fn clearance(&self, point: impl Into<Point3<T>>) -> T {
+        let point = point.into();
         let Ok(pose) = self.pose_at(point) else {
             return T::zero();
         };

@@ -114,8 +114,8 @@ proptest! {
 
 /// The angles with the platform in the middle of its workspace.
 fn middle(delta: &Delta) -> Vector3<f64> {
-    let below = delta.inverse([0.0, 0.0, -260.0].into());
-    let below = below.or_else(|_| delta.inverse([0.0, 0.0, 260.0].into()));
+    let below = delta.inverse([0.0, 0.0, -260.0]);
+    let below = below.or_else(|_| delta.inverse([0.0, 0.0, 260.0]));
     below.unwrap()
 }
 
@@ -128,7 +128,7 @@ fn friction_acts_along_and_bodies_that_cannot_be_are_refused() {
         ..DeltaMasses::default()
     };
     let dynamics = delta.dynamics(1e-3, masses).unwrap();
-    let pose = delta.pose_at([10.0, 5.0, -250.0].into()).unwrap();
+    let pose = delta.pose_at([10.0, 5.0, -250.0]).unwrap();
     let torques = dynamics
         .torques(&pose, Vector3::new(1.0, -2.0, 0.0), Vector3::zeros())
         .unwrap();

@@ -375,7 +375,7 @@ fn singular_poses_are_told() {
     assert!(pose.parallel_distance() > 0.2 && pose.parallel_distance() <= 1.0);
 }
 
-/// The figure of `docs/performance.md`.
+/// The figure of `docs/book/src/performance.md`.
 #[test]
 fn memory_is_as_stated() {
     assert_eq!(size_of::<Delta>(), 552);

@@ -178,7 +178,7 @@ proptest! {
         for number in 0..20 {
             let s = curve.length() * (f64::from(number) + 0.5) / 20.0;
             let point = path.point(s).unwrap();
-            let platform = delta.forward(point.position.into()).unwrap();
+            let platform = delta.forward(point.position).unwrap();
             prop_assert!((platform - Point3::from(curve.at(s).point)).norm() < 1e-9);
             if point.slope.iter().all(|slope| slope.abs() < 0.03) {
                 let [before, after] = [s - STEP, s + STEP].map(|s| path.point(s).unwrap().position);
@@ -300,7 +300,7 @@ fn planners_refuse_segments_that_pass_a_limit() {
                         for number in 0..=50 {
                             let share = f64::from(number) / 50.0;
                             let angles = cubics.map(|cubic| cubic.position(share));
-                            let platform = delta.forward(angles.into()).unwrap();
+                            let platform = delta.forward(angles).unwrap();
                             let found = delta.inverse(platform).unwrap();
                             assert!((found - Vector3::from(angles)).norm() < 1e-9);
                         }

@@ -210,7 +210,7 @@ fn the_delta_s_bound_is_near_the_one_by_hand() {
         ) = (&own, delta.path(curve))
         {
             // Nearer to the edge of the workspace than a part of a thousand of its size.
-            assert!(delta.clearance((*point).into()) < 0.1, "{own:?}");
+            assert!(delta.clearance(*point) < 0.1, "{own:?}");
             continue;
         }
         let Some((path, by_hand)) = both(own, delta.path(curve)) else {

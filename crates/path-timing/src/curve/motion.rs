@@ -7,10 +7,11 @@ use crate::number::larger_or_nan;
 
 /// A point on a curve whose parameter is a cubic of the time, over one segment of a table.
 ///
-/// It says how far a tool can depart from the curve on that segment. Both the tool's motion and
-/// this one have the same place and velocity at both ends, so that their difference e and its first
-/// derivative vanish there: e is the error of its own cubic Hermite interpolant, which is zero. With
-/// the time as the fraction τ = 0..=1 of the segment and M the longest that e⁗ can be, known from the
+/// It says how far a tool can depart from the curve on that segment.
+///
+/// Proof. Both the tool's motion and this one have the same place and velocity at both ends, so that
+/// their difference e and its first derivative vanish there: e is the error of its own cubic Hermite
+/// interpolant, which is zero. With the time as the fraction τ = 0..=1 of the segment and M the longest that e⁗ can be, known from the
 /// derivatives of tool and curve,
 ///
 /// ```text

@@ -66,6 +66,11 @@ impl<'w, A: Axes> Window<'w, A> {
         self.knots().first()
     }
 
+    /// Whether there is a knot after the first.
+    pub(super) fn goes_on(&self) -> bool {
+        self.knots().len() > 1
+    }
+
     pub(super) fn last_mut(&mut self) -> Option<&mut Knot<A>> {
         let knots = self.knots.get_mut(self.first..self.end);
         knots.and_then(|knots| knots.last_mut())

@@ -51,6 +51,38 @@ fn a_long_window_is_a_table() {
     }
 }
 
+#[test]
+fn a_rest_is_a_hold_or_the_end() {
+    let mut window = slots(200);
+    let paths = lines(&POINTS, Corner::Stop, None);
+    let mut motion = LookAhead::new(&paths, LIMITS, |_| Ok(20), &mut window).unwrap();
+    for _ in 0..30 {
+        motion.next_row().unwrap().unwrap();
+        assert!(!motion.is_finished());
+    }
+    motion.stop();
+    while motion.next_row().unwrap().is_some() {}
+    assert!(motion.is_at_rest() && !motion.is_finished());
+    motion.set_feed(1.0).unwrap();
+    // At rest at each corner, and at the end.
+    let (mut rests, mut ends) = (0, 0);
+    while motion.next_row().unwrap().is_some() {
+        rests += usize::from(motion.is_at_rest());
+        ends += usize::from(motion.is_finished());
+    }
+    assert!(rests > 1 && ends == 1 && motion.is_finished());
+}
+
+#[test]
+fn the_end_before_a_refused_path_is_an_end() {
+    let mut window = slots(40);
+    let there = || Curve::line([0.0, 0.0], [50.0, 0.0]).unwrap();
+    let apart = [there(), there()];
+    let mut motion = LookAhead::new(apart, LIMITS, |_| Ok(8), &mut window).unwrap();
+    let refusals = (0..100).filter(|_| motion.next_row().is_err()).count();
+    assert!(refusals == 1 && motion.is_finished());
+}
+
 /// A trapezoid at 100 mm/s and 1000 mm/s² over knots 1 mm apart brakes within 5 of them.
 #[test]
 fn a_window_shorter_than_the_braking_distance_costs_time_alone() {

@@ -148,7 +148,7 @@ fn wrong_feeds_and_memory_are_named() {
     }
 }
 
-/// The sizes that docs/body.md states, for three locators in f64 on 64 bits.
+/// The sizes that docs/book/src/body.md states, for three locators in f64 on 64 bits.
 #[cfg(target_pointer_width = "64")]
 #[test]
 fn memory_is_fixed() {

@@ -6,6 +6,7 @@ mod closed_loop;
 mod common;
 mod definition;
 mod feed;
+mod length;
 mod pictures;
 mod properties;
 mod reference;

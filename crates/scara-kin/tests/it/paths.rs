@@ -326,10 +326,7 @@ fn a_corner_that_the_disc_cannot_follow_slows_all_down() {
     let mut memory = [Vertex::default(); 8];
     let curves = Smoothed::new(corners, 0.5, &mut memory).unwrap();
     let curves: Vec<_> = curves.map(Result::unwrap).collect();
-    let (mut joints, mut tool_angle) = (
-        arm.inverse_elbow(corners[0].into(), Elbow::Left).unwrap(),
-        0.0,
-    );
+    let (mut joints, mut tool_angle) = (arm.inverse_elbow(corners[0], Elbow::Left).unwrap(), 0.0);
     let paths: Vec<_> = curves
         .iter()
         .map(|curve| {

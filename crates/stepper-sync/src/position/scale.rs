@@ -99,6 +99,36 @@ impl StepScale {
         }
     }
 
+    /// The scale of a motor with `full_steps` a turn and `microsteps` in each of them, behind a gear of
+    /// `gear` turns of the motor to one of its output, which moves the axis by `units_per_turn`: 2π for
+    /// radians, 360 for degrees, the lead of a screw or the circumference of a pulley in mm.
+    ///
+    /// ```text
+    /// full_steps · microsteps · gear / units_per_turn
+    /// ```
+    ///
+    /// ```
+    /// use core::f64::consts::TAU;
+    /// use stepper_sync::StepScale;
+    ///
+    /// // 1.8 deg a step, sixteenths, a belt of 5:1, in radians; and a screw of 4 mm, in mm.
+    /// let joint = StepScale::of_motor(200, 16, 5.0, TAU)?;
+    /// let slide = StepScale::of_motor(200, 8, 1.0, 4.0)?;
+    /// assert_eq!((joint.to_steps(TAU)?, slide.to_steps(0.01)?), (16_000, 4));
+    /// # Ok::<(), stepper_sync::ScaleError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ScaleError::Scale`], as of [`new`](Self::new).
+    pub fn of_motor(
+        full_steps: u32,
+        microsteps: u32,
+        gear: f64,
+        units_per_turn: f64,
+    ) -> Result<Self, ScaleError> {
+        Self::new(f64::from(full_steps) * f64::from(microsteps) * gear / units_per_turn)
+    }
+
     /// Steps per unit.
     #[must_use]
     pub const fn steps_per_unit(self) -> f64 {

@@ -101,7 +101,7 @@ fn a_path_through_a_joint_limit_is_refused_when_it_is_made() {
             panic!("{error}")
         };
         assert_eq!(joint, Joint::Elbow);
-        let at = engraver().inverse_elbow(past().at(s).point.into(), elbow);
+        let at = engraver().inverse_elbow(past().at(s).point, elbow);
         assert!((at.unwrap().elbow.abs() - 2.51).abs() < 1e-6);
     }
     // However narrow the part beyond is.
