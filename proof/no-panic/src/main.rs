@@ -17,6 +17,7 @@ mod shaping;
 mod stepping;
 mod tables;
 mod timing;
+mod torque;
 mod trig;
 mod unit;
 
@@ -26,6 +27,7 @@ fn main() {
     poses::run();
     tables::run();
     shaping::run();
+    torque::run();
     timing::run();
     curves::run();
     stepping::run();
