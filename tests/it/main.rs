@@ -3,6 +3,7 @@
 
 #[cfg(unix)]
 mod align;
+mod commissioning;
 #[cfg(all(feature = "motor-phases", feature = "pattern-codec"))]
 mod dance;
 mod delta;

@@ -1,18 +1,15 @@
 //! Geometry and zeros from measured points: Levenberg-Marquardt on a stated set of parameters.
 
-mod least_squares;
 mod parameter;
-mod rank;
 
-use nalgebra::{Point3, SVector, Vector3};
+use marquardt::{Jacobian, NotConverged, Problem};
+use nalgebra::{Point3, Vector3};
 
 use crate::inverse::Across;
-use crate::range::{is_within, largest_coordinate, sqrt};
+use crate::range::{is_within, largest_coordinate};
 use crate::rounded::Rounded;
 use crate::{AssemblyMode, Delta, ForwardError, ZAxis};
-use least_squares::LeastSquares;
 pub use parameter::{Parameter, Quantity};
-use rank::Rank;
 
 /// A measured point: where the platform's centre was found with given angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,19 +74,8 @@ pub enum CalibrationError {
     },
 }
 
-/// A calibrated machine, how well it fits, and what the points do not determine.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Calibration<const N: usize> {
-    delta: Delta,
-    parameters: [Parameter; N],
-    changes: [f64; N],
-    rms: f64,
-    largest: f64,
-    iterations: u32,
-    rank: Rank<N>,
-}
-
-const MAX_ITERATIONS: u32 = 200;
+/// A calibrated Delta, how well it fits, and what the points do not determine.
+pub type Calibration<const N: usize> = marquardt::Calibration<Delta, Parameter, N>;
 
 impl Delta {
     /// The machine whose `parameters` fit measured points best, all others kept.
@@ -103,8 +89,8 @@ impl Delta {
     /// that digits are not lost to its square and memory (three N × N matrices) does not grow with
     /// the points. Parameters that the points do not determine stay near their values and are
     /// reported. Noise can make a parameter look determined that the points hardly see, as the
-    /// azimuths of points on the z axis: [`Calibration::conditioning`] and the size of the changes
-    /// show it.
+    /// azimuths of points on the z axis: [`conditioning`](marquardt::LeastSquares::conditioning) and the size of
+    /// the changes show it.
     ///
     /// # Errors
     /// [`CalibrationError`].
@@ -124,29 +110,18 @@ impl Delta {
         for (index, measured) in measured.iter().enumerate() {
             self.check_measured(index, measured)?;
         }
-        let problem = Problem {
+        let problem = Poses {
             start: *self,
             parameters,
             measured,
         };
-        let fit = least_squares::minimise(&problem, MAX_ITERATIONS);
-        let (rms, largest) = problem.residuals(&fit.delta);
-        if !fit.is_converged {
-            return Err(CalibrationError::NotConverged {
-                iterations: fit.iterations,
-                rms,
-            });
-        }
-        let rows = measured.len().saturating_mul(3);
-        Ok(Calibration {
-            delta: fit.delta,
-            parameters,
-            changes: problem.with_units(&fit.changes),
-            rms,
-            largest,
-            iterations: fit.iterations,
-            rank: Rank::new(&fit.system, fit.sum, rows, &problem.units()),
-        })
+        let span = self.span();
+        let units = parameters.map(|parameter| parameter.unit(span));
+        let (delta, fit) =
+            marquardt::fit(&problem, span, units).map_err(|NotConverged { iterations, rms }| {
+                CalibrationError::NotConverged { iterations, rms }
+            })?;
+        Ok(Calibration::new(delta, parameters, fit))
     }
 
     /// Whether the machine can have the angles, and the point is where its assembly mode is.
@@ -177,166 +152,43 @@ impl Delta {
     }
 }
 
-impl<const N: usize> Calibration<N> {
-    /// The calibrated machine.
-    #[must_use]
-    pub const fn delta(&self) -> Delta {
-        self.delta
-    }
-
-    /// The parameters, in the order of all arrays here.
-    #[must_use]
-    pub const fn parameters(&self) -> &[Parameter; N] {
-        &self.parameters
-    }
-
-    /// What was added to each parameter, in the unit of length or in radians.
-    #[must_use]
-    pub const fn changes(&self) -> &[f64; N] {
-        &self.changes
-    }
-
-    /// The standard deviation of each parameter, in the unit of length or in radians, from the
-    /// residuals; `None` for those that the points do not determine.
-    #[must_use]
-    pub fn deviations(&self) -> [Option<f64>; N] {
-        self.rank.deviations()
-    }
-
-    /// Root mean square of the distances that are left, in the unit of length.
-    #[must_use]
-    pub const fn rms(&self) -> f64 {
-        self.rms
-    }
-
-    /// The largest distance that is left, in the unit of length.
-    #[must_use]
-    pub const fn largest(&self) -> f64 {
-        self.largest
-    }
-
-    /// Iterations made.
-    #[must_use]
-    pub const fn iterations(&self) -> u32 {
-        self.iterations
-    }
-
-    /// How many independent combinations of the parameters the points determine; N is all.
-    #[must_use]
-    pub fn rank(&self) -> usize {
-        self.rank.rank()
-    }
-
-    /// Smallest over largest singular value of the scaled Jacobian: how well the worst
-    /// combination is determined. Zero within rounding where the rank is less than N.
-    #[must_use]
-    pub fn conditioning(&self) -> f64 {
-        self.rank.conditioning()
-    }
-
-    /// The parameters that the points do not determine, alone or together with others.
-    pub fn undetermined(&self) -> impl Iterator<Item = Parameter> + use<N> {
-        let free = self.rank.free();
-        self.parameters
-            .into_iter()
-            .zip(free)
-            .filter_map(|(parameter, free)| free.then_some(parameter))
-    }
-
-    /// Changes of the parameters that, to first order, move none of the measured points: a basis
-    /// of the null space, in the unit of length and in radians.
-    pub fn null_space(&self) -> impl Iterator<Item = [f64; N]> + use<N> {
-        self.rank.null_space()
-    }
-}
-
-/// The residuals of measured points as a function of the parameters' changes. Lengths are in spans
-/// of the machine, so that they compare with radians.
-struct Problem<'a, const N: usize> {
+/// Measured points as a function of the parameters' changes.
+struct Poses<'a, const N: usize> {
     start: Delta,
     parameters: [Parameter; N],
     measured: &'a [Measured],
 }
 
-impl<const N: usize> Problem<'_, N> {
-    /// What a change of 1 is, in the unit of length or in radians.
-    fn units(&self) -> [f64; N] {
-        self.parameters
-            .map(|parameter| parameter.unit(self.start.span()))
-    }
+impl<const N: usize> Problem<N> for Poses<'_, N> {
+    type Model = Delta;
 
-    fn with_units(&self, changes: &[f64; N]) -> [f64; N] {
-        let units = SVector::from(self.units());
-        SVector::from(*changes).component_mul(&units).into()
-    }
-
-    fn machine(&self, changes: &[f64; N]) -> Option<Delta> {
+    fn model(&self, changes: [f64; N]) -> Option<Delta> {
         let mut arms = *self.start.arms();
-        for (parameter, change) in self.parameters.iter().zip(self.with_units(changes)) {
+        for (parameter, change) in self.parameters.iter().zip(changes) {
             parameter.add(&mut arms, change);
         }
         self.start.with_arms(arms).ok()
     }
 
-    /// How far the platform is from a measured point; `None` where the machine cannot have the
-    /// angles.
-    fn missing(&self, delta: &Delta, measured: &Measured) -> Option<Vector3<f64>> {
-        let found = delta.forward(measured.angles).ok()?;
-        Some((measured.point - found) / self.start.span())
+    fn squares(&self, delta: &Delta) -> impl Iterator<Item = Option<f64>> {
+        self.measured.iter().map(|measured| {
+            let found = delta.forward(measured.angles).ok()?;
+            Some((measured.point - found).norm_squared())
+        })
     }
 
-    /// Sum of the squares.
-    fn sum(&self, delta: &Delta) -> Option<f64> {
-        let squares = self.measured.iter();
-        squares
-            .map(|measured| Some(self.missing(delta, measured)?.norm_squared()))
-            .sum()
-    }
-
-    /// What the sum is where each point is met to a machine epsilon of the span.
-    fn rounding(&self) -> f64 {
-        let squares = self.measured.iter().map(|_| f64::EPSILON * f64::EPSILON);
-        squares.sum()
-    }
-
-    /// The triangularised Jacobian with the residuals, and the sum of their squares.
-    fn system(&self, delta: &Delta) -> Option<(LeastSquares<N>, f64)> {
-        let span = self.start.span();
-        let (mut system, mut sum) = (LeastSquares::new(), 0.0);
+    fn add_rows(&self, delta: &Delta, jacobian: &mut Jacobian<N>) -> Option<()> {
         for measured in self.measured {
             let pose = delta.pose_of(measured.angles).ok()?;
             let inverse = pose.rod_inverse().ok()?;
-            let missing = (measured.point - pose.point()) / span;
-            sum += missing.norm_squared();
-            let columns = self.parameters.map(|parameter| {
-                parameter.influence(delta, &pose, &inverse) * (parameter.unit(span) / span)
-            });
-            system.add(columns.map(|column| column.x), missing.x);
-            system.add(columns.map(|column| column.y), missing.y);
-            system.add(columns.map(|column| column.z), missing.z);
+            let missing = measured.point - pose.point();
+            let columns = self
+                .parameters
+                .map(|parameter| parameter.influence(delta, &pose, &inverse));
+            jacobian.add(columns.map(|column| column.x), missing.x);
+            jacobian.add(columns.map(|column| column.y), missing.y);
+            jacobian.add(columns.map(|column| column.z), missing.z);
         }
-        Some((system, sum))
-    }
-
-    /// Root mean square and largest distance, in the unit of length, of a machine that can have all
-    /// measured angles.
-    fn residuals(&self, delta: &Delta) -> (f64, f64) {
-        let distances = self
-            .measured
-            .iter()
-            .filter_map(|measured| self.missing(delta, measured))
-            .map(|missing| missing.norm());
-        let (sum, count, largest) = distances.fold((0.0, 0.0_f64, 0.0_f64), |total, distance| {
-            let (sum, count, largest) = total;
-            (
-                sum + distance * distance,
-                count + 1.0,
-                largest.max(distance),
-            )
-        });
-        let span = self.start.span();
-        // No point at all is no residual.
-        let rms = sqrt(sum / count.max(1.0));
-        (rms * span, largest * span)
+        Some(())
     }
 }

@@ -27,6 +27,7 @@ mod rounded;
 mod serde;
 mod workspace;
 
+pub use marquardt;
 pub use nalgebra;
 pub use trig_kernels::Trig;
 

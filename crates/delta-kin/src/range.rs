@@ -81,11 +81,6 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     ComplexField::sqrt(x)
 }
 
-/// √(x² + y²), of `core` alone.
-pub(crate) fn hypot(x: f64, y: f64) -> f64 {
-    ComplexField::hypot(x, y)
-}
-
 /// The length of a vector whose squares may overflow or vanish. In `T` alone, as `hypot` of `f32` is
 /// not.
 pub(crate) fn length<T: RealField + Trig, const N: usize>(vector: &SVector<T, N>) -> T {

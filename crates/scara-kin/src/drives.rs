@@ -22,7 +22,8 @@ pub enum DriveSense {
     Reversed,
 }
 
-/// The angles of the two drives at the joints' side of their gears, in radians.
+/// The angles of the two drives, in radians: at the joints' side of their gears, or at the motors' with
+/// [`Drives::with_ratios`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -34,11 +35,11 @@ pub struct DriveAngles<T = f64> {
     pub elbow: T,
 }
 
-/// How the drives sit on the joints: zero offsets, senses of turning, coupling.
+/// How the drives sit on the joints: zero offsets, senses of turning, ratios, coupling.
 ///
 /// ```text
-/// d1 = ±(q1 - zero1)
-/// d2 = ±(q2 + coupling · q1 - zero2)
+/// d1 = ±(q1 - zero1) / ratio1
+/// d2 = ±(q2 + coupling · q1 - zero2) / ratio2
 /// ```
 ///
 /// `coupling` is what the forearm's drive sees of the shoulder's turning: 0 where its
@@ -53,6 +54,8 @@ pub struct Drives<T = f64> {
     zero: Joints<T>,
     shoulder: DriveSense,
     elbow: DriveSense,
+    /// Of shoulder and elbow.
+    ratios: [T; 2],
     coupling: T,
 }
 
@@ -63,6 +66,7 @@ impl<T: RealField + Copy> Default for Drives<T> {
             zero: Joints::new(T::zero(), T::zero()),
             shoulder: DriveSense::Forward,
             elbow: DriveSense::Forward,
+            ratios: [T::one(); 2],
             coupling: T::zero(),
         }
     }
@@ -89,6 +93,30 @@ impl<T: RealField + Copy> Drives<T> {
         self
     }
 
+    /// What shoulder and elbow turn for each radian of their drives: 1 where those are at the joints' side
+    /// of the gears, 1/27 at the motor of a gear of 27:1. Above 0, between √ε and 1/√ε.
+    ///
+    /// # Errors
+    /// [`GeometryError::Ratio`].
+    pub fn with_ratios(mut self, [shoulder, elbow]: [T; 2]) -> Result<Self, GeometryError<T>> {
+        let max = largest_angle::<T>();
+        let min = max.recip();
+        for (joint, ratio) in [("shoulder", shoulder), ("elbow", elbow)] {
+            // Written so that NaN is refused too.
+            let is_ratio = ratio >= min && ratio <= max;
+            if !is_ratio {
+                return Err(GeometryError::Ratio {
+                    joint,
+                    ratio,
+                    min,
+                    max,
+                });
+            }
+        }
+        self.ratios = [shoulder, elbow];
+        Ok(self)
+    }
+
     /// The fraction of the shoulder's turning that the forearm's drive sees, within ±1/√ε.
     ///
     /// # Errors
@@ -111,6 +139,12 @@ impl<T: RealField + Copy> Drives<T> {
         (self.shoulder, self.elbow)
     }
 
+    /// What shoulder and elbow turn for each radian of their drives.
+    #[must_use]
+    pub const fn ratios(&self) -> [T; 2] {
+        self.ratios
+    }
+
     /// The fraction of the shoulder's turning that the forearm's drive sees.
     #[must_use]
     pub const fn coupling(&self) -> T {
@@ -120,21 +154,32 @@ impl<T: RealField + Copy> Drives<T> {
     /// Drive angles for joint angles.
     #[must_use]
     pub fn from_joints(&self, joints: Joints<T>) -> DriveAngles<T> {
+        let [shoulder, elbow] = self.ratios;
+        let turned = joints.elbow + self.coupling * joints.shoulder - self.zero.elbow;
         DriveAngles {
-            shoulder: self.shoulder.of(joints.shoulder - self.zero.shoulder),
-            elbow: self
-                .elbow
-                .of(joints.elbow + self.coupling * joints.shoulder - self.zero.elbow),
+            shoulder: self.shoulder.of(joints.shoulder - self.zero.shoulder) / shoulder,
+            elbow: self.elbow.of(turned) / elbow,
         }
     }
 
     /// Joint angles for drive angles.
     #[must_use]
     pub fn to_joints(&self, drives: DriveAngles<T>) -> Joints<T> {
-        let shoulder = self.shoulder.of(drives.shoulder) + self.zero.shoulder;
+        let turned = self.turned(drives);
+        let shoulder = turned.shoulder * self.ratios[0] + self.zero.shoulder;
         Joints {
             shoulder,
-            elbow: self.elbow.of(drives.elbow) + self.zero.elbow - self.coupling * shoulder,
+            elbow: turned.elbow * self.ratios[1] + self.zero.elbow - self.coupling * shoulder,
+        }
+    }
+}
+
+impl<T: RealField + Copy> Drives<T> {
+    /// The drives' angles in the joints' senses.
+    pub(crate) fn turned(&self, drives: DriveAngles<T>) -> DriveAngles<T> {
+        DriveAngles {
+            shoulder: self.shoulder.of(drives.shoulder),
+            elbow: self.elbow.of(drives.elbow),
         }
     }
 }

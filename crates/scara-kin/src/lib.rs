@@ -7,6 +7,7 @@
 extern crate std;
 
 mod arm;
+mod calibrate;
 mod digits;
 mod drives;
 mod dynamics;
@@ -28,6 +29,7 @@ pub use nalgebra;
 pub use trig_kernels::Trig;
 
 pub use arm::{Arm, GeometryError};
+pub use calibrate::{Calibration, CalibrationError, DrivenArm, Measured, Parameter};
 pub use drives::{DriveAngles, DriveSense, Drives};
 pub use dynamics::{ArmDynamics, ArmMasses, DynamicsError, JointDrive, LinkMass};
 pub use follow::{Follow, FollowError, Waypoint};

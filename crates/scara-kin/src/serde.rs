@@ -158,6 +158,10 @@ struct PlainDrives<T> {
     shoulder: DriveSense,
     #[serde(default)]
     elbow: DriveSense,
+    #[serde(default = "T::one")]
+    shoulder_ratio: T,
+    #[serde(default = "T::one")]
+    elbow_ratio: T,
     #[serde(default = "T::zero")]
     coupling: T,
 }
@@ -169,10 +173,13 @@ fn no_offset<T: RealField>() -> Joints<T> {
 impl<T: RealField + Trig> From<Drives<T>> for PlainDrives<T> {
     fn from(drives: Drives<T>) -> Self {
         let (shoulder, elbow) = drives.senses();
+        let [shoulder_ratio, elbow_ratio] = drives.ratios();
         Self {
             zero: drives.zero(),
             shoulder,
             elbow,
+            shoulder_ratio,
+            elbow_ratio,
             coupling: drives.coupling(),
         }
     }
@@ -185,6 +192,7 @@ impl<T: RealField + Trig> TryFrom<PlainDrives<T>> for Drives<T> {
         Self::default()
             .with_zero(plain.zero)?
             .with_senses(plain.shoulder, plain.elbow)
+            .with_ratios([plain.shoulder_ratio, plain.elbow_ratio])?
             .with_coupling(plain.coupling)
     }
 }

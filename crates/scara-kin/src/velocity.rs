@@ -192,7 +192,7 @@ impl<T: RealField + Trig> Arm<T> {
     }
 }
 
-fn quarter_turn<T: RealField + Copy>(v: Vector2<T>) -> Vector2<T> {
+pub(crate) fn quarter_turn<T: RealField + Copy>(v: Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
 }
 

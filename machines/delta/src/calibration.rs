@@ -4,6 +4,7 @@ use core::fmt::{self, Write as _};
 use core::str::FromStr;
 
 use anyhow::{Context, Error, Result, bail, ensure};
+use commissioning::{Fitted, Unit, read_columns};
 use delta_kin::{Arm, CalibrationError, Measured, Parameter, Quantity};
 use nalgebra::{Point3, Vector3};
 
@@ -39,28 +40,17 @@ impl FromStr for Fit {
 /// What a calibration has found; displayed, a summary in lines.
 #[derive(Debug, Clone)]
 pub struct Calibrated {
-    points: usize,
-    rms_mm: f64,
-    largest_mm: f64,
-    changes: Vec<Change>,
+    fitted: Fitted,
     deviations: [Deviation; 3],
 }
 
-#[derive(Debug, Clone)]
-struct Change {
-    parameter: Parameter,
-    /// In mm or degrees, as its standard deviation, which is none where the points do not tell.
-    change: f64,
-    deviation: Option<f64>,
-    unit: &'static str,
-}
-
 /// The lines of measured points, and the points.
-type Points = (Vec<usize>, Vec<Measured>);
+type Points = (Vec<u64>, Vec<Measured>);
 
 impl Machine {
     /// The machine that fits measured points best: a line for each, `a b c x y z`, the motors' steps
-    /// from home and where the platform's centre was found in mm; `#` begins a comment.
+    /// from home and where the platform's centre was found in mm, or a CSV file with the columns `a`,
+    /// `b`, `c`, `x_mm`, `y_mm`, `z_mm`; `#` begins a comment.
     ///
     /// # Errors
     /// A line that cannot be read, or a point where the machine cannot be, with the line's number;
@@ -79,13 +69,23 @@ impl Machine {
     }
 
     fn measured(&self, text: &str) -> Result<Points> {
+        let lines = (1..).zip(text.lines());
+        let lines = lines.map(|(number, line)| (number, command::without_comment(line)));
+        let first = lines.clone().find(|(_, words)| !words.is_empty());
+        let is_csv = first.is_some_and(|(_, words)| words.contains([',', ';', '\t']));
+        let rows = if is_csv {
+            read_columns(text, ["a", "b", "c", "x_mm", "y_mm", "z_mm"])?
+        } else {
+            let rows = lines.filter(|(_, words)| !words.is_empty());
+            let rows = rows.map(|(number, words)| {
+                let numbers = six(words).with_context(|| format!("line {number}"))?;
+                Ok((number, numbers))
+            });
+            rows.collect::<Result<_>>()?
+        };
         let mut found = Points::default();
-        for (number, line) in (1..).zip(text.lines()) {
-            let words = command::without_comment(line);
-            if words.is_empty() {
-                continue;
-            }
-            let point = self.measured_point(words);
+        for (number, numbers) in rows {
+            let point = self.measured_point(numbers);
             found
                 .1
                 .push(point.with_context(|| format!("line {number}"))?);
@@ -94,12 +94,7 @@ impl Machine {
         Ok(found)
     }
 
-    fn measured_point(&self, words: &str) -> Result<Measured> {
-        let numbers = command::numbers(words)?;
-        let count = numbers.len();
-        let Ok([a, b, c, x, y, z]) = <[f64; 6]>::try_from(numbers) else {
-            bail!("{count} numbers in {words:?}, `a b c x y z` is needed");
-        };
+    fn measured_point(&self, [a, b, c, x, y, z]: [f64; 6]) -> Result<Measured> {
         for steps in [a, b, c] {
             let is_count = steps.fract() == 0.0 && steps.abs() <= f64::from(i32::MAX);
             ensure!(is_count, "{steps} is no count of steps");
@@ -128,27 +123,29 @@ impl Machine {
             }
             other => other.into(),
         })?;
-        let all = parameters.into_iter().zip(*found.changes());
-        let changes = all.zip(found.deviations());
-        let changes = changes
-            .map(|((parameter, change), deviation)| Change::new(parameter, change, deviation));
-        let changes: Vec<_> = changes.collect();
         let mut deviations = self.deviations;
-        for change in &changes {
+        for (parameter, change) in parameters.into_iter().zip(found.changes()) {
             for (arm, deviation) in Arm::ALL.into_iter().zip(&mut deviations) {
-                if change.parameter.arm == Some(arm) {
-                    *of(deviation, change.parameter.quantity) += change.change;
+                if parameter.arm == Some(arm) {
+                    *of(deviation, parameter.quantity) += change * unit(parameter).scale();
                 }
             }
         }
         Ok(Calibrated {
-            points: points.len(),
-            rms_mm: found.rms(),
-            largest_mm: found.largest(),
-            changes,
+            fitted: Fitted::new(&found, points.len(), unit),
             deviations,
         })
     }
+}
+
+/// The numbers of a line.
+fn six(words: &str) -> Result<[f64; 6]> {
+    let numbers = command::numbers(words)?;
+    let count = numbers.len();
+    numbers
+        .try_into()
+        .ok()
+        .with_context(|| format!("{count} numbers in {words:?}, `a b c x y z` is needed"))
 }
 
 /// Quantities of each arm.
@@ -161,18 +158,10 @@ fn parameters<const Q: usize, const N: usize>(quantities: [Quantity; Q]) -> Resu
         .context("three parameters for each quantity")
 }
 
-impl Change {
-    fn new(parameter: Parameter, change: f64, deviation: Option<f64>) -> Self {
-        let (unit, scale) = match parameter.quantity {
-            Quantity::Azimuth | Quantity::Zero => ("deg", 1_f64.to_degrees()),
-            _ => ("mm", 1.0),
-        };
-        Self {
-            parameter,
-            change: change * scale,
-            deviation: deviation.map(|it| it * scale),
-            unit,
-        }
+const fn unit(parameter: Parameter) -> Unit {
+    match parameter.quantity {
+        Quantity::Azimuth | Quantity::Zero => Unit::Deg,
+        Quantity::Base | Quantity::Platform | Quantity::Upper | Quantity::Lower => Unit::Mm,
     }
 }
 
@@ -222,24 +211,6 @@ impl Calibrated {
 
 impl fmt::Display for Calibrated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{} points: {:.4} mm rms are left, {:.4} mm at most",
-            self.points, self.rms_mm, self.largest_mm
-        )?;
-        for Change {
-            parameter,
-            change,
-            deviation,
-            unit,
-        } in &self.changes
-        {
-            write!(f, "{parameter}: {change:+.4} {unit}")?;
-            match deviation {
-                Some(deviation) => writeln!(f, " ± {deviation:.4} {unit}")?,
-                None => writeln!(f, ", which the points do not determine")?,
-            }
-        }
-        Ok(())
+        self.fitted.fmt(f)
     }
 }

@@ -23,6 +23,7 @@
 //! ```
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod calibration;
 mod controller;
 mod drawing;
 mod engraving;
@@ -45,6 +46,7 @@ mod tool_speed;
 mod tool_trace;
 mod view;
 
+pub use self::calibration::{Calibrated, Fit};
 pub use self::controller::Wires;
 pub use self::drawing::Drawing;
 pub use self::engraving::{Engraving, MotorController};

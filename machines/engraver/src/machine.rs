@@ -3,7 +3,7 @@
 mod settings;
 
 use anyhow::{Context, Result, ensure};
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 use path_timing::ToolLimits;
 use pattern_codec::engraving::{Format, PerAxis};
 use pvt_steps::{Ramp, RampLimits};
@@ -124,6 +124,9 @@ impl Machine {
         let timing = timing(timer).context("[timer]")?;
         Ok(Self {
             arm: Arm::new(arm.upper_mm, arm.fore_mm)
+                .and_then(|checked| {
+                    checked.with_base(Isometry2::translation(arm.base_x_mm, arm.base_y_mm))
+                })
                 .and_then(|checked| checked.with_limits(limits).with_keep_out(arm.keep_out_mm))
                 .context("[arm]")?,
             elbow: joint(elbow).context("[elbow]")?,
@@ -175,7 +178,8 @@ impl Machine {
         let shoulder = self.shoulder.rad_per_pulse / 2.0;
         let elbow = self.elbow.rad_per_pulse / 2.0;
         let curved = upper * shoulder.powi(2) + fore * (shoulder + elbow).powi(2);
-        shoulder * tool.coords.norm() + elbow * fore + curved / 2.0
+        let from_base = (tool.coords - self.arm.base().translation.vector).norm();
+        shoulder * from_base + elbow * fore + curved / 2.0
     }
 }
 

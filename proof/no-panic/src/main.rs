@@ -18,6 +18,7 @@ mod shaping;
 mod stepping;
 mod tables;
 mod timing;
+mod torque;
 mod trig;
 mod unit;
 
@@ -27,6 +28,7 @@ fn main() {
     poses::run();
     tables::run();
     shaping::run();
+    torque::run();
     timing::run();
     curves::run();
     machines::run();

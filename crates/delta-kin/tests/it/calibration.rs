@@ -92,7 +92,7 @@ fn noisy_points_give_the_machine_back() {
     assert!(found.largest() < 0.1);
     let before = Point3::new(70.0, -60.0, -270.0);
     let reached = real()
-        .forward(found.delta().inverse(before).unwrap())
+        .forward(found.machine().inverse(before).unwrap())
         .unwrap();
     let raw = real().forward(thesis().inverse(before).unwrap()).unwrap();
     assert!(
@@ -134,7 +134,7 @@ fn one_pose_gives_three_numbers() {
     assert_eq!(found.null_space().count(), 8);
     assert!(found.largest() < 1e-9);
     for free in found.null_space() {
-        let mut arms = *found.delta().arms();
+        let mut arms = *found.machine().arms();
         let nudge = 1e-5;
         for ((arm, zero), lower) in arms.iter_mut().zip(&free[..3]).zip(&free[3..6]) {
             arm.zero += zero * nudge;
@@ -145,8 +145,11 @@ fn one_pose_gives_three_numbers() {
         }
         arms[1].azimuth += free[6] * nudge;
         arms[2].azimuth += free[7] * nudge;
-        let moved = found.delta().with_arms(arms).unwrap();
-        let (a, b) = (found.delta().forward(one.angles), moved.forward(one.angles));
+        let moved = found.machine().with_arms(arms).unwrap();
+        let (a, b) = (
+            found.machine().forward(one.angles),
+            moved.forward(one.angles),
+        );
         // The second order of the nudge is left.
         let moved = (a.unwrap() - b.unwrap()).norm();
         assert!(moved < 1e-6, "{moved:e} {free:?}");

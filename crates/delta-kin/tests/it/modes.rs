@@ -256,7 +256,7 @@ fn measurements_of_the_other_mode_are_refused() {
     );
     let found = real.calibrate(parameters, &measured).unwrap();
     assert!(found.largest() < 1e-9);
-    assert_eq!(found.delta().z(), ZAxis::Down);
+    assert_eq!(found.machine().z(), ZAxis::Down);
 }
 
 /// The workspace is that of the modes named. Mirrored in the base plane, an elbow that was out

@@ -274,7 +274,7 @@ fn calibration_answers(drawn: &Delta, unit: f64, answers: &mut Answers) {
         f64::from(u8::try_from(found.undetermined().count()).unwrap()),
         0,
     );
-    let arms = found.delta().arms().map(|arm| arm.lower);
+    let arms = found.machine().arms().map(|arm| arm.lower);
     answers.numbers("lower", &arms, 1);
     // One measurement cannot fit: the rms of what is left at the start.
     let far = Measured {

@@ -43,6 +43,17 @@ pub enum GeometryError<T = f64> {
         /// Its length.
         length: T,
     },
+    /// What a joint turns for a radian of its drive is not a number between the stated ends.
+    Ratio {
+        /// The joint: `shoulder` or `elbow`.
+        joint: &'static str,
+        /// The ratio given.
+        ratio: T,
+        /// Smallest ratio that is accurate in `T`.
+        min: T,
+        /// Largest ratio that is accurate in `T`.
+        max: T,
+    },
     /// A setting is not a number, or too large.
     OutOfRange {
         /// The setting.
@@ -85,6 +96,18 @@ impl<T: RealField + Copy> Display for GeometryError<T> {
             Self::Rotation { length } => {
                 write!(f, "base rotation has length {}, not 1", Digits(length))
             }
+            Self::Ratio {
+                joint,
+                ratio,
+                min,
+                max,
+            } => write!(
+                f,
+                "ratio {} of the {joint} is not within {}..={}",
+                Digits(ratio),
+                Digits(min),
+                Digits(max)
+            ),
             Self::OutOfRange {
                 name,
                 value,

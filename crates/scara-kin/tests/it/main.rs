@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod accuracy;
+mod calibration;
 mod common;
 mod dynamics;
 mod each;

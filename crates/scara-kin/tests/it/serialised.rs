@@ -30,6 +30,7 @@ fn drives_are_read_back() {
         .unwrap()
         .with_senses(DriveSense::Reversed, DriveSense::Forward)
         .with_coupling(1.0)
+        .and_then(|drives| drives.with_ratios([0.5, 2.0]))
         .unwrap();
     stored(&drives);
     assert_eq!(stored(&Elbow::Left), r#""left""#);

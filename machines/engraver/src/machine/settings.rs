@@ -30,6 +30,11 @@ pub(super) struct ArmSettings {
     pub(super) fore_mm: f64,
     #[serde(default)]
     pub(super) keep_out_mm: f64,
+    /// Where the arm's axis is.
+    #[serde(default)]
+    pub(super) base_x_mm: f64,
+    #[serde(default)]
+    pub(super) base_y_mm: f64,
 }
 
 #[derive(Debug, Clone, Deserialize, Serialize)]

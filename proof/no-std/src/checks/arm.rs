@@ -4,7 +4,9 @@ use core::hint::black_box;
 
 use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
 use scara_kin::nalgebra::{Point2, Vector2};
-use scara_kin::{Arm, DiscPath, Elbow, Joints};
+use scara_kin::{
+    Arm, DiscPath, DriveAngles, DrivenArm, Drives, Elbow, Joints, Measured, Parameter,
+};
 
 use super::{CLOSE_MM, holds};
 /// Inverse and forward kinematics, rates.
@@ -61,4 +63,29 @@ pub fn path() -> Option<()> {
     let [shoulder, elbow, _] = table.rows().last()?.position;
     let tool = arm.forward(Joints::new(shoulder, elbow));
     holds((tool - Point2::from(arc.end())).norm() < CLOSE_MM)
+}
+
+/// A forearm that is longer than drawn, and an elbow that stands elsewhere.
+pub fn calibration() -> Option<()> {
+    let drawn = DrivenArm {
+        arm: Arm::new(black_box(132.0), 132.0).ok()?,
+        drives: Drives::default(),
+    };
+    let real = DrivenArm {
+        arm: Arm::new(132.0, black_box(132.5)).ok()?,
+        drives: Drives::default().with_zero(Joints::new(0.0, 0.01)).ok()?,
+    };
+    let measured = [0.5, 0.9, 1.4, -1.0, -2.0].map(|elbow| {
+        let drives = DriveAngles {
+            shoulder: black_box(elbow) / 2.0,
+            elbow,
+        };
+        let point = real.forward(drives);
+        Measured { drives, point }
+    });
+    let found = drawn
+        .calibrate([Parameter::Fore, Parameter::ElbowZero], &measured)
+        .ok()?;
+    let [fore, zero] = *found.changes();
+    holds((fore - 0.5).abs() < CLOSE_MM && (zero - 0.01).abs() < CLOSE_MM)
 }

@@ -4,9 +4,12 @@ use core::convert::Infallible;
 use core::hint::black_box;
 
 use path_timing::{
-    Accuracy, AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Mode, PathFn, PathPoint, Row,
-    Shaped, Shaper, Smoothed, Table, Vertex, segments_within,
+    Accuracy, AxisLimits, Cia402Scale, Curve, FeedCeiling, Knot, LookAhead, Mode, PathFn,
+    PathPoint, Row, SetPoints, Shaped, Shaper, Smoothed, Table, TorqueCurve, TorqueLimits, Vertex,
+    segments_within,
 };
+
+use scara_kin::{Arm, ArmMasses, Elbow, JointDrive, LinkMass};
 
 use super::{CLOSE_MM, holds};
 
@@ -108,6 +111,62 @@ pub fn shaped() -> Option<()> {
     holds(last.position == [20.0, 10.0] && last.velocity == [0.0; 2])?;
     let late_s = last.time_s - table.duration_s();
     holds((late_s - rows.longest_delay_s()).abs() < CLOSE_S)
+}
+
+/// A line of an arm within the torque of its motors: none is asked for more than it has, one for nearly
+/// all of it.
+pub fn torque() -> Option<()> {
+    let link = LinkMass {
+        mass_kg: 2.5,
+        centre_m: 0.14,
+        inertia_kg_m2: 0.03,
+    };
+    let drive = JointDrive {
+        rotor_kg_m2: 0.08,
+        viscous_nm_s: 0.3,
+        coulomb_nm: 0.8,
+    };
+    let arm = Arm::new(black_box(300.0), 300.0).ok()?;
+    let masses = ArmMasses {
+        upper: link,
+        fore: link,
+        payload_kg: 1.0,
+        shoulder: drive,
+        elbow: drive,
+        gravity_m_s2: 0.0,
+    };
+    let motor = |torque| TorqueCurve::holding(torque, 3.0, 30.0);
+    let limits = TorqueLimits {
+        dynamics: arm.dynamics(1e-3, masses).ok()?,
+        motors: [motor(30.0).ok()?, motor(12.0).ok()?],
+    };
+    let line = Curve::line([-200.0, 300.0], [250.0, 300.0]).ok()?;
+    let path = arm.path(line, Elbow::Right).ok()?;
+    let joint = AxisLimits {
+        speed: 30.0,
+        acceleration: 1000.0,
+        jerk: None,
+    };
+    let mut knots = [Knot::default(); 65];
+    let table = limits.plan([path], [joint; 2], |_| 64, &mut knots).ok()?;
+    let used = table.spans().map(|span| limits.utilisation(&span));
+    let most = used.fold(0.0, f64::max);
+    holds(most <= 1.0 && most > 0.99)
+}
+
+/// A line as a servo drive takes it: each millisecond, to the last increment.
+pub fn set_points() -> Option<()> {
+    let line = Curve::line([0.0, 0.0], [20.0, 10.0]).ok()?;
+    let mut knots = [Knot::default(); 33];
+    let table = Table::plan([line], black_box([AXIS; 2]), |_| 32, &mut knots).ok()?;
+    let scale = Cia402Scale {
+        counts_per_unit: black_box(-13_107.2),
+        rated_torque: 1.0,
+    };
+    let last = SetPoints::new(table.rows(), 0.001).last()?.ok()?;
+    let x = scale.target(last.position[0], last.velocity[0], 0.2).ok()?;
+    holds(x.position == -262_144 && x.velocity_offset == 0 && x.torque_offset == 200)?;
+    holds(scale.target(1e6, 0.0, 0.0).is_err())
 }
 
 /// Of times, in s.

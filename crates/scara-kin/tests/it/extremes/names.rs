@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-const TESTS: [&str; 9] = [
+const TESTS: [&str; 10] = [
     include_str!("curves.rs"),
     include_str!("dynamics.rs"),
     include_str!("inverse.rs"),
@@ -10,6 +10,7 @@ const TESTS: [&str; 9] = [
     include_str!("paths.rs"),
     include_str!("rates.rs"),
     include_str!("tools.rs"),
+    include_str!("../calibration.rs"),
     include_str!("../each.rs"),
     include_str!("../paths/single.rs"),
 ];

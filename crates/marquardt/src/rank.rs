@@ -8,12 +8,12 @@ use core::array::from_fn;
 
 use nalgebra::{SMatrix, SVector};
 
-use super::least_squares::{LeastSquares, ROUNDINGS};
-use crate::range::{hypot, sqrt};
+use crate::jacobian::{Jacobian, ROUNDINGS};
+use crate::number::{hypot, sqrt};
 
 /// The singular value decomposition of the Jacobian with its columns scaled to length 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rank<const N: usize> {
+pub(crate) struct Rank<const N: usize> {
     /// Right singular vectors.
     v: SMatrix<f64, N, N>,
     sigma: SVector<f64, N>,
@@ -33,10 +33,10 @@ const MAX_SWEEPS: usize = 40;
 const UNDETERMINED: f64 = 1e-4;
 
 impl<const N: usize> Rank<N> {
-    /// The rank of a triangularised system of `rows` rows, `sum` the sum of its squared residuals.
-    pub(super) fn new(system: &LeastSquares<N>, sum: f64, rows: usize, units: &[f64; N]) -> Self {
-        let scales = system.scales();
-        let mut u = system.r;
+    /// The rank of triangularised rows, `sum` the sum of their squared residuals.
+    pub(crate) fn new(rows: &Jacobian<N>, sum: f64, units: [f64; N]) -> Self {
+        let scales = rows.scales();
+        let mut u = rows.r;
         for (mut column, scale) in u.column_iter_mut().zip(&scales) {
             if *scale > 0.0 {
                 column /= *scale;
@@ -51,17 +51,17 @@ impl<const N: usize> Rank<N> {
             }
         }
         let sigma = SVector::from_iterator(u.column_iter().map(|column| column.norm()));
-        let free = rows.saturating_sub(N).max(1);
+        let free = rows.count.saturating_sub(N).max(1);
         Self {
             v,
             sigma,
-            scales: scales.component_div(&SVector::from(*units)),
-            rounding: sigma.max() * count(rows) * f64::EPSILON * ROUNDINGS,
+            scales: scales.component_div(&SVector::from(units)),
+            rounding: sigma.max() * count(rows.count) * f64::EPSILON * ROUNDINGS,
             variance: sum / count(free),
         }
     }
 
-    pub(super) fn rank(&self) -> usize {
+    pub(crate) fn rank(&self) -> usize {
         (0..N).filter(|k| self.is_determined(*k)).count()
     }
 
@@ -69,7 +69,7 @@ impl<const N: usize> Rank<N> {
         self.sigma[k] > self.rounding
     }
 
-    pub(super) fn conditioning(&self) -> f64 {
+    pub(crate) fn conditioning(&self) -> f64 {
         let largest = self.sigma.max();
         if largest > 0.0 {
             self.sigma.min() / largest
@@ -86,7 +86,7 @@ impl<const N: usize> Rank<N> {
             .map(move |k| this.v.column(k).into_owned())
     }
 
-    pub(super) fn null_space(&self) -> impl Iterator<Item = [f64; N]> + use<N> {
+    pub(crate) fn null_space(&self) -> impl Iterator<Item = [f64; N]> + use<N> {
         let scales = self.scales;
         let unscaled = |value, scale| if scale > 0.0 { value / scale } else { value };
         self.null_columns()
@@ -94,7 +94,7 @@ impl<const N: usize> Rank<N> {
     }
 
     /// For each parameter, whether it is part of the null space.
-    pub(super) fn free(&self) -> [bool; N] {
+    pub(crate) fn free(&self) -> [bool; N] {
         let zero = SVector::<f64, N>::zeros();
         let components = self
             .null_columns()
@@ -102,7 +102,7 @@ impl<const N: usize> Rank<N> {
         components.map(|component| component > UNDETERMINED).into()
     }
 
-    pub(super) fn deviations(&self) -> [Option<f64>; N] {
+    pub(crate) fn deviations(&self) -> [Option<f64>; N] {
         let free = self.free();
         from_fn(|i| {
             if free[i] || self.scales[i] == 0.0 {
