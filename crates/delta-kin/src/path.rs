@@ -2,6 +2,7 @@
 
 mod bound;
 mod error;
+mod passage;
 mod pick;
 
 use nalgebra::{Point3, Vector3};
@@ -51,6 +52,12 @@ const LONGEST: f64 = 100.0;
 /// Shortest step along the curve, as a fraction of it.
 const MIN_STEP: f64 = 1e-12;
 
+/// What is known of a place.
+struct Look {
+    angles: Vector3<f64>,
+    clearance: f64,
+}
+
 impl Delta {
     /// The path of the arms that brings the platform's centre along `curve`, in the machine's modes.
     ///
@@ -69,9 +76,9 @@ impl Delta {
             delta: *self,
             curve,
         };
-        let (mut s, mut angles) = (0.0, path.free_angles(0.0)?);
+        let (mut s, mut there) = (0.0, path.look(0.0)?);
         while s < curve.length() {
-            (s, angles) = path.advance(s, angles)?;
+            (s, there) = path.advance(s, &there)?;
         }
         Ok(path)
     }
@@ -88,18 +95,14 @@ impl DeltaPath {
         self.curve.at(s).point.into()
     }
 
-    fn clearance(&self, s: f64) -> f64 {
-        self.delta.clearance(self.centre(s))
-    }
-
-    /// The angles at a place that is not on the edge of the workspace.
-    fn free_angles(&self, s: f64) -> Result<Vector3<f64>, DeltaPathError> {
+    /// A place that is not on the edge of the workspace.
+    fn look(&self, s: f64) -> Result<Look, DeltaPathError> {
         let point = self.centre(s);
         let angles = self.delta.inverse(point);
         let angles = angles.map_err(|reason| DeltaPathError::Unreachable { s, point, reason })?;
-        let clearance = self.clearance(s);
+        let clearance = self.delta.clearance(point);
         if clearance > self.delta.span() * EDGE {
-            Ok(angles)
+            Ok(Look { angles, clearance })
         } else {
             Err(DeltaPathError::Edge {
                 s,
@@ -110,12 +113,12 @@ impl DeltaPath {
     }
 
     /// The next place of the survey. Shorter steps lead up to the first place that is refused.
-    fn advance(&self, s: f64, angles: Vector3<f64>) -> Result<(f64, Vector3<f64>), DeltaPathError> {
-        let mut step = self.clearance(s) / (1.0 + self.curve.speed_error());
+    fn advance(&self, s: f64, here: &Look) -> Result<(f64, Look), DeltaPathError> {
+        let mut step = here.clearance / (1.0 + self.curve.speed_error());
         loop {
             let next = (s + step).min(self.curve.length());
-            let refused = match self.free_angles(next) {
-                Ok(there) => match jumping(there - angles) {
+            let refused = match self.look(next) {
+                Ok(there) => match jumping(there.angles - here.angles) {
                     None => return Ok((next, there)),
                     Some(arm) => DeltaPathError::Turn {
                         s: next,

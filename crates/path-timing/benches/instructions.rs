@@ -31,10 +31,10 @@ const CASES: [(&str, Machine, f64, f64); 10] = [
     ("0.5 mm apart", Machine::Cartesian, 0.5, 9000.0),
     ("1 mm apart", Machine::Cartesian, 1.0, 10_500.0),
     ("2 mm apart", Machine::Cartesian, 2.0, 14_500.0),
-    ("arm, 0.2 mm apart", Machine::TwoLinks, 0.2, 16_000.0),
-    ("arm, 1 mm apart", Machine::TwoLinks, 1.0, 72_000.0),
-    ("Delta, 0.2 mm apart", Machine::ThreeArms, 0.2, 60_000.0),
-    ("Delta, 1 mm apart", Machine::ThreeArms, 1.0, 270_000.0),
+    ("arm, 0.2 mm apart", Machine::TwoLinks, 0.2, 10_000.0),
+    ("arm, 1 mm apart", Machine::TwoLinks, 1.0, 42_000.0),
+    ("Delta, 0.2 mm apart", Machine::ThreeArms, 0.2, 24_000.0),
+    ("Delta, 1 mm apart", Machine::ThreeArms, 1.0, 100_000.0),
 ];
 
 /// As many of the Cartesian machine; arms take long under callgrind.

@@ -392,7 +392,7 @@ impl<const D: usize> Curve<D> {
     /// The most by which a Cartesian machine departs from the curve on a segment of a table: for
     /// [`Table::plan_within`](crate::Table::plan_within). 0 on a line.
     ///
-    /// By [`CurveMotion`]; the fourth derivative of the axes is zero.
+    /// By [`CurveMotion`]; the fourth and the fifth derivative of the axes are zero.
     #[must_use]
     pub fn departure(&self, span: &Span<[f64; D]>) -> f64 {
         let [from, to] = &span.rows;
@@ -404,7 +404,7 @@ impl<const D: usize> Curve<D> {
             }
             place
         };
-        motion.departure(place, 0.0)
+        motion.departure(place, [0.0; 2])
     }
 }
 

@@ -1,8 +1,10 @@
 //! How far the tool departs from its path, and the number of segments that keeps a bound of it.
 
+use core::cell::Cell;
+
 use crate::knots::{Laying, fraction, span, span_in_a_second};
 use crate::leg::Leg;
-use crate::number::{cube_root, larger_or_nan};
+use crate::number::{cube_root, larger_or_nan, sqrt};
 use crate::passes::segment_s;
 use crate::planner::{Place, bounded, knots_of, time};
 use crate::reciprocals::Reciprocals;
@@ -30,6 +32,8 @@ pub(crate) struct Within<D> {
     pub(crate) allowed: f64,
     pub(crate) speeds: Speeds,
     pub(crate) departure: D,
+    /// The knots of a leg alone that are planned already, with their speeds.
+    pub(crate) planned: Cell<usize>,
 }
 
 /// The number of segments of a path that keeps a departure within `allowed` at any speeds, with any
@@ -116,7 +120,8 @@ impl<D> Within<D> {
             segments.saturating_mul(1 << doublings.min(24)),
             place.rests,
         )?;
-        place.lay(limits, finer, knots)?;
+        self.planned.set(0);
+        place.lay(limits, finer, self.bent(place), knots)?;
         Ok(finer)
     }
 
@@ -150,6 +155,16 @@ impl<D> Within<D> {
         Ok(segments)
     }
 
+    /// Whether the departure counts at the speeds of the plan.
+    fn is_planned<P: Path>(&self, place: &Place<'_, P>) -> bool {
+        self.speeds == Speeds::Passing && place.is_alone
+    }
+
+    /// By which part knots are dense where the speed changes.
+    fn bent<P: Path>(&self, place: &Place<'_, P>) -> f64 {
+        if self.is_planned(place) { BENT } else { 0.0 }
+    }
+
     /// The departure with a number of segments; what is far beyond the allowed one is not looked at
     /// to its end.
     fn trial<P: Path + Clone>(
@@ -162,21 +177,28 @@ impl<D> Within<D> {
     where
         D: Fn(&P, &Span<P::Axes>) -> f64,
     {
-        match place.lay(limits, segments, knots) {
+        let count = knots_of(segments);
+        self.planned.set(0);
+        match place.lay(limits, segments, self.bent(place), knots) {
             Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
             laid => laid?,
         }
-        let (knots, _) = knots.split_at_mut(knots_of(segments).min(knots.len()));
-        let is_planned = self.speeds == Speeds::Passing && place.is_alone;
+        let (knots, _) = knots.split_at_mut(count.min(knots.len()));
+        let is_planned = self.is_planned(place);
         if let (true, Some(last)) = (is_planned, knots.last_mut()) {
             last.cap = 0.0;
             time::<_, P::Error>(limits, knots)?;
+            self.planned.set(count);
         }
         let path = place.leg.path();
         let last = knots.len().saturating_sub(2);
         let mut bound = Bound::new(self.allowed);
-        for (index, pair) in knots.windows(2).enumerate() {
-            let [from, to] = pair else { continue };
+        // First those at the ends: next to a rest the departure is largest.
+        let ends = [0, last].into_iter().take(last.saturating_add(1));
+        for (looked, index) in ends.chain(1..last).enumerate() {
+            let Some([from, to]) = knots.get(index..index.saturating_add(2)) else {
+                continue;
+            };
             let departure = |span: &Span<P::Axes>| (self.departure)(path, span);
             if is_planned {
                 let speeds = [from.speed, to.speed];
@@ -184,7 +206,8 @@ impl<D> Within<D> {
             } else {
                 bound.add_any([from, to], index == last, departure);
             }
-            if bound.is_far() {
+            let is_passed = looked == 1 && bound.worst > self.allowed;
+            if is_passed || bound.is_far() {
                 break;
             }
         }
@@ -234,37 +257,54 @@ impl Bound {
     }
 }
 
-/// A number of segments within a range, at most a sixteenth above the fewest found, whose departure is
-/// within `allowed`; an estimate of what would be enough where the most are too few.
+/// A number of segments within a range whose departure is within `allowed`, about a sixteenth or one
+/// above the fewest; an estimate of what would be enough where the most are too few.
 fn search<E>(
     [least, most]: [u32; 2],
     allowed: f64,
     mut bound_of: impl FnMut(u32) -> Result<f64, PlanError<E>>,
 ) -> Result<Result<u32, u32>, PlanError<E>> {
-    let (mut too_few, mut enough, mut segments) = (least.saturating_sub(1), None, least);
+    let (mut too_few, mut enough) = ((least.saturating_sub(1), 0.0), None);
+    let mut segments = least;
     loop {
         let excess = bound_of(segments)? / allowed;
+        let root = fourth_root(excess);
         // Written so that NaN is too much.
         if excess <= 1.0 {
-            enough = Some(segments);
+            enough = Some((segments, 1.0 / root));
         } else {
-            too_few = segments;
+            too_few = (segments, 1.0 / root);
         }
-        let guess = next_guess(segments, excess);
         segments = match enough {
             Some(enough) => {
-                let gap = enough.saturating_sub(too_few);
-                if gap <= enough.div_euclid(CLOSE).max(1) {
+                let fewest = fewest_between(too_few, enough);
+                let ((too_few, _), (enough, _)) = (too_few, enough);
+                let (gap, close) = (
+                    enough.saturating_sub(too_few),
+                    enough.div_euclid(CLOSE).max(1),
+                );
+                if gap <= close || enough.saturating_sub(fewest) <= close {
                     return Ok(Ok(enough));
                 }
                 // A quarter of the way where a guess would end next to nothing.
                 let step = gap.div_ceil(4);
-                guess
+                fewest
                     .max(too_few.saturating_add(step))
                     .min(enough.saturating_sub(step))
             }
-            None if segments >= most => return Ok(Err(guess)),
-            None => guess.min(most),
+            None => {
+                let more = if segments == least {
+                    root
+                } else {
+                    cube_root(limited(excess))
+                };
+                let guess = rounded_up(f64::from(segments) * more * MORE);
+                let guess = guess.max(segments.saturating_add(1));
+                if segments >= most {
+                    return Ok(Err(guess));
+                }
+                guess.min(most)
+            }
         };
     }
 }
@@ -275,27 +315,42 @@ const CLOSE: u32 = 16;
 /// What is beyond this many times the allowed departure is so by its first segments.
 const FAR: f64 = 64.0;
 
-/// A number of segments that may be enough where `segments` depart by `excess` times what is allowed:
-/// the departure shrinks with the second to fourth power of the number.
-fn next_guess(segments: u32, excess: f64) -> u32 {
-    let excess = if excess.is_finite() {
+/// What is put on a guess, so that it is rather enough.
+const MORE: f64 = 1.01;
+
+/// What a departure is as a multiple of the allowed one, as far as it counts.
+fn limited(excess: f64) -> f64 {
+    if excess.is_finite() {
         excess.min(FAR)
     } else {
         FAR
-    };
-    let guess = f64::from(segments) * cube_root(excess) * 1.02;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "positive; a cast saturates"
-    )]
-    let guess = guess as u32;
-    if excess > 1.0 {
-        guess.max(segments.saturating_add(1))
-    } else {
-        guess
     }
 }
+
+/// The departure shrinks with the fourth power of the number of segments, or, where knots are far apart,
+/// with less.
+fn fourth_root(excess: f64) -> f64 {
+    sqrt(sqrt(limited(excess)))
+}
+
+/// About the fewest segments that are enough, between numbers of which one is not enough and the other
+/// is, each with the inverse of the fourth root of its departure, which is about linear.
+fn fewest_between((few, low): (u32, f64), (enough, high): (u32, f64)) -> u32 {
+    let part = (1.0 - low) / (high - low);
+    few.saturating_add(rounded_up(f64::from(enough.saturating_sub(few)) * part))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "positive; a cast saturates"
+)]
+fn rounded_up(number: f64) -> u32 {
+    libm::ceil(number) as u32
+}
+
+/// The part of the knots that stand where the speed changes.
+const BENT: f64 = 0.35;
 
 /// Why no number of segments that there is room for keeps the departure.
 fn too_coarse<P: Path>(place: &Place<'_, P>, needed: u32, room: u32) -> PlanError<P::Error> {

@@ -1,7 +1,7 @@
 //! Where the knots of a path stand, and what lies between two of them.
 
 use crate::leg::Leg;
-use crate::number::Real;
+use crate::number::{Real, sqrt};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, Path, PathPoint, PlanError, Row, Span};
 
@@ -125,14 +125,24 @@ const ROUNDING: f64 = 1e-11;
 /// the knots; the speeds of the first `planned` of them, which reach from its start to its end, are.
 ///
 /// A part of each segment's share is the same for all, so that places of high speed, where a limit may
-/// be hidden between two knots, keep theirs.
-pub(crate) fn spread_by_time<A: Axes>(knots: &mut [Knot<A>], planned: usize) {
+/// be hidden between two knots, keep theirs. `bent` is the part of all shares by which knots are dense
+/// where the speed changes: next to constant speed, cubics that depart as much take a time as the square
+/// root of the acceleration has it, Σ √(a) T.
+pub(crate) fn spread_by_time<A: Axes>(knots: &mut [Knot<A>], planned: usize, bent: f64) {
     let count = knots.len().saturating_sub(1);
     let [segments, own] = [count, planned.saturating_sub(1)].map(index_as_f64);
-    let pairs = knots.windows(2).take(planned.saturating_sub(1));
-    let per_second = TIMED * segments / pairs.map(pair_s).sum::<f64>();
-    let even = (1.0 - TIMED) * segments / own;
-    let shares = |time_s: f64| time_s * per_second + even;
+    let pairs = || knots.windows(2).take(planned.saturating_sub(1));
+    let all_bends: f64 = pairs().map(pair_bend).sum();
+    let bent = if all_bends > 0.0 { bent } else { 0.0 };
+    let steady = segments * (1.0 - bent);
+    let per_second = TIMED * steady / pairs().map(pair_s).sum::<f64>();
+    let even = (1.0 - TIMED) * steady / own;
+    let per_bend = if bent > 0.0 {
+        segments * bent / all_bends
+    } else {
+        0.0
+    };
+    let shares = |pair: &[Knot<A>]| pair_s(pair) * per_second + even + pair_bend(pair) * per_bend;
     let mut from = 0_usize;
     // Shares of the segments before `from`.
     let mut before = 0.0;
@@ -142,7 +152,7 @@ pub(crate) fn spread_by_time<A: Axes>(knots: &mut [Knot<A>], planned: usize) {
         let ends =
             |from: usize| (from.saturating_add(1) < planned).then(|| from..from.saturating_add(2));
         while let Some(pair) = ends(from).and_then(|range| knots.get(range)) {
-            let share = shares(pair_s(pair));
+            let share = shares(pair);
             if before + share >= wanted {
                 s = Some(within(pair, (wanted - before) / share));
                 break;
@@ -165,6 +175,14 @@ fn index_as_f64(index: usize) -> f64 {
 fn pair_s<A: Axes>(pair: &[Knot<A>]) -> f64 {
     match pair {
         [from, to] => crate::passes::segment_s(from, to),
+        _ => 0.0,
+    }
+}
+
+/// √(a) T of a segment, by its change of speed a T.
+fn pair_bend<A: Axes>(pair: &[Knot<A>]) -> f64 {
+    match pair {
+        [from, to] => sqrt((to.speed - from.speed).abs() * pair_s(pair)),
         _ => 0.0,
     }
 }

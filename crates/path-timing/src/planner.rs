@@ -47,11 +47,12 @@ const FEW: u32 = 32;
 
 impl<P: Path + Clone> Place<'_, P> {
     /// Lays the knots of the leg behind its first, which is the first of those given: dense where the
-    /// fastest motion along the leg is slow.
+    /// fastest motion along the leg is slow, and, by the part `bent`, where its speed changes.
     pub(crate) fn lay<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
         segments: u32,
+        bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let (count, available) = (knots_of(segments), knots.len());
@@ -71,7 +72,7 @@ impl<P: Path + Clone> Place<'_, P> {
         }
         self.lay_at_places(rough)?;
         self.alone(limits, rough);
-        spread_by_time(own, knots_of(few));
+        spread_by_time(own, knots_of(few), bent);
         self.lay_at_places(own)?;
         self.check_resolved(limits, own)
     }

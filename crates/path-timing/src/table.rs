@@ -1,5 +1,6 @@
 //! Position-velocity-time tables along paths.
 
+use core::cell::Cell;
 use core::convert::Infallible;
 
 use crate::departure::{Speeds, Within, check_allowed};
@@ -60,7 +61,7 @@ impl<'a, A: Axes> Table<'a, A> {
         let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
             let segments = segments(place.leg.path());
             let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay(&limits, segments, free)?;
+            place.lay(&limits, segments, 0.0, free)?;
             Ok(segments)
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
@@ -92,7 +93,7 @@ impl<'a, A: Axes> Table<'a, A> {
         let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
             let segments = segments(place.leg.path());
             let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay(&limits, segments, free)?;
+            place.lay(&limits, segments, 0.0, free)?;
             Ok(segments)
         };
         let knots = lay_all(paths.into_iter(), &exact, knots, lay)?;
@@ -156,6 +157,7 @@ impl<'a, A: Axes> Table<'a, A> {
             allowed: accuracy.max_departure,
             speeds,
             departure,
+            planned: Cell::new(0),
         };
         let mut doublings = 0;
         loop {
@@ -164,7 +166,12 @@ impl<'a, A: Axes> Table<'a, A> {
             };
             let used = lay_all(paths.clone().into_iter(), &limits, knots, lay)?.len();
             let (own, spare) = knots.split_at_mut(used.min(knots.len()));
-            let duration_s = time(&limits, own)?;
+            let is_planned = within.planned.get() == own.len();
+            let duration_s = if is_planned {
+                duration(own)?
+            } else {
+                time(&limits, own)?
+            };
             if check_single_segments::<_, P::Error>(&limits, own).is_err() {
                 doublings += 1;
                 continue;

@@ -32,6 +32,17 @@ use crate::number::larger_or_nan;
 ///
 /// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the distance
 /// is done and (1 - τ)²/2 left, and |e| ≤ M τ² (1 - τ)²/24, so 12 times the distance must be M or more.
+///
+/// Most segments need no node but that halfway. e is τ² (1 - τ)² times its divided difference at 0, 0,
+/// 1, 1, τ, whose derivative is that at 0, 0, 1, 1, τ, τ: with F the longest that the fifth derivative of
+/// e can be, at most F/120. So e is 16 τ² (1 - τ)² e(½) but for
+///
+/// ```text
+/// τ² (1 - τ)² |τ - ½| F/120 ≤ F/13416
+/// ```
+///
+/// across the tangent halfway, too, which turns by at most 16 ψ |τ - ½|. Where that is more than
+/// an eighth above the least that the nodes can say, they are looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveMotion<'a, const D: usize> {
     curve: &'a Curve<D>,
@@ -58,6 +69,15 @@ const NODE: f64 = 0.0625;
 
 /// What is left between nodes, as a fraction of M.
 const BETWEEN: f64 = 1.0 / 24_576.0;
+
+/// The largest of τ² (1 - τ)² |τ - ½| / 120, where τ = ½ ± 1/√20, rounded up.
+const BESIDE: f64 = 1.0 / 13_416.0;
+
+/// The same of 16 τ² (1 - τ)² |τ - ½|.
+const WEIGHTED: f64 = 1920.0 * BESIDE;
+
+/// By how much the bound from the middle may be above the least that the nodes would say.
+const CLOSE: f64 = 1.125;
 
 /// A cubic of the time, by the fraction of the segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -236,12 +256,54 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     }
 
     /// The most by which a tool departs from the curve on the segment, from its place, a function
-    /// of τ, and the longest that its fourth derivative by τ can be; see [`CurveMotion`].
+    /// of τ, and the longest that its fourth and its fifth derivative by τ can be; see
+    /// [`CurveMotion`].
     #[must_use]
-    pub fn departure(&self, tool: impl Fn(f64) -> [f64; D], longest_fourth: f64) -> f64 {
+    pub fn departure(
+        &self,
+        tool: impl Fn(f64) -> [f64; D],
+        [longest_fourth, longest_fifth]: [f64; 2],
+    ) -> f64 {
         let [.., own_fourth] = self.longest;
         let fourth = own_fourth + longest_fourth;
-        self.departure_between(tool, fourth, fourth * BETWEEN)
+        let between = fourth * BETWEEN;
+        let fifth = self.fifth + longest_fifth;
+        self.departure_by_middle(&tool(0.5), fourth, |_| fifth * BESIDE, between)
+            .unwrap_or_else(|| self.departure_between(tool, fourth, between))
+    }
+
+    /// The same as [`departure_between`](Self::departure_between) from the tool's place halfway alone;
+    /// none where the nodes may say much less. `beside` is by how much e differs from 16 τ² (1 - τ)²
+    /// e(½), as a function of |e(½)|.
+    #[must_use]
+    pub fn departure_by_middle(
+        &self,
+        tool: &[f64; D],
+        fourth: f64,
+        beside: impl Fn(f64) -> f64,
+        between: f64,
+    ) -> Option<f64> {
+        let (apart, across) = self.apart(tool, 0.5);
+        let beside = beside(apart);
+        let all = apart + beside;
+        // What the nodes would say at least.
+        let (bound, least) = if fourth <= 12.0 * self.distance {
+            let turning = self.turn / NODE * (WEIGHTED * apart + 0.5 * beside);
+            let bent = 0.5 * self.curvature * all * all;
+            (all.min(across + beside + turning + bent), across + between)
+        } else {
+            (all, apart + between)
+        };
+        // Written so that NaN is none.
+        (bound <= CLOSE * least).then_some(bound)
+    }
+
+    /// How far a tool is from the place at τ, and how far across the tangent there.
+    fn apart(&self, tool: &[f64; D], tau: f64) -> (f64, f64) {
+        let [point, first, ..] = self.curve.jet(self.parameter.at(tau));
+        let apart = difference(tool, &point);
+        let ahead = dot(&apart, &first) / dot(&first, &first);
+        (norm(&apart), norm(&along(&apart, -ahead, &first)))
     }
 
     /// The same where other things are known of the difference e of tool and curve: M, which may be
@@ -256,11 +318,9 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     ) -> f64 {
         let (mut all, mut across) = (0.0_f64, 0.0_f64);
         for tau in NODES {
-            let [point, first, ..] = self.curve.jet(self.parameter.at(tau));
-            let apart = difference(&tool(tau), &point);
-            let ahead = dot(&apart, &first) / dot(&first, &first);
-            all = larger_or_nan(all, norm(&apart));
-            across = larger_or_nan(across, norm(&along(&apart, -ahead, &first)));
+            let (apart, beside) = self.apart(&tool(tau), tau);
+            all = larger_or_nan(all, apart);
+            across = larger_or_nan(across, beside);
         }
         let all = all + between;
         // Written so that NaN stays.
@@ -278,6 +338,13 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     /// What is left between nodes of a function that is zero at both ends with its first derivative,
     /// as a fraction of the largest of its fourth.
     pub const BETWEEN: f64 = BETWEEN;
+
+    /// By what a function that is zero at both ends with its first derivative differs at most from
+    /// 16 τ² (1 - τ)² of its value halfway, as a fraction of the largest of its fifth.
+    pub const BESIDE: f64 = BESIDE;
+
+    /// The largest that 16 τ² (1 - τ)² |τ - ½| is.
+    pub const WEIGHTED: f64 = WEIGHTED;
 }
 
 /// A unit vector of the plane that turns while its angle runs a cubic: what a link of an arm does,
@@ -314,5 +381,27 @@ impl TurnMotion {
     #[must_use]
     pub fn longest(&self) -> [f64; 4] {
         longest_composed([1.0; 4], self.parameter.largest)
+    }
+
+    /// The longest that the fifth derivative by τ is on the segment.
+    #[must_use]
+    pub fn longest_fifth(&self) -> f64 {
+        longest_fifth([1.0; 4], 1.0, self.parameter.largest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BESIDE, WEIGHTED};
+
+    #[test]
+    fn weights_halfway_are_rounded_up() {
+        let largest = (0..=10_000).fold(0.0_f64, |largest, k| {
+            let tau = f64::from(k) / 10_000.0;
+            let weight = tau * tau * (1.0 - tau) * (1.0 - tau);
+            largest.max(weight * (tau - 0.5).abs())
+        });
+        assert!(largest / 120.0 <= BESIDE && largest / 120.0 > BESIDE * 0.9999);
+        assert!(largest * 16.0 <= WEIGHTED);
     }
 }

@@ -98,8 +98,15 @@ fn the_fewest_segments_within_a_departure() {
     let segments = u32::try_from(table.len() - 1).unwrap();
     let worst = |rows: Vec<Row<[f64; 2]>>| rows.iter().fold(0.0_f64, |w, r| w.max(r.duration_s));
     assert!(worst(rows(table.rows())) <= 0.02);
-    let coarser = Table::plan([line], limits, |_| segments * 15 / 16 - 1, &mut knots).unwrap();
-    assert!(worst(rows(coarser.rows())) > 0.02);
+    let fewer = (segments * 15 / 16) as usize;
+    let error = Table::plan_within(
+        [line],
+        limits,
+        within(2, 0.02),
+        longest,
+        &mut knots[..fewer],
+    );
+    assert!(matches!(error.unwrap_err(), PlanError::Memory { .. }));
     for allowed in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = Table::plan_within([line], limits, within(2, allowed), longest, &mut knots);
         assert!(matches!(error.unwrap_err(), PlanError::Allowed { .. }));

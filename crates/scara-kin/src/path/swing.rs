@@ -16,6 +16,9 @@ pub(super) const RANGE_SLACK: f64 = 1e-9;
 /// Leibniz' weights of the fourth derivative of a product.
 const LEIBNIZ: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
+/// Those of the fifth.
+const LEIBNIZ_FIFTH: [f64; 6] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+
 /// Both joints from one place of a curve to another, each on its cubic.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Swing {
@@ -245,8 +248,8 @@ struct Motion<'a> {
     reference: CurveMotion<'a, 2>,
     /// Length and direction of both links.
     links: [(f64, TurnMotion); 2],
-    /// The longest that the tool's fourth derivative can be.
-    fourth: f64,
+    /// The longest that the tool's fourth derivative can be, and its fifth.
+    longest: [f64; 2],
 }
 
 impl<'a> Motion<'a> {
@@ -269,7 +272,7 @@ impl<'a> Motion<'a> {
         Self {
             arm,
             reference: CurveMotion::new(curve, swing.s, [&before, &after], duration_s),
-            fourth: longest_fourth(arm, &links, &elbow),
+            longest: longest(arm, &links, &elbow),
             links,
         }
     }
@@ -286,34 +289,44 @@ impl<'a> Motion<'a> {
 
     /// The most by which the tool leaves the curve.
     fn departure(&self) -> f64 {
-        self.reference.departure(|tau| self.tool(tau), self.fourth)
+        self.reference.departure(|tau| self.tool(tau), self.longest)
     }
 
     /// The most by which the tool is off the place on the curve that goes with it, along it too.
     fn apart(&self) -> f64 {
         let [.., own_fourth] = *self.reference.longest();
-        let between = (own_fourth + self.fourth) * CurveMotion::<2>::BETWEEN;
+        let [fourth, _] = self.longest;
+        let between = (own_fourth + fourth) * CurveMotion::<2>::BETWEEN;
         // Nothing is known of the place ahead.
         self.reference
             .departure_between(|tau| self.tool(tau), f64::INFINITY, between)
     }
 }
 
-/// The longest that the tool's fourth derivative can be: the sum of both links', or, where they
-/// nearly cancel, that of the product of the upper arm's direction and the tool as the upper arm
+/// The longest that the tool's fourth derivative can be, and its fifth: the sum of both links', or, where
+/// they nearly cancel, that of the product of the upper arm's direction and the tool as the upper arm
 /// sees it.
-fn longest_fourth(arm: &Arm, links: &[(f64, TurnMotion); 2], elbow: &Cubic) -> f64 {
+fn longest(arm: &Arm, links: &[(f64, TurnMotion); 2], elbow: &Cubic) -> [f64; 2] {
     let [(upper, upper_arm), (fore, forearm)] = links;
-    let [.., fourth] = upper_arm.longest();
-    let [.., fore_fourth] = forearm.longest();
-    let sum = upper * fourth + fore * fore_fourth;
-    let [_, distance] = distances(arm, elbow.extent());
     let [u1, u2, u3, u4] = upper_arm.longest();
-    let [g1, g2, g3, g4] = TurnMotion::new(elbow).longest().map(|turn| turn * fore);
-    let upper_arm = [1.0, u1, u2, u3, u4]
-        .into_iter()
-        .zip([g4, g3, g2, g1, distance]);
-    let terms = upper_arm.zip(LEIBNIZ);
-    let product = terms.map(|((a, b), weight)| a * b * weight).sum();
-    sum.min(product)
+    let u5 = upper_arm.longest_fifth();
+    let [.., fourth] = forearm.longest();
+    let sums = [
+        upper * u4 + fore * fourth,
+        upper * u5 + fore * forearm.longest_fifth(),
+    ];
+    let [_, distance] = distances(arm, elbow.extent());
+    let elbow = TurnMotion::new(elbow);
+    let [g1, g2, g3, g4] = elbow.longest().map(|turn| turn * fore);
+    let g5 = elbow.longest_fifth() * fore;
+    let upper_arm = [1.0, u1, u2, u3, u4, u5];
+    let terms = |tool: &[f64], weights: &[f64]| {
+        let terms = upper_arm.iter().zip(tool).zip(weights);
+        terms.map(|((a, b), weight)| a * b * weight).sum::<f64>()
+    };
+    let [fourth, fifth] = sums;
+    [
+        fourth.min(terms(&[g4, g3, g2, g1, distance], &LEIBNIZ)),
+        fifth.min(terms(&[g5, g4, g3, g2, g1, distance], &LEIBNIZ_FIFTH)),
+    ]
 }
