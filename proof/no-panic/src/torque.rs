@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use delta_kin::{Delta, DeltaDynamics, DeltaMasses};
+use delta_kin::{Delta, DeltaDynamics, DeltaMasses, Dimensions};
 use no_panic::no_panic;
 use path_timing::{
     Cia402Scale, Cia402Target, Row, SetPoint, SetPoints, Span, TargetError, TorqueCurve,
@@ -128,7 +128,13 @@ fn arms() {
         black_box(arm_torques(&limits, &span()));
         black_box(arm_utilisation(&limits, &span()));
     }
-    if let Ok(delta) = Delta::new(black_box(42.0), 18.0, 120.0, 243.0)
+    let dimensions = Dimensions {
+        base: 42.0,
+        platform: 18.0,
+        upper: 120.0,
+        lower: 243.0,
+    };
+    if let Ok(delta) = Delta::new(black_box(dimensions))
         && let Ok(dynamics) = delta.dynamics(1e-3, black_box(WEIGHT))
     {
         let limits = TorqueLimits {
