@@ -246,7 +246,7 @@ fn bad_input_is_one_line_and_no_file() {
     ]);
     refused(
         &["--platform", file.path().to_str().unwrap()],
-        "error: the motion would take 9.9e4 s, 10000 s are simulated at most",
+        "error: the motion would take 9.4e4 s, 10000 s are simulated at most",
     );
     fs::create_dir_all(out.join("report.json")).unwrap();
     let mut command = example("align");

@@ -1,6 +1,6 @@
 //! Which lengths measured points show, which they do not, and how many iterations that takes.
 //!
-//! `cargo run -p delta-kin --example calibrate`
+//! `cargo run -p delta-kin --example fit_lengths`
 
 use core::error::Error;
 
