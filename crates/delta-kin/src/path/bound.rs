@@ -18,8 +18,8 @@ impl DeltaPath {
     /// of length; infinite where the segment is too long to know. For
     /// [`Table::plan_within`](path_timing::Table::plan_within).
     ///
-    /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], K the centres of the rods' spheres as
-    /// the arms' cubics have them, D = P - K, and e the platform's distance from P. With
+    /// Proof. Let P(τ) run along the curve as in [`CurveMotion`](path_timing::CurveMotion), K the
+    /// centres of the rods' spheres as the arms' cubics have them, D = P - K, and e the platform's distance from P. With
     /// g = |D|² - La², n = g/2La and B the matrix whose rows are D/La, the rods have their lengths where
     ///
     /// ```text
