@@ -77,6 +77,7 @@ pub(crate) fn half<T: RealField>() -> T {
 }
 
 /// The square root, of `core` alone.
+#[cfg(feature = "path-timing")]
 pub(crate) fn sqrt(x: f64) -> f64 {
     ComplexField::sqrt(x)
 }
