@@ -13,7 +13,7 @@
 //! overflow nor lose digits. In an arm shorter than ε^¼ of the span rounding would turn the rods
 //! by more than ε^¾; an angle beyond 1/√ε has fewer than half its digits after the point.
 
-use nalgebra::{ComplexField, RealField, SVector};
+use nalgebra::{RealField, SVector};
 use trig_kernels::Trig;
 
 /// h: the largest length of an arm, 2^251 in f64, 2^27 in f32.
@@ -79,7 +79,7 @@ pub(crate) fn half<T: RealField>() -> T {
 /// The square root, of `core` alone.
 #[cfg(feature = "path-timing")]
 pub(crate) fn sqrt(x: f64) -> f64 {
-    ComplexField::sqrt(x)
+    nalgebra::ComplexField::sqrt(x)
 }
 
 /// The length of a vector whose squares may overflow or vanish. In `T` alone, as `hypot` of `f32` is
