@@ -59,9 +59,14 @@ impl Machine {
                 .with_context(|| format!("line {line}"))
         });
         let points: Vec<_> = points.collect::<Result<_>>()?;
+        let home = Joints::new(self.shoulder.home_rad, self.elbow.home_rad);
+        let start = DrivenArm {
+            arm: self.arm,
+            drives: Drives::default().with_zero(home)?,
+        };
         let found = match fit {
-            Fit::Homes => self.fit([ShoulderZero, ElbowZero], &points),
-            Fit::Links => self.fit([ShoulderZero, ElbowZero, Upper, Fore], &points),
+            Fit::Homes => self.fit(start, [ShoulderZero, ElbowZero], &points),
+            Fit::Links => self.fit(start, [ShoulderZero, ElbowZero, Upper, Fore], &points),
             Fit::All => {
                 let all = [
                     ShoulderZero,
@@ -72,7 +77,7 @@ impl Machine {
                     BaseX,
                     BaseY,
                 ];
-                self.fit(all, &points)
+                self.fit(start, all, &points)
             }
         };
         found.map_err(|error| {
@@ -103,17 +108,10 @@ impl Machine {
 
     fn fit<const N: usize>(
         &self,
+        start: DrivenArm,
         parameters: [Parameter; N],
         points: &[Measured],
     ) -> Result<Calibrated, CalibrationError> {
-        let home = Joints::new(self.shoulder.home_rad, self.elbow.home_rad);
-        let Ok(drives) = Drives::default().with_zero(home) else {
-            return Err(CalibrationError::NotFinite { index: 0 });
-        };
-        let start = DrivenArm {
-            arm: self.arm,
-            drives,
-        };
         let found = start.calibrate(parameters, points)?;
         let DrivenArm { arm, drives } = found.machine();
         let base = arm.base().translation;

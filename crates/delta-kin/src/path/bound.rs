@@ -19,8 +19,9 @@ impl DeltaPath {
     /// [`Table::plan_within`](path_timing::Table::plan_within).
     ///
     /// Proof. Let P(τ) run along the curve as in [`CurveMotion`](path_timing::CurveMotion), K the
-    /// centres of the rods' spheres as the arms' cubics have them, D = P - K, and e the platform's distance from P. With
-    /// g = |D|² - La², n = g/2La and B the matrix whose rows are D/La, the rods have their lengths where
+    /// centres of the rods' spheres as the arms' cubics have them, D = P - K, and e the platform's
+    /// distance from P. With g = |D|² - La², n = g/2La and B the matrix whose rows are D/La, the rods
+    /// have their lengths where
     ///
     /// ```text
     /// B e = -(n + q)    |qᵢ| ≤ |e|² / 2La
