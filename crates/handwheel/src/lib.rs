@@ -14,6 +14,8 @@ mod lcd;
 mod number;
 mod report;
 mod text;
+#[cfg(feature = "tokio")]
+pub mod tokio;
 mod wheel;
 
 pub use cells::{Cell, Rect};

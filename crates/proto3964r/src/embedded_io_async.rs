@@ -135,6 +135,12 @@ where
         self.station.is_busy()
     }
 
+    /// Whether neither a transmission nor a reception is under way.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        self.station.is_idle()
+    }
+
     /// Works until there is an event. May be dropped and called again.
     ///
     /// # Errors

@@ -8,3 +8,5 @@ mod readme;
 #[cfg(feature = "serde")]
 mod serde;
 mod telegrams;
+#[cfg(feature = "tokio")]
+mod tokio;
