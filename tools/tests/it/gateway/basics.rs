@@ -12,7 +12,7 @@ use super::{
     broker::free_ports,
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, metric, mqtt},
+    process::{Gateway, hall, line, metric, metrics, mqtt},
     subscriber::Subscriber,
 };
 
@@ -38,12 +38,14 @@ length = 3
 async fn telegrams_commands_and_the_end() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let [metrics] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n{}discovery = \"homeassistant\"\n[metrics]\nlisten = \"127.0.0.1:{metrics}\"\n{}{SCALE}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let [port] = free_ports();
+    let config = hall(&[
+        &mqtt(broker.port),
+        "discovery = \"homeassistant\"\n",
+        &metrics(port),
+        &line("scale", partner.port),
+        SCALE,
+    ]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -112,29 +114,17 @@ async fn telegrams_commands_and_the_end() {
             .starts_with("no command: ")
     );
 
-    let read = |name: &'static str| spawn_blocking(move || metric(metrics, name));
-    assert_eq!(
-        read("line3964r_line_received_total{line=\"scale\"}")
-            .await
-            .unwrap(),
-        3
-    );
-    assert_eq!(
-        read("line3964r_line_possible_repeats_total{line=\"scale\"}")
-            .await
-            .unwrap(),
-        1
-    );
-    assert_eq!(
-        read("line3964r_line_commands_refused_total{line=\"scale\"}")
-            .await
-            .unwrap(),
-        1
-    );
-    assert_eq!(read("line3964r_mqtt_dropped_total").await.unwrap(), 0);
+    for (name, value) in [
+        ("line3964r_line_received_total{line=\"scale\"}", 3),
+        ("line3964r_line_possible_repeats_total{line=\"scale\"}", 1),
+        ("line3964r_line_commands_refused_total{line=\"scale\"}", 1),
+        ("line3964r_mqtt_dropped_total", 0),
+    ] {
+        let read = spawn_blocking(move || metric(port, name)).await;
+        assert_eq!(read.unwrap(), value, "{name}");
+    }
 
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
     assert_eq!(
         subscriber.at("line3964r/hall/scale/status").await,
         b"offline"
@@ -146,11 +136,7 @@ async fn telegrams_commands_and_the_end() {
 async fn a_lost_port_is_opened_again_and_a_killed_gateway_is_told_offline() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[&mqtt(broker.port), &line("scale", partner.port)]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -256,10 +242,8 @@ length = 1
 async fn events_and_commands_over_tcp_without_a_broker() {
     let partner = Partner::new().await;
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:{port}\"\n{}",
-        line("scale", partner.port)
-    );
+    let tcp = format!("[tcp]\nlisten = \"127.0.0.1:{port}\"\n");
+    let config = hall(&[&tcp, &line("scale", partner.port)]);
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
     gateway.logs("1 lines");
@@ -285,6 +269,5 @@ async fn events_and_commands_over_tcp_without_a_broker() {
         (&telegram["line"], &telegram["hex"]),
         (&json!("scale"), &json!("31 32"))
     );
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }

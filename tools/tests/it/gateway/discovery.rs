@@ -14,7 +14,7 @@ use super::{
     broker::free_ports,
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, mqtt},
+    process::{Gateway, hall, line, metrics, mqtt},
     subscriber::Subscriber,
 };
 
@@ -50,11 +50,13 @@ async fn a_number_is_written_and_a_button_fetches() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n{}discovery = \"homeassistant\"\n[metrics]\nlisten = \"127.0.0.1:{port}\"\n{}{AREA}",
-        mqtt(broker.port),
-        line("oven", partner.port)
-    );
+    let config = hall(&[
+        &mqtt(broker.port),
+        "discovery = \"homeassistant\"\n",
+        &metrics(port),
+        &line("oven", partner.port),
+        AREA,
+    ]);
     tokio::spawn(partner.serve_rk512());
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);

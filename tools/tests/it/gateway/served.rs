@@ -21,7 +21,7 @@ use tokio::{net::TcpListener, time::sleep};
 use super::{
     broker_or_skip,
     partner::{PARTNER, Partner},
-    process::{Gateway, line, mqtt},
+    process::{Gateway, hall, line, mqtt},
     subscriber::Subscriber,
 };
 
@@ -65,11 +65,7 @@ fn refusal<T>(result: Result<T, CallError>) -> ReactionError {
 async fn a_partner_sends_to_the_gateway_and_fetches_from_it() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}{AREAS}",
-        mqtt(broker.port),
-        line("plc", partner.port)
-    );
+    let config = hall(&[&mqtt(broker.port), &line("plc", partner.port), AREAS]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let _gateway = Gateway::start(&config);
     let db10 = Box::leak(vec![0, 7].into_boxed_slice());
