@@ -247,13 +247,11 @@ async fn a_reaction_says_so_where_the_store_is_full() {
     let mut broker = broker_or_skip!();
     let folder = TempDir::new().unwrap();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}[store]\npath = \"{}\"\nmax_bytes = 1000\n{}{AREAS}",
-        mqtt(broker.port),
-        folder.path().display(),
-        line("plc", partner.port).replace("[[line]]", "[[line]]\nmark_repeats = false")
-    )
-    .replace("poll_s = 0.2\n", "");
+    let store = folder.path().display();
+    let store = format!("[store]\npath = \"{store}\"\nmax_bytes = 1000\n");
+    let line = line("plc", partner.port).replace("[[line]]", "[[line]]\nmark_repeats = false");
+    let areas = AREAS.replace("poll_s = 0.2\n", "");
+    let config = hall(&[&mqtt(broker.port), &store, &line, &areas]);
     broker.stop();
     let gateway = Gateway::start(&config);
     let stream = partner.stream().await;
@@ -286,5 +284,28 @@ async fn a_reaction_says_so_where_the_store_is_full() {
         assert!(hex.starts_with(&format!("00 {number:02X}")), "{told}");
         // The number of one that was refused was kept for it.
         assert_eq!(told["seq"], u64::from(number) + 1);
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_area_that_is_kept_in_another_length_begins_with_zeros_and_that_is_said() {
+    let broker = broker_or_skip!();
+    let folder = TempDir::new().unwrap();
+    let partner = Partner::new().await;
+    let store = format!("[store]\npath = \"{}\"\n", folder.path().display());
+    for (length, before, is_said) in [(2, [0; 2], false), (2, [1, 2], false), (3, [0; 2], true)] {
+        let area = format!(
+            "procedure = \"rk512\"\n[[line.area]]\nname = \"orders\"\nstart = \"DB 20.0\"\n\
+             length = {length}\nserved = true\n"
+        );
+        let line = line("plc", partner.port);
+        let gateway = Gateway::start(&hall(&[&mqtt(broker.port), &store, &line, &area]));
+        let stream = partner.stream().await;
+        let plc = Client::new(stream, PARTNER, rk512::Config::DEFAULT);
+        assert_eq!(plc.fetch(Area::db(20, 0), 1).await.unwrap(), before);
+        plc.send(Area::db(20, 0), &[1, 2]).await.unwrap();
+        let log = gateway.ends();
+        let said = "plc: area `orders`: zeros, as 4 bytes are kept, not 6";
+        assert_eq!(log.contains(said), is_said, "{length} words: {log}");
     }
 }
