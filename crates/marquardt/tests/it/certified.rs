@@ -26,8 +26,10 @@ struct Certified<const N: usize> {
 }
 
 impl<const N: usize> Certified<N> {
+    /// The iterations from the second start.
     #[track_caller]
-    fn check(&self, name: &str) {
+    fn check(&self, name: &str) -> u32 {
+        let mut iterations = 0;
         let Self { curve, x, y, .. } = *self;
         for start in self.starts {
             let (b, found) = Fit { curve, x, y, start }.run().unwrap();
@@ -55,7 +57,9 @@ impl<const N: usize> Certified<N> {
             let residuals = x.iter().zip(y).map(|(x, y)| (y - curve(*x, b).0).abs());
             let largest = residuals.fold(0.0, f64::max);
             assert!((found.largest() / largest - 1.0).abs() < 1e-12, "{name}");
+            iterations = found.iterations();
         }
+        iterations
     }
 }
 
@@ -101,7 +105,8 @@ fn box_bod() {
         deviations: [1.2354515176e+01, 1.0455993237e-01],
         sum: 1.1680088766e+03,
     };
-    certified.check("BoxBOD");
+    // Nine, and ten more that make no digit better that is asked for.
+    assert!(certified.check("BoxBOD") < 15);
 }
 
 /// From its first start, every parameter 1, the fit leaves for a rate at which the curve is the mean of
