@@ -96,16 +96,12 @@ async fn telegrams_commands_and_the_end() {
     );
 
     let command = r#"{"id": 7, "send_text": "TARE"}"#;
-    subscriber
-        .publish("line3964r/hall/scale/command", QoS::AtLeastOnce, command)
-        .await;
+    subscriber.command("scale", command).await;
     assert_eq!(scale.receive().await.unwrap(), b"TARE");
-    let outcome = subscriber.json_at("line3964r/hall/scale/outcome").await;
+    let outcome = subscriber.outcome("scale").await;
     assert_eq!((&outcome["id"], &outcome["ok"]), (&json!(7), &json!(true)));
-    subscriber
-        .publish("line3964r/hall/scale/command", QoS::AtLeastOnce, "TARE")
-        .await;
-    let outcome = subscriber.json_at("line3964r/hall/scale/outcome").await;
+    subscriber.command("scale", "TARE").await;
+    let outcome = subscriber.outcome("scale").await;
     assert_eq!(outcome["ok"], json!(false));
     assert!(
         outcome["error"]
@@ -195,10 +191,8 @@ length = 1
     assert_eq!(first["hex"], "00 07 00 00 00 00 00 00");
     assert_eq!(first["fields"]["setpoint"], json!({ "value": 7 }));
     let write = r#"{"id": "w", "write": "oven", "fields": {"setpoint": 300, "actual": 21.5}}"#;
-    subscriber
-        .publish("line3964r/hall/plc/command", QoS::AtLeastOnce, write)
-        .await;
-    let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+    subscriber.command("plc", write).await;
+    let outcome = subscriber.outcome("plc").await;
     assert_eq!(
         (&outcome["id"], &outcome["ok"]),
         (&json!("w"), &json!(true)),
@@ -226,10 +220,8 @@ length = 1
             "send is for lines of 3964r; this one has fetch and write",
         ),
     ] {
-        subscriber
-            .publish("line3964r/hall/plc/command", QoS::AtLeastOnce, command)
-            .await;
-        let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+        subscriber.command("plc", command).await;
+        let outcome = subscriber.outcome("plc").await;
         assert_eq!(outcome["ok"], json!(false), "{command}");
         assert!(
             outcome["error"].as_str().unwrap().contains(error),

@@ -79,7 +79,7 @@ async fn a_number_is_written_and_a_button_fetches() {
     let command = command.replace("{{ value }}", "21.5");
     let topic = number["command_topic"].as_str().unwrap();
     subscriber.publish(topic, QoS::AtLeastOnce, command).await;
-    let outcome = subscriber.json_at("line3964r/hall/oven/outcome").await;
+    let outcome = subscriber.outcome("oven").await;
     assert_eq!(outcome["ok"], true, "{outcome}");
     let button = &found["button fetch/config"];
     let topic = button["command_topic"].as_str().unwrap();

@@ -13,7 +13,6 @@ use rk512::{
     Area, CallError, Command, CoordinationFlag, DataBlock, JobError, Memory, ReactionError,
     tokio::Client,
 };
-use rumqttc::v5::mqttbytes::QoS;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::{net::TcpListener, time::sleep};
@@ -91,17 +90,15 @@ async fn a_partner_sends_to_the_gateway_and_fetches_from_it() {
     order[138..].copy_from_slice(&[1, 2]);
     assert_eq!(plc.fetch(Area::db(20, 4), 70).await.unwrap(), order);
 
-    let command = |text: &'static str| {
-        subscriber.publish("line3964r/hall/plc/command", QoS::AtLeastOnce, text)
-    };
+    let command = |text: &'static str| subscriber.command("plc", text);
     assert_eq!(plc.fetch(Area::dx(3, 0), 2).await.unwrap(), [0; 4]);
     command(r#"{"write": "setpoints", "fields": {"speed": -12.5}}"#).await;
     command(r#"{"write": "orders", "hex": "00"}"#).await;
     let told = subscriber.json_at(&area("setpoints")).await;
     assert_eq!(told["fields"]["speed"]["value"], -12.5);
-    let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+    let outcome = subscriber.outcome("plc").await;
     assert_eq!(outcome["ok"], true, "{outcome}");
-    let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+    let outcome = subscriber.outcome("plc").await;
     assert_eq!(outcome["error"], "`orders` is not writable");
     assert_eq!(
         plc.fetch(Area::dx(3, 1), 1).await.unwrap(),
@@ -121,11 +118,7 @@ async fn a_partner_sends_to_the_gateway_and_fetches_from_it() {
     let fetch = fetch.with_coordination(flag.into());
     assert_eq!(refusal(plc.run(fetch, &[]).await), ReactionError::Locked);
     subscriber
-        .publish(
-            "line3964r/hall/plc/command",
-            QoS::AtLeastOnce,
-            r#"{"write": "marks", "fields": {"order": false}}"#,
-        )
+        .command("plc", r#"{"write": "marks", "fields": {"order": false}}"#)
         .await;
     let told = subscriber.json_at(&area("marks")).await;
     assert_eq!(told["fields"]["order"]["value"], json!(false), "{told}");

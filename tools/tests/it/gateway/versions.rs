@@ -90,7 +90,7 @@ async fn a_broker_without_5_is_found_out() {
             .ask("line3964r/hall/scale/command", properties, command)
             .await;
         assert_eq!(scale.receive().await.unwrap(), b"B");
-        let outcome = subscriber.json_at("line3964r/hall/scale/outcome").await;
+        let outcome = subscriber.outcome("scale").await;
         assert_eq!((&outcome["id"], &outcome["ok"]), (&json!(7), &json!(true)));
         drop(gateway); // killed: the will
         while subscriber.at("line3964r/hall/status").await != b"offline" {}
