@@ -50,7 +50,7 @@ proptest! {
         let mut knots = [Knot::default(); 250];
         let table = Table::plan(&paths, LIMITS, |_| segments, &mut knots).unwrap();
         let table = table.at_speed(scale).unwrap();
-        let rows = run_under(feeds, &table);
+        let rows = run_under(feeds, 0.3, &table);
         check_jerk(&LIMITS, None, &rows);
         let end = table.rows().last().unwrap();
         prop_assert_eq!(bits(rows.last().unwrap()), bits(&end));

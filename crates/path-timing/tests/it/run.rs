@@ -58,7 +58,7 @@ proptest! {
         let mut knots = [Knot::default(); 183];
         let table = Table::plan(legs(), LIMITS, |_| segments, &mut knots).unwrap();
         let table = table.at_speed(scale).unwrap();
-        let rows = run_under(feeds, &table);
+        let rows = run_under(feeds, 0.2, &table);
         check_limits(&LIMITS, None, &rows);
         assert_planned(&rows, &table);
     }

@@ -79,19 +79,18 @@ pub(crate) fn feeds() -> impl Strategy<Value = Vec<(f64, usize)>> {
     prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12)
 }
 
-/// Feeds below are holds.
-const SLOWEST: f64 = 0.3;
-
-/// The rows of a table under feeds, and at a feed of 1 from there to its end.
+/// The rows of a table under feeds, of which those below `slowest` are holds, and at a feed of 1 from
+/// there to its end.
 pub(crate) fn run_under(
     feeds: Vec<(f64, usize)>,
+    slowest: f64,
     table: &Table<'_, [f64; 2]>,
 ) -> Vec<Row<[f64; 2]>> {
     let mut ahead = vec![FeedCeiling::default(); table.len()];
     let mut run = table.playback(1.5, &mut ahead).unwrap();
     let mut rows = Vec::new();
     for (feed, count) in feeds {
-        run.set_feed(if feed < SLOWEST { 0.0 } else { feed })
+        run.set_feed(if feed < slowest { 0.0 } else { feed })
             .unwrap();
         rows.extend(run.by_ref().take(count));
     }
