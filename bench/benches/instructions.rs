@@ -19,7 +19,7 @@
 //!
 //! The bytes of 3964R are counted in its own crate: `cargo bench -p proto3964r --bench instructions`.
 
-#[path = "../../crates/scara-kin/benches/common/bare.rs"]
+#[path = "../../crates/scara-kin/benches/inverse/bare.rs"]
 mod bare;
 
 use std::hint::black_box;

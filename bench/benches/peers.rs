@@ -1,8 +1,8 @@
 //! Our kinematics beside a bare loop and beside the best published crate, in one run.
 
-#[path = "../../crates/delta-kin/benches/common/points.rs"]
+#[path = "../../crates/delta-kin/benches/kinematics/points.rs"]
 mod delta_points;
-#[path = "../../crates/scara-kin/benches/common/points.rs"]
+#[path = "../../crates/scara-kin/benches/inverse/points.rs"]
 mod points;
 
 use std::hint::black_box;

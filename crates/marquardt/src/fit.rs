@@ -75,7 +75,8 @@ const SMALL_DECREASE: f64 = 1e-9;
 /// Parameters that the measurements do not determine stay near their values.
 ///
 /// # Errors
-/// [`NotConverged`]; its `rms` is not a number where the problem cannot be computed without changes.
+/// [`NotConverged`]; its `rms` is not a number where the problem cannot be computed without changes, or
+/// what is left is not a number, such as in a span of 0.
 pub fn fit<const N: usize, P: Problem<N>>(
     problem: &P,
     span: f64,
@@ -148,21 +149,22 @@ struct Left {
 }
 
 impl Left {
-    /// `None` where the model cannot have a measurement.
+    /// `None` where the model cannot have a measurement, or what is left is no number.
     fn of<const N: usize, P: Problem<N>>(problem: &P, model: &P::Model, span: f64) -> Option<Self> {
         let none = Self {
             sum: 0.0,
             largest: 0.0,
             count: 0.0,
         };
-        problem.squares(model).try_fold(none, |all, square| {
+        let all = problem.squares(model).try_fold(none, |all, square| {
             let square = square? / span / span;
             Some(Self {
                 sum: all.sum + square,
                 largest: all.largest.max(square),
                 count: all.count + 1.0,
             })
-        })
+        });
+        all.filter(|all| all.sum.is_finite())
     }
 
     /// What the sum is where each measurement is met to a machine epsilon of the span.

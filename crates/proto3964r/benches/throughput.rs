@@ -5,7 +5,7 @@
     reason = "a bench fails loudly"
 )]
 
-#[path = "common/work.rs"]
+#[path = "instructions/work.rs"]
 mod work;
 
 use core::hint::black_box;

@@ -22,6 +22,21 @@ impl Part {
         }
     }
 
+    /// Of an arc, its word and where its centre is from its start.
+    pub(crate) fn arc(&self, from: [f64; 2]) -> Option<(&'static str, [f64; 2])> {
+        match self {
+            Self::Arc {
+                centre: [x, y],
+                is_clockwise,
+                ..
+            } => Some((
+                if *is_clockwise { "G2" } else { "G3" },
+                [x - from[0], y - from[1]],
+            )),
+            _ => None,
+        }
+    }
+
     /// As the ends of lines, on an arc half a millimetre apart.
     pub(crate) fn points(&self, from: [f64; 2]) -> Vec<[f64; 2]> {
         let Self::Arc {

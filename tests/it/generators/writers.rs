@@ -44,10 +44,6 @@ fn each(parts: &[Part], has_arcs: bool, mut write: impl FnMut([f64; 2], &Part)) 
     }
 }
 
-fn arc_word(is_clockwise: bool) -> &'static str {
-    if is_clockwise { "G2" } else { "G3" }
-}
-
 /// Six decimals, comments in brackets, the pen's depth in each line.
 fn vector_drawing(parts: &[Part]) -> String {
     let mut text = String::from(
@@ -61,13 +57,9 @@ fn vector_drawing(parts: &[Part]) -> String {
                 "G00 Z5.000000\nG00 X{x:.6} Y{y:.6}\nG01 Z-0.125000 F100.0(Penetrate)"
             ),
             Part::Line(_) => writeln!(text, "G01 X{x:.6} Y{y:.6} Z-0.125000 F1200.000000"),
-            Part::Arc {
-                centre,
-                is_clockwise,
-                ..
-            } => {
-                let [i, j] = [centre[0] - from[0], centre[1] - from[1]];
-                let word = if *is_clockwise { "G02" } else { "G03" };
+            Part::Arc { .. } => {
+                let (word, [i, j]) = part.arc(from).unwrap();
+                let word = word.replace('G', "G0");
                 writeln!(
                     text,
                     "{word} X{x:.6} Y{y:.6} Z-0.125000 I{i:.6} J{j:.6} F1200.000000"
@@ -90,17 +82,9 @@ fn laser(parts: &[Part]) -> String {
         let _ = match part {
             Part::Rapid(_) => writeln!(text, "G0 X{x:.3}Y{y:.3}"),
             Part::Line(_) => writeln!(text, "G1 X{x:.3}Y{y:.3}{rest}"),
-            Part::Arc {
-                centre,
-                is_clockwise,
-                ..
-            } => {
-                let [i, j] = [centre[0] - from[0], centre[1] - from[1]];
-                writeln!(
-                    text,
-                    "{} X{x:.3}Y{y:.3}I{i:.3}J{j:.3}{rest}",
-                    arc_word(*is_clockwise)
-                )
+            Part::Arc { .. } => {
+                let (word, [i, j]) = part.arc(from).unwrap();
+                writeln!(text, "{word} X{x:.3}Y{y:.3}I{i:.3}J{j:.3}{rest}")
             }
         };
         is_first = matches!(part, Part::Rapid(_));
@@ -144,7 +128,7 @@ fn post_processor(parts: &[Part]) -> String {
         let word = match part {
             Part::Rapid(_) => "G0",
             Part::Line(_) => "G1",
-            Part::Arc { is_clockwise, .. } => arc_word(*is_clockwise),
+            Part::Arc { .. } => part.arc(from).unwrap().0,
         };
         if word != before {
             let _ = write!(words, "{word} ");
@@ -155,11 +139,8 @@ fn post_processor(parts: &[Part]) -> String {
                 let _ = write!(words, "{axis}{} ", short(to, 4));
             }
         }
-        if let Part::Arc { centre, .. } = part {
-            for (word, by) in ['I', 'J']
-                .into_iter()
-                .zip([centre[0] - from[0], centre[1] - from[1]])
-            {
+        if let Some((_, offset)) = part.arc(from) {
+            for (word, by) in ['I', 'J'].into_iter().zip(offset) {
                 if by.abs() > 5e-5 {
                     let _ = write!(words, "{word}{} ", short(by, 4));
                 }
@@ -189,16 +170,11 @@ fn parametric_cad(parts: &[Part]) -> String {
                 "G0 Z5.000\nG0 X{x:.3} Y{y:.3} Z5.000\nG1 X{x:.3} Y{y:.3} Z-1.000 F300.000"
             ),
             Part::Line(_) => writeln!(text, "G1 X{x:.3} Y{y:.3} Z-1.000 F1200.000"),
-            Part::Arc {
-                centre,
-                is_clockwise,
-                ..
-            } => {
-                let [i, j] = [centre[0] - from[0], centre[1] - from[1]];
+            Part::Arc { .. } => {
+                let (word, [i, j]) = part.arc(from).unwrap();
                 writeln!(
                     text,
-                    "{} X{x:.3} Y{y:.3} Z-1.000 I{i:.3} J{j:.3} K0.000 F1200.000",
-                    arc_word(*is_clockwise)
+                    "{word} X{x:.3} Y{y:.3} Z-1.000 I{i:.3} J{j:.3} K0.000 F1200.000"
                 )
             }
         };
@@ -234,17 +210,9 @@ fn sign_maker(parts: &[Part]) -> String {
         let _ = match part {
             Part::Rapid(_) => writeln!(text, "G0X{x:.3}Y{y:.3}Z5.080\nG1Z-1.000F500.0"),
             Part::Line(_) => writeln!(text, "G1X{x:.3}Y{y:.3}Z-1.000F1200.0"),
-            Part::Arc {
-                centre,
-                is_clockwise,
-                ..
-            } => {
-                let [i, j] = [centre[0] - from[0], centre[1] - from[1]];
-                writeln!(
-                    text,
-                    "{}X{x:.3}Y{y:.3}I{i:.3}J{j:.3}F1200.0",
-                    arc_word(*is_clockwise)
-                )
+            Part::Arc { .. } => {
+                let (word, [i, j]) = part.arc(from).unwrap();
+                writeln!(text, "{word}X{x:.3}Y{y:.3}I{i:.3}J{j:.3}F1200.0")
             }
         };
     });
@@ -300,14 +268,10 @@ fn by_hand(parts: &[Part]) -> String {
         let _ = match part {
             Part::Rapid(_) => write!(text, "g0 x{x} y{y}\r\n"),
             Part::Line(_) => write!(text, "g1 x{x} y{y} f1200\r\n"),
-            Part::Arc {
-                centre,
-                is_clockwise,
-                to,
-            } => {
-                let radius = (centre[0] - from[0]).hypot(centre[1] - from[1]);
+            Part::Arc { to, .. } => {
+                let (word, [i, j]) = part.arc(from).unwrap();
+                let (word, radius) = (word.to_lowercase(), i.hypot(j));
                 let apart = (to[0] - from[0]).hypot(to[1] - from[1]);
-                let word = if *is_clockwise { "g2" } else { "g3" };
                 // Rounded, a half turn's radius must not be less than half of its chord.
                 let radius = radius.max(apart * 0.5);
                 write!(text, "{word} x{x} y{y} r{} f1200\r\n", short(radius, 4))

@@ -87,6 +87,12 @@ impl Line {
             let error = match opened {
                 Ok(stream) => {
                     info!("{}: {} is open", self.name, self.config.port);
+                    for (area, kept) in self.memory.of_another_length(&self.config) {
+                        let (line, name, bytes) = (&self.name, &area.name, area.bytes());
+                        warn!(
+                            "{line}: area `{name}`: zeros, as {kept} bytes are kept, not {bytes}"
+                        );
+                    }
                     if let Some(counts) = self.hub.counts(&self.name) {
                         counts.opened.fetch_add(1, Ordering::Relaxed);
                     }

@@ -31,7 +31,19 @@ impl Memory {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What stands in an area: zeros, as long as nobody has written it.
+    /// The areas that are served and whose kept bytes are of another length than theirs.
+    pub(super) fn of_another_length<'a>(
+        &self,
+        line: &'a config::Line,
+    ) -> impl Iterator<Item = (&'a Area, usize)> {
+        let areas = line.areas.iter().map(Spanned::get_ref);
+        areas.filter(|area| area.served).filter_map(|area| {
+            let kept = self.lock().areas.get(area.name.as_str())?.len();
+            (kept != area.bytes()).then_some((area, kept))
+        })
+    }
+
+    /// What stands in an area: zeros, as long as nobody has written it in its length.
     pub(super) fn read(&self, area: &Area) -> Vec<u8> {
         let content = self.lock();
         let known = content.areas.get(area.name.as_str());

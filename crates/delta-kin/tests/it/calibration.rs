@@ -1,6 +1,6 @@
 //! Calibration: what was changed is found again, and what cannot be found is said.
 
-#[path = "../../benches/common/eleven.rs"]
+#[path = "../../benches/kinematics/eleven.rs"]
 mod eleven;
 
 use delta_kin::nalgebra::{Point3, Vector3};

@@ -5,13 +5,13 @@
 
 use core::f64::consts::TAU;
 
-use machine_kin::path_timing::{AxisLimits, Curve, Knot, Path, Table, ToolLimits};
+use machine_kin::path_timing::{Curve, Knot, Path, Table, ToolLimits};
 use machine_kin::{
     CarriageSide, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, Polar, Scara, WithZ,
 };
 use test_support::{Random, setting};
 
-use crate::common::{apart, cubics, distance, forward, slopes, within};
+use crate::common::{apart, cubics, distance, forward, limits, slopes, within};
 
 /// Places of a curve that are looked at.
 const SAMPLES: u32 = 400;
@@ -177,18 +177,7 @@ impl Tally {
             }
         };
         let tolerance = random.size(-3.0, -1.0);
-        let limits = machine.axes().map(|axis| {
-            let (speed, acceleration) = if axis.is_angle() {
-                (4.0, 60.0)
-            } else {
-                (300.0, 4000.0)
-            };
-            AxisLimits {
-                speed,
-                acceleration,
-                jerk: None,
-            }
-        });
+        let limits = limits(machine);
         let mut knots = vec![Knot::default(); 4000];
         let departure = machine_kin::MachinePath::departure;
         let table = Table::plan_within(

@@ -2,7 +2,7 @@
 
 pub(crate) mod arms;
 
-use machine_kin::path_timing::{Accuracy, Cubic, Curve, Span};
+use machine_kin::path_timing::{Accuracy, AxisLimits, Cubic, Curve, Span};
 use machine_kin::{Axis, Gradient, Machine};
 use scara_kin::nalgebra::{SMatrix, SVector};
 
@@ -69,6 +69,22 @@ pub(crate) fn distance<const N: usize>(curve: &Curve<N>, place: [f64; N], mut at
         at = (at + off.dot(&tangent) / tangent.norm_squared()).clamp(0.0, curve.length());
     }
     off.norm()
+}
+
+/// Usual limits: in rad/s and rad/s², or mm/s and mm/s².
+pub(crate) fn limits<M: Machine<N>, const N: usize>(machine: &M) -> [AxisLimits; N] {
+    machine.axes().map(|axis| {
+        let (speed, acceleration) = if axis.is_angle() {
+            (4.0, 60.0)
+        } else {
+            (300.0, 4000.0)
+        };
+        AxisLimits {
+            speed,
+            acceleration,
+            jerk: None,
+        }
+    })
 }
 
 /// Some accuracy whatever the time.

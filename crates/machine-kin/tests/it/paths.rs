@@ -3,8 +3,7 @@
 use core::f64::consts::TAU;
 
 use machine_kin::path_timing::{
-    AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier,
-    segments_within,
+    Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier, segments_within,
 };
 use machine_kin::{
     Axis, CarriageSide, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, MachinePath,
@@ -12,7 +11,7 @@ use machine_kin::{
 };
 use proptest::prelude::*;
 
-use crate::common::within;
+use crate::common::{limits, within};
 
 /// Step of finite differences in mm, and what they are off by.
 const STEP: f64 = 1e-3;
@@ -181,18 +180,7 @@ fn ranges_that_are_none_are_refused() {
 /// Holds, feeds and streams keep the limits and the tolerance on every row, as the verifier sees them.
 fn runs<M: Machine<N>, const N: usize>(machine: &M, curves: [Curve<N>; 2], branch: M::Branch) {
     const TOLERANCE: f64 = 0.02;
-    let limits = machine.axes().map(|axis| {
-        let (speed, acceleration) = if axis.is_angle() {
-            (4.0, 60.0)
-        } else {
-            (300.0, 4000.0)
-        };
-        AxisLimits {
-            speed,
-            acceleration,
-            jerk: None,
-        }
-    });
+    let limits = limits(machine);
     let first = machine.path(curves[0], branch).unwrap();
     let end = first.point(first.length()).unwrap().position;
     let paths = [first, machine.path_from(curves[1], branch, end).unwrap()];

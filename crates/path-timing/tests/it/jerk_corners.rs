@@ -158,7 +158,7 @@ proptest! {
         let table = Table::plan(&legs, STAGE, |_| segments, &mut knots);
         prop_assume!(!matches!(table, Err(PlanError::TooCoarse { .. })));
         let table = table.unwrap().at_speed(scale).unwrap();
-        let rows = run_under(feeds, &table);
+        let rows = run_under(feeds, 0.3, &table);
         check_jerk(&STAGE, None, &rows);
         for (row, planned) in rows.iter().zip(table.rows()) {
             prop_assert_eq!(bits(row), bits(&planned));

@@ -1,8 +1,9 @@
 //! Feed override and stops on the path.
 
-use path_timing::{AxisLimits, FeedCeiling, Knot, PlanError, Row, Table};
+use path_timing::{AxisLimits, FeedCeiling, Knot, PlanError, Table};
 use proptest::prelude::*;
 
+use crate::support::jerk::{assert_planned, feeds, held_at_each, run_under};
 use crate::support::limits::check_limits;
 use crate::support::machine::{Line, limits};
 
@@ -15,11 +16,6 @@ fn legs() -> [Line; 3] {
         from: corners[i],
         to: corners[i + 1],
     })
-}
-
-/// All digits of a position.
-fn bits(row: &Row<[f64; 2]>) -> [u64; 2] {
-    row.position.map(f64::to_bits)
 }
 
 #[test]
@@ -45,24 +41,10 @@ fn wrong_feeds_and_memory_are_named() {
 fn a_stop_rests_on_the_path_and_goes_on() {
     let mut knots = [Knot::default(); 183];
     let table = Table::plan(legs(), LIMITS, |_| 60, &mut knots).unwrap();
-    for moving in 1..table.len() {
-        let mut ahead = [FeedCeiling::default(); 181];
-        let mut run = table.playback(1.0, &mut ahead).unwrap();
-        let mut rows: Vec<_> = run.by_ref().take(moving).collect();
-        run.stop();
-        rows.extend(run.by_ref());
-        let rest = rows.last().unwrap();
-        assert!(rest.velocity.iter().all(|v| *v == 0.0));
+    for (rows, hold_s) in held_at_each(&table, 1) {
         // Three lines take 0.6 s and more each; a stop takes 0.2 s.
-        let stop_s = rest.time_s - rows[moving - 1].time_s;
-        assert!(stop_s < 0.3, "{moving}: {stop_s}");
-        run.set_feed(1.0).unwrap();
-        rows.extend(run);
+        assert!(hold_s < 0.3, "{hold_s}");
         check_limits(&LIMITS, None, &rows);
-        assert_eq!(rows.len(), table.len());
-        for (row, planned) in rows.iter().zip(table.rows()) {
-            assert_eq!(bits(row), bits(&planned));
-        }
     }
 }
 
@@ -71,26 +53,13 @@ proptest! {
 
     #[test]
     fn limits_hold_under_any_feed(
-        feeds in prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12),
-        segments in 3..60_u32, scale in 0.3..1.0,
+        feeds in feeds(), segments in 3..60_u32, scale in 0.3..1.0,
     ) {
         let mut knots = [Knot::default(); 183];
         let table = Table::plan(legs(), LIMITS, |_| segments, &mut knots).unwrap();
         let table = table.at_speed(scale).unwrap();
-        let mut ahead = [FeedCeiling::default(); 181];
-        let mut run = table.playback(1.5, &mut ahead).unwrap();
-        let mut rows = Vec::new();
-        for (feed, count) in feeds {
-            run.set_feed(if feed < 0.2 { 0.0 } else { feed }).unwrap();
-            rows.extend(run.by_ref().take(count));
-        }
-        run.set_feed(1.0).unwrap();
-        rows.extend(run.by_ref());
-        prop_assert!(run.is_finished());
-        prop_assert_eq!(rows.len(), table.len());
+        let rows = run_under(feeds, 0.2, &table);
         check_limits(&LIMITS, None, &rows);
-        for (row, planned) in rows.iter().zip(table.rows()) {
-            prop_assert_eq!(bits(row), bits(&planned));
-        }
+        assert_planned(&rows, &table);
     }
 }

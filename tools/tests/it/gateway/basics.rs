@@ -12,7 +12,7 @@ use super::{
     broker::free_ports,
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, metric, mqtt},
+    process::{Gateway, hall, line, metric, metrics, mqtt},
     subscriber::Subscriber,
 };
 
@@ -38,12 +38,14 @@ length = 3
 async fn telegrams_commands_and_the_end() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let [metrics] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n{}discovery = \"homeassistant\"\n[metrics]\nlisten = \"127.0.0.1:{metrics}\"\n{}{SCALE}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let [port] = free_ports();
+    let config = hall(&[
+        &mqtt(broker.port),
+        "discovery = \"homeassistant\"\n",
+        &metrics(port),
+        &line("scale", partner.port),
+        SCALE,
+    ]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -94,16 +96,12 @@ async fn telegrams_commands_and_the_end() {
     );
 
     let command = r#"{"id": 7, "send_text": "TARE"}"#;
-    subscriber
-        .publish("line3964r/hall/scale/command", QoS::AtLeastOnce, command)
-        .await;
+    subscriber.command("scale", command).await;
     assert_eq!(scale.receive().await.unwrap(), b"TARE");
-    let outcome = subscriber.json_at("line3964r/hall/scale/outcome").await;
+    let outcome = subscriber.outcome("scale").await;
     assert_eq!((&outcome["id"], &outcome["ok"]), (&json!(7), &json!(true)));
-    subscriber
-        .publish("line3964r/hall/scale/command", QoS::AtLeastOnce, "TARE")
-        .await;
-    let outcome = subscriber.json_at("line3964r/hall/scale/outcome").await;
+    subscriber.command("scale", "TARE").await;
+    let outcome = subscriber.outcome("scale").await;
     assert_eq!(outcome["ok"], json!(false));
     assert!(
         outcome["error"]
@@ -112,29 +110,17 @@ async fn telegrams_commands_and_the_end() {
             .starts_with("no command: ")
     );
 
-    let read = |name: &'static str| spawn_blocking(move || metric(metrics, name));
-    assert_eq!(
-        read("line3964r_line_received_total{line=\"scale\"}")
-            .await
-            .unwrap(),
-        3
-    );
-    assert_eq!(
-        read("line3964r_line_possible_repeats_total{line=\"scale\"}")
-            .await
-            .unwrap(),
-        1
-    );
-    assert_eq!(
-        read("line3964r_line_commands_refused_total{line=\"scale\"}")
-            .await
-            .unwrap(),
-        1
-    );
-    assert_eq!(read("line3964r_mqtt_dropped_total").await.unwrap(), 0);
+    for (name, value) in [
+        ("line3964r_line_received_total{line=\"scale\"}", 3),
+        ("line3964r_line_possible_repeats_total{line=\"scale\"}", 1),
+        ("line3964r_line_commands_refused_total{line=\"scale\"}", 1),
+        ("line3964r_mqtt_dropped_total", 0),
+    ] {
+        let read = spawn_blocking(move || metric(port, name)).await;
+        assert_eq!(read.unwrap(), value, "{name}");
+    }
 
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
     assert_eq!(
         subscriber.at("line3964r/hall/scale/status").await,
         b"offline"
@@ -146,11 +132,7 @@ async fn telegrams_commands_and_the_end() {
 async fn a_lost_port_is_opened_again_and_a_killed_gateway_is_told_offline() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[&mqtt(broker.port), &line("scale", partner.port)]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -209,10 +191,8 @@ length = 1
     assert_eq!(first["hex"], "00 07 00 00 00 00 00 00");
     assert_eq!(first["fields"]["setpoint"], json!({ "value": 7 }));
     let write = r#"{"id": "w", "write": "oven", "fields": {"setpoint": 300, "actual": 21.5}}"#;
-    subscriber
-        .publish("line3964r/hall/plc/command", QoS::AtLeastOnce, write)
-        .await;
-    let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+    subscriber.command("plc", write).await;
+    let outcome = subscriber.outcome("plc").await;
     assert_eq!(
         (&outcome["id"], &outcome["ok"]),
         (&json!("w"), &json!(true)),
@@ -240,10 +220,8 @@ length = 1
             "send is for lines of 3964r; this one has fetch and write",
         ),
     ] {
-        subscriber
-            .publish("line3964r/hall/plc/command", QoS::AtLeastOnce, command)
-            .await;
-        let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+        subscriber.command("plc", command).await;
+        let outcome = subscriber.outcome("plc").await;
         assert_eq!(outcome["ok"], json!(false), "{command}");
         assert!(
             outcome["error"].as_str().unwrap().contains(error),
@@ -256,10 +234,8 @@ length = 1
 async fn events_and_commands_over_tcp_without_a_broker() {
     let partner = Partner::new().await;
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:{port}\"\n{}",
-        line("scale", partner.port)
-    );
+    let tcp = format!("[tcp]\nlisten = \"127.0.0.1:{port}\"\n");
+    let config = hall(&[&tcp, &line("scale", partner.port)]);
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
     gateway.logs("1 lines");
@@ -285,6 +261,5 @@ async fn events_and_commands_over_tcp_without_a_broker() {
         (&telegram["line"], &telegram["hex"]),
         (&json!("scale"), &json!("31 32"))
     );
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }

@@ -2,14 +2,14 @@
 
 use core::time::Duration;
 
-use rumqttc::v5::mqttbytes::{QoS, v5::PublishProperties};
+use rumqttc::v5::mqttbytes::v5::PublishProperties;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use super::{
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, mqtt},
+    process::{Gateway, hall, line, mqtt},
     subscriber::Subscriber,
 };
 
@@ -37,7 +37,7 @@ async fn a_command_for_a_gateway_that_is_away_is_run_only_if_that_is_wanted() {
         subscriber.at("line3964r/hall/scale/telegram").await;
         drop((gateway, scale));
         let command = r#"{"id": 1, "send": "41"}"#;
-        subscriber.publish(COMMAND, QoS::AtLeastOnce, command).await;
+        subscriber.command("scale", command).await;
         subscriber.at(COMMAND).await;
 
         let gateway = Gateway::start(&config);
@@ -47,7 +47,7 @@ async fn a_command_for_a_gateway_that_is_away_is_run_only_if_that_is_wanted() {
         assert_eq!(received.is_ok(), is_run, "{max_age_s} s");
         // One for a gateway that is there.
         let command = r#"{"id": 2, "send": "42"}"#;
-        subscriber.publish(COMMAND, QoS::AtLeastOnce, command).await;
+        subscriber.command("scale", command).await;
         assert_eq!(scale.receive().await.unwrap(), b"B");
         drop(gateway);
         subscriber.at(STATUS).await;
@@ -58,11 +58,7 @@ async fn a_command_for_a_gateway_that_is_away_is_run_only_if_that_is_wanted() {
 async fn a_response_topic_has_the_outcome_with_its_correlation_data() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[&mqtt(broker.port), &line("scale", partner.port)]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -100,6 +96,5 @@ async fn a_response_topic_has_the_outcome_with_its_correlation_data() {
         .ask(COMMAND, properties, r#"{"send": "42"}"#)
         .await;
     assert_eq!(scale.receive().await.unwrap(), b"B");
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }

@@ -14,7 +14,7 @@ use super::{
     broker::free_ports,
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, mqtt},
+    process::{Gateway, hall, line, metrics, mqtt},
     subscriber::Subscriber,
 };
 
@@ -50,11 +50,13 @@ async fn a_number_is_written_and_a_button_fetches() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n{}discovery = \"homeassistant\"\n[metrics]\nlisten = \"127.0.0.1:{port}\"\n{}{AREA}",
-        mqtt(broker.port),
-        line("oven", partner.port)
-    );
+    let config = hall(&[
+        &mqtt(broker.port),
+        "discovery = \"homeassistant\"\n",
+        &metrics(port),
+        &line("oven", partner.port),
+        AREA,
+    ]);
     tokio::spawn(partner.serve_rk512());
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
@@ -77,7 +79,7 @@ async fn a_number_is_written_and_a_button_fetches() {
     let command = command.replace("{{ value }}", "21.5");
     let topic = number["command_topic"].as_str().unwrap();
     subscriber.publish(topic, QoS::AtLeastOnce, command).await;
-    let outcome = subscriber.json_at("line3964r/hall/oven/outcome").await;
+    let outcome = subscriber.outcome("oven").await;
     assert_eq!(outcome["ok"], true, "{outcome}");
     let button = &found["button fetch/config"];
     let topic = button["command_topic"].as_str().unwrap();

@@ -12,7 +12,7 @@ use super::{
     broker::free_ports,
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, metric, mqtt},
+    process::{Gateway, hall, line, metric, metrics, mqtt},
     subscriber::Subscriber,
 };
 
@@ -27,11 +27,8 @@ async fn blocks_that_are_answered_nak_are_counted_by_their_cause() {
     let broker = broker_or_skip!();
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n{}[metrics]\nlisten = \"127.0.0.1:{port}\"\n{}",
-        mqtt(broker.port),
-        line("scale", listener.local_addr().unwrap().port())
-    );
+    let line = line("scale", listener.local_addr().unwrap().port());
+    let config = hall(&[&mqtt(broker.port), &metrics(port), &line]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let (mut scale, _) = listener.accept().await.unwrap();
@@ -59,8 +56,7 @@ async fn blocks_that_are_answered_nak_are_counted_by_their_cause() {
             break;
         }
     }
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }
 
 /// Who connects to the metrics and asks nothing takes no more than a few files.
@@ -70,10 +66,8 @@ async fn clients_of_the_metrics_do_not_take_the_files_of_lines() {
     const FILES: u32 = 32;
     let partner = Partner::new().await;
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n[tcp]\nlisten = \"127.0.0.1:0\"\n[metrics]\nlisten = \"127.0.0.1:{port}\"\n{}",
-        line("scale", partner.port)
-    );
+    let tcp = "[tcp]\nlisten = \"127.0.0.1:0\"\n";
+    let config = hall(&[tcp, &metrics(port), &line("scale", partner.port)]);
     let gateway = Gateway::start_with_files(FILES, &config);
     drop(partner.link().await);
     let mut clients = Vec::new();
@@ -88,6 +82,6 @@ async fn clients_of_the_metrics_do_not_take_the_files_of_lines() {
     let name = "line3964r_line_received_total{line=\"scale\"}";
     let received = spawn_blocking(move || metric(port, name)).await.unwrap();
     assert_eq!(received, 1);
-    let (status, log) = gateway.stop();
-    assert!(status.success() && !log.contains("Too many"), "{log}");
+    let log = gateway.ends();
+    assert!(!log.contains("Too many"), "{log}");
 }

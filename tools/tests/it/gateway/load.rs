@@ -160,8 +160,7 @@ async fn broker_stops_and_starts(protocol: &str) {
     }
     is_over.store(true, Ordering::Relaxed);
     let _broker = stops.await.unwrap();
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
     heard.assert_complete(count);
 }
 
@@ -233,8 +232,7 @@ async fn serial_lines_lose_nothing_in_both_directions() {
         }
     }
     partners.join_all().await;
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
     heard.assert_complete(TELEGRAMS);
     for of_line in outcomes.values() {
         assert!(

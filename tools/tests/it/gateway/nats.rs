@@ -22,7 +22,7 @@ use super::{
     broker::{PASSWORD, USER},
     nats_server::Cluster,
     partner::Partner,
-    process::{Gateway, PATIENCE, line, metric},
+    process::{Gateway, PATIENCE, hall, line, metric, metrics},
 };
 use crate::gateway::broker::free_ports;
 
@@ -86,11 +86,8 @@ async fn telegrams_and_states_are_kept_and_requests_are_answered() {
     let cluster = cluster_or_skip!(1);
     let partner = Partner::new().await;
     let [port] = free_ports();
-    let config = format!(
-        "name = \"hall\"\n{}[metrics]\nlisten = \"127.0.0.1:{port}\"\n{}",
-        nats(&cluster),
-        line("scale", partner.port)
-    );
+    let line = line("scale", partner.port);
+    let config = hall(&[&nats(&cluster), &metrics(port), &line]);
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
     gateway.logs("broker: connected to ");
@@ -186,8 +183,7 @@ async fn servers_that_are_killed_in_turn_lose_and_double_nothing() {
     for partner in partners {
         sent.push(partner.await.unwrap());
     }
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    let log = gateway.ends();
 
     let client = client(&cluster).await;
     let mut heard: BTreeMap<String, Vec<(u64, u32)>> = BTreeMap::new();

@@ -43,6 +43,16 @@ pub(crate) fn line(name: &str, port: u16) -> String {
     )
 }
 
+/// Where metrics are served.
+pub(crate) fn metrics(port: u16) -> String {
+    format!("[metrics]\nlisten = \"127.0.0.1:{port}\"\n")
+}
+
+/// The configuration of a gateway, `hall`, in its parts.
+pub(crate) fn hall(parts: &[&str]) -> String {
+    format!("name = \"hall\"\n{}", parts.concat())
+}
+
 impl Gateway {
     pub(crate) fn start(config: &str) -> Self {
         Self::start_by(Command::new(PROGRAM), config)
@@ -112,6 +122,13 @@ impl Gateway {
         let status = self.process.wait().unwrap();
         thread::sleep(Duration::from_millis(50)); // the last lines of the log
         (status, self.log())
+    }
+
+    /// The same where the end is a good one; its log.
+    pub(crate) fn ends(self) -> String {
+        let (status, log) = self.stop();
+        assert!(status.success(), "{log}");
+        log
     }
 }
 

@@ -11,7 +11,7 @@ use super::{
     broker::{PASSWORD, USER, free_ports},
     broker_or_skip,
     partner::Partner,
-    process::{Gateway, line, metric, mqtt},
+    process::{Gateway, hall, line, metric, mqtt},
     subscriber::Subscriber,
 };
 
@@ -27,9 +27,8 @@ async fn a_wrong_password_is_refused_and_the_line_goes_on() {
     let scale = partner.link().await;
     gateway.logs("Connection refused, return code: `NotAuthorized`");
     scale.send(b"still here").await.unwrap();
-    let (status, log) = gateway.stop();
+    let log = gateway.ends();
     // The telegram waits for the next start, and that is said.
-    assert!(status.success(), "{log}");
     assert!(log.contains("1 messages wait in the store"), "{log}");
 }
 
@@ -67,11 +66,7 @@ async fn oversized_payloads_and_a_flood_of_commands() {
     let broker = broker_or_skip!();
     let mut subscriber = Subscriber::new(broker.port).await;
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[&mqtt(broker.port), &line("scale", partner.port)]);
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
     assert_eq!(
@@ -136,8 +131,7 @@ async fn oversized_payloads_and_a_flood_of_commands() {
         "{too_many} {done} {received}"
     );
     gateway.logs("command refused: too many commands wait");
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -26,7 +26,7 @@ use super::{
     broker::{Broker, free_ports},
     broker_or_skip,
     partner::{PARTNER, Partner},
-    process::{Gateway, PATIENCE, line, metric, mqtt},
+    process::{Gateway, PATIENCE, hall, line, metric, mqtt},
     subscriber::Subscriber,
 };
 
@@ -172,8 +172,7 @@ async fn a_killed_gateway_loses_nothing_that_it_acknowledged() {
         acknowledged.push(partner.await.unwrap());
     }
     let heard = hearing.await.unwrap();
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
     println!(
         "{} telegrams, {} kills: {} published twice, {} marked as possible repeats",
         acknowledged.iter().sum::<u32>(),
@@ -241,11 +240,11 @@ async fn what_the_broker_may_not_take_is_a_dead_letter_and_no_success() {
 async fn a_full_store_is_nak_and_no_lie() {
     let mut broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}[store]\nmax_bytes = 1000\n{}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[
+        &mqtt(broker.port),
+        "[store]\nmax_bytes = 1000\n",
+        &line("scale", partner.port),
+    ]);
     broker.stop();
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -270,8 +269,7 @@ async fn a_full_store_is_nak_and_no_lie() {
         // The number of one that was refused was kept for it.
         assert_eq!(telegram["seq"], u64::from(number) + 1);
     }
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }
 
 /// In memory, the gateway says at the start and at the end what that costs.

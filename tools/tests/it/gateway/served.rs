@@ -13,7 +13,6 @@ use rk512::{
     Area, CallError, Command, CoordinationFlag, DataBlock, JobError, Memory, ReactionError,
     tokio::Client,
 };
-use rumqttc::v5::mqttbytes::QoS;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::{net::TcpListener, time::sleep};
@@ -21,7 +20,7 @@ use tokio::{net::TcpListener, time::sleep};
 use super::{
     broker_or_skip,
     partner::{PARTNER, Partner},
-    process::{Gateway, line, mqtt},
+    process::{Gateway, hall, line, mqtt},
     subscriber::Subscriber,
 };
 
@@ -65,11 +64,7 @@ fn refusal<T>(result: Result<T, CallError>) -> ReactionError {
 async fn a_partner_sends_to_the_gateway_and_fetches_from_it() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}{AREAS}",
-        mqtt(broker.port),
-        line("plc", partner.port)
-    );
+    let config = hall(&[&mqtt(broker.port), &line("plc", partner.port), AREAS]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let _gateway = Gateway::start(&config);
     let db10 = Box::leak(vec![0, 7].into_boxed_slice());
@@ -95,17 +90,15 @@ async fn a_partner_sends_to_the_gateway_and_fetches_from_it() {
     order[138..].copy_from_slice(&[1, 2]);
     assert_eq!(plc.fetch(Area::db(20, 4), 70).await.unwrap(), order);
 
-    let command = |text: &'static str| {
-        subscriber.publish("line3964r/hall/plc/command", QoS::AtLeastOnce, text)
-    };
+    let command = |text: &'static str| subscriber.command("plc", text);
     assert_eq!(plc.fetch(Area::dx(3, 0), 2).await.unwrap(), [0; 4]);
     command(r#"{"write": "setpoints", "fields": {"speed": -12.5}}"#).await;
     command(r#"{"write": "orders", "hex": "00"}"#).await;
     let told = subscriber.json_at(&area("setpoints")).await;
     assert_eq!(told["fields"]["speed"]["value"], -12.5);
-    let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+    let outcome = subscriber.outcome("plc").await;
     assert_eq!(outcome["ok"], true, "{outcome}");
-    let outcome = subscriber.json_at("line3964r/hall/plc/outcome").await;
+    let outcome = subscriber.outcome("plc").await;
     assert_eq!(outcome["error"], "`orders` is not writable");
     assert_eq!(
         plc.fetch(Area::dx(3, 1), 1).await.unwrap(),
@@ -125,11 +118,7 @@ async fn a_partner_sends_to_the_gateway_and_fetches_from_it() {
     let fetch = fetch.with_coordination(flag.into());
     assert_eq!(refusal(plc.run(fetch, &[]).await), ReactionError::Locked);
     subscriber
-        .publish(
-            "line3964r/hall/plc/command",
-            QoS::AtLeastOnce,
-            r#"{"write": "marks", "fields": {"order": false}}"#,
-        )
+        .command("plc", r#"{"write": "marks", "fields": {"order": false}}"#)
         .await;
     let told = subscriber.json_at(&area("marks")).await;
     assert_eq!(told["fields"]["order"]["value"], json!(false), "{told}");
@@ -251,13 +240,11 @@ async fn a_reaction_says_so_where_the_store_is_full() {
     let mut broker = broker_or_skip!();
     let folder = TempDir::new().unwrap();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}[store]\npath = \"{}\"\nmax_bytes = 1000\n{}{AREAS}",
-        mqtt(broker.port),
-        folder.path().display(),
-        line("plc", partner.port).replace("[[line]]", "[[line]]\nmark_repeats = false")
-    )
-    .replace("poll_s = 0.2\n", "");
+    let store = folder.path().display();
+    let store = format!("[store]\npath = \"{store}\"\nmax_bytes = 1000\n");
+    let line = line("plc", partner.port).replace("[[line]]", "[[line]]\nmark_repeats = false");
+    let areas = AREAS.replace("poll_s = 0.2\n", "");
+    let config = hall(&[&mqtt(broker.port), &store, &line, &areas]);
     broker.stop();
     let gateway = Gateway::start(&config);
     let stream = partner.stream().await;
@@ -290,5 +277,28 @@ async fn a_reaction_says_so_where_the_store_is_full() {
         assert!(hex.starts_with(&format!("00 {number:02X}")), "{told}");
         // The number of one that was refused was kept for it.
         assert_eq!(told["seq"], u64::from(number) + 1);
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_area_that_is_kept_in_another_length_begins_with_zeros_and_that_is_said() {
+    let broker = broker_or_skip!();
+    let folder = TempDir::new().unwrap();
+    let partner = Partner::new().await;
+    let store = format!("[store]\npath = \"{}\"\n", folder.path().display());
+    for (length, before, is_said) in [(2, [0; 2], false), (2, [1, 2], false), (3, [0; 2], true)] {
+        let area = format!(
+            "procedure = \"rk512\"\n[[line.area]]\nname = \"orders\"\nstart = \"DB 20.0\"\n\
+             length = {length}\nserved = true\n"
+        );
+        let line = line("plc", partner.port);
+        let gateway = Gateway::start(&hall(&[&mqtt(broker.port), &store, &line, &area]));
+        let stream = partner.stream().await;
+        let plc = Client::new(stream, PARTNER, rk512::Config::DEFAULT);
+        assert_eq!(plc.fetch(Area::db(20, 0), 1).await.unwrap(), before);
+        plc.send(Area::db(20, 0), &[1, 2]).await.unwrap();
+        let log = gateway.ends();
+        let said = "plc: area `orders`: zeros, as 4 bytes are kept, not 6";
+        assert_eq!(log.contains(said), is_said, "{length} words: {log}");
     }
 }

@@ -118,6 +118,18 @@ impl Subscriber {
             .unwrap();
     }
 
+    /// A command for a line of the gateway `hall`.
+    pub(crate) async fn command(&self, line: &str, command: impl Into<Vec<u8>>) {
+        let topic = format!("line3964r/hall/{line}/command");
+        self.publish(&topic, QoS::AtLeastOnce, command).await;
+    }
+
+    /// The next outcome of a command for it.
+    pub(crate) async fn outcome(&mut self, line: &str) -> Value {
+        let topic = format!("line3964r/hall/{line}/outcome");
+        self.json_at(&topic).await
+    }
+
     /// Publishes what wants an answer.
     pub(crate) async fn ask(&self, topic: &str, properties: PublishProperties, payload: &str) {
         let (qos, payload) = (QoS::AtLeastOnce, payload.to_owned());

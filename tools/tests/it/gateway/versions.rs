@@ -21,7 +21,7 @@ use super::{
     broker_or_skip,
     nats_server::Cluster,
     partner::Partner,
-    process::{Gateway, PATIENCE, line, mqtt},
+    process::{Gateway, PATIENCE, hall, line, mqtt},
     subscriber::Subscriber,
 };
 
@@ -66,11 +66,11 @@ async fn a_broker_without_5_is_found_out() {
         let (port, refused) = front(broker.port, answer, usize::MAX).await;
         let partner = Partner::new().await;
         let mut subscriber = Subscriber::new(broker.port).await;
-        let config = format!(
-            "name = \"hall\"\n{}command_max_age_s = 60\n{}",
-            mqtt(port),
-            line("scale", partner.port)
-        );
+        let config = hall(&[
+            &mqtt(port),
+            "command_max_age_s = 60\n",
+            &line("scale", partner.port),
+        ]);
         let gateway = Gateway::start(&config);
         let scale = partner.link().await;
         gateway.logs("broker: connected by MQTT 3.1.1");
@@ -90,7 +90,7 @@ async fn a_broker_without_5_is_found_out() {
             .ask("line3964r/hall/scale/command", properties, command)
             .await;
         assert_eq!(scale.receive().await.unwrap(), b"B");
-        let outcome = subscriber.json_at("line3964r/hall/scale/outcome").await;
+        let outcome = subscriber.outcome("scale").await;
         assert_eq!((&outcome["id"], &outcome["ok"]), (&json!(7), &json!(true)));
         drop(gateway); // killed: the will
         while subscriber.at("line3964r/hall/status").await != b"offline" {}
@@ -102,11 +102,7 @@ async fn a_broker_of_5_that_is_silent_for_a_while_is_one_of_5() {
     let broker = broker_or_skip!();
     let (port, refused) = front(broker.port, &[], 1).await;
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}",
-        mqtt(port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[&mqtt(port), &line("scale", partner.port)]);
     let gateway = Gateway::start(&config);
     gateway.logs("broker: connected by MQTT 5");
     assert_eq!(refused.load(Ordering::Relaxed), 1);
@@ -168,11 +164,11 @@ async fn what_ends_connections_of_3_1_1_is_a_dead_letter() {
 async fn a_packet_that_is_too_large_ends_one_connection() {
     let broker = broker_or_skip!();
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}protocol = \"3.1.1\"\n{}",
-        mqtt(broker.port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[
+        &mqtt(broker.port),
+        "protocol = \"3.1.1\"\n",
+        &line("scale", partner.port),
+    ]);
     let mut subscriber = Subscriber::new(broker.port).await;
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -187,8 +183,7 @@ async fn a_packet_that_is_too_large_ends_one_connection() {
     while subscriber.json_at("line3964r/hall/scale/telegram").await["hex"] != "42" {}
     subscriber.publish(command, qos, r#"{"send": "43"}"#).await;
     assert_eq!(scale.receive().await.unwrap(), b"C");
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    let log = gateway.ends();
     assert_eq!(log.matches("broker: connected").count(), 2, "{log}");
 }
 
@@ -215,11 +210,7 @@ async fn nats() {
     while !matches!(next().await, Incoming::SubAck(_)) {}
 
     let partner = Partner::new().await;
-    let config = format!(
-        "name = \"hall\"\n{}{}",
-        mqtt(port),
-        line("scale", partner.port)
-    );
+    let config = hall(&[&mqtt(port), &line("scale", partner.port)]);
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
     gateway.logs("broker: connected by MQTT 3.1.1");
@@ -250,6 +241,5 @@ async fn nats() {
         assert_eq!(telegram["hex"], format!("{number:02X}"));
     }
     assert_eq!(outcomes[0]["ok"], true);
-    let (status, log) = gateway.stop();
-    assert!(status.success(), "{log}");
+    gateway.ends();
 }

@@ -44,24 +44,53 @@ pub(crate) fn bits(row: &Row<[f64; 2]>) -> [u64; 2] {
     row.position.map(f64::to_bits)
 }
 
+/// The table run to each row from `first` on, held there, and run on: all rows, and how long each hold
+/// takes. The end is that of the table, to the last bit.
+pub(crate) fn held_at_each<'a>(
+    table: &'a Table<'_, [f64; 2]>,
+    first: usize,
+) -> impl Iterator<Item = (Vec<Row<[f64; 2]>>, f64)> + use<'a> {
+    (first..table.len()).map(|moving| {
+        let mut ahead = vec![FeedCeiling::default(); table.len()];
+        let mut run = table.playback(1.0, &mut ahead).unwrap();
+        let mut rows: Vec<_> = run.by_ref().take(moving).collect();
+        run.stop();
+        rows.extend(run.by_ref());
+        let rest = rows.last().unwrap();
+        assert!(rest.velocity.iter().all(|v| *v == 0.0));
+        let hold_s = rest.time_s - rows[moving - 1].time_s;
+        run.set_feed(1.0).unwrap();
+        rows.extend(run);
+        assert_planned(&rows, table);
+        (rows, hold_s)
+    })
+}
+
+/// As many rows as planned, at the planned places.
+pub(crate) fn assert_planned(rows: &[Row<[f64; 2]>], table: &Table<'_, [f64; 2]>) {
+    assert_eq!(rows.len(), table.len());
+    for (row, planned) in rows.iter().zip(table.rows()) {
+        assert_eq!(bits(row), bits(&planned));
+    }
+}
+
 /// Feeds, and for how many rows each is wanted.
 pub(crate) fn feeds() -> impl Strategy<Value = Vec<(f64, usize)>> {
     prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12)
 }
 
-/// Feeds below are holds.
-const SLOWEST: f64 = 0.3;
-
-/// The rows of a table under feeds, and at a feed of 1 from there to its end.
+/// The rows of a table under feeds, of which those below `slowest` are holds, and at a feed of 1 from
+/// there to its end.
 pub(crate) fn run_under(
     feeds: Vec<(f64, usize)>,
+    slowest: f64,
     table: &Table<'_, [f64; 2]>,
 ) -> Vec<Row<[f64; 2]>> {
     let mut ahead = vec![FeedCeiling::default(); table.len()];
     let mut run = table.playback(1.5, &mut ahead).unwrap();
     let mut rows = Vec::new();
     for (feed, count) in feeds {
-        run.set_feed(if feed < SLOWEST { 0.0 } else { feed })
+        run.set_feed(if feed < slowest { 0.0 } else { feed })
             .unwrap();
         rows.extend(run.by_ref().take(count));
     }

@@ -3,9 +3,7 @@
 //! Ratios within one run count, not the figures: a machine's speed drifts.
 #![expect(clippy::expect_used, reason = "a bench stops at once")]
 
-#[path = "common/bare.rs"]
 mod bare;
-#[path = "common/points.rs"]
 mod points;
 
 use core::hint::black_box;

@@ -8,9 +8,7 @@
     reason = "a bench fails loudly"
 )]
 
-#[path = "common/floods.rs"]
 mod floods;
-#[path = "common/work.rs"]
 mod work;
 
 use core::hint::black_box;

@@ -7,11 +7,8 @@
     reason = "the bare loop is as bare as may be"
 )]
 
-#[path = "common/bare.rs"]
 mod bare;
-#[path = "common/eleven.rs"]
 mod eleven;
-#[path = "common/points.rs"]
 mod points;
 
 use core::hint::black_box;
