@@ -70,7 +70,9 @@ impl<D: Dynamics> TorqueLimits<D> {
             Ok(segments)
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
-        let [stretch, duration_s] = self.time(&limits, knots)?;
+        let Some([stretch, duration_s]) = self.time(&limits, knots)? else {
+            return Err(overload(knots));
+        };
         let table = Table::new(knots, limits, duration_s);
         Ok(TorqueTable {
             table: Table { stretch, ..table },
@@ -108,25 +110,30 @@ impl<D: Dynamics> TorqueLimits<D> {
             };
             let laid = lay_all(paths.clone().into_iter(), &limits, knots, lay)?;
             let used = laid.len();
-            let [stretch, duration_s] = self.time(&limits, laid)?;
+            doublings = doublings.saturating_add(1);
+            let Some([stretch, duration_s]) = self.time(&limits, laid)? else {
+                continue;
+            };
             let best_s = duration_s - (coarse_s - duration_s).max(0.0);
-            if duration_s <= best_s * accuracy.max_time_ratio {
+            let ratio = accuracy.max_time_ratio;
+            if !ratio.is_finite() || duration_s <= best_s * ratio {
                 let (own, _) = knots.split_at(used.min(knots.len()));
                 let table = Table::new(own, limits, duration_s);
                 return Ok(TorqueTable {
                     table: Table { stretch, ..table },
                 });
             }
-            (coarse_s, doublings) = (duration_s, doublings.saturating_add(1));
+            coarse_s = duration_s;
         }
     }
 
-    /// Finds the speeds of knots; by what the table is then slowed, and its time.
+    /// Finds the speeds of knots; by what the table is then slowed, and its time. None where segments are
+    /// so long that nothing is known of the torques between their ends.
     fn time<E>(
         &self,
         limits: &Reciprocals<D::Axes>,
         knots: &mut [Knot<D::Axes>],
-    ) -> Result<[f64; 2], PlanError<E>> {
+    ) -> Result<Option<[f64; 2]>, PlanError<E>> {
         passes::fastest(self, limits, knots);
         let duration_s = check_moves(knots)?;
         let mut table = Table::new(knots, *limits, duration_s);
@@ -134,7 +141,10 @@ impl<D: Dynamics> TorqueLimits<D> {
             let spans = table.spans().map(|span| self.utilisation(&span));
             let most = spans.fold(0.0, larger_or_nan);
             if most <= 1.0 {
-                return Ok([table.stretch, table.duration_s()]);
+                return Ok(Some([table.stretch, table.duration_s()]));
+            }
+            if most == f64::INFINITY {
+                return Ok(None);
             }
             // Inertia asks for the square of the speed; a little more, for friction and gravity do not.
             let scale = 1.0 / sqrt(1.0 + (most - 1.0) * MORE + f64::EPSILON);
