@@ -28,7 +28,7 @@ pub struct Table<'a, A: Axes> {
     pub(crate) limits: Reciprocals<A>,
     /// By what all times are multiplied.
     pub(crate) stretch: f64,
-    duration_s: f64,
+    pub(crate) duration_s: f64,
 }
 
 /// How near to the path and to the least time a table has to be.
@@ -256,7 +256,7 @@ impl<'a, A: Axes> Table<'a, A> {
 }
 
 impl Accuracy {
-    fn check<E>(&self) -> Result<(), PlanError<E>> {
+    pub(crate) fn check<E>(&self) -> Result<(), PlanError<E>> {
         check_allowed(self.max_departure)?;
         let max_time_ratio = self.max_time_ratio;
         if max_time_ratio > 1.0 {

@@ -8,6 +8,8 @@ use path_timing::AxisLimits;
 use serde::Deserialize;
 use stepper_sync::StepScale;
 
+use crate::load::{Drive, Elastic, Load, LoadSettings, ModeSettings, TorqueSettings};
+
 /// The settings, as written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -22,6 +24,9 @@ struct Settings {
     path: PathSettings,
     #[serde(default)]
     arm: Vec<Deviation>,
+    load: Option<LoadSettings>,
+    torque: Option<TorqueSettings>,
+    mode: Option<ModeSettings>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -94,6 +99,8 @@ pub struct Machine {
     pub(crate) corner_mm: f64,
     pub(crate) tolerance_mm: f64,
     pub(crate) tick_s: f64,
+    pub(crate) load: Option<Load>,
+    pub(crate) elastic: Option<Elastic>,
 }
 
 impl Machine {
@@ -131,19 +138,37 @@ impl Machine {
         for (deviation, arm) in deviations.iter_mut().zip(&settings.arm) {
             *deviation = *arm;
         }
+        let delta = settings.delta()?;
+        let max_rate_rad_s = motor.max_rate_deg_s.to_radians();
+        let load = match (&settings.load, &settings.torque) {
+            (Some(load), Some(torque)) => {
+                let drive = Drive {
+                    step_deg: motor.step_deg,
+                    microsteps: motor.microsteps,
+                    gear_ratio: motor.gear_ratio,
+                    max_rate_deg_s: motor.max_rate_deg_s,
+                };
+                Some(Load::check((load, torque), &delta, drive)?)
+            }
+            (None, None) => None,
+            (Some(_), None) => bail!("[load] without [torque]: neither or both are needed"),
+            (None, Some(_)) => bail!("[torque] without [load]: neither or both are needed"),
+        };
         let machine = Self {
-            delta: settings.delta()?,
+            delta,
             deviations,
             rad_per_step,
             scale: StepScale::new(rad_per_step.recip())?,
             microsteps: motor.microsteps,
-            max_rate_rad_s: motor.max_rate_deg_s.to_radians(),
+            max_rate_rad_s,
             max_acceleration_rad_s2: motor.max_acceleration_deg_s2.to_radians(),
             feed_mm_s: path.feed_mm_s,
             acceleration_mm_s2: path.acceleration_mm_s2,
             corner_mm: path.corner_mm,
             tolerance_mm: path.tolerance_mm,
             tick_s: path.tick_ms / 1000.0,
+            load,
+            elastic: settings.mode.as_ref().map(Elastic::check).transpose()?,
         };
         // The platform must be somewhere when the arms are at home, and the arms within their
         // limits there.
@@ -227,6 +252,19 @@ impl Machine {
             acceleration: self.max_acceleration_rad_s2,
             jerk: None,
         }; 3]
+    }
+
+    /// By what lines are smoothed: what shaping will leave of `corner_mm`.
+    pub(crate) fn rounded_mm(&self) -> Result<f64> {
+        let shaped = self.elastic.map_or(0.0, |elastic| {
+            elastic.shaper.departure(self.acceleration_mm_s2)
+        });
+        ensure!(
+            shaped < self.corner_mm,
+            "corner_mm = {} leaves nothing for corners: the shaper of [mode] takes {shaped:.3} mm",
+            self.corner_mm
+        );
+        Ok(self.corner_mm - shaped)
     }
 
     pub(crate) fn speed_limits(&self, feed_mm_s: f64) -> Result<SpeedLimits> {

@@ -8,6 +8,8 @@ use nalgebra::{Point3, Vector3};
 use crate::motion::Motion;
 use crate::plan::seconds;
 use crate::simulation::{Driven, Run};
+use crate::torque::TorqueUsed;
+use crate::vibration::Vibration;
 
 /// Points of an outline.
 const OUTLINE: u32 = 240;
@@ -49,13 +51,20 @@ impl Run<'_> {
         let acceleration = Plot::chart(time(), Axis::new("acceleration in m/s²").including(0.0))
             .with_title("Acceleration of the platform")
             .line(&window, Stroke::ACTUAL, accelerations(self));
-        Ok(Figure::new(title)
+        let mut figure = Figure::new(title)
             .with_note(note(motion, &self.driven))
             .with_note(note("By trains at the feed", &self.trains))
             .with_note(note(&tick, &self.ticked))
             .with_row(maps(self)?)
             .with_row([speed])
-            .with_row([acceleration]))
+            .with_row([acceleration]);
+        if let Some(used) = &self.record.torque {
+            figure = figure.with_row([torques(used, time())]);
+        }
+        if let Some(vibration) = &self.driven.vibration {
+            figure = figure.with_row([swings(vibration, self.unshaped.as_ref())]);
+        }
+        Ok(figure)
     }
 }
 
@@ -67,6 +76,46 @@ fn feeds(run: &Run<'_>) -> impl Iterator<Item = [f64; 2]> {
         let begin_s = core::mem::replace(&mut start_s, end_s);
         [[begin_s, line.feed_mm_s], [end_s, line.feed_mm_s]]
     })
+}
+
+/// What each motor is asked for.
+fn torques(used: &TorqueUsed, time: Axis) -> Plot {
+    const PERCENT: f64 = 100.0;
+    let axis = Axis::new("torque in % of what they can turn").including(0.0);
+    let mut plot = Plot::chart(time, axis).with_title("Torque of the motors");
+    for (arm, stroke) in [Stroke::ACTUAL, Stroke::COMMANDED, Stroke::OTHER]
+        .into_iter()
+        .enumerate()
+    {
+        let parts = used.arms.iter();
+        let parts =
+            parts.map(|(t_s, parts)| [*t_s, PERCENT * parts.get(arm).copied().unwrap_or_default()]);
+        plot = plot.line(&format!("arm {}", arm + 1), stroke, parts);
+    }
+    let last_s = used.arms.last().map_or(0.0, |(t_s, _)| *t_s);
+    let planned = PERCENT * used.planned;
+    plot.line(
+        "planned at most",
+        Stroke::LIMIT,
+        [[0.0, planned], [last_s, planned]],
+    )
+}
+
+/// How far the tool is off its place, with and without shaping.
+fn swings(vibration: &Vibration, unshaped: Option<&Driven>) -> Plot {
+    const UM_PER_MM: f64 = 1000.0;
+    let um = |vibration: &Vibration| {
+        let points = vibration.over_time.iter();
+        points
+            .map(|[t_s, mm]| [*t_s, UM_PER_MM * mm])
+            .collect::<Vec<_>>()
+    };
+    let axis = Axis::new("tool off its place in µm").including(0.0);
+    let mut plot = Plot::chart(Axis::new("time in s"), axis).with_title("Vibration of the tool");
+    if let Some(plain) = unshaped.and_then(|it| it.vibration.as_ref()) {
+        plot = plot.line("without shaping", Stroke::OTHER, um(plain));
+    }
+    plot.line("driven by the steps", Stroke::ACTUAL, um(vibration))
 }
 
 fn accelerations(run: &Run<'_>) -> impl Iterator<Item = [f64; 2]> {

@@ -130,6 +130,16 @@ fn half_period(duration_s: f64, pulses: u32) -> Result<u64> {
     Ok(ticks.max(1.0) as u64)
 }
 
+/// Seconds as ticks, up to the next.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+pub(crate) fn ticks(seconds: f64) -> u64 {
+    (seconds * f64::from(TICKS_PER_S)).ceil() as u64
+}
+
 /// Ticks as seconds.
 #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are 28 years")]
 pub(crate) fn seconds(ticks: u64) -> f64 {

@@ -6,6 +6,7 @@ use nalgebra::Point3;
 use serde::Serialize;
 
 use crate::motion::Motion;
+use crate::torque::TorqueUsed;
 
 /// A line that has been answered with `ok`.
 #[derive(Debug, Clone, Copy)]
@@ -57,6 +58,10 @@ pub struct Record {
     /// Of lines with rounded corners.
     pub(crate) departure_bound_mm: Option<f64>,
     pub(crate) smoothed_bound_mm: Option<f64>,
+    /// Where shaped.
+    pub(crate) shaped_bound_mm: Option<f64>,
+    /// Where the machine's load is known.
+    pub(crate) torque: Option<TorqueUsed>,
     pub(crate) refusals: Vec<Refusal>,
     pub(crate) notes: Notes,
     /// Of lines with rounded corners.
@@ -70,6 +75,8 @@ impl Record {
             moves: Vec::new(),
             departure_bound_mm: None,
             smoothed_bound_mm: None,
+            shaped_bound_mm: None,
+            torque: None,
             refusals: Vec::new(),
             notes: Notes::default(),
             rows: Vec::new(),

@@ -3,23 +3,17 @@
 use anyhow::{Context, Result};
 use delta_kin::DeltaPath;
 use nalgebra::Point3;
-use path_timing::{
-    Accuracy, Curve, Knot, Path, Promise, Row, Smoothed, Table, ToolLimits, Verifier, Vertex,
-    Waypoint,
-};
+use path_timing::{Curve, Path, Row, Smoothed, ToolLimits, Vertex, Waypoint};
 use pvt_steps::{PvtQuantiser, PvtSteps};
 use stepper_sync::{Direction, Rate, StepDirTiming};
 
 use crate::machine::Machine;
-use crate::plan::TICKS_PER_S;
+use crate::plan::{TICKS_PER_S, ticks};
+use crate::planned::Planned;
 use crate::record::{Move, Record, TimedRow};
 
 /// Vertices of the lines in sight at a time.
 const VERTICES: usize = 32;
-/// Segments of a leg at the least: of fewer it cannot be told whether ball joints hold.
-const LEAST_SEGMENTS: u32 = 16;
-/// The time is at most so many times the best.
-const TIME_RATIO: f64 = 1.02;
 /// Room for the knots of a leg: so many, and one more for each of so many mm.
 const KNOTS: f64 = 130.0;
 const KNOT_MM: f64 = 0.25;
@@ -62,15 +56,21 @@ pub(crate) fn check(machine: &Machine, from: Point3<f64>, to: Point3<f64>) -> Re
 }
 
 /// Runs the lines of moves, from rest to rest: calls `step` with the time and the position after
-/// each step, and records the rows and the times at which the moves end, or round their corners. Returns
-/// proven bounds in mm: how far the platform leaves its curves between whole steps, and these the lines.
+/// each step, and records the rows, the times at which the moves end, or round their corners, and what is
+/// proven of the motion.
 pub(crate) fn run(
     machine: &Machine,
     record: &mut Record,
     mut step: impl FnMut(u64, [i32; 3]) -> Result<()>,
-) -> Result<[f64; 2]> {
+) -> Result<()> {
     let Record {
-        moves, rows: run, ..
+        moves,
+        rows: run,
+        departure_bound_mm,
+        smoothed_bound_mm,
+        shaped_bound_mm,
+        torque,
+        ..
     } = record;
     let legs = legs(machine, moves)?;
     let knots = legs.paths.iter();
@@ -81,36 +81,14 @@ pub(crate) fn run(
         reason = "saturates"
     )]
     let knots = knots.sum::<f64>() as usize;
-    let mut knots = vec![Knot::default(); knots];
-    let table = Table::plan_within(
-        legs.paths.iter(),
-        machine.axis_limits(),
-        Accuracy {
-            min_segments: LEAST_SEGMENTS,
-            max_departure: machine.tolerance_mm,
-            max_time_ratio: TIME_RATIO,
-        },
-        |path, span| path.departure(span),
-        &mut knots,
-    )?;
-
-    let mut verifier = Verifier::new(Promise {
-        limits: machine.axis_limits(),
-        start_stop: [0.0; 3],
-        max_departure: machine.tolerance_mm,
-        // The feed may be far below what the arms are capable of.
-        max_slowness: f64::INFINITY,
-    });
-    for row in table.rows() {
-        verifier.add(
-            &row,
-            |leg| legs.paths.get(leg),
-            |path, span| path.departure(span),
-        )?;
-    }
-    let mut rows = table.rows();
+    let planned = Planned::new(machine, &legs.paths, knots)?;
+    *departure_bound_mm = Some(planned.departure_mm);
+    *smoothed_bound_mm = Some(legs.departure_mm);
+    *shaped_bound_mm = planned.shaped_mm;
+    *torque = planned.torque;
+    let mut rows = planned.rows.iter().copied();
     let Some(first) = rows.next() else {
-        return Ok([0.0; 2]);
+        return Ok(());
     };
     let tick_rate = Rate::from_hz(TICKS_PER_S)?;
     let timing = StepDirTiming::DRV8825.min_intervals(tick_rate);
@@ -143,16 +121,16 @@ pub(crate) fn run(
         }
     }
     // A move that goes nowhere ends with the one before.
+    let delay_ticks = ticks(planned.delay_s);
     let mut last = 0;
     for it in moves {
         it.end_ticks = it.end_ticks.max(last);
         last = it.end_ticks;
+        if let Some([_, end_ticks]) = &mut it.curves_ticks {
+            *end_ticks += delay_ticks;
+        }
     }
-    let departures = table.spans().filter_map(|span| {
-        let [_, to] = &span.rows;
-        Some(legs.paths.get(to.leg)?.departure(&span))
-    });
-    Ok([departures.fold(0.0, f64::max), legs.departure_mm])
+    Ok(())
 }
 
 /// A row as it is recorded.
@@ -181,7 +159,7 @@ fn legs(machine: &Machine, moves: &[Move]) -> Result<Legs> {
         }),
     }));
     let mut memory = [Vertex::default(); VERTICES];
-    let mut curves = Smoothed::new(points, machine.corner_mm, &mut memory)?;
+    let mut curves = Smoothed::new(points, machine.rounded_mm()?, &mut memory)?;
     let mut legs = Legs::default();
     for curve in curves.by_ref() {
         let curve: Curve<3> = curve?;

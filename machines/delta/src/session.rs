@@ -100,10 +100,7 @@ impl<'a> Session<'a> {
     /// A corner cannot be rounded where the machine can be, or the observer's.
     pub fn finish(mut self) -> Result<Record> {
         if self.motion == Motion::Rounded {
-            let bounds_mm = rounded::run(self.machine, &mut self.record, &mut *self.observer)?;
-            let [departure_mm, smoothed_mm] = bounds_mm.map(Some);
-            self.record.departure_bound_mm = departure_mm;
-            self.record.smoothed_bound_mm = smoothed_mm;
+            rounded::run(self.machine, &mut self.record, &mut *self.observer)?;
         }
         Ok(self.record)
     }

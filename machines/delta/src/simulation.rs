@@ -6,14 +6,18 @@ use std::io::BufRead;
 use anyhow::Result;
 use machine_sim::{Followed, MotionSampler};
 use nalgebra::Point3;
+use path_timing::Shaper;
 
 use crate::control_tick;
+use crate::load::Elastic;
 use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::motors::Motors;
 use crate::plan::{Plan, seconds};
 use crate::record::{Move, Record};
+use crate::rounded;
 use crate::step_log;
+use crate::vibration::{Tool, Vibration};
 
 /// What steps may be off their places: those of cubics by a tick, those of trains by the rounding of
 /// joint waypoints to whole steps.
@@ -43,6 +47,8 @@ pub struct Run<'a> {
     pub(crate) driven: Driven,
     pub(crate) trains: Driven,
     pub(crate) ticked: Driven,
+    /// As `driven` without shaping, where there is any.
+    pub(crate) unshaped: Option<Driven>,
     pub(crate) motion: MotionSampler<3>,
 }
 
@@ -56,6 +62,8 @@ pub(crate) struct Driven {
     /// Steps from home at the end.
     pub(crate) end: [i32; 3],
     pub(crate) motors: [Followed; 3],
+    /// Of a tool that is known to swing.
+    pub(crate) vibration: Option<Vibration>,
     /// The platform's path, thinned for a picture.
     pub(crate) path: Vec<Point3<f64>>,
 }
@@ -99,6 +107,7 @@ impl<'a> Drive<'a> {
             driven: self.driven,
             trains: by_trains(machine, moves)?,
             ticked: by_ticks(machine, moves)?,
+            unshaped: unshaped(machine, self.record)?,
             motion: self.motion,
         })
     }
@@ -150,6 +159,35 @@ pub fn drive<'a>(
     })
 }
 
+/// The same machine and tool, not shaped.
+fn unshaped(machine: &Machine, record: &Record) -> Result<Option<Driven>> {
+    let (Some(elastic), Motion::Rounded) = (machine.elastic, record.motion) else {
+        return Ok(None);
+    };
+    let mut plain = machine.clone();
+    plain.elastic = Some(Elastic {
+        shaper: Shaper::none(),
+        ..elastic
+    });
+    let mut again = Record::new(record.motion);
+    again.moves.extend(record.moves.iter().map(|it| Move {
+        curves_ticks: None,
+        end_ticks: 0,
+        ..*it
+    }));
+    let mut steps = Vec::new();
+    rounded::run(&plain, &mut again, |ticks, position| {
+        steps.push((ticks, position));
+        Ok(())
+    })?;
+    let mut follower = Follower::new(&plain, &again.moves, record.motion)?;
+    for (ticks, position) in steps {
+        follower.follow(seconds(ticks), position)?;
+    }
+    let duration_s = seconds(again.duration_ticks());
+    Ok(Some(follower.finish(duration_s, CUBIC_STEPS)?))
+}
+
 /// Each line at its feed from the first step to the last.
 fn by_trains(machine: &Machine, moves: &[Move]) -> Result<Driven> {
     let mut follower = Follower::new(machine, moves, Motion::Trains)?;
@@ -182,6 +220,8 @@ struct Follower<'a> {
     /// That which it is on, and those after it.
     lines: &'a [Move],
     motors: Motors,
+    tool: Option<Tool>,
+    last_s: f64,
     max_path_error_mm: f64,
     steps: u64,
     end: [i32; 3],
@@ -194,7 +234,12 @@ impl<'a> Follower<'a> {
             machine,
             motion,
             lines,
-            motors: Motors::new(machine),
+            motors: Motors::new(machine, motion == Motion::Rounded)?,
+            tool: match &machine.elastic {
+                Some(elastic) => Some(Tool::new(elastic, machine.point([0; 3])?)),
+                None => None,
+            },
+            last_s: 0.0,
             max_path_error_mm: 0.0,
             steps: 0,
             end: [0; 3],
@@ -207,8 +252,12 @@ impl<'a> Follower<'a> {
         let moved = position.iter().zip(self.end);
         self.steps += moved.map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>();
         self.end = position;
-        self.motors.follow(t_s, position);
+        self.motors.follow(self.machine, t_s, position)?;
         let point = self.machine.point(position)?;
+        self.last_s = t_s;
+        if let Some(tool) = &mut self.tool {
+            tool.follow(t_s, point);
+        }
         match self.motion {
             Motion::Rounded => self.follow_rounded(t_s, point),
             Motion::Trains => self.follow_lines(position, point),
@@ -263,6 +312,7 @@ impl<'a> Follower<'a> {
             steps: self.steps,
             end: self.end,
             motors: self.motors.finish(self.machine, deviation_steps),
+            vibration: self.tool.map(|tool| tool.finish(self.last_s)),
             path: self.path,
         })
     }

@@ -47,6 +47,11 @@ impl DrivenAxis {
         self.rotor.step(time_s, direction);
     }
 
+    /// Its motor, with what it turns.
+    pub const fn rotor_mut(&mut self) -> &mut Rotor {
+        &mut self.rotor
+    }
+
     /// What came of it when it has come to rest, with edges that are at most `deviation_steps` off
     /// the places that they stand for.
     #[must_use]

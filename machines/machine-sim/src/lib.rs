@@ -6,6 +6,7 @@ extern crate alloc;
 
 mod driven;
 mod edge_motion;
+mod elastic_mode;
 mod figure;
 #[cfg(feature = "input")]
 pub mod input;
@@ -20,6 +21,7 @@ mod vcd;
 
 pub use self::driven::{DrivenAxis, Followed, StepSize};
 pub use self::edge_motion::{EdgeLog, EdgeMotion, Measured};
+pub use self::elastic_mode::ElasticMode;
 pub use self::figure::{Axis, Colour, Figure, Mark, Plot, Point, Stroke};
 pub use self::motion_sampler::MotionSampler;
 pub use self::motor::{Motor, Rotor};

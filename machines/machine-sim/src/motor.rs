@@ -39,6 +39,68 @@ impl Motor {
         torque_nm / self.inertia_kg_m2 / rad
     }
 
+    /// The torque that it has at a speed, in N m, while its lag is constant: what
+    /// [`pull_out_nm`](Self::pull_out_nm) is below.
+    fn static_nm(&self, speed_hz: f64) -> f64 {
+        let share = speed_hz / self.corner_speed_hz;
+        self.holding_torque_nm / (1.0 + share * share).sqrt()
+    }
+
+    /// The largest torque in N m that a load may have at a speed in full steps a second, beside the motor's
+    /// friction and damping, and turn round at once without the loss of a step: simulated.
+    ///
+    /// A load that changes at once makes the rotor swing about its new place, so it is less than the
+    /// motor has at that speed. Without friction and damping:
+    ///
+    /// ```text
+    /// changes its sign    2 / sqrt(π² + 4) = 0.537 of the torque at the speed
+    /// ```
+    ///
+    /// `load_kg_m2` is the inertia of rotor and load, seen at the rotor. 0 where the motor does not even
+    /// turn without a load.
+    #[must_use]
+    pub fn pull_out_nm(&self, speed_hz: f64, load_kg_m2: f64) -> f64 {
+        const CUTS: u32 = 12;
+        let mut holds = 0.0;
+        let mut most = self.static_nm(speed_hz);
+        for _ in 0..CUTS {
+            let torque = f64::midpoint(holds, most);
+            if self.holds(speed_hz, load_kg_m2, torque) {
+                holds = torque;
+            } else {
+                most = torque;
+            }
+        }
+        holds
+    }
+
+    /// Whether no step is lost where a load at a speed comes slowly and turns round at once, from either
+    /// side.
+    fn holds(&self, speed_hz: f64, load_kg_m2: f64, torque_nm: f64) -> bool {
+        const RAMP_S: f64 = 0.1;
+        const END_S: f64 = 0.15;
+        let edge_s = 1.0 / (speed_hz * f64::from(self.microsteps));
+        [torque_nm, -torque_nm].into_iter().all(|torque_nm| {
+            let mut rotor = Rotor::new(*self);
+            rotor.speed = speed_hz;
+            let mut edges = (1..).map(|edge| f64::from(edge) * edge_s).peekable();
+            while rotor.time_s < END_S && rotor.lost_cycles == 0 {
+                let load_nm = if rotor.time_s < RAMP_S {
+                    torque_nm * rotor.time_s / RAMP_S
+                } else {
+                    -torque_nm
+                };
+                rotor.set_load(load_kg_m2, load_nm);
+                let slice_s = rotor.time_s + SLICE_S;
+                while let Some(at_s) = edges.next_if(|at_s| *at_s < slice_s) {
+                    rotor.step(at_s, 1);
+                }
+                rotor.turn_until(slice_s);
+            }
+            rotor.lost_cycles == 0
+        })
+    }
+
     /// Frequency of small swings about a stable place, in Hz.
     ///
     /// ```text
@@ -53,12 +115,13 @@ impl Motor {
 /// The rotor of a [`Motor`] while the drive steps the field round.
 ///
 /// ```text
-/// x'' = A(x') sin((f - x) π/2) - 2 ζ ω0 x' - F sign(x')     in full steps
+/// x'' = A(x') sin((f - x) π/2) - 2 ζ ω0 x' - F sign(x') - L     in full steps
 /// A(v) = A / sqrt(1 + (v / corner speed)²),  ω0² = A π/2
 /// ```
 /// x is the rotor, f the field: the edges so far, in microsteps of equal size. The torque is the
 /// greatest at a lag f - x of one full step; at two it changes its sign, and the rotor falls back
-/// by four: these steps are lost. Nothing of this is measured on a real motor; it is the usual
+/// by four: these steps are lost. L is the load's torque, 0 but by [`set_load`](Self::set_load).
+/// Nothing of this is measured on a real motor; it is the usual
 /// second-order model of stepping motors, without detent torque and resonances of the load.
 ///
 /// # Examples
@@ -91,6 +154,9 @@ pub struct Rotor {
     acceleration: f64,
     friction: f64,
     damping: f64,
+    load: f64,
+    /// The motor's inertia over that of now, by which all accelerations above are multiplied.
+    lightness: f64,
     /// Microsteps of the field.
     field: i64,
     /// In full steps, and a second.
@@ -111,6 +177,8 @@ impl Rotor {
             acceleration: motor.acceleration(),
             friction: motor.full_steps(motor.friction_nm),
             damping: 4.0 * PI * motor.damping_ratio * motor.natural_frequency_hz(),
+            load: 0.0,
+            lightness: 1.0,
             motor,
             field: 0,
             position: 0.0,
@@ -127,6 +195,42 @@ impl Rotor {
     pub fn step(&mut self, time_s: f64, direction: i32) {
         self.turn_until(time_s);
         self.field += i64::from(direction.signum());
+    }
+
+    /// What the rotor turns from here on, seen at the rotor: the inertia of rotor and load in kg m², and a
+    /// torque against positive turning in N m, beside the motor's friction.
+    ///
+    /// What an arm's other joints and gravity do to a joint changes with the pose and the speed: set it
+    /// at each step.
+    pub fn set_load(&mut self, inertia_kg_m2: f64, torque_nm: f64) {
+        let lightness = self.motor.inertia_kg_m2 / inertia_kg_m2;
+        for number in [
+            &mut self.acceleration,
+            &mut self.friction,
+            &mut self.damping,
+        ] {
+            *number *= lightness / self.lightness;
+        }
+        self.lightness = lightness;
+        self.load = self.motor.full_steps(torque_nm) * lightness;
+    }
+
+    /// The torque that it has for what it turns: that of the field less friction and damping, in N m.
+    #[must_use]
+    pub fn torque_nm(&self) -> f64 {
+        let driven = self.torque(self.lag()) - self.damping * self.speed;
+        let friction = if self.speed == 0.0 {
+            (driven - self.load).clamp(-self.friction, self.friction)
+        } else {
+            self.friction.copysign(self.speed)
+        };
+        (driven - friction) / self.acceleration * self.motor.holding_torque_nm
+    }
+
+    /// Its speed, in rad/s.
+    #[must_use]
+    pub fn speed_rad_s(&self) -> f64 {
+        self.speed * 2.0 * PI / f64::from(self.motor.full_steps_per_turn)
     }
 
     /// Lets it come to rest.
@@ -148,10 +252,11 @@ impl Rotor {
         self.max_lag
     }
 
-    fn turn_until(&mut self, time_s: f64) {
+    /// Lets it turn up to a time in s, without a pulse.
+    pub fn turn_until(&mut self, time_s: f64) {
         while self.time_s < time_s {
             let lag = self.lag();
-            let torque = self.torque(lag);
+            let torque = self.torque(lag) - self.load;
             if self.speed == 0.0 && torque.abs() <= self.friction {
                 self.time_s = time_s;
                 break;
@@ -296,5 +401,64 @@ mod tests {
             0
         );
         assert!(lost(weak) > 0);
+    }
+
+    /// A load that comes at once swings the rotor to twice its lag where torques are small, and over the
+    /// hill from 0.725 of the torque on: -1 = √(1 - r²) - r (π - asin r).
+    #[test]
+    fn a_sudden_load_is_held_as_far_as_energy_allows() {
+        let lost = |share: f64| {
+            let mut rotor = Rotor::new(FREE);
+            rotor.set_load(FREE.inertia_kg_m2, share * FREE.holding_torque_nm);
+            rotor.turn_until(0.2);
+            rotor.lost_steps()
+        };
+        assert_eq!(lost(0.725 - CLOSE), 0);
+        assert!(lost(0.725 + CLOSE) > 0);
+    }
+
+    /// 2 / sqrt(π² + 4) without damping; with much of it nearly all, less what damping takes at speed.
+    #[test]
+    fn a_load_that_turns_round_is_held_as_far_as_energy_allows() {
+        let share = |motor: Motor, hz: f64| {
+            motor.pull_out_nm(hz, 2.0 * motor.inertia_kg_m2) / motor.holding_torque_nm
+        };
+        let wanted = 2.0 / (PI * PI + 4.0).sqrt();
+        for hz in [0.0, 400.0] {
+            let found = share(FREE, hz);
+            assert!(
+                (found / wanted - 1.0).abs() < 2.0 * CLOSE,
+                "{found} at {hz}"
+            );
+        }
+        let damped = Motor {
+            damping_ratio: 0.7,
+            ..FREE
+        };
+        assert!(share(damped, 0.0) > 0.95);
+        assert!(share(damped, 100.0) < share(damped, 0.0) - 0.05);
+    }
+
+    /// The lag of a load is what its torque asks for, and small swings slow down with the root of the
+    /// inertia.
+    #[test]
+    fn it_turns_what_it_is_given() {
+        let damped = Motor {
+            damping_ratio: 0.3,
+            ..FREE
+        };
+        let mut rotor = Rotor::new(damped);
+        rotor.set_load(4.0 * FREE.inertia_kg_m2, 0.2);
+        rotor.settle();
+        let wanted = 0.5_f64.asin() / FRAC_PI_2;
+        assert!((rotor.lag() - wanted).abs() < 1e-6, "{}", rotor.lag());
+        assert!((rotor.torque_nm() - 0.2).abs() < 1e-6);
+        let mut rotor = Rotor::new(FREE);
+        rotor.set_load(4.0 * FREE.inertia_kg_m2, 0.0);
+        rotor.step(0.0, 1);
+        let half_period_s = 1.0 / FREE.natural_frequency_hz();
+        rotor.turn_until(half_period_s);
+        let step = 1.0 / f64::from(FREE.microsteps);
+        assert!((rotor.position - 2.0 * step).abs() < CLOSE * step);
     }
 }

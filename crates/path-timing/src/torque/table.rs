@@ -1,11 +1,14 @@
 //! Tables within the torque of their motors.
 
+use core::cell::Cell;
+
 use super::{Dynamics, TorqueLimits, passes};
+use crate::departure::{Speeds, Within};
 use crate::number::{larger_or_nan, sqrt};
 use crate::passes::segment_s;
 use crate::planner::{Place, bounded, lay_all};
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
+use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
 
 /// A position-velocity-time table with which no motor gives more torque than it has.
 ///
@@ -67,14 +70,81 @@ impl<D: Dynamics> TorqueLimits<D> {
             Ok(segments)
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
-        passes::fastest(self, &limits, knots);
+        let Some([stretch, duration_s]) = self.time(&limits, knots)? else {
+            return Err(overload(knots));
+        };
+        let table = Table::new(knots, limits, duration_s);
+        Ok(TorqueTable {
+            table: Table { stretch, ..table },
+        })
+    }
+
+    /// Plans as [`plan`](Self::plan) does, with segments that keep a departure at any speeds, as
+    /// [`Table::plan_within_at_any_feed`] makes them, and twice as many until the time changes by no more
+    /// than `accuracy` allows.
+    ///
+    /// # Errors
+    /// [`PlanError`]; also where `knots` are too few.
+    pub fn plan_within<'a, P: Path<Axes = D::Axes> + Clone>(
+        &self,
+        paths: impl IntoIterator<Item = P> + Clone,
+        limits: <D::Axes as Axes>::Of<AxisLimits>,
+        accuracy: Accuracy,
+        departure: impl Fn(&P, &Span<D::Axes>) -> f64,
+        knots: &'a mut [Knot<D::Axes>],
+    ) -> Result<TorqueTable<'a, D::Axes>, PlanError<P::Error>> {
+        accuracy.check()?;
+        let limits = Reciprocals::checked(&limits)?;
+        let within = Within {
+            min_segments: accuracy.min_segments,
+            allowed: accuracy.max_departure,
+            speeds: Speeds::Any,
+            departure,
+            planned: Cell::new(0),
+        };
+        let mut coarse_s = f64::INFINITY;
+        let mut doublings = 0;
+        loop {
+            let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
+                within.lay(place, &limits, doublings, free)
+            };
+            let laid = lay_all(paths.clone().into_iter(), &limits, knots, lay)?;
+            let used = laid.len();
+            doublings = doublings.saturating_add(1);
+            let Some([stretch, duration_s]) = self.time(&limits, laid)? else {
+                continue;
+            };
+            let best_s = duration_s - (coarse_s - duration_s).max(0.0);
+            let ratio = accuracy.max_time_ratio;
+            if !ratio.is_finite() || duration_s <= best_s * ratio {
+                let (own, _) = knots.split_at(used.min(knots.len()));
+                let table = Table::new(own, limits, duration_s);
+                return Ok(TorqueTable {
+                    table: Table { stretch, ..table },
+                });
+            }
+            coarse_s = duration_s;
+        }
+    }
+
+    /// Finds the speeds of knots; by what the table is then slowed, and its time. None where segments are
+    /// so long that nothing is known of the torques between their ends.
+    fn time<E>(
+        &self,
+        limits: &Reciprocals<D::Axes>,
+        knots: &mut [Knot<D::Axes>],
+    ) -> Result<Option<[f64; 2]>, PlanError<E>> {
+        passes::fastest(self, limits, knots);
         let duration_s = check_moves(knots)?;
-        let mut table = Table::new(knots, limits, duration_s);
+        let mut table = Table::new(knots, *limits, duration_s);
         for _ in 0..ROUNDS {
             let spans = table.spans().map(|span| self.utilisation(&span));
             let most = spans.fold(0.0, larger_or_nan);
             if most <= 1.0 {
-                return Ok(TorqueTable { table });
+                return Ok(Some([table.stretch, table.duration_s()]));
+            }
+            if most == f64::INFINITY {
+                return Ok(None);
             }
             // Inertia asks for the square of the speed; a little more, for friction and gravity do not.
             let scale = 1.0 / sqrt(1.0 + (most - 1.0) * MORE + f64::EPSILON);

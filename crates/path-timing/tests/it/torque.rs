@@ -7,8 +7,8 @@ use std::process::{Command, Stdio};
 
 use delta_kin::{Delta, DeltaMasses, Dimensions};
 use path_timing::{
-    AxisLimits, Cubic, Curve, Knot, PlanError, Row, Table, TorqueCurve, TorqueCurveError,
-    TorqueLimits,
+    Accuracy, AxisLimits, Cubic, Curve, Knot, PlanError, Row, Span, Table, TorqueCurve,
+    TorqueCurveError, TorqueLimits,
 };
 use proptest::prelude::*;
 use scara_kin::{Arm, ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive, Joints, LinkMass};
@@ -193,6 +193,54 @@ fn segments_cost_little_time() {
                 );
                 assert!(time_s <= fine_s * if falls { falling } else { constant });
             }
+        }
+    }
+}
+
+/// As few segments as the tool's departure and the time ask for, with the bounds of both on the spans.
+#[test]
+fn segments_are_found_for_a_departure() {
+    const RATIO: f64 = 1.02;
+    let limits = limits(1.0, stepper());
+    for ends in LINES {
+        let (_, fine_s) = planned(&limits, line(ends), 2000);
+        for allowed in [0.1, 0.001] {
+            let accuracy = Accuracy {
+                min_segments: 4,
+                max_departure: allowed,
+                max_time_ratio: RATIO,
+            };
+            let mut knots = vec![Knot::default(); 5000];
+            let departure = |path: &ArmPath, span: &Span<[f64; 2]>| path.departure(span);
+            let table = limits
+                .plan_within([line(ends)], [FREE; 2], accuracy, departure, &mut knots)
+                .unwrap();
+            for span in table.spans() {
+                assert!(line(ends).departure(&span) <= allowed);
+                assert!(limits.utilisation(&span) <= WITHIN);
+            }
+            let (rows, time_s) = (table.rows().count(), table.duration_s());
+            println!("{allowed} mm: {rows} rows, {time_s:.4} s, {fine_s:.4} s at best");
+            assert!(time_s <= fine_s * RATIO && rows < 2000);
+            let any_time = Accuracy {
+                max_time_ratio: f64::INFINITY,
+                ..accuracy
+            };
+            let table = limits
+                .plan_within([line(ends)], [FREE; 2], any_time, departure, &mut knots)
+                .unwrap();
+            assert!(table.rows().count() < rows && table.duration_s() >= time_s);
+            let mut few = [Knot::default(); 4];
+            let error = limits
+                .plan_within([line(ends)], [FREE; 2], accuracy, departure, &mut few)
+                .unwrap_err();
+            assert!(
+                matches!(
+                    error,
+                    PlanError::TooCoarse { .. } | PlanError::Memory { .. }
+                ),
+                "{error}"
+            );
         }
     }
 }
@@ -421,7 +469,7 @@ proptest! {
         let [a, b, c, d] = joints;
         let row = |position, velocity| Row { time_s: 0.0, duration_s, position, velocity, leg: 0, s: 0.0 };
         let rows = [row([a, b], [rates[0], rates[1]]), row([c, d], [rates[2], rates[3]])];
-        let span = path_timing::Span { s: [0.0, 1.0], rows };
+        let span = Span { s: [0.0, 1.0], rows };
         let bound = limits.utilisation(&span);
         prop_assert!(sampled(&limits, &rows, 60) <= bound * WITHIN);
     }
