@@ -3,6 +3,7 @@
 mod around;
 mod bound;
 mod error;
+mod nodes;
 mod stretch;
 mod tube;
 mod turns;
@@ -137,6 +138,10 @@ impl<M: Machine<N>, const N: usize> Path for MachinePath<M, N> {
     }
 
     fn is_too_coarse(&self, reason: &PathError<N>) -> bool {
-        matches!(reason, PathError::TooCoarse { .. })
+        // The curve itself is within all ranges: a cubic that is not has left it.
+        matches!(
+            reason,
+            PathError::TooCoarse { .. } | PathError::Limit { .. }
+        )
     }
 }

@@ -190,7 +190,7 @@ impl<'a> Passage<'a> {
             .departure_by_middle(&middle, fourth, beside, between)
             .unwrap_or_else(|| {
                 let platform = |tau| self.platform(tau);
-                self.motion.departure_between(platform, fourth, between)
+                self.motion.departure_between(platform, fourth, |_| between)
             });
         Some(departure + self.rounding()).filter(|departure| !departure.is_nan())
     }

@@ -2,7 +2,7 @@
 
 use super::MachinePath;
 use super::stretch::{K, Stretch};
-use crate::matrix::{Intervals, Matrix};
+use crate::matrix::{Intervals, Matrix, both, larger_or_nan, product};
 use crate::model::Model;
 use crate::{Gradient, Machine, Refusal};
 
@@ -14,8 +14,8 @@ pub(super) struct Around<const N: usize> {
     half: f64,
 }
 
-/// Half the distance of nodes, in segments.
-const HALF_NODE: f64 = 1.0 / 32.0;
+/// From a node to the next, in segments.
+const NODE: f64 = 1.0 / 16.0;
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The axes along a piece.
@@ -62,19 +62,73 @@ impl<const N: usize> Around<N> {
         self.jacobian.map(|row| row.map(|slope| slope.rest()))
     }
 
-    /// The most that it changes from one node of a segment to the next, and within the radius: what
-    /// the tool at both makes of it in the middle between them.
-    pub(super) fn changes(&self) -> Matrix<N> {
-        let share = HALF_NODE / self.half;
-        self.jacobian.map(|row| {
-            row.map(|slope| {
-                let (mut number, mut fastest) = (0.0, 0.0);
-                for coefficient in slope.coefficients().iter().skip(1) {
-                    number += 1.0;
-                    fastest += coefficient.abs() * number;
-                }
-                slope.rest() * 2.0 + fastest * share
-            })
-        })
+    /// What the Jacobian does from one node of a segment to the next.
+    ///
+    /// With p(t) the polynomial of a slope, t from -1 to 1 along the piece, c a node in t, and r the rest:
+    /// the slope differs from one node to the next by at most c max |p'| + 2 r, and in between from linear
+    /// by c²/8 max |p"| + 2 r. Where there are several pieces from node to node it is the first that is known,
+    /// of all of them.
+    pub(super) fn changes(&self) -> Changes<N> {
+        let node = NODE / self.half;
+        let pieces = node.max(2.0) * 0.5;
+        let mut changes = Changes::NONE;
+        for ((first, second), slopes) in (changes.first.iter_mut())
+            .zip(&mut changes.second)
+            .zip(&self.jacobian)
+        {
+            for ((first, second), slope) in first.iter_mut().zip(second).zip(slopes) {
+                let [_, linear, square, cube] = slope.coefficients().map(f64::abs);
+                let rest = slope.rest() * 2.0 * pieces;
+                *first = (linear + 2.0 * square + 3.0 * cube) * node + rest;
+                *second = if pieces > 1.0 {
+                    *first
+                } else {
+                    (square + 3.0 * cube) * (node * node * 0.25) + rest
+                };
+            }
+        }
+        changes
+    }
+}
+
+/// The most that a Jacobian changes from one node of a segment to the next.
+#[derive(Clone, Copy)]
+pub(super) struct Changes<const N: usize> {
+    first: Matrix<N>,
+    /// From linear.
+    second: Matrix<N>,
+}
+
+impl<const N: usize> Changes<N> {
+    pub(super) const NONE: Self = Self {
+        first: [[0.0; N]; N],
+        second: [[0.0; N]; N],
+    };
+
+    /// The most of both.
+    pub(super) fn and(&self, other: &Self) -> Self {
+        Self {
+            first: both(&self.first, &other.first, 0.0, larger_or_nan),
+            second: both(&self.second, &other.second, 0.0, larger_or_nan),
+        }
+    }
+
+    /// From linear.
+    pub(super) const fn second(&self) -> &Matrix<N> {
+        &self.second
+    }
+
+    /// How far J e is at most from linear where e is linear from one node to the next, is at most `off` at
+    /// each, and changes by `steps`:
+    ///
+    /// ```text
+    /// |J₁ - J₀| |e₁ - e₀| / 4 + |J - its linear part| |e|
+    /// ```
+    pub(super) fn of_linear(&self, off: &[f64; N], steps: &[f64; N]) -> [f64; N] {
+        let mut axes = product(&self.second, off);
+        for (axis, by_steps) in axes.iter_mut().zip(product(&self.first, steps)) {
+            *axis += by_steps * 0.25;
+        }
+        axes
     }
 }

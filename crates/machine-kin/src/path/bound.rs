@@ -2,14 +2,12 @@
 
 use path_timing::{Cubic, CurveMotion, Row, Span};
 
-use super::around::Around;
+use super::around::{Around, Changes};
+use super::nodes::{FOURTH_BETWEEN, Known, NODE, NODES, Nodes, at, difference, raise};
 use super::stretch::{ROUNDING, Stretch};
 use super::{MachinePath, of};
-use crate::matrix::{Enclosure, Matrix, both, inverse, larger_or_nan, largest, norm, product};
-use crate::{Interval, Machine, Number};
-
-/// Nodes between the ends of a segment.
-const NODES: usize = 15;
+use crate::Machine;
+use crate::matrix::{Enclosure, Matrix, inverse, larger_or_nan, norm, product};
 
 /// Shortest pieces of a segment that are looked at, as parts of it.
 const FINEST: u32 = 64;
@@ -18,11 +16,11 @@ const FINEST: u32 = 64;
 const GOOD: f64 = 0.5;
 
 /// Pieces are not halved where what their fourth derivatives leave between nodes is a smaller part than
-/// this of what nodes are off by.
-const SMALL: f64 = 0.1;
+/// this of what the tool is off by across the curve halfway,
+const SMALL: f64 = 0.25;
 
-/// What fourth derivatives leave between nodes: 5/64 h⁴.
-const FOURTH_BETWEEN: f64 = 5.0 / 64.0 / 65_536.0;
+/// or than this of what it is off by at most.
+const SMALLEST: f64 = 0.02;
 
 /// Steps to where the tool is at a node: each leaves about what slopes change by on a piece.
 const STEPS: usize = 3;
@@ -90,9 +88,14 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// it moves continuously from the start it is the tool, on its branch.
     ///
     /// At the nodes ε is known but for rounding, by intervals, and e by some Jacobian there and the most
-    /// that those from P to P + e are apart from it. Between nodes,
-    /// J e = ε put in from both sides, e is linear but for what the enclosure makes of what ε is, and of
-    /// the change of J times the largest e. The rest is [`CurveMotion`].
+    /// that those from P to P + e are apart from it. From one node to the next, J e = ε put in from both
+    /// sides, e is linear but for what the enclosure makes of what ε is, and of what J e is where e is linear:
+    ///
+    /// ```text
+    /// |J₁ - J₀| |e₁ - e₀| / 4 + |J - its linear part| |e|
+    /// ```
+    ///
+    /// S and the enclosures are those round each node. The rest is [`CurveMotion`].
     #[must_use]
     pub fn departure(&self, span: &Span<[f64; N]>) -> f64 {
         self.known(span).unwrap_or(f64::INFINITY)
@@ -104,27 +107,27 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let motion = CurveMotion::new(&self.curve, span.s, [&before, &after], to.duration_s);
         let nodes = self.nodes(&motion, &cubics(span))?;
         let (_, slopes) = self.slopes_at(motion.at(0.5)).ok()?;
-        let inverse = inverse(slopes)?.map(|row| row.map(f64::abs));
+        let inverse = inverse(slopes)?;
+        let [tangent, _] = motion.derivatives(0.5);
+        let across = across(&product(&inverse, nodes.halfway()), &tangent);
+        let inverse = inverse.map(|row| row.map(f64::abs));
         // About what the tool is off by.
-        let off = product(&inverse, &nodes.largest);
-        let enough = norm(&off) * SMALL + self.rounding;
+        let off = product(&inverse, nodes.largest());
+        let enough = (across * SMALL).max(norm(&off) * SMALLEST) + self.rounding;
         let known = nodes.known(&self.fourth(&motion, &inverse, enough)?);
         let mut radius = off.map(|off| off * 2.0 + self.rounding);
         for _ in 0..4 {
             let tools = self.tools(&motion, &radius, &nodes)?;
-            let enclosure = tools.enclosure?;
-            let off = enclosure.off(&known.errors);
+            let off = tools.enclosure?.off(&known.errors);
             // Written so that NaN is none.
             if off.iter().zip(&radius).all(|(off, radius)| off <= radius) {
-                let changed = enclosure.between(&tools.changes, largest(&tools.off));
-                let [between, rests] =
-                    [&known.between, &tools.rests].map(|axes| norm(&enclosure.off(axes)));
+                let found = tools.found(&known)?;
+                let places = nodes.places_off(&tools.off);
                 let departure = motion.departure_between(
-                    |tau| tools.at(tau),
-                    norm(&enclosure.off(&known.fourth)),
-                    between + rests + norm(&changed),
-                );
-                let departure = departure + self.rounding;
+                    |tau| at(&places, tau).unwrap_or([f64::NAN; N]),
+                    found.fourth,
+                    |tau| at(&found.between, tau).unwrap_or(f64::NAN),
+                ) + self.rounding;
                 return (!departure.is_nan()).then_some(departure);
             }
             radius = off.map(|off| off * 1.25 + self.rounding);
@@ -178,32 +181,6 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         Some(largest)
     }
 
-    fn nodes(&self, motion: &CurveMotion<'_, N>, cubics: &[Cubic; N]) -> Option<Nodes<N>> {
-        let mut nodes = Nodes {
-            places: [[0.0; N]; NODES],
-            errors: [[0.0; N]; NODES],
-            largest: [0.0; N],
-            rounding: [0.0; N],
-        };
-        let places = nodes.places.iter_mut().zip(&mut nodes.errors);
-        for (tau, (place, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
-            *place = motion.at(tau);
-            let axes = place.map(Interval::from);
-            let axes = self.machine.inverse(axes, self.branch).ok()?;
-            let positions = cubics.map(|cubic| cubic.position(tau));
-            *errors = self.apart(&positions, &axes.map(Number::middle));
-            raise(&mut nodes.largest, errors);
-            let rounding = axes.map(|axis| axis.radius() + axis.middle().abs() * ROUNDING);
-            raise(&mut nodes.rounding, &rounding);
-        }
-        // What the positions on the cubics are rounded by.
-        for (rounding, cubic) in nodes.rounding.iter_mut().zip(cubics) {
-            let size = cubic.control_points().map(f64::abs).iter().sum::<f64>();
-            *rounding += size * ROUNDING;
-        }
-        Some(nodes)
-    }
-
     /// Where the tool is at the nodes, by all Jacobians within a radius of the curve.
     fn tools(
         &self,
@@ -213,10 +190,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     ) -> Option<Tools<N>> {
         let mut tools = Tools {
             enclosure: None,
-            changes: [[0.0; N]; N],
-            places: nodes.places,
-            off: [0.0; N],
-            rests: [0.0; N],
+            near: [None; NODES],
+            off: [[0.0; N]; NODES],
+            rests: [[0.0; N]; NODES],
         };
         pieces(1, FINEST, |part, can_halve| {
             let stretch = Stretch::new(motion, part, self.rounding);
@@ -224,51 +200,35 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             let y = inverse(around.at(0.0))?;
             let enclosure = Enclosure::by(&y, &around.slopes())?;
             let changes = around.changes();
-            let changed = norm(&enclosure.between(&changes, 1.0));
+            let changed = norm(&enclosure.between(changes.second(), 1.0));
             if can_halve && (enclosure.spread() > GOOD || changed > CHANGED) {
                 return Some(false);
             }
-            tools.changes = both(&tools.changes, &changes, 0.0, larger_or_nan);
             tools.add(part, &around, &y, nodes);
-            let known = tools.enclosure;
-            tools.enclosure = Some(known.map_or(enclosure, |known| known.and(&enclosure)));
+            tools.enclose(part, &enclosure, &changes);
             Some(true)
         })?;
         Some(tools)
     }
 }
 
-/// Takes the larger sizes.
-fn raise<const N: usize>(most: &mut [f64; N], values: &[f64; N]) {
-    for (most, value) in most.iter_mut().zip(values) {
-        *most = larger_or_nan(*most, value.abs());
-    }
-}
-
-/// What is known of the axes at the nodes.
-struct Nodes<const N: usize> {
-    /// The places of the curve.
-    places: [[f64; N]; NODES],
-    /// What each axis is off by there.
-    errors: [[f64; N]; NODES],
-    /// The most of that.
-    largest: [f64; N],
-    /// What that is rounded by at most.
-    rounding: [f64; N],
+/// The length of the part of a vector that is across another.
+fn across<const N: usize>(vector: &[f64; N], direction: &[f64; N]) -> f64 {
+    let dot = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let along = dot(vector, direction);
+    trig_kernels::sqrt((dot(vector, vector) - along * along / dot(direction, direction)).max(0.0))
 }
 
 /// What is known of the tool within a radius of the curve.
 struct Tools<const N: usize> {
     /// All Jacobians.
     enclosure: Option<Enclosure<N>>,
-    /// The most that they change by from node to node.
-    changes: Matrix<N>,
-    /// The tool at the nodes, but for what the rests make of it.
-    places: [[f64; N]; NODES],
-    /// The most that it is off the curve by there in each coordinate.
-    off: [f64; N],
+    /// Those from each node to its neighbours, and what they change by.
+    near: [Option<(Enclosure<N>, Changes<N>)>; NODES],
+    /// About how far the tool is off the curve at the nodes.
+    off: [[f64; N]; NODES],
     /// The most that is left of what each axis is off by there.
-    rests: [f64; N],
+    rests: [[f64; N]; NODES],
 }
 
 impl<const N: usize> Tools<N> {
@@ -279,106 +239,84 @@ impl<const N: usize> Tools<N> {
     /// ```
     fn add(&mut self, [from, to]: [f64; 2], around: &Around<N>, y: &Matrix<N>, nodes: &Nodes<N>) {
         let (middle, apart) = ((from + to) * 0.5, around.apart());
-        let places = self.places.iter_mut().zip(&nodes.errors);
-        for (tau, (place, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
+        let places = self.off.iter_mut().zip(&mut self.rests);
+        let known = CurveMotion::<N>::NODES.into_iter().zip(nodes.errors());
+        for ((tau, errors), (off, rests)) in known.zip(places) {
             if tau < from || tau >= to {
                 continue;
             }
             let slopes = around.at(tau - middle);
-            let mut off = [0.0; N];
             let mut left = *errors;
             for _ in 0..STEPS {
                 for (off, step) in off.iter_mut().zip(product(y, &left)) {
                     *off += step;
                 }
-                let made = product(&slopes, &off);
+                let made = product(&slopes, off);
                 for (left, (error, made)) in left.iter_mut().zip(errors.iter().zip(made)) {
                     *left = error - made;
                 }
             }
             let by_slopes = product(&apart, &off.map(f64::abs));
-            let rounding = nodes.rounding.iter().zip(by_slopes);
-            for (left, (rounding, by_slopes)) in left.iter_mut().zip(rounding) {
-                *left = left.abs() + rounding + by_slopes * (1.0 + ROUNDING);
+            let rounding = nodes.rounding().iter().zip(by_slopes);
+            for ((rest, left), (rounding, by_slopes)) in rests.iter_mut().zip(left).zip(rounding) {
+                *rest = left.abs() + rounding + by_slopes * (1.0 + ROUNDING);
             }
-            for (place, off) in place.iter_mut().zip(off) {
-                *place += off;
-            }
-            raise(&mut self.off, &off);
-            raise(&mut self.rests, &left);
         }
     }
 
-    fn at(&self, tau: f64) -> [f64; N] {
-        let mut nodes = CurveMotion::<N>::NODES.iter().zip(&self.places);
-        let found = nodes.find(|(node, _)| **node >= tau);
-        found.map_or([f64::NAN; N], |(_, place)| *place)
+    /// Takes in what is known of all Jacobians on a part, at the nodes between whose neighbours it is.
+    fn enclose(&mut self, [from, to]: [f64; 2], enclosure: &Enclosure<N>, changes: &Changes<N>) {
+        let all = &mut self.enclosure;
+        *all = Some(all.map_or(*enclosure, |all| all.and(enclosure)));
+        for (tau, near) in CurveMotion::<N>::NODES.into_iter().zip(&mut self.near) {
+            if from < tau + NODE && tau - NODE < to {
+                *near = Some(near.map_or((*enclosure, *changes), |(all, most)| {
+                    (all.and(enclosure), most.and(changes))
+                }));
+            }
+        }
     }
-}
 
-/// What is known of the axes on all of a segment.
-struct Known<const N: usize> {
-    /// The most that each is off by.
-    errors: [f64; N],
-    /// The most that it is off by from linear between nodes.
-    between: [f64; N],
-    /// The least M found for which it is off by at most M τ² (1 - τ)²/24.
-    fourth: [f64; N],
-}
-
-impl<const N: usize> Nodes<N> {
-    /// From the largest fourth derivatives.
-    fn known(&self, fourth: &[f64; N]) -> Known<N> {
-        let mut known = Known {
-            errors: [0.0; N],
-            between: [0.0; N],
-            fourth: *fourth,
+    /// What is made of what is known of the axes.
+    fn found(&self, known: &Known<N>) -> Option<Found> {
+        let mut found = Found {
+            between: [0.0; NODES],
+            fourth: 0.0,
         };
-        for axis in 0..N {
-            let at = |values: &[f64; N]| values.get(axis).copied().unwrap_or(f64::NAN);
-            let (rest, q) = (at(&self.rounding), at(fourth));
-            let mut errors = [0.0; NODES + 2];
-            for (error, node) in errors.iter_mut().skip(1).zip(&self.errors) {
-                *error = at(node);
+        let zero = [0.0; N];
+        let of =
+            |values: &[[f64; N]; NODES], number: usize| values.get(number).copied().unwrap_or(zero);
+        for (number, (place, near)) in found.between.iter_mut().zip(&self.near).enumerate() {
+            let (enclosure, changes) = near.as_ref()?;
+            let next = [number.wrapping_sub(1), number.wrapping_add(1)];
+            let (here, mut left) = (of(&self.off, number), of(&self.rests, number));
+            let (mut off, mut steps) = (here.map(f64::abs), zero);
+            for next in next {
+                let there = of(&self.off, next);
+                raise(&mut off, &there);
+                raise(
+                    &mut steps,
+                    &core::array::from_fn(|k| difference(&here, &there, k)),
+                );
+                raise(&mut left, &of(&self.rests, next));
             }
-            let known_axis = along(&errors, rest, q);
-            let places = (known.errors.iter_mut().zip(&mut known.between)).zip(&mut known.fourth);
-            if let Some(((error, between), fourth)) = places.into_iter().nth(axis) {
-                (*error, *between) = (known_axis[0], known_axis[1]);
-                *fourth = larger_or_nan(0.0, known_axis[2]).min(q);
+            let changed = changes.of_linear(&off, &steps);
+            let between = known.between.get(number)?;
+            for (left, (changed, between)) in left.iter_mut().zip(changed.iter().zip(between)) {
+                *left += changed + between;
             }
+            *place = norm(&enclosure.off(&left));
+            let fourth = norm(&enclosure.off(known.fourth.get(number)?));
+            found.fourth = larger_or_nan(found.fourth, fourth);
         }
-        known
+        Some(found)
     }
 }
 
-/// Of one axis that is off by so much at the ends and the nodes of a segment, with rounding, and has a
-/// largest fourth derivative: see [`Known`].
-fn along(errors: &[f64; NODES + 2], rounding: f64, q: f64) -> [f64; 3] {
-    let (mut bend, mut most) = (0.0, 0.0);
-    for three in errors.windows(3) {
-        if let [a, b, c] = three {
-            bend = larger_or_nan(bend, (a - 2.0 * b + c).abs());
-            most = larger_or_nan(most, b.abs());
-        }
-    }
-    let ([_, first, second, ..], [.., before, last, _]) = (errors, errors);
-    for [near, far] in [[first, second], [last, before]] {
-        bend = larger_or_nan(bend, (8.0 * near - far).abs() * 0.5);
-    }
-    let bend = bend + 4.5 * rounding;
-    let between = bend / 8.0 + q * FOURTH_BETWEEN;
-    // At the ends by the second derivative, elsewhere by the nodes.
-    let second = bend * 256.0 + q * (5.0 / 8.0 / 256.0);
-    let mut fourth = 12.0 * second / ((15.0 / 16.0) * (15.0 / 16.0));
-    let taus = CurveMotion::<1>::NODES;
-    let inner = errors.get(1..=NODES).unwrap_or_default();
-    for (pair, taus) in inner.windows(2).zip(taus.windows(2)) {
-        if let ([a, b], [from, to]) = (pair, taus) {
-            let weight = |tau: f64| tau * tau * (1.0 - tau) * (1.0 - tau);
-            let off = larger_or_nan(a.abs(), b.abs()) + rounding + between;
-            fourth = larger_or_nan(fourth, 24.0 * off / weight(*from).min(weight(*to)));
-        }
-    }
-    [most + rounding + between, between, fourth]
+/// What is known of the tool from node to node.
+struct Found {
+    /// How far it is at most from linear round each.
+    between: [f64; NODES],
+    /// The least M found for which it is off by at most M τ² (1 - τ)²/24.
+    fourth: f64,
 }

@@ -177,6 +177,34 @@ fn ranges_that_are_none_are_refused() {
     assert_eq!(error.to_string(), "0..=NaN is no range of the slide");
 }
 
+/// A curve whose elbow comes close to the end of its range is within it. The cubics of 8 segments pass it,
+/// so there are more.
+#[test]
+fn a_range_that_is_nearly_touched_takes_more_segments() {
+    const MARGIN: f64 = 1e-7;
+    let arm = Scara::new(132.0, 132.0, 30.0).unwrap();
+    let curve = line([220.0, -40.0, 0.0, 0.0], [220.0, 45.0, 0.0, 0.0]);
+    let path = arm.path(curve, Elbow::Right).unwrap();
+    let [_, largest, ..] = path.point(40.0).unwrap().position;
+    let rows = |machine: Scara| {
+        let path = machine.path(curve, Elbow::Right).unwrap();
+        let motor = AxisLimits {
+            speed: 6.0,
+            acceleration: 100.0,
+            jerk: None,
+        };
+        let mut knots = vec![Knot::default(); 8000];
+        let departure = MachinePath::departure;
+        let table = Table::plan_within([path], [motor; 4], within(10.0), departure, &mut knots);
+        table.unwrap().rows().count()
+    };
+    let any = f64::NEG_INFINITY..=f64::INFINITY;
+    let elbow = 0.0..=largest + MARGIN;
+    let close = arm.with_ranges([any.clone(), elbow, any.clone(), any]);
+    let [free, close] = [arm, close].map(rows);
+    assert!(close > free, "{close} {free}");
+}
+
 /// Holds, feeds and streams keep the limits and the tolerance on every row, as the verifier sees them.
 fn runs<M: Machine<N>, const N: usize>(machine: &M, curves: [Curve<N>; 2], branch: M::Branch) {
     const TOLERANCE: f64 = 0.02;

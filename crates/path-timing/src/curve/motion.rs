@@ -269,7 +269,7 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         let between = fourth * BETWEEN;
         let fifth = self.fifth + longest_fifth;
         self.departure_by_middle(&tool(0.5), fourth, |_| fifth * BESIDE, between)
-            .unwrap_or_else(|| self.departure_between(tool, fourth, between))
+            .unwrap_or_else(|| self.departure_between(tool, fourth, |_| between))
     }
 
     /// The same as [`departure_between`](Self::departure_between) from the tool's place halfway alone;
@@ -307,26 +307,26 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     }
 
     /// The same where other things are known of the difference e of tool and curve: M, which may be
-    /// any number for which |e| ≤ M τ² (1 - τ)²/24, and how far e is at most from linear between the
-    /// nodes τ = k/16.
+    /// any number for which |e| ≤ M τ² (1 - τ)²/24, and how far e is at most from linear between a node
+    /// τ = k/16 and those next to it.
     #[must_use]
     pub fn departure_between(
         &self,
         tool: impl Fn(f64) -> [f64; D],
         fourth: f64,
-        between: f64,
+        between: impl Fn(f64) -> f64,
     ) -> f64 {
         let (mut all, mut across) = (0.0_f64, 0.0_f64);
         for tau in NODES {
             let (apart, beside) = self.apart(&tool(tau), tau);
-            all = larger_or_nan(all, apart);
-            across = larger_or_nan(across, beside);
+            let between = between(tau);
+            all = larger_or_nan(all, apart + between);
+            across = larger_or_nan(across, beside + between);
         }
-        let all = all + between;
         // Written so that NaN stays.
         let is_known = fourth <= 12.0 * self.distance;
         if is_known {
-            all.min(across + between + self.turn * all + 0.5 * self.curvature * all * all)
+            all.min(across + self.turn * all + 0.5 * self.curvature * all * all)
         } else {
             all
         }

@@ -299,7 +299,7 @@ impl<'a> Motion<'a> {
         let between = (own_fourth + fourth) * CurveMotion::<2>::BETWEEN;
         // Nothing is known of the place ahead.
         self.reference
-            .departure_between(|tau| self.tool(tau), f64::INFINITY, between)
+            .departure_between(|tau| self.tool(tau), f64::INFINITY, |_| between)
     }
 }
 
