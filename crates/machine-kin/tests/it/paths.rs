@@ -3,7 +3,8 @@
 use core::f64::consts::TAU;
 
 use machine_kin::path_timing::{
-    Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier, segments_within,
+    AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier,
+    segments_within,
 };
 use machine_kin::{
     Axis, CarriageSide, CoreXy, Elbow, FiveBar, HangingPlotter, LinearDelta, Machine, MachinePath,
