@@ -1,9 +1,9 @@
 //! Instructions of our inverses beside those of the best published crate, counted by callgrind: no noise
 //! of the machine is in them.
 
-#[path = "../../crates/delta-kin/benches/common/points.rs"]
+#[path = "../../crates/delta-kin/benches/kinematics/points.rs"]
 mod delta_points;
-#[path = "../../crates/scara-kin/benches/common/points.rs"]
+#[path = "../../crates/scara-kin/benches/inverse/points.rs"]
 mod points;
 
 use std::hint::black_box;
