@@ -38,8 +38,8 @@ impl<'a, A: Axes> TorqueTable<'a, A> {
     }
 }
 
-/// By how much more than inertia asks for a table is slowed: enough where friction and gravity take up to a
-/// fifth of a torque.
+/// By how much more than inertia asks for a table is slowed: enough at once where friction and gravity take up
+/// to a fifth of a torque, and in each further round of what they take more.
 const MORE: f64 = 1.25;
 
 /// Rounds of slowing a table by the little that its cubics ask for between the ends of its segments.
@@ -137,6 +137,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         passes::fastest(self, limits, knots);
         let duration_s = check_moves(knots)?;
         let mut table = Table::new(knots, *limits, duration_s);
+        let mut more = MORE;
         for _ in 0..ROUNDS {
             let spans = table.spans().map(|span| self.utilisation(&span));
             let most = spans.fold(0.0, larger_or_nan);
@@ -146,8 +147,9 @@ impl<D: Dynamics> TorqueLimits<D> {
             if most == f64::INFINITY {
                 return Ok(None);
             }
-            // Inertia asks for the square of the speed; a little more, for friction and gravity do not.
-            let scale = 1.0 / sqrt(1.0 + (most - 1.0) * MORE + f64::EPSILON);
+            // Inertia asks for the square of the speed; friction and gravity do not.
+            let scale = 1.0 / sqrt(1.0 + (most - 1.0) * more + f64::EPSILON);
+            more *= MORE;
             let Ok(slower) = table.at_speed(scale) else {
                 break;
             };

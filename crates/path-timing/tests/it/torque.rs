@@ -342,6 +342,35 @@ fn an_arm_that_cannot_hold_its_load_is_refused() {
     );
 }
 
+/// A table is slowed until inertia takes what gravity leaves, however little that is.
+#[test]
+fn gravity_may_take_nearly_all() {
+    let masses = ArmMasses {
+        gravity_m_s2: 9.806_65,
+        ..masses(1.0)
+    };
+    let dynamics = arm().dynamics(1e-3, masses).unwrap();
+    for left_nm in [10.0, 1.0, 0.2] {
+        // Of the first is what the line asks for against gravity.
+        let motors = [14.5 + left_nm, 6.0 + left_nm]
+            .map(|torque| TorqueCurve::constant(torque, 30.0).unwrap());
+        let limits = TorqueLimits { dynamics, motors };
+        for segments in [20, 60, 200] {
+            let path = line([[350.0, -200.0], [350.0, 220.0]]);
+            let mut knots = vec![Knot::default(); 5000];
+            let table = limits
+                .plan([path], [FREE; 2], |_| segments, &mut knots)
+                .unwrap();
+            let used = table.spans().map(|span| limits.utilisation(&span));
+            let most = used.fold(0.0, f64::max);
+            assert!(
+                most > 0.999 && most <= WITHIN,
+                "{left_nm} {segments}: {most}"
+            );
+        }
+    }
+}
+
 #[test]
 fn curves_of_motors() {
     let motor = TorqueCurve::holding(2.0, 10.0, 80.0).unwrap();
