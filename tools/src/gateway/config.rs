@@ -5,7 +5,11 @@ mod name;
 mod nats;
 mod store;
 
-use core::{net::SocketAddr, num::NonZeroU16, time::Duration};
+use core::{
+    net::{IpAddr, SocketAddr},
+    num::NonZeroU16,
+    time::Duration,
+};
 use std::{
     env, fs,
     path::{Path, PathBuf},
@@ -242,8 +246,7 @@ impl Config {
             return Err((mqtt.span().start, message.to_owned()));
         }
         if let (Some(tcp), Some(metrics)) = (&self.tcp, &self.metrics)
-            && tcp.get_ref().listen == metrics.get_ref().listen
-            && tcp.get_ref().listen.port() != 0
+            && is_taken_by(metrics.get_ref().listen, tcp.get_ref().listen)
         {
             let message = format!("tcp listens on {} too", tcp.get_ref().listen);
             return Err((metrics.span().start, message));
@@ -490,3 +493,14 @@ const fn sixteen() -> NonZeroU16 {
 
 #[cfg(test)]
 mod tests;
+
+/// Whether one of two addresses to listen on leaves nothing for the other: `0.0.0.0` is each of IPv4, and
+/// `[::]` of both, as Linux has it.
+fn is_taken_by(address: SocketAddr, other: SocketAddr) -> bool {
+    let (ip, other_ip) = (address.ip(), other.ip());
+    let covers =
+        |all: IpAddr, one: IpAddr| all.is_unspecified() && (all.is_ipv6() || one.is_ipv4());
+    address.port() != 0
+        && address.port() == other.port()
+        && (ip == other_ip || covers(ip, other_ip) || covers(other_ip, ip))
+}

@@ -140,12 +140,22 @@ fn errors_name_line_and_column() {
     ] {
         assert_eq!(error(&format!("{HEAD}{rest}\n")), message);
     }
-    let listening = HEAD.replace(":0", ":9");
-    let both = format!("{listening}[metrics]\nlisten = \"127.0.0.1:9\"\n{LINE}");
-    assert_eq!(
-        error(&both),
-        "line 4, column 1: tcp listens on 127.0.0.1:9 too"
-    );
+    let listening = |tcp: &str, metrics: &str| {
+        let head = HEAD.replace("127.0.0.1:0", tcp);
+        format!("{head}[metrics]\nlisten = \"{metrics}\"\n{LINE}")
+    };
+    for both in [
+        ["127.0.0.1:9", "127.0.0.1:9"],
+        ["0.0.0.0:9", "127.0.0.1:9"],
+        ["127.0.0.1:9", "[::]:9"],
+    ] {
+        let [tcp, metrics] = both;
+        let message = format!("line 4, column 1: tcp listens on {tcp} too");
+        assert_eq!(error(&listening(tcp, metrics)), message);
+    }
+    for [tcp, metrics] in [["127.0.0.2:9", "127.0.0.1:9"], ["0.0.0.0:9", "[::1]:9"]] {
+        assert!(Config::parse(&listening(tcp, metrics)).is_ok());
+    }
     let mqtt = |rest| format!("name = \"hall\"\n[mqtt]\nbroker = \"mqtt://h\"\n{rest}\n{LINE}");
     for (rest, message) in [
         ("password = \"x\"", "mqtt: a password without a user"),
