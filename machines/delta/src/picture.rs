@@ -81,16 +81,13 @@ fn feeds(run: &Run<'_>) -> impl Iterator<Item = [f64; 2]> {
 /// What each motor is asked for.
 fn torques(used: &TorqueUsed, time: Axis) -> Plot {
     const PERCENT: f64 = 100.0;
-    let axis = Axis::new("torque in % of what they can turn").including(0.0);
+    let axis = Axis::new("torque in % of pull-out").including(0.0);
     let mut plot = Plot::chart(time, axis).with_title("Torque of the motors");
-    for (arm, stroke) in [Stroke::ACTUAL, Stroke::COMMANDED, Stroke::OTHER]
-        .into_iter()
-        .enumerate()
-    {
+    for arm in 0..3 {
         let parts = used.arms.iter();
         let parts =
             parts.map(|(t_s, parts)| [*t_s, PERCENT * parts.get(arm).copied().unwrap_or_default()]);
-        plot = plot.line(&format!("arm {}", arm + 1), stroke, parts);
+        plot = plot.line(&format!("arm {}", arm + 1), Stroke::series(arm), parts);
     }
     let last_s = used.arms.last().map_or(0.0, |(t_s, _)| *t_s);
     let planned = PERCENT * used.planned;
