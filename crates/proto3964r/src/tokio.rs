@@ -21,7 +21,7 @@ pub use self::{
     damage::Damage,
     incoming::Incoming,
     link::{Link, SendError},
-    stream::{Clock, Reader, Writer},
+    stream::{Clock, Reader, Writer, sleep},
     task::{Caller, Lost, Task},
 };
 use crate::{config::Config, embedded_io_async::Driver, station::Station};

@@ -1,13 +1,10 @@
 //! The task of a pendant: a [`Driver`] on a 3964R station.
 
-use core::{future::pending, time::Duration};
+use core::time::Duration;
 use std::io;
 
-use ::tokio::{
-    sync::mpsc,
-    time::{Instant, sleep_until},
-};
-use proto3964r::tokio::StreamDriver;
+use ::tokio::{sync::mpsc, time::Instant};
+use proto3964r::tokio::{StreamDriver, sleep};
 
 use super::{PendantError, Request, Waiting};
 use crate::{
@@ -118,13 +115,5 @@ fn fail(waiting: Waiting, error: impl Into<PendantError>) {
     match waiting {
         Waiting::ForLed(mut caller) => caller.tell(Err(error.into())),
         Waiting::ForLcd(mut caller) => caller.tell(Err(error.into())),
-    }
-}
-
-/// Returns when it is `due`, never without a time.
-async fn sleep(epoch: Instant, due: Option<Duration>) {
-    match due.and_then(|due| epoch.checked_add(due)) {
-        Some(instant) => sleep_until(instant).await,
-        None => pending().await,
     }
 }

@@ -81,15 +81,20 @@ impl Clock {
     }
 }
 
+/// Returns when it is `due`, counted from an epoch; never without a time, or at one beyond the clock.
+pub async fn sleep(epoch: Instant, due: Option<Duration>) {
+    match due.and_then(|due| epoch.checked_add(due)) {
+        Some(instant) => ::tokio::time::sleep_until(instant).await,
+        None => core::future::pending().await,
+    }
+}
+
 impl AsyncClock for Clock {
     fn now(&mut self) -> Duration {
         self.0.elapsed()
     }
 
     async fn sleep_until(&mut self, time: Duration) {
-        match self.0.checked_add(time) {
-            Some(instant) => ::tokio::time::sleep_until(instant).await,
-            None => core::future::pending().await, // never, by this clock
-        }
+        sleep(self.0, Some(time)).await;
     }
 }

@@ -1,15 +1,11 @@
 //! The task of a client.
 
-use core::{future::pending, time::Duration};
 use std::io;
 
-use ::tokio::{
-    sync::mpsc,
-    time::{Instant, sleep_until},
-};
+use ::tokio::{sync::mpsc, time::Instant};
 use proto3964r::{
     Event,
-    tokio::{Caller, StreamDriver},
+    tokio::{Caller, StreamDriver, sleep},
 };
 
 use super::{
@@ -80,14 +76,6 @@ pub(super) async fn work<D: DataSource>(
             }
             () = sleep(epoch, due) => {}
         }
-    }
-}
-
-/// Returns when it is `due`, never without a time.
-async fn sleep(epoch: Instant, due: Option<Duration>) {
-    match due.and_then(|due| epoch.checked_add(due)) {
-        Some(instant) => sleep_until(instant).await,
-        None => pending().await,
     }
 }
 
