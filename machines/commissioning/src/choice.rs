@@ -32,6 +32,22 @@ const DESIGNS: [(&str, Design); 6] = [
     ("3-hump EI", Shaper::three_hump),
 ];
 
+/// The shaper of a kind for a mode, by the name that a [`Choice`] has; capitals do not matter.
+///
+/// # Errors
+/// Another name, or a mode without a shaper.
+pub fn shaper(name: &str, mode: Mode) -> Result<Shaper> {
+    let named = DESIGNS
+        .iter()
+        .find(|(own, _)| own.eq_ignore_ascii_case(name));
+    let (_, design) = named.with_context(|| {
+        let names = DESIGNS.map(|(own, _)| own).join(", ");
+        format!("shaper = {name:?} is none of {names}")
+    })?;
+    let Mode { hz, damping } = mode;
+    design(mode).with_context(|| format!("hz = {hz}, damping = {damping}"))
+}
+
 impl Choice {
     /// One of each kind of shaper for the modes of an axis, the best first: of those that leave at most
     /// 5 % of the swing while the frequencies are anywhere within ±10 % the one that smooths least, in

@@ -30,7 +30,7 @@ mod fitted;
 mod picture;
 mod vibration;
 
-pub use self::choice::Choice;
+pub use self::choice::{Choice, shaper};
 pub use self::columns::read_columns;
 pub use self::fitted::{Fitted, Unit};
 pub use self::picture::picture;

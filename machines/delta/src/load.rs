@@ -1,6 +1,6 @@
 //! What the machine carries, the torque that its motors have for it, and the mode in which it swings.
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use delta_kin::{Delta, DeltaDynamics, DeltaMasses};
 use machine_sim::Motor;
 use path_timing::{Mode, Shaper, TorqueCurve, TorqueLimits};
@@ -85,18 +85,8 @@ impl Elastic {
     pub(crate) fn check(settings: &ModeSettings) -> Result<Self> {
         let ModeSettings { hz, damping, .. } = *settings;
         let mode = Mode { hz, damping };
-        let shaper = match settings.shaper.as_str() {
-            "zv" => Shaper::zv(mode),
-            "mzv" => Shaper::mzv(mode),
-            "zvd" => Shaper::zvd(mode),
-            "ei" => Shaper::ei(mode),
-            "two_hump" => Shaper::two_hump(mode),
-            "three_hump" => Shaper::three_hump(mode),
-            other => {
-                bail!("[mode] shaper = {other:?} is none of zv, mzv, zvd, ei, two_hump, three_hump")
-            }
-        };
-        let shaper = shaper.with_context(|| format!("[mode] hz = {hz}, damping = {damping}"))?;
+        let shaper = commissioning::shaper(&settings.shaper, mode)
+            .map_err(|error| anyhow!("[mode] {error:#}"))?;
         Ok(Self { mode, shaper })
     }
 }
