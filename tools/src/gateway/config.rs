@@ -491,9 +491,6 @@ const fn sixteen() -> NonZeroU16 {
     const { NonZeroU16::new(16).unwrap() }
 }
 
-#[cfg(test)]
-mod tests;
-
 /// Whether one of two addresses to listen on leaves nothing for the other: `0.0.0.0` is each of IPv4, and
 /// `[::]` of both, as Linux has it.
 fn is_taken_by(address: SocketAddr, other: SocketAddr) -> bool {
@@ -504,3 +501,6 @@ fn is_taken_by(address: SocketAddr, other: SocketAddr) -> bool {
         && address.port() == other.port()
         && (ip == other_ip || covers(ip, other_ip) || covers(other_ip, ip))
 }
+
+#[cfg(test)]
+mod tests;
