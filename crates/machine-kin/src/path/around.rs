@@ -1,6 +1,7 @@
 //! The inverse and its Jacobian within a radius of a piece of a curve.
 
 use super::MachinePath;
+use super::nodes::NODE;
 use super::stretch::{K, Stretch};
 use crate::matrix::{Intervals, Matrix, both, larger_or_nan, product};
 use crate::model::Model;
@@ -13,9 +14,6 @@ pub(super) struct Around<const N: usize> {
     /// Half of the piece, in segments.
     half: f64,
 }
-
-/// From a node to the next, in segments.
-const NODE: f64 = 1.0 / 16.0;
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The axes along a piece.

@@ -3,7 +3,7 @@
 use path_timing::{Cubic, CurveMotion, Row, Span};
 
 use super::around::{Around, Changes};
-use super::nodes::{FOURTH_BETWEEN, Known, NODE, NODES, Nodes, at, difference, raise};
+use super::nodes::{FOURTH_BETWEEN, Known, NODE, NODES, Nodes, at, raise};
 use super::stretch::{ROUNDING, Stretch};
 use super::{MachinePath, of};
 use crate::Machine;
@@ -294,10 +294,11 @@ impl<const N: usize> Tools<N> {
             for next in next {
                 let there = of(&self.off, next);
                 raise(&mut off, &there);
-                raise(
-                    &mut steps,
-                    &core::array::from_fn(|k| difference(&here, &there, k)),
-                );
+                let mut step = here;
+                for (step, there) in step.iter_mut().zip(there) {
+                    *step -= there;
+                }
+                raise(&mut steps, &step);
                 raise(&mut left, &of(&self.rests, next));
             }
             let changed = changes.of_linear(&off, &steps);

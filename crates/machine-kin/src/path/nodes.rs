@@ -10,7 +10,7 @@ use crate::{Interval, Machine, Number};
 /// Nodes between the ends of a segment.
 pub(super) const NODES: usize = 15;
 
-/// From a node to the next: h.
+/// From a node to the next, in segments: h.
 pub(super) const NODE: f64 = 1.0 / 16.0;
 
 /// What fourth derivatives leave between nodes: 5/64 h⁴.
@@ -183,10 +183,4 @@ pub(super) fn at<T: Copy>(values: &[T; NODES], tau: f64) -> Option<T> {
     let mut nodes = CurveMotion::<1>::NODES.iter().zip(values);
     let found = nodes.find(|(node, _)| **node >= tau);
     found.map(|(_, value)| *value)
-}
-
-/// One number less another.
-pub(super) fn difference<const N: usize>(a: &[f64; N], b: &[f64; N], k: usize) -> f64 {
-    let at = |of: &[f64; N]| of.get(k).copied().unwrap_or(f64::NAN);
-    at(a) - at(b)
 }
