@@ -7,7 +7,7 @@ use crate::arm::zip;
 use crate::assembly::from_above;
 use crate::pose::invert_rods;
 use crate::prepared::PreparedArm;
-use crate::range::two;
+use crate::range::{norm, two};
 use crate::{Delta, ElbowSide, Pose};
 
 impl<T: RealField + Trig> Delta<T> {
@@ -126,12 +126,16 @@ fn assembly_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>) -> 
 /// How far the platform can move before elbows that move by 2 δ/λ could lie on a line, as seen from
 /// above.
 fn upright_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>, lambdas: [T; 3]) -> T {
-    let ([s1, s2, s3], area2) = from_above(delta.centres_at(delta.thetas(pose.angles())));
+    let centres = delta.centres_at(delta.thetas(pose.angles()));
+    let ([s1, s2, s3], area2) = from_above(centres);
     let [u1, u2, u3] = lambdas.map(|lambda| two::<T>() / lambda);
     let a = u1 * u2 + u2 * u3 + u3 * u1;
-    // Twice the height that `inverse` asks for: the angles are rounded.
+    // `inverse` asks for a height over the longest side, which may be steep: four times that, as the
+    // angles are rounded and sides get longer.
     let b = u1 * s1 + u2 * s2 + u3 * s3;
-    let rounding = delta.tolerance() * (s1 + s2 + s3) * two() * two();
+    let [c1, c2, c3] = centres;
+    let perimeter = norm(&(c2 - c1)) + norm(&(c3 - c2)) + norm(&(c1 - c3));
+    let rounding = delta.tolerance() * perimeter * two() * two();
     let c = area2 - rounding;
     // a δ² + b δ = c
     two::<T>() * c / (b + (b * b + two::<T>() * two() * a * c).max(T::zero()).sqrt())
