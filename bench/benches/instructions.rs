@@ -33,14 +33,12 @@ use scara_kin::Arm;
 use scara_kin::nalgebra::Point2;
 use stepper_sync::{AxisTrain, Rate, Trains};
 
-const LINK: f64 = 132.0;
-
 fn point() -> Point2<f64> {
     Point2::new(150.0, 80.0)
 }
 
 fn arm() -> (Arm, Point2<f64>) {
-    (Arm::new(LINK, LINK).expect("lengths are good"), point())
+    (pose2pulse_bench::arm(), point())
 }
 
 #[library_benchmark(setup = point)]

@@ -1,21 +1,14 @@
 //! Instructions of our inverses beside those of the best published crate, counted by callgrind: no noise
 //! of the machine is in them.
 
-#[path = "../../crates/delta-kin/benches/kinematics/points.rs"]
-mod delta_points;
-#[path = "../../crates/scara-kin/benches/inverse/points.rs"]
-mod points;
-
 use std::hint::black_box;
 use std::process::ExitCode;
 
-use delta_kin::{Delta, Dimensions};
-use oxictl::kinematics::serial::delta::{DeltaConfig, DeltaRobot};
-use oxictl::kinematics::serial::scara::{ScaraConfig, ScaraRobot};
-use scara_kin::{Arm, Elbow};
+use pose2pulse_bench::{
+    ARM_POINTS, DELTA_POINTS, arm, arm_points, delta, delta_points, peer_arm, peer_delta,
+};
+use scara_kin::Elbow;
 use test_support::instructions::{Limit, bench};
-
-use points::{LINK, POINTS, points};
 
 const BOTH: &str = "scara-kin, both elbows";
 const ONE: &str = "scara-kin, one elbow";
@@ -25,36 +18,17 @@ const THEIR_DELTA: &str = "oxictl, Delta inverse";
 
 /// A case, its points, and the most instructions for each.
 const CASES: [(&str, u32, f64); 5] = [
-    (BOTH, POINTS, 450.0),
-    (ONE, POINTS, 310.0),
-    (THEIR_ONE, POINTS, f64::INFINITY),
-    (DELTA, delta_points::POINTS, 850.0),
-    (THEIR_DELTA, delta_points::POINTS, f64::INFINITY),
+    (BOTH, ARM_POINTS, 300.0),
+    (ONE, ARM_POINTS, 230.0),
+    (THEIR_ONE, ARM_POINTS, f64::INFINITY),
+    (DELTA, DELTA_POINTS, 700.0),
+    (THEIR_DELTA, DELTA_POINTS, f64::INFINITY),
 ];
 
 fn run(case: &str, rounds: u32) {
-    let (points, delta_points) = (points(), delta_points::points());
-    let arm = Arm::new(LINK, LINK).expect("lengths are good");
-    let their_arm = ScaraRobot::new(ScaraConfig {
-        a1: LINK,
-        a2: LINK,
-        ..ScaraConfig::desktop()
-    });
-    let delta = Delta::new(Dimensions {
-        base: 42.0,
-        platform: 18.0,
-        upper: 120.0,
-        lower: 243.0,
-    })
-    .expect("lengths are good");
-    let their_delta = DeltaRobot::new(DeltaConfig {
-        r_f: 42.0,
-        r_e: 18.0,
-        l1: 120.0,
-        l2: 243.0,
-        theta_min: -7.0,
-        theta_max: 7.0,
-    });
+    let (points, delta_points) = (arm_points(), delta_points());
+    let (arm, their_arm) = (arm(), peer_arm());
+    let (delta, their_delta) = (delta(), peer_delta());
     for _ in 0..rounds {
         match case {
             BOTH => points.iter().for_each(|p| {

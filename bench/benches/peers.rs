@@ -1,30 +1,18 @@
 //! Our kinematics beside a bare loop and beside the best published crate, in one run.
 
-#[path = "../../crates/delta-kin/benches/kinematics/points.rs"]
-mod delta_points;
-#[path = "../../crates/scara-kin/benches/inverse/points.rs"]
-mod points;
-
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use delta_kin::{Delta, Dimensions};
-use oxictl::kinematics::serial::delta::{DeltaConfig, DeltaRobot};
-use oxictl::kinematics::serial::scara::{ScaraConfig, ScaraRobot};
-use scara_kin::{Arm, Elbow};
+use pose2pulse_bench::{
+    ARM_POINTS, DELTA_POINTS, arm, arm_points, delta, delta_points, peer_arm, peer_delta,
+};
+use scara_kin::Elbow;
 
-use points::{LINK, POINTS, points};
-
-fn inverse(c: &mut Criterion) {
-    let points = points();
-    let arm = Arm::new(LINK, LINK).expect("lengths are good");
-    let peer = ScaraRobot::new(ScaraConfig {
-        a1: LINK,
-        a2: LINK,
-        ..ScaraConfig::desktop()
-    });
+fn two_links(c: &mut Criterion) {
+    let points = arm_points();
+    let (arm, peer) = (arm(), peer_arm());
     let mut group = c.benchmark_group("two-link inverse");
-    group.throughput(Throughput::Elements(u64::from(POINTS)));
+    group.throughput(Throughput::Elements(u64::from(ARM_POINTS)));
     group.bench_function("scara-kin, both elbows", |b| {
         b.iter(|| {
             for p in &points {
@@ -50,25 +38,11 @@ fn inverse(c: &mut Criterion) {
     group.finish();
 }
 
-fn delta(c: &mut Criterion) {
-    let points = delta_points::points();
-    let ours = Delta::new(Dimensions {
-        base: 42.0,
-        platform: 18.0,
-        upper: 120.0,
-        lower: 243.0,
-    })
-    .expect("lengths are good");
-    let mut peer = DeltaRobot::new(DeltaConfig {
-        r_f: 42.0,
-        r_e: 18.0,
-        l1: 120.0,
-        l2: 243.0,
-        theta_min: -7.0,
-        theta_max: 7.0,
-    });
+fn three_arms(c: &mut Criterion) {
+    let points = delta_points();
+    let (ours, mut peer) = (delta(), peer_delta());
     let mut group = c.benchmark_group("delta inverse");
-    group.throughput(Throughput::Elements(u64::from(delta_points::POINTS)));
+    group.throughput(Throughput::Elements(u64::from(DELTA_POINTS)));
     group.bench_function("delta-kin", |b| {
         b.iter(|| {
             for p in &points {
@@ -91,7 +65,7 @@ fn delta(c: &mut Criterion) {
         .map(|p| ours.inverse(*p).expect("point is reached"))
         .collect();
     let mut group = c.benchmark_group("delta forward");
-    group.throughput(Throughput::Elements(u64::from(delta_points::POINTS)));
+    group.throughput(Throughput::Elements(u64::from(DELTA_POINTS)));
     group.bench_function("delta-kin", |b| {
         b.iter(|| {
             for a in &angles {
@@ -115,5 +89,5 @@ fn delta(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, inverse, delta);
+criterion_group!(benches, two_links, three_arms);
 criterion_main!(benches);

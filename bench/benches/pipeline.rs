@@ -11,7 +11,7 @@ use std::env;
 use std::process::Command;
 use std::time::Instant;
 
-use delta_kin::{Delta, DeltaPath, Dimensions};
+use delta_kin::{Delta, DeltaPath};
 use path_timing::{Accuracy, AxisLimits, Curve, Knot, Path, Row, Span, Table, ToolLimits};
 use pvt_steps::{AxisSegments, PvtKnot, PvtQuantiser, PvtSteps, SegmentPlayer};
 use scara_kin::{Arm, ArmPath, Elbow};
@@ -189,14 +189,8 @@ struct Machines {
 impl Machines {
     fn new() -> Self {
         Self {
-            arm: Arm::new(132.0, 132.0).expect("lengths"),
-            delta: Delta::new(Dimensions {
-                base: 42.0,
-                platform: 18.0,
-                upper: 120.0,
-                lower: 243.0,
-            })
-            .expect("lengths"),
+            arm: pose2pulse_bench::arm(),
+            delta: pose2pulse_bench::delta(),
             arm_knots: vec![Knot::default(); 400],
             delta_knots: vec![Knot::default(); 400],
             arm_lines: arm_lines(),

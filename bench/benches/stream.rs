@@ -7,7 +7,7 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use delta_kin::{Delta, DeltaPath, Dimensions};
+use delta_kin::{Delta, DeltaPath};
 use path_timing::{
     AxisLimits, Curve, Knot, LookAhead, Path, Row, Smoothed, ToolLimits, Vertex, Waypoint,
     segments_within,
@@ -102,14 +102,8 @@ fn report(name: &str, step_mm: f64, mut plan: impl FnMut() -> f64) {
 }
 
 fn main() {
-    let two_links = Arm::new(132.0, 132.0).expect("lengths");
-    let three_arms = Delta::new(Dimensions {
-        base: 42.0,
-        platform: 18.0,
-        upper: 120.0,
-        lower: 243.0,
-    })
-    .expect("lengths");
+    let two_links = pose2pulse_bench::arm();
+    let three_arms = pose2pulse_bench::delta();
     for step_mm in [0.2, 1.0] {
         let plane = points(step_mm, [0.0, 150.0]);
         report("arm", step_mm, || arm(&two_links, black_box(&plane)));

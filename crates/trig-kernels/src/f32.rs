@@ -46,16 +46,20 @@ fn arctan_polynomial(z: f32) -> f32 {
     c0 + z * (c1 + z * (c2 + z * c3))
 }
 
-/// 2 atan(numerator/denominator) of a quotient from 0 to 1, or π less it.
+/// The angle of (±cosine, |sine|) by its half.
+///
+/// ```text
+/// t = sine / (length + cosine) = tan(angle/2)     t <= 1     angle = 2 atan t, or π less it
+/// ```
 #[inline(always)]
-fn twice_arctan(numerator: f32, denominator: f32, is_supplement: bool) -> f32 {
-    let t = numerator / denominator;
+fn size_of_angle(unit: Unit, is_obtuse: bool) -> f32 {
+    let t = unit.sine.abs() / (unit.length + unit.cosine);
     let z = t * t;
     let [c0, c1, c2, c3, c4, c5, c6, c7] = HALF_ARCTAN;
     let inner = c0 + z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * (c5 + z * (c6 + z * c7))))));
     let half = t + t * (z * inner);
     let size = half + half;
-    if is_supplement {
+    if is_obtuse {
         core::f32::consts::PI - size
     } else {
         size

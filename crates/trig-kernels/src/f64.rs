@@ -55,36 +55,31 @@ fn arctan_polynomial(z: f64) -> f64 {
 
 // Vectors compare numbers; processors without vectors, mostly without an FPU for f64, their bits.
 
-/// tan π/8: quotients above are turned by π/4.
-const FOLD: f64 = 0.414_213_562_373_095_05;
-
-/// 2 atan(numerator/denominator) of a quotient from 0 to 1, or π less it.
+/// The angle of (±cosine, |sine|) by its half, where it is nearer to the other axis the rest of a right
+/// angle.
+///
+/// ```text
+/// t = small / (length + large) = tan(angle/2)     t <= tan π/8     angle = 2 atan t
+/// ```
 #[inline(always)]
-fn twice_arctan(numerator: f64, denominator: f64, is_supplement: bool) -> f64 {
+fn size_of_angle(unit: Unit, is_obtuse: bool) -> f64 {
     use core::f64::consts::{FRAC_PI_2, PI};
-    let is_folded = is_less(FOLD * denominator, numerator);
-    let (numerator, denominator) = if is_folded {
-        (numerator - denominator, numerator + denominator)
-    } else {
-        (numerator, denominator)
-    };
-    let t = numerator / denominator;
+    let (sine, cosine) = (unit.sine.abs(), unit.cosine);
+    let is_steep = is_less(cosine, sine);
+    let (small, large) = if is_steep { (cosine, sine) } else { (sine, cosine) };
+    let t = small / (unit.length + large);
     let z = t * t;
     let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = HALF_ARCTAN;
     let inner = c4 + z * (c5 + z * (c6 + z * (c7 + z * (c8 + z * c9))));
     let inner = c0 + z * (c1 + z * (c2 + z * (c3 + z * inner)));
     let half = t + t * (z * inner);
-    let turned = if is_supplement {
-        -(half + half)
-    } else {
-        half + half
-    };
-    let base = match (is_folded, is_supplement) {
+    let size = half + half;
+    let base = match (is_steep, is_obtuse) {
         (true, _) => FRAC_PI_2,
         (false, true) => PI,
         (false, false) => 0.0,
     };
-    base + turned
+    base + if is_steep == is_obtuse { size } else { -size }
 }
 
 /// `small < large` of two numbers that are not negative.

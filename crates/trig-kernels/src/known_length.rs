@@ -35,17 +35,10 @@ macro_rules! known_length {
                 <= $float::to_bits(max) - $float::to_bits(min)
         }
 
-        /// ```text
-        /// t = sine / (length + cosine) = tan(angle/2)     |t| <= 1
-        /// angle = ±2 atan t, or π less it where x is negative
-        /// ```
+        /// With the sign of y.
         #[inline(always)]
         fn angle_of_unit(y: $float, x: $float, unit: Unit) -> $float {
-            let size = twice_arctan(
-                unit.sine.abs(),
-                unit.length + unit.cosine,
-                x.is_sign_negative(),
-            );
+            let size = size_of_angle(unit, x.is_sign_negative());
             $float::from_bits(size.to_bits() | (y.to_bits() & SIGN))
         }
 
