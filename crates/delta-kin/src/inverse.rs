@@ -225,9 +225,9 @@ impl<T: RealField + Trig> Delta<T> {
         );
         let angles =
             zip(self.prepared().each_ref(), thetas).map(|(prepared, theta)| prepared.angle(theta));
+        // Out of reach an angle is not a number, and in no range.
         let is_admitted = zip(arms, angles).map(|((prepared, triangle, ..), angle)| {
-            triangle.is_within_reach()
-                && prepared.min <= angle
+            prepared.min <= angle
                 && angle <= prepared.max
                 && triangle.side.abs() <= prepared.max_side
         });

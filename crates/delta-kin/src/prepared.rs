@@ -43,7 +43,7 @@ pub(crate) struct Triangle<T> {
     /// La² - w² - Lb² - h²: twice the product of Lb, h and the cosine of the upper arm's angle from
     /// the line to the wrist, reversed.
     along: T,
-    /// The square of twice the product of Lb, h and the sine: not positive out of reach.
+    /// The square of twice the product of Lb, h and the sine: negative out of reach.
     across2: T,
 }
 
@@ -222,12 +222,6 @@ impl<T: RealField + Trig> PreparedArm<T> {
 }
 
 impl<T: RealField + Trig> Triangle<T> {
-    /// Whether the wrist is within reach, and not on its edge.
-    #[inline(always)]
-    pub(crate) fn is_within_reach(&self) -> bool {
-        self.across2 > T::zero()
-    }
-
     /// 1 / 2 h²
     #[inline(always)]
     pub(crate) fn scale(&self) -> T {
