@@ -24,11 +24,11 @@ const SCALES: [f64; 2] = [power_of_two(-600), power_of_two(600)];
 /// Quotients below do not change π/2.
 const TINY_QUOTIENT: f64 = power_of_two(-60);
 
-// In pairs instead of one chain: a processor computes them side by side.
 /// By how much a length may differ from what was said of it: half the square of that is left out of
 /// the angle.
 const KNOWN: f64 = power_of_two(-27);
 
+// In pairs instead of one chain: a processor computes them side by side.
 #[inline(always)]
 fn sine_polynomial(z: f64) -> f64 {
     let [c0, c1, c2, c3, c4, c5] = SINE;
@@ -53,8 +53,6 @@ fn arctan_polynomial(z: f64) -> f64 {
     low + z4 * (high + z4 * c8)
 }
 
-// Vectors compare numbers; processors without vectors, mostly without an FPU for f64, their bits.
-
 /// The angle of (±cosine, |sine|) by its half, where it is nearer to the other axis the rest of a right
 /// angle.
 ///
@@ -66,7 +64,11 @@ fn size_of_angle(unit: Unit, is_obtuse: bool) -> f64 {
     use core::f64::consts::{FRAC_PI_2, PI};
     let (sine, cosine) = (unit.sine.abs(), unit.cosine);
     let is_steep = is_less(cosine, sine);
-    let (small, large) = if is_steep { (cosine, sine) } else { (sine, cosine) };
+    let (small, large) = if is_steep {
+        (cosine, sine)
+    } else {
+        (sine, cosine)
+    };
     let t = small / (unit.length + large);
     let z = t * t;
     let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = HALF_ARCTAN;
@@ -81,6 +83,8 @@ fn size_of_angle(unit: Unit, is_obtuse: bool) -> f64 {
     };
     base + if is_steep == is_obtuse { size } else { -size }
 }
+
+// Vectors compare numbers; processors without vectors, mostly without an FPU for f64, their bits.
 
 /// `small < large` of two numbers that are not negative.
 #[inline(always)]

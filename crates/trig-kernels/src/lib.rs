@@ -174,6 +174,8 @@ pub fn atan2_lanes<T: Trig, const L: usize>(y: [T; L], x: [T; L]) -> [T; L] {
 /// g = (1 + u² + w²)/2     tan(angle/2) = u / (g + w), or π less that angle where x < 0
 /// ```
 ///
+/// In `f64`, where |y| is the larger side, tan(angle/2) = w / (g + u), taken from π/2.
+///
 /// `inverse_length` is 1/N, as near as about 2^-12 in `f32` and 2^-27 in `f64`: what the length is off
 /// by δ changes the angle by δ²/2 of it. Where it is off by more, or no number, the answer is that of
 /// [`atan2`]. Off by at most 4 of the last place; signed zeros as in `atan2`. It takes two thirds of
