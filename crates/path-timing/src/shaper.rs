@@ -20,7 +20,7 @@ mod try_row;
 
 use core::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
 
-use crate::number::{LARGEST, SMALLEST, cube_root, range, sqrt};
+use crate::number::{LARGEST, SMALLEST, cube_root, larger_or_nan, range, sqrt};
 pub use error::{ShapedError, ShaperError};
 pub use shaped::Shaped;
 pub use try_row::TryRow;
@@ -279,6 +279,26 @@ impl Shaper {
             impulse.amplitude * from_mean_s * from_mean_s
         });
         squares.sum::<f64>() * 0.5 * acceleration.abs()
+    }
+
+    /// The most by which a shaped axis is off where its speed jumps, at a corner passed with
+    /// [`Corner::Jump`](crate::Corner::Jump): of jumps within [`duration_s`](Self::duration_s) of one another
+    /// the sum of their sizes counts. It comes on top of [`departure`](Self::departure).
+    ///
+    /// ```text
+    /// |qₛ(t) - q(t - τ)| ≤ jump Σ Aᵢ max(0, τ - τᵢ)
+    /// ```
+    ///
+    /// Proof. A jump by d at the time 0 adds d max(0, t) to the motion, so d Σ Aᵢ max(0, t - τᵢ) to the shaped
+    /// one; less d max(0, t - τ), that is largest at t = τ.
+    #[must_use]
+    pub fn departure_of_jumps(&self, jump: f64) -> f64 {
+        let delay_s = self.delay_s();
+        let earlier = self.impulses().iter().map(|impulse| {
+            let earlier_s = larger_or_nan(0.0, delay_s - impulse.time_s);
+            impulse.amplitude * earlier_s
+        });
+        earlier.sum::<f64>() * jump.abs()
     }
 
     /// The part of a mode's vibration that is left when the last impulse is over: 0 for none, 1 for all of

@@ -47,8 +47,6 @@ mod rounded;
 mod session;
 mod simulation;
 mod step_log;
-mod torque;
-mod vibration;
 
 pub use self::calibration::{Calibrated, Fit};
 pub use self::machine::Machine;

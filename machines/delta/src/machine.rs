@@ -2,13 +2,14 @@
 
 use anyhow::{Context, Result, bail, ensure};
 use delta_kin::{Arm, ArmGeometry, ArmRange, Delta, Dimensions, InverseError, SpeedLimits};
+use known_load::{Elastic, ModeSettings, MotorSettings};
 use machine_sim::input::parse_settings;
 use nalgebra::{Point3, Vector3};
 use path_timing::AxisLimits;
 use serde::Deserialize;
 use stepper_sync::StepScale;
 
-use crate::load::{Drive, Elastic, Load, LoadSettings, ModeSettings, TorqueSettings};
+use crate::load::{Drive, Load, LoadSettings};
 
 /// The settings, as written.
 #[derive(Debug, Deserialize)]
@@ -25,7 +26,7 @@ struct Settings {
     #[serde(default)]
     arm: Vec<Deviation>,
     load: Option<LoadSettings>,
-    torque: Option<TorqueSettings>,
+    torque: Option<MotorSettings>,
     mode: Option<ModeSettings>,
 }
 
@@ -148,7 +149,7 @@ impl Machine {
                     gear_ratio: motor.gear_ratio,
                     max_rate_deg_s: motor.max_rate_deg_s,
                 };
-                Some(Load::check((load, torque), &delta, drive)?)
+                Some(load.check(torque, &delta, drive)?)
             }
             (None, None) => None,
             (Some(_), None) => bail!("[load] without [torque]: neither or both are needed"),
@@ -168,7 +169,10 @@ impl Machine {
             tolerance_mm: path.tolerance_mm,
             tick_s: path.tick_ms / 1000.0,
             load,
-            elastic: settings.mode.as_ref().map(Elastic::check).transpose()?,
+            elastic: match &settings.mode {
+                Some(mode) => Some(mode.check("mode")?),
+                None => None,
+            },
         };
         // The platform must be somewhere when the arms are at home, and the arms within their
         // limits there.

@@ -1,14 +1,11 @@
 //! What the emitted edges ask of the motors, and whether they follow.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
+use delta_kin::DeltaDynamics;
+use known_load::PoseLoad;
 use machine_sim::{DrivenAxis, Followed, Motor, StepSize};
-use nalgebra::{Matrix3, Vector3};
 
-use crate::load::Load;
 use crate::machine::Machine;
-
-/// From one look at what the arms carry to the next: a fraction of the swings of a rotor.
-const LOOK_S: f64 = 250e-6;
 
 /// 0.4 N m on each arm. At the motor, through 27:1: the rotor 5.4, the gear 2.0, an arm of 60 g and
 /// its share of rods and platform, 80 g at 120 mm, 2.0, in 1e-6 kg m².
@@ -27,8 +24,7 @@ const MOTOR: Motor = Motor {
 pub(crate) struct Motors {
     axes: [DrivenAxis; 3],
     position: [i32; 3],
-    load: Option<Load>,
-    looked_s: f64,
+    load: Option<PoseLoad<DeltaDynamics, 3>>,
 }
 
 impl Motors {
@@ -36,19 +32,21 @@ impl Motors {
     /// and `is_loaded`, else the same all along.
     pub(crate) fn new(machine: &Machine, is_loaded: bool) -> Result<Self> {
         let load = machine.load.filter(|_| is_loaded);
-        let motor = load.map_or(MOTOR, |load| load.motor);
-        let motor = Motor {
-            microsteps: machine.microsteps,
-            ..motor
-        };
-        let mut motors = Self {
-            axes: [motor; 3].map(DrivenAxis::new),
+        let motors = load.map_or([MOTOR; 3], |load| load.motors.map(|motor| motor.motor));
+        let mut axes = motors.map(|motor| {
+            DrivenAxis::new(Motor {
+                microsteps: machine.microsteps,
+                ..motor
+            })
+        });
+        let rotors = axes.each_mut().map(DrivenAxis::rotor_mut);
+        let home = machine.angles([0; 3]).into();
+        let load = load.map(|load| PoseLoad::new(load, &home, rotors));
+        Ok(Self {
+            load: load.transpose()?,
+            axes,
             position: [0; 3],
-            load,
-            looked_s: 0.0,
-        };
-        motors.look(machine)?;
-        Ok(motors)
+        })
     }
 
     /// They are commanded to a position at a time.
@@ -58,14 +56,9 @@ impl Motors {
         time_s: f64,
         position: [i32; 3],
     ) -> Result<()> {
-        if self.load.is_some() {
-            while self.looked_s + LOOK_S < time_s {
-                self.looked_s += LOOK_S;
-                for axis in &mut self.axes {
-                    axis.rotor_mut().turn_until(self.looked_s);
-                }
-                self.look(machine)?;
-            }
+        if let Some(load) = &mut self.load {
+            let rotors = self.axes.each_mut().map(DrivenAxis::rotor_mut);
+            load.turn_until(time_s, &machine.angles(self.position).into(), rotors)?;
         }
         let last = core::mem::replace(&mut self.position, position);
         let axes = self.axes.iter_mut().zip(position.into_iter().zip(last));
@@ -73,39 +66,6 @@ impl Motors {
             if to != from {
                 axis.step(time_s, to - from);
             }
-        }
-        Ok(())
-    }
-
-    /// Gives each motor what it turns in this pose and at these speeds. With M the inertia, h what
-    /// velocities and gravity ask for, t what the motors have:
-    ///
-    /// ```text
-    /// M q'' = t - h,  load of a motor = h + Σ of the others' M q''
-    /// ```
-    fn look(&mut self, machine: &Machine) -> Result<()> {
-        let Some(load) = &self.load else {
-            return Ok(());
-        };
-        let (dynamics, ratio) = (&load.limits.dynamics, load.gear_ratio);
-        let pose = machine.delta.pose_of(machine.angles(self.position))?;
-        let mut rotors = self.axes.each_mut().map(DrivenAxis::rotor_mut);
-        let rates = Vector3::from(rotors.each_ref().map(|it| it.speed_rad_s() / ratio));
-        let has = Vector3::from(rotors.each_ref().map(|it| it.torque_nm() * ratio));
-        let zero = Vector3::zeros();
-        let held = dynamics.torques(&pose, zero, zero)?;
-        let mut inertia = Matrix3::zeros();
-        for (axis, mut column) in inertia.column_iter_mut().enumerate() {
-            let unit = Vector3::from_fn(|row, _| f64::from(u8::from(row == axis)));
-            column.copy_from(&(dynamics.torques(&pose, zero, unit)? - held));
-        }
-        let moved = dynamics.torques(&pose, rates, zero)?;
-        let accelerations = inertia.lu().solve(&(has - moved));
-        let accelerations = accelerations.context("arms without inertia")?;
-        let own = inertia.diagonal();
-        let loads = moved + inertia * accelerations - own.component_mul(&accelerations);
-        for (rotor, (own, load)) in rotors.iter_mut().zip(own.iter().zip(&loads)) {
-            rotor.set_load(own / ratio / ratio, load / ratio);
         }
         Ok(())
     }

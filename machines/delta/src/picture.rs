@@ -2,14 +2,14 @@
 //! platform's speed and acceleration over time.
 
 use anyhow::Result;
+use known_load::{torque_chart, vibration_chart};
 use machine_sim::{Axis, Figure, Plot, Stroke};
 use nalgebra::{Point3, Vector3};
 
 use crate::motion::Motion;
 use crate::plan::seconds;
+use crate::report::ARMS;
 use crate::simulation::{Driven, Run};
-use crate::torque::TorqueUsed;
-use crate::vibration::Vibration;
 
 /// Points of an outline.
 const OUTLINE: u32 = 240;
@@ -59,10 +59,11 @@ impl Run<'_> {
             .with_row([speed])
             .with_row([acceleration]);
         if let Some(used) = &self.record.torque {
-            figure = figure.with_row([torques(used, time())]);
+            figure = figure.with_row([torque_chart(used, ARMS, time())]);
         }
         if let Some(vibration) = &self.driven.vibration {
-            figure = figure.with_row([swings(vibration, self.unshaped.as_ref())]);
+            let unshaped = self.unshaped.as_ref().and_then(|it| it.vibration.as_ref());
+            figure = figure.with_row([vibration_chart("the tool", vibration, unshaped)]);
         }
         Ok(figure)
     }
@@ -76,43 +77,6 @@ fn feeds(run: &Run<'_>) -> impl Iterator<Item = [f64; 2]> {
         let begin_s = core::mem::replace(&mut start_s, end_s);
         [[begin_s, line.feed_mm_s], [end_s, line.feed_mm_s]]
     })
-}
-
-/// What each motor is asked for.
-fn torques(used: &TorqueUsed, time: Axis) -> Plot {
-    const PERCENT: f64 = 100.0;
-    let axis = Axis::new("torque in % of pull-out").including(0.0);
-    let mut plot = Plot::chart(time, axis).with_title("Torque of the motors");
-    for arm in 0..3 {
-        let parts = used.arms.iter();
-        let parts =
-            parts.map(|(t_s, parts)| [*t_s, PERCENT * parts.get(arm).copied().unwrap_or_default()]);
-        plot = plot.line(&format!("arm {}", arm + 1), Stroke::series(arm), parts);
-    }
-    let last_s = used.arms.last().map_or(0.0, |(t_s, _)| *t_s);
-    let planned = PERCENT * used.planned;
-    plot.line(
-        "planned at most",
-        Stroke::LIMIT,
-        [[0.0, planned], [last_s, planned]],
-    )
-}
-
-/// How far the tool is off its place, with and without shaping.
-fn swings(vibration: &Vibration, unshaped: Option<&Driven>) -> Plot {
-    const UM_PER_MM: f64 = 1000.0;
-    let um = |vibration: &Vibration| {
-        let points = vibration.over_time.iter();
-        points
-            .map(|[t_s, mm]| [*t_s, UM_PER_MM * mm])
-            .collect::<Vec<_>>()
-    };
-    let axis = Axis::new("tool off its place in µm").including(0.0);
-    let mut plot = Plot::chart(Axis::new("time in s"), axis).with_title("Vibration of the tool");
-    if let Some(plain) = unshaped.and_then(|it| it.vibration.as_ref()) {
-        plot = plot.line("without shaping", Stroke::OTHER, um(plain));
-    }
-    plot.line("driven by the steps", Stroke::ACTUAL, um(vibration))
 }
 
 fn accelerations(run: &Run<'_>) -> impl Iterator<Item = [f64; 2]> {

@@ -1,12 +1,12 @@
 //! What came of the lines of an input.
 
 use anyhow::{Result, bail};
+use known_load::TorqueUsed;
 use machine_sim::input::Notes;
 use nalgebra::Point3;
 use serde::Serialize;
 
 use crate::motion::Motion;
-use crate::torque::TorqueUsed;
 
 /// A line that has been answered with `ok`.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +61,7 @@ pub struct Record {
     /// Where shaped.
     pub(crate) shaped_bound_mm: Option<f64>,
     /// Where the machine's load is known.
-    pub(crate) torque: Option<TorqueUsed>,
+    pub(crate) torque: Option<TorqueUsed<3>>,
     pub(crate) refusals: Vec<Refusal>,
     pub(crate) notes: Notes,
     /// Of lines with rounded corners.

@@ -3,13 +3,16 @@
 use core::fmt;
 
 use anyhow::Result;
+use known_load::{TorqueReport, VibrationReport};
 use machine_sim::Followed;
 use serde::Serialize;
 
 use crate::motion::Motion;
 use crate::record::{Refusal, check};
 use crate::simulation::{Driven, Run};
-use crate::torque::MostTorque;
+
+/// As reports and charts name them.
+pub(crate) const ARMS: [&str; 3] = ["arm 1", "arm 2", "arm 3"];
 
 /// `report.json`; displayed, a summary in lines.
 #[derive(Debug, Clone, Serialize)]
@@ -40,9 +43,9 @@ pub struct Report {
     /// it is later by the shaper's delay.
     shaped_bound_mm: Option<f64>,
     /// What is asked of the motors, where load and torque are known.
-    torque: Option<Torque>,
+    torque: Option<TorqueReport>,
     /// How the tool swings, where its mode is known.
-    vibration: Option<Vibrations>,
+    vibration: Option<VibrationReport>,
     /// Steps from home at the end.
     end: [i32; 3],
     /// Start speeds, speed jumps and accelerations by the edges alone; a simulated motor that is
@@ -52,44 +55,6 @@ pub struct Report {
     trains: Comparison,
     /// The same moves driven by the thesis' control tick.
     tick: Tick,
-}
-
-#[derive(Debug, Clone, Copy, Serialize)]
-struct Torque {
-    #[serde(flatten)]
-    most: MostTorque,
-    /// Where the platform is then.
-    at_mm: [f64; 3],
-    /// The part of the pull-out torque that is planned.
-    planned: f64,
-}
-
-#[derive(Debug, Clone, Copy, Serialize)]
-struct Vibrations {
-    hz: f64,
-    #[serde(flatten)]
-    swing: Swing,
-    /// The same lines without a shaper.
-    unshaped: Option<Swing>,
-}
-
-/// Of a simulated tool.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct Swing {
-    /// The farthest that it was off its place on the platform.
-    max_off_mm: f64,
-    /// How far it swings after the last step.
-    left_mm: f64,
-}
-
-impl Swing {
-    fn of(driven: &Driven) -> Option<Self> {
-        let vibration = driven.vibration.as_ref()?;
-        Some(Self {
-            max_off_mm: vibration.most_mm,
-            left_mm: vibration.left_mm,
-        })
-    }
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -123,22 +88,16 @@ impl Run<'_> {
         Report::new(self)
     }
 
-    fn torque(&self) -> Option<Torque> {
+    fn torque(&self) -> Option<TorqueReport> {
         let used = self.record.torque.as_ref()?;
-        let at = self.machine.delta.forward(used.angles_at_most()).ok()?;
-        Some(Torque {
-            most: used.most,
-            at_mm: at.into(),
-            planned: used.planned,
-        })
+        let at = self.machine.delta.forward(used.position_at_most()).ok()?;
+        Some(TorqueReport::new(used, ARMS, <[f64; 3]>::from(at)))
     }
 
-    fn vibration(&self) -> Option<Vibrations> {
-        Some(Vibrations {
-            hz: self.machine.elastic.as_ref()?.mode.hz,
-            swing: Swing::of(&self.driven)?,
-            unshaped: self.unshaped.as_ref().and_then(Swing::of),
-        })
+    fn vibration(&self) -> Option<VibrationReport> {
+        let unshaped = self.unshaped.as_ref().and_then(|it| it.vibration.as_ref());
+        let vibration = self.driven.vibration.as_ref()?;
+        Some(VibrationReport::new("the tool", vibration, unshaped))
     }
 }
 
@@ -177,43 +136,6 @@ impl Report {
     /// Lines were refused: how many, and the first.
     pub fn check(&self) -> Result<()> {
         check(&self.refusals, self.moves)
-    }
-}
-
-impl fmt::Display for Torque {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.at_mm;
-        let MostTorque { part, arm, t_s, .. } = self.most;
-        write!(
-            f,
-            "at most {:.1} % of what the motors can turn, by arm {arm} at {t_s:.3} s and {x:.1} {y:.1} \
-             {z:.1} mm; {:.1} % are planned",
-            100.0 * part,
-            100.0 * self.planned
-        )
-    }
-}
-
-impl fmt::Display for Vibrations {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Swing {
-            max_off_mm,
-            left_mm,
-        } = self.swing;
-        write!(
-            f,
-            "the tool ({:.1} Hz) is at most {max_off_mm:.4} mm off its place, and swings by {left_mm:.4} mm \
-             at the end",
-            self.hz
-        )?;
-        if let Some(Swing {
-            max_off_mm,
-            left_mm,
-        }) = self.unshaped
-        {
-            write!(f, "; without shaping {max_off_mm:.4} and {left_mm:.4} mm")?;
-        }
-        Ok(())
     }
 }
 

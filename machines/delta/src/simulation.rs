@@ -4,12 +4,11 @@
 use std::io::BufRead;
 
 use anyhow::Result;
+use known_load::{Elastic, Tool, Vibration};
 use machine_sim::{Followed, MotionSampler};
 use nalgebra::Point3;
-use path_timing::Shaper;
 
 use crate::control_tick;
-use crate::load::Elastic;
 use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::motors::Motors;
@@ -17,7 +16,6 @@ use crate::plan::{Plan, seconds};
 use crate::record::{Move, Record};
 use crate::rounded;
 use crate::step_log;
-use crate::vibration::{Tool, Vibration};
 
 /// What steps may be off their places: those of cubics by a tick, those of trains by the rounding of
 /// joint waypoints to whole steps.
@@ -165,10 +163,7 @@ fn unshaped(machine: &Machine, record: &Record) -> Result<Option<Driven>> {
         return Ok(None);
     };
     let mut plain = machine.clone();
-    plain.elastic = Some(Elastic {
-        shaper: Shaper::none(),
-        ..elastic
-    });
+    plain.elastic = Some(Elastic::unshaped(elastic));
     let mut again = Record::new(record.motion);
     again.moves.extend(record.moves.iter().map(|it| Move {
         curves_ticks: None,
@@ -220,7 +215,7 @@ struct Follower<'a> {
     /// That which it is on, and those after it.
     lines: &'a [Move],
     motors: Motors,
-    tool: Option<Tool>,
+    tool: Option<Tool<3>>,
     last_s: f64,
     max_path_error_mm: f64,
     steps: u64,
@@ -236,7 +231,7 @@ impl<'a> Follower<'a> {
             lines,
             motors: Motors::new(machine, motion == Motion::Rounded)?,
             tool: match &machine.elastic {
-                Some(elastic) => Some(Tool::new(elastic, machine.point([0; 3])?)),
+                Some(elastic) => Some(Tool::new(elastic, machine.point([0; 3])?.into())),
                 None => None,
             },
             last_s: 0.0,
@@ -256,7 +251,7 @@ impl<'a> Follower<'a> {
         let point = self.machine.point(position)?;
         self.last_s = t_s;
         if let Some(tool) = &mut self.tool {
-            tool.follow(t_s, point);
+            tool.follow(t_s, point.into());
         }
         match self.motion {
             Motion::Rounded => self.follow_rounded(t_s, point),
@@ -312,7 +307,10 @@ impl<'a> Follower<'a> {
             steps: self.steps,
             end: self.end,
             motors: self.motors.finish(self.machine, deviation_steps),
-            vibration: self.tool.map(|tool| tool.finish(self.last_s)),
+            vibration: self.tool.map(|mut tool| {
+                tool.rest(self.last_s);
+                tool.finish(self.last_s)
+            }),
             path: self.path,
         })
     }

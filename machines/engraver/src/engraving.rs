@@ -72,9 +72,15 @@ impl Engraving {
             MotorController::Timed => {
                 let pattern = simulate(machine, pattern, reference, &mut (), &mut progress)?;
                 let plan = TimedPlan::new(machine, drawing, settings, progress)?;
+                let mut timed = simulate_timed(machine, &plan, wires, |_, _| ())?;
+                if let Some(unshaped) = machine.unshaped() {
+                    let plan = TimedPlan::new(&unshaped, drawing, settings, |_, _| ())?;
+                    let run = simulate_timed(&unshaped, &plan, &mut (), |_, _| ())?;
+                    timed.unshaped = run.vibration;
+                }
                 Self {
                     pattern,
-                    timed: Some(simulate_timed(machine, &plan, wires, |_, _| ())?),
+                    timed: Some(timed),
                 }
             }
         })
@@ -102,7 +108,7 @@ impl Engraving {
     ) -> Report<'a> {
         let report = Report::new(machine, drawing, plan, &self.pattern);
         match &self.timed {
-            Some(timed) => report.with_timed(timed),
+            Some(timed) => report.with_timed(machine, timed),
             None => report,
         }
     }

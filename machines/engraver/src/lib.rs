@@ -30,6 +30,7 @@ mod engraving;
 mod gauge;
 mod header;
 mod layout;
+mod load;
 mod machine;
 mod motors;
 mod numbers;
@@ -62,6 +63,9 @@ pub use self::timed::{TimedLimits, TimedPlan, TimedRow, simulate_timed};
 
 /// The machine of the source, in TOML.
 pub const MACHINE: &str = include_str!("../machine.toml");
+
+/// The same with a head whose mass and mode are known, as fast as its motors turn that.
+pub const LOADED: &str = include_str!("../loaded.toml");
 
 /// A drawing with curves of all kinds.
 pub const ROSETTE: &str = include_str!("../drawings/rosette.svg");

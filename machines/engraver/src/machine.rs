@@ -2,7 +2,8 @@
 
 mod settings;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
+use known_load::{Elastic, Transmission};
 use nalgebra::{Isometry2, Point2};
 use path_timing::ToolLimits;
 use pattern_codec::engraving::{Format, PerAxis};
@@ -14,6 +15,7 @@ pub(crate) use self::settings::Settings;
 use self::settings::{
     DiscSettings, JointSettings, RapidSettings, TimedSettings, TimerSettings, VerticalSettings,
 };
+use crate::load::Load;
 use crate::numbers::{finite, positive};
 use crate::placement::Bed;
 
@@ -28,6 +30,7 @@ pub(crate) struct JointScale {
     pub(crate) gear_ratio: f64,
     /// Pulses of a full step of the motor.
     pub(crate) microsteps: u32,
+    pub(crate) full_steps_per_turn: u32,
     scale: StepScale,
 }
 
@@ -38,12 +41,16 @@ impl JointScale {
         finite("home_deg", home_deg)?;
         let microsteps = (FULL_STEP_DEG / step_deg).max(1.0);
         let rad_per_pulse = step_deg.to_radians() / gear_ratio;
+        let microsteps =
+            whole(microsteps).with_context(|| format!("step_deg = {step_deg} is too fine"))?;
+        let full_steps = 360.0 / (step_deg * f64::from(microsteps));
         Ok(Self {
             rad_per_pulse,
             home_rad: home_deg.to_radians(),
             gear_ratio,
-            microsteps: whole(microsteps)
-                .with_context(|| format!("step_deg = {step_deg} is too fine"))?,
+            microsteps,
+            full_steps_per_turn: whole(full_steps)
+                .with_context(|| format!("step_deg = {step_deg} is no step of a motor"))?,
             scale: StepScale::new(rad_per_pulse.recip())?,
         })
     }
@@ -81,6 +88,10 @@ pub struct Machine {
     pub(crate) rapid: RampLimits,
     pub(crate) bed: Bed,
     tool: ToolLimits,
+    /// Of joints and disc in timed strokes.
+    pub(crate) joint_accel_hz_per_s: f64,
+    pub(crate) load: Option<Load>,
+    pub(crate) elastic: Option<Elastic>,
 }
 
 impl Machine {
@@ -116,13 +127,20 @@ impl Machine {
             pattern,
             bed,
             timed,
+            mode,
+            ..
         } = &settings;
         let limits = Limits {
             shoulder: range(shoulder).context("[shoulder]")?,
             elbow: range(elbow).context("[elbow]")?,
         };
         let timing = timing(timer).context("[timer]")?;
-        Ok(Self {
+        let rapid = ramp(rapid, timing.0).context("[rapid]")?;
+        let joint_accel_hz_per_s = match timed.joint_accel_hz_per_s {
+            Some(accel) => positive("joint_accel_hz_per_s", accel).map(|()| accel),
+            None => Ok(f64::from(rapid.accel_steps_per_s2)),
+        };
+        let mut machine = Self {
             arm: Arm::new(arm.upper_mm, arm.fore_mm)
                 .and_then(|checked| {
                     checked.with_base(Isometry2::translation(arm.base_x_mm, arm.base_y_mm))
@@ -140,10 +158,51 @@ impl Machine {
                 .with_byte_order(pattern.byte_order),
             timer: timing.0,
             half_period_ticks: timing.1,
-            rapid: ramp(rapid, timing.0).context("[rapid]")?,
+            rapid,
             bed: bed.check().context("[bed]")?,
             tool: tool(timed).context("[timed]")?,
+            joint_accel_hz_per_s: joint_accel_hz_per_s.context("[timed]")?,
+            load: None,
+            elastic: match mode {
+                Some(mode) => Some(mode.check("mode")?),
+                None => None,
+            },
             settings,
+        };
+        machine.load = machine.check_load()?;
+        Ok(machine)
+    }
+
+    fn check_load(&self) -> Result<Option<Load>> {
+        let Settings { load, torque, .. } = &self.settings;
+        match (load, torque) {
+            (Some(load), Some(torque)) => {
+                let transmission = |joint: JointScale, max_speed| Transmission {
+                    full_steps_per_turn: joint.full_steps_per_turn,
+                    microsteps: joint.microsteps,
+                    ratio: joint.gear_ratio,
+                    max_speed,
+                };
+                let [shoulder, elbow, disc] = self.joint_speeds();
+                let joints = [
+                    transmission(self.shoulder, shoulder),
+                    transmission(self.elbow, elbow),
+                    transmission(self.disc, disc),
+                ];
+                Ok(Some(load.check(torque, &self.arm, joints)?))
+            }
+            (None, None) => Ok(None),
+            (Some(_), None) => bail!("[load] without [torque]: neither or both are needed"),
+            (None, Some(_)) => bail!("[torque] without [load]: neither or both are needed"),
+        }
+    }
+
+    /// The same machine and tool, not shaped; none where nothing is shaped.
+    pub(crate) fn unshaped(&self) -> Option<Self> {
+        let elastic = self.elastic?;
+        Some(Self {
+            elastic: Some(elastic.unshaped()),
+            ..self.clone()
         })
     }
 
@@ -169,6 +228,15 @@ impl Machine {
             self.shoulder.to_rad(position.shoulder),
             self.elbow.to_rad(position.elbow),
         )
+    }
+
+    /// Shoulder, elbow and disc at a position of the steppers, in radians.
+    pub(crate) fn angles_at(&self, position: PerAxis<i32>) -> [f64; 3] {
+        [
+            self.shoulder.to_rad(position.shoulder),
+            self.elbow.to_rad(position.elbow),
+            self.disc.to_rad(position.disc),
+        ]
     }
 
     /// How far the tool can be from where rounding to whole steps has it, in mm: half a

@@ -1,9 +1,12 @@
 //! What the emitted edges ask of the motors, and whether they follow.
 
-use machine_sim::{DrivenAxis, Followed, Motor, StepSize};
+use anyhow::Result;
+use known_load::PoseLoad;
+use machine_sim::{DrivenAxis, Followed, Motor, Rotor, StepSize};
 use pattern_codec::engraving::{Axis, PerAxis};
 use serde::Serialize;
 
+use crate::load::ArmAndDisc;
 use crate::machine::{JointScale, Machine};
 
 /// What a step may be off its place on a train, a ramp or a cubic: some ticks.
@@ -33,11 +36,13 @@ const LIFT_KG_M2: f64 = 1.6e-6;
 pub(crate) struct Motors {
     axes: PerAxis<DrivenAxis>,
     tick_s: f64,
+    /// What shoulder, elbow and disc turn, which changes with the pose; where it is known.
+    load: Option<PoseLoad<ArmAndDisc, 3>>,
 }
 
 impl Motors {
     /// Motors at home.
-    pub(crate) fn new(machine: &Machine) -> Self {
+    pub(crate) fn new(machine: &Machine) -> Result<Self> {
         let [upper_m, fore_m] = [machine.arm.upper(), machine.arm.fore()].map(|mm| mm / 1000.0);
         // About each joint, the arm stretched: no pose has more.
         let stretched = upper_m + fore_m;
@@ -50,22 +55,45 @@ impl Motors {
             inertia_kg_m2: MOTOR.inertia_kg_m2 + LIFT_KG_M2,
             ..MOTOR
         };
-        Self {
-            axes: PerAxis {
-                elbow: DrivenAxis::new(motor(machine.elbow, fore_kg_m2)),
-                shoulder: DrivenAxis::new(motor(machine.shoulder, arm_kg_m2)),
-                disc: DrivenAxis::new(motor(machine.disc, FORK_KG_M2)),
-                vertical: DrivenAxis::new(lift),
-            },
-            tick_s: machine.tick_s(),
+        let mut axes = PerAxis {
+            elbow: DrivenAxis::new(motor(machine.elbow, fore_kg_m2)),
+            shoulder: DrivenAxis::new(motor(machine.shoulder, arm_kg_m2)),
+            disc: DrivenAxis::new(motor(machine.disc, FORK_KG_M2)),
+            vertical: DrivenAxis::new(lift),
+        };
+        let mut load = None;
+        if let Some(known) = machine.load {
+            let [shoulder, elbow, disc] = known.motors.map(|motor| DrivenAxis::new(motor.motor));
+            axes = PerAxis {
+                elbow,
+                shoulder,
+                disc,
+                vertical: axes.vertical,
+            };
+            let home = machine.angles_at(PerAxis::default());
+            load = Some(PoseLoad::new(known, &home, rotors(&mut axes))?);
         }
+        Ok(Self {
+            axes,
+            tick_s: machine.tick_s(),
+            load,
+        })
     }
 
-    /// A step of an axis: up for a number above 0, down for one below.
-    pub(crate) fn step(&mut self, ticks: u64, axis: Axis, direction: i32) {
+    /// A step of an axis from a position: up for a number above 0, down for one below.
+    pub(crate) fn step(
+        &mut self,
+        ticks: u64,
+        (axis, direction): (Axis, i32),
+        (machine, position): (&Machine, PerAxis<i32>),
+    ) -> Result<()> {
         #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
         let time_s = ticks as f64 * self.tick_s;
+        if let Some(load) = &mut self.load {
+            load.turn_until(time_s, &machine.angles_at(position), rotors(&mut self.axes))?;
+        }
         self.axes.get_mut(axis).step(time_s, direction);
+        Ok(())
     }
 
     /// What was seen of each when it has come to rest.
@@ -88,6 +116,15 @@ impl Motors {
             vertical: vertical.finish(DEVIATION_STEPS, lift),
         }
     }
+}
+
+/// Of shoulder, elbow and disc.
+fn rotors(axes: &mut PerAxis<DrivenAxis>) -> [&mut Rotor; 3] {
+    [
+        axes.shoulder.rotor_mut(),
+        axes.elbow.rotor_mut(),
+        axes.disc.rotor_mut(),
+    ]
 }
 
 /// The motor of a joint with an inertia behind its gear.

@@ -1,9 +1,11 @@
 //! The picture of a run: drawing and engraved path by tool speed, the worst point enlarged, the
 //! deviation along the path.
 
+use known_load::{torque_chart, vibration_chart};
 use machine_sim::{Axis, Colour, Figure, Mark, Plot, Stroke};
 use nalgebra::Point2;
 
+use crate::report::AXES;
 use crate::simulation::Run;
 
 /// Half the side of the enlarged square, in bounds.
@@ -26,10 +28,19 @@ impl Run {
             deviation.rms_mm,
             self.bound_mm
         );
-        Figure::new(title)
+        let mut figure = Figure::new(title)
             .with_note(note)
             .with_row(maps(self))
-            .with_row([profile(self)])
+            .with_row([profile(self)]);
+        let time = Axis::new("time in s").over(0.0..=self.duration_s);
+        if let Some(used) = &self.torque {
+            figure = figure.with_row([torque_chart(used, AXES, time)]);
+        }
+        if let Some(vibration) = &self.vibration {
+            let chart = vibration_chart("the tool", vibration, self.unshaped.as_ref());
+            figure = figure.with_row([chart]);
+        }
+        figure
     }
 }
 

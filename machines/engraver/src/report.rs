@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use known_load::{TorqueReport, VibrationReport};
 use pattern_codec::engraving::{ByteOrder, PerAxis};
 use serde::Serialize;
 
@@ -73,7 +74,16 @@ struct TimedReport {
     missing_mm: f64,
     bound_mm: f64,
     motors: FollowedAxes,
+    /// What is asked of the motors, where load and torque are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    torque: Option<TorqueReport>,
+    /// How the tool swings, where its mode is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vibration: Option<VibrationReport>,
 }
+
+/// As reports and charts name them.
+pub(crate) const AXES: [&str; 3] = ["shoulder", "elbow", "disc"];
 
 #[derive(Debug, Clone, Serialize)]
 struct MachineReport<'a> {
@@ -139,7 +149,7 @@ impl<'a> Report<'a> {
 
     /// The report with the same drawing by timed strokes.
     #[must_use]
-    pub fn with_timed(mut self, run: &Run) -> Self {
+    pub fn with_timed(mut self, machine: &Machine, run: &Run) -> Self {
         self.timed = Some(TimedReport {
             pulses: run.pulses,
             end_position: run.end,
@@ -151,6 +161,13 @@ impl<'a> Report<'a> {
             missing_mm: run.deviation.missing_mm,
             bound_mm: run.bound_mm,
             motors: run.motors,
+            torque: run.torque.as_ref().map(|used| {
+                let [x, y, _] = machine.tool_at(used.position_at_most());
+                TorqueReport::new(used, AXES, [x, y])
+            }),
+            vibration: run.vibration.as_ref().map(|vibration| {
+                VibrationReport::new("the tool", vibration, run.unshaped.as_ref())
+            }),
         });
         self
     }
@@ -183,7 +200,14 @@ impl<'a> Report<'a> {
         let [a, b] = [&self.motors, &timed.motors].map(FollowedAxes::max_acceleration_deg_s2);
         line("acceleration of a joint", a, b, "deg/s²")?;
         let [a, b] = [&self.motors, &timed.motors].map(FollowedAxes::lost_steps);
-        writeln!(f, "  {:<28} {a:>8} {b:>8}", "steps lost")
+        writeln!(f, "  {:<28} {a:>8} {b:>8}", "steps lost")?;
+        if let Some(torque) = &timed.torque {
+            writeln!(f, "torque: {torque}")?;
+        }
+        if let Some(vibration) = &timed.vibration {
+            writeln!(f, "vibration: {vibration}")?;
+        }
+        Ok(())
     }
 }
 

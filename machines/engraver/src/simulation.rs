@@ -1,6 +1,7 @@
 //! The simulated machine: four steppers on the controller's wires, and the arm on them.
 
 use anyhow::{Context, Result};
+use known_load::{Elastic, Tool, TorqueUsed, Vibration};
 use nalgebra::Point2;
 use pattern_codec::engraving::{Axis, PerAxis};
 use stepper_sync::{Direction, Level};
@@ -43,6 +44,12 @@ pub struct Run {
     pub(crate) drawing: Vec<Vec<Point2<f64>>>,
     /// Of timed strokes.
     pub(crate) rows: Vec<TimedRow>,
+    /// What they ask of the motors, where the load is known.
+    pub(crate) torque: Option<TorqueUsed<3>>,
+    /// How the tool swings in them, where its mode is known.
+    pub(crate) vibration: Option<Vibration>,
+    /// The same without a shaper.
+    pub(crate) unshaped: Option<Vibration>,
 }
 
 impl Run {
@@ -89,7 +96,7 @@ pub fn simulate(
     probe: &mut impl Wires,
     mut progress: impl FnMut(u64, u64),
 ) -> Result<Run> {
-    let mut simulation = Simulation::new(machine, reference, probe);
+    let mut simulation = Simulation::new(machine, reference, probe)?;
     let mut controller = Controller::new(machine);
     let total = pattern.len() as u64;
     for located in machine.format.records(pattern) {
@@ -110,6 +117,8 @@ pub(crate) struct Simulation<'a, P> {
     meter: Meter,
     pace: Pace,
     motors: Motors,
+    /// Looked at in timed strokes.
+    swinging: Option<Tool<2>>,
     trace: ToolTrace,
     now: u64,
     position: PerAxis<i32>,
@@ -125,17 +134,25 @@ pub(crate) struct Simulation<'a, P> {
 
 impl<'a, P: Wires> Simulation<'a, P> {
     /// A machine at home.
-    pub(crate) fn new(machine: &'a Machine, reference: &Reference, probe: &'a mut P) -> Self {
+    ///
+    /// # Errors
+    /// A load without inertia.
+    pub(crate) fn new(
+        machine: &'a Machine,
+        reference: &Reference,
+        probe: &'a mut P,
+    ) -> Result<Self> {
         let position = PerAxis::default();
         let home = machine.arm.forward(machine.joints(position));
         let reach = reference.bound_mm * REACH;
-        Self {
+        Ok(Self {
             machine,
             probe,
             gauge: Gauge::new(&reference.outlines, reference.tolerance_mm, reach),
             meter: Meter::default(),
             pace: Pace::default(),
-            motors: Motors::new(machine),
+            motors: Motors::new(machine)?,
+            swinging: None,
             trace: ToolTrace::new(home, reference.bound_mm * PICTURE_SPACING),
             now: 0,
             position,
@@ -145,12 +162,41 @@ impl<'a, P: Wires> Simulation<'a, P> {
             engraving: None,
             has_moved: false,
             turns_while_moving: false,
+        })
+    }
+
+    /// The tool swings, from here on.
+    pub(crate) fn swings(&mut self, elastic: &Elastic) {
+        let mut tool = Tool::new(elastic, self.tool().into());
+        tool.work(false);
+        self.swinging = Some(tool);
+    }
+
+    /// A timed stroke begins at a time.
+    pub(crate) fn begin_stroke(&mut self, ticks: u64) {
+        self.turns_while_moving = true;
+        self.advance(ticks);
+        if let Some(tool) = &mut self.swinging {
+            tool.work(true);
         }
     }
 
-    /// Whether the disc turns while the arms move from now on, and not before.
-    pub(crate) const fn turns_while_moving(&mut self, does: bool) {
-        self.turns_while_moving = does;
+    /// The last step of a timed stroke was at a time.
+    pub(crate) fn end_stroke(&mut self, ticks: u64) {
+        self.turns_while_moving = false;
+        self.advance(ticks);
+        self.settle();
+        let now_s = self.now_s();
+        if let Some(tool) = &mut self.swinging {
+            tool.rest(now_s);
+            tool.work(false);
+        }
+    }
+
+    fn now_s(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
+        let ticks = self.now as f64;
+        ticks * self.machine.tick_s()
     }
 
     fn tool(&self) -> Point2<f64> {
@@ -163,6 +209,10 @@ impl<'a, P: Wires> Simulation<'a, P> {
             return;
         }
         let tool = self.tool();
+        let now_s = self.now_s();
+        if let Some(swinging) = &mut self.swinging {
+            swinging.follow(now_s, tool.into());
+        }
         let in_glass = self.position.vertical <= -self.machine.lift_pulses;
         self.trace.at(tool, in_glass);
         if !in_glass {
@@ -196,6 +246,7 @@ impl<'a, P: Wires> Simulation<'a, P> {
     pub(crate) fn finish(mut self, reference: &Reference) -> Result<Run> {
         self.settle();
         self.trace.finish(self.tool());
+        let now_s = self.now_s();
         let ns = self.machine.timer.ticks_to_ns(self.now);
         let ns = u64::try_from(ns).context("the pattern lasts over 500 years")?;
         let drawing = reference.outlines.iter();
@@ -216,6 +267,9 @@ impl<'a, P: Wires> Simulation<'a, P> {
                 .map(|outline| flatten(outline, PICTURE_MM))
                 .collect(),
             rows: Vec::new(),
+            torque: None,
+            vibration: self.swinging.map(|tool| tool.finish(now_s)),
+            unshaped: None,
         })
     }
 }
@@ -231,12 +285,13 @@ impl<P: Wires> Wires for Simulation<'_, P> {
         self.advance(ticks);
         if level == Level::High {
             let step = if *self.is_negative.get(axis) { -1 } else { 1 };
+            self.motors
+                .step(ticks, (axis, step), (self.machine, self.position))?;
             let position = self.position.get_mut(axis);
             *position = position
                 .checked_add(step)
                 .with_context(|| format!("{axis} leaves 32 bits"))?;
             *self.pulses.get_mut(axis) += 1;
-            self.motors.step(ticks, axis, step);
             self.has_moved = true;
         }
         if axis == Axis::Disc && !self.turns_while_moving {

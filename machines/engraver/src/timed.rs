@@ -1,15 +1,15 @@
 //! The drawing by `path-timing`: the tool at its feed wherever joints and disc allow, from the
 //! drawing's own curves to edges, without a pattern between.
 
+mod course;
 mod curves;
 mod leg;
 mod player;
+mod run;
 
 use anyhow::{Context, Result, bail};
 use nalgebra::Point2;
-use path_timing::{
-    Accuracy, AxisLimits, Curve, Knot, Path as _, PlanError, Promise, Row, Rows, Table, Verifier,
-};
+use path_timing::{AxisLimits, Curve, Path as _, Row};
 use pattern_codec::engraving::Axis;
 use scara_kin::{Elbow, Joints};
 
@@ -26,12 +26,6 @@ use crate::plan_settings::PlanSettings;
 /// Largest kink between two curves that is passed without a stop, in radians: what drawing programs
 /// round off. The disc takes it in along the next curve.
 const KINK_RAD: f64 = 0.035;
-
-/// Fewest segments of a curve.
-const MIN_SEGMENTS: u32 = 4;
-
-/// Rows for which there is memory at first, and at most.
-const ROWS: [usize; 2] = [1 << 12, 1 << 22];
 
 /// A drawing as rapid moves and timed strokes, from home and back.
 #[derive(Debug, Clone)]
@@ -152,7 +146,7 @@ impl Planner<'_> {
         let runs = self.runs(curves, elbow);
         let runs = runs.or_else(|error| self.runs(curves, elbow.other()).map_err(|_| error))?;
         for (number, run) in runs.iter().enumerate() {
-            let rows = self.rows(run)?;
+            let rows = run::rows(self.machine, run, self.tolerance_mm)?;
             let (Some(start), Some(end)) = (rows.first(), rows.last()) else {
                 bail!("a run has no rows");
             };
@@ -221,46 +215,6 @@ impl Planner<'_> {
         Ok(runs)
     }
 
-    fn rows(&self, run: &Run) -> Result<Vec<Row<[f64; 3]>>> {
-        let [mut room, most] = ROWS;
-        loop {
-            let mut knots = vec![Knot::default(); room];
-            let table = Table::plan_within(
-                run.iter(),
-                self.machine.joint_limits(),
-                Accuracy {
-                    min_segments: MIN_SEGMENTS,
-                    max_departure: self.tolerance_mm,
-                    max_time_ratio: f64::INFINITY,
-                },
-                |leg: &&Leg, span: &_| leg.departure(span),
-                &mut knots,
-            );
-            match table {
-                Ok(table) => return self.verified(run, table.rows()),
-                Err(PlanError::Memory { .. }) if room < most => room *= 4,
-                Err(error) => return Err(error.into()),
-            }
-        }
-    }
-
-    /// Rows that keep what is promised of them, by code that has no part in the plan.
-    fn verified(&self, run: &Run, rows: Rows<'_, [f64; 3]>) -> Result<Vec<Row<[f64; 3]>>> {
-        let mut verifier = Verifier::new(Promise {
-            limits: self.machine.joint_limits(),
-            start_stop: self.machine.start_speeds(),
-            max_departure: self.tolerance_mm,
-            // The tool's feed may be far below what the joints are capable of.
-            max_slowness: f64::INFINITY,
-        });
-        let mut verified = Vec::new();
-        for row in rows {
-            verifier.add(&row, |leg| run.get(leg), |leg, span| leg.departure(span))?;
-            verified.push(row);
-        }
-        Ok(verified)
-    }
-
     fn travel(&mut self, to: Joints) -> Result<()> {
         let machine = self.machine;
         self.rapid(Axis::Shoulder, machine.shoulder.to_pulses(to.shoulder)?);
@@ -313,14 +267,19 @@ impl Machine {
     }
 
     /// What the motors of shoulder, elbow and disc start and stop with, in rad/s.
-    fn start_speeds(&self) -> [f64; 3] {
+    pub(crate) fn start_speeds(&self) -> [f64; 3] {
         self.rates(f64::from(self.rapid.start_millihertz) / 1000.0)
     }
 
-    /// Those of the rapid moves.
-    fn joint_limits(&self) -> [AxisLimits; 3] {
-        let speeds = self.rates(f64::from(self.rapid.max_millihertz) / 1000.0);
-        let accelerations = self.rates(f64::from(self.rapid.accel_steps_per_s2));
+    /// Of shoulder, elbow and disc, in rad/s.
+    pub(crate) fn joint_speeds(&self) -> [f64; 3] {
+        self.rates(f64::from(self.rapid.max_millihertz) / 1000.0)
+    }
+
+    /// Those of the rapid moves, or with an acceleration of their own.
+    pub(crate) fn joint_limits(&self) -> [AxisLimits; 3] {
+        let speeds = self.joint_speeds();
+        let accelerations = self.rates(self.joint_accel_hz_per_s);
         let [shoulder, elbow, disc] = speeds;
         let [a0, a1, a2] = accelerations;
         [(shoulder, a0), (elbow, a1), (disc, a2)].map(|(speed, acceleration)| AxisLimits {

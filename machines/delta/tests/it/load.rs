@@ -116,6 +116,11 @@ fn what_no_machine_has_is_refused_by_name() {
             "[torque] pull_out: point 1: torque of",
         ),
         (
+            "reserve = 0.3",
+            "reserve = 0.3\npull_out = [[0.0, 0.3], [3000.0, 0.1]]",
+            "[torque] pull_out ends at 3000 Hz, not above the 3333 Hz of the largest speed",
+        ),
+        (
             "rods_kg = 0.04",
             "rods_kg = -0.04",
             "[load]: mass of the rods is -0.04",

@@ -1,8 +1,10 @@
 //! The machine file, as written: TOML, lengths in mm, angles in degrees, rates in pulses per second.
 
+use known_load::{ModeSettings, MotorSettings};
 use pattern_codec::engraving::{AxisCodes, ByteOrder};
 use serde::{Deserialize, Serialize};
 
+use crate::load::LoadSettings;
 use crate::placement::Bed;
 
 /// The machine file.
@@ -21,6 +23,12 @@ pub(crate) struct Settings {
     pub(super) bed: Bed,
     #[serde(default)]
     pub(super) timed: TimedSettings,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) load: Option<LoadSettings>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) torque: Option<MotorSettings>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) mode: Option<ModeSettings>,
 }
 
 #[derive(Debug, Clone, Deserialize, Serialize)]
@@ -91,6 +99,9 @@ pub(super) struct PatternSettings {
 pub(super) struct TimedSettings {
     pub(super) feed_mm_s: f64,
     pub(super) accel_mm_s2: f64,
+    /// Of joints and disc, in place of that of the rapid moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) joint_accel_hz_per_s: Option<f64>,
 }
 
 impl Default for TimedSettings {
@@ -99,6 +110,7 @@ impl Default for TimedSettings {
         Self {
             feed_mm_s: 15.0,
             accel_mm_s2: 1000.0,
+            joint_accel_hz_per_s: None,
         }
     }
 }

@@ -46,6 +46,14 @@ impl Leg {
         })
     }
 
+    /// The same with a share of what the motors start with.
+    pub(super) fn with_share(&self, share: f64) -> Self {
+        Self {
+            start_speeds: self.start_speeds.map(|speed| speed * share),
+            ..*self
+        }
+    }
+
     pub(super) const fn is_corner(&self) -> bool {
         self.is_corner
     }

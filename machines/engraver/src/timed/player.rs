@@ -6,6 +6,7 @@ use alloc::collections::BinaryHeap;
 use core::cmp::Reverse;
 
 use anyhow::{Context, Result, ensure};
+use known_load::TorqueUsed;
 use path_timing::Row;
 use pattern_codec::engraving::{Axis, Builder, PerAxis};
 use pvt_steps::{PvtQuantiser, PvtSteps};
@@ -23,6 +24,9 @@ const TIMING: StepDirTiming = StepDirTiming {
     setup_ns: 10_000,
     hold_ns: 10_000,
 };
+
+/// From one look at the tool's speed to the next at least, where rows are shaped, in s.
+const LOOK_S: f64 = 0.02;
 
 /// Shoulder, elbow and disc, as the rows have them.
 const AXES: [Axis; 3] = [Axis::Shoulder, Axis::Elbow, Axis::Disc];
@@ -49,12 +53,16 @@ pub fn simulate_timed(
     probe: &mut impl Wires,
     mut progress: impl FnMut(u64, u64),
 ) -> Result<Run> {
-    let mut simulation = Simulation::new(machine, &plan.reference, probe);
+    let mut simulation = Simulation::new(machine, &plan.reference, probe)?;
+    if let Some(elastic) = &machine.elastic {
+        simulation.swings(elastic);
+    }
     let mut player = Player {
         machine,
         controller: Controller::new(machine),
         position: PerAxis::default(),
         rows: Vec::new(),
+        torque: machine.load.map(|load| TorqueUsed::none(load.reserve)),
     };
     let total = plan.moves.len() as u64;
     for (done, next) in (1..).zip(&plan.moves) {
@@ -66,6 +74,7 @@ pub fn simulate_timed(
     }
     let mut run = simulation.finish(&plan.reference)?;
     run.rows = player.rows;
+    run.torque = player.torque;
     Ok(run)
 }
 
@@ -76,6 +85,8 @@ struct Player<'a> {
     position: PerAxis<i32>,
     /// What has been run so far.
     rows: Vec<TimedRow>,
+    /// What it has asked of motors whose load is known.
+    torque: Option<TorqueUsed<3>>,
 }
 
 impl Player<'_> {
@@ -122,9 +133,12 @@ impl Player<'_> {
             .zip(steps.steps())
             .all(|(axis, steps)| i64::from(*self.position.get(*axis)) == steps);
         ensure!(is_there, "a stroke does not begin where the machine stands");
-        simulation.turns_while_moving(true);
+        simulation.begin_stroke(self.controller.now());
         let mut edges = Edges::new(self.controller.now(), machine);
         let start_s = edges.start_s(machine);
+        if let (Some(torque), Some(load)) = (&mut self.torque, &machine.load) {
+            torque.add(load, rows, start_s);
+        }
         self.rows
             .extend((0_u32..).zip(rows).map(|(number, row)| TimedRow {
                 time_s: start_s + row.time_s,
@@ -139,10 +153,12 @@ impl Player<'_> {
             for step in &mut steps {
                 edges.step(step.ticks, step.axis, step.direction, simulation)?;
             }
-            edges.end_row(steps.end_ticks());
+            if edges.is_worth_a_look(steps.end_ticks(), machine) || row.is_at_rest() {
+                edges.end_row(steps.end_ticks());
+            }
         }
         let end = edges.finish(simulation)?;
-        simulation.turns_while_moving(false);
+        simulation.end_stroke(end);
         for (axis, steps) in AXES.into_iter().zip(steps.steps()) {
             *self.position.get_mut(axis) = i32::try_from(steps)?;
         }
@@ -157,6 +173,8 @@ struct Edges {
     pulse_ticks: u64,
     setup_ticks: u64,
     directions: [Option<Direction>; 3],
+    /// The end of the last row at which the tool was looked at, since the start.
+    looked_ticks: u64,
     waiting: BinaryHeap<Reverse<(u64, Event)>>,
 }
 
@@ -171,6 +189,7 @@ impl Edges {
             pulse_ticks,
             setup_ticks,
             directions: [None; 3],
+            looked_ticks: 0,
             waiting: BinaryHeap::new(),
         }
     }
@@ -205,7 +224,16 @@ impl Edges {
         Ok(())
     }
 
+    /// Whether a speed can be told of the steps since the last look: shaped rows may hold none.
+    fn is_worth_a_look(&self, ticks: u64, machine: &Machine) -> bool {
+        let since = ticks.saturating_sub(self.looked_ticks);
+        #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
+        let since_s = since as f64 * machine.tick_s();
+        machine.elastic.is_none() || since_s >= LOOK_S
+    }
+
     fn end_row(&mut self, ticks: u64) {
+        self.looked_ticks = ticks;
         self.waiting.push(Reverse((self.start + ticks, Event::Row)));
     }
 

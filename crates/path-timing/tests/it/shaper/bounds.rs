@@ -61,6 +61,46 @@ fn a_cartesian_tool_departs_by_at_most_the_bound() {
     }
 }
 
+/// Speeds alone, that jump once and twice within the shaper's time.
+#[test]
+fn an_axis_whose_speed_jumps_departs_by_at_most_the_bound() {
+    let rows = |speeds: &[f64], gap_s: f64| {
+        let (mut time_s, mut place) = (0.0, 0.0);
+        let mut rows = vec![Row::default()];
+        for speed in speeds {
+            let row = |duration_s, time_s, place| Row {
+                time_s,
+                duration_s,
+                position: [place],
+                velocity: [*speed],
+                ..Row::default()
+            };
+            rows.push(row(0.0, time_s, place));
+            (time_s, place) = (time_s + gap_s, place + speed * gap_s);
+            rows.push(row(gap_s, time_s, place));
+        }
+        rows.push(Row {
+            duration_s: 0.0,
+            velocity: [0.0],
+            ..rows[rows.len() - 1]
+        });
+        rows
+    };
+    for (name, make, ..) in SHAPERS {
+        let shaper = make(MODE).unwrap();
+        for (speeds, gap_s, jump) in [(&[7.0][..], 0.3, 7.0), (&[7.0, 12.0], 1e-4, 12.0)] {
+            let rows = rows(speeds, gap_s);
+            let shaped = shaped(rows.iter().copied(), [shaper]);
+            let is = measured(&rows, &shaped, shaper.delay_s(), |place| place);
+            // Back to rest at once, too.
+            let bound = shaper.departure_of_jumps(if gap_s < 0.1 { 2.0 * jump } else { jump });
+            println!("{name}: departs by {is:.4} mm, at most {bound:.4}");
+            assert!(is <= bound + 1e-9, "{name}: {is}, {bound}");
+            assert!(gap_s < 0.1 || is > 0.99 * bound, "{name}: {is}, {bound}");
+        }
+    }
+}
+
 #[test]
 fn the_tool_of_an_arm_departs_by_at_most_the_bound() {
     let arm = Arm::new(132.0, 132.0).unwrap();

@@ -1,0 +1,4 @@
+//! All tests of the engraver alone: one program, which is linked once.
+#![cfg(test)]
+
+mod load;
