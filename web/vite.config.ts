@@ -7,7 +7,17 @@ import { defineConfig, type Plugin } from 'vite';
 const pages = readdirSync(import.meta.dirname).filter((name) => name.endsWith('.html'));
 
 /** Parts that pages have in common, each at a comment with its name. */
-const PARTS = ['head', 'header', 'transport', 'views', 'limits', 'working', 'machine'];
+const PARTS = [
+  'head',
+  'header',
+  'transport',
+  'views',
+  'limits',
+  'working',
+  'machine',
+  'load',
+  'choice',
+];
 
 /** Puts the common parts into each page. */
 function frame(): Plugin {

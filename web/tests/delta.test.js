@@ -42,6 +42,37 @@ test('the shipped points leave the files of the command line, byte for byte', as
   await done();
 });
 
+test('a machine whose load is known is chosen, its torque and its tool are shown', async () => {
+  const { page, done } = await browser.visit('delta.html');
+  await driven(page);
+  assert(await page.locator('#torque-used').isHidden());
+  const text = '0 0 -230 300\n40 0 -230 300\n';
+  await page.getByLabel('Points', { exact: true }).fill(text);
+  await page.locator('#machine-choice').selectOption('loaded');
+  await page.locator('#summary').filter({ hasText: 'vibration: the tool (40.0 Hz)' }).waitFor();
+  assert(await page.locator('#torque-used canvas').isVisible());
+  assert(await page.locator('#vibration canvas').isVisible());
+  const loaded = ['--geometry', join(ROOT, 'machines/delta/loaded.toml')];
+  const input = ['--input', file('points.txt', text)];
+  await assertSameFiles(page, commandLine('delta', [...input, ...loaded]));
+  await shoot(page, 'delta-loaded');
+  // It is in the address, and one of its numbers changed is one's own.
+  await page.reload();
+  await driven(page);
+  const chosen = page.locator('#machine-choice');
+  assert.equal(await chosen.inputValue(), 'loaded');
+  await page.getByText('Machine', { exact: true }).click();
+  await page.getByLabel('payload kg').fill('0.5');
+  await driven(page);
+  assert.equal(await chosen.inputValue(), 'own');
+  await page.getByLabel('payload kg').fill('-1');
+  assert.match(await refusal(page, 'machine.toml'), /payload is -1/);
+  await chosen.selectOption('published');
+  await driven(page);
+  assert(await page.locator('#torque-used').isHidden());
+  await done();
+});
+
 test('motion and input stay in the address; a point is dragged in the view from above', async () => {
   const { page, done } = await browser.visit('delta.html?motion=trains&load=250');
   await driven(page);
@@ -132,7 +163,7 @@ test('a calibration that an input has ended is not lost in silence', async () =>
   await page.getByText('Calibrate', { exact: true }).first().click();
   await page.getByRole('button', { name: 'Example' }).click();
   await page.getByRole('button', { name: 'Calibrate' }).click();
-  await page.getByLabel('Load').fill('250');
+  await page.getByLabel('Load in g').fill('250');
   await page.locator('#calibrated').filter({ hasText: 'calibrate again' }).waitFor();
   await driven(page);
   await done();

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, delayed, open, refusal, saved, shoot, VIEWS } from './browser.js';
+import { assertAccessible, delayed, open, refusal, ROOT, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, DRAWINGS, file } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -44,6 +44,26 @@ test('timed motion leaves the edges of the command line', async () => {
     assert((await saved(page, name)).equals(readFileSync(join(folder, name))), `${name} differs`);
   }
   await shoot(page, 'engrave-timed');
+  await done();
+});
+
+test('a machine whose load is known is chosen, its torque and its tool are shown', async () => {
+  const { page, done } = await browser.visit('index.html?controller=timed');
+  await engraved(page);
+  const path = '<path d="M5 50 95 55 10 20M50 5C90 5 90 60 50 60" fill="none" stroke="black"/>';
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">${path}</svg>`;
+  const lines = file('lines.svg', svg);
+  await page.setInputFiles('#file', lines);
+  await page.locator('#machine-choice').selectOption('loaded');
+  await page.locator('#summary').filter({ hasText: 'vibration: the tool (40.0 Hz)' }).waitFor();
+  assert(await page.locator('#torque-used canvas').isVisible());
+  assert(await page.locator('#vibration canvas').isVisible());
+  const loaded = ['--machine', join(ROOT, 'machines/engraver/loaded.toml')];
+  const { folder } = commandLine('engrave', ['--svg', lines, ...loaded, '--controller', 'timed']);
+  for (const name of ['engraved.svg', 'report.json']) {
+    assert((await saved(page, name)).equals(readFileSync(join(folder, name))), `${name} differs`);
+  }
+  await shoot(page, 'engrave-loaded');
   await done();
 });
 

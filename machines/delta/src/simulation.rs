@@ -4,7 +4,7 @@
 use std::io::BufRead;
 
 use anyhow::Result;
-use known_load::{Elastic, Tool, Vibration};
+use known_load::{Elastic, Tool, TorqueUsed, Vibration};
 use machine_sim::{Followed, MotionSampler};
 use nalgebra::Point3;
 
@@ -85,6 +85,18 @@ impl<'a> Drive<'a> {
     #[must_use]
     pub const fn duration_s(&self) -> f64 {
         self.driven.duration_s
+    }
+
+    /// What the lines ask of the motors, where the machine's load is known.
+    #[must_use]
+    pub const fn torque(&self) -> Option<&TorqueUsed<3>> {
+        self.record.torque.as_ref()
+    }
+
+    /// How the tool swings, where its mode is known.
+    #[must_use]
+    pub const fn vibration(&self) -> Option<&Vibration> {
+        self.driven.vibration.as_ref()
     }
 
     /// Farthest that the platform was from the lines asked for, in mm.

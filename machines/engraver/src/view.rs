@@ -1,5 +1,6 @@
 //! What a page draws of machine and run.
 
+use known_load::{TorqueUsed, Vibration};
 use nalgebra::{Point2, Point3};
 use pattern_codec::engraving::PerAxis;
 use scara_kin::Joints;
@@ -33,6 +34,18 @@ impl Run {
     /// The placed drawing as lines, in mm.
     pub fn drawing(&self) -> impl ExactSizeIterator<Item = &[Point2<f64>]> {
         self.drawing.iter().map(Vec::as_slice)
+    }
+
+    /// What timed strokes ask of the motors, where the machine's load is known.
+    #[must_use]
+    pub const fn torque(&self) -> Option<&TorqueUsed<3>> {
+        self.torque.as_ref()
+    }
+
+    /// How the tool swings in timed strokes, where its mode is known.
+    #[must_use]
+    pub const fn vibration(&self) -> Option<&Vibration> {
+        self.vibration.as_ref()
     }
 
     /// Seconds, and the largest distance of the tool from the drawing in the part of the time around

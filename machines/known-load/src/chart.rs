@@ -12,15 +12,14 @@ pub fn torque_chart<const N: usize>(used: &TorqueUsed<N>, axes: [&str; N], time:
     let torque = Axis::new("torque in % of pull-out").including(0.0);
     let mut plot = Plot::chart(time, torque).with_title("Torque of the motors");
     for (axis, name) in axes.into_iter().enumerate() {
-        let parts = used.parts.iter();
-        let parts = parts.map(|(t_s, parts)| {
+        let parts = used.over_time().map(|(t_s, parts)| {
             let part = parts.get(axis).copied().unwrap_or_default();
-            [*t_s, PERCENT * part]
+            [t_s, PERCENT * part]
         });
         plot = plot.line(name, Stroke::series(axis), parts);
     }
-    let last_s = used.parts.last().map_or(0.0, |(t_s, _)| *t_s);
-    let planned = PERCENT * used.planned;
+    let last_s = used.over_time().last().map_or(0.0, |(t_s, _)| t_s);
+    let planned = PERCENT * used.planned();
     plot.line(
         "planned at most",
         Stroke::LIMIT,

@@ -34,7 +34,7 @@ pub struct TorqueUsed<const N: usize> {
     pub(crate) planned: f64,
     pub(crate) most: Most<N>,
     /// Of each axis at the ends of each segment, with the time in s; no numbers between motions.
-    pub(crate) parts: Vec<(f64, [f64; N])>,
+    parts: Vec<(f64, [f64; N])>,
 }
 
 /// Where a motor is asked for the most.
@@ -98,6 +98,18 @@ impl<const N: usize> TorqueUsed<N> {
     #[must_use]
     pub fn most_of_planned(&self) -> f64 {
         self.most.part / self.planned
+    }
+
+    /// The part of the motors' pull-out torque that is planned.
+    #[must_use]
+    pub const fn planned(&self) -> f64 {
+        self.planned
+    }
+
+    /// Of the motor of each axis the part of its pull-out torque that is asked for, at times in s; no
+    /// numbers between motions.
+    pub fn over_time(&self) -> impl Iterator<Item = (f64, [f64; N])> {
+        self.parts.iter().copied()
     }
 
     /// The positions of the axes where a motor is asked for the most.

@@ -48,6 +48,7 @@ export interface Mechanism {
 
 export class Driving {
   readonly result: Result;
+  readonly blobs: Answer<Result>['blobs'];
   /** What limits lines with rounded corners. */
   readonly limits: Limits;
   readonly times: Float64Array;
@@ -61,6 +62,7 @@ export class Driving {
 
   constructor({ value, blobs }: Answer<Result>) {
     this.result = value;
+    this.blobs = blobs;
     const arms = (name: string, limit: number, unit: string) =>
       ARMS.map((arm) => ({ name: `${name} of arm ${arm + 1}`, limit, unit }));
     this.limits = new Limits(blobs, [

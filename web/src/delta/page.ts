@@ -6,6 +6,7 @@ import '../shared/offline';
 import example from '../../../machines/delta/inputs/measured.txt?raw';
 import pickAndPlace from '../../../machines/delta/inputs/pick-and-place.txt?raw';
 import spiral from '../../../machines/delta/inputs/spiral.txt?raw';
+import loaded from '../../../machines/delta/loaded.toml?raw';
 import shipped from '../../../machines/delta/machine.toml?raw';
 import wasm from '../../built/delta.wasm?url';
 import { Chart } from '../shared/chart';
@@ -14,10 +15,11 @@ import { Editor, linesOf } from '../shared/editor';
 import { AddressFields } from '../shared/fields';
 import { Inputs } from '../shared/inputs';
 import { LimitTeller } from '../shared/limits';
+import { LoadCharts } from '../shared/load';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { columns, countUntil } from '../shared/rows';
-import { machineForm } from '../shared/settings';
+import { MachineChoice, machineForm } from '../shared/settings';
 import { viewButtons } from '../shared/space';
 import {
   intoLink,
@@ -61,6 +63,7 @@ const transport = new Transport((seconds) => {
   scene.at(seconds);
   for (const chart of charts) chart.at(seconds);
   limits.at(seconds);
+  loadCharts.at(seconds);
 });
 const seek = (seconds: number) => transport.set(seconds);
 const chart = (id: string, unit: string) => new Chart(element(id, HTMLElement), unit, 160, seek);
@@ -69,6 +72,10 @@ const rates = chart('rates', '°/s');
 const accelerations = chart('accelerations', '°/s²');
 const torques = chart('torques', 'N m');
 const charts = [speeds, rates, accelerations, torques];
+const loadCharts = new LoadCharts(
+  ARMS.map((arm) => ({ label: `arm ${arm + 1}`, colour: ARM_COLOURS[arm] })),
+  seek,
+);
 const limits = new LimitTeller(seek, (line) => `line ${line}: ${editor.line(line).trim()}`);
 limits.watch(charts);
 
@@ -90,7 +97,8 @@ const measured = new Editor(element('measured', HTMLElement), 'Measured points',
 });
 const redrive = settled(150, drive);
 const working = new Working(machine, status, ['Driving'], drive);
-const settings = machineForm('delta machine', shipped, changed);
+const choice = new MachineChoice({ published: shipped, loaded });
+const settings = machineForm('delta machine', shipped, changed, undefined, choice);
 
 /** Other points. */
 function open(): void {
@@ -159,6 +167,7 @@ function show(driving: Driving): void {
   scene.show(driving);
   showCharts(driving);
   limits.show(driving.limits);
+  loadCharts.show(driving.blobs);
   transport.begin(durationS);
   // A point that is dragged does not move the time.
   if (!isFirst) transport.set(before);

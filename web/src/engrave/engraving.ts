@@ -50,6 +50,7 @@ export const PATH_STRIDE = 4;
 
 export class Engraving {
   readonly result: Result;
+  readonly blobs: Answer<Result>['blobs'];
   /** What limits timed strokes. */
   readonly limits: Limits;
   readonly pins: Record<Axis, Pin>;
@@ -61,6 +62,7 @@ export class Engraving {
 
   constructor({ value, blobs }: Answer<Result>) {
     this.result = value;
+    this.blobs = blobs;
     const joints = (name: string, of: 0 | 1, unit: string) =>
       ['shoulder', 'elbow', 'disc'].map((joint, index) => ({
         name: `${name} of the ${joint}`,

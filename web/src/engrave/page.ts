@@ -6,6 +6,7 @@ import '../shared/offline';
 import lettering from '../../../machines/engraver/drawings/lettering.svg?raw';
 import rosette from '../../../machines/engraver/drawings/rosette.svg?raw';
 import star from '../../../machines/engraver/drawings/star.svg?raw';
+import loaded from '../../../machines/engraver/loaded.toml?raw';
 import shipped from '../../../machines/engraver/machine.toml?raw';
 import wasm from '../../built/engrave.wasm?url';
 import { Chart } from '../shared/chart';
@@ -13,8 +14,9 @@ import { element, settled } from '../shared/dom';
 import { AddressFields } from '../shared/fields';
 import { Inputs } from '../shared/inputs';
 import { LimitTeller } from '../shared/limits';
+import { LoadCharts } from '../shared/load';
 import { Machine, Superseded } from '../shared/machine';
-import { machineForm } from '../shared/settings';
+import { MachineChoice, machineForm } from '../shared/settings';
 import { FileButtons, Status } from '../shared/result';
 import { fromAddress, toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
@@ -41,6 +43,7 @@ const transport = new Transport((seconds) => {
   lanes.at(seconds);
   chart.at(seconds);
   limits.at(seconds);
+  loadCharts.at(seconds);
 });
 const chart = new Chart(element('deviation', HTMLElement), 'mm', 180, (seconds) =>
   transport.set(seconds),
@@ -48,6 +51,14 @@ const chart = new Chart(element('deviation', HTMLElement), 'mm', 180, (seconds) 
 const limits = new LimitTeller(
   (seconds) => transport.set(seconds),
   (stroke) => `stroke ${stroke} of the drawing`,
+);
+const loadCharts = new LoadCharts(
+  [
+    { label: 'shoulder', colour: 'series-1' },
+    { label: 'elbow', colour: 'series-2' },
+    { label: 'disc', colour: 'series-3' },
+  ],
+  (seconds) => transport.set(seconds),
 );
 limits.watch([chart]);
 lanes.onSeek((seconds) => transport.set(seconds));
@@ -63,7 +74,8 @@ const drawing = new Inputs(
   changed,
 );
 const fields = new AddressFields({ tolerance, placement, controller }, changed);
-const settings = machineForm('engrave machine', shipped, changed);
+const choice = new MachineChoice({ published: shipped, loaded });
+const settings = machineForm('engrave machine', shipped, changed, undefined, choice);
 
 const replan = settled(150, engrave);
 const working = new Working(machine, status, STAGES, engrave);
@@ -130,6 +142,7 @@ function show(engraving: Engraving): void {
   scene.show(engraving);
   lanes.show(engraving);
   limits.show(engraving.limits);
+  loadCharts.show(engraving.blobs);
   const [seconds, distance] = engraving.deviation;
   const bound = seconds.map(() => bound_mm);
   chart.show(

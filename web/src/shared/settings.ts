@@ -137,6 +137,30 @@ export class SettingsForm {
   }
 }
 
+/** A select of machine files that come with the page, by the values of its options, and of one's own. */
+export class MachineChoice {
+  readonly #select = element('machine-choice', HTMLSelectElement);
+  readonly #files: Record<string, string>;
+
+  constructor(files: Record<string, string>) {
+    this.#files = files;
+  }
+
+  /** Tells of a file that is chosen. */
+  onChosen(chosen: (text: string) => void): void {
+    this.#select.addEventListener('input', () => {
+      const text = this.#files[this.#select.value];
+      if (text !== undefined) chosen(text);
+    });
+  }
+
+  /** Which file a text is. */
+  show(text: string): void {
+    const found = Object.entries(this.#files).find(([, file]) => file === text);
+    this.#select.value = found?.[0] ?? 'own';
+  }
+}
+
 /**
  * The form of a page's machine: as the link has it; without a link as the browser has kept it under a
  * name; or as shipped.
@@ -146,6 +170,7 @@ export function machineForm(
   shipped: string,
   changed: () => void,
   file = 'machine.toml',
+  choice?: MachineChoice,
 ): SettingsForm {
   const target = element('settings', HTMLElement);
   const told = element('machine-changed', HTMLElement);
@@ -153,6 +178,7 @@ export function machineForm(
   const tell = () => {
     const { differences } = form;
     const fields = `${differences} ${differences === 1 ? 'value differs' : 'values differ'}`;
+    choice?.show(form.text);
     told.textContent = isOwn() ? `not as shipped: ${fields}` : '';
     toAddress({ machine: isOwn() ? 'own' : null });
   };
@@ -166,6 +192,7 @@ export function machineForm(
   tell();
   const chosen = element('machine-file', HTMLInputElement);
   takeFiles(target, chosen, async (given) => form.replace(await given.text()));
+  choice?.onChosen((text) => form.replace(text));
   onClick('default-machine', () => form.replace(shipped));
   onClick('save-machine', () => save(file, form.text));
   return form;

@@ -10,6 +10,7 @@ use serde_json::json;
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
 use crate::limits::{self, AxisMay, RowEnd, ToolMay};
+use crate::load;
 
 /// Points of an outline of the workspace.
 const OUTLINE: u32 = 72;
@@ -102,6 +103,7 @@ impl Driven {
             .with_rows("lines", lines)
             .with_rows("speeds", drive.speeds())
             .with_rows("workspace", self.workspace(&moments));
+        let answer = load::add_to(answer, drive.torque(), drive.vibration());
         Ok(self.with_limits(answer))
     }
 

@@ -16,6 +16,7 @@ use self::recorder::Recorder;
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
 use crate::limits::{self, AxisMay, RowEnd, ToolMay};
+use crate::load;
 use crate::progress;
 
 #[derive(Deserialize)]
@@ -115,6 +116,7 @@ impl Engraved {
         let answer = Answer::new(value)?
             .with_numbers("outlines", outlines.into_iter().map(f64::to_le_bytes))
             .with_numbers("deviation", deviation.map(f64::to_le_bytes));
+        let answer = load::add_to(answer, run.torque(), run.vibration());
         Ok(self.with_limits(answer))
     }
 

@@ -16,6 +16,8 @@ mod engrave;
 mod limits;
 #[cfg(feature = "line")]
 mod line;
+#[cfg(any(feature = "delta", feature = "engrave"))]
+mod load;
 #[cfg(any(
     feature = "dance",
     feature = "engrave",
