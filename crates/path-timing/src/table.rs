@@ -4,12 +4,13 @@ use core::cell::Cell;
 use core::convert::Infallible;
 
 use crate::departure::{Speeds, Within, check_allowed};
-use crate::knots::halved;
+use crate::knots::{are_resolved, halve};
 use crate::number::SMALLEST;
 use crate::passes::fastest;
 use crate::planner::{Place, bounded, check_single_segments, duration, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
+use crate::stretch::stretch_between;
 use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 
 /// A position-velocity-time table along one path or several: every axis runs a cubic from each row
@@ -17,7 +18,8 @@ use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 ///
 /// It is a fastest table that keeps the limits of all axes. What is limited is the cubic itself: its
 /// peak speed inside, its acceleration at both ends. With the path speeds w₀, w₁ at the ends of a
-/// segment of length Δs, its duration is 2Δs / (w₀ + w₁). At the end of each path the machine does
+/// segment of length Δs, its duration is 2κΔs / (w₀ + w₁), with a κ from 5/6 to 6/5 for which an axis at its
+/// limit of acceleration stays there; 1 where a jerk or a tool is limited, and with fewer than 16 segments. At the end of each path the machine does
 /// what that path's [`corner`](Path::corner) says.
 ///
 /// Where an axis has a limit of jerk: between rows a cubic has one jerk; at a row its acceleration
@@ -41,7 +43,7 @@ pub struct Accuracy {
     pub max_departure: f64,
     /// Largest time, relative to what more segments would reach: above 1, such as 1.02; infinite
     /// where the departure alone counts. It is judged by the change of the time with the number of
-    /// segments.
+    /// segments, of which plans are made in the memory beside the table's: twice its rows in all.
     pub max_time_ratio: f64,
 }
 
@@ -164,25 +166,23 @@ impl<'a, A: Axes> Table<'a, A> {
             let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
                 within.lay(place, &limits, doublings, free)
             };
-            let used = lay_all(paths.clone().into_iter(), &limits, knots, lay)?.len();
+            let used = match lay_all(paths.clone().into_iter(), &limits, knots, lay) {
+                // Twice as many knots stand elsewhere.
+                Err(PlanError::TooCoarse { .. }) if doublings > 0 => {
+                    doublings += 1;
+                    continue;
+                }
+                laid => laid?.len(),
+            };
             let (own, spare) = knots.split_at_mut(used.min(knots.len()));
-            let is_planned = within.planned.get() == own.len();
-            let duration_s = if is_planned {
+            let duration_s = if within.planned.get() == own.len() {
                 duration(own)?
             } else {
                 time(&limits, own)?
             };
-            if check_single_segments::<_, P::Error>(&limits, own).is_err() {
-                doublings += 1;
-                continue;
-            }
-            if !accuracy.max_time_ratio.is_finite() {
-                let (own, _) = knots.split_at(used.min(knots.len()));
-                break Ok(Self::new(own, limits, duration_s));
-            }
-            let coarse_s = time_of_half(&limits, own, spare)?;
-            let best_s = duration_s - (coarse_s - duration_s).max(0.0);
-            if duration_s <= best_s * accuracy.max_time_ratio {
+            let is_fast = check_single_segments::<_, P::Error>(&limits, own).is_ok()
+                && accuracy.is_fast(&limits, own, spare, duration_s)?;
+            if is_fast {
                 let (own, _) = knots.split_at(used.min(knots.len()));
                 break Ok(Self::new(own, limits, duration_s));
             }
@@ -264,25 +264,80 @@ impl Accuracy {
         }
         Err(PlanError::TimeRatio { max_time_ratio })
     }
+
+    /// Whether planned knots are as fast as is asked for.
+    fn is_fast<A: Axes, E>(
+        &self,
+        limits: &Reciprocals<A>,
+        knots: &[Knot<A>],
+        spare: &mut [Knot<A>],
+        duration_s: f64,
+    ) -> Result<bool, PlanError<E>> {
+        if !self.max_time_ratio.is_finite() {
+            return Ok(true);
+        }
+        // Where a path turns between two knots, no number of knots nearby shows what it takes.
+        let gap = ((self.max_time_ratio - 1.0) * 0.5).min(LARGEST_GAP_TIMED);
+        if !are_resolved(limits, knots, gap) {
+            return Ok(false);
+        }
+        let best_s = duration_s - lost_s(limits, knots, spare, duration_s)?;
+        Ok(duration_s <= best_s * self.max_time_ratio)
+    }
 }
 
-/// The time that half of the segments take, planned in memory beside them.
-fn time_of_half<A: Axes, E>(
+/// The part of the steepest slope by which slopes may disagree where the time counts: at most half as much as
+/// the time may be longer.
+const LARGEST_GAP_TIMED: f64 = 0.05;
+
+/// How often segments are halved to see what is lost, and the part of a loss that twice the segments have
+/// at most: half, and something for chance. With these none of 5,000 plans of random paths missed a ratio.
+const HALVINGS: u32 = 3;
+const LEFT: f64 = 0.6;
+
+/// By how much the time of planned knots may be above the best; infinite where fewer knots have no plan.
+///
+/// What is lost falls at least in proportion to the length of the segments. So it is at most what half the
+/// segments take longer, and half of what a quarter of them take longer than those, and so on: the largest
+/// of these, in case one is small by chance. The plans are made in the memory beside the knots.
+fn lost_s<A: Axes, E>(
     limits: &Reciprocals<A>,
     knots: &[Knot<A>],
     spare: &mut [Knot<A>],
+    duration_s: f64,
 ) -> Result<f64, PlanError<E>> {
     let (needed, available) = (
-        knots.len().saturating_add(halved(knots).count()),
+        knots.len().saturating_mul(2),
         knots.len().saturating_add(spare.len()),
     );
-    let mut used = 0_usize;
-    for (slot, knot) in spare.iter_mut().zip(halved(knots)) {
-        (*slot, used) = (knot, used.saturating_add(1));
-    }
-    if needed > available {
+    let Some(fewer) = spare.get_mut(..knots.len()) else {
         return Err(PlanError::Memory { needed, available });
+    };
+    for (slot, knot) in fewer.iter_mut().zip(knots) {
+        *slot = *knot;
     }
-    let (half, _) = spare.split_at_mut(used.min(spare.len()));
-    time(limits, half)
+    let (mut used, mut finer_s, mut lost_s) = (fewer.len(), duration_s, 0.0_f64);
+    let mut part = 1.0;
+    for _ in 0..HALVINGS {
+        let (own, _) = fewer.split_at_mut(used.min(fewer.len()));
+        used = halve(own);
+        let (own, _) = own.split_at_mut(used.min(own.len()));
+        stretch_all(limits, own);
+        let Ok(coarser_s) = time::<_, E>(limits, own) else {
+            return Ok(f64::INFINITY);
+        };
+        lost_s = lost_s.max((coarser_s - finer_s).abs() * part);
+        (finer_s, part) = (coarser_s, part * LEFT);
+    }
+    Ok(lost_s)
+}
+
+/// Stretches segments that are not, by their speeds.
+fn stretch_all<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
+    let mut from = None;
+    for to in knots {
+        if let Some(from) = from.replace(*to) {
+            to.ds *= stretch_between(limits, [&from, to]);
+        }
+    }
 }
