@@ -178,27 +178,23 @@ pub(crate) fn spread<A: Axes, R: Real>(
 ) -> f64 {
     let count = knots.len().saturating_sub(1);
     let [segments, own] = [count, planned.saturating_sub(1)].map(index_as_f64);
-    let (mut time_s, mut unused_s) = (0.0, 0.0);
-    let (mut all_unused, mut all_bends) = (0.0, 0.0);
-    let mut ends = knots.iter_mut().take(planned);
-    if let Some(mut from) = ends.next() {
-        for to in ends {
-            let own_s = segment_s(from, to);
+    let (mut time_s, mut all_bends) = (0.0, 0.0);
+    let (mut all_unused, mut unused_s) = (R::ZERO, R::ZERO);
+    each_segment(knots, planned, |from, to| {
+        let own_s = segment_s(from, to);
+        time_s += own_s;
+        if parts.unused > 0.0 {
+            let own_unused = unused(limits, [from, to], own_s);
+            all_unused = all_unused + own_unused;
+            unused_s = unused_s + own_unused * R::of(own_s);
             // The ratio is of the passes alone.
-            to.ratio = if parts.unused > 0.0 {
-                unused(limits, [from, to], own_s)
-            } else {
-                0.0
-            };
-            time_s += own_s;
-            all_unused += to.ratio;
-            unused_s += to.ratio * own_s;
-            if parts.bend > 0.0 {
-                all_bends += bend(from, to, own_s);
-            }
-            from = to;
+            to.ratio = own_unused.into();
         }
-    }
+        if parts.bend > 0.0 {
+            all_bends += bend(from, to, own_s);
+        }
+    });
+    let (all_unused, unused_s): (f64, f64) = (all_unused.into(), unused_s.into());
     let part_of = |part: f64, sum: f64| {
         if sum > 0.0 {
             part * segments / sum
@@ -211,16 +207,17 @@ pub(crate) fn spread<A: Axes, R: Real>(
     let per_bend = part_of(parts.bend, all_bends);
     let shared = per_second * time_s + per_unused * all_unused + per_bend * all_bends;
     let even = (segments - shared) / own;
-    let share_of = |pair: &[Knot<A>]| {
-        let [from, to] = pair else { return 0.0 };
+    each_segment(knots, planned, |from, to| {
         let own_s = segment_s(from, to);
-        let share = own_s * per_second + to.ratio * per_unused + even;
-        if per_bend > 0.0 {
-            share + bend(from, to, own_s) * per_bend
-        } else {
-            share
+        let mut share = own_s * per_second + even;
+        if per_unused > 0.0 {
+            share += to.ratio * per_unused;
         }
-    };
+        if per_bend > 0.0 {
+            share += bend(from, to, own_s) * per_bend;
+        }
+        to.ratio = share;
+    });
     let mut from = 0_usize;
     // Shares of the segments before `from`.
     let mut before = 0.0;
@@ -230,7 +227,7 @@ pub(crate) fn spread<A: Axes, R: Real>(
         let ends =
             |from: usize| (from.saturating_add(1) < planned).then(|| from..from.saturating_add(2));
         while let Some(pair) = ends(from).and_then(|range| knots.get(range)) {
-            let share = share_of(pair);
+            let share = pair.last().map_or(0.0, |to| to.ratio);
             if before + share >= wanted {
                 place = Some(within(pair, (wanted - before) / share));
                 break;
@@ -247,6 +244,20 @@ pub(crate) fn spread<A: Axes, R: Real>(
         (first.wanted, last.wanted) = (first.speed, end_speed);
     }
     unused_s / time_s
+}
+
+/// Both knots of each segment, of the first `planned` knots.
+fn each_segment<A: Axes>(
+    knots: &mut [Knot<A>],
+    planned: usize,
+    mut visit: impl FnMut(&Knot<A>, &mut Knot<A>),
+) {
+    let mut ends = knots.iter_mut().take(planned);
+    let Some(mut from) = ends.next() else { return };
+    for to in ends {
+        visit(from, to);
+        from = to;
+    }
 }
 
 fn index_as_f64(index: usize) -> f64 {
@@ -280,24 +291,37 @@ pub(crate) fn fraction(u: f64, rests: [bool; 2]) -> f64 {
     }
 }
 
-/// Leaves every second knot of each leg and all at which legs meet, at the beginning of those given. How
-/// many they are.
-pub(crate) fn halve<A: Axes>(knots: &mut [Knot<A>]) -> usize {
-    let (mut used, mut start, mut is_left_out) = (0_usize, 0.0, false);
-    for index in 0..knots.len() {
-        let Some(mut knot) = knots.get(index).copied() else {
-            break;
-        };
-        is_left_out = knot.ds > 0.0 && !knot.ends_leg && !is_left_out;
-        if is_left_out {
-            continue;
+/// Leaves every second knot of each leg and all at which legs meet.
+#[derive(Debug, Default)]
+pub(crate) struct Halving {
+    /// The parameter at which the segment begins that ends at the next knot that stays.
+    start: f64,
+    is_left_out: bool,
+}
+
+impl Halving {
+    /// The next knot, if it stays.
+    pub(crate) fn keep<A: Axes>(&mut self, knot: &Knot<A>) -> Option<Knot<A>> {
+        self.is_left_out = knot.ds > 0.0 && !knot.ends_leg && !self.is_left_out;
+        if self.is_left_out {
+            return None;
         }
+        let mut knot = *knot;
         if knot.ds > 0.0 {
-            knot.ds = knot.s - start;
+            knot.ds = knot.s - self.start;
         }
-        start = knot.next_start();
-        if let Some(slot) = knots.get_mut(used) {
-            (*slot, used) = (knot, used.saturating_add(1));
+        self.start = knot.next_start();
+        Some(knot)
+    }
+}
+
+/// Leaves half of the knots at the beginning of those given. How many they are.
+pub(crate) fn halve<A: Axes>(knots: &mut [Knot<A>]) -> usize {
+    let (mut halving, mut used) = (Halving::default(), 0_usize);
+    for index in 0..knots.len() {
+        let kept = knots.get(index).and_then(|knot| halving.keep(knot));
+        if let (Some(kept), Some(slot)) = (kept, knots.get_mut(used)) {
+            (*slot, used) = (kept, used.saturating_add(1));
         }
     }
     used

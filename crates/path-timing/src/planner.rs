@@ -87,20 +87,25 @@ impl<P: Path + Clone> Place<'_, P> {
             return self.lay_plainly(limits, segments, bent, knots);
         }
         let own = self.room(segments, knots)?;
-        let planned = self.lay_roughly(limits, segments, own)?;
+        // Where knots stand need not be exact.
+        let laid = if let Some(single) = limits.nearest_single() {
+            self.lay_by_plan(&single, bent, own)
+        } else {
+            self.lay_by_plan(limits, bent, own)
+        };
         // Knots that stand elsewhere may be too far apart, or their cubics leave what the path allows.
-        self.lay_by_plan(limits, BY_LIMITS.bent(bent), planned, own)
+        laid.and_then(|()| self.check_resolved(limits, own))
             .or_else(|_| self.lay_plainly(limits, segments, bent, own))
     }
 
-    /// Lays all knots by the speeds of a plan, whose knots are the first of them.
+    /// Lays all knots by the speeds of a plan of fewer.
     fn lay_by_plan<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
-        parts: Shares,
-        planned: usize,
+        bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
+        let (parts, planned) = (BY_LIMITS.bent(bent), self.lay_roughly(limits, knots)?);
         let unused = spread(limits, parts, knots, planned);
         self.lay_stretched(limits, knots)?;
         if unused > MOST_UNUSED {
@@ -111,7 +116,7 @@ impl<P: Path + Clone> Place<'_, P> {
                 self.lay_stretched(limits, knots)?;
             }
         }
-        self.check_resolved(limits, knots)
+        Ok(())
     }
 
     /// Lays the knots where the motion is slow, none stretched: for limits of jerk and torque, for
@@ -124,7 +129,7 @@ impl<P: Path + Clone> Place<'_, P> {
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let own = self.room(segments, knots)?;
-        let planned = self.lay_roughly(limits, segments, own)?;
+        let planned = self.lay_roughly(limits, own)?;
         spread(limits, BY_TIME.bent(bent), own, planned);
         self.lay_at_places(own)?;
         self.check_resolved(limits, own)
@@ -148,10 +153,10 @@ impl<P: Path + Clone> Place<'_, P> {
     fn lay_roughly<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
-        segments: u32,
         own: &mut [Knot<P::Axes>],
     ) -> Result<usize, PlanError<P::Error>> {
         let length = self.leg.length();
+        let segments = u32::try_from(own.len().saturating_sub(1)).unwrap_or(MAX_SEGMENTS);
         let few = (segments / 2).max(segments.min(FEW));
         let (rough, _) = own.split_at_mut(knots_of(few).min(own.len()));
         for (index, knot) in (0..=few).zip(&mut *rough) {

@@ -46,10 +46,11 @@ pub(crate) fn stretch<A: Axes, R: Real>(
         own = own + weight * R::of(q1 - q0) * mean;
         square = square + mean * mean;
     }
-    let stretch: f64 = (sum * own / (length * square)).into();
+    let stretch = sum * own / (length * square);
     // Not a number where nothing moves.
-    if stretch > 0.0 {
-        stretch.clamp(1.0 / LARGEST, LARGEST)
+    if stretch > R::ZERO {
+        let [least, most] = [1.0 / LARGEST, LARGEST].map(R::of);
+        stretch.max(least).min(most).into()
     } else {
         1.0
     }
@@ -76,7 +77,7 @@ pub(crate) fn unused<A: Axes, R: Real>(
     limits: &Reciprocals<A, R>,
     [from, to]: [&Knot<A>; 2],
     time_s: f64,
-) -> f64 {
+) -> R {
     let (rate, w0, w1) = (R::ONE / R::of(time_s), R::of(from.speed), R::of(to.speed));
     let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
     let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
@@ -95,5 +96,5 @@ pub(crate) fn unused<A: Axes, R: Real>(
         ];
     }
     let [start, end] = used;
-    (R::ONE - start.min(end) + swing).into()
+    R::ONE - start.min(end) + swing
 }

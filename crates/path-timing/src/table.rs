@@ -4,7 +4,7 @@ use core::cell::Cell;
 use core::convert::Infallible;
 
 use crate::departure::{Speeds, Within, check_allowed};
-use crate::knots::{are_resolved, halve};
+use crate::knots::{Halving, are_resolved, halve};
 use crate::number::SMALLEST;
 use crate::passes::fastest;
 use crate::planner::{Place, bounded, check_single_segments, duration, lay_all, time};
@@ -43,7 +43,7 @@ pub struct Accuracy {
     pub max_departure: f64,
     /// Largest time, relative to what more segments would reach: above 1, such as 1.02; infinite
     /// where the departure alone counts. It is judged by the change of the time with the number of
-    /// segments, of which plans are made in the memory beside the table's: twice its rows in all.
+    /// segments, of which plans are made in the memory beside the table's: half as much again.
     pub max_time_ratio: f64,
 }
 
@@ -306,28 +306,27 @@ fn lost_s<A: Axes, E>(
     spare: &mut [Knot<A>],
     duration_s: f64,
 ) -> Result<f64, PlanError<E>> {
-    let (needed, available) = (
-        knots.len().saturating_mul(2),
-        knots.len().saturating_add(spare.len()),
-    );
-    let Some(fewer) = spare.get_mut(..knots.len()) else {
+    let (mut halving, mut used) = (Halving::default(), 0_usize);
+    for kept in knots.iter().filter_map(|knot| halving.keep(knot)) {
+        if let Some(slot) = spare.get_mut(used) {
+            *slot = kept;
+        }
+        used = used.saturating_add(1);
+    }
+    let [needed, available] = [used, spare.len()].map(|more| knots.len().saturating_add(more));
+    let Some(fewer) = spare.get_mut(..used) else {
         return Err(PlanError::Memory { needed, available });
     };
-    for (slot, knot) in fewer.iter_mut().zip(knots) {
-        *slot = *knot;
-    }
-    let (mut used, mut finer_s, mut lost_s) = (fewer.len(), duration_s, 0.0_f64);
-    let mut part = 1.0;
+    let (mut finer_s, mut lost_s, mut part) = (duration_s, 0.0_f64, 1.0);
     for _ in 0..HALVINGS {
         let (own, _) = fewer.split_at_mut(used.min(fewer.len()));
-        used = halve(own);
-        let (own, _) = own.split_at_mut(used.min(own.len()));
         stretch_all(limits, own);
         let Ok(coarser_s) = time::<_, E>(limits, own) else {
             return Ok(f64::INFINITY);
         };
         lost_s = lost_s.max((coarser_s - finer_s).abs() * part);
         (finer_s, part) = (coarser_s, part * LEFT);
+        used = halve(own);
     }
     Ok(lost_s)
 }
