@@ -1,7 +1,7 @@
 //! Where the knots of a path stand, and what lies between two of them.
 
 use crate::leg::Leg;
-use crate::number::{Real, sqrt};
+use crate::number::{Real, larger, sqrt};
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
 use crate::stretch::unused;
@@ -169,7 +169,8 @@ impl Shares {
 
 /// Where each knot of a leg has to stand for all segments to have the same share, and the speed there,
 /// written into the knots; the speeds of the first `planned` of them, which reach from its start to its
-/// end, are. What is left unused in the mean over the time.
+/// end, are. The most that is lost on a segment, what it leaves unused times its time, in units of the mean
+/// time of a segment.
 pub(crate) fn spread<A: Axes, R: Real>(
     limits: &Reciprocals<A, R>,
     parts: Shares,
@@ -179,14 +180,14 @@ pub(crate) fn spread<A: Axes, R: Real>(
     let count = knots.len().saturating_sub(1);
     let [segments, own] = [count, planned.saturating_sub(1)].map(index_as_f64);
     let (mut time_s, mut all_bends) = (0.0, 0.0);
-    let (mut all_unused, mut unused_s) = (R::ZERO, R::ZERO);
+    let (mut all_unused, mut most_lost_s) = (R::ZERO, R::ZERO);
     each_segment(knots, planned, |from, to| {
         let own_s = segment_s(from, to);
         time_s += own_s;
         if parts.unused > 0.0 {
             let own_unused = unused(limits, [from, to], own_s);
             all_unused = all_unused + own_unused;
-            unused_s = unused_s + own_unused * R::of(own_s);
+            most_lost_s = larger(most_lost_s, own_unused * R::of(own_s));
             // The ratio is of the passes alone.
             to.ratio = own_unused.into();
         }
@@ -194,7 +195,7 @@ pub(crate) fn spread<A: Axes, R: Real>(
             all_bends += bend(from, to, own_s);
         }
     });
-    let (all_unused, unused_s): (f64, f64) = (all_unused.into(), unused_s.into());
+    let (all_unused, most_lost_s): (f64, f64) = (all_unused.into(), most_lost_s.into());
     let part_of = |part: f64, sum: f64| {
         if sum > 0.0 {
             part * segments / sum
@@ -243,7 +244,7 @@ pub(crate) fn spread<A: Axes, R: Real>(
     if let [first, .., last] = knots {
         (first.wanted, last.wanted) = (first.speed, end_speed);
     }
-    unused_s / time_s
+    most_lost_s * own / time_s
 }
 
 /// Both knots of each segment, of the first `planned` knots.
