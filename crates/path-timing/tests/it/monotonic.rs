@@ -82,7 +82,7 @@ proptest! {
 /// Segments from which on twice as many are not slower.
 const STEADY: [u32; 3] = [32, 48, 64];
 
-/// By what these may be slower: of 3,500 plans of random paths one took over 1 % longer, 1.3 %.
+/// By what these may be slower: of 3,400 plans of random paths one took over 1 % longer, 1.3 %.
 const SLOWER_TWICE: f64 = 1.02;
 
 /// One of so many plans at most: of a curve that nearly turns back on the spot.
