@@ -123,10 +123,12 @@ pub(crate) fn is_resolved<A: Axes, R: Real>(
     apart <= steepest * R::of(gap * gap)
 }
 
-/// Whether all segments are resolved.
+/// Whether all segments are resolved, but those after a stop, where a leg begins with slopes that the knot
+/// before, which ends another, does not have.
 pub(crate) fn are_resolved<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>], gap: f64) -> bool {
+    let begins = |from: &Knot<A>| from.ends_leg && from.cap <= 0.0;
     knots.windows(2).all(|pair| match pair {
-        [from, to] => to.ds <= 0.0 || is_resolved(limits, from, to, gap),
+        [from, to] => to.ds <= 0.0 || begins(from) || is_resolved(limits, from, to, gap),
         _ => true,
     })
 }

@@ -1,6 +1,8 @@
 //! What `Accuracy` asks for is kept.
 
-use path_timing::{Accuracy, Knot, Path, Table};
+use core::cell::Cell;
+
+use path_timing::{Accuracy, Knot, Path, PlanError, Table};
 use test_support::{Random, setting};
 
 use crate::support::machine::{Line, limits};
@@ -33,6 +35,62 @@ fn times_are_within_their_ratio() {
     let plans = u64::try_from(2 * FEWEST.len()).unwrap() * paths;
     println!("{RATIOS:?}: {:?} rows", rows.map(|rows| rows / plans));
     assert!(rows[0] > rows[6] && rows[6] > 2 * plans, "{rows:?}");
+}
+
+/// What slopes change by where the machine stops asks for no more segments.
+#[test]
+fn slopes_may_change_where_the_machine_stops() {
+    let limits = [limits(2.0, 10.0, None), limits(300.0, 2000.0, None)];
+    let corner = [0.0, 100.0];
+    let lines = [([100.0, 0.0], corner), (corner, [-50.0, 20.0])];
+    let lines = lines.map(|(from, to)| Line { from, to });
+    let looks = |max_time_ratio| {
+        let looks = Cell::new(0_u32);
+        let departure = |_: &Line, _: &_| {
+            looks.set(looks.get() + 1);
+            0.0
+        };
+        let accuracy = Accuracy {
+            min_segments: 16,
+            max_departure: 1.0,
+            max_time_ratio,
+        };
+        let mut knots = vec![Knot::default(); 5_000];
+        let table = Table::plan_within(lines, limits, accuracy, departure, &mut knots);
+        println!("{} rows", table.unwrap().len());
+        looks.get()
+    };
+    let (timed, plain) = (looks(1.02), looks(f64::INFINITY));
+    assert!(timed <= 3 * plain, "{timed} {plain}");
+}
+
+/// With less memory than for the segments with which a time is sure, fewer are taken that are likely enough.
+#[test]
+fn fewer_segments_are_taken_where_there_is_no_room_to_be_sure() {
+    let line = Line {
+        from: [100.0, -80.0],
+        to: [20.0, 60.0],
+    };
+    let limits = [limits(2.0, 10.0, None), limits(300.0, 2000.0, None)];
+    let accuracy = Accuracy {
+        min_segments: 2,
+        max_departure: 1.0,
+        max_time_ratio: 1.005,
+    };
+    let rows = |room: usize| {
+        let mut knots = vec![Knot::default(); room];
+        let table = Table::plan_within([line], limits, accuracy, |_, _| 0.0, &mut knots);
+        table.map(|table| (table.len(), table.duration_s()))
+    };
+    let (sure, best_s) = rows(1000).unwrap();
+    // A plan of half of them is made beside.
+    let (fewer, time_s) = rows(sure + sure / 2).unwrap();
+    assert!(
+        fewer < sure && time_s <= best_s * accuracy.max_time_ratio,
+        "{fewer} {sure}"
+    );
+    assert_eq!(rows(sure + sure / 2 + 1).unwrap().0, sure);
+    assert!(matches!(rows(4), Err(PlanError::Memory { .. })));
 }
 
 fn check<P: Path<Axes = [f64; 2]> + Clone>(
