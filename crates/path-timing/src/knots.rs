@@ -169,35 +169,39 @@ impl Shares {
     }
 }
 
-/// Where each knot of a leg has to stand for all segments to have the same share, and the speed there,
-/// written into the knots; the speeds of the first `planned` of them, which reach from its start to its
-/// end, are. The most that is lost on a segment, what it leaves unused times its time, in units of the mean
-/// time of a segment.
-pub(crate) fn spread<A: Axes, R: Real>(
-    limits: &Reciprocals<A, R>,
-    parts: Shares,
+/// Writes what each segment of the first `planned` knots leaves unused into its second knot, for
+/// [`spread`].
+pub(crate) fn note_unused<A: Axes>(
+    limits: &Reciprocals<A, f32>,
     knots: &mut [Knot<A>],
     planned: usize,
-) -> f64 {
+) {
+    each_segment(knots, planned, |from, to| {
+        // The ratio is of the passes alone.
+        to.ratio = unused(limits, [from, to], segment_s(from, to));
+    });
+}
+
+/// Where each knot of a leg has to stand for all segments to have the same share, and the speed there,
+/// written into the knots; the speeds of the first `planned` of them, which reach from its start to its
+/// end, are, and what they leave unused where that counts. The most that is lost on a segment, what it
+/// leaves unused times its time, in units of the mean time of a segment.
+pub(crate) fn spread<A: Axes>(parts: Shares, knots: &mut [Knot<A>], planned: usize) -> f64 {
     let count = knots.len().saturating_sub(1);
     let [segments, own] = [count, planned.saturating_sub(1)].map(index_as_f64);
     let (mut time_s, mut all_bends) = (0.0, 0.0);
-    let (mut all_unused, mut most_lost_s) = (R::ZERO, R::ZERO);
+    let (mut all_unused, mut most_lost_s) = (0.0, 0.0);
     each_segment(knots, planned, |from, to| {
         let own_s = segment_s(from, to);
         time_s += own_s;
         if parts.unused > 0.0 {
-            let own_unused = unused(limits, [from, to], own_s);
-            all_unused = all_unused + own_unused;
-            most_lost_s = larger(most_lost_s, own_unused * R::of(own_s));
-            // The ratio is of the passes alone.
-            to.ratio = own_unused.into();
+            all_unused += to.ratio;
+            most_lost_s = larger(most_lost_s, to.ratio * own_s);
         }
         if parts.bend > 0.0 {
             all_bends += bend(from, to, own_s);
         }
     });
-    let (all_unused, most_lost_s): (f64, f64) = (all_unused.into(), most_lost_s.into());
     let part_of = |part: f64, sum: f64| {
         if sum > 0.0 {
             part * segments / sum

@@ -2,7 +2,7 @@
 
 use crate::junction::Junction;
 use crate::knots::{
-    LARGEST_GAP, LARGEST_GAP_AT_RESTS, Laying, Shares, fraction, is_resolved, spread,
+    LARGEST_GAP, LARGEST_GAP_AT_RESTS, Laying, Shares, fraction, is_resolved, note_unused, spread,
 };
 use crate::leg::Leg;
 use crate::number::Real;
@@ -90,31 +90,32 @@ impl<P: Path + Clone> Place<'_, P> {
         }
         let own = self.room(segments, knots)?;
         // Where knots stand need not be exact.
-        let laid = if let Some(single) = limits.nearest_single() {
-            self.lay_by_plan(&single, bent, own)
-        } else {
-            self.lay_by_plan(limits, bent, own)
+        let Some(single) = limits.nearest_single() else {
+            return self.lay_plainly(limits, segments, bent, own);
         };
+        let laid = self.lay_by_plan(&single, bent, own);
         // Knots that stand elsewhere may be too far apart, or their cubics leave what the path allows.
         laid.and_then(|()| self.check_resolved(limits, own))
             .or_else(|_| self.lay_plainly(limits, segments, bent, own))
     }
 
     /// Lays all knots by the speeds of a plan of fewer.
-    fn lay_by_plan<R: Real>(
+    fn lay_by_plan(
         &self,
-        limits: &Reciprocals<P::Axes, R>,
+        limits: &Reciprocals<P::Axes, f32>,
         bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let (parts, planned) = (BY_LIMITS.bent(bent), self.lay_roughly(limits, knots)?);
-        let lost = spread(limits, parts, knots, planned);
+        note_unused(limits, knots, planned);
+        let lost = spread(parts, knots, planned);
         self.lay_stretched(limits, knots)?;
         if lost > MOST_LOST_ON_ONE {
             let count = knots.len();
             for _ in 0..ROUNDS {
                 self.alone(limits, knots);
-                spread(limits, parts, knots, count);
+                note_unused(limits, knots, count);
+                spread(parts, knots, count);
                 self.lay_stretched(limits, knots)?;
             }
         }
@@ -132,7 +133,7 @@ impl<P: Path + Clone> Place<'_, P> {
     ) -> Result<(), PlanError<P::Error>> {
         let own = self.room(segments, knots)?;
         let planned = self.lay_roughly(limits, own)?;
-        spread(limits, BY_TIME.bent(bent), own, planned);
+        spread(BY_TIME.bent(bent), own, planned);
         self.lay_at_places(own)?;
         self.check_resolved(limits, own)
     }
@@ -172,16 +173,16 @@ impl<P: Path + Clone> Place<'_, P> {
 
     /// Lays knots where they are to stand.
     fn lay_at_places(&self, knots: &mut [Knot<P::Axes>]) -> Result<(), PlanError<P::Error>> {
-        self.lay_each(knots, |_, _, _, _| 1.0)
+        self.lay_each(knots, &|_, _, _, _| 1.0)
     }
 
     /// The same, stretched for the speeds that are wanted there.
-    fn lay_stretched<R: Real>(
+    fn lay_stretched(
         &self,
-        limits: &Reciprocals<P::Axes, R>,
+        limits: &Reciprocals<P::Axes, f32>,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
-        self.lay_each(knots, |from, to, length, speeds| {
+        self.lay_each(knots, &|from, to, length, speeds| {
             stretch(limits, [from, to], length, speeds)
         })
     }
@@ -189,7 +190,7 @@ impl<P: Path + Clone> Place<'_, P> {
     fn lay_each(
         &self,
         knots: &mut [Knot<P::Axes>],
-        stretch: impl Fn(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64, [f64; 2]) -> f64,
+        stretch: &Stretch<'_, P::Axes>,
     ) -> Result<(), PlanError<P::Error>> {
         let (length, last) = (self.leg.length(), knots.len().saturating_sub(1));
         let mut laying = Laying::new(self.leg.clone(), self.start);
@@ -252,6 +253,9 @@ impl<P: Path + Clone> Place<'_, P> {
         }
     }
 }
+
+/// The stretch of a segment of its points, its length and the speeds at its ends.
+type Stretch<'a, A> = dyn Fn(&PathPoint<A>, &PathPoint<A>, f64, [f64; 2]) -> f64 + 'a;
 
 /// Lays the knots of all paths, one behind the other; those that they take. `lay` lays those of a leg
 /// behind its first, which is the first of those that it is given, and says how many segments they are.
