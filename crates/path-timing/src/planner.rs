@@ -89,20 +89,16 @@ impl<P: Path + Clone> Place<'_, P> {
             return self.lay_plainly(limits, segments, bent, knots);
         }
         let own = self.room(segments, knots)?;
-        // Where knots stand need not be exact.
-        let Some(single) = limits.nearest_single() else {
-            return self.lay_plainly(limits, segments, bent, own);
-        };
-        let laid = self.lay_by_plan(&single, bent, own);
+        let laid = self.lay_by_plan(limits, bent, own);
         // Knots that stand elsewhere may be too far apart, or their cubics leave what the path allows.
         laid.and_then(|()| self.check_resolved(limits, own))
             .or_else(|_| self.lay_plainly(limits, segments, bent, own))
     }
 
     /// Lays all knots by the speeds of a plan of fewer.
-    fn lay_by_plan(
+    fn lay_by_plan<R: Real>(
         &self,
-        limits: &Reciprocals<P::Axes, f32>,
+        limits: &Reciprocals<P::Axes, R>,
         bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
@@ -173,16 +169,16 @@ impl<P: Path + Clone> Place<'_, P> {
 
     /// Lays knots where they are to stand.
     fn lay_at_places(&self, knots: &mut [Knot<P::Axes>]) -> Result<(), PlanError<P::Error>> {
-        self.lay_each(knots, &|_, _, _, _| 1.0)
+        self.lay_each(knots, |_, _, _, _| 1.0)
     }
 
     /// The same, stretched for the speeds that are wanted there.
-    fn lay_stretched(
+    fn lay_stretched<R: Real>(
         &self,
-        limits: &Reciprocals<P::Axes, f32>,
+        limits: &Reciprocals<P::Axes, R>,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
-        self.lay_each(knots, &|from, to, length, speeds| {
+        self.lay_each(knots, |from, to, length, speeds| {
             stretch(limits, [from, to], length, speeds)
         })
     }
@@ -190,7 +186,7 @@ impl<P: Path + Clone> Place<'_, P> {
     fn lay_each(
         &self,
         knots: &mut [Knot<P::Axes>],
-        stretch: &Stretch<'_, P::Axes>,
+        stretch: impl Fn(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64, [f64; 2]) -> f64,
     ) -> Result<(), PlanError<P::Error>> {
         let (length, last) = (self.leg.length(), knots.len().saturating_sub(1));
         let mut laying = Laying::new(self.leg.clone(), self.start);
@@ -253,9 +249,6 @@ impl<P: Path + Clone> Place<'_, P> {
         }
     }
 }
-
-/// The stretch of a segment of its points, its length and the speeds at its ends.
-type Stretch<'a, A> = dyn Fn(&PathPoint<A>, &PathPoint<A>, f64, [f64; 2]) -> f64 + 'a;
 
 /// Lays the knots of all paths, one behind the other; those that they take. `lay` lays those of a leg
 /// behind its first, which is the first of those that it is given, and says how many segments they are.

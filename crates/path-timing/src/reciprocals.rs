@@ -12,7 +12,7 @@ pub(crate) fn margin<R: Real>() -> R {
 const LARGEST_SINGLE: f64 = 1e8;
 
 /// One over the limits of an axis, a margin included.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Reciprocal<R = f64> {
     pub(crate) speed: R,
     pub(crate) acceleration: R,
@@ -54,28 +54,6 @@ impl<A: Axes, R: Real> Reciprocals<A, R> {
     /// Those of each axis.
     pub(crate) fn axes(&self) -> &[Reciprocal<R>] {
         A::each(&self.axes)
-    }
-
-    /// The nearest in single precision, where it can be computed with: for what need not be exact.
-    pub(crate) fn nearest_single(&self) -> Option<Reciprocals<A, f32>> {
-        let single = |x: R| f32::of(x.into());
-        let mut reciprocals = A::filled(Reciprocal::default());
-        for (nearest, own) in (A::each_mut(&mut reciprocals).iter_mut()).zip(self.axes()) {
-            *nearest = Reciprocal {
-                speed: single(own.speed),
-                acceleration: single(own.acceleration),
-                jerk: single(own.jerk),
-            };
-            let (min, max) = (1.0 / LARGEST_SINGLE, LARGEST_SINGLE);
-            let is_in_range = |x: f32| (min..=max).contains(&x.into());
-            if !is_in_range(nearest.speed) || !is_in_range(nearest.acceleration) {
-                return None;
-            }
-        }
-        Some(Reciprocals {
-            axes: reciprocals,
-            has_jerk: self.has_jerk,
-        })
     }
 
     /// Whether any axis has a limit of jerk.

@@ -73,19 +73,18 @@ pub(crate) fn stretch_between<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Kn
 /// ```text
 /// a₀ = (6v - 4v₀ - 2v₁) / T    a₁ = (2v₀ + 4v₁ - 6v) / T
 /// ```
-pub(crate) fn unused<A: Axes>(
-    limits: &Reciprocals<A, f32>,
+pub(crate) fn unused<A: Axes, R: Real>(
+    limits: &Reciprocals<A, R>,
     [from, to]: [&Knot<A>; 2],
     time_s: f64,
-) -> f64 {
-    let of = f32::of;
-    let (rate, w0, w1) = (of(time_s).recip(), of(from.speed), of(to.speed));
+) -> R {
+    let (rate, w0, w1) = (R::ONE / R::of(time_s), R::of(from.speed), R::of(to.speed));
     let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
     let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
-    let (mut used, mut swing) = ([0.0_f32; 2], 0.0_f32);
+    let (mut used, mut swing) = ([R::ZERO; 2], R::ZERO);
     for (limit, ((q0, q1), (p0, p1))) in limits.axes().iter().zip(positions.zip(slopes)) {
-        let (v0, v1) = (of(*p0) * w0, of(*p1) * w1);
-        let thrice = 3.0 * of(q1 - q0) * rate;
+        let (v0, v1) = (R::of(*p0) * w0, R::of(*p1) * w1);
+        let thrice = R::of(3.0) * R::of(q1 - q0) * rate;
         let scale = (rate + rate) * limit.acceleration;
         let a0 = (thrice - v0 - v0 - v1) * scale;
         let a1 = (v0 + v1 + v1 - thrice) * scale;
@@ -97,5 +96,5 @@ pub(crate) fn unused<A: Axes>(
         ];
     }
     let [start, end] = used;
-    (1.0 - start.min(end) + swing).into()
+    R::ONE - start.min(end) + swing
 }
