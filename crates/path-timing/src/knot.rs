@@ -11,7 +11,7 @@ pub struct Knot<A: Axes> {
     pub(crate) point: PathPoint<A>,
     /// Parameter of its leg on arrival.
     pub(crate) s: f64,
-    /// Length of the segment before; 0 where only the slopes are others than at the knot before.
+    /// Length of the segment before, times its stretch κ; 0 where only the slopes are others than at the knot before.
     pub(crate) ds: f64,
     /// Limits of the tool on the segment before.
     pub(crate) tool: Option<ToolLimits>,

@@ -32,6 +32,7 @@ mod set_points;
 mod shaper;
 mod span;
 mod stepping;
+mod stretch;
 mod table;
 mod torque;
 mod verify;

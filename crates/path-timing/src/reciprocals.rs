@@ -55,6 +55,11 @@ impl<A: Axes, R: Real> Reciprocals<A, R> {
     pub(crate) fn axes(&self) -> &[Reciprocal<R>] {
         A::each(&self.axes)
     }
+
+    /// Whether any axis has a limit of jerk.
+    pub(crate) const fn has_jerk(&self) -> bool {
+        self.has_jerk
+    }
 }
 
 impl<A: Axes> Reciprocals<A> {
@@ -105,10 +110,5 @@ impl<A: Axes> Reciprocals<A> {
             limits.speed /= feed;
         }
         slower
-    }
-
-    /// Whether any axis has a limit of jerk.
-    pub(crate) const fn has_jerk(&self) -> bool {
-        self.has_jerk
     }
 }

@@ -9,7 +9,8 @@ use crate::number::larger_or_nan;
 ///
 /// It says how far a tool can depart from the curve on that segment.
 ///
-/// Proof. Both the tool's motion and this one have the same place and velocity at both ends, so that
+/// Proof. The parameter of this point is the cubic of the rows' own speeds and duration, whatever these are: a
+/// table may stretch the duration by a κ of the segment. Both the tool's motion and this one have the same place and velocity at both ends, so that
 /// their difference e and its first derivative vanish there: e is the error of its own cubic Hermite
 /// interpolant, which is zero. With the time as the fraction τ = 0..=1 of the segment and M the longest that e⁗ can be, known from the
 /// derivatives of tool and curve,
@@ -118,7 +119,8 @@ impl Parameter {
     }
 
     /// Whether at each τ at least τ²/2 of the distance is done, and at least (1 - τ)²/2 left: where the
-    /// speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has 2.
+    /// speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has 2, a
+    /// stretched one at most 2.4.
     fn comes_forward(cubic: &Cubic) -> bool {
         let distance = cubic.q1 - cubic.q0;
         let ends = [cubic.v0, cubic.v1].map(|speed| speed * cubic.duration_s);

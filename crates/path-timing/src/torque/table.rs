@@ -66,7 +66,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
             let segments = segments(place.leg.path());
             let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay(&limits, segments, 0.0, free)?;
+            place.lay_plainly(&limits, segments, 0.0, free)?;
             Ok(segments)
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;

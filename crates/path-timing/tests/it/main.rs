@@ -3,6 +3,7 @@
 
 extern crate alloc;
 
+mod accuracy;
 mod attack;
 mod corners;
 mod curves;

@@ -10,15 +10,22 @@ use test_support::{Random, setting};
 
 use crate::support::machine::{Line, limits};
 use crate::support::python::{ask, has};
+use crate::support::waves::Waves;
 
 /// Speed and acceleration of the angle, in rad, and of the reach, in mm.
 const LIMITS: [[f64; 2]; 2] = [[2.0, 20.0], [300.0, 2000.0]];
 
-/// What toppra's 4000 cells are off by.
-const CELLS: f64 = 5e-4;
+/// The same of both axes of waves along a length of 1.
+const LIMITS_ON_WAVES: [[f64; 2]; 2] = [[1.0, 4.0]; 2];
+
+/// What toppra's 4000 cells are off by: limits hold at these alone.
+const CELLS: f64 = 2e-3;
 
 /// Above the optimum, by segments.
 const ABOVE: [(u32, f64); 2] = [(100, 0.005), (1000, 5e-4)];
+
+/// The same where both axes nearly stop within a segment: mostly within half of it.
+const ABOVE_ON_WAVES: [(u32, f64); 2] = [(100, 0.01), (1000, 0.002)];
 
 const LINES: [[f64; 4]; 8] = [
     [-100.0, 101.0, 100.0, 99.0],
@@ -82,10 +89,6 @@ fn time_above_that_of_toppra() {
     }
 }
 
-/// Above the optimum on random lines: the slopes change from row to row, and the speed of the
-/// parameter is linear in time between two.
-const ABOVE_ON_LINES: [(u32, f64); 2] = [(100, 0.015), (1000, 0.002)];
-
 /// Shares of all paths, which are within bounds: least, median and most.
 fn judge<P: Path<Axes = [f64; 2], Error = Infallible> + Clone>(
     what: &str,
@@ -113,6 +116,17 @@ fn judge<P: Path<Axes = [f64; 2], Error = Infallible> + Clone>(
     }
 }
 
+/// Limits around those of a machine.
+fn random_limits(random: &mut Random, machine: [[f64; 2]; 2]) -> [AxisLimits; 2] {
+    machine.map(|[speed, acceleration]| {
+        limits(
+            speed * random.size(-0.5, 0.5),
+            acceleration * random.size(-0.5, 0.5),
+            None,
+        )
+    })
+}
+
 /// `TOPPRA_PATHS` of each kind.
 #[test]
 fn time_above_that_of_toppra_on_random_paths() {
@@ -120,7 +134,7 @@ fn time_above_that_of_toppra_on_random_paths() {
         return;
     }
     let mut random = Random::new(setting("SEED", 1));
-    let mut lines = Vec::new();
+    let (mut lines, mut all_waves) = (Vec::new(), Vec::new());
     for _ in 0..setting("TOPPRA_PATHS", 8) {
         // The angle does not pass 180 degrees.
         let mut end = || [random.within(-200.0, 200.0), random.within(10.0, 200.0)];
@@ -129,15 +143,13 @@ fn time_above_that_of_toppra_on_random_paths() {
             to: end(),
         };
         let ([x0, y0], [x1, y1]) = (line.from, line.to);
-        let [own, other] = LIMITS.map(|[speed, acceleration]| {
-            limits(
-                speed * random.size(-0.5, 0.5),
-                acceleration * random.size(-0.5, 0.5),
-                None,
-            )
-        });
         let words = format!("line {x0} {y0} {x1} {y1}");
-        lines.push((line, [own, other], words));
+        lines.push((line, random_limits(&mut random, LIMITS), words));
+        let waves = Waves::random(&mut random);
+        let words = format!("waves{waves}");
+        let limits = random_limits(&mut random, LIMITS_ON_WAVES);
+        all_waves.push((waves.path(), limits, words));
     }
-    judge("lines", &lines, ABOVE_ON_LINES);
+    judge("lines", &lines, ABOVE);
+    judge("waves", &all_waves, ABOVE_ON_WAVES);
 }

@@ -35,6 +35,9 @@ fn measured<const N: usize, const D: usize>(
     places.fold(0.0, f64::max)
 }
 
+/// Of places of 100 mm; an axis that is at its limit all along reaches the bound.
+const ROUNDING_MM: f64 = 1e-12;
+
 #[test]
 fn a_cartesian_tool_departs_by_at_most_the_bound() {
     let line = Curve::line([0.0, 0.0], [60.0, 80.0]).unwrap();
@@ -56,7 +59,8 @@ fn a_cartesian_tool_departs_by_at_most_the_bound() {
             let [x, y] = shapers.map(|shaper| shaper.departure(5000.0));
             let bound = (0.75 * x).hypot(y);
             println!("{name}: departs by {is:.4} mm, at most {bound:.4}");
-            assert!(is <= bound && bound <= TIGHT * is, "{name}: {is}, {bound}");
+            let is_kept = is <= bound + ROUNDING_MM && bound <= TIGHT * is;
+            assert!(is_kept, "{name}: {is}, {bound}");
         }
     }
 }

@@ -1,0 +1,100 @@
+//! The stretch of a segment: how much longer it lasts than its length and the speeds at its ends say.
+//!
+//! Goal: an axis that is at its limit of acceleration is there all along its cubic, not at one end alone.
+//! Method: the duration is the one with which the cubic of that axis is a parabola. With the speeds w₀, w₁
+//! of the parameter at its ends, r = (w₁ - w₀)/(w₀ + w₁), and m, p₀, p₁ the mean slope of the axis and those
+//! at the ends,
+//!
+//! ```text
+//! T = 2κΔs / (w₀ + w₁)    κ = 2m / (p₀ (1 - r) + p₁ (1 + r))
+//! ```
+//!
+//! It is the same as a parameter that runs κ times as far between the two knots. κ is fixed when knots are
+//! laid, by the speeds of a plan before: so all forms in the speeds stay what they are. Without it
+//! a plan loses what slopes change by within a segment; with it, the square of that.
+
+use crate::number::{Real, larger};
+use crate::reciprocals::Reciprocals;
+use crate::{Axes, Knot, PathPoint};
+
+/// κ is between this and its inverse: with at most 2.5 lengths of way at the speed of an end no parameter
+/// turns back, and departures are known.
+const LARGEST: f64 = 1.2;
+
+/// The stretch κ of a segment of a length that is passed at about these speeds.
+///
+/// Where several axes are near their limits it is that of the least squares, each axis weighed by the fourth
+/// power of its utilisation.
+pub(crate) fn stretch<A: Axes, R: Real>(
+    limits: &Reciprocals<A, R>,
+    [from, to]: [&PathPoint<A>; 2],
+    length: f64,
+    speeds: [f64; 2],
+) -> f64 {
+    let ([w0, w1], length) = (speeds.map(R::of), R::of(length));
+    let sum = w0 + w1;
+    let rate = sum / (length + length);
+    let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
+    let slopes = (from.slope.as_slice().iter()).zip(to.slope.as_slice());
+    let (mut own, mut square) = (R::ZERO, R::ZERO);
+    for (limit, ((q0, q1), (p0, p1))) in limits.axes().iter().zip(positions.zip(slopes)) {
+        let (v0, v1) = (R::of(*p0) * w0, R::of(*p1) * w1);
+        let acceleration = (v1 - v0).abs() * rate * limit.acceleration;
+        let used = acceleration.max(v0.abs().max(v1.abs()) * limit.speed);
+        let weight = used * used * limit.acceleration;
+        let mean = weight * (v0 + v1);
+        own = own + weight * R::of(q1 - q0) * mean;
+        square = square + mean * mean;
+    }
+    let stretch = sum * own / (length * square);
+    // Not a number where nothing moves.
+    if stretch > R::ZERO {
+        let [least, most] = [1.0 / LARGEST, LARGEST].map(R::of);
+        stretch.max(least).min(most).into()
+    } else {
+        1.0
+    }
+}
+
+/// The stretch of a segment that is planned without; 1 with a limit of jerk or a tool, as laid.
+pub(crate) fn stretch_between<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Knot<A>; 2]) -> f64 {
+    if limits.has_jerk() || to.tool.is_some() || to.ds <= 0.0 {
+        return 1.0;
+    }
+    let speeds = [from.speed, to.speed];
+    stretch(limits, [&from.point, &to.point], to.ds, speeds)
+}
+
+/// What a segment with planned speeds leaves unused of the limits: 0 where an axis is at a limit all along.
+///
+/// The part of every limit that is left at one end, and the most by which an acceleration changes, 2 from
+/// one limit to the other. With the mean velocity v of an axis
+///
+/// ```text
+/// a₀ = (6v - 4v₀ - 2v₁) / T    a₁ = (2v₀ + 4v₁ - 6v) / T
+/// ```
+pub(crate) fn unused<A: Axes, R: Real>(
+    limits: &Reciprocals<A, R>,
+    [from, to]: [&Knot<A>; 2],
+    time_s: f64,
+) -> R {
+    let (rate, w0, w1) = (R::ONE / R::of(time_s), R::of(from.speed), R::of(to.speed));
+    let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
+    let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
+    let (mut used, mut swing) = ([R::ZERO; 2], R::ZERO);
+    for (limit, ((q0, q1), (p0, p1))) in limits.axes().iter().zip(positions.zip(slopes)) {
+        let (v0, v1) = (R::of(*p0) * w0, R::of(*p1) * w1);
+        let thrice = R::of(3.0) * R::of(q1 - q0) * rate;
+        let scale = (rate + rate) * limit.acceleration;
+        let a0 = (thrice - v0 - v0 - v1) * scale;
+        let a1 = (v0 + v1 + v1 - thrice) * scale;
+        swing = larger(swing, (a1 - a0).abs());
+        let [start, end] = used;
+        used = [
+            larger(larger(start, a0.abs()), v0.abs() * limit.speed),
+            larger(larger(end, a1.abs()), v1.abs() * limit.speed),
+        ];
+    }
+    let [start, end] = used;
+    R::ONE - start.min(end) + swing
+}

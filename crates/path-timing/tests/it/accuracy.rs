@@ -1,0 +1,125 @@
+//! What `Accuracy` asks for is kept.
+
+use core::cell::Cell;
+
+use path_timing::{Accuracy, Knot, Path, PlanError, Table};
+use test_support::{Random, setting};
+
+use crate::support::machine::{Line, limits};
+use crate::support::waves::Waves;
+
+/// So many segments that nothing is lost.
+const FINE: u32 = 2000;
+
+/// Ratios that are asked for, and by what part of it times may miss them: the fine plan is not the best.
+const RATIOS: [f64; 7] = [1.005, 1.01, 1.02, 1.05, 1.1, 1.3, 2.0];
+
+const FEWEST: [u32; 3] = [2, 5, 16];
+
+/// On random paths of two kinds and limits of all sizes, `PATHS` of each.
+#[test]
+fn times_are_within_their_ratio() {
+    let mut random = Random::new(setting("SEED", 1));
+    let mut rows = [0; RATIOS.len()];
+    let paths = setting("PATHS", 6);
+    for _ in 0..paths {
+        let mut end = || [random.within(-200.0, 200.0), random.within(10.0, 200.0)];
+        let line = Line {
+            from: end(),
+            to: end(),
+        };
+        check(&mut random, line, [2.0, 300.0], &mut rows);
+        let waves = Waves::random(&mut random).path();
+        check(&mut random, waves, [1.0, 1.0], &mut rows);
+    }
+    let plans = u64::try_from(2 * FEWEST.len()).unwrap() * paths;
+    println!("{RATIOS:?}: {:?} rows", rows.map(|rows| rows / plans));
+    assert!(rows[0] > rows[6] && rows[6] > 2 * plans, "{rows:?}");
+}
+
+/// What slopes change by where the machine stops asks for no more segments.
+#[test]
+fn slopes_may_change_where_the_machine_stops() {
+    let limits = [limits(2.0, 10.0, None), limits(300.0, 2000.0, None)];
+    let corner = [0.0, 100.0];
+    let lines = [([100.0, 0.0], corner), (corner, [-50.0, 20.0])];
+    let lines = lines.map(|(from, to)| Line { from, to });
+    let looks = |max_time_ratio| {
+        let looks = Cell::new(0_u32);
+        let departure = |_: &Line, _: &_| {
+            looks.set(looks.get() + 1);
+            0.0
+        };
+        let accuracy = Accuracy {
+            min_segments: 16,
+            max_departure: 1.0,
+            max_time_ratio,
+        };
+        let mut knots = vec![Knot::default(); 5_000];
+        let table = Table::plan_within(lines, limits, accuracy, departure, &mut knots);
+        println!("{} rows", table.unwrap().len());
+        looks.get()
+    };
+    let (timed, plain) = (looks(1.02), looks(f64::INFINITY));
+    assert!(timed <= 3 * plain, "{timed} {plain}");
+}
+
+/// With less memory than for the segments with which a time is sure, fewer are taken that are likely enough.
+#[test]
+fn fewer_segments_are_taken_where_there_is_no_room_to_be_sure() {
+    let line = Line {
+        from: [100.0, -80.0],
+        to: [20.0, 60.0],
+    };
+    let limits = [limits(2.0, 10.0, None), limits(300.0, 2000.0, None)];
+    let accuracy = Accuracy {
+        min_segments: 2,
+        max_departure: 1.0,
+        max_time_ratio: 1.005,
+    };
+    let rows = |room: usize| {
+        let mut knots = vec![Knot::default(); room];
+        let table = Table::plan_within([line], limits, accuracy, |_, _| 0.0, &mut knots);
+        table.map(|table| (table.len(), table.duration_s()))
+    };
+    let (sure, best_s) = rows(1000).unwrap();
+    // A plan of half of them is made beside.
+    let (fewer, time_s) = rows(sure + sure / 2).unwrap();
+    assert!(
+        fewer < sure && time_s <= best_s * accuracy.max_time_ratio,
+        "{fewer} {sure}"
+    );
+    assert_eq!(rows(sure + sure / 2 + 1).unwrap().0, sure);
+    assert!(matches!(rows(4), Err(PlanError::Memory { .. })));
+}
+
+fn check<P: Path<Axes = [f64; 2]> + Clone>(
+    random: &mut Random,
+    path: P,
+    speeds: [f64; 2],
+    rows: &mut [u64],
+) where
+    P::Error: core::fmt::Debug,
+{
+    let own = speeds.map(|speed| {
+        let speed = speed * random.size(-0.5, 0.5);
+        limits(speed, speed * random.size(0.1, 1.5), None)
+    });
+    let mut knots = vec![Knot::default(); 20_000];
+    let fine = Table::plan([path.clone()], own, |_| FINE, &mut knots);
+    let fine_s = fine.unwrap().duration_s();
+    for (max_time_ratio, rows) in RATIOS.into_iter().zip(rows) {
+        for min_segments in FEWEST {
+            let accuracy = Accuracy {
+                min_segments,
+                max_departure: 1.0,
+                max_time_ratio,
+            };
+            let paths = [path.clone()];
+            let table = Table::plan_within(paths, own, accuracy, |_, _| 0.0, &mut knots).unwrap();
+            let ratio = table.duration_s() / fine_s;
+            assert!(ratio <= max_time_ratio, "{ratio} for {accuracy:?}, {own:?}");
+            *rows += u64::try_from(table.len()).unwrap();
+        }
+    }
+}
