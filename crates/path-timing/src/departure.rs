@@ -32,6 +32,8 @@ pub(crate) struct Within<D> {
     pub(crate) allowed: f64,
     pub(crate) speeds: Speeds,
     pub(crate) departure: D,
+    /// Whether other speeds than those of `limits` follow, so that nothing is stretched for these.
+    pub(crate) is_plain: bool,
     /// The knots of a leg alone that are planned already, with their speeds.
     pub(crate) planned: Cell<usize>,
 }
@@ -121,8 +123,23 @@ impl<D> Within<D> {
             place.rests,
         )?;
         self.planned.set(0);
-        place.lay(limits, finer, self.bent(place), knots)?;
+        self.lay_at_once(place, limits, finer, knots)?;
         Ok(finer)
+    }
+
+    fn lay_at_once<P: Path + Clone>(
+        &self,
+        place: &Place<'_, P>,
+        limits: &Reciprocals<P::Axes>,
+        segments: u32,
+        knots: &mut [Knot<P::Axes>],
+    ) -> Result<(), PlanError<P::Error>> {
+        let bent = self.bent(place);
+        if self.is_plain {
+            place.lay_plainly(limits, segments, bent, knots)
+        } else {
+            place.lay(limits, segments, bent, knots)
+        }
     }
 
     /// Lays a leg with a number of segments, at most a sixteenth above the fewest found, that keeps
@@ -179,7 +196,7 @@ impl<D> Within<D> {
     {
         let count = knots_of(segments);
         self.planned.set(0);
-        match place.lay(limits, segments, self.bent(place), knots) {
+        match self.lay_at_once(place, limits, segments, knots) {
             Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
             laid => laid?,
         }

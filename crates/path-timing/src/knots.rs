@@ -171,14 +171,10 @@ impl Shares {
 
 /// Writes what each segment of the first `planned` knots leaves unused into its second knot, for
 /// [`spread`].
-pub(crate) fn note_unused<A: Axes, R: Real>(
-    limits: &Reciprocals<A, R>,
-    knots: &mut [Knot<A>],
-    planned: usize,
-) {
+pub(crate) fn note_unused<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], planned: usize) {
     each_segment(knots, planned, |from, to| {
         // The ratio is of the passes alone.
-        to.ratio = unused(limits, [from, to], segment_s(from, to)).into();
+        to.ratio = unused(limits, [from, to], segment_s(from, to));
     });
 }
 

@@ -78,9 +78,9 @@ impl<P: Path + Clone> Place<'_, P> {
     ///
     /// Stretches follow from the speeds of a plan before, whose knots stand elsewhere; where accelerations
     /// change by much from knot to knot that plan is slow, so that it is made again from the better ones.
-    pub(crate) fn lay<R: Real>(
+    pub(crate) fn lay(
         &self,
-        limits: &Reciprocals<P::Axes, R>,
+        limits: &Reciprocals<P::Axes>,
         segments: u32,
         bent: f64,
         knots: &mut [Knot<P::Axes>],
@@ -96,9 +96,9 @@ impl<P: Path + Clone> Place<'_, P> {
     }
 
     /// Lays all knots by the speeds of a plan of fewer.
-    fn lay_by_plan<R: Real>(
+    fn lay_by_plan(
         &self,
-        limits: &Reciprocals<P::Axes, R>,
+        limits: &Reciprocals<P::Axes>,
         bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
@@ -119,7 +119,7 @@ impl<P: Path + Clone> Place<'_, P> {
     }
 
     /// Lays the knots where the motion is slow, none stretched: for limits of jerk and torque, for
-    /// tools and few segments.
+    /// tools, few segments, and plans in single precision, which are to be small.
     pub(crate) fn lay_plainly<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
@@ -173,9 +173,9 @@ impl<P: Path + Clone> Place<'_, P> {
     }
 
     /// The same, stretched for the speeds that are wanted there.
-    fn lay_stretched<R: Real>(
+    fn lay_stretched(
         &self,
-        limits: &Reciprocals<P::Axes, R>,
+        limits: &Reciprocals<P::Axes>,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         self.lay_each(knots, |from, to, length, speeds| {

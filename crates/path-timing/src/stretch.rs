@@ -13,7 +13,7 @@
 //! laid, by the speeds of a plan before: so all forms in the speeds stay what they are. Without it
 //! a plan loses what slopes change by within a segment; with it, the square of that.
 
-use crate::number::{Real, larger};
+use crate::number::larger;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, PathPoint};
 
@@ -25,32 +25,30 @@ const LARGEST: f64 = 1.2;
 ///
 /// Where several axes are near their limits it is that of the least squares, each axis weighed by the fourth
 /// power of its utilisation.
-pub(crate) fn stretch<A: Axes, R: Real>(
-    limits: &Reciprocals<A, R>,
+pub(crate) fn stretch<A: Axes>(
+    limits: &Reciprocals<A>,
     [from, to]: [&PathPoint<A>; 2],
     length: f64,
-    speeds: [f64; 2],
+    [w0, w1]: [f64; 2],
 ) -> f64 {
-    let ([w0, w1], length) = (speeds.map(R::of), R::of(length));
     let sum = w0 + w1;
     let rate = sum / (length + length);
     let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
     let slopes = (from.slope.as_slice().iter()).zip(to.slope.as_slice());
-    let (mut own, mut square) = (R::ZERO, R::ZERO);
+    let (mut own, mut square) = (0.0, 0.0);
     for (limit, ((q0, q1), (p0, p1))) in limits.axes().iter().zip(positions.zip(slopes)) {
-        let (v0, v1) = (R::of(*p0) * w0, R::of(*p1) * w1);
+        let (v0, v1) = (p0 * w0, p1 * w1);
         let acceleration = (v1 - v0).abs() * rate * limit.acceleration;
         let used = acceleration.max(v0.abs().max(v1.abs()) * limit.speed);
         let weight = used * used * limit.acceleration;
         let mean = weight * (v0 + v1);
-        own = own + weight * R::of(q1 - q0) * mean;
-        square = square + mean * mean;
+        own += weight * (q1 - q0) * mean;
+        square += mean * mean;
     }
     let stretch = sum * own / (length * square);
     // Not a number where nothing moves.
-    if stretch > R::ZERO {
-        let [least, most] = [1.0 / LARGEST, LARGEST].map(R::of);
-        stretch.max(least).min(most).into()
+    if stretch > 0.0 {
+        stretch.clamp(1.0 / LARGEST, LARGEST)
     } else {
         1.0
     }
@@ -73,18 +71,18 @@ pub(crate) fn stretch_between<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Kn
 /// ```text
 /// a₀ = (6v - 4v₀ - 2v₁) / T    a₁ = (2v₀ + 4v₁ - 6v) / T
 /// ```
-pub(crate) fn unused<A: Axes, R: Real>(
-    limits: &Reciprocals<A, R>,
+pub(crate) fn unused<A: Axes>(
+    limits: &Reciprocals<A>,
     [from, to]: [&Knot<A>; 2],
     time_s: f64,
-) -> R {
-    let (rate, w0, w1) = (R::ONE / R::of(time_s), R::of(from.speed), R::of(to.speed));
+) -> f64 {
+    let (rate, w0, w1) = (1.0 / time_s, from.speed, to.speed);
     let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
     let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
-    let (mut used, mut swing) = ([R::ZERO; 2], R::ZERO);
+    let (mut used, mut swing) = ([0.0; 2], 0.0);
     for (limit, ((q0, q1), (p0, p1))) in limits.axes().iter().zip(positions.zip(slopes)) {
-        let (v0, v1) = (R::of(*p0) * w0, R::of(*p1) * w1);
-        let thrice = R::of(3.0) * R::of(q1 - q0) * rate;
+        let (v0, v1) = (p0 * w0, p1 * w1);
+        let thrice = 3.0 * (q1 - q0) * rate;
         let scale = (rate + rate) * limit.acceleration;
         let a0 = (thrice - v0 - v0 - v1) * scale;
         let a1 = (v0 + v1 + v1 - thrice) * scale;
@@ -96,5 +94,5 @@ pub(crate) fn unused<A: Axes, R: Real>(
         ];
     }
     let [start, end] = used;
-    R::ONE - start.min(end) + swing
+    1.0 - start.min(end) + swing
 }

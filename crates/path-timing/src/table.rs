@@ -19,7 +19,8 @@ use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 /// It is a fastest table that keeps the limits of all axes. What is limited is the cubic itself: its
 /// peak speed inside, its acceleration at both ends. With the path speeds w₀, w₁ at the ends of a
 /// segment of length Δs, its duration is 2κΔs / (w₀ + w₁), with a κ from 5/6 to 6/5 for which an axis at its
-/// limit of acceleration stays there; 1 where a jerk or a tool is limited, and with fewer than 16 segments.
+/// limit of acceleration stays there; 1 where a jerk, a torque or a tool is limited, with fewer than 16
+/// segments, and in single precision.
 /// At the end of each path the machine does what that path's [`corner`](Path::corner) says.
 ///
 /// Where an axis has a limit of jerk: between rows a cubic has one jerk; at a row its acceleration
@@ -97,7 +98,7 @@ impl<'a, A: Axes> Table<'a, A> {
         let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
             let segments = segments(place.leg.path());
             let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay(&limits, segments, 0.0, free)?;
+            place.lay_plainly(&limits, segments, 0.0, free)?;
             Ok(segments)
         };
         let knots = lay_all(paths.into_iter(), &exact, knots, lay)?;
@@ -161,6 +162,7 @@ impl<'a, A: Axes> Table<'a, A> {
             allowed: accuracy.max_departure,
             speeds,
             departure,
+            is_plain: false,
             planned: Cell::new(0),
         };
         // A number of doublings that is likely enough, for where there is no room to be sure.

@@ -75,7 +75,7 @@ impl<const N: usize> TorqueUsed<N> {
             self.parts.push((*last_s, [f64::NAN; N]));
         }
         let planned = self.planned;
-        for span in spans(rows) {
+        for span in spans(rows).filter(|span| span.rows[1].duration_s >= SHORT_S) {
             let ends = parts(load, &span).map(|parts| parts.map(|part| part * planned));
             let times = span.rows.iter().map(|row| start_s + row.time_s);
             self.parts.extend(times.zip(ends));
@@ -132,6 +132,10 @@ pub fn spans<const N: usize>(rows: &[Row<[f64; N]>]) -> impl Iterator<Item = Spa
         _ => None,
     })
 }
+
+/// The accelerations of shorter segments are those of rounding, and of rows nearer than a nanosecond that a
+/// [`Shaped`](path_timing::Shaped) joins; what is asked of the motors shows in the segments on both sides.
+const SHORT_S: f64 = 1e-7;
 
 /// The parts of what is planned of each motor, at both ends of a segment.
 fn parts<D: Dynamics<Axes = [f64; N]>, const N: usize>(

@@ -100,6 +100,7 @@ impl<D: Dynamics> TorqueLimits<D> {
             allowed: accuracy.max_departure,
             speeds: Speeds::Any,
             departure,
+            is_plain: true,
             planned: Cell::new(0),
         };
         let mut coarse_s = f64::INFINITY;
