@@ -134,6 +134,24 @@ test('inside another page there are scene and Play alone', async () => {
   await done();
 });
 
+test('a link has how far the wire of a simulated line is zoomed', async () => {
+  const { page, done } = await browser.visit('line.html?view=simulate', PERMITTED);
+  await ready(page);
+  await page.getByRole('button', { name: 'Run 20 s' }).click();
+  await page.locator('#simulated-time').filter({ hasText: '20.0000 s' }).waitFor();
+  const note = page.locator('#wire-note');
+  const first = (await note.textContent()) ?? '';
+  await page.locator('#wire').press('+');
+  const zoomed = (await note.textContent()) ?? '';
+  assert.notEqual(zoomed, first);
+  const url = await link(page);
+  await done();
+  const other = await browser.visit('', PERMITTED);
+  await other.page.goto(url);
+  await other.page.locator('#wire-note').filter({ hasText: zoomed }).waitFor();
+  await other.done();
+});
+
 /** How many random states, of one page after the other; `.ci/nightly` takes a hundred. */
 const STATES = Number(process.env.PAGE_TEST_STATES ?? 3);
 
@@ -190,6 +208,9 @@ const SETTERS = {
     const move = page.locator('.move').nth(Math.floor(next() * 5));
     await move.click();
     if (next() < 0.5) await move.press('Shift+ArrowRight');
+    // It may end too late for the next one: then there is nothing to save.
+    await page.locator('#files button:enabled, #status.bad').first().waitFor();
+    if (await page.locator('#status.bad').isVisible()) await move.press('Shift+ArrowLeft');
     await turn(page, '#robot', of);
     return 'data.h';
   },

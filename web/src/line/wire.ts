@@ -29,8 +29,8 @@ export class Wire {
   constructor(canvas: HTMLCanvasElement, note: HTMLElement) {
     this.#note = note;
     intoLink('wire', () => {
-      const isFirst = this.#span === FIRST_SPAN_S && this.#from === this.#firstFrom;
-      return isFirst || this.#follows ? undefined : [this.#from, this.#span];
+      const isAtFirst = this.#follows || this.#from === this.#firstFrom;
+      return isAtFirst && this.#span === FIRST_SPAN_S ? undefined : [this.#from, this.#span];
     });
     this.#picture = new Picture(canvas, (context, width, height) =>
       this.#draw(context, width, height),
