@@ -11,6 +11,7 @@ use crate::machine::Machine;
 const LEAST_SEGMENTS: u32 = 16;
 /// The time is at most so many times the best.
 const TIME_RATIO: f64 = 1.02;
+
 /// A motion from rest to rest.
 pub(crate) struct Planned {
     pub(crate) rows: Vec<Row<[f64; 3]>>,
