@@ -10,15 +10,15 @@
 //! torque of the motors does not allow the motion, as with `--steps nearest`, the first line says
 //! how many steps are lost, and the exit status is 2.
 //!
-//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--offset X,Y | --fit] [--steps WHEN] [--tolerance MM] [--lose-steps P] [--seed N] [--out DIR]`
+//! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--machine FILE] [--offset X,Y | --fit] [--steps WHEN] [--tolerance MM] [--lose-steps P] [--seed N] [--out DIR]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use command_line::{Artefacts, Terminal, fraction, print_notes, print_summary, read_bytes};
-use stage::{Program, Run, Session, Settings, StepLog, StepObserver, Stepping};
+use command_line::{Artefacts, Terminal, fraction, print_notes, print_summary, read, read_bytes};
+use stage::{Machine, Program, Run, Session, Settings, StepLog, StepObserver, Stepping};
 
 /// Of the terminal.
 const BAUD: u32 = 9600;
@@ -36,6 +36,9 @@ struct Args {
     /// moves neither X nor Y is passed over with a note, what would is refused.
     #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("drawings/test.gcode"))]
     gcode: PathBuf,
+    /// The machine, as in machines/stage/machine.toml.
+    #[arg(long, value_name = "FILE", default_value_os_t = PathBuf::from(FOLDER).join("machine.toml"))]
+    machine: PathBuf,
     /// Takes lines from this terminal instead, and answers each; `?` reports the position, the
     /// keys < > v ^ jog by a millimetre, M2 ends.
     #[arg(long, value_name = "TTY", conflicts_with = "gcode")]
@@ -77,6 +80,7 @@ enum Source {
 }
 
 fn stage(args: &Args) -> Result<ExitCode> {
+    let machine = read(&args.machine, Machine::parse)?;
     let settings = Settings {
         stepping: args.steps,
         tolerance_mm: args.tolerance,
@@ -97,9 +101,11 @@ fn stage(args: &Args) -> Result<ExitCode> {
     let mut log = StepLog::new(artefacts.create("steps.csv")?)?;
     let mut observer = |ticks, by| log.step(ticks, by);
     let (run, notes) = match source {
-        Source::Terminal(terminal) => serve(terminal, &settings, &mut observer).context(name)?,
+        Source::Terminal(terminal) => {
+            serve(terminal, (&machine, &settings), &mut observer).context(name)?
+        }
         Source::Program(program) => {
-            let run = stage::run(&program, &settings, &mut observer).context(name)?;
+            let run = stage::run(&machine, &program, &settings, &mut observer).context(name)?;
             print_notes(&args.gcode, &program.notes());
             (run, program.notes())
         }
@@ -137,10 +143,10 @@ fn placed(args: &Args, program: Result<Program>) -> Result<Program> {
 /// Answers lines and keys until the end of the program or of the line.
 fn serve(
     mut terminal: Terminal,
-    settings: &Settings,
+    (machine, settings): (&Machine, &Settings),
     observer: StepObserver<'_>,
 ) -> Result<(Run, Vec<String>)> {
-    let mut session = Session::new(settings, observer)?;
+    let mut session = Session::new(machine, settings, observer)?;
     while !session.is_over()
         && let Some(byte) = terminal.read_byte()?
     {

@@ -175,7 +175,7 @@ function random(seed) {
  */
 const SETTERS = {
   'stage.html': async (page, { next, of }) => {
-    await page.locator('#drawing').selectOption(of(['test', 'link', 'rosette']));
+    await page.locator('#drawing').selectOption(of(['test', 'link', 'rosette', 'fast']));
     await page.locator('#steps').selectOption(of(['timed', 'published', 'bresenham']));
     await page.locator('#lose').fill((next() * 0.5).toFixed(2));
     const gcode = page.getByLabel('G-code');

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, refusal, saved, shoot, VIEWS } from './browser.js';
+import { assertAccessible, open, refusal, ROOT, saved, shoot, VIEWS } from './browser.js';
 import { commandLine, file, STAGE_DRAWINGS } from './command-line.js';
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -37,6 +37,32 @@ test('the test path leaves the files of the command line, byte for byte', async 
   await assertSameFiles(page, run);
   const summary = (await page.locator('#summary').textContent()) ?? '';
   assert(run.text.startsWith(summary), run.text);
+  await done();
+});
+
+test('a machine whose load is known is chosen, its torque and its tables are shown', async () => {
+  const { page, done } = await browser.visit('stage.html?drawing=fast&lose=0&tolerance=0.5');
+  await ran(page);
+  assert(await page.locator('#torque-used').isHidden());
+  await page.locator('#machine-choice').selectOption('loaded');
+  await page.locator('#summary').filter({ hasText: 'vibration: the table of X (45.0 Hz)' }).waitFor();
+  await ran(page);
+  assert(await page.locator('#torque-used canvas').isVisible());
+  assert(await page.locator('#vibration').getByText('Y, without shaping').isVisible());
+  const fast = ['--gcode', join(STAGE_DRAWINGS, 'fast.gcode'), '--tolerance', '0.5'];
+  const loaded = ['--machine', join(ROOT, 'machines/stage/loaded.toml')];
+  await assertSameFiles(page, commandLine('stage', [...fast, ...loaded]));
+  await shoot(page, 'stage-loaded');
+  await page.reload();
+  await ran(page);
+  const chosen = page.locator('#machine-choice');
+  assert.equal(await chosen.inputValue(), 'loaded');
+  await page.getByText('Machine', { exact: true }).click();
+  await page.getByLabel('x kg').fill('-1');
+  assert.match(await refusal(page, 'machine.toml'), /x_kg = -1 is not zero or above/);
+  await chosen.selectOption('published');
+  await ran(page);
+  assert(await page.locator('#torque-used').isHidden());
   await done();
 });
 

@@ -62,8 +62,7 @@ impl Run<'_> {
             figure = figure.with_row([torque_chart(used, ARMS, time())]);
         }
         if let Some(vibration) = &self.driven.vibration {
-            let unshaped = self.unshaped.as_ref().and_then(|it| it.vibration.as_ref());
-            figure = figure.with_row([vibration_chart("the tool", vibration, unshaped)]);
+            figure = figure.with_row([vibration_chart("the tool", vibration, self.unshaped())]);
         }
         Ok(figure)
     }

@@ -60,6 +60,8 @@ pub struct Record {
     pub(crate) smoothed_bound_mm: Option<f64>,
     /// Where shaped.
     pub(crate) shaped_bound_mm: Option<f64>,
+    /// How long shaped rows still have of the motion before.
+    pub(crate) delay_s: f64,
     /// Where the machine's load is known.
     pub(crate) torque: Option<TorqueUsed<3>>,
     pub(crate) refusals: Vec<Refusal>,
@@ -76,6 +78,7 @@ impl Record {
             departure_bound_mm: None,
             smoothed_bound_mm: None,
             shaped_bound_mm: None,
+            delay_s: 0.0,
             torque: None,
             refusals: Vec::new(),
             notes: Notes::default(),
@@ -98,6 +101,12 @@ impl Record {
     #[must_use]
     pub fn rows(&self) -> &[TimedRow] {
         &self.rows
+    }
+
+    /// How long shaped rows still have of the motion before, in s.
+    #[must_use]
+    pub const fn shaping_s(&self) -> f64 {
+        self.delay_s
     }
 
     /// Whether all lines were done.

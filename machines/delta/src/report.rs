@@ -95,9 +95,8 @@ impl Run<'_> {
     }
 
     fn vibration(&self) -> Option<VibrationReport> {
-        let unshaped = self.unshaped.as_ref().and_then(|it| it.vibration.as_ref());
         let vibration = self.driven.vibration.as_ref()?;
-        Some(VibrationReport::new("the tool", vibration, unshaped))
+        Some(VibrationReport::new("the tool", vibration, self.unshaped()))
     }
 }
 

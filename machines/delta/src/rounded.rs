@@ -69,6 +69,7 @@ pub(crate) fn run(
         departure_bound_mm,
         smoothed_bound_mm,
         shaped_bound_mm,
+        delay_s,
         torque,
         ..
     } = record;
@@ -85,6 +86,7 @@ pub(crate) fn run(
     *departure_bound_mm = Some(planned.departure_mm);
     *smoothed_bound_mm = Some(legs.departure_mm);
     *shaped_bound_mm = planned.shaped_mm;
+    *delay_s = planned.delay_s;
     *torque = planned.torque;
     let mut rows = planned.rows.iter().copied();
     let Some(first) = rows.next() else {

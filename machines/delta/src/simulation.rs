@@ -123,6 +123,14 @@ impl<'a> Drive<'a> {
     }
 }
 
+impl Run<'_> {
+    /// How the tool swings without shaping, where its mode is known.
+    #[must_use]
+    pub fn unshaped(&self) -> Option<&Vibration> {
+        self.unshaped.as_ref()?.vibration.as_ref()
+    }
+}
+
 /// Moves a simulated machine by the steps of a [`StepLog`](crate::StepLog), and for comparison in the
 /// other ways.
 ///

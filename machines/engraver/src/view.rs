@@ -48,6 +48,12 @@ impl Run {
         self.vibration.as_ref()
     }
 
+    /// How the tool swings in them without shaping.
+    #[must_use]
+    pub const fn unshaped(&self) -> Option<&Vibration> {
+        self.unshaped.as_ref()
+    }
+
     /// Seconds, and the largest distance of the tool from the drawing in the part of the time around
     /// them, in mm; none where the tool is lifted.
     pub fn deviation_over_time(&self) -> impl Iterator<Item = (f64, Option<f64>)> {

@@ -36,6 +36,14 @@ impl<D: Dynamics<Axes = [f64; N]> + Copy, const N: usize> Load<D, N> {
         }
     }
 
+    /// The same with a straight line below the curve of each motor: with constant inertias, what motions keep
+    /// of these limits, a shaped one keeps.
+    #[must_use]
+    pub fn straight(mut self) -> Self {
+        self.limits.motors = self.motors.map(|motor| motor.straight);
+        self
+    }
+
     /// The limits with a share of what is planned of the motors.
     ///
     /// # Errors

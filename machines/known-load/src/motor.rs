@@ -51,6 +51,9 @@ pub struct AxisMotor {
     pub ratio: f64,
     /// What is planned of it: Nm over rad/s or N over m/s of the axis.
     pub curve: TorqueCurve,
+    /// A straight line below that. Where an axis has a constant inertia, what several motions keep, a mean
+    /// of them keeps then: a shaped one.
+    pub straight: TorqueCurve,
 }
 
 impl MotorSettings {
@@ -131,6 +134,7 @@ impl MotorSettings {
             .map(|[speed_hz, nm]| [speed_hz / hz, nm * ratio * (1.0 - self.reserve)])
             .collect();
         let curve = TorqueCurve::from_points(&points).context("[torque] pull_out")?;
+        let straight = TorqueCurve::from_points(&line_below(&points))?;
         let [last, top] = [curve_end(&points), max_speed * BEYOND];
         ensure!(
             last >= top * (1.0 - f64::EPSILON * 8.0),
@@ -142,8 +146,35 @@ impl MotorSettings {
             motor,
             ratio,
             curve,
+            straight,
         })
     }
+}
+
+/// The ends of the straight line below a curve along which the largest speed is reached the soonest. With the
+/// torque c - m v and an inertia of 1:
+///
+/// ```text
+/// ∫ dv / (c - m v) = ln(c / (c - m v)) / m
+/// ```
+fn line_below(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let top = curve_end(points);
+    let falls = points.iter().zip(points.iter().skip(1));
+    let falls = falls.map(|([v0, t0], [v1, t1])| (t0 - t1) / (v1 - v0));
+    let lines = falls.filter(|fall| *fall > 0.0).chain([0.0]).map(|fall| {
+        let heights = points.iter().map(|[v, t]| t + fall * v);
+        let start = heights.fold(f64::INFINITY, f64::min);
+        let end = start - fall * top;
+        let time = if fall > 0.0 {
+            (start / end).ln() / fall
+        } else {
+            top / start
+        };
+        // Not a number where the line ends below zero.
+        (if end > 0.0 { time } else { f64::INFINITY }, [[0.0, start], [top, end]])
+    });
+    let soonest = lines.min_by(|a, b| a.0.total_cmp(&b.0));
+    soonest.map_or([[0.0; 2]; 2], |(_, line)| line)
 }
 
 /// The largest speed of a curve.

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Error, Result, bail};
 use kurbo::Point;
-use path_timing::Path as _;
+use path_timing::{Path as _, Row};
 use pulse_interp::{
     AxisLoop, Direction, Homing, HomingOrder, HomingSettings, LoopSettings, ScaleRatio,
 };
@@ -10,14 +10,18 @@ use pulse_interp::{
 use crate::drive::Drive;
 use crate::gcode::Program;
 use crate::grid::{STEPS_PER_MM, seconds, to_mm};
+use crate::machine::Machine;
 use crate::motion::Motion;
-use crate::motors::FollowedAxes;
+use crate::motors::{FollowedAxes, Motors};
 use crate::paths::{self, PathRule};
+use crate::planned::Planned;
 use crate::record::Record;
+use crate::report::AXES;
 use crate::run::Run;
 use crate::settings::{Settings, Stepping};
 use crate::stage::{COUNTS_PER_STEP, SWITCHES, Stage};
-use crate::timed::{ChainCurve, ChainPath};
+use crate::timed::ChainPath;
+use crate::unshaped;
 
 /// A step's counts are more, a count or two of noise less.
 const DEAD_BAND_COUNTS: u32 = 3;
@@ -25,8 +29,6 @@ const DEAD_BAND_COUNTS: u32 = 3;
 const ALARM_COUNTS: u32 = 100;
 /// How often the end is looked at again while a correction may itself be lost.
 const LOOKS_AT_END: u32 = 1000;
-
-const AXES: [&str; 2] = ["X", "Y"];
 
 /// Takes the steps of the path: microseconds from the start, and the step of each axis.
 pub type StepObserver<'a> = &'a mut dyn FnMut(u64, [i32; 2]) -> Result<()>;
@@ -36,8 +38,13 @@ pub type StepObserver<'a> = &'a mut dyn FnMut(u64, [i32; 2]) -> Result<()>;
 /// # Errors
 /// A limit switch is met or more steps are lost than the loop corrects, with the line of the
 /// program; or the observer's.
-pub fn run(program: &Program, settings: &Settings, observer: StepObserver<'_>) -> Result<Run> {
-    let mut controller = Controller::homed(settings, observer)?;
+pub fn run(
+    machine: &Machine,
+    program: &Program,
+    settings: &Settings,
+    observer: StepObserver<'_>,
+) -> Result<Run> {
+    let mut controller = Controller::homed(machine, settings, observer)?;
     let motions: Vec<_> = program.lines.iter().map(|line| line.motion).collect();
     controller
         .run(&motions)
@@ -51,6 +58,7 @@ pub fn run(program: &Program, settings: &Settings, observer: StepObserver<'_>) -
 /// The closed loop over a simulated stage, and beside it a stage that gets the same pulses but for
 /// the corrections.
 pub(crate) struct Controller<'a> {
+    machine: Machine,
     settings: Settings,
     loops: [AxisLoop; 2],
     /// Where the path is, in steps from the drawing's zero.
@@ -81,7 +89,11 @@ impl<'a> Controller<'a> {
     ///
     /// # Errors
     /// A setting out of its range; a switch is not found, or more steps are lost than the loop corrects.
-    pub(crate) fn homed(settings: &Settings, observer: StepObserver<'a>) -> Result<Self> {
+    pub(crate) fn homed(
+        machine: &Machine,
+        settings: &Settings,
+        observer: StepObserver<'a>,
+    ) -> Result<Self> {
         settings.check()?;
         let axis = AxisLoop::new(LoopSettings {
             ratio: ScaleRatio::new(COUNTS_PER_STEP, 1)?,
@@ -94,6 +106,7 @@ impl<'a> Controller<'a> {
         }
         stage.zero();
         let mut controller = Self {
+            machine: *machine,
             settings: *settings,
             loops: [axis; 2],
             commanded: SWITCHES.map(|[lower, _]| lower),
@@ -102,7 +115,7 @@ impl<'a> Controller<'a> {
             observer,
             ticks: 0,
             drive: None,
-            record: Record::default(),
+            record: Record::new(machine),
             end: Point::ORIGIN,
         };
         controller.leave_switches()?;
@@ -116,7 +129,7 @@ impl<'a> Controller<'a> {
             self.correct()?;
         }
         self.settle()?;
-        self.record = Record::default();
+        self.record = Record::new(&self.machine);
         self.stage.forget_lost();
         self.uncorrected = self.stage.clone();
         Ok(())
@@ -158,6 +171,14 @@ impl<'a> Controller<'a> {
             Stepping::Timed => self.follow(&mut chain),
             Stepping::AtFeed(rule) => self.interpolate(&mut chain, rule),
         };
+        match &run {
+            Ok(()) => self
+                .record
+                .chains
+                .iter_mut()
+                .for_each(|it| it.push(motions.len())),
+            Err(_) => self.record.chains = None,
+        }
         self.end = match (&run, motions.last()) {
             (Ok(()), Some(last)) => last.to,
             _ => self.commanded_mm(),
@@ -170,35 +191,58 @@ impl<'a> Controller<'a> {
 
     /// Along the curves of a chain, each axis by itself.
     fn follow(&mut self, chain: &mut Chain<'_>) -> Result<()> {
-        let path = ChainPath::new(chain.motions, self.settings.tolerance_mm)?;
+        let machine = self.machine;
+        let path = ChainPath::new(&machine, chain.motions, self.settings.tolerance_mm)?;
         self.record.departure_mm = self.record.departure_mm.max(path.departure_mm);
+        self.record.axes = path.limits.axes;
         // Put back when the chain has come to its end.
         let mut drive = match self.drive.take() {
             Some(drive) => drive,
-            None => Drive::at_rest(self.ticks, self.commanded_mm())?,
+            None => Drive::at_rest(self.ticks, self.commanded_mm(), machine.start_stop_mm_s)?,
         };
         drive.begin();
         let at = self.commanded_mm();
         self.record
             .row(drive.time_s(), [[at.x, at.y], [0.0; 2]], f64::INFINITY);
-        path.rows(|row| {
-            for (ticks, by) in drive.row(row)? {
-                let [first, last] = path.curve(row).map_or([0; 2], |curve| curve.motions);
-                let mut next = self.begun(chain, first);
-                while next < last && chain.is_past(next, self.commanded_mm()) {
-                    next = self.begun(chain, next + 1);
-                }
-                let near = chain.motions.get(first..=last).unwrap_or_default();
-                self.made(chain, near, ticks, by)?;
+        if machine.is_known() {
+            let planned = Planned::new(&machine, &path)?;
+            self.record.planned(&machine, &planned, drive.time_s());
+            let mut felt = planned.felt();
+            for row in planned.rows.iter().skip(1) {
+                let curve = path.curve(row);
+                let motions = curve.map_or([0; 2], |curve| felt.motions(row, curve));
+                self.follow_row(chain, &mut drive, (&path, row, motions))?;
             }
-            let tool = path.curve(row).and_then(ChainCurve::tool);
-            let feed_mm_s = tool.map_or(f64::INFINITY, |tool| tool.feed);
-            let at = [row.position, row.velocity];
-            self.record.row(drive.time_s(), at, feed_mm_s);
-            Ok(())
-        })?;
+        } else {
+            path.rows(|row| {
+                let motions = path.curve(row).map_or([0; 2], |curve| curve.motions);
+                self.follow_row(chain, &mut drive, (&path, row, motions))
+            })?;
+        }
         self.drive = Some(drive);
         self.begun(chain, chain.motions.len().saturating_sub(1));
+        Ok(())
+    }
+
+    /// Up to a row on a path, between the first and the last of some motions.
+    fn follow_row(
+        &mut self,
+        chain: &mut Chain<'_>,
+        drive: &mut Drive,
+        (path, row, [first, last]): (&ChainPath, &Row<[f64; 2]>, [usize; 2]),
+    ) -> Result<()> {
+        for (ticks, by) in drive.row(row)? {
+            let mut next = self.begun(chain, first);
+            while next < last && chain.is_past(next, self.commanded_mm()) {
+                next = self.begun(chain, next + 1);
+            }
+            let near = chain.motions.get(first..=last).unwrap_or_default();
+            self.made(chain, near, ticks, by)?;
+        }
+        let tool = path.curve(row).and_then(|curve| curve.tool());
+        let feed_mm_s = tool.map_or(f64::INFINITY, |tool| tool.feed);
+        let at = [row.position, row.velocity];
+        self.record.row(drive.time_s(), at, feed_mm_s);
         Ok(())
     }
 
@@ -297,19 +341,20 @@ impl<'a> Controller<'a> {
     pub(crate) fn finish(mut self) -> Result<Run> {
         self.settle()?;
         self.record.end(self.ticks, self.at_mm());
-        let motors = core::mem::take(&mut self.record.motors);
+        let machine = self.machine;
+        let motors = core::mem::replace(&mut self.record.motors, Motors::new(&machine));
         let stages = [&self.stage, &self.uncorrected];
+        let rule = self.settings.stepping.path_rule();
         Ok(Run {
+            machine,
             settings: self.settings,
             commanded: self.commanded,
             duration_s: seconds(self.ticks),
             closing_mm: stages.map(|stage| stage.at_mm().distance(self.end)),
             lost: stages.map(Stage::lost),
             followed: motors.finish(),
-            at_feed: FollowedAxes::at_feed(
-                &self.record.programmed,
-                self.settings.stepping.path_rule(),
-            )?,
+            at_feed: FollowedAxes::at_feed(&machine, &self.record.programmed, rule)?,
+            unshaped: unshaped::vibration(&machine, &self.settings, &self.record)?,
             record: self.record,
         })
     }

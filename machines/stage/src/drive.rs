@@ -6,7 +6,6 @@ use path_timing::Row;
 use pvt_steps::{Direction, PvtQuantiser, PvtSteps, Rate, StepDirTiming, StepScale};
 
 use crate::grid::{STEPS_PER_MM, TICKS_PER_S, seconds};
-use crate::timed::START_STOP_MM_S;
 
 /// Both axes along the rows of one chain of motions after the other.
 #[derive(Debug)]
@@ -22,18 +21,22 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
-    /// Both axes at rest, at a tick and a position in mm.
+    /// Both axes at rest, at a tick and a position in mm, with what they start and stop with.
     ///
     /// # Errors
     /// The position is too far away.
-    pub(crate) fn at_rest(start_ticks: u64, position_mm: Point) -> Result<Self> {
+    pub(crate) fn at_rest(
+        start_ticks: u64,
+        position_mm: Point,
+        start_stop_mm_s: f64,
+    ) -> Result<Self> {
         let rate = Rate::from_hz(TICKS_PER_S)?;
         let scale = StepScale::new(STEPS_PER_MM)?;
         let quantiser = PvtQuantiser::new(rate, [scale; 2], [position_mm.x, position_mm.y])?;
         let timing = StepDirTiming::DRV8825.min_intervals(rate);
         Ok(Self {
             steps: PvtSteps::new(quantiser.knots(), timing),
-            quantiser: quantiser.with_start_stop_speeds([START_STOP_MM_S; 2]),
+            quantiser: quantiser.with_start_stop_speeds([start_stop_mm_s; 2]),
             start_ticks,
             chain_s: 0.0,
             now_s: 0.0,

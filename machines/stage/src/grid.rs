@@ -2,7 +2,13 @@
 
 use kurbo::Point;
 
-/// 4 mm pitch, 1.8 degrees a step, two microsteps.
+/// Of the screws.
+pub(crate) const PITCH_MM: f64 = 4.0;
+/// 1.8 degrees a step.
+pub(crate) const FULL_STEPS_PER_TURN: u32 = 200;
+/// Half steps.
+pub(crate) const MICROSTEPS: u32 = 2;
+/// Of these motors on these screws.
 pub(crate) const STEPS_PER_MM: f64 = 100.0;
 
 /// Ticks of the clock in a second: microseconds.

@@ -6,16 +6,18 @@
 //!                                                       ^                      |
 //!                                                       +-- corrections <--- linear scales
 //! ```
-//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Text
+//! Where the machine file has masses, motors and modes, rows are within the motors' torque, and each axis is
+//! shaped for its table. The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Text
 //! and bytes in, values out: no files, no printing.
 //!
 //! ```
-//! use stage::{Program, Settings, run};
+//! use stage::{Machine, Program, Settings, run};
 //!
+//! let machine = Machine::parse(stage::MACHINE)?;
 //! let program = Program::parse(stage::TEST)?;
 //! let settings = Settings { lose_steps: 0.001, ..Settings::default() };
 //! let mut steps = 0;
-//! let run = run(&program, &settings, &mut |_, _| {
+//! let run = run(&machine, &program, &settings, &mut |_, _| {
 //!     steps += 1;
 //!     Ok(())
 //! })?;
@@ -29,10 +31,13 @@ mod controller;
 mod drive;
 mod gcode;
 mod grid;
+mod load;
+mod machine;
 mod motion;
 mod motors;
 mod paths;
 mod picture;
+mod planned;
 mod record;
 mod report;
 mod run;
@@ -41,9 +46,11 @@ mod settings;
 mod stage;
 mod step_log;
 mod timed;
+mod unshaped;
 
 pub use self::controller::{StepObserver, run};
 pub use self::gcode::Program;
+pub use self::machine::Machine;
 pub use self::paths::PathRule;
 pub use self::record::{Leg, Seen, TimedRow};
 pub use self::report::Report;
@@ -52,7 +59,9 @@ pub use self::session::Session;
 pub use self::settings::{Settings, Stepping};
 pub use self::stage::switches_mm;
 pub use self::step_log::StepLog;
-pub use self::timed::{ACCELERATION_MM_S2, MAX_AXIS_MM_S};
+
+/// The machine of the source, in TOML.
+pub const MACHINE: &str = include_str!("../machine.toml");
 
 /// The test path of the source: rectangle, diagonal, circle.
 pub const TEST: &str = include_str!("../drawings/test.gcode");

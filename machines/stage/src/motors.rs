@@ -1,10 +1,12 @@
-//! What the emitted edges ask of the motors, and whether they follow.
+//! What the emitted edges ask of the motors, whether they follow, and how the tables swing.
 
 use anyhow::Result;
+use known_load::{Tool, Vibration};
 use machine_sim::{DrivenAxis, Followed, MotionSampler, Motor, StepSize};
 use serde::Serialize;
 
-use crate::grid::{STEPS_PER_MM, seconds, to_mm, to_steps};
+use crate::grid::{FULL_STEPS_PER_TURN, MICROSTEPS, STEPS_PER_MM, seconds, to_mm, to_steps};
+use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::paths::{self, PathRule};
 
@@ -16,33 +18,40 @@ const MOTOR: Motor = Motor {
     inertia_kg_m2: 10.6e-6,
     friction_nm: 0.03,
     damping_ratio: 0.02,
-    full_steps_per_turn: 200,
-    microsteps: 2,
+    full_steps_per_turn: FULL_STEPS_PER_TURN,
+    microsteps: MICROSTEPS,
 };
 /// What a step may be off its place on the programmed motion: 1 step off the curve, half along it.
 const DEVIATION_STEPS: f64 = 1.5;
 
-/// Both motors.
+/// Both motors, and the tables that they move.
 #[derive(Debug, Clone)]
 pub(crate) struct Motors {
     axes: [DrivenAxis; 2],
     ticks: u64,
     at: [i32; 2],
     motion: MotionSampler<2>,
-}
-
-impl Default for Motors {
-    fn default() -> Self {
-        Self {
-            axes: [MOTOR; 2].map(DrivenAxis::new),
-            ticks: 0,
-            at: [0; 2],
-            motion: MotionSampler::new([0.0; 2]),
-        }
-    }
+    /// Of X and Y, where it is known how they swing.
+    tables: Option<[Tool<1>; 2]>,
 }
 
 impl Motors {
+    /// At rest, with what the machine carries.
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let motors = machine
+            .load
+            .map_or([MOTOR; 2], |load| load.motors.map(|motor| motor.motor));
+        Self {
+            axes: motors.map(DrivenAxis::new),
+            ticks: 0,
+            at: [0; 2],
+            motion: MotionSampler::new([0.0; 2]),
+            tables: machine
+                .modes
+                .map(|modes| modes.map(|mode| Tool::new(&mode, [0.0]))),
+        }
+    }
+
     /// A step of the path.
     pub(crate) fn step(&mut self, ticks: u64, by: [i32; 2]) {
         self.ticks = ticks;
@@ -53,7 +62,11 @@ impl Motors {
             }
         }
         let at = to_mm(self.at);
-        self.motion.add(seconds(ticks), [at.x, at.y]);
+        let at = [at.x, at.y];
+        self.motion.add(seconds(ticks), at);
+        for (table, mm) in self.tables.iter_mut().flatten().zip(at) {
+            table.follow(seconds(ticks), [mm]);
+        }
     }
 
     /// What was seen of them, when they have come to rest.
@@ -61,11 +74,18 @@ impl Motors {
         self.motion.end(seconds(self.ticks));
         let step = StepSize::Millimetres(STEPS_PER_MM.recip());
         let [x, y] = self.axes.map(|axis| axis.finish(DEVIATION_STEPS, step));
+        let end_s = seconds(self.ticks);
         FollowedAxes {
-            duration_s: seconds(self.ticks),
+            duration_s: end_s,
             x,
             y,
             motion: self.motion,
+            vibration: self.tables.map(|tables| {
+                tables.map(|mut table| {
+                    table.rest(end_s);
+                    table.finish(end_s)
+                })
+            }),
         }
     }
 }
@@ -79,12 +99,15 @@ pub(crate) struct FollowedAxes {
     /// Of the path, in mm.
     #[serde(skip)]
     pub(crate) motion: MotionSampler<2>,
+    /// Of the tables of X and Y, where it is known how they swing.
+    #[serde(skip)]
+    pub(crate) vibration: Option<[Vibration; 2]>,
 }
 
 impl FollowedAxes {
     /// What the same motions ask for at their feeds from the first step to the last.
-    pub(crate) fn at_feed(motions: &[Motion], rule: PathRule) -> Result<Self> {
-        let (mut motors, mut now) = (Motors::default(), 0);
+    pub(crate) fn at_feed(machine: &Machine, motions: &[Motion], rule: PathRule) -> Result<Self> {
+        let (mut motors, mut now) = (Motors::new(machine), 0);
         for motion in motions {
             for timed in paths::at_feed(motion, to_steps(motion.from), rule)? {
                 let (ticks, step) = timed?;

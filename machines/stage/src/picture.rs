@@ -1,14 +1,15 @@
 //! The picture of a run: the programmed path, the stage's with and without corrections, the largest
 //! deviation enlarged, and the deviations over time.
 
+use known_load::{torque_chart, vibration_chart};
 use machine_sim::{Axis, Colour, Figure, Mark, Plot, Stroke};
 
 use crate::grid::STEPS_PER_MM;
 use crate::motors::FollowedAxes;
 use crate::record::{Leg, Seen};
+use crate::report::{AXES, TABLES};
 use crate::run::Run;
 use crate::stage::switches_mm;
-use crate::timed::ACCELERATION_MM_S2;
 
 const UM_PER_MM: f64 = 1000.0;
 /// Half the side of the enlarged square, in steps.
@@ -35,12 +36,13 @@ impl Run {
         let closed = deviations(self, "closed loop", Stroke::ACTUAL, &record.closed);
         let [speed, acceleration] = motion(self);
         if !is_lossy(self) {
-            return figure
+            let figure = figure
                 .with_note(motors(self))
                 .with_row(maps(self))
                 .with_row([speed])
                 .with_row([acceleration])
                 .with_row([closed]);
+            return with_load(self, figure);
         }
         let open = deviations(self, "open loop", Stroke::OTHER, &record.open);
         let [closed_lost, open_lost] = self.lost;
@@ -48,7 +50,7 @@ impl Run {
             "Steps lost: {closed_lost} in the closed loop, {} corrected; {open_lost} in the open loop.",
             record.corrected
         );
-        figure
+        let figure = figure
             .with_note(measured("Open loop", &record.open, open_mm))
             .with_note(lost)
             .with_row(maps(self))
@@ -56,8 +58,21 @@ impl Run {
             .with_row([speed])
             .with_row([acceleration])
             .with_row([closed, open])
-            .with_row([corrections(self)])
+            .with_row([corrections(self)]);
+        with_load(self, figure)
     }
+}
+
+/// With what the motors are asked for and how the tables swing, where that is known.
+fn with_load(run: &Run, mut figure: Figure) -> Figure {
+    if let Some(used) = run.torque() {
+        let time = Axis::new("time in s").over(0.0..=run.duration_s);
+        figure = figure.with_row([torque_chart(used, AXES, time)]);
+    }
+    for (table, (swings, unshaped)) in TABLES.iter().zip(run.vibration().into_iter().flatten()) {
+        figure = figure.with_row([vibration_chart(table, swings, unshaped)]);
+    }
+    figure
 }
 
 fn motors(run: &Run) -> String {
@@ -76,17 +91,22 @@ fn motors(run: &Run) -> String {
 fn motion(run: &Run) -> [Plot; 2] {
     let motion = &run.followed.motion;
     let window = format!("mean over {:.0} ms", motion.window_s() * 1000.0);
-    let limit = [0.0, run.duration_s].map(|t| [t, ACCELERATION_MM_S2]);
     let speed = time_chart(run, "speed in mm/s")
         .with_title("Speed along the path")
         .line(&window, Stroke::ACTUAL, motion.speeds());
     // Motors start and stop with a speed: over the window that shows as an acceleration, too.
     let with_jumps = format!("{window}, start-stop speeds included");
-    let acceleration = time_chart(run, "acceleration in mm/s²")
-        .with_title("Acceleration of X or Y, the larger")
-        .line("limit of an axis", Stroke::LIMIT, limit)
-        .line(&with_jumps, Stroke::ACTUAL, motion.axis_accelerations());
-    [speed, acceleration]
+    let mut acceleration =
+        time_chart(run, "acceleration in mm/s²").with_title("Acceleration of X or Y, the larger");
+    // Where the load is known, it is torque that limits.
+    if run.machine.load.is_none() {
+        let limit = [0.0, run.duration_s].map(|t| [t, run.machine.max_acceleration_mm_s2]);
+        acceleration = acceleration.line("limit of an axis", Stroke::LIMIT, limit);
+    }
+    [
+        speed,
+        acceleration.line(&with_jumps, Stroke::ACTUAL, motion.axis_accelerations()),
+    ]
 }
 
 fn is_lossy(run: &Run) -> bool {

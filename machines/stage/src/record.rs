@@ -1,11 +1,15 @@
 //! What is seen of the stage and of the one without corrections.
 
+use known_load::TorqueUsed;
 use kurbo::Point;
 use machine_sim::Profile;
+use path_timing::AxisLimits;
 
 use crate::grid::seconds;
+use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::motors::Motors;
+use crate::planned::Planned;
 
 /// From one point of a picture to the next.
 const PICTURE_MM: f64 = 0.05;
@@ -113,11 +117,21 @@ pub(crate) fn over_time(profile: &Profile) -> impl Iterator<Item = [f64; 2]> {
 }
 
 /// What is seen of a run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct Record {
     pub(crate) programmed: Vec<Motion>,
+    /// How many of them were run from rest to rest each time, where none was broken off.
+    pub(crate) chains: Option<Vec<usize>>,
     /// How far the curves leave the lines at most, by the proof.
     pub(crate) departure_mm: f64,
+    /// And where rows are shaped, these the curves.
+    pub(crate) shaped_mm: Option<f64>,
+    /// How long shaped rows still have of the motion before.
+    pub(crate) delay_s: f64,
+    /// What the axes might do.
+    pub(crate) axes: [AxisLimits; 2],
+    /// What they ask of the motors, where the machine's load is known.
+    pub(crate) torque: Option<TorqueUsed<2>>,
     /// They get the steps of the path.
     pub(crate) motors: Motors,
     /// Of each axis, either way; corrections are counted apart.
@@ -132,6 +146,25 @@ pub(crate) struct Record {
 }
 
 impl Record {
+    pub(crate) fn new(machine: &Machine) -> Self {
+        Self {
+            programmed: Vec::new(),
+            chains: Some(Vec::new()),
+            departure_mm: 0.0,
+            shaped_mm: None,
+            delay_s: 0.0,
+            axes: machine.axis_limits(),
+            torque: machine.load.map(|load| TorqueUsed::none(load.reserve)),
+            motors: Motors::new(machine),
+            steps: [0; 2],
+            corrected: 0,
+            corrections: Profile::default(),
+            closed: Seen::default(),
+            open: Seen::default(),
+            rows: Vec::new(),
+        }
+    }
+
     /// A row of timed steps has been run, or is where they begin.
     pub(crate) fn row(
         &mut self,
@@ -146,6 +179,18 @@ impl Record {
             feed_mm_s,
             motion: self.closed.legs.len().saturating_sub(1),
         });
+    }
+
+    /// A chain of motions is planned, to begin at a time.
+    pub(crate) fn planned(&mut self, machine: &Machine, planned: &Planned, start_s: f64) {
+        self.delay_s = planned.delay_s;
+        self.shaped_mm = match (self.shaped_mm, planned.shaped_mm) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            (a, b) => a.or(b),
+        };
+        if let (Some(torque), Some(load)) = (&mut self.torque, &machine.load) {
+            torque.add(load, &planned.rows, start_s);
+        }
     }
 
     /// A motion begins, with both stages at a point.

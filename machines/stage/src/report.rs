@@ -3,13 +3,18 @@
 use core::fmt;
 
 use anyhow::{Result, ensure};
+use known_load::{TorqueReport, VibrationReport};
 use serde::Serialize;
 
 use crate::motion::Motion;
 use crate::motors::FollowedAxes;
 use crate::run::Run;
 use crate::settings::Stepping;
-use crate::timed::{MAX_AXIS_MM_S, axis_feed};
+use crate::timed::axis_feed;
+
+/// The axes as messages and charts have them, and their tables.
+pub(crate) const AXES: [&str; 2] = ["X", "Y"];
+pub(crate) const TABLES: [&str; 2] = ["the table of X", "the table of Y"];
 
 /// `report.json`; displayed, a summary in lines. Steps are those of the path, as in `steps.csv`;
 /// corrections are counted apart.
@@ -45,8 +50,25 @@ pub struct Report {
     max_axis_speed_mm_s: f64,
     lose_steps: f64,
     seed: u64,
+    /// Where rows are shaped, a proven bound on how far that takes the stage off the curves, next to which
+    /// it is later by the shapers' delay.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shaped_bound_mm: Option<f64>,
+    /// What is asked of the motors, where load and torque are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    torque: Option<TorqueReport>,
+    /// How both tables swing, where their modes are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vibration: Option<TablesSwing>,
     /// What the program asked for that was left out or done otherwise.
     notes: Vec<String>,
+}
+
+/// How both tables swing.
+#[derive(Debug, Clone, Serialize)]
+struct TablesSwing {
+    x: VibrationReport,
+    y: VibrationReport,
 }
 
 /// The stage beside it, without corrections.
@@ -62,6 +84,21 @@ impl Run {
     #[must_use]
     pub fn report(&self) -> Report {
         Report::new(self)
+    }
+
+    fn torque_report(&self) -> Option<TorqueReport> {
+        let used = self.torque()?;
+        Some(TorqueReport::new(used, AXES, used.position_at_most()))
+    }
+
+    fn tables_swing(&self) -> Option<TablesSwing> {
+        let [x, y] = self.vibration()?;
+        let report = |name, (swings, unshaped)| VibrationReport::new(name, swings, unshaped);
+        let [x_table, y_table] = TABLES;
+        Some(TablesSwing {
+            x: report(x_table, x),
+            y: report(y_table, y),
+        })
     }
 }
 
@@ -90,9 +127,12 @@ impl Report {
             motors: run.followed.clone(),
             at_feed: run.at_feed.clone(),
             slower_motions: slower_motions(run),
-            max_axis_speed_mm_s: MAX_AXIS_MM_S,
+            max_axis_speed_mm_s: run.machine.max_speed_mm_s,
             lose_steps: run.settings.lose_steps,
             seed: run.settings.seed,
+            shaped_bound_mm: run.record.shaped_mm,
+            torque: run.torque_report(),
+            vibration: run.tables_swing(),
             notes: Vec::new(),
         }
     }
@@ -119,7 +159,8 @@ impl Report {
 }
 
 fn slower_motions(run: &Run) -> usize {
-    let is_slower = |motion: &&Motion| axis_feed(motion) < motion.feed_mm_s;
+    let is_slower =
+        |motion: &&Motion| axis_feed(motion, run.machine.max_speed_mm_s) < motion.feed_mm_s;
     match run.settings.stepping {
         Stepping::Timed => run.record.programmed.iter().filter(is_slower).count(),
         Stepping::AtFeed(_) => 0,
@@ -170,6 +211,15 @@ impl fmt::Display for Report {
                 self.smoothed_bound_mm, self.tolerance_mm
             )?;
             writeln!(f, "{}", motors("at the feed throughout", &self.at_feed))?;
+        }
+        if let Some(mm) = self.shaped_bound_mm {
+            writeln!(f, "shaped: off the path by {mm:.4} mm at most")?;
+        }
+        if let Some(torque) = &self.torque {
+            writeln!(f, "torque: {torque}")?;
+        }
+        if let Some(TablesSwing { x, y }) = &self.vibration {
+            writeln!(f, "vibration: {x}\nvibration: {y}")?;
         }
         Ok(())
     }

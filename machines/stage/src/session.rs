@@ -6,6 +6,7 @@ use machine_sim::input::Notes;
 
 use crate::controller::{Controller, StepObserver};
 use crate::gcode::{Command, Interpreter};
+use crate::machine::Machine;
 use crate::motion::Motion;
 use crate::run::Run;
 use crate::settings::Settings;
@@ -44,9 +45,9 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// It does not find its switches.
-    pub fn new(settings: &Settings, observer: StepObserver<'a>) -> Result<Self> {
+    pub fn new(machine: &Machine, settings: &Settings, observer: StepObserver<'a>) -> Result<Self> {
         Ok(Self {
-            controller: Controller::homed(settings, observer)?,
+            controller: Controller::homed(machine, settings, observer)?,
             interpreter: Interpreter::default(),
             notes: Notes::default(),
             lines: 0,

@@ -2,37 +2,104 @@
 
 mod arcs;
 
-use anyhow::{Context, Result};
+use core::f64::consts::FRAC_1_SQRT_2;
+
+use anyhow::{Context, Result, ensure};
 use kurbo::{Point, Vec2};
 use path_timing::{
-    AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathPoint, PlanError, Promise, Row, Smoothed,
-    Span, ToolLimits, Verifier, Vertex, Waypoint, segments_within,
+    AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathPoint, Promise, Row, Smoothed, Span,
+    ToolLimits, Verifier, Vertex, Waypoint, segments_within,
 };
 
+use crate::machine::Machine;
 use crate::motion::{Motion, Shape};
-
-/// The acceleration of each axis at most.
-pub const ACCELERATION_MM_S2: f64 = 500.0;
-/// The speed of each axis at most, in mm/s: its motor follows 70 at this acceleration, and loses steps
-/// at 80.
-pub const MAX_AXIS_MM_S: f64 = 60.0;
-/// By what an axis may change its speed at once: what its motor starts and stops with.
-pub(crate) const START_STOP_MM_S: f64 = 5.0;
 
 /// Vertices of the lines in sight at a time.
 const VERTICES: usize = 64;
 /// Knots in sight: the braking distance of 3.6 mm twice, in segments of points 0.01 mm apart.
 const KNOTS: usize = 1024;
-/// A segment for each of so many mm, and at least so many a curve.
+/// A segment for each of so many mm, and at least so many a curve; shorter ones where the acceleration depends
+/// on the speed.
 const SEGMENT_MM: f64 = 0.5;
+const KNOWN_SEGMENT_MM: f64 = 0.1;
 const LEAST_SEGMENTS: u32 = 2;
 /// By what the axes' cubics leave the curves at most, in mm: a tenth of a step.
 const CUBICS_MM: f64 = 0.001;
+
+/// The part of the tolerance by which shaping may take the stage off its path.
+const SHAPED: f64 = 0.5;
+/// And the part of that which is for jumps of the speed.
+const JUMPS: f64 = 0.25;
+
+/// What the axes may do along a chain of motions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ChainLimits {
+    pub(crate) axes: [AxisLimits; 2],
+    /// By what they may change their speeds at once.
+    pub(crate) start_stop: [f64; 2],
+    /// By what lines are smoothed.
+    smoothed_mm: f64,
+    /// By what each axis may be off its place for being shaped.
+    pub(crate) shaped_mm: f64,
+    /// A segment is at most so long.
+    segment_mm: f64,
+}
+
+impl ChainLimits {
+    /// What the machine may do, less what would take a shaped axis too far off its place.
+    ///
+    /// # Errors
+    /// The tolerance leaves nothing for shaping.
+    fn new(machine: &Machine, tolerance_mm: f64) -> Result<Self> {
+        let mut limits = Self {
+            axes: machine.axis_limits(),
+            start_stop: [machine.start_stop_mm_s; 2],
+            smoothed_mm: tolerance_mm,
+            shaped_mm: 0.0,
+            segment_mm: if machine.is_known() {
+                KNOWN_SEGMENT_MM
+            } else {
+                SEGMENT_MM
+            },
+        };
+        let Some(shapers) = machine.shapers() else {
+            return Ok(limits);
+        };
+        ensure!(
+            tolerance_mm > 0.0,
+            "a tolerance of 0 mm leaves nothing for the shapers of [mode_x] and [mode_y]"
+        );
+        limits.smoothed_mm = tolerance_mm * (1.0 - SHAPED);
+        limits.shaped_mm = tolerance_mm * SHAPED * FRAC_1_SQRT_2;
+        let axes = limits.axes.iter_mut().zip(&mut limits.start_stop);
+        for ((axis, start_stop), shaper) in axes.zip(shapers) {
+            let most = limits.shaped_mm * (1.0 - JUMPS) / shaper.departure(1.0);
+            axis.acceleration = axis.acceleration.min(most);
+            let most = limits.shaped_mm * JUMPS / shaper.departure_of_jumps(1.0);
+            *start_stop = start_stop.min(most);
+        }
+        Ok(limits)
+    }
+
+    /// So much of all accelerations and jumps.
+    pub(crate) fn at(&self, share: f64) -> Self {
+        let mut limits = *self;
+        let axes = limits.axes.iter_mut().zip(&mut limits.start_stop);
+        for (axis, start_stop) in axes {
+            axis.acceleration *= share;
+            *start_stop *= share;
+        }
+        limits
+    }
+}
 
 /// A curve of a chain of motions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChainCurve {
     curve: Curve<2>,
+    start_stop: [f64; 2],
+    /// What it is cut into, so that the axes' cubics stay near.
+    pub(crate) segments: u32,
     /// The motions on which it begins and ends.
     pub(crate) motions: [usize; 2],
 }
@@ -54,35 +121,51 @@ impl Path for ChainCurve {
     }
 
     fn corner(&self) -> Corner<[f64; 2]> {
-        Corner::Jump([START_STOP_MM_S; 2])
+        Corner::Jump(self.start_stop)
     }
 }
 
 impl ChainCurve {
-    fn departure(&self, span: &Span<[f64; 2]>) -> f64 {
-        self.curve.departure(span)
-    }
-
-    fn segments(&self) -> Result<u32, PlanError<<Self as Path>::Error>> {
+    fn new(curve: Curve<2>, motions: [usize; 2], limits: &ChainLimits) -> Result<Self> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "saturates"
         )]
-        let segments = (self.length() / SEGMENT_MM).ceil() as u32;
-        segments_within(
-            self,
-            segments.max(LEAST_SEGMENTS),
-            CUBICS_MM,
-            Self::departure,
-        )
+        let segments = (curve.length() / limits.segment_mm).ceil() as u32;
+        let chained = Self {
+            curve,
+            start_stop: limits.start_stop,
+            segments: segments.max(LEAST_SEGMENTS),
+            motions,
+        };
+        let segments = segments_within(&chained, chained.segments, CUBICS_MM, |curve, span| {
+            curve.departure(span)
+        })?;
+        Ok(Self {
+            segments,
+            ..chained
+        })
+    }
+
+    /// The same within other limits.
+    pub(crate) const fn within(self, limits: &ChainLimits) -> Self {
+        Self {
+            start_stop: limits.start_stop,
+            ..self
+        }
+    }
+
+    fn departure(&self, span: &Span<[f64; 2]>) -> f64 {
+        self.curve.departure(span)
     }
 }
 
 /// The curves along a chain of motions, from rest to rest.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct ChainPath {
-    curves: Vec<ChainCurve>,
+    pub(crate) curves: Vec<ChainCurve>,
+    pub(crate) limits: ChainLimits,
     /// How far they leave lines at most, by the proof.
     pub(crate) departure_mm: f64,
 }
@@ -91,9 +174,13 @@ impl ChainPath {
     /// The curves along `motions`: lines within a tolerance, arcs as they are.
     ///
     /// # Errors
-    /// A number that is too large to compute with.
-    pub(crate) fn new(motions: &[Motion], tolerance_mm: f64) -> Result<Self> {
-        let mut path = Self::default();
+    /// A number that is too large to compute with, or a tolerance that leaves nothing for shaping.
+    pub(crate) fn new(machine: &Machine, motions: &[Motion], tolerance_mm: f64) -> Result<Self> {
+        let mut path = Self {
+            curves: Vec::new(),
+            limits: ChainLimits::new(machine, tolerance_mm)?,
+            departure_mm: 0.0,
+        };
         let Some(first) = motions.first() else {
             return Ok(path);
         };
@@ -104,7 +191,7 @@ impl ChainPath {
             let is_line = |motion: &&Motion| matches!(motion.shape, Shape::Line);
             let lines = rest.iter().take_while(is_line).count();
             if lines > 0 {
-                path.add_lines(end, rest.iter().take(lines), begun, tolerance_mm)?;
+                path.add_lines(end, rest.iter().take(lines), begun)?;
             } else if let Some(motion) = rest.first() {
                 path.add_arc(end, motion, begun)?;
             }
@@ -122,7 +209,6 @@ impl ChainPath {
         from: Point,
         lines: impl Iterator<Item = &'m Motion>,
         first: usize,
-        tolerance_mm: f64,
     ) -> Result<()> {
         let start = Waypoint::from([from.x, from.y]);
         let points = lines.map(|line| Waypoint {
@@ -131,15 +217,14 @@ impl ChainPath {
         });
         let mut vertices = [Vertex::default(); VERTICES];
         let points = core::iter::once(start).chain(points);
-        let mut curves = Smoothed::new(points, tolerance_mm, &mut vertices)?;
+        let mut curves = Smoothed::new(points, self.limits.smoothed_mm, &mut vertices)?;
         for curve in &mut curves {
             let curve = curve?;
             let [from, to] = curve.between().context("a smoothed curve has its points")?;
             let last = to.saturating_sub(1).max(from);
-            self.curves.push(ChainCurve {
-                curve,
-                motions: [first + from, first + last],
-            });
+            let motions = [first + from, first + last];
+            self.curves
+                .push(ChainCurve::new(curve, motions, &self.limits)?);
         }
         self.departure_mm = self.departure_mm.max(curves.departure());
         Ok(())
@@ -147,10 +232,9 @@ impl ChainPath {
 
     fn add_arc(&mut self, from: Point, motion: &Motion, number: usize) -> Result<()> {
         for curve in arcs::curves(from, motion)? {
-            self.curves.push(ChainCurve {
-                curve: curve.with_tool(tool(motion)),
-                motions: [number; 2],
-            });
+            let curve = curve.with_tool(tool(motion));
+            self.curves
+                .push(ChainCurve::new(curve, [number; 2], &self.limits)?);
         }
         Ok(())
     }
@@ -166,33 +250,39 @@ impl ChainPath {
     /// # Errors
     /// The path cannot be planned; or the error of `each`.
     pub(crate) fn rows(&self, mut each: impl FnMut(&Row<[f64; 2]>) -> Result<()>) -> Result<()> {
-        let limits = [AxisLimits {
-            speed: MAX_AXIS_MM_S,
-            acceleration: ACCELERATION_MM_S2,
-            jerk: None,
-        }; 2];
         let mut window = vec![Knot::default(); KNOTS];
-        let segments = |curve: &&ChainCurve| curve.segments();
-        let rows = LookAhead::new(self.curves.iter(), limits, segments, &mut window)?;
-        let mut verifier = Verifier::new(Promise {
-            limits,
-            start_stop: [START_STOP_MM_S; 2],
-            max_departure: CUBICS_MM,
-            // The feed may be far below what the motors follow.
-            max_slowness: f64::INFINITY,
-        });
+        let segments = |curve: &&ChainCurve| Ok(curve.segments);
+        let rows = LookAhead::new(self.curves.iter(), self.limits.axes, segments, &mut window)?;
+        let mut verifier = self.verifier();
         for (number, row) in rows.enumerate() {
             let row = row?;
-            verifier.add(
-                &row,
-                |leg| self.curves.get(leg),
-                |curve, span| curve.departure(span),
-            )?;
+            self.verify(&mut verifier, &row)?;
             if number > 0 {
                 each(&row)?;
             }
         }
         Ok(())
+    }
+
+    /// Of rows along it.
+    pub(crate) fn verifier(&self) -> Verifier<[f64; 2]> {
+        Verifier::new(Promise {
+            limits: self.limits.axes,
+            start_stop: self.limits.start_stop,
+            max_departure: CUBICS_MM,
+            // The feed may be far below what the motors follow.
+            max_slowness: f64::INFINITY,
+        })
+    }
+
+    /// Passes a row, or not.
+    pub(crate) fn verify(
+        &self,
+        verifier: &mut Verifier<[f64; 2]>,
+        row: &Row<[f64; 2]>,
+    ) -> Result<()> {
+        let curve = |leg: usize| self.curves.get(leg);
+        Ok(verifier.add(row, curve, |curve, span| curve.departure(span))?)
     }
 }
 
@@ -204,11 +294,11 @@ fn tool(motion: &Motion) -> ToolLimits {
 }
 
 /// The feed of a motion in mm/s, as far as both axes can go along it.
-pub(crate) fn axis_feed(motion: &Motion) -> f64 {
+pub(crate) fn axis_feed(motion: &Motion, max_axis_mm_s: f64) -> f64 {
     let fastest = match motion.shape {
-        Shape::Line => MAX_AXIS_MM_S / largest(motion.directions()[0]),
+        Shape::Line => max_axis_mm_s / largest(motion.directions()[0]),
         // Somewhere along it one axis has all of the speed, or nearly so.
-        Shape::Arc { .. } => MAX_AXIS_MM_S,
+        Shape::Arc { .. } => max_axis_mm_s,
     };
     motion.feed_mm_s.min(fastest)
 }

@@ -12,6 +12,7 @@ extern crate alloc;
 mod board;
 mod config;
 pub mod instructions;
+pub mod loaded;
 mod pulses;
 mod random;
 mod sizes;

@@ -1,5 +1,6 @@
 // What the robot did with its lines, ready to be asked for any time.
 import { Limits } from '../shared/limits';
+import { torqueLimits } from '../shared/load';
 import type { Answer } from '../shared/machine';
 import { around, countUntil, numbers } from '../shared/rows';
 import type { Point3 } from '../shared/space';
@@ -68,6 +69,10 @@ export class Driving {
     this.limits = new Limits(blobs, [
       ...arms('rate', value.maxRateDegS, '°/s'),
       ...arms('acceleration', value.maxAccelerationDegS2, '°/s²'),
+      ...torqueLimits(
+        blobs,
+        ARMS.map((arm) => `arm ${arm + 1}`),
+      ),
     ]);
     this.#rows = numbers(blobs, 'arms');
     this.times = this.#rows.filter((_, index) => index % ROW === 0);

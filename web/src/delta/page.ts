@@ -128,10 +128,12 @@ async function drive(): Promise<void> {
   }
   try {
     points.begin();
-    show(new Driving(await machine.call<Result>('delta', parameters, working.begin())));
+    const driving = new Driving(await machine.call<Result>('delta', parameters, working.begin()));
+    show(driving);
     // The other ways to drive the lines take several times as long; nothing waits for them.
-    const { value } = await machine.call<string>('delta.report', null);
+    const { value, blobs } = await machine.call<string>('delta.report', null);
     summary.textContent = value;
+    loadCharts.show({ ...driving.blobs, ...blobs });
     files.allow(true);
   } catch (error) {
     if (!(error instanceof Superseded)) refuse(error);

@@ -1,5 +1,6 @@
 // What the machine made of a drawing, ready to be asked for any time.
 import { Limits } from '../shared/limits';
+import { torqueLimits } from '../shared/load';
 import type { Answer } from '../shared/machine';
 import { columns, countUntil, numbers } from '../shared/rows';
 
@@ -63,15 +64,17 @@ export class Engraving {
   constructor({ value, blobs }: Answer<Result>) {
     this.result = value;
     this.blobs = blobs;
+    const names = ['the shoulder', 'the elbow', 'the disc'];
     const joints = (name: string, of: 0 | 1, unit: string) =>
-      ['shoulder', 'elbow', 'disc'].map((joint, index) => ({
-        name: `${name} of the ${joint}`,
+      names.map((joint, index) => ({
+        name: `${name} of ${joint}`,
         limit: value.axesMay[index]?.[of] ?? 0,
         unit,
       }));
     this.limits = new Limits(blobs, [
       ...joints('speed', 0, 'rad/s'),
       ...joints('acceleration', 1, 'rad/s²'),
+      ...torqueLimits(blobs, names),
     ]);
     const pin = (axis: Axis) => [
       axis,

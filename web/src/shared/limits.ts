@@ -39,7 +39,7 @@ export class Limits {
   readonly #width: number;
   readonly #axes: Limit[];
 
-  /** `axes` are in the order of the machine's shares: all speeds, then all accelerations. */
+  /** `axes` are in the order of the machine's shares: all speeds, all accelerations, all torques. */
   constructor(blobs: Answer<unknown>['blobs'], axes: Limit[]) {
     this.#times = numbers(blobs, 'looks');
     this.#shares = new Float32Array(blobs.shares ?? new ArrayBuffer(0));

@@ -3,9 +3,12 @@ import '../shared/style.css';
 import './stage.css';
 import '../shared/link';
 import '../shared/offline';
+import fast from '../../../machines/stage/drawings/fast.gcode?raw';
 import link from '../../../machines/stage/drawings/link.gcode?raw';
 import rosette from '../../../machines/stage/drawings/rosette.gcode?raw';
 import test from '../../../machines/stage/drawings/test.gcode?raw';
+import loaded from '../../../machines/stage/loaded.toml?raw';
+import shipped from '../../../machines/stage/machine.toml?raw';
 import wasm from '../../built/stage.wasm?url';
 import { Chart } from '../shared/chart';
 import { element, onClick, save, settled } from '../shared/dom';
@@ -13,8 +16,10 @@ import { Editor, linesOf } from '../shared/editor';
 import { AddressFields } from '../shared/fields';
 import { Inputs } from '../shared/inputs';
 import { LimitTeller } from '../shared/limits';
+import { LoadCharts } from '../shared/load';
 import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
+import { MachineChoice, machineForm } from '../shared/settings';
 import { toAddress } from '../shared/store';
 import { Transport } from '../shared/transport';
 import { Working } from '../shared/working';
@@ -45,6 +50,7 @@ const transport = new Transport((seconds) => {
   scene.at(seconds);
   for (const chart of charts) chart.at(seconds);
   limits.at(seconds);
+  loadCharts.at(seconds);
   const line = shown?.legAt(seconds)?.line;
   editor.mark('now', line === undefined ? [] : [line]);
 });
@@ -61,6 +67,17 @@ const limits = new LimitTeller(seek, (leg) => {
   return `line ${line}: ${editor.line(line).trim()}`;
 });
 limits.watch(charts);
+const loadCharts = new LoadCharts(
+  [
+    { label: 'X', colour: 'series-1' },
+    { label: 'Y', colour: 'series-2' },
+  ],
+  seek,
+  [
+    { label: 'X', colour: 'series-1', blob: 'vibration x' },
+    { label: 'Y', colour: 'series-2', blob: 'vibration y' },
+  ],
+);
 
 const editor = new Editor(element('gcode', HTMLElement), 'G-code', () => {
   program.text = editor.text;
@@ -68,13 +85,15 @@ const editor = new Editor(element('gcode', HTMLElement), 'G-code', () => {
 });
 const program = new Inputs(
   element('drawing', HTMLSelectElement),
-  { test, link, rosette },
+  { test, link, rosette, fast },
   { parameter: 'drawing', ending: '.gcode', kept: { text: 'stage program', name: 'stage name' } },
   open,
 );
 const fields = new AddressFields({ lose, seed, steps, tolerance }, changed);
 const rerun = settled(150, run);
 const working = new Working(machine, status, ['Running'], run);
+const choice = new MachineChoice({ published: shipped, loaded });
+const settings = machineForm('stage machine', shipped, changed, undefined, choice);
 
 /** Another program. */
 function open(): void {
@@ -95,6 +114,7 @@ async function run(): Promise<void> {
   const parameters = {
     name: program.name,
     gcode: editor.text,
+    machine: settings.text,
     stepping: steps.value,
     tolerance_mm: tolerance.valueAsNumber,
     lose_steps: lose.valueAsNumber * 0.01,
@@ -137,7 +157,7 @@ function refuse(error: unknown): void {
 
 function show(run: Run): void {
   shown = run;
-  const { report, summary, accelerationMmS2 } = run.result;
+  const { report, summary } = run.result;
   const um = (mm: number) => (mm * UM_PER_MM).toFixed(0);
   const verdict =
     `Run in ${report.duration_s.toFixed(1)} s of the machine's time: ` +
@@ -149,13 +169,14 @@ function show(run: Run): void {
   element('summary', HTMLElement).textContent = summary;
   files.allow(true);
   scene.show(run);
-  showCharts(run, accelerationMmS2);
+  showCharts(run);
   limits.show(run.limits);
+  loadCharts.show(run.blobs);
   transport.begin(report.duration_s);
   ready();
 }
 
-function showCharts(run: Run, limit: number): void {
+function showCharts(run: Run): void {
   const [times = [], values = []] = run.speeds;
   const feeds = times.map((it) => run.legAt(it ?? 0)?.feedMmS ?? null);
   speeds.show(
@@ -166,12 +187,13 @@ function showCharts(run: Run, limit: number): void {
     [times as number[], feeds, values],
   );
   const [when = [], each = []] = run.accelerations;
+  const most = Math.max(...run.result.axesMay.map(([, acceleration]) => acceleration));
   accelerations.show(
     [
       { label: 'limit of an axis', colour: 'limit', dash: [6, 4] },
       { label: 'larger axis by the steps', colour: 'series-1' },
     ],
-    [when as number[], when.map(() => limit), each],
+    [when as number[], when.map(() => most), each],
   );
   const [at, closed, open] = run.deviations;
   const inUm = (values: (number | null)[]) => values.map((it) => it && it * UM_PER_MM);

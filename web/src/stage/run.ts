@@ -1,6 +1,7 @@
 // What the stage did with a program, ready to be asked for any time.
 import type { Answer } from '../shared/machine';
 import { Limits } from '../shared/limits';
+import { torqueLimits } from '../shared/load';
 import { around, columns, countUntil, numbers } from '../shared/rows';
 
 /** The JSON of the operation; the report is that of the command line. */
@@ -8,8 +9,8 @@ export interface Result {
   summary: string;
   /** X and Y, the lower one first. */
   switchesMm: [[number, number], [number, number]];
-  accelerationMmS2: number;
-  maxAxisMmS: number;
+  /** Of X and Y what the speed may be, and the acceleration, in mm/s and mm/s². */
+  axesMay: [[number, number], [number, number]];
   report: {
     notes: string[];
     duration_s: number;
@@ -21,6 +22,8 @@ export interface Result {
 }
 
 type Column = (number | null)[];
+
+const AXES = ['X', 'Y'];
 
 /** Seconds, x, y, and the motion it belongs to. */
 const POINT = 4;
@@ -78,6 +81,7 @@ export class Preview {
 
 export class Run {
   readonly result: Result;
+  readonly blobs: Answer<Result>['blobs'];
   /** What limits timed steps. */
   readonly limits: Limits;
   /** The largest feed of a motion that is no rapid one, in mm/s. */
@@ -99,13 +103,19 @@ export class Run {
   constructor({ value, blobs }: Answer<Result>) {
     const pairs = (name: string) => columns(numbers(blobs, name), 2);
     this.result = value;
+    this.blobs = blobs;
     this.#legs = numbers(blobs, 'legs');
     this.maxFeed = largestFeed(this.#legs);
-    const axes = (name: string, limit: number, unit: string) =>
-      ['X', 'Y'].map((axis) => ({ name: `${name} of ${axis}`, limit, unit }));
+    const axes = (name: string, of: 0 | 1, unit: string) =>
+      AXES.map((axis, index) => ({
+        name: `${name} of ${axis}`,
+        limit: value.axesMay[index]?.[of] ?? 0,
+        unit,
+      }));
     this.limits = new Limits(blobs, [
-      ...axes('speed', value.maxAxisMmS, 'mm/s'),
-      ...axes('acceleration', value.accelerationMmS2, 'mm/s²'),
+      ...axes('speed', 0, 'mm/s'),
+      ...axes('acceleration', 1, 'mm/s²'),
+      ...torqueLimits(blobs, AXES),
     ]);
     this.programmed = numbers(blobs, 'programmed');
     this.closed = new Track(numbers(blobs, 'closed'));

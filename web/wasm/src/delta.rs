@@ -4,12 +4,13 @@ use std::cell::RefCell;
 
 use anyhow::{Context, Result, bail, ensure};
 use delta::{ArmsAt, Machine, Record, Report, Session, StepLog, drive, simulate};
+use known_load::{TorqueUsed, Vibration};
 use serde::Deserialize;
 use serde_json::json;
 
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
-use crate::limits::{self, AxisMay, RowEnd, ToolMay};
+use crate::limits::{self, AxisMay, Known, RowEnd, ToolMay};
 use crate::load;
 
 /// Points of an outline of the workspace.
@@ -40,8 +41,16 @@ struct Driven {
     machine: Machine,
     record: Record,
     steps: Vec<u8>,
-    /// The report, and the picture as text, when they have been asked for.
-    compared: Option<(Report, String)>,
+    /// What the other ways make of the lines, when it has been asked for.
+    compared: Option<Compared>,
+}
+
+struct Compared {
+    report: Report,
+    /// As text.
+    picture: String,
+    /// How the tool swings without shaping.
+    unshaped: Option<Vibration>,
 }
 
 thread_local!(static LAST: RefCell<Option<Driven>> = const { RefCell::new(None) });
@@ -103,12 +112,13 @@ impl Driven {
             .with_rows("lines", lines)
             .with_rows("speeds", drive.speeds())
             .with_rows("workspace", self.workspace(&moments));
-        let answer = load::add_to(answer, drive.torque(), drive.vibration());
-        Ok(self.with_limits(answer))
+        let answer = load::with_torque(answer, drive.torque());
+        let answer = load::with_vibration(answer, "vibration", drive.vibration());
+        Ok(self.with_limits(answer, drive.torque()))
     }
 
     /// What limits the rounded lines at any time; none of lines that are run one by one.
-    fn with_limits(&self, answer: Answer) -> Answer {
+    fn with_limits(&self, answer: Answer, torque: Option<&TorqueUsed<3>>) -> Answer {
         let (machine, record) = (&self.machine, &self.record);
         let rows: Vec<_> = (0_u32..)
             .zip(record.rows())
@@ -130,16 +140,24 @@ impl Driven {
             acceleration,
         }; 3];
         let place = |angles: [f64; 3]| Some(machine.geometry().forward(angles).ok()?.into());
-        limits::add_to(answer, &rows, axes, place)
+        let known = Known {
+            shaping_s: record.shaping_s(),
+            torque,
+        };
+        limits::add_to(answer, &rows, axes, known, place)
     }
 
-    /// Report and picture: the lines are driven in the other ways too.
-    fn compared(&mut self) -> Result<&(Report, String)> {
+    /// The lines are driven in the other ways too.
+    fn compared(&mut self) -> Result<&Compared> {
         let compared = match self.compared.take() {
             Some(compared) => compared,
             None => {
                 let run = simulate(&self.machine, &self.record, &*self.steps)?;
-                (run.report(), run.picture()?.to_string())
+                Compared {
+                    report: run.report(),
+                    picture: run.picture()?.to_string(),
+                    unshaped: run.unshaped().cloned(),
+                }
             }
         };
         Ok(self.compared.insert(compared))
@@ -207,9 +225,15 @@ fn with_last<T>(take: impl FnOnce(&mut Driven) -> Result<T>) -> Result<T> {
     LAST.with_borrow_mut(|last| take(last.as_mut().context("nothing has been driven yet")?))
 }
 
-/// The summary of what was driven last, with what the other ways make of the lines.
+/// The summary of what was driven last, with what the other ways make of the lines, and how its tool swings
+/// without shaping.
 pub(crate) fn report() -> Result<Answer> {
-    with_last(|last| Answer::new(last.compared()?.0.to_string()))
+    with_last(|last| {
+        let compared = last.compared()?;
+        let answer = Answer::new(compared.report.to_string())?;
+        let unshaped = compared.unshaped.as_ref();
+        Ok(load::with_vibration(answer, "vibration unshaped", unshaped))
+    })
 }
 
 /// A file of what was driven last, by its name.
@@ -217,8 +241,8 @@ pub(crate) fn file(request: &Request) -> Result<Answer> {
     let name: String = request.parameters()?;
     with_last(|last| match &*name {
         "steps.csv" => answer::file(&*last.steps),
-        "delta.svg" => answer::file(&*last.compared()?.1),
-        "report.json" => answer::json_file(&last.compared()?.0),
+        "delta.svg" => answer::file(&*last.compared()?.picture),
+        "report.json" => answer::json_file(&last.compared()?.report),
         _ => bail!("there is no file {name:?}"),
     })
 }

@@ -15,7 +15,7 @@ use serde_json::json;
 use self::recorder::Recorder;
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
-use crate::limits::{self, AxisMay, RowEnd, ToolMay};
+use crate::limits::{self, AxisMay, Known, RowEnd, ToolMay};
 use crate::load;
 use crate::progress;
 
@@ -116,7 +116,9 @@ impl Engraved {
         let answer = Answer::new(value)?
             .with_numbers("outlines", outlines.into_iter().map(f64::to_le_bytes))
             .with_numbers("deviation", deviation.map(f64::to_le_bytes));
-        let answer = load::add_to(answer, run.torque(), run.vibration());
+        let answer = load::with_torque(answer, run.torque());
+        let answer = load::with_vibration(answer, "vibration", run.vibration());
+        let answer = load::with_vibration(answer, "vibration unshaped", run.unshaped());
         Ok(self.with_limits(answer))
     }
 
@@ -144,7 +146,12 @@ impl Engraved {
             acceleration,
         });
         let place = |position| Some(machine.tool_at(position));
-        limits::add_to(answer, &rows, axes, place)
+        // Shaped along its curves, the tool keeps its own limits too.
+        let known = Known {
+            shaping_s: 0.0,
+            torque: self.engraving.shown().torque(),
+        };
+        limits::add_to(answer, &rows, axes, known, place)
     }
 }
 

@@ -16,7 +16,7 @@ mod engrave;
 mod limits;
 #[cfg(feature = "line")]
 mod line;
-#[cfg(any(feature = "delta", feature = "engrave"))]
+#[cfg(any(feature = "delta", feature = "engrave", feature = "stage"))]
 mod load;
 #[cfg(any(
     feature = "dance",

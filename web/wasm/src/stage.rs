@@ -5,14 +5,12 @@ use std::cell::RefCell;
 use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
 use serde_json::json;
-use stage::{
-    ACCELERATION_MM_S2, MAX_AXIS_MM_S, Program, Report, Run, Seen, Settings, StepLog, run,
-    switches_mm,
-};
+use stage::{Machine, Program, Report, Run, Seen, Settings, StepLog, run, switches_mm};
 
 use crate::answer::{self, Answer};
 use crate::boundary::Request;
-use crate::limits::{self, AxisMay, RowEnd, ToolMay};
+use crate::limits::{self, AxisMay, Known, RowEnd, ToolMay};
+use crate::load;
 use crate::progress;
 
 /// What a page runs at most: a step costs up to 50 bytes and a microsecond.
@@ -26,6 +24,7 @@ struct Parameters {
     /// What the program is called in messages.
     name: String,
     gcode: String,
+    machine: String,
     stepping: String,
     tolerance_mm: f64,
     /// A fraction.
@@ -42,6 +41,7 @@ struct Preview {
 
 /// What was run last: the files are written from it when they are asked for.
 struct Ran {
+    machine: Machine,
     program: Program,
     settings: Settings,
     run: Run,
@@ -77,6 +77,7 @@ pub(crate) fn stage(request: &Request) -> Result<Answer> {
         lose_steps: parameters.lose_steps,
         seed: parameters.seed,
     };
+    let machine = Machine::parse(&parameters.machine).context("machine.toml")?;
     let program = read(&parameters.name, &parameters.gcode)?;
     // What was run before makes room.
     LAST.set(None);
@@ -87,13 +88,14 @@ pub(crate) fn stage(request: &Request) -> Result<Answer> {
         reason = "within MAX_STEPS"
     )]
     let (mut done, all) = (0, program.steps() as u64);
-    let run = run(&program, &settings, &mut |_, _| {
+    let run = run(&machine, &program, &settings, &mut |_, _| {
         done += 1;
         told(done, all);
         Ok(())
     });
     let run = run.with_context(|| parameters.name.clone())?;
     let ran = Ran {
+        machine,
         program,
         settings,
         run,
@@ -122,8 +124,7 @@ impl Ran {
             "summary": report.to_string(),
             "report": report,
             "switchesMm": switches_mm(),
-            "accelerationMmS2": ACCELERATION_MM_S2,
-            "maxAxisMmS": MAX_AXIS_MM_S,
+            "axesMay": self.run.axes_may(),
         });
         let (closed, open) = (self.run.closed_loop(), self.run.open_loop());
         let answer = Answer::new(value)?
@@ -136,6 +137,18 @@ impl Ran {
             .with_rows("corrections", self.run.corrections())
             .with_rows("speeds", self.run.speeds())
             .with_rows("accelerations", self.run.axis_accelerations());
+        let mut answer = load::with_torque(answer, self.run.torque());
+        let names = [
+            ["vibration x", "vibration x unshaped"],
+            ["vibration y", "vibration y unshaped"],
+        ];
+        for ([shaped, plain], (swings, unshaped)) in names
+            .into_iter()
+            .zip(self.run.vibration().into_iter().flatten())
+        {
+            answer = load::with_vibration(answer, shaped, Some(swings));
+            answer = load::with_vibration(answer, plain, unshaped);
+        }
         Ok(self.with_limits(answer))
     }
 
@@ -155,20 +168,27 @@ impl Ran {
                 is_first: number == 0,
             })
             .collect();
-        let axes = [AxisMay {
-            speed: MAX_AXIS_MM_S,
-            acceleration: ACCELERATION_MM_S2,
-        }; 2];
-        limits::add_to(answer, &rows, axes, |[x, y]| Some([x, y, 0.0]))
+        let axes = self.run.axes_may().map(|[speed, acceleration]| AxisMay {
+            speed,
+            acceleration,
+        });
+        let known = Known {
+            shaping_s: self.run.shaping_s(),
+            torque: self.run.torque(),
+        };
+        limits::add_to(answer, &rows, axes, known, |[x, y]| Some([x, y, 0.0]))
     }
 
     /// The steps of the path: all is run once more.
     fn steps(&self) -> Result<Vec<u8>> {
         let mut steps = Vec::new();
         let mut log = StepLog::new(&mut steps)?;
-        run(&self.program, &self.settings, &mut |ticks, by| {
-            log.step(ticks, by)
-        })?;
+        run(
+            &self.machine,
+            &self.program,
+            &self.settings,
+            &mut |ticks, by| log.step(ticks, by),
+        )?;
         log.finish()?;
         Ok(steps)
     }

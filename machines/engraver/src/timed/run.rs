@@ -1,11 +1,8 @@
 //! The rows of a run: as fast as joints, disc and motors allow, shaped along its course, and verified.
 
 use anyhow::Result;
-use known_load::{TorqueUsed, spans, within_share};
-use path_timing::{
-    Accuracy, AxisLimits, Cubic, Knot, PlanError, Promise, Row, Span, Table, Verifier,
-};
-use scara_kin::ArmPathError;
+use known_load::{TorqueUsed, spans, with_room, within_share};
+use path_timing::{Accuracy, AxisLimits, Cubic, Promise, Row, Span, Table, Verifier};
 
 use super::course;
 use super::leg::Leg;
@@ -13,9 +10,6 @@ use crate::machine::Machine;
 
 /// Fewest segments of a curve.
 const MIN_SEGMENTS: u32 = 4;
-
-/// Rows for which there is memory at first, and at most.
-const ROWS: [usize; 2] = [1 << 12, 1 << 22];
 
 /// The rows along legs, whose cubics leave the curves by at most `tolerance_mm`.
 pub(super) fn rows(
@@ -58,27 +52,21 @@ fn planned(
         Some(load) => Some(load.limits_at(share)?),
         None => None,
     };
-    let [mut room, most] = ROWS;
-    loop {
-        let mut knots = vec![Knot::default(); room];
+    Ok(with_room(|knots| {
         let legs = legs.clone();
-        let rows: Result<Vec<_>, PlanError<ArmPathError>> = match &torque {
+        match &torque {
             Some(torque) => torque
-                .plan_within(legs, limits, accuracy, departure, &mut knots)
+                .plan_within(legs, limits, accuracy, departure, knots)
                 .map(|table| table.rows().collect()),
             // Shaped, the speeds at both ends of a segment become others.
             None if machine.elastic.is_some() => {
-                Table::plan_within_at_any_feed(legs, limits, accuracy, departure, &mut knots)
+                Table::plan_within_at_any_feed(legs, limits, accuracy, departure, knots)
                     .map(|table| table.rows().collect())
             }
-            None => Table::plan_within(legs, limits, accuracy, departure, &mut knots)
+            None => Table::plan_within(legs, limits, accuracy, departure, knots)
                 .map(|table| table.rows().collect()),
-        };
-        match rows {
-            Err(PlanError::Memory { .. }) if room < most => room *= 4,
-            rows => return Ok(rows?),
         }
-    }
+    })?)
 }
 
 /// The largest part of a limit, or of what is planned of a motor, that rows ask for.

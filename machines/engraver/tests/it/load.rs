@@ -4,6 +4,7 @@
 use engraver::{Drawing, Engraving, LOADED, Machine, MotorController, Plan, PlanSettings};
 use machine_sim::Motor;
 use serde_json::Value;
+use test_support::loaded::{assert_refused_with, number, with_pull_out};
 
 /// Lines that begin and end at rest, and curves.
 const LINES: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100"><path fill="none"
@@ -44,10 +45,6 @@ fn report(machine: &str) -> Value {
     serde_json::to_value(report).unwrap()
 }
 
-fn number(report: &Value, at: &str) -> f64 {
-    report.pointer(at).and_then(Value::as_f64).unwrap()
-}
-
 fn lost_steps(report: &Value) -> f64 {
     let motors = ["shoulder", "elbow", "disc", "vertical"].into_iter();
     motors
@@ -70,16 +67,11 @@ fn a_known_load_is_carried_without_a_lost_step_and_the_tool_swings_less() {
 
 /// The simulated motor's own curve times a factor, at any feed.
 fn lost_with(factor: f64) -> f64 {
-    let points = (0..=15).map(|n| {
-        let hz = 40.0 * f64::from(n);
-        [hz, factor * MOTOR.pull_out_nm(hz, LOAD_KG_M2)]
+    let machine = with_pull_out(LOADED, 40.0, |hz| {
+        factor * MOTOR.pull_out_nm(hz, LOAD_KG_M2)
     });
-    let (unshaped, _) = LOADED.split_once("[mode]").unwrap();
-    let curve = format!("pull_out = {:?}\nreserve = 0.0", points.collect::<Vec<_>>());
-    let machine = unshaped.replace("reserve = 0.3", &curve);
     let machine = machine.replace("feed_mm_s = 150.0", "feed_mm_s = 2000.0");
     let machine = machine.replace("max_hz = 6400.0", "max_hz = 9000.0");
-    assert_ne!(machine, unshaped);
     lost_steps(&report(&machine))
 }
 
@@ -93,33 +85,28 @@ fn the_limit_is_tight() {
 
 #[test]
 fn what_no_machine_has_is_refused_by_name() {
-    for (from, to, reason) in [
-        (
+    let changes = [
+        [
             "reserve = 0.3",
             "reserve = 1.0",
             "[torque] reserve = 1 is not 0 to below 1",
-        ),
-        ("tool_kg = 0.5", "tool_kg = -0.5", "[load]: payload is -0.5"),
-        (
+        ],
+        ["tool_kg = 0.5", "tool_kg = -0.5", "[load]: payload is -0.5"],
+        [
             "disc_kg_m2 = 2e-6",
             "disc_kg_m2 = nan",
             "[load] disc_kg_m2 = NaN is not zero or above",
-        ),
-        ("fore_kg = 0.4", "", "missing field `fore_kg`"),
-        (
+        ],
+        ["fore_kg = 0.4", "", "missing field `fore_kg`"],
+        [
             "joint_accel_hz_per_s = 1000000.0",
             "joint_accel_hz_per_s = 0.0",
             "[timed]: joint_accel_hz_per_s = 0 is not above zero",
-        ),
-        ("hz = 40.0", "hz = 0.0", "[mode] hz = 0, damping = 0.03: "),
-        ("\"zvd\"", "\"zv2\"", "[mode] shaper = \"zv2\" is none of"),
-    ] {
-        let machine = LOADED.replacen(&format!("\n{from}"), &format!("\n{to}"), 1);
-        let machine = machine.replacen(from, to, usize::from(machine == LOADED));
-        let error = format!("{:#}", Machine::parse(&machine).unwrap_err());
-        assert!(error.contains(reason), "{error}, not {reason}");
-    }
-    let (alone, _) = LOADED.split_once("[torque]").unwrap();
-    let error = Machine::parse(alone).unwrap_err().to_string();
-    assert_eq!(error, "[load] without [torque]: neither or both are needed");
+        ],
+        ["hz = 40.0", "hz = 0.0", "[mode] hz = 0, damping = 0.03: "],
+        ["\"zvd\"", "\"zv2\"", "[mode] shaper = \"zv2\" is none of"],
+    ];
+    assert_refused_with(LOADED, &changes, |machine| {
+        Some(format!("{:#}", Machine::parse(machine).err()?))
+    });
 }
