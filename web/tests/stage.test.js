@@ -45,7 +45,10 @@ test('a machine whose load is known is chosen, its torque and its tables are sho
   await ran(page);
   assert(await page.locator('#torque-used').isHidden());
   await page.locator('#machine-choice').selectOption('loaded');
-  await page.locator('#summary').filter({ hasText: 'vibration: the table of X (45.0 Hz)' }).waitFor();
+  await page
+    .locator('#summary')
+    .filter({ hasText: 'vibration: the table of X (45.0 Hz)' })
+    .waitFor();
   await ran(page);
   assert(await page.locator('#torque-used canvas').isVisible());
   assert(await page.locator('#vibration').getByText('Y, without shaping').isVisible());
