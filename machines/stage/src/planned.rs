@@ -6,7 +6,7 @@ use alloc::collections::VecDeque;
 
 use anyhow::Result;
 use known_load::{TorqueUsed, off, shape, with_room, within_share};
-use path_timing::{Row, Shaper, Table};
+use path_timing::{Corner, Path, PathPoint, Row, Shaper, Table, ToolLimits};
 
 use crate::machine::Machine;
 use crate::timed::{ChainCurve, ChainPath};
@@ -98,15 +98,21 @@ fn fastest(machine: &Machine, path: &ChainPath, share: f64) -> Result<Vec<Row<[f
         return Ok(Vec::new());
     }
     let limits = path.limits.at(share);
-    let curves = path.curves.iter().map(|curve| curve.within(&limits));
-    let segments = |curve: &ChainCurve| curve.segments;
+    let cut = path.curves.iter().map(|curve| {
+        Ok(Cut {
+            curve: curve.within(&limits),
+            segments: curve.segments()?,
+        })
+    });
+    let cut = cut.collect::<Result<Vec<_>>>()?;
+    let segments = |cut: &&Cut| cut.segments;
     let torque = match &machine.load {
         Some(load) if machine.shapers().is_some() => Some(load.straight().limits_at(share)?),
         Some(load) => Some(load.limits_at(share)?),
         None => None,
     };
     let rows: Vec<_> = with_room(|knots| {
-        let curves = curves.clone();
+        let curves = cut.iter();
         match &torque {
             Some(torque) => torque
                 .plan(curves, limits.axes, segments, knots)
@@ -120,4 +126,31 @@ fn fastest(machine: &Machine, path: &ChainPath, share: f64) -> Result<Vec<Row<[f
         path.verify(&mut verifier, row)?;
     }
     Ok(rows)
+}
+
+/// A curve with what it is cut into.
+struct Cut {
+    curve: ChainCurve,
+    segments: u32,
+}
+
+impl Path for Cut {
+    type Axes = [f64; 2];
+    type Error = <ChainCurve as Path>::Error;
+
+    fn length(&self) -> f64 {
+        self.curve.length()
+    }
+
+    fn point(&self, s: f64) -> Result<PathPoint<[f64; 2]>, Self::Error> {
+        self.curve.point(s)
+    }
+
+    fn tool(&self) -> Option<ToolLimits> {
+        self.curve.tool()
+    }
+
+    fn corner(&self) -> Corner<[f64; 2]> {
+        self.curve.corner()
+    }
 }

@@ -7,8 +7,8 @@ use core::f64::consts::FRAC_1_SQRT_2;
 use anyhow::{Context, Result, ensure};
 use kurbo::{Point, Vec2};
 use path_timing::{
-    AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathPoint, Promise, Row, Smoothed, Span,
-    ToolLimits, Verifier, Vertex, Waypoint, segments_within,
+    AxisLimits, Corner, Curve, Knot, LookAhead, Path, PathPoint, PlanError, Promise, Row, Smoothed,
+    Span, ToolLimits, Verifier, Vertex, Waypoint, segments_within,
 };
 
 use crate::machine::Machine;
@@ -98,8 +98,7 @@ impl ChainLimits {
 pub(crate) struct ChainCurve {
     curve: Curve<2>,
     start_stop: [f64; 2],
-    /// What it is cut into, so that the axes' cubics stay near.
-    pub(crate) segments: u32,
+    segment_mm: f64,
     /// The motions on which it begins and ends.
     pub(crate) motions: [usize; 2],
 }
@@ -126,26 +125,13 @@ impl Path for ChainCurve {
 }
 
 impl ChainCurve {
-    fn new(curve: Curve<2>, motions: [usize; 2], limits: &ChainLimits) -> Result<Self> {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "saturates"
-        )]
-        let segments = (curve.length() / limits.segment_mm).ceil() as u32;
-        let chained = Self {
+    const fn new(curve: Curve<2>, motions: [usize; 2], limits: &ChainLimits) -> Self {
+        Self {
             curve,
             start_stop: limits.start_stop,
-            segments: segments.max(LEAST_SEGMENTS),
+            segment_mm: limits.segment_mm,
             motions,
-        };
-        let segments = segments_within(&chained, chained.segments, CUBICS_MM, |curve, span| {
-            curve.departure(span)
-        })?;
-        Ok(Self {
-            segments,
-            ..chained
-        })
+        }
     }
 
     /// The same within other limits.
@@ -154,6 +140,22 @@ impl ChainCurve {
             start_stop: limits.start_stop,
             ..self
         }
+    }
+
+    /// What it is cut into, so that the axes' cubics stay near.
+    pub(crate) fn segments(&self) -> Result<u32, PlanError<<Self as Path>::Error>> {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "saturates"
+        )]
+        let segments = (self.length() / self.segment_mm).ceil() as u32;
+        segments_within(
+            self,
+            segments.max(LEAST_SEGMENTS),
+            CUBICS_MM,
+            Self::departure,
+        )
     }
 
     fn departure(&self, span: &Span<[f64; 2]>) -> f64 {
@@ -224,7 +226,7 @@ impl ChainPath {
             let last = to.saturating_sub(1).max(from);
             let motions = [first + from, first + last];
             self.curves
-                .push(ChainCurve::new(curve, motions, &self.limits)?);
+                .push(ChainCurve::new(curve, motions, &self.limits));
         }
         self.departure_mm = self.departure_mm.max(curves.departure());
         Ok(())
@@ -234,7 +236,7 @@ impl ChainPath {
         for curve in arcs::curves(from, motion)? {
             let curve = curve.with_tool(tool(motion));
             self.curves
-                .push(ChainCurve::new(curve, [number; 2], &self.limits)?);
+                .push(ChainCurve::new(curve, [number; 2], &self.limits));
         }
         Ok(())
     }
@@ -251,7 +253,7 @@ impl ChainPath {
     /// The path cannot be planned; or the error of `each`.
     pub(crate) fn rows(&self, mut each: impl FnMut(&Row<[f64; 2]>) -> Result<()>) -> Result<()> {
         let mut window = vec![Knot::default(); KNOTS];
-        let segments = |curve: &&ChainCurve| Ok(curve.segments);
+        let segments = |curve: &&ChainCurve| curve.segments();
         let rows = LookAhead::new(self.curves.iter(), self.limits.axes, segments, &mut window)?;
         let mut verifier = self.verifier();
         for (number, row) in rows.enumerate() {

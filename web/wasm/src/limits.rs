@@ -16,8 +16,8 @@ use crate::answer::Answer;
 /// Looks between two rows: fewer where there are many rows.
 const LOOKS: u32 = 3;
 const MANY_ROWS: usize = 50_000;
-/// Shorter rows are of rounding, as are their accelerations.
-const SHORT_S: f64 = 1e-7;
+/// In shorter rows the rounding of times, of a minute 7e-15 s, shows as an acceleration.
+const SHORT_S: f64 = 1e-5;
 /// The part of a row over which the tool's speed is taken.
 const NEAR_PART: f64 = 0.01;
 
