@@ -171,7 +171,10 @@ fn line_below(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
             top / start
         };
         // Not a number where the line ends below zero.
-        (if end > 0.0 { time } else { f64::INFINITY }, [[0.0, start], [top, end]])
+        (
+            if end > 0.0 { time } else { f64::INFINITY },
+            [[0.0, start], [top, end]],
+        )
     });
     let soonest = lines.min_by(|a, b| a.0.total_cmp(&b.0));
     soonest.map_or([[0.0; 2]; 2], |(_, line)| line)
