@@ -55,7 +55,7 @@ pub fn segments_within<P: Path>(
 ) -> Result<u32, PlanError<P::Error>> {
     check_allowed(allowed)?;
     let leg = Leg::new(0, path)?;
-    let at_least = bounded(0, at_least, [false; 2])?;
+    let at_least = bounded(0, at_least, 1)?;
     let bound_of = |segments, rests| {
         let mut laying = Laying::new(leg, leg.point(0.0)?);
         let mut bound = Bound::new(allowed);
@@ -112,16 +112,13 @@ impl<D> Within<D> {
         D: Fn(&P, &Span<P::Axes>) -> f64,
     {
         let number = place.leg.number;
-        let at_least = bounded(number, self.min_segments, place.rests)?;
+        let at_least = bounded(number, self.min_segments, place.fewest)?;
         let segments = self.fewest(place, limits, at_least, knots)?;
         if doublings == 0 {
             return Ok(segments);
         }
-        let finer = bounded(
-            number,
-            segments.saturating_mul(1 << doublings.min(24)),
-            place.rests,
-        )?;
+        let finer = segments.saturating_mul(1 << doublings.min(24));
+        let finer = bounded(number, finer, place.fewest)?;
         self.planned.set(0);
         self.lay_at_once(place, limits, finer, knots)?;
         Ok(finer)

@@ -10,7 +10,7 @@ use crate::jerk::{Most, Walk};
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot};
-use stop::{KAPPAS, State, Stop};
+use stop::{KAPPAS, State, Stop, TAIL};
 
 /// Knots that are passed at a feed times their speeds.
 #[derive(Debug, Clone, Copy)]
@@ -171,6 +171,10 @@ enum Trial {
 /// Rows after which a stop is looked for, too.
 const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 
+/// The parts of the axes' limits that a stop is tried with. The first that keeps them is the quickest; of
+/// all lengths few do where the machine gains speed, for it has a limit, too.
+const OF_LIMITS: [f64; 8] = [1.0, 0.995, 0.99, 0.98, 0.96, 0.93, 0.9, 0.85];
+
 /// Halvings of a feed that nothing moves at.
 const HALVINGS: u32 = 64;
 
@@ -285,7 +289,7 @@ impl<A: Axes> Course<'_, A> {
     /// The stop that begins here, unless one that begins a few rows later rests sooner: where the table
     /// uses all of the jerk, a change has to wait.
     fn stop_soonest(&self, at: At, feed: f64) -> Option<Change> {
-        let found = self.change_to(at, feed, 0.0);
+        let found = self.shortest_stop(at, feed);
         let end = found.map_or(usize::MAX, |change| at.index.saturating_add(change.left));
         for rows in LATER {
             let index = at.index.saturating_add(rows);
@@ -299,12 +303,60 @@ impl<A: Axes> Course<'_, A> {
                 speed,
                 before,
             };
-            let later = self.change_to(later, feed, 0.0);
+            let later = self.shortest_stop(later, feed);
             if later.is_some_and(|later| index.saturating_add(later.left) < end) {
                 return None;
             }
         }
         found
+    }
+
+    /// A stop at the limits that the axes have here, or else the shortest found by its length.
+    fn shortest_stop(&self, at: At, feed: f64) -> Option<Change> {
+        self.stop_at_limits(at)
+            .or_else(|| self.change_to(at, feed, 0.0))
+    }
+
+    /// The stop that uses most of the limits that the axes have where it begins.
+    fn stop_at_limits(&self, at: At) -> Option<Change> {
+        let slope = self.knots.get(at.index)?.point.slope;
+        let axes = self.limits.axes().iter().zip(slope.as_slice());
+        let inverse = axes.fold([0.0_f64; 2], |[acceleration, jerk], (limits, slope)| {
+            let slope = slope.abs();
+            [
+                acceleration.max(slope * limits.acceleration),
+                jerk.max(slope * limits.jerk),
+            ]
+        });
+        let start = self.state(at);
+        OF_LIMITS.iter().find_map(|part| {
+            let [kappa, length] = Stop::quickest(start, inverse.map(|inverse| part / inverse));
+            let (segments, lengths) = self.up_to(at, length)?;
+            let change = Change {
+                kind: Kind::Stop(Stop::new(start, lengths, kappa)?),
+                to: 0.0,
+                left: segments,
+            };
+            self.holds(at, change).then_some(change)
+        })
+    }
+
+    /// The segments up to the first knot by which a stop has taken a length, the length up to there and that
+    /// of the last.
+    fn up_to(&self, at: At, wanted: f64) -> Option<(usize, [f64; 2])> {
+        let (mut segments, mut length) = (0_usize, 0.0);
+        for knot in self.knots.iter().skip(at.index.saturating_add(1)) {
+            segments = segments.saturating_add(usize::from(knot.ds > 0.0));
+            length += knot.ds;
+            if length - knot.ds * TAIL >= wanted {
+                return Some((segments, [length, knot.ds]));
+            }
+            // There the course rests itself.
+            if knot.speed <= 0.0 {
+                break;
+            }
+        }
+        None
     }
 
     /// The same from rest, where there must be one: where the path is too short for the feed, the
@@ -326,7 +378,7 @@ impl<A: Axes> Course<'_, A> {
     }
 
     fn trial(&self, at: At, [from, to]: [f64; 2], segments: usize) -> Trial {
-        let (mut table_s, mut length) = (0.0, 0.0);
+        let (mut table_s, mut length, mut last) = (0.0, 0.0, 0.0);
         let (mut index, mut count) = (at.index, 0_usize);
         while count < segments {
             let next = index.saturating_add(1);
@@ -335,13 +387,14 @@ impl<A: Axes> Course<'_, A> {
                 return Trial::TooLong(count);
             };
             table_s += self.segment_s(next);
-            length += knot.ds;
+            (length, last) = (length + knot.ds, knot.ds);
             index = next;
             count = count.saturating_add(usize::from(knot.ds > 0.0));
         }
         let start = self.state(at);
         let stops = KAPPAS.iter().filter(|_| to <= 0.0);
-        let stops = stops.filter_map(|kappa| Stop::new(start, length, *kappa).map(Kind::Stop));
+        let stops =
+            stops.filter_map(|kappa| Stop::new(start, [length, last], *kappa).map(Kind::Stop));
         let changes = RAMPS.iter().map(|ramps| {
             let mut change = FeedChange {
                 from,

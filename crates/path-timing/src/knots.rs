@@ -51,6 +51,12 @@ impl<P: Path> Laying<P> {
         }
     }
 
+    /// Takes the last knot back: the one before it is the last again.
+    pub(crate) const fn take_back(&mut self, before: Knot<P::Axes>) {
+        self.last = before;
+        self.index = self.index.saturating_sub(1);
+    }
+
     /// The knot at a parameter behind the last one.
     ///
     /// Whatever the speeds, each position of a cubic of duration 2Δs/(w₀ + w₁) lies between those

@@ -9,7 +9,9 @@ use crate::junction::Junction;
 use crate::knots::{LARGEST_GAP, Laying, fraction, is_resolved};
 use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST};
-use crate::planner::{bounded, check_gap, junction_to};
+use crate::planner::{
+    Beyond, MAX_SEGMENTS, MOST_HALVINGS, bounded, check_gap, fewest, junction_to,
+};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, Corner, FeedError, Knot, Path, PlanError, Row};
 use window::{Feed, Window};
@@ -64,8 +66,8 @@ pub struct LookAhead<'w, P: Path, I, F> {
     count: usize,
     /// Whether a path was refused: the stream ends there.
     is_refused: bool,
-    /// The corner of the path before, with its end in the window.
-    corner: Option<Corner<P::Axes>>,
+    /// The corner of the path before, with its end in the window, and the length of that path.
+    corner: Option<(Corner<P::Axes>, f64)>,
     window: Window<'w, P::Axes>,
     limits: Reciprocals<P::Axes>,
     max: f64,
@@ -86,6 +88,8 @@ struct Entering<P: Path> {
     laying: Laying<P>,
     rests: [bool; 2],
     segments: u32,
+    /// How often they have been halved.
+    halvings: u32,
     /// Of the last knot.
     index: u32,
 }
@@ -96,8 +100,9 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// The rows along `paths`, each cut into as many `segments` as the function says: a fixed number, or
     /// what [`segments_within`](crate::segments_within) finds.
     ///
-    /// From rest to rest they are at least 2. On one segment the speed does not rise and fall again: a
-    /// long path between slow corners takes 2 or more.
+    /// From rest to rest they are at least 2, and on a long path between short ones, whose corners may be
+    /// slow: on one segment the speed does not rise and fall again. They are up to 64 times as many where
+    /// the slopes at the ends of one do not tell how the path goes between them.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Memory`] for a window of fewer than 4 knots.
@@ -272,15 +277,11 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
                 self.entering = Some(self.begin(path)?);
                 continue;
             };
-            let from = entering.laying.last;
-            let to = entering.next_knot()?;
-            if !is_resolved(&self.limits, &from, &to, LARGEST_GAP) {
-                let (leg, s) = (entering.laying.leg.number, from.s);
-                return Err(PlanError::TooCoarse { leg, s });
-            }
+            let to = entering.next_knot(&self.limits)?;
             self.window.push(to);
             if to.ends_leg {
-                self.corner = Some(entering.laying.leg.path().corner());
+                let leg = &entering.laying.leg;
+                self.corner = Some((leg.path().corner(), leg.length()));
                 self.entering = None;
             }
         }
@@ -292,14 +293,14 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         let number = self.count;
         self.count = number.wrapping_add(1);
         let segments = (self.segments)(&path).map_err(|error| error.of_leg(number))?;
-        let segments = bounded(number, segments, [false; 2])?;
+        let segments = bounded(number, segments, 1)?;
         let leg = Leg::new(number, path)?;
         let start = leg.point(0.0)?;
-        let mut starts_at_rest = true;
-        if let (Some(corner), Some(end)) = (self.corner.take(), self.window.last_mut()) {
+        let mut before: Beyond<P::Axes> = (Junction::Stop, 0.0);
+        if let (Some((corner, length)), Some(end)) = (self.corner.take(), self.window.last_mut()) {
             check_gap(number, &end.point.position, &start.position)?;
             let junction = Junction::new(&self.limits, &corner, &end.point.slope, &start.slope);
-            starts_at_rest = junction.is_stop();
+            before = (junction, length);
             if let Some(jump) = end.join(&junction, &start) {
                 self.window.push(jump);
             }
@@ -307,33 +308,69 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
             self.window.push(Knot::start(start));
         }
         // A path that is refused is so when it begins: until then the machine is to rest before it.
+        let next = self.following.as_ref();
+        let junction = || junction_to(&leg, next, &self.limits).ok();
         let ends_at_rest = match leg.path().corner() {
             Corner::Stop => true,
-            Corner::Jump(_) => self.following.is_none(),
-            Corner::Smooth => junction_to(&leg, self.following.as_ref(), &self.limits)
-                .is_ok_and(|junction| junction.is_stop()),
+            Corner::Jump(_) => next.is_none(),
+            Corner::Smooth => junction().is_some_and(|junction| junction.is_stop()),
         };
-        let rests = [starts_at_rest, ends_at_rest];
+        let fewest = if segments == 1 {
+            let after = junction().unwrap_or(Junction::Stop);
+            let after = (after, next.map_or(0.0, Path::length));
+            fewest(&self.limits, &leg, &start, [&before, &after])
+        } else {
+            1
+        };
+        let rests = [before.0.is_stop(), ends_at_rest];
         Ok(Entering {
+            segments: segments.max(fewest),
             laying: Laying::new(leg, start),
             rests,
-            segments: bounded(number, segments, rests)?,
+            halvings: 0,
             index: 0,
         })
     }
 }
 
 impl<P: Path> Entering<P> {
-    fn next_knot(&mut self) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
-        self.index = self.index.saturating_add(1);
-        let u = f64::from(self.index) / f64::from(self.segments);
-        let length = self.laying.leg.length();
-        let s = if self.index < self.segments {
-            length * fraction(u, self.rests)
-        } else {
-            length
-        };
-        self.laying.knot(s)
+    /// The next knot; where the path is not known up to there, all segments that are left are halved.
+    fn next_knot(
+        &mut self,
+        limits: &Reciprocals<P::Axes>,
+    ) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
+        loop {
+            let from = self.laying.last;
+            let refused = match self.laying.knot(self.next_s()) {
+                Ok(to) if is_resolved(limits, &from, &to, LARGEST_GAP) => {
+                    self.index = self.index.saturating_add(1);
+                    return Ok(to);
+                }
+                Ok(_) => PlanError::TooCoarse {
+                    leg: self.laying.leg.number,
+                    s: from.s,
+                },
+                Err(refused) => refused,
+            };
+            let is_coarse = matches!(refused, PlanError::TooCoarse { .. });
+            if !is_coarse || self.halvings == MOST_HALVINGS || self.segments > MAX_SEGMENTS / 2 {
+                return Err(refused);
+            }
+            self.laying.take_back(from);
+            self.halvings = self.halvings.saturating_add(1);
+            self.index = self.index.saturating_mul(2);
+            self.segments = self.segments.saturating_mul(2);
+        }
+    }
+
+    /// The parameter of the next knot.
+    fn next_s(&self) -> f64 {
+        let (index, length) = (self.index.saturating_add(1), self.laying.leg.length());
+        if index >= self.segments {
+            return length;
+        }
+        let u = f64::from(index) / f64::from(self.segments);
+        length * fraction(u, self.rests)
     }
 }
 

@@ -5,30 +5,66 @@ use crate::knots::{
     LARGEST_GAP, LARGEST_GAP_AT_RESTS, Laying, Shares, fraction, is_resolved, note_unused, spread,
 };
 use crate::leg::Leg;
-use crate::number::Real;
+use crate::number::{Real, sqrt};
 use crate::passes::{self, segment_s};
 use crate::reciprocals::Reciprocals;
 use crate::stretch::stretch;
 use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
 
-/// Fewest segments of a leg that starts and stops.
-const MIN_AT_RESTS: u32 = 2;
+/// Fewest segments of a leg that starts and ends slowly.
+const MIN_BETWEEN_SLOW_ENDS: u32 = 2;
 
 /// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
 
-/// A number of segments that a leg can have which rests at its ends, or does not.
-pub(crate) fn bounded<E>(leg: usize, segments: u32, rests: [bool; 2]) -> Result<u32, PlanError<E>> {
+/// A number of segments that a leg can have, `fewest` or more.
+pub(crate) fn bounded<E>(leg: usize, segments: u32, fewest: u32) -> Result<u32, PlanError<E>> {
     let max = MAX_SEGMENTS;
     if segments <= max {
-        Ok(segments.max(fewest(rests)))
+        Ok(segments.max(fewest))
     } else {
         Err(PlanError::TooFine { leg, max })
     }
 }
 
-const fn fewest([starts, ends]: [bool; 2]) -> u32 {
-    if starts && ends { MIN_AT_RESTS } else { 1 }
+/// How often segments are halved where the path between two knots is not known.
+pub(crate) const MOST_HALVINGS: u32 = 6;
+
+/// What a leg goes on to at an end: how, and for what length.
+pub(crate) type Beyond<A> = (Junction<A>, f64);
+
+/// The fewest segments of a leg: 2 where on one, on which the speed cannot rise and fall again, it would
+/// take longer than with stops at its ends.
+///
+/// The axes go about as `start` has it. Where a leg goes on smoothly, the path beyond may turn round in
+/// its length Lₙ, at an acceleration of a with a speed of √(a Lₙ / 2).
+pub(crate) fn fewest<A: Axes, E>(
+    limits: &Reciprocals<A>,
+    leg: &Leg<impl Path<Axes = A, Error = E>>,
+    start: &PathPoint<A>,
+    ends: [&Beyond<A>; 2],
+) -> u32 {
+    let slopes = limits.axes().iter().zip(start.slope.as_slice());
+    let of_axes =
+        slopes.map(|(limit, slope)| [limit.speed, limit.acceleration].map(|l| l * slope.abs()));
+    let of_tool = leg
+        .tool()
+        .map(|tool| [1.0 / tool.feed, tool.acceleration.map_or(0.0, |a| 1.0 / a)]);
+    let [slowness, inertia] = of_axes
+        .chain(of_tool)
+        .fold([0.0_f64; 2], |[speed, acceleration], [v, a]| {
+            [speed.max(v), acceleration.max(a)]
+        });
+    let speeds = ends.map(|(junction, length)| match junction {
+        Junction::Stop => 0.0,
+        Junction::Smooth(_) => sqrt(length / (inertia + inertia)),
+        Junction::Jump(speed) => *speed,
+    });
+    let length = leg.length();
+    let with_stops_s = (1.5 * length * slowness).max(sqrt(6.0 * length * inertia));
+    // Written so that what rests at both ends, for ever, is longer.
+    let is_fast = (length + length) / (speeds[0] + speeds[1]) <= with_stops_s;
+    if is_fast { 1 } else { MIN_BETWEEN_SLOW_ENDS }
 }
 
 /// A leg whose knots are to be laid.
@@ -37,6 +73,8 @@ pub(crate) struct Place<'p, P: Path> {
     pub(crate) start: PathPoint<P::Axes>,
     /// Whether the machine rests at its ends.
     pub(crate) rests: [bool; 2],
+    /// The fewest segments.
+    pub(crate) fewest: u32,
     /// Whether it is the only one.
     pub(crate) is_alone: bool,
     /// Knots of the legs before.
@@ -72,6 +110,31 @@ const FEWEST_STRETCHED: u32 = 16;
 const ROUNDS: u32 = 4;
 
 impl<P: Path + Clone> Place<'_, P> {
+    /// Lays a number of segments, or twice as many, and so on, where the path is not known between
+    /// two knots. How many they are.
+    pub(crate) fn lay_resolved(
+        &self,
+        segments: u32,
+        mut lay: impl FnMut(u32) -> Result<(), PlanError<P::Error>>,
+    ) -> Result<u32, PlanError<P::Error>> {
+        let number = self.leg.number;
+        let segments = bounded(number, segments, self.fewest)?;
+        let coarse = match lay(segments) {
+            Err(coarse @ PlanError::TooCoarse { .. }) => coarse,
+            laid => return laid.map(|()| segments),
+        };
+        for halvings in 1..=MOST_HALVINGS {
+            let finer = bounded(number, segments << halvings, 1)?;
+            match lay(finer) {
+                Err(PlanError::TooCoarse { .. }) => {}
+                // How many would do, nobody knows.
+                Err(PlanError::Memory { .. }) => break,
+                laid => return laid.map(|()| finer),
+            }
+        }
+        Err(coarse)
+    }
+
     /// Lays the knots of the leg behind its first, which is the first of those given: dense where the
     /// fastest motion along the leg is slow and where its limits change, by the part `bent` also where its
     /// speed changes, and stretched for it.
@@ -211,7 +274,7 @@ impl<P: Path + Clone> Place<'_, P> {
         knots: &[Knot<P::Axes>],
     ) -> Result<(), PlanError<P::Error>> {
         let mut from = Knot::start(self.start);
-        let gap = if knots.len() > knots_of(MIN_AT_RESTS) {
+        let gap = if knots.len() > knots_of(MIN_BETWEEN_SLOW_ENDS) {
             LARGEST_GAP
         } else {
             LARGEST_GAP_AT_RESTS
@@ -260,14 +323,14 @@ pub(crate) fn lay_all<'k, P: Path + Clone>(
 ) -> Result<&'k mut [Knot<P::Axes>], PlanError<P::Error>> {
     let available = knots.len();
     let mut paths = paths.peekable();
-    let (mut number, mut used, mut starts_at_rest) = (0_usize, 0_usize, true);
+    let (mut number, mut used) = (0_usize, 0_usize);
+    let mut before: Beyond<P::Axes> = (Junction::Stop, 0.0);
     while let Some(path) = paths.next() {
         let leg = Leg::new(number, path)?;
         let start = leg.point(0.0)?;
         let (last, free) = knots.split_at_mut(used.saturating_sub(1).min(available));
-        let least = fewest([starts_at_rest, paths.peek().is_none()]);
         let short = PlanError::Memory {
-            needed: used.saturating_add(knots_of(least)),
+            needed: used.saturating_add(knots_of(1)),
             available,
         };
         let Some(first) = free.first_mut() else {
@@ -279,16 +342,18 @@ pub(crate) fn lay_all<'k, P: Path + Clone>(
             check_gap(number, &first.point.position, &start.position)?;
         }
         let junction = junction_to(&leg, paths.peek(), limits)?;
+        let after = (junction, paths.peek().map_or(0.0, Path::length));
         let place = Place {
             leg: &leg,
             start,
-            rests: [starts_at_rest, junction.is_stop()],
+            rests: [before.0.is_stop(), junction.is_stop()],
+            fewest: fewest(limits, &leg, &start, [&before, &after]),
             is_alone: number == 0 && paths.peek().is_none(),
             used: last.len(),
         };
         let segments = lay(&place, free)?;
         used = used.saturating_add(usize::try_from(segments).unwrap_or(usize::MAX));
-        starts_at_rest = junction.is_stop();
+        before = (junction, leg.length());
         number = number.saturating_add(1);
         let Some(end) = knots.get_mut(used.saturating_sub(1)) else {
             return Err(short);

@@ -7,7 +7,7 @@ use crate::departure::{Speeds, Within, check_allowed};
 use crate::knots::{Halving, are_resolved, halve};
 use crate::number::SMALLEST;
 use crate::passes::fastest;
-use crate::planner::{Place, bounded, check_single_segments, duration, lay_all, time};
+use crate::planner::{Place, check_single_segments, duration, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
 use crate::stretch::stretch_between;
@@ -46,13 +46,14 @@ pub struct Accuracy {
     /// where the departure alone counts. It is judged by the change of the time with the number of
     /// segments, of which plans are made in the memory beside the table's: half as much again. Where
     /// there is no room for the segments with which that is sure, a plan is taken that changes by no more
-    /// with the last doubling of them.
+    /// with the last doubling of them, unless finer plans have shown that it is slower.
     pub max_time_ratio: f64,
 }
 
 impl<'a, A: Axes> Table<'a, A> {
     /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a path
-    /// has, at least 2 from rest to rest, or from a slow corner to another.
+    /// has: they are at least 2 from rest to rest, or from a slow corner to another, and up to 64 times as
+    /// many where the slopes at the ends of one do not tell how the path goes between them.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -64,10 +65,9 @@ impl<'a, A: Axes> Table<'a, A> {
     ) -> Result<Self, PlanError<P::Error>> {
         let limits = Reciprocals::checked(&limits)?;
         let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
-            let segments = segments(place.leg.path());
-            let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay(&limits, segments, 0.0, free)?;
-            Ok(segments)
+            place.lay_resolved(segments(place.leg.path()), |segments| {
+                place.lay(&limits, segments, 0.0, free)
+            })
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
         let duration_s = time(&limits, knots)?;
@@ -96,10 +96,9 @@ impl<'a, A: Axes> Table<'a, A> {
         }
         let limits = Reciprocals::single(&limits)?;
         let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
-            let segments = segments(place.leg.path());
-            let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay_plainly(&limits, segments, 0.0, free)?;
-            Ok(segments)
+            place.lay_resolved(segments(place.leg.path()), |segments| {
+                place.lay_plainly(&limits, segments, 0.0, free)
+            })
         };
         let knots = lay_all(paths.into_iter(), &exact, knots, lay)?;
         fastest(&limits, knots);
@@ -165,8 +164,10 @@ impl<'a, A: Axes> Table<'a, A> {
             is_plain: false,
             planned: Cell::new(0),
         };
-        // A number of doublings that is likely enough, for where there is no room to be sure.
+        // A number of doublings that is likely enough, for where there is no room to be sure, with its
+        // time; and the least time, as far as the finest plan shows it.
         let (mut doublings, mut likely, mut is_last) = (0, None, false);
+        let mut least_s = 0.0;
         loop {
             let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
                 within.lay(place, &limits, doublings, free)
@@ -189,13 +190,20 @@ impl<'a, A: Axes> Table<'a, A> {
                         let (own, _) = knots.split_at(used.min(knots.len()));
                         return Ok(Self::new(own, limits, duration_s));
                     }
-                    if verdict == Verdict::LikelyFast {
-                        likely = Some(doublings);
-                    }
+                    least_s = match verdict {
+                        Verdict::Fast => duration_s,
+                        Verdict::Slow { least_s } => least_s,
+                        Verdict::LikelyFast { least_s } => {
+                            likely = Some((doublings, duration_s));
+                            least_s
+                        }
+                    };
                 }
                 // Twice as many knots stand elsewhere.
                 (Err(PlanError::TooCoarse { .. }), _) if doublings > 0 => {}
-                (Err(PlanError::Memory { .. }), Some(enough)) if !is_last => {
+                (Err(PlanError::Memory { .. }), Some((enough, time_s)))
+                    if !is_last && time_s <= least_s * accuracy.max_time_ratio =>
+                {
                     (doublings, is_last) = (enough, true);
                     continue;
                 }
@@ -289,7 +297,7 @@ impl Accuracy {
         duration_s: f64,
     ) -> Result<Verdict, PlanError<E>> {
         if check_single_segments::<_, E>(limits, knots).is_err() {
-            return Ok(Verdict::Slow);
+            return Ok(Verdict::Slow { least_s: 0.0 });
         }
         let ratio = self.max_time_ratio;
         if !ratio.is_finite() {
@@ -299,23 +307,29 @@ impl Accuracy {
         let Lost { last_s, most_s } = Lost::new(limits, knots, spare, duration_s)?;
         // Where a path turns between two knots, no number of knots nearby shows what it takes.
         let gap = ((ratio - 1.0) * 0.5).min(LARGEST_GAP_TIMED);
+        let least_s = duration_s - last_s;
         Ok(if keeps(most_s) && are_resolved(limits, knots, gap) {
             Verdict::Fast
         } else if keeps(last_s) {
-            Verdict::LikelyFast
+            Verdict::LikelyFast { least_s }
         } else {
-            Verdict::Slow
+            Verdict::Slow { least_s }
         })
     }
 }
 
-/// Whether a plan is as fast as is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Whether a plan is as fast as is asked for; if that is not sure, with the least time as far as the last
+/// doubling of its segments shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Verdict {
     Fast,
     /// By the last doubling of its segments alone.
-    LikelyFast,
-    Slow,
+    LikelyFast {
+        least_s: f64,
+    },
+    Slow {
+        least_s: f64,
+    },
 }
 
 /// The part of the steepest slope by which slopes may disagree where the time counts: at most half as much as

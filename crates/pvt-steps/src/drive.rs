@@ -110,11 +110,30 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         self
     }
 
+    /// The limits of the axes, with speeds of at most a step in the least ticks of the driver and three
+    /// more: one for the rounding of each of two steps, one for that of the velocity.
+    fn limits_of_drivers(&self) -> [AxisLimits; N] {
+        let min_intervals = self.timing.min_intervals(self.rate);
+        let least_ticks = u32::try_from(min_intervals.step_ticks).map_or(f64::INFINITY, f64::from);
+        let rate_hz = f64::from(self.rate.numerator()) / f64::from(self.rate.denominator());
+        let most_hz = rate_hz / (least_ticks + 3.0);
+        let mut limits = self.limits;
+        for (axis, scale) in limits.iter_mut().zip(&self.scales) {
+            let most = most_hz / scale.steps_per_unit().abs();
+            // Written so that what is no number stays, to be refused.
+            if axis.speed > most {
+                axis.speed = most;
+            }
+        }
+        limits
+    }
+
     /// The steps along `paths`, with ticks from 0 on: each path in as many segments as keep
     /// `departure`, a bound in the unit of `tolerance`, within it at any speeds.
     ///
-    /// The motors stand where the first path begins. After an error there are no steps, and they may
-    /// be in motion; a path that is looked at whole when it is made gives none.
+    /// The motors stand where the first path begins. No axis is faster than its driver takes steps,
+    /// whatever its limit. After an error there are no steps, and the motors may be in motion: paths that
+    /// are looked at whole when they are made, and go on where those before end, give none.
     ///
     /// # Errors
     /// [`DriveError`] in place of a step, the last item then.
@@ -125,7 +144,8 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         departure: impl Fn(&P, &Span<[f64; N]>) -> f64,
     ) -> impl Iterator<Item = Result<Step, DriveError<P::Error>>> {
         let segments = move |path: &P| segments_within(path, SEGMENTS, tolerance, &departure);
-        let planned = LookAhead::new(paths, self.limits, segments, &mut self.window);
+        let limits = self.limits_of_drivers();
+        let planned = LookAhead::new(paths, limits, segments, &mut self.window);
         let (rows, refused) = match planned {
             Ok(rows) => (Some(rows), None),
             Err(error) => (None, Some(Err(error))),

@@ -74,11 +74,14 @@ impl<const D: usize> From<[f64; D]> for Waypoint<D> {
 /// let points = (0..500).map(|n| [angle(n).cos(), angle(n).sin()].map(|x| rounded(40.0 * x)));
 ///
 /// let mut vertices = [Vertex::default(); 24];
-/// let curves = Smoothed::new(points, 0.01, &mut vertices)?.map_while(Result::ok);
+/// let mut refused = None; // a point that is no number, say: the stream ends before it
+/// let curves = Smoothed::new(points, 0.01, &mut vertices)?;
+/// let curves = curves.map_while(|curve| curve.map_err(|error| refused = Some(error)).ok());
 /// let axis = AxisLimits { speed: 300.0, acceleration: 3000.0, jerk: None };
 /// let mut window = [Knot::default(); 64];
 /// let motion = LookAhead::new(curves, [axis; 2], |_| Ok(1), &mut window)?;
 /// let last = motion.last().unwrap()?;
+/// assert_eq!(refused, None);
 /// assert!(last.time_s < 0.95); // 250 mm at 300 mm/s, and braking distance
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -19,6 +19,15 @@ pub(super) struct Stop {
     length: f64,
 }
 
+/// The part of its last segment by which the phases end before the knot where it rests. There the
+/// acceleration is even on each segment and steps at the knots; with the half, no step is more than the
+/// jerk of the last phase over the time from the middle of a segment to the next:
+///
+/// ```text
+/// w = ∛(9/2 J (x - xₗ/2)²)    at the knots x = xₗ, 2xₗ, 3xₗ .. from rest
+/// ```
+pub(super) const TAIL: f64 = 0.5;
+
 /// Speed and acceleration of the parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct State {
@@ -49,26 +58,13 @@ const FACTOR: f64 = 4.0;
 pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 
 impl Stop {
-    /// The stop that takes a length; none where no jerk makes one.
-    pub(super) fn new(start: State, length: f64, kappa: f64) -> Option<Self> {
-        let with = |jerk: f64| {
-            let State {
-                speed,
-                acceleration: before,
-            } = start;
-            let hardest = kappa * sqrt(jerk * speed + before * before * 0.5);
-            let fall = before + hardest;
-            let stay = (speed + before * before / (2.0 * jerk)) / hardest - hardest / jerk;
-            Self {
-                phases: [
-                    (fall.abs() / jerk, -jerk.copysign(fall)),
-                    (stay.max(0.0), 0.0),
-                    (hardest / jerk, jerk),
-                ],
-                start,
-                reached: 0.0,
-                length,
-            }
+    /// The stop that takes a length, of which the last segment is `last`; none where no jerk makes one.
+    pub(super) fn new(start: State, [length, last]: [f64; 2], kappa: f64) -> Option<Self> {
+        let knot = length;
+        let length = length - last * TAIL;
+        let with = |jerk: f64| Self {
+            length: knot,
+            ..Self::with_jerk(start, jerk, kappa)
         };
         // It would take this length if the speed fell evenly, and would do so in this time.
         let time = 2.0 * length / start.speed;
@@ -97,6 +93,37 @@ impl Stop {
         let stop = with(high);
         let is_found = (stop.end() - length).abs() <= length * CLOSE;
         is_found.then_some(stop)
+    }
+
+    /// The quickest stop within a jerk and a deceleration: its κ and the length that it takes.
+    pub(super) fn quickest(start: State, [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
+        let State {
+            speed,
+            acceleration,
+        } = start;
+        let most = sqrt(jerk * speed + acceleration * acceleration * 0.5);
+        let kappa = (deceleration / most).min(1.0);
+        [kappa, Self::with_jerk(start, jerk, kappa).end()]
+    }
+
+    fn with_jerk(start: State, jerk: f64, kappa: f64) -> Self {
+        let State {
+            speed,
+            acceleration: before,
+        } = start;
+        let hardest = kappa * sqrt(jerk * speed + before * before * 0.5);
+        let fall = before + hardest;
+        let stay = (speed + before * before / (2.0 * jerk)) / hardest - hardest / jerk;
+        Self {
+            phases: [
+                (fall.abs() / jerk, -jerk.copysign(fall)),
+                (stay.max(0.0), 0.0),
+                (hardest / jerk, jerk),
+            ],
+            start,
+            reached: 0.0,
+            length: 0.0,
+        }
     }
 
     /// The length that it takes.
@@ -154,7 +181,7 @@ mod tests {
             acceleration: 1.0,
         };
         for kappa in KAPPAS {
-            let mut stop = Stop::new(start, 3.0, kappa).unwrap();
+            let mut stop = Stop::new(start, [3.0, 0.01], kappa).unwrap();
             let (mut before, mut steepest) = (2.0_f64, 0.0_f64);
             for number in 1..=300 {
                 let speed = stop.step(0.01);

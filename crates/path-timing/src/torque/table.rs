@@ -6,7 +6,7 @@ use super::{Dynamics, TorqueLimits, passes};
 use crate::departure::{Speeds, Within};
 use crate::number::{larger_or_nan, sqrt};
 use crate::passes::segment_s;
-use crate::planner::{Place, bounded, lay_all};
+use crate::planner::{Place, lay_all};
 use crate::reciprocals::Reciprocals;
 use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
 
@@ -64,10 +64,9 @@ impl<D: Dynamics> TorqueLimits<D> {
     ) -> Result<TorqueTable<'a, D::Axes>, PlanError<P::Error>> {
         let limits = Reciprocals::checked(&limits)?;
         let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
-            let segments = segments(place.leg.path());
-            let segments = bounded(place.leg.number, segments, place.rests)?;
-            place.lay_plainly(&limits, segments, 0.0, free)?;
-            Ok(segments)
+            place.lay_resolved(segments(place.leg.path()), |segments| {
+                place.lay_plainly(&limits, segments, 0.0, free)
+            })
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
         let Some([stretch, duration_s]) = self.time(&limits, knots)? else {

@@ -93,6 +93,46 @@ fn fewer_segments_are_taken_where_there_is_no_room_to_be_sure() {
     assert!(matches!(rows(4), Err(PlanError::Memory { .. })));
 }
 
+/// A coarse plan that is not slower than half of it, by chance, is not taken where finer ones are faster,
+/// however little room there is.
+#[test]
+fn a_plan_that_finer_ones_have_shown_to_be_slow_is_not_taken() {
+    let mut random = Random::new(setting("SEED", 3));
+    let mut planned = 0;
+    for _ in 0..setting("PATHS", 40) {
+        let mut end = || [random.within(-200.0, 200.0), random.within(10.0, 200.0)];
+        let line = Line {
+            from: end(),
+            to: end(),
+        };
+        let own = [2.0, 300.0].map(|speed| limits(speed, speed * random.size(0.1, 1.5), None));
+        let mut knots = vec![Knot::default(); FINE as usize + 1];
+        let fine_s = Table::plan([line], own, |_| FINE, &mut knots)
+            .unwrap()
+            .duration_s();
+        for max_time_ratio in [1.000_1, 1.001, 1.002, 1.005] {
+            let accuracy = Accuracy {
+                min_segments: 8,
+                max_departure: 1.0,
+                max_time_ratio,
+            };
+            for room in [50, 100, 200, 2000] {
+                let table =
+                    Table::plan_within([line], own, accuracy, |_, _| 0.0, &mut knots[..room]);
+                let Ok(table) = table else { continue };
+                let ratio = table.duration_s() / fine_s;
+                let what = format!("{line:?}, {own:?}: {ratio} for {max_time_ratio} in {room}");
+                assert!(ratio <= 1.0 + (max_time_ratio - 1.0) * NEARLY, "{what}");
+                planned += 1;
+            }
+        }
+    }
+    assert!(planned > 100, "{planned}");
+}
+
+/// What is lost may be so many times what is allowed where there is no room to be sure.
+const NEARLY: f64 = 3.0;
+
 fn check<P: Path<Axes = [f64; 2]> + Clone>(
     random: &mut Random,
     path: P,

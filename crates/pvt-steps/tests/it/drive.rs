@@ -116,9 +116,31 @@ fn what_is_wrong_is_named_in_place_of_a_step() {
         "{error}"
     );
     assert!(steps.next().is_none());
-    // More steps a second than the driver takes.
-    let mut drive = Drive::new([LIMITS; 2], [1e5; 2], rate()).unwrap();
+    // More steps than there are numbers.
+    let mut drive = Drive::new([LIMITS; 2], [1e9; 2], rate()).unwrap();
     let all = drive.along(curves(), TOLERANCE_MM, Curve::departure);
     let error = all.last().unwrap().unwrap_err();
-    assert!(matches!(error, DriveError::Row(_)), "{error}");
+    assert!(matches!(error, DriveError::Knot(_)), "{error}");
+}
+
+/// With motors that could turn faster than their drivers take steps.
+#[test]
+fn no_axis_is_faster_than_its_driver() {
+    let fast = AxisLimits {
+        speed: 1e6,
+        acceleration: 1e5,
+        jerk: None,
+    };
+    let mut drive = Drive::new([fast; 2], [STEPS_PER_MM; 2], rate()).unwrap();
+    let steps = steps(&mut drive);
+    let timing = StepDirTiming::DRV8825.min_intervals(rate());
+    let mut last = [None; 2];
+    let mut closest = u64::MAX;
+    for step in &steps {
+        if let Some(before) = last[step.axis].replace(step.ticks) {
+            closest = closest.min(step.ticks - before);
+        }
+    }
+    assert!(closest >= timing.step_ticks, "{closest}");
+    assert!(closest <= timing.step_ticks + 4, "{closest}: it is as fast");
 }
