@@ -17,6 +17,7 @@ const PARTS = [
   'machine',
   'load',
   'choice',
+  'board',
 ];
 
 /** Puts the common parts into each page. */
