@@ -10,7 +10,9 @@ import wasm from '../../built/line.wasm?url';
 
 const EVENTS = 50;
 /** From one question where it is to the next, while it moves. */
-const ASK_MS = 300;
+const ASK_MS = 500;
+/** From one look at where it should be to the next: the page has other things to do. */
+const FOLLOW_MS = 100;
 
 /** A telegram, by what becomes of its answer. */
 type Sent = 'motion' | 'where' | 'other';
@@ -48,6 +50,7 @@ export class Board {
   readonly #place = element('board-place', HTMLElement);
   #station: PortStation | undefined;
   #asks = 0;
+  #following = 0;
   /** What the answers that are awaited are to. */
   #awaited: Sent[] = [];
   #isMoving = false;
@@ -235,17 +238,18 @@ export class Board {
   #begun(seconds: number): void {
     if (this.#current < 0) return;
     this.#leg = { beganMs: performance.now(), seconds, heldMs: undefined };
-    requestAnimationFrame(() => this.#follow());
+    this.#follow();
   }
 
   /** Shows where it should be by now. */
   #follow(): void {
+    clearTimeout(this.#following);
     const [leg, motion] = [this.#leg, this.#program[this.#current]];
     if (!leg || !motion) return;
     const seconds = ((leg.heldMs ?? performance.now()) - leg.beganMs) / 1000;
     const part = leg.seconds > 0 ? Math.min(seconds / leg.seconds, 1) : 1;
     this.#operated.seek(motion.fromS + part * (motion.toS - motion.fromS));
-    requestAnimationFrame(() => this.#follow());
+    this.#following = window.setTimeout(() => this.#follow(), FOLLOW_MS);
   }
 
   #done({ place }: Extract<Answer, { place: number[] }>): void {
