@@ -7,7 +7,7 @@ import { connectFirmware, MOCK } from './serial-mock.js';
 /** As `web/build` has it. */
 const IS_BUILT = process.env.PAGE_FIRMWARE !== 'no';
 const HZ = 125_000_000;
-/** Of the arm in firmware/rp2040/src/arm.rs. */
+/** Of the arm of the Pico's firmware. */
 const HOMING_FAST_HZ = 800;
 
 /** @type {Awaited<ReturnType<typeof open>>} */
@@ -102,16 +102,18 @@ const TELEGRAMS = [
   ['status'],
 ];
 
-/** The answers of the machine on this computer. */
-async function answersOfThePc() {
+/**
+ * The answers of the machine on this computer.
+ * @param {import('node:test').TestContext} context
+ */
+async function answersOfThePc(context) {
   const { page, done } = await browser.visit('', { script: MOCK });
-  const end = await connectFirmware(page);
+  context.after(await connectFirmware(page));
   await page.goto(`${browser.url}line.html?view=port`);
   await page.getByRole('button', { name: 'Connect', exact: true }).click();
   const answers = [];
   for (const [text, awaited] of TELEGRAMS) answers.push(await ask(page, text, awaited));
   await done();
-  await end();
   return answers;
 }
 
@@ -119,7 +121,7 @@ test(
   'the Pico answers as the PC, and its edges alone move the arm',
   { skip: !IS_BUILT },
   async (context) => {
-    const planned = await answersOfThePc();
+    const planned = await answersOfThePc(context);
     // A browser without Web Serial has this one.
     const script = "Object.defineProperty(navigator, 'serial', { value: undefined })";
     const { page, done } = await browser.visit('line.html?view=port', { script });

@@ -51,6 +51,8 @@ export class Board {
   #station: PortStation | undefined;
   #asks = 0;
   #following = 0;
+  /** How far from its end the last motion of the program has ended. */
+  #off = '';
   /** What the answers that are awaited are to. */
   #awaited: Sent[] = [];
   #isMoving = false;
@@ -117,6 +119,7 @@ export class Board {
     await this.#station?.close();
     this.#showOpen(false);
     this.#place.textContent = '';
+    this.#off = '';
     this.#operated.show(undefined);
     this.#say(why, isBad);
   }
@@ -129,6 +132,7 @@ export class Board {
   /** A command that moves, and is no part of the program. */
   #order(text: string): void {
     this.#end();
+    this.#off = '';
     this.#isMoving = true;
     this.#say(text);
     this.#send(text, 'motion');
@@ -232,7 +236,7 @@ export class Board {
     this.#operated.show(place);
     const axes = ['x', 'y', 'z'].slice(0, place.length);
     const words = axes.map((axis, index) => `${axis} ${(place[index] ?? 0).toFixed(3)}`);
-    this.#place.textContent = `The board says ${words.join(' ')} mm.`;
+    this.#place.textContent = `The board says ${words.join(' ')} mm.${this.#off}`;
   }
 
   #begun(seconds: number): void {
@@ -264,7 +268,8 @@ export class Board {
     this.#leg = undefined;
     this.#operated.seek(motion.toS);
     const off = Math.hypot(...motion.end.map((it, axis) => it - (place[axis] ?? 0)));
-    this.#place.textContent += ` ${off.toFixed(3)} mm from where ${motion.name} ends.`;
+    this.#off = ` It ended ${motion.name} ${off.toFixed(3)} mm from where that ends.`;
+    this.#showPlace(place);
     this.#next();
   }
 }

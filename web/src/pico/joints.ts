@@ -2,7 +2,7 @@
 import { type ArmPose, armPose, type Point } from '../shared/arm';
 import type { FromSwitches } from './messages';
 
-/** Of the arm in firmware/rp2040/src/arm.rs. */
+/** Of the arm of the Pico's firmware: the page's tests hold it against what that says of itself. */
 export const LINKS_MM = [132, 132] as const;
 const RAD_PER_STEP = (2 * Math.PI) / (200 * 16 * 5);
 /** Where shoulder and elbow are when their switches have just closed. */
