@@ -59,6 +59,8 @@ export class Board {
   #program: Motion[] = [];
   /** The motion of the program under way. */
   #current = -1;
+  /** Whether it is to end with that, though the motion may be over when the board hears of it. */
+  #isStopped = false;
   /** When it began on the page's clock, how long it takes, and since when it rests. */
   #leg: { beganMs: number; seconds: number; heldMs: number | undefined } | undefined;
 
@@ -71,7 +73,11 @@ export class Board {
     onClick('board-disconnect', () => this.#disconnect('Disconnected.'));
     onClick('board-home', () => this.#order('home'));
     onClick('board-run', () => this.#run());
-    for (const name of ['hold', 'resume', 'stop']) onClick(`board-${name}`, () => this.#send(name));
+    for (const name of ['hold', 'resume']) onClick(`board-${name}`, () => this.#send(name));
+    onClick('board-stop', () => {
+      this.#isStopped = true;
+      this.#send('stop');
+    });
     element('board-jog', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
       const by = element('board-by', HTMLInputElement).valueAsNumber;
@@ -148,6 +154,7 @@ export class Board {
     try {
       this.#program = await this.#operated.program();
       this.#current = -1;
+      this.#isStopped = false;
       this.#next();
     } catch (error) {
       this.#say(message(error), true);
@@ -270,7 +277,8 @@ export class Board {
     const off = Math.hypot(...motion.end.map((it, axis) => it - (place[axis] ?? 0)));
     this.#off = ` It ended ${motion.name} ${off.toFixed(3)} mm from where that ends.`;
     this.#showPlace(place);
-    this.#next();
+    if (this.#isStopped) this.#ended('stopped at its end', false);
+    else this.#next();
   }
 }
 
