@@ -17,6 +17,7 @@ const PARTS = [
   'machine',
   'load',
   'choice',
+  'board',
 ];
 
 /** Puts the common parts into each page. */
@@ -68,11 +69,16 @@ function offline(): Plugin {
 
 export default defineConfig({
   base: './',
+  // The Pico of firmware/emulate has what it needs of npm from here.
+  resolve: {
+    alias: { rp2040js: resolve(import.meta.dirname, 'node_modules/rp2040js/dist/esm/index.js') },
+  },
   plugins: [frame(), offline()],
   build: {
     target: 'es2022',
     assetsInlineLimit: 0,
     rolldownOptions: { input: pages.map((page) => resolve(import.meta.dirname, page)) },
   },
-  worker: { format: 'es' },
+  // `rp2040js` asks Node.js for its clock in such a way, where there is one.
+  worker: { format: 'es', rolldownOptions: { checks: { eval: false } } },
 });

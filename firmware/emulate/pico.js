@@ -14,6 +14,7 @@ export const CYCLES_PER_SECOND = 125_000_000;
 const CYCLE_NANOS = 1e9 / CYCLES_PER_SECOND;
 
 const FLASH = 0x10000000;
+const RAM = 0x20000000;
 /** Behind the second stage of the boot. */
 const VECTORS = 0x10000100;
 const UART0 = 0x40034;
@@ -34,8 +35,12 @@ export class Pico {
   #core;
   #clock;
   #pio;
+  /** The one of the PIO that the firmware uses. */
+  #machine;
   #uart;
   #switches;
+  /** The cycle in which the next instruction begins. */
+  #now = 0;
   /** While the PIO is stepped: the cycle it is in. */
   #cycle = 0;
   #levels = 0;
@@ -43,7 +48,6 @@ export class Pico {
   #sent = [];
   /** Characters on their way in: `{ end, byte, errors }`, in cycles. */
   #coming = [];
-  #isBroken;
 
   /** @param {Uint8Array} program an ELF of `firmware/rp2040` */
   constructor(program, fromSwitches = [500, 300], bounceCycles = 0) {
@@ -56,7 +60,7 @@ export class Pico {
     return this.#switches;
   }
 
-  /** Cycles since it was switched on for the first time. */
+  /** Cycles since it was switched on for the first time; in the middle of an instruction those of an alarm. */
   get cycle() {
     return Math.round(this.#clock.nanos / CYCLE_NANOS);
   }
@@ -93,6 +97,8 @@ export class Pico {
     }
     const [core, clock, pio] = [rp2040.core, rp2040.clock, rp2040.pio[0]];
     clock.tick(cycle * CYCLE_NANOS);
+    this.#now = cycle;
+    writeMemoryFirst(rp2040);
     this.#uart = new Pl011(rp2040, "UART0", UART0_IRQ);
     this.#uart.onByte = (byte) => this.#sent.push([this.cycle, byte]);
     rp2040.peripherals[UART0] = this.#uart;
@@ -102,6 +108,7 @@ export class Pico {
       rp2040.gpio[pin].addListener(() => this.#pinsChanged());
     }
     [this.#rp2040, this.#core, this.#clock, this.#pio] = [rp2040, core, clock, pio];
+    this.#machine = pio.machines[0];
     this.#cycle = cycle;
     this.#pinsChanged();
     core.VTOR = VECTORS;
@@ -141,18 +148,19 @@ export class Pico {
   /** Goes on to a cycle, or until a byte has been sent. */
   run(until) {
     const core = this.#core;
-    while (this.#sent.length === 0 && this.cycle < until) {
+    const sent = this.#sent;
+    while (sent.length === 0 && this.#now < until) {
       // Between two looks nothing comes from outside.
-      const outside = Math.min(until, this.cycle + 12500, this.#coming[0]?.end ?? Infinity);
+      const outside = Math.min(until, this.#now + 12500, this.#coming[0]?.end ?? Infinity);
       this.#look();
-      while (this.#sent.length === 0 && this.cycle < outside) {
+      while (sent.length === 0 && this.#now < outside) {
         if (core.waiting) {
           this.#sleep(outside);
         } else {
           this.#pass(core.executeInstruction());
         }
       }
-      while (this.#coming[0]?.end <= this.cycle) {
+      while (this.#coming[0]?.end <= this.#now) {
         const { byte, errors } = this.#coming.shift();
         this.#uart.receive(byte, errors);
       }
@@ -167,13 +175,13 @@ export class Pico {
       return;
     }
     const alarm = this.#clock.nextAlarm ? Math.ceil(this.#clock.nextAlarm.nanos / CYCLE_NANOS) : Infinity;
-    const cycles = Math.max(1, Math.min(until, alarm) - this.cycle);
+    const cycles = Math.max(1, Math.min(until, alarm) - this.#now);
     this.#pass(this.#pioEvent(cycles));
   }
 
   /** Up to so many cycles, or until the PIO's next instruction that does more than to count. */
   #pioEvent(cycles) {
-    const machine = this.#pio.machines[0];
+    const machine = this.#machine;
     if (!machine.enabled || machine.waiting) {
       return cycles;
     }
@@ -186,14 +194,21 @@ export class Pico {
 
   /** Processor and PIO have taken so many cycles. */
   #pass(cycles) {
-    const begin = this.cycle;
+    const begin = this.#now;
+    this.#now = begin + cycles;
     this.#stepPio(begin, cycles);
-    this.#clock.tick(cycles * CYCLE_NANOS);
+    const clock = this.#clock;
+    const nanos = this.#now * CYCLE_NANOS;
+    if (clock.nextAlarm?.nanos <= nanos) {
+      clock.tick(nanos - clock.nanos);
+    } else {
+      clock.nanosCounter = nanos;
+    }
   }
 
   #stepPio(begin, cycles) {
     const pio = this.#pio;
-    const machine = pio.machines[0];
+    const machine = this.#machine;
     if (!machine.enabled) {
       return;
     }
@@ -217,4 +232,18 @@ export class Pico {
       left -= 1;
     }
   }
+}
+
+/** Most of what is written goes to the memory, which `rp2040js` has behind all else. */
+function writeMemoryFirst(rp2040) {
+  const { sram, sramView } = rp2040;
+  const write = rp2040.writeUint32.bind(rp2040);
+  rp2040.writeUint32 = (address, value) => {
+    const offset = (address >>> 0) - RAM;
+    if (offset >= 0 && offset + 3 < sram.length) {
+      sramView.setUint32(offset, value, true);
+    } else {
+      write(address, value);
+    }
+  };
 }

@@ -10,11 +10,12 @@ const WASM = readFileSync(join(ROOT, 'web/built/line.wasm')).toString('base64');
 /** Replaces the browser's ports: the script for a page, before its own. */
 export const MOCK = `(${install})(${JSON.stringify(WASM)})`;
 
-/**
- * Puts the boards' firmware, run on this computer, at the other end of the ports that a page with MOCK will open.
- * @param {import('playwright-core').Page} page
- */
-export async function connectFirmware(page) {
+/** A folder of cargo's with programs that are built. */
+const BUILT = process.env.PAGE_TEST_PROGRAMS;
+
+/** The firmware as a program, which is built where it is not. */
+function simulator() {
+  if (BUILT) return join(ROOT, BUILT, 'examples/simulate');
   const args = [
     'build',
     '--quiet',
@@ -26,9 +27,16 @@ export async function connectFirmware(page) {
   ];
   const built = spawnSync('cargo', args, { cwd: ROOT, stdio: 'inherit' });
   assert.equal(built.status, 0);
-  const firmware = spawn(join(ROOT, 'target/debug/examples/simulate'), {
-    stdio: ['pipe', 'pipe', 'inherit'],
-  });
+  return join(ROOT, 'target/debug/examples/simulate');
+}
+
+/**
+ * Puts the boards' firmware, run on this computer, at the other end of the ports that a page with MOCK will open.
+ * @param {import('playwright-core').Page} page
+ * @param {string} [machine]
+ */
+export async function connectFirmware(page, machine = 'arm') {
+  const firmware = spawn(simulator(), [machine], { stdio: ['pipe', 'pipe', 'inherit'] });
   const ended = new Promise((end) => firmware.on('close', (status) => end(status)));
   firmware.stdout.on('data', (/** @type {Buffer} */ bytes) => {
     page.evaluate(`fromFirmware(${JSON.stringify([...bytes])})`).catch(() => undefined);

@@ -54,7 +54,9 @@ where
     let mut driver = Driver::new(station, reader, writer, Clock);
     let mut answers = Deque::<Text, ANSWERS>::new();
     loop {
-        if let (false, Some(answer)) = (driver.is_busy(), answers.pop_front()) {
+        if !driver.is_busy()
+            && let Some(answer) = answers.pop_front()
+        {
             // It is neither busy nor is the answer too long.
             let _ = driver.submit(answer.as_bytes());
         }

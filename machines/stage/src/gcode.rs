@@ -6,6 +6,7 @@ mod block;
 mod codes;
 mod interpreter;
 mod program;
+mod telegrams;
 mod words;
 
 pub(crate) use self::arc::ARC_TOLERANCE_MM;

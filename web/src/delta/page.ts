@@ -9,6 +9,7 @@ import spiral from '../../../machines/delta/inputs/spiral.txt?raw';
 import loaded from '../../../machines/delta/loaded.toml?raw';
 import shipped from '../../../machines/delta/machine.toml?raw';
 import wasm from '../../built/delta.wasm?url';
+import { Board, type Motion } from '../board/board';
 import { Chart } from '../shared/chart';
 import { element, onClick, save, settled } from '../shared/dom';
 import { Editor, linesOf } from '../shared/editor';
@@ -20,7 +21,7 @@ import { Machine, Superseded } from '../shared/machine';
 import { FileButtons, Status } from '../shared/result';
 import { columns, countUntil } from '../shared/rows';
 import { MachineChoice, machineForm } from '../shared/settings';
-import { viewButtons } from '../shared/space';
+import { type Point3, viewButtons } from '../shared/space';
 import {
   intoLink,
   isLinked,
@@ -206,6 +207,29 @@ function showArms(chart: Chart, driving: Driving, quantity: Quantity, limit?: nu
   const limitValues = limits.map((it) => times.map(() => it));
   chart.show([...limitLines, ...lines], [times, ...limitValues, ...values]);
 }
+
+/** The lines as telegrams of a board, with the times that the run on the page has for them. */
+async function motions(): Promise<Motion[]> {
+  if (!shown) throw new Error('nothing has been driven yet');
+  if (shown.result.refused !== null) throw new Error(shown.result.refused);
+  let fromS = 0;
+  return shown.lines.map(({ to, feed, endS }, index) => {
+    const place = to.map((it) => it.toFixed(4)).join(' ');
+    const name = `motion ${index + 1}`;
+    const motion = { telegram: `line ${place} ${feed}`, name, fromS, toS: endS, end: to };
+    fromS = endS;
+    return motion;
+  });
+}
+
+new Board({
+  name: 'delta',
+  axes: ['arm1', 'arm2', 'arm3'],
+  unit: 'By, in degrees',
+  program: motions,
+  show: (place) => scene.say(place as Point3 | undefined),
+  seek,
+});
 
 async function calibrate(): Promise<void> {
   const parameters = {

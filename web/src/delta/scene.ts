@@ -1,5 +1,5 @@
 // The robot in space: workspace, lines, path, and the mechanism at a time. Points can be dragged.
-import { colour } from '../shared/dom';
+import { colour, element } from '../shared/dom';
 import {
   type Ball,
   closed,
@@ -25,6 +25,8 @@ export class Scene {
   #text = '';
   #points: Waypoint[] = [];
   #bad = new Set<number>();
+  /** Where a board says that its platform is. */
+  #said: Point3 | undefined;
 
   /** `change` gets the text with a point that has been dragged. */
   constructor(canvas: HTMLCanvasElement, change: (text: string) => void) {
@@ -66,6 +68,12 @@ export class Scene {
     this.space.redraw();
   }
 
+  say(place: Point3 | undefined): void {
+    this.#said = place;
+    element('said-key', HTMLElement).hidden = place === undefined;
+    this.space.redraw();
+  }
+
   #draw(pen: Pen): void {
     const driving = this.#driving;
     if (!driving) return;
@@ -79,6 +87,7 @@ export class Scene {
     for (const { line, point } of this.#points) {
       pen.dot(colour(this.#bad.has(line) ? 'bad' : 'text'), this.#bad.has(line) ? 6 : 4, point);
     }
+    if (this.#said) pen.dot(colour('series-2'), 7, this.#said);
   }
 }
 

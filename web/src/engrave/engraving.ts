@@ -1,4 +1,5 @@
 // What the machine made of a drawing, ready to be asked for any time.
+import { type ArmPose, armPose, type Point } from '../shared/arm';
 import { Limits } from '../shared/limits';
 import { torqueLimits } from '../shared/load';
 import type { Answer } from '../shared/machine';
@@ -39,10 +40,8 @@ export interface Pin {
   positions: Int32Array;
 }
 
-/** The arm in the plane, in mm and radians. */
-export interface Pose {
-  elbow: [number, number];
-  tool: [number, number];
+/** The arm, and which way its disc stands. */
+export interface Pose extends ArmPose {
   disc: number;
 }
 
@@ -103,14 +102,9 @@ export class Engraving {
     const { upper_mm, fore_mm, home_rad, rad_per_pulse } = this.result.report.machine;
     const angle = (axis: keyof Joints) =>
       home_rad[axis] + this.position(axis, seconds) * rad_per_pulse[axis];
-    const upper = angle('shoulder');
-    const fore = upper + angle('elbow');
-    const elbow: [number, number] = [upper_mm * Math.cos(upper), upper_mm * Math.sin(upper)];
-    const tool: [number, number] = [
-      elbow[0] + fore_mm * Math.cos(fore),
-      elbow[1] + fore_mm * Math.sin(fore),
-    ];
-    return { elbow, tool, disc: fore + angle('disc') };
+    const joints: Point = [angle('shoulder'), angle('elbow')];
+    const disc = joints[0] + joints[1] + angle('disc');
+    return { ...armPose([upper_mm, fore_mm], joints), disc };
   }
 
   /** The distance of the tool from the drawing around a time, in mm. */

@@ -1,4 +1,5 @@
 // The machine from above: drawing, path by its distance from the drawing, and the arm at a time.
+import { drawLinks } from '../shared/arm';
 import { colour, element } from '../shared/dom';
 import {
   type Bounds,
@@ -117,28 +118,17 @@ function drawArm(
   seconds: number,
   px: number,
 ): void {
-  const { elbow, tool, disc } = engraving.pose(seconds);
+  const { disc, ...pose } = engraving.pose(seconds);
   context.strokeStyle = colour('arm');
   context.fillStyle = colour('arm');
-  context.globalAlpha = 0.75;
-  context.lineWidth = 7 * px;
-  context.beginPath();
-  context.moveTo(0, 0);
-  context.lineTo(...elbow);
-  context.lineTo(...tool);
-  context.stroke();
-  for (const [x, y] of [[0, 0], elbow] as const) {
-    context.beginPath();
-    context.arc(x, y, 8 * px, 0, 2 * Math.PI);
-    context.fill();
-  }
+  drawLinks(context, pose, px);
   // The disc stands on edge: from above a line along the stroke.
   const [dx, dy] = [DISC_MM * Math.cos(disc), DISC_MM * Math.sin(disc)];
+  const [x, y] = pose.tool;
   context.strokeStyle = colour('now');
-  context.globalAlpha = 1;
   context.lineWidth = 3 * px;
   context.beginPath();
-  context.moveTo(tool[0] - dx, tool[1] - dy);
-  context.lineTo(tool[0] + dx, tool[1] + dy);
+  context.moveTo(x - dx, y - dy);
+  context.lineTo(x + dx, y + dy);
   context.stroke();
 }

@@ -1,21 +1,17 @@
 // A station, or a tap with two ports, on real ports.
+import { asText, PortStation, type Pulled, type StationEvent } from '../board/station';
 import { create, element, onClick } from '../shared/dom';
 import { AddressFields } from '../shared/fields';
+import type { Answer } from '../shared/machine';
+import { PicoPanel } from '../pico/panel';
+import { hasFirmware, NO_FIRMWARE } from '../pico/pico';
 import { toAddress } from '../shared/store';
 import { COMMANDS, type Command } from './commands';
 import { Conversation, type News } from './conversation';
 import type { Desk, Of, View } from './desk';
 import { tell } from './events';
-import { type Damage, NoPortChosen, OpenPort, serial } from './port';
+import { choosePort, type Damage, NoPortChosen, OpenPort, type Port, serial } from './port';
 import { readTelegram, type Telegram } from './station-panel';
-
-interface Pulled extends News {
-  transmit: number[];
-  events: { text: string; isGood: boolean; telegram: number[] | null }[];
-  activity: string;
-  isBusy: boolean;
-  deadlineS: number | null;
-}
 
 /** How often the verdict on the last minute is asked for. */
 const JUDGE_MS = 500;
@@ -23,6 +19,8 @@ const EVENTS = 50;
 /** What is set of a port, by the ids of its fields, which are the names in the address too. */
 const SETTINGS = ['role', 'port-preset', 'priority', 'baud', 'parity'] as const;
 type Setting = (typeof SETTINGS)[number];
+const PICO_NOTE =
+  'The Pico on this page is the firmware of the board, instruction by instruction, with its arm and switches: 9600 bits per second, even parity. It needs no board and no Web Serial.';
 
 export class Live implements View {
   readonly follows = true;
@@ -31,31 +29,43 @@ export class Live implements View {
     : 'This browser has no Web Serial: Chrome, Edge and Opera have it';
   conversation = new Conversation();
   readonly #desk: Desk;
-  #ports: OpenPort[] = [];
+  readonly #pico: PicoPanel;
+  readonly #station: PortStation;
+  #isOpen = false;
+  /** Both ports of a tap. */
+  #taps: OpenPort[] = [];
   #beganMs = 0;
-  #deadline = 0;
   #judge = 0;
-  #waiting: Telegram[] = [];
-  #isBusy = false;
 
   constructor(desk: Desk) {
     this.#desk = desk;
+    this.#station = new PortStation(desk.machine, {
+      pulled: (answer) => this.#pulled(answer),
+      refused: (where, error) => desk.refuse(this, where, error),
+      ended: (why) => this.#ended(why),
+    });
     const fields = Object.fromEntries(SETTINGS.map((id) => [id, this.#field(id)]));
     const address = new AddressFields(fields, () => {
       toAddress(address.values);
       this.#showRole();
     });
-    onClick('connect', () => this.#connect());
+    this.#pico = new PicoPanel(
+      (text) => this.#send({ text, is_hex: false }),
+      (error) => {
+        desk.refuse(this, 'the Pico', error);
+        this.#disconnect();
+      },
+    );
+    element('pico-note', HTMLElement).textContent = hasFirmware ? PICO_NOTE : NO_FIRMWARE;
+    onClick('connect', () => this.#connect(choosePort));
+    onClick('connect-pico', () => this.#connect(() => this.#pico.port()));
     onClick('disconnect', () => this.#disconnect());
     const form = element('live-send', HTMLFormElement);
     form.addEventListener('submit', (event) => {
       event.preventDefault();
       this.#send(readTelegram(form));
     });
-    onClick('cancel', () => {
-      this.#waiting = [];
-      this.#push({ cancel: true });
-    });
+    onClick('cancel', () => this.#station.cancel());
     for (const command of COMMANDS) element('commands', HTMLElement).append(this.#command(command));
     this.#showRole();
     this.#showOpen();
@@ -76,9 +86,11 @@ export class Live implements View {
   }
 
   #showOpen(): void {
-    const isOpen = this.#ports.length > 0;
+    const isOpen = this.#isOpen;
     element('connect', HTMLButtonElement).disabled = isOpen || !serial;
+    element('connect-pico', HTMLButtonElement).disabled = isOpen || !hasFirmware;
     element('disconnect', HTMLButtonElement).disabled = !isOpen;
+    this.#pico.connected(isOpen);
     element('live-activity', HTMLElement).textContent = isOpen ? 'idle' : 'no port';
     for (const id of SETTINGS) this.#field(id).disabled = isOpen;
     for (const part of document.querySelectorAll<HTMLFieldSetElement>('fieldset.station-only')) {
@@ -86,7 +98,7 @@ export class Live implements View {
     }
   }
 
-  async #connect(): Promise<void> {
+  async #connect(choose: () => Promise<Port>): Promise<void> {
     const [baud, parity] = [Number(this.#field('baud').value), this.#field('parity').value];
     const preset = this.#field('port-preset').value;
     try {
@@ -94,33 +106,26 @@ export class Live implements View {
       this.#desk.show(this);
       if (this.of === 'station') {
         const priority = this.#field('priority').value;
-        const bits = parity === 'none' ? 10 : 11;
-        await this.#desk.machine.call('line.station.begin', { preset, priority, baud, bits });
+        await this.#station.open(choose, { preset, priority, baud, parity });
       } else {
         await this.#desk.machine.call('line.tap.begin', { preset });
+        this.#beganMs = performance.now();
+        // A tap hears A on the first port, B on the second one.
+        for (const isFromB of [false, true]) {
+          const listener = {
+            hear: (bytes: Uint8Array) => this.#tap({ is_from_b: isFromB, bytes: [...bytes] }),
+            damaged: (damage: Damage) =>
+              this.#tap({ is_from_b: isFromB, damage: damage === 'break' ? 'framing' : damage }),
+            ended: (why: unknown) => this.#ended(why),
+          };
+          this.#taps.push(await OpenPort.open(await choose(), baud, parity, listener));
+        }
       }
-      this.#beganMs = performance.now();
-      // A tap hears A on the first port, B on the second one.
-      for (let index = 0; index < (this.of === 'station' ? 1 : 2); index += 1) {
-        const from = this.of === 'tap' ? { is_from_b: index === 1 } : {};
-        const listener = {
-          hear: (bytes: Uint8Array) => this.#push({ ...from, bytes: [...bytes] }),
-          damaged: (damage: Damage) =>
-            this.#push(
-              damage === 'break' && this.of === 'station'
-                ? { is_break: true }
-                : { ...from, damage: damage === 'break' ? 'framing' : damage },
-            ),
-          ended: (why: unknown) => {
-            this.#desk.refuse(this, 'port', why);
-            this.#disconnect();
-          },
-        };
-        this.#ports.push(await OpenPort.choose(baud, parity, listener));
-      }
+      this.#isOpen = true;
       this.#showOpen();
-      this.#judge = window.setInterval(() => this.#push({ judge: true }), JUDGE_MS);
-      this.#push({});
+      const push = (happened: Record<string, unknown>) =>
+        this.of === 'station' ? this.#station.push(happened) : this.#tap(happened);
+      this.#judge = window.setInterval(() => push({ judge: true }), JUDGE_MS);
     } catch (error) {
       await this.#disconnect();
       if (error instanceof NoPortChosen) this.#desk.status.say('No port was chosen');
@@ -128,75 +133,58 @@ export class Live implements View {
     }
   }
 
+  #ended(why: unknown): void {
+    this.#desk.refuse(this, 'port', why);
+    this.#disconnect();
+  }
+
   async #disconnect(): Promise<void> {
     clearInterval(this.#judge);
-    clearTimeout(this.#deadline);
-    const ports = this.#ports;
-    this.#ports = [];
-    this.#waiting = [];
-    this.#isBusy = false;
-    for (const port of ports) await port.close();
+    this.#isOpen = false;
+    const taps = this.#taps;
+    this.#taps = [];
+    await this.#station.close();
+    for (const port of taps) await port.close();
     this.#showOpen();
   }
 
   get #nowS(): number {
-    return (performance.now() - this.#beganMs) / 1000;
+    return this.of === 'station' ? this.#station.nowS : (performance.now() - this.#beganMs) / 1000;
   }
 
-  /** Pushes what has happened, and does what follows. */
-  async #push(happened: Record<string, unknown>): Promise<void> {
-    const of = this.of;
+  async #tap(happened: Record<string, unknown>): Promise<void> {
     try {
       const parameters = { now_s: this.#nowS, ...happened };
-      const answer = await this.#desk.machine.call<Pulled>(`line.${of}`, parameters);
-      this.conversation.take(answer);
-      if (this.#ports.length > 0) this.conversation.nowS = this.#nowS;
-      if (of === 'station') this.#pulled(answer.value);
-      this.#desk.update(this);
+      this.#heard(await this.#desk.machine.call<News>('line.tap', parameters));
     } catch (error) {
-      this.#isBusy = false;
       this.#desk.refuse(this, '', error);
     }
   }
 
-  #pulled({ transmit, events, activity, isBusy, deadlineS }: Pulled): void {
-    if (transmit.length > 0) {
-      this.#ports[0]?.write(new Uint8Array(transmit)).catch((error) => {
-        this.#desk.refuse(this, 'port', error);
-      });
-    }
-    for (const event of events) this.#tell(event);
-    element('live-activity', HTMLElement).textContent = activity;
-    clearTimeout(this.#deadline);
-    if (deadlineS !== null && this.#ports.length > 0) {
-      const ms = Math.max((deadlineS - this.#nowS) * 1000, 0);
-      this.#deadline = window.setTimeout(() => this.#push({}), Math.ceil(ms));
-    }
-    this.#isBusy = isBusy;
-    this.#sendNext();
+  #pulled(answer: Answer<Pulled>): void {
+    for (const event of answer.value.events) this.#tell(event);
+    element('live-activity', HTMLElement).textContent = answer.value.activity;
+    this.#heard(answer);
   }
 
-  #tell({ text, isGood, telegram }: Pulled['events'][number]): void {
+  #heard(news: Answer<News>): void {
+    this.conversation.take(news);
+    if (this.#isOpen) this.conversation.nowS = this.#nowS;
+    this.#desk.update(this);
+  }
+
+  #tell({ text, isGood, telegram }: StationEvent): void {
     const list = element('live-events', HTMLElement);
-    const isText = telegram?.every((byte) => byte >= 0x20 && byte < 0x7f) && telegram.length > 0;
-    const words = isText ? `received "${String.fromCharCode(...(telegram ?? []))}"` : text;
+    const received = asText(telegram);
+    if (received !== undefined) this.#pico.heard(received);
+    const words = received === undefined ? text : `received "${received}"`;
     tell(list, EVENTS, { atS: this.#nowS, text: words, isGood });
     list.parentElement?.scrollTo(0, list.scrollHeight);
   }
 
   #send(telegram: Telegram): void {
     this.#desk.goOn(this);
-    this.#waiting.push(telegram);
-    this.#sendNext();
-  }
-
-  /** A station has one telegram at a time. */
-  #sendNext(): void {
-    if (this.#isBusy) return;
-    const send = this.#waiting.shift();
-    if (!send) return;
-    this.#isBusy = true;
-    this.#push({ send });
+    this.#station.send(telegram);
   }
 
   /** A button of the machine, and the fields of its words. */

@@ -6,6 +6,8 @@ export interface Port extends EventTarget {
   readonly writable: WritableStream<Uint8Array> | null;
   open(options: { baudRate: number; parity: string; bufferSize: number }): Promise<void>;
   close(): Promise<void>;
+  /** Its time in s, if that is not of this computer. */
+  readonly nowS?: number;
 }
 
 interface Serial {
@@ -35,6 +37,15 @@ export class NoPortChosen extends Error {}
 
 export const serial = (navigator as unknown as { serial?: Serial }).serial;
 
+/** Lets the user choose a port. */
+export async function choosePort(): Promise<Port> {
+  if (!serial) throw new Error('this browser has no Web Serial: Chrome, Edge and Opera have it');
+  return serial.requestPort().catch((error: unknown) => {
+    const isCancelled = error instanceof DOMException && error.name === 'NotFoundError';
+    throw isCancelled ? new NoPortChosen() : error;
+  });
+}
+
 export class OpenPort {
   readonly #port: Port;
   readonly #writer: WritableStreamDefaultWriter<Uint8Array>;
@@ -48,16 +59,20 @@ export class OpenPort {
     this.#reading = this.#read(listener);
   }
 
-  /** Lets the user choose a port, and opens it. */
-  static async choose(baudRate: number, parity: string, listener: Listener): Promise<OpenPort> {
-    if (!serial) throw new Error('this browser has no Web Serial: Chrome, Edge and Opera have it');
-    const port = await serial.requestPort().catch((error: unknown) => {
-      const isCancelled = error instanceof DOMException && error.name === 'NotFoundError';
-      throw isCancelled ? new NoPortChosen() : error;
-    });
+  static async open(
+    port: Port,
+    baudRate: number,
+    parity: string,
+    listener: Listener,
+  ): Promise<OpenPort> {
     await port.open({ baudRate, parity, bufferSize: 4096 });
     if (!port.writable) throw new Error('the port cannot be written to');
     return new OpenPort(port, port.writable, listener);
+  }
+
+  /** The time of what it hears and sends, in s. */
+  get nowS(): number {
+    return this.#port.nowS ?? performance.now() / 1000;
   }
 
   write(bytes: Uint8Array): Promise<void> {

@@ -95,7 +95,7 @@ export interface Gestures {
   /** What is dragged instead of the view, if something is at this place. */
   grab?(x: number, y: number): ((dx: number, dy: number) => void) | undefined;
   /** A click that has dragged nothing. */
-  click?(x: number): void;
+  click?(x: number, y: number): void;
   /** What keys zoom about, unless the middle. */
   focus?(): [number, number];
 }
@@ -147,7 +147,7 @@ export function takeGestures(canvas: HTMLCanvasElement, gestures: Gestures): voi
   canvas.addEventListener('pointerup', up);
   canvas.addEventListener('pointercancel', up);
   canvas.addEventListener('click', (event) => {
-    if (draggedPx < DRAG_PX) gestures.click?.(event.offsetX);
+    if (draggedPx < DRAG_PX) gestures.click?.(event.offsetX, event.offsetY);
   });
   canvas.addEventListener('dblclick', () => gestures.reset());
   canvas.addEventListener('keydown', (event) => {

@@ -28,8 +28,13 @@ export class Plane {
   /** Unless it shows all. */
   #view: View | undefined;
 
-  /** Without bounds there is nothing to draw yet. */
-  constructor(canvas: HTMLCanvasElement, bounds: () => Bounds | undefined, draw: DrawPlane) {
+  /** Without bounds there is nothing to draw yet. `pick` is told a place that is clicked, in mm. */
+  constructor(
+    canvas: HTMLCanvasElement,
+    bounds: () => Bounds | undefined,
+    draw: DrawPlane,
+    pick?: (x: number, y: number) => void,
+  ) {
     this.#bounds = bounds;
     this.#drawPlane = draw;
     const [x, y, zoom] = numbersFromLink('view', 3) ?? [];
@@ -54,6 +59,13 @@ export class Plane {
           return { x: view.x + dx * by, y: view.y + dy * by, zoom: view.zoom * factor };
         }),
       reset: () => this.#change(() => undefined),
+      click: (px, py) => {
+        const seen = this.#seen;
+        if (!seen) return;
+        const { view, scale } = seen;
+        const [right, up] = [px - this.#picture.width / 2, this.#picture.height / 2 - py];
+        pick?.(view.x + right / scale, view.y + up / scale);
+      },
     });
     onColours(() => this.#picture.redraw());
   }
@@ -62,21 +74,27 @@ export class Plane {
     this.#picture.redraw();
   }
 
-  #change(change: (view: View, scale: number) => View | undefined): void {
+  /** What is seen, and the pixels of a mm. */
+  get #seen(): { view: View; scale: number } | undefined {
     const bounds = this.#bounds();
-    if (!bounds) return;
+    if (!bounds) return undefined;
     const view = this.#view ?? all(bounds);
     const { width, height } = this.#picture;
-    this.#view = change(view, view.zoom * fit(bounds, width, height));
+    return { view, scale: view.zoom * fit(bounds, width, height) };
+  }
+
+  #change(change: (view: View, scale: number) => View | undefined): void {
+    const seen = this.#seen;
+    if (!seen) return;
+    this.#view = change(seen.view, seen.scale);
     linkChanged();
     this.#picture.redraw();
   }
 
   #draw(context: CanvasRenderingContext2D, width: number, height: number): void {
-    const bounds = this.#bounds();
-    if (!bounds) return;
-    const view = this.#view ?? all(bounds);
-    const scale = view.zoom * fit(bounds, width, height);
+    const seen = this.#seen;
+    if (!seen) return;
+    const { view, scale } = seen;
     context.save();
     context.translate(width / 2 - scale * view.x, height / 2 + scale * view.y);
     context.scale(scale, -scale);

@@ -10,6 +10,7 @@ import test from '../../../machines/stage/drawings/test.gcode?raw';
 import loaded from '../../../machines/stage/loaded.toml?raw';
 import shipped from '../../../machines/stage/machine.toml?raw';
 import wasm from '../../built/stage.wasm?url';
+import { Board, type Motion } from '../board/board';
 import { Chart } from '../shared/chart';
 import { element, onClick, save, settled } from '../shared/dom';
 import { Editor, linesOf } from '../shared/editor';
@@ -209,6 +210,32 @@ function showCharts(run: Run): void {
   corrections.show([{ label: 'corrected', colour: 'series-1' }], [corrected as number[], steps]);
 }
 
+/** The program as telegrams of a board, with the times that the run on the page has for them. */
+async function motions(): Promise<Motion[]> {
+  const { value } = await machine.call<{
+    lines: number[];
+    telegrams: string[];
+    ends: [number, number][];
+  }>('stage.telegrams', { name: program.name, gcode: editor.text });
+  const [begin = [0, 0]] = value.ends;
+  const toBegin = `line ${begin.map((it) => it.toFixed(4)).join(' ')}`;
+  const first = { telegram: toBegin, name: 'the way to its begin', fromS: 0, toS: 0, end: begin };
+  const rest = value.telegrams.map((telegram, leg) => {
+    const [fromS, toS] = shown?.timesOf(leg) ?? [0, 0];
+    const name = `line ${value.lines[leg]}`;
+    return { telegram, name, fromS, toS, end: value.ends[leg + 1] ?? begin };
+  });
+  return [first, ...rest];
+}
+
+new Board({
+  name: 'stage',
+  axes: ['x', 'y'],
+  unit: 'By, in mm',
+  program: motions,
+  show: (place) => scene.say(place as [number, number] | undefined),
+  seek,
+});
 element('input', HTMLFormElement).addEventListener('submit', (event) => event.preventDefault());
 onClick('save-program', () => save(program.file, editor.text));
 open();

@@ -2,7 +2,7 @@
 import type { Answer } from '../shared/machine';
 import { Limits } from '../shared/limits';
 import { torqueLimits } from '../shared/load';
-import { around, columns, countUntil, numbers } from '../shared/rows';
+import { around, columns, countUntil, countWhile, numbers } from '../shared/rows';
 
 /** The JSON of the operation; the report is that of the command line. */
 export interface Result {
@@ -141,6 +141,16 @@ export class Run {
     if (number < 0 || number * LEG >= this.#legs.length) return undefined;
     const [line = 0, isRapid = 0, feedMmS = 0] = this.#legs.subarray(number * LEG);
     return { line, isRapid: isRapid > 0, feedMmS };
+  }
+
+  /** When a motion begins and ends, as far as the points of the picture tell. */
+  timesOf(leg: number): [number, number] {
+    const { closed } = this;
+    const from = countWhile(closed.times.length, (point) => closed.leg(point) < leg);
+    const to = countWhile(closed.times.length, (point) => closed.leg(point) <= leg);
+    const at = (point: number) =>
+      closed.times[Math.min(Math.max(point, 0), closed.times.length - 1)];
+    return [at(from) ?? 0, at(to - 1) ?? 0];
   }
 
   /** The mean speed around a time. */

@@ -20,6 +20,8 @@ export class Scene {
   /** Of a program that is being run. */
   #preview: Preview | undefined;
   #seconds = 0;
+  /** Where a board says that it is. */
+  #said: [number, number] | undefined;
 
   constructor(canvas: HTMLCanvasElement) {
     this.#plane = new Plane(
@@ -51,6 +53,12 @@ export class Scene {
     this.#plane.redraw();
   }
 
+  say(place: [number, number] | undefined): void {
+    this.#said = place;
+    element('said-key', HTMLElement).hidden = place === undefined;
+    this.#plane.redraw();
+  }
+
   #draw(context: CanvasRenderingContext2D, px: number): void {
     const run = this.#run;
     const shown = this.#preview ?? (run && { ...run.result, programmed: run.programmed });
@@ -73,6 +81,7 @@ export class Scene {
     drawClosed(context, run, this.#seconds, px);
     if (run.isLossy) drawMark(context, run.open.at(this.#seconds), 'series-3', px);
     drawMark(context, run.closed.at(this.#seconds), 'now', px);
+    if (this.#said) drawMark(context, this.#said, 'series-2', px);
   }
 }
 

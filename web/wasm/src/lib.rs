@@ -51,6 +51,8 @@ fn perform(request: &Request) -> Result<Answer> {
         #[cfg(feature = "stage")]
         "stage.preview" => stage::preview(request),
         #[cfg(feature = "stage")]
+        "stage.telegrams" => stage::telegrams(request),
+        #[cfg(feature = "stage")]
         "stage.file" => stage::file(request),
         #[cfg(feature = "delta")]
         "delta" => delta::delta(request),

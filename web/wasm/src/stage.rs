@@ -32,6 +32,7 @@ struct Parameters {
     seed: u64,
 }
 
+/// A program that is not run.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Preview {
@@ -55,6 +56,17 @@ pub(crate) fn preview(request: &Request) -> Result<Answer> {
     let program = read(&name, &gcode)?;
     let value = json!({ "switchesMm": switches_mm(), "steps": program.steps() });
     Ok(Answer::new(value)?.with_rows("programmed", programmed(program.points())))
+}
+
+/// The program as telegrams of a board, each with its line, and where the first one begins and each
+/// ends, in mm.
+pub(crate) fn telegrams(request: &Request) -> Result<Answer> {
+    let Preview { name, gcode } = request.parameters()?;
+    let program = read(&name, &gcode)?;
+    let lines: Vec<_> = program.line_numbers().collect();
+    let telegrams: Vec<_> = program.telegrams().collect();
+    let ends: Vec<_> = program.ends().collect();
+    Answer::new(json!({ "lines": lines, "telegrams": telegrams, "ends": ends }))
 }
 
 fn read(name: &str, gcode: &str) -> Result<Program> {

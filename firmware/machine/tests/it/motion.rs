@@ -53,6 +53,15 @@ fn a_line_ends_on_its_step_and_stays_on_the_line() {
 }
 
 #[test]
+fn the_end_of_a_motion_is_told_though_an_answer_is_still_under_way() {
+    let mut rig = Rig::homed();
+    rig.submit_unheard("jog elbow 1");
+    assert_eq!(rig.panel().state(), State::Ready);
+    assert!(rig.answer().starts_with("ok, in "), "{:?}", rig.log());
+    assert!(rig.answer().starts_with("done, "), "{:?}", rig.log());
+}
+
+#[test]
 fn a_held_line_goes_on_and_ends_exactly() {
     let mut rig = Rig::homed();
     let to = [60.0, 150.0];

@@ -82,6 +82,8 @@ pub struct Rig {
     from_firmware: Wire,
     answers: VecDeque<String>,
     log: Vec<String>,
+    /// Whether the PC listens to nothing once its telegram is taken, and whether that is so by now.
+    deaf: (bool, bool),
     start: Instant,
     pub pins: Pins,
 }
@@ -120,6 +122,7 @@ impl Rig {
             from_firmware,
             answers: VecDeque::new(),
             log: Vec::new(),
+            deaf: (false, false),
             start: Instant::now(),
             pins: Pins::new(tick_hz, from_switches),
         }
@@ -163,6 +166,17 @@ impl Rig {
             self.play_block();
         }
         panic!("no answer after {:?}", self.log);
+    }
+
+    /// Gives a command whose motion ends before the PC listens to its first answer.
+    pub fn submit_unheard(&mut self, command: &str) {
+        self.pc.submit(self.now(), command.as_bytes()).unwrap();
+        self.deaf = (true, false);
+        self.work();
+        while self.play_block() {
+            self.work();
+        }
+        self.deaf = (false, false);
     }
 
     pub fn play_blocks(&mut self, count: usize) {
@@ -213,6 +227,9 @@ impl Rig {
     /// The PC's side of the line.
     fn exchange(&mut self) {
         let now = self.now();
+        if self.deaf.1 {
+            return;
+        }
         while let Some(byte) = self.pc.poll_transmit_byte(now) {
             self.to_firmware.push(byte);
         }
@@ -221,10 +238,14 @@ impl Rig {
         }
         self.pc.handle_timeout(now);
         while let Some(event) = self.pc.poll_event() {
-            if let Event::Received(telegram) = event {
-                let answer = String::from_utf8(telegram.to_vec()).unwrap();
-                self.log.push(answer.clone());
-                self.answers.push_back(answer);
+            match event {
+                Event::Received(telegram) => {
+                    let answer = String::from_utf8(telegram.to_vec()).unwrap();
+                    self.log.push(answer.clone());
+                    self.answers.push_back(answer);
+                }
+                Event::Sent { .. } => self.deaf.1 = self.deaf.0,
+                _ => {}
             }
         }
     }
