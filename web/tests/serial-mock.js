@@ -20,7 +20,7 @@ export async function connectFirmware(page) {
     '--quiet',
     '--locked',
     '--package',
-    'arm-machine',
+    'board-machine',
     '--example',
     'simulate',
   ];

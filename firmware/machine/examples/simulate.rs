@@ -18,7 +18,7 @@ use std::task::{Context, Poll, Waker};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use arm_machine::{Block, BlockEnd, Machine, Motion, Panel, PlanMemory, talk};
+use board_machine::{Block, BlockEnd, Machine, Motion, Panel, PlanMemory, talk};
 use embedded_io_async::{ErrorType, Read, Write};
 use proto3964r::Line;
 

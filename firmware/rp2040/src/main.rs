@@ -5,7 +5,7 @@
 mod arm;
 mod pins;
 
-use arm_machine::{Machine, Motion, Panel, PlanMemory, talk};
+use board_machine::{Machine, Motion, Panel, PlanMemory, talk};
 use cortex_m_rt::entry;
 use embassy_executor::{Executor, InterruptExecutor};
 use embassy_rp::gpio::{Input, Pull};

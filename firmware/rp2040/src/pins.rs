@@ -1,6 +1,6 @@
 //! Step and direction pins, by a state machine of the PIO.
 
-use arm_machine::{Block, BlockEnd, Panel, Word};
+use board_machine::{Block, BlockEnd, Panel, Word};
 use embassy_futures::select::{Either, select};
 use embassy_rp::clocks::clk_sys_freq;
 use embassy_rp::interrupt::typelevel::Binding;

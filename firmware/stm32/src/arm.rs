@@ -1,6 +1,6 @@
 //! The arm: what to change for another one.
 
-use arm_machine::Settings;
+use board_machine::Settings;
 use pulse_interp::{Direction, HomingSettings};
 use pvt_steps::StepDirTiming;
 use scara_kin::Elbow;

@@ -1,6 +1,6 @@
 //! Step and direction pins, by a timer whose every update makes the DMA write to the port.
 
-use arm_machine::{Block, BlockEnd, Panel};
+use board_machine::{Block, BlockEnd, Panel};
 use embassy_stm32::dma::{self, Channel, TransferOptions, WritableRingBuffer};
 use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 use embassy_stm32::interrupt::typelevel::Binding;

@@ -1,6 +1,6 @@
 //! Commands, and what is said of those that are none.
 
-use arm_machine::{Command, Job, Joint};
+use board_machine::{Command, Job, Joint};
 
 fn parsed(text: &str) -> Result<Command, String> {
     Command::parse(text.as_bytes()).map_err(|error| error.to_string())

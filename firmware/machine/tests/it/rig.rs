@@ -10,7 +10,7 @@ use std::rc::Rc;
 use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
-use arm_machine::{Machine, Motion, Panel, PlanMemory, Settings, talk};
+use board_machine::{Machine, Motion, Panel, PlanMemory, Settings, talk};
 use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
 use pulse_interp::{Direction, HomingSettings};
 use pvt_steps::StepDirTiming;

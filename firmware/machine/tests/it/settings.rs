@@ -1,6 +1,6 @@
 //! Settings that are refused, and what is said of them.
 
-use arm_machine::{Machine, Settings};
+use board_machine::{Machine, Settings};
 
 use crate::rig::{SETTINGS, TICK_HZ};
 

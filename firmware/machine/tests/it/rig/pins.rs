@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use arm_machine::Block;
+use board_machine::Block;
 
 use super::{ACCELERATION_DEG_S2, HOME_STEPS, STEPS_PER_TURN, forward};
 
