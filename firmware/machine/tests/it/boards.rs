@@ -390,3 +390,34 @@ fn a_day_of_the_stage_on_the_pico() {
 fn a_day_of_the_stage_on_the_nucleo() {
     on_the_nucleo(STAGE_DAY, "STAGE_NUCLEO");
 }
+
+/// The example of `step-player`: 1000 steps a second, of pulses so long. At the internal oscillator the
+/// Nucleo has fewer cycles a second than its emulator says.
+fn trains(variable: &str, pulse_s: f64, slower: f64) {
+    let Ok(command) = std::env::var(variable) else {
+        return;
+    };
+    let edges = board::edges(&command, Duration::from_millis(20));
+    // From the first pulse on: direction and step together, then the step's end.
+    assert!(edges.len() > 6, "{edges:?}");
+    for pair in edges.windows(2) {
+        let [(from, levels), (to, _)] = [pair[0], pair[1]];
+        let expected = match levels {
+            0b11 => pulse_s,
+            0b10 => 0.001 - pulse_s,
+            _ => panic!("levels {levels:#b}"),
+        };
+        let took = (to - from) * slower;
+        assert!((took - expected).abs() < 1e-9, "{took} s, not {expected} s");
+    }
+}
+
+#[test]
+fn a_step_train_of_the_pico() {
+    trains("TRAIN_PICO", 2e-6, 1.0);
+}
+
+#[test]
+fn a_step_train_of_the_nucleo() {
+    trains("TRAIN_NUCLEO", 20e-6, 84.0 / 16.0);
+}

@@ -59,6 +59,22 @@ impl Emulator {
     }
 }
 
+/// What the pins of one axis do in a time, by a program that nobody talks to: in seconds.
+pub fn edges(command: &str, time: Duration) -> Vec<(f64, u8)> {
+    let mut emulator = Emulator::start(command, &[1]);
+    let (_, hz) = emulator.hear();
+    let hz = hz[0] as f64;
+    emulator.tell(&format!("run {:.0}", hz * time.as_secs_f64()));
+    let mut edges = Vec::new();
+    loop {
+        let (name, numbers) = emulator.hear();
+        if name == "at" {
+            return edges;
+        }
+        edges.push((numbers[0] as f64 / hz, u8::try_from(numbers[1]).unwrap()));
+    }
+}
+
 pub struct Board<const N: usize> {
     emulator: Emulator,
     cycles_per_tick: u64,
