@@ -129,8 +129,8 @@ def lines():
 def boards():
     title = {"rp2040": "Raspberry Pi Pico, RP2040", "stm32": "Nucleo-F411RE, STM32F411"}
     rows = [
-        [title[board], *map(number, sizes)]
-        for (board, _), sizes in read(COMMITTED / "boards-sizes").items()
+        [f"{title[board]}, {machine}", *map(number, sizes)]
+        for (board, machine), sizes in read(COMMITTED / "boards-sizes").items()
     ]
     return table(["", "flash", "static memory"], rows)
 

@@ -1,5 +1,5 @@
-"""A Nucleo-F411RE that runs the arm's firmware, on standard input and output, as README.md says:
-`nucleo-line.py PROGRAM A B BOUNCE`.
+"""A Nucleo-F411RE that runs a machine's firmware, on standard input and output, as README.md says:
+`nucleo-line.py PROGRAM BOUNCE A B..`.
 """
 
 import struct
@@ -7,9 +7,9 @@ import sys
 
 from stm32f411 import CYCLES_PER_SECOND, Chip, Usart
 
-# STEP and DIR of the shoulder, then of the elbow; home switches, closed to ground.
-DRIVER_PINS = (0, 1, 4, 10)
-SWITCH_PINS = (1, 0)
+# STEP and DIR of each axis, all of port A; home switches of port C, closed to ground.
+DRIVER_PINS = (0, 1, 4, 10, 8, 9)
+SWITCH_PINS = (1, 0, 7)
 # Changes of a contact while it bounces.
 BOUNCES = 6
 ERRORS = {"parity": Usart.PARITY, "framing": Usart.FRAMING, "overrun": Usart.OVERRUN, "break": Usart.FRAMING}
@@ -30,7 +30,10 @@ class Nucleo:
     def __init__(self, program, from_switches, bounce):
         self.segments = loaded_segments(program)
         self.from_switches, self.bounce = list(from_switches), bounce
-        self.changed = [-1 << 62] * 2
+        self.axes = range(len(self.from_switches))
+        self.changed = [-1 << 62 for _ in self.axes]
+        # On the negative side at first: the switch is closed on the other.
+        self.above = [steps < 0 for steps in self.from_switches]
         self.levels = 0
         self.edges = []
         self.start(0)
@@ -42,25 +45,29 @@ class Nucleo:
     def inputs(self, port):
         if port != "C":
             return 0
-        return sum(1 << pin for joint, pin in enumerate(SWITCH_PINS) if not self.is_closed(joint))
+        return sum(1 << SWITCH_PINS[axis] for axis in self.axes if not self.is_closed(axis))
 
-    def is_closed(self, joint):
-        since = self.chip.cycle - self.changed[joint]
+    def is_reached(self, axis):
+        steps = self.from_switches[axis]
+        return steps >= 0 if self.above[axis] else steps <= 0
+
+    def is_closed(self, axis):
+        since = self.chip.cycle - self.changed[axis]
         bounces = since * BOUNCES // self.bounce if since < self.bounce else 0
-        return (self.from_switches[joint] <= 0) != (bounces % 2 == 1)
+        return self.is_reached(axis) != (bounces % 2 == 1)
 
     def outputs(self, port, driven, cycle):
-        levels = sum(1 << bit for bit, pin in enumerate(DRIVER_PINS) if driven >> pin & 1)
+        levels = sum(1 << bit for bit, pin in enumerate(DRIVER_PINS[: 2 * len(self.axes)]) if driven >> pin & 1)
         if port != "A" or levels == self.levels:
             return
         self.edges.append((cycle, levels))
         risen, self.levels = levels & ~self.levels, levels
-        for joint in (0, 1):
-            if risen >> 2 * joint & 1:
-                was_closed = self.from_switches[joint] <= 0
-                self.from_switches[joint] += 1 if levels >> (2 * joint + 1) & 1 else -1
-                if (self.from_switches[joint] <= 0) != was_closed:
-                    self.changed[joint] = cycle
+        for axis in self.axes:
+            if risen >> 2 * axis & 1:
+                was_reached = self.is_reached(axis)
+                self.from_switches[axis] += 1 if levels >> (2 * axis + 1) & 1 else -1
+                if self.is_reached(axis) != was_reached:
+                    self.changed[axis] = cycle
 
     def receive(self, end, byte, error=None):
         self.chip.usart.coming.append((int(end), int(byte), ERRORS.get(error, 0)))
@@ -83,8 +90,8 @@ class Nucleo:
 
 def main():
     program, *numbers = sys.argv[1:]
-    shoulder, elbow, bounce = map(int, numbers)
-    nucleo = Nucleo(program, (shoulder, elbow), bounce)
+    bounce, *from_switches = map(int, numbers)
+    nucleo = Nucleo(program, from_switches, bounce)
     commands = {"receive": nucleo.receive, "bounce": nucleo.set_bounce, "power": nucleo.power, "run": nucleo.run}
     print("hz", CYCLES_PER_SECOND, flush=True)
     for line in sys.stdin:

@@ -1,12 +1,12 @@
-// The Pico on standard input and output, as README.md says: `node pico-line.js PROGRAM A B BOUNCE`.
+// The Pico on standard input and output, as README.md says: `node pico-line.js PROGRAM BOUNCE A B..`.
 
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { CYCLES_PER_SECOND, Pico } from "./pico.js";
 
 const [program, ...numbers] = process.argv.slice(2);
-const [shoulder, elbow, bounce] = numbers.map(Number);
-const pico = new Pico(readFileSync(program), [shoulder, elbow], bounce);
+const [bounce, ...fromSwitches] = numbers.map(Number);
+const pico = new Pico(readFileSync(program), fromSwitches, bounce);
 
 /** Both as text, since all that is asked is answered before the next question comes. */
 const commands = {

@@ -1,4 +1,4 @@
-// A Raspberry Pi Pico that runs the arm's firmware, by `rp2040js`: the pins of the drivers are
+// A Raspberry Pi Pico that runs a machine's firmware, by `rp2040js`: the pins of the drivers are
 // recorded with their cycle, the switches are where they are, the line takes its time.
 //
 // Of its own: PIO and processor go on together, cycle by cycle (`rp2040js` runs the PIO beside the
@@ -20,9 +20,8 @@ const VECTORS = 0x10000100;
 const UART0 = 0x40034;
 const UART0_IRQ = 20;
 
-/** STEP and DIR of the shoulder, then of the elbow; home switches, closed to ground. */
-const DRIVER_PINS = [2, 3, 4, 5];
-const SWITCH_PINS = [6, 7];
+/** The first of the pins in a row: STEP and DIR of each axis, then the home switches, closed to ground. */
+const FIRST_PIN = 2;
 
 const TRANSMIT_JOINED = 1 << 30;
 const JOINED_FIFO = 8;
@@ -39,6 +38,8 @@ export class Pico {
   #machine;
   #uart;
   #switches;
+  #driverPins;
+  #switchPins;
   /** The cycle in which the next instruction begins. */
   #now = 0;
   /** While the PIO is stepped: the cycle it is in. */
@@ -49,9 +50,15 @@ export class Pico {
   /** Characters on their way in: `{ end, byte, errors }`, in cycles. */
   #coming = [];
 
-  /** @param {Uint8Array} program an ELF of `firmware/rp2040` */
+  /**
+   * @param {Uint8Array} program an ELF of `firmware/rp2040`
+   * @param {number[]} fromSwitches steps of each axis from where its switch closes: as many as it has axes
+   */
   constructor(program, fromSwitches = [500, 300], bounceCycles = 0) {
     this.#program = loadedSegments(program);
+    const axes = fromSwitches.length;
+    this.#driverPins = Array.from({ length: 2 * axes }, (_, index) => FIRST_PIN + index);
+    this.#switchPins = Array.from({ length: axes }, (_, index) => FIRST_PIN + 2 * axes + index);
     this.#switches = new Switches(fromSwitches, bounceCycles);
     this.#start(0);
   }
@@ -65,7 +72,7 @@ export class Pico {
     return Math.round(this.#clock.nanos / CYCLE_NANOS);
   }
 
-  /** Edges since the last call: `[cycle, levels]`, STEP and DIR of both joints in bits 0 to 3. */
+  /** Edges since the last call: `[cycle, levels]`, STEP and DIR of each axis from bit 0 on. */
   takeEdges() {
     return this.#edges.splice(0);
   }
@@ -104,7 +111,7 @@ export class Pico {
     rp2040.peripherals[UART0] = this.#uart;
     // It would step by itself, whatever the time.
     pio.run = quiet;
-    for (const pin of DRIVER_PINS) {
+    for (const pin of this.#driverPins) {
       rp2040.gpio[pin].addListener(() => this.#pinsChanged());
     }
     [this.#rp2040, this.#core, this.#clock, this.#pio] = [rp2040, core, clock, pio];
@@ -124,7 +131,7 @@ export class Pico {
 
   #pinsChanged() {
     // Inputs are pulled down by the drivers.
-    const levels = DRIVER_PINS.reduce((levels, pin, bit) => {
+    const levels = this.#driverPins.reduce((levels, pin, bit) => {
       const { outputEnable, outputValue } = this.#rp2040.gpio[pin];
       return levels | (outputEnable && outputValue ? 1 << bit : 0);
     }, 0);
@@ -136,8 +143,8 @@ export class Pico {
   }
 
   #look() {
-    SWITCH_PINS.forEach((pin, joint) => {
-      const isOpen = !this.#switches.isClosed(joint, this.cycle);
+    this.#switchPins.forEach((pin, axis) => {
+      const isOpen = !this.#switches.isClosed(axis, this.cycle);
       const gpio = this.#rp2040.gpio[pin];
       if (gpio.rawInputValue !== isOpen) {
         gpio.setInputValue(isOpen);

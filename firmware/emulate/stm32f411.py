@@ -1,4 +1,4 @@
-"""The STM32F411 as the arm's firmware uses it, by `unicorn`.
+"""The STM32F411 as the boards' firmware uses it, by `unicorn`.
 
 `unicorn` carries out the instructions of a Cortex-M4F; what lies around it is here: interrupts with
 their priorities, WFE and SEV, clocks, TIM5 as the clock, USART2, and TIM1 whose every update makes

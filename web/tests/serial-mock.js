@@ -21,7 +21,7 @@ function simulator() {
     '--quiet',
     '--locked',
     '--package',
-    'arm-machine',
+    'board-machine',
     '--example',
     'simulate',
   ];

@@ -1,10 +1,14 @@
-//! The machine on a PC, in real time: its serial line is standard input and output.
+//! A machine on a PC, in real time: its serial line is standard input and output.
 //!
-//! Talk, planner and pulses are those of the boards, the arm is the Pico's; only pins and switches
-//! are simulated. The wire takes no time here.
+//! `simulate [arm|delta|stage]`. Talk, planner, pulses and settings are those of the boards; only pins
+//! and switches are simulated. The wire takes no time here.
 
-#[path = "../../rp2040/src/arm.rs"]
+#[path = "../../settings/arm.rs"]
 mod arm;
+#[path = "../../settings/delta.rs"]
+mod delta;
+#[path = "../../settings/stage.rs"]
+mod stage;
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -18,28 +22,49 @@ use std::task::{Context, Poll, Waker};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use arm_machine::{Block, BlockEnd, Machine, Motion, Panel, PlanMemory, talk};
+use board_machine::{
+    Block, BlockEnd, Kinematics, Machine, Motion, Panel, PlanMemory, Settings, Source, talk,
+};
 use embedded_io_async::{ErrorType, Read, Write};
 use proto3964r::Line;
 
 const TICK_HZ: u32 = 1_000_000;
 /// The boards' line: 8 data bits, even parity, one stop bit.
 const LINE: Line = Line::buffered(9600, 11);
-/// Steps from where the arm is switched on to where its switches close.
-const FROM_SWITCHES: [i32; 2] = [500, 300];
 /// From one look at all tasks to the next; a block of pulses is longer.
 const LOOK: Duration = Duration::from_micros(500);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let machine = Machine::new(&arm::SETTINGS, TICK_HZ)?;
+    // Steps from where the machine is switched on to where its switches close.
+    match std::env::args().nth(1).as_deref() {
+        None | Some("arm") => run(&arm::SETTINGS, [500, 300]),
+        Some("delta") => run(&delta::SETTINGS, [-500, -300, -400]),
+        Some("stage") => run(&stage::SETTINGS, [500, 300]),
+        Some(name) => Err(format!("`{name}` is no machine: arm, delta or stage").into()),
+    }
+}
+
+fn run<K: Kinematics<N>, const N: usize>(
+    settings: &Settings<K, N>,
+    from_switches: [i32; N],
+) -> Result<(), Box<dyn Error>> {
+    let machine = Machine::new(settings, TICK_HZ)?;
     let panel = Panel::new();
     let mut memory = PlanMemory::new();
     let motion = Motion::new(&machine, &panel, &mut memory)?;
-    let from_switches = Cell::new(FROM_SWITCHES);
+    let are_below = from_switches.map(|steps| steps > 0);
+    let from_switches = Cell::new(from_switches);
     let input = RefCell::new(VecDeque::new());
     let received = receive();
 
-    let mut plan = pin!(motion.run(|| from_switches.get().map(|steps| steps <= 0)));
+    let closed = || {
+        let mut closed = from_switches.get().into_iter().zip(are_below);
+        [(); N].map(|()| {
+            let (steps, is_below) = closed.next().expect("N of them");
+            if is_below { steps <= 0 } else { steps >= 0 }
+        })
+    };
+    let mut plan = pin!(motion.run(closed));
     let port = (Input(&input), Output);
     let mut converse = pin!(talk(&machine, &panel, LINE, port, |never| match never {}));
     let mut pins = Pins::new(&panel, &from_switches);
@@ -70,17 +95,17 @@ fn receive() -> Receiver<Vec<u8>> {
     receiver
 }
 
-/// Pins that take their time, and the joints that they turn.
-struct Pins<'a> {
-    panel: &'a Panel,
-    from_switches: &'a Cell<[i32; 2]>,
+/// Pins that take their time, and the axes that they move.
+struct Pins<'a, const N: usize> {
+    panel: &'a Panel<N>,
+    from_switches: &'a Cell<[i32; N]>,
     levels: u8,
     /// What is played, and until when.
-    playing: Option<(Instant, BlockEnd)>,
+    playing: Option<(Instant, BlockEnd<N>)>,
 }
 
-impl<'a> Pins<'a> {
-    fn new(panel: &'a Panel, from_switches: &'a Cell<[i32; 2]>) -> Self {
+impl<'a, const N: usize> Pins<'a, N> {
+    fn new(panel: &'a Panel<N>, from_switches: &'a Cell<[i32; N]>) -> Self {
         Self {
             panel,
             from_switches,
@@ -110,14 +135,14 @@ impl<'a> Pins<'a> {
         });
     }
 
-    fn turn(&mut self, block: &Block) {
+    fn turn(&mut self, block: &Block<N>) {
         let mut from_switches = self.from_switches.get();
         for word in &block.words {
             let risen = word.levels & !self.levels;
             self.levels = word.levels;
-            for (joint, steps) in from_switches.iter_mut().enumerate() {
-                let is_forward = word.levels >> (2 * joint + 1) & 1 == 1;
-                if risen >> (2 * joint) & 1 == 1 {
+            for (axis, steps) in from_switches.iter_mut().enumerate() {
+                let is_forward = word.levels >> (2 * axis + 1) & 1 == 1;
+                if risen >> (2 * axis) & 1 == 1 {
                     *steps += if is_forward { 1 } else { -1 };
                 }
             }

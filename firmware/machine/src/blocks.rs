@@ -1,9 +1,10 @@
 //! From steps to blocks for the pins.
 
 use pvt_steps::Direction;
+use step_player::Word;
 
 use crate::panel::Panel;
-use crate::pulses::{Block, Pulses, Word};
+use crate::pulses::{Block, Pulses};
 use crate::settings::Machine;
 
 /// Longest words a second. A block that takes half as long as one is closed before another one, however
@@ -11,22 +12,22 @@ use crate::settings::Machine;
 const LONGEST_WORD_HZ: u32 = 200;
 
 /// Puts the edges of steps into blocks, and these on the panel.
-pub(crate) struct BlockWriter<'p> {
-    panel: &'p Panel,
-    pulses: Pulses,
-    block: Block,
+pub(crate) struct BlockWriter<'p, const N: usize> {
+    panel: &'p Panel<N>,
+    pulses: Pulses<N>,
+    block: Block<N>,
     max_word_ticks: u32,
     levels: u8,
-    steps: [i32; 2],
+    steps: [i32; N],
 }
 
 /// The longest word of a machine.
-pub(crate) fn max_word_ticks(machine: &Machine) -> u32 {
+pub(crate) fn max_word_ticks<K, const N: usize>(machine: &Machine<K, N>) -> u32 {
     (machine.tick_hz / LONGEST_WORD_HZ).max(1)
 }
 
-impl<'p> BlockWriter<'p> {
-    pub(crate) fn new(machine: &Machine, panel: &'p Panel) -> Self {
+impl<'p, const N: usize> BlockWriter<'p, N> {
+    pub(crate) fn new<K>(machine: &Machine<K, N>, panel: &'p Panel<N>) -> Self {
         let max_word_ticks = max_word_ticks(machine);
         Self {
             panel,
@@ -34,12 +35,12 @@ impl<'p> BlockWriter<'p> {
             block: Block::default(),
             max_word_ticks,
             levels: 0,
-            steps: [0; 2],
+            steps: [0; N],
         }
     }
 
     /// What the steps from zero are here: at rest.
-    pub(crate) fn set_steps(&mut self, steps: [i32; 2]) {
+    pub(crate) fn set_steps(&mut self, steps: [i32; N]) {
         self.steps = steps;
         self.panel.set_steps(steps);
     }
@@ -49,12 +50,12 @@ impl<'p> BlockWriter<'p> {
         self.pulses.restart(ticks);
     }
 
-    /// A step of a joint, 0 or 1, at a tick. Steps come in the order of their times.
-    pub(crate) async fn step(&mut self, joint: usize, ticks: u64, direction: Direction) {
+    /// A step of an axis at a tick. Steps come in the order of their times.
+    pub(crate) async fn step(&mut self, axis: usize, ticks: u64, direction: Direction) {
         while let Some(word) = self.pulses.next_before(ticks) {
             self.push(word).await;
         }
-        self.pulses.add(joint, ticks, direction);
+        self.pulses.add(axis, ticks, direction);
     }
 
     /// All edges go out, and the machine rests until `ticks`, from where times count on.
@@ -91,10 +92,10 @@ impl<'p> BlockWriter<'p> {
         if self.block.words.is_full() || is_long {
             self.put().await;
         }
-        for (joint, steps) in self.steps.iter_mut().enumerate() {
+        for (axis, steps) in self.steps.iter_mut().enumerate() {
             let rises = word.levels & !self.levels;
-            if rises >> (2 * joint) & 1 == 1 {
-                let positive = word.levels >> (2 * joint + 1) & 1 == 1;
+            if rises >> (2 * axis) & 1 == 1 {
+                let positive = word.levels >> (2 * axis + 1) & 1 == 1;
                 *steps += if positive { 1 } else { -1 };
             }
         }

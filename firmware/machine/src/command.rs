@@ -4,46 +4,28 @@ use core::fmt::{self, Display, Formatter};
 
 use thiserror::Error;
 
-/// A joint of the arm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Joint {
-    /// Between base and upper arm.
-    Shoulder,
-    /// Between upper arm and forearm.
-    Elbow,
-}
-
-impl Joint {
-    pub(crate) const ALL: [Self; 2] = [Self::Shoulder, Self::Elbow];
-}
-
-impl Display for Joint {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Shoulder => "shoulder",
-            Self::Elbow => "elbow",
-        })
-    }
-}
+use crate::kinematics::{Axis, Kinematics};
 
 /// What a telegram asks for: a word in small letters and its numbers, with spaces in between.
 ///
 /// | text | what it does |
 /// |---|---|
-/// | `home` | finds both home switches |
-/// | `line X Y [F]` | the tool along a straight line to X, Y in mm, at most at F mm/s |
-/// | `jog JOINT A` | turns `shoulder` or `elbow` by A degrees |
+/// | `home` | finds all home switches |
+/// | `line X Y [Z] [F]` | the tool along a straight line to there in mm, at most at F mm/s |
+/// | `cw X Y I J [F]`, `ccw ..` | the same along an arc about the centre that is I, J from its begin |
+/// | `jog AXIS A` | turns or moves an axis by A degrees or mm |
 /// | `hold` | comes to rest on the path |
 /// | `resume` | goes on |
 /// | `stop` | comes to rest on the path and gives the rest of it up |
 /// | `feed P` | at P percent of the planned speed from now on, 1 to 100 |
-/// | `where` | tool, joints and steps |
+/// | `where` | tool, axes and steps |
 /// | `status` | what the machine does |
 /// | `limits` | where it can go, and how fast |
+/// | `machine` | which it is |
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
+pub enum Command<const N: usize> {
     /// A motion.
-    Job(Job),
+    Job(Job<N>),
     /// To rest on the path.
     Hold,
     /// On from there.
@@ -55,33 +37,55 @@ pub enum Command {
         /// 1 to 100.
         percent: u8,
     },
-    /// Tool, joints and steps.
+    /// Tool, axes and steps.
     Where,
     /// What the machine does.
     Status,
     /// Where it can go, and how fast.
     Limits,
+    /// Which it is.
+    Machine,
 }
 
 /// A command that takes time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Job {
-    /// Finds both home switches.
+pub enum Job<const N: usize> {
+    /// Finds all home switches.
     Home,
     /// A straight line of the tool.
     Line {
         /// The tool's position at the end, in mm.
-        to_mm: [f64; 2],
+        to_mm: [f64; N],
         /// Its largest speed, in mm/s.
         feed_mm_s: Option<f64>,
     },
-    /// One joint turns.
-    Jog {
-        /// Which.
-        joint: Joint,
-        /// By how much, in degrees.
-        by_deg: f64,
+    /// An arc of the tool in the plane of its first two coordinates.
+    Arc {
+        /// Which way it turns.
+        turn: Turn,
+        /// The tool's position at the end, in mm; where it begins: all round.
+        to_mm: [f64; N],
+        /// From the begin to the centre, in mm.
+        centre_mm: [f64; 2],
+        /// The tool's largest speed, in mm/s.
+        feed_mm_s: Option<f64>,
     },
+    /// One axis turns or moves.
+    Jog {
+        /// Which, from 0.
+        axis: usize,
+        /// By how much, in degrees or mm.
+        by: f64,
+    },
+}
+
+/// Which way an arc turns, as one looks at the plane with x to the right and y up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Clockwise.
+    Clockwise,
+    /// The other way.
+    CounterClockwise,
 }
 
 /// Why a text is no command. Columns count from 1, in bytes.
@@ -141,23 +145,25 @@ impl Display for Quoted<'_> {
     }
 }
 
-impl Command {
-    /// The command of a text.
+impl<const N: usize> Command<N> {
+    /// The command of a text, for a kind of machine.
     ///
     /// # Errors
     /// [`CommandError`], with the place.
-    pub fn parse(text: &[u8]) -> Result<Self, CommandError<'_>> {
+    pub fn parse<K: Kinematics<N>>(text: &[u8]) -> Result<Self, CommandError<'_>> {
         let mut words = Words { text, next: 0 };
         let (column, name) = words.next().ok_or(CommandError::Empty)?;
         let command = match name {
             b"home" => Self::Job(Job::Home),
             b"line" => Self::Job(Job::Line {
-                to_mm: [words.number("number of mm")?, words.number("number of mm")?],
-                feed_mm_s: words.positive("positive number of mm/s")?,
+                to_mm: words.lengths()?,
+                feed_mm_s: words.positive(FEED)?,
             }),
+            b"cw" if K::HAS_ARCS => Self::Job(words.arc(Turn::Clockwise)?),
+            b"ccw" if K::HAS_ARCS => Self::Job(words.arc(Turn::CounterClockwise)?),
             b"jog" => Self::Job(Job::Jog {
-                joint: words.joint()?,
-                by_deg: words.number("number of degrees")?,
+                axis: words.one_of(&K::AXES, K::ONE_AXIS)?,
+                by: words.number(K::Axis::UNIT.number())?,
             }),
             b"hold" => Self::Hold,
             b"resume" => Self::Resume,
@@ -168,6 +174,7 @@ impl Command {
             b"where" => Self::Where,
             b"status" => Self::Status,
             b"limits" => Self::Limits,
+            b"machine" => Self::Machine,
             word => return Err(CommandError::Unknown { column, word }),
         };
         match words.next() {
@@ -176,6 +183,8 @@ impl Command {
         }
     }
 }
+
+const FEED: &str = "positive number of mm/s";
 
 /// The words of a text with their columns.
 struct Words<'t> {
@@ -208,6 +217,23 @@ impl<'t> Words<'t> {
         number(word).ok_or(CommandError::Wrong { column, word, name })
     }
 
+    fn lengths<const D: usize>(&mut self) -> Result<[f64; D], CommandError<'t>> {
+        let mut lengths = [0.0; D];
+        for length in &mut lengths {
+            *length = self.number("number of mm")?;
+        }
+        Ok(lengths)
+    }
+
+    fn arc<const N: usize>(&mut self, turn: Turn) -> Result<Job<N>, CommandError<'t>> {
+        Ok(Job::Arc {
+            turn,
+            to_mm: self.lengths()?,
+            centre_mm: self.lengths()?,
+            feed_mm_s: self.positive(FEED)?,
+        })
+    }
+
     fn positive(&mut self, name: &'static str) -> Result<Option<f64>, CommandError<'t>> {
         let Some((column, word)) = self.next() else {
             return Ok(None);
@@ -229,13 +255,10 @@ impl<'t> Words<'t> {
             .ok_or(CommandError::Wrong { column, word, name })
     }
 
-    fn joint(&mut self) -> Result<Joint, CommandError<'t>> {
-        let name = "`shoulder` or `elbow`";
-        match self.need(name)? {
-            (_, b"shoulder") => Ok(Joint::Shoulder),
-            (_, b"elbow") => Ok(Joint::Elbow),
-            (column, word) => Err(CommandError::Wrong { column, word, name }),
-        }
+    fn one_of(&mut self, names: &[&str], name: &'static str) -> Result<usize, CommandError<'t>> {
+        let (column, word) = self.need(name)?;
+        let found = names.iter().position(|name| name.as_bytes() == word);
+        found.ok_or(CommandError::Wrong { column, word, name })
     }
 }
 

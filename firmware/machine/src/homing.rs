@@ -1,4 +1,4 @@
-//! Both joints to their switches, one after the other.
+//! All axes to their switches, one after the other.
 //!
 //! What is handed out is ahead of the pins by the longest word, so that no step is late: when that has
 //! been played, as much again follows. A fast step is decided some steps before it is made. A slow one
@@ -14,23 +14,23 @@ use crate::settings::Machine;
 /// Why there is no home.
 pub(crate) enum NoHome {
     Stopped,
-    Switch { joint: usize, error: HomingError },
+    Switch { axis: usize, error: HomingError },
 }
 
-/// Both joints to their switches. `closed` says which are.
-pub(crate) async fn home(
-    machine: &Machine,
-    panel: &Panel,
-    writer: &mut BlockWriter<'_>,
-    closed: &mut impl FnMut() -> [bool; 2],
+/// All axes to their switches. `closed` says which are.
+pub(crate) async fn home<K, const N: usize>(
+    machine: &Machine<K, N>,
+    panel: &Panel<N>,
+    writer: &mut BlockWriter<'_, N>,
+    closed: &mut impl FnMut() -> [bool; N],
 ) -> Result<(), NoHome> {
     writer.restart(0);
     // A word takes a tick at least.
     let mut ticks = 1;
     let mut found = Ok(());
-    for joint in 0..2 {
+    for axis in 0..N {
         if found.is_ok() {
-            found = home_joint(machine, panel, writer, joint, &mut ticks, closed).await;
+            found = home_axis(machine, panel, writer, axis, &mut ticks, closed).await;
         }
     }
     // The blocks before have said that others follow.
@@ -41,21 +41,21 @@ pub(crate) async fn home(
     found
 }
 
-async fn home_joint(
-    machine: &Machine,
-    panel: &Panel,
-    writer: &mut BlockWriter<'_>,
-    joint: usize,
+async fn home_axis<K, const N: usize>(
+    machine: &Machine<K, N>,
+    panel: &Panel<N>,
+    writer: &mut BlockWriter<'_, N>,
+    axis: usize,
     ticks: &mut u64,
-    closed: &mut impl FnMut() -> [bool; 2],
+    closed: &mut impl FnMut() -> [bool; N],
 ) -> Result<(), NoHome> {
-    let mut homing = Homing::new(machine.homing[joint]);
+    let mut homing = Homing::new(machine.homing[axis]);
     loop {
         if panel.wanted().0 == Wanted::Stop {
             return Err(NoHome::Stopped);
         }
-        let order = homing.next(closed()[joint]);
-        let order = order.map_err(|error| NoHome::Switch { joint, error })?;
+        let order = homing.next(closed()[axis]);
+        let order = order.map_err(|error| NoHome::Switch { axis, error })?;
         let HomingOrder::Step { direction, speed } = order else {
             return Ok(());
         };
@@ -63,7 +63,7 @@ async fn home_joint(
             Direction::Positive => pvt_steps::Direction::Positive,
             Direction::Negative => pvt_steps::Direction::Negative,
         };
-        writer.step(joint, *ticks, direction).await;
+        writer.step(axis, *ticks, direction).await;
         let interval = match speed {
             HomingSpeed::Fast => machine.homing_fast_ticks,
             HomingSpeed::Slow => machine.homing_slow_ticks,

@@ -2,25 +2,33 @@
 #![no_std]
 #![warn(unreachable_pub)]
 
+mod arcs;
 mod blocks;
 mod command;
 mod homing;
+mod kinematics;
 mod motion;
 mod panel;
 mod pulses;
-mod reason;
 mod settings;
+mod settings_error;
 mod talk;
 
-pub use command::{Command, CommandError, Job, Joint};
+pub use command::{Command, CommandError, Job, Turn};
+pub use kinematics::{
+    ArmGeometry, Axis, DeltaGeometry, Joint, Kinematics, Reasoned, RotaryDelta, Slide,
+    StageGeometry, TwoLinkArm, Unit, XyStage,
+};
 pub use motion::{Motion, PlanMemory};
 pub use panel::{Panel, State};
-pub use pulses::{Block, BlockEnd, Word};
-pub use settings::{Machine, Settings, SettingsError};
+pub use pulses::{Block, BlockEnd};
+pub use settings::{Machine, Settings};
+pub use settings_error::SettingsError;
+pub use step_player::{Source, Word};
 pub use talk::talk;
 
 /// Longest answer, in bytes.
-const MAX_ANSWER: usize = 160;
+const MAX_ANSWER: usize = 192;
 
 /// An answer to a command, or what became of it.
 pub type Text = heapless::String<MAX_ANSWER>;

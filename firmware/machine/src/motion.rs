@@ -3,51 +3,43 @@
 use core::fmt::Display;
 
 use path_timing::{
-    Curve, FeedCeiling, Knot, PathFn, PathPoint, PlanError, Playback, Row, Table, ToolLimits,
+    Curve, FeedCeiling, Knot, Path, PathFn, PathPoint, PlanError, Playback, Row, Table, ToolLimits,
 };
 use pvt_steps::{PvtQuantiser, PvtSteps};
-use scara_kin::{ArmPath, ArmPathError, ArmPathF32, Joints};
 use trig_kernels::sqrt;
 
+use crate::arcs::arc;
 use crate::blocks::BlockWriter;
-use crate::command::{Job, Joint};
+use crate::command::{Job, Turn};
 use crate::homing::{NoHome, home};
+use crate::kinematics::{Kinematics, Reason, Reasoned};
 use crate::panel::{Panel, State, Wanted};
-use crate::reason::Reason;
-use crate::settings::{Machine, SettingsError};
+use crate::settings::Machine;
+use crate::settings_error::SettingsError;
 use crate::{Text, text};
 
 /// Memory for tables, in rows: of all attempts at a line.
 const ROWS: usize = 100;
 /// Segments of a jog.
 const JOG_SEGMENTS: u32 = 12;
-/// Segments of a line: so many, and others for what the joints turn, shoulder and elbow added up. At a
-/// constant feed a third of them would do; where a hold ends, the joints go straight from row to row.
-const LEAST_SEGMENTS: f64 = 6.0;
-const SEGMENTS_PER_RAD: f64 = 6.0;
-/// Places between which the joints are looked at for what they turn.
-const LOOKS: u32 = 4;
 /// More than what the fourth power says, for an attempt that is to be the last.
 const FINER: f64 = 1.15;
-/// Farthest that a line may begin from the joints, in radians: rounding.
-const START_TOLERANCE: f64 = 1e-6;
-
 /// The planner of a machine: takes jobs from a panel, and puts blocks on it.
-pub struct Motion<'m> {
-    machine: &'m Machine,
-    panel: &'m Panel,
-    axes: Axes<'m>,
-    memory: &'m mut PlanMemory,
+pub struct Motion<'m, K, const N: usize> {
+    machine: &'m Machine<K, N>,
+    panel: &'m Panel<N>,
+    axes: Axes<'m, N>,
+    memory: &'m mut PlanMemory<N>,
 }
 
 /// Memory for the table of a motion: apart from [`Motion`], too large for a stack.
 #[derive(Clone, Debug)]
-pub struct PlanMemory {
-    knots: [Knot<[f64; 2]>; ROWS],
+pub struct PlanMemory<const N: usize> {
+    knots: [Knot<[f64; N]>; ROWS],
     ceilings: [FeedCeiling; ROWS],
 }
 
-impl PlanMemory {
+impl<const N: usize> PlanMemory<N> {
     /// Memory that nothing is in yet.
     #[must_use]
     pub fn new() -> Self {
@@ -58,19 +50,19 @@ impl PlanMemory {
     }
 }
 
-impl Default for PlanMemory {
+impl<const N: usize> Default for PlanMemory<N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-/// Where the joints are, and the way from there to the pins.
-struct Axes<'m> {
-    writer: BlockWriter<'m>,
-    quantiser: PvtQuantiser<2>,
-    steps: PvtSteps<2>,
-    /// At the end of the last row: radians, and seconds since the machine was homed.
-    joints: [f64; 2],
+/// Where the axes are, and the way from there to the pins.
+struct Axes<'m, const N: usize> {
+    writer: BlockWriter<'m, N>,
+    quantiser: PvtQuantiser<N>,
+    steps: PvtSteps<N>,
+    /// At the end of the last row: radians or mm, and seconds since the machine was homed.
+    position: [f64; N],
     time_s: f64,
 }
 
@@ -96,28 +88,28 @@ fn failed(reason: impl Display) -> Failure {
     Failure::Failed(text!("failed, home again: {reason}"))
 }
 
-impl<'m> Axes<'m> {
+impl<'m, const N: usize> Axes<'m, N> {
     /// At rest at home.
-    fn home(machine: &Machine, writer: BlockWriter<'m>) -> Result<Self, SettingsError> {
+    fn home<K>(machine: &Machine<K, N>, writer: BlockWriter<'m, N>) -> Result<Self, SettingsError> {
         let quantiser = PvtQuantiser::new(machine.rate, machine.scales, machine.home)?;
         Ok(Self {
             writer,
             steps: PvtSteps::new(quantiser.knots(), machine.pins.min_intervals()),
             quantiser,
-            joints: machine.home,
+            position: machine.home,
             time_s: 0.0,
         })
     }
 
     /// The steps of a row of a motion that began at `start_s`.
-    async fn follow(&mut self, start_s: f64, row: &Row<[f64; 2]>) -> Result<(), Failure> {
+    async fn follow(&mut self, start_s: f64, row: &Row<[f64; N]>) -> Result<(), Failure> {
         if row.duration_s == 0.0 {
             return Ok(());
         }
         let time_s = start_s + row.time_s;
         let pvt = self.quantiser.row(time_s, row.position, row.velocity);
         self.steps.push(&pvt.map_err(failed)?).map_err(failed)?;
-        (self.joints, self.time_s) = (row.position, time_s);
+        (self.position, self.time_s) = (row.position, time_s);
         for step in &mut self.steps {
             self.writer
                 .step(step.axis, step.ticks, step.direction)
@@ -131,15 +123,15 @@ impl<'m> Axes<'m> {
     }
 }
 
-impl<'m> Motion<'m> {
+impl<'m, K: Kinematics<N>, const N: usize> Motion<'m, K, N> {
     /// A machine that is not homed.
     ///
     /// # Errors
     /// [`SettingsError`]: home is past 2^31 steps.
     pub fn new(
-        machine: &'m Machine,
-        panel: &'m Panel,
-        memory: &'m mut PlanMemory,
+        machine: &'m Machine<K, N>,
+        panel: &'m Panel<N>,
+        memory: &'m mut PlanMemory<N>,
     ) -> Result<Self, SettingsError> {
         Ok(Self {
             machine,
@@ -150,7 +142,7 @@ impl<'m> Motion<'m> {
     }
 
     /// Takes one job after the other. `closed` says which home switches are.
-    pub async fn run(mut self, mut closed: impl FnMut() -> [bool; 2]) -> ! {
+    pub async fn run(mut self, mut closed: impl FnMut() -> [bool; N]) -> ! {
         loop {
             match self.panel.next_job().await {
                 Job::Home => self.home(&mut closed).await,
@@ -158,15 +150,26 @@ impl<'m> Motion<'m> {
                     let result = self.line(to_mm, feed_mm_s).await;
                     self.finish(result).await;
                 }
-                Job::Jog { joint, by_deg } => {
-                    let result = self.jog(joint, by_deg).await;
+                Job::Arc {
+                    turn,
+                    to_mm,
+                    centre_mm,
+                    feed_mm_s,
+                } if K::HAS_ARCS => {
+                    let result = self.arc(turn, to_mm, centre_mm, feed_mm_s).await;
+                    self.finish(result).await;
+                }
+                // No telegram says so.
+                Job::Arc { .. } => self.finish(Err(refused("no arcs"))).await,
+                Job::Jog { axis, by } => {
+                    let result = self.jog(axis, by).await;
                     self.finish(result).await;
                 }
             }
         }
     }
 
-    async fn home(&mut self, closed: &mut impl FnMut() -> [bool; 2]) {
+    async fn home(&mut self, closed: &mut impl FnMut() -> [bool; N]) {
         let (machine, panel) = (self.machine, self.panel);
         let found = home(machine, panel, &mut self.axes.writer, closed).await;
         let (state, answer) = match found {
@@ -178,8 +181,8 @@ impl<'m> Motion<'m> {
                 Err(error) => (State::NotHomed, text!("failed: {error}")),
             },
             Err(NoHome::Stopped) => (State::NotHomed, text!("stopped, not homed")),
-            Err(NoHome::Switch { joint, error }) => {
-                let name = Joint::ALL[joint];
+            Err(NoHome::Switch { axis, error }) => {
+                let name = K::AXES[axis];
                 (State::NotHomed, text!("failed: {name}: {error}"))
             }
         };
@@ -187,27 +190,40 @@ impl<'m> Motion<'m> {
         panel.answer(answer);
     }
 
-    async fn line(&mut self, to_mm: [f64; 2], feed_mm_s: Option<f64>) -> Result<End, Failure> {
+    /// Where the planner is, in mm.
+    fn tool(&self) -> Result<[f64; N], K::NoPlace> {
+        self.machine.kinematics.tool_mm(self.axes.position)
+    }
+
+    async fn line(&mut self, to_mm: [f64; N], feed_mm_s: Option<f64>) -> Result<End, Failure> {
+        let from = self.tool().map_err(refused)?;
+        let line = Curve::line(from, to_mm).map_err(refused)?;
+        self.curve(line, feed_mm_s).await
+    }
+
+    async fn arc(
+        &mut self,
+        turn: Turn,
+        to_mm: [f64; N],
+        centre_mm: [f64; 2],
+        feed_mm_s: Option<f64>,
+    ) -> Result<End, Failure> {
+        let from = self.tool().map_err(refused)?;
+        let arc = arc(turn, from, to_mm, centre_mm, self.machine.tolerance_mm);
+        self.curve(arc.map_err(refused)?, feed_mm_s).await
+    }
+
+    async fn curve(&mut self, mut curve: Curve<N>, feed_mm_s: Option<f64>) -> Result<End, Failure> {
         let machine = self.machine;
-        let [shoulder, elbow] = self.axes.joints;
-        let joints = Joints::new(shoulder, elbow);
-        let from = machine.arm.forward(joints);
-        let mut line = Curve::line([from.x, from.y], to_mm).map_err(refused)?;
         if let Some(feed) = feed_mm_s {
-            line = line.with_tool(ToolLimits {
+            curve = curve.with_tool(ToolLimits {
                 feed,
                 acceleration: None,
             });
         }
-        let path = machine.arm.path_from(line, machine.elbow, joints);
-        let path = path.map_err(|error| refused(Reason(error)))?;
-        let start = path.joints(0.0);
-        let start = start.map_err(|error| refused(Reason(error)))?;
-        if (start - joints).amax() > START_TOLERANCE {
-            return Err(refused("the elbow is on the other side, jog it over"));
-        }
-        let segments = LEAST_SEGMENTS + SEGMENTS_PER_RAD * turned(&path);
-        let path = path.in_f32().map_err(refused)?;
+        let kinematics = &machine.kinematics;
+        let path = kinematics.path(curve, self.axes.position, &machine.limits);
+        let (path, segments) = path.map_err(refused)?;
         let table = plan(machine, &path, segments, &mut self.memory.knots);
         let (table, departure) = table.map_err(refused)?;
         let playback = table
@@ -215,31 +231,33 @@ impl<'m> Motion<'m> {
             .map_err(refused)?;
         self.panel.answer(text!(
             "ok, {:.3} mm in {:.3} s, within {departure:.4} mm",
-            line.length(),
+            path.length(),
             table.duration_s()
         ));
         self.axes.run(machine, self.panel, playback).await
     }
 
-    async fn jog(&mut self, joint: Joint, by_deg: f64) -> Result<End, Failure> {
+    async fn jog(&mut self, axis: usize, by: f64) -> Result<End, Failure> {
         let machine = self.machine;
-        let from = self.axes.joints;
-        let by = by_deg.to_radians();
-        let axis = joint as usize;
-        let (to, range) = (from[axis] + by, machine.ranges()[axis]);
-        if !range.contains(to) {
+        let unit = Machine::<K, N>::UNIT;
+        let from = self.axes.position;
+        let by = unit.computed(by);
+        let (to, [min, max]) = (from[axis] + by, machine.ranges[axis]);
+        if !(min..=max).contains(&to) {
+            let [to, min, max] = [to, min, max].map(|value| unit.shown(value));
             return Err(refused(format_args!(
-                "{joint} at {:.3} degrees, not within {:.3} to {:.3}",
-                to.to_degrees(),
-                range.min().to_degrees(),
-                range.max().to_degrees()
+                "{} at {to:.3} {}, not within {min:.3} to {max:.3}",
+                K::AXES[axis],
+                unit.name()
             )));
         }
-        let mut slope = [0.0; 2];
+        let mut slope = [0.0; N];
         slope[axis] = by.signum();
         let path = PathFn::new(by.abs(), move |s| {
-            let position = [from[0] + slope[0] * s, from[1] + slope[1] * s];
-            Ok::<_, core::convert::Infallible>(PathPoint { position, slope })
+            let mut position = from;
+            position[axis] += slope[axis] * s;
+            machine.kinematics.check(position)?;
+            Ok::<_, K::NoPlace>(PathPoint { position, slope })
         });
         let table = Table::plan_in_f32(
             [path],
@@ -274,27 +292,31 @@ impl<'m> Motion<'m> {
 
 /// Why there is no table of a line.
 #[derive(Debug, thiserror::Error)]
-enum NoTable {
-    #[error("{}", Reason(*.0))]
-    Plan(#[from] PlanError<ArmPathError>),
+enum NoTable<E: Reasoned> {
+    #[error("{}", .0)]
+    Plan(Reason<PlanError<E>>),
     #[error("the tool would leave the line by up to {departure:.3} mm, {allowed:.3} are allowed")]
     Departs { departure: f64, allowed: f64 },
 }
 
+/// A table with its largest departure, or why there is none.
+type Planned<'k, E, const N: usize> = Result<(Table<'k, [f64; N]>, f64), NoTable<E>>;
+
 /// The table of a line with its largest departure, within the tolerance: in about so many segments.
-fn plan<'k>(
-    machine: &Machine,
-    path: &ArmPathF32,
+fn plan<'k, K: Kinematics<N>, const N: usize>(
+    machine: &Machine<K, N>,
+    path: &K::Path,
     mut segments: f64,
-    mut free: &'k mut [Knot<[f64; 2]>],
-) -> Result<(Table<'k, [f64; 2]>, f64), NoTable> {
+    mut free: &'k mut [Knot<[f64; N]>],
+) -> Planned<'k, <K::Path as Path>::Error, N> {
     let allowed = machine.tolerance_mm;
     loop {
         let rows = (segments as usize + 1).min(free.len());
         let (own, rest) = free.split_at_mut(rows);
         let count = rows as u32 - 1;
-        let table = Table::plan_in_f32([path], machine.limits, |_| count, own)?;
-        let departures = table.spans().map(|span| path.departure(&span));
+        let table = Table::plan_in_f32([path], machine.limits, |_| count, own);
+        let table = table.map_err(|error| NoTable::Plan(Reason(error)))?;
+        let departures = table.spans().map(|span| K::departure(path, &span));
         let departure = departures.fold(0.0, f64::max);
         if departure <= allowed {
             return Ok((table, departure));
@@ -308,24 +330,13 @@ fn plan<'k>(
     }
 }
 
-/// By how much the joints turn along a path, in radians, as some places tell.
-fn turned(path: &ArmPath) -> f64 {
-    let step = path.curve().length() / f64::from(LOOKS);
-    let places = (0..=LOOKS).filter_map(|look| path.joints(f64::from(look) * step).ok());
-    let turns = places.clone().zip(places.skip(1)).map(|(from, to)| {
-        let turn = to - from;
-        turn.x.abs() + turn.y.abs()
-    });
-    turns.sum()
-}
-
-impl Axes<'_> {
+impl<const N: usize> Axes<'_, N> {
     /// Here is home.
-    fn set_home(&mut self, machine: &Machine) -> Result<(), SettingsError> {
+    fn set_home<K>(&mut self, machine: &Machine<K, N>) -> Result<(), SettingsError> {
         let quantiser = PvtQuantiser::new(machine.rate, machine.scales, machine.home)?;
         self.steps = PvtSteps::new(quantiser.knots(), machine.pins.min_intervals());
         self.quantiser = quantiser;
-        (self.joints, self.time_s) = (machine.home, 0.0);
+        (self.position, self.time_s) = (machine.home, 0.0);
         self.writer.restart(0);
         self.writer
             .set_steps(self.steps.steps().map(|steps| steps as i32));
@@ -333,11 +344,11 @@ impl Axes<'_> {
     }
 
     /// Runs a table to its end, or to where the user stops it.
-    async fn run(
+    async fn run<K: Kinematics<N>>(
         &mut self,
-        machine: &Machine,
-        panel: &Panel,
-        mut playback: Playback<'_, [f64; 2]>,
+        machine: &Machine<K, N>,
+        panel: &Panel<N>,
+        mut playback: Playback<'_, [f64; N]>,
     ) -> Result<End, Failure> {
         let start_s = self.time_s;
         loop {

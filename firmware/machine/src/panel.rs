@@ -7,6 +7,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::{Channel, TrySendError};
 use embassy_sync::signal::Signal;
+use step_player::Source;
 
 use crate::command::{Command, Job};
 use crate::pulses::{Block, BlockEnd};
@@ -52,35 +53,35 @@ pub(crate) enum Wanted {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Shared {
+struct Shared<const N: usize> {
     state: State,
     wanted: Wanted,
     feed_percent: u8,
-    /// Steps of both joints from zero that the pins have made.
-    steps: [i32; 2],
+    /// Steps of all axes from zero that the pins have made.
+    steps: [i32; N],
     /// Of the blocks that are put and not played.
     ticks_ahead: u32,
     underruns: u32,
 }
 
 /// What those who talk, plan and play share; each may be a task of another priority.
-pub struct Panel {
-    shared: Mutex<CriticalSectionRawMutex, Cell<Shared>>,
-    jobs: Signal<CriticalSectionRawMutex, Job>,
+pub struct Panel<const N: usize> {
+    shared: Mutex<CriticalSectionRawMutex, Cell<Shared<N>>>,
+    jobs: Signal<CriticalSectionRawMutex, Job<N>>,
     /// Something that the planner may wait for has changed.
     changed: Signal<CriticalSectionRawMutex, ()>,
     played: Signal<CriticalSectionRawMutex, ()>,
-    blocks: Channel<CriticalSectionRawMutex, Block, BLOCKS>,
+    blocks: Channel<CriticalSectionRawMutex, Block<N>, BLOCKS>,
     answers: Channel<CriticalSectionRawMutex, Text, 4>,
 }
 
-impl Default for Panel {
+impl<const N: usize> Default for Panel<N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Panel {
+impl<const N: usize> Panel<N> {
     /// A machine that is not homed.
     #[must_use]
     pub const fn new() -> Self {
@@ -89,7 +90,7 @@ impl Panel {
                 state: State::NotHomed,
                 wanted: Wanted::Run,
                 feed_percent: 100,
-                steps: [0; 2],
+                steps: [0; N],
                 ticks_ahead: 0,
                 underruns: 0,
             })),
@@ -101,12 +102,12 @@ impl Panel {
         }
     }
 
-    fn shared(&self) -> Shared {
+    fn shared(&self) -> Shared<N> {
         self.shared.lock(Cell::get)
     }
 
     /// Changes all or nothing.
-    fn change<R>(&self, change: impl FnOnce(&mut Shared) -> R) -> R {
+    fn change<R>(&self, change: impl FnOnce(&mut Shared<N>) -> R) -> R {
         self.shared.lock(|cell| {
             let mut shared = cell.get();
             let result = change(&mut shared);
@@ -120,9 +121,14 @@ impl Panel {
         self.shared().state
     }
 
-    /// Steps of shoulder and elbow from zero that the pins have made.
-    pub fn steps(&self) -> [i32; 2] {
+    /// Steps of all axes from zero that the pins have made.
+    pub fn steps(&self) -> [i32; N] {
         self.shared().steps
+    }
+
+    /// Whether the pins would have to wait for a block.
+    pub fn has_no_block(&self) -> bool {
+        self.blocks.is_empty()
     }
 
     /// How often the pins had to wait for the planner in the middle of a motion.
@@ -132,24 +138,23 @@ impl Panel {
 }
 
 /// For the task that plays.
-impl Panel {
-    /// The next block for the pins.
-    pub async fn next_block(&self) -> Block {
+impl<const N: usize> Source for Panel<N> {
+    type Block = Block<N>;
+    type End = BlockEnd<N>;
+
+    async fn next_block(&self) -> Block<N> {
         self.blocks.receive().await
     }
 
-    /// The next block, if there is one already.
-    pub fn try_next_block(&self) -> Option<Block> {
+    fn try_next_block(&self) -> Option<Block<N>> {
         self.blocks.try_receive().ok()
     }
 
-    /// Whether the pins would have to wait for a block.
-    pub fn has_no_block(&self) -> bool {
-        self.blocks.is_empty()
+    fn end(block: &Block<N>) -> BlockEnd<N> {
+        block.end
     }
 
-    /// The last word of a block has been played.
-    pub fn played(&self, end: BlockEnd) {
+    fn played(&self, end: BlockEnd<N>) {
         self.change(|shared| {
             shared.steps = end.steps;
             shared.ticks_ahead = shared.ticks_ahead.saturating_sub(end.ticks);
@@ -157,9 +162,8 @@ impl Panel {
         self.played.signal(());
     }
 
-    /// The pins have come to the end of a block, and there is no other. Counts as an underrun
-    /// unless the machine rests there.
-    pub fn ran_out_after(&self, end: BlockEnd) {
+    /// Counts as an underrun unless the machine rests there.
+    fn ran_out_after(&self, end: BlockEnd<N>) {
         if !end.rests {
             self.change(|shared| shared.underruns = shared.underruns.wrapping_add(1));
         }
@@ -167,12 +171,12 @@ impl Panel {
 }
 
 /// For the task that plans.
-impl Panel {
-    pub(crate) async fn next_job(&self) -> Job {
+impl<const N: usize> Panel<N> {
+    pub(crate) async fn next_job(&self) -> Job<N> {
         self.jobs.wait().await
     }
 
-    pub(crate) async fn put(&self, block: Block) {
+    pub(crate) async fn put(&self, block: Block<N>) {
         let ticks = block.end.ticks;
         self.change(|shared| shared.ticks_ahead = shared.ticks_ahead.saturating_add(ticks));
         self.blocks.send(block).await;
@@ -204,7 +208,7 @@ impl Panel {
         self.change(|shared| shared.state = state);
     }
 
-    pub(crate) fn set_steps(&self, steps: [i32; 2]) {
+    pub(crate) fn set_steps(&self, steps: [i32; N]) {
         self.change(|shared| shared.steps = steps);
     }
 
@@ -219,7 +223,7 @@ impl Panel {
 }
 
 /// For the task that talks.
-impl Panel {
+impl<const N: usize> Panel<N> {
     pub(crate) fn status(&self) -> Text {
         let shared = self.shared();
         let (state, percent, underruns) = (shared.state, shared.feed_percent, shared.underruns);
@@ -232,14 +236,17 @@ impl Panel {
 
     /// Takes a command that changes what the machine does. Of one that takes time the planner tells
     /// the outcome.
-    pub(crate) fn take(&self, command: Command) -> Option<Text> {
+    pub(crate) fn take(&self, command: Command<N>) -> Option<Text> {
         let refusal = self.change(|shared| {
             let state = shared.state;
             match (command, state) {
                 (Command::Job(Job::Home), State::NotHomed | State::Ready) => {
                     shared.state = State::Homing;
                 }
-                (Command::Job(Job::Line { .. } | Job::Jog { .. }), State::Ready) => {
+                (
+                    Command::Job(Job::Line { .. } | Job::Arc { .. } | Job::Jog { .. }),
+                    State::Ready,
+                ) => {
                     shared.state = State::Moving;
                 }
                 (Command::Hold | Command::Resume, State::Moving | State::Held)

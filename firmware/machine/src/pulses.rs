@@ -2,42 +2,57 @@
 
 use heapless::Vec;
 use pvt_steps::Direction;
+use step_player::Word;
 
 use crate::settings::PinTicks;
 
-/// What a board plays: it waits, then sets its pins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Word {
-    /// Ticks since the word before, 1 to those of 5 ms: longer waits are several words.
-    pub ticks: u32,
-    /// Level of each pin from then on: bit 0 steps the shoulder, bit 1 is its direction, bits 2 and 3
-    /// are the elbow's.
-    pub levels: u8,
+/// The most words of a block.
+const MAX_WORDS: usize = 64;
+
+/// Words that are handed to a board at a time. Bit 0 of their levels steps the first axis, bit 1 is its
+/// direction, bits 2 and 3 are the second's, bits 4 and 5 the third's.
+#[derive(Clone, Debug)]
+pub struct Block<const N: usize> {
+    /// At least one; each waits for 5 ms at the most.
+    pub words: Vec<Word, MAX_WORDS>,
+    /// What is so when all are played.
+    pub end: BlockEnd<N>,
 }
 
-/// Words that are handed to a board at a time.
-#[derive(Clone, Debug, Default)]
-pub struct Block {
-    /// At least one.
-    pub words: Vec<Word, { Self::MAX_WORDS }>,
-    /// What is so when all are played.
-    pub end: BlockEnd,
+impl<const N: usize> AsRef<[Word]> for Block<N> {
+    fn as_ref(&self) -> &[Word] {
+        &self.words
+    }
+}
+
+impl<const N: usize> Default for Block<N> {
+    fn default() -> Self {
+        Self {
+            words: Vec::new(),
+            end: BlockEnd::default(),
+        }
+    }
 }
 
 /// What is so at the end of a block, to be told to the [`Panel`](crate::Panel).
-#[derive(Clone, Copy, Debug, Default)]
-pub struct BlockEnd {
-    /// Steps of both joints from zero.
-    pub(crate) steps: [i32; 2],
+#[derive(Clone, Copy, Debug)]
+pub struct BlockEnd<const N: usize> {
+    /// Steps of all axes from zero.
+    pub(crate) steps: [i32; N],
     /// The time of the block.
     pub(crate) ticks: u32,
     /// Whether the machine rests: no block needs to follow at once.
     pub(crate) rests: bool,
 }
 
-impl Block {
-    /// The most words of a block.
-    pub const MAX_WORDS: usize = 64;
+impl<const N: usize> Default for BlockEnd<N> {
+    fn default() -> Self {
+        Self {
+            steps: [0; N],
+            ticks: 0,
+            rests: false,
+        }
+    }
 }
 
 /// The edges of step and direction pins, from steps in time order.
@@ -46,14 +61,14 @@ impl Block {
 /// the setup time, its end the pulse time later: so all pulses are late by the setup time, and their
 /// intervals are those of the steps.
 #[derive(Clone, Debug)]
-pub(crate) struct Pulses {
+pub(crate) struct Pulses<const N: usize> {
     pins: PinTicks,
     max_ticks: u32,
     levels: u8,
     /// The tick of the last word.
     last_ticks: u64,
-    /// Of each joint: change of direction, start and end of the pulse.
-    edges: [[Option<Edge>; 3]; 2],
+    /// Of each axis: change of direction, start and end of the pulse.
+    edges: [[Option<Edge>; 3]; N],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +78,7 @@ struct Edge {
     high: bool,
 }
 
-impl Pulses {
+impl<const N: usize> Pulses<N> {
     /// For words of at most `max_ticks`; all pins are low.
     pub(crate) const fn new(pins: PinTicks, max_ticks: u32) -> Self {
         Self {
@@ -71,7 +86,7 @@ impl Pulses {
             max_ticks,
             levels: 0,
             last_ticks: 0,
-            edges: [[None; 3]; 2],
+            edges: [[None; 3]; N],
         }
     }
 
@@ -80,14 +95,14 @@ impl Pulses {
         self.last_ticks = ticks;
     }
 
-    /// The edges of a step of a joint, 0 or 1. Those before `ticks` have been taken, so that none of
-    /// the joint's step before are left, as [`PinTicks::step`] makes it.
-    pub(crate) fn add(&mut self, joint: usize, ticks: u64, direction: Direction) {
+    /// The edges of a step of an axis. Those before `ticks` have been taken, so that none of
+    /// the axis' step before are left, as [`PinTicks::step`] makes it.
+    pub(crate) fn add(&mut self, axis: usize, ticks: u64, direction: Direction) {
         let high = direction == Direction::Positive;
-        let (step_mask, direction_mask) = (1 << (2 * joint), 2 << (2 * joint));
+        let (step_mask, direction_mask) = (1 << (2 * axis), 2 << (2 * axis));
         let start = ticks + self.pins.setup;
         let edge = |ticks, mask, high| Some(Edge { ticks, mask, high });
-        if let Some(edges) = self.edges.get_mut(joint) {
+        if let Some(edges) = self.edges.get_mut(axis) {
             *edges = [
                 edge(ticks, direction_mask, high),
                 edge(start, step_mask, true),

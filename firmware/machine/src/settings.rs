@@ -1,102 +1,41 @@
-//! What a person sets for an arm of their own.
+//! What a person sets for a machine of their own.
 
 use path_timing::AxisLimits;
 use pulse_interp::HomingSettings;
-use pvt_steps::{KnotError, MinIntervals, Rate, RateError, ScaleError, StepDirTiming, StepScale};
-use scara_kin::{Arm, Elbow, GeometryError, JointRange, Limits};
-use thiserror::Error;
+use pvt_steps::{MinIntervals, Rate, StepDirTiming, StepScale};
 
-/// An arm, its motors and their drivers. Arrays have the shoulder's value first, then the elbow's.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// Lengths of upper arm and forearm, in mm.
-    pub links_mm: [f64; 2],
-    /// The side that the elbow is on.
-    pub elbow: Elbow,
-    /// Angles that each joint may take, in degrees.
-    pub ranges_deg: [[f64; 2]; 2],
-    /// Steps of a turn of each joint; negative for a motor that turns the other way.
-    pub steps_per_turn: [f64; 2],
+use crate::kinematics::{Axis, Kinematics, Unit};
+use crate::settings_error::SettingsError;
+
+/// A machine with N axes, its motors and their drivers.
+pub struct Settings<K: Kinematics<N>, const N: usize> {
+    /// Of the machine as a whole.
+    pub geometry: K::Geometry,
+    /// Of each axis, in the order of the pins.
+    pub axes: [K::Axis; N],
     /// What the driver chips ask of their pins.
     pub driver: StepDirTiming,
-    /// Largest speed of each joint, in degrees/s.
-    pub speed_deg_s: [f64; 2],
-    /// Largest acceleration of each joint, in degrees/s².
-    pub acceleration_deg_s2: [f64; 2],
-    /// The most by which the tool may leave a line at a constant feed, in mm.
+    /// The most by which the tool may leave a line or an arc at a constant feed, in mm.
     pub tolerance_mm: f64,
-    /// Where each joint is when its home switch has just closed, in degrees.
-    pub home_deg: [f64; 2],
-    /// How each joint finds its switch. Directions are those of positive steps.
-    pub homing: [HomingSettings; 2],
-    /// Steps a second on the way to the switch and back.
+    /// Steps a second on the way to the switches and back.
     pub homing_fast_hz: u32,
-    /// Steps a second on the last way to the switch.
+    /// Steps a second on the last way to a switch.
     pub homing_slow_hz: u32,
 }
 
-/// Why settings are refused.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum SettingsError {
-    /// Links or ranges.
-    #[error(transparent)]
-    Geometry(#[from] GeometryError),
-    /// A range that does not have the home position in it.
-    #[error("joint {joint}: home at {home_deg} degrees is out of its range")]
-    Home {
-        /// 0 for the shoulder, 1 for the elbow.
-        joint: usize,
-        /// The angle given.
-        home_deg: f64,
-    },
-    /// A joint that would step faster than its driver takes steps, at the largest speed.
-    #[error(
-        "joint {joint}: {steps_s:.0} steps a second at the largest speed, {max_s:.0} are possible"
-    )]
-    TooFast {
-        /// 0 for the shoulder, 1 for the elbow.
-        joint: usize,
-        /// Steps a second.
-        steps_s: f64,
-        /// The most that driver and ticks allow.
-        max_s: f64,
-    },
-    /// A tolerance that nothing can be within.
-    #[error("a tolerance of {tolerance_mm} mm")]
-    Tolerance {
-        /// The tolerance given.
-        tolerance_mm: f64,
-    },
-    /// Homing that steps not at all or faster than the driver takes steps.
-    #[error("homing at {hz} steps a second")]
-    Homing {
-        /// Steps a second.
-        hz: u32,
-    },
-    /// Steps of a turn.
-    #[error(transparent)]
-    Scale(#[from] ScaleError),
-    /// Ticks a second.
-    #[error(transparent)]
-    Rate(#[from] RateError),
-    /// Home.
-    #[error(transparent)]
-    Knot(#[from] KnotError),
-}
-
-/// A machine with [`Settings`] that are checked, in the units of the crates.
+/// A machine with [`Settings`] that are checked, in the units of the crates: radians or mm.
 #[derive(Clone, Debug)]
-pub struct Machine {
-    pub(crate) arm: Arm,
-    pub(crate) elbow: Elbow,
-    pub(crate) scales: [StepScale; 2],
+pub struct Machine<K, const N: usize> {
+    pub(crate) kinematics: K,
+    pub(crate) ranges: [[f64; 2]; N],
+    pub(crate) scales: [StepScale; N],
     pub(crate) rate: Rate,
     pub(crate) tick_hz: u32,
     pub(crate) pins: PinTicks,
-    pub(crate) limits: [AxisLimits; 2],
+    pub(crate) limits: [AxisLimits; N],
     pub(crate) tolerance_mm: f64,
-    pub(crate) home: [f64; 2],
-    pub(crate) homing: [HomingSettings; 2],
+    pub(crate) home: [f64; N],
+    pub(crate) homing: [HomingSettings; N],
     pub(crate) homing_fast_ticks: u32,
     pub(crate) homing_slow_ticks: u32,
 }
@@ -146,40 +85,26 @@ impl PinTicks {
     }
 }
 
-impl Machine {
+impl<K: Kinematics<N>, const N: usize> Machine<K, N> {
+    /// What its axes are shown in.
+    pub(crate) const UNIT: Unit = K::Axis::UNIT;
+
     /// A machine whose pins change at ticks of `tick_hz`.
     ///
     /// # Errors
     /// [`SettingsError`].
-    pub fn new(settings: &Settings, tick_hz: u32) -> Result<Self, SettingsError> {
-        let [upper, fore] = settings.links_mm;
-        let [shoulder, elbow] = settings.ranges_deg.map(|[min, max]| {
-            JointRange::new(min.to_radians(), max.to_radians()).map_err(SettingsError::Geometry)
-        });
-        let limits = Limits {
-            shoulder: shoulder?,
-            elbow: elbow?,
-        };
-        let arm = Arm::new(upper, fore)?.with_limits(limits);
-        let home = settings.home_deg.map(f64::to_radians);
-        let ranges = [limits.shoulder, limits.elbow];
-        if let Some(joint) = (0..2).find(|&joint| !ranges[joint].contains(home[joint])) {
-            let home_deg = settings.home_deg[joint];
-            return Err(SettingsError::Home { joint, home_deg });
-        }
+    pub fn new(settings: &Settings<K, N>, tick_hz: u32) -> Result<Self, SettingsError> {
         let pins = PinTicks::new(settings.driver, tick_hz);
-        let max_s = pins.max_steps_s(tick_hz);
-        let steps_s = |joint: usize| {
-            (settings.speed_deg_s[joint] / 360.0 * settings.steps_per_turn[joint]).abs()
-        };
-        let is_too_fast = |&joint: &usize| steps_s(joint) > max_s || steps_s(joint).is_nan();
-        if let Some(joint) = (0..2).find(is_too_fast) {
-            let steps_s = steps_s(joint);
-            return Err(SettingsError::TooFast {
-                joint,
-                steps_s,
-                max_s,
-            });
+        for (name, axis) in K::AXES.into_iter().zip(&settings.axes) {
+            check_axis(name, axis, pins.max_steps_s(tick_hz))?;
+        }
+        let computed = |value| Self::UNIT.computed(value);
+        let axes = &settings.axes;
+        let ranges = axes.map(|axis| axis.range().map(computed));
+        let home = axes.map(|axis| computed(axis.home()));
+        let kinematics = K::new(&settings.geometry, ranges)?;
+        if kinematics.tool_mm(home).is_err() || kinematics.check(home).is_err() {
+            return Err(SettingsError::NoHome);
         }
         let tolerance_mm = settings.tolerance_mm;
         if tolerance_mm.is_nan() || tolerance_mm < 0.0 {
@@ -191,32 +116,56 @@ impl Machine {
                 .filter(|&ticks| u64::from(ticks) > pins.reversal + pins.setup)
                 .ok_or(SettingsError::Homing { hz })
         };
-        let [first, second] = settings
-            .steps_per_turn
-            .map(|steps| StepScale::new(steps / core::f64::consts::TAU));
-        let axis = |joint: usize| AxisLimits {
-            speed: settings.speed_deg_s[joint].to_radians(),
-            acceleration: settings.acceleration_deg_s2[joint].to_radians(),
-            jerk: None,
-        };
+        let mut scales = [StepScale::new(1.0)?; N];
+        for (scale, axis) in scales.iter_mut().zip(axes) {
+            *scale = StepScale::new(axis.steps_per_unit())?;
+        }
         Ok(Self {
-            arm,
-            elbow: settings.elbow,
-            scales: [first?, second?],
+            kinematics,
+            ranges,
+            scales,
             rate: Rate::from_hz(tick_hz)?,
             tick_hz,
             pins,
-            limits: [axis(0), axis(1)],
+            limits: axes.map(|axis| AxisLimits {
+                speed: computed(axis.speed()),
+                acceleration: computed(axis.acceleration()),
+                jerk: None,
+            }),
             tolerance_mm,
             home,
-            homing: settings.homing,
+            homing: axes.map(|axis| axis.homing()),
             homing_fast_ticks: homing_ticks(settings.homing_fast_hz)?,
             homing_slow_ticks: homing_ticks(settings.homing_slow_hz)?,
         })
     }
+}
 
-    pub(crate) const fn ranges(&self) -> [JointRange; 2] {
-        let Limits { shoulder, elbow } = *self.arm.limits();
-        [shoulder, elbow]
+/// Whether an axis has a range with home in it, and is not too fast for its driver.
+fn check_axis<A: Axis>(name: &'static str, axis: &A, max_s: f64) -> Result<(), SettingsError> {
+    let ([min, max], home, steps_s) = (axis.range(), axis.home(), axis.steps_s());
+    // Written so that NaN is refused too.
+    let is_range = min < max && min.is_finite() && max.is_finite();
+    if !is_range {
+        return Err(SettingsError::Range {
+            axis: name,
+            min,
+            max,
+        });
     }
+    if !(min..=max).contains(&home) {
+        return Err(SettingsError::Home {
+            axis: name,
+            home,
+            unit: A::UNIT.name(),
+        });
+    }
+    if steps_s > max_s || steps_s.is_nan() {
+        return Err(SettingsError::TooFast {
+            axis: name,
+            steps_s,
+            max_s,
+        });
+    }
+    Ok(())
 }

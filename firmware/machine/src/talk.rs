@@ -8,9 +8,9 @@ use embedded_io_async::{Read, Write};
 use heapless::Deque;
 use proto3964r::embedded_io_async::{AsyncClock, Driver};
 use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
-use scara_kin::Joints;
 
-use crate::command::{Command, Joint};
+use crate::command::Command;
+use crate::kinematics::Kinematics;
 use crate::panel::Panel;
 use crate::settings::Machine;
 use crate::{MAX_ANSWER, Text, text};
@@ -36,16 +36,17 @@ impl AsyncClock for Clock {
 
 /// Takes commands from a line and gives answers: the station of low priority.
 ///
-/// Each command has one answer; `home`, `line` and `jog` have another one at their end.
+/// Each command has one answer; those that move have another one at their end.
 /// `line_error` says what an error of the port is, none for a BREAK.
-pub async fn talk<R, W>(
-    machine: &Machine,
-    panel: &Panel,
+pub async fn talk<K, const N: usize, R, W>(
+    machine: &Machine<K, N>,
+    panel: &Panel<N>,
     line: Line,
     (reader, writer): (R, W),
     line_error: impl Fn(R::Error) -> Option<CharacterError>,
 ) -> !
 where
+    K: Kinematics<N>,
     R: Read,
     W: Write<Error = R::Error>,
 {
@@ -82,8 +83,12 @@ where
     }
 }
 
-fn answer(machine: &Machine, panel: &Panel, telegram: &[u8]) -> Option<Text> {
-    let command = match Command::parse(telegram) {
+fn answer<K: Kinematics<N>, const N: usize>(
+    machine: &Machine<K, N>,
+    panel: &Panel<N>,
+    telegram: &[u8],
+) -> Option<Text> {
+    let command = match Command::parse::<K>(telegram) {
         Ok(command) => command,
         Err(error) => return Some(text!("{error}")),
     };
@@ -91,18 +96,19 @@ fn answer(machine: &Machine, panel: &Panel, telegram: &[u8]) -> Option<Text> {
         Command::Where => text!("{}", machine.place(panel.steps())),
         Command::Status => panel.status(),
         Command::Limits => text!("{}", Limits(machine)),
+        Command::Machine => text!("{}", K::NAME),
         command => return panel.take(command),
     })
 }
 
-/// Steps of both joints, to be printed as tool, joints and steps.
-pub(crate) struct AtSteps<'m> {
-    machine: &'m Machine,
-    steps: [i32; 2],
+/// Steps of all axes, to be printed as tool, axes and steps.
+pub(crate) struct AtSteps<'m, K, const N: usize> {
+    machine: &'m Machine<K, N>,
+    steps: [i32; N],
 }
 
-impl Machine {
-    pub(crate) const fn place(&self, steps: [i32; 2]) -> AtSteps<'_> {
+impl<K, const N: usize> Machine<K, N> {
+    pub(crate) const fn place(&self, steps: [i32; N]) -> AtSteps<'_, K, N> {
         AtSteps {
             machine: self,
             steps,
@@ -110,41 +116,68 @@ impl Machine {
     }
 }
 
-impl Display for AtSteps<'_> {
+impl<K: Kinematics<N>, const N: usize> Display for AtSteps<'_, K, N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let [shoulder, elbow] = [0, 1].map(|joint| {
-            let scale = self.machine.scales[joint];
-            scale.to_position(self.steps[joint])
-        });
-        let tool = self.machine.arm.forward(Joints::new(shoulder, elbow));
-        write!(
-            f,
-            "x {:.3} y {:.3} mm, shoulder {:.3} elbow {:.3} degrees, steps {} {}",
-            tool.x,
-            tool.y,
-            shoulder.to_degrees(),
-            elbow.to_degrees(),
-            self.steps[0],
-            self.steps[1]
-        )
+        let mut axes = [0.0; N];
+        let scales = self.machine.scales.iter().zip(self.steps);
+        for (axis, (scale, steps)) in axes.iter_mut().zip(scales) {
+            *axis = scale.to_position(steps);
+        }
+        match self.machine.kinematics.tool_mm(axes) {
+            Ok(tool) => {
+                for (name, at) in COORDINATES.into_iter().zip(tool) {
+                    write!(f, "{name} {:.3} ", plain(at))?;
+                }
+                write!(f, "mm,")?;
+            }
+            Err(reason) => write!(f, "nowhere: {reason},")?,
+        }
+        if !K::IS_CARTESIAN {
+            let unit = Machine::<K, N>::UNIT;
+            for (name, axis) in K::AXES.into_iter().zip(axes) {
+                write!(f, " {name} {:.3}", plain(unit.shown(axis)))?;
+            }
+            write!(f, " {},", unit.name())?;
+        }
+        write!(f, " steps")?;
+        for steps in self.steps {
+            write!(f, " {steps}")?;
+        }
+        Ok(())
     }
 }
 
-/// Where a machine can go, and how fast.
-struct Limits<'m>(&'m Machine);
+/// Without the sign of what is shown as zero.
+fn plain(value: f64) -> f64 {
+    if value.abs() < 0.0005 { 0.0 } else { value }
+}
 
-impl Display for Limits<'_> {
+/// Names of the tool's coordinates.
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
+
+/// Where a machine can go, and how fast.
+struct Limits<'m, K, const N: usize>(&'m Machine<K, N>);
+
+impl<K: Kinematics<N>, const N: usize> Display for Limits<'_, K, N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Machine { arm, limits, .. } = self.0;
-        write!(f, "reach {:.1} to {:.1} mm", arm.inner_reach(), arm.reach())?;
-        for ((joint, range), limits) in Joint::ALL.iter().zip(self.0.ranges()).zip(limits) {
+        let Machine {
+            kinematics,
+            ranges,
+            limits,
+            ..
+        } = self.0;
+        let unit = Machine::<K, N>::UNIT;
+        kinematics.fmt_reach(f)?;
+        let axes = K::AXES.into_iter().zip(ranges).zip(limits);
+        for (index, ((name, range), limits)) in axes.enumerate() {
+            let [min, max] = range.map(|end| unit.shown(end));
+            let comma = if index > 0 { ", " } else { "" };
             write!(
                 f,
-                ", {joint} {:.1} to {:.1} degrees, {:.0} /s, {:.0} /s2",
-                range.min().to_degrees(),
-                range.max().to_degrees(),
-                limits.speed.to_degrees(),
-                limits.acceleration.to_degrees()
+                "{comma}{name} {min:.1} to {max:.1} {}, {:.0} /s, {:.0} /s2",
+                unit.name(),
+                unit.shown(limits.speed),
+                unit.shown(limits.acceleration)
             )?;
         }
         Ok(())

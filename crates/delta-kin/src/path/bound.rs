@@ -90,7 +90,7 @@ impl DeltaPath {
     /// Whether the machine may run a segment: all arms within their ranges, and no rod out of the plane
     /// of its arm by more than its ball joints let it. How far out it is depends on the platform's
     /// place alone, which is known at the nodes of [`departure`](Self::departure) and linear between
-    /// them but for what it departs by there and the curve's own bend.
+    /// them but for what it departs by there and the curve's own bend. Far from the limit the ends tell enough.
     pub(super) fn check_span(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
         let (delta, [from, to], s) = (&self.delta, &span.rows, span.s);
         let arms = Cubic::between(from, to).zip(delta.ranges()).zip(Arm::ALL);
@@ -108,8 +108,16 @@ impl DeltaPath {
         let Some(max) = delta.max_swivel() else {
             return Ok(());
         };
-        let sides = Passage::new(self, span).and_then(|passage| passage.sides());
-        let sides = sides.ok_or(DeltaPathError::TooCoarse { s })?;
+        let passage = Passage::new(self, span).ok_or(DeltaPathError::TooCoarse { s })?;
+        let is_clear = passage.sides_by_ends().is_some_and(|sides| {
+            let arms = zip(delta.prepared().each_ref(), sides);
+            arms.iter()
+                .all(|(prepared, side)| *side <= prepared.max_side)
+        });
+        if is_clear {
+            return Ok(());
+        }
+        let sides = passage.sides().ok_or(DeltaPathError::TooCoarse { s })?;
         let arms = zip(delta.prepared().each_ref(), sides);
         for ((prepared, side), arm) in arms.into_iter().zip(Arm::ALL) {
             // Written so that NaN is refused too.

@@ -219,20 +219,41 @@ impl<'a> Passage<'a> {
         farthest(kappa, sum / rest + kappa * known, self.lower)
     }
 
-    /// How far each wrist comes beside the plane of its arm.
+    /// How far each wrist comes beside the plane of its arm, at most: what it is at the ends, and what
+    /// the platform can go from the nearer one.
+    ///
+    /// ```text
+    /// |P(τ) - P(end)| ≤ max |P'| / 2
+    /// ```
+    pub(super) fn sides_by_ends(&self) -> Option<[f64; 3]> {
+        let [first, ..] = *self.motion.longest();
+        let off = self.farthest()? + first * 0.5 + self.rounding();
+        Some(self.sides_of(&self.ends(), off))
+    }
+
+    /// The same, by what is known between.
     pub(super) fn sides(&self) -> Option<[f64; 3]> {
-        let delta = &self.path.delta;
         // Between nodes, and the curve's bend from one to the next: h²/8 of its second derivative.
         let [_, second, ..] = *self.motion.longest();
         let off = self.between(self.farthest()?) + second * NODE * NODE / 8.0 + self.rounding();
-        let ends = self.s.map(|s| self.path.curve.at(s).point);
         let nodes = CurveMotion::<3>::NODES.map(|tau| self.platform(tau));
-        let sides = delta.prepared().each_ref().map(|prepared| {
-            let side = |place: &[f64; 3]| delta.flip((*place).into()).dot(&prepared.sideways());
-            let places = ends.iter().chain(&nodes);
-            places.fold(0.0, |most, place| larger_or_nan(most, side(place).abs())) + off
-        });
+        let [ends, nodes] = [&self.ends()[..], &nodes[..]].map(|places| self.sides_of(places, off));
+        let sides = zip(ends, nodes).map(|(end, node)| larger_or_nan(end, node));
         Some(sides).filter(|sides| !sides.iter().any(|side| side.is_nan()))
+    }
+
+    fn ends(&self) -> [[f64; 3]; 2] {
+        self.s.map(|s| self.path.curve.at(s).point)
+    }
+
+    /// The largest of some places, and so much more.
+    fn sides_of(&self, places: &[[f64; 3]], more: f64) -> [f64; 3] {
+        let delta = &self.path.delta;
+        delta.prepared().each_ref().map(|prepared| {
+            let side = |place: &[f64; 3]| delta.flip((*place).into()).dot(&prepared.sideways());
+            let sides = places.iter().map(|place| side(place).abs());
+            sides.fold(0.0, larger_or_nan) + more
+        })
     }
 
     /// E
@@ -276,5 +297,5 @@ fn farthest(kappa: f64, off: f64, lower: f64) -> Option<f64> {
 }
 
 fn larger_or_nan(a: f64, b: f64) -> f64 {
-    if b <= a { a } else { b }
+    if b <= a || a.is_nan() { a } else { b }
 }

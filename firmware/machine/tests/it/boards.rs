@@ -1,75 +1,141 @@
 //! Both boards' firmware in emulation (`firmware/emulate`), edge for edge with the machine on this PC.
 //!
-//! Runs where `ARM_PICO` and `ARM_NUCLEO` are the commands of the emulators, as `firmware/emulate/run`
-//! makes them.
+//! Runs where `ARM_PICO`, `DELTA_NUCLEO` and so on are the commands of the emulators, as
+//! `firmware/emulate/run` makes them.
 
-#[path = "../../../rp2040/src/arm.rs"]
-mod arm;
 mod board;
 
 use std::time::Duration;
 
 use board::Board;
+use board_machine::{Axis, Kinematics, RotaryDelta, TwoLinkArm, XyStage};
 
-use crate::rig::{Rig, STEPS_PER_TURN, forward};
+use crate::rig::{ARM, DELTA, Kind, Rig, STAGE};
 
-/// Where each joint is when it is switched on, in steps from its switch.
-const FROM_SWITCHES: [i32; 2] = [150, 60];
-/// Each joint is within half a step of the path, both links in a row, and the tolerance of the settings
-/// on top.
-const TOOL_TOLERANCE_MM: f64 = 0.05 + 0.75 * 264.0 * std::f64::consts::TAU / STEPS_PER_TURN;
 /// More fast steps than are decided before they are made.
 const IN_FLIGHT: u32 = 16;
 /// How long a contact bounces.
 const BOUNCE: Duration = Duration::from_millis(2);
-/// Long and short, near the base and far from it, slow and fast; the last ends where the first began.
-const LINES: [&str; 6] = [
-    "line -100 150",
-    "line -40 60 200",
-    "line 20 70",
-    "line 21 70",
-    "line 240 40",
-    "line 60 150 40",
-];
-/// From the end of a telegram to the first edge.
-const MOST_UNTIL_EDGE_S: f64 = 0.25;
-
-/// A board, the variable that has the command of its emulator, and its ticks.
-struct Kind {
-    variable: &'static str,
-    tick_hz: u32,
+/// What a machine is asked on its day.
+struct Day<K: Kinematics<N> + 'static, const N: usize> {
+    kind: Kind<K, N>,
+    /// Where each axis is when it is switched on, in steps from its switch.
+    from_switches: [i32; N],
+    /// From home away.
+    begin: &'static [&'static str],
+    /// Long and short, near and far, slow and fast; the last ends where `begin` does.
+    lines: &'static [&'static str],
+    /// What it refuses, or only answers.
+    refused: &'static [&'static str],
+    held: ([f64; N], &'static str),
+    stopped: ([f64; N], &'static str),
+    /// A longer way of an axis, and a shorter one.
+    jogs: [&'static str; 2],
+    /// From the end of a telegram to the first edge.
+    most_until_edge_s: f64,
 }
 
-const PICO: Kind = Kind {
-    variable: "ARM_PICO",
-    tick_hz: 12_500_000,
+const ARM_DAY: Day<TwoLinkArm, 2> = Day {
+    kind: ARM,
+    from_switches: [150, 60],
+    begin: &["jog shoulder 60", "line 60 150"],
+    lines: &[
+        "line -100 150",
+        "line -40 60 200",
+        "line 20 70",
+        "line 21 70",
+        "line 240 40",
+        "line 60 150 40",
+    ],
+    refused: &[
+        "machine",
+        "limits",
+        "line 400 0",
+        "line 0 0",
+        "jog elbow 200",
+        "resume",
+        "lime",
+    ],
+    held: ([200.0, -60.0], "line 200 -60"),
+    stopped: ([60.0, 150.0], "line 60 150"),
+    jogs: ["jog shoulder 90", "jog elbow 5"],
+    most_until_edge_s: 0.25,
 };
-const NUCLEO: Kind = Kind {
-    variable: "ARM_NUCLEO",
-    tick_hz: 250_000,
+
+const DELTA_DAY: Day<RotaryDelta, 3> = Day {
+    kind: DELTA,
+    from_switches: [-150, -60, -30],
+    begin: &["jog arm3 -10", "line 0 0 -250", "line 90 -40 -260 250"],
+    lines: &[
+        "line 90 -40 -290 60",
+        "line -70 40 -260",
+        "line -70 41 -260",
+        "line 0 -90 -280 200",
+        "line 90 -40 -260 40",
+    ],
+    refused: &[
+        "machine",
+        "limits",
+        "line 0 0 -400",
+        "jog arm2 200",
+        "cw 1 2 3 4",
+        "resume",
+    ],
+    held: ([-70.0, 40.0, -270.0], "line -70 40 -270 100"),
+    stopped: ([90.0, -40.0, -260.0], "line 90 -40 -260 100"),
+    jogs: ["jog arm1 -30", "jog arm1 5"],
+    most_until_edge_s: 0.6,
+};
+
+const STAGE_DAY: Day<XyStage, 2> = Day {
+    kind: STAGE,
+    from_switches: [150, 60],
+    begin: &["jog x 20", "line 20 50", "ccw 60 90 40 0"],
+    lines: &[
+        "cw 100 50 0 -40 30",
+        "line 20.01 50.02 20",
+        "line 20 50",
+        "ccw 20 50 40 0",
+        "cw 60 90 40 0 40",
+    ],
+    refused: &[
+        "machine",
+        "limits",
+        "line 400 0",
+        "ccw 0 0 7 7",
+        "jog y 200",
+        "resume",
+        "lime",
+    ],
+    held: ([100.0, 20.0], "line 100 20"),
+    stopped: ([20.0, 50.0], "line 20 50"),
+    jogs: ["jog x 20", "jog y 5"],
+    most_until_edge_s: 0.25,
 };
 
 /// A board with the same machine on this PC beside it.
-struct Pair {
-    board: Board,
-    rig: Rig,
+struct Pair<K: Kinematics<N> + 'static, const N: usize> {
+    day: Day<K, N>,
+    board: Board<N>,
+    rig: Rig<N>,
     tick_hz: u32,
     cycles_per_tick: u64,
     compared: usize,
 }
 
-impl Pair {
-    fn new(kind: &Kind) -> Option<Self> {
-        let command = std::env::var(kind.variable).ok()?;
-        let board = Board::start(&command, kind.tick_hz, FROM_SWITCHES);
-        let rig = Rig::with_settings(&arm::SETTINGS, kind.tick_hz, FROM_SWITCHES);
-        Some(Self {
-            tick_hz: kind.tick_hz,
-            cycles_per_tick: board.cycles(Duration::from_secs(1)) / u64::from(kind.tick_hz),
+impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
+    /// With the command of an emulator.
+    fn new(day: Day<K, N>, command: &str, tick_hz: u32) -> Self {
+        let board = Board::start(command, day.kind, tick_hz, day.from_switches);
+        let rig = Rig::of(day.kind, tick_hz, day.from_switches);
+        Self {
+            tick_hz,
+            cycles_per_tick: board.cycles(Duration::from_secs(1)) / u64::from(tick_hz),
             board,
             rig,
+            day,
             compared: 0,
-        })
+        }
     }
 
     /// A motion by both: the same answers, the same levels at the same intervals.
@@ -85,7 +151,7 @@ impl Pair {
             .board
             .seconds(self.board.changes[0].0 - self.board.told);
         assert!(
-            until_edge <= MOST_UNTIL_EDGE_S,
+            until_edge <= self.day.most_until_edge_s,
             "{command}: the first edge comes after {until_edge} s"
         );
         eprintln!("{command}: first edge after {until_edge:.3} s, {ended}");
@@ -108,7 +174,7 @@ impl Pair {
 
     /// Both find home, at the rates of the settings and where the switches have closed.
     fn homes(&mut self) {
-        assert_eq!(self.board.ask("line 60 150"), "refused: not homed");
+        assert_eq!(self.board.ask(self.day.held.1), "refused: not homed");
         self.board.forget();
         assert_eq!(self.board.ask("home"), self.rig.ask("home"));
         self.assert_home();
@@ -116,31 +182,32 @@ impl Pair {
         self.assert_where();
     }
 
-    /// Each joint is on the step that has closed its switch.
+    /// Each axis is on the step that has closed its switch.
     fn assert_home(&self) {
-        assert_eq!(self.board.pins.since_switch(), [0, 0]);
+        assert_eq!(self.board.pins.since_switch(), [0; N]);
     }
 
     fn assert_homing_rates(&self) {
         let ticks = |hz| u64::from(self.tick_hz / hz);
+        let settings = self.day.kind.settings;
         let (fast, slow) = (
-            ticks(arm::SETTINGS.homing_fast_hz),
-            ticks(arm::SETTINGS.homing_slow_hz),
+            ticks(settings.homing_fast_hz),
+            ticks(settings.homing_slow_hz),
         );
-        for joint in 0..2 {
+        for axis in 0..N {
             let made = self.board.pins.made.iter();
-            let made: Vec<_> = made.filter(|made| made.joint == joint).collect();
+            let made: Vec<_> = made.filter(|made| made.axis == axis).collect();
             let intervals = made.windows(2).map(|pair| pair[1].ticks - pair[0].ticks);
             let mut slow_steps = 0;
             for interval in intervals {
                 assert!(
                     interval == fast || interval == slow,
-                    "joint {joint} steps after {interval} ticks, not after {fast} or {slow}"
+                    "axis {axis} steps after {interval} ticks, not after {fast} or {slow}"
                 );
                 slow_steps += u32::from(interval == slow);
             }
             // Back beyond the switch, and by what had been on its way.
-            let clear = arm::SETTINGS.homing[joint].clear_steps;
+            let clear = settings.axes[axis].homing().clear_steps;
             assert!(
                 (clear..clear + IN_FLIGHT).contains(&slow_steps),
                 "{slow_steps} slow steps"
@@ -150,9 +217,9 @@ impl Pair {
 
     /// A line that is held and resumed stays on the line.
     fn holds(&mut self) {
-        let (start, to) = (self.tool(), [200.0, -60.0]);
+        let (start, (to, line)) = (self.board.pins.tool(), self.day.held);
         self.board.forget();
-        assert!(self.board.ask("line 200 -60").starts_with("ok, "));
+        assert!(self.board.ask(line).starts_with("ok, "));
         self.board.run_to_edge();
         self.board.run(Duration::from_millis(300));
         assert_eq!(self.board.ask("hold"), "ok");
@@ -160,40 +227,37 @@ impl Pair {
         assert!(held.starts_with("held, "), "{held}");
         self.board.pins.assert_slow_end();
         self.assert_where();
-        assert_eq!(self.board.ask("line 0 100"), "refused: held");
+        assert_eq!(self.board.ask(line), "refused: held");
         assert_eq!(self.board.ask("resume"), "ok");
         assert!(self.board.answer().starts_with("done, "));
-        self.board.pins.assert_on_line(start, to, TOOL_TOLERANCE_MM);
+        self.board
+            .pins
+            .assert_on_line(start, to, self.day.kind.tolerance_mm);
         self.board.pins.assert_driver_times();
         self.assert_where();
     }
 
     /// A line that is stopped ends on the line, and the board knows where.
     fn stops(&mut self) {
-        let (start, to) = (self.tool(), [60.0, 150.0]);
+        let (start, (to, line)) = (self.board.pins.tool(), self.day.stopped);
         self.board.forget();
-        assert!(self.board.ask("line 60 150").starts_with("ok, "));
+        assert!(self.board.ask(line).starts_with("ok, "));
         self.board.run_to_edge();
         self.board.run(Duration::from_millis(250));
         assert_eq!(self.board.ask("stop"), "ok");
         let stopped = self.board.answer();
         assert!(stopped.starts_with("stopped, "), "{stopped}");
         self.board.pins.assert_slow_end();
-        self.board.pins.assert_on_line(start, to, TOOL_TOLERANCE_MM);
+        self.board
+            .pins
+            .assert_on_line(start, to, self.day.kind.tolerance_mm);
         self.assert_where();
     }
 
     /// What is refused is refused alike, and nothing moves.
     fn refuses_alike(&mut self) {
         self.board.forget();
-        for command in [
-            "limits",
-            "line 400 0",
-            "line 0 0",
-            "jog elbow 200",
-            "resume",
-            "lime",
-        ] {
+        for command in self.day.refused {
             let answer = self.board.ask(command);
             assert_eq!(answer, self.rig.ask(command), "{command}");
         }
@@ -215,7 +279,7 @@ impl Pair {
         self.assert_where();
         assert_eq!(self.board.until_damaged, None);
         self.board.until_unplugged = Some(4);
-        self.board.submit(b"jog elbow 5");
+        self.board.submit(self.day.jogs[1].as_bytes());
         self.board.run_to_end_of_job();
         assert!(!self.board.is_plugged);
         self.board.is_plugged = true;
@@ -237,7 +301,7 @@ impl Pair {
 
     /// After a loss of supply in the middle of a motion the pins rest, and the board asks for home.
     fn starts_again(&mut self) {
-        assert!(self.board.ask("jog shoulder 90").starts_with("ok, "));
+        assert!(self.board.ask(self.day.jogs[0]).starts_with("ok, "));
         self.board.run(Duration::from_millis(150));
         self.board.tell("power");
         self.board.forget();
@@ -247,54 +311,113 @@ impl Pair {
             self.board.ask("status"),
             "not homed, feed 100 %, 0 underruns"
         );
-        assert_eq!(self.board.ask("line 60 150"), "refused: not homed");
-    }
-
-    fn tool(&self) -> [f64; 2] {
-        forward(self.board.pins.joints())
+        assert_eq!(self.board.ask(self.day.held.1), "refused: not homed");
     }
 
     fn assert_where(&mut self) {
-        let [shoulder, elbow] = self.board.pins.steps;
+        let steps = self.board.pins.steps.map(|steps| format!(" {steps}"));
         let place = self.board.ask("where");
         assert!(
-            place.ends_with(&format!("steps {shoulder} {elbow}")),
-            "{place}, steps {shoulder} {elbow} by the pins"
+            place.ends_with(&format!("steps{}", steps.concat())),
+            "{place}, steps{} by the pins",
+            steps.concat()
         );
     }
-}
 
-fn a_day(kind: &Kind) {
-    let Some(mut pair) = Pair::new(kind) else {
-        return;
-    };
-    pair.homes();
-    pair.moves_alike("jog shoulder 60");
-    pair.moves_alike("line 60 150");
-    for line in 0..more_lines() {
-        pair.moves_alike(LINES[line % LINES.len()]);
+    fn run(mut self) {
+        self.homes();
+        for command in self.day.begin {
+            self.moves_alike(command);
+        }
+        for line in 0..more_lines() {
+            self.moves_alike(self.day.lines[line % self.day.lines.len()]);
+        }
+        self.refuses_alike();
+        self.holds();
+        self.stops();
+        self.bears_a_bad_line();
+        assert_eq!(self.board.ask("status"), "ready, feed 100 %, 0 underruns");
+        self.homes_with_bouncing_switches();
+        self.starts_again();
+        eprintln!("{} edges alike", self.compared);
     }
-    pair.refuses_alike();
-    pair.holds();
-    pair.stops();
-    pair.bears_a_bad_line();
-    assert_eq!(pair.board.ask("status"), "ready, feed 100 %, 0 underruns");
-    pair.homes_with_bouncing_switches();
-    pair.starts_again();
-    eprintln!("{} edges alike", pair.compared);
 }
 
-/// How many of [`LINES`] are run, one after the other, besides: `BOARD_LINES`.
+/// A day of a machine on the Pico, and on the Nucleo, where the variables have their emulators' commands.
+fn on_the_pico<K: Kinematics<N> + 'static, const N: usize>(day: Day<K, N>, variable: &str) {
+    if let Ok(command) = std::env::var(variable) {
+        Pair::new(day, &command, 12_500_000).run();
+    }
+}
+
+fn on_the_nucleo<K: Kinematics<N> + 'static, const N: usize>(day: Day<K, N>, variable: &str) {
+    if let Ok(command) = std::env::var(variable) {
+        Pair::new(day, &command, 250_000).run();
+    }
+}
+
+/// How many of [`Day::lines`] are run, one after the other, besides: `BOARD_LINES`.
 fn more_lines() -> usize {
     std::env::var("BOARD_LINES").map_or(0, |lines| lines.parse().expect("a number"))
 }
 
 #[test]
-fn a_day_of_the_pico() {
-    a_day(&PICO);
+fn a_day_of_the_arm_on_the_pico() {
+    on_the_pico(ARM_DAY, "ARM_PICO");
 }
 
 #[test]
-fn a_day_of_the_nucleo() {
-    a_day(&NUCLEO);
+fn a_day_of_the_arm_on_the_nucleo() {
+    on_the_nucleo(ARM_DAY, "ARM_NUCLEO");
+}
+
+#[test]
+fn a_day_of_the_delta_on_the_pico() {
+    on_the_pico(DELTA_DAY, "DELTA_PICO");
+}
+
+#[test]
+fn a_day_of_the_delta_on_the_nucleo() {
+    on_the_nucleo(DELTA_DAY, "DELTA_NUCLEO");
+}
+
+#[test]
+fn a_day_of_the_stage_on_the_pico() {
+    on_the_pico(STAGE_DAY, "STAGE_PICO");
+}
+
+#[test]
+fn a_day_of_the_stage_on_the_nucleo() {
+    on_the_nucleo(STAGE_DAY, "STAGE_NUCLEO");
+}
+
+/// The example of `step-player`: 1000 steps a second, of pulses so long. At the internal oscillator the
+/// Nucleo has fewer cycles a second than its emulator says.
+fn trains(variable: &str, pulse_s: f64, slower: f64) {
+    let Ok(command) = std::env::var(variable) else {
+        return;
+    };
+    let edges = board::edges(&command, Duration::from_millis(20));
+    // From the first pulse on: direction and step together, then the step's end.
+    assert!(edges.len() > 6, "{edges:?}");
+    for pair in edges.windows(2) {
+        let [(from, levels), (to, _)] = [pair[0], pair[1]];
+        let expected = match levels {
+            0b11 => pulse_s,
+            0b10 => 0.001 - pulse_s,
+            _ => panic!("levels {levels:#b}"),
+        };
+        let took = (to - from) * slower;
+        assert!((took - expected).abs() < 1e-9, "{took} s, not {expected} s");
+    }
+}
+
+#[test]
+fn a_step_train_of_the_pico() {
+    trains("TRAIN_PICO", 2e-6, 1.0);
+}
+
+#[test]
+fn a_step_train_of_the_nucleo() {
+    trains("TRAIN_NUCLEO", 20e-6, 84.0 / 16.0);
 }

@@ -70,9 +70,9 @@ fn each_step_is_in_its_tick() {
     let steps_per_rad = STEPS_PER_TURN / TAU;
     for made in &rig.pins.made {
         let time_s = (made.ticks - start_ticks - SETUP_TICKS) as f64 / f64::from(TICK_HZ);
-        let [position, velocity] = at(&rows, time_s)[made.joint].map(|value| value * steps_per_rad);
-        steps[made.joint] += made.sign;
-        let passed = f64::from(steps[made.joint]) - 0.5 * f64::from(made.sign);
+        let [position, velocity] = at(&rows, time_s)[made.axis].map(|value| value * steps_per_rad);
+        steps[made.axis] += made.sign;
+        let passed = f64::from(steps[made.axis]) - 0.5 * f64::from(made.sign);
         let allowed = velocity.abs() / f64::from(TICK_HZ) * TICKS + STEPS;
         let off = (position - passed).abs();
         assert!(off <= allowed, "{off} of {allowed} steps off: {made:?}");

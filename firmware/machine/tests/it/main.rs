@@ -2,7 +2,9 @@
 
 mod boards;
 mod commands;
+mod delta;
 mod edges;
 mod motion;
 mod rig;
 mod settings;
+mod stage;

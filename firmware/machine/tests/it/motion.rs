@@ -1,7 +1,7 @@
 //! The machine as a board runs it: telegrams in and out, blocks played tick by tick, switches that
 //! close where they are. What comes out of the pins is compared with paths, not with the planner.
 
-use arm_machine::State;
+use board_machine::State;
 
 use crate::rig::{HOME_STEPS, Rig, START_STEPS, STEPS_PER_TURN, forward, joints_of};
 

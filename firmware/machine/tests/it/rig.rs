@@ -1,22 +1,20 @@
 //! An arm on a desk: its firmware, a PC on its serial line, pins that are looked at, and switches.
 
+mod kind;
 mod pins;
 mod wire;
 
-use std::cell::Cell;
 use std::collections::VecDeque;
 use std::pin::Pin;
-use std::rc::Rc;
 use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
-use arm_machine::{Machine, Motion, Panel, PlanMemory, Settings, talk};
+use board_machine::{Kinematics, Machine, Motion, Panel, PlanMemory, Source, talk};
 use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
-use pulse_interp::{Direction, HomingSettings};
-use pvt_steps::StepDirTiming;
 use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, Elbow, Joints};
 
+pub use kind::{ARM, DELTA, Kind, STAGE};
 pub use pins::Pins;
 use wire::Wire;
 
@@ -29,27 +27,6 @@ pub const START_STEPS: [i32; 2] = [-1333, 889];
 pub const LINKS_MM: [f64; 2] = [132.0, 132.0];
 pub const SPEED_DEG_S: f64 = 180.0;
 pub const ACCELERATION_DEG_S2: f64 = 1500.0;
-
-const HOMING: HomingSettings = HomingSettings {
-    direction: Direction::Negative,
-    max_steps: 16_000,
-    clear_steps: 20,
-};
-
-pub const SETTINGS: Settings = Settings {
-    links_mm: LINKS_MM,
-    elbow: Elbow::Right,
-    ranges_deg: [[-90.0, 210.0], [20.0, 160.0]],
-    steps_per_turn: [STEPS_PER_TURN; 2],
-    driver: StepDirTiming::DRV8825,
-    speed_deg_s: [SPEED_DEG_S; 2],
-    acceleration_deg_s2: [ACCELERATION_DEG_S2; 2],
-    tolerance_mm: 0.05,
-    home_deg: [-90.0, 20.0],
-    homing: [HOMING; 2],
-    homing_fast_hz: 800,
-    homing_slow_hz: 100,
-};
 
 /// Looks at all tasks before something else happens: enough for a command and its answer.
 const ROUNDS: usize = 60;
@@ -74,10 +51,10 @@ pub fn arm() -> Arm {
 
 type Task = Pin<Box<dyn Future<Output = ()>>>;
 
-pub struct Rig {
-    panel: &'static Panel,
+pub struct Rig<const N: usize> {
+    panel: &'static Panel<N>,
     tasks: [Task; 2],
-    pc: Station<160, 64>,
+    pc: Station<192, 64>,
     to_firmware: Wire,
     from_firmware: Wire,
     answers: VecDeque<String>,
@@ -85,27 +62,27 @@ pub struct Rig {
     /// Whether the PC listens to nothing once its telegram is taken, and whether that is so by now.
     deaf: (bool, bool),
     start: Instant,
-    pub pins: Pins,
+    pub pins: Pins<N>,
 }
 
-impl Rig {
-    /// The joints are so many steps from their switches.
-    pub fn new(from_switches: [i32; 2]) -> Self {
-        Self::with_settings(&SETTINGS, TICK_HZ, from_switches)
-    }
-
-    /// The same for other settings and ticks.
-    pub fn with_settings(settings: &Settings, tick_hz: u32, from_switches: [i32; 2]) -> Self {
-        let panel: &Panel = Box::leak(Box::new(Panel::new()));
-        let machine: &Machine = Box::leak(Box::new(Machine::new(settings, tick_hz).unwrap()));
-        let from_switches = Rc::new(Cell::new(from_switches));
+impl<const N: usize> Rig<N> {
+    /// A machine whose axes are so many steps from their switches.
+    pub fn of<K: Kinematics<N> + 'static>(
+        kind: Kind<K, N>,
+        tick_hz: u32,
+        from_switches: [i32; N],
+    ) -> Self {
+        let panel: &Panel<N> = Box::leak(Box::new(Panel::new()));
+        let machine = Machine::new(kind.settings, tick_hz).unwrap();
+        let machine: &Machine<K, N> = Box::leak(Box::new(machine));
+        let pins = Pins::new(&kind, tick_hz, from_switches);
         let (to_firmware, from_firmware) = (Wire::default(), Wire::default());
 
-        let switches = Rc::clone(&from_switches);
+        let switches = pins.switches();
         let memory = Box::leak(Box::new(PlanMemory::new()));
         let motion = Motion::new(machine, panel, memory).unwrap();
         let plan = async move {
-            motion.run(|| switches.get().map(|steps| steps <= 0)).await;
+            motion.run(|| switches.closed()).await;
         };
         let port = (to_firmware.clone(), from_firmware.clone());
         let converse = async move {
@@ -124,11 +101,18 @@ impl Rig {
             log: Vec::new(),
             deaf: (false, false),
             start: Instant::now(),
-            pins: Pins::new(tick_hz, from_switches),
+            pins,
         }
     }
+}
 
-    /// At home, and away from the end of the shoulder's range.
+impl Rig<2> {
+    /// The arm, so many steps from its switches.
+    pub fn new(from_switches: [i32; 2]) -> Self {
+        Self::of(ARM, TICK_HZ, from_switches)
+    }
+
+    /// The arm at home, and away from the end of the shoulder's range.
     pub fn homed() -> Self {
         let mut rig = Self::new([3, 3]);
         let answer = rig.ask("home");
@@ -140,8 +124,10 @@ impl Rig {
         rig.pins.forget();
         rig
     }
+}
 
-    pub fn panel(&self) -> &Panel {
+impl<const N: usize> Rig<N> {
+    pub fn panel(&self) -> &Panel<N> {
         self.panel
     }
 

@@ -1,15 +1,14 @@
 //! A board in emulation, with a PC on its serial line.
 
-use std::cell::Cell;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Lines, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::rc::Rc;
 use std::time::Duration;
 
+use board_machine::Kinematics;
 use proto3964r::{Config, Event, Line, Priority, Station};
 
-use crate::rig::Pins;
+use crate::rig::{Kind, Pins};
 
 const BAUD: u32 = 9600;
 /// Of a character: 8 data bits, even parity.
@@ -32,12 +31,12 @@ impl Drop for Emulator {
 }
 
 impl Emulator {
-    fn start(command: &str, from_switches: [i32; 2]) -> Self {
+    fn start(command: &str, from_switches: &[i32]) -> Self {
         let mut words = command.split(' ');
         let mut process = Command::new(words.next().expect("a program"))
             .args(words)
-            .args(from_switches.map(|steps| steps.to_string()))
             .arg("0")
+            .args(from_switches.iter().map(i32::to_string))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -60,12 +59,28 @@ impl Emulator {
     }
 }
 
-pub struct Board {
+/// What the pins of one axis do in a time, by a program that nobody talks to: in seconds.
+pub fn edges(command: &str, time: Duration) -> Vec<(f64, u8)> {
+    let mut emulator = Emulator::start(command, &[1]);
+    let (_, hz) = emulator.hear();
+    let hz = hz[0] as f64;
+    emulator.tell(&format!("run {:.0}", hz * time.as_secs_f64()));
+    let mut edges = Vec::new();
+    loop {
+        let (name, numbers) = emulator.hear();
+        if name == "at" {
+            return edges;
+        }
+        edges.push((numbers[0] as f64 / hz, u8::try_from(numbers[1]).unwrap()));
+    }
+}
+
+pub struct Board<const N: usize> {
     emulator: Emulator,
     cycles_per_tick: u64,
     hz: u64,
     pub cycle: u64,
-    pc: Station<160, 80>,
+    pc: Station<192, 80>,
     /// The PC's transmitter is free from this cycle on.
     free: u64,
     /// When the PC's last character has ended.
@@ -79,19 +94,22 @@ pub struct Board {
     pub until_unplugged: Option<u32>,
     answers: VecDeque<String>,
     log: Vec<String>,
-    from_switches: Rc<Cell<[i32; 2]>>,
     /// When the levels have changed, in cycles, and to what.
     pub changes: Vec<(u64, u8)>,
-    pub pins: Pins,
+    pub pins: Pins<N>,
     pub events: Vec<String>,
 }
 
-impl Board {
-    pub fn start(command: &str, tick_hz: u32, from_switches: [i32; 2]) -> Self {
-        let mut emulator = Emulator::start(command, from_switches);
+impl<const N: usize> Board<N> {
+    pub fn start<K: Kinematics<N>>(
+        command: &str,
+        kind: Kind<K, N>,
+        tick_hz: u32,
+        from_switches: [i32; N],
+    ) -> Self {
+        let mut emulator = Emulator::start(command, &from_switches);
         let (_, hz) = emulator.hear();
         let hz = hz[0].unsigned_abs();
-        let from_switches = Rc::new(Cell::new(from_switches));
         let line = Line::paced(BAUD, BITS);
         Self {
             emulator,
@@ -107,8 +125,7 @@ impl Board {
             until_unplugged: None,
             answers: VecDeque::new(),
             log: Vec::new(),
-            pins: Pins::new(tick_hz, Rc::clone(&from_switches)),
-            from_switches,
+            pins: Pins::new(&kind, tick_hz, from_switches),
             changes: Vec::new(),
             events: Vec::new(),
         }
@@ -207,10 +224,10 @@ impl Board {
                 "sent" => self.receive(cycle, u8::try_from(numbers[1]).unwrap()),
                 _ => {
                     self.cycle = cycle;
-                    let real = [numbers[1], numbers[2]].map(|steps| steps as i32);
+                    let real = numbers[1..].iter().map(|&steps| steps as i32);
                     assert_eq!(
-                        self.from_switches.get(),
-                        real,
+                        self.pins.since_switch().to_vec(),
+                        real.collect::<Vec<_>>(),
                         "steps that only one has seen"
                     );
                     break;
