@@ -1,7 +1,7 @@
 //! What busy lines cost a gateway: the table of docs/book/src/gateway.md.
 
 use core::{str::FromStr, time::Duration};
-use std::{env, fs};
+use std::env;
 
 use proto3964r::tokio::SendError;
 use tempfile::TempDir;
@@ -108,11 +108,11 @@ impl Case {
             })
         };
         answers.iter().for_each(|answers| drop(answers.take()));
-        let (begin, before, cpu) = (Instant::now(), total(), cpu_s(gateway.id()));
+        let (begin, before, cpu) = (Instant::now(), total(), gateway.cpu_s());
         sleep(time).await;
-        let (after, cpu) = (total(), cpu_s(gateway.id()) - cpu);
+        let (after, cpu) = (total(), gateway.cpu_s() - cpu);
         let elapsed = begin.elapsed().as_secs_f64();
-        let memory = resident_mb(gateway.id());
+        let memory = gateway.resident_mb();
         let lines = self.lines;
         let verdicts = spawn_blocking(move || {
             let of = |line| format!("line3964r_line_verdict_us_total{{line=\"line{line}\"}}");
@@ -120,7 +120,7 @@ impl Case {
         });
         let verdicts = Duration::from_micros(verdicts.await.unwrap()).as_secs_f64();
         // Since the start: each line's first look is in it.
-        let verdicts = verdicts / cpu_s(gateway.id()) * 100.0;
+        let verdicts = verdicts / gateway.cpu_s() * 100.0;
         let mut times: Vec<_> = answers.iter().flat_map(Answers::take).collect();
         times.sort_unstable();
 
@@ -163,30 +163,4 @@ async fn send(uart: Uart, pause: Option<Duration>, phase: Duration, teller: watc
             Err(error) => panic!("{error}"),
         });
     }
-}
-
-/// Seconds of a processor that a process has used.
-fn cpu_s(id: u32) -> f64 {
-    /// Of `/proc`, a second.
-    const TICKS: f64 = 100.0;
-    let text = fs::read_to_string(format!("/proc/{id}/stat")).unwrap();
-    // After the program's name, which is in brackets: the third field and those that follow.
-    let fields: Vec<_> = text
-        .rsplit_once(')')
-        .unwrap()
-        .1
-        .split_whitespace()
-        .collect();
-    let ticks = |field: usize| fields[field - 3].parse::<f64>().unwrap();
-    (ticks(14) + ticks(15)) / TICKS
-}
-
-/// Memory of a process, in MB.
-fn resident_mb(id: u32) -> f64 {
-    let text = fs::read_to_string(format!("/proc/{id}/status")).unwrap();
-    let kib = text.lines().find_map(|line| {
-        let line = line.strip_prefix("VmRSS:")?;
-        line.strip_suffix("kB")?.trim().parse::<f64>().ok()
-    });
-    kib.unwrap() * 1024.0 / 1e6
 }
