@@ -26,6 +26,8 @@ struct Case {
     pace: Pace,
     /// From one telegram of a line to the next; without it, one follows the other.
     pause: Option<Duration>,
+    /// Whether the gateway listens to its lines, for verdicts.
+    diagnose: bool,
 }
 
 /// What a partner has to tell of its telegrams.
@@ -49,9 +51,9 @@ fn words<T: FromStr>(name: &str, default: &str) -> Vec<T> {
 #[ignore = "measures for minutes, on Linux"]
 async fn busy_lines() {
     println!(
-        "| bit/s | pieces | lines | telegrams/s | failed | CPU s/s | us/telegram | answers ms: 50 %, 99 %, all | MB | verdicts, % of CPU |"
+        "| diagnose | bit/s | pieces | lines | telegrams/s | failed | CPU s/s | us/telegram | answers ms: 50 %, 99 %, all | MB | verdicts, % of CPU |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
     let seconds = Duration::from_secs(words("GATEWAY_SECONDS", "10")[0]);
     for pause_s in words("GATEWAY_PAUSES_S", "1 0") {
         let pause = Some(Duration::from_secs(pause_s)).filter(|pause| !pause.is_zero());
@@ -60,8 +62,15 @@ async fn busy_lines() {
                 let every = Duration::from_millis(every_ms);
                 let pace = Pace { baud, every };
                 for lines in words("GATEWAY_LINES", "50 100 200 500") {
-                    let case = Case { lines, pace, pause };
-                    println!("{}", case.measure(seconds).await);
+                    for diagnose in words("GATEWAY_DIAGNOSE", "true") {
+                        let case = Case {
+                            lines,
+                            pace,
+                            pause,
+                            diagnose,
+                        };
+                        println!("{}", case.measure(seconds).await);
+                    }
                 }
             }
         }
@@ -83,6 +92,7 @@ impl Case {
             let name = format!("line{index}");
             let uart = Uart::new(&folder.path().join(&name), self.pace).await;
             config += &uart.line(&name);
+            config += &format!("diagnose = {}\n", self.diagnose);
             uarts.push(uart);
         }
         let gateway = Gateway::start(&config);
@@ -129,7 +139,8 @@ impl Case {
         let sent = f64::from(after.sent - before.sent);
         let at = |percent: usize| times[(times.len() - 1) * percent / 100].as_secs_f64() * 1e3;
         format!(
-            "| {} | {:?} | {} | {:.0} | {} | {:.3} | {:.0} | {:.1}, {:.1}, {:.1} | {memory:.1} | {verdicts:.1} |",
+            "| {} | {} | {:?} | {} | {:.0} | {} | {:.3} | {:.0} | {:.1}, {:.1}, {:.1} | {memory:.1} | {verdicts:.1} |",
+            self.diagnose,
             self.pace.baud,
             self.pace.every,
             self.lines,
