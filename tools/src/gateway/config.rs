@@ -21,7 +21,7 @@ use serde::{Deserialize, Deserializer, de::Error as _};
 use toml::{Spanned, Table};
 
 pub(crate) use self::{
-    mqtt::{Mqtt, Overflow, Prefix},
+    mqtt::{Mqtt, Overflow, Prefix, Sparkplug},
     name::Name,
     nats::Nats,
     store::{Settings as StoreSettings, Sync},

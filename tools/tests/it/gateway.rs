@@ -19,6 +19,7 @@ mod reload;
 mod safe;
 mod scale;
 mod served;
+mod sparkplug;
 mod subscriber;
 mod uart;
 mod verdicts;

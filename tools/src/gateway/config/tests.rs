@@ -28,6 +28,9 @@ fn the_page_on_the_gateway_has_a_configuration_that_holds() {
     let mut blocks = blocks.map(|block| block.split("```").next().unwrap());
     let config = Config::parse(blocks.next().unwrap()).unwrap();
     assert_eq!(config.lines.len(), 2);
+    let sparkplug = blocks.next().unwrap();
+    let config = Config::parse(&format!("name = \"hall-3\"\n{sparkplug}{LINE}")).unwrap();
+    assert!(config.mqtt().unwrap().sparkplug.is_some());
     let nats = blocks.next().unwrap();
     let config = Config::parse(&format!("name = \"hall-3\"\n{nats}{LINE}")).unwrap();
     assert_eq!(config.broker().unwrap().kind(), "nats");

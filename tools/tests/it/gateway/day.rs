@@ -214,6 +214,7 @@ async fn a_day_of_load() {
         number("GATEWAY_LINES", 200),
     );
     let kills = number("GATEWAY_KILLS_ONE_IN", 8);
+    let most = Duration::from_secs(number("GATEWAY_SECONDS", u32::MAX).into());
     let mut broker = Broker::start().expect("a broker");
     let folder = TempDir::new().unwrap();
     let mut config = format!(
@@ -236,16 +237,24 @@ async fn a_day_of_load() {
     }
     let mut subscriber = Subscriber::new(broker.port).await;
     let (heard_so_far, mut messages) = mpsc::unbounded_channel();
+    let shared = Arc::clone(&load);
     let hearing = tokio::spawn(async move {
         let mut heard = Heard::default();
-        // A message long after the partners have ended means that all have come.
-        while let Some((topic, payload)) = subscriber.next_within(Duration::from_secs(30)).await {
+        // None for long after the partners have ended means that all have come.
+        loop {
+            let was_over = shared.is_over.load(Ordering::Relaxed);
+            let Some((topic, payload)) = subscriber.next_within(Duration::from_secs(10)).await
+            else {
+                if was_over {
+                    return heard;
+                }
+                continue;
+            };
             heard.take(&topic, &payload);
             if heard.messages.is_multiple_of(1000) {
                 heard_so_far.send(heard.messages).ok();
             }
         }
-        heard
     });
 
     let begin = Instant::now();
@@ -256,10 +265,11 @@ async fn a_day_of_load() {
         "| s | acknowledged | at the subscriber | failed jobs | MB of the gateway | its CPU, s | MB on disk |"
     );
     println!("|---|---|---|---|---|---|---|");
-    while load.sent.load(Ordering::Relaxed) < telegrams {
+    let is_enough = || load.sent.load(Ordering::Relaxed) >= telegrams || begin.elapsed() >= most;
+    while !is_enough() {
         let calm = Duration::from_millis((1000 + random.draw() % CALM_MS).into());
         let until = Instant::now() + calm;
-        while Instant::now() < until && load.sent.load(Ordering::Relaxed) < telegrams {
+        while Instant::now() < until && !is_enough() {
             sleep(Duration::from_millis(200)).await;
             while let Ok(messages) = messages.try_recv() {
                 heard = messages;

@@ -57,7 +57,7 @@ enum Wire {
     Whole,
     /// Nothing reaches the gateway.
     Open,
-    /// Both hear what either sends.
+    /// The gateway hears what it sends.
     Shared,
 }
 
@@ -298,7 +298,12 @@ fn kinds() -> Vec<Kind> {
         },
         Kind {
             wire: Wire::Shared,
-            ..Kind::new("echo", none, both, vec![json!("Echo")])
+            ..Kind::new(
+                "own_echo_of_the_gateway",
+                none,
+                both,
+                vec![json!("Echo"), json!({ "OwnEcho": { "side": "A" } })],
+            )
         },
     ];
     for (name, frame, right) in [
@@ -348,9 +353,11 @@ async fn serve(listener: TcpListener, mut bench: Bench, kind: &Kind, tap: Heard)
             len = from_gateway.read(&mut piece) => match len {
                 Ok(len @ 1..) => for &byte in &piece[..len] {
                     bench.send(byte);
-                    busy_until = busy_until.max(begin.elapsed()) + character;
+                    // The time of the wires, which is late where the computer was.
+                    busy_until = busy_until.max(bench.now()) + character;
                     hears(busy_until, Side::A, byte);
                     if wire == Wire::Shared {
+                        hears(busy_until, Side::B, byte);
                         heard.push(byte);
                     }
                 },
@@ -378,20 +385,8 @@ async fn serve(listener: TcpListener, mut bench: Bench, kind: &Kind, tap: Heard)
 /// What a monitor says of the line that it has heard.
 fn by_monitor(kind: &Kind, tap: &Heard) -> Value {
     let mut heard = tap.lock().unwrap().clone();
-    if kind.wire == Wire::Shared {
-        // Its both sides are one wire.
-        let other = heard.iter().map(|heard| Character {
-            side: match heard.side {
-                Side::A => Side::B,
-                Side::B => Side::A,
-            },
-            ..*heard
-        });
-        let other: Vec<_> = other.collect();
-        heard.extend(other);
-    }
     heard.sort_by_key(|heard| heard.at);
-    serde_json::to_value(diagnose(&heard, &kind.expected()).verdict).unwrap()
+    serde_json::to_value(diagnose(&heard, &kind.expected())).unwrap()
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -435,13 +430,18 @@ async fn faults_of_simulated_partners() {
     for (kind, tap) in kinds.iter().zip(&taps) {
         let told = found.get(kind.name).cloned().unwrap_or_default();
         let by_monitor = by_monitor(kind, tap);
-        let are_right = [&told["verdict"], &by_monitor].map(|verdict| kind.is_right(verdict));
+        // Where both look the same, also as the second cause.
+        let are_right = [&told, &by_monitor]
+            .map(|told| kind.is_right(&told["verdict"]) || kind.is_right(&told["or"]));
         right += usize::from(are_right[0]);
         right_by_monitor += usize::from(are_right[1]);
         let [gateway, monitor] = are_right.map(|is_right| if is_right { "right" } else { "WRONG" });
         let name = kind.name;
         println!("{name:<22} {gateway}  {}", told["sentence"]);
-        println!("{:<22} {monitor}  {by_monitor}", "    a monitor");
+        println!(
+            "{:<22} {monitor}  {}",
+            "    a monitor", by_monitor["verdict"]
+        );
     }
     let count = kinds.len();
     println!("of {count} lines the gateway is right on {right}, a monitor on {right_by_monitor}");
