@@ -8,10 +8,12 @@ mod metric;
 mod payload;
 
 use alloc::collections::BTreeMap;
-use std::{fs, path::PathBuf, str::FromStr as _};
+use core::str::FromStr as _;
+use std::{fs, path::PathBuf};
 
 use jiff::Timestamp;
 use log::warn;
+use serde::Deserialize;
 use serde_json::Value as Json;
 use toml::Spanned;
 
@@ -53,15 +55,15 @@ pub(crate) struct Node {
     host: Host,
 }
 
-/// The primary host.
-#[derive(Default)]
+/// What the primary host said last.
+#[derive(Default, Deserialize)]
 struct Host {
-    is_online: bool,
-    /// Of what it said last.
-    at_ms: i64,
+    online: bool,
+    /// In milliseconds since 1970.
+    timestamp: i64,
 }
 
-/// What is to be published, at QoS 0 and not retained.
+/// What is to be published, at most once and not retained.
 pub(crate) struct Packet {
     pub(crate) topic: String,
     pub(crate) payload: Vec<u8>,
@@ -172,7 +174,7 @@ impl Node {
 
     /// Whether births may be published.
     pub(crate) const fn may_be_born(&self) -> bool {
-        self.primary_host.is_none() || self.host.is_online
+        self.primary_host.is_none() || self.host.online
     }
 
     /// The births of the node and of the devices that are up.
@@ -328,16 +330,11 @@ impl Node {
 
     /// `{"online": true, "timestamp": 1}`; what is older than the last does not count.
     fn hear_host(&mut self, bytes: &[u8]) -> Result<Heard, String> {
-        let state: Json = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
-        let (Some(is_online), Some(at_ms)) =
-            (state["online"].as_bool(), state["timestamp"].as_i64())
-        else {
-            return Err("no `online` and `timestamp`".to_owned());
-        };
-        if at_ms < self.host.at_ms || is_online == self.host.is_online {
+        let host: Host = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
+        if host.timestamp < self.host.timestamp || host.online == self.host.online {
             return Ok(Heard::Nothing);
         }
-        self.host = Host { is_online, at_ms };
+        self.host = host;
         Ok(Heard::Host)
     }
 }

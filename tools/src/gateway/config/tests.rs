@@ -229,3 +229,23 @@ fn errors_name_line_and_column() {
         "line 4, column 12: unknown variant `4`, expected `3.1.1` or `5`"
     );
 }
+
+#[test]
+fn what_sparkplug_has_no_place_for_is_refused() {
+    for (key, message) in [
+        (
+            "discovery = \"homeassistant\"",
+            "mqtt: discovery: its topics are not published with Sparkplug",
+        ),
+        (
+            "command_max_age_s = 5",
+            "mqtt: command_max_age_s: Sparkplug keeps no commands",
+        ),
+    ] {
+        let text = format!(
+            "name = \"hall\"\n[mqtt]\nbroker = \"mqtt://h\"\n{key}\n\
+             [mqtt.sparkplug]\ngroup = \"plant\"\n{LINE}"
+        );
+        assert!(error(&text).ends_with(message), "{}", error(&text));
+    }
+}

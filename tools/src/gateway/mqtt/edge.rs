@@ -1,6 +1,6 @@
 //! An edge node of Sparkplug B on one connection.
 //!
-//! Its messages leave at QoS 0, as Sparkplug has it, to which no broker answers. That the broker has
+//! Its messages leave at most once, as Sparkplug has it, so that no broker answers. That the broker has
 //! taken them is known from its answer to a subscription that follows them, since it takes the packets
 //! of a connection in their order.
 

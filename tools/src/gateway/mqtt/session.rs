@@ -56,6 +56,17 @@ pub(super) enum Purpose {
     Work { careful_until: Option<Name> },
 }
 
+impl Purpose {
+    fn answered(&mut self, message: &Message) {
+        if let Self::Work { careful_until } = self
+            && let Some((id, topic)) = careful_until
+            && (message.id > *id || *topic == message.topic)
+        {
+            *careful_until = None;
+        }
+    }
+}
+
 /// What there is of a connection besides the connection.
 pub(super) struct Session<'h> {
     pub(super) window: Window,
@@ -252,17 +263,13 @@ impl<'h> Session<'h> {
         };
         for _ in 0..edge.subscribed(sender) {
             if let Some(message) = self.window.take_first() {
+                self.purpose.answered(&message);
                 self.outbox.done(&message);
                 self.hub.broker.published.fetch_add(1, Ordering::Relaxed);
                 self.has_acknowledged = true;
             }
         }
         edge.fence(sender, self.window.len());
-        if self.window.is_empty()
-            && let Purpose::Work { careful_until } = &mut self.purpose
-        {
-            *careful_until = None;
-        }
     }
 
     /// # Errors
@@ -274,12 +281,7 @@ impl<'h> Session<'h> {
         let Some(message) = self.window.acknowledged(id) else {
             return Ok(());
         };
-        if let Purpose::Work { careful_until } = &mut self.purpose
-            && let Some((id, topic)) = careful_until
-            && (message.id > *id || *topic == message.topic)
-        {
-            *careful_until = None;
-        }
+        self.purpose.answered(&message);
         match answer {
             Answer::Refused(reason) => self.hub.refused(self.outbox, message, &reason),
             Answer::Taken | Answer::Quota => {

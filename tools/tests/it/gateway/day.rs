@@ -198,12 +198,13 @@ impl Heard {
     }
 }
 
-/// Bytes of all files of a folder.
-fn bytes_in(folder: &Path) -> u64 {
+/// What all files of a folder take, in MB.
+fn megabytes_in(folder: &Path) -> f64 {
     let files = fs::read_dir(folder).unwrap();
-    files
+    let bytes: u64 = files
         .map(|file| file.unwrap().metadata().unwrap().len())
-        .sum()
+        .sum();
+    f64::from(u32::try_from(bytes / 1000).unwrap()) / 1e3
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -283,7 +284,7 @@ async fn a_day_of_load() {
                     load.failed.load(Ordering::Relaxed),
                     gateway.resident_mb(),
                     gateway.cpu_s(),
-                    bytes_in(folder.path()) as f64 / 1e6,
+                    megabytes_in(folder.path()),
                 );
             }
         }
@@ -310,7 +311,7 @@ async fn a_day_of_load() {
         acknowledged.push(partner.await.unwrap());
     }
     let heard = hearing.await.unwrap();
-    let disk = bytes_in(folder.path());
+    let disk = megabytes_in(folder.path());
     gateway.ends();
     let mut all = Tally::default();
     for (line, &acknowledged) in acknowledged.iter().enumerate() {
@@ -335,7 +336,7 @@ async fn a_day_of_load() {
         all.marked,
         all.unmarked,
         all.damaged,
-        disk as f64 / 1e6
+        disk
     );
     assert_eq!((all.lost, all.misplaced), (0, 0));
 }
