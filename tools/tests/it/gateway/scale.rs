@@ -20,6 +20,9 @@ use super::{
 /// Bytes of a telegram.
 const TELEGRAM: usize = 32;
 
+/// Until each line has been looked at for the first time: from then on every 15 minutes, if it works.
+const FIRST_LOOK: Duration = Duration::from_secs(7);
+
 /// One row of the table.
 struct Case {
     lines: u32,
@@ -109,6 +112,9 @@ impl Case {
         }
         for told in &mut told {
             told.wait_for(|told| told.sent > 0).await.unwrap();
+        }
+        if self.diagnose {
+            sleep(FIRST_LOOK).await;
         }
 
         let total = || {
