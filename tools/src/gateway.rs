@@ -15,6 +15,7 @@ mod nats;
 mod outbox;
 mod reload;
 mod served;
+mod sparkplug;
 mod store;
 mod tap;
 mod tcp;

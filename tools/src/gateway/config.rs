@@ -21,7 +21,7 @@ use serde::{Deserialize, Deserializer, de::Error as _};
 use toml::{Spanned, Table};
 
 pub(crate) use self::{
-    mqtt::{Mqtt, Overflow, Prefix},
+    mqtt::{Mqtt, Overflow, Prefix, Sparkplug},
     name::Name,
     nats::Nats,
     store::{Settings as StoreSettings, Sync},
@@ -94,6 +94,9 @@ pub(crate) struct Line {
     /// repeat.
     #[serde(default = "yes")]
     pub(crate) mark_repeats: bool,
+    /// Whether the line is listened to, for verdicts and captures.
+    #[serde(default = "yes")]
+    pub(crate) diagnose: bool,
     /// Jobs that wait for the line.
     #[serde(default = "sixteen")]
     pub(crate) commands: NonZeroU16,

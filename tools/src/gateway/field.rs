@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub(crate) use self::kind::Kind;
-use super::config::Name;
+use super::{config::Name, sparkplug::DataType};
 use crate::text;
 
 /// One value in a telegram: `value = raw * scale`.
@@ -95,6 +95,21 @@ impl Field {
     pub(crate) fn state_class(&self) -> Option<&str> {
         let given = self.state_class.as_deref();
         given.or_else(|| self.kind.is_number().then_some("measurement"))
+    }
+
+    /// The type of its values in Sparkplug B.
+    pub(crate) fn data_type(&self) -> DataType {
+        match self.kind {
+            _ if self.scale.is_some() => DataType::Double,
+            Kind::U8 => DataType::UInt8,
+            Kind::U16Be | Kind::U16Le => DataType::UInt16,
+            Kind::U32Be | Kind::U32Le => DataType::UInt32,
+            Kind::I8 | Kind::I16Be | Kind::I16Le | Kind::I32Be | Kind::I32Le => DataType::Int32,
+            Kind::F32Be | Kind::F32Le => DataType::Float,
+            Kind::Bcd => DataType::UInt64,
+            Kind::Bit => DataType::Boolean,
+            Kind::Text => DataType::String,
+        }
     }
 
     /// Whether it begins and ends with a word.

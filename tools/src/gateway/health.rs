@@ -9,12 +9,18 @@ use std::sync::{Mutex, PoisonError};
 use proto3964r::{Cause, CharacterError, Event, JobPhase, Rejection, frame::FrameError};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use tokio::{task::yield_now, time::sleep};
+use tokio::{
+    task::yield_now,
+    time::{Instant, sleep},
+};
 
 use super::hub::{Desk, Hub, now};
 
 /// From one look at the counts of all lines to the next.
 const PAUSE: Duration = Duration::from_secs(5);
+
+/// From one look at a line to the next, in times of what it took.
+const REST: u32 = 10;
 
 /// Names of what is counted, in the order of [`index`].
 pub(crate) const FAULTS: [&str; 21] = [
@@ -124,14 +130,31 @@ fn fault(event: Event<'_>) -> Option<&'static str> {
 
 /// Retains health and verdict of every line, where they have changed.
 pub(crate) async fn run(hub: &Hub) {
+    tokio::join!(retain_health(hub), look(hub));
+}
+
+async fn retain_health(hub: &Hub) {
     loop {
         for (line, desk) in &hub.lines {
             hub.retain_health(line, health(desk).to_string());
+            // The stations of all lines answer meanwhile.
+            yield_now().await;
+        }
+        sleep(PAUSE).await;
+    }
+}
+
+/// Looks at the lines in turn. A gateway that has too little of its computer answers late, which its
+/// stations count as faults: looks at all of them must not take what is left.
+async fn look(hub: &Hub) {
+    loop {
+        for (line, desk) in &hub.lines {
+            let begin = Instant::now();
             if let Some(diagnosis) = desk.tap.news(desk.counts.faults.total()) {
                 hub.retain_verdict(line, diagnosis);
             }
-            // The stations of all lines answer meanwhile.
             yield_now().await;
+            sleep(begin.elapsed() * REST).await;
         }
         sleep(PAUSE).await;
     }

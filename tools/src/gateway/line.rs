@@ -156,7 +156,9 @@ impl Line {
                 None => pending().await,
             }
         };
-        let stream = self.tap.listen(stream, self.config.config());
+        let stream = self
+            .tap
+            .listen(stream, self.config.config(), self.config.diagnose);
         let exchanging = async {
             match self.config.procedure {
                 Procedure::Telegrams => self.exchange_telegrams(stream, stop).await,

@@ -1,6 +1,7 @@
 //! The connection to the broker: MQTT 5 or 3.1.1, everything at least once.
 
 mod connection;
+mod edge;
 mod session;
 mod suspect;
 mod v3;
@@ -19,7 +20,7 @@ use tokio_util::sync::CancellationToken;
 
 pub(crate) use self::version::Version;
 use self::{
-    connection::Cause,
+    connection::{Cause, requests},
     session::{Ended, Purpose, Session},
     suspect::Suspect,
     version::{Refusal, Search},
@@ -28,6 +29,7 @@ use super::{
     config::{Config, Mqtt},
     hub::Hub,
     outbox::Outbox,
+    sparkplug::Node,
     tls,
 };
 
@@ -42,6 +44,8 @@ pub(crate) struct Options {
     protocol: Option<Version>,
     three: rumqttc::MqttOptions,
     five: rumqttc::v5::MqttOptions,
+    /// As an edge node of Sparkplug B.
+    node: Option<Node>,
 }
 
 /// The settings of the connection.
@@ -53,6 +57,10 @@ pub(crate) fn options(config: &Config, mqtt: &Mqtt) -> Result<Options> {
         protocol: mqtt.protocol,
         three: v3::options(config, mqtt)?,
         five: v5::options(config, mqtt)?,
+        node: mqtt
+            .sparkplug
+            .as_ref()
+            .map(|settings| Node::new(config, settings)),
     })
 }
 
@@ -86,6 +94,8 @@ pub(crate) async fn run(
 /// What is known of the broker from one connection to the next.
 struct Broker<'h> {
     options: Options,
+    /// Between two connections.
+    node: Option<Node>,
     hub: &'h Hub,
     outbox: &'h Outbox,
     search: Search,
@@ -101,10 +111,11 @@ struct Broker<'h> {
 }
 
 impl<'h> Broker<'h> {
-    fn new(options: Options, hub: &'h Hub, outbox: &'h Outbox) -> Self {
+    fn new(mut options: Options, hub: &'h Hub, outbox: &'h Outbox) -> Self {
         let max_age_s = options.five.session_expiry_interval().unwrap_or_default();
         Self {
             search: Search::new(options.protocol),
+            node: options.node.take(),
             options,
             hub,
             outbox,
@@ -129,17 +140,25 @@ impl<'h> Broker<'h> {
                 careful_until: self.suspect.careful_until(),
             }
         };
-        let mut session = Session::new(self.hub, self.outbox, version, purpose);
+        let Options { three, five, .. } = &mut self.options;
+        let mut node = self.node.take();
+        let requests = requests(node.as_ref());
+        if let Some(node) = &mut node {
+            v3::set_will(three, node.will());
+            v5::set_will(five, node.death());
+        }
+        let mut session = Session::new(self.hub, self.outbox, version, purpose, node);
         let ended = match version {
             Version::Three => {
-                let connection = v3::connection(&self.options.three);
+                let connection = v3::connection(three, requests);
                 session.run(connection, finishing).await
             }
             Version::Five => {
-                let connection = v5::connection(&self.options.five);
+                let connection = v5::connection(five, requests);
                 session.run(connection, finishing).await
             }
         };
+        self.node = session.take_node();
         self.hub.broker.is_connected.store(false, Ordering::Relaxed);
         if let Some(heard_at) = session.heard_at {
             self.away_since = Some(heard_at);

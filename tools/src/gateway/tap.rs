@@ -52,7 +52,7 @@ pub(crate) struct Tap(Mutex<Record>);
 
 #[derive(Default)]
 struct Record {
-    /// Of the station; `None` before the port is open.
+    /// Of the station; `None` before the port is open, and where nobody listens.
     config: Option<Config>,
     /// When the port was opened, since 1970.
     epoch: Duration,
@@ -76,13 +76,15 @@ pub(crate) struct Tapped {
     begin: Instant,
     /// Time of one character on the wire.
     character: Duration,
+    /// Whether what passes is kept.
+    is_heard: bool,
 }
 
 impl Tap {
-    /// Begins anew with an open port.
-    pub(crate) fn listen(self: &Arc<Self>, port: Port, config: Config) -> Tapped {
+    /// Begins anew with an open port; without `is_heard` all of it passes by.
+    pub(crate) fn listen(self: &Arc<Self>, port: Port, config: Config, is_heard: bool) -> Tapped {
         let mut record = self.record();
-        record.config = Some(config);
+        record.config = is_heard.then_some(config);
         let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
         record.epoch = since_1970.unwrap_or_default();
         record.heard.clear();
@@ -97,6 +99,7 @@ impl Tap {
             tap: Arc::clone(self),
             begin: Instant::now(),
             character: Duration::from_nanos(ns.into()),
+            is_heard,
         }
     }
 
@@ -195,6 +198,9 @@ impl Record {
 
 impl Tapped {
     fn came(&self, bytes: &[u8], error: Option<CharacterError>) {
+        if !self.is_heard {
+            return;
+        }
         let now = self.begin.elapsed();
         let mut record = self.tap.record();
         for &byte in bytes {
@@ -203,6 +209,9 @@ impl Tapped {
     }
 
     fn went(&self, bytes: &[u8]) {
+        if !self.is_heard {
+            return;
+        }
         let now = self.begin.elapsed();
         let mut record = self.tap.record();
         for &byte in bytes {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use serde::Deserialize;
 
-use super::secret;
+use super::{Name, secret};
 use crate::gateway::{broker::Broker, mqtt::Version, tls};
 
 /// The client of the broker takes no shorter one.
@@ -46,6 +46,19 @@ pub(crate) struct Mqtt {
     pub(crate) keep_alive_s: u16,
     /// Prefix of Home Assistant's discovery topics; without it nothing is announced.
     pub(crate) discovery: Option<Prefix>,
+    /// Sparkplug B in place of this gateway's own topics.
+    pub(crate) sparkplug: Option<Sparkplug>,
+}
+
+/// The gateway as an edge node of Sparkplug B.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Sparkplug {
+    pub(crate) group: Name,
+    /// The edge node; without it, the name of the gateway.
+    pub(crate) node: Option<Name>,
+    /// The host application without which nothing is published.
+    pub(crate) primary_host: Option<Name>,
 }
 
 /// What becomes of a telegram when there is no room for it.
@@ -124,6 +137,10 @@ impl Mqtt {
             "certificates are for mqtts://"
         } else if self.protocol == Some(Version::Three) && self.command_max_age_s > 0 {
             "command_max_age_s is for MQTT 5"
+        } else if self.sparkplug.is_some() && self.command_max_age_s > 0 {
+            "command_max_age_s: Sparkplug keeps no commands"
+        } else if self.sparkplug.is_some() && self.discovery.is_some() {
+            "discovery: its topics are not published with Sparkplug"
         } else {
             return Ok(());
         };

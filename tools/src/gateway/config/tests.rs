@@ -28,6 +28,9 @@ fn the_page_on_the_gateway_has_a_configuration_that_holds() {
     let mut blocks = blocks.map(|block| block.split("```").next().unwrap());
     let config = Config::parse(blocks.next().unwrap()).unwrap();
     assert_eq!(config.lines.len(), 2);
+    let sparkplug = blocks.next().unwrap();
+    let config = Config::parse(&format!("name = \"hall-3\"\n{sparkplug}{LINE}")).unwrap();
+    assert!(config.mqtt().unwrap().sparkplug.is_some());
     let nats = blocks.next().unwrap();
     let config = Config::parse(&format!("name = \"hall-3\"\n{nats}{LINE}")).unwrap();
     assert_eq!(config.broker().unwrap().kind(), "nats");
@@ -225,4 +228,24 @@ fn errors_name_line_and_column() {
         error(&mqtt("protocol = \"4\"")),
         "line 4, column 12: unknown variant `4`, expected `3.1.1` or `5`"
     );
+}
+
+#[test]
+fn what_sparkplug_has_no_place_for_is_refused() {
+    for (key, message) in [
+        (
+            "discovery = \"homeassistant\"",
+            "mqtt: discovery: its topics are not published with Sparkplug",
+        ),
+        (
+            "command_max_age_s = 5",
+            "mqtt: command_max_age_s: Sparkplug keeps no commands",
+        ),
+    ] {
+        let text = format!(
+            "name = \"hall\"\n[mqtt]\nbroker = \"mqtt://h\"\n{key}\n\
+             [mqtt.sparkplug]\ngroup = \"plant\"\n{LINE}"
+        );
+        assert!(error(&text).ends_with(message), "{}", error(&text));
+    }
 }

@@ -6,11 +6,22 @@ use bytes::Bytes;
 use thiserror::Error;
 
 use super::window::Window;
-use crate::gateway::{config::Mqtt, job::Reply, store::Message};
+use crate::gateway::{
+    config::Mqtt,
+    job::Reply,
+    sparkplug::{Node, Packet},
+    store::Message,
+};
 
 /// Requests that wait for a connection: a full window, the subscription and the farewell, so that
 /// none is ever refused.
-pub(super) const REQUESTS: usize = Window::SIZE as usize + 2;
+const REQUESTS: usize = Window::SIZE as usize + 2;
+
+/// The same for an edge node: with each message of the window a birth may leave; births and deaths of
+/// all devices, and what is subscribed to.
+pub(super) fn requests(node: Option<&Node>) -> usize {
+    node.map_or(REQUESTS, |node| 2 * REQUESTS + 2 * node.devices() + 8)
+}
 
 /// What the will says of the gateway.
 pub(super) const OFFLINE: &str = "offline";
@@ -30,6 +41,8 @@ pub(super) trait Connection {
 /// Hands packets to a connection, at least once.
 pub(super) trait Sender {
     fn publish(&self, message: &Message);
+    /// At most once: nothing is heard of it.
+    fn publish_once(&self, packet: Packet);
     fn subscribe(&self, topics: String);
     fn disconnect(&self);
 }
@@ -55,6 +68,8 @@ pub(super) enum Incoming {
         answer: Answer,
     },
     Command(Command),
+    /// A subscription has been answered.
+    Subscribed,
     Other,
 }
 

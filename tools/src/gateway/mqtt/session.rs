@@ -9,11 +9,12 @@ use tokio_util::sync::CancellationToken;
 
 use super::{
     connection::{Answer, Cause, Command, Connection, Event, Incoming, Lost, Sender},
+    edge::Edge,
     suspect::Name,
     version::Version,
     window::Window,
 };
-use crate::gateway::{hub::Hub, outbox::Outbox, store::Message};
+use crate::gateway::{hub::Hub, outbox::Outbox, sparkplug::Node, store::Message};
 
 /// Bytes of a PUBLISH besides topic and payload, at most: header, lengths, identifier, properties.
 const OVERHEAD: usize = 16;
@@ -25,6 +26,8 @@ pub(super) enum Ended {
     Lost(#[from] Lost),
     #[error("the quota is exceeded, messages wait")]
     Quota,
+    #[error("the primary host is gone, messages wait")]
+    NoHost,
     #[error(
         "another client has taken the identifier `{0}`: there is a second gateway of this name"
     )]
@@ -53,6 +56,17 @@ pub(super) enum Purpose {
     Work { careful_until: Option<Name> },
 }
 
+impl Purpose {
+    fn answered(&mut self, message: &Message) {
+        if let Self::Work { careful_until } = self
+            && let Some((id, topic)) = careful_until
+            && (message.id > *id || *topic == message.topic)
+        {
+            *careful_until = None;
+        }
+    }
+}
+
 /// What there is of a connection besides the connection.
 pub(super) struct Session<'h> {
     pub(super) window: Window,
@@ -60,6 +74,8 @@ pub(super) struct Session<'h> {
     outbox: &'h Outbox,
     version: Version,
     purpose: Purpose,
+    /// As an edge node of Sparkplug B.
+    edge: Option<Edge>,
     /// Largest packet that the broker takes.
     max_packet: usize,
     pub(super) is_connected: bool,
@@ -77,6 +93,7 @@ impl<'h> Session<'h> {
         outbox: &'h Outbox,
         version: Version,
         purpose: Purpose,
+        node: Option<Node>,
     ) -> Self {
         Self {
             window: Window::default(),
@@ -84,12 +101,18 @@ impl<'h> Session<'h> {
             outbox,
             version,
             purpose,
+            edge: node.map(Edge::new),
             max_packet: usize::MAX,
             is_connected: false,
             has_answered: false,
             has_acknowledged: false,
             heard_at: None,
         }
+    }
+
+    /// The edge node, for the next connection.
+    pub(super) fn take_node(&mut self) -> Option<Node> {
+        self.edge.take().map(Edge::into_node)
     }
 
     /// Uses a connection to its end, and takes the answers that came before it.
@@ -126,6 +149,9 @@ impl<'h> Session<'h> {
                 let mut event = pin!(connection.next());
                 loop {
                     if self.is_connected && !is_leaving && self.is_over(finishing) {
+                        if let Some(edge) = &mut self.edge {
+                            edge.leave(sender);
+                        }
                         sender.disconnect();
                         is_leaving = true;
                     }
@@ -140,16 +166,24 @@ impl<'h> Session<'h> {
             };
             match event {
                 Event::Incoming(incoming) => self.heard(incoming, sender)?,
+                // Those of an edge node have none.
+                Event::Sent(_) if self.edge.is_some() => {}
                 Event::Sent(id) => self.window.numbered(id),
+                Event::Left if self.has_no_host() => return Err(Ended::NoHost),
                 Event::Left => return Ok(()),
                 Event::Other => {}
             }
         }
     }
 
+    fn has_no_host(&self) -> bool {
+        self.edge.as_ref().is_some_and(Edge::has_no_host)
+    }
+
     fn is_over(&self, finishing: &CancellationToken) -> bool {
         match self.purpose {
             Purpose::Trial => true,
+            Purpose::Work { .. } if self.has_no_host() => true,
             Purpose::Work { .. } => {
                 finishing.is_cancelled() && self.window.is_empty() && self.outbox.is_empty()
             }
@@ -159,6 +193,7 @@ impl<'h> Session<'h> {
     fn has_room(&self) -> bool {
         match self.purpose {
             _ if !self.is_connected => false,
+            _ if self.edge.as_ref().is_some_and(|edge| !edge.is_born()) => false,
             Purpose::Trial => false,
             Purpose::Work {
                 careful_until: Some(_),
@@ -169,6 +204,16 @@ impl<'h> Session<'h> {
 
     fn publish(&mut self, sender: &impl Sender, message: Message) {
         let room = self.max_packet.saturating_sub(OVERHEAD);
+        if let Some(edge) = &mut self.edge {
+            match edge.publish(sender, &message, room) {
+                Ok(()) => {
+                    self.window.push(message);
+                    edge.fence(sender, self.window.len());
+                }
+                Err(reason) => self.hub.refused(self.outbox, message, &reason),
+            }
+            return;
+        }
         if message.len() > room {
             let reason = format!("{} bytes, the broker takes {room}", message.len());
             self.hub.refused(self.outbox, message, &reason);
@@ -186,7 +231,8 @@ impl<'h> Session<'h> {
         match incoming {
             Incoming::Connected { max_packet } => self.connected(max_packet, sender),
             Incoming::Acknowledged { id, answer } => self.acknowledged(id, answer)?,
-            Incoming::Command(command) => self.command(command),
+            Incoming::Command(command) => self.command(command, sender),
+            Incoming::Subscribed => self.subscribed(sender),
             Incoming::Other => {}
         }
         Ok(())
@@ -204,7 +250,26 @@ impl<'h> Session<'h> {
         self.hub.broker.connects.fetch_add(1, Ordering::Relaxed);
         let (version, waiting) = (self.version, self.outbox.len());
         info!("broker: connected by {version}, {waiting} messages wait");
-        sender.subscribe(format!("{}/+/command", self.hub.topic));
+        match &mut self.edge {
+            Some(edge) => edge.subscribe(sender),
+            None => sender.subscribe(format!("{}/+/command", self.hub.topic)),
+        }
+    }
+
+    /// What an edge node has published before it has been taken.
+    fn subscribed(&mut self, sender: &impl Sender) {
+        let Some(edge) = &mut self.edge else {
+            return;
+        };
+        for _ in 0..edge.subscribed(sender) {
+            if let Some(message) = self.window.take_first() {
+                self.purpose.answered(&message);
+                self.outbox.done(&message);
+                self.hub.broker.published.fetch_add(1, Ordering::Relaxed);
+                self.has_acknowledged = true;
+            }
+        }
+        edge.fence(sender, self.window.len());
     }
 
     /// # Errors
@@ -216,12 +281,7 @@ impl<'h> Session<'h> {
         let Some(message) = self.window.acknowledged(id) else {
             return Ok(());
         };
-        if let Purpose::Work { careful_until } = &mut self.purpose
-            && let Some((id, topic)) = careful_until
-            && (message.id > *id || *topic == message.topic)
-        {
-            *careful_until = None;
-        }
+        self.purpose.answered(&message);
         match answer {
             Answer::Refused(reason) => self.hub.refused(self.outbox, message, &reason),
             Answer::Taken | Answer::Quota => {
@@ -233,7 +293,7 @@ impl<'h> Session<'h> {
         Ok(())
     }
 
-    fn command(&self, command: Command) {
+    fn command(&mut self, command: Command, sender: &impl Sender) {
         let Command {
             topic,
             payload,
@@ -241,6 +301,10 @@ impl<'h> Session<'h> {
             may_be_duplicate,
             reply,
         } = command;
+        if let Some(edge) = &mut self.edge {
+            edge.hear(sender, self.hub, &topic, &payload, is_retained);
+            return;
+        }
         let line = topic
             .strip_prefix(&self.hub.topic)
             .and_then(|rest| rest.strip_prefix('/')?.strip_suffix("/command"));

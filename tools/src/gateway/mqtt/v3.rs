@@ -10,14 +10,14 @@ use rumqttc::{
 
 use super::{
     connection::{
-        Answer, Cause, Command, Connection, Event, Incoming, Lost, OFFLINE, REQUESTS, Sender,
-        keep_alive,
+        Answer, Cause, Command, Connection, Event, Incoming, Lost, OFFLINE, Sender, keep_alive,
     },
     transport,
     window::Window,
 };
 use crate::gateway::{
     config::{Config, Mqtt},
+    sparkplug::Packet,
     store::Message,
 };
 
@@ -53,8 +53,13 @@ pub(super) fn options(config: &Config, mqtt: &Mqtt) -> Result<MqttOptions> {
     Ok(options)
 }
 
-pub(super) fn connection(options: &MqttOptions) -> (AsyncClient, EventLoop) {
-    AsyncClient::new(options.clone(), REQUESTS)
+/// What the broker says when the connection is gone, in place of the gateway's status.
+pub(super) fn set_will(options: &mut MqttOptions, Packet { topic, payload }: Packet) {
+    options.set_last_will(LastWill::new(topic, payload, QoS::AtLeastOnce, false));
+}
+
+pub(super) fn connection(options: &MqttOptions, requests: usize) -> (AsyncClient, EventLoop) {
+    AsyncClient::new(options.clone(), requests)
 }
 
 impl Connection for EventLoop {
@@ -78,6 +83,10 @@ impl Sender for AsyncClient {
         ));
     }
 
+    fn publish_once(&self, Packet { topic, payload }: Packet) {
+        drop(self.try_publish(topic, QoS::AtMostOnce, false, payload));
+    }
+
     fn subscribe(&self, topics: String) {
         drop(self.try_subscribe(topics, QoS::AtLeastOnce));
     }
@@ -97,6 +106,7 @@ impl From<rumqttc::Event> for Event {
                     id: answer.pkid,
                     answer: Answer::Taken,
                 },
+                rumqttc::Incoming::SubAck(_) => Incoming::Subscribed,
                 rumqttc::Incoming::Publish(publish) => Incoming::Command(command(publish)),
                 _ => Incoming::Other,
             }),

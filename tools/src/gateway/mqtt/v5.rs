@@ -20,8 +20,7 @@ use rumqttc::{
 
 use super::{
     connection::{
-        Answer, Cause, Command, Connection, Event, Incoming, Lost, OFFLINE, REQUESTS, Sender,
-        keep_alive,
+        Answer, Cause, Command, Connection, Event, Incoming, Lost, OFFLINE, Sender, keep_alive,
     },
     transport,
     window::Window,
@@ -29,6 +28,7 @@ use super::{
 use crate::gateway::{
     config::{Config, Mqtt},
     job::Reply,
+    sparkplug::Packet,
     store::Message,
 };
 
@@ -66,8 +66,13 @@ pub(super) fn options(config: &Config, mqtt: &Mqtt) -> Result<MqttOptions> {
     Ok(options)
 }
 
-pub(super) fn connection(options: &MqttOptions) -> (AsyncClient, EventLoop) {
-    AsyncClient::new(options.clone(), REQUESTS)
+/// What the broker says when the connection is gone, in place of the gateway's status.
+pub(super) fn set_will(options: &mut MqttOptions, Packet { topic, payload }: Packet) {
+    options.set_last_will(LastWill::new(topic, payload, QoS::AtLeastOnce, false, None));
+}
+
+pub(super) fn connection(options: &MqttOptions, requests: usize) -> (AsyncClient, EventLoop) {
+    AsyncClient::new(options.clone(), requests)
 }
 
 impl Connection for EventLoop {
@@ -96,6 +101,10 @@ impl Sender for AsyncClient {
         ));
     }
 
+    fn publish_once(&self, Packet { topic, payload }: Packet) {
+        drop(self.try_publish(topic, QoS::AtMostOnce, false, payload));
+    }
+
     fn subscribe(&self, topics: String) {
         drop(self.try_subscribe(topics, QoS::AtLeastOnce));
     }
@@ -113,6 +122,7 @@ impl From<v5::Event> for Event {
                     max_packet: answer.properties.and_then(|all| all.max_packet_size),
                 },
                 v5::Incoming::PubAck(answer) => acknowledged(&answer),
+                v5::Incoming::SubAck(_) => Incoming::Subscribed,
                 v5::Incoming::Publish(publish) => Incoming::Command(command(publish)),
                 _ => Incoming::Other,
             }),

@@ -23,6 +23,10 @@ impl Window {
         self.0.len() < usize::from(Self::SIZE)
     }
 
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -11,15 +11,11 @@ use proto3964r::tokio::{Link, SendError};
 use rumqttc::v5::mqttbytes::QoS;
 use serde_json::Value;
 use tempfile::TempDir;
-use tokio::{
-    io::{AsyncReadExt as _, AsyncWriteExt as _, duplex, split},
-    net::TcpListener,
-    task::JoinSet,
-    time::sleep,
-};
+use tokio::{net::TcpListener, task::JoinSet, time::sleep};
 
 use super::{
     broker_or_skip,
+    noise::Noise,
     partner::PARTNER,
     process::{Gateway, line, mqtt},
     subscriber::Subscriber,
@@ -31,52 +27,16 @@ const LINES: usize = 20;
 const STOPS: u32 = 4;
 /// Lines whose bytes are damaged, one in this number.
 const NOISY: usize = 4;
-const ONE_BYTE_IN: u32 = 2000;
+const NOISE: Noise = Noise {
+    flipped: 2000,
+    lost: 0,
+    cut: 0,
+};
 
 /// Telegrams of all lines.
 fn telegrams() -> usize {
     let number = env::var("GATEWAY_TELEGRAMS").map(|number| number.parse().unwrap());
     number.unwrap_or(10_000)
-}
-
-/// A partner whose line is damaged on the way: one bit of a byte now and then.
-async fn noisy_link(listener: &TcpListener, mut random: u32) -> Link {
-    let (stream, _) = listener.accept().await.unwrap();
-    stream.set_nodelay(true).unwrap();
-    let (here, there) = duplex(4096);
-    let (from_gateway, to_gateway) = stream.into_split();
-    let (from_partner, to_partner) = split(there);
-    let mut next = move || {
-        random ^= random << 13;
-        random ^= random >> 17;
-        random ^= random << 5;
-        random
-    };
-    let seed = next();
-    tokio::spawn(damage(from_gateway, to_partner, seed));
-    tokio::spawn(damage(from_partner, to_gateway, seed ^ 0x5555_5555));
-    Link::new(here, PARTNER)
-}
-
-async fn damage(
-    mut from: impl tokio::io::AsyncRead + Unpin,
-    mut to: impl tokio::io::AsyncWrite + Unpin,
-    mut random: u32,
-) {
-    let mut piece = [0; 256];
-    while let Ok(len @ 1..) = from.read(&mut piece).await {
-        for byte in &mut piece[..len] {
-            random ^= random << 13;
-            random ^= random >> 17;
-            random ^= random << 5;
-            if random.is_multiple_of(ONE_BYTE_IN) {
-                *byte ^= 1 << (random >> 29);
-            }
-        }
-        if to.write_all(&piece[..len]).await.is_err() {
-            return;
-        }
-    }
 }
 
 /// Sends telegrams with their numbers, each until it is acknowledged.
@@ -121,11 +81,11 @@ async fn broker_stops_and_starts(protocol: &str) {
         config += &line(&format!("line{index}"), port);
         let seed = u32::try_from(index).unwrap() + 1;
         partners.push(tokio::spawn(async move {
+            let (stream, _) = listener.accept().await.unwrap();
+            stream.set_nodelay(true).unwrap();
             let link = if index % NOISY == 0 {
-                noisy_link(&listener, seed).await
+                NOISE.link(stream, seed)
             } else {
-                let (stream, _) = listener.accept().await.unwrap();
-                stream.set_nodelay(true).unwrap();
                 Link::new(stream, PARTNER)
             };
             send_all(&link, count).await;

@@ -11,7 +11,8 @@ use async_nats::{
     jetstream::{self, consumer::pull::OrderedConfig},
 };
 use futures_util::StreamExt as _;
-use serde_json::Value;
+use rk512::{Area, DataBlock, Memory, tokio::Client as Plc};
+use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::{
     net::TcpListener,
@@ -21,10 +22,31 @@ use tokio::{
 use super::{
     broker::{PASSWORD, USER},
     nats_server::Cluster,
-    partner::Partner,
+    partner::{PARTNER, Partner},
     process::{Gateway, PATIENCE, hall, line, metric, metrics},
 };
 use crate::gateway::broker::free_ports;
+
+/// One area of the partner, two of the gateway's own.
+const AREAS: &str = "procedure = \"rk512\"
+[[line.area]]
+name = \"oven\"
+start = \"DB 10.0\"
+length = 1
+[[line.area]]
+name = \"orders\"
+start = \"DB 20.0\"
+length = 2
+served = true
+field = [{ name = \"pieces\", offset = 2, type = \"u16be\" }]
+[[line.area]]
+name = \"setpoints\"
+start = \"DB 21.0\"
+length = 1
+served = true
+writable = true
+field = [{ name = \"speed\", offset = 0, type = \"i16be\" }]
+";
 
 /// Lines beside a cluster whose servers are killed.
 const LINES: usize = 20;
@@ -135,11 +157,88 @@ async fn telegrams_and_states_are_kept_and_requests_are_answered() {
     }
 }
 
+/// As through MQTT: what the partner sends is told, what commands write it fetches, and each command
+/// has its outcome.
+#[tokio::test(flavor = "multi_thread")]
+async fn areas_that_are_served_are_told_and_written() {
+    let cluster = cluster_or_skip!(1);
+    let partner = Partner::new().await;
+    let folder = TempDir::new().unwrap();
+    let store = format!("[store]\npath = \"{}\"\n", folder.path().display());
+    let config = hall(&[&nats(&cluster), &store, &line("plc", partner.port), AREAS]);
+    let gateway = Gateway::start(&config);
+    gateway.logs("broker: connected to ");
+    let db10 = Box::leak(vec![0, 7].into_boxed_slice());
+    let stream = partner.stream().await;
+    let memory = Memory::new([DataBlock::db(10, db10)]);
+    let plc = Plc::with_source(stream, PARTNER, rk512::Config::DEFAULT, memory, |_| {});
+    plc.send(Area::db(20, 0), &[0, 1, 0, 42]).await.unwrap();
+    plc.send(Area::db(20, 1), &[0, 43]).await.unwrap();
+
+    let client = client(&cluster).await;
+    let ask = async |command: &'static str| -> Value {
+        let request = client.request("line3964r.hall.plc.command", command.into());
+        let answer = timeout(PATIENCE, request).await.expect("an answer");
+        serde_json::from_slice(&answer.unwrap().payload).unwrap()
+    };
+    for (command, error) in [
+        (
+            r#"{"id": 1, "write": "setpoints", "fields": {"speed": -5}}"#,
+            Value::Null,
+        ),
+        (r#"{"id": 2, "fetch": "orders"}"#, Value::Null),
+        (r#"{"id": 3, "fetch": "oven"}"#, Value::Null),
+        (
+            r#"{"id": 4, "write": "orders", "hex": "00"}"#,
+            json!("`orders` is not writable"),
+        ),
+    ] {
+        let outcome = ask(command).await;
+        assert_eq!(outcome["ok"], error.is_null(), "{command}: {outcome}");
+        assert_eq!(outcome["error"], error, "{command}: {outcome}");
+    }
+    let fetched = plc.fetch(Area::db(21, 0), 1).await.unwrap();
+    assert_eq!(fetched, (-5_i16).to_be_bytes());
+    gateway.ends();
+
+    // What it holds outlives the gateway.
+    let gateway = Gateway::start(&config);
+    let again = Plc::new(partner.stream().await, PARTNER, rk512::Config::DEFAULT);
+    assert_eq!(
+        again.fetch(Area::db(20, 0), 2).await.unwrap(),
+        [0, 1, 0, 43]
+    );
+    gateway.ends();
+
+    let (mut areas, mut outcomes) = (Vec::new(), Vec::new());
+    for (subject, id, told) in all(&client, "line3964r").await {
+        match subject.strip_prefix("line3964r.hall.plc.area.") {
+            Some(area) => {
+                let run = told["run"].as_str().unwrap();
+                assert_eq!(id, format!("{run}.plc.{}", told["seq"]), "{told}");
+                areas.push((area.to_owned(), told["hex"].as_str().unwrap().to_owned()));
+            }
+            None if subject == "line3964r.hall.plc.outcome" => outcomes.push(told["id"].clone()),
+            None => panic!("{subject}: {told}"),
+        }
+    }
+    let expected = [
+        ("orders", "00 01 00 2A"),
+        ("orders", "00 01 00 2B"),
+        ("setpoints", "FF FB"),
+        ("orders", "00 01 00 2B"),
+        ("oven", "00 07"),
+    ];
+    let expected = expected.map(|(area, hex)| (area.to_owned(), hex.to_owned()));
+    assert_eq!(areas, expected);
+    assert_eq!(outcomes, [1, 2, 3, 4].map(Value::from));
+}
+
 /// A partner that numbers its telegrams, until it is over; how many it had acknowledged.
 async fn send_numbers(listener: TcpListener, is_over: Arc<AtomicBool>) -> u32 {
     let (stream, _) = listener.accept().await.unwrap();
     stream.set_nodelay(true).unwrap();
-    let link = proto3964r::tokio::Link::new(stream, super::partner::PARTNER);
+    let link = proto3964r::tokio::Link::new(stream, PARTNER);
     let mut number = 0_u32;
     while !is_over.load(Ordering::Relaxed) {
         // One that the gateway cannot keep in time is refused, and sent again.

@@ -92,9 +92,30 @@ impl Gateway {
         }
     }
 
-    /// Of its process.
-    pub(crate) fn id(&self) -> u32 {
-        self.process.id()
+    /// Seconds of a processor that it has used.
+    pub(crate) fn cpu_s(&self) -> f64 {
+        /// Of `/proc`, a second.
+        const TICKS: f64 = 100.0;
+        let text = fs::read_to_string(format!("/proc/{}/stat", self.process.id())).unwrap();
+        // After the program's name, which is in brackets: the third field and those that follow.
+        let fields: Vec<_> = text
+            .rsplit_once(')')
+            .unwrap()
+            .1
+            .split_whitespace()
+            .collect();
+        let ticks = |field: usize| fields[field - 3].parse::<f64>().unwrap();
+        (ticks(14) + ticks(15)) / TICKS
+    }
+
+    /// Its memory, in MB.
+    pub(crate) fn resident_mb(&self) -> f64 {
+        let text = fs::read_to_string(format!("/proc/{}/status", self.process.id())).unwrap();
+        let kib = text.lines().find_map(|line| {
+            let line = line.strip_prefix("VmRSS:")?;
+            line.strip_suffix("kB")?.trim().parse::<f64>().ok()
+        });
+        kib.unwrap() * 1024.0 / 1e6
     }
 
     pub(crate) fn log(&self) -> String {

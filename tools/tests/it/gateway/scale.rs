@@ -1,7 +1,7 @@
 //! What busy lines cost a gateway: the table of docs/book/src/gateway.md.
 
 use core::{str::FromStr, time::Duration};
-use std::{env, fs};
+use std::env;
 
 use proto3964r::tokio::SendError;
 use tempfile::TempDir;
@@ -20,12 +20,17 @@ use super::{
 /// Bytes of a telegram.
 const TELEGRAM: usize = 32;
 
+/// Until each line has been looked at for the first time: from then on every 15 minutes, if it works.
+const FIRST_LOOK: Duration = Duration::from_secs(7);
+
 /// One row of the table.
 struct Case {
     lines: u32,
     pace: Pace,
     /// From one telegram of a line to the next; without it, one follows the other.
     pause: Option<Duration>,
+    /// Whether the gateway listens to its lines, for verdicts.
+    diagnose: bool,
 }
 
 /// What a partner has to tell of its telegrams.
@@ -49,9 +54,9 @@ fn words<T: FromStr>(name: &str, default: &str) -> Vec<T> {
 #[ignore = "measures for minutes, on Linux"]
 async fn busy_lines() {
     println!(
-        "| bit/s | pieces | lines | telegrams/s | failed | CPU s/s | us/telegram | answers ms: 50 %, 99 %, all | MB | verdicts, % of CPU |"
+        "| diagnose | bit/s | pieces | lines | telegrams/s | failed | CPU s/s | us/telegram | answers ms: 50 %, 99 %, all | MB | verdicts, % of CPU |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
     let seconds = Duration::from_secs(words("GATEWAY_SECONDS", "10")[0]);
     for pause_s in words("GATEWAY_PAUSES_S", "1 0") {
         let pause = Some(Duration::from_secs(pause_s)).filter(|pause| !pause.is_zero());
@@ -60,8 +65,15 @@ async fn busy_lines() {
                 let every = Duration::from_millis(every_ms);
                 let pace = Pace { baud, every };
                 for lines in words("GATEWAY_LINES", "50 100 200 500") {
-                    let case = Case { lines, pace, pause };
-                    println!("{}", case.measure(seconds).await);
+                    for diagnose in words("GATEWAY_DIAGNOSE", "true") {
+                        let case = Case {
+                            lines,
+                            pace,
+                            pause,
+                            diagnose,
+                        };
+                        println!("{}", case.measure(seconds).await);
+                    }
                 }
             }
         }
@@ -83,6 +95,7 @@ impl Case {
             let name = format!("line{index}");
             let uart = Uart::new(&folder.path().join(&name), self.pace).await;
             config += &uart.line(&name);
+            config += &format!("diagnose = {}\n", self.diagnose);
             uarts.push(uart);
         }
         let gateway = Gateway::start(&config);
@@ -100,6 +113,9 @@ impl Case {
         for told in &mut told {
             told.wait_for(|told| told.sent > 0).await.unwrap();
         }
+        if self.diagnose {
+            sleep(FIRST_LOOK).await;
+        }
 
         let total = || {
             told.iter().fold(Told::default(), |sum, told| Told {
@@ -108,11 +124,11 @@ impl Case {
             })
         };
         answers.iter().for_each(|answers| drop(answers.take()));
-        let (begin, before, cpu) = (Instant::now(), total(), cpu_s(gateway.id()));
+        let (begin, before, cpu) = (Instant::now(), total(), gateway.cpu_s());
         sleep(time).await;
-        let (after, cpu) = (total(), cpu_s(gateway.id()) - cpu);
+        let (after, cpu) = (total(), gateway.cpu_s() - cpu);
         let elapsed = begin.elapsed().as_secs_f64();
-        let memory = resident_mb(gateway.id());
+        let memory = gateway.resident_mb();
         let lines = self.lines;
         let verdicts = spawn_blocking(move || {
             let of = |line| format!("line3964r_line_verdict_us_total{{line=\"line{line}\"}}");
@@ -120,7 +136,7 @@ impl Case {
         });
         let verdicts = Duration::from_micros(verdicts.await.unwrap()).as_secs_f64();
         // Since the start: each line's first look is in it.
-        let verdicts = verdicts / cpu_s(gateway.id()) * 100.0;
+        let verdicts = verdicts / gateway.cpu_s() * 100.0;
         let mut times: Vec<_> = answers.iter().flat_map(Answers::take).collect();
         times.sort_unstable();
 
@@ -129,7 +145,8 @@ impl Case {
         let sent = f64::from(after.sent - before.sent);
         let at = |percent: usize| times[(times.len() - 1) * percent / 100].as_secs_f64() * 1e3;
         format!(
-            "| {} | {:?} | {} | {:.0} | {} | {:.3} | {:.0} | {:.1}, {:.1}, {:.1} | {memory:.1} | {verdicts:.1} |",
+            "| {} | {} | {:?} | {} | {:.0} | {} | {:.3} | {:.0} | {:.1}, {:.1}, {:.1} | {memory:.1} | {verdicts:.1} |",
+            self.diagnose,
             self.pace.baud,
             self.pace.every,
             self.lines,
@@ -163,30 +180,4 @@ async fn send(uart: Uart, pause: Option<Duration>, phase: Duration, teller: watc
             Err(error) => panic!("{error}"),
         });
     }
-}
-
-/// Seconds of a processor that a process has used.
-fn cpu_s(id: u32) -> f64 {
-    /// Of `/proc`, a second.
-    const TICKS: f64 = 100.0;
-    let text = fs::read_to_string(format!("/proc/{id}/stat")).unwrap();
-    // After the program's name, which is in brackets: the third field and those that follow.
-    let fields: Vec<_> = text
-        .rsplit_once(')')
-        .unwrap()
-        .1
-        .split_whitespace()
-        .collect();
-    let ticks = |field: usize| fields[field - 3].parse::<f64>().unwrap();
-    (ticks(14) + ticks(15)) / TICKS
-}
-
-/// Memory of a process, in MB.
-fn resident_mb(id: u32) -> f64 {
-    let text = fs::read_to_string(format!("/proc/{id}/status")).unwrap();
-    let kib = text.lines().find_map(|line| {
-        let line = line.strip_prefix("VmRSS:")?;
-        line.strip_suffix("kB")?.trim().parse::<f64>().ok()
-    });
-    kib.unwrap() * 1024.0 / 1e6
 }

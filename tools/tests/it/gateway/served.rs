@@ -232,7 +232,7 @@ async fn a_killed_gateway_loses_nothing_that_its_reaction_has_taken() {
     }
     println!("{total} jobs, {KILLS} kills");
     assert!(has_all(&heard), "something is lost");
-    assert!(total > 100, "{total} jobs");
+    assert!(taken.iter().all(|(_, last)| *last > 0), "{taken:?}");
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -21,7 +21,9 @@ use super::{
     process::PATIENCE,
 };
 
-/// Hears everything below `line3964r/` and `homeassistant/`.
+const TOPICS: [&str; 3] = ["line3964r/#", "homeassistant/#", "spBv1.0/#"];
+
+/// Hears everything below them.
 pub(crate) struct Subscriber {
     client: AsyncClient,
     heard: mpsc::UnboundedReceiver<Publish>,
@@ -47,7 +49,7 @@ impl Subscriber {
         let (client, mut events) = AsyncClient::new(options, 1000);
         let (sender, heard) = mpsc::unbounded_channel();
         let (subscribed, mut is_subscribed) = mpsc::unbounded_channel();
-        for topics in ["line3964r/#", "homeassistant/#"] {
+        for topics in TOPICS {
             client.try_subscribe(topics, QoS::AtLeastOnce).unwrap();
         }
         let task = tokio::spawn(async move {
@@ -64,7 +66,7 @@ impl Subscriber {
                 }
             }
         });
-        for _ in 0..2 {
+        for _ in TOPICS {
             is_subscribed.recv().await.unwrap();
         }
         Self {
