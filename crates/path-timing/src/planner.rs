@@ -329,8 +329,10 @@ pub(crate) fn lay_all<'k, P: Path + Clone>(
         let leg = Leg::new(number, path)?;
         let start = leg.point(0.0)?;
         let (last, free) = knots.split_at_mut(used.saturating_sub(1).min(available));
+        let is_alone = number == 0 && paths.peek().is_none();
+        let least = if is_alone { MIN_BETWEEN_SLOW_ENDS } else { 1 };
         let short = PlanError::Memory {
-            needed: used.saturating_add(knots_of(1)),
+            needed: used.saturating_add(knots_of(least)),
             available,
         };
         let Some(first) = free.first_mut() else {
@@ -348,7 +350,7 @@ pub(crate) fn lay_all<'k, P: Path + Clone>(
             start,
             rests: [before.0.is_stop(), junction.is_stop()],
             fewest: fewest(limits, &leg, &start, [&before, &after]),
-            is_alone: number == 0 && paths.peek().is_none(),
+            is_alone,
             used: last.len(),
         };
         let segments = lay(&place, free)?;
