@@ -41,7 +41,7 @@ test('the test path leaves the files of the command line, byte for byte', async 
 });
 
 test('a machine whose load is known is chosen, its torque and its tables are shown', async () => {
-  const { page, done } = await browser.visit('stage.html?drawing=fast&lose=0&tolerance=0.5');
+  const { page, done } = await browser.visit('stage.html?drawing=test&lose=0&tolerance=0.5');
   await ran(page);
   assert(await page.locator('#torque-used').isHidden());
   await page.locator('#machine-choice').selectOption('loaded');
@@ -52,10 +52,18 @@ test('a machine whose load is known is chosen, its torque and its tables are sho
   await ran(page);
   assert(await page.locator('#torque-used canvas').isVisible());
   assert(await page.locator('#vibration').getByText('Y, without shaping').isVisible());
-  const fast = ['--gcode', join(STAGE_DRAWINGS, 'fast.gcode'), '--tolerance', '0.5'];
+  const program = ['--gcode', join(STAGE_DRAWINGS, 'test.gcode'), '--tolerance', '0.5'];
   const loaded = ['--machine', join(ROOT, 'machines/stage/loaded.toml')];
-  await assertSameFiles(page, commandLine('stage', [...fast, ...loaded]));
+  await assertSameFiles(page, commandLine('stage', [...program, ...loaded]));
   await shoot(page, 'stage-loaded');
+  await done();
+});
+
+test('a machine whose load is known stays chosen, is edited, and is as shipped again', async () => {
+  const { page, done } = await browser.visit('stage.html?drawing=test&lose=0&tolerance=0.5');
+  await ran(page);
+  await page.locator('#machine-choice').selectOption('loaded');
+  await page.locator('#summary').filter({ hasText: 'vibration: ' }).waitFor();
   await page.reload();
   await ran(page);
   const chosen = page.locator('#machine-choice');
