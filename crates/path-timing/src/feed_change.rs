@@ -1,8 +1,9 @@
 //! Changes of the feed with limited jerk.
 //!
 //! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant feed.
-//! Method: shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics that would run;
-//! the shortest that keeps all limits is taken. Where none is found, it is tried again a row later.
+//! Method: a stop by three phases of constant jerk at the limits that the axes have where it begins; else
+//! shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics that would run; the shortest
+//! that keeps all limits is taken. Where none is found, it is tried again a row later.
 
 mod stop;
 
