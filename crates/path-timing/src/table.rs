@@ -186,16 +186,15 @@ impl<'a, A: Axes> Table<'a, A> {
                 });
             match (judged, likely) {
                 (Ok((used, duration_s, verdict)), _) => {
-                    if is_last || verdict == Verdict::Fast {
-                        let (own, _) = knots.split_at(used.min(knots.len()));
-                        return Ok(Self::new(own, limits, duration_s));
-                    }
                     least_s = match verdict {
-                        Verdict::Fast => duration_s,
-                        Verdict::Slow { least_s } => least_s,
-                        Verdict::LikelyFast { least_s } => {
+                        Verdict::Slow { least_s } if !is_last => least_s,
+                        Verdict::LikelyFast { least_s } if !is_last => {
                             likely = Some((doublings, duration_s));
                             least_s
+                        }
+                        _ => {
+                            let (own, _) = knots.split_at(used.min(knots.len()));
+                            return Ok(Self::new(own, limits, duration_s));
                         }
                     };
                 }
@@ -320,7 +319,7 @@ impl Accuracy {
 
 /// Whether a plan is as fast as is asked for; if that is not sure, with the least time as far as the last
 /// doubling of its segments shows it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 enum Verdict {
     Fast,
     /// By the last doubling of its segments alone.
