@@ -238,7 +238,7 @@ async fn other_addresses_are_refused() {
     );
 }
 
-/// One end of a pseudo-terminal, carried over TCP as a serial server does.
+/// One end of a pseudo-terminal, carried over TCP as a serial server does, until either end closes.
 fn serial_server(mut port: TTYPort, mut stream: std::net::TcpStream) {
     use serialport::SerialPort as _;
     use std::io::{Read as _, Write as _};
@@ -250,13 +250,15 @@ fn serial_server(mut port: TTYPort, mut stream: std::net::TcpStream) {
     loop {
         match port.read(&mut buffer) {
             Ok(len) => stream.write_all(&buffer[..len]).unwrap(),
-            Err(error) if error.kind() == ErrorKind::TimedOut => {}
+            // A process that is paused and goes on is interrupted in both of its reads.
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
             Err(_) => return,
         }
         match stream.read(&mut buffer) {
             Ok(0) => return,
             Ok(len) => port.write_all(&buffer[..len]).unwrap(),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
+            Err(error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
             Err(_) => return,
         }
     }
