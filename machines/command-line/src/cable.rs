@@ -118,10 +118,7 @@ fn carry(
     while !closed.load(Ordering::Relaxed) {
         let count = match from.read(&mut buffer) {
             Ok(count) => count,
-            // A process that is paused and goes on is interrupted in its read.
-            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
-                continue;
-            }
+            Err(error) if error.kind() == ErrorKind::TimedOut => continue,
             Err(error) => return Err(error.into()),
         };
         let sent = buffer.get(..count).unwrap_or_default();

@@ -250,13 +250,13 @@ fn serial_server(mut port: TTYPort, mut stream: std::net::TcpStream) {
     loop {
         match port.read(&mut buffer) {
             Ok(len) => stream.write_all(&buffer[..len]).unwrap(),
-            // A process that is paused and goes on is interrupted in both of its reads.
-            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            Err(error) if error.kind() == ErrorKind::TimedOut => {}
             Err(_) => return,
         }
         match stream.read(&mut buffer) {
             Ok(0) => return,
             Ok(len) => port.write_all(&buffer[..len]).unwrap(),
+            // A process that is paused and goes on is interrupted where a socket has a time-out.
             Err(error)
                 if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
             Err(_) => return,
