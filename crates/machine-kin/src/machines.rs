@@ -29,15 +29,18 @@ pub struct GeometryError {
     pub name: &'static str,
     /// The value given.
     pub value: f64,
+    /// What it must be above: 0, or what the other lengths leave no place within reach by.
+    pub above: f64,
 }
 
 impl Display for GeometryError {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { name, value } = *self;
+        let Self { name, value, above } = *self;
         write!(
             f,
-            "{name} {} is not above 0 and at most 1e50",
-            SixDigits(value)
+            "{name} {} is not above {} and at most 1e50",
+            SixDigits(value),
+            SixDigits(above)
         )
     }
 }
@@ -46,7 +49,24 @@ impl core::error::Error for GeometryError {}
 
 /// Refuses the first length that is not above 0 and of a size to compute with.
 fn check_lengths<const N: usize>(lengths: [(&'static str, f64); N]) -> Result<(), GeometryError> {
-    let mut lengths = lengths.into_iter();
-    let wrong = lengths.find(|(_, value)| !(1e-50..=1e50).contains(value));
-    wrong.map_or(Ok(()), |(name, value)| Err(GeometryError { name, value }))
+    lengths.into_iter().try_for_each(|(name, value)| {
+        if (1e-50..=1e50).contains(&value) {
+            Ok(())
+        } else {
+            Err(GeometryError {
+                name,
+                value,
+                above: 0.0,
+            })
+        }
+    })
+}
+
+/// Refuses a length with which the machine reaches no place, or one alone.
+fn check_reach(name: &'static str, value: f64, above: f64) -> Result<(), GeometryError> {
+    if value > above {
+        Ok(())
+    } else {
+        Err(GeometryError { name, value, above })
+    }
 }

@@ -99,7 +99,7 @@ pub enum PlanError<E> {
         max: u32,
     },
     /// The memory given is too small.
-    #[error("memory for {needed} is needed, there is room for {available}")]
+    #[error("memory for {needed} knots or rows is needed, there is room for {available}")]
     Memory {
         /// Knots, or rows that run, that are enough.
         needed: usize,

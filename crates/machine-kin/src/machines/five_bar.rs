@@ -1,6 +1,6 @@
 //! Five-bar: two motors side by side, each with an upper arm and a forearm, both forearms at the tool.
 
-use crate::machines::{GeometryError, check_lengths};
+use crate::machines::{GeometryError, check_lengths, check_reach};
 use crate::{Axis, Machine, Number, Refusal};
 
 /// To which side an arm's elbow is of the line from its motor to the tool.
@@ -40,9 +40,10 @@ impl FiveBar {
     /// From the distance of the motors and the lengths of upper arms and forearms.
     ///
     /// # Errors
-    /// [`GeometryError`] of a length that is not above 0.
+    /// [`GeometryError`] of a length that is not above 0, and of a forearm with which the arms do not meet.
     pub fn new(base: f64, upper: f64, fore: f64) -> Result<Self, GeometryError> {
         check_lengths([("base", base), ("upper arm", upper), ("forearm", fore)])?;
+        check_reach("forearm", fore, base / 2.0 - upper)?;
         Ok(Self {
             base,
             upper,

@@ -5,7 +5,7 @@ use core::ops::RangeInclusive;
 
 use trig_kernels::sin_cos;
 
-use crate::machines::{GeometryError, check_lengths};
+use crate::machines::{GeometryError, check_lengths, check_reach};
 use crate::{Axis, Machine, Number, Refusal};
 
 /// A linear Delta: columns on a circle round the z axis, seen from above
@@ -30,13 +30,15 @@ impl LinearDelta {
     /// the carriages' heights.
     ///
     /// # Errors
-    /// [`GeometryError`] of a length that is not above 0.
+    /// [`GeometryError`] of a length that is not above 0, and of a rod that is not longer than the radius:
+    /// not even the middle is within its reach.
     pub fn new(
         rod: f64,
         radius: f64,
         carriages: RangeInclusive<f64>,
     ) -> Result<Self, GeometryError> {
         check_lengths([("rod", rod), ("radius", radius)])?;
+        check_reach("rod", rod, radius)?;
         let column = |turns: f64| {
             let (sin, cos) = sin_cos(turns * TAU);
             [radius * cos, radius * sin]

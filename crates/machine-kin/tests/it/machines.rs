@@ -119,9 +119,29 @@ fn machines_stand_where_they_should() {
         error.to_string(),
         "forearm -1 is not above 0 and at most 1e50"
     );
+    let apart = FiveBar::new(300.0, 70.0, 80.0).unwrap_err();
+    assert_eq!(
+        apart.to_string(),
+        "forearm 80 is not above 80 and at most 1e50"
+    );
     let far = machine.inverse([0.0, 300.0], [Elbow::Left, Elbow::Right]);
     assert_eq!(
         far.unwrap_err().reason,
         "the left arm is too short or too long"
     );
+}
+
+#[test]
+fn a_linear_delta_reaches_its_middle() {
+    let error = LinearDelta::new(100.0, 150.0, 0.0..=400.0).unwrap_err();
+    assert_eq!(
+        (error.name, error.value, error.above),
+        ("rod", 100.0, 150.0)
+    );
+    assert_eq!(
+        error.to_string(),
+        "rod 100 is not above 150 and at most 1e50"
+    );
+    let machine = LinearDelta::new(150.5, 150.0, 0.0..=400.0).unwrap();
+    assert!(machine.inverse([0.0, 0.0, 100.0], ()).is_ok());
 }

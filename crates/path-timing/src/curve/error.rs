@@ -10,8 +10,8 @@ pub enum CurveError {
     /// A coordinate, an angle or a length is not a finite number.
     #[error("a coordinate, angle or length of the curve is not a finite number")]
     NotFinite,
-    /// The curve has no length, or so little that rounding hides its direction.
-    #[error("the curve has no length")]
+    /// The curve has no length, or too little for a direction.
+    #[error("the curve has no length, or too little for a direction")]
     NoLength,
     /// The direction of an arc is along its radius.
     #[error("the direction of the arc is along its radius")]

@@ -20,7 +20,7 @@ pub enum ScaleError {
         steps_per_unit: f64,
     },
     /// A ratio with a zero.
-    #[error("{steps}/{units} steps per unit")]
+    #[error("{steps} steps for {units} units: neither may be 0")]
     Ratio {
         /// Steps given.
         steps: i32,

@@ -90,7 +90,10 @@ fn what_cannot_be_done_is_refused_with_where() {
             "cw 40 50 10.02 0",
             "refused: the end is 0.0400 mm off the circle, 0.0100 are allowed",
         ),
-        ("cw 20 50 0 0", "refused: the curve has no length"),
+        (
+            "cw 20 50 0 0",
+            "refused: the curve has no length, or too little for a direction",
+        ),
         (
             "jog x -20.5",
             "refused: x at -0.500 mm, not within 0.000 to 120.000",
