@@ -29,7 +29,7 @@ pub struct GeometryError {
     pub name: &'static str,
     /// The value given.
     pub value: f64,
-    /// What it must be above: 0, or what the other lengths leave no place within reach by.
+    /// What it must be above: 0, or the length at which at most one place is within reach.
     pub above: f64,
 }
 
