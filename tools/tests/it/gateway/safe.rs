@@ -253,6 +253,8 @@ async fn a_full_store_is_nak_and_no_lie() {
         "[store]\nmax_bytes = 1000\n",
         &line("scale", partner.port),
     ]);
+    // Before the gateway is there: what it delivers at once waits for this session.
+    let mut subscriber = Subscriber::new(broker.port).await;
     broker.stop();
     let gateway = Gateway::start(&config);
     let scale = partner.link().await;
@@ -268,7 +270,6 @@ async fn a_full_store_is_nak_and_no_lie() {
     assert!((2..20).contains(&taken), "{taken}");
     gateway.logs("scale: not stored: the store is full");
     broker.start_again();
-    let mut subscriber = Subscriber::new(broker.port).await;
     // As soon as the broker has the first of them.
     while scale.send(&[taken]).await.is_err() {}
     for number in 0..=taken {

@@ -245,6 +245,8 @@ async fn a_reaction_says_so_where_the_store_is_full() {
     let line = line("plc", partner.port).replace("[[line]]", "[[line]]\nmark_repeats = false");
     let areas = AREAS.replace("poll_s = 0.2\n", "");
     let config = hall(&[&mqtt(broker.port), &store, &line, &areas]);
+    // Before the gateway is there: what it delivers at once waits for this session.
+    let mut subscriber = Subscriber::new(broker.port).await;
     broker.stop();
     let gateway = Gateway::start(&config);
     let stream = partner.stream().await;
@@ -263,7 +265,6 @@ async fn a_reaction_says_so_where_the_store_is_full() {
     let shown = plc.fetch(Area::dx(3, 0), 1).await.unwrap();
     assert_eq!(shown, (taken - 1).to_be_bytes());
     broker.start_again();
-    let mut subscriber = Subscriber::new(broker.port).await;
     while plc
         .send(Area::dx(3, 0), &taken.to_be_bytes())
         .await
