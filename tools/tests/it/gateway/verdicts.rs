@@ -10,8 +10,9 @@ use tempfile::TempDir;
 use tokio::{
     io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, duplex, split},
     net::TcpListener,
+    sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
     task::JoinSet,
-    time::{Instant, sleep},
+    time::{Instant, sleep, sleep_until},
 };
 
 use super::{
@@ -27,6 +28,12 @@ const PAUSE: Duration = Duration::from_millis(150);
 
 /// How late the answers of one are.
 const LATE: Duration = Duration::from_millis(900);
+
+/// From one telegram to the next that it is sent: what comes after silence shows what it answers.
+const RARELY: Duration = Duration::from_secs(6);
+
+/// Before the first of them: after the NAK that opens a line, no answer is due any more.
+const SILENCE: Duration = Duration::from_millis(600);
 
 /// What is wrong with a partner.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -141,8 +148,15 @@ impl Case {
         let (from_partner, to_partner) = split(there);
         let link = Link::new(here, config);
         let hears = carry(from_gateway, to_partner, fault, true);
-        let says = carry(from_partner, to_gateway, fault, false);
-        tokio::join!(hears, says, talk(&link, sends));
+        if fault == Fault::Late {
+            let (heard, late) = unbounded_channel();
+            let delays = delay(from_partner, heard);
+            let says = say_late(late, to_gateway);
+            tokio::join!(hears, delays, says, talk(&link, sends));
+        } else {
+            let says = carry(from_partner, to_gateway, fault, false);
+            tokio::join!(hears, says, talk(&link, sends));
+        }
     }
 }
 
@@ -171,15 +185,30 @@ async fn carry(
     while let Ok(byte) = from.read_u8().await {
         let is_bcc = last == [0x10, 0x03];
         last = if is_bcc { [0; 2] } else { [last[1], byte] };
-        if fault == Fault::Late && !is_to_partner {
-            sleep(LATE).await;
-        }
         let carried = match (fault, is_to_partner) {
             (Fault::Dead, _) | (Fault::Deaf, true) => continue,
             (Fault::Bcc(change), false) if is_bcc => byte ^ change,
             _ => byte,
         };
         if to.write_u8(carried).await.is_err() {
+            return;
+        }
+    }
+}
+
+/// Until when each character waits.
+async fn delay(mut from: impl AsyncRead + Unpin, to: UnboundedSender<(Instant, u8)>) {
+    while let Ok(byte) = from.read_u8().await {
+        if to.send((Instant::now() + LATE, byte)).is_err() {
+            return;
+        }
+    }
+}
+
+async fn say_late(mut from: UnboundedReceiver<(Instant, u8)>, mut to: impl AsyncWrite + Unpin) {
+    while let Some((at, byte)) = from.recv().await {
+        sleep_until(at).await;
+        if to.write_u8(byte).await.is_err() {
             return;
         }
     }
@@ -221,8 +250,15 @@ async fn faults_of_partners_are_named() {
             .get(case.name)
             .is_some_and(|found| case.fits(&found["verdict"]))
     };
+    let mut rare_at = begin + SILENCE;
     while !cases.iter().all(|case| is_right(&found, case)) {
         for case in cases.iter().filter(|case| case.gateway_sends) {
+            if case.fault == Fault::Late {
+                if Instant::now() < rare_at {
+                    continue;
+                }
+                rare_at += RARELY;
+            }
             let topic = format!("line3964r/hall/{}/command", case.name);
             subscriber
                 .publish(&topic, QoS::AtLeastOnce, r#"{"send": "41 42 43"}"#)
