@@ -133,6 +133,9 @@ fn wrong_start_stop_speeds_are_named() {
     }
 }
 
+/// Knots, more than any of the polylines takes.
+const MOST: usize = 512;
+
 /// One of the three corners, with start-stop speeds.
 fn corners() -> impl Strategy<Value = Corner<[f64; 2]>> {
     prop_oneof![
@@ -155,13 +158,13 @@ proptest! {
     ) {
         let start_stop = if let Corner::Jump(speeds) = corner { speeds } else { [0.0; 2] };
         let legs = lines(&points, corner, feed);
-        let mut knots = [Knot::default(); 250];
+        let mut knots = [Knot::default(); MOST];
         let table = Table::plan(&legs, LIMITS, |_| segments, &mut knots);
         prop_assume!(!matches!(table, Err(PlanError::TooCoarse { .. })));
         let table = table.unwrap();
         let planned: Vec<_> = table.rows().collect();
         check_limits(&LIMITS, Some(&start_stop), &planned);
-        let mut ahead = [FeedCeiling::default(); 250];
+        let mut ahead = [FeedCeiling::default(); MOST];
         let mut run = table.playback(1.5, &mut ahead).unwrap();
         let mut rows = Vec::new();
         for (wanted, count) in overrides {
