@@ -229,7 +229,12 @@ impl<const N: usize> Client<N> {
         let chunk = match expect_reaction(&job, block) {
             Ok(data) => data,
             Err(error) => {
-                self.pause(now, self.config.resync);
+                let pause = match error {
+                    // The reaction that was due: no other is to come.
+                    JobError::Refused(_) => self.config.quiet,
+                    _ => self.config.resync,
+                };
+                self.pause(now, pause);
                 self.end(job, Err(error));
                 return;
             }

@@ -193,6 +193,24 @@ fn a_failed_job_says_how_far_it_came() {
     assert_eq!(client.poll_event(), Some(outcome));
 }
 
+/// A refusal is the reaction that was due; one out of step may be that of a job before.
+#[test]
+fn a_refusal_keeps_the_next_job_waiting_no_longer_than_success() {
+    for (reaction, waits) in [
+        (&[0, 0, 0, 0x32][..], None),
+        (&[0xFF, 0, 0, 0, 5, 5], Some(NOW + Duration::from_secs(2))),
+    ] {
+        let mut client = client();
+        client.submit(fetch(DB5, 1), &[]).unwrap();
+        command(&mut client, NOW);
+        client.handle_block(NOW, reaction);
+        failure(&mut client);
+        client.submit(fetch(DB5, 1), &[]).unwrap();
+        assert_eq!(client.poll_transmit(NOW).is_none(), waits.is_some());
+        assert_eq!(client.poll_timeout(), waits);
+    }
+}
+
 /// After a lost reaction the next job waits, and what comes meanwhile is dropped.
 #[test]
 fn a_late_reaction_is_not_the_next_jobs() {
