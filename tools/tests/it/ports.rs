@@ -134,6 +134,7 @@ async fn tcp() {
 /// A bus on which everybody hears every character, its own too.
 async fn bus(listener: TcpListener, partner: DuplexStream) -> ! {
     let (mut a, _) = listener.accept().await.unwrap();
+    a.set_nodelay(true).unwrap();
     let mut b = partner;
     let (mut from_a, mut from_b) = ([0; 64], [0; 64]);
     loop {
@@ -157,8 +158,11 @@ async fn own_echo_is_removed() {
     let address = format!("tcp://{}?echo=remove", listener.local_addr().unwrap());
     let (there, other) = duplex(4096);
     let bus = tokio::spawn(bus(listener, other));
-    let a = Link::new(open(&address).await.unwrap(), LOW);
+    let mut port = open(&address).await.unwrap();
     let b = Link::new(there, HIGH);
+    // The NAK that it begins with.
+    assert_eq!(port.read_u8().await.unwrap(), 0x15);
+    let a = Link::new(port, LOW);
     for number in 0..COUNT {
         a.send(&telegram(number)).await.unwrap();
         assert_eq!(b.receive().await.unwrap(), telegram(number));
@@ -177,6 +181,7 @@ async fn serial_server(
     set: impl Fn(u8, &[u8]) -> Vec<u8>,
 ) {
     let (mut stream, _) = listener.accept().await.unwrap();
+    stream.set_nodelay(true).unwrap();
     stream.write_all(&[255, 253, 44]).await.unwrap();
     let mut confirmed = 0;
     while confirmed < 6 {

@@ -59,7 +59,7 @@ fn a_stop_rests_in_time_wherever_it_begins() {
         let mut knots = vec![Knot::default(); 4002];
         let table = Table::plan([line], [case.limits], |_| case.segments, &mut knots).unwrap();
         let mut worst = [0.0_f64; 2];
-        for stopped in (14..case.rows).step_by(4) {
+        for stopped in (14..case.rows).step_by(13) {
             let mut playback = table.playback(1.0, &mut []).unwrap();
             let mut rows = Vec::new();
             while let Some(row) = playback.next_row() {

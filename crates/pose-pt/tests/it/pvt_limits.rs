@@ -21,10 +21,11 @@ fn limits_hold_to_the_last_digit() {
         acceleration: ACCELERATION,
         jerk: Some(100.0),
     };
-    for (name, platform) in [
-        ("panel", panel()),
-        ("jerk", panel_with(jerk)),
-        ("skewed", skewed()),
+    let cuts = [(40, 0), (1024, 1), (8192, 2), (20_000, 3)];
+    for (name, platform, cuts) in [
+        ("panel", panel(), &cuts[..3]),
+        ("jerk", panel_with(jerk), &cuts),
+        ("skewed", skewed(), &cuts[..3]),
     ] {
         // The last with a stop on the way, which two legs would round each by itself.
         let by = |way: f64| pose([900.0 + way, -700.0, 300.0 - way], [0.0, 0.0, 1e-3 * way]);
@@ -33,7 +34,7 @@ fn limits_hold_to_the_last_digit() {
             &from_rest([0.01, 0.0, 0.0], [0.0; 3]),
             &[by(0.0), by(0.01), by(-0.03)],
         ] {
-            for (segments, kind) in [(40, 0), (1024, 1), (8192, 2), (20_000, 3)] {
+            for &(segments, kind) in cuts {
                 let path = PosePath::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
                 let table = plan(&platform, &path, Cut::Into(segments), &mut knots);

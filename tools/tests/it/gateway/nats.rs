@@ -5,10 +5,14 @@ use core::{
     sync::atomic::{AtomicBool, Ordering},
     time::Duration,
 };
+use std::env;
 
 use async_nats::{
     Client, ConnectOptions,
-    jetstream::{self, consumer::pull::OrderedConfig},
+    jetstream::{
+        self,
+        consumer::pull::{Ordered, OrderedConfig},
+    },
 };
 use futures_util::StreamExt as _;
 use rk512::{Area, DataBlock, Memory, tokio::Client as Plc};
@@ -51,7 +55,9 @@ field = [{ name = \"speed\", offset = 0, type = \"i16be\" }]
 /// Lines beside a cluster whose servers are killed.
 const LINES: usize = 20;
 /// Kills, one server after the other.
-const KILLS: usize = 6;
+fn kills() -> usize {
+    env::var("NATS_KILLS").map_or(3, |kills| kills.parse().unwrap())
+}
 
 /// A cluster, or an end of the test that is seen.
 macro_rules! cluster_or_skip {
@@ -76,20 +82,25 @@ async fn client(cluster: &Cluster) -> Client {
     options.connect(cluster.servers()).await.unwrap()
 }
 
+/// A stream's number of messages, and where to read them.
+async fn opened(client: &Client, stream: &str) -> Result<(u64, Ordered), async_nats::Error> {
+    let mut stream = jetstream::new(client.clone()).get_stream(stream).await?;
+    let count = stream.info().await?.state.messages;
+    let consumer = stream.create_consumer(OrderedConfig::default()).await?;
+    Ok((count, consumer.messages().await?))
+}
+
 /// All messages of a stream: subject, identifier, payload.
 async fn all(client: &Client, stream: &str) -> Vec<(String, String, Value)> {
-    let context = jetstream::new(client.clone());
     let begin = Instant::now();
-    let mut stream = loop {
-        match context.get_stream(stream).await {
-            Ok(stream) => break stream,
+    let (count, mut messages) = loop {
+        // Servers that have just been started look for a leader.
+        match opened(client, stream).await {
+            Ok(opened) => break opened,
             Err(error) => assert!(begin.elapsed() < PATIENCE, "{error}"),
         }
         sleep(Duration::from_millis(100)).await;
     };
-    let count = stream.info().await.unwrap().state.messages;
-    let consumer = stream.create_consumer(OrderedConfig::default()).await;
-    let mut messages = consumer.unwrap().messages().await.unwrap();
     let mut found = Vec::new();
     for _ in 0..count {
         let message = timeout(PATIENCE, messages.next()).await.expect("a message");
@@ -270,7 +281,7 @@ async fn servers_that_are_killed_in_turn_lose_and_double_nothing() {
     }
     let gateway = Gateway::start(&config);
     gateway.logs("broker: connected to ");
-    for kill in 0..KILLS {
+    for kill in 0..kills() {
         sleep(Duration::from_millis(1500)).await;
         // The next one is killed when this one has caught up: two of three are a majority.
         cluster.kill(kill % 3);
@@ -309,7 +320,8 @@ async fn servers_that_are_killed_in_turn_lose_and_double_nothing() {
     }
     let connects = log.matches("broker: connected to ").count();
     println!(
-        "{} telegrams, {KILLS} kills, {connects} connections of the gateway",
-        sent.iter().sum::<u32>()
+        "{} telegrams, {} kills, {connects} connections of the gateway",
+        sent.iter().sum::<u32>(),
+        kills()
     );
 }

@@ -21,7 +21,7 @@ async fn a_wrong_password_is_refused_and_the_line_goes_on() {
     let partner = Partner::new().await;
     let mqtt = mqtt(broker.port).replace(PASSWORD, "guessed");
     let gateway = Gateway::start(&format!(
-        "name = \"hall\"\n{mqtt}{}",
+        "name = \"hall\"\nstop_s = 1\n{mqtt}{}",
         line("scale", partner.port)
     ));
     let scale = partner.link().await;
