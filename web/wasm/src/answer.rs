@@ -41,7 +41,7 @@ impl Answer {
     }
 
     /// Rows of numbers, one after the other.
-    #[cfg(any(feature = "delta", feature = "stage"))]
+    #[cfg(any(feature = "delta", feature = "engrave", feature = "stage"))]
     pub(crate) fn with_rows<const N: usize>(
         self,
         name: &'static str,
