@@ -4,6 +4,7 @@ mod bound;
 mod error;
 mod passage;
 mod pick;
+mod wrists;
 
 use nalgebra::{Point3, Vector3};
 use path_timing::{Corner, Curve, PathPoint, Span, ToolLimits};

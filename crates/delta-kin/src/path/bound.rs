@@ -3,7 +3,8 @@
 use path_timing::{Cubic, Span};
 use trig_kernels::atan2;
 
-use super::passage::Passage;
+use super::passage::{Passage, cubics};
+use super::wrists::are_free;
 use super::{DeltaPath, DeltaPathError};
 use crate::arm::zip;
 use crate::range::sqrt;
@@ -90,11 +91,15 @@ impl DeltaPath {
     /// Whether the machine may run a segment: all arms within their ranges, and no rod out of the plane
     /// of its arm by more than its ball joints let it. How far out it is depends on the platform's
     /// place alone, which is known at the nodes of [`departure`](Self::departure) and linear between
-    /// them but for what it departs by there and the curve's own bend. Far from the limit the ends tell enough.
+    /// them but for what it departs by there and the curve's own bend. Far from the limit, which most segments
+    /// are, the ends tell enough.
     pub(super) fn check_span(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
-        let (delta, [from, to], s) = (&self.delta, &span.rows, span.s);
-        let arms = Cubic::between(from, to).zip(delta.ranges()).zip(Arm::ALL);
-        for ((cubic, range), arm) in arms {
+        let (delta, s) = (&self.delta, span.s);
+        let cubics = cubics(&span.rows);
+        for ((cubic, range), arm) in zip(cubics, delta.ranges().each_ref())
+            .into_iter()
+            .zip(Arm::ALL)
+        {
             if let Some(angle) = beyond(range, &cubic) {
                 return Err(DeltaPathError::Range {
                     s,
@@ -108,15 +113,11 @@ impl DeltaPath {
         let Some(max) = delta.max_swivel() else {
             return Ok(());
         };
-        let passage = Passage::new(self, span).ok_or(DeltaPathError::TooCoarse { s })?;
-        let is_clear = passage.sides_by_ends().is_some_and(|sides| {
-            let arms = zip(delta.prepared().each_ref(), sides);
-            arms.iter()
-                .all(|(prepared, side)| *side <= prepared.max_side)
-        });
-        if is_clear {
+        let places = s.map(|s| delta.flip(self.centre(s).coords));
+        if are_free(delta, places, &cubics) {
             return Ok(());
         }
+        let passage = Passage::new(self, span).ok_or(DeltaPathError::TooCoarse { s })?;
         let sides = passage.sides().ok_or(DeltaPathError::TooCoarse { s })?;
         let arms = zip(delta.prepared().each_ref(), sides);
         for ((prepared, side), arm) in arms.into_iter().zip(Arm::ALL) {

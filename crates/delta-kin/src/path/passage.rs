@@ -127,8 +127,7 @@ impl<'a> Passage<'a> {
     /// None where nothing can be told.
     pub(super) fn new(path: &'a DeltaPath, span: &Span<[f64; 3]>) -> Option<Self> {
         let (delta, [from, to]) = (&path.delta, &span.rows);
-        let mut cubics = Cubic::between(from, to);
-        let cubics = [cubics.next()?, cubics.next()?, cubics.next()?];
+        let cubics = cubics(&span.rows);
         let change = Vector3::from(to.position) - Vector3::from(from.position);
         if jumping(change).is_some() {
             return None;
@@ -219,19 +218,7 @@ impl<'a> Passage<'a> {
         farthest(kappa, sum / rest + kappa * known, self.lower)
     }
 
-    /// How far each wrist comes beside the plane of its arm, at most: what it is at the ends, and what
-    /// the platform can go from the nearer one.
-    ///
-    /// ```text
-    /// |P(τ) - P(end)| ≤ max |P'| / 2
-    /// ```
-    pub(super) fn sides_by_ends(&self) -> Option<[f64; 3]> {
-        let [first, ..] = *self.motion.longest();
-        let off = self.farthest()? + first * 0.5 + self.rounding();
-        Some(self.sides_of(&self.ends(), off))
-    }
-
-    /// The same, by what is known between.
+    /// How far each wrist comes beside the plane of its arm, at most.
     pub(super) fn sides(&self) -> Option<[f64; 3]> {
         // Between nodes, and the curve's bend from one to the next: h²/8 of its second derivative.
         let [_, second, ..] = *self.motion.longest();
@@ -285,6 +272,18 @@ impl<'a> Passage<'a> {
     fn rounding(&self) -> f64 {
         2.0 * ROOT3 * self.kappa * self.path.delta.tolerance()
     }
+}
+
+/// The cubics of the arms from a row to the next.
+pub(super) fn cubics([from, to]: &[Row<[f64; 3]>; 2]) -> [Cubic; 3] {
+    let velocities = zip(from.velocity, to.velocity);
+    zip(zip(from.position, to.position), velocities).map(|((q0, q1), (v0, v1))| Cubic {
+        q0,
+        q1,
+        v0,
+        v1,
+        duration_s: to.duration_s,
+    })
 }
 
 /// E: how far the platform is where it would be `off` but for the curvature of the rods' spheres; none

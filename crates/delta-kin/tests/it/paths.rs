@@ -48,6 +48,45 @@ fn any_curve() -> impl Strategy<Value = Curve<3>> {
     ]
 }
 
+/// The most by which a rod is out of the plane of its arm.
+fn swivel(delta: &Delta, point: Point3<f64>) -> f64 {
+    let sides = delta.arms().map(|arm| {
+        let (sin, cos) = arm.azimuth.sin_cos();
+        ((point.y * cos - point.x * sin) / arm.lower).abs().asin()
+    });
+    sides.into_iter().fold(0.0, f64::max)
+}
+
+/// The speeds at the ends of a segment.
+const fn speeds(ratio: f64, is_rising: bool) -> [f64; 2] {
+    if is_rising {
+        [ratio, 1.0]
+    } else {
+        [1.0, ratio]
+    }
+}
+
+/// A segment of a path between two shares of it.
+fn span_of(path: &DeltaPath, shares: [f64; 2], [w0, w1]: [f64; 2]) -> Span<[f64; 3]> {
+    let [from, to] = shares.map(|share| share * path.length());
+    let duration_s = 2.0 * (to - from) / (w0 + w1);
+    let row = |s: f64, speed: f64| {
+        let point = path.point(s).unwrap();
+        Row {
+            time_s: 0.0,
+            duration_s,
+            position: point.position,
+            velocity: point.slope.map(|slope| slope * speed),
+            leg: 0,
+            s,
+        }
+    };
+    Span {
+        s: [from, to],
+        rows: [row(from, w0), row(to, w1)],
+    }
+}
+
 fn cubics(span: &Span<[f64; 3]>) -> [Cubic; 3] {
     let [from, to] = &span.rows;
     let mut cubics = Cubic::between(from, to);
@@ -146,21 +185,7 @@ proptest! {
     ) {
         let delta = thesis().with_z(ZAxis::Up);
         let Ok(path) = delta.path(curve) else { return Ok(()) };
-        let s = [from, (from + share).min(1.0)].map(|share| share * curve.length());
-        let speeds = if is_rising { [ratio, 1.0] } else { [1.0, ratio] };
-        let duration_s = 2.0 * (s[1] - s[0]) / (speeds[0] + speeds[1]);
-        let row = |end: usize| {
-            let point = path.point(s[end]).unwrap();
-            Row {
-                time_s: 0.0,
-                duration_s,
-                position: point.position,
-                velocity: point.slope.map(|slope| slope * speeds[end]),
-                leg: 0,
-                s: s[end],
-            }
-        };
-        let span = Span { s, rows: [row(0), row(1)] };
+        let span = span_of(&path, [from, (from + share).min(1.0)], speeds(ratio, is_rising));
         let bound = path.departure(&span);
         if bound.is_finite() {
             prop_assert!(measured(&delta, &curve, &span) <= bound + ROUNDING);
@@ -168,6 +193,39 @@ proptest! {
         // Short segments can be told.
         let is_short = share * curve.length() < 2.0;
         prop_assert!(bound.is_finite() || !is_short || bound > 1.0);
+    }
+
+    /// A segment that may be run takes no wrist farther beside its arm than the ball joints let it, where
+    /// they let it go a little farther than the curve does.
+    #[test]
+    fn ball_joints_are_kept_all_along_a_segment(
+        curve in any_curve(),
+        from in 0.0..0.95_f64,
+        share in 0.001..1.0_f64,
+        ratio in 0.0..1.0_f64,
+        is_rising: bool,
+        more in (-5.0..-1.5_f64).prop_map(|power| 10.0_f64.powf(power)),
+    ) {
+        let free = thesis().with_z(ZAxis::Up);
+        let Ok(path) = free.path(curve) else { return Ok(()) };
+        let swivels = (0..=200).map(|number| {
+            let point = curve.at(curve.length() * f64::from(number) / 200.0).point;
+            swivel(&free, point.into())
+        });
+        let delta = free.with_ball_joints(swivels.fold(more, f64::max) + more).unwrap();
+        let span = span_of(&path, [from, (from + share).min(1.0)], speeds(ratio, is_rising));
+        let Ok(path) = delta.path(curve) else { return Ok(()) };
+        if path.check(&span).is_err() {
+            return Ok(());
+        }
+        let cubics = cubics(&span);
+        for number in 0..=200 {
+            let angles = cubics.map(|cubic| cubic.position(f64::from(number) / 200.0));
+            let platform = free.forward(angles).unwrap();
+            let found = delta.inverse(platform);
+            prop_assert!(found.is_ok(), "{found:?}");
+            prop_assert!((found.unwrap() - Vector3::from(angles)).norm() < 1e-9);
+        }
     }
 
     /// The arms bring the platform to the curve, and the slopes are theirs.

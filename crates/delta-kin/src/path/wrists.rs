@@ -1,0 +1,179 @@
+//! How far the wrists come beside the planes of their arms on a segment, by its ends alone and in single
+//! precision: enough where they stay far from what their ball joints let them.
+//!
+//! Goal: a microcontroller without doubles looks at each segment of a table, and most are nowhere near a limit.
+//! Method: what the arms turn in half of the segment moves the platform no farther from its nearer end than ρ.
+//!
+//! Proof. Let D be the rods at that end, B the matrix whose rows are D/La, κ the Frobenius norm of its inverse,
+//! m the ways of the elbows from there, at most μ, and e that of the platform. The rods keep their lengths
+//! where
+//!
+//! ```text
+//! B e = D · m / La - |e - m|² / 2La
+//! ```
+//!
+//! so that ρ = |e| + μ, which begins at zero and is continuous, stays below the smaller root of
+//!
+//! ```text
+//! ρ = a + c ρ²    a = μ + κ |m|    c = √3 κ / 2La
+//! ```
+//!
+//! There κ √3 ρ/La < 1, so that the matrix stays invertible on the way, and the assembly mode the same.
+
+use nalgebra::Vector3;
+use path_timing::Cubic;
+use trig_kernels::{sin_cos, sqrt};
+
+use crate::Delta;
+use crate::arm::zip;
+use crate::pose::invert_rods;
+use crate::prepared::PreparedArm;
+
+/// √3 / 2, upwards.
+const HALF_ROOT3: f32 = 0.866_025_5;
+
+/// Above all rounding of machines of this size in shortest lower arms, angles of so many radians and this κ.
+const MARGIN: f32 = 0.01;
+const LARGEST: f32 = 16.0;
+const MAX_KAPPA: f32 = 32.0;
+
+/// The most of 4ac: nearer to 1 the root has no digits.
+const MAX_BEND: f32 = 0.75;
+
+/// One arm at an end of a segment, in single precision and in shortest lower arms.
+#[derive(Clone, Copy)]
+struct Side {
+    /// A row of B.
+    rod: Vector3<f32>,
+    /// How far the elbow goes in half of the segment, at most.
+    way: f32,
+    /// From the wrist to the plane of the arm, and the most of that.
+    beside: f32,
+    max_beside: f32,
+}
+
+/// Whether all wrists stay within what their ball joints let them; false where that is not known.
+///
+/// `places` are those of the platform's centre at the ends, in the machine's frame.
+pub(super) fn are_free(delta: &Delta, places: [Vector3<f64>; 2], cubics: &[Cubic; 3]) -> bool {
+    let arms = delta.prepared();
+    let [l1, l2, l3] = arms.each_ref().map(|prepared| prepared.lower);
+    let scale = l1.min(l2).min(l3).recip();
+    let forth = cubics.each_ref().map(Cubic::control_points);
+    let back = forth.map(|[q0, b1, b2, q1]| [q1, b2, b1, q0]);
+    let [start, end] = places;
+    [(start, forth), (end, back)]
+        .into_iter()
+        .all(|(place, angles)| {
+            let sides = zip(arms.each_ref(), angles);
+            is_free(&sides.map(|(prepared, angle)| Side::new(prepared, scale, &place, &angle)))
+        })
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "what is beyond f32 is infinite, and is not known to be free"
+)]
+const fn single(value: f64) -> f32 {
+    value as f32
+}
+
+impl Side {
+    /// With the control points of the arm's angle from this end on.
+    fn new(
+        prepared: &PreparedArm<f64>,
+        scale: f64,
+        place: &Vector3<f64>,
+        [from, next, after, to]: &[f64; 4],
+    ) -> Self {
+        let theta = single(prepared.theta(*from));
+        let (sin, cos) = sin_cos(theta);
+        let centre = prepared.centre((sin.into(), cos.into()));
+        let scaled = |length: f64| single(length * scale);
+        let (rod, upper) = ((place - centre).map(scaled), scaled(prepared.upper));
+        // The control points of the half that begins here, from where it begins.
+        let [next, after, to] = [next, after, to].map(|point| single(point - from));
+        let turns = [
+            next * 0.5,
+            next * 0.5 + after * 0.25,
+            (3.0 * (next + after) + to) * 0.125,
+        ];
+        let largest = [theta, upper, rod.x, rod.y, rod.z].into_iter().chain(turns);
+        // NaN is not small.
+        let is_small = { largest }.all(|value| value.abs() <= LARGEST);
+        let turn = turns.map(f32::abs).into_iter().fold(0.0, f32::max);
+        Self {
+            rod: rod / scaled(prepared.lower),
+            way: if is_small { upper * turn } else { f32::NAN },
+            beside: scaled(place.dot(&prepared.sideways()).abs()),
+            max_beside: scaled(prepared.max_side),
+        }
+    }
+}
+
+fn is_free(sides: &[Side; 3]) -> bool {
+    let ways = Vector3::from(sides.map(|side| side.way));
+    let inverse = invert_rods(&sides.map(|side| side.rod));
+    let kappa = sqrt(inverse.iter().map(Vector3::norm_squared).sum::<f32>());
+    let a = ways.amax() + kappa * ways.norm();
+    let bend = 4.0 * a * HALF_ROOT3 * kappa;
+    // Written so that NaN is not known.
+    let is_known = kappa <= MAX_KAPPA && bend <= MAX_BEND;
+    let farthest = 2.0 * a / (1.0 + sqrt(1.0 - bend));
+    let more = farthest * (1.0 + MARGIN) + MARGIN;
+    is_known && (sides.iter()).all(|side| side.beside + more <= side.max_beside)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point3;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::Dimensions;
+
+    /// Places at which a segment is looked at.
+    const PLACES: u32 = 100;
+
+    fn place() -> impl Strategy<Value = [f64; 3]> {
+        [-150.0..150.0_f64, -150.0..150.0_f64, -340.0..-150.0_f64]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Any arms, any cubics between any places: where the wrists are said to be free, they are.
+        #[test]
+        fn free_wrists_keep_within_their_ball_joints(
+            upper in 80.0..150.0_f64, lower in 180.0..300.0_f64, base in 0.0..80.0_f64,
+            from in place(), way in [-40.0..40.0_f64, -40.0..40.0_f64, -40.0..40.0_f64], power in -3.0..0.0_f64,
+            velocities in [[-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0]],
+            more in 0.0..0.2_f64,
+        ) {
+            let share = 10.0_f64.powf(power);
+            let dimensions = Dimensions { base, platform: 18.0, upper, lower };
+            let Ok(delta) = Delta::new(dimensions) else { return Ok(()) };
+            let ends = [Point3::from(from), Point3::from(from) + Vector3::from(way) * share];
+            let [Ok(a), Ok(b)] = ends.map(|end| delta.inverse(end)) else { return Ok(()) };
+            let [v0, v1] = velocities.map(|velocity| Vector3::from(velocity) * share);
+            let cubics = [0, 1, 2].map(|axis| {
+                Cubic { q0: a[axis], q1: b[axis], v0: v0[axis], v1: v1[axis], duration_s: 1.0 }
+            });
+            let beside = |point: Point3<f64>| -> f64 {
+                let sides = delta.prepared().each_ref().map(|arm| arm.sideways().dot(&point.coords).abs());
+                sides.into_iter().fold(0.0, f64::max)
+            };
+            let swivel = (ends.map(beside).into_iter().fold(0.0, f64::max) / lower).asin() + more;
+            let Ok(delta) = delta.with_ball_joints(swivel) else { return Ok(()) };
+            if !are_free(&delta, ends.map(|end| end.coords), &cubics) {
+                return Ok(());
+            }
+            for number in 0..=PLACES {
+                let angles = cubics.map(|cubic| cubic.position(f64::from(number) / f64::from(PLACES)));
+                let platform = delta.forward(Vector3::from(angles));
+                prop_assert!(platform.is_ok(), "{platform:?}");
+                prop_assert!(beside(platform.unwrap()) <= lower * swivel.sin());
+            }
+        }
+    }
+}
