@@ -118,6 +118,14 @@ impl DeltaPath {
             return Ok(());
         }
         let passage = Passage::new(self, span).ok_or(DeltaPathError::TooCoarse { s })?;
+        let is_clear = passage.sides_by_ends().is_some_and(|sides| {
+            let arms = zip(delta.prepared().each_ref(), sides);
+            arms.iter()
+                .all(|(prepared, side)| *side <= prepared.max_side)
+        });
+        if is_clear {
+            return Ok(());
+        }
         let sides = passage.sides().ok_or(DeltaPathError::TooCoarse { s })?;
         let arms = zip(delta.prepared().each_ref(), sides);
         for ((prepared, side), arm) in arms.into_iter().zip(Arm::ALL) {

@@ -218,7 +218,19 @@ impl<'a> Passage<'a> {
         farthest(kappa, sum / rest + kappa * known, self.lower)
     }
 
-    /// How far each wrist comes beside the plane of its arm, at most.
+    /// How far each wrist comes beside the plane of its arm, at most: what it is at the ends, and what
+    /// the platform can go from the nearer one.
+    ///
+    /// ```text
+    /// |P(τ) - P(end)| ≤ max |P'| / 2
+    /// ```
+    pub(super) fn sides_by_ends(&self) -> Option<[f64; 3]> {
+        let [first, ..] = *self.motion.longest();
+        let off = self.farthest()? + first * 0.5 + self.rounding();
+        Some(self.sides_of(&self.ends(), off))
+    }
+
+    /// The same, by what is known between.
     pub(super) fn sides(&self) -> Option<[f64; 3]> {
         // Between nodes, and the curve's bend from one to the next: h²/8 of its second derivative.
         let [_, second, ..] = *self.motion.longest();

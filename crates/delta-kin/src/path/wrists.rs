@@ -9,13 +9,14 @@
 //! where
 //!
 //! ```text
-//! B e = D · m / La - |e - m|² / 2La
+//! B e = n - |e - m|² / 2La    n = D · m / La    |n| ≤ |D · K'| δ / La + Lb δ²/2
 //! ```
 //!
-//! so that ρ = |e| + μ, which begins at zero and is continuous, stays below the smaller root of
+//! with K' the way of an elbow by its angle and δ the most that the angle turns. So ρ = |e| + μ, which begins at
+//! zero and is continuous, stays below the smaller root of
 //!
 //! ```text
-//! ρ = a + c ρ²    a = μ + κ |m|    c = √3 κ / 2La
+//! ρ = a + c ρ²    a = μ + κ |n|    c = √3 κ / 2La
 //! ```
 //!
 //! There κ √3 ρ/La < 1, so that the matrix stays invertible on the way, and the assembly mode the same.
@@ -38,15 +39,16 @@ const LARGEST: f32 = 16.0;
 const MAX_KAPPA: f32 = 32.0;
 
 /// The most of 4ac: nearer to 1 the root has no digits.
-const MAX_BEND: f32 = 0.75;
+const MAX_BEND: f32 = 0.95;
 
 /// One arm at an end of a segment, in single precision and in shortest lower arms.
 #[derive(Clone, Copy)]
 struct Side {
     /// A row of B.
     rod: Vector3<f32>,
-    /// How far the elbow goes in half of the segment, at most.
+    /// How far the elbow goes in half of the segment, at most, and n, along the rod.
     way: f32,
+    along: f32,
     /// From the wrist to the plane of the arm, and the most of that.
     beside: f32,
     max_beside: f32,
@@ -88,7 +90,8 @@ impl Side {
     ) -> Self {
         let theta = single(prepared.theta(*from));
         let (sin, cos) = sin_cos(theta);
-        let centre = prepared.centre((sin.into(), cos.into()));
+        let heading = (sin.into(), cos.into());
+        let (centre, tangent) = (prepared.centre(heading), prepared.tangent(heading));
         let scaled = |length: f64| single(length * scale);
         let (rod, upper) = ((place - centre).map(scaled), scaled(prepared.upper));
         // The control points of the half that begins here, from where it begins.
@@ -102,9 +105,12 @@ impl Side {
         // NaN is not small.
         let is_small = { largest }.all(|value| value.abs() <= LARGEST);
         let turn = turns.map(f32::abs).into_iter().fold(0.0, f32::max);
+        let rod = rod / scaled(prepared.lower);
+        let way = if is_small { upper * turn } else { f32::NAN };
         Self {
-            rod: rod / scaled(prepared.lower),
-            way: if is_small { upper * turn } else { f32::NAN },
+            rod,
+            way,
+            along: rod.dot(&tangent.map(scaled)).abs() * turn + way * turn * 0.5,
             beside: scaled(place.dot(&prepared.sideways()).abs()),
             max_beside: scaled(prepared.max_side),
         }
@@ -112,10 +118,11 @@ impl Side {
 }
 
 fn is_free(sides: &[Side; 3]) -> bool {
+    let along = Vector3::from(sides.map(|side| side.along));
     let ways = Vector3::from(sides.map(|side| side.way));
     let inverse = invert_rods(&sides.map(|side| side.rod));
     let kappa = sqrt(inverse.iter().map(Vector3::norm_squared).sum::<f32>());
-    let a = ways.amax() + kappa * ways.norm();
+    let a = ways.amax() + kappa * along.norm();
     let bend = 4.0 * a * HALF_ROOT3 * kappa;
     // Written so that NaN is not known.
     let is_known = kappa <= MAX_KAPPA && bend <= MAX_BEND;
