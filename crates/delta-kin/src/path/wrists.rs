@@ -2,24 +2,24 @@
 //! precision: enough where they stay far from what their ball joints let them.
 //!
 //! Goal: a microcontroller without doubles looks at each segment of a table, and most are nowhere near a limit.
-//! Method: what the arms turn in half of the segment moves the platform no farther from its nearer end than ρ.
+//! Method: what the arms turn in half of the segment moves the platform no farther from its nearer end than E.
 //!
-//! Proof. Let D be the rods at that end, B the matrix whose rows are D/La, κ the Frobenius norm of its inverse,
-//! m the ways of the elbows from there, at most μ, and e that of the platform. The rods keep their lengths
-//! where
-//!
-//! ```text
-//! B e = n - |e - m|² / 2La    n = D · m / La    |n| ≤ |D · K'| δ / La + Lb δ²/2
-//! ```
-//!
-//! with K' the way of an elbow by its angle and δ the most that the angle turns. So ρ = |e| + μ, which begins at
-//! zero and is continuous, stays below the smaller root of
+//! Proof. Let D be the rods at that end, in shortest lower arms, B the matrix whose rows are D/La, c the columns
+//! of its inverse, m the ways of the elbows from there, at most μ = Lb δ where the arms turn by δ, and e that of
+//! the platform. The rods keep their lengths where
 //!
 //! ```text
-//! ρ = a + c ρ²    a = μ + κ |n|    c = √3 κ / 2La
+//! B e = n - q    n = D · m / La ≤ |D · K'| δ / La + Lb δ²/2    q = |e - m|² / 2La ≤ (|e| + μ)²/2
 //! ```
 //!
-//! There κ √3 ρ/La < 1, so that the matrix stays invertible on the way, and the assembly mode the same.
+//! with K' the way of an elbow by its angle. So |e|, which begins at zero and is continuous, stays below the
+//! smaller root of
+//!
+//! ```text
+//! E = N + M E + C E²/2    N = Σ |c| (n + μ²/2)    M = Σ |c| μ    C = Σ |c|
+//! ```
+//!
+//! There M + C E < 1, so that the matrix stays invertible on the way, and the assembly mode the same.
 
 use nalgebra::Vector3;
 use path_timing::Cubic;
@@ -30,23 +30,20 @@ use crate::arm::zip;
 use crate::pose::invert_rods;
 use crate::prepared::PreparedArm;
 
-/// √3 / 2, upwards.
-const HALF_ROOT3: f32 = 0.866_025_5;
-
-/// Above all rounding of machines of this size in shortest lower arms, angles of so many radians and this κ.
+/// Above all rounding of machines of this size in shortest lower arms, angles of so many radians and this C.
 const MARGIN: f32 = 0.01;
 const LARGEST: f32 = 16.0;
-const MAX_KAPPA: f32 = 32.0;
+const MAX_INVERSE: f32 = 48.0;
 
-/// The most of 4ac: nearer to 1 the root has no digits.
-const MAX_BEND: f32 = 0.95;
+/// The least of (1 - M)² - 2 C N as a part of (1 - M)², and of 1 - M: nearer to 0 the root has no digits.
+const LEAST: f32 = 0.05;
 
 /// One arm at an end of a segment, in single precision and in shortest lower arms.
 #[derive(Clone, Copy)]
 struct Side {
     /// A row of B.
     rod: Vector3<f32>,
-    /// How far the elbow goes in half of the segment, at most, and n, along the rod.
+    /// μ and n: how far the elbow goes in half of the segment, at most, and how far along its rod.
     way: f32,
     along: f32,
     /// From the wrist to the plane of the arm, and the most of that.
@@ -118,15 +115,18 @@ impl Side {
 }
 
 fn is_free(sides: &[Side; 3]) -> bool {
-    let along = Vector3::from(sides.map(|side| side.along));
-    let ways = Vector3::from(sides.map(|side| side.way));
-    let inverse = invert_rods(&sides.map(|side| side.rod));
-    let kappa = sqrt(inverse.iter().map(Vector3::norm_squared).sum::<f32>());
-    let a = ways.amax() + kappa * along.norm();
-    let bend = 4.0 * a * HALF_ROOT3 * kappa;
+    let (mut inverse, mut forth, mut beside) = (0.0, 0.0, 0.0);
+    for (column, side) in zip(invert_rods(&sides.map(|side| side.rod)), *sides) {
+        let column = column.norm();
+        inverse += column;
+        forth += column * (side.along + side.way * side.way * 0.5);
+        beside += column * side.way;
+    }
+    let rest = 1.0 - beside;
+    let square = rest * rest - 2.0 * inverse * forth;
     // Written so that NaN is not known.
-    let is_known = kappa <= MAX_KAPPA && bend <= MAX_BEND;
-    let farthest = 2.0 * a / (1.0 + sqrt(1.0 - bend));
+    let is_known = inverse <= MAX_INVERSE && rest >= LEAST && square >= LEAST * rest * rest;
+    let farthest = 2.0 * forth / (rest + sqrt(square));
     let more = farthest * (1.0 + MARGIN) + MARGIN;
     is_known && (sides.iter()).all(|side| side.beside + more <= side.max_beside)
 }
