@@ -84,7 +84,7 @@ const DELTA_DAY: Day<RotaryDelta, 3> = Day {
     held: ([-70.0, 40.0, -270.0], "line -70 40 -270 100"),
     stopped: ([90.0, -40.0, -260.0], "line 90 -40 -260 100"),
     jogs: ["jog arm1 -30", "jog arm1 5"],
-    most_until_edge_s: 0.6,
+    most_until_edge_s: 0.3,
 };
 
 const STAGE_DAY: Day<XyStage, 2> = Day {
