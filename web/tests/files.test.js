@@ -13,7 +13,7 @@ after(() => browser.close());
 
 /**
  * Compressed, of a page until it shows its machine at work; of one module for all pages not looked at. Engrave
- * is the largest: a third of its code reads SVG, an eighth TOML.
+ * is the largest: a fifth of its code reads SVG, an eighth TOML.
  */
 const MAX_FIRST_VIEW_BYTES = process.env.PAGE_MODULES === 'one' ? Infinity : 640_000;
 /** On the slowest machine that tests run on; a PC takes a second. */
