@@ -1,36 +1,21 @@
 //! Changes of the feed with limited jerk.
 //!
 //! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant feed.
-//! Method: a stop by three phases of constant jerk at the limits that the axes have where it begins; else
-//! shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics that would run; the shortest
-//! that keeps all limits is taken. Where none is found, it is tried again a row later.
+//! Method: a lower feed and a stop by three phases of constant jerk at the limits that the axes have where they
+//! begin; else, and to a higher feed, shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics
+//! that would run; the shortest that keeps all limits is taken. Where none is found, or one that begins a few
+//! rows later ends sooner, it is tried again a row later.
 
-mod stop;
+mod braking;
+mod course;
+mod ramped;
 
+pub(crate) use course::{At, Course};
+
+use crate::Axes;
 use crate::jerk::{Most, Walk};
-use crate::passes::segment_s;
-use crate::reciprocals::Reciprocals;
-use crate::{Axes, Knot};
-use stop::{KAPPAS, State, Stop, TAIL};
-
-/// Knots that are passed at a feed times their speeds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Course<'a, A: Axes> {
-    pub(crate) knots: &'a [Knot<A>],
-    pub(crate) limits: &'a Reciprocals<A>,
-    /// By what all times are multiplied.
-    pub(crate) stretch: f64,
-}
-
-/// Where the machine is on a course.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct At {
-    /// The knot.
-    pub(crate) index: usize,
-    pub(crate) speed: f64,
-    /// At the knot before.
-    pub(crate) before: f64,
-}
+use braking::{Braking, KAPPAS, State, TAIL, TAILS};
+use ramped::FeedChange;
 
 /// The feed, and the change that goes on where it is not yet the wanted one. One that has ended stays for
 /// a segment more, which was tried with it.
@@ -38,95 +23,6 @@ pub(crate) struct At {
 pub(crate) struct SmoothFeed {
     feed: f64,
     change: Option<Change>,
-}
-
-/// A change of the feed over some segments, with ramps of its rate at both ends.
-///
-/// ```text
-/// f = f₀ + (f₁ - f₀) g(x)        x = t / T
-/// g' rises over 0..α, is constant, and falls over 1-β..1;  ∫ g' = 1
-/// ```
-///
-/// The integral of f is the table's own time. A stop ends, and a start begins, without a step of the
-/// acceleration.
-#[derive(Debug, Clone, Copy)]
-struct FeedChange {
-    from: f64,
-    to: f64,
-    ramps: [f64; 2],
-    /// T.
-    duration_s: f64,
-    /// Time of the table since it began.
-    table_s: f64,
-}
-
-/// Ramps as fractions of a change: short ones where the acceleration limits it, long ones where the
-/// jerk does, one end slower where the table leaves little of either.
-const RAMPS: [[f64; 2]; 10] = [
-    [0.08, 0.08],
-    [0.15, 0.15],
-    [0.25, 0.25],
-    [0.35, 0.35],
-    [0.5, 0.5],
-    [0.5, 0.15],
-    [0.15, 0.5],
-    [0.8, 0.2],
-    [0.2, 0.8],
-    [0.65, 0.35],
-];
-
-/// Halvings that find x to its last digit.
-const ROUNDS: u32 = 60;
-
-/// g and its integral from 0.
-fn shape([rise, fall]: [f64; 2], x: f64) -> [f64; 2] {
-    let rate = 1.0 / (1.0 - 0.5 * (rise + fall));
-    if x < rise {
-        let g = rate * x * x * 0.5 / rise;
-        return [g, g * x / 3.0];
-    }
-    let (g_rise, sum_rise) = (rate * rise * 0.5, rate * rise * rise / 6.0);
-    if x <= 1.0 - fall {
-        let on = x - rise;
-        return [
-            g_rise + rate * on,
-            sum_rise + (g_rise + rate * on * 0.5) * on,
-        ];
-    }
-    // From the end: 1 - g is a ramp as well, and the integral of g over 0..1 is known.
-    let rest = 1.0 - x;
-    let missing = rate * rest * rest * 0.5 / fall;
-    let on = 1.0 - fall - rise;
-    let middle = sum_rise + (g_rise + rate * on * 0.5) * on;
-    let whole = middle + fall - rate * fall * fall / 6.0;
-    [1.0 - missing, whole - (rest - missing * rest / 3.0)]
-}
-
-impl FeedChange {
-    /// The feed, and its integral from 0 by x.
-    fn values(&self, x: f64) -> [f64; 2] {
-        let [g, integral] = shape(self.ramps, x);
-        let change = self.to - self.from;
-        [self.from + change * g, self.from * x + change * integral]
-    }
-
-    /// The feed at the next knot, over a segment that takes `table_s` at a feed of 1.
-    fn step(&mut self, table_s: f64) -> f64 {
-        self.table_s += table_s;
-        let wanted = self.table_s / self.duration_s;
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..ROUNDS {
-            let x = (low + high) * 0.5;
-            let [_, reached] = self.values(x);
-            if reached < wanted {
-                low = x;
-            } else {
-                high = x;
-            }
-        }
-        let [feed, _] = self.values(high);
-        feed
-    }
 }
 
 /// How the machine goes from one speed to another.
@@ -142,7 +38,7 @@ struct Change {
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     Feed(FeedChange),
-    Stop(Stop),
+    Braking(Braking),
 }
 
 impl Change {
@@ -155,7 +51,7 @@ impl Change {
         }
         match &mut self.kind {
             Kind::Feed(change) => change.step(table_s) * planned,
-            Kind::Stop(stop) => stop.step(ds),
+            Kind::Braking(braking) => braking.step(ds),
         }
     }
 }
@@ -169,10 +65,13 @@ enum Trial {
     TooLong(usize),
 }
 
-/// Rows after which a stop is looked for, too.
+/// Rows after which a lower feed or a stop is looked for, too.
 const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 
-/// The parts of the axes' limits that a stop is tried with. The first that keeps them is the quickest; of
+/// The speeds that are known for that: those before and after the last segment of the latest.
+const AHEAD: usize = 15;
+
+/// The parts of the axes' limits that braking is tried with. The first that keeps them is the quickest; of
 /// all lengths few do where the machine gains speed, for it has a limit, too.
 const OF_LIMITS: [f64; 8] = [1.0, 0.995, 0.99, 0.98, 0.96, 0.93, 0.9, 0.85];
 
@@ -233,8 +132,8 @@ impl SmoothFeed {
         }
         let found = if feed <= 0.0 {
             course.resume(at, wanted)
-        } else if wanted <= 0.0 && self.change.is_none() {
-            course.stop_soonest(at, feed)
+        } else if wanted < feed {
+            course.brake_soonest(at, &course.ahead(at, feed, self.change), [feed, wanted])
         } else {
             course.change_to(at, feed, wanted)
         };
@@ -243,25 +142,6 @@ impl SmoothFeed {
 }
 
 impl<A: Axes> Course<'_, A> {
-    /// The speed at a knot at a feed of 1.
-    fn planned(&self, index: usize) -> f64 {
-        let knot = self.knots.get(index);
-        knot.map_or(0.0, |knot| knot.speed / self.stretch)
-    }
-
-    /// Time of the table from the knot before.
-    fn segment_s(&self, index: usize) -> f64 {
-        let before = index.checked_sub(1);
-        let ends = (
-            before.and_then(|before| self.knots.get(before)),
-            self.knots.get(index),
-        );
-        match ends {
-            (Some(from), Some(to)) => segment_s(from, to) * self.stretch,
-            _ => 0.0,
-        }
-    }
-
     /// The shortest change found to another feed that keeps all limits and can be followed by a
     /// constant feed: over 1, 2, 3, 5, 8 .. segments, then fewer by halves.
     fn change_to(&self, at: At, from: f64, to: f64) -> Option<Change> {
@@ -287,39 +167,39 @@ impl<A: Axes> Course<'_, A> {
         Some(found)
     }
 
-    /// The stop that begins here, unless one that begins a few rows later rests sooner: where the table
-    /// uses all of the jerk, a change has to wait.
-    fn stop_soonest(&self, at: At, feed: f64) -> Option<Change> {
-        let found = self.shortest_stop(at, feed);
-        let end = found.map_or(usize::MAX, |change| at.index.saturating_add(change.left));
-        for rows in LATER {
-            let index = at.index.saturating_add(rows);
-            let speeds = [index, index.saturating_sub(1)].map(|index| feed * self.planned(index));
-            let [speed, before] = speeds;
-            if index >= end || speed <= 0.0 {
-                break;
+    /// The speeds at the knot before, here and at those after it while nothing else is asked for.
+    fn ahead(&self, at: At, feed: f64, mut change: Option<Change>) -> [f64; AHEAD] {
+        let mut next = at.index;
+        let mut speed = || {
+            next = next.saturating_add(1);
+            let planned = self.planned(next);
+            match &mut change {
+                Some(going) if going.left > 0 => {
+                    let ds = self.knots.get(next).map_or(0.0, |knot| knot.ds);
+                    going.step(ds, self.segment_s(next), planned)
+                }
+                Some(going) => going.to * planned,
+                None => feed * planned,
             }
-            let later = At {
-                index,
-                speed,
-                before,
-            };
-            let later = self.shortest_stop(later, feed);
-            if later.is_some_and(|later| index.saturating_add(later.left) < end) {
-                return None;
-            }
-        }
-        found
+        };
+        core::array::from_fn(|number| match number {
+            0 => at.before,
+            1 => at.speed,
+            _ => speed(),
+        })
     }
 
-    /// A stop at the limits that the axes have here, or else the shortest found by its length.
-    fn shortest_stop(&self, at: At, feed: f64) -> Option<Change> {
-        self.stop_at_limits(at)
-            .or_else(|| self.change_to(at, feed, 0.0))
+    /// The lower feed or the stop that begins here, unless one that begins a few rows later ends sooner: where
+    /// the table uses all of the jerk, a change has to wait.
+    fn brake_soonest(&self, at: At, ahead: &[f64; AHEAD], [from, to]: [f64; 2]) -> Option<Change> {
+        // One found by its length takes long to find, and longer to run.
+        unless_later(at, ahead, |at| self.brake_at_limits(at, to))
+            .or_else(|| unless_later(at, ahead, |at| self.change_to(at, from, to)))
+            .flatten()
     }
 
-    /// The stop that uses most of the limits that the axes have where it begins.
-    fn stop_at_limits(&self, at: At) -> Option<Change> {
+    /// The change to a lower feed, or to rest, that uses most of the limits that the axes have where it begins.
+    fn brake_at_limits(&self, at: At, to: f64) -> Option<Change> {
         let slope = self.knots.get(at.index)?.point.slope;
         let axes = self.limits.axes().iter().zip(slope.as_slice());
         let inverse = axes.fold([0.0_f64; 2], |[acceleration, jerk], (limits, slope)| {
@@ -329,28 +209,45 @@ impl<A: Axes> Course<'_, A> {
                 jerk.max(slope * limits.jerk),
             ]
         });
-        let start = self.state(at);
+        // What the segment before has in its middle, and what the table has at the knot.
+        let starts = [self.state(at), self.state_between(at)];
+        let tails = if to > 0.0 { &TAILS[..] } else { &[TAIL] };
         OF_LIMITS.iter().find_map(|part| {
-            let [kappa, length] = Stop::quickest(start, inverse.map(|inverse| part / inverse));
-            let (segments, lengths) = self.up_to(at, length)?;
-            let change = Change {
-                kind: Kind::Stop(Stop::new(start, lengths, kappa)?),
-                to: 0.0,
-                left: segments,
-            };
-            self.holds(at, change).then_some(change)
+            let limits = inverse.map(|inverse| part / inverse);
+            let shapes =
+                (starts.iter()).flat_map(|start| tails.iter().map(move |tail| (*start, *tail)));
+            shapes
+                .filter_map(|(start, tail)| self.braking(at, start, [to, tail], limits))
+                .find(|change| self.holds(at, *change))
         })
     }
 
-    /// The segments up to the first knot by which a stop has taken a length, the length up to there and that
-    /// of the last.
-    fn up_to(&self, at: At, wanted: f64) -> Option<(usize, [f64; 2])> {
-        let (mut segments, mut length) = (0_usize, 0.0);
-        for knot in self.knots.iter().skip(at.index.saturating_add(1)) {
-            segments = segments.saturating_add(usize::from(knot.ds > 0.0));
+    /// What ends at the first knot by which braking within a deceleration and a jerk has come to a feed.
+    fn braking(
+        &self,
+        at: At,
+        start: State,
+        [to, tail]: [f64; 2],
+        limits: [f64; 2],
+    ) -> Option<Change> {
+        let to_rest = Braking::quickest([start, State::REST], limits);
+        let (mut left, mut length) = (0_usize, 0.0);
+        let ahead = self.knots.iter().enumerate();
+        for (index, knot) in ahead.skip(at.index.saturating_add(1)) {
+            left = left.saturating_add(usize::from(knot.ds > 0.0));
             length += knot.ds;
-            if length - knot.ds * TAIL >= wanted {
-                return Some((segments, [length, knot.ds]));
+            let end = self.planned_state(index, to);
+            let [kappa, wanted] = match (end.speed > 0.0, to > 0.0) {
+                (true, _) => Braking::quickest([start, end], limits),
+                (false, false) => to_rest,
+                // The course rests, for as long as it is not known how it goes on: no feed ends there.
+                (false, true) => break,
+            };
+            let taken = length - knot.ds * tail;
+            if taken >= wanted {
+                let braking = Braking::new([start, end], [taken, length], kappa)?;
+                let kind = Kind::Braking(braking);
+                return Some(Change { kind, to, left });
             }
             // There the course rests itself.
             if knot.speed <= 0.0 {
@@ -392,39 +289,22 @@ impl<A: Axes> Course<'_, A> {
             index = next;
             count = count.saturating_add(usize::from(knot.ds > 0.0));
         }
-        let start = self.state(at);
-        let stops = KAPPAS.iter().filter(|_| to <= 0.0);
-        let stops =
-            stops.filter_map(|kappa| Stop::new(start, [length, last], *kappa).map(Kind::Stop));
-        let changes = RAMPS.iter().map(|ramps| {
-            let mut change = FeedChange {
-                from,
-                to,
-                ramps: *ramps,
-                duration_s: 1.0,
-                table_s: 0.0,
-            };
-            let [_, mean] = change.values(1.0);
-            change.duration_s = table_s / mean;
-            Kind::Feed(change)
+        let states = [self.state(at), self.planned_state(index, to)];
+        let tail = if to > 0.0 { 0.0 } else { TAIL };
+        // No feed ends where the course rests.
+        let is_braking = to < from && (to <= 0.0 || self.planned(index) > 0.0);
+        let kappas = KAPPAS.iter().filter(|_| is_braking);
+        let braking = kappas.filter_map(|kappa| {
+            Braking::new(states, [length - last * tail, length], *kappa).map(Kind::Braking)
         });
-        let changes = stops.chain(changes).map(|kind| Change {
+        let changes = FeedChange::over(table_s, [from, to]).map(Kind::Feed);
+        let changes = braking.chain(changes).map(|kind| Change {
             kind,
             to,
             left: segments,
         });
         let found = changes.into_iter().find(|change| self.holds(at, *change));
         found.map_or(Trial::Fails, Trial::Holds)
-    }
-
-    /// Speed and acceleration along the path.
-    fn state(&self, at: At) -> State {
-        let ds = self.knots.get(at.index).map_or(0.0, |knot| knot.ds);
-        let squares = at.speed * at.speed - at.before * at.before;
-        State {
-            speed: at.speed,
-            acceleration: if ds > 0.0 { squares / (2.0 * ds) } else { 0.0 },
-        }
     }
 
     /// Whether the cubics of a change, and the first after it, keep all limits.
@@ -465,4 +345,31 @@ impl<A: Axes> Course<'_, A> {
             }
         }
     }
+}
+
+/// What is found at a knot; `Some(None)` where what is found a few rows later ends sooner.
+fn unless_later(
+    at: At,
+    ahead: &[f64; AHEAD],
+    find: impl Fn(At) -> Option<Change>,
+) -> Option<Option<Change>> {
+    let end_of = |at: At, found: Change| at.index.saturating_add(found.left);
+    let found = find(at);
+    let end = found.map_or(usize::MAX, |found| end_of(at, found));
+    for rows in LATER {
+        let index = at.index.saturating_add(rows);
+        let speeds = ahead.get(rows..).and_then(|speeds| speeds.first_chunk());
+        let Some(&[before, speed]) = speeds.filter(|[_, speed]| *speed > 0.0 && index < end) else {
+            break;
+        };
+        let later = At {
+            index,
+            speed,
+            before,
+        };
+        if find(later).is_some_and(|found| end_of(later, found) < end) {
+            return Some(None);
+        }
+    }
+    found.map(Some)
 }

@@ -33,22 +33,45 @@ const fn case(speed: f64, acceleration: f64, jerk: f64, length_mm: f64, segments
 /// Of v/a + a/J: what rounding to knots takes, and steps of the acceleration at them.
 const LONGEST: f64 = 1.1;
 
+/// Of speeds of 250 mm/s.
+const ROUNDING: f64 = 1e-9;
+
 impl Case {
-    /// The time from the row of the stop to rest, over that of three phases of constant jerk behind the
-    /// end of what the machine gains, a row more and a tenth.
-    fn check(&self, rows: &[Row<[f64; 1]>], stopped: usize) -> f64 {
-        check_limits(&[self.limits], None, rows);
-        let [before, at] = [&rows[stopped - 2], &rows[stopped - 1]];
-        let [end] = rows.last_chunk().unwrap();
-        assert!(end.velocity[0] == 0.0, "{end:?}");
+    /// The time of three phases of constant jerk from a row to rest, behind the end of what the machine
+    /// gains, a row of `last_s` more and a tenth.
+    fn stop_s(&self, rows: &[Row<[f64; 1]>], begun: usize, last_s: f64) -> f64 {
+        let [before, at] = [&rows[begun - 2], &rows[begun - 1]];
         let gained = Cubic::between(before, at).next().unwrap().accelerations()[1].max(0.0);
         let AxisLimits {
             acceleration, jerk, ..
         } = self.limits;
         let jerk = jerk.unwrap();
         let highest = at.velocity[0] + gained * gained / (2.0 * jerk);
-        let stop_s = highest / acceleration + acceleration / jerk;
-        (end.time_s - at.time_s) / (LONGEST * stop_s + gained / jerk + end.duration_s)
+        LONGEST * (highest / acceleration + acceleration / jerk) + gained / jerk + last_s
+    }
+
+    /// The time from the row of the stop to rest, over that.
+    fn check(&self, rows: &[Row<[f64; 1]>], stopped: usize) -> f64 {
+        check_limits(&[self.limits], None, rows);
+        let [end] = rows.last_chunk().unwrap();
+        assert!(end.velocity[0] == 0.0, "{end:?}");
+        (end.time_s - rows[stopped - 1].time_s) / self.stop_s(rows, stopped, end.duration_s)
+    }
+
+    /// The time from the row where a lower feed is asked for until the machine has it, over that.
+    fn slowed(
+        &self,
+        rows: &[Row<[f64; 1]>],
+        planned: &[Row<[f64; 1]>],
+        asked: usize,
+        feed: f64,
+    ) -> f64 {
+        check_limits(&[self.limits], None, rows);
+        let behind = rows.iter().zip(planned).skip(asked);
+        let (end, _) = { behind }
+            .find(|(row, planned)| (row.velocity[0] - feed * planned.velocity[0]).abs() < ROUNDING)
+            .unwrap();
+        (end.time_s - rows[asked - 1].time_s) / self.stop_s(rows, asked, end.duration_s)
     }
 }
 
@@ -85,5 +108,60 @@ fn a_stop_rests_in_time_wherever_it_begins() {
         }
         println!("{:?}, {} mm: {worst:.3?}", case.limits, case.length_mm);
         assert!(worst.iter().all(|worst| *worst <= 1.0), "{worst:?}");
+    }
+}
+
+/// The rows of a table with what is asked for at one of them, and at another.
+fn driven(table: &Table<'_, [f64; 1]>, asked: &[(usize, f64)]) -> Vec<Row<[f64; 1]>> {
+    let mut playback = table.playback(1.0, &mut []).unwrap();
+    let mut rows = Vec::new();
+    while let Some(row) = playback.next_row() {
+        rows.push(row);
+        if let Some((_, feed)) = asked.iter().find(|(row, _)| *row == rows.len()) {
+            playback.set_feed(*feed).unwrap();
+        }
+    }
+    rows
+}
+
+/// While the machine gains speed, too: no later than a stop would rest.
+#[test]
+fn a_lower_feed_is_reached_in_the_time_of_a_stop() {
+    for case in &CASES {
+        let line = Curve::line([0.0], [case.length_mm]).unwrap();
+        let mut knots = vec![Knot::default(); 4002];
+        let table = Table::plan([line], [case.limits], |_| case.segments, &mut knots).unwrap();
+        let planned: Vec<_> = table.rows().collect();
+        for feed in [0.9, 0.5, 0.1] {
+            let shares = (14..case.rows).step_by(13).map(|asked| {
+                let rows = driven(&table, &[(asked, feed)]);
+                case.slowed(&rows, &planned, asked, feed)
+            });
+            let worst = shares.fold(0.0, f64::max);
+            println!(
+                "{:?}, {} mm, to {feed}: {worst:.3}",
+                case.limits, case.length_mm
+            );
+            assert!(worst <= 1.0, "{worst}");
+        }
+    }
+}
+
+/// A stop while the feed is on its way to a lower one.
+#[test]
+fn a_stop_rests_in_time_while_another_change_goes_on() {
+    for case in &CASES {
+        let line = Curve::line([0.0], [case.length_mm]).unwrap();
+        let mut knots = vec![Knot::default(); 4002];
+        let table = Table::plan([line], [case.limits], |_| case.segments, &mut knots).unwrap();
+        let mut worst = 0.0_f64;
+        for asked in (14..case.rows).step_by(13) {
+            for later in [1, 3, 10] {
+                let rows = driven(&table, &[(asked, 0.5), (asked + later, 0.0)]);
+                worst = worst.max(case.check(&rows, asked + later));
+            }
+        }
+        println!("{:?}, {} mm: {worst:.3}", case.limits, case.length_mm);
+        assert!(worst <= 1.0, "{worst}");
     }
 }

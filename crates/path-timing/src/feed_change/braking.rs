@@ -1,25 +1,27 @@
-//! A stop with limited jerk at a given knot.
+//! To a lower speed with limited jerk, or to rest, at a given knot.
 
 use crate::number::sqrt;
 
-/// Three phases of constant jerk from a speed and an acceleration along the path to rest: the
-/// acceleration falls to -A, stays, and goes back to zero.
+/// Three phases of constant jerk from a speed and an acceleration along the path to others, lower than the
+/// speed that would be gained: the acceleration falls to -A, stays, and rises to what it is to be.
 ///
 /// ```text
-/// A = κ √(J v₀ + a₀²/2)        κ = 1: it does not stay
+/// A = κ √(J (v₀ - v₁) + (a₀² + a₁²)/2)        κ = 1: it does not stay
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stop {
+pub(super) struct Braking {
     /// Duration and jerk.
     phases: [(f64, f64); 3],
     start: State,
+    /// The speed v₁.
+    lowest: f64,
     /// The length from the start to the knot reached.
     reached: f64,
-    /// The length to the knot where it rests.
+    /// The length to the knot where it ends.
     length: f64,
 }
 
-/// The part of its last segment by which the phases end before the knot where it rests. There the
+/// The part of its last segment by which the phases of a stop end before the knot where it rests. There the
 /// acceleration is even on each segment and steps at the knots; with the half, no step is more than the
 /// jerk of the last phase over the time from the middle of a segment to the next:
 ///
@@ -27,6 +29,9 @@ pub(super) struct Stop {
 /// w = ∛(9/2 J (x - xₗ/2)²)    at the knots x = xₗ, 2xₗ, 3xₗ .. from rest
 /// ```
 pub(super) const TAIL: f64 = 0.5;
+
+/// The same of a lower feed, to be tried in their order.
+pub(super) const TAILS: [f64; 2] = [0.0, 0.25];
 
 /// Speed and acceleration of the parameter.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +41,16 @@ pub(super) struct State {
 }
 
 impl State {
+    pub(super) const REST: Self = Self {
+        speed: 0.0,
+        acceleration: 0.0,
+    };
+
+    /// (a₀² + a₁²)/2
+    fn squares(start: Self, end: Self) -> f64 {
+        (start.acceleration * start.acceleration + end.acceleration * end.acceleration) * 0.5
+    }
+
     /// The state after a time, and the length passed.
     fn after(self, time: f64, jerk: f64) -> (Self, f64) {
         let gain = self.acceleration + jerk * time * 0.5;
@@ -51,29 +66,41 @@ impl State {
 /// Halvings in a search for a jerk or a time.
 const ROUNDS: u32 = 60;
 
+/// Of the largest jerk that there is: with it the acceleration would not fall below zero, and be 0/0.
+const MOST: f64 = 1.0 - 1e-6;
+
 /// By how much the jerk is changed to find two that a stop lies between.
 const FACTOR: f64 = 4.0;
 
 /// Shapes to be tried, the quickest first.
 pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 
-impl Stop {
-    /// The stop that takes a length, of which the last segment is `last`; none where no jerk makes one.
-    pub(super) fn new(start: State, [length, last]: [f64; 2], kappa: f64) -> Option<Self> {
-        let knot = length;
-        let length = length - last * TAIL;
+impl Braking {
+    /// What takes a length, and then goes on at its last speed to a knot; none where no jerk does.
+    pub(super) fn new(
+        [start, end]: [State; 2],
+        [length, knot]: [f64; 2],
+        kappa: f64,
+    ) -> Option<Self> {
         let with = |jerk: f64| Self {
             length: knot,
-            ..Self::with_jerk(start, jerk, kappa)
+            ..Self::with_jerk([start, end], jerk, kappa)
         };
         // It would take this length if the speed fell evenly, and would do so in this time.
-        let time = 2.0 * length / start.speed;
-        let mut high = start.speed / (time * time);
+        let time = 2.0 * length / (start.speed + end.speed);
+        let less = start.speed - end.speed;
+        // Above, it would not gain the speed at which it is to end.
+        let most = if less < 0.0 {
+            MOST * State::squares(start, end) / -less
+        } else {
+            f64::INFINITY
+        };
+        let mut high = ((less.abs() + start.acceleration.abs() * time) / (time * time)).min(most);
         for _ in 0..ROUNDS {
             if with(high).end() <= length {
                 break;
             }
-            high *= FACTOR;
+            high = (high * FACTOR).min(most);
         }
         let mut low = high;
         for _ in 0..ROUNDS {
@@ -90,37 +117,33 @@ impl Stop {
                 high = middle;
             }
         }
-        let stop = with(high);
-        let is_found = (stop.end() - length).abs() <= length * CLOSE;
-        is_found.then_some(stop)
+        let found = with(high);
+        let is_found = (found.end() - length).abs() <= length * CLOSE;
+        is_found.then_some(found)
     }
 
-    /// The quickest stop within a jerk and a deceleration: its κ and the length that it takes.
-    pub(super) fn quickest(start: State, [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
-        let State {
-            speed,
-            acceleration,
-        } = start;
-        let most = sqrt(jerk * speed + acceleration * acceleration * 0.5);
+    /// The quickest within a deceleration and a jerk: its κ and the length that it takes, NaN where the
+    /// speed at the start cannot be gained or lost so.
+    pub(super) fn quickest([start, end]: [State; 2], [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
+        let most = sqrt(jerk * (start.speed - end.speed) + State::squares(start, end));
         let kappa = (deceleration / most).min(1.0);
-        [kappa, Self::with_jerk(start, jerk, kappa).end()]
+        [kappa, Self::with_jerk([start, end], jerk, kappa).end()]
     }
 
-    fn with_jerk(start: State, jerk: f64, kappa: f64) -> Self {
-        let State {
-            speed,
-            acceleration: before,
-        } = start;
-        let hardest = kappa * sqrt(jerk * speed + before * before * 0.5);
-        let fall = before + hardest;
-        let stay = (speed + before * before / (2.0 * jerk)) / hardest - hardest / jerk;
+    fn with_jerk([start, end]: [State; 2], jerk: f64, kappa: f64) -> Self {
+        let less = start.speed - end.speed;
+        let squares = State::squares(start, end);
+        let hardest = kappa * sqrt(jerk * less + squares);
+        let [fall, rise] = [start, end].map(|state| state.acceleration + hardest);
+        let stay = (less + squares / jerk) / hardest - hardest / jerk;
         Self {
             phases: [
                 (fall.abs() / jerk, -jerk.copysign(fall)),
                 (stay.max(0.0), 0.0),
-                (hardest / jerk, jerk),
+                (rise.abs() / jerk, jerk.copysign(rise)),
             ],
             start,
+            lowest: end.speed,
             reached: 0.0,
             length: 0.0,
         }
@@ -142,7 +165,7 @@ impl Stop {
     pub(super) fn step(&mut self, ds: f64) -> f64 {
         self.reached += ds;
         if self.reached >= self.length * (1.0 - CLOSE) {
-            return 0.0;
+            return self.lowest;
         }
         let (mut state, mut left) = (self.start, self.reached);
         for (time, jerk) in self.phases {
@@ -161,16 +184,16 @@ impl Stop {
             }
             (state, left) = (next, left - length);
         }
-        0.0
+        self.lowest
     }
 }
 
-/// Relative gap at which a stop takes the length wanted.
+/// Relative gap at which it takes the length wanted.
 const CLOSE: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
-    use super::{KAPPAS, State, Stop};
+    use super::{Braking, KAPPAS, State};
 
     /// From 2 at an acceleration of 1 over a length of 3, in 300 steps: it comes to rest at its end, its
     /// speed goes on smoothly from the start.
@@ -181,7 +204,7 @@ mod tests {
             acceleration: 1.0,
         };
         for kappa in KAPPAS {
-            let mut stop = Stop::new(start, [3.0, 0.01], kappa).unwrap();
+            let mut stop = Braking::new([start, State::REST], [2.995, 3.0], kappa).unwrap();
             let (mut before, mut steepest) = (2.0_f64, 0.0_f64);
             for number in 1..=300 {
                 let speed = stop.step(0.01);

@@ -1,0 +1,85 @@
+//! What is passed at a feed, and where on it the machine is.
+
+use super::braking::State;
+use crate::passes::segment_s;
+use crate::reciprocals::Reciprocals;
+use crate::{Axes, Knot};
+
+/// Knots that are passed at a feed times their speeds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Course<'a, A: Axes> {
+    pub(crate) knots: &'a [Knot<A>],
+    pub(crate) limits: &'a Reciprocals<A>,
+    /// By what all times are multiplied.
+    pub(crate) stretch: f64,
+}
+
+/// Where the machine is on a course.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct At {
+    /// The knot.
+    pub(crate) index: usize,
+    pub(crate) speed: f64,
+    /// At the knot before.
+    pub(crate) before: f64,
+}
+
+impl<A: Axes> Course<'_, A> {
+    /// The speed at a knot at a feed of 1.
+    pub(super) fn planned(&self, index: usize) -> f64 {
+        let knot = self.knots.get(index);
+        knot.map_or(0.0, |knot| knot.speed / self.stretch)
+    }
+
+    /// Time of the table from the knot before.
+    pub(super) fn segment_s(&self, index: usize) -> f64 {
+        let before = index.checked_sub(1);
+        let ends = (
+            before.and_then(|before| self.knots.get(before)),
+            self.knots.get(index),
+        );
+        match ends {
+            (Some(from), Some(to)) => segment_s(from, to) * self.stretch,
+            _ => 0.0,
+        }
+    }
+
+    /// Speed and acceleration at a knot at a feed.
+    pub(super) fn planned_state(&self, index: usize, feed: f64) -> State {
+        let speed = feed * self.planned(index);
+        if speed <= 0.0 {
+            return State::REST;
+        }
+        self.state_between(At {
+            index,
+            speed,
+            before: feed * self.planned(index.saturating_sub(1)),
+        })
+    }
+
+    /// Speed and acceleration at a knot, the mean of those before and after it at a constant feed.
+    pub(super) fn state_between(&self, at: At) -> State {
+        let next = at.index.saturating_add(1);
+        let feed = at.speed / self.planned(at.index);
+        let after = At {
+            index: next,
+            speed: feed * self.planned(next),
+            before: at.speed,
+        };
+        let [before, after] = [at, after].map(|at| self.state(at).acceleration);
+        State {
+            speed: at.speed,
+            acceleration: (before + after) * 0.5,
+        }
+    }
+
+    /// Speed and acceleration along the path.
+    pub(super) fn state(&self, at: At) -> State {
+        let ds = self.knots.get(at.index).map_or(0.0, |knot| knot.ds);
+        let squares = at.speed * at.speed - at.before * at.before;
+        State {
+            speed: at.speed,
+            acceleration: if ds > 0.0 { squares / (2.0 * ds) } else { 0.0 },
+        }
+    }
+}
