@@ -125,19 +125,26 @@ impl SmoothFeed {
                 (self.feed, self.change) = (wanted, None);
             }
         }
-        let feed = self.feed;
-        let to = self.change.map_or(feed, |change| change.to);
+        let to = self.change.map_or(self.feed, |change| change.to);
         if (to - wanted).abs() <= 0.0 {
             return;
         }
-        let found = if feed <= 0.0 {
+        self.change = self.change_for(course, at, wanted).or(self.change);
+    }
+
+    /// The change to another feed that begins here. Beside the rows, which most of the time have none to look
+    /// for: in line, each took 96 instructions more on a Cortex-M4F.
+    #[cold]
+    #[inline(never)]
+    fn change_for<A: Axes>(&self, course: &Course<'_, A>, at: At, wanted: f64) -> Option<Change> {
+        let feed = self.feed;
+        if feed <= 0.0 {
             course.resume(at, wanted)
         } else if wanted < feed {
             course.brake_soonest(at, &course.ahead(at, feed, self.change), [feed, wanted])
         } else {
             course.change_to(at, feed, wanted)
-        };
-        self.change = found.or(self.change);
+        }
     }
 }
 
