@@ -252,7 +252,7 @@ impl<A: Axes> Course<'_, A> {
             };
             let taken = length - knot.ds * tail;
             if taken >= wanted {
-                let braking = Braking::new([start, end], [taken, length], kappa)?;
+                let braking = Braking::new([start, end], taken, kappa)?;
                 let kind = Kind::Braking(braking);
                 return Some(Change { kind, to, left });
             }
@@ -302,7 +302,7 @@ impl<A: Axes> Course<'_, A> {
         let is_braking = to < from && (to <= 0.0 || self.planned(index) > 0.0);
         let kappas = KAPPAS.iter().filter(|_| is_braking);
         let braking = kappas.filter_map(|kappa| {
-            Braking::new(states, [length - last * tail, length], *kappa).map(Kind::Braking)
+            Braking::new(states, length - last * tail, *kappa).map(Kind::Braking)
         });
         let changes = FeedChange::over(table_s, [from, to]).map(Kind::Feed);
         let changes = braking.chain(changes).map(|kind| Change {

@@ -17,8 +17,6 @@ pub(super) struct Braking {
     lowest: f64,
     /// The length from the start to the knot reached.
     reached: f64,
-    /// The length to the knot where it ends.
-    length: f64,
 }
 
 /// The part of its last segment by which the phases of a stop end before the knot where it rests. There the
@@ -76,16 +74,9 @@ const FACTOR: f64 = 4.0;
 pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 
 impl Braking {
-    /// What takes a length, and then goes on at its last speed to a knot; none where no jerk does.
-    pub(super) fn new(
-        [start, end]: [State; 2],
-        [length, knot]: [f64; 2],
-        kappa: f64,
-    ) -> Option<Self> {
-        let with = |jerk: f64| Self {
-            length: knot,
-            ..Self::with_jerk([start, end], jerk, kappa)
-        };
+    /// What takes a length; none where no jerk does. Beyond, it goes on at its last speed.
+    pub(super) fn new([start, end]: [State; 2], length: f64, kappa: f64) -> Option<Self> {
+        let with = |jerk: f64| Self::with_jerk([start, end], jerk, kappa);
         // It would take this length if the speed fell evenly, and would do so in this time.
         let time = 2.0 * length / (start.speed + end.speed);
         let less = start.speed - end.speed;
@@ -145,7 +136,6 @@ impl Braking {
             start,
             lowest: end.speed,
             reached: 0.0,
-            length: 0.0,
         }
     }
 
@@ -164,9 +154,6 @@ impl Braking {
     /// The speed at the next knot, a length further.
     pub(super) fn step(&mut self, ds: f64) -> f64 {
         self.reached += ds;
-        if self.reached >= self.length * (1.0 - CLOSE) {
-            return self.lowest;
-        }
         let (mut state, mut left) = (self.start, self.reached);
         for (time, jerk) in self.phases {
             let (next, length) = state.after(time, jerk);
@@ -204,7 +191,7 @@ mod tests {
             acceleration: 1.0,
         };
         for kappa in KAPPAS {
-            let mut stop = Braking::new([start, State::REST], [2.995, 3.0], kappa).unwrap();
+            let mut stop = Braking::new([start, State::REST], 2.995, kappa).unwrap();
             let (mut before, mut steepest) = (2.0_f64, 0.0_f64);
             for number in 1..=300 {
                 let speed = stop.step(0.01);
