@@ -96,10 +96,8 @@ impl DeltaPath {
     pub(super) fn check_span(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
         let (delta, s) = (&self.delta, span.s);
         let cubics = cubics(&span.rows);
-        for ((cubic, range), arm) in zip(cubics, delta.ranges().each_ref())
-            .into_iter()
-            .zip(Arm::ALL)
-        {
+        let arms = zip(cubics, delta.ranges().each_ref());
+        for ((cubic, range), arm) in arms.into_iter().zip(Arm::ALL) {
             if let Some(angle) = beyond(range, &cubic) {
                 return Err(DeltaPathError::Range {
                     s,

@@ -67,7 +67,7 @@ const ROUNDS: u32 = 60;
 /// Of the largest jerk that there is: with it the acceleration would not fall below zero, and be 0/0.
 const MOST: f64 = 1.0 - 1e-6;
 
-/// By how much the jerk is changed to find two that a stop lies between.
+/// By how much the jerk is changed to find two that the wanted one lies between.
 const FACTOR: f64 = 4.0;
 
 /// Shapes to be tried, the quickest first.

@@ -1,11 +1,11 @@
-//! How long a stop takes with a limit of jerk, wherever it begins.
+//! How long a stop and a lower feed take with a limit of jerk, wherever they begin.
 
 use path_timing::{AxisLimits, Cubic, Curve, Knot, LookAhead, Row, Table};
 
 use crate::support::limits::check_limits;
 use crate::support::machine::limits;
 
-/// A line of one axis, and where the machine is told to stop: each fourth of so many rows.
+/// A line of one axis, and among how many rows the machine is told to stop, or to go slower.
 struct Case {
     limits: AxisLimits,
     length_mm: f64,
@@ -37,6 +37,14 @@ const LONGEST: f64 = 1.1;
 const ROUNDING: f64 = 1e-9;
 
 impl Case {
+    fn line(&self) -> Curve<1> {
+        Curve::line([0.0], [self.length_mm]).unwrap()
+    }
+
+    fn table<'k>(&self, knots: &'k mut [Knot<[f64; 1]>]) -> Table<'k, [f64; 1]> {
+        Table::plan([self.line()], [self.limits], |_| self.segments, knots).unwrap()
+    }
+
     /// The time of three phases of constant jerk from a row to rest, behind the end of what the machine
     /// gains, a row of `last_s` more and a tenth.
     fn stop_s(&self, rows: &[Row<[f64; 1]>], begun: usize, last_s: f64) -> f64 {
@@ -78,11 +86,10 @@ impl Case {
 #[test]
 fn a_stop_rests_in_time_wherever_it_begins() {
     for case in &CASES {
-        let line = Curve::line([0.0], [case.length_mm]).unwrap();
         let mut knots = vec![Knot::default(); 4002];
-        let table = Table::plan([line], [case.limits], |_| case.segments, &mut knots).unwrap();
+        let table = case.table(&mut knots);
         let mut worst = [0.0_f64; 2];
-        for stopped in (14..case.rows).step_by(13) {
+        for stopped in (14..case.rows).step_by(4) {
             let mut playback = table.playback(1.0, &mut []).unwrap();
             let mut rows = Vec::new();
             while let Some(row) = playback.next_row() {
@@ -96,7 +103,8 @@ fn a_stop_rests_in_time_wherever_it_begins() {
         for stopped in (14..case.rows).step_by(30) {
             let mut window = vec![Knot::default(); 401];
             let segments = |_: &_| Ok(case.segments);
-            let mut stream = LookAhead::new([line], [case.limits], segments, &mut window).unwrap();
+            let mut stream =
+                LookAhead::new([case.line()], [case.limits], segments, &mut window).unwrap();
             let mut rows = Vec::new();
             while let Some(row) = stream.next_row().unwrap() {
                 rows.push(row);
@@ -128,9 +136,8 @@ fn driven(table: &Table<'_, [f64; 1]>, asked: &[(usize, f64)]) -> Vec<Row<[f64; 
 #[test]
 fn a_lower_feed_is_reached_in_the_time_of_a_stop() {
     for case in &CASES {
-        let line = Curve::line([0.0], [case.length_mm]).unwrap();
         let mut knots = vec![Knot::default(); 4002];
-        let table = Table::plan([line], [case.limits], |_| case.segments, &mut knots).unwrap();
+        let table = case.table(&mut knots);
         let planned: Vec<_> = table.rows().collect();
         for feed in [0.9, 0.5, 0.1] {
             let shares = (14..case.rows).step_by(13).map(|asked| {
@@ -151,9 +158,8 @@ fn a_lower_feed_is_reached_in_the_time_of_a_stop() {
 #[test]
 fn a_stop_rests_in_time_while_another_change_goes_on() {
     for case in &CASES {
-        let line = Curve::line([0.0], [case.length_mm]).unwrap();
         let mut knots = vec![Knot::default(); 4002];
-        let table = Table::plan([line], [case.limits], |_| case.segments, &mut knots).unwrap();
+        let table = case.table(&mut knots);
         let mut worst = 0.0_f64;
         for asked in (14..case.rows).step_by(13) {
             for later in [1, 3, 10] {
