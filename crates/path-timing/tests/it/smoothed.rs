@@ -301,6 +301,30 @@ fn errors_come_after_what_is_good() {
     ));
 }
 
+/// Memory that is full where a wide hump is decided: those behind it are not so narrow that it still
+/// reaches where they are over.
+#[test]
+fn a_wide_hump_is_not_lost_where_memory_ends() {
+    let points = [
+        ([0.0, 0.0], 30.0),
+        ([2.66, -2.29], 30.0),
+        ([2.66, -2.08], 20.0),
+        ([2.64, -2.05], 30.0),
+        ([2.62, -2.03], 10.0),
+        ([-2.72, -2.03], 30.0),
+        ([-2.72, -1.96], 10.0),
+        ([-2.89, -1.82], 30.0),
+    ];
+    let waypoints = points.map(|(point, feed)| Waypoint {
+        point,
+        tool: Some(ToolLimits {
+            feed,
+            acceleration: None,
+        }),
+    });
+    check_kept(&waypoints, 2.011_654_649_908_407, 7);
+}
+
 /// Points of a random walk: turns of all angles, steps of all lengths.
 fn walk() -> impl Strategy<Value = Vec<[f64; 3]>> {
     let step = (-4.0..1.5_f64, -3.0..3.0_f64, -1.0..1.0_f64);

@@ -165,16 +165,16 @@ impl<'m, const D: usize> Sight<'m, D> {
         if vertex.is_stop {
             return Some(0.0);
         }
-        let mut width = f64::INFINITY;
-        if let Some(before) = self.get(index.wrapping_sub(1)) {
-            width = before.widest_next(vertex);
-        }
+        let before = self.get(index.wrapping_sub(1));
+        let mut width = before.map_or(f64::INFINITY, |before| before.widest_next(vertex));
         width = width.min(vertex.s - self.start(index));
         if is_last_chance {
-            // Not so wide that it keeps others from going out of sight.
+            // Not so wide that it keeps others from going out of sight; the one before, with more in
+            // sight, counted on no less than that.
             let ahead = self.vertices.len().div_euclid(AHEAD);
             let far = self.get(index.saturating_add(ahead));
-            width = far.map_or(width, |far| width.min(far.s - vertex.s));
+            let narrowest = before.map_or(0.0, |before| before.narrowest_next(vertex));
+            width = far.map_or(width, |far| width.min(narrowest.max(far.s - vertex.s)));
         }
         let mut later = index;
         while let Some(other) = self.get(later).copied() {

@@ -87,6 +87,11 @@ impl<const D: usize> Vertex<D> {
         self.width + growth * (next.s - self.s)
     }
 
+    /// The narrowest that the hump of the next vertex may be beside this one, but for a stop.
+    pub(super) fn narrowest_next(&self, next: &Self) -> f64 {
+        self.width - GROWTH * (next.s - self.s)
+    }
+
     /// Where its hump begins.
     pub(super) const fn begin(&self) -> f64 {
         self.s - self.width
