@@ -221,6 +221,21 @@ test('what comes of an older input does not hide a refusal', async () => {
   await done();
 });
 
+test('what comes of an older input is not shown while a newer one waits', async () => {
+  // A second and a half from a change to its run, one more to its answer.
+  const script = `${delayed('dance')}
+    const timer = window.setTimeout;
+    window.setTimeout = (then, ms) => timer(then, ms === 100 ? 1500 : ms);`;
+  const { page, done } = await browser.visit('dance.html', { script });
+  await danced(page);
+  await page.locator('#law').selectOption('carry');
+  await page.waitForURL(/law=carry/);
+  await page.locator('#law').selectOption('signed');
+  await page.locator('#files button:enabled').first().waitFor();
+  assert.match(page.url(), /law=signed/);
+  await done();
+});
+
 test('a score is read although the machine has another one to dance', async () => {
   const { page, done } = await browser.visit('dance.html', { script: delayed('dance.read') });
   await danced(page);

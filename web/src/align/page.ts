@@ -72,6 +72,7 @@ const pendant = new Pendant(
 const realign = settled(150, align);
 
 function changed(): void {
+  machine.stop();
   pendant.switchOff();
   files.allow(false);
   status.say('Aligning');
@@ -79,8 +80,9 @@ function changed(): void {
 }
 
 async function align(): Promise<void> {
-  machine.stop();
+  const turn = machine.stop();
   await toAddress({ to: pose?.join(',') ?? null, ...fields.values });
+  if (!machine.isTurn(turn)) return;
   if (pose?.some((it) => Number.isNaN(it))) {
     refuse('pose: six numbers are needed');
     return;

@@ -124,6 +124,8 @@ function edit(change: (moves: Move[]) => void, then: number | undefined): void {
 }
 
 function changed(): void {
+  // To stop the machine were to lose what it reads.
+  if (reading === 0) machine.stop();
   keep(KEPT, text === shipped ? null : text);
   bad = undefined;
   files.allow(false);
@@ -164,18 +166,17 @@ async function takeBack(): Promise<void> {
 async function read(given: string, name: string): Promise<boolean> {
   reading += 1;
   try {
-    const { value } = await machine.call<Score>('dance.read', given);
-    text = given;
-    score = value;
-    selected = undefined;
-    changed();
-    return true;
+    ({ value: score } = await machine.call<Score>('dance.read', given));
   } catch (error) {
     status.refuse(name, error);
     return false;
   } finally {
     reading -= 1;
   }
+  text = given;
+  selected = undefined;
+  changed();
+  return true;
 }
 
 /** Another score, by hand. */
@@ -187,13 +188,13 @@ async function open(given: string, name: string): Promise<void> {
 }
 
 async function run(): Promise<void> {
-  // To stop the machine were to lose what it reads.
   if (reading > 0) {
     perform();
     return;
   }
-  machine.stop();
+  const turn = machine.stop();
   await toAddress({ score: text === shipped ? 'shipped' : 'own', ...fields.values });
+  if (!machine.isTurn(turn)) return;
   const parameters = { score: text, law: law.value, code_bytes: code.valueAsNumber };
   if (fields.problem !== undefined) {
     status.refuse('', fields.problem);

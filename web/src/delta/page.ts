@@ -108,6 +108,7 @@ function open(): void {
 }
 
 function changed(): void {
+  machine.stop();
   scene.text = editor.text;
   files.allow(false);
   status.say('Driving');
@@ -115,8 +116,9 @@ function changed(): void {
 }
 
 async function drive(): Promise<void> {
-  machine.stop();
+  const turn = machine.stop();
   await toAddress({ ...points.address, ...fields.values });
+  if (!machine.isTurn(turn)) return;
   const parameters = {
     lines: editor.text,
     machine: settings.text,

@@ -82,18 +82,20 @@ const working = new Working(machine, status, STAGES, engrave);
 
 /** What is shown is outdated as soon as something is typed. */
 function changed(): void {
+  machine.stop();
   files.allow(false);
   status.say(STAGES[0]);
   replan();
 }
 
 async function engrave(): Promise<void> {
-  machine.stop();
+  const turn = machine.stop();
   await toAddress({
     ...drawing.address,
     ...fields.values,
     order: keepOrder.checked ? 'file' : null,
   });
+  if (!machine.isTurn(turn)) return;
   const parameters = {
     name: drawing.name,
     svg: drawing.text,

@@ -35,6 +35,7 @@ export class Machine {
   #worker: Worker | undefined;
   #waiting = new Map<number, Waiting>();
   #calls = 0;
+  #turn = 0;
 
   constructor(wasm: string) {
     this.#module = compile(wasm);
@@ -54,10 +55,19 @@ export class Machine {
     });
   }
 
-  /** Gives up what is under way, if something is; what the machine remembers is lost with it. */
-  stop(): void {
-    if (this.#waiting.size === 0) return;
-    this.#end(new Superseded());
+  /**
+   * Gives up what is under way, if something is; what the machine remembers is lost with it.
+   * The turn that begins.
+   */
+  stop(): number {
+    if (this.#waiting.size > 0) this.#end(new Superseded());
+    this.#turn += 1;
+    return this.#turn;
+  }
+
+  /** Whether nothing was given up since that turn began. */
+  isTurn(turn: number): boolean {
+    return turn === this.#turn;
   }
 
   #start(module: WebAssembly.Module): Worker {

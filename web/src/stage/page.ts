@@ -103,6 +103,7 @@ function open(): void {
 }
 
 function changed(): void {
+  machine.stop();
   element('lost', HTMLOutputElement).value = `${lose.valueAsNumber.toFixed(2)} %`;
   files.allow(false);
   status.say('Running');
@@ -110,8 +111,9 @@ function changed(): void {
 }
 
 async function run(): Promise<void> {
-  machine.stop();
+  const turn = machine.stop();
   await toAddress({ ...program.address, ...fields.values });
+  if (!machine.isTurn(turn)) return;
   const parameters = {
     name: program.name,
     gcode: editor.text,
