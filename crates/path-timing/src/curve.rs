@@ -131,7 +131,9 @@ impl<const D: usize> Curve<D> {
         let out = difference(&start, &centre);
         let radius = norm(&out);
         if !(angle > 0.0 && radius > 0.0) {
-            return Err(CurveError::NoLength);
+            return Err(CurveError::NoLength {
+                length: radius * angle,
+            });
         }
         if angle > MAX_ANGLE {
             return Err(CurveError::Angle {
@@ -223,7 +225,9 @@ impl<const D: usize> Curve<D> {
         if self.length > LEAST_LENGTH * norm(from).max(norm(to)) {
             Ok(self)
         } else {
-            Err(CurveError::NoLength)
+            Err(CurveError::NoLength {
+                length: self.length,
+            })
         }
     }
 

@@ -1,5 +1,7 @@
 //! From paths to steps in one call: planned by `path-timing`, quantised, put out.
 
+use core::convert::Infallible;
+
 use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segments_within};
 use thiserror::Error;
 
@@ -18,6 +20,14 @@ const SEGMENTS: u32 = 8;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DriveError<E> {
+    /// An axis has no scale; [`Drive::new`] alone says so.
+    #[error("axis {axis}: {error}")]
+    Scale {
+        /// Index of the axis.
+        axis: usize,
+        /// What is wrong with its steps per unit.
+        error: ScaleError,
+    },
     /// The motion cannot be planned.
     #[error(transparent)]
     Plan(PlanError<E>),
@@ -69,16 +79,19 @@ impl<const N: usize> Drive<N> {
     /// steps; drivers with the timing of a DRV8825, knots for 64 segments in sight.
     ///
     /// # Errors
-    /// [`ScaleError`].
+    /// [`DriveError::Scale`].
     pub fn new(
         limits: [AxisLimits; N],
         steps_per_unit: [f64; N],
         rate: Rate,
-    ) -> Result<Self, ScaleError> {
+    ) -> Result<Self, DriveError<Infallible>> {
+        let scale = |axis, steps_per_unit| {
+            StepScale::new(steps_per_unit).map_err(|error| DriveError::Scale { axis, error })
+        };
         // Each is replaced, or nothing is returned.
-        let mut scales = [StepScale::new(1.0)?; N];
-        for (scale, steps_per_unit) in scales.iter_mut().zip(steps_per_unit) {
-            *scale = StepScale::new(steps_per_unit)?;
+        let mut scales = [scale(0, 1.0)?; N];
+        for (axis, (slot, steps_per_unit)) in scales.iter_mut().zip(steps_per_unit).enumerate() {
+            *slot = scale(axis, steps_per_unit)?;
         }
         Ok(Self {
             limits,

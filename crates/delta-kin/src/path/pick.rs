@@ -46,12 +46,15 @@ impl Delta {
         let lengths = [(from, above), (above, above_there), (above_there, to)]
             .map(|(from, to)| Curve::line(from, to).map(|line| line.length()));
         let [up, over, down] = lengths;
-        let largest = up?.min(over?).min(down?) * CORNER;
+        let (up, over, down) = (up?, over?, down?);
+        let largest = up.min(over).min(down) * CORNER;
         let points = [from, above, above_there, to];
         let mut memory = [Vertex::default(); VERTICES];
         let mut curves = Smoothed::new(points, tolerance.min(largest), &mut memory)?;
         let mut next = || {
-            let curve = curves.next().ok_or(CurveError::NoLength)??;
+            let curve = curves.next().ok_or(CurveError::NoLength {
+                length: up + over + down,
+            })??;
             self.path(tool.map_or(curve, |tool| curve.with_tool(tool)))
         };
         let [a, b, c, d] = [next()?, next()?, next()?, next()?];

@@ -11,8 +11,11 @@ pub enum CurveError {
     #[error("a coordinate, angle or length of the curve is not a finite number")]
     NotFinite,
     /// The curve has no length, or too little for a direction.
-    #[error("the curve has no length, or too little for a direction")]
-    NoLength,
+    #[error("a curve of the length {} has no direction", SixDigits(*.length))]
+    NoLength {
+        /// Its length; that of an arc by a negative angle is negative.
+        length: f64,
+    },
     /// The direction of an arc is along its radius.
     #[error("the direction of the arc is along its radius")]
     NoDirection,

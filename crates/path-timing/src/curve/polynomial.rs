@@ -76,7 +76,9 @@ impl<const D: usize> Polynomial<D> {
             }
         }
         if curve.length() <= 0.0 {
-            return Err(CurveError::NoLength);
+            return Err(CurveError::NoLength {
+                length: curve.length(),
+            });
         }
         // Written so that NaN is refused too.
         if curve.speed_error <= MAX_SPEED_ERROR {

@@ -97,13 +97,12 @@ fn a_wider_window_is_no_slower() {
 
 #[test]
 fn what_is_wrong_is_named_in_place_of_a_step() {
-    let refused = Drive::new([LIMITS; 2], [80.0, 0.0], rate()).map(|_| ());
-    assert!(matches!(
-        refused,
-        Err(ScaleError::Scale {
-            steps_per_unit: 0.0
-        })
-    ));
+    let refused = Drive::new([LIMITS; 2], [80.0, 0.0], rate()).unwrap_err();
+    let error = ScaleError::Scale {
+        steps_per_unit: 0.0,
+    };
+    assert_eq!(refused, DriveError::Scale { axis: 1, error });
+    assert!(refused.to_string().starts_with("axis 1: 0 steps per unit"));
     let slow = AxisLimits {
         speed: f64::NAN,
         ..LIMITS

@@ -71,7 +71,7 @@ impl Collected {
                 }
                 Ok(())
             }
-            Err(CurveError::NoLength) => Ok(()),
+            Err(CurveError::NoLength { .. }) => Ok(()),
             Err(error) => Err(error.into()),
         }
     }
