@@ -92,7 +92,7 @@ fn what_cannot_be_done_is_refused_with_where() {
         ),
         (
             "cw 20 50 0 0",
-            "refused: the curve has no length, or too little for a direction",
+            "refused: a curve of the length 0 has no direction",
         ),
         (
             "jog x -20.5",
