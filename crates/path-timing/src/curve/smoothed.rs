@@ -61,8 +61,8 @@ impl<const D: usize> From<[f64; D]> for Waypoint<D> {
 /// (a beam, clamped at both ends). The curves join to the last bit, without a step of direction, and
 /// begin and end in the first and last point. P" is continuous but at the ends of curves that pass over
 /// knots: there it steps by at most Σ |J| 4l/27. With a limit of jerk such a step asks for the more time
-/// the shorter rows are; rows about as long as such curves, one or a few each, lose none. At turns sharper than 170° and with a tolerance
-/// of 0 at all of them they meet in the corner, where the machine has to stop.
+/// the shorter rows are; some rows a curve lose little. At turns sharper than 170° and with a
+/// tolerance of 0 at all of them they meet in the corner, where the machine has to stop.
 ///
 /// Vertices in sight are in memory of the caller's. Some 24 are enough for points on arcs; with fewer
 /// humps are narrower: corners are slower then, never farther off.
