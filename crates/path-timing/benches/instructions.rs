@@ -25,15 +25,15 @@ enum Machine {
 
 /// Points of a circle of 40 mm so far apart, in mm, and the most instructions for each.
 const CASES: [(&str, Machine, f64, f64); 10] = [
-    ("0.05 mm apart", Machine::Cartesian, 0.05, 1500.0),
-    ("0.1 mm apart", Machine::Cartesian, 0.1, 2000.0),
-    ("0.2 mm apart", Machine::Cartesian, 0.2, 3000.0),
+    ("0.05 mm apart", Machine::Cartesian, 0.05, 900.0),
+    ("0.1 mm apart", Machine::Cartesian, 0.1, 1500.0),
+    ("0.2 mm apart", Machine::Cartesian, 0.2, 2600.0),
     ("0.5 mm apart", Machine::Cartesian, 0.5, 9000.0),
-    ("1 mm apart", Machine::Cartesian, 1.0, 10_500.0),
-    ("2 mm apart", Machine::Cartesian, 2.0, 14_500.0),
-    ("arm, 0.2 mm apart", Machine::TwoLinks, 0.2, 10_000.0),
+    ("1 mm apart", Machine::Cartesian, 1.0, 11_000.0),
+    ("2 mm apart", Machine::Cartesian, 2.0, 25_000.0),
+    ("arm, 0.2 mm apart", Machine::TwoLinks, 0.2, 9200.0),
     ("arm, 1 mm apart", Machine::TwoLinks, 1.0, 42_000.0),
-    ("Delta, 0.2 mm apart", Machine::ThreeArms, 0.2, 24_000.0),
+    ("Delta, 0.2 mm apart", Machine::ThreeArms, 0.2, 21_500.0),
     ("Delta, 1 mm apart", Machine::ThreeArms, 1.0, 100_000.0),
 ];
 

@@ -1,6 +1,8 @@
 //! A polyline, smoothed within a tolerance: the points of CAM programs and slicers.
 
+mod bend;
 mod ends;
+mod piece;
 mod sight;
 mod thinning;
 mod vertex;
@@ -13,6 +15,7 @@ use super::{Curve, CurveError};
 use crate::ToolLimits;
 use crate::number::range;
 use ends::End;
+use piece::{Change, Piece, change};
 use sight::{SHARPEST, Sight};
 use thinning::{Point, Thinning};
 pub use vertex::Vertex;
@@ -33,8 +36,8 @@ impl<const D: usize> From<[f64; D]> for Waypoint<D> {
     }
 }
 
-/// Curves along a polyline within a tolerance of it, as they come in: a corner alone, and the thousand
-/// points of an arc.
+/// Curves along a polyline within a tolerance of it, as they come in: a corner alone, and the
+/// thousand points of an arc.
 ///
 /// Points that the polyline does without within a quarter of the tolerance are passed over. Each
 /// vertex that is left, at the arc length s, with the change D of direction, has a hump of the
@@ -44,28 +47,32 @@ impl<const D: usize> From<[f64; D]> for Waypoint<D> {
 /// P(u) = L(u) + Σ D B(u - s),    B(v) = (h - |v|)³ / 6h²  for |v| < h, else 0
 /// ```
 ///
-/// L is the polyline by its arc length u. P" are triangles, continuous; |P'| ≤ 1, so that the speed of u
-/// is that of the tool, or more in a corner. Humps are as wide as they may be and overlap; the
+/// L is the polyline by its arc length u. P" are triangles, continuous; |P'| ≤ 1, so that the speed
+/// of u is that of the tool, or more in a corner. Humps are as wide as they may be and overlap; the
 /// half-widths of two differ by at most half of their distance. |P - L| ≤ Σ |D| B is convex from a
 /// vertex to the next, and each half-width is such that the sum is within what is allowed at every
 /// vertex. A corner alone has h = 6 ε/|D|.
 ///
-/// The curves are cubics from some knots of P, the s - h, s and s + h, to others, with P and P' at both
-/// ends: one passes over others where that departs by at most 1/32 of the tolerance, for which the
-/// jumps J of P''' between ends that are l apart give
+/// The curves are cubics from some knots of P, the s - h, s and s + h, to others. With P and P' at
+/// both ends one passes over others where that departs by at most 1/24 of the tolerance, and within
+/// what the humps leave of it, for which the jumps J of P''' between ends that are l apart give
 ///
 /// ```text
 /// Σ |J| l³ / 192
 /// ```
 ///
-/// (a beam, clamped at both ends). The curves join to the last bit, without a step of direction, and
-/// begin and end in the first and last point. P" is continuous but at the ends of curves that pass over
-/// knots: there it steps by at most Σ |J| 4l/27. With a limit of jerk such a step asks for the more time
-/// the shorter rows are; some rows a curve lose little. At turns sharper than 170° and with a
-/// tolerance of 0 at all of them they meet in the corner, where the machine has to stop.
+/// (a beam, clamped at both ends). P" would step there: so the slopes at the ends are those of the
+/// cubic spline through the same points, but for what two knots ahead know nothing of. A change of
+/// slope by d departs by at most d l/4, and is no larger than the tolerance allows. Where fewer
+/// than two humps overlap, beside lines, whose slopes cannot change, a curve passes over knots only
+/// where its own P" at both ends is that of the humps, but for 1/64 of the largest.
 ///
-/// Vertices in sight are in memory of the caller's. Some 24 are enough for points on arcs; with fewer
-/// humps are narrower: corners are slower then, never farther off.
+/// The curves join to the last bit, without a step of direction, and begin and end in the first and
+/// last point. At turns sharper than 170° and with a tolerance of 0 at all of them they meet in the
+/// corner, where the machine has to stop.
+///
+/// Vertices in sight are in memory of the caller's. Some 24 are enough for points on arcs; with
+/// fewer humps are narrower: corners are slower then, never farther off.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Knot, LookAhead, Smoothed, Vertex};
@@ -100,7 +107,14 @@ pub struct Smoothed<'m, I, const D: usize> {
     error: Option<CurveError>,
     is_over: bool,
     node: Node<D>,
+    tolerance: f64,
     departure: f64,
+    /// What comes next, as far as the slope at the end of the first needs it.
+    pieces: [Option<Piece<D>>; PIECES],
+    /// Which of them is the first: the others follow, round the end.
+    first_piece: usize,
+    /// By how much the slope at the start of the first is changed.
+    change: Change<D>,
     /// Vertices that were decided when no end was found.
     looked: Option<usize>,
 }
@@ -111,20 +125,29 @@ struct Node<const D: usize> {
     s: f64,
     /// The vertex with which the edge begins that goes on from here.
     edge: usize,
+    /// How many humps overlap there.
+    overlap: usize,
+    /// The most by which the humps depart there.
+    departure: f64,
     /// None before the first curve, and where the direction steps.
     at: Option<([f64; D], [f64; D])>,
 }
 
-/// Parts of the tolerance: for points passed over, and for cubics across several knots.
+/// Parts of the tolerance: for points passed over, and for cubics across several knots, where humps
+/// leave it and where they do not.
 const THINNED: f64 = 0.25;
-const CUBICS: f64 = 1.0 / 32.0;
+const CUBICS: f64 = 1.0 / 24.0;
+const LEAST_CUBICS: f64 = 1.0 / 48.0;
+
+/// Pieces in sight.
+const PIECES: usize = 3;
 
 /// Least memory: an edge, those whose humps reach over it, and one that comes.
 const MIN_VERTICES: usize = 6;
 
 impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D> {
-    /// The curves along `points` within `tolerance` of the polyline, in memory for as many vertices as
-    /// it may have in sight, at least 6.
+    /// The curves along `points` within `tolerance` of the polyline, in memory for as many vertices
+    /// as it may have in sight, at least 6.
     ///
     /// # Errors
     /// [`CurveError::Tolerance`], [`CurveError::Memory`].
@@ -142,12 +165,11 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
                 available: memory.len(),
             });
         }
-        let cubics = tolerance * CUBICS;
         Ok(Self {
             points: points.into_iter(),
             count: 0,
             thinning: Thinning::new(tolerance * THINNED),
-            sight: Sight::new(memory, tolerance - cubics, cubics),
+            sight: Sight::new(memory, tolerance * (1.0 - LEAST_CUBICS)),
             waiting: [None; 2],
             last: None,
             error: None,
@@ -155,14 +177,21 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
             node: Node {
                 s: 0.0,
                 edge: 0,
+                overlap: 0,
+                departure: 0.0,
                 at: None,
             },
+            tolerance,
             departure: 0.0,
+            pieces: [None; PIECES],
+            first_piece: 0,
+            change: Change::NONE,
             looked: None,
         })
     }
 
-    /// With a stop at each turn by more than `angle`, in radians; 170° by itself, which is the most.
+    /// With a stop at each turn by more than `angle`, in radians; 170° by itself, which is the
+    /// most.
     #[must_use]
     pub fn with_stops_above(mut self, angle: f64) -> Self {
         let sharpest = 2.0 * libm::sin(angle.clamp(0.0, PI) * 0.5);
@@ -176,8 +205,8 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
         self.departure
     }
 
-    /// Takes the next point, or the end, of the input, or a vertex of it in sight. Whether there was
-    /// something.
+    /// Takes the next point, or the end, of the input, or a vertex of it in sight. Whether there
+    /// was something.
     fn take(&mut self) -> bool {
         let [first, second] = self.waiting;
         if let Some(point) = first.or(second) {
@@ -234,15 +263,44 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
         gone > 0 || self.sight.decide(true)
     }
 
-    /// The next curve, as far as its end is known; with `is_last_chance` as far as it goes.
-    fn curve(&mut self, is_last_chance: bool) -> Option<Result<Curve<D>, CurveError>> {
+    /// Where the next piece ends, by how much the humps depart there at most, and by how much the
+    /// piece does.
+    fn end(&self, is_last_chance: bool) -> Option<(End, f64, f64)> {
+        let node = &self.node;
+        let place = [node.edge, node.overlap];
+        let farthest = |part: f64| {
+            let allowed = self.tolerance * part;
+            let end = self
+                .sight
+                .end_after(node.s, place, allowed, is_last_chance)?;
+            let at_end = if end.is_vertex {
+                self.sight.departure(node_after(&end))
+            } else {
+                self.sight.departure_at(end.edge, end.s)
+            };
+            let between = node.edge.saturating_add(1)..=end.edge;
+            let humps = between.map(|vertex| self.sight.departure(vertex));
+            let humps = humps.fold(node.departure.max(at_end), f64::max);
+            Some((end, at_end, humps + end.departure))
+        };
+        let end = farthest(CUBICS)?;
+        let (_, _, departure) = end;
+        if departure <= self.tolerance {
+            Some(end)
+        } else {
+            farthest(LEAST_CUBICS)
+        }
+    }
+
+    /// The next piece, as far as its end is known; with `is_last_chance` as far as it goes.
+    fn piece(&mut self, is_last_chance: bool) -> Option<Piece<D>> {
         let node = self.node;
         let decided = Some(self.sight.decided());
         if self.looked == decided && !is_last_chance {
             return None;
         }
         self.looked = decided;
-        let end = self.sight.end_after(node.s, node.edge, is_last_chance)?;
+        let (end, end_departure, departure) = self.end(is_last_chance)?;
         let (from, from_slope) = match node.at {
             Some(at) => at,
             None => self.sight.at(node.edge, node.s)?,
@@ -255,28 +313,51 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
         let (first, last) = (self.sight.get(first)?, self.sight.get(last)?);
         let is_straight =
             node.edge == end.edge && self.sight.is_straight(end.edge, [node.s, end.s]);
-        let curve = if is_straight {
-            Curve::line(from, to)
-        } else {
-            Curve::cubic([from, to], [from_slope, to_slope], end.s - node.s)
+        let piece = Piece {
+            ends: [from, to],
+            slopes: [from_slope, to_slope],
+            length: end.s - node.s,
+            is_straight,
+            is_step: end.is_step,
+            departure,
+            slack: self.tolerance - departure,
+            between: [first.index, last.index],
+            tool: last.tool,
         };
-        let between = [first.index, last.index];
-        let tool = last.tool;
-        for vertex in node.edge..=next_edge {
-            let departure = self.sight.departure(vertex) + end.departure;
-            self.departure = self.departure.max(departure);
-        }
         self.looked = None;
         self.node = Node {
             s: end.s,
             edge: next_edge,
+            overlap: end.overlap,
+            departure: end_departure,
             at: Some((to, slope)),
         };
-        Some(curve.map(|curve| Curve {
-            tool,
-            between: Some(between),
-            ..curve
-        }))
+        Some(piece)
+    }
+
+    /// The next piece, none at the end.
+    fn next_piece(&mut self) -> Option<Piece<D>> {
+        loop {
+            if let Some(piece) = self.piece(false) {
+                return Some(piece);
+            }
+            if !self.look_ahead() {
+                return self.piece(true);
+            }
+        }
+    }
+
+    /// Looks for the pieces that the slope at the end of the first needs.
+    fn look_for_pieces(&mut self) {
+        for ahead in 0..PIECES {
+            let index = self.first_piece.saturating_add(ahead).rem_euclid(PIECES);
+            if self.pieces.get(index).is_some_and(Option::is_none) {
+                let next = self.next_piece();
+                if let Some(slot) = self.pieces.get_mut(index) {
+                    *slot = next;
+                }
+            }
+        }
     }
 }
 
@@ -289,15 +370,24 @@ impl<I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Iterator for Smoothed
     type Item = Result<Curve<D>, CurveError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            if let Some(curve) = self.curve(false) {
-                return Some(curve);
-            }
-            if !self.look_ahead() {
-                let last = self.curve(true);
-                return last.or_else(|| self.error.take().map(Err));
-            }
+        self.look_for_pieces();
+        let pieces = [0, 1, 2].map(|ahead| {
+            let index = self.first_piece.saturating_add(ahead).rem_euclid(PIECES);
+            self.pieces.get(index).and_then(Option::as_ref)
+        });
+        let [Some(piece), ..] = pieces else {
+            return self.error.take().map(Err);
+        };
+        let next = change(&self.change, pieces);
+        let changes = [&self.change, &next];
+        let curve = piece.curve(changes);
+        self.departure = self.departure.max(piece.departure(changes));
+        self.change = next;
+        if let Some(slot) = self.pieces.get_mut(self.first_piece) {
+            *slot = None;
         }
+        self.first_piece = self.first_piece.saturating_add(1).rem_euclid(PIECES);
+        Some(curve)
     }
 }
 

@@ -20,6 +20,7 @@ mod set_points;
 mod shaper;
 mod slow_corners;
 mod smoothed;
+mod smoothed_jerk;
 mod stops;
 mod support;
 mod table;

@@ -8,7 +8,7 @@ use path_timing::{
 };
 use proptest::prelude::*;
 
-use crate::support::polyline::smoothed;
+use crate::support::polyline::{circle, smoothed};
 use crate::support::vectors::{bits, dot, norm, sub};
 
 /// Of some products of coordinates up to 1000, and of directions.
@@ -89,19 +89,6 @@ fn a_corner_alone_is_two_cubics() {
             "{turn} deg: {off}"
         );
     }
-}
-
-/// A circle of 40 mm as points with three decimals.
-fn circle(step_mm: f64) -> Vec<[f64; 2]> {
-    let count = (TAU * 40.0 / step_mm).round();
-    let mut points = Vec::new();
-    let mut number = 0.0;
-    while number <= count {
-        let (sin, cos) = (TAU * number / count).sin_cos();
-        points.push([cos, sin].map(|x| (x * 40_000.0).round() / 1000.0));
-        number += 1.0;
-    }
-    points
 }
 
 /// Eight densities, three tolerances, with the largest time over the arc's for each: 5 mm apart the
@@ -262,10 +249,13 @@ fn every_change_of_feed_is_passed() {
         let mut memory = [Vertex::default(); 6];
         let curves = Smoothed::new(waypoints, tolerance, &mut memory).unwrap();
         let curves: Vec<_> = curves.map(Result::unwrap).collect();
+        // The last edge of the stairs is a curve and the line that it ends with.
         let passed = curves.iter().map(|curve| curve.between().unwrap());
-        assert_eq!(passed.collect::<Vec<_>>(), [[0, 1], [1, 2], [2, 3]]);
+        let mut passed: Vec<_> = passed.collect();
+        passed.dedup();
+        assert_eq!(passed, [[0, 1], [1, 2], [2, 3]]);
         check_joined(&curves, 0);
-        assert_eq!(bits(curves[2].end()), bits(points[3]));
+        assert_eq!(bits(curves.last().unwrap().end()), bits(points[3]));
     }
 }
 

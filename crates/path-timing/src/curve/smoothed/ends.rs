@@ -1,5 +1,6 @@
 //! Where one curve ends and the next begins: at some of the knots of all humps.
 
+use super::bend::Bend;
 use super::sight::Sight;
 use super::vertex::Vertex;
 
@@ -15,16 +16,21 @@ pub(super) struct End {
     pub(super) is_step: bool,
     /// The most by which the curve departs from the humps.
     pub(super) departure: f64,
+    /// How many humps overlap there.
+    pub(super) overlap: usize,
 }
 
 /// A knot of the humps.
 #[derive(Debug, Clone, Copy)]
-struct HumpKnot {
+struct HumpKnot<'a, const D: usize> {
     s: f64,
-    /// Jump of the third derivative.
-    jump: f64,
+    vertex: &'a Vertex<D>,
+    /// Jump of the third derivative, in those at the ends of the vertex' hump.
+    jumps: f64,
     /// Whether it is the vertex itself.
     is_vertex: bool,
+    /// Humps that reach over it.
+    overlap: usize,
 }
 
 /// Knots nearer than this fraction of the coordinates are one.
@@ -36,9 +42,13 @@ const LEAST_OF_LENGTH: f64 = 1e-12;
 /// Of the deflection of a clamped beam in whose middle a point load stands.
 const BEAM: f64 = 192.0;
 
-/// What jumps may add up to with the square of the length: a clamped beam then has a slope of about a
-/// sixty-fourth of that, by which the tool is faster or slower than it should.
+/// What jumps may add up to with the square of the length: a clamped beam then has a slope of about
+/// a sixty-fourth of that, by which the tool is faster or slower than it should.
 const SLOPE: f64 = 1.0;
+
+/// How many humps overlap at both ends of a curve that may step in its second derivative: its
+/// neighbours give way, but for straight lines.
+const MANY: usize = 2;
 
 /// The knots of all humps in their order. Those of one kind are in the order of the vertices.
 struct HumpKnots<'a, const D: usize> {
@@ -59,12 +69,18 @@ impl<'a, const D: usize> HumpKnots<'a, D> {
             next: [first(Vertex::begin), first(|it| it.s), first(Vertex::end)],
         }
     }
+
+    /// The vertices whose humps have begun and not ended.
+    fn around(&self) -> &'a [Vertex<D>] {
+        let [begin, _, end] = self.next;
+        self.vertices.get(end..begin).unwrap_or_default()
+    }
 }
 
-impl<const D: usize> Iterator for HumpKnots<'_, D> {
-    type Item = HumpKnot;
+impl<'a, const D: usize> Iterator for HumpKnots<'a, D> {
+    type Item = HumpKnot<'a, D>;
 
-    fn next(&mut self) -> Option<HumpKnot> {
+    fn next(&mut self) -> Option<Self::Item> {
         let [begin, middle, end] = &mut self.next;
         let at = |index: usize, knot: fn(&Vertex<D>) -> f64| {
             self.vertices.get(index).map_or(f64::INFINITY, knot)
@@ -72,34 +88,46 @@ impl<const D: usize> Iterator for HumpKnots<'_, D> {
         let begins = at(*begin, Vertex::begin);
         let stands = at(*middle, |it| it.s);
         let ends = at(*end, Vertex::end);
-        let (index, is_vertex) = if begins <= stands && begins <= ends {
-            (begin, false)
+        let humps = begin.saturating_sub(*end);
+        let (index, jumps, overlap) = if begins <= stands && begins <= ends {
+            (begin, 1.0, humps)
         } else if stands <= ends {
-            (middle, true)
+            (middle, -2.0, humps)
         } else {
-            (end, false)
+            (end, 1.0, humps.saturating_sub(1))
         };
         let vertex = self.vertices.get(*index)?;
         *index = index.saturating_add(1);
         Some(HumpKnot {
             s: begins.min(stands).min(ends),
-            jump: vertex.jump() * if is_vertex { 2.0 } else { 1.0 },
-            is_vertex,
+            vertex,
+            jumps,
+            is_vertex: jumps < 0.0,
+            overlap,
         })
     }
 }
 
 impl<const D: usize> Sight<'_, D> {
-    /// The farthest knot at which a curve from `s`, on the edge that begins at a vertex, may end; none
-    /// while there may be a farther one, but for the last chance.
-    pub(super) fn end_after(&self, s: f64, edge: usize, is_last_chance: bool) -> Option<End> {
+    /// The farthest knot at which a curve from `s` may end, on the edge that begins at a vertex and
+    /// with so many humps that overlap, and depart from the humps by what is allowed; none while
+    /// there may be a farther one, but for the last chance.
+    pub(super) fn end_after(
+        &self,
+        s: f64,
+        [edge, overlap]: [usize; 2],
+        allowed: f64,
+        is_last_chance: bool,
+    ) -> Option<End> {
         let decided = self.vertices().get(..self.decided())?;
         let horizon = self.horizon();
         // Jumps inside a curve that ends at the next knot, and those at the knot before.
         let (mut edge, mut sum, mut last_jumps) = (edge, 0.0, 0.0);
         let mut farthest: Option<End> = None;
         let least = self.least_between_knots(s, edge);
-        for knot in HumpKnots::after(s, decided) {
+        let knots = HumpKnots::after(s, decided);
+        let mut bend = (overlap < MANY).then(|| Bend::new(s, knots.around()));
+        for knot in knots {
             if knot.s > horizon {
                 return farthest.filter(|_| is_last_chance);
             }
@@ -112,19 +140,30 @@ impl<const D: usize> Sight<'_, D> {
             }
             let length = knot.s - s;
             let departure = sum * length * length * length / BEAM;
-            let is_off = departure > self.for_cubics() || sum * length * length > SLOPE;
+            let is_off = departure > allowed || sum * length * length > SLOPE;
             if is_other && farthest.is_some() && is_off {
                 return farthest;
             }
+            let may_end = match &mut bend {
+                Some(bend) => {
+                    let jump = knot.jumps * knot.vertex.jump_per_turn();
+                    bend.go_on(length, jump, &knot.vertex.turn);
+                    bend.is_kept()
+                }
+                None => knot.overlap >= MANY,
+            };
             if must_end || length > least {
-                farthest = Some(End {
-                    s: knot.s,
-                    edge,
-                    is_vertex: knot.is_vertex,
-                    is_step: knot.is_vertex && self.is_step(next),
-                    departure,
-                });
-                last_jumps += knot.jump;
+                if may_end || !is_other || farthest.is_none() {
+                    farthest = Some(End {
+                        s: knot.s,
+                        edge,
+                        is_vertex: knot.is_vertex,
+                        is_step: knot.is_vertex && self.is_step(next),
+                        departure,
+                        overlap: knot.overlap,
+                    });
+                }
+                last_jumps += knot.jumps.abs() * knot.vertex.jump();
             }
             edge = next;
             if must_end {
@@ -158,7 +197,8 @@ impl<const D: usize> Sight<'_, D> {
         vertex.is_some_and(|it| it.is_stop || (it.width == 0.0 && it.sharpness > 0.0))
     }
 
-    /// Whether a curve has to end at a vertex: the direction steps there, or the tool has other limits.
+    /// Whether a curve has to end at a vertex: the direction steps there, or the tool has other
+    /// limits.
     fn must_end(&self, index: usize) -> bool {
         let tool = |index| self.get(index).map(|vertex| vertex.tool);
         self.is_step(index) || tool(index) != tool(index.saturating_add(1))

@@ -35,23 +35,24 @@ pub(super) struct Sight<'m, const D: usize> {
     decided: usize,
     /// Whether the last vertex is the end.
     is_whole: bool,
-    /// Departure allowed to humps and what was thinned, and to cubics.
+    /// Whether nothing has changed since what was in sight was not enough to decide.
+    is_stuck: bool,
+    /// Departure allowed to humps and what was thinned.
     humps: f64,
-    cubics: f64,
     /// Change of direction above which the machine is to stop.
     pub(super) sharpest: f64,
 }
 
 impl<'m, const D: usize> Sight<'m, D> {
-    pub(super) const fn new(vertices: &'m mut [Vertex<D>], humps: f64, cubics: f64) -> Self {
+    pub(super) const fn new(vertices: &'m mut [Vertex<D>], humps: f64) -> Self {
         Self {
             vertices,
             count: 0,
             measured: 0,
             decided: 0,
             is_whole: false,
+            is_stuck: false,
             humps,
-            cubics,
             sharpest: SHARPEST,
         }
     }
@@ -80,6 +81,7 @@ impl<'m, const D: usize> Sight<'m, D> {
 
     /// A vertex comes in sight.
     pub(super) fn push(&mut self, mut vertex: Vertex<D>) {
+        self.is_stuck = false;
         let known = self.vertices.get_mut(..self.count).unwrap_or_default();
         if let [.., before, last] = known {
             last.go_on(&mut vertex, Some(&before.direction), self.sharpest);
@@ -95,14 +97,15 @@ impl<'m, const D: usize> Sight<'m, D> {
     /// The last vertex is the end of the polyline.
     pub(super) fn end(&mut self) {
         self.is_whole = true;
+        self.is_stuck = false;
         let known = self.vertices.get_mut(..self.count).unwrap_or_default();
         if let Some(last) = known.last_mut() {
             last.is_stop = true;
         }
     }
 
-    /// Takes what is before `s`, and has no part in what comes, out of sight, and counts from the new
-    /// start: how many vertices, and the arc length of the new start.
+    /// Takes what is before `s`, and has no part in what comes, out of sight, and counts from the
+    /// new start: how many vertices, and the arc length of the new start.
     pub(super) fn forget(&mut self, s: f64) -> (usize, f64) {
         let far = |vertex: &Vertex<D>, reach: f64| vertex.s + reach * vertex.width < s;
         let vertices = self.vertices();
@@ -127,6 +130,7 @@ impl<'m, const D: usize> Sight<'m, D> {
                 };
             }
         }
+        self.is_stuck = false;
         self.count = self.count.saturating_sub(gone);
         self.measured = self.measured.saturating_sub(gone);
         self.decided = self.decided.saturating_sub(gone);
@@ -137,15 +141,17 @@ impl<'m, const D: usize> Sight<'m, D> {
     /// it has to be. Whether it did.
     pub(super) fn decide(&mut self, is_last_chance: bool) -> bool {
         let index = self.decided;
+        if (self.is_stuck && !is_last_chance) || !self.is_known(index) {
+            return false;
+        }
         let Some(vertex) = self.get(index).copied() else {
             return false;
         };
-        if !self.is_known(index) {
-            return false;
-        }
         let Some(width) = self.width(index, &vertex, is_last_chance) else {
+            self.is_stuck = true;
             return false;
         };
+        self.is_stuck = false;
         let largest = vertex.point.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         if let Some(vertex) = self.vertices.get_mut(index) {
             // Written so that NaN is none.
@@ -169,8 +175,8 @@ impl<'m, const D: usize> Sight<'m, D> {
         let mut width = before.map_or(f64::INFINITY, |before| before.widest_next(vertex));
         width = width.min(vertex.s - self.start(index));
         if is_last_chance {
-            // Not so wide that it keeps others from going out of sight; the one before, with more in
-            // sight, counted on no less than that.
+            // Not so wide that it keeps others from going out of sight; the one before, with more
+            // in sight, counted on no less than that.
             let ahead = self.vertices.len().div_euclid(AHEAD);
             let far = self.get(index.saturating_add(ahead));
             let narrowest = before.map_or(0.0, |before| before.narrowest_next(vertex));
@@ -317,17 +323,27 @@ impl<'m, const D: usize> Sight<'m, D> {
 
     /// The most by which the humps depart at a vertex: with what was thinned there.
     pub(super) fn departure(&self, index: usize) -> f64 {
-        let Some(vertex) = self.get(index) else {
-            return 0.0;
-        };
+        let [own, next] = [index, index.saturating_add(1)].map(|index| self.get(index));
+        let thinned = own.map_or(0.0, |own| own.thinned);
+        let thinned = next.map_or(thinned, |next| next.thinned.max(thinned));
+        thinned + own.map_or(0.0, |own| self.departure_of_humps(index, own.s))
+    }
+
+    /// The same at a place on the edge that begins at a vertex.
+    pub(super) fn departure_at(&self, edge: usize, s: f64) -> f64 {
+        let next = edge.saturating_add(1);
+        let thinned = self.get(next).map_or(0.0, |next| next.thinned);
+        thinned + self.departure_of_humps(next, s)
+    }
+
+    /// At a place before the vertex `index`, or at it.
+    fn departure_of_humps(&self, index: usize, s: f64) -> f64 {
         let sum = |sum: f64, other: &Vertex<D>| {
-            let rest = other.width - (other.s - vertex.s).abs();
+            let rest = other.width - (other.s - s).abs();
             sum + other.jump() * rest * rest * rest / 6.0
         };
-        let next = self.get(index.saturating_add(1));
-        let thinned = next.map_or(0.0, |next| next.thinned).max(vertex.thinned);
-        let (before, after) = self.reaching(vertex.s, index);
-        let departure = before.map(|(_, other)| other).fold(thinned, sum);
+        let (before, after) = self.reaching(s, index);
+        let departure = before.map(|(_, other)| other).fold(0.0, sum);
         after.map(|(_, other)| other).fold(departure, sum)
     }
 
@@ -354,11 +370,6 @@ impl<'m, const D: usize> Sight<'m, D> {
                 .take_while(move |it| it.begin() < s)
                 .map(|it| (true, it)),
         )
-    }
-
-    /// Most by which the cubics may depart from the humps.
-    pub(super) const fn for_cubics(&self) -> f64 {
-        self.cubics
     }
 
     /// Whether no hump reaches between two places on the edge that begins at a vertex.

@@ -122,8 +122,13 @@ impl<const D: usize> Vertex<D> {
     /// Jump of the third derivative where the hump begins and where it ends; in its middle it is
     /// twice as much.
     pub(super) fn jump(&self) -> f64 {
+        self.sharpness * self.jump_per_turn()
+    }
+
+    /// The same for a change of direction by 1.
+    pub(super) fn jump_per_turn(&self) -> f64 {
         if self.width > 0.0 {
-            self.sharpness / (self.width * self.width)
+            1.0 / (self.width * self.width)
         } else {
             0.0
         }

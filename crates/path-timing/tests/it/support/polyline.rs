@@ -1,6 +1,7 @@
 //! Lines of a polar arm through points, with corners.
 
 use core::convert::Infallible;
+use core::f64::consts::TAU;
 use core::fmt::Debug;
 
 use path_timing::{Accuracy, Corner, Curve, Path, PathFn, Smoothed, ToolLimits, Vertex};
@@ -60,4 +61,17 @@ pub(crate) fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
             (to[0] - from[0]).hypot(to[1] - from[1]) > 1.0
         })
     })
+}
+
+/// A circle of 40 mm as points with three decimals.
+pub(crate) fn circle(step_mm: f64) -> Vec<[f64; 2]> {
+    let count = (TAU * 40.0 / step_mm).round();
+    let mut points = Vec::new();
+    let mut number = 0.0;
+    while number <= count {
+        let (sin, cos) = (TAU * number / count).sin_cos();
+        points.push([cos, sin].map(|x| (x * 40_000.0).round() / 1000.0));
+        number += 1.0;
+    }
+    points
 }
