@@ -110,9 +110,7 @@ pub struct Smoothed<'m, I, const D: usize> {
     tolerance: f64,
     departure: f64,
     /// What comes next, as far as the slope at the end of the first needs it.
-    pieces: [Option<Piece<D>>; PIECES],
-    /// Which of them is the first: the others follow, round the end.
-    first_piece: usize,
+    pieces: [Option<Piece<D>>; 3],
     /// By how much the slope at the start of the first is changed.
     change: Change<D>,
     /// Vertices that were decided when no end was found.
@@ -138,9 +136,6 @@ struct Node<const D: usize> {
 const THINNED: f64 = 0.25;
 const CUBICS: f64 = 1.0 / 24.0;
 const LEAST_CUBICS: f64 = 1.0 / 48.0;
-
-/// Pieces in sight.
-const PIECES: usize = 3;
 
 /// Least memory: an edge, those whose humps reach over it, and one that comes.
 const MIN_VERTICES: usize = 6;
@@ -183,8 +178,7 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
             },
             tolerance,
             departure: 0.0,
-            pieces: [None; PIECES],
-            first_piece: 0,
+            pieces: [None; 3],
             change: Change::NONE,
             looked: None,
         })
@@ -346,19 +340,6 @@ impl<'m, I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Smoothed<'m, I, D
             }
         }
     }
-
-    /// Looks for the pieces that the slope at the end of the first needs.
-    fn look_for_pieces(&mut self) {
-        for ahead in 0..PIECES {
-            let index = self.first_piece.saturating_add(ahead).rem_euclid(PIECES);
-            if self.pieces.get(index).is_some_and(Option::is_none) {
-                let next = self.next_piece();
-                if let Some(slot) = self.pieces.get_mut(index) {
-                    *slot = next;
-                }
-            }
-        }
-    }
 }
 
 /// The edge on which it goes on.
@@ -370,23 +351,25 @@ impl<I: Iterator<Item: Into<Waypoint<D>>>, const D: usize> Iterator for Smoothed
     type Item = Result<Curve<D>, CurveError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.look_for_pieces();
-        let pieces = [0, 1, 2].map(|ahead| {
-            let index = self.first_piece.saturating_add(ahead).rem_euclid(PIECES);
-            self.pieces.get(index).and_then(Option::as_ref)
-        });
-        let [Some(piece), ..] = pieces else {
+        for index in 0..self.pieces.len() {
+            if self.pieces.get(index).is_some_and(Option::is_none) {
+                let next = self.next_piece();
+                if let Some(slot) = self.pieces.get_mut(index) {
+                    *slot = next;
+                }
+            }
+        }
+        let [first, second, third] = &self.pieces;
+        let Some(piece) = first else {
             return self.error.take().map(Err);
         };
+        let pieces = [piece.into(), second.as_ref(), third.as_ref()];
         let next = change(&self.change, pieces);
         let changes = [&self.change, &next];
         let curve = piece.curve(changes);
         self.departure = self.departure.max(piece.departure(changes));
         self.change = next;
-        if let Some(slot) = self.pieces.get_mut(self.first_piece) {
-            *slot = None;
-        }
-        self.first_piece = self.first_piece.saturating_add(1).rem_euclid(PIECES);
+        self.pieces = [*second, *third, None];
         Some(curve)
     }
 }
