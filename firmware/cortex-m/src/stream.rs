@@ -5,6 +5,7 @@
 //! tail is played. So a line that breaks at any moment leaves the machine at rest, on the path, with
 //! every step counted, and the PC goes on from there.
 
+use proto3964r::{Config, Line, Priority};
 use pvt_steps::{Segment, SegmentError};
 use stepper_sync::Direction;
 
@@ -16,6 +17,17 @@ pub const MAX_SEGMENTS: usize = 64;
 pub const MAX_BATCH: usize = 8192;
 /// Bytes of what the board says.
 pub const REPORT: usize = 11;
+
+/// The line between both ends, which can wait long, as nothing is lost on it: each has a clock of its
+/// own, and a simulated board's runs ahead of the PC's or behind it, as processors are free.
+#[must_use]
+pub const fn line(priority: Priority) -> Config {
+    Config {
+        qvz_ms: 60_000,
+        zvz_ms: 60_000,
+        ..Config::siemens_3964r(priority, Line::Instant)
+    }
+}
 
 /// What each joint does.
 pub type Joints<T> = [T; 2];

@@ -9,11 +9,11 @@ use core::time::Duration;
 use cortex_m::interrupt;
 use cortex_m::peripheral::NVIC;
 use cortex_m_firmware::board::{CLOCK_HZ, Clock, StepInterrupt, StepTimer, Uart, exit};
-use cortex_m_firmware::stream::{Batch, Event, MAX_BATCH, REPORT, Report, WINDOW};
+use cortex_m_firmware::stream::{Batch, Event, MAX_BATCH, REPORT, Report, WINDOW, line};
 use cortex_m_semihosting::hprintln;
 use joint::Joint;
 use panic_semihosting as _;
-use proto3964r::{Config, Event as LineEvent, Line, Priority, Station};
+use proto3964r::{Event as LineEvent, Priority, Station};
 
 /// A tail is taken up that long before the end of its batch: 20 ms, in which the main loop comes
 /// round even if it has a batch to decode, which takes it some 5 ms.
@@ -288,8 +288,7 @@ fn time(ticks: u64) -> Duration {
 fn main() -> ! {
     let uart = Uart::start();
     let mut machine = Machine::new();
-    let config = Config::siemens_3964r(Priority::Low, Line::Instant);
-    let mut station = Station::<MAX_BATCH, REPORT>::with_buffers(config);
+    let mut station = Station::<MAX_BATCH, REPORT>::with_buffers(line(Priority::Low));
     // SAFETY: handles it, and the shared state is in place.
     unsafe { NVIC::unmask(StepInterrupt) };
     let mut is_last = false;

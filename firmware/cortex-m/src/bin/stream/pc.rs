@@ -8,21 +8,22 @@ mod port;
 
 use std::collections::VecDeque;
 use std::error::Error;
+use std::io::Read;
 use std::time::Duration;
 use std::{env, fs};
 
 use cortex_m_firmware::arm_line::{JOINT, ROWS, path, quantiser};
-use cortex_m_firmware::stream::{Event, Head, MAX_BATCH, REPORT, Report, WINDOW, encode};
+use cortex_m_firmware::stream::{self, Event, Head, MAX_BATCH, REPORT, Report, WINDOW, encode};
 use path_timing::{FeedCeiling, Knot, Table};
 use plan::Plan;
 use port::Socket;
 use proto3964r::blocking::Driver;
-use proto3964r::{Config, Event as LineEvent, Line, Priority};
+use proto3964r::{Event as LineEvent, Priority};
 
 /// Rows of a batch: some 90 ms.
 const BATCH_ROWS: usize = 8;
-/// The board says something at the end of each batch.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// The board says something at the end of each batch; its processor may be slow.
+const PATIENCE: Duration = Duration::from_secs(120);
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -124,8 +125,11 @@ fn send(socket: &str, record: &str, late: Option<u16>) -> Result<()> {
         record: Vec::new(),
     };
 
-    let config = Config::siemens_3964r(Priority::High, Line::Instant);
-    let mut line = Driver::<_, REPORT, MAX_BATCH>::new(Socket::connect(socket)?, config)?;
+    let mut socket = Socket::connect(socket)?;
+    // The NAK that the board begins with: later it would be the answer to an STX.
+    socket.read_exact(&mut [0])?;
+    let config = stream::line(Priority::High);
+    let mut line = Driver::<_, REPORT, MAX_BATCH>::new(socket, config)?;
     loop {
         // So late that the board has come to rest.
         let is_late = late == Some(sender.next) && !sender.from_rest;
