@@ -12,7 +12,7 @@ use std::io;
 use tokio::{
     io::{AsyncRead, AsyncWrite, ReadBuf},
     net::TcpListener,
-    time::{Instant, Interval, interval_at},
+    time::{Instant, Interval, Sleep, interval_at, sleep_until},
 };
 
 use super::{echo::Echo, heard::Heard, tcp::set_options, telnet::Telnet};
@@ -34,6 +34,8 @@ pub struct Port {
     stream: Pin<Box<dyn Stream>>,
     coding: Coding,
     echo: Option<Echo>,
+    /// When an echo is overdue.
+    overdue: Option<Pin<Box<Sleep>>>,
     heard: VecDeque<Heard>,
     /// What the stream has not taken.
     output: VecDeque<u8>,
@@ -67,6 +69,7 @@ impl Port {
             listener: None,
             say_nothing: is_telnet.then(|| interval_at(Instant::now() + SILENCE, SILENCE)),
             echo,
+            overdue: None,
             heard: VecDeque::new(),
             output: VecDeque::new(),
             #[cfg(unix)]
@@ -126,8 +129,11 @@ impl Port {
         if let Poll::Ready(Err(error)) = self.poll_drain(context) {
             return Poll::Ready(Err(error));
         }
-        ready!(self.stream.as_mut().poll_read(context, &mut piece))?;
-        let now = std::time::Instant::now();
+        let read = self.stream.as_mut().poll_read(context, &mut piece);
+        if read.is_pending() {
+            self.forget_echo(context);
+        }
+        ready!(read)?;
         for &byte in piece.filled() {
             let heard = match &mut self.coding {
                 Coding::Plain => Some(Ok(byte)),
@@ -136,12 +142,27 @@ impl Port {
                 Coding::Telnet(telnet) => telnet.take(byte).map_err(io::Error::other)?,
             };
             let heard = match &mut self.echo {
-                Some(echo) => heard.and_then(|heard| echo.hear(now, heard)),
+                Some(echo) => heard.and_then(|heard| echo.hear(heard)),
                 None => heard,
             };
             self.heard.extend(heard);
         }
         Poll::Ready(Ok(!piece.filled().is_empty()))
+    }
+
+    /// Where nothing is left to read: no longer awaits an echo that is overdue, and looks again when
+    /// one will be.
+    fn forget_echo(&mut self, context: &mut Context<'_>) {
+        let Some(echo) = &mut self.echo else { return };
+        echo.silence(Instant::now().into_std());
+        self.overdue = echo
+            .until()
+            .map(|until| Box::pin(sleep_until(until.into())));
+        if let Some(overdue) = &mut self.overdue
+            && overdue.as_mut().poll(context).is_ready()
+        {
+            context.waker().wake_by_ref();
+        }
     }
 
     /// Writes what was taken and what TELNET has to say.
@@ -212,7 +233,7 @@ impl AsyncWrite for Port {
             }
         }
         if let Some(echo) = &mut self.echo {
-            echo.sent(std::time::Instant::now(), piece);
+            echo.sent(Instant::now().into_std(), piece);
         }
         match self.poll_drain(context) {
             Poll::Ready(Err(error)) => Poll::Ready(Err(error)),
