@@ -1,14 +1,7 @@
 //! A machine on a PC, in real time: its serial line is standard input and output.
 //!
-//! `simulate [arm|delta|stage]`. Talk, planner, pulses and settings are those of the boards; only pins
-//! and switches are simulated. The wire takes no time here.
-
-#[path = "../../settings/arm.rs"]
-mod arm;
-#[path = "../../settings/delta.rs"]
-mod delta;
-#[path = "../../settings/stage.rs"]
-mod stage;
+//! `simulate [arm|delta|stage]`. Talk, planner, pulses and settings are those of the boards; only
+//! pins and switches are simulated. The wire takes no time here.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -25,6 +18,7 @@ use std::time::{Duration, Instant};
 use board_machine::{
     Block, BlockEnd, Kinematics, Machine, Motion, Panel, PlanMemory, Settings, Source, talk,
 };
+use board_settings::{arm, delta, stage};
 use embedded_io_async::{ErrorType, Read, Write};
 use proto3964r::Line;
 

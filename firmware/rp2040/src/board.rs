@@ -1,5 +1,5 @@
-//! A Raspberry Pi Pico that runs a machine: see the README for wiring and commands. What the machine is
-//! its program says: `KIND`, `AXES`, settings and pins.
+//! A Raspberry Pi Pico that runs a machine: see the README for wiring and commands. What the
+//! machine is its program says: `KIND`, `AXES`, settings and pins.
 
 use board_machine::{Machine, Motion, Panel, PlanMemory, talk};
 use embassy_executor::{Executor, InterruptExecutor};
@@ -44,8 +44,8 @@ pub struct Board {
 }
 
 impl Board {
-    /// Runs the machine: step and direction of the first axis, of the second and so on, which have to
-    /// be pins in a row, and the home switches, which close to ground.
+    /// Runs the machine: step and direction of the first axis, of the second and so on, which have
+    /// to be pins in a row, and the home switches, which close to ground.
     pub fn run(
         mut self,
         drivers: [pio::Pin<'static, PIO0>; 2 * AXES],

@@ -1,5 +1,5 @@
-//! A Nucleo-F411RE that runs a machine: see the README for wiring and commands. What the machine is its
-//! program says: `KIND`, `AXES`, settings and pins.
+//! A Nucleo-F411RE that runs a machine: see the README for wiring and commands. What the machine is
+//! its program says: `KIND`, `AXES`, settings and pins.
 
 use board_machine::{Machine, Motion, Panel, PlanMemory, talk};
 use embassy_executor::{Executor, InterruptExecutor};

@@ -4,10 +4,9 @@
 
 #[path = "../board.rs"]
 mod board;
-#[path = "../../../settings/delta.rs"]
-mod machine;
 
 use board::{Board, Irqs};
+use board_settings::delta as machine;
 use cortex_m_rt::entry;
 use embassy_rp::pio::Pio;
 

@@ -4,10 +4,9 @@
 
 #[path = "../board.rs"]
 mod board;
-#[path = "../../../settings/stage.rs"]
-mod machine;
 
 use board::{Board, Irqs};
+use board_settings::stage as machine;
 use cortex_m_rt::entry;
 use embassy_rp::pio::Pio;
 

@@ -4,10 +4,9 @@
 
 #[path = "../board.rs"]
 mod board;
-#[path = "../../../settings/arm.rs"]
-mod machine;
 
 use board::Board;
+use board_settings::arm as machine;
 use cortex_m_rt::entry;
 
 #[entry]

@@ -4,10 +4,9 @@
 
 #[path = "../board.rs"]
 mod board;
-#[path = "../../../settings/delta.rs"]
-mod machine;
 
 use board::Board;
+use board_settings::delta as machine;
 use cortex_m_rt::entry;
 
 #[entry]

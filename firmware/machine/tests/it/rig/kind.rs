@@ -1,15 +1,9 @@
 //! The machines that are tested, and what is known of them without their firmware.
 
-#[path = "../../../../settings/arm.rs"]
-mod arm;
-#[path = "../../../../settings/delta.rs"]
-mod delta;
-#[path = "../../../../settings/stage.rs"]
-mod stage;
-
 use std::f64::consts::TAU;
 
 use board_machine::{Kinematics, RotaryDelta, Settings, TwoLinkArm, XyStage};
+use board_settings::{arm, delta, stage};
 use delta_kin::{Delta, Dimensions};
 
 use super::{ACCELERATION_DEG_S2, HOME_STEPS, STEPS_PER_TURN, forward};

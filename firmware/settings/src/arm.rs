@@ -23,9 +23,12 @@ const JOINT: Joint = Joint {
     homing: HOMING,
 };
 
+/// Its motors.
 pub const AXES: usize = 2;
+/// Its kinematics.
 pub type Kind = TwoLinkArm;
 
+/// What it is, and how it moves.
 pub static SETTINGS: Settings<Kind, AXES> = Settings {
     geometry: ArmGeometry {
         links_mm: [132.0, 132.0],

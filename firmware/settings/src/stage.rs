@@ -22,9 +22,12 @@ const SLIDE: Slide = Slide {
     homing: HOMING,
 };
 
+/// Its motors.
 pub const AXES: usize = 2;
+/// Its kinematics.
 pub type Kind = XyStage;
 
+/// What it is, and how it moves.
 pub static SETTINGS: Settings<Kind, AXES> = Settings {
     geometry: StageGeometry,
     // x and y.

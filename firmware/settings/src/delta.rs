@@ -21,9 +21,12 @@ const ARM: Joint = Joint {
     },
 };
 
+/// Its motors.
 pub const AXES: usize = 3;
+/// Its kinematics.
 pub type Kind = RotaryDelta;
 
+/// What it is, and how it moves.
 pub static SETTINGS: Settings<Kind, AXES> = Settings {
     geometry: DeltaGeometry {
         base_mm: 42.0,
