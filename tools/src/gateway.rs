@@ -4,6 +4,7 @@ mod area;
 mod broker;
 mod config;
 mod discovery;
+mod faults;
 mod field;
 mod health;
 mod hub;
@@ -20,6 +21,7 @@ mod store;
 mod tap;
 mod tcp;
 mod telegram;
+mod time;
 mod tls;
 
 use alloc::sync::Arc;

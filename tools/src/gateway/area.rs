@@ -7,11 +7,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use toml::Spanned;
 
-use super::{
-    config::{Name, time},
-    field::Field,
-    job::Data,
-};
+use super::{config::Name, field::Field, job::Data, time::duration};
 
 /// What a client fetches at once, at most.
 const MAX_BYTES: usize = 4096;
@@ -107,7 +103,7 @@ impl Area {
             rk512::Command::send(self.start.0, self.length).map_err(|error| error.to_string())?;
         }
         if let Some(seconds) = self.poll_s {
-            time(seconds).map_err(|message| format!("poll_s: {message}"))?;
+            duration(seconds).map_err(|message| format!("poll_s: {message}"))?;
         }
         self.check_size()
     }
@@ -150,7 +146,7 @@ impl Area {
     }
 
     pub(super) fn poll(&self) -> Option<Duration> {
-        time(self.poll_s?).ok()
+        duration(self.poll_s?).ok()
     }
 }
 

@@ -4,8 +4,8 @@ use core::{fmt, net::Ipv6Addr};
 
 use serde::Deserialize;
 
-/// `mqtt://HOST[:PORT]`, or `mqtts://HOST[:PORT]` over TLS; without a port 1883 and 8883. An address
-/// of IPv6 is in brackets.
+/// `mqtt://HOST[:PORT]`, or `mqtts://HOST[:PORT]` over TLS; without a port 1883 and 8883. An
+/// address of IPv6 is in brackets.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub(crate) struct Broker {

@@ -29,11 +29,9 @@ pub(crate) use self::{
 use super::{
     area::Area,
     field::{Field, Pattern},
+    time::duration,
 };
 use crate::{Address, Preset, Target, settings};
-
-/// The longest time: 30 years, which every clock bears.
-const TIME_MAX_S: f64 = 1e9;
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -211,7 +209,7 @@ impl Config {
 
     /// What the types do not say. The place is an offset into the text.
     fn check(&self) -> Result<(), (usize, String)> {
-        if let Err(message) = time(*self.stop_s.get_ref()) {
+        if let Err(message) = duration(*self.stop_s.get_ref()) {
             return Err((self.stop_s.span().start, format!("stop_s: {message}")));
         }
         if self.broker().is_none() && self.tcp.is_none() {
@@ -327,14 +325,14 @@ impl Config {
 
     /// How long a stop may take.
     pub(crate) fn stop(&self) -> Duration {
-        time(*self.stop_s.get_ref()).unwrap_or(Duration::MAX)
+        duration(*self.stop_s.get_ref()).unwrap_or(Duration::MAX)
     }
 }
 
 impl Line {
     fn check(&self) -> Result<(), (usize, String)> {
         if let Some(seconds) = &self.silent_after_s
-            && let Err(message) = time(*seconds.get_ref())
+            && let Err(message) = duration(*seconds.get_ref())
         {
             return Err((seconds.span().start, format!("silent_after_s: {message}")));
         }
@@ -383,7 +381,7 @@ impl Line {
 
     /// How long the partner may be silent.
     pub(crate) fn silent_after(&self) -> Option<Duration> {
-        time(*self.silent_after_s.as_ref()?.get_ref()).ok()
+        duration(*self.silent_after_s.as_ref()?.get_ref()).ok()
     }
 
     /// The parameters of the station.
@@ -468,16 +466,6 @@ fn secret(name: &str, path: &Path) -> Result<String> {
     Ok(text.to_owned())
 }
 
-/// A time of a file.
-pub(crate) fn time(seconds: f64) -> Result<Duration, String> {
-    match Duration::try_from_secs_f64(seconds) {
-        Ok(time) if !time.is_zero() && seconds <= TIME_MAX_S => Ok(time),
-        _ => Err(format!(
-            "{seconds} is no time in seconds, up to {TIME_MAX_S}"
-        )),
-    }
-}
-
 const fn siemens() -> Preset {
     Preset::Siemens3964r
 }
@@ -494,8 +482,8 @@ const fn sixteen() -> NonZeroU16 {
     const { NonZeroU16::new(16).unwrap() }
 }
 
-/// Whether one of two addresses to listen on leaves nothing for the other: `0.0.0.0` is each of IPv4, and
-/// `[::]` of both, as Linux has it.
+/// Whether one of two addresses to listen on leaves nothing for the other: `0.0.0.0` is each of
+/// IPv4, and `[::]` of both, as Linux has it.
 fn is_taken_by(address: SocketAddr, other: SocketAddr) -> bool {
     let (ip, other_ip) = (address.ip(), other.ip());
     let covers =

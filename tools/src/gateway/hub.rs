@@ -12,7 +12,6 @@ use core::{
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bytes::Bytes;
-use jiff::Timestamp;
 use log::{error, info, warn};
 use monitor3964r::Diagnosis;
 use proto3964r::Event;
@@ -26,12 +25,13 @@ use tokio_util::sync::CancellationToken;
 
 use super::{
     config::{Config, Name},
-    health::Faults,
+    faults::Faults,
     job::{Asked, Id, Job, Outcome, Refused, Reply},
     outbox::Outbox,
     store::{Entry, Known, Last, Message, Number, StoreError},
     tap::Tap,
     telegram::Report,
+    time::now,
 };
 use crate::capture;
 
@@ -126,11 +126,6 @@ pub(crate) struct BrokerCounts {
     pub(crate) connects: AtomicU64,
     pub(crate) published: AtomicU64,
     pub(crate) refused: AtomicU64,
-}
-
-/// The time of day, in UTC to the millisecond.
-pub(crate) fn now() -> String {
-    format!("{:.3}", Timestamp::now())
 }
 
 impl Hub {
@@ -415,8 +410,8 @@ impl Hub {
         }
     }
 
-    /// The broker does not take a message. What is retained is not offered again until it is another;
-    /// anything else is a dead letter.
+    /// The broker does not take a message. What is retained is not offered again until it is
+    /// another; anything else is a dead letter.
     pub(crate) fn refused(&self, outbox: &Outbox, message: Message, reason: &str) {
         self.broker.refused.fetch_add(1, Ordering::Relaxed);
         error!("broker: refused a message to {}: {reason}", message.topic);

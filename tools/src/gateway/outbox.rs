@@ -11,8 +11,8 @@ use super::{
     store::{Append, DeadLetters, Entry, Message, Shared, Store, StoreError, WINDOW, Writer},
 };
 
-/// Messages in the order of their arrival, until the broker has acknowledged them: in a store, or in
-/// memory. Of what the broker retains, the latest of each topic.
+/// Messages in the order of their arrival, until the broker has acknowledged them: in a store, or
+/// in memory. Of what the broker retains, the latest of each topic.
 pub(crate) struct Outbox {
     shared: Arc<Shared>,
     writer: Writer,
@@ -73,7 +73,8 @@ impl Outbox {
     }
 
     /// Puts a message at the end, and returns when it is safe. In memory it waits for a place, or
-    /// gives up the oldest, as configured. A message whose future is dropped may be kept all the same.
+    /// gives up the oldest, as configured. A message whose future is dropped may be kept all the
+    /// same.
     ///
     /// # Errors
     /// A store that is full or a disk that fails: the message is not safe.

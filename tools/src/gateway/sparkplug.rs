@@ -1,5 +1,5 @@
-//! This gateway as an edge node of Sparkplug B 3.0, and its lines as devices: births and deaths, and
-//! what is published in between.
+//! This gateway as an edge node of Sparkplug B 3.0, and its lines as devices: births and deaths,
+//! and what is published in between.
 //!
 //! The store holds this gateway's own messages; they become metrics when they leave it.
 

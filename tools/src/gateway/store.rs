@@ -1,8 +1,9 @@
-//! What must not be lost, on disk: messages until the broker has them, and the numbers of telegrams.
+//! What must not be lost, on disk: messages until the broker has them, and the numbers of
+//! telegrams.
 //!
 //! One transaction holds all that waits: the messages that came, the numbers of their lines, and
-//! those that the broker has acknowledged since. A commit returns when the disk has it; what a power
-//! cut leaves is the state after one of the commits.
+//! those that the broker has acknowledged since. A commit returns when the disk has it; what a
+//! power cut leaves is the state after one of the commits.
 
 mod letters;
 mod message;
@@ -295,7 +296,8 @@ impl Store {
                 Ok(committed)
             }
             Err(error) => {
-                // Closed: what it has in memory may not be what is on disk. No identifier is used twice.
+                // Closed: what it has in memory may not be what is on disk. No identifier is used
+                // twice.
                 (_, self.count, self.bytes) = before;
                 Err(StoreError::disk(error))
             }

@@ -32,8 +32,8 @@ const PARTNER: Side = Side::B;
 /// What a verdict looks back on, from the last character.
 const RECENT: Duration = Duration::from_secs(60);
 
-/// From one look at a line that works to the next, unless its station counts faults: a look takes as
-/// long as many telegrams.
+/// From one look at a line that works to the next, unless its station counts faults: a look takes
+/// as long as many telegrams.
 const UNDISTURBED: Duration = Duration::from_secs(900);
 
 /// Characters that are kept, at most: of a telegram of 32 bytes a second the last three minutes.
@@ -42,8 +42,8 @@ const KEPT: usize = 8192;
 /// Characters that a verdict looks at, at most: some 50 telegrams of 32 bytes.
 const JUDGED: usize = 2048;
 
-/// The same at a line that worked and whose station has counted nothing since: what is longer ago was
-/// judged, and a fault is looked at again as a whole.
+/// The same at a line that worked and whose station has counted nothing since: what is longer ago
+/// was judged, and a fault is looked at again as a whole.
 const GLANCED: usize = 512;
 
 /// Listens to one line.
@@ -145,7 +145,8 @@ impl Tap {
         Some(diagnosis)
     }
 
-    /// What was heard last, as pcapng with its meaning and a verdict; `None` before the port was open.
+    /// What was heard last, as pcapng with its meaning and a verdict; `None` before the port was
+    /// open.
     pub(crate) fn pcapng(&self) -> Option<Vec<u8>> {
         let (config, epoch, mut heard) = {
             let record = self.record();

@@ -11,9 +11,9 @@ use toml::Spanned;
 use super::{
     Name, Overflow, Prefix,
     mqtt::{check_text, prefix},
-    secret, time,
+    secret,
 };
-use crate::gateway::tls;
+use crate::gateway::{time::duration, tls};
 
 /// How far back the streams look for duplicates that this gateway makes.
 const DUPLICATE_WINDOW: Duration = Duration::from_secs(3600);
@@ -89,7 +89,8 @@ impl Nats {
         check_text("user", self.user.as_deref())?;
         check_text("password", self.password.as_deref())?;
         if let Some(window) = &self.duplicate_window_s {
-            time(*window.get_ref()).map_err(|message| format!("duplicate_window_s: {message}"))?;
+            duration(*window.get_ref())
+                .map_err(|message| format!("duplicate_window_s: {message}"))?;
         }
         let has_password = self.password.is_some() || self.password_file.is_some();
         let has_files = self.ca_file.is_some() || self.key_file.is_some();
@@ -130,7 +131,7 @@ impl Nats {
 
     pub(crate) fn duplicate_window(&self) -> Duration {
         let seconds = self.duplicate_window_s.as_ref().map(Spanned::get_ref);
-        let window = seconds.and_then(|seconds| time(*seconds).ok());
+        let window = seconds.and_then(|seconds| duration(*seconds).ok());
         window.unwrap_or(DUPLICATE_WINDOW)
     }
 

@@ -23,12 +23,13 @@ use super::{
 use crate::gateway::{
     area::Area,
     config,
-    hub::{self, Hub},
+    hub::Hub,
     job::{Action, Job},
     served::Served,
     store::{Number, StoreError},
     tap::Tapped,
     telegram::{Report, decode, hex},
+    time::now,
 };
 
 /// What is next.
@@ -131,7 +132,8 @@ struct Desk<'d> {
     name: &'d str,
     partner: Client,
     served: Served,
-    /// Held while something is stored, so that areas and numbers follow each other as they are told.
+    /// Held while something is stored, so that areas and numbers follow each other as they are
+    /// told.
     numbers: Mutex<&'d mut Numbers>,
 }
 
@@ -348,7 +350,7 @@ impl Desk<'_> {
             name: Some(area.name.as_str()),
             run: &self.hub.run,
             seq: arrival.seq,
-            time: hub::now(),
+            time: now(),
             hex: hex(bytes),
             possible_repeat: arrival.possible_repeat,
             fields,

@@ -15,18 +15,19 @@ use super::{
 };
 use crate::gateway::{
     config,
-    hub::{self, Counts, Hub},
+    hub::{Counts, Hub},
     job::{Action, Job},
     store::{Number, StoreError},
     tap::Tapped,
     telegram::{Report, decode, describe, hex},
+    time::now,
 };
 
 /// What a partner may need besides its times: STX, DLE and the reading of them.
 const SLACK: Duration = Duration::from_millis(500);
 
-/// How much of the acknowledgement delay time (QVZ) the store may take, in quarters; the rest is for
-/// the way to the partner.
+/// How much of the acknowledgement delay time (QVZ) the store may take, in quarters; the rest is
+/// for the way to the partner.
 const QUARTERS_OF_QVZ: u16 = 3;
 
 impl Line {
@@ -171,7 +172,7 @@ impl Desk<'_> {
             name: kind.map(|kind| kind.name.as_str()),
             run: &self.hub.run,
             seq: arrival.seq,
-            time: hub::now(),
+            time: now(),
             hex: hex(telegram),
             possible_repeat: arrival.possible_repeat,
             fields,

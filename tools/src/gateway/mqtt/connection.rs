@@ -17,8 +17,8 @@ use crate::gateway::{
 /// none is ever refused.
 const REQUESTS: usize = Window::SIZE as usize + 2;
 
-/// The same for an edge node: with each message of the window a birth may leave; births and deaths of
-/// all devices, and what is subscribed to.
+/// The same for an edge node: with each message of the window a birth may leave; births and deaths
+/// of all devices, and what is subscribed to.
 pub(super) fn requests(node: Option<&Node>) -> usize {
     node.map_or(REQUESTS, |node| 2 * REQUESTS + 2 * node.devices() + 8)
 }
@@ -105,8 +105,8 @@ pub(super) enum Cause {
     Stolen,
     /// The broker says that it does not speak this version.
     Version,
-    /// The broker has closed it without a word. In MQTT 3.1.1 there is none, and not every broker of
-    /// MQTT 5 says it.
+    /// The broker has closed it without a word. In MQTT 3.1.1 there is none, and not every broker
+    /// of MQTT 5 says it.
     Closed,
     /// What came is no packet of this version.
     Garbled,

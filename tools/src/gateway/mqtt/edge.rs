@@ -1,8 +1,8 @@
 //! An edge node of Sparkplug B on one connection.
 //!
-//! Its messages leave at most once, as Sparkplug has it, so that no broker answers. That the broker has
-//! taken them is known from its answer to a subscription that follows them, since it takes the packets
-//! of a connection in their order.
+//! Its messages leave at most once, as Sparkplug has it, so that no broker answers. That the broker
+//! has taken them is known from its answer to a subscription that follows them, since it takes the
+//! packets of a connection in their order.
 
 use core::mem;
 

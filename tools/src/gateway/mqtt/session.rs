@@ -10,9 +10,8 @@ use tokio_util::sync::CancellationToken;
 use super::{
     connection::{Answer, Cause, Command, Connection, Event, Incoming, Lost, Sender},
     edge::Edge,
-    suspect::Name,
     version::Version,
-    window::Window,
+    window::{Name, Window},
 };
 use crate::gateway::{hub::Hub, outbox::Outbox, sparkplug::Node, store::Message};
 

@@ -2,7 +2,7 @@
 
 use core::mem;
 
-use super::window::Window;
+use super::window::{Name, Window};
 
 /// Connections over which the broker answered others, and that ended with the same message
 /// unanswered, before that is taken for the reason.
@@ -11,9 +11,6 @@ pub(super) const SUSPICIONS: u32 = 5;
 /// From here on messages leave one at a time, up to this one: what the broker had answered is lost
 /// with some connections, so that the first without an answer need not be the reason.
 const CAREFUL: u32 = 2;
-
-/// By identifier, and by topic what is retained.
-pub(super) type Name = (u64, String);
 
 /// The first message that was unanswered when the connection ended, and how many times in a row.
 /// Some brokers close the connection on what they do not take; in MQTT 3.1.1 there is no other way.

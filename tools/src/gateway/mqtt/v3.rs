@@ -25,7 +25,8 @@ use crate::gateway::{
 /// connection. Above what a command may have, so that it takes more than a slip.
 const MAX_PACKET: usize = 1024 * 1024;
 
-/// Largest packet there is, in bytes: the length has 28 bits. What the broker takes it does not say.
+/// Largest packet there is, in bytes: the length has 28 bits. What the broker takes it does not
+/// say.
 const NO_LIMIT: usize = 0x0FFF_FFFF;
 
 /// The settings of the connection.

@@ -2,8 +2,10 @@
 
 use alloc::collections::VecDeque;
 
-use super::suspect::Name;
 use crate::gateway::{outbox::Outbox, store::Message};
+
+/// What tells a message from others: by identifier, and by topic what is retained.
+pub(super) type Name = (u64, String);
 
 /// Messages without an acknowledgement, in the order in which they were handed over.
 #[derive(Default)]

@@ -5,8 +5,8 @@ use alloc::collections::{BTreeMap, VecDeque};
 use super::subject;
 use crate::gateway::store::Message;
 
-/// Messages of which none may overtake another: those of a line; what is retained under a topic; the
-/// answers to one who asked.
+/// Messages of which none may overtake another: those of a line; what is retained under a topic;
+/// the answers to one who asked.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Lane {
     Line(String),
@@ -43,8 +43,8 @@ impl Lane {
     }
 
     /// By what a stream knows a message that it has already: run, line and number of a telegram or
-    /// an area, as they stand in it, so that one that was stored twice is one; else run and place in
-    /// the store.
+    /// an area, as they stand in it, so that one that was stored twice is one; else run and place
+    /// in the store.
     pub(super) fn message_id(&self, run: &str, message: &Message) -> Option<String> {
         match (self, message) {
             (Self::Line(line), Message { seq: Some(seq), .. }) => {

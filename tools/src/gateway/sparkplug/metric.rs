@@ -5,8 +5,8 @@ use serde_json::Value as Json;
 use super::payload::Value;
 use crate::text;
 
-/// A type of Sparkplug B, by its number there. Signed numbers of 8 and 16 bits are `Int32`: libraries
-/// disagree on how the shorter ones stand in the 32 bits of the wire.
+/// A type of Sparkplug B, by its number there. Signed numbers of 8 and 16 bits are `Int32`:
+/// libraries disagree on how the shorter ones stand in the 32 bits of the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DataType {
     Int32 = 3,
@@ -23,8 +23,8 @@ pub(crate) enum DataType {
 }
 
 impl DataType {
-    /// The value that a JSON of this gateway shows; bytes are hexadecimal. `None` for one of another
-    /// type.
+    /// The value that a JSON of this gateway shows; bytes are hexadecimal. `None` for one of
+    /// another type.
     pub(super) fn value(self, json: &Json) -> Option<Value> {
         Some(match self {
             Self::Int32 => Value::Int(i32::try_from(json.as_i64()?).ok()?.cast_unsigned()),

@@ -9,7 +9,7 @@ use std::{
 use serde_json::json;
 
 use super::{Message, len};
-use crate::gateway::hub::now;
+use crate::gateway::time::now;
 
 /// The file, and how long it may become.
 pub(crate) struct DeadLetters {

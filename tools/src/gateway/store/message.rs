@@ -30,8 +30,8 @@ impl Message {
         self.topic.len() + self.payload.len() + correlation
     }
 
-    /// Lengths of topic and correlation data (4 bytes each, least first), the number if there is one
-    /// (8 bytes), topic, correlation data, payload.
+    /// Lengths of topic and correlation data (4 bytes each, least first), the number if there is
+    /// one (8 bytes), topic, correlation data, payload.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let len = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(NONE);
         let correlation = self.correlation.as_deref();
