@@ -6,8 +6,8 @@
 //! delta:     a,b,c,x_mm,y_mm,z_mm           steps from home, and the platform's centre
 //! ```
 //!
-//! The columns are read by their names; a comma, semicolon or tabulator is between them. What was found
-//! is printed with its standard deviation, and what the points do not tell is named.
+//! The columns are read by their names; a comma, semicolon or tabulator is between them. What was
+//! found is printed with its standard deviation, and what the points do not tell is named.
 //!
 //! `cargo run --release --example calibrate -- engraver|delta [--points FILE] [--machine FILE] [--fit WHAT] [--out DIR]`
 

@@ -4,7 +4,8 @@
 //!
 //! Of every `N` to `2 N` bytes of the line one is flipped, lost or doubled (`--spacing`). Each side
 //! writes a data block, reads it back, compares, and repeats a job that failed. Writes `line.log`
-//! (what each side received: time in s, `>` from the PC, `<` from the PLC, bytes) and `report.json`.
+//! (what each side received: time in s, `>` from the PC, `<` from the PLC, bytes) and
+//! `report.json`.
 //!
 //! `cargo run --release --example plc -- [--rounds N] [--spacing N] [--seed N] [--out DIR]`
 

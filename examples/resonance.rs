@@ -1,11 +1,12 @@
-//! Frequency and damping of a machine from an accelerometer's log, and the input shaper that fits them:
-//! the command line of `machines/commissioning`.
+//! Frequency and damping of a machine from an accelerometer's log, and the input shaper that fits
+//! them: the command line of `machines/commissioning`.
 //!
 //! ```text
 //! #time,accel_x,accel_y,accel_z -> modes of a column -> shapers, the best first
 //! ```
 //!
-//! The log is of a move's end: from where the commanded move has ended, some half a second of ringing.
+//! The log is of a move's end: from where the commanded move has ended, some half a second of
+//! ringing.
 //!
 //! `cargo run --release --example resonance -- [--log FILE] [--column NAME] [--from S] [--to S] [--acceleration MM_S2] [--out DIR]`
 

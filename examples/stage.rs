@@ -6,9 +6,9 @@
 //!                                                       ^                      |
 //!                                                       +-- corrections <--- linear scales
 //! ```
-//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Where the
-//! torque of the motors does not allow the motion, as with `--steps nearest`, the first line says
-//! how many steps are lost, and the exit status is 2.
+//! The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Where
+//! the torque of the motors does not allow the motion, as with `--steps nearest`, the first line
+//! says how many steps are lost, and the exit status is 2.
 //!
 //! `cargo run --release --example stage -- [--gcode FILE | --port TTY] [--machine FILE] [--offset X,Y | --fit] [--steps WHEN] [--tolerance MM] [--lose-steps P] [--seed N] [--out DIR]`
 
@@ -49,9 +49,9 @@ struct Args {
     /// Puts a drawing that leaves the travel of 120 by 100 mm within it.
     #[arg(long, conflicts_with = "port")]
     fit: bool,
-    /// When the axes step: `timed`, each by itself within what the motors follow; or at the feed from
-    /// the first step to the last, as published: one axis at a time as `published`, the one with the
-    /// `nearest` point, or both where due, `bresenham`.
+    /// When the axes step: `timed`, each by itself within what the motors follow; or at the feed
+    /// from the first step to the last, as published: one axis at a time as `published`, the one
+    /// with the `nearest` point, or both where due, `bresenham`.
     #[arg(long, value_name = "WHEN", default_value_t)]
     steps: Stepping,
     /// How far timed steps may leave straight lines to pass their corners faster, in mm. Arcs are

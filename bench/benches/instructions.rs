@@ -17,7 +17,8 @@
 //! | `sines`, `sines_in_lanes`, `angles`, `angles_in_lanes` | 1024 | value of f64 |
 //! | `sines_of_libm`, `angles_of_libm` | 1024 | the same by `libm` |
 //!
-//! The bytes of 3964R are counted in its own crate: `cargo bench -p proto3964r --bench instructions`.
+//! The bytes of 3964R are counted in its own crate:
+//! `cargo bench -p proto3964r --bench instructions`.
 
 #[path = "../../crates/scara-kin/benches/inverse/bare.rs"]
 mod bare;

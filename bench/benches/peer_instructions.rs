@@ -1,5 +1,5 @@
-//! Instructions of our inverses beside those of the best published crate, counted by callgrind: no noise
-//! of the machine is in them.
+//! Instructions of our inverses beside those of the best published crate, counted by callgrind: no
+//! noise of the machine is in them.
 
 use std::hint::black_box;
 use std::process::ExitCode;

@@ -1,10 +1,10 @@
 //! From a curve of the tool to the last edge: a two-link arm and a rotary Delta at 72 MHz.
 //!
-//! What a user calls, on one core: the path of a curve, which is looked at whole, `plan_within`, rows
-//! and edges. Steps a second, the best of several rounds, and instructions a step by callgrind, for
-//! which the bench runs itself under valgrind where there is one; with `--times` the steps alone, for
-//! `klipper/run`. The curves are lines of 100 to 190 mm from rest to rest at 300 mm/s, 0.01 mm off at
-//! most.
+//! What a user calls, on one core: the path of a curve, which is looked at whole, `plan_within`,
+//! rows and edges. Steps a second, the best of several rounds, and instructions a step by
+//! callgrind, for which the bench runs itself under valgrind where there is one; with `--times` the
+//! steps alone, for `klipper/run`. The curves are lines of 100 to 190 mm from rest to rest at 300
+//! mm/s, 0.01 mm off at most.
 
 use core::hint::black_box;
 use std::env;

@@ -1,8 +1,9 @@
 //! What planning takes of real time: 10,000 points streamed along circles by an arm and a Delta.
 //!
-//! Points of a circle of 40 mm with three decimals at 200 mm/s, smoothed within 0.01 mm; the path of each
-//! curve, looked at whole; as many segments as keep the joints' proven departure within 0.01 mm at any
-//! speeds; look-ahead and rows. Printed is the time of the fastest of some rounds over that of the motion.
+//! Points of a circle of 40 mm with three decimals at 200 mm/s, smoothed within 0.01 mm; the path
+//! of each curve, looked at whole; as many segments as keep the joints' proven departure within
+//! 0.01 mm at any speeds; look-ahead and rows. Printed is the time of the fastest of some rounds
+//! over that of the motion.
 
 use core::hint::black_box;
 use std::time::Instant;

@@ -1,5 +1,5 @@
-//! The machines that the benches compare, ours and those of the best published crate, and the places
-//! that they are asked for.
+//! The machines that the benches compare, ours and those of the best published crate, and the
+//! places that they are asked for.
 
 #[path = "../../crates/scara-kin/benches/inverse/points.rs"]
 mod arm_points;

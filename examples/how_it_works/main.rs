@@ -1,5 +1,5 @@
-//! The figures of the book's chapter on how it works, from the crates themselves: the time law of an
-//! arm's line, its departure between rows, and what a shaper does to a machine that rings.
+//! The figures of the book's chapter on how it works, from the crates themselves: the time law of
+//! an arm's line, its departure between rows, and what a shaper does to a machine that rings.
 //!
 //! `cargo run --example how_it_works -- [FOLDER]`
 

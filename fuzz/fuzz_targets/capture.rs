@@ -1,4 +1,5 @@
-//! Any text as a capture: what is read is written and read again, told, judged, and kept for Wireshark.
+//! Any text as a capture: what is read is written and read again, told, judged, and kept for
+//! Wireshark.
 #![no_main]
 
 use std::time::Duration;

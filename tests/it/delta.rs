@@ -286,7 +286,8 @@ fn a_terminal_is_served_line_by_line() {
     );
 }
 
-/// A file is looked at as a whole: with a line that is refused nothing moves, unless that is left out.
+/// A file is looked at as a whole: with a line that is refused nothing moves, unless that is left
+/// out.
 #[test]
 fn a_file_with_a_refused_line_moves_nothing_unless_it_is_skipped() {
     let folder = TempDir::new().unwrap();

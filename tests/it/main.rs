@@ -1,4 +1,5 @@
-//! Tests of the machines as programs, of the C sources and of the facade: one program, which is linked once.
+//! Tests of the machines as programs, of the C sources and of the facade: one program, which is
+//! linked once.
 #![cfg(test)]
 
 #[cfg(unix)]

@@ -1,8 +1,8 @@
 //! What the program `line3964r` is made of, for other programs.
 //!
 //! [`capture`] reads captures of a line and tells the conversation and the verdict: no file, no
-//! clock, no port. [`probe`] finds what a partner is set to. [`Address`] names a port, and opens it with feature `ports`. Feature `cli`, on by
-//! default, is the program itself.
+//! clock, no port. [`probe`] finds what a partner is set to. [`Address`] names a port, and opens it
+//! with feature `ports`. Feature `cli`, on by default, is the program itself.
 
 extern crate alloc;
 

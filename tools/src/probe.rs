@@ -1,10 +1,10 @@
 //! What a live partner is set to, as its answers to STX and NAK show it.
 //!
-//! Goal: the settings of the other end of a line whose papers are lost, while no telegram is sent or
-//! taken. Method: STX at each rate and parity, until a lone DLE comes back, and NAK after the silence
-//! that follows it, which no other setting can make of either; then the times of both, some times
-//! over; then whoever asks by STX is asked by STX: the side of low priority gives way by DLE. What
-//! does not show is not guessed.
+//! Goal: the settings of the other end of a line whose papers are lost, while no telegram is sent
+//! or taken. Method: STX at each rate and parity, until a lone DLE comes back, and NAK after the
+//! silence that follows it, which no other setting can make of either; then the times of both, some
+//! times over; then whoever asks by STX is asked by STX: the side of low priority gives way by DLE.
+//! What does not show is not guessed.
 
 mod block;
 mod findings;
@@ -130,7 +130,8 @@ pub async fn probe<B: Bench>(bench: &mut B, options: &Options) -> Result<Finding
         last: None,
     };
     for &baud in &options.rates {
-        // STX, DLE and NAK have an odd number of ones: without parity they look as with an even one.
+        // STX, DLE and NAK have an odd number of ones: without parity they look as with an even
+        // one.
         for parity in [Parity::Even, Parity::Odd] {
             let frame = Frame {
                 baud,

@@ -1,5 +1,5 @@
-//! A pick and place as one motion of the arms, as fast as they may, with rounded corners; and where the
-//! platform may be when the motion is shaped against a vibration.
+//! A pick and place as one motion of the arms, as fast as they may, with rounded corners; and where
+//! the platform may be when the motion is shaped against a vibration.
 //!
 //! `cargo run -p delta-kin --features path-timing --example pick_by_path`
 

@@ -43,8 +43,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// assembly mode: so far that neither the triangle nor what is seen of it from above is a line.
     ///
     /// The platform is above the plane by volume/|n|, and is the higher of its two points if that
-    /// has the sign of `n_z`. With centres within C, |n| is at most 4 C² and the volume La times it,
-    /// so that one bound on their product holds each off rounding:
+    /// has the sign of `n_z`. With centres within C, |n| is at most 4 C² and the volume La times
+    /// it, so that one bound on their product holds each off rounding:
     ///
     /// ```text
     /// |volume n_z| > 16 tolerance C³ (C + La)   =>   |n_z| > 4 tolerance C,

@@ -89,8 +89,8 @@ impl Delta {
     /// that digits are not lost to its square and memory (three N × N matrices) does not grow with
     /// the points. Parameters that the points do not determine stay near their values and are
     /// reported. Noise can make a parameter look determined that the points hardly see, as the
-    /// azimuths of points on the z axis: [`conditioning`](marquardt::LeastSquares::conditioning) and the size of
-    /// the changes show it.
+    /// azimuths of points on the z axis: [`conditioning`](marquardt::LeastSquares::conditioning)
+    /// and the size of the changes show it.
     ///
     /// # Errors
     /// [`CalibrationError`].

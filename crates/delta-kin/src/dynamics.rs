@@ -1,9 +1,9 @@
 //! Inverse dynamics: the torques of the arms that a motion takes.
 //!
-//! The upper arms turn about their shoulders, platform and payload move without turning, and the rods are
-//! straight and even: the forces of such a rod's inertia are those of thirds of its mass at its ends and
-//! of a sixth between them, exactly. With K an elbow, P the platform, m the rods of an arm, by virtual
-//! work:
+//! The upper arms turn about their shoulders, platform and payload move without turning, and the
+//! rods are straight and even: the forces of such a rod's inertia are those of thirds of its mass
+//! at its ends and of a sixth between them, exactly. With K an elbow, P the platform, m the rods of
+//! an arm, by virtual work:
 //!
 //! ```text
 //! Eᵢ = m (2K̈ᵢ + P̈) / 6 - m g / 2                  at each elbow
@@ -58,7 +58,8 @@ impl<T: RealField + Trig> Delta<T> {
     /// The machine with masses. `unit_m` is the unit of its lengths in metres: 1e-3 for mm.
     ///
     /// # Errors
-    /// [`DynamicsError`] for a negative number or one that is not finite, and a unit that is not above 0.
+    /// [`DynamicsError`] for a negative number or one that is not finite, and a unit that is not
+    /// above 0.
     pub fn dynamics(
         &self,
         unit_m: T,
@@ -113,8 +114,9 @@ impl<T: RealField + Trig> DeltaDynamics<T> {
         Ok(Self { masses, ..self })
     }
 
-    /// The torques of the arms in Nm that a motion takes in a pose, at rates in rad/s and accelerations in
-    /// rad/s²: what a servo drive takes as feed-forward. At the arms' side of the gears.
+    /// The torques of the arms in Nm that a motion takes in a pose, at rates in rad/s and
+    /// accelerations in rad/s²: what a servo drive takes as feed-forward. At the arms' side of the
+    /// gears.
     ///
     /// An arm at rest has no Coulomb friction here: it may have any up to that.
     ///

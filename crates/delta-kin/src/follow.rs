@@ -46,8 +46,8 @@ impl<T: RealField + Copy> SpeedLimits<T> {
     /// A feed of the platform in length per second, and the largest rate of each arm in rad/s.
     ///
     /// # Errors
-    /// [`FollowError::SpeedLimits`] unless all are within 1/h²..=h², h the fourth root of the largest
-    /// number divided by 32 (f64: 8e-152..=1e151, f32: 6e-17..=1.8e16).
+    /// [`FollowError::SpeedLimits`] unless all are within 1/h²..=h², h the fourth root of the
+    /// largest number divided by 32 (f64: 8e-152..=1e151, f32: 6e-17..=1.8e16).
     pub fn new(feed: T, max_rates: [T; 3]) -> Result<Self, FollowError<T>> {
         let [first, second, third] = max_rates;
         for (name, value) in [
@@ -160,13 +160,15 @@ impl<T: RealField + Trig> Delta<T> {
     /// The tolerance is a guarantee: a step is taken when its
     /// [`chord_bound`](Self::chord_bound), which is proven and not sampled, plus the height of
     /// its arc keeps it, and is halved until it does. Point of the path and platform are
-    /// that near at every fraction of the step, so this holds from the platform to the path and from
-    /// the path to the platform. Between two waypoints the arms turn at constant rates, so none
-    /// is faster than its limit; ranges are kept since they hold both ends, ball joints but for
-    /// the tolerance. The working mode is kept at each waypoint, the assembly mode between them too.
+    /// that near at every fraction of the step, so this holds from the platform to the path and
+    /// from the path to the platform. Between two waypoints the arms turn at constant rates, so
+    /// none is faster than its limit; ranges are kept since they hold both ends, ball joints but
+    /// for the tolerance. The working mode is kept at each waypoint, the assembly mode between them
+    /// too.
     ///
     /// The path is walked once before anything is handed out, so that an error comes first
-    /// and the number of waypoints is known: [`Follow::remaining`]. Memory does not grow with the path.
+    /// and the number of waypoints is known: [`Follow::remaining`]. Memory does not grow with the
+    /// path.
     ///
     /// # Errors
     /// [`FollowError`]; the point named is the first along the path.

@@ -15,8 +15,8 @@ use crate::{Arm, AssemblyMode, Delta, ElbowSide, ZAxis};
 
 /// Why no angles bring the platform to a point.
 ///
-/// Where more than one thing is wrong the first of this list is reported, and of several arms the one
-/// that misses by most.
+/// Where more than one thing is wrong the first of this list is reported, and of several arms the
+/// one that misses by most.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -178,8 +178,8 @@ impl<T: RealField + Trig> Delta<T> {
     }
 
     #[cfg(feature = "path-timing")]
-    /// The angles, and how fast each of them turns while the centre moves along `along`. With e the rod and
-    /// t the direction of the elbow when its angle grows:
+    /// The angles, and how fast each of them turns while the centre moves along `along`. With e the
+    /// rod and t the direction of the elbow when its angle grows:
     ///
     /// ```text
     /// θ' = (e · along) / (e · t)

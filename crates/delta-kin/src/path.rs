@@ -17,8 +17,8 @@ use crate::{Arm, Delta};
 /// A curve of the platform's centre as a path of the three arms, in radians, by the curve's arc
 /// length: what [`path_timing::Table`] plans.
 ///
-/// It is made by [`Delta::path`], which has looked at all of it. The next one goes on from it without
-/// a stop where the directions of their curves agree, as those of a line and a blend do.
+/// It is made by [`Delta::path`], which has looked at all of it. The next one goes on from it
+/// without a stop where the directions of their curves agree, as those of a line and a blend do.
 ///
 /// ```
 /// use delta_kin::{Delta, DeltaPath, Dimensions};
@@ -46,8 +46,8 @@ pub struct DeltaPath {
 const EDGE: f64 = 1e-6;
 
 /// Longest curve that stays within the workspace, in spans: an arc of 100 rad. A Bézier curve of
-/// degree 5 in a ball of radius 1 is at most 87 long, by Markov's inequality. Beyond, the machine may
-/// be too small for the digits of the curve, and would be walked on without end.
+/// degree 5 in a ball of radius 1 is at most 87 long, by Markov's inequality. Beyond, the machine
+/// may be too small for the digits of the curve, and would be walked on without end.
 const LONGEST: f64 = 100.0;
 
 /// Shortest step along the curve, as a fraction of it.
@@ -60,11 +60,12 @@ struct Look {
 }
 
 impl Delta {
-    /// The path of the arms that brings the platform's centre along `curve`, in the machine's modes.
+    /// The path of the arms that brings the platform's centre along `curve`, in the machine's
+    /// modes.
     ///
-    /// All of the curve is looked at before anything is handed out: from each place it goes on by no
-    /// more than the [`clearance`](Self::clearance) there, so that nothing between is out of reach,
-    /// beyond a joint range or a ball joint, or singular.
+    /// All of the curve is looked at before anything is handed out: from each place it goes on by
+    /// no more than the [`clearance`](Self::clearance) there, so that nothing between is out of
+    /// reach, beyond a joint range or a ball joint, or singular.
     ///
     /// # Errors
     /// [`DeltaPathError`]; the place named is the first along the curve.

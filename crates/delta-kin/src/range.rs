@@ -82,8 +82,8 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     nalgebra::ComplexField::sqrt(x)
 }
 
-/// The length of a vector whose squares may overflow or vanish. In `T` alone, as `hypot` of `f32` is
-/// not.
+/// The length of a vector whose squares may overflow or vanish. In `T` alone, as `hypot` of `f32`
+/// is not.
 pub(crate) fn length<T: RealField + Trig, const N: usize>(vector: &SVector<T, N>) -> T {
     let largest = vector.amax();
     if largest > T::zero() && largest.is_finite() {

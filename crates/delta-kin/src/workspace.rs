@@ -58,8 +58,8 @@ pub enum WorkspaceError<T: RealField + Copy = f64> {
 }
 
 impl<T: RealField + Trig> Delta<T> {
-    /// Whether the platform's centre can be at `point` in the machine's modes and within its limits:
-    /// [`inverse`](Self::inverse) says why not.
+    /// Whether the platform's centre can be at `point` in the machine's modes and within its
+    /// limits: [`inverse`](Self::inverse) says why not.
     #[must_use]
     pub fn is_reachable(&self, point: impl Into<Point3<T>>) -> bool {
         self.inverse(point).is_ok()
@@ -100,8 +100,8 @@ impl<T: RealField + Trig> Delta<T> {
         self.slice(z, [Vector3::new(cos, sin, T::zero()), Vector3::z()], points)
     }
 
-    /// The points at which rays from height `z` on the base's axis first leave the workspace, in the
-    /// plane of two unit vectors.
+    /// The points at which rays from height `z` on the base's axis first leave the workspace, in
+    /// the plane of two unit vectors.
     fn slice(
         &self,
         z: T,

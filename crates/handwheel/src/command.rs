@@ -67,7 +67,8 @@ impl<'a> Command<'a> {
         }
     }
 
-    /// Writes the telegram into the head of `buffer`; [`MAX_COMMAND`](crate::MAX_COMMAND) bytes hold every one.
+    /// Writes the telegram into the head of `buffer`; [`MAX_COMMAND`](crate::MAX_COMMAND) bytes
+    /// hold every one.
     ///
     /// # Errors
     /// [`EncodeError`]: the buffer is too short, or the unit has no such telegram.

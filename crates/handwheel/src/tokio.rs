@@ -28,8 +28,8 @@ use crate::{
 /// pendant is there. Dropping the future of a job does not take it back.
 ///
 /// Events that were not [taken](Self::event) wait. When [`QUEUE`](Self::QUEUE) of them do, the line
-/// stands until one is taken: the pendant gets no acknowledgement, and jobs wait, too. So no release
-/// of a key is lost behind the key.
+/// stands until one is taken: the pendant gets no acknowledgement, and jobs wait, too. So no
+/// release of a key is lost behind the key.
 ///
 /// A lost connection is final: every call reports it as [`Lost`], and whether and when to connect
 /// again is the caller's decision.
@@ -124,8 +124,8 @@ impl Pendant {
         }
     }
 
-    /// What happens next at the pendant: keys, rotary switches, its status, that it no longer answers.
-    /// Dropping the future loses nothing.
+    /// What happens next at the pendant: keys, rotary switches, its status, that it no longer
+    /// answers. Dropping the future loses nothing.
     ///
     /// # Errors
     /// [`Lost`], after the last event.

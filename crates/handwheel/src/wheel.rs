@@ -118,7 +118,8 @@ const fn signed(magnitude: u64, counts: i32) -> i64 {
     if counts < 0 { -magnitude } else { magnitude }
 }
 
-/// Makes samples of one [`PERIOD`](Self::PERIOD) out of a counter that is read whenever there is time.
+/// Makes samples of one [`PERIOD`](Self::PERIOD) out of a counter that is read whenever there is
+/// time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelSampler {
     since: Duration,

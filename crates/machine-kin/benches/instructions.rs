@@ -1,5 +1,5 @@
-//! Instructions of what a planner asks of a segment, counted by callgrind: the arms' own proofs beside
-//! those that follow from their inverses alone, and of each machine its own.
+//! Instructions of what a planner asks of a segment, counted by callgrind: the arms' own proofs
+//! beside those that follow from their inverses alone, and of each machine its own.
 #![expect(
     clippy::expect_used,
     clippy::unwrap_used,

@@ -1,5 +1,5 @@
-//! Where the motors of a machine are, and how fast they turn for the tool, anywhere within some mm of a
-//! point: what a proof of a whole region asks of the same inverse that a path does.
+//! Where the motors of a machine are, and how fast they turn for the tool, anywhere within some mm
+//! of a point: what a proof of a whole region asks of the same inverse that a path does.
 //!
 //! `cargo run -p machine-kin --example all_poses_near`
 

@@ -1,4 +1,5 @@
-//! A CoreXY's pen along an arc, with a lift: the steps of both belts and the lift, to a tick of 72 MHz.
+//! A CoreXY's pen along an arc, with a lift: the steps of both belts and the lift, to a tick of 72
+//! MHz.
 //!
 //! `cargo run -p machine-kin --example core_xy_arc`
 

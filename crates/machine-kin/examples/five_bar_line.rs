@@ -1,5 +1,5 @@
-//! A five-bar's tool along a line, from rest to rest as fast as both motors allow: their steps, to a
-//! tick of 72 MHz.
+//! A five-bar's tool along a line, from rest to rest as fast as both motors allow: their steps, to
+//! a tick of 72 MHz.
 //!
 //! `cargo run -p machine-kin --example five_bar_line`
 
@@ -25,8 +25,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let step = step?;
         println!("{:>9} axis {} {:?}", step.ticks, step.axis, step.direction);
     }
-    // On the way down one pair of elbows ends where an arm is folded, with the other both forearms come
-    // in line.
+    // On the way down one pair of elbows ends where an arm is folded, with the other both forearms
+    // come in line.
     let inwards = [Elbow::Right, Elbow::Left];
     let down = Curve::line([0.0, 200.0], [0.0, 20.0])?;
     for branch in [outwards, inwards] {

@@ -1,5 +1,5 @@
-//! A machine that is not in the crate, from its README alone: the boom of a camera, which turns, tilts,
-//! and has a carriage along it.
+//! A machine that is not in the crate, from its README alone: the boom of a camera, which turns,
+//! tilts, and has a carriage along it.
 //!
 //! `cargo run -p machine-kin --example own_machine`
 

@@ -1,4 +1,5 @@
-//! A SCARA's gripper along a line, up, and round by a quarter turn: the steps of its four motors, to a tick of 72 MHz.
+//! A SCARA's gripper along a line, up, and round by a quarter turn: the steps of its four motors,
+//! to a tick of 72 MHz.
 //!
 //! `cargo run -p machine-kin --example scara_with_wrist`
 

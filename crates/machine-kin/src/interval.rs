@@ -7,11 +7,11 @@
 //! ```
 //!
 //! The middle of a result is off by at most half a unit of its last place, that is ε/2 of it with
-//! ε = 2⁻⁵², or by less than m = 2⁻³⁰⁰ where it underflows: its radius has ε times the middle and m in
-//! it. A radius is computed of numbers that are not negative in less than ten steps, each off by at most
-//! ε/2 of its result: times 1 + 8 ε it is too large. m also keeps numbers away from those that processors
-//! are slow with. Sines, cosines and arc tangents of `trig-kernels` are off by less than a unit of their
-//! last place, which is that of the exact number: 2 ε.
+//! ε = 2⁻⁵², or by less than m = 2⁻³⁰⁰ where it underflows: its radius has ε times the middle and m
+//! in it. A radius is computed of numbers that are not negative in less than ten steps, each off by
+//! at most ε/2 of its result: times 1 + 8 ε it is too large. m also keeps numbers away from those
+//! that processors are slow with. Sines, cosines and arc tangents of `trig-kernels` are off by less
+//! than a unit of their last place, which is that of the exact number: 2 ε.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -19,8 +19,8 @@ use trig_kernels::{atan2, sin_cos, sqrt};
 
 use crate::number::{Number, Refusal, operators};
 
-/// The numbers between two ends. Where nothing is known of a number any more, after a division by what
-/// may be 0, both ends are not numbers, and so are those of all that is computed from it.
+/// The numbers between two ends. Where nothing is known of a number any more, after a division by
+/// what may be 0, both ends are not numbers, and so are those of all that is computed from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Interval {
@@ -78,8 +78,8 @@ impl Interval {
         radius: f64::NAN,
     };
 
-    /// From the lower to the upper end; [`UNKNOWN`](Self::UNKNOWN) where these are not in their order
-    /// or not finite.
+    /// From the lower to the upper end; [`UNKNOWN`](Self::UNKNOWN) where these are not in their
+    /// order or not finite.
     #[must_use]
     pub fn new(low: f64, high: f64) -> Self {
         let is_known = low <= high && high - low < f64::INFINITY;
@@ -144,7 +144,8 @@ impl Interval {
         self.radius < f64::INFINITY
     }
 
-    /// Around what was computed as `middle`, with a radius that was computed as `radius`, of a product.
+    /// Around what was computed as `middle`, with a radius that was computed as `radius`, of a
+    /// product.
     #[inline]
     fn of_product(middle: f64, radius: f64) -> Self {
         Self {

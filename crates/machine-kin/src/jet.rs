@@ -12,8 +12,8 @@
 
 use crate::number::{Number, Refusal, operators};
 
-/// A number that changes along a parameter: `K` Taylor coefficients, the k-th of them the k-th derivative
-/// over k!. `Jet<f64, 3>` has value, slope and half the second derivative.
+/// A number that changes along a parameter: `K` Taylor coefficients, the k-th of them the k-th
+/// derivative over k!. `Jet<f64, 3>` has value, slope and half the second derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet<T, const K: usize> {
     coefficients: [T; K],

@@ -32,8 +32,8 @@ impl Axis {
         }
     }
 
-    /// A joint or a table, in radians: what the inverse says of it counts but for whole turns, the path
-    /// goes on without a jump. An end may be infinite.
+    /// A joint or a table, in radians: what the inverse says of it counts but for whole turns, the
+    /// path goes on without a jump. An end may be infinite.
     #[must_use]
     pub const fn angle(name: &'static str, range: RangeInclusive<f64>) -> Self {
         Self {
@@ -100,8 +100,8 @@ impl Axis {
 /// By how much an axis may pass an end of its range, as a fraction of it and of 1.
 const RANGE_SLACK: f64 = 1e-9;
 
-/// A machine with `N` axes that move a tool of `N` coordinates: its inverse kinematics, written once for
-/// all [`Number`]s.
+/// A machine with `N` axes that move a tool of `N` coordinates: its inverse kinematics, written
+/// once for all [`Number`]s.
 ///
 /// Coordinates of the tool are lengths: an orientation is one at a radius, as in
 /// [`Scara`](crate::Scara). What is not written as a number of type `T` is exact: the geometry.
@@ -118,19 +118,19 @@ pub trait Machine<const N: usize>: Clone + Debug {
     /// [`Refusal`] where the tool cannot be there, by what [`Number`]'s functions refuse.
     fn inverse<T: Number>(&self, tool: [T; N], branch: Self::Branch) -> Result<[T; N], Refusal>;
 
-    /// Ranges of the tool's coordinates, where they have ends of their own: what is not a matter of any
-    /// axis, such as the frame of a CoreXY.
+    /// Ranges of the tool's coordinates, where they have ends of their own: what is not a matter of
+    /// any axis, such as the frame of a CoreXY.
     fn area(&self) -> [RangeInclusive<f64>; N] {
         [(); N].map(|()| f64::NEG_INFINITY..=f64::INFINITY)
     }
 
-    /// The path of the axes that brings the tool along `curve` on one branch, each angle beginning at
-    /// the turn nearest to the middle of its range.
+    /// The path of the axes that brings the tool along `curve` on one branch, each angle beginning
+    /// at the turn nearest to the middle of its range.
     ///
-    /// All of the curve is looked at before anything is handed out, piece by piece: by intervals, no
-    /// piece of it has a place that cannot be reached, at which the branch ends, that is singular, or at
-    /// which an axis leaves its range. Pieces that cannot be decided are halved, down to 1e-9 of the
-    /// curve, and what is undecided then is refused.
+    /// All of the curve is looked at before anything is handed out, piece by piece: by intervals,
+    /// no piece of it has a place that cannot be reached, at which the branch ends, that is
+    /// singular, or at which an axis leaves its range. Pieces that cannot be decided are halved,
+    /// down to 1e-9 of the curve, and what is undecided then is refused.
     ///
     /// # Errors
     /// [`PathError`]; the place named is the first along the curve.
@@ -142,8 +142,8 @@ pub trait Machine<const N: usize>: Clone + Debug {
         self.path_from(curve, branch, self.axes().map(|axis| axis.middle()))
     }
 
-    /// As [`path`](Self::path), each angle beginning at the turn nearest to `previous`: where the path
-    /// before ended.
+    /// As [`path`](Self::path), each angle beginning at the turn nearest to `previous`: where the
+    /// path before ended.
     ///
     /// # Errors
     /// [`PathError`]; the place named is the first along the curve.
@@ -156,9 +156,10 @@ pub trait Machine<const N: usize>: Clone + Debug {
         MachinePath::new(self.clone(), curve, branch, previous)
     }
 
-    /// How far the tool can go from a place, in each coordinate and all directions, before it may come
-    /// to where it cannot be, the branch ends, or the machine is singular: proven by intervals, so that
-    /// the true distance is larger. 0 where that is so already, infinite where it never is.
+    /// How far the tool can go from a place, in each coordinate and all directions, before it may
+    /// come to where it cannot be, the branch ends, or the machine is singular: proven by
+    /// intervals, so that the true distance is larger. 0 where that is so already, infinite where
+    /// it never is.
     fn clearance(&self, tool: [f64; N], branch: Self::Branch) -> f64 {
         let is_free = |by: f64| is_regular(self, tool, by, branch, DEEPEST);
         let size = tool.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -182,8 +183,8 @@ pub trait Machine<const N: usize>: Clone + Debug {
     }
 }
 
-/// The smallest clearance that is looked for, and that from which on it is infinite, as fractions of
-/// the largest coordinate.
+/// The smallest clearance that is looked for, and that from which on it is infinite, as fractions
+/// of the largest coordinate.
 const LEAST_CLEARANCE: f64 = 1e-9;
 const MOST_CLEARANCE: f64 = 1e6;
 

@@ -129,8 +129,8 @@ impl<const N: usize> Enclosure<N> {
         self.bounded(product(&self.inverse, axes))
     }
 
-    /// The most that each coordinate is off by where matrices that are apart by no more than said, of
-    /// what is off by `most`, make the axes off.
+    /// The most that each coordinate is off by where matrices that are apart by no more than said,
+    /// of what is off by `most`, make the axes off.
     pub(crate) fn between(&self, apart: &Matrix<N>, most: f64) -> [f64; N] {
         let axes = apart.map(|row| row.iter().sum::<f64>() * most);
         self.off(&axes)

@@ -4,16 +4,16 @@
 //! f(t) ∈ Σ cₖ tᵏ ± r      |t| ≤ 1,  k < K
 //! ```
 //!
-//! What a product has beyond the last power goes to the remainder, as does what its coefficients are
-//! rounded by: less than K ε Σ |aᵢ| Σ |bⱼ| with ε = 2⁻⁵². Quotients and roots are found by the recurrences
-//! of [`Jet`], whose rounding does not count, and judged by what they leave:
+//! What a product has beyond the last power goes to the remainder, as does what its coefficients
+//! are rounded by: less than K ε Σ |aᵢ| Σ |bⱼ| with ε = 2⁻⁵². Quotients and roots are found by the
+//! recurrences of [`Jet`], whose rounding does not count, and judged by what they leave:
 //!
 //! ```text
 //! |a / b - g| = |a - g b| / |b|      |√a - g| = |a - g²| / (√a + g)
 //! ```
 //!
-//! So a function is known as well as its next derivative is small, however often a variable stands in
-//! it. Sines and arc tangents are those of the middle turned by short series.
+//! So a function is known as well as its next derivative is small, however often a variable stands
+//! in it. Sines and arc tangents are those of the middle turned by short series.
 
 use trig_kernels::{atan2, sin_cos, sqrt};
 
@@ -200,8 +200,8 @@ fn fifth_power(x: f64) -> f64 {
     square * square * x * (1.0 + LOOSE)
 }
 
-/// What the rounding of one coefficient is at most, as a part of the numbers that it was computed of:
-/// of up to eight products and their sums.
+/// What the rounding of one coefficient is at most, as a part of the numbers that it was computed
+/// of: of up to eight products and their sums.
 const EACH: f64 = 8.0 * f64::EPSILON;
 
 /// What least distances are rounded by.

@@ -6,12 +6,12 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use trig_kernels::SixDigits;
 
 /// A number that an inverse kinematics can be computed with: `f64` for the axes themselves, a
-/// [`Jet`](crate::Jet) for their derivatives along a path, a [`Gradient`](crate::Gradient) for those by
-/// the tool's coordinates, each of numbers or of [`Interval`](crate::Interval)s.
+/// [`Jet`](crate::Jet) for their derivatives along a path, a [`Gradient`](crate::Gradient) for
+/// those by the tool's coordinates, each of numbers or of [`Interval`](crate::Interval)s.
 ///
-/// Sums, differences, products and quotients also take an `f64` on the right; `T::from(2.0) - x` has
-/// one on the left. What divides by a number that is or may be 0 is not known from there on, which is
-/// refused at the end.
+/// Sums, differences, products and quotients also take an `f64` on the right; `T::from(2.0) - x`
+/// has one on the left. What divides by a number that is or may be 0 is not known from there on,
+/// which is refused at the end.
 pub trait Number:
     Copy
     + Debug
@@ -40,8 +40,8 @@ pub trait Number:
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
 
-    /// The angle of the vector (x, y) against the axis of x, in radians: at any whole turn, so that it
-    /// is an axis by itself, or added to others with whole factors.
+    /// The angle of the vector (x, y) against the axis of x, in radians: at any whole turn, so that
+    /// it is an axis by itself, or added to others with whole factors.
     ///
     /// # Errors
     /// [`Refusal`] of a vector that is 0, or may be.
@@ -77,7 +77,8 @@ pub trait Number:
 pub struct Refusal {
     /// In the machine's words.
     pub reason: &'static str,
-    /// By how much the number was below 0, in its own unit; not a number where it may be above as well.
+    /// By how much the number was below 0, in its own unit; not a number where it may be above as
+    /// well.
     pub by: f64,
 }
 
@@ -141,8 +142,8 @@ impl Number for f64 {
     }
 }
 
-/// Sums, differences, products and quotients with an `f64` on the right, and those of two numbers by
-/// reference to functions of the type.
+/// Sums, differences, products and quotients with an `f64` on the right, and those of two numbers
+/// by reference to functions of the type.
 macro_rules! operators {
     ([$($generics:tt)*] $type:ty) => {
         impl<$($generics)*> core::ops::Add for $type {

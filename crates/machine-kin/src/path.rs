@@ -20,8 +20,8 @@ use turns::{Turns, at_turns};
 /// A curve of the tool as a path of a machine's axes, by the curve's arc length: what
 /// [`path_timing::Table`] plans.
 ///
-/// It is made by [`Machine::path`], which has looked at all of it. The next one goes on from it without
-/// a stop where the directions of their curves agree, as those of a line and a blend do.
+/// It is made by [`Machine::path`], which has looked at all of it. The next one goes on from it
+/// without a stop where the directions of their curves agree, as those of a line and a blend do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MachinePath<M: Machine<N>, const N: usize> {
     machine: M,
@@ -46,15 +46,15 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         self.branch
     }
 
-    /// How far the tool is at the arc length `s` from where it could not be, the branch ends, or the
-    /// machine is singular: see [`Machine::clearance`].
+    /// How far the tool is at the arc length `s` from where it could not be, the branch ends, or
+    /// the machine is singular: see [`Machine::clearance`].
     #[must_use]
     pub fn clearance(&self, s: f64) -> f64 {
         self.machine.clearance(self.curve.at(s).point, self.branch)
     }
 
-    /// Positions of the axes with their first and second derivatives by the arc length, exact but for
-    /// rounding: what a drive that is fed forward needs.
+    /// Positions of the axes with their first and second derivatives by the arc length, exact but
+    /// for rounding: what a drive that is fed forward needs.
     ///
     /// # Errors
     /// [`PathError::Unreachable`] outside of the curve.

@@ -10,8 +10,8 @@ use crate::rank::Rank;
 
 /// Measurements as a function of changes of N parameters.
 ///
-/// A measurement is a place in space, or one number; its square is that of the distance from what is
-/// computed.
+/// A measurement is a place in space, or one number; its square is that of the distance from what
+/// is computed.
 pub trait Problem<const N: usize> {
     /// What changed parameters make.
     type Model;
@@ -22,8 +22,8 @@ pub trait Problem<const N: usize> {
     /// The square of what is missing at each measurement; `None` where the model cannot have it.
     fn squares(&self, model: &Self::Model) -> impl Iterator<Item = Option<f64>>;
 
-    /// Adds the rows of each measurement: one, or one for each coordinate. `None` where the model has
-    /// no derivative.
+    /// Adds the rows of each measurement: one, or one for each coordinate. `None` where the model
+    /// has no derivative.
     fn add_rows(&self, model: &Self::Model, jacobian: &mut Jacobian<N>) -> Option<()>;
 }
 
@@ -70,13 +70,13 @@ const SMALL_DECREASE: f64 = 1e-9;
 
 /// The model with the smallest sum of squares, from no changes on, and how well it fits.
 ///
-/// `span` is what a computed value is rounded by, in machine epsilons, such as the size of the machine;
-/// `units` is what a change of each parameter is measured in: the span for a length, 1 for an angle.
-/// Parameters that the measurements do not determine stay near their values.
+/// `span` is what a computed value is rounded by, in machine epsilons, such as the size of the
+/// machine; `units` is what a change of each parameter is measured in: the span for a length, 1 for
+/// an angle. Parameters that the measurements do not determine stay near their values.
 ///
 /// # Errors
-/// [`NotConverged`]; its `rms` is not a number where the problem cannot be computed without changes, or
-/// what is left is not a number, such as in a span of 0.
+/// [`NotConverged`]; its `rms` is not a number where the problem cannot be computed without
+/// changes, or what is left is not a number, such as in a span of 0.
 pub fn fit<const N: usize, P: Problem<N>>(
     problem: &P,
     span: f64,
@@ -185,8 +185,8 @@ impl<const N: usize> LeastSquares<N> {
         &self.changes
     }
 
-    /// The standard deviation of each parameter, in its unit, from the residuals; `None` for those that
-    /// the measurements do not determine.
+    /// The standard deviation of each parameter, in its unit, from the residuals; `None` for those
+    /// that the measurements do not determine.
     #[must_use]
     pub fn deviations(&self) -> [Option<f64>; N] {
         self.rank.deviations()
@@ -216,11 +216,11 @@ impl<const N: usize> LeastSquares<N> {
         self.rank.rank()
     }
 
-    /// Smallest over largest singular value of the scaled Jacobian: how well the worst combination is
-    /// determined. Zero within rounding where the rank is less than N.
+    /// Smallest over largest singular value of the scaled Jacobian: how well the worst combination
+    /// is determined. Zero within rounding where the rank is less than N.
     ///
-    /// Noise can make a parameter look determined that the measurements hardly see: this number and the
-    /// size of the changes show it.
+    /// Noise can make a parameter look determined that the measurements hardly see: this number and
+    /// the size of the changes show it.
     #[must_use]
     pub fn conditioning(&self) -> f64 {
         self.rank.conditioning()
@@ -231,8 +231,8 @@ impl<const N: usize> LeastSquares<N> {
         self.rank.free()
     }
 
-    /// Changes of the parameters that, to first order, move none of the computed values: a basis of the
-    /// null space.
+    /// Changes of the parameters that, to first order, move none of the computed values: a basis of
+    /// the null space.
     pub fn null_space(&self) -> impl Iterator<Item = [f64; N]> + use<N> {
         self.rank.null_space()
     }

@@ -34,8 +34,8 @@ impl<const N: usize> Jacobian<N> {
         }
     }
 
-    /// One row: how much the computed value grows with each parameter, and what is measured less what is
-    /// computed.
+    /// One row: how much the computed value grows with each parameter, and what is measured less
+    /// what is computed.
     pub fn add(&mut self, row: [f64; N], residual: f64) {
         let mut scaled = row;
         for (value, unit) in scaled.iter_mut().zip(self.units) {

@@ -160,8 +160,8 @@ impl<const N: usize> Latches<N> {
     /// Takes one state of the bus.
     ///
     /// # Errors
-    /// [`BusError::DataUnderStrobe`] when the data changes in a write before or after which a strobe
-    /// is high; [`BusError::NoSuchLatch`]. Bus and latches are then as before.
+    /// [`BusError::DataUnderStrobe`] when the data changes in a write before or after which a
+    /// strobe is high; [`BusError::NoSuchLatch`]. Bus and latches are then as before.
     pub fn write(&mut self, write: BusWrite) -> Result<(), BusError> {
         if let Some(latch) = self.bus.strobe.or(write.strobe)
             && write.data != self.bus.data

@@ -1,6 +1,6 @@
-//! Instructions per point of a dense file, counted by callgrind: smoothing, look-ahead, rows; for arms
-//! also the path of the joints, and as many segments as keep the departure's proven bound. And per row
-//! and impulse of a shaped motion.
+//! Instructions per point of a dense file, counted by callgrind: smoothing, look-ahead, rows; for
+//! arms also the path of the joints, and as many segments as keep the departure's proven bound. And
+//! per row and impulse of a shaped motion.
 #![expect(clippy::unwrap_used, reason = "a bench fails loudly")]
 
 use core::hint::black_box;

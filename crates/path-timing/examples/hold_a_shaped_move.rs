@@ -1,5 +1,5 @@
-//! A shaped move that is held half-way and goes on: the hold is shaped too, and so are the set-points of a
-//! drive.
+//! A shaped move that is held half-way and goes on: the hold is shaped too, and so are the
+//! set-points of a drive.
 //!
 //! `cargo run -p path-timing --example hold_a_shaped_move`
 

@@ -1,5 +1,5 @@
-//! A move of 20 mm with a machine that rings at 40 Hz, shaped and not: how long it takes, how far the
-//! axis departs from the unshaped motion, and what an oscillator on it is left with.
+//! A move of 20 mm with a machine that rings at 40 Hz, shaped and not: how long it takes, how far
+//! the axis departs from the unshaped motion, and what an oscillator on it is left with.
 
 use core::error::Error;
 use core::f64::consts::TAU;

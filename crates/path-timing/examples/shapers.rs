@@ -1,5 +1,5 @@
-//! Shapers against a vibration of 40 Hz: what each costs in time, what it leaves, also where the machine
-//! rings higher or lower than thought.
+//! Shapers against a vibration of 40 Hz: what each costs in time, what it leaves, also where the
+//! machine rings higher or lower than thought.
 //!
 //! `cargo run -p path-timing --example shapers`
 

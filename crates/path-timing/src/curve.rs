@@ -19,8 +19,8 @@ use vector::{all_finite, along, difference, dot, norm, scaled};
 
 /// A curve of the tool in `D` dimensions, in any unit of length, by its arc length s.
 ///
-/// As a [`Path`] it is that of a Cartesian machine, whose axes are the coordinates; it goes on to the
-/// next without a stop where their directions agree ([`Corner::Smooth`]), unless
+/// As a [`Path`] it is that of a Cartesian machine, whose axes are the coordinates; it goes on to
+/// the next without a stop where their directions agree ([`Corner::Smooth`]), unless
 /// [`with_corner`](Self::with_corner) says otherwise.
 ///
 /// ```
@@ -113,8 +113,8 @@ impl<const D: usize> Curve<D> {
     }
 
     /// The arc of a circle by `angle` > 0 radians from `start` round `centre`, leaving the start in
-    /// `direction`, of which only the part perpendicular to the radius counts. 2π and more go round, up
-    /// to 100 rad; whole turns end at the start, to the last bit.
+    /// `direction`, of which only the part perpendicular to the radius counts. 2π and more go
+    /// round, up to 100 rad; whole turns end at the start, to the last bit.
     ///
     /// # Errors
     /// [`CurveError::NotFinite`], [`CurveError::NoLength`], [`CurveError::Angle`],
@@ -238,7 +238,8 @@ impl<const D: usize> Curve<D> {
         self
     }
 
-    /// The curve with another corner at its end, such as the start-stop speeds of a gantry's motors.
+    /// The curve with another corner at its end, such as the start-stop speeds of a gantry's
+    /// motors.
     #[must_use]
     pub const fn with_corner(mut self, corner: Corner<[f64; D]>) -> Self {
         self.corner = corner;
@@ -264,8 +265,8 @@ impl<const D: usize> Curve<D> {
     }
 
     /// The most by which |dP/ds| is above 1: 0 of lines and arcs; of a Bézier curve, where it may
-    /// be as much below, twice the largest that was found at 8 places of each of its intervals. In a
-    /// [`Smoothed`] corner |dP/ds| is below 1.
+    /// be as much below, twice the largest that was found at 8 places of each of its intervals. In
+    /// a [`Smoothed`] corner |dP/ds| is below 1.
     #[must_use]
     pub fn speed_error(&self) -> f64 {
         match &self.shape {

@@ -247,8 +247,8 @@ impl Bound {
         self.worst = larger_or_nan(self.worst, departure);
     }
 
-    /// At any speeds; on the last segment before a stop, where it may be held at the knot before, also
-    /// from rest to rest.
+    /// At any speeds; on the last segment before a stop, where it may be held at the knot before,
+    /// also from rest to rest.
     fn add_any<A: Axes>(
         &mut self,
         knots: [&Knot<A>; 2],
@@ -271,8 +271,8 @@ impl Bound {
     }
 }
 
-/// A number of segments within a range whose departure is within `allowed`, about a sixteenth or one
-/// above the fewest; an estimate of what would be enough where the most are too few.
+/// A number of segments within a range whose departure is within `allowed`, about a sixteenth or
+/// one above the fewest; an estimate of what would be enough where the most are too few.
 fn search<E>(
     [least, most]: [u32; 2],
     allowed: f64,
@@ -341,14 +341,14 @@ fn limited(excess: f64) -> f64 {
     }
 }
 
-/// The departure shrinks with the fourth power of the number of segments, or, where knots are far apart,
-/// with less.
+/// The departure shrinks with the fourth power of the number of segments, or, where knots are far
+/// apart, with less.
 fn fourth_root(excess: f64) -> f64 {
     sqrt(sqrt(limited(excess)))
 }
 
-/// About the fewest segments that are enough, between numbers of which one is not enough and the other
-/// is, each with the inverse of the fourth root of its departure, which is about linear.
+/// About the fewest segments that are enough, between numbers of which one is not enough and the
+/// other is, each with the inverse of the fourth root of its departure, which is about linear.
 fn fewest_between((few, low): (u32, f64), (enough, high): (u32, f64)) -> u32 {
     let part = (1.0 - low) / (high - low);
     few.saturating_add(rounded_up(f64::from(enough.saturating_sub(few)) * part))

@@ -81,8 +81,8 @@ pub enum PlanError<E> {
         /// How far apart.
         by: f64,
     },
-    /// A segment is so coarse that the path between its ends cannot be known from their slopes: more
-    /// segments are needed.
+    /// A segment is so coarse that the path between its ends cannot be known from their slopes:
+    /// more segments are needed.
     #[error("leg {leg}, at {}: the segment is too coarse for the path; use more segments", SixDigits(*.s))]
     TooCoarse {
         /// The leg, from 0.
@@ -135,7 +135,8 @@ pub enum PlanError<E> {
         /// The lowest scale.
         min: f64,
     },
-    /// A motor has not the torque to hold what it carries against gravity and friction, at any speed.
+    /// A motor has not the torque to hold what it carries against gravity and friction, at any
+    /// speed.
     #[error("leg {leg}, at {}: a motor has not the torque for what it carries, at any speed", SixDigits(*.s))]
     Overload {
         /// The leg, from 0.

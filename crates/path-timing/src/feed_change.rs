@@ -1,10 +1,11 @@
 //! Changes of the feed with limited jerk.
 //!
-//! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant feed.
-//! Method: a lower feed and a stop by three phases of constant jerk at the limits that the axes have where they
-//! begin; else, and to a higher feed, shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics
-//! that would run; the shortest that keeps all limits is taken. Where none is found, or one that begins a few
-//! rows later ends sooner, it is tried again a row later.
+//! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant
+//! feed. Method: a lower feed and a stop by three phases of constant jerk at the limits that the
+//! axes have where they begin; else, and to a higher feed, shapes of a change over 1, 2, 3, 5, 8 ..
+//! segments, each tried on the cubics that would run; the shortest that keeps all limits is taken.
+//! Where none is found, or one that begins a few rows later ends sooner, it is tried again a row
+//! later.
 
 mod braking;
 mod course;
@@ -17,8 +18,8 @@ use crate::jerk::{Most, Walk};
 use braking::{Braking, KAPPAS, State, TAIL, TAILS};
 use ramped::FeedChange;
 
-/// The feed, and the change that goes on where it is not yet the wanted one. One that has ended stays for
-/// a segment more, which was tried with it.
+/// The feed, and the change that goes on where it is not yet the wanted one. One that has ended
+/// stays for a segment more, which was tried with it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SmoothFeed {
     feed: f64,
@@ -42,8 +43,8 @@ enum Kind {
 }
 
 impl Change {
-    /// The speed at the next knot, over a segment that takes `table_s` to the speed `planned` at a feed
-    /// of 1.
+    /// The speed at the next knot, over a segment that takes `table_s` to the speed `planned` at a
+    /// feed of 1.
     fn step(&mut self, ds: f64, table_s: f64, planned: f64) -> f64 {
         self.left = self.left.saturating_sub(1);
         if self.left == 0 {
@@ -71,8 +72,8 @@ const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 /// The speeds that are known for that: those before and after the last segment of the latest.
 const AHEAD: usize = 15;
 
-/// The parts of the axes' limits that braking is tried with. The first that keeps them is the quickest; of
-/// all lengths few do where the machine gains speed, for it has a limit, too.
+/// The parts of the axes' limits that braking is tried with. The first that keeps them is the
+/// quickest; of all lengths few do where the machine gains speed, for it has a limit, too.
 const OF_LIMITS: [f64; 8] = [1.0, 0.995, 0.99, 0.98, 0.96, 0.93, 0.9, 0.85];
 
 /// Halvings of a feed that nothing moves at.
@@ -132,8 +133,8 @@ impl SmoothFeed {
         self.change = self.change_for(course, at, wanted).or(self.change);
     }
 
-    /// The change to another feed that begins here. Beside the rows, which most of the time have none to look
-    /// for: in line, each took 96 instructions more on a Cortex-M4F.
+    /// The change to another feed that begins here. Beside the rows, which most of the time have
+    /// none to look for: in line, each took 96 instructions more on a Cortex-M4F.
     #[cold]
     #[inline(never)]
     fn change_for<A: Axes>(&self, course: &Course<'_, A>, at: At, wanted: f64) -> Option<Change> {
@@ -196,8 +197,8 @@ impl<A: Axes> Course<'_, A> {
         })
     }
 
-    /// The lower feed or the stop that begins here, unless one that begins a few rows later ends sooner: where
-    /// the table uses all of the jerk, a change has to wait.
+    /// The lower feed or the stop that begins here, unless one that begins a few rows later ends
+    /// sooner: where the table uses all of the jerk, a change has to wait.
     fn brake_soonest(&self, at: At, ahead: &[f64; AHEAD], [from, to]: [f64; 2]) -> Option<Change> {
         // One found by its length takes long to find, and longer to run.
         unless_later(at, ahead, |at| self.brake_at_limits(at, to))
@@ -205,7 +206,8 @@ impl<A: Axes> Course<'_, A> {
             .flatten()
     }
 
-    /// The change to a lower feed, or to rest, that uses most of the limits that the axes have where it begins.
+    /// The change to a lower feed, or to rest, that uses most of the limits that the axes have
+    /// where it begins.
     fn brake_at_limits(&self, at: At, to: f64) -> Option<Change> {
         let slope = self.knots.get(at.index)?.point.slope;
         let axes = self.limits.axes().iter().zip(slope.as_slice());
@@ -229,7 +231,8 @@ impl<A: Axes> Course<'_, A> {
         })
     }
 
-    /// What ends at the first knot by which braking within a deceleration and a jerk has come to a feed.
+    /// What ends at the first knot by which braking within a deceleration and a jerk has come to a
+    /// feed.
     fn braking(
         &self,
         at: At,
@@ -247,7 +250,8 @@ impl<A: Axes> Course<'_, A> {
             let [kappa, wanted] = match (end.speed > 0.0, to > 0.0) {
                 (true, _) => Braking::quickest([start, end], limits),
                 (false, false) => to_rest,
-                // The course rests, for as long as it is not known how it goes on: no feed ends there.
+                // The course rests, for as long as it is not known how it goes on: no feed ends
+                // there.
                 (false, true) => break,
             };
             let taken = length - knot.ds * tail;

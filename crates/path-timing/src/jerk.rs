@@ -1,16 +1,16 @@
 //! Speeds at the knots with limits of jerk.
 //!
-//! Goal: from the fastest speeds without a limit of jerk those that keep one too, in about the least
-//! time. Method: an interior point. With x = w² at each knot, accelerations are nearly linear in x and
-//! jerks concern three neighbours, so
+//! Goal: from the fastest speeds without a limit of jerk those that keep one too, in about the
+//! least time. Method: an interior point. With x = w² at each knot, accelerations are nearly linear
+//! in x and jerks concern three neighbours, so
 //!
 //! ```text
 //! F(x) = t ΣT + Σ -log(1 - g²) + Σ -log x / 10      g: each utilisation of a limit, T: the time of each segment
 //! ```
 //!
-//! has a Newton system of five diagonals, solved in one sweep. Every step stays inside all limits and
-//! makes F smaller; t grows until the logarithms cost next to nothing. What is measured at the end is
-//! the cubics themselves, and all speeds are scaled so that the tightest limit is just kept.
+//! has a Newton system of five diagonals, solved in one sweep. Every step stays inside all limits
+//! and makes F smaller; t grows until the logarithms cost next to nothing. What is measured at the
+//! end is the cubics themselves, and all speeds are scaled so that the tightest limit is just kept.
 
 mod barrier;
 mod newton;
@@ -70,8 +70,8 @@ fn centre<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize)
     weight
 }
 
-/// From the least F with a weight to the fastest speeds, but for a part of the time, of the knots in a
-/// range. The last weight.
+/// From the least F with a weight to the fastest speeds, but for a part of the time, of the knots
+/// in a range. The last weight.
 fn approach<A: Axes>(
     limits: &Reciprocals<A>,
     knots: &mut [Knot<A>],
@@ -131,7 +131,8 @@ const STEPS: u32 = 50;
 /// Twice the decrease of F that a whole step promises for each knot, at which it is the last.
 const CENTRED: f64 = 0.2;
 
-/// The same at the end of a table's search, whose answer is not to hang on the rounding of the way there.
+/// The same at the end of a table's search, whose answer is not to hang on the rounding of the way
+/// there.
 const SETTLED: f64 = 0.001;
 
 /// Where the search begins, as a fraction of the tightest limit.

@@ -3,15 +3,16 @@
 use crate::junction::Junction;
 use crate::{Axes, PathPoint, Row, ToolLimits};
 
-/// Memory for one row: of a [`Table`](crate::Table) while it is planned and as long as it lives, and
-/// of the window of a [`LookAhead`](crate::LookAhead).
+/// Memory for one row: of a [`Table`](crate::Table) while it is planned and as long as it lives,
+/// and of the window of a [`LookAhead`](crate::LookAhead).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knot<A: Axes> {
     /// Positions, and slopes on arrival.
     pub(crate) point: PathPoint<A>,
     /// Parameter of its leg on arrival.
     pub(crate) s: f64,
-    /// Length of the segment before, times its stretch κ; 0 where only the slopes are others than at the knot before.
+    /// Length of the segment before, times its stretch κ; 0 where only the slopes are others than
+    /// at the knot before.
     pub(crate) ds: f64,
     /// Limits of the tool on the segment before.
     pub(crate) tool: Option<ToolLimits>,

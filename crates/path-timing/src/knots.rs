@@ -26,8 +26,8 @@ pub(crate) fn span<A: Axes>(
     }
 }
 
-/// The segment between two knots in a second, at a ratio of both speeds: from rest at 0, evenly at 1,
-/// to rest at 2.
+/// The segment between two knots in a second, at a ratio of both speeds: from rest at 0, evenly at
+/// 1, to rest at 2.
 pub(crate) fn span_in_a_second<A: Axes>(knots: [&Knot<A>; 2], start: f64) -> Span<A> {
     let [_, to] = knots;
     span(knots, [start * to.ds, (2.0 - start) * to.ds], 1.0)
@@ -65,8 +65,8 @@ impl<P: Path> Laying<P> {
         self.stretched_knot(s, |_, _, _| 1.0)
     }
 
-    /// As [`knot`](Self::knot), the length of its segment stretched by a factor of the points at its ends
-    /// and the length itself.
+    /// As [`knot`](Self::knot), the length of its segment stretched by a factor of the points at
+    /// its ends and the length itself.
     pub(crate) fn stretched_knot(
         &mut self,
         s: f64,
@@ -99,10 +99,10 @@ impl<P: Path> Laying<P> {
     }
 }
 
-/// Whether the positions and slopes at both ends of a segment agree: the mean slope of each axis, in
-/// units of its speed limit, is that of the slopes at its ends but for a part of the steepest one. What
-/// happens to the path between two knots that do not cannot be known from them, and a cubic through
-/// them may take any time.
+/// Whether the positions and slopes at both ends of a segment agree: the mean slope of each axis,
+/// in units of its speed limit, is that of the slopes at its ends but for a part of the steepest
+/// one. What happens to the path between two knots that do not cannot be known from them, and a
+/// cubic through them may take any time.
 pub(crate) fn is_resolved<A: Axes, R: Real>(
     limits: &Reciprocals<A, R>,
     from: &Knot<A>,
@@ -129,8 +129,8 @@ pub(crate) fn is_resolved<A: Axes, R: Real>(
     apart <= steepest * R::of(gap * gap)
 }
 
-/// Whether all segments are resolved, but those after a stop, where a leg begins with slopes that the knot
-/// before, which ends another, does not have.
+/// Whether all segments are resolved, but those after a stop, where a leg begins with slopes that
+/// the knot before, which ends another, does not have.
 pub(crate) fn are_resolved<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>], gap: f64) -> bool {
     let begins = |from: &Knot<A>| from.ends_leg && from.cap <= 0.0;
     knots.windows(2).all(|pair| match pair {
@@ -150,16 +150,17 @@ pub(crate) const LARGEST_GAP_AT_RESTS: f64 = 0.1;
 /// Relative rounding of positions, with those of paths that are sums and turns.
 const ROUNDING: f64 = 1e-11;
 
-/// What decides where the knots of a leg stand, as parts of each segment's share; the rest is the same for
-/// all, so that places of high speed, where a limit may be hidden between two knots, keep theirs.
+/// What decides where the knots of a leg stand, as parts of each segment's share; the rest is the
+/// same for all, so that places of high speed, where a limit may be hidden between two knots, keep
+/// theirs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
     /// By its time.
     pub(crate) time: f64,
     /// By what it leaves [`unused`] of the limits.
     pub(crate) unused: f64,
-    /// By how its speed changes: next to constant speed, cubics that depart as much take a time as the
-    /// square root of the acceleration has it, √(a) T.
+    /// By how its speed changes: next to constant speed, cubics that depart as much take a time as
+    /// the square root of the acceleration has it, √(a) T.
     pub(crate) bend: f64,
 }
 
@@ -184,10 +185,10 @@ pub(crate) fn note_unused<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>
     });
 }
 
-/// Where each knot of a leg has to stand for all segments to have the same share, and the speed there,
-/// written into the knots; the speeds of the first `planned` of them, which reach from its start to its
-/// end, are, and what they leave unused where that counts. The most that is lost on a segment, what it
-/// leaves unused times its time, in units of the mean time of a segment.
+/// Where each knot of a leg has to stand for all segments to have the same share, and the speed
+/// there, written into the knots; the speeds of the first `planned` of them, which reach from its
+/// start to its end, are, and what they leave unused where that counts. The most that is lost on a
+/// segment, what it leaves unused times its time, in units of the mean time of a segment.
 pub(crate) fn spread<A: Axes>(parts: Shares, knots: &mut [Knot<A>], planned: usize) -> f64 {
     let count = knots.len().saturating_sub(1);
     let [segments, own] = [count, planned.saturating_sub(1)].map(index_as_f64);
@@ -288,8 +289,8 @@ fn within<A: Axes>(pair: &[Knot<A>], fraction: f64) -> (f64, f64) {
     (s, from.speed + rise + rise)
 }
 
-/// Where a knot stands on a leg, as a fraction: dense at an end where the machine rests, for there the
-/// speed changes most from knot to knot, and with it the cubic's departure from the path.
+/// Where a knot stands on a leg, as a fraction: dense at an end where the machine rests, for there
+/// the speed changes most from knot to knot, and with it the cubic's departure from the path.
 pub(crate) fn fraction(u: f64, rests: [bool; 2]) -> f64 {
     let from_rest = |u: f64| u * u * (3.0 - u) * 0.5;
     match rests {

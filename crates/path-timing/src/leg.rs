@@ -63,7 +63,8 @@ impl<P: Path> Leg<P> {
         }
     }
 
-    /// Positions and slopes at the parameter `s`, refused by name where the machine cannot be there.
+    /// Positions and slopes at the parameter `s`, refused by name where the machine cannot be
+    /// there.
     pub(crate) fn point(&self, s: f64) -> Result<PathPoint<P::Axes>, PlanError<P::Error>> {
         let point = self
             .path

@@ -27,16 +27,17 @@ const MIN_KNOTS: usize = 4;
 /// [`Table`](crate::Table) where half of the window is longer than the braking distance v²/2a; a
 /// shorter window costs time, never a limit.
 ///
-/// When half of the window has been handed out, it is filled up and its speeds are computed from its
-/// end: at most two backward evaluations and one forward for each knot, two more backward at a feed
-/// below the highest. Where the stream has no path for now, the machine comes to rest at the end of
-/// the last one and goes on when there is one.
+/// When half of the window has been handed out, it is filled up and its speeds are computed from
+/// its end: at most two backward evaluations and one forward for each knot, two more backward at a
+/// feed below the highest. Where the stream has no path for now, the machine comes to rest at the
+/// end of the last one and goes on when there is one.
 ///
-/// With a limit of jerk speeds come from an interior point, which is work for a PC: some 15 to 30 Newton
-/// steps for each knot where half of the window is twice as long as the braking, or more. What changes is
-/// planned again, from before the braking at the window's old end on. No feed is above 1. A change of the
-/// feed is smooth, as that of a [`Playback`](crate::Playback), and begins where the knots of the window
-/// allow it to end: to be held at any time takes a window longer than the way to rest.
+/// With a limit of jerk speeds come from an interior point, which is work for a PC: some 15 to 30
+/// Newton steps for each knot where half of the window is twice as long as the braking, or more.
+/// What changes is planned again, from before the braking at the window's old end on. No feed is
+/// above 1. A change of the feed is smooth, as that of a [`Playback`](crate::Playback), and begins
+/// where the knots of the window allow it to end: to be held at any time takes a window longer than
+/// the way to rest.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve, Knot, LookAhead};
@@ -97,12 +98,12 @@ struct Entering<P: Path> {
 impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>>
     LookAhead<'w, P, I, F>
 {
-    /// The rows along `paths`, each cut into as many `segments` as the function says: a fixed number, or
-    /// what [`segments_within`](crate::segments_within) finds.
+    /// The rows along `paths`, each cut into as many `segments` as the function says: a fixed
+    /// number, or what [`segments_within`](crate::segments_within) finds.
     ///
-    /// From rest to rest they are at least 2, and on a long path between short ones, whose corners may be
-    /// slow: on one segment the speed does not rise and fall again. They are up to 64 times as many where
-    /// the slopes at the ends of one do not tell how the path goes between them.
+    /// From rest to rest they are at least 2, and on a long path between short ones, whose corners
+    /// may be slow: on one segment the speed does not rise and fall again. They are up to 64 times
+    /// as many where the slopes at the ends of one do not tell how the path goes between them.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Memory`] for a window of fewer than 4 knots.
@@ -185,8 +186,9 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         self.speed.is_none_or(|speed| speed <= 0.0)
     }
 
-    /// Whether all paths have been run and the machine rests at the end of the last one, or before one
-    /// that was refused: what a `None` of [`next_row`](Self::next_row) means, which else is a hold.
+    /// Whether all paths have been run and the machine rests at the end of the last one, or before
+    /// one that was refused: what a `None` of [`next_row`](Self::next_row) means, which else is a
+    /// hold.
     ///
     /// A stream that had no path may have one later: the next call of `next_row` asks it again.
     #[must_use]
@@ -195,8 +197,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         self.is_at_rest() && !self.window.goes_on() && (self.is_refused || !has_path)
     }
 
-    /// The next row; `None` where the machine rests: held, or at the end of the last path for now, which
-    /// [`is_finished`](Self::is_finished) tells apart.
+    /// The next row; `None` where the machine rests: held, or at the end of the last path for now,
+    /// which [`is_finished`](Self::is_finished) tells apart.
     ///
     /// # Errors
     /// [`PlanError`] with the place, once, when a path is refused; no other path is taken then. It
@@ -334,7 +336,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
 }
 
 impl<P: Path> Entering<P> {
-    /// The next knot; where the path is not known up to there, all segments that are left are halved.
+    /// The next knot; where the path is not known up to there, all segments that are left are
+    /// halved.
     fn next_knot(
         &mut self,
         limits: &Reciprocals<P::Axes>,

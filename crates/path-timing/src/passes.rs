@@ -2,9 +2,9 @@
 //!
 //! Goal: at each knot the speed of the parameter, so that every cubic between two knots keeps all
 //! limits and the whole takes little time. Method: from the end to the start the highest speed from
-//! which the rest can be run, with a speed after it that goes with it; then from the start as fast as
-//! each segment and what is left allow. Where a pair of speeds keeps the limits, each slower pair of
-//! the same ratio does, so the forward pass always finds one.
+//! which the rest can be run, with a speed after it that goes with it; then from the start as fast
+//! as each segment and what is left allow. Where a pair of speeds keeps the limits, each slower
+//! pair of the same ratio does, so the forward pass always finds one.
 
 use crate::number::{LARGEST, Real, cube_root, sqrt};
 use crate::reciprocals::{Reciprocals, margin};

@@ -46,8 +46,8 @@ pub trait Path {
         Corner::Stop
     }
 
-    /// Whether the machine may run the cubics of all axes between two knots: within the ranges of its
-    /// joints and its workspace. Every planner asks for each segment before anything moves.
+    /// Whether the machine may run the cubics of all axes between two knots: within the ranges of
+    /// its joints and its workspace. Every planner asks for each segment before anything moves.
     ///
     /// # Errors
     /// Why it may not.
@@ -56,8 +56,8 @@ pub trait Path {
         Ok(())
     }
 
-    /// Whether [`check`](Self::check) has refused a segment only for its length, so that shorter ones
-    /// may pass: planners that look for the number of segments take more.
+    /// Whether [`check`](Self::check) has refused a segment only for its length, so that shorter
+    /// ones may pass: planners that look for the number of segments take more.
     fn is_too_coarse(&self, reason: &Self::Error) -> bool {
         let _ = reason;
         false

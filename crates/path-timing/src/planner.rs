@@ -14,7 +14,8 @@ use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
 /// Fewest segments of a leg that starts and ends slowly.
 const MIN_BETWEEN_SLOW_ENDS: u32 = 2;
 
-/// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but one to its end.
+/// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but
+/// one to its end.
 pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
 
 /// A number of segments that a leg can have, `fewest` or more.
@@ -33,11 +34,11 @@ pub(crate) const MOST_HALVINGS: u32 = 6;
 /// What a leg goes on to at an end: how, and for what length.
 pub(crate) type Beyond<A> = (Junction<A>, f64);
 
-/// The fewest segments of a leg: 2 where on one, on which the speed cannot rise and fall again, it would
-/// take longer than with stops at its ends.
+/// The fewest segments of a leg: 2 where on one, on which the speed cannot rise and fall again, it
+/// would take longer than with stops at its ends.
 ///
-/// The axes go about as `start` has it. Where a leg goes on smoothly, the path beyond may turn round in
-/// its length Lₙ, at an acceleration of a with a speed of √(a Lₙ / 2).
+/// The axes go about as `start` has it. Where a leg goes on smoothly, the path beyond may turn
+/// round in its length Lₙ, at an acceleration of a with a speed of √(a Lₙ / 2).
 pub(crate) fn fewest<A: Axes, E>(
     limits: &Reciprocals<A>,
     leg: &Leg<impl Path<Axes = A, Error = E>>,
@@ -96,17 +97,17 @@ const BY_LIMITS: Shares = Shares {
     bend: 0.0,
 };
 
-/// What a rough plan may lose on a segment, as [`spread`] says, without being made again. Of 9,000 plans of
-/// random paths with some 100 segments 3 in 10 lose more, and of the others one in 300 takes 0.5 % longer
-/// than the shortest time.
+/// What a rough plan may lose on a segment, as [`spread`] says, without being made again. Of 9,000
+/// plans of random paths with some 100 segments 3 in 10 lose more, and of the others one in 300
+/// takes 0.5 % longer than the shortest time.
 const MOST_LOST_ON_ONE: f64 = 0.9;
 
-/// On fewer segments the speeds of a plan say little of those of the next, whose knots stand elsewhere: then
-/// higher limits took up to 1.2 times as long.
+/// On fewer segments the speeds of a plan say little of those of the next, whose knots stand
+/// elsewhere: then higher limits took up to 1.2 times as long.
 const FEWEST_STRETCHED: u32 = 16;
 
-/// How often it is made again: with 3 one of 65 plans of waves with 100 segments takes over 0.5 % longer than
-/// the best, with 4 one of 120, with 6 one of 180.
+/// How often it is made again: with 3 one of 65 plans of waves with 100 segments takes over 0.5 %
+/// longer than the best, with 4 one of 120, with 6 one of 180.
 const ROUNDS: u32 = 4;
 
 impl<P: Path + Clone> Place<'_, P> {
@@ -135,12 +136,13 @@ impl<P: Path + Clone> Place<'_, P> {
         Err(coarse)
     }
 
-    /// Lays the knots of the leg behind its first, which is the first of those given: dense where the
-    /// fastest motion along the leg is slow and where its limits change, by the part `bent` also where its
-    /// speed changes, and stretched for it.
+    /// Lays the knots of the leg behind its first, which is the first of those given: dense where
+    /// the fastest motion along the leg is slow and where its limits change, by the part `bent`
+    /// also where its speed changes, and stretched for it.
     ///
-    /// Stretches follow from the speeds of a plan before, whose knots stand elsewhere; where accelerations
-    /// change by much from knot to knot that plan is slow, so that it is made again from the better ones.
+    /// Stretches follow from the speeds of a plan before, whose knots stand elsewhere; where
+    /// accelerations change by much from knot to knot that plan is slow, so that it is made again
+    /// from the better ones.
     pub(crate) fn lay(
         &self,
         limits: &Reciprocals<P::Axes>,
@@ -153,7 +155,8 @@ impl<P: Path + Clone> Place<'_, P> {
         }
         let own = self.room(segments, knots)?;
         let laid = self.lay_by_plan(limits, bent, own);
-        // Knots that stand elsewhere may be too far apart, or their cubics leave what the path allows.
+        // Knots that stand elsewhere may be too far apart, or their cubics leave what the path
+        // allows.
         laid.and_then(|()| self.check_resolved(limits, own))
             .or_else(|_| self.lay_plainly(limits, segments, bent, own))
     }
@@ -210,8 +213,8 @@ impl<P: Path + Clone> Place<'_, P> {
         })
     }
 
-    /// Plans a leg of fewer segments, on which it shows, too, where the machine is slow: the first of the
-    /// knots. How many they are.
+    /// Plans a leg of fewer segments, on which it shows, too, where the machine is slow: the first
+    /// of the knots. How many they are.
     fn lay_roughly<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
@@ -313,8 +316,9 @@ impl<P: Path + Clone> Place<'_, P> {
     }
 }
 
-/// Lays the knots of all paths, one behind the other; those that they take. `lay` lays those of a leg
-/// behind its first, which is the first of those that it is given, and says how many segments they are.
+/// Lays the knots of all paths, one behind the other; those that they take. `lay` lays those of a
+/// leg behind its first, which is the first of those that it is given, and says how many segments
+/// they are.
 pub(crate) fn lay_all<'k, P: Path + Clone>(
     paths: impl Iterator<Item = P>,
     limits: &Reciprocals<P::Axes>,
@@ -439,8 +443,8 @@ pub(crate) fn duration<A: Axes, E>(knots: &[Knot<A>]) -> Result<f64, PlanError<E
     Ok(time_s)
 }
 
-/// Refuses a plan that legs of one segment make slow, with the worst of them: on one segment the speed
-/// cannot rise and fall again, and between two slow corners it is slow all the way.
+/// Refuses a plan that legs of one segment make slow, with the worst of them: on one segment the
+/// speed cannot rise and fall again, and between two slow corners it is slow all the way.
 pub(crate) fn check_single_segments<A: Axes, E>(
     limits: &Reciprocals<A>,
     knots: &[Knot<A>],
@@ -467,8 +471,8 @@ pub(crate) fn check_single_segments<A: Axes, E>(
     Ok(())
 }
 
-/// The most by which legs of one segment may take longer than with stops at their ends, as a part of the
-/// whole time.
+/// The most by which legs of one segment may take longer than with stops at their ends, as a part
+/// of the whole time.
 const MOST_LOST: f64 = 2.0;
 
 /// The number of knots of a leg with this number of segments.

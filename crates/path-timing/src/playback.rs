@@ -31,11 +31,12 @@ pub struct FeedError {
 
 /// A [`Table`] that is handed out row by row, at a feed that may change from row to row.
 ///
-/// At a feed f the machine passes each knot at f times the speed of the table, so that it stays on its
-/// path. From one row to the next the feed goes as far towards the wanted one as the speeds and
-/// accelerations of all axes allow, checked on the cubic that the controller will run; above 1 it goes
-/// only as far as what lies ahead can be run with. A stop is a wanted feed of zero: the machine comes to
-/// rest at a row of the table, at most one segment later than it could between rows.
+/// At a feed f the machine passes each knot at f times the speed of the table, so that it stays on
+/// its path. From one row to the next the feed goes as far towards the wanted one as the speeds and
+/// accelerations of all axes allow, checked on the cubic that the controller will run; above 1 it
+/// goes only as far as what lies ahead can be run with. A stop is a wanted feed of zero: the
+/// machine comes to rest at a row of the table, at most one segment later than it could between
+/// rows.
 ///
 /// ```text
 /// v = f w      segment time = 2Δs / (v₀ + v₁)
@@ -45,10 +46,10 @@ pub struct FeedError {
 /// only the axes limit it. Where the departure was planned at any feed
 /// ([`Table::plan_within_at_any_feed`]), it is kept through all changes.
 ///
-/// With a limit of jerk a change is smooth and takes as many rows as it needs: the fewest found whose
-/// cubics keep speed, acceleration and jerk of all axes, and that leave a constant feed possible; where
-/// none does before the next stop of the table, it is tried again a row later. Above 1 the feed goes up
-/// to what the axes allow from end to end.
+/// With a limit of jerk a change is smooth and takes as many rows as it needs: the fewest found
+/// whose cubics keep speed, acceleration and jerk of all axes, and that leave a constant feed
+/// possible; where none does before the next stop of the table, it is tried again a row later.
+/// Above 1 the feed goes up to what the axes allow from end to end.
 #[derive(Debug, Clone)]
 pub struct Playback<'a, A: Axes> {
     pub(super) knots: &'a [Knot<A>],
@@ -77,8 +78,8 @@ impl<'a, A: Axes> Table<'a, A> {
     /// row of the table; none with a limit of jerk.
     ///
     /// # Errors
-    /// [`PlanError::Feed`] for a `max` that is beyond the range of the crate, [`PlanError::Memory`] for
-    /// too little memory.
+    /// [`PlanError::Feed`] for a `max` that is beyond the range of the crate, [`PlanError::Memory`]
+    /// for too little memory.
     pub fn playback(
         &self,
         max: f64,

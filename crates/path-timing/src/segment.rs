@@ -233,11 +233,11 @@ impl<A: Axes, R: Real> Segment<A, R> {
     }
 
     /// The pair of speeds with which the segment takes the least time, at most `ceiling` at its end
-    /// and `cap` at its start; where the machine brakes as hard as it can to the ceiling, the highest
-    /// speed to brake from.
+    /// and `cap` at its start; where the machine brakes as hard as it can to the ceiling, the
+    /// highest speed to brake from.
     ///
-    /// Where the ceiling cannot be kept, the speeds differ at most by a factor of [`GROWTH`]: no segment
-    /// is begun at a speed whose only partner is next to rest.
+    /// Where the ceiling cannot be kept, the speeds differ at most by a factor of [`GROWTH`]: no
+    /// segment is begun at a speed whose only partner is next to rest.
     pub(crate) fn begin(&self, ceiling: R, cap: R) -> (R, R) {
         if cap <= R::ZERO {
             return (R::ZERO, ceiling.min(self.speed_from_rest()));
@@ -264,8 +264,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
 
     /// The pair of the least time.
     ///
-    /// With W = w₀ + w₁ and r = (w₁ - w₀) / W each utilisation is W² times a convex function of r, so
-    /// the least of their largest is found between two slopes by the cut of their tangents.
+    /// With W = w₀ + w₁ and r = (w₁ - w₀) / W each utilisation is W² times a convex function of r,
+    /// so the least of their largest is found between two slopes by the cut of their tangents.
     fn shortest(&self, ceiling: R, cap: R) -> (R, R) {
         let at = |r: R| self.tangent(r, [R::ONE / cap, R::ONE / ceiling]);
         let [mut low, mut high] = [-STEEPEST, STEEPEST].map(|r| (R::of(r), at(R::of(r))));
@@ -360,8 +360,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
         None
     }
 
-    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with the speed w₀ times
-    /// `ratio` the segment holds.
+    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with the speed w₀
+    /// times `ratio` the segment holds.
     pub(crate) fn end(&self, w0: R, ceiling: R, ratio: R) -> R {
         if w0 <= R::ZERO {
             return ceiling.min(self.speed_from_rest());
@@ -402,8 +402,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
         good
     }
 
-    /// The lowest speed at the end after the speed `w0`, where `known` holds: at most slower by a factor
-    /// of [`GROWTH`].
+    /// The lowest speed at the end after the speed `w0`, where `known` holds: at most slower by a
+    /// factor of [`GROWTH`].
     pub(crate) fn slowest(&self, w0: R, known: R) -> R {
         let least = (w0 / R::of(GROWTH)).min(known);
         self.toward(w0, least, known)

@@ -1,8 +1,8 @@
 //! Rows sampled at a fixed cycle: set-points of servo drives.
 //!
-//! Goal: what a drive takes each cycle over a fieldbus, positions with velocities and accelerations for
-//! its feed-forward, and these in the integers of CiA 402. Method: the cubic between two rows at the
-//! cycle's times; nothing is interpolated twice.
+//! Goal: what a drive takes each cycle over a fieldbus, positions with velocities and accelerations
+//! for its feed-forward, and these in the integers of CiA 402. Method: the cubic between two rows
+//! at the cycle's times; nothing is interpolated twice.
 
 mod cia402;
 
@@ -27,9 +27,9 @@ pub struct SetPoint<A> {
 
 /// The set-points of rows, one for each cycle, the first row's included: each exactly on its cubic.
 ///
-/// The last row is met by the first cycle at or after it, at rest. Where the rows end for now, as those of a
-/// [`LookAhead`](crate::LookAhead) that is held, the set-points do; they go on with the rows, at the next
-/// cycle.
+/// The last row is met by the first cycle at or after it, at rest. Where the rows end for now, as
+/// those of a [`LookAhead`](crate::LookAhead) that is held, the set-points do; they go on with the
+/// rows, at the next cycle.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Cia402Scale, Curve, Knot, SetPoints, Table};
@@ -60,8 +60,8 @@ pub struct SetPoints<I, A> {
 }
 
 impl<I: Iterator<Item: TryRow<Axes = A>>, A: Axes> SetPoints<I, A> {
-    /// The set-points at each multiple of a cycle in seconds: 0.001 on most fieldbuses. A cycle that is
-    /// not above 0 has none.
+    /// The set-points at each multiple of a cycle in seconds: 0.001 on most fieldbuses. A cycle
+    /// that is not above 0 has none.
     #[must_use]
     pub const fn new(rows: I, cycle_s: f64) -> Self {
         Self {

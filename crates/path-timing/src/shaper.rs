@@ -1,15 +1,15 @@
-//! Input shapers: impulses that a motion is convolved with, so that a mode of the machine is not left
-//! ringing.
+//! Input shapers: impulses that a motion is convolved with, so that a mode of the machine is not
+//! left ringing.
 //!
-//! Goal: amplitudes Aᵢ > 0 at times τᵢ whose sum is 1, so that the vibration that each impulse leaves
-//! is cancelled by the others. Method: the closed forms of the literature, with
+//! Goal: amplitudes Aᵢ > 0 at times τᵢ whose sum is 1, so that the vibration that each impulse
+//! leaves is cancelled by the others. Method: the closed forms of the literature, with
 //!
 //! ```text
 //! K = exp(-ζπ / √(1 - ζ²))    half a period T/2 = 1 / (2 f √(1 - ζ²))
 //! ```
 //!
-//! Positive amplitudes make the shaped motion a mean of the motion at several times: whatever limit the
-//! motion keeps, the mean keeps.
+//! Positive amplitudes make the shaped motion a mean of the motion at several times: whatever limit
+//! the motion keeps, the mean keeps.
 
 mod course;
 mod error;
@@ -110,8 +110,8 @@ impl Shaper {
         Self::by_half_periods(mode, [(0.0, 1.0), (1.0, 1.0)])
     }
 
-    /// Zero vibration and derivative: 1, 2K, K². The residual vibration grows with the square of the
-    /// error of the frequency.
+    /// Zero vibration and derivative: 1, 2K, K². The residual vibration grows with the square of
+    /// the error of the frequency.
     ///
     /// # Errors
     /// [`ShaperError::Mode`].
@@ -179,12 +179,12 @@ impl Shaper {
         Self::by_half_periods(mode, weights)
     }
 
-    /// A shaper from its impulses, such as one for two modes, whose impulses are the products of those
-    /// of one for each. Amplitudes are divided by their sum.
+    /// A shaper from its impulses, such as one for two modes, whose impulses are the products of
+    /// those of one for each. Amplitudes are divided by their sum.
     ///
     /// # Errors
-    /// [`ShaperError`] for no or too many impulses, for amplitudes that are not above 0 and for times
-    /// that do not rise from 0 or more.
+    /// [`ShaperError`] for no or too many impulses, for amplitudes that are not above 0 and for
+    /// times that do not rise from 0 or more.
     pub fn from_impulses(impulses: &[Impulse]) -> Result<Self, ShaperError> {
         let count = impulses.len();
         let max = Self::MAX_IMPULSES;
@@ -258,19 +258,20 @@ impl Shaper {
             .sum()
     }
 
-    /// The most by which a shaped axis is off the motion [`delay_s`](Self::delay_s) earlier, where the
-    /// acceleration of that motion is at most `acceleration`; in the axis' unit. It is the smoothing that
-    /// each shaper costs.
+    /// The most by which a shaped axis is off the motion [`delay_s`](Self::delay_s) earlier, where
+    /// the acceleration of that motion is at most `acceleration`; in the axis' unit. It is the
+    /// smoothing that each shaper costs.
     ///
     /// ```text
     /// |qₛ(t) - q(t - τ)| ≤ s²/2 max |q"|    s² = Σ Aᵢ (τᵢ - τ)²
     /// ```
     ///
-    /// Proof. The shaped position is the mean Σ Aᵢ q(t - τᵢ). By Taylor's formula each q(t - τᵢ) is off
-    /// q(t - τ) - (τᵢ - τ) q'(t - τ) by at most (τᵢ - τ)²/2 max |q"|, and the linear part has the mean 0.
+    /// Proof. The shaped position is the mean Σ Aᵢ q(t - τᵢ). By Taylor's formula each q(t - τᵢ) is
+    /// off q(t - τ) - (τᵢ - τ) q'(t - τ) by at most (τᵢ - τ)²/2 max |q"|, and the linear part has
+    /// the mean 0.
     ///
-    /// Across axes: a Cartesian tool departs by at most the root of the sum of the squares, or by this
-    /// bound of its own acceleration where all axes have one shaper.
+    /// Across axes: a Cartesian tool departs by at most the root of the sum of the squares, or by
+    /// this bound of its own acceleration where all axes have one shaper.
     #[must_use]
     pub fn departure(&self, acceleration: f64) -> f64 {
         let delay_s = self.delay_s();
@@ -282,15 +283,16 @@ impl Shaper {
     }
 
     /// The most by which a shaped axis is off where its speed jumps, at a corner passed with
-    /// [`Corner::Jump`](crate::Corner::Jump): of jumps within [`duration_s`](Self::duration_s) of one another
-    /// the sum of their sizes counts. It comes on top of [`departure`](Self::departure).
+    /// [`Corner::Jump`](crate::Corner::Jump): of jumps within [`duration_s`](Self::duration_s) of
+    /// one another the sum of their sizes counts. It comes on top of
+    /// [`departure`](Self::departure).
     ///
     /// ```text
     /// |qₛ(t) - q(t - τ)| ≤ jump Σ Aᵢ max(0, τ - τᵢ)
     /// ```
     ///
-    /// Proof. A jump by d at the time 0 adds d max(0, t) to the motion, so d Σ Aᵢ max(0, t - τᵢ) to the shaped
-    /// one; less d max(0, t - τ), that is largest at t = τ.
+    /// Proof. A jump by d at the time 0 adds d max(0, t) to the motion, so d Σ Aᵢ max(0, t - τᵢ) to
+    /// the shaped one; less d max(0, t - τ), that is largest at t = τ.
     #[must_use]
     pub fn departure_of_jumps(&self, jump: f64) -> f64 {
         let delay_s = self.delay_s();
@@ -301,8 +303,8 @@ impl Shaper {
         earlier.sum::<f64>() * jump.abs()
     }
 
-    /// The part of a mode's vibration that is left when the last impulse is over: 0 for none, 1 for all of
-    /// what an unshaped impulse leaves at its start. Not a number for a mode that is none.
+    /// The part of a mode's vibration that is left when the last impulse is over: 0 for none, 1 for
+    /// all of what an unshaped impulse leaves at its start. Not a number for a mode that is none.
     ///
     /// ```text
     /// V = exp(-ζω τₙ) |Σ Aᵢ exp(ζω τᵢ + i ω√(1-ζ²) τᵢ)|    ω = 2π f

@@ -1,30 +1,31 @@
-//! The stretch of a segment: how much longer it lasts than its length and the speeds at its ends say.
+//! The stretch of a segment: how much longer it lasts than its length and the speeds at its ends
+//! say.
 //!
-//! Goal: an axis that is at its limit of acceleration is there all along its cubic, not at one end alone.
-//! Method: the duration is the one with which the cubic of that axis is a parabola. With the speeds w₀, w₁
-//! of the parameter at its ends, r = (w₁ - w₀)/(w₀ + w₁), and m, p₀, p₁ the mean slope of the axis and those
-//! at the ends,
+//! Goal: an axis that is at its limit of acceleration is there all along its cubic, not at one end
+//! alone. Method: the duration is the one with which the cubic of that axis is a parabola. With the
+//! speeds w₀, w₁ of the parameter at its ends, r = (w₁ - w₀)/(w₀ + w₁), and m, p₀, p₁ the mean
+//! slope of the axis and those at the ends,
 //!
 //! ```text
 //! T = 2κΔs / (w₀ + w₁)    κ = 2m / (p₀ (1 - r) + p₁ (1 + r))
 //! ```
 //!
-//! It is the same as a parameter that runs κ times as far between the two knots. κ is fixed when knots are
-//! laid, by the speeds of a plan before: so all forms in the speeds stay what they are. Without it
-//! a plan loses what slopes change by within a segment; with it, the square of that.
+//! It is the same as a parameter that runs κ times as far between the two knots. κ is fixed when
+//! knots are laid, by the speeds of a plan before: so all forms in the speeds stay what they are.
+//! Without it a plan loses what slopes change by within a segment; with it, the square of that.
 
 use crate::number::larger;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, PathPoint};
 
-/// κ is between this and its inverse: with at most 2.5 lengths of way at the speed of an end no parameter
-/// turns back, and departures are known.
+/// κ is between this and its inverse: with at most 2.5 lengths of way at the speed of an end no
+/// parameter turns back, and departures are known.
 const LARGEST: f64 = 1.2;
 
 /// The stretch κ of a segment of a length that is passed at about these speeds.
 ///
-/// Where several axes are near their limits it is that of the least squares, each axis weighed by the fourth
-/// power of its utilisation.
+/// Where several axes are near their limits it is that of the least squares, each axis weighed by
+/// the fourth power of its utilisation.
 pub(crate) fn stretch<A: Axes>(
     limits: &Reciprocals<A>,
     [from, to]: [&PathPoint<A>; 2],
@@ -63,10 +64,11 @@ pub(crate) fn stretch_between<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Kn
     stretch(limits, [&from.point, &to.point], to.ds, speeds)
 }
 
-/// What a segment with planned speeds leaves unused of the limits: 0 where an axis is at a limit all along.
+/// What a segment with planned speeds leaves unused of the limits: 0 where an axis is at a limit
+/// all along.
 ///
-/// The part of every limit that is left at one end, and the most by which an acceleration changes, 2 from
-/// one limit to the other. With the mean velocity v of an axis
+/// The part of every limit that is left at one end, and the most by which an acceleration changes,
+/// 2 from one limit to the other. With the mean velocity v of an axis
 ///
 /// ```text
 /// a₀ = (6v - 4v₀ - 2v₁) / T    a₁ = (2v₀ + 4v₁ - 6v) / T

@@ -16,12 +16,12 @@ use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 /// A position-velocity-time table along one path or several: every axis runs a cubic from each row
 /// to the next, with the positions and slopes of the path at the rows.
 ///
-/// It is a fastest table that keeps the limits of all axes. What is limited is the cubic itself: its
-/// peak speed inside, its acceleration at both ends. With the path speeds w₀, w₁ at the ends of a
-/// segment of length Δs, its duration is 2κΔs / (w₀ + w₁), with a κ from 5/6 to 6/5 for which an axis at its
-/// limit of acceleration stays there; 1 where a jerk, a torque or a tool is limited, with fewer than 16
-/// segments, and in single precision.
-/// At the end of each path the machine does what that path's [`corner`](Path::corner) says.
+/// It is a fastest table that keeps the limits of all axes. What is limited is the cubic itself:
+/// its peak speed inside, its acceleration at both ends. With the path speeds w₀, w₁ at the ends of
+/// a segment of length Δs, its duration is 2κΔs / (w₀ + w₁), with a κ from 5/6 to 6/5 for which an
+/// axis at its limit of acceleration stays there; 1 where a jerk, a torque or a tool is limited,
+/// with fewer than 16 segments, and in single precision. At the end of each path the machine does
+/// what that path's [`corner`](Path::corner) says.
 ///
 /// Where an axis has a limit of jerk: between rows a cubic has one jerk; at a row its acceleration
 /// steps, which counts as a jerk over the time between the middles of the segments.
@@ -44,16 +44,18 @@ pub struct Accuracy {
     pub max_departure: f64,
     /// Largest time, relative to what more segments would reach: above 1, such as 1.02; infinite
     /// where the departure alone counts. It is judged by the change of the time with the number of
-    /// segments, of which plans are made in the memory beside the table's: half as much again. Where
-    /// there is no room for the segments with which that is sure, a plan is taken that changes by no more
-    /// with the last doubling of them, unless finer plans have shown that it is slower.
+    /// segments, of which plans are made in the memory beside the table's: half as much again.
+    /// Where there is no room for the segments with which that is sure, a plan is taken that
+    /// changes by no more with the last doubling of them, unless finer plans have shown that it is
+    /// slower.
     pub max_time_ratio: f64,
 }
 
 impl<'a, A: Axes> Table<'a, A> {
-    /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a path
-    /// has: they are at least 2 from rest to rest, or from a slow corner to another, and up to 64 times as
-    /// many where the slopes at the ends of one do not tell how the path goes between them.
+    /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a
+    /// path has: they are at least 2 from rest to rest, or from a slow corner to another, and up to
+    /// 64 times as many where the slopes at the ends of one do not tell how the path goes between
+    /// them.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -75,10 +77,10 @@ impl<'a, A: Axes> Table<'a, A> {
         Ok(Self::new(knots, limits, duration_s))
     }
 
-    /// As [`plan`](Self::plan), for processors that compute in `f32` alone: speeds are found in single
-    /// precision, positions and times stay in double. It takes a tenth of the instructions there, and
-    /// the limits are kept as ever, with the margin that the rounding of `f32` asks for: less than 1 % of
-    /// the time. Where an axis has a limit of jerk it is `plan`.
+    /// As [`plan`](Self::plan), for processors that compute in `f32` alone: speeds are found in
+    /// single precision, positions and times stay in double. It takes a tenth of the instructions
+    /// there, and the limits are kept as ever, with the margin that the rounding of `f32` asks for:
+    /// less than 1 % of the time. Where an axis has a limit of jerk it is `plan`.
     ///
     /// Limits and lengths are to be within 1e-8 to 1e8.
     ///
@@ -109,9 +111,9 @@ impl<'a, A: Axes> Table<'a, A> {
 
     /// Plans the table with about the fewest segments of each path that keep a departure.
     ///
-    /// `departure` is a bound on what a controller departs by on a segment of a path, in any unit; it
-    /// should fall with the number of segments. It holds at a constant feed; of a path that is passed
-    /// without a stop at an end it holds at any speeds, as
+    /// `departure` is a bound on what a controller departs by on a segment of a path, in any unit;
+    /// it should fall with the number of segments. It holds at a constant feed; of a path that is
+    /// passed without a stop at an end it holds at any speeds, as
     /// [`plan_within_at_any_feed`](Self::plan_within_at_any_feed) makes it.
     ///
     /// # Errors
@@ -127,12 +129,12 @@ impl<'a, A: Axes> Table<'a, A> {
     }
 
     /// Plans the table as [`plan_within`](Self::plan_within) does, with segments that keep the
-    /// departure at any speeds: also under feed changes, and where a [`Playback`](crate::Playback) is
-    /// held at any row and resumed. These are several times as many.
+    /// departure at any speeds: also under feed changes, and where a [`Playback`](crate::Playback)
+    /// is held at any row and resumed. These are several times as many.
     ///
     /// `departure` is asked for each segment from rest, to rest and at three ratios of the speeds
-    /// between; the last segment of a path also from rest to rest. It must be largest at one of these,
-    /// as a bound is that grows towards rest.
+    /// between; the last segment of a path also from rest to rest. It must be largest at one of
+    /// these, as a bound is that grows towards rest.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -164,8 +166,8 @@ impl<'a, A: Axes> Table<'a, A> {
             is_plain: false,
             planned: Cell::new(0),
         };
-        // A number of doublings that is likely enough, for where there is no room to be sure, with its
-        // time; and the least time, as far as the finest plan shows it.
+        // A number of doublings that is likely enough, for where there is no room to be sure, with
+        // its time; and the least time, as far as the finest plan shows it.
         let (mut doublings, mut likely, mut is_last) = (0, None, false);
         let mut least_s = 0.0;
         loop {
@@ -317,8 +319,8 @@ impl Accuracy {
     }
 }
 
-/// Whether a plan is as fast as is asked for; if that is not sure, with the least time as far as the last
-/// doubling of its segments shows it.
+/// Whether a plan is as fast as is asked for; if that is not sure, with the least time as far as
+/// the last doubling of its segments shows it.
 #[derive(Debug, Clone, Copy)]
 enum Verdict {
     Fast,
@@ -331,12 +333,13 @@ enum Verdict {
     },
 }
 
-/// The part of the steepest slope by which slopes may disagree where the time counts: at most half as much as
-/// the time may be longer.
+/// The part of the steepest slope by which slopes may disagree where the time counts: at most half
+/// as much as the time may be longer.
 const LARGEST_GAP_TIMED: f64 = 0.05;
 
-/// How often segments are halved to see what is lost, and the part of a loss that twice the segments have
-/// at most: half, and something for chance. With these none of 2,100 plans of random paths missed a ratio.
+/// How often segments are halved to see what is lost, and the part of a loss that twice the
+/// segments have at most: half, and something for chance. With these none of 2,100 plans of random
+/// paths missed a ratio.
 const HALVINGS: u32 = 3;
 const LEFT: f64 = 0.6;
 
@@ -346,9 +349,9 @@ struct Lost {
     last_s: f64,
     /// The most that is lost; infinite where fewer knots have no plan.
     ///
-    /// It falls at least in proportion to the length of the segments. So it is at most what half the segments
-    /// take longer, and half of what a quarter of them take longer than those, and so on: the largest of
-    /// these, in case one is small by chance.
+    /// It falls at least in proportion to the length of the segments. So it is at most what half
+    /// the segments take longer, and half of what a quarter of them take longer than those, and so
+    /// on: the largest of these, in case one is small by chance.
     most_s: f64,
 }
 

@@ -1,9 +1,9 @@
 //! Limits of torque: motions as fast as the motors can turn what they carry.
 //!
-//! Goal: the fastest speeds along paths with which no motor gives more torque than it has at its speed,
-//! on the cubics themselves. Method: at both ends of a segment a torque is a form of the speeds there;
-//! a backward and a forward pass choose these. Then the torque of each cubic is bounded all along it, and
-//! the whole is slowed by the little that is missing.
+//! Goal: the fastest speeds along paths with which no motor gives more torque than it has at its
+//! speed, on the cubics themselves. Method: at both ends of a segment a torque is a form of the
+//! speeds there; a backward and a forward pass choose these. Then the torque of each cubic is
+//! bounded all along it, and the whole is slowed by the little that is missing.
 
 mod curve;
 mod load;
@@ -16,14 +16,16 @@ pub use table::TorqueTable;
 
 use crate::{Axes, Cubic, Span};
 
-/// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians are in
-/// Nm, forces of axes in metres in N; in any unit that goes with the axes', the same throughout.
+/// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians
+/// are in Nm, forces of axes in metres in N; in any unit that goes with the axes', the same
+/// throughout.
 pub trait Dynamics {
     /// `[f64; N]` for N axes.
     type Axes: Axes;
 
-    /// The torque of each axis that a motion takes, without friction: a sum of a part that is linear in the
-    /// accelerations, one that is quadratic in the velocities, and one that the positions alone ask for.
+    /// The torque of each axis that a motion takes, without friction: a sum of a part that is
+    /// linear in the accelerations, one that is quadratic in the velocities, and one that the
+    /// positions alone ask for.
     ///
     /// ```text
     /// τ = M(q) q̈ + h(q, q̇) + g(q)
@@ -38,8 +40,8 @@ pub trait Dynamics {
     /// The friction of each axis, which is added.
     fn friction(&self) -> <Self::Axes as Axes>::Of<Friction>;
 
-    /// The most that the second derivative of each torque by time can be, while all axes run their cubics
-    /// of a segment; without friction.
+    /// The most that the second derivative of each torque by time can be, while all axes run their
+    /// cubics of a segment; without friction.
     fn bend(&self, span: &Span<Self::Axes>) -> Self::Axes;
 }
 
@@ -69,9 +71,9 @@ pub struct TorqueLimits<D: Dynamics> {
 }
 
 impl<D: Dynamics> TorqueLimits<D> {
-    /// The torques of all axes at both ends of a segment, friction included: feed-forward for servo drives.
-    /// Where the acceleration steps at a row, the end of one segment and the start of the next differ. An
-    /// axis at rest has the Coulomb friction of where it goes or comes from.
+    /// The torques of all axes at both ends of a segment, friction included: feed-forward for servo
+    /// drives. Where the acceleration steps at a row, the end of one segment and the start of the
+    /// next differ. An axis at rest has the Coulomb friction of where it goes or comes from.
     #[must_use]
     pub fn torques(&self, span: &Span<D::Axes>) -> [D::Axes; 2] {
         let [from, to] = &span.rows;

@@ -1,8 +1,9 @@
 //! A verifier of rows: what a plan promises, proven again without the planner.
 //!
-//! Goal: whoever runs rows, from this crate or over a wire, can prove that they keep what was promised.
-//! Method: each cubic by its own formulas, from positions, velocities and time alone; the path is asked
-//! for the places that the rows name. No line of it is used by the planner, nor the other way round.
+//! Goal: whoever runs rows, from this crate or over a wire, can prove that they keep what was
+//! promised. Method: each cubic by its own formulas, from positions, velocities and time alone; the
+//! path is asked for the places that the rows name. No line of it is used by the planner, nor the
+//! other way round.
 
 use trig_kernels::SixDigits;
 
@@ -19,8 +20,8 @@ pub struct Promise<A: Axes> {
     pub start_stop: A,
     /// Largest departure, in the unit of the bound that is given with each row.
     pub max_departure: f64,
-    /// How many times as fast as it is a motion between two rests might at most be within the limits of
-    /// the axes; infinite for feeds that are overridden.
+    /// How many times as fast as it is a motion between two rests might at most be within the
+    /// limits of the axes; infinite for feeds that are overridden.
     pub max_slowness: f64,
 }
 
@@ -138,7 +139,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct Verifier<A: Axes> {
     promise: Promise<A>,
     before: Option<Row<A>>,
-    /// Accelerations at the end of the segment before, and its duration; zero at rest and at a jump.
+    /// Accelerations at the end of the segment before, and its duration; zero at rest and at a
+    /// jump.
     accelerations: A,
     duration_s: f64,
     /// The largest part of a limit since the last rest, as a factor of all speeds.
@@ -199,8 +201,8 @@ impl<A: Axes> Verifier<A> {
         }
     }
 
-    /// The next row: proves the segment that leads to it. `path` gives the path of a leg, if there is
-    /// one, `departure` bounds what a segment departs by.
+    /// The next row: proves the segment that leads to it. `path` gives the path of a leg, if there
+    /// is one, `departure` bounds what a segment departs by.
     ///
     /// # Errors
     /// [`Violation`]: the first promise that is broken.

@@ -1,4 +1,5 @@
-//! Throughput of the dancer's frames: five minutes of eight motors to bytes, to a C header and back.
+//! Throughput of the dancer's frames: five minutes of eight motors to bytes, to a C header and
+//! back.
 
 #![expect(clippy::unwrap_used, reason = "a bench may stop at a wrong input")]
 

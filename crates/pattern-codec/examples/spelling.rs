@@ -1,4 +1,5 @@
-//! Pattern bytes of an old machine: the records, and where they are not spelt as this crate spells them.
+//! Pattern bytes of an old machine: the records, and where they are not spelt as this crate spells
+//! them.
 //!
 //! `cargo run -p pattern-codec --example spelling`
 

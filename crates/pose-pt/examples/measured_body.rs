@@ -1,5 +1,5 @@
-//! A body that was measured: where it is by its marks, what its locators' axes are, and how fast they
-//! have to move.
+//! A body that was measured: where it is by its marks, what its locators' axes are, and how fast
+//! they have to move.
 //!
 //! `cargo run -p pose-pt --example measured_body`
 

@@ -1,4 +1,5 @@
-//! A turn in the forms that instruments and programs have: matrix, angles, quaternion, rotation vector.
+//! A turn in the forms that instruments and programs have: matrix, angles, quaternion, rotation
+//! vector.
 //!
 //! `cargo run -p pose-pt --example rotations`
 

@@ -1,5 +1,5 @@
-//! The legs of a path on which something moves and the blends between them, as the axes run them, to
-//! be timed by `path-timing`.
+//! The legs of a path on which something moves and the blends between them, as the axes run them,
+//! to be timed by `path-timing`.
 
 mod error;
 mod hermite;
@@ -32,8 +32,8 @@ pub struct BodyPath<'a, const N: usize> {
     leg: usize,
     /// In the parameter that is common to all.
     length: f64,
-    /// Exactly where its neighbours have them: a controller gets one position for the end of one and
-    /// the start of the next, while each by itself would round it once more.
+    /// Exactly where its neighbours have them: a controller gets one position for the end of one
+    /// and the start of the next, while each by itself would round it once more.
     ends: [[Vector3<f64>; N]; 2],
     /// Whether the next one is entered without a stop.
     goes_on: bool,
@@ -47,8 +47,8 @@ enum Part<'a, const N: usize> {
 }
 
 impl<const N: usize> Platform<N> {
-    /// The legs of `path` on which something moves, each as a path of all axes, with the roundings of
-    /// the poses between them.
+    /// The legs of `path` on which something moves, each as a path of all axes, with the roundings
+    /// of the poses between them.
     ///
     /// Every pose where the direction changes is a stop, but for those that are rounded: see
     /// [`PosePath::with_blends`]. Strokes are checked by what plans, for whole segments.

@@ -11,7 +11,8 @@ use crate::path::leg::Shape;
 pub(crate) struct Pair {
     /// Their distance.
     pub(crate) length: f64,
-    /// Its component perpendicular to the axis of the turn; all of it where the axis is not constant.
+    /// Its component perpendicular to the axis of the turn; all of it where the axis is not
+    /// constant.
     pub(crate) across: f64,
 }
 

@@ -47,8 +47,8 @@ pub(crate) fn is_still<const N: usize>(
     start == end && travel(platform, &leg) <= far * epsilons::<f64>(STILL_EPSILONS)
 }
 
-/// A bound on how far a point of the body that is no farther from the reference point than an anchor
-/// moves on a leg.
+/// A bound on how far a point of the body that is no farther from the reference point than an
+/// anchor moves on a leg.
 pub(crate) fn travel<const N: usize>(platform: &Platform<N>, leg: &Leg) -> f64 {
     let arms = platform.anchors().iter().map(|anchor| anchor.coords.norm());
     leg.length() + leg.turn() * arms.fold(0.0, larger)

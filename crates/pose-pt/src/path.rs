@@ -165,8 +165,8 @@ impl<'a> PosePath<'a> {
         })
     }
 
-    /// The path rounded at the poses between the first and the last, one tolerance for each: timed by
-    /// `path-timing` the body passes them without a stop. A [`PtTable`](crate::PtTable) and
+    /// The path rounded at the poses between the first and the last, one tolerance for each: timed
+    /// by `path-timing` the body passes them without a stop. A [`PtTable`](crate::PtTable) and
     /// [`leg`](Self::leg) stay unrounded.
     ///
     /// # Errors

@@ -32,9 +32,9 @@ pub struct PtPoint<const N: usize> {
 /// segment time = max over the axes of |Δq| / rated speed
 /// ```
 ///
-/// Poses between the first and the last are passed without a stop: speeds step at every point of a PT table, and
-/// no acceleration limit is looked at. Controllers that run cubics can do better, with
-/// `Platform::paths`.
+/// Poses between the first and the last are passed without a stop: speeds step at every point of a
+/// PT table, and no acceleration limit is looked at. Controllers that run cubics can do better,
+/// with `Platform::paths`.
 #[derive(Debug, Clone, Copy)]
 pub struct PtTable<'a, const N: usize> {
     platform: &'a Platform<N>,

@@ -111,8 +111,8 @@ impl<P: Port, const N: usize, const T: usize> Driver<P, N, T> {
         self.station.cancel(self.now())
     }
 
-    /// Acknowledges the telegram of the last event, as [`Station::accept`] does; the answer goes out
-    /// while [`wait`](Self::wait) runs.
+    /// Acknowledges the telegram of the last event, as [`Station::accept`] does; the answer goes
+    /// out while [`wait`](Self::wait) runs.
     #[must_use = "a telegram that is accepted too late comes again"]
     pub fn accept(&mut self) -> bool {
         self.station.accept(self.now())

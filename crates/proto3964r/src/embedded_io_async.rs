@@ -1,4 +1,5 @@
-//! A driver for ports with the traits of [`embedded-io-async`](https://docs.rs/embedded-io-async) 0.7.
+//! A driver for ports with the traits of [`embedded-io-async`](https://docs.rs/embedded-io-async)
+//! 0.7.
 
 use core::{
     future::{Future, poll_fn},
@@ -117,8 +118,8 @@ where
         self.station.cancel(self.timer.now())
     }
 
-    /// Acknowledges the telegram of the last event, as [`Station::accept`] does; the answer goes out
-    /// while [`wait`](Self::wait) is polled.
+    /// Acknowledges the telegram of the last event, as [`Station::accept`] does; the answer goes
+    /// out while [`wait`](Self::wait) is polled.
     #[must_use = "a telegram that is accepted too late comes again"]
     pub fn accept(&mut self) -> bool {
         self.station.accept(self.timer.now())

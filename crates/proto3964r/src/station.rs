@@ -247,8 +247,8 @@ impl<const N: usize, const T: usize> Station<N, T> {
         had_job
     }
 
-    /// Answers the telegram that was polled last with DLE; `false` when that is too late, because it
-    /// has been answered NAK or the partner no longer waits: it comes again.
+    /// Answers the telegram that was polled last with DLE; `false` when that is too late, because
+    /// it has been answered NAK or the partner no longer waits: it comes again.
     ///
     /// For [`Config::acknowledge_wait_ms`]; otherwise nothing is held, and this is always `false`.
     #[must_use = "a telegram that is accepted too late comes again"]

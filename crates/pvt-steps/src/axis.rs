@@ -30,12 +30,13 @@ const TOLERANCE: u64 = 7 << 28;
 /// two steps at once. A step back that comes in the first
 /// [`reversal_ticks`](MinIntervals::reversal_ticks) of a row waits for their end, when the axis is
 /// then no more than e past its place; else the row is refused. Here e is 2^-8 steps, or what the
-/// axis moves in a tick at its greatest velocity, if that is less. So at the end of a row, as at rest,
+/// axis moves in a tick at its greatest velocity, if that is less. So at the end of a row, as at
+/// rest,
 /// ```text
 /// |q - k| <= 1/2 + e     at most 1/2 + 2^-8 = 0.50390625
 /// ```
-/// which is above 1/2 only where the axis has turned round past a place in that row, or rests there.
-/// The next row that moves on makes the step at once.
+/// which is above 1/2 only where the axis has turned round past a place in that row, or rests
+/// there. The next row that moves on makes the step at once.
 ///
 /// # How near to the cubic
 /// Each step comes less than a tick from the time at which the row's exact cubic passes its place,
@@ -55,8 +56,8 @@ const TOLERANCE: u64 = 7 << 28;
 /// b3 = 2 g2² - g3                 b5 = 14 g2⁴ - 21 g2² g3 + 3 g3²
 /// b6 = -g2 (42 g2⁴ - 84 g2² g3 + 28 g3²)
 /// ```
-/// x⁴ and x⁵ are replaced by the cubics that come nearest to them on |x| <= 1 (Chebyshev), x² - 1/8 and
-/// 5/4 x³ - 5/16 x, which are off by 1/8 and 1/16 at most. So
+/// x⁴ and x⁵ are replaced by the cubics that come nearest to them on |x| <= 1 (Chebyshev), x² - 1/8
+/// and 5/4 x³ - 5/16 x, which are off by 1/8 and 1/16 at most. So
 /// ```text
 /// p(x) = -b4/8 + (1 - 5/16 b5) x + (b2 + b4) x² + (b3 + 5/4 b5) x³
 /// |y - p(x)| <= |b4|/8 + |b5|/16 + |b6| + (|b7| + |b8| + ...)
@@ -257,8 +258,8 @@ impl AxisSegments {
         Run::new(cubic, ticks, end, turns, self.fit)
     }
 
-    /// Begins a row that keeps its direction, as all of its axis do, with velocities of up to half a
-    /// step a tick: it needs no check.
+    /// Begins a row that keeps its direction, as all of its axis do, with velocities of up to half
+    /// a step a tick: it needs no check.
     pub(crate) fn push_one_way(&mut self, ticks: u32, knot: PvtKnot) {
         let direction = if knot.position < self.knot.position {
             Direction::Negative

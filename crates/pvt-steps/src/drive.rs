@@ -46,8 +46,8 @@ pub enum DriveError<E> {
 /// ```
 ///
 /// It plans in windows of `W` knots, which are in it: a path may be of any length, and is as fast
-/// as braking within the window allows. What is not to be decided here is done by these parts one by
-/// one: feed override, tables with jerk, edges on a wire.
+/// as braking within the window allows. What is not to be decided here is done by these parts one
+/// by one: feed override, tables with jerk, edges on a wire.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve};
@@ -75,8 +75,8 @@ pub struct Drive<const N: usize, const W: usize = KNOTS> {
 }
 
 impl<const N: usize> Drive<N> {
-    /// Motors with limits and steps per unit of each axis, and the rate of the timer that makes their
-    /// steps; drivers with the timing of a DRV8825, knots for 64 segments in sight.
+    /// Motors with limits and steps per unit of each axis, and the rate of the timer that makes
+    /// their steps; drivers with the timing of a DRV8825, knots for 64 segments in sight.
     ///
     /// # Errors
     /// [`DriveError::Scale`].
@@ -123,8 +123,8 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         self
     }
 
-    /// The limits of the axes, with speeds of at most a step in the least ticks of the driver and three
-    /// more: one for the rounding of each of two steps, one for that of the velocity.
+    /// The limits of the axes, with speeds of at most a step in the least ticks of the driver and
+    /// three more: one for the rounding of each of two steps, one for that of the velocity.
     fn limits_of_drivers(&self) -> [AxisLimits; N] {
         let min_intervals = self.timing.min_intervals(self.rate);
         let least_ticks = u32::try_from(min_intervals.step_ticks).map_or(f64::INFINITY, f64::from);
@@ -145,8 +145,9 @@ impl<const N: usize, const W: usize> Drive<N, W> {
     /// `departure`, a bound in the unit of `tolerance`, within it at any speeds.
     ///
     /// The motors stand where the first path begins. No axis is faster than its driver takes steps,
-    /// whatever its limit. After an error there are no steps, and the motors may be in motion: paths that
-    /// are looked at whole when they are made, and go on where those before end, give none.
+    /// whatever its limit. After an error there are no steps, and the motors may be in motion:
+    /// paths that are looked at whole when they are made, and go on where those before end, give
+    /// none.
     ///
     /// # Errors
     /// [`DriveError`] in place of a step, the last item then.

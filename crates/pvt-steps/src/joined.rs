@@ -143,7 +143,8 @@ impl JoinedSegments {
         self.finishing = true;
     }
 
-    /// Takes steps of the row while there is room and they go in the same direction; whether some are left.
+    /// Takes steps of the row while there is room and they go in the same direction; whether some
+    /// are left.
     fn fill(&mut self) -> bool {
         loop {
             let Some(rest) = self.rest.take().or_else(|| self.next_rest()) else {

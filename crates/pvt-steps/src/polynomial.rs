@@ -11,7 +11,8 @@ use crate::row::PvtKnot;
 
 /// The most fraction bits of a position.
 const MAX_BITS: u32 = 50;
-/// Bits of a distance or v T, at most, with those after the point: sums of 24 of them stay below 2^62.
+/// Bits of a distance or v T, at most, with those after the point: sums of 24 of them stay below
+/// 2^62.
 const DISTANCE_BITS: u32 = 57;
 
 /// Fraction bits with which every distance fits: half a step a tick for 2^32 ticks.
@@ -59,10 +60,10 @@ impl Cubic {
     /// tick, positions counted from `origin` whole steps next to the first; `None` for a travel of
     /// 2^31 steps and more.
     ///
-    /// With B the greatest of the distance, v0 T and v1 T, |q2| and |q3| are at most 6 B, and the sums
-    /// below at most 24 B. That leaves 50 bits after the point for 128 steps a row, and one less
-    /// with each doubling. The coefficients are rounded to them, so that q is off by less than 8
-    /// units.
+    /// With B the greatest of the distance, v0 T and v1 T, |q2| and |q3| are at most 6 B, and the
+    /// sums below at most 24 B. That leaves 50 bits after the point for 128 steps a row, and one
+    /// less with each doubling. The coefficients are rounded to them, so that q is off by less than
+    /// 8 units.
     pub(crate) fn new(from: PvtKnot, to: PvtKnot, ticks: u32, origin: i64) -> Option<Self> {
         let travel = to.position.checked_sub(from.position)?;
         let scale = |knot: PvtKnot, bits: u32| distance(knot.velocity, ticks, bits);

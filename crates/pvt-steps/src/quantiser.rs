@@ -97,9 +97,9 @@ pub enum KnotError {
 /// 0.0014 steps/s and 5.6 steps/s².
 ///
 /// # Knots in one tick
-/// A knot later than the one before, but in the same tick n, is merged with it: it has no row of its
-/// own, but one of 0 ticks that changes nothing, and the next row goes from what the axes were at
-/// tick n to where the motion comes from the last of them. So no motion stops for a row that is
+/// A knot later than the one before, but in the same tick n, is merged with it: it has no row of
+/// its own, but one of 0 ticks that changes nothing, and the next row goes from what the axes were
+/// at tick n to where the motion comes from the last of them. So no motion stops for a row that is
 /// shorter than a tick. Where the velocities of the first and the last of them differ by D steps a
 /// tick, that row departs by
 /// ```text
@@ -109,18 +109,18 @@ pub enum KnotError {
 /// before make it, is no such motion and refused.
 ///
 /// # Jumps
-/// With [`start-stop speeds`](Self::with_start_stop_speeds), a knot of the same time and positions as
-/// the one before sets other velocities, by a row of 0 ticks at the tick n of both, as at the corners
-/// of a table of path-timing. Where an axis jumps by D steps a tick, and its accelerations before and
-/// after are at most a, the row after it departs by
+/// With [`start-stop speeds`](Self::with_start_stop_speeds), a knot of the same time and positions
+/// as the one before sets other velocities, by a row of 0 ticks at the tick n of both, as at the
+/// corners of a table of path-timing. Where an axis jumps by D steps a tick, and its accelerations
+/// before and after are at most a, the row after it departs by
 /// ```text
 /// position      D        velocity      a h + 1.5 D / T        acceleration  4 a h/T + 6 D / T²
 /// ```
 /// more, with h and T in ticks.
 ///
 /// # Refusals
-/// A knot is refused before anything of its row is put out, and the state is as before then: another
-/// one may follow in its place, such as one at rest within the machine's accelerations.
+/// A knot is refused before anything of its row is put out, and the state is as before then:
+/// another one may follow in its place, such as one at rest within the machine's accelerations.
 ///
 /// # Examples
 /// ```

@@ -37,8 +37,8 @@ pub enum RowError {
         ticks: u64,
         /// Ticks of a step at that velocity, rounded down.
         interval_ticks: u64,
-        /// [`MinIntervals::step_ticks`](crate::MinIntervals::step_ticks) and 2 ticks for the rounding of both steps, 3 in
-        /// [`JoinedSegments`](crate::JoinedSegments).
+        /// [`MinIntervals::step_ticks`](crate::MinIntervals::step_ticks) and 2 ticks for the
+        /// rounding of both steps, 3 in [`JoinedSegments`](crate::JoinedSegments).
         min_ticks: u64,
     },
     /// Two steps in opposite directions come too soon after each other.

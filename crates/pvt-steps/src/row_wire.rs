@@ -77,8 +77,9 @@ impl RowBits {
     }
 }
 
-/// Rows of a PVT table as bytes, one after the other, for a controller that makes the steps itself by
-/// [`PvtSteps`](crate::PvtSteps): fewer bytes than the [`Segment`](crate::Segment)s of its steps.
+/// Rows of a PVT table as bytes, one after the other, for a controller that makes the steps itself
+/// by [`PvtSteps`](crate::PvtSteps): fewer bytes than the [`Segment`](crate::Segment)s of its
+/// steps.
 ///
 /// Both ends begin with the same knots and bits. The encoder rounds each knot, by itself, to
 /// ```text

@@ -132,8 +132,8 @@ impl Run {
     /// Whether the axis may pass a step's place by more than the touch, turn round and be back in
     /// less than `ticks` ticks.
     ///
-    /// With |q''| <= 2 A per fraction² the distance takes at least the fraction sqrt(touch / A), and as
-    /// much on return.
+    /// With |q''| <= 2 A per fraction² the distance takes at least the fraction sqrt(touch / A),
+    /// and as much on return.
     pub(crate) fn turns_within(&self, ticks: u64) -> bool {
         let acceleration = self.cubic.max_acceleration();
         // Half of the ticks, or all of the row.

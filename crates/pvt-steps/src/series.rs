@@ -217,8 +217,8 @@ impl Series {
     /// second difference = e² (2 p2 + 6 p3 (e - 1))
     /// third difference  = 6 p3 e³
     /// ```
-    /// and w e in ticks is the pace at the centre. `steps` is [`per_half_width`]. For half widths of
-    /// half a step and more; `None` where a step takes 2^31 ticks.
+    /// and w e in ticks is the pace at the centre. `steps` is [`per_half_width`]. For half widths
+    /// of half a step and more; `None` where a step takes 2^31 ticks.
     ///
     /// [`per_half_width`]: Self::per_half_width
     pub(crate) fn times(&self, steps: Inverse, count: u16) -> Option<Times> {

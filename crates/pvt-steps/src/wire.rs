@@ -212,8 +212,8 @@ impl Segment {
         Ok(())
     }
 
-    /// Whether the times are right for all intervals as far from the first as the differences allow,
-    /// by their sizes alone: so it is but for a segment that almost stops or reverses.
+    /// Whether the times are right for all intervals as far from the first as the differences
+    /// allow, by their sizes alone: so it is but for a segment that almost stops or reverses.
     fn has_near_intervals(&self) -> bool {
         let units = Units::of(self.count);
         let wide = |difference: i64, bits: u32| {

@@ -47,10 +47,11 @@ enum State {
 /// Memory: `N` bytes and at most 144 more.
 ///
 /// # Contract
-/// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),
-/// [`poll_event`](Self::poll_event), [`poll_timeout`](Self::poll_timeout). A poll too many
-/// does nothing. Times are `Duration`s since an epoch of the caller and must not run backwards. [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only
-/// delays.
+/// After every call, poll in this order until nothing comes:
+/// [`poll_transmit`](Self::poll_transmit), [`poll_event`](Self::poll_event),
+/// [`poll_timeout`](Self::poll_timeout). A poll too many does nothing. Times are `Duration`s since
+/// an epoch of the caller and must not run backwards. [`handle_timeout`](Self::handle_timeout) too
+/// early does nothing, too late only delays.
 ///
 /// Each telegram that `poll_transmit` returns is one block for the transport, which answers
 /// exactly once: [`handle_delivered`](Self::handle_delivered) or

@@ -36,7 +36,8 @@ pub struct Config {
     /// a repeat takes. On 3964R that is three times the acknowledgement delay time (QVZ).
     pub quiet: Duration,
     /// Client: pause after a job that ended without its reaction; a late reaction that comes in it
-    /// is dropped. A refusal is a reaction. 2 s by default, as long as a 3964R partner waits for an answer.
+    /// is dropped. A refusal is a reaction. 2 s by default, as long as a 3964R partner waits for an
+    /// answer.
     pub resync: Duration,
     /// Server: from the delivery of a reaction to the continuation, at most; then the job is given
     /// up. 20 s by default, as the client's time.

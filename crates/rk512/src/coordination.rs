@@ -51,7 +51,8 @@ impl Cpu {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum CoordinationError {
-    /// Flag byte and flag bit do not go together: bits are 0 to 7, and Fh exactly with flag byte `FFh`.
+    /// Flag byte and flag bit do not go together: bits are 0 to 7, and Fh exactly with flag byte
+    /// `FFh`.
     #[error("coordination flag (bytes 9, 10): byte {byte:02X}h with bit {bit:X}h")]
     Flag {
         /// Byte 9.

@@ -37,9 +37,9 @@ pub enum Event<'a> {
 /// Memory: that of a [`Client<N>`] and a [`Server`] and at most 8 bytes more.
 ///
 /// # Contract
-/// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),
-/// [`poll_event`](Self::poll_event), [`poll_timeout`](Self::poll_timeout). A poll too many does
-/// nothing.
+/// After every call, poll in this order until nothing comes:
+/// [`poll_transmit`](Self::poll_transmit), [`poll_event`](Self::poll_event),
+/// [`poll_timeout`](Self::poll_timeout). A poll too many does nothing.
 /// [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only delays.
 ///
 /// Each telegram that `poll_transmit` returns is one block for the transport, which answers
@@ -138,7 +138,8 @@ impl<const N: usize> Endpoint<N> {
 
     /// A block came from the partner.
     ///
-    /// A block that is too short to decide goes to the client if a reaction is due, else to the server.
+    /// A block that is too short to decide goes to the client if a reaction is due, else to the
+    /// server.
     pub fn handle_block<D: DataSource + ?Sized>(
         &mut self,
         now: Duration,

@@ -48,9 +48,10 @@ struct Job {
 /// Memory: at most 288 bytes, whatever the length of the jobs: data go straight to the source.
 ///
 /// # Contract
-/// After every call, poll in this order until nothing comes: [`poll_transmit`](Self::poll_transmit),
-/// [`poll_event`](Self::poll_event), [`poll_timeout`](Self::poll_timeout). A poll too many does
-/// nothing. [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only delays.
+/// After every call, poll in this order until nothing comes:
+/// [`poll_transmit`](Self::poll_transmit), [`poll_event`](Self::poll_event),
+/// [`poll_timeout`](Self::poll_timeout). A poll too many does nothing.
+/// [`handle_timeout`](Self::handle_timeout) too early does nothing, too late only delays.
 ///
 /// Each telegram that `poll_transmit` returns is one block for the transport, which answers
 /// exactly once: [`handle_delivered`](Self::handle_delivered) or
@@ -140,8 +141,8 @@ impl Server {
     }
 
     /// Ends the job that the source [holds](DataSource::holds): its last reaction goes out, or this
-    /// error in place of it. `false`: nothing is held, or no longer, since the partner's next command
-    /// came before.
+    /// error in place of it. `false`: nothing is held, or no longer, since the partner's next
+    /// command came before.
     ///
     /// Without this call the reaction never comes; the partner waits for its reaction monitoring
     /// time.

@@ -140,8 +140,8 @@ impl<D: DataSource> Session<D> {
         while self.endpoint.poll_event().is_some() {}
     }
 
-    /// Does what is due, hands the transport the next telegram, and returns how the job ended. Call it
-    /// after each event and at the time of `poll_timeout`.
+    /// Does what is due, hands the transport the next telegram, and returns how the job ended. Call
+    /// it after each event and at the time of `poll_timeout`.
     ///
     /// # Errors
     /// A telegram that the transport refuses, which none of them is.

@@ -3,7 +3,8 @@
 use crate::command::Command;
 use crate::reaction::ReactionError;
 
-/// The memory that a [`Server`](crate::Server) reads and writes: the caller's, or a ready [`Memory`](crate::Memory).
+/// The memory that a [`Server`](crate::Server) reads and writes: the caller's, or a ready
+/// [`Memory`](crate::Memory).
 ///
 /// For each command the server calls [`size`](Self::size), then [`open`](Self::open); after an
 /// `open` that succeeded, [`read`](Self::read) or [`write`](Self::write) once for each telegram,

@@ -28,11 +28,11 @@ use crate::{
 /// A client and its station, which work in a task of their own.
 ///
 /// All methods take `&self`; several jobs at once run in the order of their calls. Dropping the
-/// future of a job gives it up: it may have been done in part or in whole. What the partner asks for
-/// is refused, unless there is a [source](Self::with_source) that serves it.
+/// future of a job gives it up: it may have been done in part or in whole. What the partner asks
+/// for is refused, unless there is a [source](Self::with_source) that serves it.
 ///
-/// A lost connection is final: every call reports it as [`CallError::Lost`], and whether and when to
-/// connect again is the caller's decision.
+/// A lost connection is final: every call reports it as [`CallError::Lost`], and whether and when
+/// to connect again is the caller's decision.
 ///
 /// # Examples
 /// ```no_run

@@ -1,4 +1,5 @@
-//! An arm over its workspace: what it reaches, how far from singular, how fast and how exact it is there.
+//! An arm over its workspace: what it reaches, how far from singular, how fast and how exact it is
+//! there.
 //!
 //! `cargo run -p scara-kin --example arm_in_numbers`
 
@@ -47,7 +48,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         arm.is_reachable(Point2::new(300.0, 0.0))
     );
 
-    // Straight on at 200 mm/s takes accelerations of the joints, which bring no acceleration of the tool.
+    // Straight on at 200 mm/s takes accelerations of the joints, which bring no acceleration of the
+    // tool.
     let at = Joints::new(0.3, 1.2);
     let rates = arm.joint_rates(at, Vector2::new(200.0, 0.0))?;
     let accelerations = arm.joint_accelerations(at, rates, Vector2::zeros())?;

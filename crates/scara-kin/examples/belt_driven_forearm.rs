@@ -1,5 +1,5 @@
-//! A forearm whose motor stands on the base and turns it through a belt: encoder angles of both drives
-//! to the tool's place, and back.
+//! A forearm whose motor stands on the base and turns it through a belt: encoder angles of both
+//! drives to the tool's place, and back.
 //!
 //! `cargo run -p scara-kin --example belt_driven_forearm`
 

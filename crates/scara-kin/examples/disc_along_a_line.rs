@@ -1,5 +1,5 @@
-//! A grinding disc along a line: both joints and the disc, and the same path with its points in single
-//! precision, for a microcontroller.
+//! A grinding disc along a line: both joints and the disc, and the same path with its points in
+//! single precision, for a microcontroller.
 //!
 //! `cargo run -p scara-kin --features path-timing --example disc_along_a_line`
 

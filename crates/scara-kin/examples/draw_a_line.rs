@@ -1,4 +1,5 @@
-//! A two-link arm draws a straight line: the waypoints of its joints, and how far the tool leaves it.
+//! A two-link arm draws a straight line: the waypoints of its joints, and how far the tool leaves
+//! it.
 #![expect(clippy::print_stdout, reason = "that is what an example is for")]
 
 use core::error::Error;

@@ -1,5 +1,5 @@
-//! What servo drives of CiA 402 get each millisecond: a geared arm along a line, within the torque of its
-//! motors, at 80 % of the speed that this allows.
+//! What servo drives of CiA 402 get each millisecond: a geared arm along a line, within the torque
+//! of its motors, at 80 % of the speed that this allows.
 //!
 //! `cargo run -p scara-kin --features path-timing --example drive_set_points`
 

@@ -1,5 +1,5 @@
-//! A two-link arm along a line with several payloads, as fast as the torque of its steppers allows, and
-//! what of it each of them gives at most.
+//! A two-link arm along a line with several payloads, as fast as the torque of its steppers allows,
+//! and what of it each of them gives at most.
 
 use core::error::Error;
 
@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             gravity_m_s2: 0.0, // a horizontal plane
         },
     )?;
-    // Holding torque in Nm, the speed from which it falls and the largest one in rad/s, at the joints.
+    // Holding torque in Nm, the speed from which it falls and the largest one in rad/s, at the
+    // joints.
     let motors = [
         TorqueCurve::holding(30.0, 3.0, 30.0)?,
         TorqueCurve::holding(12.0, 4.0, 30.0)?,

@@ -46,8 +46,8 @@ pub struct Arm<T: RealField = f64> {
 /// Squares that follow from the geometry, of which each `inverse` takes all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Squares<T> {
-    /// Squares of the distances from the base between which the tool can be, a rounding past the edges
-    /// included; zero where there is no inner one.
+    /// Squares of the distances from the base between which the tool can be, a rounding past the
+    /// edges included; zero where there is no inner one.
     pub(crate) nearest: T,
     pub(crate) farthest: T,
     /// Squares of the links' difference and of their sum.

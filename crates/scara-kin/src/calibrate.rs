@@ -1,4 +1,5 @@
-//! Geometry, zeros and ratios from measured points: Levenberg-Marquardt on a stated set of parameters.
+//! Geometry, zeros and ratios from measured points: Levenberg-Marquardt on a stated set of
+//! parameters.
 
 mod parameter;
 
@@ -105,11 +106,12 @@ impl DrivenArm {
     /// ```
     ///
     /// by Levenberg-Marquardt with an analytic Jacobian, from this arm's values, in three N × N
-    /// matrices for any number of points. Points taken with both elbows tell the most. Parameters that
-    /// the points do not determine stay near their values and are reported: the shoulder's zero and the
-    /// base's angle, for one, are the same thing. Noise can make a parameter look determined that the
-    /// points hardly see: [`conditioning`](marquardt::LeastSquares::conditioning) and the size of the changes show
-    /// it. Joint limits are not looked at.
+    /// matrices for any number of points. Points taken with both elbows tell the most. Parameters
+    /// that the points do not determine stay near their values and are reported: the shoulder's
+    /// zero and the base's angle, for one, are the same thing. Noise can make a parameter look
+    /// determined that the points hardly see:
+    /// [`conditioning`](marquardt::LeastSquares::conditioning) and the size of the changes show it.
+    /// Joint limits are not looked at.
     ///
     /// # Errors
     /// [`CalibrationError`].

@@ -22,8 +22,8 @@ pub enum DriveSense {
     Reversed,
 }
 
-/// The angles of the two drives, in radians: at the joints' side of their gears, or at the motors' with
-/// [`Drives::with_ratios`].
+/// The angles of the two drives, in radians: at the joints' side of their gears, or at the motors'
+/// with [`Drives::with_ratios`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -93,8 +93,9 @@ impl<T: RealField + Copy> Drives<T> {
         self
     }
 
-    /// What shoulder and elbow turn for each radian of their drives: 1 where those are at the joints' side
-    /// of the gears, 1/27 at the motor of a gear of 27:1. Above 0, between √ε and 1/√ε.
+    /// What shoulder and elbow turn for each radian of their drives: 1 where those are at the
+    /// joints' side of the gears, 1/27 at the motor of a gear of 27:1. Above 0, between √ε and
+    /// 1/√ε.
     ///
     /// # Errors
     /// [`GeometryError::Ratio`].

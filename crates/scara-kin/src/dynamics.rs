@@ -1,8 +1,8 @@
 //! Inverse dynamics: the torques that a motion takes.
 //!
-//! Both links are rigid bodies in the plane whose centres of mass lie on the line through their joints;
-//! the payload is a point at the tool. Lagrange's equations, with cᵢ the distance of a centre from its
-//! joint and Iᵢ the inertia about it:
+//! Both links are rigid bodies in the plane whose centres of mass lie on the line through their
+//! joints; the payload is a point at the tool. Lagrange's equations, with cᵢ the distance of a
+//! centre from its joint and Iᵢ the inertia about it:
 //!
 //! ```text
 //! k = (m2 c2 + m l2) l1    δ = I2 + m2 c2² + m l2²    α = I1 + m1 c1² + (m2 + m) l1² + δ
@@ -76,7 +76,8 @@ impl<T: RealField + Trig> Arm<T> {
     /// The arm with masses. `unit_m` is the unit of its lengths in metres: 1e-3 for an arm in mm.
     ///
     /// # Errors
-    /// [`DynamicsError`] for a negative number or one that is not finite, and a unit that is not above 0.
+    /// [`DynamicsError`] for a negative number or one that is not finite, and a unit that is not
+    /// above 0.
     pub fn dynamics(
         &self,
         unit_m: T,
@@ -121,8 +122,9 @@ impl<T: RealField + Trig> ArmDynamics<T> {
         Ok(Self { masses, ..self })
     }
 
-    /// The torques of shoulder and elbow in Nm that a motion takes, at rates in rad/s and accelerations in
-    /// rad/s²: what a servo drive takes as feed-forward. At the joints' side of the gears.
+    /// The torques of shoulder and elbow in Nm that a motion takes, at rates in rad/s and
+    /// accelerations in rad/s²: what a servo drive takes as feed-forward. At the joints' side of
+    /// the gears.
     ///
     /// ```text
     /// τ = M(q) q̈ + h(q, q̇) + g(q) + viscous q̇ + coulomb sign(q̇)

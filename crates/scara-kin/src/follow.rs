@@ -42,8 +42,8 @@ impl<T: RealField + Trig> Arm<T> {
     /// since limits are ranges, the moves between waypoints keep them too. Each point of
     /// the polyline becomes a waypoint, but for repeated points. The curve is walked
     /// once before anything is handed out, so that an error comes first, and the
-    /// number of waypoints is known: [`Follow::remaining`]; `points` must therefore give the same points
-    /// again when cloned.
+    /// number of waypoints is known: [`Follow::remaining`]; `points` must therefore give the same
+    /// points again when cloned.
     ///
     /// # Errors
     /// [`FollowError`]; the point named is the first along the curve.

@@ -105,8 +105,8 @@ impl<T: RealField + Trig> Triangle<T> {
         self.shoulder(-self.s)
     }
 
-    /// Both sides of the shoulder's angle and one over their length, for the area `s` with the elbow's
-    /// sign.
+    /// Both sides of the shoulder's angle and one over their length, for the area `s` with the
+    /// elbow's sign.
     #[inline(always)]
     fn shoulder(&self, s: T) -> (T, T, T) {
         let (x, y) = (self.tool.x, self.tool.y);
@@ -126,12 +126,12 @@ impl<T: RealField + Trig> Arm<T> {
     /// q1 = atan2(k1 y ∓ s x, k1 x ± s y)
     /// ```
     ///
-    /// The lengths of these vectors are known, 2 l1 l2 and 2 l1 r², so that the angles come by their
-    /// halves. What the differences round off is what a change of r² by its own last place would do, at
-    /// the rim, at the fold, for equal links and for very unequal ones: `forward(inverse(p))` is
-    /// within 8 machine epsilons of reach plus base distance everywhere. What [`forward`](Self::forward)
-    /// made of allowed joints is never refused: up to [`tolerance`](Self::tolerance) past an
-    /// edge counts as on it, for limits too.
+    /// The lengths of these vectors are known, 2 l1 l2 and 2 l1 r², so that the angles come by
+    /// their halves. What the differences round off is what a change of r² by its own last place
+    /// would do, at the rim, at the fold, for equal links and for very unequal ones:
+    /// `forward(inverse(p))` is within 8 machine epsilons of reach plus base distance everywhere.
+    /// What [`forward`](Self::forward) made of allowed joints is never refused: up to
+    /// [`tolerance`](Self::tolerance) past an edge counts as on it, for limits too.
     ///
     /// Angles are in radians at the whole turn nearest to the middle of their range.
     ///
@@ -226,8 +226,9 @@ impl<T: RealField + Trig> Arm<T> {
     }
 
     #[cfg(feature = "path-timing")]
-    /// As [`inverse_elbow_near`](Self::inverse_elbow_near), with the slopes of both joints along the
-    /// direction `along`; these are `None` within a few machine epsilons of a straight or folded arm.
+    /// As [`inverse_elbow_near`](Self::inverse_elbow_near), with the slopes of both joints along
+    /// the direction `along`; these are `None` within a few machine epsilons of a straight or
+    /// folded arm.
     #[inline]
     pub(crate) fn inverse_with_slopes(
         &self,

@@ -21,8 +21,8 @@ use turns::Turns;
 /// A curve of the tool as a path of shoulder and elbow, in radians, by the curve's arc length: what
 /// [`path_timing::Table`] plans.
 ///
-/// It is made by [`Arm::path`], which has looked at all of it. The next one goes on from it without a
-/// stop where the directions of their curves agree, as those of a line and a blend do.
+/// It is made by [`Arm::path`], which has looked at all of it. The next one goes on from it without
+/// a stop where the directions of their curves agree, as those of a line and a blend do.
 ///
 /// ```
 /// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
@@ -98,12 +98,12 @@ impl ArmPath {
         Ok((joints, slopes))
     }
 
-    /// The most by which the tool leaves the curve on a segment of a table, in the unit of length. For
-    /// [`Table::plan_within`](path_timing::Table::plan_within).
+    /// The most by which the tool leaves the curve on a segment of a table, in the unit of length.
+    /// For [`Table::plan_within`](path_timing::Table::plan_within).
     ///
     /// Proof. Both joints run cubics, so the absolute angles a of both links do. The fourth
-    /// derivative of each link is bounded by the largest of those of its angle, all at the ends or at
-    /// the vertex:
+    /// derivative of each link is bounded by the largest of those of its angle, all at the ends or
+    /// at the vertex:
     ///
     /// ```text
     /// d⁴/dt⁴ l·e^{ia} = l·e^{ia} (a'⁴ - 3a"² - 4a'a‴ - 6i a'²a")

@@ -25,9 +25,9 @@ pub(crate) fn largest_ratio<T: RealField>() -> T {
     (T::default_epsilon() * nalgebra::convert(64.0)).recip()
 }
 
-/// Shortest and longest link: 2^-127 and 2^254 in f64 (6e-39 and 2.8e76), 2^-15 and 2^30 in f32 (3e-5
-/// and 1e9). With h a quarter of the fourth root of the largest number they are 1/√h and h: outside,
-/// products of four lengths would overflow or lose digits.
+/// Shortest and longest link: 2^-127 and 2^254 in f64 (6e-39 and 2.8e76), 2^-15 and 2^30 in f32
+/// (3e-5 and 1e9). With h a quarter of the fourth root of the largest number they are 1/√h and h:
+/// outside, products of four lengths would overflow or lose digits.
 pub(crate) fn link_lengths<T: RealField + Copy>() -> (T, T) {
     let min = of_precision([5.877_471_754_111_438e-39, 3.051_757_812_5e-5]);
     let max = of_precision([2.894_802_230_932_905e76, 1_073_741_824.0]);

@@ -171,8 +171,8 @@ impl<T: RealField + Trig> Arm<T> {
         self.solve(joints, acceleration - centripetal)
     }
 
-    /// The most by which the tool is moved where shoulder and elbow are off by at most these radians, in
-    /// the unit of length: at any pose.
+    /// The most by which the tool is moved where shoulder and elbow are off by at most these
+    /// radians, in the unit of length: at any pose.
     ///
     /// ```text
     /// |Δp| ≤ (l1 + l2) |Δq1| + l2 |Δq2|

@@ -1,5 +1,5 @@
-//! What three kinds of timers make of the same pulse rate: an 8051 that is written by its interrupt, an
-//! STM32 that reloads itself, a `SysTick` that counts down.
+//! What three kinds of timers make of the same pulse rate: an 8051 that is written by its
+//! interrupt, an STM32 that reloads itself, a `SysTick` that counts down.
 //!
 //! `cargo run -p stepper-sync --example timers`
 

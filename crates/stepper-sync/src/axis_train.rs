@@ -28,7 +28,8 @@ pub struct AxisTrain {
 }
 
 impl AxisTrain {
-    /// `pulses` pulses over `half_ticks` ticks, made twice: edge k at floor(k `half_ticks` / `pulses`).
+    /// `pulses` pulses over `half_ticks` ticks, made twice: edge k at floor(k `half_ticks` /
+    /// `pulses`).
     #[expect(
         clippy::arithmetic_side_effects,
         clippy::cast_possible_truncation,

@@ -123,8 +123,8 @@ impl<S: OutputPin, D: OutputPin> StepDir<S, D> {
     /// Makes one step and waits until the next may come; nothing for `None`.
     ///
     /// # Errors
-    /// [`StepDirError`]; after [`StepDirError::Step`] it is not known whether the motor has stepped.
-    /// The next step then begins by ending the pulse.
+    /// [`StepDirError`]; after [`StepDirError::Step`] it is not known whether the motor has
+    /// stepped. The next step then begins by ending the pulse.
     pub fn step(
         &mut self,
         direction: Option<Direction>,

@@ -130,7 +130,8 @@ macro_rules! atan2 {
                 numerator: $float::from_bits(size.to_bits() ^ ((x ^ steep) & SIGN)),
                 large,
                 addend,
-                // The remainder never differs, and shows the compiler that the index is not too large.
+                // The remainder never differs, and shows the compiler that the index is not too
+                // large.
                 center: CENTERS
                     .get(index % CENTERS.len())
                     .copied()
@@ -181,7 +182,8 @@ macro_rules! atan2 {
             }
         }
 
-        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is rare.
+        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is
+        /// rare.
         #[inline(never)]
         fn atan2_alone(y: $float, x: $float) -> $float {
             let Sides { small, large, .. } = sides(y, x);

@@ -53,8 +53,8 @@ fn arctan_polynomial(z: f64) -> f64 {
     low + z4 * (high + z4 * c8)
 }
 
-/// The angle of (±cosine, |sine|) by its half, where it is nearer to the other axis the rest of a right
-/// angle.
+/// The angle of (±cosine, |sine|) by its half, where it is nearer to the other axis the rest of a
+/// right angle.
 ///
 /// ```text
 /// t = small / (length + large) = tan(angle/2)     t <= tan π/8     angle = 2 atan t

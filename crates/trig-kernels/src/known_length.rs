@@ -1,5 +1,5 @@
-//! The angle of a vector whose length is known, by its half: without the exact remainder and the folds
-//! that [`atan2`](crate::atan2) needs.
+//! The angle of a vector whose length is known, by its half: without the exact remainder and the
+//! folds that [`atan2`](crate::atan2) needs.
 
 /// Makes `atan2_of_length` of one precision from what the module that calls it has.
 macro_rules! known_length {
@@ -26,8 +26,8 @@ macro_rules! known_length {
             }
         }
 
-        /// Whether the length is what was said: what is left out is then below rounding. Not if it is
-        /// not a number.
+        /// Whether the length is what was said: what is left out is then below rounding. Not if it
+        /// is not a number.
         #[inline(always)]
         fn is_known(length: $float) -> bool {
             let [min, max] = [1.0 - KNOWN, 1.0 + KNOWN];
@@ -56,7 +56,8 @@ macro_rules! known_length {
             }
         }
 
-        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is rare.
+        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is
+        /// rare.
         #[inline(never)]
         fn of_length_alone(y: $float, x: $float, inverse_length: $float) -> $float {
             let unit = unit(y, x, inverse_length);

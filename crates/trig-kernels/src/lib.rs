@@ -147,9 +147,9 @@ pub fn sin_cos_lanes<T: Trig, const L: usize>(x: [T; L]) -> ([T; L], [T; L]) {
 
 /// The angle of the vector (x, y) against the axis of x, in radians from -π to π.
 ///
-/// Off by at most 0.75 of the last place. x and y are in any unit. Signed zeros and infinities as in
-/// IEEE 754-2019, section 9.2.1: on the axes the exact angle rounded, and of (x, ±0) with x < 0 it is
-/// ±π.
+/// Off by at most 0.75 of the last place. x and y are in any unit. Signed zeros and infinities as
+/// in IEEE 754-2019, section 9.2.1: on the axes the exact angle rounded, and of (x, ±0) with x < 0
+/// it is ±π.
 #[must_use]
 #[inline]
 pub fn atan2<T: Trig>(y: T, x: T) -> T {
@@ -176,18 +176,18 @@ pub fn atan2_lanes<T: Trig, const L: usize>(y: [T; L], x: [T; L]) -> [T; L] {
 ///
 /// In `f64`, where |y| is the larger side, tan(angle/2) = w / (g + u), taken from π/2.
 ///
-/// `inverse_length` is 1/N, as near as about 2^-12 in `f32` and 2^-27 in `f64`: what the length is off
-/// by δ changes the angle by δ²/2 of it. Where it is off by more, or no number, the answer is that of
-/// [`atan2`]. Off by at most 4 of the last place; signed zeros as in `atan2`. It takes two thirds of
-/// `atan2`'s time.
+/// `inverse_length` is 1/N, as near as about 2^-12 in `f32` and 2^-27 in `f64`: what the length is
+/// off by δ changes the angle by δ²/2 of it. Where it is off by more, or no number, the answer is
+/// that of [`atan2`]. Off by at most 4 of the last place; signed zeros as in `atan2`. It takes two
+/// thirds of `atan2`'s time.
 #[must_use]
 #[inline]
 pub fn atan2_of_length<T: Trig>(y: T, x: T, inverse_length: T) -> T {
     T::atan2_of_length(y, x, inverse_length)
 }
 
-/// The angles of several vectors (x, y) whose lengths are known: the bits of [`atan2_of_length`] for
-/// each.
+/// The angles of several vectors (x, y) whose lengths are known: the bits of [`atan2_of_length`]
+/// for each.
 #[must_use]
 #[inline]
 pub fn atan2_of_length_lanes<T: Trig, const L: usize>(

@@ -60,7 +60,8 @@ macro_rules! sin_cos {
             turn(sin, cos, quarters)
         }
 
-        /// Adds whole quarter turns: an exchange and two signs, by bits, for lanes without branches.
+        /// Adds whole quarter turns: an exchange and two signs, by bits, for lanes without
+        /// branches.
         #[inline(always)]
         fn turn(sin: $float, cos: $float, quarters: $bits) -> ($float, $float) {
             if !HAS_VECTORS {
@@ -102,7 +103,8 @@ macro_rules! sin_cos {
             }
         }
 
-        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is rare.
+        /// One copy of it: memory is dear where there are no vectors, and next to vectors it is
+        /// rare.
         #[inline(never)]
         fn sin_cos_alone(x: $float) -> ($float, $float) {
             evaluate(any_reduced(x))

@@ -2,8 +2,8 @@
 
 use core::fmt::{self, Write};
 
-/// Displays six digits of a number, without zeros at their end, as the messages of the crates on this
-/// one do: `0.0123457`, `-310`, `1e300`.
+/// Displays six digits of a number, without zeros at their end, as the messages of the crates on
+/// this one do: `0.0123457`, `-310`, `1e300`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::exhaustive_structs, reason = "a number")]
 pub struct SixDigits(pub f64);

@@ -6,9 +6,10 @@
 //! s = m r, shortened           s + r (m - s²)/2 ≈ √m, likewise
 //! ```
 //!
-//! What is cut off on the way, and the sign of these errors, leave the last below √m by less than half
-//! a unit of the result's last place. So the root rounded down is q or q + 1 with q that number
-//! rounded down, and the nearest one is q + 1 just where the whole number m 2^k is above q² + q.
+//! What is cut off on the way, and the sign of these errors, leave the last below √m by less than
+//! half a unit of the result's last place. So the root rounded down is q or q + 1 with q that
+//! number rounded down, and the nearest one is q + 1 just where the whole number m 2^k is above
+//! q² + q.
 
 #![expect(
     clippy::cast_possible_truncation,

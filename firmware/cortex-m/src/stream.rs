@@ -1,9 +1,9 @@
 //! A stream of segments that always has an end: what a PC sends while the board plays.
 //!
-//! Each batch goes on from the one before and has a tail with it: the steps that bring the machine to
-//! rest on its path from there. The next batch takes the tail's place if it comes in time; else the
-//! tail is played. So a line that breaks at any moment leaves the machine at rest, on the path, with
-//! every step counted, and the PC goes on from there.
+//! Each batch goes on from the one before and has a tail with it: the steps that bring the machine
+//! to rest on its path from there. The next batch takes the tail's place if it comes in time; else
+//! the tail is played. So a line that breaks at any moment leaves the machine at rest, on the path,
+//! with every step counted, and the PC goes on from there.
 
 use proto3964r::{Config, Line, Priority};
 use pvt_steps::{Segment, SegmentError};
@@ -18,8 +18,8 @@ pub const MAX_BATCH: usize = 8192;
 /// Bytes of what the board says.
 pub const REPORT: usize = 11;
 
-/// The line between both ends, which can wait long, as nothing is lost on it: each has a clock of its
-/// own, and a simulated board's runs ahead of the PC's or behind it, as processors are free.
+/// The line between both ends, which can wait long, as nothing is lost on it: each has a clock of
+/// its own, and a simulated board's runs ahead of the PC's or behind it, as processors are free.
 #[must_use]
 pub const fn line(priority: Priority) -> Config {
     Config {

@@ -7,8 +7,8 @@ use crate::panel::Panel;
 use crate::pulses::{Block, Pulses};
 use crate::settings::Machine;
 
-/// Longest words a second. A block that takes half as long as one is closed before another one, however
-/// few words it has: so none is too short for the next one to be there in time.
+/// Longest words a second. A block that takes half as long as one is closed before another one,
+/// however few words it has: so none is too short for the next one to be there in time.
 const LONGEST_WORD_HZ: u32 = 200;
 
 /// Puts the edges of steps into blocks, and these on the panel.
@@ -67,7 +67,8 @@ impl<'p, const N: usize> BlockWriter<'p, N> {
         }
     }
 
-    /// All edges go out, with the time until a tick before `ticks`; there, more will follow in time.
+    /// All edges go out, with the time until a tick before `ticks`; there, more will follow in
+    /// time.
     pub(crate) async fn go_on(&mut self, ticks: u64) {
         self.wait(ticks - 1).await;
         if !self.block.words.is_empty() {

@@ -1,9 +1,9 @@
 //! All axes to their switches, one after the other.
 //!
-//! What is handed out is ahead of the pins by the longest word, so that no step is late: when that has
-//! been played, as much again follows. A fast step is decided some steps before it is made. A slow one
-//! has to be decided with the switch as the step before has left it: where slow steps are not that far
-//! apart, the pins rest between them.
+//! What is handed out is ahead of the pins by the longest word, so that no step is late: when that
+//! has been played, as much again follows. A fast step is decided some steps before it is made. A
+//! slow one has to be decided with the switch as the step before has left it: where slow steps are
+//! not that far apart, the pins rest between them.
 
 use pulse_interp::{Direction, Homing, HomingError, HomingOrder, HomingSpeed};
 

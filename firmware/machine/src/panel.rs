@@ -212,8 +212,8 @@ impl<const N: usize> Panel<N> {
         self.change(|shared| shared.steps = steps);
     }
 
-    /// Says what became of a job. Nobody who listens too slowly stops the machine: the oldest answer
-    /// is lost then.
+    /// Says what became of a job. Nobody who listens too slowly stops the machine: the oldest
+    /// answer is lost then.
     pub(crate) fn answer(&self, answer: Text) {
         if let Err(TrySendError::Full(answer)) = self.answers.try_send(answer) {
             let _ = self.answers.try_receive();

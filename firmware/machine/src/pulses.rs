@@ -9,8 +9,8 @@ use crate::settings::PinTicks;
 /// The most words of a block.
 const MAX_WORDS: usize = 64;
 
-/// Words that are handed to a board at a time. Bit 0 of their levels steps the first axis, bit 1 is its
-/// direction, bits 2 and 3 are the second's, bits 4 and 5 the third's.
+/// Words that are handed to a board at a time. Bit 0 of their levels steps the first axis, bit 1 is
+/// its direction, bits 2 and 3 are the second's, bits 4 and 5 the third's.
 #[derive(Clone, Debug)]
 pub struct Block<const N: usize> {
     /// At least one; each waits for 5 ms at the most.
@@ -58,8 +58,8 @@ impl<const N: usize> Default for BlockEnd<N> {
 /// The edges of step and direction pins, from steps in time order.
 ///
 /// A step at tick t is a change of direction at t, if there is one, the start of the pulse at t and
-/// the setup time, its end the pulse time later: so all pulses are late by the setup time, and their
-/// intervals are those of the steps.
+/// the setup time, its end the pulse time later: so all pulses are late by the setup time, and
+/// their intervals are those of the steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Pulses<const N: usize> {
     pins: PinTicks,

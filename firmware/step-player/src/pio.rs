@@ -33,13 +33,13 @@ const DMA_MICROS: u64 = 10;
 /// Words that go to the FIFO at a time: those of a block are of one time.
 const AT_A_TIME: usize = 64;
 
-/// Blocks that are put into the FIFO: at which time they will have been played, and what is so then.
-/// The FIFO has room for eight.
+/// Blocks that are put into the FIFO: at which time they will have been played, and what is so
+/// then. The FIFO has room for eight.
 type Played<E> = Channel<NoopRawMutex, (u64, E), 10>;
 
 impl<'d, PIO: Instance, const SM: usize> PioPlayer<'d, PIO, SM> {
-    /// A player of up to eight pins that follow each other, the first in bit 0 of the levels; all are
-    /// low.
+    /// A player of up to eight pins that follow each other, the first in bit 0 of the levels; all
+    /// are low.
     pub fn new(
         common: &mut Common<'d, PIO>,
         mut machine: StateMachine<'d, PIO, SM>,
@@ -86,8 +86,8 @@ impl<'d, PIO: Instance, const SM: usize> PioPlayer<'d, PIO, SM> {
         }
     }
 
-    /// Puts the words into the FIFO, and says until when they will be played: a FIFO of long words is
-    /// far ahead of the pins.
+    /// Puts the words into the FIFO, and says until when they will be played: a FIFO of long words
+    /// is far ahead of the pins.
     async fn push<S: Source>(mut self, source: &S, played: &Played<S::End>) -> ! {
         let micros_of = |ticks: u64| (ticks * 1_000_000).div_ceil(self.tick_hz.into());
         let (mut begin_micros, mut ticks) = (0, 0);

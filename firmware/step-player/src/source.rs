@@ -3,8 +3,8 @@
 /// Levels of all pins from a tick on: the pins wait, then change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Ticks since the word before: 1 to [`MAX_TICKS`](Self::MAX_TICKS). What is outside counts as the
-    /// nearer end; longer waits are several words.
+    /// Ticks since the word before: 1 to [`MAX_TICKS`](Self::MAX_TICKS). What is outside counts as
+    /// the nearer end; longer waits are several words.
     pub ticks: u32,
     /// Level of each pin, the first in bit 0: up to eight.
     pub levels: u8,

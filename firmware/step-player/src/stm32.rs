@@ -19,8 +19,8 @@ use crate::ticks::Ticks;
 pub const RING: usize = 512;
 /// Filled at a time.
 const CHUNK: usize = 64;
-/// Blocks that the DMA has not played. One of fewer ticks than a chunk comes before a rest or a long
-/// word.
+/// Blocks that the DMA has not played. One of fewer ticks than a chunk comes before a rest or a
+/// long word.
 const IN_FLIGHT: usize = 16;
 
 /// Pins that are not of one port.
@@ -48,8 +48,8 @@ pub struct DmaPlayer<'d, T: BasicInstance, const P: usize> {
 }
 
 impl<'d, T: BasicInstance, const P: usize> DmaPlayer<'d, T, P> {
-    /// A player of up to eight pins of one port, the first in bit 0 of the levels; all are low. `dma` has
-    /// to reach the port: on an STM32F4 that is a stream of DMA2.
+    /// A player of up to eight pins of one port, the first in bit 0 of the levels; all are low.
+    /// `dma` has to reach the port: on an STM32F4 that is a stream of DMA2.
     ///
     /// # Errors
     /// [`PinsError`].
@@ -88,8 +88,8 @@ impl<'d, T: BasicInstance, const P: usize> DmaPlayer<'d, T, P> {
     /// Plays the blocks of a source, for ever.
     ///
     /// # Panics
-    /// Where it has not run for as long as the ring takes: the DMA has come round to words that it has
-    /// played before. The pins have stopped then.
+    /// Where it has not run for as long as the ring takes: the DMA has come round to words that it
+    /// has played before. The pins have stopped then.
     pub async fn play<S: Source>(mut self, source: &S) -> ! {
         let mut ticks = Ticks::new();
         let mut in_flight = Deque::<(u64, S::End), IN_FLIGHT>::new();

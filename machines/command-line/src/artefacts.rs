@@ -68,8 +68,8 @@ impl Artefacts {
             .with_context(|| self.folder.join(name).display().to_string())
     }
 
-    /// Begins a file that a run may do without; where it does, one of a run before is removed, so that
-    /// what is there belongs together.
+    /// Begins a file that a run may do without; where it does, one of a run before is removed, so
+    /// that what is there belongs together.
     ///
     /// # Errors
     /// As [`create`](Self::create).

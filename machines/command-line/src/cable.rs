@@ -38,7 +38,8 @@ impl Cable {
 
 #[cfg(unix)]
 impl Cable {
-    /// A cable and the ports at its ends. A port that is closed while the cable carries is an error.
+    /// A cable and the ports at its ends. A port that is closed while the cable carries is an
+    /// error.
     ///
     /// # Errors
     /// The system has no pseudo-terminals left.

@@ -1,5 +1,5 @@
-//! What the machines' command lines share: options, input files and terminals, artefacts that appear
-//! together, progress, and how a run ends.
+//! What the machines' command lines share: options, input files and terminals, artefacts that
+//! appear together, progress, and how a run ends.
 
 mod arguments;
 mod artefacts;

@@ -49,10 +49,10 @@ pub fn shaper(name: &str, mode: Mode) -> Result<Shaper> {
 }
 
 impl Choice {
-    /// One of each kind of shaper for the modes of an axis, the best first: of those that leave at most
-    /// 5 % of the swing while the frequencies are anywhere within ±10 % the one that smooths least, in
-    /// mm at an acceleration in mm/s²; those that leave more come after them. Where there are two modes
-    /// or more, shapers for two of them are among it.
+    /// One of each kind of shaper for the modes of an axis, the best first: of those that leave at
+    /// most 5 % of the swing while the frequencies are anywhere within ±10 % the one that smooths
+    /// least, in mm at an acceleration in mm/s²; those that leave more come after them. Where there
+    /// are two modes or more, shapers for two of them are among it.
     ///
     /// # Errors
     /// No mode, an acceleration that is no number above 0, or modes without a shaper.

@@ -5,9 +5,9 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// The named columns of a CSV file, row by row, each with its line.
 ///
-/// The first line names the columns, in any order and letters; a `#` before it is taken off, as some
-/// firmware writes one. Other lines that begin with `#` are comments. What separates is a comma, a
-/// semicolon or a tabulator, whichever the first line has.
+/// The first line names the columns, in any order and letters; a `#` before it is taken off, as
+/// some firmware writes one. Other lines that begin with `#` are comments. What separates is a
+/// comma, a semicolon or a tabulator, whichever the first line has.
 ///
 /// # Errors
 /// A column that there is not, and each cell that is no finite number, with line and column.

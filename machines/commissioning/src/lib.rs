@@ -1,8 +1,9 @@
-//! What is done once when a machine is set up, and again when it has changed: readings in, settings out.
+//! What is done once when a machine is set up, and again when it has changed: readings in, settings
+//! out.
 //!
-//! [`read_columns`] takes the columns of a CSV file by their names, [`Fitted`] says what a calibration
-//! has found, [`RingDown`] finds the modes in an accelerometer's log, and [`Choice`] the shaper that
-//! leaves the least of them at the least smoothing:
+//! [`read_columns`] takes the columns of a CSV file by their names, [`Fitted`] says what a
+//! calibration has found, [`RingDown`] finds the modes in an accelerometer's log, and [`Choice`]
+//! the shaper that leaves the least of them at the least smoothing:
 //!
 //! ```
 //! use commissioning::{Choice, RingDown};

@@ -10,8 +10,8 @@ use crate::{Choice, Found, RingDown};
 /// Shapers that are drawn.
 const SHOWN: usize = 3;
 
-/// The figure of one axis: its readings with the modes' sum, both spectra, and what the best shapers
-/// leave of a swing at any frequency.
+/// The figure of one axis: its readings with the modes' sum, both spectra, and what the best
+/// shapers leave of a swing at any frequency.
 ///
 /// # Errors
 /// Nothing rings in the readings.

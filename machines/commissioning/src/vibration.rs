@@ -1,13 +1,15 @@
 //! Frequency and damping of the modes in a ring-down.
 //!
-//! Goal: the modes in which a machine swings when a move has ended, from an accelerometer's readings.
-//! Method: the tallest line of the spectrum is where a mode begins; all modes so far are fitted at once,
+//! Goal: the modes in which a machine swings when a move has ended, from an accelerometer's
+//! readings. Method: the tallest line of the spectrum is where a mode begins; all modes so far are
+//! fitted at once,
 //!
 //! ```text
 //! a(t) = c + Σ exp(-σ t) (p cos ωt + q sin ωt)
 //! ```
 //!
-//! by Levenberg-Marquardt at the readings' own times, until the tallest line of what is left is noise.
+//! by Levenberg-Marquardt at the readings' own times, until the tallest line of what is left is
+//! noise.
 
 mod damped;
 mod spectrum;
@@ -74,8 +76,8 @@ pub struct RingDown {
 
 impl RingDown {
     /// The readings of a column within a time, of a CSV file with a column `time` in s, such as
-    /// `#time,accel_x,accel_y,accel_z`. The time is in the file's own seconds after its first reading;
-    /// it begins where the commanded move has ended.
+    /// `#time,accel_x,accel_y,accel_z`. The time is in the file's own seconds after its first
+    /// reading; it begins where the commanded move has ended.
     ///
     /// # Errors
     /// A cell that is no number, a time that does not rise, too few readings; each with its place.
@@ -172,7 +174,8 @@ struct Fitted {
 }
 
 impl Fitted {
-    /// Whether each mode is known to 5 % of its frequency, more than its own noise, and one of its own.
+    /// Whether each mode is known to 5 % of its frequency, more than its own noise, and one of its
+    /// own.
     fn is_sound(&self) -> bool {
         const KNOWN: f64 = 0.05;
         const LARGEST_DAMPING: f64 = 0.5;

@@ -9,8 +9,8 @@ use crate::law::Law;
 use crate::motor::{Motor, ticks_to};
 
 impl Motor {
-    /// The speeds that turn the motor by `half_steps` in `frames`, from where it is and with what its
-    /// accumulator holds.
+    /// The speeds that turn the motor by `half_steps` in `frames`, from where it is and with what
+    /// its accumulator holds.
     ///
     /// ```
     /// use dancer::{Easing, Law, Motor};
@@ -41,8 +41,8 @@ impl Motor {
     ///
     /// # Errors
     /// [`TurnError::TooFast`] when a frame needs a speed above [`Motor::max_speed`];
-    /// [`TurnError::Unreachable`] when no plan was found that ends within one half step, or there is
-    /// no frame to turn in.
+    /// [`TurnError::Unreachable`] when no plan was found that ends within one half step, or there
+    /// is no frame to turn in.
     pub fn turn(&self, half_steps: i32, frames: u16, easing: Easing) -> Result<Vec<i8>, TurnError> {
         let mut magnitudes = self.distributed(self.smallest_sum(half_steps), frames, easing)?;
         if self.law() == Law::Reset && half_steps != 0 && frames > 0 {

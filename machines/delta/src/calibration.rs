@@ -48,9 +48,9 @@ pub struct Calibrated {
 type Points = (Vec<u64>, Vec<Measured>);
 
 impl Machine {
-    /// The machine that fits measured points best: a line for each, `a b c x y z`, the motors' steps
-    /// from home and where the platform's centre was found in mm, or a CSV file with the columns `a`,
-    /// `b`, `c`, `x_mm`, `y_mm`, `z_mm`; `#` begins a comment.
+    /// The machine that fits measured points best: a line for each, `a b c x y z`, the motors'
+    /// steps from home and where the platform's centre was found in mm, or a CSV file with the
+    /// columns `a`, `b`, `c`, `x_mm`, `y_mm`, `z_mm`; `#` begins a comment.
     ///
     /// # Errors
     /// A line that cannot be read, or a point where the machine cannot be, with the line's number;

@@ -1,5 +1,5 @@
-//! The Delta robot of \[Delta thesis\], with geared steppers: points in, steps out, and the steps on
-//! a simulated machine.
+//! The Delta robot of \[Delta thesis\], with geared steppers: points in, steps out, and the steps
+//! on a simulated machine.
 //!
 //! ```text
 //! x y z [feed] -> lines, rounded corners -> PVT rows -> steps.csv

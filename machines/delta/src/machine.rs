@@ -222,8 +222,8 @@ impl Machine {
         Vector3::from(steps.map(|steps| f64::from(steps) * self.rad_per_step))
     }
 
-    /// The angles that bring the platform to a point; a range that does not hold one is named as the
-    /// machine file has it.
+    /// The angles that bring the platform to a point; a range that does not hold one is named as
+    /// the machine file has it.
     pub(crate) fn angles_at(&self, point: Point3<f64>) -> Result<Vector3<f64>> {
         let angles = self.delta.inverse(point);
         if let Err(InverseError::JointLimit {

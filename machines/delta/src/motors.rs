@@ -28,8 +28,8 @@ pub(crate) struct Motors {
 }
 
 impl Motors {
-    /// Motors at home, with what they turn: a load that changes with the pose where the machine's is known
-    /// and `is_loaded`, else the same all along.
+    /// Motors at home, with what they turn: a load that changes with the pose where the machine's
+    /// is known and `is_loaded`, else the same all along.
     pub(crate) fn new(machine: &Machine, is_loaded: bool) -> Result<Self> {
         let load = machine.load.filter(|_| is_loaded);
         let motors = load.map_or([MOTOR; 3], |load| load.motors.map(|motor| motor.motor));

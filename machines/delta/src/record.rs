@@ -19,7 +19,8 @@ pub(crate) struct Move {
     /// Where it ends, in steps from home.
     pub(crate) end: [i32; 3],
     pub(crate) end_ticks: u64,
-    /// From when to when the curves are run that begin, pass or end on it; none where nothing moves.
+    /// From when to when the curves are run that begin, pass or end on it; none where nothing
+    /// moves.
     pub(crate) curves_ticks: Option<[u64; 2]>,
 }
 

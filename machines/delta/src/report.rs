@@ -39,8 +39,8 @@ pub struct Report {
     rad_per_step: f64,
     /// Angle of each arm at home, from straight down, outward positive.
     home_rad: [f64; 3],
-    /// With a shaper, a proven bound on how far shaping takes the platform off the curves, next to which
-    /// it is later by the shaper's delay.
+    /// With a shaper, a proven bound on how far shaping takes the platform off the curves, next to
+    /// which it is later by the shaper's delay.
     shaped_bound_mm: Option<f64>,
     /// What is asked of the motors, where load and torque are known.
     torque: Option<TorqueReport>,

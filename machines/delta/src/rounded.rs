@@ -56,8 +56,8 @@ pub(crate) fn check(machine: &Machine, from: Point3<f64>, to: Point3<f64>) -> Re
 }
 
 /// Runs the lines of moves, from rest to rest: calls `step` with the time and the position after
-/// each step, and records the rows, the times at which the moves end, or round their corners, and what is
-/// proven of the motion.
+/// each step, and records the rows, the times at which the moves end, or round their corners, and
+/// what is proven of the motion.
 pub(crate) fn run(
     machine: &Machine,
     record: &mut Record,

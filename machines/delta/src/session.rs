@@ -21,8 +21,8 @@ pub type StepObserver<'a> = &'a mut dyn FnMut(u64, [i32; 3]) -> Result<()>;
 /// 50 50 -300       ok -7799 -12831 -14361
 /// 50 50 100        error: line 2: 50 50 100: out of reach: ...; the next move starts at 50 50 -300
 /// ```
-/// A line that is refused changes nothing. With rounded corners, the machine runs when all lines are
-/// known.
+/// A line that is refused changes nothing. With rounded corners, the machine runs when all lines
+/// are known.
 pub struct Session<'a> {
     machine: &'a Machine,
     motion: Motion,

@@ -17,8 +17,8 @@ use crate::record::{Move, Record};
 use crate::rounded;
 use crate::step_log;
 
-/// What steps may be off their places: those of cubics by a tick, those of trains by the rounding of
-/// joint waypoints to whole steps.
+/// What steps may be off their places: those of cubics by a tick, those of trains by the rounding
+/// of joint waypoints to whole steps.
 const CUBIC_STEPS: f64 = 0.01;
 const TRAINS_STEPS: f64 = 1.0;
 /// Between two points of a picture's path, in mm.
@@ -36,8 +36,8 @@ pub struct Drive<'a> {
     pub(crate) positions: MotionSampler<3>,
 }
 
-/// What the simulated machine did, driven by the steps, and for comparison by trains at the feed and
-/// by the thesis' control tick.
+/// What the simulated machine did, driven by the steps, and for comparison by trains at the feed
+/// and by the thesis' control tick.
 #[derive(Debug, Clone)]
 pub struct Run<'a> {
     pub(crate) machine: &'a Machine,
@@ -131,8 +131,8 @@ impl Run<'_> {
     }
 }
 
-/// Moves a simulated machine by the steps of a [`StepLog`](crate::StepLog), and for comparison in the
-/// other ways.
+/// Moves a simulated machine by the steps of a [`StepLog`](crate::StepLog), and for comparison in
+/// the other ways.
 ///
 /// # Errors
 /// The table cannot be read, or no platform is where its steps lead.

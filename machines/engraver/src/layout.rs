@@ -14,8 +14,8 @@ pub(crate) struct Layout {
     pub(crate) placement: Placement,
     /// In mm, in the order of the file.
     pub(crate) outlines: Vec<BezPath>,
-    /// In the order in which they are engraved; their lines are within a quarter of the tolerance of
-    /// the outlines.
+    /// In the order in which they are engraved; their lines are within a quarter of the tolerance
+    /// of the outlines.
     pub(crate) strokes: Vec<Stroke>,
 }
 

@@ -6,9 +6,9 @@
 //!        pattern bytes -> records -> pulse trains -> simulated arm -> tool path
 //! ```
 //!
-//! The second line reads nothing but the bytes of the first. Beside it, [`TimedPlan`] brings the same
-//! drawing to the motors without a pattern: its curves, timed by `path-timing`, as edges. Text and
-//! bytes in, values out: no files, no printing.
+//! The second line reads nothing but the bytes of the first. Beside it, [`TimedPlan`] brings the
+//! same drawing to the motors without a pattern: its curves, timed by `path-timing`, as edges. Text
+//! and bytes in, values out: no files, no printing.
 //!
 //! ```
 //! use engraver::{Drawing, Machine, Plan, PlanSettings, Report, simulate};

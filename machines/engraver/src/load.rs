@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 const MM_IN_M: f64 = 1e-3;
 
-/// `[load]`, as written: links as rigid bodies, a point mass at the tool, a disc that turns about it.
+/// `[load]`, as written: links as rigid bodies, a point mass at the tool, a disc that turns about
+/// it.
 #[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LoadSettings {
@@ -27,8 +28,8 @@ pub(crate) struct LoadSettings {
 /// Shoulder, elbow and disc.
 pub(crate) type Load = known_load::Load<ArmAndDisc, 3>;
 
-/// The dynamics of the arm with a disc on its end, whose centre of mass is on its axis: it is felt as a
-/// mass at the tool, which the tool's is with, and where it turns.
+/// The dynamics of the arm with a disc on its end, whose centre of mass is on its axis: it is felt
+/// as a mass at the tool, which the tool's is with, and where it turns.
 ///
 /// ```text
 /// τ = τ arm + I (q̈1 + q̈2 + q̈3) of each,  τ3 with the rotor's R q̈3

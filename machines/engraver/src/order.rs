@@ -57,7 +57,8 @@ pub(crate) fn nearest_first(strokes: Vec<Stroke>, start: Point2<f64>) -> Vec<Str
     ordered
 }
 
-/// How far the lifted tool travels from a start over all strokes and back, in straight lines, in mm.
+/// How far the lifted tool travels from a start over all strokes and back, in straight lines, in
+/// mm.
 pub(crate) fn travel_mm(strokes: &[Stroke], start: Point2<f64>) -> f64 {
     let (mut tool, mut travel) = (start, 0.0);
     for [first, last] in strokes.iter().filter_map(Stroke::ends) {

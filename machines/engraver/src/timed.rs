@@ -39,8 +39,8 @@ pub struct TimedPlan {
 enum Move {
     /// One axis to a position in pulses from home, by its own ramp.
     Rapid { axis: Axis, to: i32 },
-    /// Shoulder, elbow and disc along these rows, in radians and seconds, from rest to rest; the number
-    /// of the drawing's stroke.
+    /// Shoulder, elbow and disc along these rows, in radians and seconds, from rest to rest; the
+    /// number of the drawing's stroke.
     Stroke(usize, Vec<Row<[f64; 3]>>),
 }
 
@@ -65,8 +65,8 @@ impl TimedPlan {
     /// Plans the moves that engrave a drawing; `progress` is told how many strokes are done, of how
     /// many.
     ///
-    /// A quarter of the tolerance each is for blends of corners between lines, and for the departure
-    /// of the joints' cubics.
+    /// A quarter of the tolerance each is for blends of corners between lines, and for the
+    /// departure of the joints' cubics.
     ///
     /// # Errors
     /// A stroke leaves the workspace, and where.
@@ -186,8 +186,8 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// The curves with one elbow, cut where the tool has to stop: at kinks that the disc cannot take
-    /// in on the way.
+    /// The curves with one elbow, cut where the tool has to stop: at kinks that the disc cannot
+    /// take in on the way.
     fn runs(&self, curves: &[Curve<2>], elbow: Elbow) -> Result<Vec<Run>> {
         let (machine, mut joints, mut disc_rad) = (self.machine, self.joints, self.disc_rad);
         let mut runs: Vec<Run> = Vec::new();

@@ -9,8 +9,8 @@ use crate::machine::Machine;
 use crate::simulation::Run;
 
 impl Machine {
-    /// Where the tool is at a position of the steppers, counted from home, in mm; its z is the height
-    /// above the depth of engraving.
+    /// Where the tool is at a position of the steppers, counted from home, in mm; its z is the
+    /// height above the depth of engraving.
     #[must_use]
     pub fn tool(&self, position: PerAxis<i32>) -> Point3<f64> {
         let tool = self.arm.forward(self.joints(position));
@@ -54,8 +54,8 @@ impl Run {
         self.unshaped.as_ref()
     }
 
-    /// Seconds, and the largest distance of the tool from the drawing in the part of the time around
-    /// them, in mm; none where the tool is lifted.
+    /// Seconds, and the largest distance of the tool from the drawing in the part of the time
+    /// around them, in mm; none where the tool is lifted.
     pub fn deviation_over_time(&self) -> impl Iterator<Item = (f64, Option<f64>)> {
         #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
         let seconds = |ticks: u64| ticks as f64 * self.tick_s;

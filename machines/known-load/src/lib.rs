@@ -1,10 +1,10 @@
 //! What a machine carries, what its motors have for it, and how its tool swings.
 //!
-//! Goal: motions within the torque of the motors, and shaped for a mode of the tool, said and shown the
-//! same way by every machine. [`MotorSettings`] and [`ModeSettings`] are parts of a machine file, [`Load`]
-//! and [`Elastic`] what is checked of them; [`within_share`] plans, [`shape`] shapes; [`PoseLoad`] and
-//! [`Tool`] are what the simulation has; [`TorqueUsed`] and [`Vibration`] are what comes of it, for
-//! [`TorqueReport`], [`VibrationReport`] and charts.
+//! Goal: motions within the torque of the motors, and shaped for a mode of the tool, said and shown
+//! the same way by every machine. [`MotorSettings`] and [`ModeSettings`] are parts of a machine
+//! file, [`Load`] and [`Elastic`] what is checked of them; [`within_share`] plans, [`shape`]
+//! shapes; [`PoseLoad`] and [`Tool`] are what the simulation has; [`TorqueUsed`] and [`Vibration`]
+//! are what comes of it, for [`TorqueReport`], [`VibrationReport`] and charts.
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod chart;

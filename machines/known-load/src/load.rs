@@ -36,8 +36,8 @@ impl<D: Dynamics<Axes = [f64; N]> + Copy, const N: usize> Load<D, N> {
         }
     }
 
-    /// The same with a straight line below the curve of each motor: with constant inertias, what motions keep
-    /// of these limits, a shaped one keeps.
+    /// The same with a straight line below the curve of each motor: with constant inertias, what
+    /// motions keep of these limits, a shaped one keeps.
     #[must_use]
     pub fn straight(mut self) -> Self {
         self.limits.motors = self.motors.map(|motor| motor.straight);

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 /// Of a pull-out curve that is reckoned.
 const SPEEDS: u32 = 15;
-/// How far a curve goes beyond the largest speed, at least: what is proven of a segment is proven for a
-/// speed that is a little higher, and beyond its curve a motor has nothing.
+/// How far a curve goes beyond the largest speed, at least: what is proven of a segment is proven
+/// for a speed that is a little higher, and beyond its curve a motor has nothing.
 const BEYOND: f64 = 1.01;
 
 /// `[torque]`, as written: at the shaft of a motor.
@@ -51,8 +51,8 @@ pub struct AxisMotor {
     pub ratio: f64,
     /// What is planned of it: Nm over rad/s or N over m/s of the axis.
     pub curve: TorqueCurve,
-    /// A straight line below that. Where an axis has a constant inertia, what several motions keep, a mean
-    /// of them keeps then: a shaped one.
+    /// A straight line below that. Where an axis has a constant inertia, what several motions keep,
+    /// a mean of them keeps then: a shaped one.
     pub straight: TorqueCurve,
 }
 
@@ -100,8 +100,8 @@ impl MotorSettings {
         Ok(())
     }
 
-    /// The motor at an axis; a pull-out curve that is not written is reckoned for an inertia at the axis,
-    /// that of the rotor included, in kg m² or kg.
+    /// The motor at an axis; a pull-out curve that is not written is reckoned for an inertia at the
+    /// axis, that of the rotor included, in kg m² or kg.
     ///
     /// # Errors
     /// A number that no motor has, by its name, or a speed at which it has no torque left.
@@ -151,8 +151,8 @@ impl MotorSettings {
     }
 }
 
-/// The ends of the straight line below a curve along which the largest speed is reached the soonest. With the
-/// torque c - m v and an inertia of 1:
+/// The ends of the straight line below a curve along which the largest speed is reached the
+/// soonest. With the torque c - m v and an inertia of 1:
 ///
 /// ```text
 /// ∫ dv / (c - m v) = ln(c / (c - m v)) / m

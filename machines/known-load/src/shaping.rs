@@ -33,8 +33,8 @@ pub fn shape<const N: usize>(
     })
 }
 
-/// The most by which each axis of shaped rows is off the rows, later by the shaper's delay: what its
-/// accelerations make of it, and what the jumps of its speed within a shaper's time do.
+/// The most by which each axis of shaped rows is off the rows, later by the shaper's delay: what
+/// its accelerations make of it, and what the jumps of its speed within a shaper's time do.
 #[must_use]
 pub fn off<const N: usize>(rows: &[Row<[f64; N]>], shapers: &[Shaper; N]) -> [f64; N] {
     let mut off = [0.0_f64; N];

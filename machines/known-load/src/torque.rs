@@ -5,13 +5,13 @@ use path_timing::{Dynamics, Row, Span};
 
 use crate::load::Load;
 
-/// A sum of delayed motions may ask for more torque than each of them: rounds of planning with less, and
-/// how much less than what is missing.
+/// A sum of delayed motions may ask for more torque than each of them: rounds of planning with
+/// less, and how much less than what is missing.
 const ROUNDS: u32 = 8;
 const LESS: f64 = 0.999;
 
-/// Plans until a shaped motion asks the motors for no more than it may: `plan` gets the share of that which
-/// it may use, and gives its plan with the part that this asks for.
+/// Plans until a shaped motion asks the motors for no more than it may: `plan` gets the share of
+/// that which it may use, and gives its plan with the part that this asks for.
 ///
 /// # Errors
 /// Those of `plan`, or no share is small enough.
@@ -106,8 +106,8 @@ impl<const N: usize> TorqueUsed<N> {
         self.planned
     }
 
-    /// Of the motor of each axis the part of its pull-out torque that is asked for, at times in s; no
-    /// numbers between motions.
+    /// Of the motor of each axis the part of its pull-out torque that is asked for, at times in s;
+    /// no numbers between motions.
     pub fn over_time(&self) -> impl Iterator<Item = (f64, [f64; N])> {
         self.parts.iter().copied()
     }
@@ -133,8 +133,9 @@ pub fn spans<const N: usize>(rows: &[Row<[f64; N]>]) -> impl Iterator<Item = Spa
     })
 }
 
-/// The accelerations of shorter segments are those of rounding, and of rows nearer than a nanosecond that a
-/// [`Shaped`](path_timing::Shaped) joins; what is asked of the motors shows in the segments on both sides.
+/// The accelerations of shorter segments are those of rounding, and of rows nearer than a
+/// nanosecond that a [`Shaped`](path_timing::Shaped) joins; what is asked of the motors shows in
+/// the segments on both sides.
 const SHORT_S: f64 = 1e-7;
 
 /// The parts of what is planned of each motor, at both ends of a segment.

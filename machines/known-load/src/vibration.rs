@@ -94,8 +94,8 @@ impl<const N: usize> Tool<N> {
 }
 
 impl Vibration {
-    /// How far the tool was off its place at most in each part of the time in which it was at its work: s
-    /// and mm.
+    /// How far the tool was off its place at most in each part of the time in which it was at its
+    /// work: s and mm.
     pub fn over_time(&self) -> impl Iterator<Item = [f64; 2]> {
         #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are centuries")]
         let seconds = |ticks: u64| ticks as f64 / TICKS_PER_S;

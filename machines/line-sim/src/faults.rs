@@ -2,8 +2,8 @@
 
 use core::time::Duration;
 
-/// What is wrong at one side: with its station, its circuits or its wire. Any of it may change while
-/// the line works.
+/// What is wrong at one side: with its station, its circuits or its wire. Any of it may change
+/// while the line works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(
     clippy::exhaustive_structs,

@@ -1,6 +1,6 @@
-//! Two stations of `proto3964r` on wires that are simulated bit by bit, with the faults of real lines:
-//! another parity or baud rate, open wires, echo, noise, late answers, another check character. A tap
-//! hears both directions, as that of `line3964r monitor` does.
+//! Two stations of `proto3964r` on wires that are simulated bit by bit, with the faults of real
+//! lines: another parity or baud rate, open wires, echo, noise, late answers, another check
+//! character. A tap hears both directions, as that of `line3964r monitor` does.
 //!
 //! ```
 //! use core::time::Duration;

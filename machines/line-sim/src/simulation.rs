@@ -79,7 +79,8 @@ impl Simulation {
         self.is_one_wire = is_one_wire;
     }
 
-    /// Whether the tap tells from now on which characters came in damaged, as a port with marks does.
+    /// Whether the tap tells from now on which characters came in damaged, as a port with marks
+    /// does.
     pub const fn set_tells_damage(&mut self, tells_damage: bool) {
         self.tells_damage = tells_damage;
     }
@@ -87,8 +88,8 @@ impl Simulation {
     /// Gives a station a telegram to send, after those that it has.
     ///
     /// # Errors
-    /// [`SubmitError::TooLong`] for more than [`BLOCK`](crate::BLOCK) bytes; [`SubmitError::Empty`] where the station
-    /// sends no empty ones.
+    /// [`SubmitError::TooLong`] for more than [`BLOCK`](crate::BLOCK) bytes; [`SubmitError::Empty`]
+    /// where the station sends no empty ones.
     pub fn submit(&mut self, side: Side, telegram: &[u8]) -> Result<(), SubmitError> {
         self.plan(side, self.now(), telegram)
     }
@@ -96,8 +97,8 @@ impl Simulation {
     /// Gives a station a telegram to send from a time on, after those that it has.
     ///
     /// # Errors
-    /// [`SubmitError::TooLong`] for more than [`BLOCK`](crate::BLOCK) bytes; [`SubmitError::Empty`] where the station
-    /// sends no empty ones.
+    /// [`SubmitError::TooLong`] for more than [`BLOCK`](crate::BLOCK) bytes; [`SubmitError::Empty`]
+    /// where the station sends no empty ones.
     pub fn plan(&mut self, side: Side, at: Duration, telegram: &[u8]) -> Result<(), SubmitError> {
         self.end_mut(side).plan(at, telegram)
     }
@@ -116,7 +117,8 @@ impl Simulation {
         }
     }
 
-    /// Runs until the next character, event or change of a station's activity, at most until a time.
+    /// Runs until the next character, event or change of a station's activity, at most until a
+    /// time.
     pub fn run_to_change(&mut self, end: Duration) {
         let end = step_at(end);
         let now = |it: &Self| {
@@ -132,8 +134,8 @@ impl Simulation {
         }
     }
 
-    /// What the tap has heard so far. A character with a wrong parity or stop bit reads 00h, as a port
-    /// of a PC reads it, unless the tap [tells damage](Self::set_tells_damage).
+    /// What the tap has heard so far. A character with a wrong parity or stop bit reads 00h, as a
+    /// port of a PC reads it, unless the tap [tells damage](Self::set_tells_damage).
     #[must_use]
     pub fn heard(&self) -> &[Character] {
         &self.heard

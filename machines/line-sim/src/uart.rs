@@ -34,8 +34,8 @@ impl Frame {
         parity: Parity::Even,
     };
 
-    /// `None` for a rate that is not made of whole steps: 153600 bit/s over a whole number from 4 on,
-    /// as 1200, 2400, 4800, 9600, 19200 and 38400 bit/s are.
+    /// `None` for a rate that is not made of whole steps: 153600 bit/s over a whole number from 4
+    /// on, as 1200, 2400, 4800, 9600, 19200 and 38400 bit/s are.
     #[must_use]
     pub fn new(baud: u32, parity: Parity) -> Option<Self> {
         let baud = u64::from(baud);

@@ -7,8 +7,8 @@ use core::f64::consts::TAU;
 /// ```text
 /// d'' + 2 ζ ω d' + ω² d = -b''        b the base, d what the body is off it
 /// ```
-/// Between two places of the base it swings freely, which is reckoned by its closed form; the base's
-/// step by Δb takes d by -Δb and d' by 2 ζ ω Δb.
+/// Between two places of the base it swings freely, which is reckoned by its closed form; the
+/// base's step by Δb takes d by -Δb and d' by 2 ζ ω Δb.
 ///
 /// # Examples
 /// ```
@@ -34,8 +34,8 @@ pub struct ElasticMode<const N: usize> {
 }
 
 impl<const N: usize> ElasticMode<N> {
-    /// A body at rest on its base, with the undamped natural frequency in Hz and the damping ratio, 0 to
-    /// below 1.
+    /// A body at rest on its base, with the undamped natural frequency in Hz and the damping ratio,
+    /// 0 to below 1.
     #[must_use]
     pub fn new(hz: f64, damping: f64, base: [f64; N]) -> Self {
         let omega = TAU * hz;
@@ -83,8 +83,8 @@ impl<const N: usize> ElasticMode<N> {
         squares.sum::<f64>().sqrt()
     }
 
-    /// How far it swings from here on at most, while the base stands: the root of the energy in it, over
-    /// that of the spring.
+    /// How far it swings from here on at most, while the base stands: the root of the energy in it,
+    /// over that of the spring.
     ///
     /// ```text
     /// sqrt(d² + d'²/ω²)

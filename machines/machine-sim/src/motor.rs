@@ -46,22 +46,22 @@ impl Motor {
         self.holding_torque_nm / (1.0 + share * share).sqrt()
     }
 
-    /// The largest torque in N m that a load may have at a speed in full steps a second, beside the motor's
-    /// friction and damping, and turn round at once without the loss of a step: simulated.
+    /// The largest torque in N m that a load may have at a speed in full steps a second, beside the
+    /// motor's friction and damping, and turn round at once without the loss of a step: simulated.
     ///
-    /// A load that changes at once makes the rotor swing about its new place, so it is less than the
-    /// motor has at that speed. Without friction and damping:
+    /// A load that changes at once makes the rotor swing about its new place, so it is less than
+    /// the motor has at that speed. Without friction and damping:
     ///
     /// ```text
     /// changes its sign    2 / sqrt(π² + 4) = 0.537 of the torque at the speed
     /// ```
     ///
-    /// A rotor that swings already holds less: where the load comes at once, too, and turns round when that
-    /// swing is at its farthest, 0.422 of the torque, 79 % of the above.
+    /// A rotor that swings already holds less: where the load comes at once, too, and turns round
+    /// when that swing is at its farthest, 0.422 of the torque, 79 % of the above.
     ///
     ///
-    /// `load_kg_m2` is the inertia of rotor and load, seen at the rotor. 0 where the motor does not even
-    /// turn without a load.
+    /// `load_kg_m2` is the inertia of rotor and load, seen at the rotor. 0 where the motor does not
+    /// even turn without a load.
     #[must_use]
     pub fn pull_out_nm(&self, speed_hz: f64, load_kg_m2: f64) -> f64 {
         const CUTS: u32 = 12;
@@ -78,8 +78,8 @@ impl Motor {
         holds
     }
 
-    /// Whether no step is lost where a load at a speed comes slowly and turns round at once, from either
-    /// side.
+    /// Whether no step is lost where a load at a speed comes slowly and turns round at once, from
+    /// either side.
     fn holds(&self, speed_hz: f64, load_kg_m2: f64, torque_nm: f64) -> bool {
         const RAMP_S: f64 = 0.1;
         const END_S: f64 = 0.15;
@@ -201,11 +201,11 @@ impl Rotor {
         self.field += i64::from(direction.signum());
     }
 
-    /// What the rotor turns from here on, seen at the rotor: the inertia of rotor and load in kg m², and a
-    /// torque against positive turning in N m, beside the motor's friction.
+    /// What the rotor turns from here on, seen at the rotor: the inertia of rotor and load in kg
+    /// m², and a torque against positive turning in N m, beside the motor's friction.
     ///
-    /// What an arm's other joints and gravity do to a joint changes with the pose and the speed: set it
-    /// at each step.
+    /// What an arm's other joints and gravity do to a joint changes with the pose and the speed:
+    /// set it at each step.
     pub fn set_load(&mut self, inertia_kg_m2: f64, torque_nm: f64) {
         let lightness = self.motor.inertia_kg_m2 / inertia_kg_m2;
         for number in [
@@ -219,7 +219,8 @@ impl Rotor {
         self.load = self.motor.full_steps(torque_nm) * lightness;
     }
 
-    /// The torque that it has for what it turns: that of the field less friction and damping, in N m.
+    /// The torque that it has for what it turns: that of the field less friction and damping, in N
+    /// m.
     #[must_use]
     pub fn torque_nm(&self) -> f64 {
         let driven = self.torque(self.lag()) - self.damping * self.speed;
@@ -407,8 +408,8 @@ mod tests {
         assert!(lost(weak) > 0);
     }
 
-    /// A load that comes at once swings the rotor to twice its lag where torques are small, and over the
-    /// hill from 0.725 of the torque on: -1 = √(1 - r²) - r (π - asin r).
+    /// A load that comes at once swings the rotor to twice its lag where torques are small, and
+    /// over the hill from 0.725 of the torque on: -1 = √(1 - r²) - r (π - asin r).
     #[test]
     fn a_sudden_load_is_held_as_far_as_energy_allows() {
         let lost = |share: f64| {
@@ -421,7 +422,8 @@ mod tests {
         assert!(lost(0.725 + CLOSE) > 0);
     }
 
-    /// 2 / sqrt(π² + 4) without damping; with much of it nearly all, less what damping takes at speed.
+    /// 2 / sqrt(π² + 4) without damping; with much of it nearly all, less what damping takes at
+    /// speed.
     #[test]
     fn a_load_that_turns_round_is_held_as_far_as_energy_allows() {
         let share = |motor: Motor, hz: f64| {
@@ -466,8 +468,8 @@ mod tests {
         assert!(lost(0.4223 + CLOSE / 2.0) > 0);
     }
 
-    /// The lag of a load is what its torque asks for, and small swings slow down with the root of the
-    /// inertia.
+    /// The lag of a load is what its torque asks for, and small swings slow down with the root of
+    /// the inertia.
     #[test]
     fn it_turns_what_it_is_given() {
         let damped = Motor {

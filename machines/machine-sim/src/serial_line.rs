@@ -29,7 +29,8 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Noise that damages the same bytes in the same way for the same seed; none for a spacing of 0.
+    /// Noise that damages the same bytes in the same way for the same seed; none for a spacing
+    /// of 0.
     #[must_use]
     pub const fn new(seed: u64, spacing: u64) -> Self {
         let mut noise = Self {
@@ -115,8 +116,8 @@ pub struct SerialLine {
 }
 
 impl SerialLine {
-    /// A line of a number of bits per second (0 counts as 1), with the bits of a character on the line:
-    /// start, data, parity and stop.
+    /// A line of a number of bits per second (0 counts as 1), with the bits of a character on the
+    /// line: start, data, parity and stop.
     #[must_use]
     pub fn new(bits_per_second: u32, bits_per_character: u8, noise: Noise) -> Self {
         let second = Duration::from_secs(1);

@@ -50,7 +50,8 @@ pub(crate) struct Passing {
 }
 
 impl<const N: usize> Examination<N> {
-    /// Where the body comes nearest to a pose, distance and rotation each in parts of its tolerance.
+    /// Where the body comes nearest to a pose, distance and rotation each in parts of its
+    /// tolerance.
     pub(crate) fn passing(
         &self,
         platform: &Platform<N>,

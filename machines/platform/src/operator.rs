@@ -19,7 +19,8 @@ const JOG_PERCENT: [i32; 24] = [
 const PAUSE_MS: u64 = 163;
 /// Counts of a sample when a value is set, at most.
 const HAND_COUNTS: i64 = 100;
-/// How far a locator may be from its position after a jog there and back: what adding up rounds off.
+/// How far a locator may be from its position after a jog there and back: what adding up rounds
+/// off.
 const BACK_MM: f64 = 1e-6;
 
 /// Room for braking at the end of a jog.
@@ -149,8 +150,8 @@ fn jog_counts(wheel: &WheelQuantiser, sign: i32) -> Result<Vec<i32>> {
     counts.collect()
 }
 
-/// The fastest multiplier, as the position of its rotary switch, with which the jog stays within the
-/// room in mm.
+/// The fastest multiplier, as the position of its rotary switch, with which the jog stays within
+/// the room in mm.
 fn multiplier_within(room: f64, counts: &[i32], settings: &PanelSettings) -> u8 {
     let speed = |counts: &i32| settings.wheel.speed(*counts, settings.full_jog_um_s);
     let um_s: i64 = counts.iter().map(speed).sum();

@@ -53,8 +53,8 @@ enum Message {
 /// The panel of one hand-held pendant.
 ///
 /// A pure state machine: [`handle`](Self::handle) takes what happened at the pendant and at the
-/// machine and returns what the machine must do; [`screen`](Self::screen) says what the pendant must
-/// show. Panels of several pendants share one [`Arbiter`].
+/// machine and returns what the machine must do; [`screen`](Self::screen) says what the pendant
+/// must show. Panels of several pendants share one [`Arbiter`].
 ///
 /// # The enabling switches
 /// Nothing moves unless both are down. When one comes up, or the stop button is pressed, or the

@@ -42,7 +42,8 @@ impl Screen {
         }
     }
 
-    /// Writes a decimal that ends before `end`, with `decimals` of its digits after the point; stars where `width` is too small.
+    /// Writes a decimal that ends before `end`, with `decimals` of its digits after the point;
+    /// stars where `width` is too small.
     pub(crate) fn put_number(&mut self, line: usize, end: usize, width: usize, value: Decimal) {
         let Some(cells) = self.lines.get_mut(line) else {
             return;

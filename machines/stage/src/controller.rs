@@ -88,7 +88,8 @@ impl<'a> Controller<'a> {
     /// Homes both axes and goes to the drawing's zero.
     ///
     /// # Errors
-    /// A setting out of its range; a switch is not found, or more steps are lost than the loop corrects.
+    /// A setting out of its range; a switch is not found, or more steps are lost than the loop
+    /// corrects.
     pub(crate) fn homed(
         machine: &Machine,
         settings: &Settings,
@@ -156,12 +157,12 @@ impl<'a> Controller<'a> {
         Point::new(mm(x, x_zero), mm(y, y_zero))
     }
 
-    /// Makes the steps of a chain of motions, from rest to rest; on an error the stage stands where it was
-    /// last commanded to.
+    /// Makes the steps of a chain of motions, from rest to rest; on an error the stage stands where
+    /// it was last commanded to.
     ///
     /// # Errors
-    /// A limit switch is closed, more steps are lost than the loop corrects, or the observer's; and the
-    /// motion on which that was.
+    /// A limit switch is closed, more steps are lost than the loop corrects, or the observer's; and
+    /// the motion on which that was.
     pub(crate) fn run(&mut self, motions: &[Motion]) -> Result<(), BrokenOff> {
         let mut chain = Chain {
             motions,

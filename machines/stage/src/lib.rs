@@ -6,9 +6,9 @@
 //!                                                       ^                      |
 //!                                                       +-- corrections <--- linear scales
 //! ```
-//! Where the machine file has masses, motors and modes, rows are within the motors' torque, and each axis is
-//! shaped for its table. The simulated stage gets nothing but the pulses. Beside it runs one without corrections. Text
-//! and bytes in, values out: no files, no printing.
+//! Where the machine file has masses, motors and modes, rows are within the motors' torque, and
+//! each axis is shaped for its table. The simulated stage gets nothing but the pulses. Beside it
+//! runs one without corrections. Text and bytes in, values out: no files, no printing.
 //!
 //! ```
 //! use stage::{Machine, Program, Settings, run};

@@ -21,8 +21,8 @@ pub(crate) struct LoadSettings {
 /// X and Y.
 pub(crate) type Load = known_load::Load<Tables, 2>;
 
-/// Two tables, each a mass that its screw moves, that of screw and rotor with it. Forces are in Nm/mm, masses
-/// in what goes with these and mm/s²: 1 kg m²/mm² is 10⁶ kg.
+/// Two tables, each a mass that its screw moves, that of screw and rotor with it. Forces are in
+/// Nm/mm, masses in what goes with these and mm/s²: 1 kg m²/mm² is 10⁶ kg.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tables {
     masses: [f64; 2],

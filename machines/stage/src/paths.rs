@@ -111,7 +111,8 @@ pub(crate) fn paths(motion: &Motion, from: [i32; 2], rule: PathRule) -> Result<V
     Ok(vec![path, line(end, to, rule)?])
 }
 
-/// The steps of a motion at its feed from the first to the last, as published: the ticks before each.
+/// The steps of a motion at its feed from the first to the last, as published: the ticks before
+/// each.
 pub(crate) fn at_feed(
     motion: &Motion,
     from: [i32; 2],

@@ -1,4 +1,5 @@
-//! The rows of a machine whose load or modes are known: within the torque of its motors, and shaped.
+//! The rows of a machine whose load or modes are known: within the torque of its motors, and
+//! shaped.
 
 extern crate alloc;
 
@@ -15,8 +16,8 @@ use crate::timed::{ChainCurve, ChainPath};
 #[derive(Debug)]
 pub(crate) struct Planned {
     pub(crate) rows: Vec<Row<[f64; 2]>>,
-    /// Of shaped rows, a proven bound on how far they are off those that are not, later by the shapers'
-    /// delay.
+    /// Of shaped rows, a proven bound on how far they are off those that are not, later by the
+    /// shapers' delay.
     pub(crate) shaped_mm: Option<f64>,
     /// Seconds after which shaping has let all of a motion pass.
     pub(crate) delay_s: f64,
@@ -62,8 +63,8 @@ impl Planned {
     }
 }
 
-/// The curves that are felt at a time: that on which a row ends, and those whose motion shaping has not let
-/// pass.
+/// The curves that are felt at a time: that on which a row ends, and those whose motion shaping has
+/// not let pass.
 #[derive(Debug)]
 pub(crate) struct Felt {
     delay_s: f64,

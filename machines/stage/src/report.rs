@@ -50,8 +50,8 @@ pub struct Report {
     max_axis_speed_mm_s: f64,
     lose_steps: f64,
     seed: u64,
-    /// Where rows are shaped, a proven bound on how far that takes the stage off the curves, next to which
-    /// it is later by the shapers' delay.
+    /// Where rows are shaped, a proven bound on how far that takes the stage off the curves, next
+    /// to which it is later by the shapers' delay.
     #[serde(skip_serializing_if = "Option::is_none")]
     shaped_bound_mm: Option<f64>,
     /// What is asked of the motors, where load and torque are known.

@@ -18,8 +18,8 @@ use crate::motion::{Motion, Shape};
 const VERTICES: usize = 64;
 /// Knots in sight: the braking distance of 3.6 mm twice, in segments of points 0.01 mm apart.
 const KNOTS: usize = 1024;
-/// A segment for each of so many mm, and at least so many a curve; shorter ones where the acceleration depends
-/// on the speed.
+/// A segment for each of so many mm, and at least so many a curve; shorter ones where the
+/// acceleration depends on the speed.
 const SEGMENT_MM: f64 = 0.5;
 const KNOWN_SEGMENT_MM: f64 = 0.1;
 const LEAST_SEGMENTS: u32 = 2;
@@ -246,8 +246,8 @@ impl ChainPath {
         self.curves.get(row.leg)
     }
 
-    /// Calls `each` with every row after the first, which is where the path begins, when the verifier has
-    /// passed it.
+    /// Calls `each` with every row after the first, which is where the path begins, when the
+    /// verifier has passed it.
     ///
     /// # Errors
     /// The path cannot be planned; or the error of `each`.

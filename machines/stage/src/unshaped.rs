@@ -11,8 +11,8 @@ use crate::record::Record;
 use crate::settings::{Settings, Stepping};
 use crate::timed::ChainPath;
 
-/// How the tables of X and Y swing then; none where no modes are known, steps are not timed, or a motion was
-/// broken off.
+/// How the tables of X and Y swing then; none where no modes are known, steps are not timed, or a
+/// motion was broken off.
 pub(crate) fn vibration(
     machine: &Machine,
     settings: &Settings,

@@ -1,6 +1,7 @@
 //! Every crate of the family in a program without std, allocator or C library.
 //!
-//! Exit status: 0 when all checks hold, else the number of the first that does not; 101 for a panic.
+//! Exit status: 0 when all checks hold, else the number of the first that does not; 101 for a
+//! panic.
 #![no_std]
 #![no_main]
 

@@ -97,7 +97,8 @@ fn distance_error(places: &[Vector3<f64>], locators: &[Locator]) -> f64 {
     changes.into_iter().fold(0.0, f64::max)
 }
 
-/// Position and speed at the fraction `s` of a segment of `time` seconds: a line, or Hermite's cubic.
+/// Position and speed at the fraction `s` of a segment of `time` seconds: a line, or Hermite's
+/// cubic.
 fn between(a: &Row, b: &Row, locator: usize, s: f64) -> (Vector3<f64>, Vector3<f64>) {
     let (p, q, time) = (a.places[locator], b.places[locator], b.time - a.time);
     if a.velocities.is_empty() {

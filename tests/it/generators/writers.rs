@@ -1,4 +1,5 @@
-//! How programs write G-code: words, order, digits, what they leave out and what they put around it.
+//! How programs write G-code: words, order, digits, what they leave out and what they put around
+//! it.
 
 use core::fmt::Write as _;
 

@@ -9,8 +9,8 @@ use super::simulator::simulate;
 
 #[test]
 fn every_edge_of_a_table_of_periods_is_where_the_train_has_it() {
-    // The slow axis of each pair: two periods an edge, a remainder, 65536 to the cycle, five periods,
-    // the shortest.
+    // The slow axis of each pair: two periods an edge, a remainder, 65536 to the cycle, five
+    // periods, the shortest.
     let pairs = [
         ([30, 1], 4096),
         ([13, 7], 997),

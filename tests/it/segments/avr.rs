@@ -1,7 +1,7 @@
 //! The sketch `OneAxis` on a simulated Uno.
 //!
-//! It needs Debian's `arduino-core-avr`, `gcc-avr` and `libsimavr-dev`. Without them the tests say so on
-//! standard error and pass; with `POSE2PULSE_REQUIRE_AVR=1` they fail.
+//! It needs Debian's `arduino-core-avr`, `gcc-avr` and `libsimavr-dev`. Without them the tests say
+//! so on standard error and pass; with `POSE2PULSE_REQUIRE_AVR=1` they fail.
 
 use std::fs;
 use std::io::{self, Write};
@@ -69,7 +69,8 @@ fn run(bytes: &[u8]) -> Option<Run> {
     })
 }
 
-/// Up to 20,000 steps a second, turns, a rest of a second between chunks of the timer, single steps.
+/// Up to 20,000 steps a second, turns, a rest of a second between chunks of the timer, single
+/// steps.
 const ROWS: &[super::Row] = &[
     (40_000, 200, 10),
     (100_000, 1200, 10),

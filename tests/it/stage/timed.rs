@@ -153,7 +153,8 @@ fn lines_are_passed_like_the_curve_that_they_stand_for() {
         let taken = duration_s(&chords(count), &[]) / arc;
         assert!(taken < slower, "{count} chords: {taken}");
     }
-    // Corners of 30 degrees: 0.01 mm give about the speed by which the motors may jump, more gives more.
+    // Corners of 30 degrees: 0.01 mm give about the speed by which the motors may jump, more gives
+    // more.
     let [corners, narrow, wide] =
         ["0", "0.01", "0.2"].map(|mm| duration_s(&chords(12), &["--tolerance", mm]));
     assert!(
@@ -162,7 +163,8 @@ fn lines_are_passed_like_the_curve_that_they_stand_for() {
     );
 }
 
-/// Programs round both ends of their arcs: each ends where it is programmed to, however many there are.
+/// Programs round both ends of their arcs: each ends where it is programmed to, however many there
+/// are.
 #[test]
 fn arcs_whose_ends_are_rounded_do_not_drift() {
     let mut text = String::from("G0 X60 Y50\n");

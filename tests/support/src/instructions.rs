@@ -22,8 +22,9 @@ pub struct Limit<'a> {
     pub most: f64,
 }
 
-/// The `main` of a bench: `run` runs a case so many rounds. The bench runs itself under valgrind, twice
-/// for each of `limits`; it fails where one costs more, and says so where there is no valgrind.
+/// The `main` of a bench: `run` runs a case so many rounds. The bench runs itself under valgrind,
+/// twice for each of `limits`; it fails where one costs more, and says so where there is no
+/// valgrind.
 pub fn bench(run: impl Fn(&str, u32), limits: &[Limit<'_>]) -> ExitCode {
     if let (Ok(case), Ok(rounds)) = (env::var(CASE), env::var(ROUNDS)) {
         run(&case, rounds.parse().unwrap());

@@ -9,8 +9,8 @@ pub fn number(report: &Value, at: &str) -> f64 {
     number.unwrap_or_else(|| panic!("no number at {at}"))
 }
 
-/// The file without modes, with a pull-out curve in Nm over full steps a second, at multiples of a speed, and
-/// without reserve.
+/// The file without modes, with a pull-out curve in Nm over full steps a second, at multiples of a
+/// speed, and without reserve.
 #[must_use]
 pub fn with_pull_out(file: &str, hz: f64, nm: impl Fn(f64) -> f64) -> String {
     let points = (0..=15).map(|n| hz * f64::from(n)).map(|hz| [hz, nm(hz)]);
@@ -21,7 +21,8 @@ pub fn with_pull_out(file: &str, hz: f64, nm: impl Fn(f64) -> f64) -> String {
     machine
 }
 
-/// Asserts that the file is refused with each text in place of another, for a reason that `error` tells.
+/// Asserts that the file is refused with each text in place of another, for a reason that `error`
+/// tells.
 pub fn assert_refused_with(
     file: &str,
     changes: &[[&str; 3]],

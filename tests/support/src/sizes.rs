@@ -1,4 +1,5 @@
-//! Whole numbers of every size, most of them at an end of one: 0, beside powers of two, the largest.
+//! Whole numbers of every size, most of them at an end of one: 0, beside powers of two, the
+//! largest.
 
 use proptest::prelude::*;
 

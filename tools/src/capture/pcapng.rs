@@ -36,9 +36,9 @@ enum Event {
 
 /// Writes what a tap hears as pcapng, which Wireshark and tshark read as it is.
 ///
-/// Each packet holds what one side sent in one piece, on the interface `A to B` or `B to A`. What it
-/// means is its comment (`frame.comment`), and so is the verdict, on a packet of its own at the end.
-/// Damaged characters are events of the link type (`rtacser`).
+/// Each packet holds what one side sent in one piece, on the interface `A to B` or `B to A`. What
+/// it means is its comment (`frame.comment`), and so is the verdict, on a packet of its own at the
+/// end. Damaged characters are events of the link type (`rtacser`).
 ///
 /// # Examples
 /// ```

@@ -35,8 +35,8 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// Tells what happens on a line, and at the end why it does not work.
 ///
 /// A capture has one line per piece: the time in seconds, the direction (`>` from A to B, `<` from
-/// B to A), and hexadecimal bytes; `?` after one that came in with a wrong parity bit, `!` after one
-/// without a stop bit. `#` begins a comment.
+/// B to A), and hexadecimal bytes; `?` after one that came in with a wrong parity bit, `!` after
+/// one without a stop bit. `#` begins a comment.
 ///
 ///   0.000000 > 02
 ///   0.003000 < 10

@@ -19,14 +19,15 @@ use crate::{
 
 /// Finds what a live partner is set to, and prints it.
 ///
-/// It sends STX and NAK alone, so that no telegram comes or goes: STX at each rate and parity, until
-/// a lone DLE comes back. Then it measures how soon the partner answers and after which silence it
-/// gives up, and waits for it to send something of its own: its priority and its QVZ show only then.
-/// A BCC, a missing parity bit and the length of blocks show in blocks alone, which --receive lets
-/// come: they are answered NAK, so that the partner repeats them and gives them up in the end.
+/// It sends STX and NAK alone, so that no telegram comes or goes: STX at each rate and parity,
+/// until a lone DLE comes back. Then it measures how soon the partner answers and after which
+/// silence it gives up, and waits for it to send something of its own: its priority and its QVZ
+/// show only then. A BCC, a missing parity bit and the length of blocks show in blocks alone,
+/// which --receive lets come: they are answered NAK, so that the partner repeats them and gives
+/// them up in the end.
 ///
-/// Nothing is guessed: what does not show is printed as `cannot tell`. The rate of a serial server in
-/// raw mode (tcp) is its own. The exit status is 1 where nothing answers.
+/// Nothing is guessed: what does not show is printed as `cannot tell`. The rate of a serial server
+/// in raw mode (tcp) is its own. The exit status is 1 where nothing answers.
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub(super) struct Options {

@@ -102,8 +102,8 @@ impl Address {
     /// What a station has to know of the line: see the table above.
     ///
     /// # Errors
-    /// The rate of the line behind a serial server in raw mode, where it was not given: with another
-    /// one answers are taken for old ones, or late ones for new.
+    /// The rate of the line behind a serial server in raw mode, where it was not given: with
+    /// another one answers are taken for old ones, or late ones for new.
     pub fn line(&self) -> Result<Line, AddressError> {
         if self.is_instant() {
             Ok(Line::Instant)

@@ -10,10 +10,10 @@ use super::heard::Heard;
 
 /// Removes from what is heard what was sent.
 ///
-/// A character that differs from the echo that is due is a collision, and is heard as such: it came in
-/// the echo's place, or before it where a server puts one after the other. Which of both, only what
-/// follows shows; either way no echo is taken for the partner's character. What does not come within
-/// its time is no longer awaited.
+/// A character that differs from the echo that is due is a collision, and is heard as such: it came
+/// in the echo's place, or before it where a server puts one after the other. Which of both, only
+/// what follows shows; either way no echo is taken for the partner's character. What does not come
+/// within its time is no longer awaited.
 #[derive(Debug)]
 pub(crate) struct Echo {
     /// What was sent and has not been heard.
@@ -69,7 +69,8 @@ impl Echo {
         }))
     }
 
-    /// Of those that may have been replaced, how many were so if this is an echo; none if it is not.
+    /// Of those that may have been replaced, how many were so if this is an echo; none if it is
+    /// not.
     fn replaced_before(&self, byte: u8) -> Option<usize> {
         let mut due = self.awaited.iter().take(self.doubtful + 1);
         due.position(|&awaited| awaited == byte)
@@ -179,7 +180,8 @@ mod tests {
         assert_eq!(heard, [collision(0x15), Ok(0x10)]);
     }
 
-    /// Of two equal characters the first was replaced: the second is not awaited in the answer's place.
+    /// Of two equal characters the first was replaced: the second is not awaited in the answer's
+    /// place.
     #[test]
     fn as_many_as_were_sent_have_been_heard() {
         let now = Instant::now();

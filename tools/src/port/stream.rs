@@ -150,8 +150,8 @@ impl Port {
         Poll::Ready(Ok(!piece.filled().is_empty()))
     }
 
-    /// Where nothing is left to read: no longer awaits an echo that is overdue, and looks again when
-    /// one will be.
+    /// Where nothing is left to read: no longer awaits an echo that is overdue, and looks again
+    /// when one will be.
     fn forget_echo(&mut self, context: &mut Context<'_>) {
         let Some(echo) = &mut self.echo else { return };
         echo.silence(Instant::now().into_std());

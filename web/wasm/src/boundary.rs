@@ -45,7 +45,8 @@ extern "C" fn input(length: usize) -> *mut u8 {
     })
 }
 
-/// Performs what the inputs ask for. Returns 1 and leaves JSON and bytes, or 0 and leaves a message.
+/// Performs what the inputs ask for. Returns 1 and leaves JSON and bytes, or 0 and leaves a
+/// message.
 #[unsafe(no_mangle)]
 extern "C" fn call() -> u32 {
     let request = REQUEST.take();

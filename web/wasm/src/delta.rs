@@ -225,8 +225,8 @@ fn with_last<T>(take: impl FnOnce(&mut Driven) -> Result<T>) -> Result<T> {
     LAST.with_borrow_mut(|last| take(last.as_mut().context("nothing has been driven yet")?))
 }
 
-/// The summary of what was driven last, with what the other ways make of the lines, and how its tool swings
-/// without shaping.
+/// The summary of what was driven last, with what the other ways make of the lines, and how its
+/// tool swings without shaping.
 pub(crate) fn report() -> Result<Answer> {
     with_last(|last| {
         let compared = last.compared()?;

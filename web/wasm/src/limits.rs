@@ -1,8 +1,9 @@
-//! What limits a timed run at any time: of each axis the speed and the acceleration, where its load is known
-//! the torque, and of the tool along its path speed and acceleration, as parts of what they may be.
+//! What limits a timed run at any time: of each axis the speed and the acceleration, where its load
+//! is known the torque, and of the tool along its path speed and acceleration, as parts of what
+//! they may be.
 //!
-//! Axes that are shaped keep all of their own limits, but the tool on them does not: its feed is that of the
-//! fastest curve that is still felt, and there is no limit of its acceleration.
+//! Axes that are shaped keep all of their own limits, but the tool on them does not: its feed is
+//! that of the fastest curve that is still felt, and there is no limit of its acceleration.
 //!
 //! ```text
 //! Between two rows, at a time t after the first, of a duration T:
@@ -89,10 +90,10 @@ pub(crate) struct Known<'a, const D: usize> {
     pub(crate) torque: Option<&'a TorqueUsed<D>>,
 }
 
-/// Adds the looks to an answer: `looks` has their times in s, `shares` for each the number of the row,
-/// the source, feed and acceleration that the tool may have, and the parts: of the speeds of all axes, their
-/// accelerations, where they are known their torques, feed and acceleration of the tool; no number where there
-/// is no such limit.
+/// Adds the looks to an answer: `looks` has their times in s, `shares` for each the number of the
+/// row, the source, feed and acceleration that the tool may have, and the parts: of the speeds of
+/// all axes, their accelerations, where they are known their torques, feed and acceleration of the
+/// tool; no number where there is no such limit.
 ///
 /// `place` is where the tool is, in mm.
 pub(crate) fn add_to<const D: usize>(
@@ -148,7 +149,8 @@ pub(crate) fn add_to<const D: usize>(
         .with_numbers("shares", shares)
 }
 
-/// The highest feed of the curves that are felt in the row of a number: that of the first row has none.
+/// The highest feed of the curves that are felt in the row of a number: that of the first row has
+/// none.
 fn felt<const D: usize>(rows: &[RowEnd<D>], number: u32, shaping_s: f64) -> f64 {
     let until = rows.get(..=number as usize).unwrap_or_default();
     let begin_s = until.iter().rev().nth(1).map_or(0.0, |row| row.time_s);
@@ -195,8 +197,8 @@ impl<const D: usize> Torque<D> {
     }
 }
 
-/// Speed, and the size of the mean acceleration along the path from row to row, which is what planners
-/// limit, in mm/s and mm/s².
+/// Speed, and the size of the mean acceleration along the path from row to row, which is what
+/// planners limit, in mm/s and mm/s².
 fn along<const D: usize>(
     cubic: &Cubic<D>,
     t: f64,

@@ -4,8 +4,8 @@ use known_load::{TorqueUsed, Vibration};
 
 use crate::answer::Answer;
 
-/// Rows of seconds and of what is planned of the motors' torque in percent, with what is asked of each; `torque
-/// used`.
+/// Rows of seconds and of what is planned of the motors' torque in percent, with what is asked of
+/// each; `torque used`.
 pub(crate) fn with_torque<const N: usize>(
     answer: Answer,
     torque: Option<&TorqueUsed<N>>,

@@ -211,7 +211,8 @@ fn stride(count: usize) -> usize {
     count.div_ceil(MAX_POINTS).max(1)
 }
 
-/// X and Y of lines and arcs; no number after each, unless there are so many that they are one line.
+/// X and Y of lines and arcs; no number after each, unless there are so many that they are one
+/// line.
 fn programmed(motions: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<[f64; 2]> {
     let motions: Vec<_> = motions.collect();
     let step = stride(motions.iter().map(Vec::len).sum());

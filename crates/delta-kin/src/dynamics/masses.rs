@@ -26,8 +26,8 @@ pub struct DynamicsError<T: RealField + Copy = f64> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_structs, reason = "named fields")]
 pub struct DeltaMasses<T = f64> {
-    /// Inertia of an upper arm about its shoulder, in kg m², with that of its rotor times the square of the
-    /// gear ratio, and the elbow's joints.
+    /// Inertia of an upper arm about its shoulder, in kg m², with that of its rotor times the
+    /// square of the gear ratio, and the elbow's joints.
     pub arm_kg_m2: T,
     /// Mass of an upper arm times the distance of its centre from the shoulder, in kg m.
     pub arm_kg_m: T,

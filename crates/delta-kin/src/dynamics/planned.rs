@@ -44,9 +44,10 @@ impl Turning {
 impl DeltaDynamics {
     /// The bound of [`Dynamics::bend`]; none where the segment is too long to know.
     ///
-    /// With κ the norm of the inverse of the matrix of the rods' directions everywhere on the segment, all
-    /// derivatives of the platform's place follow from those of the elbows by the constant lengths of the
-    /// rods, D · D⁽ⁿ⁾ + ... = 0, and those of the columns J of the Jacobian by B J = e D · K' / La.
+    /// With κ the norm of the inverse of the matrix of the rods' directions everywhere on the
+    /// segment, all derivatives of the platform's place follow from those of the elbows by the
+    /// constant lengths of the rods, D · D⁽ⁿ⁾ + ... = 0, and those of the columns J of the Jacobian
+    /// by B J = e D · K' / La.
     fn bent(&self, span: &Span<[f64; 3]>) -> Option<[f64; 3]> {
         let (delta, masses) = (&self.delta, self.masses());
         let [from, to] = &span.rows;

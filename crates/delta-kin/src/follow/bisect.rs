@@ -2,7 +2,8 @@
 
 use nalgebra::RealField;
 
-/// Largest number of halvings. A step of 2⁻³⁰ of a path that still is too long means that the angles jump.
+/// Largest number of halvings. A step of 2⁻³⁰ of a path that still is too long means that the
+/// angles jump.
 const MAX_DEPTH: u32 = 30;
 
 /// A walk along 0..=1 in steps of 2^-depth that start at multiples of their length.

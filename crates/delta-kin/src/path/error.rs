@@ -88,8 +88,8 @@ pub enum DeltaPathError {
         /// How far they may, in radians.
         max: f64,
     },
-    /// Two rows of a table are too far apart to know where the platform is between them, and whether
-    /// the ball joints let it: more segments are needed.
+    /// Two rows of a table are too far apart to know where the platform is between them, and
+    /// whether the ball joints let it: more segments are needed.
     #[error("{}: too long a segment to tell whether ball joints hold; use more segments", Between(*.s))]
     TooCoarse {
         /// Arc length of both rows.

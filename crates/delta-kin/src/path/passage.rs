@@ -1,4 +1,5 @@
-//! A segment of a table: the platform on its curve, the arms on their cubics, and how far they are apart.
+//! A segment of a table: the platform on its curve, the arms on their cubics, and how far they are
+//! apart.
 //!
 //! Names and proof are those of [`DeltaPath::departure`].
 
@@ -218,8 +219,8 @@ impl<'a> Passage<'a> {
         farthest(kappa, sum / rest + kappa * known, self.lower)
     }
 
-    /// How far each wrist comes beside the plane of its arm, at most: what it is at the ends, and what
-    /// the platform can go from the nearer one.
+    /// How far each wrist comes beside the plane of its arm, at most: what it is at the ends, and
+    /// what the platform can go from the nearer one.
     ///
     /// ```text
     /// |P(τ) - P(end)| ≤ max |P'| / 2
@@ -298,8 +299,8 @@ pub(super) fn cubics([from, to]: &[Row<[f64; 3]>; 2]) -> [Cubic; 3] {
     })
 }
 
-/// E: how far the platform is where it would be `off` but for the curvature of the rods' spheres; none
-/// where it cannot be told.
+/// E: how far the platform is where it would be `off` but for the curvature of the rods' spheres;
+/// none where it cannot be told.
 fn farthest(kappa: f64, off: f64, lower: f64) -> Option<f64> {
     let x = 2.0 * ROOT3 * kappa * off / lower;
     // Written so that NaN is none.

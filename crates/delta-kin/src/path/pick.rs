@@ -13,9 +13,9 @@ const CORNER: f64 = 0.1;
 const VERTICES: usize = 6;
 
 impl Delta {
-    /// The paths from one place straight to the height `z`, over, and straight down to another, in one
-    /// go: three lines, and two curves at each of the corners, within `tolerance` of these, at most a
-    /// tenth of the shortest line.
+    /// The paths from one place straight to the height `z`, over, and straight down to another, in
+    /// one go: three lines, and two curves at each of the corners, within `tolerance` of these, at
+    /// most a tenth of the shortest line.
     ///
     /// ```
     /// use delta_kin::{Delta, DeltaPath, Dimensions};

@@ -1,25 +1,27 @@
-//! How far the wrists come beside the planes of their arms on a segment, by its ends alone and in single
-//! precision: enough where they stay far from what their ball joints let them.
+//! How far the wrists come beside the planes of their arms on a segment, by its ends alone and in
+//! single precision: enough where they stay far from what their ball joints let them.
 //!
-//! Goal: a microcontroller without doubles looks at each segment of a table, and most are nowhere near a limit.
-//! Method: what the arms turn in half of the segment moves the platform no farther from its nearer end than E.
+//! Goal: a microcontroller without doubles looks at each segment of a table, and most are nowhere
+//! near a limit. Method: what the arms turn in half of the segment moves the platform no farther
+//! from its nearer end than E.
 //!
-//! Proof. Let D be the rods at that end, in shortest lower arms, B the matrix whose rows are D/La, c the columns
-//! of its inverse, m the ways of the elbows from there, at most μ = Lb δ where the arms turn by δ, and e that of
-//! the platform. The rods keep their lengths where
+//! Proof. Let D be the rods at that end, in shortest lower arms, B the matrix whose rows are D/La,
+//! c the columns of its inverse, m the ways of the elbows from there, at most μ = Lb δ where the
+//! arms turn by δ, and e that of the platform. The rods keep their lengths where
 //!
 //! ```text
 //! B e = n - q    n = D · m / La ≤ |D · K'| δ / La + Lb δ²/2    q = |e - m|² / 2La ≤ (|e| + μ)²/2
 //! ```
 //!
-//! with K' the way of an elbow by its angle. So |e|, which begins at zero and is continuous, stays below the
-//! smaller root of
+//! with K' the way of an elbow by its angle. So |e|, which begins at zero and is continuous, stays
+//! below the smaller root of
 //!
 //! ```text
 //! E = N + M E + C E²/2    N = Σ |c| (n + μ²/2)    M = Σ |c| μ    C = Σ |c|
 //! ```
 //!
-//! There M + C E < 1, so that the matrix stays invertible on the way, and the assembly mode the same.
+//! There M + C E < 1, so that the matrix stays invertible on the way, and the assembly mode the
+//! same.
 
 use nalgebra::Vector3;
 use path_timing::Cubic;
@@ -30,12 +32,14 @@ use crate::arm::zip;
 use crate::pose::invert_rods;
 use crate::prepared::PreparedArm;
 
-/// Above all rounding of machines of this size in shortest lower arms, angles of so many radians and this C.
+/// Above all rounding of machines of this size in shortest lower arms, angles of so many radians
+/// and this C.
 const MARGIN: f32 = 0.01;
 const LARGEST: f32 = 16.0;
 const MAX_INVERSE: f32 = 48.0;
 
-/// The least of (1 - M)² - 2 C N as a part of (1 - M)², and of 1 - M: nearer to 0 the root has no digits.
+/// The least of (1 - M)² - 2 C N as a part of (1 - M)², and of 1 - M: nearer to 0 the root has no
+/// digits.
 const LEAST: f32 = 0.05;
 
 /// One arm at an end of a segment, in single precision and in shortest lower arms.

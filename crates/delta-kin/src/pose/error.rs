@@ -22,8 +22,8 @@ pub enum PoseError<T: RealField + Copy = f64> {
         /// Its third component.
         z: T,
     },
-    /// An arm is stretched or folded, its upper arm in line with the rods as seen perpendicular to its
-    /// plane: turning it does not move the platform along the rods.
+    /// An arm is stretched or folded, its upper arm in line with the rods as seen perpendicular to
+    /// its plane: turning it does not move the platform along the rods.
     #[error("{arm} is stretched or folded: its lever is {}", Rounded(*.lever))]
     Serial {
         /// The arm.
@@ -34,8 +34,8 @@ pub enum PoseError<T: RealField + Copy = f64> {
     /// The three rods lie in a plane: the platform can move although no arm does.
     #[error("the three lower arms lie in a plane: the sine between them is {}", Rounded(*.sine))]
     Parallel {
-        /// The sine of the smallest angle between a rod and the plane of the others, within rounding
-        /// of zero.
+        /// The sine of the smallest angle between a rod and the plane of the others, within
+        /// rounding of zero.
         sine: T,
     },
 }

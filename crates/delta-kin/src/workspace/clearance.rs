@@ -28,9 +28,9 @@ impl<T: RealField + Trig> Delta<T> {
     /// None of the first three changes by more than the point moves, and by continuity no angle
     /// leaves its range inside the ball. The last is a lower bound: more may be free.
     ///
-    /// Proof. Let the platform move by d, |d| ≤ δ, and an elbow by a chord of length y. With e along
-    /// the rod, t and s along the elbow's path and the upper arm, λ = |e · t|, σ = |e · s|, the
-    /// length of the rod is kept if
+    /// Proof. Let the platform move by d, |d| ≤ δ, and an elbow by a chord of length y. With e
+    /// along the rod, t and s along the elbow's path and the upper arm, λ = |e · t|, σ = |e · s|,
+    /// the length of the rod is kept if
     ///
     /// ```text
     /// λ y ≤ δ + (δ + y)²/(2 La) + (λ + σ) y²/(2 Lb)
@@ -44,8 +44,8 @@ impl<T: RealField + Trig> Delta<T> {
     ///
     /// So no rod turns by more than η = (δ + Y)/La, and with κ the Frobenius norm of the inverse
     /// of the rods' matrix none comes into the plane of the others while κ √(η1² + η2² + η3²) < 1.
-    /// And no elbow moves by more than Y: as seen from above, twice the area of the elbows' triangle
-    /// with the sides s, each opposite its elbow, changes by at most
+    /// And no elbow moves by more than Y: as seen from above, twice the area of the elbows'
+    /// triangle with the sides s, each opposite its elbow, changes by at most
     ///
     /// ```text
     /// Y1 s1 + Y2 s2 + Y3 s3 + Y1 Y2 + Y2 Y3 + Y3 Y1
@@ -130,8 +130,8 @@ fn upright_clearance<T: RealField + Trig>(delta: &Delta<T>, pose: &Pose<T>, lamb
     let ([s1, s2, s3], area2) = from_above(centres);
     let [u1, u2, u3] = lambdas.map(|lambda| two::<T>() / lambda);
     let a = u1 * u2 + u2 * u3 + u3 * u1;
-    // `inverse` asks for a height over the longest side, which may be steep: four times that, as the
-    // angles are rounded and sides get longer.
+    // `inverse` asks for a height over the longest side, which may be steep: four times that, as
+    // the angles are rounded and sides get longer.
     let b = u1 * s1 + u2 * s2 + u3 * s3;
     let [c1, c2, c3] = centres;
     let perimeter = norm(&(c2 - c1)) + norm(&(c3 - c2)) + norm(&(c1 - c3));

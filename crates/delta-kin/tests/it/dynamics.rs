@@ -37,7 +37,8 @@ fn machines() -> [Delta; 3] {
     ]
 }
 
-/// Places of all bodies at angles, in m: the platform, and each elbow as its rods have it, upwards positive.
+/// Places of all bodies at angles, in m: the platform, and each elbow as its rods have it, upwards
+/// positive.
 fn places(delta: &Delta, angles: Vector3<f64>) -> (Vector3<f64>, [Vector3<f64>; 3]) {
     let pose = delta.pose_of(angles).unwrap();
     let up = |place: Vector3<f64>| {

@@ -1,4 +1,5 @@
-//! Curves as paths of the arms: the platform on the cubics that run, limits, refusals, pick and place.
+//! Curves as paths of the arms: the platform on the cubics that run, limits, refusals, pick and
+//! place.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -173,8 +174,8 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Whatever the speeds at the ends of a segment, as after a change of the feed or a hold: the bound
-    /// holds.
+    /// Whatever the speeds at the ends of a segment, as after a change of the feed or a hold: the
+    /// bound holds.
     #[test]
     fn the_bound_holds_for_any_speeds(
         curve in any_curve(),
@@ -195,8 +196,8 @@ proptest! {
         prop_assert!(bound.is_finite() || !is_short || bound > 1.0);
     }
 
-    /// A segment that may be run takes no wrist farther beside its arm than the ball joints let it, where
-    /// they let it go a little farther than the curve does.
+    /// A segment that may be run takes no wrist farther beside its arm than the ball joints let it,
+    /// where they let it go a little farther than the curve does.
     #[test]
     fn ball_joints_are_kept_all_along_a_segment(
         curve in any_curve(),

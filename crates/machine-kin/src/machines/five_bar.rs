@@ -1,4 +1,5 @@
-//! Five-bar: two motors side by side, each with an upper arm and a forearm, both forearms at the tool.
+//! Five-bar: two motors side by side, each with an upper arm and a forearm, both forearms at the
+//! tool.
 
 use crate::machines::{GeometryError, check_lengths, check_reach};
 use crate::{Axis, Machine, Number, Refusal};
@@ -25,9 +26,10 @@ pub enum Elbow {
 ///  ----o-o---- motors
 /// ```
 ///
-/// Angles are counter-clockwise from the axis of x. A branch is the elbows of the left and the right
-/// arm: `[Elbow::Left, Elbow::Right]` bends both outwards. To pass from one to another an arm must be
-/// straight or folded, which ends the branch. Where both forearms are in line the machine is singular.
+/// Angles are counter-clockwise from the axis of x. A branch is the elbows of the left and the
+/// right arm: `[Elbow::Left, Elbow::Right]` bends both outwards. To pass from one to another an arm
+/// must be straight or folded, which ends the branch. Where both forearms are in line the machine
+/// is singular.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FiveBar {
     base: f64,
@@ -40,7 +42,8 @@ impl FiveBar {
     /// From the distance of the motors and the lengths of upper arms and forearms.
     ///
     /// # Errors
-    /// [`GeometryError`] of a length that is not above 0, and of a forearm with which the arms do not meet.
+    /// [`GeometryError`] of a length that is not above 0, and of a forearm with which the arms do
+    /// not meet.
     pub fn new(base: f64, upper: f64, fore: f64) -> Result<Self, GeometryError> {
         check_lengths([("base", base), ("upper arm", upper), ("forearm", fore)])?;
         check_reach("forearm", fore, base / 2.0 - upper)?;

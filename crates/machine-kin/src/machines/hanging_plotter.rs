@@ -13,8 +13,8 @@ use crate::{Axis, Machine, Number, Refusal};
 ///   \     o pen     /
 /// ```
 ///
-/// Axes are the lengths of the cords. The pen hangs where it is between the winches and below both; on
-/// the line between them the machine is singular.
+/// Axes are the lengths of the cords. The pen hangs where it is between the winches and below both;
+/// on the line between them the machine is singular.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HangingPlotter {
     width: f64,

@@ -16,8 +16,8 @@ use crate::{Axis, Machine, Number, Refusal};
 ///   o 1     o 2
 /// ```
 ///
-/// with r the distance of a column's joints from the middle less that of the platform's. Carriages are
-/// above the platform. Rods that are all in one plane make the machine singular.
+/// with r the distance of a column's joints from the middle less that of the platform's. Carriages
+/// are above the platform. Rods that are all in one plane make the machine singular.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearDelta {
     rod: f64,
@@ -26,12 +26,12 @@ pub struct LinearDelta {
 }
 
 impl LinearDelta {
-    /// From the length of the rods, the radius of the columns less that of the platform, and the range of
-    /// the carriages' heights.
+    /// From the length of the rods, the radius of the columns less that of the platform, and the
+    /// range of the carriages' heights.
     ///
     /// # Errors
-    /// [`GeometryError`] of a length that is not above 0, and of a rod that is not longer than the radius:
-    /// not even the middle is within its reach.
+    /// [`GeometryError`] of a length that is not above 0, and of a rod that is not longer than the
+    /// radius: not even the middle is within its reach.
     pub fn new(
         rod: f64,
         radius: f64,

@@ -22,15 +22,16 @@ pub enum CarriageSide {
 /// angle = atan2(-y, -x)  radius = -√(x² + y²)      behind
 /// ```
 ///
-/// The arm turns, or the table does by as much the other way. The middle is singular: there the branch
-/// ends. The angle may turn without end.
+/// The arm turns, or the table does by as much the other way. The middle is singular: there the
+/// branch ends. The angle may turn without end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polar {
     radius: [f64; 2],
 }
 
 impl Polar {
-    /// With the range of the carriage, whose lower end is below 0 where it can go behind the middle.
+    /// With the range of the carriage, whose lower end is below 0 where it can go behind the
+    /// middle.
     #[must_use]
     pub const fn new(radius: RangeInclusive<f64>) -> Self {
         Self {

@@ -8,8 +8,8 @@ use crate::{Axis, Machine, Number, Refusal};
 /// A SCARA with z and wrist: shoulder, elbow, height, wrist. For the two links alone
 /// [`scara-kin`](https://docs.rs/scara-kin) is faster.
 ///
-/// The tool is x, y, z, and its heading as the way of a point at the radius `rim` of the wrist, so that
-/// all are lengths, and a tolerance counts for that point as well:
+/// The tool is x, y, z, and its heading as the way of a point at the radius `rim` of the wrist, so
+/// that all are lengths, and a tolerance counts for that point as well:
 ///
 /// ```text
 /// k = l₁ + l₂ cos elbow   h = l₂ sin elbow   shoulder = atan2(y k - x h, x k + y h)
@@ -25,8 +25,8 @@ pub struct Scara {
 }
 
 impl Scara {
-    /// From the lengths of both links and the radius at which the wrist's heading counts as a length; no
-    /// axis has an end.
+    /// From the lengths of both links and the radius at which the wrist's heading counts as a
+    /// length; no axis has an end.
     ///
     /// # Errors
     /// [`GeometryError`] of a length that is not above 0.

@@ -22,8 +22,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         self.machine.inverse(tool, self.branch)
     }
 
-    /// Within `radius` of each coordinate of a piece: by Taylor models along it, in whose rests is what
-    /// is beside it.
+    /// Within `radius` of each coordinate of a piece: by Taylor models along it, in whose rests is
+    /// what is beside it.
     pub(super) fn around(
         &self,
         stretch: &Stretch<N>,
@@ -62,10 +62,10 @@ impl<const N: usize> Around<N> {
 
     /// What the Jacobian does from one node of a segment to the next.
     ///
-    /// With p(t) the polynomial of a slope, t from -1 to 1 along the piece, c a node in t, and r the rest:
-    /// the slope differs from one node to the next by at most c max |p'| + 2 r, and in between from linear
-    /// by c²/8 max |p"| + 2 r. Where there are several pieces from node to node it is the first that is known,
-    /// of all of them.
+    /// With p(t) the polynomial of a slope, t from -1 to 1 along the piece, c a node in t, and r
+    /// the rest: the slope differs from one node to the next by at most c max |p'| + 2 r, and in
+    /// between from linear by c²/8 max |p"| + 2 r. Where there are several pieces from node to node
+    /// it is the first that is known, of all of them.
     pub(super) fn changes(&self) -> Changes<N> {
         let node = NODE / self.half;
         let pieces = node.max(2.0) * 0.5;
@@ -116,8 +116,8 @@ impl<const N: usize> Changes<N> {
         &self.second
     }
 
-    /// How far J e is at most from linear where e is linear from one node to the next, is at most `off` at
-    /// each, and changes by `steps`:
+    /// How far J e is at most from linear where e is linear from one node to the next, is at most
+    /// `off` at each, and changes by `steps`:
     ///
     /// ```text
     /// |J₁ - J₀| |e₁ - e₀| / 4 + |J - its linear part| |e|

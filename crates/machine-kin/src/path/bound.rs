@@ -15,8 +15,8 @@ const FINEST: u32 = 64;
 /// Pieces whose slopes are known better than this are not halved.
 const GOOD: f64 = 0.5;
 
-/// Pieces are not halved where what their fourth derivatives leave between nodes is a smaller part than
-/// this of what the tool is off by across the curve halfway,
+/// Pieces are not halved where what their fourth derivatives leave between nodes is a smaller part
+/// than this of what the tool is off by across the curve halfway,
 const SMALL: f64 = 0.25;
 
 /// or than this of what it is off by at most.
@@ -44,9 +44,9 @@ pub(super) fn cubics<const N: usize>(span: &Span<[f64; N]>) -> [Cubic; N] {
     })
 }
 
-/// Asks for pieces of a segment one after the other, from those of a `1 / coarsest` down to those of a
-/// `1 / finest` where one is not known (`None`), or not known well (`false`) and can be halved. None
-/// where some is not known.
+/// Asks for pieces of a segment one after the other, from those of a `1 / coarsest` down to those
+/// of a `1 / finest` where one is not known (`None`), or not known well (`false`) and can be
+/// halved. None where some is not known.
 pub(super) fn pieces(
     coarsest: u32,
     finest: u32,
@@ -70,26 +70,29 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// infinite where the segment is too long to know. For
     /// [`Table::plan_within`](path_timing::Table::plan_within).
     ///
-    /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], q the inverse on the path's branch, c
-    /// the cubics of the axes, and e the tool's distance from P. At both ends the axes are on the path
-    /// with its velocity, so c are the Hermite cubics of q(P(τ)), and with ε = c - q(P)
+    /// Proof. Let P(τ) run along the curve as in [`CurveMotion`], q the inverse on the path's
+    /// branch, c the cubics of the axes, and e the tool's distance from P. At both ends the axes
+    /// are on the path with its velocity, so c are the Hermite cubics of q(P(τ)), and with ε = c -
+    /// q(P)
     ///
     /// ```text
     /// |ε⁗| ≤ Q = max |d⁴q/dτ⁴|     |ε"| ≤ S/h² + 5/8 Q h²     between nodes τ = k h, h = 1/16,
     ///                              ε is linear but for h²/8 max |ε"| = S/8 + 5/64 Q h⁴
     /// ```
     ///
-    /// where Q is enclosed by jets of intervals, and S is the largest of |ε₁ - 2 ε₀ + ε₋₁| of three nodes
-    /// and of |8 ε₁ - ε₂|/2 at the ends, where ε and ε' are 0: by Taylor's formula ε" is off from these
-    /// over h² by Q h²/12 and Q h²/2 at most, and from a line between nodes by Q h²/8. The tool is where q(P + e) = c, that is
-    /// J e = ε with J the mean of the inverse's Jacobian from P to P + e. Where the enclosure of all
-    /// Jacobians within a radius of the curve is regular, and what it says of e is within that radius,
-    /// Newton's map takes the box round P into itself and contracts: there is one such place, and since
-    /// it moves continuously from the start it is the tool, on its branch.
+    /// where Q is enclosed by jets of intervals, and S is the largest of |ε₁ - 2 ε₀ + ε₋₁| of three
+    /// nodes and of |8 ε₁ - ε₂|/2 at the ends, where ε and ε' are 0: by Taylor's formula ε" is off
+    /// from these over h² by Q h²/12 and Q h²/2 at most, and from a line between nodes by Q h²/8.
+    /// The tool is where q(P + e) = c, that is J e = ε with J the mean of the inverse's Jacobian
+    /// from P to P + e. Where the enclosure of all Jacobians within a radius of the curve is
+    /// regular, and what it says of e is within that radius, Newton's map takes the box round P
+    /// into itself and contracts: there is one such place, and since it moves continuously from the
+    /// start it is the tool, on its branch.
     ///
-    /// At the nodes ε is known but for rounding, by intervals, and e by some Jacobian there and the most
-    /// that those from P to P + e are apart from it. From one node to the next, J e = ε put in from both
-    /// sides, e is linear but for what the enclosure makes of what ε is, and of what J e is where e is linear:
+    /// At the nodes ε is known but for rounding, by intervals, and e by some Jacobian there and the
+    /// most that those from P to P + e are apart from it. From one node to the next, J e = ε put in
+    /// from both sides, e is linear but for what the enclosure makes of what ε is, and of what J e
+    /// is where e is linear:
     ///
     /// ```text
     /// |J₁ - J₀| |e₁ - e₀| / 4 + |J - its linear part| |e|
@@ -150,8 +153,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         is_on_path.then(|| tangent.map(|slope| slope * (along / square)))
     }
 
-    /// The largest that the fourth derivatives of the axes can be; known well where the tool is off by
-    /// less than `enough` for it between nodes.
+    /// The largest that the fourth derivatives of the axes can be; known well where the tool is off
+    /// by less than `enough` for it between nodes.
     fn fourth(
         &self,
         motion: &CurveMotion<'_, N>,
@@ -264,7 +267,8 @@ impl<const N: usize> Tools<N> {
         }
     }
 
-    /// Takes in what is known of all Jacobians on a part, at the nodes between whose neighbours it is.
+    /// Takes in what is known of all Jacobians on a part, at the nodes between whose neighbours it
+    /// is.
     fn enclose(&mut self, [from, to]: [f64; 2], enclosure: &Enclosure<N>, changes: &Changes<N>) {
         let all = &mut self.enclosure;
         *all = Some(all.map_or(*enclosure, |all| all.and(enclosure)));

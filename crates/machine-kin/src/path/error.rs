@@ -28,8 +28,8 @@ pub enum PathError<const N: usize> {
         /// Why, and about how far it is from where it could be.
         reason: Refusal,
     },
-    /// The branch ends at a place of the curve: beyond, there is none, or the curve would have to go on
-    /// with another.
+    /// The branch ends at a place of the curve: beyond, there is none, or the curve would have to
+    /// go on with another.
     BranchEnds {
         /// Arc length up to there.
         s: f64,
@@ -38,8 +38,8 @@ pub enum PathError<const N: usize> {
         /// Why.
         reason: Refusal,
     },
-    /// The machine is singular at a place of the curve: the tool could move there though no axis does,
-    /// or an axis would have to be infinitely fast.
+    /// The machine is singular at a place of the curve: the tool could move there though no axis
+    /// does, or an axis would have to be infinitely fast.
     Singular {
         /// Arc length up to there.
         s: f64,
@@ -77,9 +77,9 @@ pub enum PathError<const N: usize> {
         /// Arc length up to there.
         s: f64,
     },
-    /// The cubics of a segment of a table leave the curve by so much that the tool may come to where it
-    /// cannot be, or be anywhere: shorter segments are needed, or more distance from the edge of the
-    /// workspace.
+    /// The cubics of a segment of a table leave the curve by so much that the tool may come to
+    /// where it cannot be, or be anywhere: shorter segments are needed, or more distance from the
+    /// edge of the workspace.
     TooCoarse {
         /// Arc lengths of its ends.
         s: [f64; 2],

@@ -1,4 +1,5 @@
-//! How far the axes' cubics are off the path at some nodes of a segment, and what that says of all of it.
+//! How far the axes' cubics are off the path at some nodes of a segment, and what that says of all
+//! of it.
 
 use path_timing::{Cubic, CurveMotion};
 
@@ -138,9 +139,9 @@ impl<const N: usize> Nodes<N> {
     }
 }
 
-/// From each end or node to the next one: how far an axis is at most from linear, the least M found for
-/// which it is off by at most M τ² (1 - τ)²/24, and the most that it is off by; from what it is off by at
-/// all of them, with rounding, and its largest fourth derivative.
+/// From each end or node to the next one: how far an axis is at most from linear, the least M found
+/// for which it is off by at most M τ² (1 - τ)²/24, and the most that it is off by; from what it is
+/// off by at all of them, with rounding, and its largest fourth derivative.
 fn gaps(errors: &[f64; NODES + 2], rounding: f64, q: f64) -> [[f64; 3]; NODES + 1] {
     let mut bends = [0.0; NODES + 2];
     for (bend, three) in bends.iter_mut().skip(1).zip(errors.windows(3)) {

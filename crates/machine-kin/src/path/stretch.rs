@@ -43,8 +43,8 @@ impl<const N: usize> Stretch<N> {
         self.half
     }
 
-    /// Taylor coefficients at every τ of the part, each derivative from the next two and what bounds the
-    /// one after.
+    /// Taylor coefficients at every τ of the part, each derivative from the next two and what
+    /// bounds the one after.
     ///
     /// ```text
     /// |P⁽ᵏ⁾(τ) - P⁽ᵏ⁾(m)| ≤ |P⁽ᵏ⁺¹⁾(m)| t + |P⁽ᵏ⁺²⁾(m)| t²/2 + max |P⁽ᵏ⁺³⁾| t³/6      t = max |τ - m|

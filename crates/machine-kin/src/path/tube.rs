@@ -1,4 +1,5 @@
-//! What the cubics of a segment may do: axes within their ranges, the tool where the machine can be.
+//! What the cubics of a segment may do: axes within their ranges, the tool where the machine can
+//! be.
 
 use path_timing::{CurveMotion, Span};
 
@@ -34,14 +35,15 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         None
     }
 
-    /// Whether the machine may run a segment: all axes within their ranges, which is exact, and the tool
-    /// on its branch and within the area, at these speeds and all others with the same mean.
+    /// Whether the machine may run a segment: all axes within their ranges, which is exact, and the
+    /// tool on its branch and within the area, at these speeds and all others with the same mean.
     ///
-    /// Proof. At the ends of the segment the axes are on the path. With σ(τ) the cubic from 0 to 1 that has
-    /// the speeds of the parameter there, the axes run the Hermite cubics of q(P(σ(τ))), which are linear in
-    /// what they interpolate. With q' to q‴ the derivatives by σ, of q‴ the largest, Taylor's formula from
-    /// the middle of the segment has a linear part, which is met; a square, which is off by what σ² is; and
-    /// a rest R with |R| ≤ q‴/48 and |R'| ≤ q‴/8, of which the cubic is at most |R| + 4/27 |v₀ R'₀ + v₁ R'₁|:
+    /// Proof. At the ends of the segment the axes are on the path. With σ(τ) the cubic from 0 to 1
+    /// that has the speeds of the parameter there, the axes run the Hermite cubics of q(P(σ(τ))),
+    /// which are linear in what they interpolate. With q' to q‴ the derivatives by σ, of q‴ the
+    /// largest, Taylor's formula from the middle of the segment has a linear part, which is met; a
+    /// square, which is off by what σ² is; and a rest R with |R| ≤ q‴/48 and |R'| ≤ q‴/8, of which
+    /// the cubic is at most |R| + 4/27 |v₀ R'₀ + v₁ R'₁|:
     ///
     /// ```text
     /// |ε| ≤ |q"(½)|/2 max |(σ²)⁗|/384 + q‴ (1/24 + (v₀ + v₁)/54)
@@ -49,9 +51,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     ///
     /// For all cubics with the mean speed 1 and v₀ + v₁ = 2, (σ²)⁗ = 6 σ"² ≤ 24.
     ///
-    /// The tool is then within what [`Enclosure`] says, where the inverse is defined on its branch, and
-    /// regular, all over that: Newton's map takes this box into itself, so there is one such place, and
-    /// it goes on from that at the start.
+    /// The tool is then within what [`Enclosure`] says, where the inverse is defined on its branch,
+    /// and regular, all over that: Newton's map takes this box into itself, so there is one such
+    /// place, and it goes on from that at the start.
     pub(super) fn check_span(&self, span: &Span<[f64; N]>) -> Result<(), PathError<N>> {
         let s = span.s;
         for (cubic, axis) in cubics(span).iter().zip(&self.axes) {
@@ -77,7 +79,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         let ends = self.ends(span)?;
         let (_, slopes) = self.slopes_at(motion.at(0.5)).map_err(|_| coarse)?;
         let y = inverse(slopes).ok_or(coarse)?.map(|row| row.map(f64::abs));
-        // One look is enough for nearly all that a planner asks for. Shorter pieces are known better.
+        // One look is enough for nearly all that a planner asks for. Shorter pieces are known
+        // better.
         let stays = |errors: Option<[f64; N]>, finest| {
             errors.is_some_and(|errors| self.stays(&motion, &errors, &y, finest))
         };
@@ -112,8 +115,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
 
     /// The most that each axis is off by from the path at the same time, by one look.
     ///
-    /// With an axis as a Taylor model, Σ aₖ tᵏ ± r with t = 2σ - 1, the linear part is met, the square
-    /// is 4 a₂ (σ - ½)², and what is left is R, of which |R'| is known at both ends, where q' is:
+    /// With an axis as a Taylor model, Σ aₖ tᵏ ± r with t = 2σ - 1, the linear part is met, the
+    /// square is 4 a₂ (σ - ½)², and what is left is R, of which |R'| is known at both ends, where
+    /// q' is:
     ///
     /// ```text
     /// |R| ≤ |a₃| + r    R' = q' - 2 a₁ ∓ 4 a₂    |ε| ≤ 4 |a₂| max |(σ²)⁗|/384 + 2 |R| + 4/27 (v₀ + v₁) max |R'|
@@ -165,8 +169,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         Some(errors)
     }
 
-    /// The most that the tool is off by in each coordinate, from where the inverse is looked at within
-    /// `radius` of the curve. None where it is not known, or may be out of the area.
+    /// The most that the tool is off by in each coordinate, from where the inverse is looked at
+    /// within `radius` of the curve. None where it is not known, or may be out of the area.
     fn off(
         &self,
         motion: &CurveMotion<'_, N>,
@@ -238,7 +242,8 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
 
 /// What is known of both ends of a segment.
 struct Ends<const N: usize> {
-    /// The most that the speeds add up to, in its lengths, for these and all others with the mean 1.
+    /// The most that the speeds add up to, in its lengths, for these and all others with the
+    /// mean 1.
     speeds: f64,
     /// The most that (σ²)⁗ is for all of these.
     square: f64,

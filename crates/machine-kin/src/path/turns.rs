@@ -4,7 +4,8 @@ use core::f64::consts::TAU;
 
 use crate::Axis;
 
-/// Places at which the axes are known; from each to the next an angle turns by less than half a turn.
+/// Places at which the axes are known; from each to the next an angle turns by less than half a
+/// turn.
 const ANCHORS: usize = 8;
 
 /// How far an angle turns from a known place before the next is noted, in radians.
@@ -13,8 +14,8 @@ const FAR: f64 = 2.4;
 /// The largest turn of an angle from one place of the survey to the next, in radians.
 pub(super) const MAX_TURN: f64 = 0.6;
 
-/// The whole turns of the angles along a path: what is continuous when it is walked along stays so when
-/// places are asked for in any order.
+/// The whole turns of the angles along a path: what is continuous when it is walked along stays so
+/// when places are asked for in any order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turns<const N: usize> {
     /// Parameter and axes, in their order.

@@ -11,8 +11,8 @@ use crate::{Axis, Interval, Machine, Number};
 /// Shortest piece of a curve, as a fraction of it: what is undecided then is refused.
 const MIN_PIECE: f64 = 1e-9;
 
-/// Nearest to the end of the branch and to singular poses that a path may come, in each coordinate, as
-/// a fraction of its size.
+/// Nearest to the end of the branch and to singular poses that a path may come, in each coordinate,
+/// as a fraction of its size.
 const EDGE: f64 = 1e-6;
 
 /// A place within this many times [`EDGE`] of the end of the branch is reported as that end.

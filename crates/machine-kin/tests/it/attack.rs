@@ -1,5 +1,5 @@
-//! Random paths on random machines, half of them through limits, singular poses and ends of branches:
-//! what dense sampling finds wrong is refused, what it finds right is not.
+//! Random paths on random machines, half of them through limits, singular poses and ends of
+//! branches: what dense sampling finds wrong is refused, what it finds right is not.
 //!
 //! `MACHINE_KIN_PATHS` says how many.
 
@@ -16,8 +16,8 @@ use crate::common::{apart, cubics, distance, forward, limits, slopes, within};
 /// Places of a curve that are looked at.
 const SAMPLES: u32 = 400;
 
-/// How far all places round a sample have to be good for a path to be good, as a part of its size: ten
-/// times what paths stay away from edges by.
+/// How far all places round a sample have to be good for a path to be good, as a part of its size:
+/// ten times what paths stay away from edges by.
 const MARGIN: f64 = 1e-5;
 
 /// By how much a position may be beyond a range: what is allowed to paths that touch it.

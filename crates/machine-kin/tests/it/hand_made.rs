@@ -1,5 +1,5 @@
-//! The bounds of the two arms by hand beside those that follow from their inverses alone, on the paths
-//! of the arms' own tests.
+//! The bounds of the two arms by hand beside those that follow from their inverses alone, on the
+//! paths of the arms' own tests.
 
 use core::f64::consts::FRAC_PI_2;
 use core::fmt::Debug;
@@ -16,7 +16,8 @@ use scara_kin::{Arm, ArmPath};
 use crate::common::arms::{RotaryDelta, TwoLinks};
 use crate::common::{cubics, distance, forward, within};
 
-/// The largest ratio of both bounds of a table that is allowed on any path: what the mechanism promises.
+/// The largest ratio of both bounds of a table that is allowed on any path: what the mechanism
+/// promises.
 const RATIO: f64 = 2.0;
 
 /// Of places of machines of some hundred mm.
@@ -38,13 +39,14 @@ fn any_curve<const N: usize>(
     .boxed()
 }
 
-/// How many times the bound by hand the other one is, by tables: median, 90 %, most; and the bound over
-/// what dense sampling finds.
+/// How many times the bound by hand the other one is, by tables: median, 90 %, most; and the bound
+/// over what dense sampling finds.
 struct Ratios {
     of_hand_made: Vec<f64>,
     of_measured: Vec<f64>,
     segments: usize,
-    /// Those of which it is not known that they may be run at any speeds: the planners' own are shorter.
+    /// Those of which it is not known that they may be run at any speeds: the planners' own are
+    /// shorter.
     coarse: usize,
 }
 

@@ -1,4 +1,5 @@
-//! Numbers: intervals beside exact arithmetic, jets and gradients beside each other and differences.
+//! Numbers: intervals beside exact arithmetic, jets and gradients beside each other and
+//! differences.
 
 use core::f64::consts::{PI, TAU};
 
@@ -96,8 +97,8 @@ proptest! {
         prop_assert_eq!(angle.is_err(), may_be_0(&a) && may_be_0(&b));
     }
 
-    /// Jets of a function of a parameter are its derivatives: beside those of the same function by a
-    /// jet that begins elsewhere, as a Taylor series says.
+    /// Jets of a function of a parameter are its derivatives: beside those of the same function by
+    /// a jet that begins elsewhere, as a Taylor series says.
     #[test]
     fn jets_are_taylor_series(at in -1.0..1.0_f64, step in -0.01..0.01_f64) {
         let jet = function(Jet::<f64, 9>::new([at, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])).unwrap();

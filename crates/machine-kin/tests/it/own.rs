@@ -1,5 +1,5 @@
-//! A machine as its user writes it, from the README alone: a parallel SCARA whose pen is beyond the joint
-//! of both forearms, on the left one.
+//! A machine as its user writes it, from the README alone: a parallel SCARA whose pen is beyond the
+//! joint of both forearms, on the left one.
 
 use machine_kin::path_timing::{AxisLimits, Curve, Knot, Path, Table};
 use machine_kin::{Axis, Machine, MachinePath, Number, Refusal};
@@ -17,7 +17,8 @@ struct ParallelScara {
 }
 
 impl ParallelScara {
-    /// The upper arm as a vector from its motor, for the other end of the forearm to be at (dx, dy).
+    /// The upper arm as a vector from its motor, for the other end of the forearm to be at (dx,
+    /// dy).
     fn upper_arm<T: Number>(
         &self,
         [dx, dy]: [T; 2],

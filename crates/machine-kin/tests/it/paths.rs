@@ -178,8 +178,8 @@ fn ranges_that_are_none_are_refused() {
     assert_eq!(error.to_string(), "0..=NaN is no range of the slide");
 }
 
-/// A curve whose elbow comes close to the end of its range is within it. The cubics of 8 segments pass it,
-/// so there are more.
+/// A curve whose elbow comes close to the end of its range is within it. The cubics of 8 segments
+/// pass it, so there are more.
 #[test]
 fn a_range_that_is_nearly_touched_takes_more_segments() {
     const MARGIN: f64 = 1e-7;
@@ -206,7 +206,8 @@ fn a_range_that_is_nearly_touched_takes_more_segments() {
     assert!(close > free, "{close} {free}");
 }
 
-/// Holds, feeds and streams keep the limits and the tolerance on every row, as the verifier sees them.
+/// Holds, feeds and streams keep the limits and the tolerance on every row, as the verifier sees
+/// them.
 fn runs<M: Machine<N>, const N: usize>(machine: &M, curves: [Curve<N>; 2], branch: M::Branch) {
     const TOLERANCE: f64 = 0.02;
     let limits = limits(machine);

@@ -1,5 +1,6 @@
-//! Against NIST's Statistical Reference Datasets for nonlinear regression: the data, both starts and
-//! the values certified to eleven digits, <https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml>.
+//! Against NIST's Statistical Reference Datasets for nonlinear regression: the data, both starts
+//! and the values certified to eleven digits,
+//! <https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml>.
 
 use core::array::from_fn;
 
@@ -8,8 +9,8 @@ use crate::model::{Curve, Fit};
 /// What the fit stops at: a decrease of the sum of squares by less than 1e-9 of it.
 const SUM: f64 = 1e-9;
 
-/// Of a standard deviation: where the sum has decreased to its last 1e-9, a parameter is nearer to its
-/// best value than √1e-9 of its deviation times the root of the degrees of freedom.
+/// Of a standard deviation: where the sum has decreased to its last 1e-9, a parameter is nearer to
+/// its best value than √1e-9 of its deviation times the root of the degrees of freedom.
 const OFF: f64 = 2e-4;
 
 /// Relative, of the deviations themselves: they change with the parameters.
@@ -109,8 +110,8 @@ fn box_bod() {
     assert!(certified.check("BoxBOD") < 15);
 }
 
-/// From its first start, every parameter 1, the fit leaves for a rate at which the curve is the mean of
-/// all, and says that no measurement determines that rate.
+/// From its first start, every parameter 1, the fit leaves for a rate at which the curve is the
+/// mean of all, and says that no measurement determines that rate.
 #[test]
 fn box_bod_from_where_it_is_not_found() {
     let fit = Fit {

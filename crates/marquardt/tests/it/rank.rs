@@ -43,7 +43,8 @@ fn a_sum_of_two_parameters_and_one_without_influence() {
     }
     assert!(null.iter().any(|change| change[0].abs() > 0.1));
     assert!(null.iter().any(|change| change[3].abs() > 0.1));
-    // Residuals 0.04, -0.13, 0.2, -0.17, 0.06; 1 of 5 degrees of freedom, as for all four. Slope: over √10.
+    // Residuals 0.04, -0.13, 0.2, -0.17, 0.06; 1 of 5 degrees of freedom, as for all four. Slope:
+    // over √10.
     let deviations = found.deviations();
     assert_eq!([0, 1, 3].map(|i| deviations[i]), [None; 3]);
     let slope = (0.091_f64 / 10.0).sqrt();
@@ -72,8 +73,8 @@ fn a_line_by_hand() {
     };
     let (b, found) = fit.run().unwrap();
     assert!((b[0] - 1.06).abs() < LAST && (b[1] - 1.97).abs() < LAST);
-    // 0.091 is the sum of squares, 3 are the degrees of freedom: variance / Σ(x - 2)², and of b1 times
-    // Σx²/5.
+    // 0.091 is the sum of squares, 3 are the degrees of freedom: variance / Σ(x - 2)², and of b1
+    // times Σx²/5.
     let variance = 0.091_f64 / 3.0;
     let [offset, slope] = found.deviations().map(Option::unwrap);
     assert!((slope - (variance / 10.0).sqrt()).abs() < LAST);

@@ -13,7 +13,8 @@ pub(super) const ALONE: Duration = Duration::from_millis(20);
 /// An STX without any character before it for so long is no reaction to one.
 const QUIET: Duration = Duration::from_millis(300);
 
-/// The number of answers that are looked at, the last ones: more would show nothing else, and take time.
+/// The number of answers that are looked at, the last ones: more would show nothing else, and take
+/// time.
 const LAST: usize = 128;
 
 /// The number of answers and questions that are tried for a delay.
@@ -99,8 +100,8 @@ fn candidates(record: &[Character], by: Side, limit: Duration) -> impl Iterator<
         })
 }
 
-/// How long `side` waits for an answer: the shortest time between two STX of it with nothing between
-/// them.
+/// How long `side` waits for an answer: the shortest time between two STX of it with nothing
+/// between them.
 pub(super) fn patience_of(record: &[Character], side: Side) -> Option<Duration> {
     let waits = record.windows(2).enumerate().filter_map(|(at, pair)| {
         let [first, second] = pair else { return None };

@@ -14,8 +14,8 @@ use thiserror::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SpeedLaw {
-    /// It returns to 0, as in \[Dancer\]: the overshoot is lost, and with it up to 16 % of the speed
-    /// at a threshold of 600. Only some speeds are distinct.
+    /// It returns to 0, as in \[Dancer\]: the overshoot is lost, and with it up to 16 % of the
+    /// speed at a threshold of 600. Only some speeds are distinct.
     Reset,
     /// It keeps what it has beyond the threshold: speeds are exact. It gathers magnitudes, so what
     /// one direction has gathered counts for the other after a reversal.

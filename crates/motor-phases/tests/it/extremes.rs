@@ -1,4 +1,5 @@
-//! Every function with anything: 0, the largest and smallest numbers. The answer is right, or an error.
+//! Every function with anything: 0, the largest and smallest numbers. The answer is right, or an
+//! error.
 
 use motor_phases::{
     Accumulation, BusWrite, Latches, Phases, Placement, Polarity, Rate, SpeedLaw, Stepping, Wiring,

@@ -9,11 +9,12 @@ use crate::number::larger_or_nan;
 ///
 /// It says how far a tool can depart from the curve on that segment.
 ///
-/// Proof. The parameter of this point is the cubic of the rows' own speeds and duration, whatever these are: a
-/// table may stretch the duration by a κ of the segment. Both the tool's motion and this one have the same place and velocity at both ends, so that
-/// their difference e and its first derivative vanish there: e is the error of its own cubic Hermite
-/// interpolant, which is zero. With the time as the fraction τ = 0..=1 of the segment and M the longest that e⁗ can be, known from the
-/// derivatives of tool and curve,
+/// Proof. The parameter of this point is the cubic of the rows' own speeds and duration, whatever
+/// these are: a table may stretch the duration by a κ of the segment. Both the tool's motion and
+/// this one have the same place and velocity at both ends, so that their difference e and its first
+/// derivative vanish there: e is the error of its own cubic Hermite interpolant, which is zero.
+/// With the time as the fraction τ = 0..=1 of the segment and M the longest that e⁗ can be, known
+/// from the derivatives of tool and curve,
 ///
 /// ```text
 /// |e| ≤ M/384    |e"| ≤ M/12
@@ -24,19 +25,20 @@ use crate::number::larger_or_nan;
 /// nodes and this are a bound E of |e| everywhere.
 ///
 /// Of e only the part across the curve counts: where the tool is ahead by a, the curve there is
-/// within κ a²/2 of its tangent, κ its largest curvature. The tangent turns by at most ψ to the next
-/// node. With N the largest part of e across the tangent at a node the tool is within
+/// within κ a²/2 of its tangent, κ its largest curvature. The tangent turns by at most ψ to the
+/// next node. With N the largest part of e across the tangent at a node the tool is within
 ///
 /// ```text
 /// N + ψ E + κ E²/2 + M/24576
 /// ```
 ///
-/// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the distance
-/// is done and (1 - τ)²/2 left, and |e| ≤ M τ² (1 - τ)²/24, so 12 times the distance must be M or more.
+/// of the curve, where the place ahead is still on the segment: at each τ at least τ²/2 of the
+/// distance is done and (1 - τ)²/2 left, and |e| ≤ M τ² (1 - τ)²/24, so 12 times the distance must
+/// be M or more.
 ///
-/// Most segments need no node but that halfway. e is τ² (1 - τ)² times its divided difference at 0, 0,
-/// 1, 1, τ, whose derivative is that at 0, 0, 1, 1, τ, τ: with F the longest that the fifth derivative of
-/// e can be, at most F/120. So e is 16 τ² (1 - τ)² e(½) but for
+/// Most segments need no node but that halfway. e is τ² (1 - τ)² times its divided difference at 0,
+/// 0, 1, 1, τ, whose derivative is that at 0, 0, 1, 1, τ, τ: with F the longest that the fifth
+/// derivative of e can be, at most F/120. So e is 16 τ² (1 - τ)² e(½) but for
 ///
 /// ```text
 /// τ² (1 - τ)² |τ - ½| F/120 ≤ F/13416
@@ -118,9 +120,9 @@ impl Parameter {
         ]
     }
 
-    /// Whether at each τ at least τ²/2 of the distance is done, and at least (1 - τ)²/2 left: where the
-    /// speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has 2, a
-    /// stretched one at most 2.4.
+    /// Whether at each τ at least τ²/2 of the distance is done, and at least (1 - τ)²/2 left: where
+    /// the speeds at the ends are within 0 and 2.5 of the mean. A segment from rest or to rest has
+    /// 2, a stretched one at most 2.4.
     fn comes_forward(cubic: &Cubic) -> bool {
         let distance = cubic.q1 - cubic.q0;
         let ends = [cubic.v0, cubic.v1].map(|speed| speed * cubic.duration_s);
@@ -128,8 +130,8 @@ impl Parameter {
     }
 }
 
-/// The longest that derivatives 1 to 4 of C(u(τ)) can be, from those of C and the largest of u, by Faà
-/// di Bruno.
+/// The longest that derivatives 1 to 4 of C(u(τ)) can be, from those of C and the largest of u, by
+/// Faà di Bruno.
 fn longest_composed(longest: [f64; 4], [u1, u2, u3]: [f64; 3]) -> [f64; 4] {
     let [c1, c2, c3, c4] = longest;
     let square = u1 * u1;
@@ -274,9 +276,9 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
             .unwrap_or_else(|| self.departure_between(tool, fourth, |_| between))
     }
 
-    /// The same as [`departure_between`](Self::departure_between) from the tool's place halfway alone;
-    /// none where the nodes may say much less. `beside` is by how much e differs from 16 τ² (1 - τ)²
-    /// e(½), as a function of |e(½)|.
+    /// The same as [`departure_between`](Self::departure_between) from the tool's place halfway
+    /// alone; none where the nodes may say much less. `beside` is by how much e differs from 16 τ²
+    /// (1 - τ)² e(½), as a function of |e(½)|.
     #[must_use]
     pub fn departure_by_middle(
         &self,
@@ -309,8 +311,8 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     }
 
     /// The same where other things are known of the difference e of tool and curve: M, which may be
-    /// any number for which |e| ≤ M τ² (1 - τ)²/24, and how far e is at most from linear between a node
-    /// τ = k/16 and those next to it.
+    /// any number for which |e| ≤ M τ² (1 - τ)²/24, and how far e is at most from linear between a
+    /// node τ = k/16 and those next to it.
     #[must_use]
     pub fn departure_between(
         &self,
@@ -337,8 +339,8 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     /// Where a tool is compared with the curve, besides the ends of the segment: τ = k/16.
     pub const NODES: [f64; 15] = NODES;
 
-    /// What is left between nodes of a function that is zero at both ends with its first derivative,
-    /// as a fraction of the largest of its fourth.
+    /// What is left between nodes of a function that is zero at both ends with its first
+    /// derivative, as a fraction of the largest of its fourth.
     pub const BETWEEN: f64 = BETWEEN;
 
     /// By what a function that is zero at both ends with its first derivative differs at most from

@@ -27,9 +27,9 @@ const GAUSS: [[f64; 2]; 4] = [
 /// k!
 const FACTORIALS: [f64; 6] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0];
 
-/// A polynomial curve over t = 0..=1. Between equal steps of t the parameter is a quintic of the arc
-/// length with the right derivatives at both ends: t(s) is smooth to the second derivative, and dP/ds
-/// is the derivative of what is computed, whatever its length.
+/// A polynomial curve over t = 0..=1. Between equal steps of t the parameter is a quintic of the
+/// arc length with the right derivatives at both ends: t(s) is smooth to the second derivative, and
+/// dP/ds is the derivative of what is computed, whatever its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Polynomial<const D: usize> {
     /// Of 1, t, t², ...

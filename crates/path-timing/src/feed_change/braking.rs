@@ -2,8 +2,9 @@
 
 use crate::number::sqrt;
 
-/// Three phases of constant jerk from a speed and an acceleration along the path to others, lower than the
-/// speed that would be gained: the acceleration falls to -A, stays, and rises to what it is to be.
+/// Three phases of constant jerk from a speed and an acceleration along the path to others, lower
+/// than the speed that would be gained: the acceleration falls to -A, stays, and rises to what it
+/// is to be.
 ///
 /// ```text
 /// A = κ √(J (v₀ - v₁) + (a₀² + a₁²)/2)        κ = 1: it does not stay
@@ -19,9 +20,9 @@ pub(super) struct Braking {
     reached: f64,
 }
 
-/// The part of its last segment by which the phases of a stop end before the knot where it rests. There the
-/// acceleration is even on each segment and steps at the knots; with the half, no step is more than the
-/// jerk of the last phase over the time from the middle of a segment to the next:
+/// The part of its last segment by which the phases of a stop end before the knot where it rests.
+/// There the acceleration is even on each segment and steps at the knots; with the half, no step is
+/// more than the jerk of the last phase over the time from the middle of a segment to the next:
 ///
 /// ```text
 /// w = ∛(9/2 J (x - xₗ/2)²)    at the knots x = xₗ, 2xₗ, 3xₗ .. from rest
@@ -64,7 +65,8 @@ impl State {
 /// Halvings in a search for a jerk or a time.
 const ROUNDS: u32 = 60;
 
-/// Of the largest jerk that there is: with it the acceleration would not fall below zero, and be 0/0.
+/// Of the largest jerk that there is: with it the acceleration would not fall below zero, and be
+/// 0/0.
 const MOST: f64 = 1.0 - 1e-6;
 
 /// By how much the jerk is changed to find two that the wanted one lies between.
@@ -113,8 +115,8 @@ impl Braking {
         is_found.then_some(found)
     }
 
-    /// The quickest within a deceleration and a jerk: its κ and the length that it takes, NaN where the
-    /// speed at the start cannot be gained or lost so.
+    /// The quickest within a deceleration and a jerk: its κ and the length that it takes, NaN where
+    /// the speed at the start cannot be gained or lost so.
     pub(super) fn quickest([start, end]: [State; 2], [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
         let most = sqrt(jerk * (start.speed - end.speed) + State::squares(start, end));
         let kappa = (deceleration / most).min(1.0);
@@ -182,8 +184,8 @@ const CLOSE: f64 = 1e-9;
 mod tests {
     use super::{Braking, KAPPAS, State};
 
-    /// From 2 at an acceleration of 1 over a length of 3, in 300 steps: it comes to rest at its end, its
-    /// speed goes on smoothly from the start.
+    /// From 2 at an acceleration of 1 over a length of 3, in 300 steps: it comes to rest at its
+    /// end, its speed goes on smoothly from the start.
     #[test]
     fn a_stop_ends_at_rest_where_it_is_to() {
         let start = State {

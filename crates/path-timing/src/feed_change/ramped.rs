@@ -7,8 +7,8 @@
 /// g' rises over 0..α, is constant, and falls over 1-β..1;  ∫ g' = 1
 /// ```
 ///
-/// The integral of f is the table's own time. A stop ends, and a start begins, without a step of the
-/// acceleration.
+/// The integral of f is the table's own time. A stop ends, and a start begins, without a step of
+/// the acceleration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FeedChange {
     from: f64,

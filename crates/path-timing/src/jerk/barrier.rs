@@ -12,8 +12,8 @@ pub(crate) enum Degree {
     Jerk,
 }
 
-/// A part of a limit that is used, -1 to 1, and its derivatives by the speeds at consecutive knots: both
-/// ends of a segment, and with three of them the one before.
+/// A part of a limit that is used, -1 to 1, and its derivatives by the speeds at consecutive knots:
+/// both ends of a segment, and with three of them the one before.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Utilisation<const KNOTS: usize> {
     pub(super) value: f64,
@@ -31,8 +31,8 @@ pub(crate) trait Barrier {
     fn time(&mut self, ds: f64, speeds: [f64; 2]);
 }
 
-/// The acceleration of an axis at an end of a segment, as a part of its limit, with derivatives by the
-/// speeds at both ends.
+/// The acceleration of an axis at an end of a segment, as a part of its limit, with derivatives by
+/// the speeds at both ends.
 #[derive(Debug, Clone, Copy)]
 struct Acceleration {
     value: f64,
@@ -278,14 +278,14 @@ impl<A: Axes> Moving<'_, A> {
     }
 }
 
-/// A rate with what rounding may add to two accelerations, as a part of the limit: 1 / (1 - z) ≤ 1 + 2z
-/// up to z = 1/2.
+/// A rate with what rounding may add to two accelerations, as a part of the limit: 1 / (1 - z) ≤
+/// 1 + 2z up to z = 1/2.
 fn with_noise(rate: f64, noise: f64) -> f64 {
     rate * (1.0 + 2.0 * noise.min(LEAST_LIMIT))
 }
 
-/// One over the time between the middles of two segments, and its derivatives by the sums of the speeds at
-/// the ends of each.
+/// One over the time between the middles of two segments, and its derivatives by the sums of the
+/// speeds at the ends of each.
 ///
 /// ```text
 /// 1 / ((T₋ + T) / 2) = W₋ W / (Δs₋ W + Δs W₋)     W = w₀ + w₁

@@ -9,7 +9,8 @@ use crate::number::sqrt;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot};
 
-/// -Σ log of factors, by few logarithms: those of their products. Infinite where one is not positive.
+/// -Σ log of factors, by few logarithms: those of their products. Infinite where one is not
+/// positive.
 #[derive(Debug)]
 struct Logs {
     sum: f64,
@@ -40,8 +41,8 @@ impl Logs {
 /// The weight of the logarithms of the squares.
 const POSITIVE: f64 = 0.1;
 
-/// The part of the time's own curvature that a step knows of: with all of it a speed far too low grows by
-/// less from step to step. The barriers have most of the curvature where they are near.
+/// The part of the time's own curvature that a step knows of: with all of it a speed far too low
+/// grows by less from step to step. The barriers have most of the curvature where they are near.
 const CURVATURE: f64 = 0.3;
 
 /// Products far from the smallest and the largest number.
@@ -148,8 +149,8 @@ impl Barrier for Value {
     }
 }
 
-/// F with the speeds changed by a part of the step, but for the same number with each part; infinite outside
-/// of the limits.
+/// F with the speeds changed by a part of the step, but for the same number with each part;
+/// infinite outside of the limits.
 fn value<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>], weight: f64, part: f64) -> f64 {
     let mut value = Value {
         weight,
@@ -186,12 +187,13 @@ const HALVINGS: u32 = 30;
 /// The part of the decrease that the gradient promises which is enough.
 const ENOUGH: f64 = 0.1;
 
-/// Takes a Newton step, with the speeds of knots outside of a range as they are. The decrease of F that it
-/// promised, twice what a whole one brings near the least F; nothing where no part of it makes F smaller.
+/// Takes a Newton step, with the speeds of knots outside of a range as they are. The decrease of F
+/// that it promised, twice what a whole one brings near the least F; nothing where no part of it
+/// makes F smaller.
 ///
-/// With a `stiffness` above 1 the barriers' curvature is that many times larger: where the weight has
-/// grown by this factor and F was least before, what is left of a limit falls by it, as it does from one
-/// least F to the next.
+/// With a `stiffness` above 1 the barriers' curvature is that many times larger: where the weight
+/// has grown by this factor and F was least before, what is left of a limit falls by it, as it does
+/// from one least F to the next.
 pub(super) fn step<A: Axes>(
     limits: &Reciprocals<A>,
     knots: &mut [Knot<A>],
@@ -299,8 +301,8 @@ impl Block<'_> {
     }
 }
 
-/// Solves the system, by the product of a unit triangle, pivots and its transpose. The product of the
-/// right side and the solution. Knots outside of the range, and at rest, stay.
+/// Solves the system, by the product of a unit triangle, pivots and its transpose. The product of
+/// the right side and the solution. Knots outside of the range, and at rest, stay.
 fn solve<A: Axes>(knots: &mut [Knot<A>], range: &Range<usize>) -> f64 {
     let is_own = |(index, knot): &(usize, &mut Knot<A>)| *index == 0 || knot.ds > 0.0;
     let stays = |index: usize, knot: &Knot<A>| !range.contains(&index) || knot.speed <= 0.0;

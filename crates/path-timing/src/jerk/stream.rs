@@ -1,10 +1,11 @@
 //! Speeds with limits of jerk that are planned piece by piece.
 //!
-//! Goal: the knots of a window in the least time, where those handed out stay as they are and the machine
-//! can rest at the last. Method: what is planned ends at rest, and so does what is new; the rest between
-//! is raised until nothing but the limits holds it, and both are one interior point to go on from. Only
-//! what changes is planned: from well before the old rest on. How it comes to rest at the end of the window
-//! will change too, so that this part stays where the limits are far: the next raise begins there.
+//! Goal: the knots of a window in the least time, where those handed out stay as they are and the
+//! machine can rest at the last. Method: what is planned ends at rest, and so does what is new; the
+//! rest between is raised until nothing but the limits holds it, and both are one interior point to
+//! go on from. Only what changes is planned: from well before the old rest on. How it comes to rest
+//! at the end of the window will change too, so that this part stays where the limits are far: the
+//! next raise begins there.
 
 use super::{Most, approach, centre, for_each_run, go_inside, newton, next_rest, visit_all};
 use crate::passes::segment_s;
@@ -18,8 +19,8 @@ pub(crate) struct Extension {
     pub(crate) from: usize,
     /// The knot at which the machine was to rest.
     pub(crate) old: usize,
-    /// The last knot that may be handed out before the window is planned again; all of them where nothing
-    /// follows for now.
+    /// The last knot that may be handed out before the window is planned again; all of them where
+    /// nothing follows for now.
     pub(crate) handed: Option<usize>,
 }
 
@@ -63,8 +64,8 @@ pub(crate) fn extend<A: Axes>(
     }
 }
 
-/// Plans the knots to a rest at the last. Behind the one that may be handed out, how it comes to that rest
-/// stays where the limits are far.
+/// Plans the knots to a rest at the last. Behind the one that may be handed out, how it comes to
+/// that rest stays where the limits are far.
 fn plan<A: Axes>(
     limits: &Reciprocals<A>,
     knots: &mut [Knot<A>],
@@ -92,8 +93,8 @@ fn plan<A: Axes>(
     }
 }
 
-/// The knots that a step of the acceleration has beside it on both sides of a segment: so many stay as they
-/// are where a plan meets another.
+/// The knots that a step of the acceleration has beside it on both sides of a segment: so many stay
+/// as they are where a plan meets another.
 const OVERLAP: usize = 2;
 
 /// The part of the time that a limit at each knot may cost.
@@ -112,8 +113,8 @@ fn rest_to_rest<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>]) {
     for_each_run(knots, |run| go_inside(limits, run));
 }
 
-/// The first knot of what changes when the machine does not rest at the knot of the number `old`, and how
-/// many stay as they are.
+/// The first knot of what changes when the machine does not rest at the knot of the number `old`,
+/// and how many stay as they are.
 fn changed<A: Axes>(knots: &[Knot<A>], from: usize, old: usize) -> (usize, usize) {
     let from = before_braking(knots, from, old, CHANGED);
     let before = knots.get(from..old).unwrap_or_default();
@@ -124,8 +125,8 @@ fn changed<A: Axes>(knots: &[Knot<A>], from: usize, old: usize) -> (usize, usize
     })
 }
 
-/// The knot from which on a motion is another because it comes to rest at the knot of the number `old`: so
-/// many times as long before it as the braking takes.
+/// The knot from which on a motion is another because it comes to rest at the knot of the number
+/// `old`: so many times as long before it as the braking takes.
 fn before_braking<A: Axes>(knots: &[Knot<A>], from: usize, old: usize, times: f64) -> usize {
     let (mut time_s, mut braking_s, mut fastest) = (0.0, 0.0, 0.0);
     let Some(before) = knots.get(from..=old) else {
@@ -146,18 +147,19 @@ fn before_braking<A: Axes>(knots: &[Knot<A>], from: usize, old: usize, times: f6
 /// How long before a rest a motion is the same without it, by the time of the braking.
 const CHANGED: f64 = 1.5;
 
-/// How long before a rest the last row is handed out where the braking may wait, by the time of the braking.
+/// How long before a rest the last row is handed out where the braking may wait, by the time of the
+/// braking.
 const APART: f64 = 2.0;
 
 /// By what a speed is above the one to which a motion brakes from it.
 const FASTER: f64 = 1.001;
 
 /// Raises the speed of a rest, or of both knots of a jump, and those beside it. There is a way: the
-/// accelerations before and after a rest are within what jerk makes of zero in half a segment each, so
-/// their step is within what it makes in both halves.
+/// accelerations before and after a rest are within what jerk makes of zero in half a segment each,
+/// so their step is within what it makes in both halves.
 ///
-/// The squares of the speeds go as far as the limits allow towards a smooth step between the fastest
-/// places on both sides.
+/// The squares of the speeds go as far as the limits allow towards a smooth step between the
+/// fastest places on both sides.
 fn raise<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, old: usize) {
     // The knot of a jump rests with the one before it.
     let jump = old.saturating_add(1);

@@ -76,8 +76,8 @@ impl<'w, A: Axes> Window<'w, A> {
         knots.and_then(|knots| knots.last_mut())
     }
 
-    /// Where at most half of the memory holds knots: moves these to the beginning. With a limit of jerk
-    /// the one before the first is kept.
+    /// Where at most half of the memory holds knots: moves these to the beginning. With a limit of
+    /// jerk the one before the first is kept.
     pub(super) fn make_room(&mut self, has_jerk: bool) -> bool {
         let kept = self.first.saturating_sub(usize::from(has_jerk));
         let count = self.end.saturating_sub(kept);
@@ -148,8 +148,8 @@ impl<'w, A: Axes> Window<'w, A> {
         (self.new, self.feed) = (0, Some(feed));
     }
 
-    /// With a limit of jerk: plans the new knots, and those before them that change. Where there is room
-    /// nothing follows for now.
+    /// With a limit of jerk: plans the new knots, and those before them that change. Where there is
+    /// room nothing follows for now.
     pub(super) fn look_through(&mut self, limits: &Reciprocals<A>) {
         let has_ended = self.has_room();
         if self.new == 0 && !(self.is_open && has_ended) {
@@ -207,8 +207,8 @@ impl<'w, A: Axes> Window<'w, A> {
         self.hand_out(next, duration_s)
     }
 
-    /// The knot after the first and the speed there, coming from the first at `speed`; none where the
-    /// machine stays at rest.
+    /// The knot after the first and the speed there, coming from the first at `speed`; none where
+    /// the machine stays at rest.
     pub(super) fn step(
         &mut self,
         limits: &Reciprocals<A>,

@@ -4,7 +4,8 @@ use crate::number::{LARGEST, sqrt};
 use crate::segment::Segment;
 use crate::{Axes, Knot, Table, jerk};
 
-/// Memory for one row of a table that is played back: the highest speed from which the rest can be run.
+/// Memory for one row of a table that is played back: the highest speed from which the rest can be
+/// run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FeedCeiling {
     /// The highest speed at this row from which the rest can be run.
@@ -14,8 +15,8 @@ pub struct FeedCeiling {
 }
 
 impl<A: Axes> Table<'_, A> {
-    /// From the end: the highest speed at each row, up to `max` times that of the table. Never below
-    /// the table's own: it is a motion that holds.
+    /// From the end: the highest speed at each row, up to `max` times that of the table. Never
+    /// below the table's own: it is a motion that holds.
     pub(super) fn find_ceilings(&self, max: f64, ceilings: &mut [FeedCeiling]) {
         let mut later: Option<(&Knot<A>, FeedCeiling)> = None;
         for (knot, slot) in self.knots.iter().zip(ceilings).rev() {

@@ -12,9 +12,11 @@ use trig_kernels::SixDigits;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_structs, reason = "named fields")]
 pub struct Cia402Scale {
-    /// Increments for each unit of the axis, gear included; negative where the drive turns the other way.
+    /// Increments for each unit of the axis, gear included; negative where the drive turns the
+    /// other way.
     pub counts_per_unit: f64,
-    /// Rated torque at the axis' side of its gear (object 6076h times the ratio), in the unit of torques.
+    /// Rated torque at the axis' side of its gear (object 6076h times the ratio), in the unit of
+    /// torques.
     pub rated_torque: f64,
 }
 
@@ -46,8 +48,8 @@ pub struct TargetError {
 }
 
 impl Cia402Scale {
-    /// Position, velocity and torque of an axis as a drive takes them, each rounded to the nearest, so that
-    /// positions do not drift.
+    /// Position, velocity and torque of an axis as a drive takes them, each rounded to the nearest,
+    /// so that positions do not drift.
     ///
     /// # Errors
     /// [`TargetError`]: nothing is clamped.

@@ -5,13 +5,13 @@ use crate::{Axes, Path, Row};
 impl<A: Axes> Row<A> {
     /// The parameter of a path and its speed, as a row of one axis.
     ///
-    /// Where the tool may not leave its path, its course along the path is shaped in place of the axes: a
-    /// [`Shaped`](crate::Shaped) of these rows, each put [`on`](Row::on) the path again. On a line of a
-    /// Cartesian machine it is the same. On curves, and for arms, the axes' own motions are then no sums of
-    /// delayed ones: what is left of a vibration is small but not zero, and accelerations may pass the
-    /// limits by some percent where the slopes change within the delay. A
-    /// [`Verifier`](crate::Verifier) tells it before anything runs; a plan with limits lower by as much
-    /// keeps them.
+    /// Where the tool may not leave its path, its course along the path is shaped in place of the
+    /// axes: a [`Shaped`](crate::Shaped) of these rows, each put [`on`](Row::on) the path again. On
+    /// a line of a Cartesian machine it is the same. On curves, and for arms, the axes' own motions
+    /// are then no sums of delayed ones: what is left of a vibration is small but not zero, and
+    /// accelerations may pass the limits by some percent where the slopes change within the delay.
+    /// A [`Verifier`](crate::Verifier) tells it before anything runs; a plan with limits lower by
+    /// as much keeps them.
     ///
     /// The path is one from rest to rest.
     ///

@@ -50,8 +50,8 @@ pub enum ShaperError {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ShapedError<E> {
-    /// The motion has more rows within the longest delay than there is memory for. No row follows, and
-    /// the machine may be moving: see [`Shaped::memory_for`](crate::Shaped::memory_for).
+    /// The motion has more rows within the longest delay than there is memory for. No row follows,
+    /// and the machine may be moving: see [`Shaped::memory_for`](crate::Shaped::memory_for).
     #[error(
         "there are more rows within the longest delay than there is memory for, which is {available}"
     )]

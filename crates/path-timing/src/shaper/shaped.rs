@@ -1,8 +1,8 @@
 //! Rows convolved with the impulses of shapers.
 //!
-//! Goal: the cubics of a shaped motion, from those of the motion, row by row, in memory of the caller.
-//! Method: each impulse of each axis is a tap that runs through the rows with its delay; wherever one of
-//! them comes to a row, the sum has a knot, and between knots it is a cubic.
+//! Goal: the cubics of a shaped motion, from those of the motion, row by row, in memory of the
+//! caller. Method: each impulse of each axis is a tap that runs through the rows with its delay;
+//! wherever one of them comes to a row, the sum has a knot, and between knots it is a cubic.
 
 use core::fmt::{self, Debug};
 
@@ -17,15 +17,16 @@ use crate::{Axes, Row, ShapedError, Shaper, TryRow};
 /// qₛ(t) = Σ Aᵢ q(t - τᵢ)
 /// ```
 ///
-/// It is a mean of the motion at several times, on each axis: positions, speeds, accelerations and the
-/// jerk of cubics stay within the limits that the motion keeps, and velocity jumps become smaller, one
-/// for each impulse. Shapers of different axes are aligned, so that all axes are behind by the same
-/// [`delay_s`](Self::delay_s); what the tool departs by is of the second order
+/// It is a mean of the motion at several times, on each axis: positions, speeds, accelerations and
+/// the jerk of cubics stay within the limits that the motion keeps, and velocity jumps become
+/// smaller, one for each impulse. Shapers of different axes are aligned, so that all axes are
+/// behind by the same [`delay_s`](Self::delay_s); what the tool departs by is of the second order
 /// ([`Shaper::departure`]). There is a row wherever a delayed row is.
 ///
-/// The motion begins and ends at rest; it may be held and go on. Where the rows end for now with the
-/// machine at rest, the shaped motion comes to rest [`longest_delay_s`](Self::longest_delay_s) later,
-/// unless they go on before; then it hands out no row until they do. Two rows are read ahead.
+/// The motion begins and ends at rest; it may be held and go on. Where the rows end for now with
+/// the machine at rest, the shaped motion comes to rest [`longest_delay_s`](Self::longest_delay_s)
+/// later, unless they go on before; then it hands out no row until they do. Two rows are read
+/// ahead.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve, Knot, Mode, Row, Shaped, Shaper, Table};
@@ -79,8 +80,8 @@ impl<'m, I: Iterator<Item: TryRow<Axes = A>>, A: Axes> Shaped<'m, I, A> {
         }
     }
 
-    /// The rows that are to be in memory at once, to shape a motion that is not held: those within the
-    /// longest delay, and three. A hold takes one more.
+    /// The rows that are to be in memory at once, to shape a motion that is not held: those within
+    /// the longest delay, and three. A hold takes one more.
     #[must_use]
     pub fn memory_for(rows: I, shapers: &A::Of<Shaper>) -> usize
     where
@@ -124,8 +125,8 @@ impl<'m, I: Iterator<Item: TryRow<Axes = A>>, A: Axes> Shaped<'m, I, A> {
         longest_delay_s::<A>(&self.shapers, &self.later_s)
     }
 
-    /// Takes rows until the first tap knows the row after the one that it runs to, or there are none for
-    /// now. The first row, if it came just now.
+    /// Takes rows until the first tap knows the row after the one that it runs to, or there are
+    /// none for now. The first row, if it came just now.
     fn fill(&mut self) -> Result<Option<Row<A>>, ShapedError<Error<I>>> {
         let mut first = None;
         while !self.leader().is_some_and(Tap::knows_next) {
@@ -259,8 +260,8 @@ fn first_s(shaper: &Shaper) -> f64 {
     shaper.impulses().first().map_or(0.0, |first| first.time_s)
 }
 
-/// By how much the impulses of each axis are to come later, so that the means of all axes agree and the
-/// first of all has no delay.
+/// By how much the impulses of each axis are to come later, so that the means of all axes agree and
+/// the first of all has no delay.
 fn later_s<A: Axes>(shapers: &A::Of<Shaper>) -> A {
     let shapers = A::each(shapers);
     let starts = shapers

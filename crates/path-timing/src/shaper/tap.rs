@@ -164,8 +164,8 @@ impl AxisTaps {
         }
     }
 
-    /// Goes on by so many seconds. `row` gives the numbers of this axis and the duration of the segment
-    /// before, of a row by how many have come after it.
+    /// Goes on by so many seconds. `row` gives the numbers of this axis and the duration of the
+    /// segment before, of a row by how many have come after it.
     #[inline]
     pub(super) fn advance(&mut self, step_s: f64, row: impl Fn(usize) -> Option<([f64; 2], f64)>) {
         for tap in self.taps_mut() {

@@ -4,10 +4,11 @@ use trig_kernels::SixDigits;
 
 use crate::number::{SMALLEST, range, smaller};
 
-/// The torque that a motor can give, by its speed: straight between points, nothing beyond the last.
+/// The torque that a motor can give, by its speed: straight between points, nothing beyond the
+/// last.
 ///
-/// Where the points rise again, as after a resonance, the motor has to come through the lower torque
-/// before: that is taken.
+/// Where the points rise again, as after a resonance, the motor has to come through the lower
+/// torque before: that is taken.
 ///
 /// ```
 /// use path_timing::TorqueCurve;
@@ -62,7 +63,8 @@ impl TorqueCurve {
         Self::from_points(&[[0.0, torque], [max_speed, torque]])
     }
 
-    /// A curve of speeds that rise from 0 on, and torques above 0, as the pull-out curve of a data sheet.
+    /// A curve of speeds that rise from 0 on, and torques above 0, as the pull-out curve of a data
+    /// sheet.
     ///
     /// # Errors
     /// [`TorqueCurveError`].
@@ -92,9 +94,9 @@ impl TorqueCurve {
         Ok(curve)
     }
 
-    /// The torque of a stepper, from its holding torque and the speed at which its winding's voltage is
-    /// used up: what most pull-out curves are like. The curve is at most 1 % below it where the largest
-    /// speed is up to 16 times the corner.
+    /// The torque of a stepper, from its holding torque and the speed at which its winding's
+    /// voltage is used up: what most pull-out curves are like. The curve is at most 1 % below it
+    /// where the largest speed is up to 16 times the corner.
     ///
     /// ```text
     /// torque min(1, corner / speed)
@@ -119,7 +121,8 @@ impl TorqueCurve {
         Self::from_points(&points)
     }
 
-    /// The curve at the slow side of a gear: so many times the torque at so many times lower speeds.
+    /// The curve at the slow side of a gear: so many times the torque at so many times lower
+    /// speeds.
     ///
     /// # Errors
     /// [`TorqueCurveError`] for a ratio that is not above 0.

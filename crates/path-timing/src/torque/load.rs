@@ -37,7 +37,8 @@ impl Form {
         slope: 0.0,
     };
 
-    /// Coefficients of W², W and 1 on the ray of r, where the speed here is the fraction `part` of W.
+    /// Coefficients of W², W and 1 on the ray of r, where the speed here is the fraction `part` of
+    /// W.
     fn on_ray(&self, r: f64, part: f64) -> [f64; 3] {
         [
             0.25 * (self.c + self.d * r) + self.h * part * part,
@@ -85,7 +86,8 @@ impl<'a, A: Axes> Load<'a, A> {
         }
     }
 
-    /// The forms of each axis at each end, with its motor, and the part of W that the speed there is.
+    /// The forms of each axis at each end, with its motor, and the part of W that the speed there
+    /// is.
     fn each(&self, r: f64) -> impl Iterator<Item = (&Form, &TorqueCurve, f64)> {
         let parts = [(1.0 - r) * 0.5, (1.0 + r) * 0.5];
         let ends = self.ends.iter().zip(parts);
@@ -126,8 +128,8 @@ impl<'a, A: Axes> Load<'a, A> {
     }
 }
 
-/// The smallest W at which |a W² + b W + c| is above what the motor has left at the speed v W; 0 where it
-/// is so at rest.
+/// The smallest W at which |a W² + b W + c| is above what the motor has left at the speed v W; 0
+/// where it is so at rest.
 fn first_lack([a, b, c]: [f64; 3], v: f64, taken: f64, motor: &TorqueCurve) -> f64 {
     let v = v.abs();
     let mut lack = 0.0;
@@ -147,7 +149,8 @@ fn first_lack([a, b, c]: [f64; 3], v: f64, taken: f64, motor: &TorqueCurve) -> f
     lack
 }
 
-/// The smallest root above 0 of a W² + b W + c with c <= 0; 0 where c is above 0, infinite without a root.
+/// The smallest root above 0 of a W² + b W + c with c <= 0; 0 where c is above 0, infinite without
+/// a root.
 fn first_root([a, b, c]: [f64; 3]) -> f64 {
     if c > 0.0 {
         return 0.0;

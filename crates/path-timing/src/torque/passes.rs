@@ -1,9 +1,9 @@
 //! The fastest speeds at the knots, with limits of torque.
 //!
-//! As in `passes`: backward the highest speed from which the rest can be run, with a speed after it that
-//! goes with it, then forward. Where a motor has at a speed at least what friction and gravity take, and
-//! no more at higher speeds, what holds for a pair of speeds holds for each slower pair of the same
-//! ratio: on a ray a torque is a W² + b W + c, and b W + c is within the limit.
+//! As in `passes`: backward the highest speed from which the rest can be run, with a speed after it
+//! that goes with it, then forward. Where a motor has at a speed at least what friction and gravity
+//! take, and no more at higher speeds, what holds for a pair of speeds holds for each slower pair
+//! of the same ratio: on a ray a torque is a W² + b W + c, and b W + c is within the limit.
 
 use super::load::Load;
 use super::{Dynamics, TorqueLimits};
@@ -12,13 +12,15 @@ use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::{Axes, Knot};
 
-/// The rays of pairs that are chosen for the least time alone: speeds differ by a factor of 8 at most.
+/// The rays of pairs that are chosen for the least time alone: speeds differ by a factor of 8 at
+/// most.
 const STEEPEST: f64 = 7.0 / 9.0;
 
 /// The steepest ray that a motion brakes or starts by.
 const STEEPEST_TO_A_SPEED: f64 = 1.0 - 1e-3;
 
-/// Cuts of an interval of rays in search of the one on which a limit is reached, and what is close to it.
+/// Cuts of an interval of rays in search of the one on which a limit is reached, and what is close
+/// to it.
 const CUTS_OF_A_RAY: u32 = 24;
 const CLOSE: f64 = 1e-8;
 
@@ -108,8 +110,8 @@ impl<'a, A: Axes> Pair<'a, A> {
         if a.1.0 < b.1.0 { b.1.1 } else { a.1.1 }
     }
 
-    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with w₀ times `ratio` the
-    /// segment holds.
+    /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with w₀ times `ratio`
+    /// the segment holds.
     fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
         if w0 <= 0.0 {
             return self.widest(1.0).1.min(ceiling);
@@ -126,8 +128,8 @@ impl<'a, A: Axes> Pair<'a, A> {
     }
 }
 
-/// The ray nearest to `wanted` on which no limit is passed, from one on which none is: by regula falsi,
-/// with the value of an end that stays halved (Illinois).
+/// The ray nearest to `wanted` on which no limit is passed, from one on which none is: by regula
+/// falsi, with the value of an end that stays halved (Illinois).
 fn farthest(known: f64, wanted: f64, used: impl Fn(f64) -> f64) -> f64 {
     let over = |r: f64| used(r) - 1.0;
     let mut bad = (wanted, over(wanted));

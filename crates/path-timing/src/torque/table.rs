@@ -38,23 +38,25 @@ impl<'a, A: Axes> TorqueTable<'a, A> {
     }
 }
 
-/// By how much more than inertia asks for a table is slowed: enough at once where friction and gravity take up
-/// to a fifth of a torque, and in each further round of what they take more.
+/// By how much more than inertia asks for a table is slowed: enough at once where friction and
+/// gravity take up to a fifth of a torque, and in each further round of what they take more.
 const MORE: f64 = 1.25;
 
-/// Rounds of slowing a table by the little that its cubics ask for between the ends of its segments.
+/// Rounds of slowing a table by the little that its cubics ask for between the ends of its
+/// segments.
 const ROUNDS: u32 = 40;
 
 impl<D: Dynamics> TorqueLimits<D> {
-    /// Plans the fastest table along paths, as [`Table::plan`] does, that keeps the limits of the axes and
-    /// the torques of the motors. Jerk is not limited: `limits` with a jerk are planned without it.
+    /// Plans the fastest table along paths, as [`Table::plan`] does, that keeps the limits of the
+    /// axes and the torques of the motors. Jerk is not limited: `limits` with a jerk are planned
+    /// without it.
     ///
-    /// Where an axis has no limit of its own, give it a speed and an acceleration that it never reaches;
-    /// knots are dense where these make the motion slow.
+    /// Where an axis has no limit of its own, give it a speed and an acceleration that it never
+    /// reaches; knots are dense where these make the motion slow.
     ///
     /// # Errors
-    /// [`PlanError`]; [`PlanError::Overload`] where a motor cannot hold what it carries against gravity and
-    /// friction.
+    /// [`PlanError`]; [`PlanError::Overload`] where a motor cannot hold what it carries against
+    /// gravity and friction.
     pub fn plan<'a, P: Path<Axes = D::Axes> + Clone>(
         &self,
         paths: impl IntoIterator<Item = P>,
@@ -79,8 +81,8 @@ impl<D: Dynamics> TorqueLimits<D> {
     }
 
     /// Plans as [`plan`](Self::plan) does, with segments that keep a departure at any speeds, as
-    /// [`Table::plan_within_at_any_feed`] makes them, and twice as many until the time changes by no more
-    /// than `accuracy` allows.
+    /// [`Table::plan_within_at_any_feed`] makes them, and twice as many until the time changes by
+    /// no more than `accuracy` allows.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -127,8 +129,8 @@ impl<D: Dynamics> TorqueLimits<D> {
         }
     }
 
-    /// Finds the speeds of knots; by what the table is then slowed, and its time. None where segments are
-    /// so long that nothing is known of the torques between their ends.
+    /// Finds the speeds of knots; by what the table is then slowed, and its time. None where
+    /// segments are so long that nothing is known of the torques between their ends.
     fn time<E>(
         &self,
         limits: &Reciprocals<D::Axes>,

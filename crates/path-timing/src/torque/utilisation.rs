@@ -11,12 +11,12 @@ const PARTS: [u32; 3] = [4, 16, 64];
 const OPEN: f64 = 5e-4;
 
 impl<D: Dynamics> TorqueLimits<D> {
-    /// The largest part of what a motor has at its speed that is asked of any motor anywhere on a segment:
-    /// at most 1 where all can follow. It does not depend on who planned the segment.
+    /// The largest part of what a motor has at its speed that is asked of any motor anywhere on a
+    /// segment: at most 1 where all can follow. It does not depend on who planned the segment.
     ///
-    /// Proof. Between two places that are τ apart in time, a torque is within τ²/8 of its largest second
-    /// derivative of the straight line between its values there, and so is a speed; friction adds at most
-    /// its largest value, and a motor has at least what it has at the largest speed.
+    /// Proof. Between two places that are τ apart in time, a torque is within τ²/8 of its largest
+    /// second derivative of the straight line between its values there, and so is a speed; friction
+    /// adds at most its largest value, and a motor has at least what it has at the largest speed.
     #[must_use]
     pub fn utilisation(&self, span: &Span<D::Axes>) -> f64 {
         let bend = self.dynamics.bend(span);

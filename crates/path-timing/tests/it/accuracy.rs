@@ -11,7 +11,8 @@ use crate::support::waves::Waves;
 /// So many segments that nothing is lost.
 const FINE: u32 = 2000;
 
-/// Ratios that are asked for, and by what part of it times may miss them: the fine plan is not the best.
+/// Ratios that are asked for, and by what part of it times may miss them: the fine plan is not the
+/// best.
 const RATIOS: [f64; 7] = [1.005, 1.01, 1.02, 1.05, 1.1, 1.3, 2.0];
 
 const FEWEST: [u32; 3] = [2, 5, 16];
@@ -64,7 +65,8 @@ fn slopes_may_change_where_the_machine_stops() {
     assert!(timed <= 3 * plain, "{timed} {plain}");
 }
 
-/// With less memory than for the segments with which a time is sure, fewer are taken that are likely enough.
+/// With less memory than for the segments with which a time is sure, fewer are taken that are
+/// likely enough.
 #[test]
 fn fewer_segments_are_taken_where_there_is_no_room_to_be_sure() {
     let line = Line {
@@ -93,8 +95,8 @@ fn fewer_segments_are_taken_where_there_is_no_room_to_be_sure() {
     assert!(matches!(rows(4), Err(PlanError::Memory { .. })));
 }
 
-/// A coarse plan that is not slower than half of it, by chance, is not taken where finer ones are faster,
-/// however little room there is.
+/// A coarse plan that is not slower than half of it, by chance, is not taken where finer ones are
+/// faster, however little room there is.
 #[test]
 fn a_plan_that_finer_ones_have_shown_to_be_slow_is_not_taken() {
     let mut random = Random::new(setting("SEED", 3));

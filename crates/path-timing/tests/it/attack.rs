@@ -1,5 +1,6 @@
-//! Random machines, paths, segments, windows, feeds and holds, judged by dense sampling with formulas
-//! of this file: `MOTIONS=100000 cargo test --release -p path-timing --test it attack:: -- --nocapture`.
+//! Random machines, paths, segments, windows, feeds and holds, judged by dense sampling with
+//! formulas of this file:
+//! `MOTIONS=100000 cargo test --release -p path-timing --test it attack:: -- --nocapture`.
 
 mod machines;
 
@@ -110,7 +111,8 @@ struct Tried {
     farthest: f64,
 }
 
-/// Where rows leave their path: a bound, and the departure itself at positions of a part of the path.
+/// Where rows leave their path: a bound, and the departure itself at positions of a part of the
+/// path.
 struct Judge<'a, P, A: Axes> {
     bound: &'a dyn Fn(&P, &Span<A>) -> f64,
     off: &'a dyn Fn(&P, [f64; 2], &A) -> f64,

@@ -119,15 +119,18 @@ fn what_is_no_curve_is_refused() {
     assert!((parameter - 0.5).abs() < 0.05);
 }
 
-/// Places of a curve from which nearest ones are looked for, and how many where a bound seems to be passed.
+/// Places of a curve from which nearest ones are looked for, and how many where a bound seems to be
+/// passed.
 const SAMPLES: u32 = 512;
 const MANY: u32 = 1 << 16;
 
-/// Newton steps to the nearest place between two samples; a step that leaves them halves the gap instead.
+/// Newton steps to the nearest place between two samples; a step that leaves them halves the gap
+/// instead.
 const STEPS: u32 = 60;
 
-/// The distance of a place from a curve that is known at samples: the least of all that may be least by
-/// Lipschitz, each from its nearest sample to the place where its tangent is square to the way there.
+/// The distance of a place from a curve that is known at samples: the least of all that may be
+/// least by Lipschitz, each from its nearest sample to the place where its tangent is square to the
+/// way there.
 fn distance<const D: usize>(curve: &Curve<D>, samples: &[(f64, [f64; D])], place: [f64; D]) -> f64 {
     let step = samples[1].0 * (1.0 + curve.speed_error());
     let far: Vec<_> = (samples.iter().map(|(_, at)| norm(sub(place, *at)))).collect();
@@ -234,8 +237,8 @@ proptest! {
     }
 }
 
-/// Where the curve nearly turns back, so that steps towards the place ahead do not end at the nearest: the
-/// distance is that of a dense look.
+/// Where the curve nearly turns back, so that steps towards the place ahead do not end at the
+/// nearest: the distance is that of a dense look.
 #[test]
 fn the_nearest_place_is_found_by_a_cusp() {
     let points = [[67.405, 0.0], [-42.509, 0.0], [0.0, -77.517], [0.0, 0.0]];

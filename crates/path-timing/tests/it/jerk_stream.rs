@@ -50,8 +50,8 @@ fn table_s(curves: &[Curve<2>], limits: [AxisLimits; 2], segments: u32) -> f64 {
     table.unwrap().duration_s()
 }
 
-/// The rows in a window of so many knots, with feeds wanted for so many rows; none where a corner is too
-/// sharp for the segments.
+/// The rows in a window of so many knots, with feeds wanted for so many rows; none where a corner
+/// is too sharp for the segments.
 fn stream(
     curves: &[Curve<2>],
     limits: [AxisLimits; 2],
@@ -167,8 +167,8 @@ fn feeds() -> impl Strategy<Value = Vec<(f64, usize)>> {
 }
 
 proptest! {
-    /// Speed, acceleration and jerk at all rows and in all cubics, whatever is wanted when, in any window;
-    /// the stream ends at the end of the path.
+    /// Speed, acceleration and jerk at all rows and in all cubics, whatever is wanted when, in any
+    /// window; the stream ends at the end of the path.
     #[test]
     fn limits_hold(
         points in points(), tolerance in 0.01..5.0_f64, corner in corner(), jerk in 1e4..1e6_f64,

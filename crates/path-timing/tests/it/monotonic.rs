@@ -13,14 +13,14 @@ use crate::support::waves::Waves;
 /// By what a motion may be slower, as a part of its time.
 const SLOWER: f64 = 1.01;
 
-/// The same for twice the segments where a row lasts longer than half the ramp of an acceleration at the
-/// jerk's limit: a row hides what happens in it.
+/// The same for twice the segments where a row lasts longer than half the ramp of an acceleration
+/// at the jerk's limit: a row hides what happens in it.
 const HIDDEN: f64 = 1.1;
 
 const RAMP: f64 = 0.5;
 
-/// And no more at a lone corner, for each ramp that the longest row lasts: of 37,500 plans of one corner and
-/// more the most was 0.043.
+/// And no more at a lone corner, for each ramp that the longest row lasts: of 37,500 plans of one
+/// corner and more the most was 0.043.
 const HIDDEN_IN_A_RAMP: f64 = 0.05;
 
 /// Points of a polyline with a lone corner.
@@ -87,8 +87,8 @@ proptest! {
     }
 }
 
-/// Two gentle corners that overlap, where the second derivative of curves once stepped: rows a sixteenth as
-/// long took 25 % longer.
+/// Two gentle corners that overlap, where the second derivative of curves once stepped: rows a
+/// sixteenth as long took 25 % longer.
 #[test]
 fn short_rows_lose_nothing_where_corners_overlap() {
     let points = [
@@ -112,8 +112,8 @@ const SLOWER_TWICE: f64 = 1.02;
 /// One of so many plans at most: of a curve that nearly turns back on the spot.
 const MOST_REFUSED: u32 = 200;
 
-/// Twice the segments take no longer. How many plans were made, and of how many twice the segments are
-/// refused.
+/// Twice the segments take no longer. How many plans were made, and of how many twice the segments
+/// are refused.
 fn check_twice<P>(path: &P, random: &mut Random, speeds: [f64; 2]) -> [u32; 2]
 where
     P: Path<Axes = [f64; 2], Error: Debug> + Clone,

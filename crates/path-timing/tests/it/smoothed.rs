@@ -14,7 +14,8 @@ use crate::support::vectors::{bits, dot, norm, sub};
 /// Of some products of coordinates up to 1000, and of directions.
 const ROUNDING: f64 = 1e-9;
 
-/// What chords of a 24th of a hump cut off of it, as a part of its departure: |D| h / 8 · 24² of |D| h / 6.
+/// What chords of a 24th of a hump cut off of it, as a part of its departure: |D| h / 8 · 24²
+/// of |D| h / 6.
 const CHORDS: f64 = 6.0 / (8.0 * 24.0 * 24.0);
 
 /// The distance of a point from a line between two others.
@@ -291,8 +292,8 @@ fn errors_come_after_what_is_good() {
     ));
 }
 
-/// Memory that is full where a wide hump is decided: those behind it are not so narrow that it still
-/// reaches where they are over.
+/// Memory that is full where a wide hump is decided: those behind it are not so narrow that it
+/// still reaches where they are over.
 #[test]
 fn a_wide_hump_is_not_lost_where_memory_ends() {
     let points = [
@@ -332,8 +333,8 @@ fn walk() -> impl Strategy<Value = Vec<[f64; 3]>> {
     })
 }
 
-/// Points of a program with few decimals: many coincide, lines go straight back, and each may have a
-/// feed of its own.
+/// Points of a program with few decimals: many coincide, lines go straight back, and each may have
+/// a feed of its own.
 fn grid() -> impl Strategy<Value = Vec<Waypoint<2>>> {
     let step = prop_oneof![
         (-3..=3_i32, -3..=3_i32),

@@ -23,8 +23,8 @@ const ROW_MM: f64 = 0.1;
 /// Of the time of the arc: what is measured is within 0.0001.
 const SLOWER: f64 = 1.001;
 
-/// Of the circle's curvature, the most that it steps by from a curve to the next: 0.053 is the most that
-/// is measured; it was up to 0.9.
+/// Of the circle's curvature, the most that it steps by from a curve to the next: 0.053 is the most
+/// that is measured; it was up to 0.9.
 const STEP: f64 = 0.08;
 
 fn smoothed(points: &[[f64; 2]], tolerance: f64) -> Vec<Curve<2>> {

@@ -45,8 +45,8 @@ impl Case {
         Table::plan([self.line()], [self.limits], |_| self.segments, knots).unwrap()
     }
 
-    /// The time of three phases of constant jerk from a row to rest, behind the end of what the machine
-    /// gains, a row of `last_s` more and a tenth.
+    /// The time of three phases of constant jerk from a row to rest, behind the end of what the
+    /// machine gains, a row of `last_s` more and a tenth.
     fn stop_s(&self, rows: &[Row<[f64; 1]>], begun: usize, last_s: f64) -> f64 {
         let [before, at] = [&rows[begun - 2], &rows[begun - 1]];
         let gained = Cubic::between(before, at).next().unwrap().accelerations()[1].max(0.0);

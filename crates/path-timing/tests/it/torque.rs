@@ -171,8 +171,8 @@ fn no_cubic_takes_more_torque_than_its_motor_has() {
     }
 }
 
-/// Time above that of 4000 segments, by segments; where a motor's torque falls with its speed, it is
-/// taken at the largest speed of a part of a segment.
+/// Time above that of 4000 segments, by segments; where a motor's torque falls with its speed, it
+/// is taken at the largest speed of a part of a segment.
 const ABOVE: [(u32, f64, f64); 3] = [
     (100, 1.008, 1.012),
     (200, 1.004, 1.006),
@@ -197,7 +197,8 @@ fn segments_cost_little_time() {
     }
 }
 
-/// As few segments as the tool's departure and the time ask for, with the bounds of both on the spans.
+/// As few segments as the tool's departure and the time ask for, with the bounds of both on the
+/// spans.
 #[test]
 fn segments_are_found_for_a_departure() {
     const RATIO: f64 = 1.02;
@@ -245,8 +246,8 @@ fn segments_are_found_for_a_departure() {
     }
 }
 
-/// Against the best constant accelerations that no motor is overrun by, tuned for each line: both scaled
-/// down together from what each joint could do alone, and in any proportion.
+/// Against the best constant accelerations that no motor is overrun by, tuned for each line: both
+/// scaled down together from what each joint could do alone, and in any proportion.
 #[test]
 fn torque_is_faster_than_constant_limits() {
     for (payload_kg, faster) in [(0.0, 1.1), (3.0, 1.2)] {

@@ -191,8 +191,8 @@ impl FrameFormat {
 /// # Ok::<(), pattern_codec::c_header::HeaderError>(())
 /// ```
 /// What its `#define`s say counts; without them frames are raw, have the period of
-/// [`Timing::default`] and are for a threshold of 600. `MOTORS`, `FRAMES` and `BYTES` must agree with the table. Values are
-/// -128..=255: 196 and -60 are the same byte.
+/// [`Timing::default`] and are for a threshold of 600. `MOTORS`, `FRAMES` and `BYTES` must agree
+/// with the table. Values are -128..=255: 196 and -60 are the same byte.
 #[derive(Debug, Clone)]
 pub struct Data<'t, const N: usize = 8> {
     name: &'t str,

@@ -9,8 +9,8 @@ use super::Packing;
 impl Packing {
     /// The frames of bytes.
     ///
-    /// Longer forms than [`Packing::encode`] writes are read as well: runs that could be one, speeds
-    /// that do not change.
+    /// Longer forms than [`Packing::encode`] writes are read as well: runs that could be one,
+    /// speeds that do not change.
     ///
     /// ```
     /// use pattern_codec::dance::Packing;

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// One of the engraver's four axes. [Engraver 2000] calls the first three theta1, theta2 and theta3.
+/// One of the engraver's four axes. [Engraver 2000] calls the first three theta1, theta2 and
+/// theta3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

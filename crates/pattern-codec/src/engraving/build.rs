@@ -66,12 +66,12 @@ impl Builder {
     /// n = ceil(max |T| / 30)
     /// position of the axis after part k:  sign(T) floor((k |T| + floor(n/2)) / n)
     /// ```
-    /// So every part has floor or ceil of |T|/n pulses, never more than 30; at the end of every part
-    /// each axis is within half a pulse of the straight line between start and end, which no other
-    /// whole numbers do better; and the parts sum to T exactly.
+    /// So every part has floor or ceil of |T|/n pulses, never more than 30; at the end of every
+    /// part each axis is within half a pulse of the straight line between start and end, which no
+    /// other whole numbers do better; and the parts sum to T exactly.
     ///
-    /// Splitting changes the path a little: within each record disc moves first and alone, so a split
-    /// motion turns the disc in n small turns, where one record would make the whole turn
+    /// Splitting changes the path a little: within each record disc moves first and alone, so a
+    /// split motion turns the disc in n small turns, where one record would make the whole turn
     /// before the arms start.
     ///
     /// # Errors

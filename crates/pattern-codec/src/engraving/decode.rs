@@ -10,7 +10,8 @@ impl Format {
     /// The record of three bytes.
     ///
     /// # Errors
-    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of elbow or shoulder in a SLOW record; D6 or D5 set in a SLOW byte in [`Strictness::Strict`].
+    /// [`DecodeError`] with an offset of 0..=2: 31 pulses of elbow or shoulder in a SLOW record; D6
+    /// or D5 set in a SLOW byte in [`Strictness::Strict`].
     #[inline]
     pub fn decode(&self, bytes: [u8; Record::LEN]) -> Result<Record, DecodeError> {
         let [first, second, third] = bytes;
@@ -34,7 +35,8 @@ impl Format {
     }
 
     /// The canonical spelling of three bytes: `encode(decode(bytes))`. It differs where a zero
-    /// count has a direction bit and, in [`Strictness::Lenient`], where a SLOW byte has D6 or D5 set.
+    /// count has a direction bit and, in [`Strictness::Lenient`], where a SLOW byte has D6 or D5
+    /// set.
     ///
     /// # Errors
     /// As [`Format::decode`].
@@ -112,8 +114,8 @@ impl Located {
 /// Decoding iterator over a slice, made by [`Format::records`]. It copies nothing but the three
 /// bytes of the record that is being read.
 ///
-/// In [`Strictness::Strict`] the iterator ends after the first error, in [`Strictness::Lenient`] it goes on
-/// three bytes later. One or two bytes too many at the end are an error in both.
+/// In [`Strictness::Strict`] the iterator ends after the first error, in [`Strictness::Lenient`] it
+/// goes on three bytes later. One or two bytes too many at the end are an error in both.
 #[derive(Debug, Clone)]
 #[must_use = "iterators are lazy"]
 pub struct Records<'a> {
@@ -142,7 +144,8 @@ impl Iterator for Records<'_> {
         Some(item)
     }
 
-    /// Exact in [`Strictness::Lenient`]; in [`Strictness::Strict`] an error may end the records early.
+    /// Exact in [`Strictness::Lenient`]; in [`Strictness::Strict`] an error may end the records
+    /// early.
     fn size_hint(&self) -> (usize, Option<usize>) {
         let max = self.rest.chunks(Record::LEN).len();
         let min = match self.format.strictness {
@@ -218,8 +221,8 @@ impl Decoder {
     /// Ends the stream: the number of bytes decoded.
     ///
     /// # Errors
-    /// [`DecodeErrorKind::Truncated`] when the last record is incomplete; in [`Strictness::Strict`] the
-    /// error that ended decoding, so that it cannot be lost.
+    /// [`DecodeErrorKind::Truncated`] when the last record is incomplete; in [`Strictness::Strict`]
+    /// the error that ended decoding, so that it cannot be lost.
     pub const fn finish(self) -> Result<u64, DecodeError> {
         if let Some(error) = self.failed {
             return Err(error);

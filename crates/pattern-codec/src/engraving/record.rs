@@ -185,7 +185,8 @@ pub struct Slow {
 }
 
 impl Slow {
-    /// Highest number of pulses of one axis in one record, in either direction; 31 marks a FAST record.
+    /// Highest number of pulses of one axis in one record, in either direction; 31 marks a FAST
+    /// record.
     pub const MAX: i32 = 30;
 
     /// Checks the pulses; [`Builder::slow`](super::Builder::slow) splits what is too long.

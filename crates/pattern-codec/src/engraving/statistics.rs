@@ -21,7 +21,8 @@ use super::{PerAxis, Record};
 /// ```
 ///
 /// A pulse period is two half periods of the train. Ramps and the time that the reader spends
-/// between records are not part of it. All counts are `u64` and saturate, which no sequence of fewer than 2^48 records reaches.
+/// between records are not part of it. All counts are `u64` and saturate, which no sequence of
+/// fewer than 2^48 records reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -112,8 +112,8 @@ mod tests {
         .unwrap()
     }
 
-    /// A turn by `turn` in which the speed changes by the fraction `change`, and the distance error at
-    /// 1000 times of it.
+    /// A turn by `turn` in which the speed changes by the fraction `change`, and the distance error
+    /// at 1000 times of it.
     fn bound_and_measured(turn: f64, change: f64) -> (f64, f64) {
         let platform = flat();
         let poses = [

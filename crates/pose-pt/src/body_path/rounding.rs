@@ -25,9 +25,9 @@ const SAME_ANGLE: f64 = 1e-9;
 ///
 /// x are position and rotation vector from the pose, or the six numbers of the pose vector; a and b
 /// are their derivatives on both legs, l what is taken of each. Since g(u) - g(1-u) = 2u - 1, x is
-/// l (2u - 1) a + l g(u) (b - a): it leaves the first leg and meets the second with their derivatives
-/// and no second derivative, and before u = ½ it is l g(½) |b - a| = 3/16 l |b - a| at most from the
-/// point of the first leg at the same u, after it from that of the second.
+/// l (2u - 1) a + l g(u) (b - a): it leaves the first leg and meets the second with their
+/// derivatives and no second derivative, and before u = ½ it is l g(½) |b - a| = 3/16 l |b - a| at
+/// most from the point of the first leg at the same u, after it from that of the second.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rounding {
     position: Vector3<f64>,
@@ -112,8 +112,8 @@ impl Chart {
 }
 
 impl Rounding {
-    /// The rounding of the pose where two legs meet; `sizes` is what the common parameter takes to run
-    /// each. None where the body has to stop there.
+    /// The rounding of the pose where two legs meet; `sizes` is what the common parameter takes to
+    /// run each. None where the body has to stop there.
     pub(super) fn new(blend: &Blend, legs: [&Leg; 2], sizes: [f64; 2]) -> Option<Self> {
         if *blend == Blend::STOP {
             return None;

@@ -4,8 +4,8 @@
 /// timed by `path-timing` passes it without a stop.
 ///
 /// Both bounds hold: along the whole rounding there is a pose of the unrounded path that is as near
-/// as they say, and the other way round. A part that the pose does not change is not looked at: where
-/// the body only slides, `rotation_rad` may be 0. [`Blend::STOP`] leaves the pose as it is.
+/// as they say, and the other way round. A part that the pose does not change is not looked at:
+/// where the body only slides, `rotation_rad` may be 0. [`Blend::STOP`] leaves the pose as it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

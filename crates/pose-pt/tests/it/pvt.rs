@@ -16,8 +16,8 @@ use crate::support::platform::{ACCELERATION, panel_with, pose, skewed};
 /// Positions of some metres rounded off.
 const ROUNDING: f64 = 1e-11;
 
-/// Limits that are kept, rest at both ends, times that add up, and velocities that belong to a rigid
-/// motion; how far the limits are used.
+/// Limits that are kept, rest at both ends, times that add up, and velocities that belong to a
+/// rigid motion; how far the limits are used.
 fn check_motion<const N: usize>(
     platform: &Platform<N>,
     points: &[Point<N>],

@@ -26,8 +26,8 @@ use test_support::{Random, setting};
 /// Room of the tables.
 const ROOM: usize = 400;
 
-/// Seeds and numbers of plans that broke a promise once: a run that was slower at a higher feed, and
-/// segments of no time.
+/// Seeds and numbers of plans that broke a promise once: a run that was slower at a higher feed,
+/// and segments of no time.
 const FOUND: [(u64, u64); 2] = [(2, 2076), (2, 6751)];
 
 /// How many plans came to what.

@@ -52,7 +52,8 @@ fn outcome(station: &mut Station<24>, now: Duration) -> (Vec<String>, Vec<u8>) {
     (events, bytes)
 }
 
-/// Byte by byte, the end of the payload is where this payload ends, whatever the one before has left in the buffer.
+/// Byte by byte, the end of the payload is where this payload ends, whatever the one before has
+/// left in the buffer.
 #[test]
 fn a_short_job_after_a_long_one() {
     let now = Duration::ZERO;

@@ -81,7 +81,8 @@ impl Clock {
     }
 }
 
-/// Returns when it is `due`, counted from an epoch; never without a time, or at one beyond the clock.
+/// Returns when it is `due`, counted from an epoch; never without a time, or at one beyond the
+/// clock.
 pub async fn sleep(epoch: Instant, due: Option<Duration>) {
     match due.and_then(|due| epoch.checked_add(due)) {
         Some(instant) => ::tokio::time::sleep_until(instant).await,

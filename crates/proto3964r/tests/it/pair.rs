@@ -207,8 +207,9 @@ proptest! {
         prop_assert!(pair.ends.iter().all(|end| end.outcomes.len() == 6));
     }
 
-    /// With at most one fault in a block of harmless bytes: everything is delivered, in order, intact; a telegram
-    /// that is reported sent has arrived; only a lost acknowledgement makes a repeat.
+    /// With at most one fault in a block of harmless bytes: everything is delivered, in order,
+    /// intact; a telegram that is reported sent has arrived; only a lost acknowledgement makes a
+    /// repeat.
     #[test]
     fn single_faults_do_no_harm(faults in gentle(), seed in any::<u64>()) {
         let work = [jobs(seed, 12, true), jobs(!seed, 12, true)];

@@ -241,7 +241,8 @@ fn conflicts_that_the_partner_settles_are_no_sign_of_the_same_priority() {
     }
 }
 
-/// A KM271 client repeats STX in a conflict, but not while a partner that gave way takes it for data.
+/// A KM271 client repeats STX in a conflict, but not while a partner that gave way takes it for
+/// data.
 #[test]
 fn stx_is_repeated_in_a_conflict_after_a_silence() {
     let mut station = Station::<64>::new(Config {

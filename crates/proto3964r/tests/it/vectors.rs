@@ -1,4 +1,5 @@
-//! Every byte-level vector of `tests/data/vectors.txt`, each as a test of its own: characters with their times, and events with their times, must be exactly those.
+//! Every byte-level vector of `tests/data/vectors.txt`, each as a test of its own: characters with
+//! their times, and events with their times, must be exactly those.
 
 use core::time::Duration;
 

@@ -10,8 +10,9 @@ use core::iter::FusedIterator;
 /// ```text
 /// after tick k of K, axis i has made round(k n_i / K) steps, halves up
 /// ```
-/// Each axis is within half a step of its point of the line at every tick. With as many ticks as the longest
-/// axis has steps, this is Bresenham's line for N axes: at most sqrt(N - 1)/2 steps off the line.
+/// Each axis is within half a step of its point of the line at every tick. With as many ticks as
+/// the longest axis has steps, this is Bresenham's line for N axes: at most sqrt(N - 1)/2 steps off
+/// the line.
 ///
 /// # Examples
 /// ```

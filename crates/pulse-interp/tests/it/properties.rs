@@ -1,5 +1,5 @@
-//! What holds for lines, arcs, axes and loops of any size: 0, the largest and smallest numbers, what
-//! overflows. The answer is right, against its definition in 128 bits, or an error.
+//! What holds for lines, arcs, axes and loops of any size: 0, the largest and smallest numbers,
+//! what overflows. The answer is right, against its definition in 128 bits, or an error.
 
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;

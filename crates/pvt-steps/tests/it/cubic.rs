@@ -292,8 +292,8 @@ fn memory_is_what_the_readme_says() {
     clippy::cast_precision_loss,
     reason = "numbers of a few digits"
 )]
-/// Where a turn within 2^-8 steps of a place spares two steps, an axis may rest that much further than
-/// half a step from its count, and no further; the next row makes the step.
+/// Where a turn within 2^-8 steps of a place spares two steps, an axis may rest that much further
+/// than half a step from its count, and no further; the next row makes the step.
 #[test]
 fn at_rest_the_count_is_within_half_a_step_and_the_touch() {
     // q(s) = q0 + c (s³/3 - 0.9 s² + 0.8 s): back from its turn at s = 0.8 by c / 750 at s = 1.

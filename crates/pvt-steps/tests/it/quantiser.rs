@@ -8,7 +8,8 @@ use pvt_steps::{KnotError, PvtKnot, PvtQuantiser, PvtRow, Rate, StepScale};
 /// 2^-53 of ten steps a tick and of what they change by in a row of 500 ticks.
 const F64: [f64; 3] = [9.3e-10, 1e-14, 1e-16];
 
-/// A cubic: position at the fraction s of T ticks, from positions and velocities a tick at its ends.
+/// A cubic: position at the fraction s of T ticks, from positions and velocities a tick at its
+/// ends.
 #[derive(Clone, Copy, Debug)]
 struct Cubic {
     ticks: f64,
@@ -185,8 +186,8 @@ fn rows_by_hand() {
     assert_eq!(pvt.knots(), rest.knots);
 }
 
-/// At a corner between ticks the velocities jump within what the motors start and stop with, and the
-/// row after it departs by what is documented: at constant speeds by less than the jump a tick.
+/// At a corner between ticks the velocities jump within what the motors start and stop with, and
+/// the row after it departs by what is documented: at constant speeds by less than the jump a tick.
 #[test]
 fn a_knot_of_the_same_time_is_a_jump() {
     let hz = 1_000_000.0;

@@ -303,7 +303,8 @@ fn a_ramp_starts_slowly_and_ends_slowly() {
         accel_steps_per_s2: 40_000,
     };
     let ramp = Ramp::new([8], &limits, Rate::from_hz(2000).unwrap()).unwrap();
-    // The first step after (√(100² + 40,000) - 100) / 40,000 s, 6.2 ticks; four ticks a step at top.
+    // The first step after (√(100² + 40,000) - 100) / 40,000 s, 6.2 ticks; four ticks a step at
+    // top.
     let up_and_down = pulses!["x ______|-|______|-|____|-|___|-|___|-|___|-|____|-|______|-|"];
     let edges = ramp.edges();
     let edges = edges.map(|edge| (edge.ticks, edge.axis, edge.level == Level::High));

@@ -6,8 +6,8 @@ use ::tokio::sync::oneshot;
 
 use crate::{command::Command, reaction::ReactionError};
 
-/// A job of the partner that the source [holds](crate::DataSource::holds): the partner waits for its
-/// reaction. Dropping it has the partner hear [`ReactionError::JobFailed`].
+/// A job of the partner that the source [holds](crate::DataSource::holds): the partner waits for
+/// its reaction. Dropping it has the partner hear [`ReactionError::JobFailed`].
 #[derive(Debug)]
 pub struct HeldJob {
     command: Command,
@@ -76,8 +76,8 @@ impl HeldJob {
         self.command
     }
 
-    /// Lets the reaction go out. `true` when the partner has acknowledged it; `false` when it may not
-    /// have it, and may ask for the same again.
+    /// Lets the reaction go out. `true` when the partner has acknowledged it; `false` when it may
+    /// not have it, and may ask for the same again.
     pub async fn accept(self) -> bool {
         self.answer(Ok(())).await
     }

@@ -22,8 +22,8 @@ pub enum Parameter {
     Upper,
     /// Length of the forearm.
     Fore,
-    /// The shoulder's part of [`Drives::zero`](crate::Drives::zero). With no coupling it is the base's
-    /// angle: points determine their sum.
+    /// The shoulder's part of [`Drives::zero`](crate::Drives::zero). With no coupling it is the
+    /// base's angle: points determine their sum.
     ShoulderZero,
     /// The elbow's part of [`Drives::zero`](crate::Drives::zero).
     ElbowZero,

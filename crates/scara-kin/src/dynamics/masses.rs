@@ -35,8 +35,8 @@ pub struct LinkMass<T = f64> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(clippy::exhaustive_structs, reason = "named fields")]
 pub struct JointDrive<T = f64> {
-    /// Inertia of rotor and gear at the joint, in kg m²: that of the rotor times the square of the gear
-    /// ratio.
+    /// Inertia of rotor and gear at the joint, in kg m²: that of the rotor times the square of the
+    /// gear ratio.
     pub rotor_kg_m2: T,
     /// Viscous friction, in Nm per rad/s.
     pub viscous_nm_s: T,
@@ -64,7 +64,8 @@ pub struct ArmMasses<T = f64> {
     pub shoulder: JointDrive<T>,
     /// The elbow's drive.
     pub elbow: JointDrive<T>,
-    /// 0 where the arm moves in a horizontal plane, 9.80665 where -Y of the world points down, in m/s².
+    /// 0 where the arm moves in a horizontal plane, 9.80665 where -Y of the world points down, in
+    /// m/s².
     pub gravity_m_s2: T,
 }
 

@@ -74,8 +74,8 @@ impl Dynamics for ArmDynamics {
         })
     }
 
-    /// What of both torques is no straight line in time: products of the elbow's sine and cosine, rates
-    /// and accelerations, by the product rule, and the waves of gravity.
+    /// What of both torques is no straight line in time: products of the elbow's sine and cosine,
+    /// rates and accelerations, by the product rule, and the waves of gravity.
     fn bend(&self, span: &Span<[f64; 2]>) -> [f64; 2] {
         let [from, to] = &span.rows;
         let mut cubics = Cubic::between(from, to);
@@ -92,7 +92,8 @@ impl Dynamics for ArmDynamics {
         let [first, second, both] = [shoulder, elbow, forearm].map(|cubic| Turning::new(&cubic));
         let lumped = self.lumped();
         let wave = second.wave();
-        // 2 q̈1 + q̈2 and 2 q̇1 q̇2 + q̇2² by sums of both joints: q̈1 + (q̈1 + q̈2), (q̇1 + q̇2)² - q̇1².
+        // 2 q̈1 + q̈2 and 2 q̇1 q̇2 + q̇2² by sums of both joints: q̈1 + (q̈1 + q̈2), (q̇1 +
+        // q̇2)² - q̇1².
         let inertial = wave.times(first.acceleration.plus(both.acceleration));
         let square = first.rate.times(first.rate);
         let centrifugal = wave.times(both.rate.times(both.rate).plus(square));

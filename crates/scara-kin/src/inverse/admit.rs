@@ -97,8 +97,8 @@ impl<T: RealField + Trig> Arm<T> {
         self.tolerance().max(angles * T::default_epsilon())
     }
 
-    /// Why a joint turns by more than half a turn on the way to `to`: the nearer whole turn is out of
-    /// range.
+    /// Why a joint turns by more than half a turn on the way to `to`: the nearer whole turn is out
+    /// of range.
     pub(crate) fn forced_turn(
         &self,
         elbow: Elbow,

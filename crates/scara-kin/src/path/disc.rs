@@ -20,8 +20,8 @@ use crate::{Joints, TangentError};
 ///
 /// κ is the curvature, signed. The disc is an axis like others: where the curve bends more than the
 /// disc can follow, all slow down. A corner has no heading: it is smoothed
-/// ([`Smoothed`](path_timing::Smoothed)), or the end of a path, where the disc is lifted and turned to
-/// the start of the next.
+/// ([`Smoothed`](path_timing::Smoothed)), or the end of a path, where the disc is lifted and turned
+/// to the start of the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiscPath {
     arm_path: ArmPath,
@@ -33,8 +33,8 @@ pub struct DiscPath {
     start: f64,
 }
 
-/// How far the disc may stand from its first angle, in radians, to begin with its own: what rounding
-/// leaves between the end of one curve and the start of the next.
+/// How far the disc may stand from its first angle, in radians, to begin with its own: what
+/// rounding leaves between the end of one curve and the start of the next.
 const SAME: f64 = 1e-9;
 
 /// Shortest walk along a curve whose headings are noted, in steps; more where it bends.
@@ -47,8 +47,8 @@ const STEP: f64 = 0.5;
 const MIN_STEP: f64 = 1e-12;
 
 impl ArmPath {
-    /// The path with a disc that stands at the angle `tool_angle` before, in radians: it begins at the
-    /// nearest whole turn to that, or there to the last bit where only rounding is between.
+    /// The path with a disc that stands at the angle `tool_angle` before, in radians: it begins at
+    /// the nearest whole turn to that, or there to the last bit where only rounding is between.
     ///
     /// # Errors
     /// [`ArmPathError::Turns`], [`ArmPathError::Disc`] for an angle that is not finite.

@@ -1,8 +1,8 @@
 //! A path whose points are found in single precision.
 //!
 //! Goal: a path that a microcontroller without instructions for `f64` plans in a tenth of the time.
-//! Method: the curve, the whole turns and the ranges stay in `f64`; joints and slopes come from an arm in
-//! `f32`, and what that rounds off, some 1e-7 rad, is in the bound of the departure.
+//! Method: the curve, the whole turns and the ranges stay in `f64`; joints and slopes come from an
+//! arm in `f32`, and what that rounds off, some 1e-7 rad, is in the bound of the departure.
 
 use nalgebra::{Point2, Vector3};
 use path_timing::{Corner, Path, PathPoint, Span, ToolLimits};
@@ -12,8 +12,8 @@ use super::{ArmPath, ArmPathError};
 use crate::{Arm, GeometryError, Joint, Joints};
 
 /// An [`ArmPath`] whose joints and slopes are found in single precision: for
-/// [`Table::plan_in_f32`](path_timing::Table::plan_in_f32) on a processor that has no instructions for
-/// `f64`. The tool is off its curve by as much as `f32` rounds, 2e-6 of the reach, besides.
+/// [`Table::plan_in_f32`](path_timing::Table::plan_in_f32) on a processor that has no instructions
+/// for `f64`. The tool is off its curve by as much as `f32` rounds, 2e-6 of the reach, besides.
 ///
 /// ```
 /// use path_timing::{AxisLimits, Curve, Knot, Table};
@@ -43,7 +43,8 @@ const STRAIGHT: f64 = 1e-12;
 /// What the terms of a bound in `f32` round off.
 const ROUNDED_UP: f32 = 1.0 + 64.0 * f32::EPSILON;
 
-/// What is left to the ends of a range, in radians, where `f32` is enough to see that they are not passed.
+/// What is left to the ends of a range, in radians, where `f32` is enough to see that they are not
+/// passed.
 const CLEAR: f32 = 1e-3;
 
 /// By how much a joint may pass an end of its range between two rows, in radians: rounding.
@@ -75,12 +76,12 @@ impl ArmPathF32 {
         &self.path
     }
 
-    /// The most by which the tool leaves the curve on a segment of a table, in the unit of length: on a
-    /// line in closed form, else as [`ArmPath::departure`] has it.
+    /// The most by which the tool leaves the curve on a segment of a table, in the unit of length:
+    /// on a line in closed form, else as [`ArmPath::departure`] has it.
     ///
-    /// Both ends are on the line with a velocity along it, so the distance from it is at most 1/384 of
-    /// its largest fourth derivative by the fraction of the segment. With u1, u2, u3 the largest that
-    /// the derivatives of a link's angle are, that is for both links together
+    /// Both ends are on the line with a velocity along it, so the distance from it is at most 1/384
+    /// of its largest fourth derivative by the fraction of the segment. With u1, u2, u3 the largest
+    /// that the derivatives of a link's angle are, that is for both links together
     ///
     /// ```text
     /// |d| <= Σ l (u1⁴ + 6 u1² u2 + 3 u2² + 4 u1 u3) / 384
@@ -163,8 +164,8 @@ impl ArmPathF32 {
     }
 }
 
-/// The longest that the fourth derivative of a unit vector can be while its angle runs a cubic, from the
-/// change of the angle and its slopes at both ends, by the fraction of the segment.
+/// The longest that the fourth derivative of a unit vector can be while its angle runs a cubic,
+/// from the change of the angle and its slopes at both ends, by the fraction of the segment.
 fn longest_fourth(angle: Vector3<f32>) -> f32 {
     let (change, a, b) = (angle.x, angle.y, angle.z);
     let (c2, c3) = (3.0 * change - 2.0 * a - b, a + b - 2.0 * change);

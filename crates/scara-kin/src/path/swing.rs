@@ -1,4 +1,5 @@
-//! The arm on the cubics of a segment: how far the tool leaves its curve, and how far the joints go.
+//! The arm on the cubics of a segment: how far the tool leaves its curve, and how far the joints
+//! go.
 
 use core::f64::consts::PI;
 
@@ -174,8 +175,8 @@ fn distances(arm: &Arm, [low, high]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// How fast both joints turn at most, in radians per unit of the tool's distance, where its distance from
-/// the base is between two: infinite where the arm may be straight or folded.
+/// How fast both joints turn at most, in radians per unit of the tool's distance, where its
+/// distance from the base is between two: infinite where the arm may be straight or folded.
 ///
 /// ```text
 /// |∇ shoulder| = l₂ / A    |∇ elbow| = r / A
@@ -303,9 +304,9 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// The longest that the tool's fourth derivative can be, and its fifth: the sum of both links', or, where
-/// they nearly cancel, that of the product of the upper arm's direction and the tool as the upper arm
-/// sees it.
+/// The longest that the tool's fourth derivative can be, and its fifth: the sum of both links', or,
+/// where they nearly cancel, that of the product of the upper arm's direction and the tool as the
+/// upper arm sees it.
 fn longest(arm: &Arm, links: &[(f64, TurnMotion); 2], elbow: &Cubic) -> [f64; 2] {
     let [(upper, upper_arm), (fore, forearm)] = links;
     let [u1, u2, u3, u4] = upper_arm.longest();

@@ -6,8 +6,8 @@ const ANCHORS: usize = 16;
 /// How far an angle turns from a known place before the next is noted, in radians.
 const FAR: f64 = 1.4;
 
-/// The whole turns of an angle along a path: what is continuous when it is walked along stays so when
-/// places are asked for in any order.
+/// The whole turns of an angle along a path: what is continuous when it is walked along stays so
+/// when places are asked for in any order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turns {
     /// Parameter and angle in radians, in their order.
@@ -34,8 +34,8 @@ impl Turns {
             .map_or(first, |(_, angle)| *angle)
     }
 
-    /// Takes the angle of the next place in, at most a radian from the one before; whether there was
-    /// room for it.
+    /// Takes the angle of the next place in, at most a radian from the one before; whether there
+    /// was room for it.
     pub(super) fn add(&mut self, s: f64, angle: f64) -> bool {
         if (angle - self.near(s)).abs() < FAR {
             return true;

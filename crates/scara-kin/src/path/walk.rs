@@ -12,15 +12,15 @@ use crate::{Arm, Elbow, Joints};
 const EDGE: f64 = 1e-6;
 
 /// Longest curve that stays within the workspace, in reaches: an arc of 100 rad. A Bézier curve of
-/// degree 5 in a disc of radius 1 is at most 71 long, by Markov's inequality. Beyond, the arm may be
-/// too small for the digits of the curve, and would be walked on without end.
+/// degree 5 in a disc of radius 1 is at most 71 long, by Markov's inequality. Beyond, the arm may
+/// be too small for the digits of the curve, and would be walked on without end.
 const LONGEST: f64 = 100.0;
 
 /// The largest turn of a joint from one place of the survey to the next, in radians.
 const MAX_TURN: f64 = 1.0;
 
-/// Shortest step along the curve, as a fraction of it: between two places this near, one allowed and
-/// one not, is the first that is not.
+/// Shortest step along the curve, as a fraction of it: between two places this near, one allowed
+/// and one not, is the first that is not.
 const MIN_STEP: f64 = 1e-12;
 
 /// Joints that turn by no more than this, in radians, and may still pass an end of a range: there
@@ -31,10 +31,11 @@ impl Arm {
     /// The path of the joints that brings the tool along `curve` with one elbow.
     ///
     /// All of the curve is looked at before anything is handed out: at each place it goes on by no
-    /// more than that place is from the edge of the workspace, so no dip over the edge is missed, and
-    /// by no more than the joints are known to stay within their ranges for. They do where they cannot
-    /// turn fast enough to reach an end, else where the cubics between both places stay within by more
-    /// than the joints depart from them: that is bounded as [`ArmPath::departure`] is.
+    /// more than that place is from the edge of the workspace, so no dip over the edge is missed,
+    /// and by no more than the joints are known to stay within their ranges for. They do where they
+    /// cannot turn fast enough to reach an end, else where the cubics between both places stay
+    /// within by more than the joints depart from them: that is bounded as [`ArmPath::departure`]
+    /// is.
     ///
     /// # Errors
     /// [`ArmPathError`]; the place named is the first along the curve.

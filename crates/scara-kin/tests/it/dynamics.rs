@@ -1,4 +1,5 @@
-//! Torques against other derivations: forces and moments of each body, and the energy that they bring in.
+//! Torques against other derivations: forces and moments of each body, and the energy that they
+//! bring in.
 
 use proptest::prelude::*;
 use scara_kin::nalgebra::{Isometry2, Vector2};
@@ -19,7 +20,8 @@ fn dynamics(masses: ArmMasses) -> ArmDynamics {
     arm.dynamics(1e-3, masses).unwrap()
 }
 
-/// A place that turns with both links: its position, and its acceleration from the angles of the links.
+/// A place that turns with both links: its position, and its acceleration from the angles of the
+/// links.
 #[derive(Clone, Copy)]
 struct Place {
     position: Vector2<f64>,

@@ -187,8 +187,8 @@ fn singularities_that_can_be_passed_are_passed() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever the speeds at the ends of a segment, as after a change of the feed or a hold: the bound
-    /// holds.
+    /// Whatever the speeds at the ends of a segment, as after a change of the feed or a hold: the
+    /// bound holds.
     #[test]
     fn the_bound_holds_for_any_speeds(
         curve in any_curve(),

@@ -150,8 +150,8 @@ fn messages_are_short() {
     assert!(error.to_string().len() < 100, "{error}");
 }
 
-/// A forearm that rounding hides points anywhere within it; it has its elbow on the side of its name
-/// all the same.
+/// A forearm that rounding hides points anywhere within it; it has its elbow on the side of its
+/// name all the same.
 #[test]
 fn an_elbow_keeps_its_side_however_short_the_forearm() {
     for ratio in [1e3, 5e10, 1e12, 6e13] {

@@ -99,9 +99,10 @@ impl StepScale {
         }
     }
 
-    /// The scale of a motor with `full_steps` a turn and `microsteps` in each of them, behind a gear of
-    /// `gear` turns of the motor to one of its output, which moves the axis by `units_per_turn`: 2π for
-    /// radians, 360 for degrees, the lead of a screw or the circumference of a pulley in mm.
+    /// The scale of a motor with `full_steps` a turn and `microsteps` in each of them, behind a
+    /// gear of `gear` turns of the motor to one of its output, which moves the axis by
+    /// `units_per_turn`: 2π for radians, 360 for degrees, the lead of a screw or the circumference
+    /// of a pulley in mm.
     ///
     /// ```text
     /// full_steps · microsteps · gear / units_per_turn

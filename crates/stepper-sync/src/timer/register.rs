@@ -73,9 +73,9 @@ impl Timer {
     /// the latency.
     ///
     /// # Errors
-    /// The errors of [`reload`](Self::reload); [`TimerError::CountTooLarge`]; [`TimerError::TooLate`]
-    /// when the interval is over already; [`TimerError::StartsAgain`] for a counter that does so at
-    /// its compare register: no latency is lost there.
+    /// The errors of [`reload`](Self::reload); [`TimerError::CountTooLarge`];
+    /// [`TimerError::TooLate`] when the interval is over already; [`TimerError::StartsAgain`] for a
+    /// counter that does so at its compare register: no latency is lost there.
     pub fn compensated_reload(
         &self,
         count: u32,

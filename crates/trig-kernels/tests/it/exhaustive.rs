@@ -4,7 +4,8 @@
 //! cargo test --release -p trig-kernels --test it exhaustive:: -- --ignored --nocapture --test-threads 1
 //! ```
 //!
-//! `ONE_PART_IN=8` takes each eighth part of all that. What they print stands in `docs/book/src/accuracy.md`.
+//! `ONE_PART_IN=8` takes each eighth part of all that. What they print stands in
+//! `docs/book/src/accuracy.md`.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::{env, thread};

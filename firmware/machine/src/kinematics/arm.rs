@@ -11,8 +11,8 @@ use super::reason::{Reasoned, out_of_range};
 use super::{Joint, Kinematics, Unit, turned};
 use crate::settings_error::SettingsError;
 
-/// Segments of a line: so many, and others for what the joints turn, all added up. At a constant feed a
-/// third of them would do; where a hold ends, the joints go straight from row to row.
+/// Segments of a line: so many, and others for what the joints turn, all added up. At a constant
+/// feed a third of them would do; where a hold ends, the joints go straight from row to row.
 const LEAST_SEGMENTS: f64 = 6.0;
 const SEGMENTS_PER_RAD: f64 = 6.0;
 /// Farthest that a line may begin from the joints, in radians: rounding.

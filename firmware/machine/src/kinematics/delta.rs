@@ -11,8 +11,8 @@ use super::reason::{Reasoned, out_of_range};
 use super::{Joint, Kinematics, Unit, turned};
 use crate::settings_error::SettingsError;
 
-/// Segments of a line: so many, and others for what the arms turn, all three added up. Each takes an
-/// RP2040 30 ms: as few as a hold allows, where the arms go straight from row to row.
+/// Segments of a line: so many, and others for what the arms turn, all three added up. Each takes
+/// an RP2040 30 ms: as few as a hold allows, where the arms go straight from row to row.
 const LEAST_SEGMENTS: f64 = 5.0;
 const SEGMENTS_PER_RAD: f64 = 3.0;
 /// Farthest that angles may be from those of their own point, in radians: rounding.

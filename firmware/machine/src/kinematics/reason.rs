@@ -1,5 +1,5 @@
-//! Why there is no path or no table, in the words of who sent it: degrees, mm of the line, and by how
-//! much.
+//! Why there is no path or no table, in the words of who sent it: degrees, mm of the line, and by
+//! how much.
 
 use core::fmt::{self, Display, Formatter};
 

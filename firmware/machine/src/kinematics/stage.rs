@@ -109,10 +109,11 @@ impl Path for StagePath {
     }
 }
 
-/// The most by which both axes' cubics leave a circle, in mm: rows are on it, with velocities along it.
+/// The most by which both axes' cubics leave a circle, in mm: rows are on it, with velocities along
+/// it.
 ///
-/// With P from the centre, f = |P|² - r² and f' vanish at both ends, so that by the fraction t of the
-/// segment
+/// With P from the centre, f = |P|² - r² and f' vanish at both ends, so that by the fraction t of
+/// the segment
 ///
 /// ```text
 /// |f| ≤ max |f⁗| / 384    f⁗ = 8 P' · P‴ + 6 P" · P"

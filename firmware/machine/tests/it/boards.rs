@@ -1,4 +1,5 @@
-//! Both boards' firmware in emulation (`firmware/emulate`), edge for edge with the machine on this PC.
+//! Both boards' firmware in emulation (`firmware/emulate`), edge for edge with the machine on this
+//! PC.
 //!
 //! Runs where `ARM_PICO`, `DELTA_NUCLEO` and so on are the commands of the emulators, as
 //! `firmware/emulate/run` makes them.
@@ -343,7 +344,8 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
     }
 }
 
-/// A day of a machine on the Pico, and on the Nucleo, where the variables have their emulators' commands.
+/// A day of a machine on the Pico, and on the Nucleo, where the variables have their emulators'
+/// commands.
 fn on_the_pico<K: Kinematics<N> + 'static, const N: usize>(day: Day<K, N>, variable: &str) {
     if let Ok(command) = std::env::var(variable) {
         Pair::new(day, &command, 12_500_000).run();
@@ -391,8 +393,8 @@ fn a_day_of_the_stage_on_the_nucleo() {
     on_the_nucleo(STAGE_DAY, "STAGE_NUCLEO");
 }
 
-/// The example of `step-player`: 1000 steps a second, of pulses so long. At the internal oscillator the
-/// Nucleo has fewer cycles a second than its emulator says.
+/// The example of `step-player`: 1000 steps a second, of pulses so long. At the internal oscillator
+/// the Nucleo has fewer cycles a second than its emulator says.
 fn trains(variable: &str, pulse_s: f64, slower: f64) {
     let Ok(command) = std::env::var(variable) else {
         return;

@@ -1,4 +1,5 @@
-//! The machine from outside: its commands, its settings, and all of it with pins that are looked at.
+//! The machine from outside: its commands, its settings, and all of it with pins that are looked
+//! at.
 
 mod boards;
 mod commands;

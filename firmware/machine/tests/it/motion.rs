@@ -5,8 +5,8 @@ use board_machine::State;
 
 use crate::rig::{HOME_STEPS, Rig, START_STEPS, STEPS_PER_TURN, forward, joints_of};
 
-/// Each joint is within half a step of the path: at most so far from the line is the tool, both links
-/// in a row, and the tolerance of the settings on top.
+/// Each joint is within half a step of the path: at most so far from the line is the tool, both
+/// links in a row, and the tolerance of the settings on top.
 const TOOL_TOLERANCE_MM: f64 = 0.05 + 0.75 * 264.0 * std::f64::consts::TAU / STEPS_PER_TURN;
 
 fn steps_at(joints: [f64; 2]) -> [i32; 2] {

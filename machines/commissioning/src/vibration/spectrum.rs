@@ -22,8 +22,8 @@ const MOST: usize = 1 << 18;
 const MEDIAN: f64 = 0.8326;
 
 impl Spectrum {
-    /// Of readings at rising times, taken to be even by straight lines between them. The window falls
-    /// from the beginning, where a swing is largest, to the end.
+    /// Of readings at rising times, taken to be even by straight lines between them. The window
+    /// falls from the beginning, where a swing is largest, to the end.
     pub(crate) fn new(readings: &[[f64; 2]]) -> Result<Self> {
         let end = readings.last().context("no readings")?[0];
         let count = readings.len().min(MOST);

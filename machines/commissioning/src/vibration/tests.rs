@@ -30,8 +30,8 @@ struct Log {
 }
 
 impl Log {
-    /// As firmware writes it: 3,200 readings a second, each up to a tenth of that too late, a constant
-    /// for gravity.
+    /// As firmware writes it: 3,200 readings a second, each up to a tenth of that too late, a
+    /// constant for gravity.
     fn text(&self, random: &mut Random) -> String {
         let mut text = "#time,accel_x,accel_y,accel_z\n".to_owned();
         let phases = [part(random), part(random)];
@@ -49,8 +49,8 @@ impl Log {
     }
 }
 
-/// The bounds: the frequency within 1 %, the damping within 20 %. `-- --nocapture` prints the
-/// worst that was seen.
+/// The bounds: the frequency within 1 %, the damping within 20 %. `-- --nocapture` prints
+/// the worst that was seen.
 #[test]
 fn two_modes_are_found_in_noise() {
     let mut random = Random::new(27);

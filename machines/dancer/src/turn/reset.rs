@@ -245,8 +245,8 @@ fn slowest(motor: &Motor, magnitude: u8) -> u8 {
     slowest
 }
 
-/// The fastest speed that does not fulfil a condition, and the slowest that does; the same one twice
-/// where only one of them is there. With a speed all faster ones up to the highest fulfil it.
+/// The fastest speed that does not fulfil a condition, and the slowest that does; the same one
+/// twice where only one of them is there. With a speed all faster ones up to the highest fulfil it.
 fn either_side(highest: u8, fulfils: impl Fn(u8) -> bool) -> [u8; 2] {
     if fulfils(0) {
         return [0; 2];

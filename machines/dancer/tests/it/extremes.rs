@@ -1,5 +1,5 @@
-//! Motors, turns and easings with anything: the answer is right, against its definition in 128 bits,
-//! or an error.
+//! Motors, turns and easings with anything: the answer is right, against its definition in 128
+//! bits, or an error.
 
 use dancer::{Easing, Law, Motor, TurnError};
 use pattern_codec::dance::{Threshold, Timing};

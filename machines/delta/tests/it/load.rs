@@ -1,5 +1,5 @@
-//! A machine whose load is known: what is planned against what its simulated motors can turn, and how
-//! its tool swings. The simulation gets the steps alone.
+//! A machine whose load is known: what is planned against what its simulated motors can turn, and
+//! how its tool swings. The simulation gets the steps alone.
 
 use delta::{Machine, Motion, Session, StepLog, simulate};
 use machine_sim::Motor;

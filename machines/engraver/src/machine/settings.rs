@@ -1,4 +1,5 @@
-//! The machine file, as written: TOML, lengths in mm, angles in degrees, rates in pulses per second.
+//! The machine file, as written: TOML, lengths in mm, angles in degrees, rates in pulses per
+//! second.
 
 use known_load::{ModeSettings, MotorSettings};
 use pattern_codec::engraving::{AxisCodes, ByteOrder};

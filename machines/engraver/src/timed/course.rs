@@ -1,8 +1,8 @@
 //! Rows that are shaped along their course: the tool stays on its curves.
 //!
-//! Goal: a motion that leaves a mode of the tool at rest, and no curve. Method: the length along all legs of
-//! a run is an axis, and its course over time is shaped; where a row of that is, and where a leg ends,
-//! shoulder, elbow and disc are where the legs have them.
+//! Goal: a motion that leaves a mode of the tool at rest, and no curve. Method: the length along
+//! all legs of a run is an axis, and its course over time is shaped; where a row of that is, and
+//! where a leg ends, shoulder, elbow and disc are where the legs have them.
 
 use anyhow::{Context, Result};
 use path_timing::{Cubic, Path as _, Row, Shaper};

@@ -4,8 +4,8 @@ use anyhow::Result;
 use kurbo::{BezPath, ParamCurve as _, PathEl, PathSeg, Point};
 use path_timing::{Curve, CurveError, Smoothed, Vertex};
 
-/// The curves of an outline: its Bézier curves as they are, its lines smoothed within `tolerance_mm`,
-/// but for corners above `corner_rad`.
+/// The curves of an outline: its Bézier curves as they are, its lines smoothed within
+/// `tolerance_mm`, but for corners above `corner_rad`.
 pub(super) fn curves_of(
     outline: &BezPath,
     is_reversed: bool,

@@ -17,7 +17,8 @@ use crate::controller::{Controller, Wires};
 use crate::machine::Machine;
 use crate::simulation::{Run, Simulation};
 
-/// The driver's input times. The drivers of the source are not known; these are slower than chips ask.
+/// The driver's input times. The drivers of the source are not known; these are slower than chips
+/// ask.
 const TIMING: StepDirTiming = StepDirTiming {
     pulse_ns: 20_000,
     pause_ns: 20_000,

@@ -1,4 +1,5 @@
-//! The rows of a run: as fast as joints, disc and motors allow, shaped along its course, and verified.
+//! The rows of a run: as fast as joints, disc and motors allow, shaped along its course, and
+//! verified.
 
 use anyhow::Result;
 use known_load::{TorqueUsed, spans, with_room, within_share};

@@ -1,5 +1,5 @@
-//! A machine whose load is known: what is planned against what its simulated motors can turn, and how
-//! its tool swings. The simulation gets the edges alone.
+//! A machine whose load is known: what is planned against what its simulated motors can turn, and
+//! how its tool swings. The simulation gets the edges alone.
 
 use engraver::{Drawing, Engraving, LOADED, Machine, MotorController, Plan, PlanSettings};
 use machine_sim::Motor;
@@ -80,9 +80,9 @@ fn lost_with(factor: f64, damping_ratio: f64) -> f64 {
     lost_steps(&report(&machine.replace("damping_ratio = 0.02", &damping)))
 }
 
-/// With the arm's inertia the rotor of 0.02 has a damping of 0.0016: what a change of load makes it swing is
-/// there at the next ones, so that above 79 % of its pull-out torque the time between them decides. With five
-/// times as much the torque alone does.
+/// With the arm's inertia the rotor of 0.02 has a damping of 0.0016: what a change of load makes it
+/// swing is there at the next ones, so that above 79 % of its pull-out torque the time between them
+/// decides. With five times as much the torque alone does.
 #[test]
 fn the_limit_is_tight() {
     assert_eq!(lost_with(0.78, MOTOR.damping_ratio).to_bits(), 0);

@@ -25,7 +25,8 @@ fn telegrams(random: &mut Random) -> Vec<Vec<u8>> {
     (0..TELEGRAMS).map(|_| telegram()).collect()
 }
 
-/// Each telegram once, whoever sends when: the start-up NAK of one crosses the first STX of the other.
+/// Each telegram once, whoever sends when: the start-up NAK of one crosses the first STX of the
+/// other.
 #[test]
 fn every_telegram_once() {
     let config = |priority| Config::siemens_3964r(priority, Line::paced(9600, 11));

@@ -1,9 +1,9 @@
-//! Verdicts on simulated lines: any data and times, either side at fault, one fault or none; captures
-//! that begin and end anywhere, and noise on top of the fault.
+//! Verdicts on simulated lines: any data and times, either side at fault, one fault or none;
+//! captures that begin and end anywhere, and noise on top of the fault.
 //!
-//! `CASES` lines of each kind from `SEED` on; without them the same few each time. The share of right
-//! verdicts: `CASES=400 cargo test --release -p line-sim --test it verdicts::shares --
-//! --ignored --nocapture`.
+//! `CASES` lines of each kind from `SEED` on; without them the same few each time. The share of
+//! right verdicts:
+//! `CASES=400 cargo test --release -p line-sim --test it verdicts::shares -- --ignored --nocapture`.
 
 pub(crate) mod case;
 mod kinds;
@@ -96,8 +96,8 @@ kinds! {
     a_request_for_an_answer,
 }
 
-/// Prints the share of right verdicts of each kind: whole captures, cut ones, noisy ones, both. Of one
-/// `KIND`, if that is given, also the wrong ones.
+/// Prints the share of right verdicts of each kind: whole captures, cut ones, noisy ones, both. Of
+/// one `KIND`, if that is given, also the wrong ones.
 #[test]
 #[ignore = "a table to read"]
 fn shares() {

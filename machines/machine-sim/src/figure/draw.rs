@@ -323,7 +323,8 @@ fn round(px: f64) -> f64 {
     (px * 100.0).round() / 100.0
 }
 
-/// The numbers at the ends of a scale, in three digits; 0 where that is nothing beside the other end.
+/// The numbers at the ends of a scale, in three digits; 0 where that is nothing beside the other
+/// end.
 fn ends_of_scale(ends: [f64; 2]) -> [String; 2] {
     /// Half of the last digit of the other end.
     const NOTHING: f64 = 0.0005;

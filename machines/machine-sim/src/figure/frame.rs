@@ -33,8 +33,8 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame of a plot in a cell of this width, with its top at 0 and its left at the cell's.
     ///
-    /// Its numbers have at least `numbers_px` beside it, so that charts below each other share their
-    /// horizontal axis.
+    /// Its numbers have at least `numbers_px` beside it, so that charts below each other share
+    /// their horizontal axis.
     pub(super) fn new(plot: &Plot, cell_px: f64, numbers_px: f64) -> Self {
         let [x_axis, y_axis] = &plot.axes;
         let ends = [
@@ -60,8 +60,8 @@ impl Frame {
         }
     }
 
-    /// The width of the widest number beside the frame. It depends on the height, which for a map depends
-    /// on the width.
+    /// The width of the widest number beside the frame. It depends on the height, which for a map
+    /// depends on the width.
     pub(super) fn numbers_px(plot: &Plot) -> f64 {
         let [_, y_axis] = &plot.axes;
         let ends = y_axis.ends(plot.coordinates(1));

@@ -120,7 +120,8 @@ impl Notes {
         new
     }
 
-    /// One line for each kind: first location, names, what is done, how often; in the input's order.
+    /// One line for each kind: first location, names, what is done, how often; in the input's
+    /// order.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let mut notes: Vec<_> = self.0.iter().collect();

@@ -14,8 +14,8 @@ pub enum Input {
     RotarySwitch(RotarySwitch, Position),
     /// Where keys and rotary switches stand.
     Status(Status),
-    /// The enabling switches, which have their own wires: true while down. Hand them in whenever one
-    /// changes, and once at the start.
+    /// The enabling switches, which have their own wires: true while down. Hand them in whenever
+    /// one changes, and once at the start.
     Enable {
         /// The left one.
         left: bool,
@@ -24,12 +24,13 @@ pub enum Input {
     },
     /// The stop button, which has its own wires too.
     StopButton,
-    /// Wheel counts of one [`WheelSampler::PERIOD`](handwheel::WheelSampler::PERIOD); zero when the wheel stood still.
+    /// Wheel counts of one [`WheelSampler::PERIOD`](handwheel::WheelSampler::PERIOD); zero when the
+    /// wheel stood still.
     Wheel(i32),
     /// The link to the pendant is lost.
     Lost,
-    /// What this pendant moved is at rest: it stopped as commanded, or the pose is reached, or the axis
-    /// ended its jog by itself. Only when it is: a panel at rest has nothing to stop.
+    /// What this pendant moved is at rest: it stopped as commanded, or the pose is reached, or the
+    /// axis ended its jog by itself. Only when it is: a panel at rest has nothing to stop.
     AtRest,
     /// The machine does not carry out this pendant's last action; nothing moves.
     Refused(Refusal),

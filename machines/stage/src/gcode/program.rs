@@ -67,8 +67,8 @@ impl Program {
         Self::parse(&String::from_utf8_lossy(bytes))
     }
 
-    /// The program with its zero at `offset`, X and Y in mm from that of the stage, where it begins all
-    /// the same.
+    /// The program with its zero at `offset`, X and Y in mm from that of the stage, where it begins
+    /// all the same.
     ///
     /// # Errors
     /// The offset is no number.
@@ -92,8 +92,8 @@ impl Program {
         Ok(self)
     }
 
-    /// The program with its zero where all of it is within the travel of the stage: its own, if that
-    /// will do, else with the lowest X, or Y, at 0.
+    /// The program with its zero where all of it is within the travel of the stage: its own, if
+    /// that will do, else with the lowest X, or Y, at 0.
     ///
     /// # Errors
     /// It is larger than the travel.

@@ -9,11 +9,11 @@ use pulse_interp::Turn;
 
 use crate::motion::{Motion, Shape};
 
-/// The arc of a motion from a point, within rounding of the programmed start: in two where it is more than
-/// half a turn, none where it has no length.
+/// The arc of a motion from a point, within rounding of the programmed start: in two where it is
+/// more than half a turn, none where it has no length.
 ///
-/// Programs round both ends. Each part is of the circle through its ends whose centre is nearest to the
-/// programmed one: the middle of a long arc is half as far out as both ends together.
+/// Programs round both ends. Each part is of the circle through its ends whose centre is nearest to
+/// the programmed one: the middle of a long arc is half as far out as both ends together.
 ///
 /// # Errors
 /// A number that is too large to compute with.
@@ -49,7 +49,8 @@ pub(super) fn curves(from: Point, motion: &Motion) -> Result<Vec<Curve<2>>> {
     Ok(curves)
 }
 
-/// The arc of half a turn at most between two points, with its centre on the line that is as far from both.
+/// The arc of half a turn at most between two points, with its centre on the line that is as far
+/// from both.
 fn through(from: Point, to: Point, centre: Point, turn: Turn) -> Result<Option<Curve<2>>> {
     /// What rounding leaves of a length, in mm: a ten-thousandth of a step.
     const NOTHING_MM: f64 = 1e-6;

@@ -1,5 +1,5 @@
-//! A machine whose load is known: what is planned against what its simulated motors can turn, and how
-//! its tables swing. The simulation gets the steps alone.
+//! A machine whose load is known: what is planned against what its simulated motors can turn, and
+//! how its tables swing. The simulation gets the steps alone.
 
 use std::fs;
 use std::path::Path;
@@ -90,8 +90,8 @@ fn no_step_is_lost_on_the_programs_of_other_tools() {
     assert!(programs >= 6, "{programs}");
 }
 
-/// There and back, so far each time that the motor of X is asked for all of its torque either way, one right
-/// after the other, at all of its speeds.
+/// There and back, so far each time that the motor of X is asked for all of its torque either way,
+/// one right after the other, at all of its speeds.
 fn there_and_back() -> Program {
     let mut text = String::from("G21 G90 F6000\n");
     for tenths in 5..60 {
@@ -107,8 +107,8 @@ fn lost_with(factor: f64) -> f64 {
     lost_steps(&report(&machine, &there_and_back(), 0.01))
 }
 
-/// Within a segment of 0.1 mm the torque turns round in 2 ms, half a swing of the motor, and not at once as where
-/// its pull-out torque is found: so the motor follows a little more.
+/// Within a segment of 0.1 mm the torque turns round in 2 ms, half a swing of the motor, and not at
+/// once as where its pull-out torque is found: so the motor follows a little more.
 #[test]
 fn the_limit_is_tight() {
     assert_eq!(lost_with(0.95).to_bits(), 0);

@@ -1,4 +1,5 @@
-//! A machine by its inverse alone: a line of a five-bar, planned within its bound, and what is refused.
+//! A machine by its inverse alone: a line of a five-bar, planned within its bound, and what is
+//! refused.
 
 use machine_kin::{Elbow, FiveBar, Machine, MachinePath, PathError};
 use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};

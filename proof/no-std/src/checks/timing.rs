@@ -113,8 +113,8 @@ pub fn shaped() -> Option<()> {
     holds((late_s - rows.longest_delay_s()).abs() < CLOSE_S)
 }
 
-/// A line of an arm within the torque of its motors: none is asked for more than it has, one for nearly
-/// all of it.
+/// A line of an arm within the torque of its motors: none is asked for more than it has, one for
+/// nearly all of it.
 pub fn torque() -> Option<()> {
     let link = LinkMass {
         mass_kg: 2.5,

@@ -1,4 +1,5 @@
-//! A day's worth of load, by hand: memory, disk, losses and duplicates for docs/book/src/gateway.md.
+//! A day's worth of load, by hand: memory, disk, losses and duplicates for
+//! docs/book/src/gateway.md.
 //!
 //! `cargo test --release -p line3964r --test it gateway::day -- --ignored --nocapture`
 

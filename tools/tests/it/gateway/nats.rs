@@ -1,4 +1,5 @@
-//! NATS with `JetStream`: servers of the test's own, one or three, of which one is away now and then.
+//! NATS with `JetStream`: servers of the test's own, one or three, of which one is away now and
+//! then.
 
 use alloc::{collections::BTreeMap, sync::Arc};
 use core::{
@@ -168,8 +169,8 @@ async fn telegrams_and_states_are_kept_and_requests_are_answered() {
     }
 }
 
-/// As through MQTT: what the partner sends is told, what commands write it fetches, and each command
-/// has its outcome.
+/// As through MQTT: what the partner sends is told, what commands write it fetches, and each
+/// command has its outcome.
 #[tokio::test(flavor = "multi_thread")]
 async fn areas_that_are_served_are_told_and_written() {
     let cluster = cluster_or_skip!(1);

@@ -31,8 +31,8 @@ struct Server {
 }
 
 impl Cluster {
-    /// `None`, and that is said, where there is no `nats-server`. `more` is for the configuration of
-    /// each.
+    /// `None`, and that is said, where there is no `nats-server`. `more` is for the configuration
+    /// of each.
     pub(crate) async fn start(count: usize, more: &str) -> Option<Self> {
         let asked = Command::new("nats-server").arg("--version").output();
         if asked.is_err() {

@@ -1,4 +1,5 @@
-//! What was acknowledged to a partner reaches the broker: whoever is killed, and whatever is refused.
+//! What was acknowledged to a partner reaches the broker: whoever is killed, and whatever is
+//! refused.
 
 use alloc::{
     collections::{BTreeMap, BTreeSet},

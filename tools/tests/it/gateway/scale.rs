@@ -20,7 +20,8 @@ use super::{
 /// Bytes of a telegram.
 const TELEGRAM: usize = 32;
 
-/// Until each line has been looked at for the first time: from then on every 15 minutes, if it works.
+/// Until each line has been looked at for the first time: from then on every 15 minutes, if it
+/// works.
 const FIRST_LOOK: Duration = Duration::from_secs(7);
 
 /// One row of the table.

@@ -1,5 +1,5 @@
-//! The gateway as an edge node of Sparkplug B, as a host sees it that was written by the specification:
-//! `sparkplug.py`.
+//! The gateway as an edge node of Sparkplug B, as a host sees it that was written by the
+//! specification: `sparkplug.py`.
 
 use alloc::collections::BTreeMap;
 use core::time::Duration;
@@ -258,8 +258,8 @@ async fn births_data_commands_and_deaths() {
     }
 }
 
-/// What was acknowledged while the broker was away comes, marked; a gateway that is killed is dead by
-/// its will, and the next one has the next number.
+/// What was acknowledged while the broker was away comes, marked; a gateway that is killed is dead
+/// by its will, and the next one has the next number.
 #[tokio::test(flavor = "multi_thread")]
 async fn what_was_stored_is_historical_and_nothing_is_lost() {
     let mut broker = broker_or_skip!();

@@ -1,5 +1,5 @@
-//! Partners of lines, on pseudo-terminals that carry characters at a baud rate and hand them over in
-//! pieces, as USB adapters do.
+//! Partners of lines, on pseudo-terminals that carry characters at a baud rate and hand them over
+//! in pieces, as USB adapters do.
 
 use alloc::sync::Arc;
 use core::{mem, time::Duration};
@@ -90,7 +90,8 @@ impl Uart {
     }
 }
 
-/// Carries characters, each in its time, and hands over those that have arrived when a piece is due.
+/// Carries characters, each in its time, and hands over those that have arrived when a piece is
+/// due.
 async fn carry(
     mut from: impl AsyncRead + Unpin,
     mut to: impl AsyncWrite + Unpin,

@@ -28,8 +28,8 @@ use super::{
 /// Where the protocol level is in a CONNECT whose length has two bytes, as that of a gateway has.
 const LEVEL: usize = 9;
 
-/// A front of the broker that says this to a CONNECT of MQTT 5 and closes the connection, as often as
-/// it shall.
+/// A front of the broker that says this to a CONNECT of MQTT 5 and closes the connection, as often
+/// as it shall.
 async fn front(broker: u16, answer: &'static [u8], times: usize) -> (u16, Arc<AtomicUsize>) {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();

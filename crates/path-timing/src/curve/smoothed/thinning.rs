@@ -91,7 +91,8 @@ impl<const D: usize> Thinning<D> {
         Some(to)
     }
 
-    /// The end of the input, which is its last point to the last bit: what is kept before it, and it.
+    /// The end of the input, which is its last point to the last bit: what is kept before it, and
+    /// it.
     pub(super) fn finish(&mut self, last: &Point<D>) -> [Option<Point<D>>; 2] {
         let Some(from) = self.from else {
             return [None, None];

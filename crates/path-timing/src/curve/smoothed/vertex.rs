@@ -62,8 +62,8 @@ impl<const D: usize> Vertex<D> {
         }
     }
 
-    /// Goes on from here to the next vertex: its arc length, and this one's direction. The direction
-    /// before is that of the vertex before, none at a start.
+    /// Goes on from here to the next vertex: its arc length, and this one's direction. The
+    /// direction before is that of the vertex before, none at a start.
     pub(super) fn go_on(&mut self, next: &mut Self, before: Option<&[f64; D]>, sharpest: f64) {
         let edge = difference(&next.point, &self.point);
         let length = norm(&edge);
@@ -102,7 +102,8 @@ impl<const D: usize> Vertex<D> {
         self.s + self.width
     }
 
-    /// What its hump adds to a point and to the direction, on an edge before the vertex or behind it.
+    /// What its hump adds to a point and to the direction, on an edge before the vertex or behind
+    /// it.
     ///
     /// ```text
     /// B(v) = (h - |v|)³ / 6h²    B'(v) = ∓ (h - |v|)² / 2h²

@@ -16,8 +16,8 @@ const MODE: Mode = Mode {
 /// A bound is at most so many times what is measured.
 const TIGHT: f64 = 3.0;
 
-/// The largest distance of `tool` between the shaped motion and the motion `delay_s` before, in fine
-/// samples.
+/// The largest distance of `tool` between the shaped motion and the motion `delay_s` before, in
+/// fine samples.
 fn measured<const N: usize, const D: usize>(
     rows: &[Row<[f64; N]>],
     shaped: &[Row<[f64; N]>],

@@ -4,8 +4,8 @@ use path_timing::{Impulse, Mode, Shaper, ShaperError};
 
 type Make = fn(Mode) -> Result<Shaper, ShaperError>;
 
-/// Each shaper with the residual at its frequency without damping, and how far off the frequency may be
-/// for a residual of 5 %.
+/// Each shaper with the residual at its frequency without damping, and how far off the frequency
+/// may be for a residual of 5 %.
 pub(super) const SHAPERS: [(&str, Make, f64, f64); 6] = [
     ("ZV", Shaper::zv, 0.0, 0.03),
     ("MZV", Shaper::mzv, 0.0, 0.045),

@@ -74,7 +74,8 @@ fn the_tool_stays_on_its_path_within_the_limits() {
     }
 }
 
-/// What a mode in x is left with when the course along an arc is shaped, driven by the cubics themselves.
+/// What a mode in x is left with when the course along an arc is shaped, driven by the cubics
+/// themselves.
 #[test]
 fn little_of_a_vibration_is_left() {
     let arc = Curve::arc([40.0, 0.0], [0.0, 0.0], [0.0, 1.0], 4.0).unwrap();

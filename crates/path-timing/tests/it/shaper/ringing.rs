@@ -91,8 +91,8 @@ fn left(rows: &[Row<[f64; 2]>], mode: Mode, steps_per_mm: f64) -> f64 {
     oscillator.amplitude()
 }
 
-/// The largest vibration that short and long moves leave at an actual mode, where each is shaped for
-/// the mode that is known; with and without the shaper.
+/// The largest vibration that short and long moves leave at an actual mode, where each is shaped
+/// for the mode that is known; with and without the shaper.
 fn worst(
     known: Mode,
     actual: Mode,

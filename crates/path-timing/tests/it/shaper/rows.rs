@@ -109,8 +109,8 @@ fn check(
     }
 }
 
-/// The extremes of a cubic in 32 digits, from the row's numbers as they are. They are rounded: by an
-/// epsilon, and what follows of it is allowed.
+/// The extremes of a cubic in 32 digits, from the row's numbers as they are. They are rounded: by
+/// an epsilon, and what follows of it is allowed.
 fn check_cubic(from: &Row<[f64; 2]>, to: &Row<[f64; 2]>, axis: usize, limits: &AxisLimits) {
     let exact = TwoFloat::from;
     let t = exact(to.duration_s);

@@ -44,8 +44,8 @@ pub(crate) fn bits(row: &Row<[f64; 2]>) -> [u64; 2] {
     row.position.map(f64::to_bits)
 }
 
-/// The table run to each row from `first` on, held there, and run on: all rows, and how long each hold
-/// takes. The end is that of the table, to the last bit.
+/// The table run to each row from `first` on, held there, and run on: all rows, and how long each
+/// hold takes. The end is that of the table, to the last bit.
 pub(crate) fn held_at_each<'a>(
     table: &'a Table<'_, [f64; 2]>,
     first: usize,
@@ -79,8 +79,8 @@ pub(crate) fn feeds() -> impl Strategy<Value = Vec<(f64, usize)>> {
     prop::collection::vec((0.0..1.5_f64, 1..30_usize), 1..12)
 }
 
-/// The rows of a table under feeds, of which those below `slowest` are holds, and at a feed of 1 from
-/// there to its end.
+/// The rows of a table under feeds, of which those below `slowest` are holds, and at a feed of 1
+/// from there to its end.
 pub(crate) fn run_under(
     feeds: Vec<(f64, usize)>,
     slowest: f64,

@@ -6,7 +6,8 @@ use core::fmt::{self, Display, Formatter};
 use path_timing::{Path, PathFn, PathPoint};
 use test_support::Random;
 
-/// Each axis goes along the path at a slope, with waves on its way: amplitude, frequency in rad, phase.
+/// Each axis goes along the path at a slope, with waves on its way: amplitude, frequency in rad,
+/// phase.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Waves([(f64, [[f64; 3]; 2]); 2]);
 

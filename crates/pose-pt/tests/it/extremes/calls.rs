@@ -1,5 +1,5 @@
-//! Every public function of the crate but those of paths and tables as one of numbers, in f64 and in
-//! f32.
+//! Every public function of the crate but those of paths and tables as one of numbers, in f64 and
+//! in f32.
 
 use pose_pt::nalgebra::{
     Isometry3, Matrix3, Point3, Quaternion, RealField, Rotation3, UnitQuaternion, Vector3,

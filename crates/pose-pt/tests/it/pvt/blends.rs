@@ -53,8 +53,8 @@ fn rounded<const N: usize>(
     )
 }
 
-/// How far a pose is from a path, as a fraction of a blend: the larger of both of its bounds, at the
-/// best point of the path.
+/// How far a pose is from a path, as a fraction of a blend: the larger of both of its bounds, at
+/// the best point of the path.
 fn off(path: &PosePath<'_>, found: &Isometry3<f64>, blend: &Blend) -> f64 {
     const SAMPLES: u32 = 200;
     let at = |leg: usize, s: f64| {

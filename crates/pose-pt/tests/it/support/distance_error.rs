@@ -14,8 +14,8 @@ pub(crate) fn distance_error<const N: usize>(
         .abs()
 }
 
-/// The largest distance error between points, at 1000 places of each segment: `between` has the axes
-/// at a share of it.
+/// The largest distance error between points, at 1000 places of each segment: `between` has the
+/// axes at a share of it.
 pub(crate) fn measured<const N: usize, P>(
     platform: &Platform<N>,
     points: &[P],

@@ -100,8 +100,8 @@ fn a_slow_user_leaves_nobody_stuck() {
     }
 }
 
-/// A sender gets success reported only when the receiver's user has accepted, whoever accepts, refuses
-/// or forgets, and whatever the line does; and nobody gets stuck.
+/// A sender gets success reported only when the receiver's user has accepted, whoever accepts,
+/// refuses or forgets, and whatever the line does; and nobody gets stuck.
 #[test]
 fn what_is_held_is_acknowledged_by_its_user_alone() {
     for payloads in PAYLOADS {

@@ -118,7 +118,8 @@ fn jobs(random: &mut Random, side: u8) -> Vec<Vec<u8>> {
     (0..1 + JOBS).map(job).collect()
 }
 
-/// What the partner's user has got is what was submitted, in order; `repeats` may follow each other.
+/// What the partner's user has got is what was submitted, in order; `repeats` may follow each
+/// other.
 fn assert_genuine(received: &[Vec<u8>], jobs: &[Vec<u8>], repeats: bool, script: u64) {
     let places: Vec<_> = received
         .iter()

@@ -21,8 +21,8 @@ const LEAD_TICKS: u64 = CLOCK_HZ as u64 / 50;
 /// Most starts from rest that are remembered.
 const MAX_STARTS: usize = 16;
 
-/// A batch, and how the stream goes on after it. The main loop fills it, then it is ready; from then
-/// on the interrupt reads it until both joints have left it.
+/// A batch, and how the stream goes on after it. The main loop fills it, then it is ready; from
+/// then on the interrupt reads it until both joints have left it.
 pub struct Slot {
     ready: AtomicBool,
     next: AtomicU8,
@@ -216,8 +216,8 @@ impl Machine {
         self.start.clock + (plan - self.start.plan)
     }
 
-    /// Goes over to the tail where no batch has come in time. It is not asked whether a joint waits:
-    /// a fast one does so too late.
+    /// Goes over to the tail where no batch has come in time. It is not asked whether a joint
+    /// waits: a fast one does so too late.
     fn decide(&mut self) {
         let number = with_joints(|joints| joints[0].batch.max(joints[1].batch));
         let slot = SLOTS.of(number);

@@ -13,8 +13,8 @@ use stepper_sync::Direction;
 
 use super::Result;
 
-/// The latest that an edge may come: the next step of its joint may be due then, and the timer would
-/// not have been told of the one after it.
+/// The latest that an edge may come: the next step of its joint may be due then, and the timer
+/// would not have been told of the one after it.
 const MAX_LATENCY_TICKS: u64 = LEAST.step_ticks;
 /// Each joint is within half a step of the path, both links in a row; that far from the line is the
 /// tool, and 1 um for the cubics between rows.

@@ -86,7 +86,8 @@ impl Joint {
         }
     }
 
-    /// The main loop's part: steps for a joint that had none. `ticks_to` says how far a plan tick is.
+    /// The main loop's part: steps for a joint that had none. `ticks_to` says how far a plan tick
+    /// is.
     pub fn fill(
         &mut self,
         number: usize,

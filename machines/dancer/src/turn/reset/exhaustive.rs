@@ -24,7 +24,8 @@ struct Arrival {
     before: State,
 }
 
-/// All states that can be after a frame; whichever is looked at first, the best arrivals are the same.
+/// All states that can be after a frame; whichever is looked at first, the best arrivals are the
+/// same.
 type Layer = HashMap<State, Arrival>;
 
 /// The magnitudes of a plan that ends within one half step: tracked at first, from any speeds at

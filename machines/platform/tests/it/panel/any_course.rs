@@ -28,8 +28,8 @@ fn input() -> impl Strategy<Value = Input> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// Any course of inputs at two pendants: nothing moves unless both switches of its pendant are down
-    /// and have been up before; a stop follows at once when one comes up, or the link or the
+    /// Any course of inputs at two pendants: nothing moves unless both switches of its pendant are
+    /// down and have been up before; a stop follows at once when one comes up, or the link or the
     /// stop button says so; nothing is moved by two; and every screen can be shown.
     #[test]
     fn any_course_is_safe(inputs in prop::collection::vec((0usize..2, input()), 1..150)) {
