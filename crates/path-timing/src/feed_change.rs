@@ -15,7 +15,7 @@ pub(crate) use course::{At, Course};
 
 use crate::Axes;
 use crate::jerk::{Most, Walk};
-use braking::{Braking, KAPPAS, State, TAIL, TAILS};
+use braking::{Braking, KAPPAS, State, TAIL, TAILS, TAILS_OF_STOPS};
 use ramped::FeedChange;
 
 /// The feed, and the change that goes on where it is not yet the wanted one. One that has ended
@@ -220,7 +220,11 @@ impl<A: Axes> Course<'_, A> {
         });
         // What the segment before has in its middle, and what the table has at the knot.
         let starts = [self.state(at), self.state_between(at)];
-        let tails = if to > 0.0 { &TAILS[..] } else { &[TAIL] };
+        let tails = if to > 0.0 {
+            &TAILS[..]
+        } else {
+            &TAILS_OF_STOPS
+        };
         OF_LIMITS.iter().find_map(|part| {
             let limits = inverse.map(|inverse| part / inverse);
             let shapes =
