@@ -139,7 +139,7 @@ const SETTLED: f64 = 0.001;
 const INSIDE: f64 = 0.95;
 
 /// The fraction of the time that a limit at each knot may cost at the beginning.
-const FIRST_GAP: f64 = 0.3;
+const FIRST_GAP: f64 = 0.1;
 
 /// By how much the weight of the time grows from one search to the next.
 const GROWTH: f64 = 6.0;

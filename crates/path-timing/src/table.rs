@@ -24,7 +24,8 @@ use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 /// what that path's [`corner`](Path::corner) says.
 ///
 /// Where an axis has a limit of jerk: between rows a cubic has one jerk; at a row its acceleration
-/// steps, which counts as a jerk over the time between the middles of the segments.
+/// steps, which counts as a jerk over the time between the middles of the segments, and so does
+/// what it changes by from one middle to the next: over many rows no more than the limit is left.
 #[derive(Debug, Clone, Copy)]
 pub struct Table<'a, A: Axes> {
     pub(crate) knots: &'a [Knot<A>],

@@ -139,9 +139,10 @@ const ROUNDING: f64 = 1e-9;
 pub struct Verifier<A: Axes> {
     promise: Promise<A>,
     before: Option<Row<A>>,
-    /// Accelerations at the end of the segment before, and its duration; zero at rest and at a
-    /// jump.
+    /// Accelerations at the end of the segment before and in its middle, and its duration; zero at
+    /// rest and at a jump.
     accelerations: A,
+    middles: A,
     duration_s: f64,
     /// The largest part of a limit since the last rest, as a factor of all speeds.
     use_of_limits: f64,
@@ -196,6 +197,7 @@ impl<A: Axes> Verifier<A> {
             promise,
             before: None,
             accelerations: A::zeros(),
+            middles: A::zeros(),
             duration_s: 0.0,
             use_of_limits: 0.0,
         }
@@ -322,13 +324,14 @@ impl<A: Axes> Verifier<A> {
         let velocities = from.velocity.as_slice().iter().zip(row.velocity.as_slice());
         let limits = A::each(&self.promise.limits).iter().enumerate();
         let all = limits.zip(positions.zip(velocities));
-        let ends = self.accelerations.as_mut_slice().iter_mut();
+        let middles = self.middles.as_mut_slice().iter_mut();
+        let ends = (self.accelerations.as_mut_slice().iter_mut()).zip(middles);
         let (time_s, duration_s) = (row.time_s, row.duration_s);
         let middles_s = (self.duration_s + duration_s) * 0.5;
-        for (((axis, limits), ((q0, q1), (v0, v1))), before) in all.zip(ends) {
+        for (((axis, limits), ((q0, q1), (v0, v1))), (before, middle_before)) in all.zip(ends) {
             let motion = Motion::new([*q0, *q1], [*v0, *v1], duration_s);
             let (speed, [a0, a1]) = (motion.speed(), motion.accelerations());
-            let acceleration = a0.abs().max(a1.abs());
+            let (acceleration, middle) = (a0.abs().max(a1.abs()), (a0 + a1) * 0.5);
             within((axis, "speed", limits.speed), speed, time_s)?;
             within(
                 (axis, "acceleration", limits.acceleration),
@@ -339,12 +342,13 @@ impl<A: Axes> Verifier<A> {
             if let Some(limit) = limits.jerk {
                 let inside = (a1 - a0).abs() / duration_s;
                 let step = (a0 - *before).abs() / middles_s;
-                let jerk = inside.max(step);
+                let between = (middle - *middle_before).abs() / middles_s;
+                let jerk = inside.max(step).max(between);
                 within((axis, "jerk", limit), jerk, time_s)?;
                 used = used.max(cube_root(jerk / limit));
             }
             self.use_of_limits = self.use_of_limits.max(used);
-            *before = a1;
+            (*before, *middle_before) = (a1, middle);
         }
         self.duration_s = duration_s;
         Ok(())
@@ -354,12 +358,16 @@ impl<A: Axes> Verifier<A> {
     fn check_eased<E>(&mut self, time_s: f64) -> Result<(), Violation<E>> {
         let limits = A::each(&self.promise.limits).iter().enumerate();
         let half_s = self.duration_s * 0.5;
-        for ((axis, limits), before) in limits.zip(self.accelerations.as_slice()) {
+        let ends = self.accelerations.as_slice().iter();
+        let ends = ends.zip(self.middles.as_slice());
+        for ((axis, limits), (end, middle)) in limits.zip(ends) {
             if let Some(limit) = limits.jerk {
-                within((axis, "jerk", limit), before.abs() / half_s, time_s)?;
+                let most = end.abs().max(middle.abs());
+                within((axis, "jerk", limit), most / half_s, time_s)?;
             }
         }
-        (self.accelerations, self.duration_s) = (A::zeros(), 0.0);
+        (self.accelerations, self.middles) = (A::zeros(), A::zeros());
+        self.duration_s = 0.0;
         Ok(())
     }
 

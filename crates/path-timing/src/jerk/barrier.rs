@@ -25,7 +25,8 @@ pub(crate) struct Utilisation<const KNOTS: usize> {
 pub(crate) trait Barrier {
     /// Of a segment.
     fn limit(&mut self, utilisation: &Utilisation<2>);
-    /// Of the step of an acceleration where a segment begins.
+    /// Of what an acceleration changes by where a segment begins, or from the middle of the one
+    /// before to its own.
     fn step(&mut self, utilisation: &Utilisation<3>);
     /// The length of a segment and the speeds at its ends.
     fn time(&mut self, ds: f64, speeds: [f64; 2]);
@@ -57,6 +58,14 @@ impl Acceleration {
         }
     }
 
+    /// In the middle of a segment, from those at its ends.
+    fn middle(from: &Self, to: &Self) -> Self {
+        Self {
+            value: (from.value + to.value) * 0.5,
+            by: [(from.by[0] + to.by[0]) * 0.5, (from.by[1] + to.by[1]) * 0.5],
+        }
+    }
+
     const fn utilisation(&self) -> Utilisation<2> {
         Utilisation {
             value: self.value,
@@ -66,10 +75,10 @@ impl Acceleration {
     }
 }
 
-/// The end of the segment before, from which the acceleration steps.
+/// The segment before, from which the acceleration goes on: that at its end, and that in its middle.
 #[derive(Debug, Clone, Copy)]
 struct Before<A: Axes> {
-    accelerations: A::Of<Acceleration>,
+    accelerations: A::Of<[Acceleration; 2]>,
     ds: f64,
     speeds: [f64; 2],
 }
@@ -172,13 +181,15 @@ fn is_jump<A: Axes>(knots: &[Knot<A>], index: usize) -> bool {
 }
 
 impl<A: Axes> Moving<'_, A> {
-    /// The accelerations with which the segment ends.
+    /// The accelerations with which the segment ends, and those in its middle.
     fn end(&self) -> Before<A> {
-        let mut accelerations = A::filled(Acceleration::NONE);
+        let mut accelerations = A::filled([Acceleration::NONE; 2]);
         let loads = A::each(self.segment.axes());
-        for (end, load) in A::each_mut(&mut accelerations).iter_mut().zip(loads) {
-            let [_, to] = load.accelerations;
-            *end = Acceleration::new(to, self.speeds);
+        for (places, load) in A::each_mut(&mut accelerations).iter_mut().zip(loads) {
+            let [from, to] = load
+                .accelerations
+                .map(|terms| Acceleration::new(terms, self.speeds));
+            *places = [to, Acceleration::middle(&from, &to)];
         }
         Before {
             accelerations,
@@ -215,8 +226,11 @@ impl<A: Axes> Moving<'_, A> {
                 if let Some((before, rate)) = &between
                     && let Some(earlier) = A::each(&before.accelerations).get(axis)
                 {
-                    let utilisation = rate.step([earlier, &ends[0]], [time_s, noise]);
-                    barrier.step(&utilisation);
+                    let [start, end] = &ends;
+                    let here = [*start, Acceleration::middle(start, end)];
+                    for (earlier, here) in earlier.iter().zip(&here) {
+                        barrier.step(&rate.step([earlier, here], [time_s, noise]));
+                    }
                 }
             }
         }
@@ -269,11 +283,15 @@ impl<A: Axes> Moving<'_, A> {
         let by = [end.by[0] - start.by[0], end.by[1] - start.by[1]];
         over_time(end.value - start.value, by, rate);
         let [eased_start, eased_end] = self.eased;
+        let middle = Acceleration::middle(start, end);
         if eased_start {
             over_time(start.value, start.by, rate * 2.0);
         }
         if eased_end {
             over_time(end.value, end.by, rate * 2.0);
+        }
+        if eased_start || eased_end {
+            over_time(middle.value, middle.by, rate * 2.0);
         }
     }
 }

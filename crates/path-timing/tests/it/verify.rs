@@ -161,6 +161,39 @@ fn seeded_faults_are_found() {
     }
 }
 
+/// The jerk of a cubic and the step at a row are within the limit each, both together are not.
+#[test]
+fn jerks_and_steps_count_together() {
+    // Accelerations at both ends of segments of a second each.
+    let from_rest: &[[f64; 2]] = &[[0.5, 1.5]];
+    let going: &[[f64; 2]] = &[[0.0, 1.0], [1.9, 2.9]];
+    for (accelerations, most) in [(from_rest, 2.0), (going, 1.9)] {
+        let mut verifier = Verifier::new(promise([limits(10.0, 10.0, Some(1.0)); 2]));
+        let line = |_| Some(Curve::line([0.0; 2], [100.0, 0.0]).unwrap());
+        let mut row = Row::<[f64; 2]>::default();
+        let mut found = verifier.add(&row, line, Curve::departure);
+        for [a0, a1] in accelerations {
+            found.unwrap();
+            let [[x, _], [v, _]] = [row.position, row.velocity];
+            let x = x + v + a0 / 2.0 + (a1 - a0) / 6.0;
+            row = Row {
+                time_s: row.time_s + 1.0,
+                duration_s: 1.0,
+                position: [x, 0.0],
+                velocity: [v + (a0 + a1) / 2.0, 0.0],
+                s: x,
+                ..row
+            };
+            found = verifier.add(&row, line, Curve::departure);
+        }
+        let error = found.unwrap_err();
+        assert!(
+            matches!(error, Violation::Limit { name: "jerk", value, .. } if (value - most).abs() < TOLERANCE),
+            "{error}"
+        );
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

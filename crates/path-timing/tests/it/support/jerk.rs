@@ -5,8 +5,9 @@ use proptest::prelude::*;
 
 use crate::support::limits::{ROUNDING, check_limits};
 
-/// The jerk inside of each cubic, and the steps of the acceleration at rows over the time between
-/// the middles of their segments; at rest, and where velocities jump, the acceleration is zero.
+/// The jerk inside of each cubic, and over the time between the middles of two the steps of the
+/// acceleration at rows, and what it changes by from middle to middle; at rest, and where
+/// velocities jump, the acceleration is zero.
 pub(crate) fn check_jerk<const N: usize>(
     limits: &[AxisLimits; N],
     start_stop: Option<&[f64; N]>,
@@ -15,14 +16,16 @@ pub(crate) fn check_jerk<const N: usize>(
     check_limits(limits, start_stop, rows);
     for (axis, limits) in limits.iter().enumerate() {
         let jerk = limits.jerk.unwrap() * ROUNDING;
-        let (mut before, mut before_s) = (0.0_f64, 0.0);
-        let eased = |before: f64, before_s: f64| {
-            assert!(before.abs() <= jerk * before_s * 0.5, "to zero: {before}");
+        // At the end of a cubic, and in its middle.
+        let (mut before, mut before_s) = ([0.0_f64; 2], 0.0);
+        let eased = |before: [f64; 2], before_s: f64| {
+            let most = before[0].abs().max(before[1].abs());
+            assert!(most <= jerk * before_s * 0.5, "to zero: {before:?}");
         };
         for pair in rows.windows(2) {
             if pair[0].is_at_rest() || pair[1].duration_s == 0.0 {
                 eased(before, before_s);
-                (before, before_s) = (0.0, 0.0);
+                (before, before_s) = ([0.0; 2], 0.0);
             }
             if pair[1].duration_s == 0.0 {
                 continue;
@@ -31,9 +34,12 @@ pub(crate) fn check_jerk<const N: usize>(
             let [a0, a1] = cubic.accelerations();
             let time_s = cubic.duration_s;
             assert!((a1 - a0).abs() <= jerk * time_s, "{cubic:?}");
-            let step = (a0 - before).abs() / ((time_s + before_s) * 0.5);
-            assert!(step <= jerk, "{} at {}", step / jerk, pair[0].time_s);
-            (before, before_s) = (a1, time_s);
+            let middle = (a0 + a1) * 0.5;
+            for change in [a0 - before[0], middle - before[1]] {
+                let change = change.abs() / ((time_s + before_s) * 0.5);
+                assert!(change <= jerk, "{} at {}", change / jerk, pair[0].time_s);
+            }
+            (before, before_s) = ([a1, middle], time_s);
         }
         eased(before, before_s);
     }
