@@ -81,13 +81,18 @@ impl Echo {
         self.until
     }
 
-    /// Nothing is left to read: what is overdue does not come any more, however late it was looked.
+    /// Nothing is left to read: what is overdue does not come any more, however late one looks.
     pub(crate) fn silence(&mut self, now: Instant) {
         if self.until.is_some_and(|until| now >= until) {
-            self.awaited.clear();
-            self.doubtful = 0;
-            self.until = None;
+            self.forget();
         }
+    }
+
+    /// Nothing that was sent is heard any more.
+    pub(crate) fn forget(&mut self) {
+        self.awaited.clear();
+        self.doubtful = 0;
+        self.until = None;
     }
 }
 
@@ -163,32 +168,26 @@ mod tests {
 
     #[test]
     fn another_character_is_a_collision() {
-        let now = Instant::now();
-        let mut echo = Echo::new(CHARACTER);
-        echo.sent(now, &[0x02, 0x41]);
-        let heard = left(&mut echo, &[0x12, 0x41, 0x10]);
-        assert_eq!(heard, [collision(0x12), Ok(0x10)]);
-    }
-
-    /// The partner's NAK came before the echo of STX.
-    #[test]
-    fn an_echo_after_a_collision_is_not_the_partners() {
-        let now = Instant::now();
-        let mut echo = Echo::new(CHARACTER);
-        echo.sent(now, &[0x02]);
-        let heard = left(&mut echo, &[0x15, 0x02, 0x10]);
-        assert_eq!(heard, [collision(0x15), Ok(0x10)]);
-    }
-
-    /// Of two equal characters the first was replaced: the second is not awaited in the answer's
-    /// place.
-    #[test]
-    fn as_many_as_were_sent_have_been_heard() {
-        let now = Instant::now();
-        let mut echo = Echo::new(CHARACTER);
-        echo.sent(now, &[0x00, 0x00]);
-        let heard = left(&mut echo, &[0x12, 0x00, 0x10, 0x03]);
-        assert_eq!(heard, [collision(0x12), Ok(0x10), Ok(0x03)]);
+        for (own, on_the_wire, wanted) in [
+            (
+                &[0x02, 0x41][..],
+                &[0x12, 0x41, 0x10][..],
+                &[collision(0x12), Ok(0x10)][..],
+            ),
+            // The partner's NAK came before the echo of STX.
+            (&[0x02], &[0x15, 0x02, 0x10], &[collision(0x15), Ok(0x10)]),
+            // Of two equal characters the first was replaced: as many as were sent have been heard,
+            // and the second is not awaited in the answer's place.
+            (
+                &[0x00, 0x00],
+                &[0x12, 0x00, 0x10, 0x03],
+                &[collision(0x12), Ok(0x10), Ok(0x03)],
+            ),
+        ] {
+            let mut echo = Echo::new(CHARACTER);
+            echo.sent(Instant::now(), own);
+            assert_eq!(left(&mut echo, on_the_wire), wanted);
+        }
     }
 
     #[test]

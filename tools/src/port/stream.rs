@@ -95,6 +95,9 @@ impl Port {
             self.stream = Box::pin(stream);
             self.heard.clear();
             self.output.clear();
+            if let Some(echo) = &mut self.echo {
+                echo.forget();
+            }
         }
         Ok(())
     }
@@ -308,7 +311,8 @@ mod tests {
         let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
         let host = listener.local_addr().unwrap();
         drop(listener);
-        let address: super::super::Address = format!("tcp-listen://{host}").parse().unwrap();
+        let address = format!("tcp-listen://{host}?echo=remove");
+        let address: super::super::Address = address.parse().unwrap();
         let opening = tokio::spawn(async move { address.open().await.unwrap() });
         let connect = async || loop {
             if let Ok(stream) = TcpStream::connect(host).await {
@@ -319,12 +323,14 @@ mod tests {
         let mut port = opening.await.unwrap();
         first.write_all(b"1").await.unwrap();
         assert_eq!(port.read_u8().await.unwrap(), b'1');
-        // The first is still open, and says nothing.
+        // The first is still open, and says nothing, not even the echo.
+        port.write_all(b"2").await.unwrap();
         let mut second = connect().await;
         second.write_all(b"2").await.unwrap();
         assert_eq!(port.read_u8().await.unwrap(), b'2');
         port.write_all(b"3").await.unwrap();
         assert_eq!(second.read_u8().await.unwrap(), b'3');
+        assert_eq!(first.read_u8().await.unwrap(), b'2');
         assert_eq!(first.read(&mut [0]).await.unwrap(), 0, "closed");
     }
 }
