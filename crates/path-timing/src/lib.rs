@@ -1,5 +1,5 @@
-// Its programs need crates that depend on this one: `tests/support` compiles them.
 #![cfg_attr(not(doctest), doc = include_str!("../README.md"))]
+// Not a doctest: its programs need crates that depend on this one, `tests/support` compiles them.
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![warn(clippy::print_stdout, clippy::print_stderr)]

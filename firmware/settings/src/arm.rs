@@ -23,7 +23,7 @@ const JOINT: Joint = Joint {
     homing: HOMING,
 };
 
-/// Its motors.
+/// How many motors it has.
 pub const AXES: usize = 2;
 /// Its kinematics.
 pub type Kind = TwoLinkArm;

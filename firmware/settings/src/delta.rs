@@ -21,7 +21,7 @@ const ARM: Joint = Joint {
     },
 };
 
-/// Its motors.
+/// How many motors it has.
 pub const AXES: usize = 3;
 /// Its kinematics.
 pub type Kind = RotaryDelta;

@@ -22,7 +22,7 @@ const SLIDE: Slide = Slide {
     homing: HOMING,
 };
 
-/// Its motors.
+/// How many motors it has.
 pub const AXES: usize = 2;
 /// Its kinematics.
 pub type Kind = XyStage;

@@ -29,12 +29,12 @@ pub(super) struct Braking {
 /// ```
 pub(super) const TAIL: f64 = 0.5;
 
-/// The same and more, to be tried in their order: the jerk with which a stop ends at a knot is the
-/// nearer to its limit the more there are, and where the machine gains its highest speed little
-/// less is too much.
+/// Those that a stop is tried with, in their order. The more there are, the nearer to its limit is
+/// the jerk with which one ends at a knot; where the machine gains its highest speed, little less
+/// passes the limit of speed.
 pub(super) const TAILS_OF_STOPS: [f64; 4] = [TAIL, 0.75, 0.625, 0.875];
 
-/// The same of a lower feed, to be tried in their order.
+/// The same of a lower feed.
 pub(super) const TAILS: [f64; 2] = [0.0, 0.25];
 
 /// Speed and acceleration of the parameter.

@@ -32,8 +32,8 @@ pub(crate) trait Barrier {
     fn time(&mut self, ds: f64, speeds: [f64; 2]);
 }
 
-/// The acceleration of an axis at an end of a segment, as a part of its limit, with derivatives by
-/// the speeds at both ends.
+/// The acceleration of an axis at an end of a segment or in its middle, as a part of its limit, with
+/// derivatives by the speeds at both ends.
 #[derive(Debug, Clone, Copy)]
 struct Acceleration {
     value: f64,
@@ -75,7 +75,7 @@ impl Acceleration {
     }
 }
 
-/// The segment before, from which the acceleration goes on: that at its end, and that in its middle.
+/// The segment before, from which the acceleration goes on: at its end, and in its middle.
 #[derive(Debug, Clone, Copy)]
 struct Before<A: Axes> {
     accelerations: A::Of<[Acceleration; 2]>,
@@ -283,7 +283,6 @@ impl<A: Axes> Moving<'_, A> {
         let by = [end.by[0] - start.by[0], end.by[1] - start.by[1]];
         over_time(end.value - start.value, by, rate);
         let [eased_start, eased_end] = self.eased;
-        let middle = Acceleration::middle(start, end);
         if eased_start {
             over_time(start.value, start.by, rate * 2.0);
         }
@@ -291,6 +290,7 @@ impl<A: Axes> Moving<'_, A> {
             over_time(end.value, end.by, rate * 2.0);
         }
         if eased_start || eased_end {
+            let middle = Acceleration::middle(start, end);
             over_time(middle.value, middle.by, rate * 2.0);
         }
     }
