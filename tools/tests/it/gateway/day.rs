@@ -1,5 +1,5 @@
 //! A day's worth of load, by hand: memory, disk, losses and duplicates for
-//! docs/book/src/gateway.md.
+//! docs/book/src/fleet.md.
 //!
 //! `cargo test --release -p line3964r --test it gateway::day -- --ignored --nocapture`
 

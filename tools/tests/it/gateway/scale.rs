@@ -1,4 +1,4 @@
-//! What busy lines cost a gateway: the table of docs/book/src/gateway.md.
+//! What busy lines cost a gateway: the table of docs/book/src/fleet.md.
 
 use core::{str::FromStr, time::Duration};
 use std::env;
