@@ -39,7 +39,8 @@ fn limits_hold_to_the_last_digit() {
         ] {
             // The finest for one platform on one leg, for all where that is asked for.
             let is_finest = are_all || name == "jerk" && poses.len() == 2;
-            for &(segments, kind) in &cuts[..if is_finest { 4 } else { 3 }] {
+            let cuts = if is_finest { &cuts[..] } else { &cuts[..3] };
+            for &(segments, kind) in cuts {
                 let path = PosePath::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
                 let table = plan(&platform, &path, Cut::Into(segments), &mut knots);
