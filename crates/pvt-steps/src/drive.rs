@@ -1,19 +1,19 @@
 //! From paths to steps in one call: planned by `path-timing`, quantised, put out.
 
+mod segments;
+
 use core::convert::Infallible;
 
 use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segments_within};
 use thiserror::Error;
 
+use self::segments::at_least;
 use crate::{
     KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
 };
 
 /// Knots in sight, of some 170 bytes for two axes: enough to brake within as many segments.
 const KNOTS: usize = 64;
-
-/// Fewest segments of a path.
-const SEGMENTS: u32 = 8;
 
 /// Why paths do not become steps. `E` is the path's own error.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -142,7 +142,8 @@ impl<const N: usize, const W: usize> Drive<N, W> {
     }
 
     /// The steps along `paths`, with ticks from 0 on: each path in as many segments as keep
-    /// `departure`, a bound in the unit of `tolerance`, within it at any speeds.
+    /// `departure`, a bound in the unit of `tolerance`, within it at any speeds, and in no fewer
+    /// than its length and its turns ask for, 2 to 32.
     ///
     /// The motors stand where the first path begins. No axis is faster than its driver takes steps,
     /// whatever its limit. After an error there are no steps, and the motors may be in motion:
@@ -157,8 +158,9 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         tolerance: f64,
         departure: impl Fn(&P, &Span<[f64; N]>) -> f64,
     ) -> impl Iterator<Item = Result<Step, DriveError<P::Error>>> {
-        let segments = move |path: &P| segments_within(path, SEGMENTS, tolerance, &departure);
         let limits = self.limits_of_drivers();
+        let segments =
+            move |path: &P| segments_within(path, at_least(path, &limits), tolerance, &departure);
         let planned = LookAhead::new(paths, limits, segments, &mut self.window);
         let (rows, refused) = match planned {
             Ok(rows) => (Some(rows), None),

@@ -1,10 +1,15 @@
 //! From paths to steps in one call: as its parts do it one by one.
 
-use path_timing::{AxisLimits, Curve, Knot, LookAhead, PlanError, segments_within};
+use core::f64::consts::TAU;
+
+use path_timing::{
+    AxisLimits, Curve, Knot, LookAhead, PlanError, Smoothed, Vertex, segments_within,
+};
 use pvt_steps::{
     Direction, Drive, DriveError, PvtQuantiser, PvtSteps, Rate, ScaleError, Step, StepDirTiming,
     StepScale,
 };
+use scara_kin::{Arm, ArmPath, Elbow};
 
 const LIMITS: AxisLimits = AxisLimits {
     speed: 100.0,
@@ -40,7 +45,7 @@ const DEFAULT: usize = 64;
 #[test]
 fn it_is_its_parts_one_after_the_other() {
     let mut window = [Knot::default(); DEFAULT];
-    let segments = |curve: &Curve<2>| segments_within(curve, 8, TOLERANCE_MM, Curve::departure);
+    let segments = |curve: &Curve<2>| segments_within(curve, 32, TOLERANCE_MM, Curve::departure);
     let mut rows = LookAhead::new(curves(), [LIMITS; 2], segments, &mut window).unwrap();
     let first = rows.next().unwrap().unwrap();
     let scale = StepScale::new(STEPS_PER_MM).unwrap();
@@ -95,6 +100,64 @@ fn a_wider_window_is_no_slower() {
     assert!(many < few, "{many} {few}");
 }
 
+/// The ticks that an arm takes along curves on the plane.
+fn of_the_arm(curves: impl IntoIterator<Item = Curve<2>>, tolerance_mm: f64) -> f64 {
+    let arm = Arm::new(132.0, 132.0).unwrap();
+    let joint = AxisLimits {
+        speed: 3.0,
+        acceleration: 30.0,
+        jerk: None,
+    };
+    let mut drive = Drive::new([joint; 2], [32_000.0 / TAU; 2], rate()).unwrap();
+    let paths = curves
+        .into_iter()
+        .map(|curve| arm.path(curve, Elbow::Right).unwrap());
+    let steps = drive.along(paths, tolerance_mm, ArmPath::departure);
+    let last = steps.map(Result::unwrap).last().unwrap();
+    f64::from(u32::try_from(last.ticks).unwrap())
+}
+
+/// A larger tolerance takes fewer segments, but never so few that the line takes longer.
+#[test]
+fn a_larger_tolerance_costs_no_time() {
+    const MAX_RATIO: f64 = 1.01;
+    let lines = [
+        [[-80.0, 100.0], [80.0, 100.0]],
+        [[200.0, 20.0], [-40.0, 230.0]],
+        [[0.0, 60.0], [0.0, 200.0]],
+        [[100.0, 100.0], [110.0, 102.0]],
+    ];
+    for [from, to] in lines {
+        let ticks = |tolerance_mm| of_the_arm([Curve::line(from, to).unwrap()], tolerance_mm);
+        let least = ticks(0.01);
+        for tolerance_mm in [0.1, 1.0] {
+            let ratio = ticks(tolerance_mm) / least;
+            assert!(
+                ratio <= MAX_RATIO,
+                "{from:?} {to:?} {tolerance_mm}: {ratio}"
+            );
+        }
+    }
+}
+
+/// A quarter of a circle as 628 points of three decimals: the window sees as far as along an arc.
+#[test]
+fn dense_points_are_as_fast_as_the_arc() {
+    const MAX_RATIO: f64 = 1.03;
+    let radius_mm = 40.0;
+    let points = (0..=628).map(|n| {
+        let (sin, cos) = (TAU / 4.0 * f64::from(n) / 628.0).sin_cos();
+        [cos, sin].map(|x| (1000.0 * (100.0 + radius_mm * x)).round() / 1000.0)
+    });
+    let mut vertices = [Vertex::default(); 24];
+    let smoothed = Smoothed::new(points, TOLERANCE_MM, &mut vertices).unwrap();
+    let found = of_the_arm(smoothed.map(Result::unwrap), TOLERANCE_MM);
+    let [start, centre] = [[100.0 + radius_mm, 100.0], [100.0, 100.0]];
+    let arc = Curve::arc(start, centre, [0.0, 1.0], TAU / 4.0).unwrap();
+    let ratio = found / of_the_arm([arc], TOLERANCE_MM);
+    assert!(ratio <= MAX_RATIO, "{ratio}");
+}
+
 #[test]
 fn what_is_wrong_is_named_in_place_of_a_step() {
     let refused = Drive::new([LIMITS; 2], [80.0, 0.0], rate()).unwrap_err();
@@ -116,7 +179,7 @@ fn what_is_wrong_is_named_in_place_of_a_step() {
     );
     assert!(steps.next().is_none());
     // More steps than there are numbers.
-    let mut drive = Drive::new([LIMITS; 2], [1e9; 2], rate()).unwrap();
+    let mut drive = Drive::new([LIMITS; 2], [1e10; 2], rate()).unwrap();
     let all = drive.along(curves(), TOLERANCE_MM, Curve::departure);
     let error = all.last().unwrap().unwrap_err();
     assert!(matches!(error, DriveError::Knot(_)), "{error}");
