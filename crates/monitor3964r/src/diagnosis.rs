@@ -41,6 +41,9 @@ pub struct Diagnosis {
     pub or: Option<Verdict>,
     /// A second fault, which the first does not explain.
     pub also: Option<Verdict>,
+    /// What none of these explains goes wrong as well, in at least a quarter of the blocks or
+    /// requests of a side: there is another fault, without a name as long as these last.
+    pub more: bool,
     /// Telegrams from A to B.
     pub a: Totals,
     /// Telegrams from B to A.
@@ -55,6 +58,9 @@ impl fmt::Display for Diagnosis {
         }
         if let Some(also) = self.also {
             write!(f, "; and {also}")?;
+        }
+        if self.more {
+            f.write_str("; and more")?;
         }
         if let Some(measurement) = self.verdict.measurement() {
             write!(f, "\nto be sure: {measurement}")?;
@@ -113,10 +119,12 @@ pub fn diagnose(record: &[Character], config: &Config) -> Diagnosis {
         check: config.check,
     };
     let (verdict, or) = case.verdict();
+    let also = case.also(verdict);
     Diagnosis {
         verdict,
         or,
-        also: case.also(verdict),
+        also,
+        more: case.has_more([Some(verdict), or, also]),
         a: Totals::of(&evidence, Side::A),
         b: Totals::of(&evidence, Side::B),
     }

@@ -2,6 +2,7 @@
 
 mod also;
 mod blocks;
+mod more;
 
 use core::time::Duration;
 

@@ -197,6 +197,34 @@ fn blocks_and_their_answers() {
     );
 }
 
+/// A second fault that no rule names, and noise that is none.
+#[test]
+fn there_is_more() {
+    let block = |ms: u32, data: &str, bcc: &str| {
+        let [answer, data_ms, end] = [1, 2, 3].map(|after| ms + after);
+        format!("{ms} A 02; {answer} B 10; {data_ms} A {data} 10 03 {bcc}; {end} B 15; ")
+    };
+    let blocks = [
+        block(0, "41", "41"),
+        block(100, "42", "42"),
+        block(200, "43", "43"),
+        block(300, "44", "44"),
+    ]
+    .concat();
+    let refused = |times: u32| {
+        let refusal = |at| format!("{} A 02; {} B 15; ", 1000 + 10 * at, 1001 + 10 * at);
+        (0..times).map(refusal).collect::<String>()
+    };
+    let found = |times| diagnosis(&format!("{blocks}{}2000 A 02", refused(times)));
+    for (times, more) in [(0, false), (1, false), (3, true)] {
+        let found = found(times);
+        let other_bcc = matches!(found.verdict, Verdict::OtherBcc { .. });
+        assert!(other_bcc && found.also.is_none(), "{found}");
+        assert_eq!(found.more, more, "{found}");
+        assert_eq!(found.to_string().contains("; and more"), more);
+    }
+}
+
 #[test]
 fn formulas() {
     for (blocks, formula) in [

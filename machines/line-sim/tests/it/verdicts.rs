@@ -37,7 +37,7 @@ fn judge(make: Make, variation: Variation) -> (Vec<String>, usize) {
         let example = make(case);
         let found = example.diagnosis();
         // One fault is not told as two.
-        if (example.is_right)(&found) && found.also.is_none() {
+        if (example.is_right)(&found) && found.also.is_none() && !found.more {
             right += 1;
         } else {
             wrong.push(format!("{case:?}: {found}"));

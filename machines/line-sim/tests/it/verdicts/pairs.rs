@@ -75,6 +75,7 @@ impl Fault {
 #[derive(Clone, Copy, Debug, Default)]
 struct Share {
     both: u32,
+    one_and_more: u32,
     one: u32,
     none: u32,
 }
@@ -112,6 +113,32 @@ fn judged(case: Case, faults: [Fault; 2], is_at_both: bool) -> (Diagnosis, [bool
     (found, named)
 }
 
+/// Where an answer is late the rules about blocks are silent: that the other side is at fault too
+/// has no name, but is told.
+#[test]
+fn a_fault_without_a_name_is_told() {
+    let mut told = 0;
+    for seed in super::seeds() {
+        let case = long(seed);
+        let (found, named) = judged(case, [Fault::Late, Fault::NoReceiveBuffer], true);
+        told += u32::from(named == [true, true] || named != [false, false] && found.more);
+    }
+    assert!(told >= TOLD_AT_LEAST, "{told}");
+}
+
+/// Of the eight lines of each kind: of one nothing is named that is at fault.
+const TOLD_AT_LEAST: u32 = 6;
+
+/// A line on which all faults of a pair have time to show.
+fn long(seed: u64) -> Case {
+    Case {
+        sends: [true, true],
+        longest: 12,
+        seconds: 40,
+        ..Case::new(seed, Variation::ALL[0])
+    }
+}
+
 /// Prints what is named of each pair; `CASES` of each.
 #[test]
 #[ignore = "a table to read"]
@@ -127,25 +154,21 @@ fn shares_of_pairs() {
                 let mut share = Share::default();
                 let mut last = String::new();
                 for seed in super::seeds() {
-                    let case = Case {
-                        sends: [true, true],
-                        longest: 12,
-                        seconds: 40,
-                        ..Case::new(seed, Variation::ALL[0])
-                    };
-                    let (found, named) = judged(case, [first, second], is_at_both);
+                    let (found, named) = judged(long(seed), [first, second], is_at_both);
                     match named {
                         [true, true] => share.both += 1,
                         [false, false] => {
                             share.none += 1;
                             last = found.verdict.to_string();
                         }
+                        _ if found.more => share.one_and_more += 1,
                         _ => share.one += 1,
                     }
                 }
                 let place = if is_at_both { "each side" } else { "one side" };
                 println!("{first:?} {second:?} {place}: {share:?} {last}");
                 all.both += share.both;
+                all.one_and_more += share.one_and_more;
                 all.one += share.one;
                 all.none += share.none;
             }

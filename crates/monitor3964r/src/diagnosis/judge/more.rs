@@ -1,0 +1,114 @@
+//! Whether there is more than the verdicts explain: what goes wrong is counted, whatever its cause,
+//! and each verdict has what may come of it. A list of symptoms, not of causes.
+
+use super::Case;
+use crate::{diagnosis::verdict::Verdict, monitor::Side};
+
+/// As often, it is no accident; of the blocks or requests it must be a quarter too.
+const OFTEN: u32 = 2;
+
+/// What goes wrong at a side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Symptom {
+    /// Its blocks arrive damaged, or with another BCC.
+    Bad,
+    /// Its blocks have no BCC.
+    WithoutBcc,
+    /// Its blocks do not come to their end.
+    Unfinished,
+    /// It pauses in its blocks.
+    Pauses,
+    /// It answers good blocks with NAK.
+    Rejects,
+    /// It does not answer blocks.
+    NoAcknowledgement,
+    /// It answers blocks at their ETX.
+    AcknowledgesEarly,
+    /// It answers STX with NAK.
+    Refuses,
+    /// It does not answer STX.
+    NoAnswer,
+    /// Its answers come too late.
+    Late,
+}
+
+impl Case<'_> {
+    /// Something else goes wrong besides what these verdicts explain.
+    pub(in crate::diagnosis) fn has_more(&self, verdicts: [Option<Verdict>; 3]) -> bool {
+        Side::BOTH.into_iter().any(|side| {
+            self.symptoms(side)
+                .into_iter()
+                .any(|(symptom, count, all)| {
+                    let is_rule = count >= OFTEN && count.saturating_mul(4) >= all;
+                    let mut verdicts = verdicts.iter().flatten();
+                    is_rule && !verdicts.any(|&verdict| explains(verdict, symptom, side))
+                })
+        })
+    }
+
+    /// How often each shows at this side, and of how many blocks or requests.
+    fn symptoms(&self, side: Side) -> [(Symptom, u32, u32); 10] {
+        let (own, other) = (self.side(side), self.side(side.other()));
+        let (blocks, heard, requests) = (own.blocks(), other.blocks(), other.requests);
+        let early = own.bcc_not_awaited.max(own.nak_after_dle);
+        let late = if self.late(side).is_some() { OFTEN } else { 0 };
+        [
+            (Symptom::Bad, own.bad, blocks),
+            (Symptom::WithoutBcc, own.without_bcc, blocks),
+            (Symptom::Unfinished, own.unfinished, blocks),
+            (Symptom::Pauses, own.gaps, blocks),
+            (Symptom::Rejects, other.good_rejected, heard),
+            (Symptom::NoAcknowledgement, other.unacknowledged, heard),
+            (Symptom::AcknowledgesEarly, early, heard),
+            (Symptom::Refuses, other.refused, requests),
+            (Symptom::NoAnswer, own.unanswered, requests),
+            (Symptom::Late, late, OFTEN),
+        ]
+    }
+}
+
+/// Whether a symptom at a side may come of what a verdict says.
+fn explains(verdict: Verdict, symptom: Symptom, side: Side) -> bool {
+    use Symptom::{
+        AcknowledgesEarly, Bad, Late, NoAcknowledgement, NoAnswer, Pauses, Refuses, Rejects,
+        Unfinished, WithoutBcc,
+    };
+    // Where the fault is, what shows there, and what shows at the partner.
+    let (at, own, partner): (Side, &[Symptom], &[Symptom]) = match verdict {
+        Verdict::Gaps { sender, .. } => (sender, &[Pauses, Unfinished, Bad], &[NoAcknowledgement]),
+        // What it does not hear of the answers has it break off.
+        Verdict::GoodBlocksRejected { refuser, .. } => {
+            (refuser, &[Rejects, Unfinished, Pauses], &[])
+        }
+        Verdict::LongBlocksRejected { refuser, .. } => (refuser, &[Rejects], &[]),
+        // Its answers meet the next question or block.
+        Verdict::Late { side, .. } => (
+            side,
+            &[Late, Rejects, Refuses, NoAnswer, NoAcknowledgement],
+            &[Late, Rejects, Unfinished, WithoutBcc],
+        ),
+        Verdict::NoReceiveBuffer { refuser } => (refuser, &[Refuses], &[]),
+        Verdict::NotDoubled { sender, .. } => (
+            sender,
+            &[Bad, Unfinished],
+            &[NoAnswer, NoAcknowledgement, Rejects],
+        ),
+        // It checks as it sends.
+        Verdict::OtherBcc { sender, .. } => (sender, &[Bad, Rejects], &[]),
+        Verdict::SameDamage { sender, .. } => (sender, &[Bad], &[]),
+        Verdict::WithoutBcc { side } => (
+            side,
+            &[WithoutBcc, AcknowledgesEarly, Refuses, Unfinished],
+            &[NoAcknowledgement, Rejects],
+        ),
+        Verdict::RequestForAnswer { side, .. } => (side, &[NoAcknowledgement], &[NoAnswer]),
+        Verdict::NoAcknowledgement { silent } => (silent, &[NoAcknowledgement], &[]),
+        Verdict::BadBlocks { sender, .. } => {
+            (sender, &[Bad, Unfinished, Pauses], &[NoAcknowledgement])
+        }
+        Verdict::BadBlocksAccepted { receiver } => (receiver, &[], &[Bad]),
+        // These leave nothing of the line to look at, or say that nothing is wrong for good.
+        _ => return true,
+    };
+    if side == at { own } else { partner }.contains(&symptom)
+}
