@@ -4,7 +4,7 @@
 //! that it needs to change its speed, and where the path turns by as much, wherever it does:
 //!
 //! ```text
-//! n = max over axes of 48 |way| a / v^2 and 24 |turn of q'/v| / max |q'/v|
+//! n = max over axes of 48 |way| a / v^2 and 36 |turn of q'/v| / max |q'/v|
 //! ```
 
 use path_timing::{AxisLimits, Path};
@@ -17,14 +17,14 @@ const FEWEST: u32 = 2;
 const FEWEST_WITH_JERK: u32 = 8;
 
 /// Most segments where the tolerance asks for no more.
-const MOST: u32 = 32;
+const MOST: u32 = 64;
 
 /// Segments of the way v^2/a, twice what an axis brakes in from its full speed: a window of
 /// 64 knots sees more than two such brakings, however short its paths are.
 const SEGMENTS_OF_TWO_BRAKINGS: f64 = 48.0;
 
 /// Segments of a turn in which an axis gains or loses its whole speed.
-const SEGMENTS_OF_A_TURN: f64 = 24.0;
+const SEGMENTS_OF_A_TURN: f64 = 36.0;
 
 /// Parts of a path that are looked at for its length and turns.
 const PARTS: u32 = 4;

@@ -45,7 +45,7 @@ const DEFAULT: usize = 64;
 #[test]
 fn it_is_its_parts_one_after_the_other() {
     let mut window = [Knot::default(); DEFAULT];
-    let segments = |curve: &Curve<2>| segments_within(curve, 32, TOLERANCE_MM, Curve::departure);
+    let segments = |curve: &Curve<2>| segments_within(curve, 64, TOLERANCE_MM, Curve::departure);
     let mut rows = LookAhead::new(curves(), [LIMITS; 2], segments, &mut window).unwrap();
     let first = rows.next().unwrap().unwrap();
     let scale = StepScale::new(STEPS_PER_MM).unwrap();
@@ -179,7 +179,7 @@ fn what_is_wrong_is_named_in_place_of_a_step() {
     );
     assert!(steps.next().is_none());
     // More steps than there are numbers.
-    let mut drive = Drive::new([LIMITS; 2], [1e10; 2], rate()).unwrap();
+    let mut drive = Drive::new([LIMITS; 2], [1e11; 2], rate()).unwrap();
     let all = drive.along(curves(), TOLERANCE_MM, Curve::departure);
     let error = all.last().unwrap().unwrap_err();
     assert!(matches!(error, DriveError::Knot(_)), "{error}");
