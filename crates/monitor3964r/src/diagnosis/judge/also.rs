@@ -60,6 +60,8 @@ fn is_another(first: (Kind, Side), second: (Kind, Side)) -> bool {
     match (first.0, second.0) {
         // Late answers meet the next block, and the times of the other side are counted from them.
         (Kind::Late, Kind::Rejects | Kind::Late) => false,
+        // Its NAK at the end of a block that it gives up meets the next STX.
+        (Kind::Late, Kind::NoReceiveBuffer) => first.1 != second.1,
         // What it does not hear of the answers to its own blocks has it break them off.
         (Kind::Rejects, Kind::Gaps) => first.1 != second.1,
         _ => true,
