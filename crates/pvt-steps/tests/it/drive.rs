@@ -158,6 +158,26 @@ fn dense_points_are_as_fast_as_the_arc() {
     assert!(ratio <= MAX_RATIO, "{ratio}");
 }
 
+/// Corners 2 mm apart, rounded within 0.05 mm: as fast as in 64 segments each.
+#[test]
+fn a_turn_has_as_many_segments_as_it_needs() {
+    const MAX_RATIO: f64 = 1.01;
+    let points = (0..20_u32).map(|n| [2 * n.div_ceil(2), 2 * (n / 2)].map(f64::from));
+    let mut vertices = [Vertex::default(); 24];
+    let smoothed = Smoothed::new(points, 0.05, &mut vertices).unwrap();
+    let curves: Vec<_> = smoothed.map(Result::unwrap).collect();
+    let mut window = [Knot::default(); 1024];
+    let segments = |_: &Curve<2>| Ok(64);
+    let rows = LookAhead::new(curves.clone(), [LIMITS; 2], segments, &mut window).unwrap();
+    let least_s = rows.map(|row| row.unwrap().time_s).last().unwrap();
+    let mut drive = drive();
+    let steps = drive.along(curves, 0.05, Curve::departure);
+    let last = steps.map(Result::unwrap).last().unwrap();
+    let found_s = f64::from(u32::try_from(last.ticks).unwrap()) / f64::from(rate().numerator());
+    let ratio = found_s / least_s;
+    assert!((0.99..MAX_RATIO).contains(&ratio), "{ratio}");
+}
+
 #[test]
 fn what_is_wrong_is_named_in_place_of_a_step() {
     let refused = Drive::new([LIMITS; 2], [80.0, 0.0], rate()).unwrap_err();
