@@ -6,15 +6,20 @@
 //! ```text
 //! n = max over axes of 48 |way| a / v^2 and 36 |turn of q'/v| / max |q'/v|
 //! ```
+//!
+//! from 2 to 64, from 8 on where it begins at rest under a limit of jerk.
 
-use path_timing::{AxisLimits, Path};
+use path_timing::{AxisLimits, Corner, Path};
 
 /// Fewest segments: one up, one down.
 const FEWEST: u32 = 2;
 
-/// Fewest where jerk is limited: the acceleration comes and goes on the way up and on the way down,
-/// and may jump between rows.
+/// Fewest from rest where jerk is limited: the acceleration comes and goes on the way up and on the
+/// way down, and may jump at the ends.
 const FEWEST_WITH_JERK: u32 = 8;
+
+/// Difference of slopes that is rounding, as the planner has it: with more a corner is a stop.
+const SMOOTH: f64 = 1e-9;
 
 /// Most segments where the tolerance asks for no more.
 const MOST: u32 = 64;
@@ -29,39 +34,62 @@ const SEGMENTS_OF_A_TURN: f64 = 36.0;
 /// Parts of a path that are looked at for its length and turns.
 const PARTS: u32 = 4;
 
-/// The segments that a path is fast with: few where it is short and straight, so that the window
-/// sees far, and more where speeds change along it; as many up as down, as a way from rest to rest
-/// is fastest in its middle.
-pub(super) fn at_least<P: Path<Axes = [f64; N]>, const N: usize>(
-    path: &P,
-    limits: &[AxisLimits; N],
-) -> u32 {
-    let has_jerk = limits.iter().any(|limit| limit.jerk.is_some());
-    let fewest = if has_jerk { FEWEST_WITH_JERK } else { FEWEST };
-    let mut axes = limits.map(AxisAlong::new);
-    for part in 0..=PARTS {
-        let s = path.length() * (f64::from(part) / f64::from(PARTS));
-        // What is wrong there is found where its knots are laid.
-        let Ok(point) = path.point(s) else {
-            return fewest;
-        };
-        for (axis, at) in axes
-            .iter_mut()
-            .zip(point.position.into_iter().zip(point.slope))
-        {
-            axis.go_to(at);
-        }
+/// Paths one after the other, and the segments that each is fast with: few where it is short and
+/// straight, so that the window sees far, and more where speeds change along it; as many up as
+/// down, as a way from rest to rest is fastest in its middle.
+pub(super) struct Segments<const N: usize> {
+    limits: [AxisLimits; N],
+    /// The slope that the last path goes on with.
+    goes_on: Option<[f64; N]>,
+}
+
+impl<const N: usize> Segments<N> {
+    pub(super) const fn new(limits: [AxisLimits; N]) -> Self {
+        let goes_on = None;
+        Self { limits, goes_on }
     }
-    // No number, where a limit is none or nothing moves, is passed over.
-    let steepest = axes.iter().map(|axis| axis.steepest).fold(0.0, f64::max);
-    let wanted = axes
-        .iter()
-        .map(|axis| axis.segments(steepest))
-        .fold(0.0, f64::max);
-    (fewest..MOST)
-        .step_by(2)
-        .find(|&segments| f64::from(segments) >= wanted)
-        .unwrap_or(MOST)
+
+    /// The fewest segments of the next path.
+    pub(super) fn at_least<P: Path<Axes = [f64; N]>>(&mut self, path: &P) -> u32 {
+        let before = self.goes_on.take();
+        // What is wrong with its points is found where its knots are laid.
+        let Ok(start) = path.point(0.0) else {
+            return FEWEST;
+        };
+        let mut axes = self.limits.map(AxisAlong::new);
+        let mut end = start;
+        for part in 0..=PARTS {
+            let s = path.length() * (f64::from(part) / f64::from(PARTS));
+            let Ok(point) = path.point(s) else {
+                return FEWEST;
+            };
+            let places = point.position.into_iter().zip(point.slope);
+            for (axis, at) in axes.iter_mut().zip(places) {
+                axis.go_to(at);
+            }
+            end = point;
+        }
+        // No number, where a limit is none or nothing moves, is passed over.
+        let steepest = axes.iter().map(|axis| axis.steepest).fold(0.0, f64::max);
+        let is_passed = before.is_some_and(|slope| {
+            let slopes = slope.into_iter().zip(start.slope);
+            let mut apart = self.limits.iter().zip(slopes);
+            apart.all(|(limit, (p0, p1))| (p1 - p0).abs() <= SMOOTH * steepest * limit.speed)
+        });
+        self.goes_on = matches!(path.corner(), Corner::Smooth).then_some(end.slope);
+        let has_jerk = self.limits.iter().any(|limit| limit.jerk.is_some());
+        let fewest = if has_jerk && !is_passed {
+            FEWEST_WITH_JERK
+        } else {
+            FEWEST
+        };
+        let wanted = axes.iter().map(|axis| axis.segments(steepest));
+        let wanted = wanted.fold(0.0, f64::max);
+        (fewest..MOST)
+            .step_by(2)
+            .find(|&segments| f64::from(segments) >= wanted)
+            .unwrap_or(MOST)
+    }
 }
 
 /// An axis along a path: its way, and its speeds relative to its limit at unit speed of the path.

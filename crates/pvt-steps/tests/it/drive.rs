@@ -101,12 +101,16 @@ fn a_wider_window_is_no_slower() {
 }
 
 /// The ticks that an arm takes along curves on the plane.
-fn of_the_arm(curves: impl IntoIterator<Item = Curve<2>>, tolerance_mm: f64) -> f64 {
+fn of_the_arm(
+    curves: impl IntoIterator<Item = Curve<2>>,
+    tolerance_mm: f64,
+    jerk: Option<f64>,
+) -> f64 {
     let arm = Arm::new(132.0, 132.0).unwrap();
     let joint = AxisLimits {
         speed: 3.0,
         acceleration: 30.0,
-        jerk: None,
+        jerk,
     };
     let mut drive = Drive::new([joint; 2], [32_000.0 / TAU; 2], rate()).unwrap();
     let paths = curves
@@ -128,7 +132,7 @@ fn a_larger_tolerance_costs_no_time() {
         [[100.0, 100.0], [110.0, 102.0]],
     ];
     for [from, to] in lines {
-        let ticks = |tolerance_mm| of_the_arm([Curve::line(from, to).unwrap()], tolerance_mm);
+        let ticks = |tolerance_mm| of_the_arm([Curve::line(from, to).unwrap()], tolerance_mm, None);
         let least = ticks(0.01);
         for tolerance_mm in [0.1, 1.0] {
             let ratio = ticks(tolerance_mm) / least;
@@ -140,10 +144,10 @@ fn a_larger_tolerance_costs_no_time() {
     }
 }
 
-/// A quarter of a circle as 628 points of three decimals: the window sees as far as along an arc.
+/// A quarter of a circle as 628 points of three decimals: the window sees as far as along an arc,
+/// nearly so under jerk.
 #[test]
 fn dense_points_are_as_fast_as_the_arc() {
-    const MAX_RATIO: f64 = 1.03;
     let radius_mm = 40.0;
     let points = (0..=628).map(|n| {
         let (sin, cos) = (TAU / 4.0 * f64::from(n) / 628.0).sin_cos();
@@ -151,11 +155,33 @@ fn dense_points_are_as_fast_as_the_arc() {
     });
     let mut vertices = [Vertex::default(); 24];
     let smoothed = Smoothed::new(points, TOLERANCE_MM, &mut vertices).unwrap();
-    let found = of_the_arm(smoothed.map(Result::unwrap), TOLERANCE_MM);
+    let smoothed: Vec<_> = smoothed.map(Result::unwrap).collect();
     let [start, centre] = [[100.0 + radius_mm, 100.0], [100.0, 100.0]];
     let arc = Curve::arc(start, centre, [0.0, 1.0], TAU / 4.0).unwrap();
-    let ratio = found / of_the_arm([arc], TOLERANCE_MM);
-    assert!(ratio <= MAX_RATIO, "{ratio}");
+    for (jerk, max_ratio) in [(None, 1.03), (Some(1200.0), 1.1)] {
+        let found = of_the_arm(smoothed.iter().copied(), TOLERANCE_MM, jerk);
+        let ratio = found / of_the_arm([arc], TOLERANCE_MM, jerk);
+        assert!(ratio <= max_ratio, "{jerk:?}: {ratio}");
+    }
+}
+
+/// From rest the acceleration comes in time: two segments of each line would make it jump, and
+/// take a tenth less time than the limit of jerk allows.
+#[test]
+fn short_lines_with_stops_heed_jerk() {
+    const MIN_RATIO: f64 = 0.95;
+    let corners = (0..10_u32).map(|n| [100.0 + f64::from(n), 100.0 + f64::from(n % 2)]);
+    let corners: Vec<_> = corners.collect();
+    let lines = corners
+        .windows(2)
+        .map(|pair| Curve::line(pair[0], pair[1]).unwrap());
+    let lines: Vec<_> = lines.collect();
+    let jerk = Some(1200.0);
+    let found = of_the_arm(lines.iter().copied(), TOLERANCE_MM, jerk);
+    // In as many segments as a small tolerance asks for.
+    let fine = of_the_arm(lines, 1e-6, jerk);
+    let ratio = found / fine;
+    assert!((MIN_RATIO..1.01).contains(&ratio), "{ratio}");
 }
 
 /// Corners 2 mm apart, rounded within 0.05 mm: as fast as in 64 segments each.
