@@ -12,7 +12,7 @@ use pvt_steps::{Drive, Rate};
 fn main() -> Result<(), Box<dyn Error>> {
     let machine = WithZ::new(CoreXy::new(0.0..=300.0, 0.0..=200.0), 0.0..=20.0);
     let curve = Curve::arc(
-        [250.0, 100.0, 5.0],
+        [240.0, 100.0, 5.0],
         [150.0, 100.0, 5.0],
         [0.0, 1.0, 0.0],
         3.0,
