@@ -1,13 +1,13 @@
 //! From paths to steps in one call: planned by `path-timing`, quantised, put out.
 
-mod segments;
+mod fewest_segments;
 
 use core::convert::Infallible;
 
 use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segments_within};
 use thiserror::Error;
 
-use self::segments::Segments;
+use self::fewest_segments::FewestSegments;
 use crate::{
     KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
 };
@@ -159,9 +159,9 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         departure: impl Fn(&P, &Span<[f64; N]>) -> f64,
     ) -> impl Iterator<Item = Result<Step, DriveError<P::Error>>> {
         let limits = self.limits_of_drivers();
-        let mut fewest = Segments::new(limits);
+        let mut fewest = FewestSegments::new(limits);
         let segments =
-            move |path: &P| segments_within(path, fewest.at_least(path), tolerance, &departure);
+            move |path: &P| segments_within(path, fewest.of(path), tolerance, &departure);
         let planned = LookAhead::new(paths, limits, segments, &mut self.window);
         let (rows, refused) = match planned {
             Ok(rows) => (Some(rows), None),

@@ -9,7 +9,7 @@
 //!
 //! from 2 to 64, from 8 on where it begins at rest under a limit of jerk.
 
-use path_timing::{AxisLimits, Corner, Path};
+use path_timing::{AxisLimits, Corner, Path, PathPoint};
 
 /// Fewest segments: one up, one down.
 const FEWEST: u32 = 2;
@@ -31,44 +31,38 @@ const SEGMENTS_OF_TWO_BRAKINGS: f64 = 48.0;
 /// Segments of a turn in which an axis gains or loses its whole speed.
 const SEGMENTS_OF_A_TURN: f64 = 36.0;
 
-/// Parts of a path that are looked at for its length and turns.
-const PARTS: u32 = 4;
+/// Places of a path that are looked at for its length and turns.
+const PLACES: usize = 5;
 
 /// Paths one after the other, and the segments that each is fast with: few where it is short and
 /// straight, so that the window sees far, and more where speeds change along it; as many up as
 /// down, as a way from rest to rest is fastest in its middle.
-pub(super) struct Segments<const N: usize> {
+pub(super) struct FewestSegments<const N: usize> {
     limits: [AxisLimits; N],
     /// The slope that the last path goes on with.
     goes_on: Option<[f64; N]>,
 }
 
-impl<const N: usize> Segments<N> {
+impl<const N: usize> FewestSegments<N> {
     pub(super) const fn new(limits: [AxisLimits; N]) -> Self {
         let goes_on = None;
         Self { limits, goes_on }
     }
 
     /// The fewest segments of the next path.
-    pub(super) fn at_least<P: Path<Axes = [f64; N]>>(&mut self, path: &P) -> u32 {
+    pub(super) fn of<P: Path<Axes = [f64; N]>>(&mut self, path: &P) -> u32 {
         let before = self.goes_on.take();
-        // What is wrong with its points is found where its knots are laid.
-        let Ok(start) = path.point(0.0) else {
+        let Some(places) = places(path) else {
             return FEWEST;
         };
         let mut axes = self.limits.map(AxisAlong::new);
-        let mut end = start;
-        for part in 0..=PARTS {
-            let s = path.length() * (f64::from(part) / f64::from(PARTS));
-            let Ok(point) = path.point(s) else {
-                return FEWEST;
-            };
-            let places = point.position.into_iter().zip(point.slope);
-            for (axis, at) in axes.iter_mut().zip(places) {
+        for place in places {
+            let place = place.position.into_iter().zip(place.slope);
+            for (axis, at) in axes.iter_mut().zip(place) {
                 axis.go_to(at);
             }
-            end = point;
         }
+        let [start, .., end] = places;
         // No number, where a limit is none or nothing moves, is passed over.
         let steepest = axes.iter().map(|axis| axis.steepest).fold(0.0, f64::max);
         let is_passed = before.is_some_and(|slope| {
@@ -90,6 +84,15 @@ impl<const N: usize> Segments<N> {
             .find(|&segments| f64::from(segments) >= wanted)
             .unwrap_or(MOST)
     }
+}
+
+/// Evenly along a path. What is wrong there is found and told where its knots are laid.
+fn places<P: Path>(path: &P) -> Option<[PathPoint<P::Axes>; PLACES]> {
+    let mut places = [path.point(0.0).ok()?; PLACES];
+    for (place, u) in places.iter_mut().zip([0.0, 0.25, 0.5, 0.75, 1.0]).skip(1) {
+        *place = path.point(path.length() * u).ok()?;
+    }
+    Some(places)
 }
 
 /// An axis along a path: its way, and its speeds relative to its limit at unit speed of the path.
