@@ -2,7 +2,7 @@
 
 mod also;
 mod blocks;
-mod more;
+mod symptoms;
 
 use core::time::Duration;
 

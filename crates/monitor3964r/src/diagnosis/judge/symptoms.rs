@@ -1,15 +1,15 @@
-//! Whether there is more than the verdicts explain: what goes wrong is counted, whatever its cause,
-//! and each verdict has what may come of it. A list of symptoms, not of causes.
+//! What goes wrong at each side, whatever its cause, and which of it a verdict explains: what is left
+//! is a second fault, or that there is more.
 
 use super::Case;
 use crate::{diagnosis::verdict::Verdict, monitor::Side};
 
-/// As often, it is no accident; of the blocks or requests it must be a quarter too.
+/// As often, it is no accident; of the blocks or requests it must be a third too.
 const OFTEN: u32 = 2;
 
 /// What goes wrong at a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Symptom {
+pub(super) enum Symptom {
     /// Its blocks arrive damaged, or with another BCC.
     Bad,
     /// Its blocks have no BCC.
@@ -39,7 +39,7 @@ impl Case<'_> {
             self.symptoms(side)
                 .into_iter()
                 .any(|(symptom, count, all)| {
-                    let is_rule = count >= OFTEN && count.saturating_mul(4) >= all;
+                    let is_rule = count >= OFTEN && count.saturating_mul(3) >= all;
                     let mut verdicts = verdicts.iter().flatten();
                     is_rule && !verdicts.any(|&verdict| explains(verdict, symptom, side))
                 })
@@ -67,21 +67,37 @@ impl Case<'_> {
     }
 }
 
+/// What a verdict that may be the second one is about, and at which side.
+pub(super) const fn shown_by(verdict: Verdict) -> Option<(Symptom, Side)> {
+    Some(match verdict {
+        Verdict::NotDoubled { sender, .. } | Verdict::OtherBcc { sender, .. } => {
+            (Symptom::Bad, sender)
+        }
+        Verdict::WithoutBcc { side } => (Symptom::WithoutBcc, side),
+        Verdict::Late { side, .. } => (Symptom::Late, side),
+        Verdict::NoReceiveBuffer { refuser } => (Symptom::Refuses, refuser),
+        Verdict::GoodBlocksRejected { refuser, .. } => (Symptom::Rejects, refuser),
+        Verdict::Gaps { sender, .. } => (Symptom::Pauses, sender),
+        _ => return None,
+    })
+}
+
 /// Whether a symptom at a side may come of what a verdict says.
-fn explains(verdict: Verdict, symptom: Symptom, side: Side) -> bool {
+pub(super) fn explains(verdict: Verdict, symptom: Symptom, side: Side) -> bool {
     use Symptom::{
         AcknowledgesEarly, Bad, Late, NoAcknowledgement, NoAnswer, Pauses, Refuses, Rejects,
         Unfinished, WithoutBcc,
     };
     // Where the fault is, what shows there, and what shows at the partner.
     let (at, own, partner): (Side, &[Symptom], &[Symptom]) = match verdict {
-        Verdict::Gaps { sender, .. } => (sender, &[Pauses, Unfinished, Bad], &[NoAcknowledgement]),
+        Verdict::Gaps { sender, .. } => (sender, &[Pauses, Unfinished], &[NoAcknowledgement]),
         // What it does not hear of the answers has it break off.
         Verdict::GoodBlocksRejected { refuser, .. } => {
             (refuser, &[Rejects, Unfinished, Pauses], &[])
         }
         Verdict::LongBlocksRejected { refuser, .. } => (refuser, &[Rejects], &[]),
-        // Its answers meet the next question or block.
+        // Its answers, and the NAK at the end of a block that it gives up, meet the next question or
+        // block, and the times of the other side are counted from them.
         Verdict::Late { side, .. } => (
             side,
             &[Late, Rejects, Refuses, NoAnswer, NoAcknowledgement],
@@ -93,12 +109,12 @@ fn explains(verdict: Verdict, symptom: Symptom, side: Side) -> bool {
             &[Bad, Unfinished],
             &[NoAnswer, NoAcknowledgement, Rejects],
         ),
-        // It checks as it sends.
-        Verdict::OtherBcc { sender, .. } => (sender, &[Bad, Rejects], &[]),
-        Verdict::SameDamage { sender, .. } => (sender, &[Bad], &[]),
+        Verdict::OtherBcc { sender, .. } | Verdict::SameDamage { sender, .. } => {
+            (sender, &[Bad], &[])
+        }
         Verdict::WithoutBcc { side } => (
             side,
-            &[WithoutBcc, AcknowledgesEarly, Refuses, Unfinished],
+            &[WithoutBcc, AcknowledgesEarly, Unfinished],
             &[NoAcknowledgement, Rejects],
         ),
         Verdict::RequestForAnswer { side, .. } => (side, &[NoAcknowledgement], &[NoAnswer]),
