@@ -2,11 +2,13 @@
 
 use core::cell::Cell;
 
-use crate::knots::{Laying, fraction, span, span_in_a_second};
+use crate::knots::{span, span_in_a_second};
+use crate::laying::{Cutting, Laying, bounded, knots_of};
 use crate::leg::Leg;
 use crate::number::{cube_root, larger_or_nan, sqrt};
 use crate::passes::segment_s;
-use crate::planner::{Place, bounded, knots_of, time};
+use crate::place::Place;
+use crate::planner::time;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, Path, PlanError, Span};
 
@@ -39,7 +41,8 @@ pub(crate) struct Within<D> {
 }
 
 /// The number of segments of a path that keeps a departure within `allowed` at any speeds, with any
-/// corners at its ends: for [`LookAhead`](crate::LookAhead), whose speeds nobody knows beforehand.
+/// corners at its ends: for [`LookAhead`](crate::LookAhead), whose speeds nobody knows beforehand,
+/// and which halves those of them that the path takes for too coarse.
 ///
 /// `departure` is a bound on what a controller departs by on a segment, in any unit: see
 /// [`Table::plan_within_at_any_feed`](crate::Table::plan_within_at_any_feed).
@@ -57,21 +60,16 @@ pub fn segments_within<P: Path>(
     let leg = Leg::new(0, path)?;
     let at_least = bounded(0, at_least, 1)?;
     let bound_of = |segments, rests| {
-        let mut laying = Laying::new(leg, leg.point(0.0)?);
+        let start = leg.point(0.0)?;
+        let mut cutting = Cutting::new(Laying::new(leg, start), rests, segments);
         let mut bound = Bound::new(allowed);
-        let mut from = Knot::start(leg.point(0.0)?);
-        for index in 1..=segments {
-            let u = f64::from(index) / f64::from(segments);
-            let to = match laying.knot(leg.length() * fraction(u, rests)) {
+        let mut from = Knot::start(start);
+        while !from.ends_leg && !bound.is_far() {
+            let to = match cutting.next_knot(|_, _| true) {
                 Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
                 to => to?,
             };
-            bound.add_any([&from, &to], index == segments, |span| {
-                departure(path, span)
-            });
-            if bound.is_far() {
-                break;
-            }
+            bound.add_any([&from, &to], to.ends_leg, |span| departure(path, span));
             from = to;
         }
         Ok(bound.worst)
@@ -101,7 +99,7 @@ pub(crate) fn check_allowed<E>(allowed: f64) -> Result<(), PlanError<E>> {
 
 impl<D> Within<D> {
     /// Lays the knots of a leg of a table, doubled in number some times.
-    pub(crate) fn lay<P: Path + Clone>(
+    pub(crate) fn lay<P: Path>(
         &self,
         place: &Place<'_, P>,
         limits: &Reciprocals<P::Axes>,
@@ -113,24 +111,23 @@ impl<D> Within<D> {
     {
         let number = place.leg.number;
         let at_least = bounded(number, self.min_segments, place.fewest)?;
-        let segments = self.fewest(place, limits, at_least, knots)?;
+        let [segments, laid] = self.fewest(place, limits, at_least, knots)?;
         if doublings == 0 {
-            return Ok(segments);
+            return Ok(laid);
         }
         let finer = segments.saturating_mul(1 << doublings.min(24));
         let finer = bounded(number, finer, place.fewest)?;
         self.planned.set(0);
-        self.lay_at_once(place, limits, finer, knots)?;
-        Ok(finer)
+        self.lay_at_once(place, limits, finer, knots)
     }
 
-    fn lay_at_once<P: Path + Clone>(
+    fn lay_at_once<P: Path>(
         &self,
         place: &Place<'_, P>,
         limits: &Reciprocals<P::Axes>,
         segments: u32,
         knots: &mut [Knot<P::Axes>],
-    ) -> Result<(), PlanError<P::Error>> {
+    ) -> Result<u32, PlanError<P::Error>> {
         let bent = self.bent(place);
         if self.is_plain {
             place.lay_plainly(limits, segments, bent, knots)
@@ -140,14 +137,15 @@ impl<D> Within<D> {
     }
 
     /// Lays a leg with a number of segments, at most a sixteenth above the fewest found, that keeps
-    /// the allowed departure. A leg alone is planned, and the departure counts at its speeds.
-    fn fewest<P: Path + Clone>(
+    /// the allowed departure; that number, and how many they are with those that the path asks for.
+    /// A leg alone is planned, and the departure counts at its speeds.
+    fn fewest<P: Path>(
         &self,
         place: &Place<'_, P>,
         limits: &Reciprocals<P::Axes>,
         at_least: u32,
         knots: &mut [Knot<P::Axes>],
-    ) -> Result<u32, PlanError<P::Error>>
+    ) -> Result<[u32; 2], PlanError<P::Error>>
     where
         D: Fn(&P, &Span<P::Axes>) -> f64,
     {
@@ -156,17 +154,18 @@ impl<D> Within<D> {
         if room < at_least {
             return Err(too_coarse(place, at_least, room));
         }
-        let mut laid = 0;
+        let (mut tried, mut laid) = (0, 0);
         let trial = |segments| {
-            laid = segments;
-            self.trial(place, limits, segments, knots)
+            let (departure, all) = self.trial(place, limits, segments, knots)?;
+            (tried, laid) = (segments, all);
+            Ok(departure)
         };
         let found = search([at_least, room], self.allowed, trial)?;
         let segments = found.map_err(|needed| too_coarse(place, needed, room))?;
-        if laid != segments {
-            self.trial(place, limits, segments, knots)?;
+        if tried != segments {
+            (_, laid) = self.trial(place, limits, segments, knots)?;
         }
-        Ok(segments)
+        Ok([segments, laid])
     }
 
     /// Whether the departure counts at the speeds of the plan.
@@ -179,24 +178,24 @@ impl<D> Within<D> {
         if self.is_planned(place) { BENT } else { 0.0 }
     }
 
-    /// The departure with a number of segments; what is far beyond the allowed one is not looked at
-    /// to its end.
-    fn trial<P: Path + Clone>(
+    /// The departure with a number of segments, and how many are laid then; what is far beyond the
+    /// allowed one is not looked at to its end.
+    fn trial<P: Path>(
         &self,
         place: &Place<'_, P>,
         limits: &Reciprocals<P::Axes>,
         segments: u32,
         knots: &mut [Knot<P::Axes>],
-    ) -> Result<f64, PlanError<P::Error>>
+    ) -> Result<(f64, u32), PlanError<P::Error>>
     where
         D: Fn(&P, &Span<P::Axes>) -> f64,
     {
-        let count = knots_of(segments);
         self.planned.set(0);
-        match self.lay_at_once(place, limits, segments, knots) {
-            Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
+        let laid = match self.lay_at_once(place, limits, segments, knots) {
+            Err(PlanError::TooCoarse { .. }) => return Ok((f64::INFINITY, 0)),
             laid => laid?,
-        }
+        };
+        let count = knots_of(laid);
         let (knots, _) = knots.split_at_mut(count.min(knots.len()));
         let is_planned = self.is_planned(place);
         if let (true, Some(last)) = (is_planned, knots.last_mut()) {
@@ -225,7 +224,7 @@ impl<D> Within<D> {
                 break;
             }
         }
-        Ok(bound.worst)
+        Ok((bound.worst, laid))
     }
 }
 

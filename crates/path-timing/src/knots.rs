@@ -1,11 +1,10 @@
 //! Where the knots of a path stand, and what lies between two of them.
 
-use crate::leg::Leg;
 use crate::number::{Real, larger, sqrt};
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
 use crate::stretch::unused;
-use crate::{Axes, Knot, Path, PathPoint, PlanError, Row, Span};
+use crate::{Axes, Knot, Row, Span};
 
 /// The segment between two knots that is passed at these speeds: it takes 2Δs/(w₀ + w₁).
 pub(crate) fn span<A: Axes>(
@@ -31,72 +30,6 @@ pub(crate) fn span<A: Axes>(
 pub(crate) fn span_in_a_second<A: Axes>(knots: [&Knot<A>; 2], start: f64) -> Span<A> {
     let [_, to] = knots;
     span(knots, [start * to.ds, (2.0 - start) * to.ds], 1.0)
-}
-
-/// The knots of a leg, one behind the other.
-#[derive(Debug, Clone)]
-pub(crate) struct Laying<P: Path> {
-    pub(crate) leg: Leg<P>,
-    index: u32,
-    pub(crate) last: Knot<P::Axes>,
-}
-
-impl<P: Path> Laying<P> {
-    /// From the first knot on, whose point is `start`.
-    pub(crate) fn new(leg: Leg<P>, start: PathPoint<P::Axes>) -> Self {
-        Self {
-            leg,
-            index: 0,
-            last: Knot::start(start),
-        }
-    }
-
-    /// Takes the last knot back: the one before it is the last again.
-    pub(crate) const fn take_back(&mut self, before: Knot<P::Axes>) {
-        self.last = before;
-        self.index = self.index.saturating_sub(1);
-    }
-
-    /// The knot at a parameter behind the last one.
-    ///
-    /// Whatever the speeds, each position of a cubic of duration 2Δs/(w₀ + w₁) lies between those
-    /// with which it begins and ends at rest: what the path allows for both, it allows for all.
-    pub(crate) fn knot(&mut self, s: f64) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
-        self.stretched_knot(s, |_, _, _| 1.0)
-    }
-
-    /// As [`knot`](Self::knot), the length of its segment stretched by a factor of the points at
-    /// its ends and the length itself.
-    pub(crate) fn stretched_knot(
-        &mut self,
-        s: f64,
-        stretch: impl FnOnce(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64) -> f64,
-    ) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
-        self.index = self.index.saturating_add(1);
-        let (point, length) = (self.leg.point(s)?, s - self.last.s);
-        let knot = Knot {
-            point,
-            s,
-            ds: length * stretch(&self.last.point, &point, length),
-            tool: self.leg.tool().copied(),
-            ends_leg: s >= self.leg.length(),
-            cap: f64::INFINITY,
-            ..Knot::default()
-        };
-        // Written so that NaN is refused too.
-        let is_behind = knot.ds > 0.0;
-        if !is_behind {
-            let (leg, knot) = (self.leg.number, self.index);
-            return Err(PlanError::Indistinct { leg, knot });
-        }
-        for start in [0.0, 2.0] {
-            let span = span_in_a_second([&self.last, &knot], start);
-            let refused = |reason| self.leg.refused_segment(self.last.s, reason);
-            self.leg.path().check(&span).map_err(refused)?;
-        }
-        self.last = knot;
-        Ok(knot)
-    }
 }
 
 /// Whether the positions and slopes at both ends of a segment agree: the mean slope of each axis,

@@ -26,6 +26,16 @@ impl<P: Path> Leg<P> {
         Ok(leg)
     }
 
+    /// The same leg, whose path is borrowed.
+    pub(crate) const fn by_ref(&self) -> Leg<&P> {
+        Leg {
+            number: self.number,
+            path: &self.path,
+            length: self.length,
+            tool: self.tool,
+        }
+    }
+
     pub(crate) const fn path(&self) -> &P {
         &self.path
     }

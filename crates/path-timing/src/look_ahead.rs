@@ -6,12 +6,11 @@ use core::fmt::{self, Debug};
 
 use crate::feed_change::SmoothFeed;
 use crate::junction::Junction;
-use crate::knots::{LARGEST_GAP, Laying, fraction, is_resolved};
+use crate::knots::{LARGEST_GAP, is_resolved};
+use crate::laying::{Cutting, Laying, bounded};
 use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST};
-use crate::planner::{
-    Beyond, MAX_SEGMENTS, MOST_HALVINGS, bounded, check_gap, fewest, junction_to,
-};
+use crate::planner::{Beyond, check_gap, fewest, junction_to};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, Corner, FeedError, Knot, Path, PlanError, Row};
 use window::{Feed, Window};
@@ -62,7 +61,7 @@ pub struct LookAhead<'w, P: Path, I, F> {
     following: Option<P>,
     segments: F,
     /// The path whose knots enter the window.
-    entering: Option<Entering<P>>,
+    entering: Option<Cutting<P>>,
     /// Paths that have begun.
     count: usize,
     /// Whether a path was refused: the stream ends there.
@@ -84,17 +83,6 @@ pub struct LookAhead<'w, P: Path, I, F> {
     leg: usize,
 }
 
-/// A path on its way into the window.
-struct Entering<P: Path> {
-    laying: Laying<P>,
-    rests: [bool; 2],
-    segments: u32,
-    /// How often they have been halved.
-    halvings: u32,
-    /// Of the last knot.
-    index: u32,
-}
-
 impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Error>>>
     LookAhead<'w, P, I, F>
 {
@@ -102,8 +90,9 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// number, or what [`segments_within`](crate::segments_within) finds.
     ///
     /// From rest to rest they are at least 2, and on a long path between short ones, whose corners
-    /// may be slow: on one segment the speed does not rise and fall again. They are up to 64 times
-    /// as many where the slopes at the ends of one do not tell how the path goes between them.
+    /// may be slow: on one segment the speed does not rise and fall again. One is halved, up to
+    /// twelve times, where the slopes at its ends do not tell how the path goes between them, and
+    /// where the path takes it for too coarse.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Memory`] for a window of fewer than 4 knots.
@@ -279,7 +268,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
                 self.entering = Some(self.begin(path)?);
                 continue;
             };
-            let to = entering.next_knot(&self.limits)?;
+            let limits = &self.limits;
+            let to = entering.next_knot(|from, to| is_resolved(limits, from, to, LARGEST_GAP))?;
             self.window.push(to);
             if to.ends_leg {
                 let leg = &entering.laying.leg;
@@ -291,7 +281,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     }
 
     /// Begins a path: its first knot is the last of the path before.
-    fn begin(&mut self, path: P) -> Result<Entering<P>, PlanError<P::Error>> {
+    fn begin(&mut self, path: P) -> Result<Cutting<P>, PlanError<P::Error>> {
         let number = self.count;
         self.count = number.wrapping_add(1);
         let segments = (self.segments)(&path).map_err(|error| error.of_leg(number))?;
@@ -325,55 +315,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
             1
         };
         let rests = [before.0.is_stop(), ends_at_rest];
-        Ok(Entering {
-            segments: segments.max(fewest),
-            laying: Laying::new(leg, start),
-            rests,
-            halvings: 0,
-            index: 0,
-        })
-    }
-}
-
-impl<P: Path> Entering<P> {
-    /// The next knot; where the path is not known up to there, all segments that are left are
-    /// halved.
-    fn next_knot(
-        &mut self,
-        limits: &Reciprocals<P::Axes>,
-    ) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
-        loop {
-            let from = self.laying.last;
-            let refused = match self.laying.knot(self.next_s()) {
-                Ok(to) if is_resolved(limits, &from, &to, LARGEST_GAP) => {
-                    self.index = self.index.saturating_add(1);
-                    return Ok(to);
-                }
-                Ok(_) => PlanError::TooCoarse {
-                    leg: self.laying.leg.number,
-                    s: from.s,
-                },
-                Err(refused) => refused,
-            };
-            let is_coarse = matches!(refused, PlanError::TooCoarse { .. });
-            if !is_coarse || self.halvings == MOST_HALVINGS || self.segments > MAX_SEGMENTS / 2 {
-                return Err(refused);
-            }
-            self.laying.take_back(from);
-            self.halvings = self.halvings.saturating_add(1);
-            self.index = self.index.saturating_mul(2);
-            self.segments = self.segments.saturating_mul(2);
-        }
-    }
-
-    /// The parameter of the next knot.
-    fn next_s(&self) -> f64 {
-        let (index, length) = (self.index.saturating_add(1), self.laying.leg.length());
-        if index >= self.segments {
-            return length;
-        }
-        let u = f64::from(index) / f64::from(self.segments);
-        length * fraction(u, self.rests)
+        let laying = Laying::new(leg, start);
+        Ok(Cutting::new(laying, rests, segments.max(fewest)))
     }
 }
 

@@ -57,7 +57,7 @@ pub trait Path {
     }
 
     /// Whether [`check`](Self::check) has refused a segment only for its length, so that shorter
-    /// ones may pass: planners that look for the number of segments take more.
+    /// ones may pass: every planner halves it, down to where it does, and no other.
     fn is_too_coarse(&self, reason: &Self::Error) -> bool {
         let _ = reason;
         false

@@ -1,35 +1,13 @@
 //! Paths to knots, and knots to speeds.
 
 use crate::junction::Junction;
-use crate::knots::{
-    LARGEST_GAP, LARGEST_GAP_AT_RESTS, Laying, Shares, fraction, is_resolved, note_unused, spread,
-};
+use crate::laying::knots_of;
 use crate::leg::Leg;
-use crate::number::{Real, sqrt};
+use crate::number::sqrt;
 use crate::passes::{self, segment_s};
+use crate::place::{MIN_BETWEEN_SLOW_ENDS, Place};
 use crate::reciprocals::Reciprocals;
-use crate::stretch::stretch;
 use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
-
-/// Fewest segments of a leg that starts and ends slowly.
-const MIN_BETWEEN_SLOW_ENDS: u32 = 2;
-
-/// Largest number of segments of a leg: 12 machine epsilons of the length from its last knot but
-/// one to its end.
-pub(crate) const MAX_SEGMENTS: u32 = 1 << 24;
-
-/// A number of segments that a leg can have, `fewest` or more.
-pub(crate) fn bounded<E>(leg: usize, segments: u32, fewest: u32) -> Result<u32, PlanError<E>> {
-    let max = MAX_SEGMENTS;
-    if segments <= max {
-        Ok(segments.max(fewest))
-    } else {
-        Err(PlanError::TooFine { leg, max })
-    }
-}
-
-/// How often segments are halved where the path between two knots is not known.
-pub(crate) const MOST_HALVINGS: u32 = 6;
 
 /// What a leg goes on to at an end: how, and for what length.
 pub(crate) type Beyond<A> = (Junction<A>, f64);
@@ -68,258 +46,10 @@ pub(crate) fn fewest<A: Axes, E>(
     if is_fast { 1 } else { MIN_BETWEEN_SLOW_ENDS }
 }
 
-/// A leg whose knots are to be laid.
-pub(crate) struct Place<'p, P: Path> {
-    pub(crate) leg: &'p Leg<P>,
-    pub(crate) start: PathPoint<P::Axes>,
-    /// Whether the machine rests at its ends.
-    pub(crate) rests: [bool; 2],
-    /// The fewest segments.
-    pub(crate) fewest: u32,
-    /// Whether it is the only one.
-    pub(crate) is_alone: bool,
-    /// Knots of the legs before.
-    pub(crate) used: usize,
-}
-
-/// Segments below which all are laid to see where the machine is slow; beyond, half of them.
-const FEW: u32 = 32;
-
-const BY_TIME: Shares = Shares {
-    time: 0.5,
-    unused: 0.0,
-    bend: 0.0,
-};
-
-const BY_LIMITS: Shares = Shares {
-    time: 0.4,
-    unused: 0.2,
-    bend: 0.0,
-};
-
-/// What a rough plan may lose on a segment, as [`spread`] says, without being made again. Of 9,000
-/// plans of random paths with some 100 segments 3 in 10 lose more, and of the others one in 300
-/// takes 0.5 % longer than the shortest time.
-const MOST_LOST_ON_ONE: f64 = 0.9;
-
-/// On fewer segments the speeds of a plan say little of those of the next, whose knots stand
-/// elsewhere: then higher limits took up to 1.2 times as long.
-const FEWEST_STRETCHED: u32 = 16;
-
-/// How often it is made again: with 3 one of 65 plans of waves with 100 segments takes over 0.5 %
-/// longer than the best, with 4 one of 120, with 6 one of 180.
-const ROUNDS: u32 = 4;
-
-impl<P: Path + Clone> Place<'_, P> {
-    /// Lays a number of segments, or twice as many, and so on, where the path is not known between
-    /// two knots. How many they are.
-    pub(crate) fn lay_resolved(
-        &self,
-        segments: u32,
-        mut lay: impl FnMut(u32) -> Result<(), PlanError<P::Error>>,
-    ) -> Result<u32, PlanError<P::Error>> {
-        let number = self.leg.number;
-        let segments = bounded(number, segments, self.fewest)?;
-        let coarse = match lay(segments) {
-            Err(coarse @ PlanError::TooCoarse { .. }) => coarse,
-            laid => return laid.map(|()| segments),
-        };
-        for halvings in 1..=MOST_HALVINGS {
-            let finer = bounded(number, segments << halvings, 1)?;
-            match lay(finer) {
-                Err(PlanError::TooCoarse { .. }) => {}
-                // How many would do, nobody knows.
-                Err(PlanError::Memory { .. }) => break,
-                laid => return laid.map(|()| finer),
-            }
-        }
-        Err(coarse)
-    }
-
-    /// Lays the knots of the leg behind its first, which is the first of those given: dense where
-    /// the fastest motion along the leg is slow and where its limits change, by the part `bent`
-    /// also where its speed changes, and stretched for it.
-    ///
-    /// Stretches follow from the speeds of a plan before, whose knots stand elsewhere; where
-    /// accelerations change by much from knot to knot that plan is slow, so that it is made again
-    /// from the better ones.
-    pub(crate) fn lay(
-        &self,
-        limits: &Reciprocals<P::Axes>,
-        segments: u32,
-        bent: f64,
-        knots: &mut [Knot<P::Axes>],
-    ) -> Result<(), PlanError<P::Error>> {
-        if limits.has_jerk() || self.leg.tool().is_some() || segments < FEWEST_STRETCHED {
-            return self.lay_plainly(limits, segments, bent, knots);
-        }
-        let own = self.room(segments, knots)?;
-        let laid = self.lay_by_plan(limits, bent, own);
-        // Knots that stand elsewhere may be too far apart, or their cubics leave what the path
-        // allows.
-        laid.and_then(|()| self.check_resolved(limits, own))
-            .or_else(|_| self.lay_plainly(limits, segments, bent, own))
-    }
-
-    /// Lays all knots by the speeds of a plan of fewer.
-    fn lay_by_plan(
-        &self,
-        limits: &Reciprocals<P::Axes>,
-        bent: f64,
-        knots: &mut [Knot<P::Axes>],
-    ) -> Result<(), PlanError<P::Error>> {
-        let (parts, planned) = (BY_LIMITS.bent(bent), self.lay_roughly(limits, knots)?);
-        note_unused(limits, knots, planned);
-        let lost = spread(parts, knots, planned);
-        self.lay_stretched(limits, knots)?;
-        if lost > MOST_LOST_ON_ONE {
-            let count = knots.len();
-            for _ in 0..ROUNDS {
-                self.alone(limits, knots);
-                note_unused(limits, knots, count);
-                spread(parts, knots, count);
-                self.lay_stretched(limits, knots)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Lays the knots where the motion is slow, none stretched: for limits of jerk and torque, for
-    /// tools, few segments, and plans in single precision, which are to be small.
-    pub(crate) fn lay_plainly<R: Real>(
-        &self,
-        limits: &Reciprocals<P::Axes, R>,
-        segments: u32,
-        bent: f64,
-        knots: &mut [Knot<P::Axes>],
-    ) -> Result<(), PlanError<P::Error>> {
-        let own = self.room(segments, knots)?;
-        let planned = self.lay_roughly(limits, own)?;
-        spread(BY_TIME.bent(bent), own, planned);
-        self.lay_at_places(own)?;
-        self.check_resolved(limits, own)
-    }
-
-    /// The knots of the leg, of those given.
-    fn room<'k>(
-        &self,
-        segments: u32,
-        knots: &'k mut [Knot<P::Axes>],
-    ) -> Result<&'k mut [Knot<P::Axes>], PlanError<P::Error>> {
-        let (count, available) = (knots_of(segments), knots.len());
-        knots.get_mut(..count).ok_or(PlanError::Memory {
-            needed: self.used.saturating_add(count),
-            available: self.used.saturating_add(available),
-        })
-    }
-
-    /// Plans a leg of fewer segments, on which it shows, too, where the machine is slow: the first
-    /// of the knots. How many they are.
-    fn lay_roughly<R: Real>(
-        &self,
-        limits: &Reciprocals<P::Axes, R>,
-        own: &mut [Knot<P::Axes>],
-    ) -> Result<usize, PlanError<P::Error>> {
-        let length = self.leg.length();
-        let segments = u32::try_from(own.len().saturating_sub(1)).unwrap_or(MAX_SEGMENTS);
-        let few = (segments / 2).max(segments.min(FEW));
-        let (rough, _) = own.split_at_mut(knots_of(few).min(own.len()));
-        for (index, knot) in (0..=few).zip(&mut *rough) {
-            let u = f64::from(index) / f64::from(few);
-            knot.moved_s = length * fraction(u, self.rests);
-        }
-        self.lay_at_places(rough)?;
-        self.alone(limits, rough);
-        Ok(rough.len())
-    }
-
-    /// Lays knots where they are to stand.
-    fn lay_at_places(&self, knots: &mut [Knot<P::Axes>]) -> Result<(), PlanError<P::Error>> {
-        self.lay_each(knots, |_, _, _, _| 1.0)
-    }
-
-    /// The same, stretched for the speeds that are wanted there.
-    fn lay_stretched(
-        &self,
-        limits: &Reciprocals<P::Axes>,
-        knots: &mut [Knot<P::Axes>],
-    ) -> Result<(), PlanError<P::Error>> {
-        self.lay_each(knots, |from, to, length, speeds| {
-            stretch(limits, [from, to], length, speeds)
-        })
-    }
-
-    fn lay_each(
-        &self,
-        knots: &mut [Knot<P::Axes>],
-        stretch: impl Fn(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64, [f64; 2]) -> f64,
-    ) -> Result<(), PlanError<P::Error>> {
-        let (length, last) = (self.leg.length(), knots.len().saturating_sub(1));
-        let mut laying = Laying::new(self.leg.clone(), self.start);
-        let mut before = knots.first().map_or(0.0, |first| first.wanted);
-        for (index, knot) in knots.iter_mut().enumerate().skip(1) {
-            let (moved_s, wanted) = (knot.moved_s, knot.wanted);
-            let s = if index < last { moved_s } else { length };
-            let speeds = [core::mem::replace(&mut before, wanted), wanted];
-            let stretch = |from: &_, to: &_, length| stretch(from, to, length, speeds);
-            *knot = Knot {
-                moved_s,
-                ..laying.stretched_knot(s, stretch)?
-            };
-        }
-        Ok(())
-    }
-
-    /// Refuses knots between which the path is not known.
-    fn check_resolved<R: Real>(
-        &self,
-        limits: &Reciprocals<P::Axes, R>,
-        knots: &[Knot<P::Axes>],
-    ) -> Result<(), PlanError<P::Error>> {
-        let mut from = Knot::start(self.start);
-        let gap = if knots.len() > knots_of(MIN_BETWEEN_SLOW_ENDS) {
-            LARGEST_GAP
-        } else {
-            LARGEST_GAP_AT_RESTS
-        };
-        for to in knots.iter().skip(1) {
-            if !is_resolved(limits, &from, to, gap) {
-                let (leg, s) = (self.leg.number, from.s);
-                return Err(PlanError::TooCoarse { leg, s });
-            }
-            from = *to;
-        }
-        Ok(())
-    }
-
-    /// Plans the leg for itself.
-    fn alone<R: Real>(&self, limits: &Reciprocals<P::Axes, R>, knots: &mut [Knot<P::Axes>]) {
-        let before = knots.first().copied();
-        let cap_of = |rests| if rests { 0.0 } else { f64::INFINITY };
-        let [start, end] = self.rests.map(cap_of);
-        if let Some(first) = knots.first_mut() {
-            *first = Knot {
-                cap: start,
-                ..Knot::start(self.start)
-            };
-        }
-        if let Some(last) = knots.last_mut() {
-            last.cap = end;
-        }
-        passes::fastest(limits, knots);
-        if let (Some(first), Some(before)) = (knots.first_mut(), before) {
-            *first = Knot {
-                speed: first.speed,
-                ..before
-            };
-        }
-    }
-}
-
 /// Lays the knots of all paths, one behind the other; those that they take. `lay` lays those of a
 /// leg behind its first, which is the first of those that it is given, and says how many segments
 /// they are.
-pub(crate) fn lay_all<'k, P: Path + Clone>(
+pub(crate) fn lay_all<'k, P: Path>(
     paths: impl Iterator<Item = P>,
     limits: &Reciprocals<P::Axes>,
     knots: &'k mut [Knot<P::Axes>],
@@ -474,11 +204,6 @@ pub(crate) fn check_single_segments<A: Axes, E>(
 /// The most by which legs of one segment may take longer than with stops at their ends, as a part
 /// of the whole time.
 const MOST_LOST: f64 = 2.0;
-
-/// The number of knots of a leg with this number of segments.
-pub(crate) fn knots_of(segments: u32) -> usize {
-    usize::try_from(segments).map_or(usize::MAX, |segments| segments.saturating_add(1))
-}
 
 /// Refuses a leg that begins elsewhere than the one before ends.
 pub(crate) fn check_gap<A: Axes, E>(leg: usize, end: &A, start: &A) -> Result<(), PlanError<E>> {

@@ -7,7 +7,8 @@ use crate::departure::{Speeds, Within, check_allowed};
 use crate::knots::{Halving, are_resolved, halve};
 use crate::number::SMALLEST;
 use crate::passes::fastest;
-use crate::planner::{Place, check_single_segments, duration, lay_all, time};
+use crate::place::Place;
+use crate::planner::{check_single_segments, duration, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
 use crate::stretch::stretch_between;
@@ -60,7 +61,7 @@ impl<'a, A: Axes> Table<'a, A> {
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan<P: Path<Axes = A> + Clone>(
+    pub fn plan<P: Path<Axes = A>>(
         paths: impl IntoIterator<Item = P>,
         limits: A::Of<AxisLimits>,
         segments: impl Fn(&P) -> u32,
@@ -87,7 +88,7 @@ impl<'a, A: Axes> Table<'a, A> {
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan_in_f32<P: Path<Axes = A> + Clone>(
+    pub fn plan_in_f32<P: Path<Axes = A>>(
         paths: impl IntoIterator<Item = P>,
         limits: A::Of<AxisLimits>,
         segments: impl Fn(&P) -> u32,
@@ -119,7 +120,7 @@ impl<'a, A: Axes> Table<'a, A> {
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan_within<P: Path<Axes = A> + Clone>(
+    pub fn plan_within<P: Path<Axes = A>>(
         paths: impl IntoIterator<Item = P> + Clone,
         limits: A::Of<AxisLimits>,
         accuracy: Accuracy,
@@ -139,7 +140,7 @@ impl<'a, A: Axes> Table<'a, A> {
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan_within_at_any_feed<P: Path<Axes = A> + Clone>(
+    pub fn plan_within_at_any_feed<P: Path<Axes = A>>(
         paths: impl IntoIterator<Item = P> + Clone,
         limits: A::Of<AxisLimits>,
         accuracy: Accuracy,
@@ -149,7 +150,7 @@ impl<'a, A: Axes> Table<'a, A> {
         Self::plan_accurately(paths, limits, accuracy, Speeds::Any, departure, knots)
     }
 
-    fn plan_accurately<P: Path<Axes = A> + Clone>(
+    fn plan_accurately<P: Path<Axes = A>>(
         paths: impl IntoIterator<Item = P> + Clone,
         limits: A::Of<AxisLimits>,
         accuracy: Accuracy,

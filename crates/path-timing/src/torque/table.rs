@@ -6,7 +6,8 @@ use super::{Dynamics, TorqueLimits, passes};
 use crate::departure::{Speeds, Within};
 use crate::number::{larger_or_nan, sqrt};
 use crate::passes::segment_s;
-use crate::planner::{Place, lay_all};
+use crate::place::Place;
+use crate::planner::lay_all;
 use crate::reciprocals::Reciprocals;
 use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
 
@@ -57,7 +58,7 @@ impl<D: Dynamics> TorqueLimits<D> {
     /// # Errors
     /// [`PlanError`]; [`PlanError::Overload`] where a motor cannot hold what it carries against
     /// gravity and friction.
-    pub fn plan<'a, P: Path<Axes = D::Axes> + Clone>(
+    pub fn plan<'a, P: Path<Axes = D::Axes>>(
         &self,
         paths: impl IntoIterator<Item = P>,
         limits: <D::Axes as Axes>::Of<AxisLimits>,
@@ -86,7 +87,7 @@ impl<D: Dynamics> TorqueLimits<D> {
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
-    pub fn plan_within<'a, P: Path<Axes = D::Axes> + Clone>(
+    pub fn plan_within<'a, P: Path<Axes = D::Axes>>(
         &self,
         paths: impl IntoIterator<Item = P> + Clone,
         limits: <D::Axes as Axes>::Of<AxisLimits>,

@@ -26,4 +26,5 @@ mod support;
 mod table;
 mod toppra;
 mod torque;
+mod touched;
 mod verify;
