@@ -131,7 +131,7 @@ fn wrong_input_is_named() {
     assert!(
         error
             .to_string()
-            .contains("from pose 0 to the next, at 0.71825 of the way: locator 0, axis Z"),
+            .contains("from pose 0 to the next, at 0.740973 of the way: locator 0, axis Z"),
         "{error}"
     );
     let PlanError::Path {
