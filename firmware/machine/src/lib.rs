@@ -5,6 +5,7 @@
 mod arcs;
 mod blocks;
 mod command;
+mod double;
 mod homing;
 mod kinematics;
 mod motion;
@@ -15,6 +16,7 @@ mod settings_error;
 mod talk;
 
 pub use command::{Command, CommandError, Job, Turn};
+pub use double::product;
 pub use kinematics::{
     ArmGeometry, Axis, DeltaGeometry, Joint, Kinematics, Reasoned, RotaryDelta, Slide,
     StageGeometry, TwoLinkArm, Unit, XyStage,

@@ -4,6 +4,7 @@
 mod boards;
 mod commands;
 mod delta;
+mod double;
 mod edges;
 mod motion;
 mod rig;
