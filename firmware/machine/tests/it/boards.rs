@@ -60,7 +60,7 @@ const ARM_DAY: Day<TwoLinkArm, 2> = Day {
     held: ([200.0, -60.0], "line 200 -60"),
     stopped: ([60.0, 150.0], "line 60 150"),
     jogs: ["jog shoulder 90", "jog elbow 5"],
-    most_until_edge_s: 0.25,
+    most_until_edge_s: 0.22,
 };
 
 const DELTA_DAY: Day<RotaryDelta, 3> = Day {
@@ -85,7 +85,7 @@ const DELTA_DAY: Day<RotaryDelta, 3> = Day {
     held: ([-70.0, 40.0, -270.0], "line -70 40 -270 100"),
     stopped: ([90.0, -40.0, -260.0], "line 90 -40 -260 100"),
     jogs: ["jog arm1 -30", "jog arm1 5"],
-    most_until_edge_s: 0.3,
+    most_until_edge_s: 0.27,
 };
 
 const STAGE_DAY: Day<XyStage, 2> = Day {
@@ -111,7 +111,7 @@ const STAGE_DAY: Day<XyStage, 2> = Day {
     held: ([100.0, 20.0], "line 100 20"),
     stopped: ([20.0, 50.0], "line 20 50"),
     jogs: ["jog x 20", "jog y 5"],
-    most_until_edge_s: 0.25,
+    most_until_edge_s: 0.2,
 };
 
 /// A board with the same machine on this PC beside it.
