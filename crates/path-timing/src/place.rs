@@ -272,15 +272,18 @@ impl<P: Path> Place<'_, P> {
         [moved_s, wanted]: [f64; 2],
     ) -> Result<(), PlanError<P::Error>> {
         let available = self.used.saturating_add(knots.len());
-        let tail = knots.get_mut(index..=count).ok_or(PlanError::Memory {
-            // As many again may follow.
-            needed: available.saturating_add(count.saturating_sub(index)),
-            available,
-        })?;
-        tail.copy_within(..count.saturating_sub(index), 1);
-        if let Some(knot) = tail.first_mut() {
-            (knot.moved_s, knot.wanted) = (moved_s, wanted);
+        let Some([first, later @ ..]) = knots.get_mut(index..=count) else {
+            return Err(PlanError::Memory {
+                // As many again may follow.
+                needed: available.saturating_add(count.saturating_sub(index)),
+                available,
+            });
+        };
+        let mut moved = *first;
+        for knot in later {
+            core::mem::swap(knot, &mut moved);
         }
+        (first.moved_s, first.wanted) = (moved_s, wanted);
         Ok(())
     }
 
