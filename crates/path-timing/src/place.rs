@@ -9,7 +9,7 @@ use crate::number::Real;
 use crate::passes;
 use crate::reciprocals::Reciprocals;
 use crate::stretch::stretch;
-use crate::{Knot, Path, PathPoint, PlanError};
+use crate::{Axes, Knot, Path, PathPoint, PlanError};
 
 /// Fewest segments of a leg that starts and ends slowly.
 pub(crate) const MIN_BETWEEN_SLOW_ENDS: u32 = 2;
@@ -63,6 +63,13 @@ const FEWEST_STRETCHED: u32 = 16;
 /// longer than the best, with 4 one of 120, with 6 one of 180.
 const ROUNDS: u32 = 4;
 
+/// What a segment is stretched by for the speeds that are wanted at its ends.
+const fn stretched<A: Axes>(
+    limits: &Reciprocals<A>,
+) -> impl Fn([&PathPoint<A>; 2], f64, [f64; 2]) -> f64 {
+    move |ends, length, speeds| stretch(limits, ends, length, speeds)
+}
+
 impl<P: Path> Place<'_, P> {
     /// Lays a number of segments, or twice as many, and so on, where the path is not known between
     /// two knots. How many they are.
@@ -111,7 +118,7 @@ impl<P: Path> Place<'_, P> {
         }
         let own = self.room(segments, knots)?;
         if self.spread_by_plan(limits, bent, own).is_ok()
-            && let Ok(laid) = self.lay_stretched(limits, segments, knots)
+            && let Ok(laid) = self.lay_checked(limits, segments, knots, stretched(limits))
         {
             return Ok(laid);
         }
@@ -133,9 +140,7 @@ impl<P: Path> Place<'_, P> {
         if lost > MOST_LOST_ON_ONE {
             let count = knots.len();
             for _ in 0..ROUNDS {
-                self.lay_unchecked(knots, |ends, length, speeds| {
-                    stretch(limits, ends, length, speeds)
-                })?;
+                self.lay_unchecked(knots, stretched(limits))?;
                 self.alone(limits, knots);
                 note_unused(limits, knots, count);
                 spread(parts, knots, count);
@@ -210,21 +215,9 @@ impl<P: Path> Place<'_, P> {
         Ok(())
     }
 
-    /// Lays the knots of some segments where they are to stand, stretched for the speeds that are
-    /// wanted there.
-    fn lay_stretched(
-        &self,
-        limits: &Reciprocals<P::Axes>,
-        segments: u32,
-        knots: &mut [Knot<P::Axes>],
-    ) -> Result<u32, PlanError<P::Error>> {
-        self.lay_checked(limits, segments, knots, |ends, length, speeds| {
-            stretch(limits, ends, length, speeds)
-        })
-    }
-
     /// Lays the knots of some segments where they are to stand; those that are too coarse for the
-    /// path are halved. How many they are then.
+    /// path are halved, each stretched by a factor of the points at its ends, its length and the speeds that
+    /// are wanted there. How many they are then.
     fn lay_checked<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
