@@ -206,6 +206,30 @@ fn a_range_that_is_nearly_touched_takes_more_segments() {
     assert!(close > free, "{close} {free}");
 }
 
+/// An arc that touches the frame is planned like a free one, with segments that are short at that
+/// place alone.
+#[test]
+fn a_frame_that_is_touched_takes_few_more_segments() {
+    const MOST_MORE: usize = 20;
+    let curve = Curve::arc([250.0, 100.0], [150.0, 100.0], [0.0, 1.0], 3.0).unwrap();
+    let belt = AxisLimits {
+        speed: 300.0,
+        acceleration: 4000.0,
+        jerk: None,
+    };
+    let [free, touched] = [300.0, 200.0].map(|end| {
+        let path = CoreXy::new(0.0..=300.0, 0.0..=end).path(curve, ()).unwrap();
+        let mut knots = vec![Knot::default(); 200];
+        let departure = MachinePath::departure;
+        let table = Table::plan_within([path], [belt; 2], within(0.01), departure, &mut knots);
+        table.unwrap().len()
+    });
+    assert!(
+        touched > free && touched <= free + MOST_MORE,
+        "{touched} {free}"
+    );
+}
+
 /// Holds, feeds and streams keep the limits and the tolerance on every row, as the verifier sees
 /// them.
 fn runs<M: Machine<N>, const N: usize>(machine: &M, curves: [Curve<N>; 2], branch: M::Branch) {
