@@ -1,7 +1,8 @@
 //! The product of two doubles on a processor that multiplies 32 bits by 32 to the lower 32.
 //!
 //! A Cortex-M0+ has no instructions for `f64`, and what a compiler brings for it multiplies with 64
-//! bits by 64, four times: some 560 cycles a product, of which these halves take 330.
+//! bits by 64, four times. From the telegram of a Delta's line to the first edge of the Pico that is
+//! 0.04 s of 0.24, in emulation (`firmware/emulate/run`).
 
 /// Bits of a double: sign, 11 of exponent, 52 of fraction.
 const FRACTION_BITS: u32 = 52;

@@ -127,8 +127,8 @@ unsafe extern "C" {
     fn __muldf3(a: f64, b: f64) -> f64;
 }
 
-/// What is called for `a * b`: in place of the compiler's own, which is as exact and takes three
-/// times as long on this processor.
+/// What is called for `a * b`: in place of the compiler's own, which is as exact and takes longer on
+/// this processor.
 #[unsafe(no_mangle)]
 extern "C" fn __aeabi_dmul(a: f64, b: f64) -> f64 {
     // SAFETY: the compiler's own product is a function of its arguments.
