@@ -75,14 +75,18 @@ fn delays(record: &[Character], config: &Config) -> PerSide<Option<Late>> {
     for side in Side::BOTH {
         let measured = patience_of(record, side.other());
         let latest = measured.unwrap_or_default().max(config.qvz());
-        delays[side] = delay_of(record, side, latest.saturating_mul(LATEST)).map(|found| Late {
-            delay: found.delay,
-            is_overtaken: found.overtaken * 2 >= found.answers,
-            qvz: match measured {
-                Some(measured) => measured,
-                None if found.overtaken * 2 >= found.answers => found.waited,
-                None => config.qvz(),
-            },
+        delays[side] = delay_of(record, side, latest.saturating_mul(LATEST)).map(|found| {
+            let is_overtaken = found.overtaken * 2 >= found.answers;
+            Late {
+                delay: found.delay,
+                is_overtaken,
+                qvz: match measured {
+                    Some(measured) => measured,
+                    None if is_overtaken && !found.waited.is_zero() => found.waited,
+                    None if is_overtaken => found.until_again.max(config.qvz()),
+                    None => config.qvz(),
+                },
+            }
         });
     }
     delays
@@ -116,6 +120,7 @@ pub fn diagnose(record: &[Character], config: &Config) -> Diagnosis {
         evidence: &evidence,
         echo: Echo::of(record),
         delays: delays(record, config),
+        qvz: config.qvz(),
         check: config.check,
     };
     let (verdict, or) = case.verdict();

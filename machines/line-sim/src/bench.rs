@@ -10,7 +10,7 @@ use proto3964r::{CharacterError, SubmitError};
 use crate::{
     Faults, Frame, StationSettings,
     end::End,
-    simulation::{step_at, time},
+    steps::{step_at, time},
     uart::{Read, Receiver, Transmitter},
 };
 

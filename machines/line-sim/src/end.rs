@@ -158,7 +158,11 @@ impl End {
         if self.faults.doubles_no_dle && byte == DLE && self.ends_with_dle() {
             self.sent.push(byte);
             self.fetch(now);
-            self.load(now);
+            // The station reckons with its time on the wire.
+            let after = now + self.transmitter.character();
+            if let Some((due, _)) = self.queue.front_mut() {
+                *due = after;
+            }
             return;
         }
         let change = self.bcc_change();

@@ -24,6 +24,7 @@ mod bench;
 mod end;
 mod faults;
 mod simulation;
+mod steps;
 mod uart;
 
 pub use self::bench::Bench;
@@ -34,9 +35,3 @@ pub use self::uart::{Frame, Parity};
 
 /// Longest telegram of a station, in bytes.
 pub const BLOCK: usize = 1024;
-
-/// Steps in which the wires are simulated: 16 for a bit at 9600 bit/s.
-const STEPS_PER_SECOND: u64 = 153_600;
-
-/// Nanoseconds and the steps that take them: `10^9 / 153600`, reduced.
-const NS_PER_STEP: (u64, u64) = (78_125, 12);

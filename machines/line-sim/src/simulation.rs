@@ -6,8 +6,9 @@ use monitor3964r::{Character, Side};
 use proto3964r::{Activity, Event, SubmitError};
 
 use crate::{
-    Faults, Frame, NS_PER_STEP,
+    Faults, Frame,
     end::{End, StationSettings},
+    steps::{step_at, time},
     uart::{Read, Receiver},
 };
 
@@ -41,18 +42,6 @@ pub struct Simulation {
 
 /// The sides in the order of the arrays.
 const SIDES: [Side; 2] = [Side::A, Side::B];
-
-/// Time of a step since the begin, rounded down to a nanosecond.
-pub(crate) const fn time(step: u64) -> Duration {
-    Duration::from_nanos(step.saturating_mul(NS_PER_STEP.0) / NS_PER_STEP.1)
-}
-
-/// The first step at this time or later.
-pub(crate) fn step_at(time: Duration) -> u64 {
-    let (ns, steps) = NS_PER_STEP;
-    let step = (time.as_nanos() * u128::from(steps)).div_ceil(ns.into());
-    u64::try_from(step).unwrap_or(u64::MAX)
-}
 
 impl Simulation {
     /// A line without faults, with a tap for [`Frame::USUAL`]; random faults follow from the seed.

@@ -1,8 +1,10 @@
 //! Transmitter and receiver circuits on a wire that is simulated in steps.
 
+use core::time::Duration;
+
 use proto3964r::CharacterError;
 
-use crate::STEPS_PER_SECOND;
+use crate::steps::{STEPS_PER_SECOND, time};
 
 /// Parity bit of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -89,6 +91,10 @@ impl Transmitter {
 
     pub(crate) fn is_free(&self) -> bool {
         self.step >= self.frame.steps()
+    }
+
+    pub(crate) fn character(&self) -> Duration {
+        time(u64::from(self.frame.steps()))
     }
 
     /// Begins with a character, of whose bits those of `flipped` are wrong, the start bit lowest.

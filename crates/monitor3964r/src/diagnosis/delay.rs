@@ -21,6 +21,9 @@ const LAST: usize = 128;
 const ANSWERS: usize = 16;
 const QUESTIONS: usize = 12;
 
+/// So many STX at the same time after a NAK are no accident.
+const REPEATS: usize = 3;
+
 /// The delay of one side's answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Delay {
@@ -30,8 +33,10 @@ pub(super) struct Delay {
     /// How many of them to the millisecond.
     exactly: usize,
     pub(super) answers: usize,
-    /// How many of them come after the next STX of the other side, and how long that had waited.
+    /// How many of them come after the next STX of the other side, and how long after the question
+    /// that came at most: at all, and where nothing else was heard.
     pub(super) overtaken: usize,
+    pub(super) until_again: Duration,
     pub(super) waited: Duration,
     /// STX after silence, and how many of them it answers.
     first: usize,
@@ -113,6 +118,30 @@ pub(super) fn patience_of(record: &[Character], side: Side) -> Option<Duration> 
     waits.filter(|&wait| wait > ALONE).min()
 }
 
+/// How long after the NAK of the other side most STX of `by` come, if they are no fewer than three.
+pub(super) fn repeats_of(record: &[Character], by: Side) -> Option<Duration> {
+    let all = after_resets(record, by).count();
+    let is_rule = |&delay: &Duration| {
+        let near = after_resets(record, by).filter(|it| it.abs_diff(delay) <= tolerance(delay));
+        let near = near.count();
+        near >= REPEATS && near * 2 >= all
+    };
+    after_resets(record, by).take(ANSWERS).find(is_rule)
+}
+
+/// The time from a NAK of the other side to the next STX of this one.
+fn after_resets(record: &[Character], by: Side) -> impl Iterator<Item = Duration> {
+    let mut reset = None;
+    record.iter().filter_map(move |heard| {
+        match (heard.side == by, heard.intact()) {
+            (false, Some(NAK)) => reset = Some(heard.at),
+            (true, Some(STX)) => return reset.take().map(|at| since(at, heard.at)),
+            _ => {}
+        }
+        None
+    })
+}
+
 /// Stations look at their line in steps, and taps have their latency.
 pub(super) fn tolerance(delay: Duration) -> Duration {
     Duration::from_millis(3).saturating_add(delay / 100)
@@ -126,6 +155,7 @@ fn judge(record: &[Character], by: Side, delay: Duration) -> Delay {
         explained: 0,
         exactly: 0,
         overtaken: 0,
+        until_again: Duration::ZERO,
         waited: Duration::ZERO,
         answers: 0,
         first: 0,
@@ -150,9 +180,14 @@ fn judge(record: &[Character], by: Side, delay: Duration) -> Delay {
         let again = between.find(|&(after, heard)| {
             heard.intact() == Some(STX) && is_question(record, question + after, by.other())
         });
-        if let (Some(first), Some((_, again))) = (until.first(), again) {
+        if let (Some(first), Some((after, again))) = (until.first(), again) {
             tried.overtaken += 1;
-            tried.waited = tried.waited.max(since(first.at, again.at));
+            let until_again = since(first.at, again.at);
+            tried.until_again = tried.until_again.max(until_again);
+            // What comes of the other side in between ends the wait.
+            if until.iter().take(after).all(|heard| heard.side != by) {
+                tried.waited = tried.waited.max(until_again);
+            }
         }
     }
     for (at, question) in record.iter().enumerate() {

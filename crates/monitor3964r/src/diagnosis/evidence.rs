@@ -150,6 +150,10 @@ impl Evidence {
                         evidence.end_of_block(by, None, &conversation);
                         evidence.bad_block(by, heard.at, error);
                     }
+                    Mark::Other(Observation::BccNotAwaited { by }) => {
+                        count(&mut evidence.sides[by].bcc_not_awaited);
+                        evidence.late_bcc(heard, &conversation);
+                    }
                     Mark::Other(observation) => evidence.observe(heard, observation),
                 }
             }
@@ -209,6 +213,20 @@ impl Evidence {
         }
     }
 
+    /// The BCC of a block that was answered before it.
+    fn late_bcc(&mut self, heard: Character, conversation: &Conversation) {
+        let conduct = &mut self.sides[heard.side];
+        conduct.frames.take(heard.byte);
+        if let Some(bcc) = conversation.scan().bcc() {
+            count(&mut conduct.good);
+            conduct.frames.is_good();
+            conduct.formulas.note(bcc);
+        } else {
+            count(&mut conduct.bad);
+            conduct.frames.is_bad(heard.at, true);
+        }
+    }
+
     fn observe(&mut self, heard: Character, observation: Observation<'_>) {
         match observation {
             Observation::Request { side, .. } => self.request(side),
@@ -265,10 +283,6 @@ impl Evidence {
             Observation::NoBcc { by } => {
                 count(&mut self.sides[by].without_bcc);
                 self.block = Some(Block::WithoutBcc);
-            }
-            Observation::BccNotAwaited { by } => {
-                count(&mut self.sides[by.other()].good);
-                count(&mut self.sides[by].bcc_not_awaited);
             }
             Observation::Accepted { by, delay } => self.accept(by, delay),
             Observation::Rejected { by, .. } => self.reject(by),

@@ -9,7 +9,7 @@ use core::time::Duration;
 use proto3964r::{Priority, frame::Check};
 
 use super::{
-    delay::tolerance,
+    delay::{repeats_of, tolerance},
     echo::Echo,
     evidence::{Conduct, Evidence},
     setting::Setting,
@@ -39,6 +39,8 @@ pub(super) struct Case<'c> {
     pub(super) evidence: &'c Evidence,
     pub(super) echo: Echo,
     pub(super) delays: PerSide<Option<Late>>,
+    /// What is expected.
+    pub(super) qvz: Duration,
     pub(super) check: Check,
 }
 
@@ -169,6 +171,8 @@ impl<'c> Case<'c> {
             {
                 Some(Verdict::NeitherHears)
             }
+            // One that is reset again and again, each time so much later, repeats its STX too.
+            Verdict::NotHeard { listener, .. } => self.late_repeats(listener),
             _ => None,
         }
     }
@@ -305,6 +309,18 @@ impl<'c> Case<'c> {
         if works && !is_overtaken {
             return None;
         }
+        // Twice as long, it is the wait for an answer of the other side that is late itself.
+        if let Some(other) = self.delays[side.other()]
+            && since(other.qvz, other.delay) > tolerance(other.delay)
+            && delay >= other.delay.saturating_mul(2)
+        {
+            return None;
+        }
+        (since(qvz, delay) > tolerance(delay)).then_some(Verdict::Late { side, delay, qvz })
+    }
+
+    fn late_repeats(&self, side: Side) -> Option<Verdict> {
+        let (delay, qvz) = (repeats_of(self.record, side)?, self.qvz);
         (since(qvz, delay) > tolerance(delay)).then_some(Verdict::Late { side, delay, qvz })
     }
 

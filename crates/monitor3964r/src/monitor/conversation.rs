@@ -339,6 +339,7 @@ impl Conversation {
         self.enter(heard.at, Phase::Idle);
         let control = matches!(heard.byte, STX | DLE | NAK);
         if heard.side == by && (heard.byte == bcc || !control) {
+            self.scan.push(heard.byte);
             self.see(Observation::BccNotAwaited { by: by.other() });
         } else {
             self.see(Observation::NoBcc { by });

@@ -51,6 +51,10 @@ impl Case<'_> {
     }
 
     pub(super) fn own_echo(&self, side: Side) -> Option<Verdict> {
+        // A late side answers what was given up long ago.
+        if self.late(side).is_some() {
+            return None;
+        }
         let own = self.side(side);
         let alone = own.broken_off.saturating_add(own.answered_itself);
         most(alone, own.blocks()).then_some(Verdict::OwnEcho { side })

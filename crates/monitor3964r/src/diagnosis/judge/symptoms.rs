@@ -97,10 +97,18 @@ pub(super) fn explains(verdict: Verdict, symptom: Symptom, side: Side) -> bool {
         }
         Verdict::LongBlocksRejected { refuser, .. } => (refuser, &[Rejects], &[]),
         // Its answers, and the NAK at the end of a block that it gives up, meet the next question or
-        // block, and the times of the other side are counted from them.
+        // block, which cuts off its own; and the times of the other side are counted from them.
         Verdict::Late { side, .. } => (
             side,
-            &[Late, Rejects, Refuses, NoAnswer, NoAcknowledgement],
+            &[
+                Late,
+                Pauses,
+                Unfinished,
+                Rejects,
+                Refuses,
+                NoAnswer,
+                NoAcknowledgement,
+            ],
             &[Late, Rejects, Unfinished, WithoutBcc],
         ),
         Verdict::NoReceiveBuffer { refuser } => (refuser, &[Refuses], &[]),
@@ -115,7 +123,8 @@ pub(super) fn explains(verdict: Verdict, symptom: Symptom, side: Side) -> bool {
         Verdict::WithoutBcc { side } => (
             side,
             &[WithoutBcc, AcknowledgesEarly, Unfinished],
-            &[NoAcknowledgement, Rejects],
+            // An STX in place of its answer to a block is refused.
+            &[NoAcknowledgement, Rejects, Refuses],
         ),
         Verdict::RequestForAnswer { side, .. } => (side, &[NoAcknowledgement], &[NoAnswer]),
         Verdict::NoAcknowledgement { silent } => (silent, &[NoAcknowledgement], &[]),
