@@ -98,14 +98,19 @@ impl<'d, T: BasicInstance, const P: usize> DmaPlayer<'d, T, P> {
         self.timer.start();
         loop {
             let mut chunk = [0; CHUNK];
-            for (place, tick) in chunk.iter_mut().zip(written..) {
+            let mut free = &mut chunk[..];
+            while !free.is_empty() {
                 if ticks.is_empty() && !in_flight.is_full() {
                     ticks.next_block(source);
                 }
-                if let Some(levels) = ticks.tick() {
+                let (passed, levels) = ticks.advance(free.len() as u32);
+                let (places, rest) = free.split_at_mut(passed as usize);
+                free = rest;
+                if let (Some(levels), Some(place)) = (levels, places.last_mut()) {
                     *place = self.port_word(levels);
                 }
                 if let Some(end) = ticks.take_end() {
+                    let tick = written + (CHUNK - free.len()) as u64 - 1;
                     // There is room: else no block would have been taken.
                     let _ = in_flight.push_back((tick, end));
                 }

@@ -1,4 +1,4 @@
-//! Blocks tick by tick.
+//! Blocks change by change.
 
 use crate::{Source, Word};
 
@@ -49,19 +49,23 @@ impl<S: Source> Ticks<S> {
         }
     }
 
-    /// One tick: levels of the pins, if they change.
-    pub(crate) fn tick(&mut self) -> Option<u8> {
-        let word = self.word()?;
-        self.left -= 1;
-        if self.left > 0 {
-            return None;
+    /// Goes on by at most so many ticks, to the next change: how many that were, and the levels of
+    /// the pins in the last of them, if they change.
+    pub(crate) fn advance(&mut self, most: u32) -> (u32, Option<u8>) {
+        let Some(word) = self.word() else {
+            return (most, None);
+        };
+        let ticks = self.left;
+        if ticks > most {
+            self.left -= most;
+            return (most, None);
         }
         self.next += 1;
         match self.word() {
             Some(next) => self.left = next.wait(),
             None => self.end = self.last,
         }
-        Some(word.levels)
+        (ticks, Some(word.levels))
     }
 
     /// The end of the block, once.
@@ -122,25 +126,35 @@ mod tests {
         Word { ticks, levels }
     }
 
-    /// The ticks at which something was, from 1.
-    fn play(source: &Recorded, ticks: &mut Ticks<Recorded>, count: u32) -> Vec<String> {
-        let mut seen = Vec::new();
-        for tick in 1..=count {
+    /// The ticks at which something was, from 1; in pieces of at most so many.
+    fn play(source: &Recorded, ticks: &mut Ticks<Recorded>, count: u32, piece: u32) -> Vec<String> {
+        let (mut seen, mut tick) = (Vec::new(), 0);
+        while tick < count {
             if ticks.is_empty() {
                 ticks.next_block(source);
             }
-            if let Some(levels) = ticks.tick() {
+            let (passed, levels) = ticks.advance(piece.min(count - tick));
+            assert!(passed > 0);
+            tick += passed;
+            if let Some(levels) = levels {
                 seen.push(format!("{tick}: {levels}"));
             }
             if let Some(end) = ticks.take_end() {
                 seen.push(format!("{tick}: end of {end}"));
             }
         }
+        assert_eq!(tick, count);
         seen
     }
 
     #[test]
     fn words_follow_each_other_from_block_to_block() {
+        for piece in [1, 2, 3, 20] {
+            words_follow_each_other_in_pieces_of(piece);
+        }
+    }
+
+    fn words_follow_each_other_in_pieces_of(piece: u32) {
         let source = Recorded::default();
         let blocks = [
             (vec![word(2, 1), word(1, 0)], 7),
@@ -148,14 +162,14 @@ mod tests {
         ];
         source.blocks.borrow_mut().extend(blocks);
         let mut ticks = Ticks::new();
-        let seen = play(&source, &mut ticks, 20);
+        let seen = play(&source, &mut ticks, 20, piece);
         // A word of no ticks takes one.
         let expected = ["2: 1", "3: 0", "3: end of 7", "6: 1", "7: 2", "7: end of 8"];
         assert_eq!(seen, expected);
         assert_eq!(*source.told.borrow(), ["ran out after 8"]);
         // At rest nothing is told; what comes then comes later.
         source.blocks.borrow_mut().push_back((vec![word(1, 3)], 9));
-        assert_eq!(play(&source, &mut ticks, 5), ["1: 3", "1: end of 9"]);
+        assert_eq!(play(&source, &mut ticks, 5, piece), ["1: 3", "1: end of 9"]);
         let told = ["ran out after 8", "ran out after 9"];
         assert_eq!(*source.told.borrow(), told);
     }
