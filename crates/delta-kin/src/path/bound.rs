@@ -90,18 +90,14 @@ impl DeltaPath {
     }
 
     /// Whether the machine may run a segment: all arms within their ranges, and no rod out of the
-    /// plane of its arm by more than its ball joints let it. How far out it is depends on the
-    /// platform's place alone, which is known at the nodes of [`departure`](Self::departure) and
-    /// linear between them but for what it departs by there and the curve's own bend. Far from the
-    /// limit, which most segments are, the ends tell enough.
+    /// plane of its arm by more than its ball joints let it.
     pub(super) fn check_span(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {
-        let (delta, s) = (&self.delta, span.s);
-        let cubics = cubics(&span.rows);
-        let arms = zip(cubics, delta.ranges().each_ref());
-        for ((cubic, range), arm) in arms.into_iter().zip(Arm::ALL) {
+        let [from, to] = &span.rows;
+        let arms = Cubic::between(from, to).zip(self.delta.ranges());
+        for ((cubic, range), arm) in arms.zip(Arm::ALL) {
             if let Some(angle) = beyond(range, &cubic) {
                 return Err(DeltaPathError::Range {
-                    s,
+                    s: span.s,
                     arm,
                     angle,
                     min: range.min(),
@@ -109,9 +105,20 @@ impl DeltaPath {
                 });
             }
         }
-        let Some(max) = delta.max_swivel() else {
-            return Ok(());
-        };
+        match self.delta.max_swivel() {
+            Some(max) => self.check_wrists(span, max),
+            None => Ok(()),
+        }
+    }
+
+    /// How far a rod is out of the plane of its arm depends on the platform's place alone, which is
+    /// known at the nodes of [`departure`](Self::departure) and linear between them but for what it
+    /// departs by there and the curve's own bend. Far from the limit, which most segments are, the
+    /// ends tell enough.
+    #[inline(never)]
+    fn check_wrists(&self, span: &Span<[f64; 3]>, max: f64) -> Result<(), DeltaPathError> {
+        let (delta, s) = (&self.delta, span.s);
+        let cubics = cubics(&span.rows);
         let places = s.map(|s| delta.flip(self.centre(s).coords));
         if are_free(delta, places, &cubics) {
             return Ok(());
