@@ -258,11 +258,14 @@ impl<'c> Case<'c> {
             ..
         } = *self.evidence;
         let conflicts = self.side(Side::A).conflicts;
+        // Whoever refuses the other is seldom in conflict with it.
+        let refused = Side::BOTH.map(|side| self.side(side).refused);
         if both_gave_way > 0 && most(both_gave_way, conflicts / 2) {
             Some(Priority::Low)
         } else if stalemates > 1
             && most(stalemates, conflicts)
             && resolved.saturating_mul(4) <= stalemates
+            && refused.into_iter().all(|refused| refused <= stalemates)
         {
             Some(Priority::High)
         } else {
