@@ -1,5 +1,6 @@
 //! Why a line does not work: a verdict over a record of both directions.
 
+mod conduct;
 mod delay;
 mod echo;
 mod evidence;

@@ -9,9 +9,10 @@ use core::time::Duration;
 use proto3964r::{Priority, frame::Check};
 
 use super::{
+    conduct::Conduct,
     delay::{repeats_of, tolerance},
     echo::Echo,
-    evidence::{Conduct, Evidence},
+    evidence::Evidence,
     setting::Setting,
     verdict::Verdict,
 };

@@ -29,6 +29,15 @@ fn seeds() -> impl Iterator<Item = u64> {
     (0..cases).map(move |case| first.wrapping_add(case).wrapping_mul(STRIDE))
 }
 
+/// Answers that only seem to belong to questions of long before are not late.
+#[test]
+fn a_bad_receiver_is_no_late_partner() {
+    let [.., variation] = Variation::ALL;
+    let example = kinds::a_bad_receiver(Case::new(14_727_398_570_297_873_639, variation));
+    let found = example.diagnosis();
+    assert!((example.is_right)(&found), "{found}");
+}
+
 /// The verdicts that are wrong, and those that are right.
 fn judge(make: Make, variation: Variation) -> (Vec<String>, usize) {
     let (mut wrong, mut right) = (Vec::new(), 0);

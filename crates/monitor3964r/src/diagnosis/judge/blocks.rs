@@ -2,7 +2,7 @@
 
 use super::{Case, most};
 use crate::{
-    diagnosis::{evidence::Conduct, verdict::Verdict},
+    diagnosis::{conduct::Conduct, verdict::Verdict},
     monitor::Side,
 };
 
