@@ -215,9 +215,9 @@ impl<P: Path> Place<'_, P> {
         Ok(())
     }
 
-    /// Lays the knots of some segments where they are to stand; those that are too coarse for the
-    /// path are halved, each stretched by a factor of the points at its ends, its length and the speeds that
-    /// are wanted there. How many they are then.
+    /// Lays the knots of some segments where they are to stand, each segment stretched by a factor
+    /// of the points at its ends, its length and the speeds that are wanted there. Those that are too
+    /// coarse for the path are halved. How many they are then.
     fn lay_checked<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,

@@ -86,8 +86,7 @@ impl Evidence {
                         evidence.end_of_block(by, None, &conversation);
                         evidence.bad_block(by, heard.at, error);
                     }
-                    Mark::Other(Observation::BccNotAwaited { by }) => {
-                        count(&mut evidence.sides[by].bcc_not_awaited);
+                    Mark::Other(Observation::BccNotAwaited { .. }) => {
                         evidence.late_bcc(heard, &conversation);
                     }
                     Mark::Other(observation) => evidence.observe(heard, observation),
@@ -151,6 +150,7 @@ impl Evidence {
 
     /// The BCC of a block that was answered before it.
     fn late_bcc(&mut self, heard: Character, conversation: &Conversation) {
+        count(&mut self.sides[heard.side.other()].bcc_not_awaited);
         let conduct = &mut self.sides[heard.side];
         conduct.frames.take(heard.byte);
         if let Some(bcc) = conversation.scan().bcc() {

@@ -50,6 +50,11 @@ const fn most(part: u32, all: u32) -> bool {
     part > 0 && part.saturating_mul(2) >= all
 }
 
+/// Later than the other side waits, and not by what is measured wrong.
+fn is_too_late(delay: Duration, qvz: Duration) -> bool {
+    since(qvz, delay) > tolerance(delay)
+}
+
 /// A rule for one side.
 type Rule<'c> = fn(&Case<'c>, Side) -> Option<Verdict>;
 
@@ -304,28 +309,24 @@ impl<'c> Case<'c> {
 
     pub(super) fn late(&self, side: Side) -> Option<Verdict> {
         let sender = self.side(side.other());
-        let Late {
-            delay,
-            qvz,
-            is_overtaken,
-        } = self.delays[side]?;
+        let found @ Late { delay, qvz, .. } = self.delays[side]?;
         let works = sender.accepted > sender.rejected && sender.unanswered < sender.accepted;
-        if works && !is_overtaken {
+        if works && !found.is_overtaken {
             return None;
         }
         // Twice as long, it is the wait for an answer of the other side that is late itself.
         if let Some(other) = self.delays[side.other()]
-            && since(other.qvz, other.delay) > tolerance(other.delay)
+            && is_too_late(other.delay, other.qvz)
             && delay >= other.delay.saturating_mul(2)
         {
             return None;
         }
-        (since(qvz, delay) > tolerance(delay)).then_some(Verdict::Late { side, delay, qvz })
+        is_too_late(delay, qvz).then_some(Verdict::Late { side, delay, qvz })
     }
 
     fn late_repeats(&self, side: Side) -> Option<Verdict> {
         let (delay, qvz) = (repeats_of(self.record, side)?, self.qvz);
-        (since(qvz, delay) > tolerance(delay)).then_some(Verdict::Late { side, delay, qvz })
+        is_too_late(delay, qvz).then_some(Verdict::Late { side, delay, qvz })
     }
 
     fn not_heard(&self, listener: Side) -> Option<Verdict> {
