@@ -10,6 +10,8 @@ from stm32f411 import CYCLES_PER_SECOND, Chip, Usart
 # STEP and DIR of each axis, all of port A; home switches of port C, closed to ground.
 DRIVER_PINS = (0, 1, 4, 10, 8, 9)
 SWITCH_PINS = (1, 0, 7)
+# Counts of the scales of the first two axes, of which the second stays at 0 where there is one axis.
+COUNTS_PER_STEP = 5
 # Changes of a contact while it bounces.
 BOUNCES = 6
 ERRORS = {"parity": Usart.PARITY, "framing": Usart.FRAMING, "overrun": Usart.OVERRUN, "break": Usart.FRAMING}
@@ -35,17 +37,22 @@ class Nucleo:
         # On the negative side at first: the switch is closed on the other.
         self.above = [steps < 0 for steps in self.from_switches]
         self.levels = 0
+        # Steps of each motor that move nothing, from the next one on.
+        self.losing = [0 for _ in self.axes]
         self.edges = []
         self.start(0)
 
     def start(self, cycle):
-        self.chip = Chip(self.segments, self.inputs, self.outputs, cycle)
+        self.chip = Chip(self.segments, self.inputs, self.outputs, (self.scale(0), self.scale(1)), cycle)
         self.outputs("A", 0, cycle)
 
     def inputs(self, port):
         if port != "C":
             return 0
         return sum(1 << SWITCH_PINS[axis] for axis in self.axes if not self.is_closed(axis))
+
+    def scale(self, axis):
+        return lambda: sum(self.from_switches[axis : axis + 1]) * COUNTS_PER_STEP
 
     def is_reached(self, axis):
         steps = self.from_switches[axis]
@@ -64,10 +71,16 @@ class Nucleo:
         risen, self.levels = levels & ~self.levels, levels
         for axis in self.axes:
             if risen >> 2 * axis & 1:
-                was_reached = self.is_reached(axis)
-                self.from_switches[axis] += 1 if levels >> (2 * axis + 1) & 1 else -1
-                if self.is_reached(axis) != was_reached:
-                    self.changed[axis] = cycle
+                self.step(axis, 1 if levels >> (2 * axis + 1) & 1 else -1, cycle)
+
+    def step(self, axis, sign, cycle):
+        if self.losing[axis]:
+            self.losing[axis] -= 1
+            return
+        was_reached = self.is_reached(axis)
+        self.from_switches[axis] += sign
+        if self.is_reached(axis) != was_reached:
+            self.changed[axis] = cycle
 
     def receive(self, end, byte, error=None):
         self.chip.usart.coming.append((int(end), int(byte), ERRORS.get(error, 0)))
@@ -84,6 +97,9 @@ class Nucleo:
         sys.stdout.write("".join(lines))
         print("at", self.chip.cycle, *self.from_switches, flush=True)
 
+    def lose(self, axis, steps):
+        self.losing[int(axis)] = int(steps)
+
     def set_bounce(self, cycles):
         self.bounce = int(cycles)
 
@@ -92,7 +108,13 @@ def main():
     program, *numbers = sys.argv[1:]
     bounce, *from_switches = map(int, numbers)
     nucleo = Nucleo(program, from_switches, bounce)
-    commands = {"receive": nucleo.receive, "bounce": nucleo.set_bounce, "power": nucleo.power, "run": nucleo.run}
+    commands = {
+        "receive": nucleo.receive,
+        "bounce": nucleo.set_bounce,
+        "lose": nucleo.lose,
+        "power": nucleo.power,
+        "run": nucleo.run,
+    }
     print("hz", CYCLES_PER_SECOND, flush=True)
     for line in sys.stdin:
         name, *words = line.split()

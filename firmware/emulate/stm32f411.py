@@ -1,8 +1,8 @@
 """The STM32F411 as the boards' firmware uses it, by `unicorn`.
 
 `unicorn` carries out the instructions of a Cortex-M4F; what lies around it is here: interrupts with
-their priorities, WFE and SEV, clocks, TIM5 as the clock, USART2, and TIM1 whose every update makes
-the DMA write a word to a port. An instruction takes a cycle: `unicorn` does not know how many. Time
+their priorities, WFE and SEV, clocks, TIM5 as the clock, USART2, TIM3 and
+TIM4 as counters of scales, and TIM1 whose every update makes the DMA write a word to a port. An instruction takes a cycle: `unicorn` does not know how many. Time
 goes on by slices of at most `SLICE` instructions; what the program reads of it is the slice's begin.
 """
 
@@ -294,6 +294,38 @@ class Ticker(Peripheral):
         return self.started is not None and self.values.get(0x0C, 0) & 0x100
 
 
+class Counter(Peripheral):
+    """TIM3 or TIM4 as the counter of a scale: both edges of both signals, up and down."""
+
+    registers = {0x00: "cr1", 0x24: "cnt"}
+    BOTH_EDGES, DIRECT_INPUTS = 3, 0x0101
+    ALTERNATE = 2
+
+    def __init__(self, chip, scale, port, pins):
+        super().__init__(chip)
+        self.scale, self.port, self.pins = scale, port, pins
+        self.started = None
+
+    def write_cr1(self, value):
+        self.values[0x00] = value
+        if value & 1 and self.started is None:
+            self.started = self.scale()
+
+    def read_cnt(self):
+        if self.started is None or not self.hears_scale():
+            return 0
+        return (self.scale() - self.started) % (self.values.get(0x2C, 0xFFFF) + 1)
+
+    def hears_scale(self):
+        """Whether slave mode, inputs and pins are those of a counter."""
+        mode, inputs = self.values.get(0x08, 0) & 7, self.values.get(0x18, 0) & 0x0303
+        return (mode, inputs) == (self.BOTH_EDGES, self.DIRECT_INPUTS) and all(map(self.is_heard, self.pins))
+
+    def is_heard(self, pin):
+        modes, functions = self.port.values.get(0x00, 0), self.port.values.get(0x20, 0)
+        return (modes >> 2 * pin & 3, functions >> 4 * pin & 15) == (2, self.ALTERNATE)
+
+
 class Dma(Peripheral):
     """DMA2, its stream 5: words of a ring to a port, one for each update of TIM1."""
 
@@ -408,9 +440,9 @@ class System(Peripheral):
 
 class Chip:
     """The microcontroller. `inputs` gives the levels of a port's pins, `outputs` takes them with the
-    cycle in which they change."""
+    cycle in which they change. `scales` are two functions that give the counts of TIM3 and TIM4."""
 
-    def __init__(self, segments, inputs, outputs, cycle=0):
+    def __init__(self, segments, inputs, outputs, scales, cycle=0):
         self.inputs, self.outputs, self.cycle = inputs, outputs, cycle
         self.begun = cycle
         self.sent = []
@@ -426,7 +458,10 @@ class Chip:
         self.ports = {name: Gpio(self, name, base) for name, base in places}
         self.usart, ticker = Usart(self), Ticker(self)
         self.system = System(self)
+        of_tim3, of_tim4 = scales
         self.peripherals = {
+            0x0400: Counter(self, of_tim3, self.ports["A"], (6, 7)),
+            0x0800: Counter(self, of_tim4, self.ports["B"], (6, 7)),
             0x0C00: Clock(self),
             0x4400: self.usart,
             0x7000: Pwr(self),

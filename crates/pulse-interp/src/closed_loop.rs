@@ -186,6 +186,11 @@ impl AxisLoop {
         self.commanded = self.commanded.wrapping_add(i64::from(direction.sign()));
     }
 
+    /// Sets the steps commanded so far, up less down, where they are counted elsewhere.
+    pub const fn set_commanded(&mut self, steps: i64) {
+        self.commanded = steps;
+    }
+
     /// Steps commanded so far, up less down.
     #[must_use]
     pub const fn commanded_steps(&self) -> i64 {

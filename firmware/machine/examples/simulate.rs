@@ -16,7 +16,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use board_machine::{
-    Block, BlockEnd, Kinematics, Machine, Motion, Panel, PlanMemory, Settings, Source, talk,
+    Block, BlockEnd, Inputs, Kinematics, Machine, Motion, Panel, PlanMemory, Settings, Source, talk,
 };
 use board_settings::{arm, delta, stage};
 use embedded_io_async::{ErrorType, Read, Write};
@@ -45,23 +45,25 @@ fn run<K: Kinematics<N>, const N: usize>(
     let machine = Machine::new(settings, TICK_HZ)?;
     let panel = Panel::new();
     let mut memory = PlanMemory::new();
-    let motion = Motion::new(&machine, &panel, &mut memory)?;
-    let are_below = from_switches.map(|steps| steps > 0);
-    let from_switches = Cell::new(from_switches);
+    let slides = Slides {
+        are_below: from_switches.map(|steps| steps > 0),
+        from_switches: Cell::new(from_switches),
+    };
+    let motion = Motion::new(&machine, &panel, &slides, &mut memory)?;
     let input = RefCell::new(VecDeque::new());
     let received = receive();
 
-    let closed = || {
-        let mut closed = from_switches.get().into_iter().zip(are_below);
-        [(); N].map(|()| {
-            let (steps, is_below) = closed.next().expect("N of them");
-            if is_below { steps <= 0 } else { steps >= 0 }
-        })
-    };
-    let mut plan = pin!(motion.run(closed));
+    let mut plan = pin!(motion.run());
     let port = (Input(&input), Output);
-    let mut converse = pin!(talk(&machine, &panel, LINE, port, |never| match never {}));
-    let mut pins = Pins::new(&panel, &from_switches);
+    let mut converse = pin!(talk(
+        &machine,
+        &panel,
+        &slides,
+        LINE,
+        port,
+        |never| match never {}
+    ));
+    let mut pins = Pins::new(&panel, &slides.from_switches);
     let mut context = Context::from_waker(Waker::noop());
     loop {
         match received.try_recv() {
@@ -72,6 +74,22 @@ fn run<K: Kinematics<N>, const N: usize>(
         pins.play();
         let _ = plan.as_mut().poll(&mut context);
         let _ = converse.as_mut().poll(&mut context);
+    }
+}
+
+/// Axes with a home switch each, which is open where the machine is switched on.
+struct Slides<const N: usize> {
+    from_switches: Cell<[i32; N]>,
+    are_below: [bool; N],
+}
+
+impl<const N: usize> Inputs<N> for Slides<N> {
+    fn closed(&self) -> [bool; N] {
+        let from_switches = self.from_switches.get();
+        std::array::from_fn(|axis| match self.are_below[axis] {
+            true => from_switches[axis] <= 0,
+            false => from_switches[axis] >= 0,
+        })
     }
 }
 

@@ -22,6 +22,7 @@ use crate::kinematics::{Axis, Kinematics};
 /// | `status` | what the machine does |
 /// | `limits` | where it can go, and how fast |
 /// | `machine` | which it is |
+/// | `scales` | what the scales of its axes read |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command<const N: usize> {
     /// A motion.
@@ -45,6 +46,8 @@ pub enum Command<const N: usize> {
     Limits,
     /// Which it is.
     Machine,
+    /// What the scales of its axes read.
+    Scales,
 }
 
 /// A command that takes time.
@@ -175,6 +178,7 @@ impl<const N: usize> Command<N> {
             b"status" => Self::Status,
             b"limits" => Self::Limits,
             b"machine" => Self::Machine,
+            b"scales" => Self::Scales,
             word => return Err(CommandError::Unknown { column, word }),
         };
         match words.next() {

@@ -8,6 +8,7 @@
 use pulse_interp::{Direction, Homing, HomingError, HomingOrder, HomingSpeed};
 
 use crate::blocks::{BlockWriter, max_word_ticks};
+use crate::inputs::Inputs;
 use crate::panel::{Panel, Wanted};
 use crate::settings::Machine;
 
@@ -17,12 +18,12 @@ pub(crate) enum NoHome {
     Switch { axis: usize, error: HomingError },
 }
 
-/// All axes to their switches. `closed` says which are.
+/// All axes to their switches.
 pub(crate) async fn home<K, const N: usize>(
     machine: &Machine<K, N>,
     panel: &Panel<N>,
+    inputs: &impl Inputs<N>,
     writer: &mut BlockWriter<'_, N>,
-    closed: &mut impl FnMut() -> [bool; N],
 ) -> Result<(), NoHome> {
     writer.restart(0);
     // A word takes a tick at least.
@@ -30,7 +31,7 @@ pub(crate) async fn home<K, const N: usize>(
     let mut found = Ok(());
     for axis in 0..N {
         if found.is_ok() {
-            found = home_axis(machine, panel, writer, axis, &mut ticks, closed).await;
+            found = home_axis(machine, panel, writer, axis, &mut ticks, inputs).await;
         }
     }
     // The blocks before have said that others follow.
@@ -47,14 +48,14 @@ async fn home_axis<K, const N: usize>(
     writer: &mut BlockWriter<'_, N>,
     axis: usize,
     ticks: &mut u64,
-    closed: &mut impl FnMut() -> [bool; N],
+    inputs: &impl Inputs<N>,
 ) -> Result<(), NoHome> {
     let mut homing = Homing::new(machine.homing[axis]);
     loop {
         if panel.wanted().0 == Wanted::Stop {
             return Err(NoHome::Stopped);
         }
-        let order = homing.next(closed()[axis]);
+        let order = homing.next(inputs.closed()[axis]);
         let order = order.map_err(|error| NoHome::Switch { axis, error })?;
         let HomingOrder::Step { direction, speed } = order else {
             return Ok(());

@@ -7,16 +7,20 @@ mod blocks;
 mod command;
 mod double;
 mod homing;
+mod inputs;
 mod kinematics;
+mod loops;
 mod motion;
 mod panel;
 mod pulses;
+mod scales;
 mod settings;
 mod settings_error;
 mod talk;
 
 pub use command::{Command, CommandError, Job, Turn};
 pub use double::product;
+pub use inputs::Inputs;
 pub use kinematics::{
     ArmGeometry, Axis, DeltaGeometry, Joint, Kinematics, Reasoned, RotaryDelta, Slide,
     StageGeometry, TwoLinkArm, Unit, XyStage,

@@ -12,7 +12,9 @@ use crate::arcs::arc;
 use crate::blocks::BlockWriter;
 use crate::command::{Job, Turn};
 use crate::homing::{NoHome, home};
+use crate::inputs::Inputs;
 use crate::kinematics::{Kinematics, Reason, Reasoned};
+use crate::loops::Loops;
 use crate::panel::{Panel, State, Wanted};
 use crate::settings::Machine;
 use crate::settings_error::SettingsError;
@@ -25,10 +27,11 @@ const JOG_SEGMENTS: u32 = 12;
 /// More than what the fourth power says, for an attempt that is to be the last.
 const FINER: f64 = 1.15;
 /// The planner of a machine: takes jobs from a panel, and puts blocks on it.
-pub struct Motion<'m, K, const N: usize> {
+pub struct Motion<'m, K, I, const N: usize> {
     machine: &'m Machine<K, N>,
     panel: &'m Panel<N>,
-    axes: Axes<'m, N>,
+    inputs: &'m I,
+    axes: Axes<'m, I, N>,
     memory: &'m mut PlanMemory<N>,
 }
 
@@ -57,10 +60,11 @@ impl<const N: usize> Default for PlanMemory<N> {
 }
 
 /// Where the axes are, and the way from there to the pins.
-struct Axes<'m, const N: usize> {
+struct Axes<'m, I, const N: usize> {
     writer: BlockWriter<'m, N>,
     quantiser: PvtQuantiser<N>,
     steps: PvtSteps<N>,
+    loops: Loops<'m, I, N>,
     /// At the end of the last row: radians or mm, and seconds since the machine was homed.
     position: [f64; N],
     time_s: f64,
@@ -88,14 +92,19 @@ fn failed(reason: impl Display) -> Failure {
     Failure::Failed(text!("failed, home again: {reason}"))
 }
 
-impl<'m, const N: usize> Axes<'m, N> {
+impl<'m, I: Inputs<N>, const N: usize> Axes<'m, I, N> {
     /// At rest at home.
-    fn home<K>(machine: &Machine<K, N>, writer: BlockWriter<'m, N>) -> Result<Self, SettingsError> {
+    fn home<K>(
+        machine: &Machine<K, N>,
+        panel: &'m Panel<N>,
+        inputs: &'m I,
+    ) -> Result<Self, SettingsError> {
         let quantiser = PvtQuantiser::new(machine.rate, machine.scales, machine.home)?;
         Ok(Self {
-            writer,
+            writer: BlockWriter::new(machine, panel),
             steps: PvtSteps::new(quantiser.knots(), machine.pins.min_intervals()),
             quantiser,
+            loops: Loops::new(machine, panel, inputs),
             position: machine.home,
             time_s: 0.0,
         })
@@ -118,12 +127,14 @@ impl<'m, const N: usize> Axes<'m, N> {
         Ok(())
     }
 
-    async fn rest(&mut self) {
+    /// Until the pins have made all steps.
+    async fn rest(&mut self, panel: &Panel<N>) {
         self.writer.rest(self.steps.end_ticks()).await;
+        panel.all_played().await;
     }
 }
 
-impl<'m, K: Kinematics<N>, const N: usize> Motion<'m, K, N> {
+impl<'m, K: Kinematics<N>, I: Inputs<N>, const N: usize> Motion<'m, K, I, N> {
     /// A machine that is not homed.
     ///
     /// # Errors
@@ -131,49 +142,46 @@ impl<'m, K: Kinematics<N>, const N: usize> Motion<'m, K, N> {
     pub fn new(
         machine: &'m Machine<K, N>,
         panel: &'m Panel<N>,
+        inputs: &'m I,
         memory: &'m mut PlanMemory<N>,
     ) -> Result<Self, SettingsError> {
         Ok(Self {
             machine,
             panel,
-            axes: Axes::home(machine, BlockWriter::new(machine, panel))?,
+            inputs,
+            axes: Axes::home(machine, panel, inputs)?,
             memory,
         })
     }
 
-    /// Takes one job after the other. `closed` says which home switches are.
-    pub async fn run(mut self, mut closed: impl FnMut() -> [bool; N]) -> ! {
+    /// Takes one job after the other.
+    pub async fn run(mut self) -> ! {
         loop {
-            match self.panel.next_job().await {
-                Job::Home => self.home(&mut closed).await,
-                Job::Line { to_mm, feed_mm_s } => {
-                    let result = self.line(to_mm, feed_mm_s).await;
-                    self.finish(result).await;
+            let result = match self.panel.next_job().await {
+                Job::Home => {
+                    self.home().await;
+                    continue;
                 }
+                Job::Line { to_mm, feed_mm_s } => self.line(to_mm, feed_mm_s).await,
                 Job::Arc {
                     turn,
                     to_mm,
                     centre_mm,
                     feed_mm_s,
-                } if K::HAS_ARCS => {
-                    let result = self.arc(turn, to_mm, centre_mm, feed_mm_s).await;
-                    self.finish(result).await;
-                }
+                } if K::HAS_ARCS => self.arc(turn, to_mm, centre_mm, feed_mm_s).await,
                 // No telegram says so.
-                Job::Arc { .. } => self.finish(Err(refused("no arcs"))).await,
-                Job::Jog { axis, by } => {
-                    let result = self.jog(axis, by).await;
-                    self.finish(result).await;
-                }
-            }
+                Job::Arc { .. } => Err(refused("no arcs")),
+                Job::Jog { axis, by } => self.jog(axis, by).await,
+            };
+            self.finish(result).await;
         }
     }
 
-    async fn home(&mut self, closed: &mut impl FnMut() -> [bool; N]) {
+    async fn home(&mut self) {
         let (machine, panel) = (self.machine, self.panel);
-        let found = home(machine, panel, &mut self.axes.writer, closed).await;
+        let found = home(machine, panel, self.inputs, &mut self.axes.writer).await;
         let (state, answer) = match found {
-            Ok(()) => match self.axes.set_home(machine) {
+            Ok(()) => match self.axes.set_home(machine).await {
                 Ok(()) => (
                     State::Ready,
                     text!("done, {}", machine.place(panel.steps())),
@@ -276,8 +284,7 @@ impl<'m, K: Kinematics<N>, const N: usize> Motion<'m, K, N> {
 
     /// Says how a motion ended.
     async fn finish(&mut self, result: Result<End, Failure>) {
-        self.axes.rest().await;
-        self.panel.all_played().await;
+        self.axes.rest(self.panel).await;
         let place = self.machine.place(self.panel.steps());
         let (state, answer) = match result {
             Ok(End::Done) => (State::Ready, text!("done, {place}")),
@@ -330,16 +337,18 @@ fn plan<'k, K: Kinematics<N>, const N: usize>(
     }
 }
 
-impl<const N: usize> Axes<'_, N> {
+impl<I: Inputs<N>, const N: usize> Axes<'_, I, N> {
     /// Here is home.
-    fn set_home<K>(&mut self, machine: &Machine<K, N>) -> Result<(), SettingsError> {
+    async fn set_home<K>(&mut self, machine: &Machine<K, N>) -> Result<(), SettingsError> {
         let quantiser = PvtQuantiser::new(machine.rate, machine.scales, machine.home)?;
         self.steps = PvtSteps::new(quantiser.knots(), machine.pins.min_intervals());
         self.quantiser = quantiser;
         (self.position, self.time_s) = (machine.home, 0.0);
+        let steps = self.steps.steps().map(|steps| steps as i32);
         self.writer.restart(0);
-        self.writer
-            .set_steps(self.steps.steps().map(|steps| steps as i32));
+        self.writer.set_steps(steps);
+        self.settle(machine).await;
+        self.loops.set_home(steps);
         Ok(())
     }
 
@@ -351,23 +360,33 @@ impl<const N: usize> Axes<'_, N> {
         mut playback: Playback<'_, [f64; N]>,
     ) -> Result<End, Failure> {
         let start_s = self.time_s;
+        // Something may have pushed them.
+        self.close_loops(machine).await?;
+        let mut lost = None;
         loop {
+            if lost.is_none() {
+                lost = self.loops.check::<K>().err();
+            }
             let (wanted, feed_percent) = panel.wanted();
             match wanted {
-                Wanted::Run => playback
+                Wanted::Run if lost.is_none() => playback
                     .set_feed(f64::from(feed_percent) / 100.0)
                     .map_err(failed)?,
-                Wanted::Hold | Wanted::Stop => playback.stop(),
+                Wanted::Run | Wanted::Hold | Wanted::Stop => playback.stop(),
             }
             if let Some(row) = playback.next_row() {
                 self.follow(start_s, &row).await?;
                 continue;
             }
+            self.rest(panel).await;
+            if let Some(lost) = lost {
+                return Err(failed(lost));
+            }
+            self.settle(machine).await;
+            self.close_loops(machine).await?;
             if playback.is_finished() {
                 return Ok(End::Done);
             }
-            self.rest().await;
-            panel.all_played().await;
             match wanted {
                 Wanted::Run => {}
                 Wanted::Stop => return Ok(End::Stopped),
@@ -381,5 +400,21 @@ impl<const N: usize> Axes<'_, N> {
                 }
             }
         }
+    }
+
+    /// Waits until the axes stand, which are at rest, where their scales are read.
+    async fn settle<K>(&mut self, machine: &Machine<K, N>) {
+        let end = self.steps.end_ticks();
+        self.loops.settle(machine, &mut self.writer, end).await;
+    }
+
+    /// Brings the axes, which stand, to where the steps have brought them, by their scales.
+    async fn close_loops<K: Kinematics<N>>(
+        &mut self,
+        machine: &Machine<K, N>,
+    ) -> Result<(), Failure> {
+        let end = self.steps.end_ticks();
+        let closed = self.loops.close(machine, &mut self.writer, end);
+        closed.await.map_err(failed)
     }
 }

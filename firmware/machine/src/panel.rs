@@ -11,6 +11,7 @@ use step_player::Source;
 
 use crate::command::{Command, Job};
 use crate::pulses::{Block, BlockEnd};
+use crate::scales::{Counters, Reading};
 use crate::{Text, text};
 
 /// Blocks between planner and pins. With the time of a block this is how far the
@@ -62,6 +63,7 @@ struct Shared<const N: usize> {
     /// Of the blocks that are put and not played.
     ticks_ahead: u32,
     underruns: u32,
+    counters: Counters<N>,
 }
 
 /// What those who talk, plan and play share; each may be a task of another priority.
@@ -93,6 +95,7 @@ impl<const N: usize> Panel<N> {
                 steps: [0; N],
                 ticks_ahead: 0,
                 underruns: 0,
+                counters: Counters::new(),
             })),
             jobs: Signal::new(),
             changed: Signal::new(),
@@ -210,6 +213,21 @@ impl<const N: usize> Panel<N> {
 
     pub(crate) fn set_steps(&self, steps: [i32; N]) {
         self.change(|shared| shared.steps = steps);
+    }
+
+    /// What the scales say, as their counters read now.
+    pub(crate) fn read_scales(&self, now: [u16; N]) -> Reading<N> {
+        self.change(|shared| shared.counters.read(now, shared.steps))
+    }
+
+    /// The scales are at home, so many steps from zero.
+    pub(crate) fn set_home(&self, home_steps: [i32; N]) {
+        self.change(|shared| shared.counters.set_home(home_steps));
+    }
+
+    /// The axes have been corrected by so many steps.
+    pub(crate) fn corrected(&self, steps: [i32; N]) {
+        self.change(|shared| shared.counters.correct(steps));
     }
 
     /// Says what became of a job. Nobody who listens too slowly stops the machine: the oldest

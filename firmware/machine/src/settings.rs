@@ -5,6 +5,7 @@ use pulse_interp::HomingSettings;
 use pvt_steps::{MinIntervals, Rate, StepDirTiming, StepScale};
 
 use crate::kinematics::{Axis, Kinematics, Unit};
+use crate::scales::ScaleLoop;
 use crate::settings_error::SettingsError;
 
 /// A machine with N axes, its motors and their drivers.
@@ -35,6 +36,7 @@ pub struct Machine<K, const N: usize> {
     pub(crate) limits: [AxisLimits; N],
     pub(crate) tolerance_mm: f64,
     pub(crate) home: [f64; N],
+    pub(crate) loops: [Option<ScaleLoop>; N],
     pub(crate) homing: [HomingSettings; N],
     pub(crate) homing_fast_ticks: u32,
     pub(crate) homing_slow_ticks: u32,
@@ -120,6 +122,15 @@ impl<K: Kinematics<N>, const N: usize> Machine<K, N> {
         for (scale, axis) in scales.iter_mut().zip(axes) {
             *scale = StepScale::new(axis.steps_per_unit())?;
         }
+        let mut loops = [None; N];
+        for ((place, axis), name) in loops.iter_mut().zip(axes).zip(K::AXES) {
+            let closed = axis
+                .scale()
+                .map(|scale| ScaleLoop::new(scale, axis.steps_s()));
+            *place = closed
+                .transpose()
+                .map_err(|error| SettingsError::Loop { axis: name, error })?;
+        }
         Ok(Self {
             kinematics,
             ranges,
@@ -134,6 +145,7 @@ impl<K: Kinematics<N>, const N: usize> Machine<K, N> {
             }),
             tolerance_mm,
             home,
+            loops,
             homing: axes.map(|axis| axis.homing()),
             homing_fast_ticks: homing_ticks(settings.homing_fast_hz)?,
             homing_slow_ticks: homing_ticks(settings.homing_slow_hz)?,

@@ -1,5 +1,6 @@
 //! Why settings are refused.
 
+use pulse_interp::LoopError;
 use pvt_steps::{KnotError, RateError, ScaleError};
 use thiserror::Error;
 
@@ -44,6 +45,14 @@ pub enum SettingsError {
         steps_s: f64,
         /// The most that driver and ticks allow.
         max_s: f64,
+    },
+    /// A closed loop on the scale of an axis.
+    #[error("{axis}: {error}")]
+    Loop {
+        /// The axis.
+        axis: &'static str,
+        /// Why it is none.
+        error: LoopError,
     },
     /// A tolerance that nothing can be within.
     #[error("a tolerance of {tolerance_mm} mm")]

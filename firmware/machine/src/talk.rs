@@ -10,8 +10,10 @@ use proto3964r::embedded_io_async::{AsyncClock, Driver};
 use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
 
 use crate::command::Command;
+use crate::inputs::Inputs;
 use crate::kinematics::Kinematics;
-use crate::panel::Panel;
+use crate::panel::{Panel, State};
+use crate::scales::Reading;
 use crate::settings::Machine;
 use crate::{MAX_ANSWER, Text, text};
 
@@ -41,6 +43,7 @@ impl AsyncClock for Clock {
 pub async fn talk<K, const N: usize, R, W>(
     machine: &Machine<K, N>,
     panel: &Panel<N>,
+    inputs: &impl Inputs<N>,
     line: Line,
     (reader, writer): (R, W),
     line_error: impl Fn(R::Error) -> Option<CharacterError>,
@@ -62,7 +65,9 @@ where
             let _ = driver.submit(answer.as_bytes());
         }
         let answer = match select(driver.wait(), panel.next_answer()).await {
-            Either::First(Ok(Event::Received(telegram))) => answer(machine, panel, telegram),
+            Either::First(Ok(Event::Received(telegram))) => {
+                answer(machine, panel, inputs, telegram)
+            }
             // One that could not be sent is given up: the partner is not there.
             Either::First(Ok(_)) => None,
             Either::First(Err(error)) => {
@@ -86,6 +91,7 @@ where
 fn answer<K: Kinematics<N>, const N: usize>(
     machine: &Machine<K, N>,
     panel: &Panel<N>,
+    inputs: &impl Inputs<N>,
     telegram: &[u8],
 ) -> Option<Text> {
     let command = match Command::parse::<K>(telegram) {
@@ -97,6 +103,21 @@ fn answer<K: Kinematics<N>, const N: usize>(
         Command::Status => panel.status(),
         Command::Limits => text!("{}", Limits(machine)),
         Command::Machine => text!("{}", K::NAME),
+        Command::Scales => match inputs.counts() {
+            Some(counts) if machine.loops.iter().any(Option::is_some) => {
+                let is_homed = !matches!(panel.state(), State::NotHomed | State::Homing);
+                let reading = panel.read_scales(counts);
+                text!(
+                    "{}",
+                    ScalesAt {
+                        machine,
+                        reading,
+                        is_homed
+                    }
+                )
+            }
+            _ => text!("refused: no scales"),
+        },
         command => return panel.take(command),
     })
 }
@@ -179,6 +200,47 @@ impl<K: Kinematics<N>, const N: usize> Display for Limits<'_, K, N> {
                 unit.shown(limits.speed),
                 unit.shown(limits.acceleration)
             )?;
+        }
+        Ok(())
+    }
+}
+
+/// What the scales of a machine say, to be printed: places once it is homed, counts, and what has been
+/// corrected.
+struct ScalesAt<'m, K, const N: usize> {
+    machine: &'m Machine<K, N>,
+    reading: Reading<N>,
+    is_homed: bool,
+}
+
+impl<K: Kinematics<N>, const N: usize> Display for ScalesAt<'_, K, N> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self {
+            machine, reading, ..
+        } = self;
+        let axes = || {
+            let axes = machine.loops.iter().enumerate();
+            axes.filter_map(|(axis, scale)| Some((axis, scale.as_ref()?)))
+        };
+        if self.is_homed {
+            let unit = Machine::<K, N>::UNIT;
+            for (axis, scale) in axes() {
+                let steps = scale.steps(reading.counts[axis], reading.home_steps[axis]);
+                let at = unit.shown(steps / machine.scales[axis].steps_per_unit());
+                write!(f, "{} {:.3} ", K::AXES[axis], plain(at))?;
+            }
+            write!(f, "{}, ", unit.name())?;
+        }
+        write!(f, "counts")?;
+        for (axis, _) in axes() {
+            write!(f, " {}", reading.counts[axis])?;
+        }
+        if self.is_homed {
+            write!(f, ", corrected")?;
+            for (axis, _) in axes() {
+                write!(f, " {}", reading.corrected_steps[axis])?;
+            }
+            write!(f, " steps")?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! A Raspberry Pi Pico that runs a machine: see the README for wiring and commands. What the
 //! machine is its program says: `KIND`, `AXES`, settings and pins.
 
-use board_machine::{Machine, Motion, Panel, PlanMemory, product, talk};
+use board_machine::{Inputs, Machine, Motion, Panel, PlanMemory, product, talk};
 use embassy_executor::{Executor, InterruptExecutor};
 use embassy_rp::gpio::{AnyPin, Input, Pull};
 use embassy_rp::interrupt;
@@ -27,6 +27,7 @@ bind_interrupts!(pub struct Irqs {
 
 static PANEL: Panel<AXES> = Panel::new();
 static MACHINE: StaticCell<Machine<Kind, AXES>> = StaticCell::new();
+static SWITCHES: StaticCell<Switches> = StaticCell::new();
 static MEMORY: StaticCell<PlanMemory<AXES>> = StaticCell::new();
 static PLAYS: InterruptExecutor = InterruptExecutor::new();
 static TALKS: InterruptExecutor = InterruptExecutor::new();
@@ -43,6 +44,15 @@ pub struct Board {
     pub pio: pio::Pio<'static, PIO0>,
 }
 
+/// Home switches, closed to ground.
+struct Switches([Input<'static>; AXES]);
+
+impl Inputs<AXES> for Switches {
+    fn closed(&self) -> [bool; AXES] {
+        self.0.each_ref().map(Input::is_low)
+    }
+}
+
 impl Board {
     /// Runs the machine: step and direction of the first axis, of the second and so on, which have
     /// to be pins in a row, and the home switches, which close to ground.
@@ -56,6 +66,8 @@ impl Board {
         let player = PioPlayer::new(&mut self.pio.common, self.pio.sm0, &pins, dma);
         let machine = Machine::new(&SETTINGS, player.tick_hz()).expect("good settings");
         let machine: &Machine<Kind, AXES> = MACHINE.init(machine);
+        let switches = switches.map(|pin| Input::new(pin, Pull::Up));
+        let switches: &Switches = SWITCHES.init(Switches(switches));
         let memory = MEMORY.init_with(PlanMemory::new);
 
         static BUFFERS: ConstStaticCell<[[u8; 256]; 2]> = ConstStaticCell::new([[0; 256]; 2]);
@@ -76,10 +88,9 @@ impl Board {
         let (tx, rx) = line.split();
         TALKS
             .start(interrupt::SWI_IRQ_1)
-            .spawn(converse(machine, tx, rx).expect("spawned once"));
-        let switches = switches.map(|pin| Input::new(pin, Pull::Up));
+            .spawn(converse(machine, switches, tx, rx).expect("spawned once"));
         PLANS.init(Executor::new()).run(|spawner| {
-            spawner.spawn(plan(machine, memory, switches).expect("spawned once"));
+            spawner.spawn(plan(machine, switches, memory).expect("spawned once"));
         })
     }
 }
@@ -102,25 +113,30 @@ async fn play(player: Player) {
 }
 
 #[embassy_executor::task]
-async fn converse(machine: &'static Machine<Kind, AXES>, tx: BufferedUartTx, rx: BufferedUartRx) {
+async fn converse(
+    machine: &'static Machine<Kind, AXES>,
+    switches: &'static Switches,
+    tx: BufferedUartTx,
+    rx: BufferedUartRx,
+) {
     let line_error = |error| match error {
         uart::Error::Overrun => Some(CharacterError::Overrun),
         uart::Error::Break => None,
         uart::Error::Parity => Some(CharacterError::Parity),
         _ => Some(CharacterError::Framing),
     };
-    talk(machine, &PANEL, Line::paced(BAUD, 11), (rx, tx), line_error).await
+    let line = Line::paced(BAUD, 11);
+    talk(machine, &PANEL, switches, line, (rx, tx), line_error).await
 }
 
 #[embassy_executor::task]
 async fn plan(
     machine: &'static Machine<Kind, AXES>,
+    switches: &'static Switches,
     memory: &'static mut PlanMemory<AXES>,
-    switches: [Input<'static>; AXES],
 ) {
-    let motion = Motion::new(machine, &PANEL, memory).expect("home is within 2^31 steps");
-    // Closed to ground.
-    motion.run(|| switches.each_ref().map(Input::is_low)).await
+    let motion = Motion::new(machine, &PANEL, switches, memory);
+    motion.expect("home is within 2^31 steps").run().await
 }
 
 unsafe extern "C" {

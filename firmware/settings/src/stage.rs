@@ -1,7 +1,7 @@
 //! The stage: what to change for another one.
 
 use board_machine::{Settings, Slide, StageGeometry, XyStage};
-use pulse_interp::{Direction, HomingSettings};
+use pulse_interp::{Direction, HomingSettings, LoopSettings, ScaleRatio};
 use pvt_steps::StepDirTiming;
 
 /// Motors of 200 steps in halves, on screws of 4 mm a turn.
@@ -13,6 +13,12 @@ const HOMING: HomingSettings = HomingSettings {
     clear_steps: 100,
 };
 
+/// Scales of 500 counts a mm.
+const RATIO: ScaleRatio = match ScaleRatio::new(5, 1) {
+    Ok(ratio) => ratio,
+    Err(_) => panic!("counts of no step"),
+};
+
 const SLIDE: Slide = Slide {
     range_mm: [0.0, 120.0],
     steps_per_mm: STEPS_PER_MM,
@@ -20,6 +26,12 @@ const SLIDE: Slide = Slide {
     acceleration_mm_s2: 500.0,
     home_mm: 0.0,
     homing: HOMING,
+    // None without scales.
+    scale: Some(LoopSettings {
+        ratio: RATIO,
+        dead_band_counts: 3,
+        alarm_counts: 100,
+    }),
 };
 
 /// How many motors it has.

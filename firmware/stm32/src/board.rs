@@ -1,13 +1,14 @@
 //! A Nucleo-F411RE that runs a machine: see the README for wiring and commands. What the machine is
 //! its program says: `KIND`, `AXES`, settings and pins.
 
-use board_machine::{Machine, Motion, Panel, PlanMemory, talk};
+use board_machine::{Inputs, Machine, Motion, Panel, PlanMemory, talk};
 use embassy_executor::{Executor, InterruptExecutor};
 use embassy_stm32::gpio::{AnyPin, Input, Pull};
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
-use embassy_stm32::peripherals::{DMA2_CH5, PA2, PA3, TIM1, USART2};
+use embassy_stm32::peripherals::{DMA2_CH5, PA2, PA3, TIM1, TIM3, TIM4, USART2};
 use embassy_stm32::rcc::{self, AHBPrescaler, APBPrescaler, Pll, PllMul, PllPDiv, PllPreDiv};
+use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::{self, BufferedUart, BufferedUartRx, BufferedUartTx};
 use embassy_stm32::{Peri, bind_interrupts, dma};
 use panic_probe as _;
@@ -28,6 +29,7 @@ bind_interrupts!(struct Irqs {
 
 static PANEL: Panel<AXES> = Panel::new();
 static MACHINE: StaticCell<Machine<Kind, AXES>> = StaticCell::new();
+static INPUTS: StaticCell<Pins> = StaticCell::new();
 static MEMORY: StaticCell<PlanMemory<AXES>> = StaticCell::new();
 static PLAYS: InterruptExecutor = InterruptExecutor::new();
 static TALKS: InterruptExecutor = InterruptExecutor::new();
@@ -42,6 +44,30 @@ pub struct Board {
     pub usart: Peri<'static, USART2>,
     pub timer: Peri<'static, TIM1>,
     pub dma: Peri<'static, DMA2_CH5>,
+    pub scales: Scales,
+}
+
+/// The counters of the scales of the first two axes, if they have some.
+pub type Scales = Option<(Qei<'static, TIM3>, Qei<'static, TIM4>)>;
+
+/// What is read.
+struct Pins {
+    switches: [Input<'static>; AXES],
+    scales: Scales,
+}
+
+impl Inputs<AXES> for Pins {
+    fn closed(&self) -> [bool; AXES] {
+        // To ground.
+        self.switches.each_ref().map(Input::is_low)
+    }
+
+    fn counts(&self) -> Option<[u16; AXES]> {
+        let (x, y) = self.scales.as_ref()?;
+        let mut counts = [0; AXES];
+        counts[..2].copy_from_slice(&[x.count(), y.count()]);
+        Some(counts)
+    }
 }
 
 impl Board {
@@ -58,6 +84,10 @@ impl Board {
         let player = player.expect("pins of one port");
         let machine = Machine::new(&SETTINGS, TICK_HZ).expect("good settings");
         let machine: &Machine<Kind, AXES> = MACHINE.init(machine);
+        let inputs: &Pins = INPUTS.init(Pins {
+            switches: switches.map(|pin| Input::new(pin, Pull::Up)),
+            scales: self.scales,
+        });
         let memory = MEMORY.init_with(PlanMemory::new);
 
         static BUFFERS: ConstStaticCell<[[u8; 256]; 2]> = ConstStaticCell::new([[0; 256]; 2]);
@@ -80,10 +110,9 @@ impl Board {
         let (tx, rx) = line.split();
         TALKS
             .start(interrupt::SPI5)
-            .spawn(converse(machine, tx, rx).expect("spawned once"));
-        let switches = switches.map(|pin| Input::new(pin, Pull::Up));
+            .spawn(converse(machine, inputs, tx, rx).expect("spawned once"));
         PLANS.init(Executor::new()).run(|spawner| {
-            spawner.spawn(plan(machine, memory, switches).expect("spawned once"));
+            spawner.spawn(plan(machine, inputs, memory).expect("spawned once"));
         })
     }
 }
@@ -126,6 +155,7 @@ async fn play(player: Player) {
 #[embassy_executor::task]
 async fn converse(
     machine: &'static Machine<Kind, AXES>,
+    inputs: &'static Pins,
     tx: BufferedUartTx<'static>,
     rx: BufferedUartRx<'static>,
 ) {
@@ -134,16 +164,16 @@ async fn converse(
         usart::Error::Parity => Some(CharacterError::Parity),
         _ => Some(CharacterError::Framing),
     };
-    talk(machine, &PANEL, Line::paced(BAUD, 11), (rx, tx), line_error).await
+    let line = Line::paced(BAUD, 11);
+    talk(machine, &PANEL, inputs, line, (rx, tx), line_error).await
 }
 
 #[embassy_executor::task]
 async fn plan(
     machine: &'static Machine<Kind, AXES>,
+    inputs: &'static Pins,
     memory: &'static mut PlanMemory<AXES>,
-    switches: [Input<'static>; AXES],
 ) {
-    let motion = Motion::new(machine, &PANEL, memory).expect("home is within 2^31 steps");
-    // Closed to ground.
-    motion.run(|| switches.each_ref().map(Input::is_low)).await
+    let motion = Motion::new(machine, &PANEL, inputs, memory);
+    motion.expect("home is within 2^31 steps").run().await
 }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use pulse_interp::HomingSettings;
+use pulse_interp::{HomingSettings, LoopSettings};
 
 /// What a value of an axis is shown in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +61,10 @@ pub trait Axis: Copy {
     fn home(&self) -> f64;
     /// How it finds its switch.
     fn homing(&self) -> HomingSettings;
+    /// The closed loop on its scale, on boards that count one.
+    fn scale(&self) -> Option<LoopSettings> {
+        None
+    }
     /// Steps of a radian or mm.
     fn steps_per_unit(&self) -> f64;
     /// Steps a second at the largest speed.
@@ -131,6 +135,8 @@ pub struct Slide {
     pub home_mm: f64,
     /// How it finds its switch. The direction is that of positive steps.
     pub homing: HomingSettings,
+    /// The closed loop on its scale, which counts up with positive steps; used on boards that count it.
+    pub scale: Option<LoopSettings>,
 }
 
 impl Axis for Slide {
@@ -154,6 +160,10 @@ impl Axis for Slide {
 
     fn homing(&self) -> HomingSettings {
         self.homing
+    }
+
+    fn scale(&self) -> Option<LoopSettings> {
+        self.scale
     }
 
     fn steps_per_unit(&self) -> f64 {

@@ -17,6 +17,8 @@ use crate::rig::{ARM, DELTA, Kind, Rig, STAGE};
 const IN_FLIGHT: u32 = 16;
 /// How long a contact bounces.
 const BOUNCE: Duration = Duration::from_millis(2);
+/// Steps that a motor loses.
+const LOST: u32 = 7;
 /// What a machine is asked on its day.
 struct Day<K: Kinematics<N> + 'static, const N: usize> {
     kind: Kind<K, N>,
@@ -34,6 +36,8 @@ struct Day<K: Kinematics<N> + 'static, const N: usize> {
     jogs: [&'static str; 2],
     /// From the end of a telegram to the first edge, on the Pico and on the Nucleo.
     most_until_edge_s: [f64; 2],
+    /// Whether the Nucleo counts its scales.
+    has_scales: bool,
 }
 
 const ARM_DAY: Day<TwoLinkArm, 2> = Day {
@@ -51,6 +55,7 @@ const ARM_DAY: Day<TwoLinkArm, 2> = Day {
     refused: &[
         "machine",
         "limits",
+        "scales",
         "line 400 0",
         "line 0 0",
         "jog elbow 200",
@@ -61,6 +66,7 @@ const ARM_DAY: Day<TwoLinkArm, 2> = Day {
     stopped: ([60.0, 150.0], "line 60 150"),
     jogs: ["jog shoulder 90", "jog elbow 5"],
     most_until_edge_s: [0.22, 0.1],
+    has_scales: false,
 };
 
 const DELTA_DAY: Day<RotaryDelta, 3> = Day {
@@ -77,6 +83,7 @@ const DELTA_DAY: Day<RotaryDelta, 3> = Day {
     refused: &[
         "machine",
         "limits",
+        "scales",
         "line 0 0 -400",
         "jog arm2 200",
         "cw 1 2 3 4",
@@ -86,6 +93,7 @@ const DELTA_DAY: Day<RotaryDelta, 3> = Day {
     stopped: ([90.0, -40.0, -260.0], "line 90 -40 -260 100"),
     jogs: ["jog arm1 -30", "jog arm1 5"],
     most_until_edge_s: [0.22, 0.1],
+    has_scales: false,
 };
 
 const STAGE_DAY: Day<XyStage, 2> = Day {
@@ -102,6 +110,7 @@ const STAGE_DAY: Day<XyStage, 2> = Day {
     refused: &[
         "machine",
         "limits",
+        "scales",
         "line 400 0",
         "ccw 0 0 7 7",
         "jog y 200",
@@ -110,8 +119,9 @@ const STAGE_DAY: Day<XyStage, 2> = Day {
     ],
     held: ([100.0, 20.0], "line 100 20"),
     stopped: ([20.0, 50.0], "line 20 50"),
-    jogs: ["jog x 20", "jog y 5"],
+    jogs: ["jog x 20", "jog x 5"],
     most_until_edge_s: [0.2, 0.1],
+    has_scales: true,
 };
 
 /// A board with the same machine on this PC beside it.
@@ -130,6 +140,9 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
     fn new(day: Day<K, N>, command: &str, tick_hz: u32, most_until_edge_s: f64) -> Self {
         let board = Board::start(command, day.kind, tick_hz, day.from_switches);
         let rig = Rig::of(day.kind, tick_hz, day.from_switches);
+        if day.has_scales {
+            rig.pins.count_scales();
+        }
         Self {
             tick_hz,
             cycles_per_tick: board.cycles(Duration::from_secs(1)) / u64::from(tick_hz),
@@ -291,6 +304,35 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
         self.assert_where();
     }
 
+    /// Lost steps are made again at the end of a motion, and a motor that stalls stops the machine.
+    fn closes_its_loops(&mut self) {
+        let jog = self.day.jogs[1];
+        assert!(self.board.ask(jog).starts_with("ok, "));
+        self.board.lose(0, LOST);
+        let done = self.board.answer();
+        assert!(done.starts_with("done, "), "{done}");
+        let home = self.day.kind.home_steps;
+        let slides = self.board.pins.since_switch();
+        let steps: [_; N] = std::array::from_fn(|axis| format!(" {}", slides[axis] + home[axis]));
+        let place = self.board.ask("where");
+        assert!(
+            place.ends_with(&format!("steps{}", steps.concat())),
+            "{place}, not {steps:?}"
+        );
+        let scales = self.board.ask("scales");
+        assert!(
+            scales.ends_with(&format!("corrected {LOST} 0 steps")),
+            "{scales}"
+        );
+        assert!(self.board.ask(self.day.jogs[0]).starts_with("ok, "));
+        self.board.lose(0, u32::MAX);
+        let failed = self.board.answer();
+        let expected = "failed, home again: x is -";
+        assert!(failed.starts_with(expected), "{failed}");
+        self.board.lose(0, 0);
+        assert_eq!(self.board.ask(jog), "refused: not homed");
+    }
+
     /// A switch that bounces is found where it closes.
     fn homes_with_bouncing_switches(&mut self) {
         let cycles = self.board.cycles(BOUNCE);
@@ -340,6 +382,9 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
         self.stops();
         self.bears_a_bad_line();
         assert_eq!(self.board.ask("status"), "ready, feed 100 %, 0 underruns");
+        if self.day.has_scales {
+            self.closes_its_loops();
+        }
         self.homes_with_bouncing_switches();
         self.starts_again();
         eprintln!("{} edges alike", self.compared);
@@ -348,8 +393,9 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
 
 /// A day of a machine on the Pico, and on the Nucleo, where the variables have their emulators'
 /// commands.
-fn on_the_pico<K: Kinematics<N> + 'static, const N: usize>(day: Day<K, N>, variable: &str) {
+fn on_the_pico<K: Kinematics<N> + 'static, const N: usize>(mut day: Day<K, N>, variable: &str) {
     if let Ok(command) = std::env::var(variable) {
+        day.has_scales = false;
         let most_until_edge_s = day.most_until_edge_s[0];
         Pair::new(day, &command, 12_500_000, most_until_edge_s).run();
     }

@@ -8,5 +8,6 @@ mod double;
 mod edges;
 mod motion;
 mod rig;
+mod scales;
 mod settings;
 mod stage;

@@ -16,6 +16,7 @@ use scara_kin::{Arm, Elbow, Joints};
 
 pub use kind::{ARM, DELTA, Kind, STAGE};
 pub use pins::Pins;
+use pins::Slides;
 use wire::Wire;
 
 pub const STEPS_PER_TURN: f64 = 16_000.0;
@@ -78,15 +79,15 @@ impl<const N: usize> Rig<N> {
         let pins = Pins::new(&kind, tick_hz, from_switches);
         let (to_firmware, from_firmware) = (Wire::default(), Wire::default());
 
-        let switches = pins.switches();
+        let inputs: &Slides<N> = Box::leak(Box::new(pins.slides()));
         let memory = Box::leak(Box::new(PlanMemory::new()));
-        let motion = Motion::new(machine, panel, memory).unwrap();
+        let motion = Motion::new(machine, panel, inputs, memory).unwrap();
         let plan = async move {
-            motion.run(|| switches.closed()).await;
+            motion.run().await;
         };
         let port = (to_firmware.clone(), from_firmware.clone());
         let converse = async move {
-            talk(machine, panel, Line::Instant, port, |_| {
+            talk(machine, panel, inputs, Line::Instant, port, |_| {
                 Some(CharacterError::Parity)
             })
             .await;

@@ -80,4 +80,13 @@ fn of_a_delta_and_a_stage_too() {
     }
     let home: Spoil<XyStage, 2> = |settings| settings.axes[1].home_mm = -1.0;
     assert_eq!(refused(STAGE, home), "y: home at -1 mm is out of its range");
+    let scale: Spoil<XyStage, 2> = |settings| {
+        if let Some(scale) = &mut settings.axes[1].scale {
+            scale.dead_band_counts = scale.alarm_counts;
+        }
+    };
+    assert_eq!(
+        refused(STAGE, scale),
+        "y: a dead band of 100 counts is not below the alarm at 100"
+    );
 }

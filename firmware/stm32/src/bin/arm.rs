@@ -18,6 +18,7 @@ fn main() -> ! {
         usart: p.USART2,
         timer: p.TIM1,
         dma: p.DMA2_CH5,
+        scales: None,
     };
     // Step and direction of the shoulder, step and direction of the elbow.
     let drivers = [p.PA0.into(), p.PA1.into(), p.PA4.into(), p.PA10.into()]; // A0 A1, A2 D2

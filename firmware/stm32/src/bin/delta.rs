@@ -18,6 +18,7 @@ fn main() -> ! {
         usart: p.USART2,
         timer: p.TIM1,
         dma: p.DMA2_CH5,
+        scales: None,
     };
     // Step and direction of each arm.
     let drivers = [

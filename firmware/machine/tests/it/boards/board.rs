@@ -201,6 +201,12 @@ impl<const N: usize> Board<N> {
         self.emulator.tell(line);
     }
 
+    /// The motor of an axis loses so many steps, from the next one on.
+    pub fn lose(&mut self, axis: usize, steps: u32) {
+        self.pins.lose(axis, steps);
+        self.tell(&format!("lose {axis} {steps}"));
+    }
+
     /// To a cycle, or to what comes first.
     fn step(&mut self, end: u64) {
         self.transmit();

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use board_machine::{Block, Kinematics};
+use board_machine::{Block, Inputs, Kinematics};
 
 use super::{Kind, STEPS_PER_TURN};
 
@@ -14,27 +14,61 @@ const SETUP_NS: u64 = 650;
 /// Speeds near a rest are those between two steps, from half a step to one and a half away.
 const SPEED_MARGIN: f64 = 1.2;
 
-/// Home switches, each closed on the side of its place that the axis was not on at first.
+/// Counts of a step, on each axis; a whole turn of a counter is 13,107.2 steps.
+const COUNTS_PER_STEP: i32 = 5;
+
+/// What the motors move: home switches, each closed on the side of its place that the axis was not on
+/// at first, and scales. A motor may lose steps.
 #[derive(Clone)]
-pub struct Switches<const N: usize> {
-    from: Rc<Cell<[i32; N]>>,
+pub struct Slides<const N: usize> {
+    from_switches: Rc<Cell<[i32; N]>>,
     are_below: [bool; N],
+    /// Steps of each axis that move nothing, from the next one on.
+    losing: Rc<Cell<[u32; N]>>,
+    /// Whether there is a counter for each scale.
+    are_counted: Rc<Cell<bool>>,
 }
 
-impl<const N: usize> Switches<N> {
-    fn new(from: [i32; N]) -> Self {
+impl<const N: usize> Slides<N> {
+    fn new(from_switches: [i32; N]) -> Self {
         Self {
-            from: Rc::new(Cell::new(from)),
-            are_below: from.map(|steps| steps >= 0),
+            from_switches: Rc::new(Cell::new(from_switches)),
+            are_below: from_switches.map(|steps| steps >= 0),
+            losing: Rc::new(Cell::new([0; N])),
+            are_counted: Rc::new(Cell::new(false)),
         }
     }
 
-    pub fn closed(&self) -> [bool; N] {
-        let from = self.from.get();
+    fn step(&self, axis: usize, sign: i32) {
+        let mut losing = self.losing.get();
+        match losing[axis] {
+            0 => self.push(axis, sign),
+            _ => losing[axis] -= 1,
+        }
+        self.losing.set(losing);
+    }
+
+    fn push(&self, axis: usize, steps: i32) {
+        let mut from_switches = self.from_switches.get();
+        from_switches[axis] += steps;
+        self.from_switches.set(from_switches);
+    }
+}
+
+impl<const N: usize> Inputs<N> for Slides<N> {
+    fn closed(&self) -> [bool; N] {
+        let from = self.from_switches.get();
         std::array::from_fn(|axis| match self.are_below[axis] {
             true => from[axis] <= 0,
             false => from[axis] >= 0,
         })
+    }
+
+    fn counts(&self) -> Option<[u16; N]> {
+        let counts = |steps: i32| (steps * COUNTS_PER_STEP) as u16;
+        self.are_counted
+            .get()
+            .then(|| self.from_switches.get().map(counts))
     }
 }
 
@@ -53,7 +87,7 @@ pub struct Pins<const N: usize> {
     levels: u8,
     pub ticks: u64,
     pub steps: [i32; N],
-    switches: Switches<N>,
+    slides: Slides<N>,
     tool: fn([i32; N]) -> [f64; N],
     acceleration_steps_s2: f64,
     pub made: Vec<Made<N>>,
@@ -70,7 +104,7 @@ impl<const N: usize> Pins<N> {
             levels: 0,
             ticks: 0,
             steps: std::array::from_fn(|axis| kind.home_steps[axis] + from_switches[axis]),
-            switches: Switches::new(from_switches),
+            slides: Slides::new(from_switches),
             tool: kind.tool,
             acceleration_steps_s2: kind.acceleration_steps_s2,
             made: Vec::new(),
@@ -79,13 +113,30 @@ impl<const N: usize> Pins<N> {
         }
     }
 
-    pub fn switches(&self) -> Switches<N> {
-        self.switches.clone()
+    pub fn slides(&self) -> Slides<N> {
+        self.slides.clone()
     }
 
-    /// Steps from the places where the switches close.
+    /// The scales have counters from now on.
+    pub fn count_scales(&self) {
+        self.slides.are_counted.set(true);
+    }
+
+    /// Steps of the slides from the places where the switches close.
     pub fn since_switch(&self) -> [i32; N] {
-        self.switches.from.get()
+        self.slides.from_switches.get()
+    }
+
+    /// The motor of an axis loses so many steps, from the next one on.
+    pub fn lose(&self, axis: usize, steps: u32) {
+        let mut losing = self.slides.losing.get();
+        losing[axis] = steps;
+        self.slides.losing.set(losing);
+    }
+
+    /// Somebody pushes a slide, by so many steps.
+    pub fn push(&self, axis: usize, steps: i32) {
+        self.slides.push(axis, steps);
     }
 
     /// Forgets what has been seen so far.
@@ -138,9 +189,7 @@ impl<const N: usize> Pins<N> {
             -1
         };
         self.steps[axis] += sign;
-        let mut from_switches = self.switches.from.get();
-        from_switches[axis] += sign;
-        self.switches.from.set(from_switches);
+        self.slides.step(axis, sign);
         self.made.push(Made {
             ticks: self.ticks,
             axis,
