@@ -1,15 +1,8 @@
-// Stage and Delta operate the boards' firmware, run on this computer, through the browser's serial port.
+// Stage and Delta operate the boards' firmware, run on this computer or in emulation, through the browser's serial port.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { assertAccessible, open, ROOT, shoot } from './browser.js';
+import { assertAccessible, open, shoot } from './browser.js';
 import { connectFirmware, MOCK } from './serial-mock.js';
-
-/** Whether the firmware moves more than an arm. */
-const MOVES_ALL = readFileSync(join(ROOT, 'firmware/machine/Cargo.toml'), 'utf8').includes(
-  'board-machine',
-);
 
 /** @type {Awaited<ReturnType<typeof open>>} */
 let browser;
@@ -70,7 +63,7 @@ async function homed(context, path, machine) {
 
 const PROGRAM = 'G0 X20 Y20\nG1 X50 F1800\nG2 X60 Y30 I0 J10\nG1 X20 Y60\nM2';
 
-test('a program drives a stage, and is held and stopped', { skip: !MOVES_ALL }, async (context) => {
+test('a program drives a stage, and is held and stopped', async (context) => {
   const { page, close } = await homed(context, 'stage.html', 'stage');
   await page.locator('#board-axis').selectOption('y');
   await page.getByLabel('By, in mm').fill('7.5');
@@ -102,10 +95,7 @@ test('a program drives a stage, and is held and stopped', { skip: !MOVES_ALL }, 
   await close();
 });
 
-/** On a processor without graphics the page's pictures of the robot keep its line waiting for too long. */
-const HAS_TIME = process.env.PAGE_TEST_DELTA_BOARD === 'yes';
-
-test('points drive a Delta', { skip: !MOVES_ALL || !HAS_TIME }, async (context) => {
+test('points drive a Delta', async (context) => {
   const { page, close } = await homed(context, 'delta.html', 'delta');
   await page.locator('#lines textarea').fill('0 0 -250 200\n40 0 -260 200\n40 40 -260 200');
   await page.locator('#status').filter({ hasText: 'Driven in' }).waitFor();
@@ -119,7 +109,7 @@ test('points drive a Delta', { skip: !MOVES_ALL || !HAS_TIME }, async (context) 
   await close();
 });
 
-test('a board of another machine is named', { skip: !MOVES_ALL }, async (context) => {
+test('a board of another machine is named', async (context) => {
   const { page, done } = await browser.visit('', { script: MOCK });
   context.after(await connectFirmware(page, 'delta'));
   await page.goto(`${browser.url}stage.html`);

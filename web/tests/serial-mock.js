@@ -13,7 +13,36 @@ export const MOCK = `(${install})(${JSON.stringify(WASM)})`;
 /** A folder of cargo's with programs that are built. */
 const BUILT = process.env.PAGE_TEST_PROGRAMS;
 
-/** The firmware as a program, which is built where it is not. */
+/** A folder with the Pico's programs, which run in emulation then: they are `firmware/emulate/run`'s. */
+const BOARDS = process.env.PAGE_TEST_BOARDS;
+
+/** Steps of each axis from its switch. @type {Record<string, string[]>} */
+const FROM_SWITCHES = {
+  arm: ['500', '300'],
+  delta: ['-500', '-300', '-400'],
+  stage: ['500', '300'],
+};
+
+/**
+ * The serial line of a machine as a program.
+ * @param {string} machine
+ */
+function firmware(machine) {
+  if (BOARDS === undefined) return started(simulator(), [machine]);
+  const program = join(ROOT, BOARDS, `${machine}-rp2040`);
+  const emulator = join(ROOT, 'firmware/emulate/pico-serial.js');
+  return started(process.execPath, [emulator, program, ...(FROM_SWITCHES[machine] ?? [])]);
+}
+
+/**
+ * @param {string} program
+ * @param {string[]} words
+ */
+function started(program, words) {
+  return spawn(program, words, { stdio: ['pipe', 'pipe', 'inherit'] });
+}
+
+/** The machine on this computer as a program, which is built where it is not. */
 function simulator() {
   if (BUILT) return join(ROOT, BUILT, 'examples/simulate');
   const args = [
@@ -31,21 +60,21 @@ function simulator() {
 }
 
 /**
- * Puts the boards' firmware, run on this computer, at the other end of the ports that a page with MOCK will open.
+ * Puts the boards' firmware, run on this computer or in emulation, at the other end of the ports that a page with MOCK will open.
  * @param {import('playwright-core').Page} page
  * @param {string} [machine]
  */
 export async function connectFirmware(page, machine = 'arm') {
-  const firmware = spawn(simulator(), [machine], { stdio: ['pipe', 'pipe', 'inherit'] });
-  const ended = new Promise((end) => firmware.on('close', (status) => end(status)));
-  firmware.stdout.on('data', (/** @type {Buffer} */ bytes) => {
+  const board = firmware(machine);
+  const ended = new Promise((end) => board.on('close', (status) => end(status)));
+  board.stdout.on('data', (/** @type {Buffer} */ bytes) => {
     page.evaluate(`fromFirmware(${JSON.stringify([...bytes])})`).catch(() => undefined);
   });
   await page.exposeFunction('toFirmware', (/** @type {number[]} */ bytes) => {
-    firmware.stdin.write(Uint8Array.from(bytes));
+    board.stdin.write(Uint8Array.from(bytes));
   });
   return async () => {
-    firmware.stdin.end();
+    board.stdin.end();
     assert.equal(await ended, 0);
   };
 }

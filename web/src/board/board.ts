@@ -11,8 +11,12 @@ import wasm from '../../built/line.wasm?url';
 const EVENTS = 50;
 /** From one question where it is to the next, while it moves. */
 const ASK_MS = 500;
-/** From one look at where it should be to the next: the page has other things to do. */
-const FOLLOW_MS = 100;
+/** From one picture of where it is and should be to the next: the page has other things to do. */
+const PAINT_MS = 100;
+/** On a slow computer a picture takes as long as the line may rest between two characters: it waits for the end of a telegram, but not for ever. */
+const PAINT_LATEST_MS = 2000;
+/** After a picture the page rests for as long as that took, so many times: the line needs the time. */
+const RESTS = 2;
 
 /** A telegram, by what becomes of its answer. */
 type Sent = 'motion' | 'where' | 'other';
@@ -50,7 +54,12 @@ export class Board {
   readonly #place = element('board-place', HTMLElement);
   #station: PortStation | undefined;
   #asks = 0;
-  #following = 0;
+  #paints = 0;
+  /** From when on the page has time for a picture, and when there has to be one. */
+  #paintFromMs = 0;
+  #paintByMs = 0;
+  /** What the picture does not show yet. */
+  #unpainted: { place?: number[]; seconds?: number } = {};
   /** How far from its end the last motion of the program has ended. */
   #off = '';
   /** What the answers that are awaited are to. */
@@ -110,6 +119,7 @@ export class Board {
       this.#showOpen(true);
       this.#say('Connected: home it first.');
       this.#asks = window.setInterval(() => this.#ask(), ASK_MS);
+      this.#paints = window.setInterval(() => this.#paint(), PAINT_MS);
       this.#send('machine');
     } catch (error) {
       const isCancelled = error instanceof NoPortChosen;
@@ -119,6 +129,8 @@ export class Board {
 
   async #disconnect(why: string, isBad = false): Promise<void> {
     clearInterval(this.#asks);
+    clearInterval(this.#paints);
+    this.#unpainted = {};
     this.#end();
     this.#awaited = [];
     this.#isMoving = false;
@@ -240,7 +252,7 @@ export class Board {
   }
 
   #showPlace(place: number[]): void {
-    this.#operated.show(place);
+    this.#unpainted.place = place;
     const axes = ['x', 'y', 'z'].slice(0, place.length);
     const words = axes.map((axis, index) => `${axis} ${(place[index] ?? 0).toFixed(3)}`);
     this.#place.textContent = `The board says ${words.join(' ')} mm.${this.#off}`;
@@ -249,18 +261,33 @@ export class Board {
   #begun(seconds: number): void {
     if (this.#current < 0) return;
     this.#leg = { beganMs: performance.now(), seconds, heldMs: undefined };
-    this.#follow();
   }
 
-  /** Shows where it should be by now. */
-  #follow(): void {
-    clearTimeout(this.#following);
+  /** Where it should be by now, on the time of the page's run. */
+  get #runSeconds(): number | undefined {
     const [leg, motion] = [this.#leg, this.#program[this.#current]];
-    if (!leg || !motion) return;
+    if (!leg || !motion) return this.#unpainted.seconds;
     const seconds = ((leg.heldMs ?? performance.now()) - leg.beganMs) / 1000;
     const part = leg.seconds > 0 ? Math.min(seconds / leg.seconds, 1) : 1;
-    this.#operated.seek(motion.fromS + part * (motion.toS - motion.fromS));
-    this.#following = window.setTimeout(() => this.#follow(), FOLLOW_MS);
+    return motion.fromS + part * (motion.toS - motion.fromS);
+  }
+
+  /** Shows where it is and where it should be, while the line is quiet. */
+  #paint(): void {
+    const begunMs = performance.now();
+    const isDue = this.#station?.isIdle || begunMs > this.#paintByMs;
+    if (!isDue || begunMs < this.#paintFromMs) return;
+    const [seconds, { place }] = [this.#runSeconds, this.#unpainted];
+    this.#unpainted = {};
+    if (seconds !== undefined) this.#operated.seek(seconds);
+    if (place) this.#operated.show(place);
+    this.#paintByMs = begunMs + PAINT_LATEST_MS;
+    const painted = () => {
+      const nowMs = performance.now();
+      this.#paintFromMs = nowMs + RESTS * (nowMs - begunMs);
+    };
+    // Drawn before the next frame, and seen after it.
+    requestAnimationFrame(() => setTimeout(painted));
   }
 
   #done({ place }: Extract<Answer, { place: number[] }>): void {
@@ -273,7 +300,7 @@ export class Board {
       return;
     }
     this.#leg = undefined;
-    this.#operated.seek(motion.toS);
+    this.#unpainted.seconds = motion.toS;
     const off = Math.hypot(...motion.end.map((it, axis) => it - (place[axis] ?? 0)));
     this.#off = ` It ended ${motion.name} ${off.toFixed(3)} mm from where that ends.`;
     this.#showPlace(place);

@@ -53,6 +53,7 @@ export class PortStation {
   #deadline = 0;
   #waiting: Telegram[] = [];
   #isBusy = false;
+  #activity = '';
 
   constructor(machine: Machine, hooks: Hooks) {
     this.#machine = machine;
@@ -64,9 +65,9 @@ export class PortStation {
     return (this.#port?.nowS ?? this.#beganS) - this.#beganS;
   }
 
-  /** Whether no telegram is under way or waits. */
+  /** Whether no telegram is under way, either way, or waits. */
   get isIdle(): boolean {
-    return !this.#isBusy && this.#waiting.length === 0;
+    return !this.#isBusy && this.#waiting.length === 0 && this.#activity === 'idle';
   }
 
   async open(choose: () => Promise<Port>, procedure: Procedure): Promise<void> {
@@ -116,7 +117,7 @@ export class PortStation {
     }
   }
 
-  #take({ transmit, isBusy, deadlineS }: Pulled): void {
+  #take({ transmit, isBusy, activity, deadlineS }: Pulled): void {
     if (transmit.length > 0) {
       const written = this.#port?.write(new Uint8Array(transmit));
       written?.catch((error) => this.#hooks.refused('port', error));
@@ -128,6 +129,7 @@ export class PortStation {
       this.#deadline = window.setTimeout(() => this.push({}), Math.ceil(ms));
     }
     this.#isBusy = isBusy;
+    this.#activity = activity;
   }
 
   #sendNext(): void {
