@@ -15,8 +15,6 @@ const ASK_MS = 500;
 const PAINT_MS = 100;
 /** On a slow computer a picture takes as long as the line may rest between two characters: it waits for the end of a telegram, but not for ever. */
 const PAINT_LATEST_MS = 2000;
-/** After a picture the page rests for as long as that took, so many times: the line needs the time. */
-const RESTS = 2;
 
 /** A telegram, by what becomes of its answer. */
 type Sent = 'motion' | 'where' | 'other';
@@ -55,9 +53,7 @@ export class Board {
   #station: PortStation | undefined;
   #asks = 0;
   #paints = 0;
-  /** From when on the page has time for a picture, and when there has to be one. */
-  #paintFromMs = 0;
-  #paintByMs = 0;
+  #paintedMs = 0;
   /** What the picture does not show yet. */
   #unpainted: { place?: number[]; seconds?: number } = {};
   /** How far from its end the last motion of the program has ended. */
@@ -274,20 +270,13 @@ export class Board {
 
   /** Shows where it is and where it should be, while the line is quiet. */
   #paint(): void {
-    const begunMs = performance.now();
-    const isDue = this.#station?.isIdle || begunMs > this.#paintByMs;
-    if (!isDue || begunMs < this.#paintFromMs) return;
+    const nowMs = performance.now();
+    if (!this.#station?.isIdle && nowMs < this.#paintedMs + PAINT_LATEST_MS) return;
+    this.#paintedMs = nowMs;
     const [seconds, { place }] = [this.#runSeconds, this.#unpainted];
     this.#unpainted = {};
     if (seconds !== undefined) this.#operated.seek(seconds);
     if (place) this.#operated.show(place);
-    this.#paintByMs = begunMs + PAINT_LATEST_MS;
-    const painted = () => {
-      const nowMs = performance.now();
-      this.#paintFromMs = nowMs + RESTS * (nowMs - begunMs);
-    };
-    // Drawn before the next frame, and seen after it.
-    requestAnimationFrame(() => setTimeout(painted));
   }
 
   #done({ place }: Extract<Answer, { place: number[] }>): void {

@@ -114,7 +114,7 @@ export class Space {
         this.look(VIEWS.turned);
       },
       grab: (x, y) => {
-        const drag = this.#ball() && grab((point) => this.#project(point), x, y);
+        const drag = this.#ball() && grab(this.#projection(), x, y);
         return drag && ((dx, dy) => drag(this.#inPlane(dx, dy)));
       },
     });
@@ -131,13 +131,11 @@ export class Space {
     this.#picture.redraw();
   }
 
-  get #scale(): number {
+  /** Pixels of a mm. */
+  #scale(ball: Ball | undefined): number {
     const { width, height } = this.#picture;
-    const ball = this.#ball() ?? { centre: [0, 0, 0], radius: 1 };
-    return (
-      this.#zoom *
-      Math.min(width / (2 * ball.radius), height / (2 * (ball.halfHeight ?? ball.radius)))
-    );
+    const { radius, halfHeight = radius } = ball ?? { radius: 1 };
+    return this.#zoom * Math.min(width / (2 * radius), height / (2 * halfHeight));
   }
 
   /** Unit vectors to the right and upward on the canvas. */
@@ -151,26 +149,31 @@ export class Space {
     ];
   }
 
-  #project(point: Point3): [number, number] {
-    const centre = this.#ball()?.centre ?? [0, 0, 0];
-    const [right, up] = this.#axes;
-    const along = (axis: Point3) =>
-      axis.reduce((sum, it, index) => sum + it * ((point[index] ?? 0) - (centre[index] ?? 0)), 0);
-    const { width, height } = this.#picture;
-    return [width / 2 + this.#scale * along(right), height / 2 - this.#scale * along(up)];
+  /** Where points are on the canvas, as long as nothing is turned or changed. */
+  #projection(): Pen['project'] {
+    const ball = this.#ball();
+    const centre: Point3 = ball?.centre ?? [0, 0, 0];
+    const [scale, [right, up]] = [this.#scale(ball), this.#axes];
+    const [left, top] = [this.#picture.width / 2, this.#picture.height / 2];
+    const along = (axis: Point3, point: Point3) =>
+      axis[0] * (point[0] - centre[0]) +
+      axis[1] * (point[1] - centre[1]) +
+      axis[2] * (point[2] - centre[2]);
+    return (point) => [left + scale * along(right, point), top - scale * along(up, point)];
   }
 
   /** In mm, by pixels to the right and downward. */
   #inPlane(dx: number, dy: number): Point3 {
     const [right, up] = this.#axes;
-    const along = (index: 0 | 1 | 2) => (dx * right[index] - dy * up[index]) / this.#scale;
+    const scale = this.#scale(this.#ball());
+    const along = (index: 0 | 1 | 2) => (dx * right[index] - dy * up[index]) / scale;
     return [along(0), along(1), along(2)];
   }
 
   #pen(context: CanvasRenderingContext2D): Pen {
     context.lineCap = 'round';
     context.lineJoin = 'round';
-    const project = (point: Point3) => this.#project(point);
+    const project = this.#projection();
     return {
       context,
       project,
