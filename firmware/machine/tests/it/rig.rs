@@ -9,7 +9,7 @@ use std::pin::Pin;
 use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
-use board_machine::{Kinematics, Machine, Motion, Panel, PlanMemory, Source, talk};
+use board_machine::{Kinematics, Machine, Motion, Panel, PlanMemory, Source, State, talk};
 use proto3964r::{CharacterError, Config, Event, Line, Priority, Station};
 use scara_kin::nalgebra::Point2;
 use scara_kin::{Arm, Elbow, Joints};
@@ -171,6 +171,17 @@ impl<const N: usize> Rig<N> {
             self.work();
             assert!(self.play_block(), "no block after {:?}", self.log);
         }
+    }
+
+    /// Plays up to so many blocks; whether there are more.
+    pub fn plays_blocks(&mut self, count: usize) -> bool {
+        for _ in 0..count {
+            self.work();
+            if !self.play_block() {
+                return false;
+            }
+        }
+        self.panel.state() == State::Moving
     }
 
     /// Plays what there is, while the planner does nothing.

@@ -1,5 +1,7 @@
 //! The loop closed on the stage's scales: motors that lose steps, slides that are pushed.
 
+use proptest::prelude::*;
+
 use crate::rig::{Rig, STAGE, TICK_HZ};
 
 /// More steps than a line has.
@@ -148,4 +150,81 @@ fn scales_are_read_before_home_too() {
     let mut rig = Rig::homed();
     rig.pins.count_scales();
     assert_eq!(rig.ask("scales"), "refused: no scales");
+}
+
+/// What happens to an axis, in steps that the loop corrects.
+#[derive(Clone, Copy, Debug)]
+enum Mishap {
+    Lost(u32),
+    Pushed(i32),
+}
+
+/// A motion, whether it is held or stopped after so many blocks, and what happens to an axis.
+#[derive(Clone, Debug)]
+struct Leg {
+    command: String,
+    broken_off: Option<(usize, &'static str)>,
+    mishap: (usize, Mishap),
+}
+
+fn legs() -> impl Strategy<Value = Vec<Leg>> {
+    let line = (5..115_i32, 5..95_i32, 10..60_i32);
+    let command = prop_oneof![
+        3 => line.prop_map(|(x, y, feed)| format!("line {x}.3 {y}.7 {feed}")),
+        1 => (0..2_usize, -4..5_i32).prop_map(|(axis, by)| format!("jog {} {by}.5", ["x", "y"][axis])),
+    ];
+    let broken_off = prop::option::of((1..60_usize, prop::sample::select(vec!["hold", "stop"])));
+    let mishap = prop_oneof![
+        (0..16_u32).prop_map(Mishap::Lost),
+        (-15..16_i32).prop_map(Mishap::Pushed),
+    ];
+    let leg = (command, broken_off, (0..2_usize, mishap));
+    let leg = leg.prop_map(|(command, broken_off, mishap)| Leg {
+        command,
+        broken_off,
+        mishap,
+    });
+    prop::collection::vec(leg, 1..8)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever is lost or pushed, at each rest the slides are where the steps say.
+    #[test]
+    fn slides_end_where_they_should(legs in legs()) {
+        let mut rig = ready();
+        for leg in legs {
+            match leg.mishap {
+                (axis, Mishap::Lost(steps)) => rig.pins.lose(axis, steps),
+                (axis, Mishap::Pushed(steps)) => rig.pins.push(axis, steps),
+            }
+            let begun = rig.ask(&leg.command);
+            if begun.starts_with("refused: ") {
+                // A jog out of the range, or a line to where it is.
+                match leg.mishap {
+                    (axis, Mishap::Lost(_)) => rig.pins.lose(axis, 0),
+                    (axis, Mishap::Pushed(steps)) => rig.pins.push(axis, -steps),
+                }
+                continue;
+            }
+            prop_assert!(begun.starts_with("ok, "), "{begun}");
+            let broken_off = leg.broken_off.filter(|&(blocks, _)| rig.plays_blocks(blocks));
+            if let Some((_, word)) = broken_off {
+                prop_assert_eq!(rig.ask(word), "ok");
+            }
+            let mut ended = rig.answer();
+            if ended.starts_with("held, ") {
+                prop_assert_eq!(rig.pins.since_switch(), rig.panel().steps());
+                prop_assert_eq!(rig.ask("resume"), "ok");
+                ended = rig.answer();
+            }
+            let is_rest = ended.starts_with("done, ") || ended.starts_with("stopped, ");
+            prop_assert!(is_rest, "{}: {}", leg.command, ended);
+            // Fewer steps than are to be lost.
+            rig.pins.lose(leg.mishap.0, 0);
+            prop_assert_eq!(rig.pins.since_switch(), rig.panel().steps());
+        }
+        prop_assert_eq!(rig.panel().underruns(), 0);
+    }
 }
