@@ -57,10 +57,13 @@ for (const [address, machine] of /** @type {const} */ ([
         return Math.max(...some.filter(Number.isFinite), 0);
       });
     const nearest = largest(4, width);
-    // Axes and feed; the last is the acceleration along the path, which has no verifier.
-    const most = largest(4, width - 1).reduce((a, b) => Math.max(a, b), 0);
+    // Axes and feed, and the tool's acceleration along the path.
+    const [most = 0, along = 0] = [largest(4, width - 1), largest(width - 1, width)].map((parts) =>
+      parts.reduce((a, b) => Math.max(a, b), 0),
+    );
     // Numbers of 32 bits; the tool's, from places beside each other.
     assert(most < 1.002, `${most}`);
+    assert(along < 1.02, `${along} of the acceleration along the path`);
     const at = nearest.filter((it) => it > 0.985).length;
     console.log(`${address}, ${machine}: ${looks} looks, ${at} at a limit, the nearest ${most}`);
     assert(at > looks / (machine === 'loaded' ? 4 : 2), `${at} of ${looks}`);

@@ -171,6 +171,10 @@ impl path_timing::Path for DeltaPath {
         self.curve.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.curve.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; 3]> {
         Corner::Smooth
     }

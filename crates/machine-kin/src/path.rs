@@ -129,6 +129,10 @@ impl<M: Machine<N>, const N: usize> Path for MachinePath<M, N> {
         self.curve.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.curve.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; N]> {
         Corner::Smooth
     }

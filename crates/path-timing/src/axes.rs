@@ -118,7 +118,8 @@ pub struct AxisLimits {
     pub jerk: Option<f64>,
 }
 
-/// Limits of the tool along a path whose parameter is its arc length, in its unit and seconds.
+/// Limits of the tool along a path whose parameter is its arc length, or grows by no less
+/// ([`Path::tool_rate`](crate::Path::tool_rate)), in its unit and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -301,6 +301,18 @@ impl<const D: usize> Curve<D> {
         })
     }
 
+    /// |dP/ds| at `s`: below 1 in a [`Smoothed`] corner, of a Bézier curve about 1, else 1.
+    #[must_use]
+    pub fn tool_rate(&self, s: f64) -> f64 {
+        match &self.shape {
+            Shape::Cubic([_, first, second, third]) => {
+                norm(&along(&along(first, 2.0 * s, second), 3.0 * s * s, third))
+            }
+            Shape::Polynomial(_) => norm(&self.at(s).tangent),
+            Shape::Line { .. } | Shape::Arc { .. } => 1.0,
+        }
+    }
+
     /// The point at the arc length `s`, with its derivatives; the ends to the last bit.
     #[must_use]
     pub fn at(&self, s: f64) -> CurvePoint<D> {
@@ -431,6 +443,10 @@ impl<const D: usize> Path for Curve<D> {
 
     fn tool(&self) -> Option<ToolLimits> {
         self.tool()
+    }
+
+    fn tool_rate(&self, s: f64) -> f64 {
+        Self::tool_rate(self, s)
     }
 
     fn corner(&self) -> Corner<[f64; D]> {

@@ -15,7 +15,7 @@ pub struct Knot<A: Axes> {
     /// at the knot before.
     pub(crate) ds: f64,
     /// Limits of the tool on the segment before.
-    pub(crate) tool: Option<ToolLimits>,
+    pub(crate) tool: SegmentTool,
     /// Whether its leg ends here.
     pub(crate) ends_leg: bool,
     /// The highest speed of the parameter, by a corner: 0 at a stop.
@@ -32,6 +32,48 @@ pub struct Knot<A: Axes> {
     pub(crate) equation: Equation,
 }
 
+/// Limits of the tool on a segment, infinite where there are none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SegmentTool {
+    /// Largest speed of the parameter.
+    pub(crate) feed: f64,
+    /// What the parameter may speed up by where the tool goes as far by it at both ends, r each:
+    /// the tool's acceleration by r.
+    pub(crate) acceleration: f64,
+    /// How that changes: (r₁ - r₀) / (r₀ + r₁).
+    pub(crate) change: f64,
+}
+
+impl SegmentTool {
+    pub(crate) const NONE: Self = Self {
+        feed: f64::INFINITY,
+        acceleration: f64::INFINITY,
+        change: 0.0,
+    };
+
+    /// Of a tool that goes so far by the parameter at both ends.
+    pub(crate) fn new(tool: &ToolLimits, rates: impl FnOnce() -> [f64; 2]) -> Self {
+        let none = Self {
+            feed: tool.feed,
+            ..Self::NONE
+        };
+        let Some(acceleration) = tool.acceleration else {
+            return none;
+        };
+        let [from, to] = rates();
+        let sum = from + to;
+        Self {
+            acceleration: 2.0 * acceleration / sum,
+            change: (to - from) / sum,
+            ..none
+        }
+    }
+
+    pub(crate) fn is_none(&self) -> bool {
+        self.feed >= f64::INFINITY
+    }
+}
+
 impl<A: Axes> Default for Knot<A> {
     fn default() -> Self {
         Self {
@@ -41,7 +83,7 @@ impl<A: Axes> Default for Knot<A> {
             },
             s: 0.0,
             ds: 0.0,
-            tool: None,
+            tool: SegmentTool::NONE,
             ends_leg: false,
             cap: f64::INFINITY,
             speed: 0.0,

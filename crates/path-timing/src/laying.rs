@@ -1,5 +1,6 @@
 //! Laying the knots of a leg, each asked for by the path.
 
+use crate::knot::SegmentTool;
 use crate::knots::{fraction, span_in_a_second};
 use crate::leg::Leg;
 use crate::{Knot, Path, PathPoint, PlanError};
@@ -92,7 +93,7 @@ impl<P: Path> Laying<P> {
             point,
             s,
             ds: length * stretch(&self.last.point, &point, length),
-            tool: self.leg.tool().copied(),
+            tool: self.tool(s),
             ends_leg: s >= self.leg.length(),
             cap: f64::INFINITY,
             ..Knot::default()
@@ -104,6 +105,13 @@ impl<P: Path> Laying<P> {
             return Err(PlanError::Indistinct { leg, knot });
         }
         Ok(knot)
+    }
+
+    /// Limits of the tool from the last knot to the next.
+    fn tool(&self, s: f64) -> SegmentTool {
+        let rates = || [self.last.s, s].map(|s| self.leg.path().tool_rate(s));
+        let tool = self.leg.tool();
+        tool.map_or(SegmentTool::NONE, |tool| SegmentTool::new(tool, rates))
     }
 
     /// Takes the last knot back: the one before it is the last again.

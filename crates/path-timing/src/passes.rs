@@ -6,10 +6,11 @@
 //! as each segment and what is left allow. Where a pair of speeds keeps the limits, each slower
 //! pair of the same ratio does, so the forward pass always finds one.
 
+use crate::knot::SegmentTool;
 use crate::number::{LARGEST, Real, cube_root, sqrt};
 use crate::reciprocals::{Reciprocals, margin};
 use crate::segment::Segment;
-use crate::{Axes, Knot, ToolLimits};
+use crate::{Axes, Knot};
 
 /// Gives the knots the speeds of the fastest motion with which no knot passes its cap: from rest to
 /// rest where the first and the last have a cap of 0.
@@ -74,21 +75,17 @@ pub(crate) fn time_of(ds: f64, [w0, w1]: [f64; 2]) -> f64 {
 pub(crate) fn rest_to_rest_s<A: Axes>(
     limits: &Reciprocals<A>,
     [from, to]: [&Knot<A>; 2],
-    tool: Option<&ToolLimits>,
+    tool: &SegmentTool,
 ) -> f64 {
     let [starts, ends] = [from, to].map(|knot| knot.point.position.as_slice());
     let distances = starts.iter().zip(ends).map(|(q0, q1)| (q1 - q0).abs());
     let of_axes = (limits.axes().iter().zip(distances)).map(|(limits, distance)| {
         [limits.speed, limits.acceleration, limits.jerk].map(|limit| distance * limit)
     });
-    let of_tool = tool.map(|tool| {
-        let acceleration = tool
-            .acceleration
-            .map_or(0.0, |limit| margin::<f64>() * to.ds / limit);
-        [margin::<f64>() * to.ds / tool.feed, acceleration, 0.0]
-    });
+    let ds = margin::<f64>() * to.ds;
+    let of_tool = [ds / tool.feed, ds / tool.acceleration, 0.0];
     of_axes
-        .chain(of_tool)
+        .chain([of_tool])
         .fold(0.0, |time_s: f64, [speed, acceleration, jerk]| {
             time_s
                 .max(1.5 * speed)

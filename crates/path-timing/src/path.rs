@@ -35,10 +35,18 @@ pub trait Path {
     /// Why the machine cannot be there.
     fn point(&self, s: f64) -> Result<PathPoint<Self::Axes>, Self::Error>;
 
-    /// Feed and acceleration of the tool along the path, where the parameter is its arc length.
+    /// Feed and acceleration of the tool along the path, where the parameter is its arc length, or
+    /// grows by no less.
     /// Nothing but the axes limits it otherwise.
     fn tool(&self) -> Option<ToolLimits> {
         None
+    }
+
+    /// How far the tool goes by the parameter at `s`, |dP/ds|: 1 where that is the arc length. Asked
+    /// for only where [`tool`](Self::tool) limits an acceleration, which is the tool's own then.
+    fn tool_rate(&self, s: f64) -> f64 {
+        let _ = s;
+        1.0
     }
 
     /// How the machine goes on to the next path at the end of this one.
@@ -78,6 +86,10 @@ impl<P: Path> Path for &P {
 
     fn tool(&self) -> Option<ToolLimits> {
         (**self).tool()
+    }
+
+    fn tool_rate(&self, s: f64) -> f64 {
+        (**self).tool_rate(s)
     }
 
     fn corner(&self) -> Corner<P::Axes> {

@@ -188,7 +188,7 @@ pub(crate) fn check_single_segments<A: Axes, E>(
         time_s += segment_s;
         let is_single = to.ends_leg && to.ds > 0.0 && from.next_start() <= 0.0;
         if is_single {
-            let own_s = segment_s - passes::rest_to_rest_s(limits, [from, to], to.tool.as_ref());
+            let own_s = segment_s - passes::rest_to_rest_s(limits, [from, to], &to.tool);
             lost_s += own_s.max(0.0);
             if own_s > most_s {
                 (most_s, worst) = (own_s, leg);

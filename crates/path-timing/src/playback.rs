@@ -7,6 +7,7 @@ use core::convert::Infallible;
 use trig_kernels::SixDigits;
 
 use crate::feed_change::{At, Course, SmoothFeed};
+use crate::knot::SegmentTool;
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
@@ -186,7 +187,7 @@ impl<A: Axes> Playback<'_, A> {
         let duration_s = if is_jump || at.speed + speed > 0.0 {
             time_of(to.ds, [at.speed, speed])
         } else {
-            rest_to_rest_s(&self.limits, [from, to], None) / self.wanted.min(1.0)
+            rest_to_rest_s(&self.limits, [from, to], &SegmentTool::NONE) / self.wanted.min(1.0)
         };
         self.time_s += duration_s;
         self.leg = self.leg.saturating_add(usize::from(from.ends_leg));

@@ -47,8 +47,8 @@ pub(crate) struct Segment<A: Axes, R: Real = f64> {
     axes: A::Of<AxisLoad<R>>,
     /// Largest utilisation of a speed limit per w₀, and per w₁.
     ends: [R; 2],
-    /// Acceleration of the tool: coefficient of z.
-    tool: R,
+    /// Acceleration of the tool: coefficients of y and z.
+    tool: [R; 2],
 }
 
 /// Relative rounding of the terms of an acceleration, from the positions on to the numbers that a
@@ -103,19 +103,23 @@ impl<A: Axes, R: Real> Segment<A, R> {
     /// The segment between two knots, with the tool's feed multiplied.
     ///
     /// ```text
-    /// tool: p₀ = p₁ = m = 1, speeds w₀, w₁, acceleration 2 z / Δs = (w₁² - w₀²) / 2Δs
+    /// tool: speeds w₀, w₁; where it goes r₀ and r₁ by the parameter, the acceleration
+    ///     (r₁ w₁ - r₀ w₀) / T = ((r₁ - r₀) y + (r₀ + r₁) z) / Δs
     /// ```
     pub(crate) fn new(limits: &Reciprocals<A, R>, from: &Knot<A>, to: &Knot<A>, feed: f64) -> Self {
         let mut segment = Self::of_axes(limits, &from.point, &to.point, to.ds);
-        if let Some(tool) = &to.tool {
-            let feed = margin::<R>() / R::of(tool.feed * feed);
-            for end in &mut segment.ends {
-                *end = end.max(feed);
-            }
-            if let Some(acceleration) = tool.acceleration {
-                let per_second2 = R::of(to.ds) * R::of(acceleration);
-                segment.tool = R::of(2.0) * margin::<R>() / per_second2;
-            }
+        let tool = &to.tool;
+        if tool.is_none() {
+            return segment;
+        }
+        let feed = margin::<R>() / R::of(tool.feed * feed);
+        for end in &mut segment.ends {
+            *end = end.max(feed);
+        }
+        if tool.acceleration < f64::INFINITY {
+            let per_second2 = R::of(to.ds) * R::of(tool.acceleration);
+            let used = R::of(2.0) * margin::<R>() / per_second2;
+            segment.tool = [R::of(tool.change) * used, used];
         }
         segment
     }
@@ -131,7 +135,7 @@ impl<A: Axes, R: Real> Segment<A, R> {
         let mut segment = Self {
             axes: A::filled(AxisLoad::NONE),
             ends: [R::ZERO; 2],
-            tool: R::ZERO,
+            tool: [R::ZERO; 2],
         };
         let [from_end, to_end] = &mut segment.ends;
         let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
@@ -164,7 +168,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
             let [e, f] = axis.middle;
             fastest = larger(fastest, (e * w0 + f * w1).abs());
         }
-        hardest = larger(hardest, (self.tool * z).abs());
+        let [c, d] = self.tool;
+        hardest = larger(hardest, (c * y + d * z).abs());
         hardest.max(fastest * fastest)
     }
 
@@ -178,8 +183,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
         self.ends
     }
 
-    /// Acceleration of the tool: coefficient of z.
-    pub(crate) const fn tool(&self) -> R {
+    /// Acceleration of the tool: coefficients of y and z.
+    pub(crate) const fn tool(&self) -> [R; 2] {
         self.tool
     }
 
@@ -220,14 +225,14 @@ impl<A: Axes, R: Real> Segment<A, R> {
                 }
             }
         }
-        let d = if end == End::From {
-            -self.tool
-        } else {
-            self.tool
-        };
-        let (_, z) = products(other, speed);
-        if (d * z).abs() > R::ONE {
-            speed = lower(R::ZERO, d.copysign(d * z), other, speed);
+        let [c, d] = self.tool;
+        let d = if end == End::From { -d } else { d };
+        let (y, z) = products(other, speed);
+        let value = c * y + d * z;
+        if value > R::ONE {
+            speed = lower(c, d, other, speed);
+        } else if value < -R::ONE {
+            speed = lower(-c, -d, other, speed);
         }
         speed
     }
@@ -325,7 +330,9 @@ impl<A: Axes, R: Real> Segment<A, R> {
             let value = e * (R::ONE - r) + f * (R::ONE + r);
             fastest.raise(value.abs(), if value < R::ZERO { e - f } else { f - e });
         }
-        largest.raise((self.tool * r).abs(), self.tool.copysign(r));
+        let [c, d] = self.tool;
+        let value = c + d * r;
+        largest.raise(value.abs(), if value < R::ZERO { -d } else { d });
         let [from, to] = self.ends;
         let [from, to] = [from.max(ends[0]), to.max(ends[1])];
         fastest.raise(from * (R::ONE - r), -from);

@@ -57,7 +57,7 @@ pub(crate) fn stretch<A: Axes>(
 
 /// The stretch of a segment that is planned without; 1 with a limit of jerk or a tool, as laid.
 pub(crate) fn stretch_between<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Knot<A>; 2]) -> f64 {
-    if limits.has_jerk() || to.tool.is_some() || to.ds <= 0.0 {
+    if limits.has_jerk() || !to.tool.is_none() || to.ds <= 0.0 {
         return 1.0;
     }
     let speeds = [from.speed, to.speed];

@@ -137,6 +137,10 @@ impl Path for ArmPath {
         self.curve.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.curve.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; 2]> {
         Corner::Smooth
     }

@@ -151,6 +151,10 @@ impl Path for Cut {
         self.curve.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.curve.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; 2]> {
         self.curve.corner()
     }

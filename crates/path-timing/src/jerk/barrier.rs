@@ -203,7 +203,7 @@ impl<A: Axes> Moving<'_, A> {
         let [w0, w1] = self.speeds;
         barrier.time(self.ds, self.speeds);
         self.visit_speeds(barrier);
-        let tool = Acceleration::new([0.0, self.segment.tool()], self.speeds);
+        let tool = Acceleration::new(self.segment.tool(), self.speeds);
         barrier.limit(&tool.utilisation());
         let axes = A::each(self.segment.axes()).iter().zip(self.limits.axes());
         let between = self.before.as_ref().filter(|_| !self.eased[0]);

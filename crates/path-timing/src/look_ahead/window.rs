@@ -1,12 +1,13 @@
 //! The knots in the window: how fast each may be passed, and the speed at the next.
 
 use crate::feed_change::{At, Course, SmoothFeed};
+use crate::knot::SegmentTool;
 use crate::number::LARGEST;
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::stepping::Ahead;
-use crate::{Axes, Knot, ToolLimits, jerk};
+use crate::{Axes, Knot, jerk};
 
 /// Feeds, 1 for 100 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -202,7 +203,7 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else {
-            rest_to_rest_s(limits, [from, to], to.tool.as_ref()) / wanted
+            rest_to_rest_s(limits, [from, to], &to.tool) / wanted
         };
         self.hand_out(next, duration_s)
     }
@@ -240,11 +241,11 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else if feed.wanted > 0.0 {
-            let faster = to.tool.map(|tool| ToolLimits {
-                feed: tool.feed * feed.max,
-                ..tool
-            });
-            rest_to_rest_s(limits, [from, to], faster.as_ref()) / feed.wanted.min(1.0)
+            let faster = SegmentTool {
+                feed: to.tool.feed * feed.max,
+                ..to.tool
+            };
+            rest_to_rest_s(limits, [from, to], &faster) / feed.wanted.min(1.0)
         } else {
             return None;
         };

@@ -24,6 +24,7 @@ mod smoothed_jerk;
 mod stops;
 mod support;
 mod table;
+mod tool;
 mod toppra;
 mod torque;
 mod touched;

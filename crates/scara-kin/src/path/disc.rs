@@ -155,6 +155,10 @@ impl Path for DiscPath {
         self.arm_path.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.arm_path.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; 3]> {
         Corner::Smooth
     }

@@ -219,6 +219,10 @@ impl Path for ArmPathF32 {
         self.path.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.path.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; 2]> {
         self.path.corner()
     }

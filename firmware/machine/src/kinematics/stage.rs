@@ -99,6 +99,10 @@ impl Path for StagePath {
         self.curve.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.curve.tool_rate(s)
+    }
+
     fn check(&self, span: &Span<[f64; 2]>) -> Result<(), StagePathError> {
         let [from, to] = &span.rows;
         let mut extents = [[0.0; 2]; 2];

@@ -90,6 +90,10 @@ impl Path for Leg {
         self.path.tool()
     }
 
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.path.tool_rate(s)
+    }
+
     fn corner(&self) -> Corner<[f64; 3]> {
         Corner::Jump(self.start_speeds)
     }

@@ -1,0 +1,129 @@
+//! Limits of the tool along smoothed lines, by the velocities that the rows of a Cartesian machine
+//! have, whatever the parameter of the path is.
+
+use core::f64::consts::PI;
+
+use path_timing::{
+    Accuracy, AxisLimits, Curve, Knot, LookAhead, Row, Smoothed, Table, ToolLimits, Vertex,
+    Waypoint,
+};
+use proptest::prelude::*;
+
+use crate::support::vectors::norm;
+
+/// Of speeds, and of a mean acceleration of short rows.
+const ROUNDING: f64 = 1.0 + 1e-6;
+
+const AXIS: AxisLimits = AxisLimits {
+    speed: 600.0,
+    acceleration: 12_000.0,
+    jerk: None,
+};
+
+/// Lines that turn by some angles, with a tool, smoothed.
+fn curves(turns: &[f64], length: f64, tool: ToolLimits, tolerance: f64) -> Vec<Curve<2>> {
+    let (mut at, mut angle) = ([0.0; 2], 0.0_f64);
+    let mut points = vec![at];
+    for turn in turns {
+        at = [at[0] + length * angle.cos(), at[1] + length * angle.sin()];
+        points.push(at);
+        angle += turn;
+    }
+    let points = points.into_iter().map(|point| Waypoint {
+        point,
+        tool: Some(tool),
+    });
+    let mut vertices = [Vertex::default(); 32];
+    let curves = Smoothed::new(points, tolerance, &mut vertices).unwrap();
+    curves.map(Result::unwrap).collect()
+}
+
+/// Largest speed and largest mean acceleration of the tool along its path.
+fn most(rows: &[Row<[f64; 2]>]) -> ToolLimits {
+    let speed = |row: &Row<[f64; 2]>| norm(row.velocity);
+    let rises = rows.windows(2).filter(|pair| pair[1].duration_s > 1e-6);
+    let rises = rises.map(|pair| (speed(&pair[1]) - speed(&pair[0])).abs() / pair[1].duration_s);
+    ToolLimits {
+        feed: rows.iter().map(speed).fold(0.0, f64::max),
+        acceleration: Some(rises.fold(0.0, f64::max)),
+    }
+}
+
+/// Rows of a table, of one with jerk, and of a stream.
+fn plans(curves: &[Curve<2>]) -> [Vec<Row<[f64; 2]>>; 3] {
+    let mut knots = vec![Knot::default(); 20_000];
+    let accuracy = Accuracy {
+        min_segments: 16,
+        max_departure: 0.01,
+        max_time_ratio: f64::INFINITY,
+    };
+    let jerk = AxisLimits {
+        jerk: Some(2e5),
+        ..AXIS
+    };
+    let [free, limited] = [AXIS, jerk].map(|axis| {
+        let bound = Curve::departure;
+        let table = Table::plan_within(
+            curves,
+            [axis; 2],
+            accuracy,
+            |curve, span| bound(curve, span),
+            &mut knots,
+        );
+        table.unwrap().rows().collect()
+    });
+    let mut window = [Knot::default(); 256];
+    let stream = LookAhead::new(curves, [AXIS; 2], |_| Ok(12), &mut window).unwrap();
+    [free, limited, stream.map(Result::unwrap).collect()]
+}
+
+#[test]
+fn a_sharp_corner_is_no_way_around_the_acceleration() {
+    let tool = ToolLimits {
+        feed: 200.0,
+        acceleration: Some(1000.0),
+    };
+    let curves = curves(&[0.75 * PI, 0.0], 40.0, tool, 0.1);
+    for rows in plans(&curves) {
+        let most = most(&rows);
+        let acceleration = most.acceleration.unwrap();
+        assert!(acceleration <= 1000.0 * ROUNDING, "{acceleration} mm/s²");
+        // Two lines with a stop between them take 0.4 s each.
+        let time_s = rows.last().unwrap().time_s;
+        assert!(time_s < 0.8, "{time_s} s");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_tool_keeps_its_limits_along_bezier_curves(
+        points in prop::array::uniform4(prop::array::uniform2(-50.0..50.0_f64)),
+        feed in 20.0..400.0_f64, acceleration in 200.0..9000.0_f64,
+    ) {
+        let curve = Curve::bezier(points);
+        prop_assume!(curve.is_ok());
+        let tool = ToolLimits { feed, acceleration: Some(acceleration) };
+        for rows in plans(&[curve.unwrap().with_tool(tool)]) {
+            let most = most(&rows);
+            prop_assert!(most.feed <= feed * ROUNDING, "{} of {}", most.feed, feed);
+            let reached = most.acceleration.unwrap();
+            prop_assert!(reached <= acceleration * ROUNDING, "{} of {}", reached, acceleration);
+        }
+    }
+
+    #[test]
+    fn the_tool_keeps_its_limits_in_corners(
+        turns in prop::collection::vec(-2.9..2.9_f64, 1..6), length in 1.0..40.0_f64,
+        feed in 20.0..400.0_f64, acceleration in 200.0..9000.0_f64, tolerance in 0.005..1.0_f64,
+    ) {
+        let tool = ToolLimits { feed, acceleration: Some(acceleration) };
+        for rows in plans(&curves(&turns, length, tool, tolerance)) {
+            let most = most(&rows);
+            prop_assert!(most.feed <= feed * ROUNDING, "{} of {}", most.feed, feed);
+            let reached = most.acceleration.unwrap();
+            prop_assert!(reached <= acceleration * ROUNDING, "{} of {}", reached, acceleration);
+        }
+    }
+}
