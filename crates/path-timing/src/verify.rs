@@ -23,6 +23,9 @@ pub struct Promise<A: Axes> {
     /// How many times as fast as it is a motion between two rests might at most be within the
     /// limits of the axes; infinite for feeds that are overridden.
     pub max_slowness: f64,
+    /// The limits of the tool that paths have are kept, with this many times its feed: none where the
+    /// feed changes on the way, at which nothing limits the tool's acceleration.
+    pub tool_feed: Option<f64>,
 }
 
 /// A promise that rows break. `E` is the path's own error.
@@ -38,6 +41,18 @@ pub enum Violation<E> {
         /// Which: `speed`, `acceleration`, `jerk` or `velocity jump`.
         name: &'static str,
         /// Time of the row at the end of the segment.
+        time_s: f64,
+        /// The largest value.
+        value: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// A limit of the tool is passed at a row, or by its mean acceleration from the row before.
+    #[error("tool, up to {} s: {name} reaches {}, the limit is {}", SixDigits(*.time_s), SixDigits(*.value), SixDigits(*.limit))]
+    Tool {
+        /// Which: `feed` or `acceleration`.
+        name: &'static str,
+        /// Time of the row.
         time_s: f64,
         /// The largest value.
         value: f64,
@@ -129,6 +144,7 @@ const ROUNDING: f64 = 1e-9;
 ///     start_stop: [0.0; 2],
 ///     max_departure: 1e-3,
 ///     max_slowness: 3.0,
+///     tool_feed: Some(1.0),
 /// });
 /// for row in table.rows() {
 ///     verifier.add(&row, |leg| [quarter].get(leg).copied(), Curve::departure)?;
@@ -229,7 +245,8 @@ impl<A: Axes> Verifier<A> {
             s: [start, row.s],
             rows: [from, *row],
         };
-        self.check_parameter(&path, &span)?;
+        let speeds = self.check_parameter(&path, &span)?;
+        self.check_tool(&path, &span, speeds)?;
         self.check_limits(&from, row)?;
         path.check(&span)
             .map_err(|reason| Violation::Path { leg, s, reason })?;
@@ -304,10 +321,10 @@ impl<A: Axes> Verifier<A> {
         &self,
         path: &P,
         span: &Span<A>,
-    ) -> Result<(), Violation<P::Error>> {
+    ) -> Result<[f64; 2], Violation<P::Error>> {
         let ([from, to], [s0, s1]) = (&span.rows, span.s);
-        for (s, row) in [(s0, from), (s1, to)] {
-            let speed = speed_on_path(path, s, row)?;
+        let speeds = [speed_on_path(path, s0, from)?, speed_on_path(path, s1, to)?];
+        for speed in speeds {
             let times = speed * to.duration_s / (s1 - s0);
             // Written so that NaN turns back.
             let goes_on = (-ROUNDING..=3.0 + ROUNDING).contains(&times);
@@ -315,6 +332,43 @@ impl<A: Axes> Verifier<A> {
                 let time_s = to.time_s;
                 return Err(Violation::TurnsBack { time_s, times });
             }
+        }
+        Ok(speeds)
+    }
+
+    /// The feed, which is a speed of the parameter, at both ends, and the tool's mean acceleration.
+    fn check_tool<P: Path<Axes = A>>(
+        &self,
+        path: &P,
+        span: &Span<A>,
+        [w0, w1]: [f64; 2],
+    ) -> Result<(), Violation<P::Error>> {
+        let (Some(times), Some(tool)) = (self.promise.tool_feed, path.tool()) else {
+            return Ok(());
+        };
+        let ([_, row], [s0, s1]) = (&span.rows, span.s);
+        let (time_s, duration_s) = (row.time_s, row.duration_s);
+        let [before, speed] = [path.tool_rate(s0) * w0, path.tool_rate(s1) * w1];
+        let refused = |name, value, limit| Violation::Tool {
+            name,
+            time_s,
+            value,
+            limit,
+        };
+        let (fastest, feed) = (w0.max(w1), tool.feed * times);
+        // Written so that NaN is above.
+        let is_slow = fastest <= feed * (1.0 + SMOOTH);
+        if !is_slow {
+            return Err(refused("feed", fastest, feed));
+        }
+        let Some(limit) = tool.acceleration else {
+            return Ok(());
+        };
+        let rise = (speed - before).abs();
+        let rounding = SMOOTH * before.max(speed);
+        let is_soft = rise <= limit * duration_s * (1.0 + ROUNDING) + rounding;
+        if !is_soft {
+            return Err(refused("acceleration", rise / duration_s, limit));
         }
         Ok(())
     }

@@ -94,6 +94,7 @@ fn timed(
         max_departure: machine.tolerance_mm,
         // The feed may be far below what the arms are capable of.
         max_slowness: f64::INFINITY,
+        tool_feed: Some(1.0),
     });
     for row in &rows {
         verifier.add(row, |leg| paths.get(leg), |path, span| path.departure(span))?;

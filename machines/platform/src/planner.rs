@@ -133,6 +133,7 @@ impl<const N: usize> Planner<N> {
             max_departure,
             // Few rows take long.
             max_slowness: f64::INFINITY,
+            tool_feed: Some(1.0),
         });
         for row in table.rows() {
             verifier.add(&row, |leg| legs.get(leg), |leg, span| leg.departure(span))?;

@@ -278,6 +278,7 @@ impl ChainPath {
             max_departure: CUBICS_MM,
             // The feed may be far below what the motors follow.
             max_slowness: f64::INFINITY,
+            tool_feed: Some(1.0),
         })
     }
 

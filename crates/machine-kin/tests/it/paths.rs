@@ -244,6 +244,7 @@ fn runs<M: Machine<N>, const N: usize>(machine: &M, curves: [Curve<N>; 2], branc
         start_stop: [0.0; N],
         max_departure: TOLERANCE,
         max_slowness: f64::INFINITY,
+        tool_feed: Some(1.0),
     };
     let verify = |rows: &[Row<[f64; N]>]| {
         let mut verifier = Verifier::new(promise);

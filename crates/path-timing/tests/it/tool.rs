@@ -1,11 +1,12 @@
 //! Limits of the tool along smoothed lines, by the velocities that the rows of a Cartesian machine
 //! have, whatever the parameter of the path is.
 
+use core::convert::Infallible;
 use core::f64::consts::PI;
 
 use path_timing::{
-    Accuracy, AxisLimits, Curve, Knot, LookAhead, Row, Smoothed, Table, ToolLimits, Vertex,
-    Waypoint,
+    Accuracy, AxisLimits, Curve, Knot, LookAhead, Promise, Row, Smoothed, Table, ToolLimits,
+    Verifier, Vertex, Violation, Waypoint,
 };
 use proptest::prelude::*;
 
@@ -75,6 +76,60 @@ fn plans(curves: &[Curve<2>]) -> [Vec<Row<[f64; 2]>>; 3] {
     let mut window = [Knot::default(); 256];
     let stream = LookAhead::new(curves, [AXIS; 2], |_| Ok(12), &mut window).unwrap();
     [free, limited, stream.map(Result::unwrap).collect()]
+}
+
+/// What the verifier says of rows along curves whose tool has these limits.
+fn verify(
+    curves: &[Curve<2>],
+    tool: ToolLimits,
+    rows: &[Row<[f64; 2]>],
+) -> Result<(), Violation<Infallible>> {
+    let mut verifier = Verifier::new(Promise {
+        limits: [AXIS; 2],
+        start_stop: [0.0; 2],
+        max_departure: f64::INFINITY,
+        max_slowness: f64::INFINITY,
+        tool_feed: Some(1.0),
+    });
+    let path = |leg: usize| curves.get(leg).map(|curve| curve.with_tool(tool));
+    rows.iter()
+        .try_for_each(|row| verifier.add(row, path, Curve::departure))
+}
+
+#[test]
+fn the_verifier_finds_limits_that_are_lower_by_a_hundredth() {
+    let tool = ToolLimits {
+        feed: 200.0,
+        acceleration: Some(1000.0),
+    };
+    let curves = curves(&[0.75 * PI, 0.4, 0.0], 40.0, tool, 0.1);
+    for rows in plans(&curves) {
+        verify(&curves, tool, &rows).unwrap();
+        let lower = ToolLimits {
+            acceleration: Some(990.0),
+            ..tool
+        };
+        let error = verify(&curves, lower, &rows).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                Violation::Tool {
+                    name: "acceleration",
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        let lower = ToolLimits {
+            feed: 0.99 * most(&rows).feed,
+            ..tool
+        };
+        let error = verify(&curves, lower, &rows).unwrap_err();
+        assert!(
+            matches!(error, Violation::Tool { name: "feed", .. }),
+            "{error}"
+        );
+    }
 }
 
 #[test]

@@ -93,6 +93,7 @@ fn verified(path: Fenced, rows: &[Row<[f64; 2]>], limits: [AxisLimits; 2]) -> (f
         start_stop: [0.0; 2],
         max_departure: TOLERANCE,
         max_slowness: f64::INFINITY,
+        tool_feed: Some(1.0),
     });
     for row in rows {
         verifier

@@ -20,6 +20,7 @@ fn promise(limits: [AxisLimits; 2]) -> Promise<[f64; 2]> {
         start_stop: [0.0; 2],
         max_departure: TOLERANCE,
         max_slowness: f64::INFINITY,
+        tool_feed: None,
     }
 }
 

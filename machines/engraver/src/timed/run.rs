@@ -115,6 +115,7 @@ fn verified(
         max_departure: tolerance_mm,
         // The tool's feed may be far below what the joints are capable of.
         max_slowness: f64::INFINITY,
+        tool_feed: Some(1.0),
     });
     for row in &rows {
         verifier.add(row, |leg| run.get(leg), |leg, span| leg.departure(span))?;

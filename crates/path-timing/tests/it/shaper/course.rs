@@ -42,6 +42,7 @@ fn the_tool_stays_on_its_path_within_the_limits() {
         start_stop: [0.0; 2],
         max_departure: 1e-3,
         max_slowness: f64::INFINITY,
+        tool_feed: None,
     };
     let shaper = Shaper::zvd(MODE).unwrap();
     let arc = Curve::arc([40.0, 0.0], [0.0, 0.0], [0.0, 1.0], 4.0).unwrap();

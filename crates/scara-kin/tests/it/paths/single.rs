@@ -84,6 +84,7 @@ fn tables_keep_limits_and_departure_and_take_no_longer() {
             start_stop: [0.0; 2],
             max_departure: f64::INFINITY,
             max_slowness: f64::INFINITY,
+            tool_feed: Some(1.0),
         });
         for row in table.rows() {
             let proven = verifier.add(&row, |_| Some(path), ArmPathF32::departure);
