@@ -1,9 +1,10 @@
 """The STM32F411 as the boards' firmware uses it, by `unicorn`.
 
 `unicorn` carries out the instructions of a Cortex-M4F; what lies around it is here: interrupts with
-their priorities, WFE and SEV, clocks, TIM5 as the clock, USART2, TIM3 and
-TIM4 as counters of scales, and TIM1 whose every update makes the DMA write a word to a port. An instruction takes a cycle: `unicorn` does not know how many. Time
-goes on by slices of at most `SLICE` instructions; what the program reads of it is the slice's begin.
+their priorities, WFE and SEV, clocks, TIM5 as the clock, USART2, TIM3 and TIM4 as counters of scales,
+and TIM1 whose every update makes the DMA write a word to a port. An instruction takes a cycle:
+`unicorn` does not know how many. Time goes on by slices of at most `SLICE` instructions; what the
+program reads of it is the slice's begin.
 """
 
 import struct

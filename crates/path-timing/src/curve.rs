@@ -305,11 +305,8 @@ impl<const D: usize> Curve<D> {
     #[must_use]
     pub fn tool_rate(&self, s: f64) -> f64 {
         match &self.shape {
-            Shape::Cubic([_, first, second, third]) => {
-                norm(&along(&along(first, 2.0 * s, second), 3.0 * s * s, third))
-            }
-            Shape::Polynomial(_) => norm(&self.at(s).tangent),
             Shape::Line { .. } | Shape::Arc { .. } => 1.0,
+            Shape::Cubic(_) | Shape::Polynomial(_) => norm(&self.at(s).tangent),
         }
     }
 

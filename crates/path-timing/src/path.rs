@@ -36,8 +36,7 @@ pub trait Path {
     fn point(&self, s: f64) -> Result<PathPoint<Self::Axes>, Self::Error>;
 
     /// Feed and acceleration of the tool along the path, where the parameter is its arc length, or
-    /// grows by no less.
-    /// Nothing but the axes limits it otherwise.
+    /// grows by no less. Nothing but the axes limits it otherwise.
     fn tool(&self) -> Option<ToolLimits> {
         None
     }

@@ -348,7 +348,6 @@ impl<A: Axes> Verifier<A> {
         };
         let ([_, row], [s0, s1]) = (&span.rows, span.s);
         let (time_s, duration_s) = (row.time_s, row.duration_s);
-        let [before, speed] = [path.tool_rate(s0) * w0, path.tool_rate(s1) * w1];
         let refused = |name, value, limit| Violation::Tool {
             name,
             time_s,
@@ -364,6 +363,7 @@ impl<A: Axes> Verifier<A> {
         let Some(limit) = tool.acceleration else {
             return Ok(());
         };
+        let [before, speed] = [path.tool_rate(s0) * w0, path.tool_rate(s1) * w1];
         let rise = (speed - before).abs();
         let rounding = SMOOTH * before.max(speed);
         let is_soft = rise <= limit * duration_s * (1.0 + ROUNDING) + rounding;

@@ -48,10 +48,10 @@ impl<const D: usize> From<[f64; D]> for Waypoint<D> {
 /// ```
 ///
 /// L is the polyline by its arc length u. P" are triangles, continuous; |P'| ≤ 1, so that the speed
-/// of u is that of the tool, or more in a corner; an acceleration of the tool is limited as its own. Humps are as wide as they may be and overlap; the
-/// half-widths of two differ by at most half of their distance. |P - L| ≤ Σ |D| B is convex from a
-/// vertex to the next, and each half-width is such that the sum is within what is allowed at every
-/// vertex. A corner alone has h = 6 ε/|D|.
+/// of u is that of the tool, or more in a corner; an acceleration of the tool is limited as its own.
+/// Humps are as wide as they may be and overlap; the half-widths of two differ by at most half of
+/// their distance. |P - L| ≤ Σ |D| B is convex from a vertex to the next, and each half-width is such
+/// that the sum is within what is allowed at every vertex. A corner alone has h = 6 ε/|D|.
 ///
 /// The curves are cubics from some knots of P, the s - h, s and s + h, to others. With P and P' at
 /// both ends one passes over others where that departs by at most 1/24 of the tolerance, and within
