@@ -50,6 +50,8 @@ pub(crate) struct Loops<'m, I, const N: usize> {
     panel: &'m Panel<N>,
     inputs: &'m I,
     loops: [Option<ScaleLoop>; N],
+    /// Whether there is one.
+    are_some: bool,
 }
 
 impl<'m, I: Inputs<N>, const N: usize> Loops<'m, I, N> {
@@ -58,7 +60,13 @@ impl<'m, I: Inputs<N>, const N: usize> Loops<'m, I, N> {
             panel,
             inputs,
             loops: machine.loops,
+            are_some: machine.has_scales(),
         }
+    }
+
+    /// What the counters read, where that is asked for.
+    fn counts(&self) -> Option<[u16; N]> {
+        self.inputs.counts().filter(|_| self.are_some)
     }
 
     /// The axes stand at home, so many steps from zero.
@@ -67,7 +75,7 @@ impl<'m, I: Inputs<N>, const N: usize> Loops<'m, I, N> {
             axis.at_rest.reset();
             axis.in_motion.reset();
         }
-        if let Some(counts) = self.inputs.counts() {
+        if let Some(counts) = self.counts() {
             self.panel.read_scales(counts);
             self.panel.set_home(home_steps);
         }
@@ -86,7 +94,7 @@ impl<'m, I: Inputs<N>, const N: usize> Loops<'m, I, N> {
         writer: &mut BlockWriter<'_, N>,
         end: u64,
     ) {
-        if self.inputs.counts().is_some() {
+        if self.counts().is_some() {
             writer.rest(end + settle_ticks(machine)).await;
             self.panel.all_played().await;
             writer.restart(end);
@@ -130,7 +138,7 @@ impl<'m, I: Inputs<N>, const N: usize> Loops<'m, I, N> {
         of: impl Fn(&mut ScaleLoop) -> &mut AxisLoop,
     ) -> Result<[i32; N], NotClosed> {
         let mut corrections = [0; N];
-        let Some(counts) = self.inputs.counts() else {
+        let Some(counts) = self.counts() else {
             return Ok(corrections);
         };
         let reading = self.panel.read_scales(counts);

@@ -153,6 +153,13 @@ impl<K: Kinematics<N>, const N: usize> Machine<K, N> {
     }
 }
 
+impl<K, const N: usize> Machine<K, N> {
+    /// Whether the settings name the scale of an axis.
+    pub(crate) fn has_scales(&self) -> bool {
+        self.loops.iter().any(Option::is_some)
+    }
+}
+
 /// Whether an axis has a range with home in it, and is not too fast for its driver.
 fn check_axis<A: Axis>(name: &'static str, axis: &A, max_s: f64) -> Result<(), SettingsError> {
     let ([min, max], home, steps_s) = (axis.range(), axis.home(), axis.steps_s());

@@ -104,7 +104,7 @@ fn answer<K: Kinematics<N>, const N: usize>(
         Command::Limits => text!("{}", Limits(machine)),
         Command::Machine => text!("{}", K::NAME),
         Command::Scales => match inputs.counts() {
-            Some(counts) if machine.loops.iter().any(Option::is_some) => {
+            Some(counts) if machine.has_scales() => {
                 let is_homed = !matches!(panel.state(), State::NotHomed | State::Homing);
                 let reading = panel.read_scales(counts);
                 text!(

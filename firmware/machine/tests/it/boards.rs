@@ -19,6 +19,7 @@ const IN_FLIGHT: u32 = 16;
 const BOUNCE: Duration = Duration::from_millis(2);
 /// Steps that a motor loses.
 const LOST: u32 = 7;
+
 /// What a machine is asked on its day.
 struct Day<K: Kinematics<N> + 'static, const N: usize> {
     kind: Kind<K, N>,
