@@ -210,8 +210,11 @@ impl<A: Axes> Course<'_, A> {
     /// where it begins.
     fn brake_at_limits(&self, at: At, to: f64) -> Option<Change> {
         let slope = self.knots.get(at.index)?.point.slope;
+        let ahead = self.knots.get(at.index.saturating_add(1))?;
         let axes = self.limits.axes().iter().zip(slope.as_slice());
-        let inverse = axes.fold([0.0_f64; 2], |[acceleration, jerk], (limits, slope)| {
+        let tool = ahead.tool.overridden(self.override_times);
+        let of_tool = [1.0 / tool.acceleration, 0.0];
+        let inverse = axes.fold(of_tool, |[acceleration, jerk], (limits, slope)| {
             let slope = slope.abs();
             [
                 acceleration.max(slope * limits.acceleration),
@@ -327,11 +330,12 @@ impl<A: Axes> Course<'_, A> {
         let is_jump = self.knots.get(at.index).is_some_and(|knot| knot.ds <= 0.0);
         let mut walk = if at.speed > 0.0 && !is_jump {
             // From the segment before, whose acceleration it goes on from.
-            let mut walk = Walk::new(at.index.saturating_sub(1), at.before).without_tool();
+            let mut walk =
+                Walk::new(at.index.saturating_sub(1), at.before).overridden(self.override_times);
             walk.advance(self.limits, self.knots, at.speed);
             walk
         } else {
-            Walk::new(at.index, at.speed).without_tool()
+            Walk::new(at.index, at.speed).overridden(self.override_times)
         };
         let mut most = Most::default();
         loop {

@@ -69,6 +69,24 @@ impl SegmentTool {
         }
     }
 
+    /// With the feed multiplied.
+    pub(crate) fn at_feed(self, feed: f64) -> Self {
+        Self {
+            feed: self.feed * feed,
+            ..self
+        }
+    }
+
+    /// What the tool does where the whole of a motion is so many times as fast, if that is more.
+    pub(crate) fn overridden(self, times: f64) -> Self {
+        let times = times.max(1.0);
+        Self {
+            feed: self.feed * times,
+            acceleration: self.acceleration * times * times,
+            ..self
+        }
+    }
+
     pub(crate) fn is_none(&self) -> bool {
         self.feed >= f64::INFINITY
     }

@@ -28,7 +28,7 @@ fn backward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>])
     to.speed = to.cap.min(LARGEST);
     for from in earlier {
         if to.ds > 0.0 {
-            let segment = Segment::new(limits, from, to, 1.0);
+            let segment = Segment::new(limits, from, to, &to.tool);
             let (w0, w1) = segment.begin(R::of(to.speed), R::of(from.cap));
             let ratio = if w0 > R::ZERO { w1 / w0 } else { R::ZERO };
             (from.speed, from.ratio) = (w0.into(), ratio.into());
@@ -47,7 +47,7 @@ fn forward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) 
     };
     for to in rest {
         to.speed = if to.ds > 0.0 {
-            let segment = Segment::new(limits, from, to, 1.0);
+            let segment = Segment::new(limits, from, to, &to.tool);
             let [w0, ceiling, ratio] = [from.speed, to.speed, from.ratio].map(R::of);
             segment.end(w0, ceiling, ratio).into()
         } else {

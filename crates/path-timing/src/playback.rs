@@ -43,8 +43,9 @@ pub struct FeedError {
 /// v = f w      segment time = 2Δs / (v₀ + v₁)
 /// ```
 ///
-/// The tool's feed along a path is what is overridden: above 1 it goes beyond that of the path, and
-/// only the axes limit it. Where the departure was planned at any feed
+/// The tool's feed along a path is what is overridden: above 1 it goes beyond that of the path, its
+/// acceleration to the square of the highest feed times what it may be, and only the axes limit both.
+/// Up to 1 the tool's own limits are kept, through all changes. Where the departure was planned at any feed
 /// ([`Table::plan_within_at_any_feed`]), it is kept through all changes.
 ///
 /// With a limit of jerk a change is smooth and takes as many rows as it needs: the fewest found
@@ -95,7 +96,7 @@ impl<'a, A: Axes> Table<'a, A> {
         }
         let mode = if self.limits.has_jerk() {
             Mode::Smooth {
-                max: max.min(self.full_feed()),
+                max: self.full_feed(max),
                 feed: SmoothFeed::FULL,
             }
         } else {
@@ -164,6 +165,16 @@ impl<A: Axes> Playback<'_, A> {
         knot.map_or(0.0, |knot| knot.speed / self.stretch)
     }
 
+    /// How many times as fast as it was planned the motion may be.
+    fn override_times(&self) -> f64 {
+        self.max / self.stretch
+    }
+
+    /// The limits of the tool on the segment before a knot.
+    fn tool(&self, knot: &Knot<A>) -> SegmentTool {
+        knot.tool.overridden(self.override_times())
+    }
+
     /// The next row; `None` at the end and where the machine rests at a feed of zero, until
     /// another is wanted.
     pub fn next_row(&mut self) -> Option<Row<A>> {
@@ -187,7 +198,7 @@ impl<A: Axes> Playback<'_, A> {
         let duration_s = if is_jump || at.speed + speed > 0.0 {
             time_of(to.ds, [at.speed, speed])
         } else {
-            rest_to_rest_s(&self.limits, [from, to], &SegmentTool::NONE) / self.wanted.min(1.0)
+            rest_to_rest_s(&self.limits, [from, to], &self.tool(to)) / self.wanted.min(1.0)
         };
         self.time_s += duration_s;
         self.leg = self.leg.saturating_add(usize::from(from.ends_leg));
@@ -216,6 +227,7 @@ impl<A: Axes> Playback<'_, A> {
                     knots: self.knots,
                     limits: &self.limits,
                     stretch: self.stretch,
+                    override_times: self.override_times(),
                 };
                 let speed = feed.next_speed(&course, at, self.wanted.min(max));
                 self.mode = Mode::Smooth { max, feed };
@@ -227,11 +239,10 @@ impl<A: Axes> Playback<'_, A> {
     fn next_direct(&self, ceilings: &[FeedCeiling], at: At, [from, to]: [&Knot<A>; 2]) -> f64 {
         let next = at.index.saturating_add(1);
         let [here, there] = [at.index, next].map(|index| ceilings.get(index).copied());
-        let segment = Segment::of_axes(&self.limits, &from.point, &to.point, to.ds);
+        let segment = Segment::new(&self.limits, from, to, &self.tool(to));
         let after = self.knots.get(next.saturating_add(1));
         let after = after.filter(|after| after.ds > 0.0);
-        let later =
-            after.map(|after| Segment::of_axes(&self.limits, &to.point, &after.point, after.ds));
+        let later = after.map(|after| Segment::new(&self.limits, to, after, &self.tool(after)));
         let ahead = Ahead {
             segment: &segment,
             later: later.as_ref(),

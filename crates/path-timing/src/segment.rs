@@ -1,5 +1,6 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
+use crate::knot::SegmentTool;
 use crate::number::{Real, larger};
 use crate::reciprocals::{Reciprocal, Reciprocals, margin};
 use crate::{Axes, Knot, PathPoint};
@@ -100,19 +101,23 @@ impl<R: Real> AxisLoad<R> {
 }
 
 impl<A: Axes, R: Real> Segment<A, R> {
-    /// The segment between two knots, with the tool's feed multiplied.
+    /// The segment between two knots.
     ///
     /// ```text
     /// tool: speeds w₀, w₁; where it goes r₀ and r₁ by the parameter, the acceleration
     ///     (r₁ w₁ - r₀ w₀) / T = ((r₁ - r₀) y + (r₀ + r₁) z) / Δs
     /// ```
-    pub(crate) fn new(limits: &Reciprocals<A, R>, from: &Knot<A>, to: &Knot<A>, feed: f64) -> Self {
+    pub(crate) fn new(
+        limits: &Reciprocals<A, R>,
+        from: &Knot<A>,
+        to: &Knot<A>,
+        tool: &SegmentTool,
+    ) -> Self {
         let mut segment = Self::of_axes(limits, &from.point, &to.point, to.ds);
-        let tool = &to.tool;
         if tool.is_none() {
             return segment;
         }
-        let feed = margin::<R>() / R::of(tool.feed * feed);
+        let feed = margin::<R>() / R::of(tool.feed);
         for end in &mut segment.ends {
             *end = end.max(feed);
         }
@@ -125,7 +130,7 @@ impl<A: Axes, R: Real> Segment<A, R> {
     }
 
     /// The segment with the limits of the axes alone.
-    pub(crate) fn of_axes(
+    fn of_axes(
         limits: &Reciprocals<A, R>,
         from: &PathPoint<A>,
         to: &PathPoint<A>,

@@ -23,8 +23,8 @@ pub struct Promise<A: Axes> {
     /// How many times as fast as it is a motion between two rests might at most be within the
     /// limits of the axes; infinite for feeds that are overridden.
     pub max_slowness: f64,
-    /// The limits of the tool that paths have are kept, with this many times its feed: none where the
-    /// feed changes on the way, at which nothing limits the tool's acceleration.
+    /// The limits of the tool that paths have are kept, with this many times its feed; none where
+    /// nothing is promised of a tool.
     pub tool_feed: Option<f64>,
 }
 

@@ -12,6 +12,8 @@ pub(crate) struct Course<'a, A: Axes> {
     pub(crate) limits: &'a Reciprocals<A>,
     /// By what all times are multiplied.
     pub(crate) stretch: f64,
+    /// By what the limits of the tool are overridden.
+    pub(crate) override_times: f64,
 }
 
 /// Where the machine is on a course.

@@ -103,7 +103,8 @@ const LEAST_LIMIT: f64 = 0.5;
 
 /// The segments one after the other, at speeds that the caller says.
 pub(crate) struct Walk<A: Axes> {
-    has_tool: bool,
+    /// By what the limits of the tool are overridden.
+    times: f64,
     /// The knot where the next segment begins, and the speed there.
     index: usize,
     speed: f64,
@@ -115,7 +116,7 @@ impl<A: Axes> Walk<A> {
     /// From the knot of a number, passed at a speed.
     pub(crate) const fn new(index: usize, speed: f64) -> Self {
         Self {
-            has_tool: true,
+            times: 1.0,
             index,
             speed,
             before: None,
@@ -123,12 +124,9 @@ impl<A: Axes> Walk<A> {
         }
     }
 
-    /// With the limits of the axes alone.
-    pub(crate) fn without_tool(self) -> Self {
-        Self {
-            has_tool: false,
-            ..self
-        }
+    /// Where the motion may be so many times as fast.
+    pub(crate) fn overridden(self, times: f64) -> Self {
+        Self { times, ..self }
     }
 
     /// The number of the knot where the next segment ends.
@@ -151,11 +149,7 @@ impl<A: Axes> Walk<A> {
         let from_jump = is_jump(knots, index);
         let node = index.saturating_sub(usize::from(from_jump));
         let (from, to) = (knots.get(index)?, knots.get(next)?);
-        let segment = if self.has_tool {
-            Segment::new(limits, from, to, 1.0)
-        } else {
-            Segment::of_axes(limits, &from.point, &to.point, to.ds)
-        };
+        let segment = Segment::new(limits, from, to, &to.tool.overridden(self.times));
         let moving = Moving {
             limits,
             segment,

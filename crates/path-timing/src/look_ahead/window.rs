@@ -1,7 +1,6 @@
 //! The knots in the window: how fast each may be passed, and the speed at the next.
 
 use crate::feed_change::{At, Course, SmoothFeed};
-use crate::knot::SegmentTool;
 use crate::number::LARGEST;
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
@@ -134,7 +133,8 @@ impl<'w, A: Axes> Window<'w, A> {
             knot.wanted = knot.speed;
             if feed.is_lower() {
                 knot.wanted = if next.ds > 0.0 {
-                    let segment = Segment::new(&slower, knot, next, feed.wanted);
+                    let segment =
+                        Segment::new(&slower, knot, next, &next.tool.at_feed(feed.wanted));
                     segment.begin(next.wanted, LARGEST).0.min(knot.speed)
                 } else {
                     next.wanted.min(knot.speed)
@@ -189,6 +189,7 @@ impl<'w, A: Axes> Window<'w, A> {
             knots: self.knots.get(begin..self.end).unwrap_or_default(),
             limits,
             stretch: 1.0,
+            override_times: 1.0,
         };
         let at = At {
             index: self.first.saturating_sub(begin),
@@ -221,9 +222,10 @@ impl<'w, A: Axes> Window<'w, A> {
             return None;
         };
         let next = if to.ds > 0.0 {
-            let segment = Segment::new(limits, from, to, feed.max);
+            let tool = |knot: &Knot<A>| knot.tool.at_feed(feed.max);
+            let segment = Segment::new(limits, from, to, &tool(to));
             let later = later.first().filter(|later| later.ds > 0.0);
-            let later = later.map(|later| Segment::new(limits, to, later, feed.max));
+            let later = later.map(|later| Segment::new(limits, to, later, &tool(later)));
             let ahead = Ahead {
                 segment: &segment,
                 later: later.as_ref(),
@@ -241,11 +243,7 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else if feed.wanted > 0.0 {
-            let faster = SegmentTool {
-                feed: to.tool.feed * feed.max,
-                ..to.tool
-            };
-            rest_to_rest_s(limits, [from, to], &faster) / feed.wanted.min(1.0)
+            rest_to_rest_s(limits, [from, to], &to.tool.at_feed(feed.max)) / feed.wanted.min(1.0)
         } else {
             return None;
         };
@@ -274,7 +272,7 @@ fn raise<A: Axes>(knot: &mut Knot<A>, next: &Knot<A>, limits: &Reciprocals<A>, f
         (knot.speed, knot.ratio) = (next.speed.min(knot.cap), 1.0);
         return;
     }
-    let segment = Segment::new(limits, knot, next, feed);
+    let segment = Segment::new(limits, knot, next, &next.tool.at_feed(feed));
     let (start, end) = segment.begin(next.speed, knot.cap);
     if start >= knot.speed {
         (knot.speed, knot.ratio) = (start, if start > 0.0 { end / start } else { 0.0 });

@@ -1,6 +1,6 @@
 //! How fast each knot of a table may be passed at a feed above 1, looked at from its end.
 
-use crate::number::{LARGEST, sqrt};
+use crate::number::sqrt;
 use crate::segment::Segment;
 use crate::{Axes, Knot, Table, jerk};
 
@@ -35,7 +35,12 @@ impl<A: Axes> Table<'_, A> {
                         ratio: 1.0,
                     }
                 } else {
-                    let segment = Segment::of_axes(&self.limits, &knot.point, &to.point, to.ds);
+                    let segment = Segment::new(
+                        &self.limits,
+                        knot,
+                        to,
+                        &to.tool.overridden(max / self.stretch),
+                    );
                     let ends = [planned, to.speed / self.stretch];
                     look_back(&segment, ends, after.speed, most)
                 };
@@ -44,17 +49,17 @@ impl<A: Axes> Table<'_, A> {
         }
     }
 
-    /// The highest constant feed that the axes allow from end to end.
-    pub(super) fn full_feed(&self) -> f64 {
+    /// The highest constant feed, up to `max`, that the axes allow from end to end.
+    pub(super) fn full_feed(&self, max: f64) -> f64 {
         let mut most = jerk::Most::default();
-        let mut walk = jerk::Walk::new(0, 0.0).without_tool();
+        let mut walk = jerk::Walk::new(0, 0.0).overridden(max / self.stretch);
         while let Some(next) = walk.next_knot(self.knots) {
             let speed = self.knots.get(next).map_or(0.0, |knot| knot.speed);
             if let Some(segment) = walk.advance(&self.limits, self.knots, speed) {
                 segment.visit(&mut most);
             }
         }
-        LARGEST.min(self.stretch / most.stretch)
+        max.min(self.stretch / most.stretch)
     }
 }
 

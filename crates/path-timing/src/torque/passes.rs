@@ -44,7 +44,7 @@ impl<'a, A: Axes> Pair<'a, A> {
         to: &Knot<A>,
     ) -> Self {
         Self {
-            axes: Segment::new(limits, from, to, 1.0),
+            axes: Segment::new(limits, from, to, &to.tool),
             load: Load::new(torque, from, to),
         }
     }

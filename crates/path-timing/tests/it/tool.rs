@@ -5,8 +5,8 @@ use core::convert::Infallible;
 use core::f64::consts::PI;
 
 use path_timing::{
-    Accuracy, AxisLimits, Curve, Knot, LookAhead, Promise, Row, Smoothed, Table, ToolLimits,
-    Verifier, Vertex, Violation, Waypoint,
+    Accuracy, AxisLimits, Curve, FeedCeiling, FeedError, Knot, LookAhead, Playback, Promise, Row,
+    Smoothed, Table, ToolLimits, Verifier, Vertex, Violation, Waypoint,
 };
 use proptest::prelude::*;
 
@@ -50,6 +50,11 @@ fn most(rows: &[Row<[f64; 2]>]) -> ToolLimits {
     }
 }
 
+const JERKY: AxisLimits = AxisLimits {
+    jerk: Some(2e5),
+    ..AXIS
+};
+
 /// Rows of a table, of one with jerk, and of a stream.
 fn plans(curves: &[Curve<2>]) -> [Vec<Row<[f64; 2]>>; 3] {
     let mut knots = vec![Knot::default(); 20_000];
@@ -58,11 +63,7 @@ fn plans(curves: &[Curve<2>]) -> [Vec<Row<[f64; 2]>>; 3] {
         max_departure: 0.01,
         max_time_ratio: f64::INFINITY,
     };
-    let jerk = AxisLimits {
-        jerk: Some(2e5),
-        ..AXIS
-    };
-    let [free, limited] = [AXIS, jerk].map(|axis| {
+    let [free, limited] = [AXIS, JERKY].map(|axis| {
         let bound = Curve::departure;
         let table = Table::plan_within(
             curves,
@@ -78,10 +79,59 @@ fn plans(curves: &[Curve<2>]) -> [Vec<Row<[f64; 2]>>; 3] {
     [free, limited, stream.map(Result::unwrap).collect()]
 }
 
+/// Rows of tables and of streams, without jerk and with it, whose feed is changed at some of them:
+/// up to 2 where the first says so. Where the machine is held it goes on.
+fn at_feeds(curves: &[Curve<2>], feeds: &[(usize, f64)]) -> [(f64, Vec<Row<[f64; 2]>>); 4] {
+    let table = |axis: AxisLimits| {
+        let mut knots = vec![Knot::default(); 2000];
+        let table = Table::plan(curves, [axis; 2], |_| 40, &mut knots).unwrap();
+        let mut ceilings = vec![FeedCeiling::default(); table.len()];
+        let mut motion = table.playback(1.0, &mut ceilings).unwrap();
+        let set_feed = |motion: &mut Playback<'_, _>, feed: f64| motion.set_feed(feed.min(1.0));
+        (
+            1.0,
+            changed(feeds, &mut motion, set_feed, Playback::next_row),
+        )
+    };
+    let stream = |axis: AxisLimits, most: f64| {
+        let mut window = [Knot::default(); 96];
+        let motion = LookAhead::new(curves, [axis; 2], |_| Ok(20), &mut window).unwrap();
+        let mut motion = motion.with_max_feed(most).unwrap();
+        let set_feed =
+            |motion: &mut LookAhead<'_, _, _, _>, feed: f64| motion.set_feed(feed.min(most));
+        let next = |motion: &mut LookAhead<'_, _, _, _>| motion.next().map(Result::unwrap);
+        (most, changed(feeds, &mut motion, set_feed, next))
+    };
+    [
+        table(AXIS),
+        table(JERKY),
+        stream(AXIS, 2.0),
+        stream(JERKY, 1.0),
+    ]
+}
+
+fn changed<M>(
+    feeds: &[(usize, f64)],
+    motion: &mut M,
+    set_feed: impl Fn(&mut M, f64) -> Result<(), FeedError>,
+    next: impl Fn(&mut M) -> Option<Row<[f64; 2]>>,
+) -> Vec<Row<[f64; 2]>> {
+    let mut rows = Vec::new();
+    for (count, feed) in feeds {
+        let more = core::iter::from_fn(|| next(motion));
+        rows.extend(more.take(*count));
+        set_feed(motion, *feed).unwrap();
+    }
+    set_feed(motion, 1.0).unwrap();
+    rows.extend(core::iter::from_fn(|| next(motion)));
+    rows
+}
+
 /// What the verifier says of rows along curves whose tool has these limits.
 fn verify(
     curves: &[Curve<2>],
     tool: ToolLimits,
+    tool_feed: f64,
     rows: &[Row<[f64; 2]>],
 ) -> Result<(), Violation<Infallible>> {
     let mut verifier = Verifier::new(Promise {
@@ -89,7 +139,7 @@ fn verify(
         start_stop: [0.0; 2],
         max_departure: f64::INFINITY,
         max_slowness: f64::INFINITY,
-        tool_feed: Some(1.0),
+        tool_feed: Some(tool_feed),
     });
     let path = |leg: usize| curves.get(leg).map(|curve| curve.with_tool(tool));
     rows.iter()
@@ -104,12 +154,12 @@ fn the_verifier_finds_limits_that_are_lower_by_a_hundredth() {
     };
     let curves = curves(&[0.75 * PI, 0.4, 0.0], 40.0, tool, 0.1);
     for rows in plans(&curves) {
-        verify(&curves, tool, &rows).unwrap();
+        verify(&curves, tool, 1.0, &rows).unwrap();
         let lower = ToolLimits {
             acceleration: Some(990.0),
             ..tool
         };
-        let error = verify(&curves, lower, &rows).unwrap_err();
+        let error = verify(&curves, lower, 1.0, &rows).unwrap_err();
         assert!(
             matches!(
                 error,
@@ -124,7 +174,7 @@ fn the_verifier_finds_limits_that_are_lower_by_a_hundredth() {
             feed: 0.99 * most(&rows).feed,
             ..tool
         };
-        let error = verify(&curves, lower, &rows).unwrap_err();
+        let error = verify(&curves, lower, 1.0, &rows).unwrap_err();
         assert!(
             matches!(error, Violation::Tool { name: "feed", .. }),
             "{error}"
@@ -146,6 +196,24 @@ fn a_sharp_corner_is_no_way_around_the_acceleration() {
         // Two lines with a stop between them take 0.4 s each.
         let time_s = rows.last().unwrap().time_s;
         assert!(time_s < 0.8, "{time_s} s");
+    }
+}
+
+#[test]
+fn a_hold_and_a_higher_feed_keep_the_acceleration() {
+    let tool = ToolLimits {
+        feed: 200.0,
+        acceleration: Some(1000.0),
+    };
+    let curves = curves(&[0.5, -0.4, 0.0], 40.0, tool, 0.1);
+    for (most_feed, rows) in at_feeds(&curves, &[(30, 0.0), (20, 2.0), (40, 0.3), (10, 1.0)]) {
+        verify(&curves, tool, most_feed, &rows).unwrap();
+        let end = rows.last().unwrap();
+        assert!(end.leg + 1 == curves.len() && norm(end.velocity) <= 0.0);
+        let most = most(&rows);
+        let acceleration = most.acceleration.unwrap();
+        assert!(acceleration <= 1000.0 * ROUNDING, "{acceleration} mm/s²");
+        assert!(most.feed > 120.0, "{} mm/s", most.feed);
     }
 }
 
@@ -178,6 +246,22 @@ proptest! {
             let most = most(&rows);
             prop_assert!(most.feed <= feed * ROUNDING, "{} of {}", most.feed, feed);
             let reached = most.acceleration.unwrap();
+            prop_assert!(reached <= acceleration * ROUNDING, "{} of {}", reached, acceleration);
+        }
+    }
+
+    #[test]
+    fn the_tool_keeps_its_acceleration_at_feeds_that_change(
+        turns in prop::collection::vec(-2.0..2.0_f64, 1..6), length in 5.0..40.0_f64,
+        feed in 20.0..400.0_f64, acceleration in 200.0..9000.0_f64, tolerance in 0.01..1.0_f64,
+        feeds in prop::collection::vec((0..40_usize, prop_oneof![Just(0.0), 0.05..2.0_f64]), 1..8),
+    ) {
+        let tool = ToolLimits { feed, acceleration: Some(acceleration) };
+        let curves = curves(&turns, length, tool, tolerance);
+        for (most_feed, rows) in at_feeds(&curves, &feeds) {
+            let verified = verify(&curves, tool, most_feed, &rows);
+            prop_assert!(verified.is_ok(), "{}", verified.unwrap_err());
+            let reached = most(&rows).acceleration.unwrap();
             prop_assert!(reached <= acceleration * ROUNDING, "{} of {}", reached, acceleration);
         }
     }
