@@ -40,24 +40,4 @@ fn main() {
     jobs::run();
     unit::run();
     trig::run();
-    #[cfg(feature = "control")]
-    control::run();
-}
-
-/// What must not link.
-#[cfg(feature = "control")]
-mod control {
-    use std::hint::black_box;
-
-    use no_panic::no_panic;
-
-    #[no_panic]
-    #[inline(never)]
-    fn index_of_unknown_size(bytes: &[u8], index: usize) -> u8 {
-        bytes[index]
-    }
-
-    pub fn run() {
-        black_box(index_of_unknown_size(black_box(&[1, 2, 3]), black_box(1)));
-    }
 }
