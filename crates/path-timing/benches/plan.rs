@@ -144,6 +144,13 @@ fn measure_torque(criterion: &mut Criterion) {
             table.expect("plan is good").duration_s()
         });
     });
+    let mut window = vec![Knot::default(); 64];
+    group.bench_function("look ahead with torque, 64 slots", |bencher| {
+        bencher.iter(|| {
+            let rows = torque.look_ahead([line], joint, |_| Ok(SEGMENTS), black_box(&mut window));
+            rows.expect("window is long enough").count()
+        });
+    });
 }
 
 fn benches(criterion: &mut Criterion) {

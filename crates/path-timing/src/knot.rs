@@ -69,26 +69,45 @@ impl SegmentTool {
         }
     }
 
-    /// With the feed multiplied.
-    pub(crate) fn at_feed(self, feed: f64) -> Self {
+    /// With both limits multiplied.
+    pub(crate) fn times(self, times: ToolTimes) -> Self {
         Self {
-            feed: self.feed * feed,
-            ..self
-        }
-    }
-
-    /// What the tool does where the whole of a motion is so many times as fast, if that is more.
-    pub(crate) fn overridden(self, times: f64) -> Self {
-        let times = times.max(1.0);
-        Self {
-            feed: self.feed * times,
-            acceleration: self.acceleration * times * times,
+            feed: self.feed * times.feed,
+            acceleration: self.acceleration * times.acceleration,
             ..self
         }
     }
 
     pub(crate) fn is_none(&self) -> bool {
         self.feed >= f64::INFINITY
+    }
+}
+
+/// By what the limits of a tool are multiplied.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ToolTimes {
+    pub(crate) feed: f64,
+    pub(crate) acceleration: f64,
+}
+
+impl ToolTimes {
+    pub(crate) const ONE: Self = Self {
+        feed: 1.0,
+        acceleration: 1.0,
+    };
+
+    /// The feed alone.
+    pub(crate) const fn of_feed(feed: f64) -> Self {
+        Self { feed, ..Self::ONE }
+    }
+
+    /// Where the whole of a motion is so many times as fast, if that is more than once.
+    pub(crate) fn of_motion(times: f64) -> Self {
+        let feed = times.max(1.0);
+        Self {
+            feed,
+            acceleration: feed * feed,
+        }
     }
 }
 

@@ -57,5 +57,7 @@ pub use set_points::{Cia402Scale, Cia402Target, SetPoint, SetPoints, TargetError
 pub use shaper::{Impulse, Mode, Shaped, ShapedError, Shaper, ShaperError, TryRow};
 pub use span::Span;
 pub use table::{Accuracy, Table};
-pub use torque::{Dynamics, Friction, TorqueCurve, TorqueCurveError, TorqueLimits, TorqueTable};
+pub use torque::{
+    Dynamics, Friction, TorqueCurve, TorqueCurveError, TorqueLimits, TorqueLookAhead, TorqueTable,
+};
 pub use verify::{Promise, Verifier, Violation};

@@ -1,22 +1,17 @@
 //! Rows along an endless stream of paths, planned in a window of fixed size.
 
+mod feeder;
 mod window;
 
 use core::fmt::{self, Debug};
 
 use crate::feed_change::SmoothFeed;
-use crate::junction::Junction;
-use crate::knots::{LARGEST_GAP, is_resolved};
-use crate::laying::{Cutting, Laying, bounded};
-use crate::leg::Leg;
 use crate::number::{LARGEST, SMALLEST};
-use crate::planner::{Beyond, check_gap, fewest, junction_to};
 use crate::reciprocals::Reciprocals;
-use crate::{Axes, AxisLimits, Corner, FeedError, Knot, Path, PlanError, Row};
-use window::{Feed, Window};
-
-/// Smallest window: a knot between two at rest, and one behind a jump.
-const MIN_KNOTS: usize = 4;
+use crate::stepping::OfAxes;
+use crate::{Axes, AxisLimits, FeedError, Knot, Path, PlanError, Row};
+pub(crate) use feeder::Feeder;
+pub(crate) use window::{Feed, Window};
 
 /// The rows along a stream of paths that need not end, planned in a window of the caller's memory.
 ///
@@ -56,18 +51,7 @@ const MIN_KNOTS: usize = 4;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct LookAhead<'w, P: Path, I, F> {
-    paths: I,
-    /// The path after the one that enters the window.
-    following: Option<P>,
-    segments: F,
-    /// The path whose knots enter the window.
-    entering: Option<Cutting<P>>,
-    /// Paths that have begun.
-    count: usize,
-    /// Whether a path was refused: the stream ends there.
-    is_refused: bool,
-    /// The corner of the path before, with its end in the window, and the length of that path.
-    corner: Option<(Corner<P::Axes>, f64)>,
+    feeder: Feeder<P, I, F>,
     window: Window<'w, P::Axes>,
     limits: Reciprocals<P::Axes>,
     max: f64,
@@ -103,21 +87,9 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         window: &'w mut [Knot<P::Axes>],
     ) -> Result<Self, PlanError<P::Error>> {
         let limits = Reciprocals::checked(&limits)?;
-        if window.len() < MIN_KNOTS {
-            return Err(PlanError::Memory {
-                needed: MIN_KNOTS,
-                available: window.len(),
-            });
-        }
         Ok(Self {
-            paths: paths.into_iter(),
-            following: None,
-            segments,
-            entering: None,
-            count: 0,
-            is_refused: false,
-            corner: None,
-            window: Window::new(window),
+            feeder: Feeder::new(paths.into_iter(), segments),
+            window: Window::checked(window)?,
             limits,
             max: 1.0,
             wanted: 1.0,
@@ -182,8 +154,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// A stream that had no path may have one later: the next call of `next_row` asks it again.
     #[must_use]
     pub fn is_finished(&self) -> bool {
-        let has_path = self.entering.is_some() || self.following.is_some();
-        self.is_at_rest() && !self.window.goes_on() && (self.is_refused || !has_path)
+        self.is_at_rest() && !self.window.goes_on() && self.feeder.is_empty()
     }
 
     /// The next row; `None` where the machine rests: held, or at the end of the last path for now,
@@ -198,7 +169,7 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         if self.limits.has_jerk() {
             self.window.look_through(&self.limits);
         } else {
-            self.window.look_back(&self.limits, self.feed());
+            self.window.look_back(&OfAxes, &self.limits, self.feed());
         }
         filled?;
         let Some(speed) = self.speed else {
@@ -210,11 +181,12 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
             self.window
                 .step_smoothly(&self.limits, feed, wanted, speeds)
         } else {
-            self.window.step(&self.limits, self.feed(), speed)
+            self.window.step(&OfAxes, &self.limits, self.feed(), speed)
         };
         let Some(step) = step else {
             return Ok(None);
         };
+        self.window.advance();
         if step.knot.ds > 0.0 {
             self.before = speed;
         }
@@ -248,75 +220,11 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         let has_jerk = self.limits.has_jerk();
         // A change of the feed was tried on the speeds ahead.
         let stays = has_jerk && !self.smooth.is_constant() && !self.is_at_rest();
-        if self.is_refused || stays || !self.window.make_room(has_jerk) {
+        if self.feeder.is_refused() || stays || !self.window.make_room(has_jerk) {
             return Ok(());
         }
-        let filled = self.push_knots();
-        if filled.is_err() {
-            self.is_refused = true;
-        }
-        filled
-    }
-
-    fn push_knots(&mut self) -> Result<(), PlanError<P::Error>> {
-        while self.window.has_room() {
-            let Some(entering) = &mut self.entering else {
-                let Some(path) = self.following.take().or_else(|| self.paths.next()) else {
-                    return Ok(());
-                };
-                self.following = self.paths.next();
-                self.entering = Some(self.begin(path)?);
-                continue;
-            };
-            let limits = &self.limits;
-            let to = entering.next_knot(|from, to| is_resolved(limits, from, to, LARGEST_GAP))?;
-            self.window.push(to);
-            if to.ends_leg {
-                let leg = &entering.laying.leg;
-                self.corner = Some((leg.path().corner(), leg.length()));
-                self.entering = None;
-            }
-        }
-        Ok(())
-    }
-
-    /// Begins a path: its first knot is the last of the path before.
-    fn begin(&mut self, path: P) -> Result<Cutting<P>, PlanError<P::Error>> {
-        let number = self.count;
-        self.count = number.wrapping_add(1);
-        let segments = (self.segments)(&path).map_err(|error| error.of_leg(number))?;
-        let segments = bounded(number, segments, 1)?;
-        let leg = Leg::new(number, path)?;
-        let start = leg.point(0.0)?;
-        let mut before: Beyond<P::Axes> = (Junction::Stop, 0.0);
-        if let (Some((corner, length)), Some(end)) = (self.corner.take(), self.window.last_mut()) {
-            check_gap(number, &end.point.position, &start.position)?;
-            let junction = Junction::new(&self.limits, &corner, &end.point.slope, &start.slope);
-            before = (junction, length);
-            if let Some(jump) = end.join(&junction, &start) {
-                self.window.push(jump);
-            }
-        } else {
-            self.window.push(Knot::start(start));
-        }
-        // A path that is refused is so when it begins: until then the machine is to rest before it.
-        let next = self.following.as_ref();
-        let junction = || junction_to(&leg, next, &self.limits).ok();
-        let ends_at_rest = match leg.path().corner() {
-            Corner::Stop => true,
-            Corner::Jump(_) => next.is_none(),
-            Corner::Smooth => junction().is_some_and(|junction| junction.is_stop()),
-        };
-        let fewest = if segments == 1 {
-            let after = junction().unwrap_or(Junction::Stop);
-            let after = (after, next.map_or(0.0, Path::length));
-            fewest(&self.limits, &leg, &start, [&before, &after])
-        } else {
-            1
-        };
-        let rests = [before.0.is_stop(), ends_at_rest];
-        let laying = Laying::new(leg, start);
-        Ok(Cutting::new(laying, rests, segments.max(fewest)))
+        self.feeder
+            .fill(&mut self.window, &self.limits, |_, _| true)
     }
 }
 
@@ -333,7 +241,7 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
 impl<P: Path, I, F> Debug for LookAhead<'_, P, I, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("LookAhead")
-            .field("paths", &self.count)
+            .field("paths", &self.feeder.count())
             .field("time_s", &self.time_s)
             .field("speed", &self.speed)
             .field("wanted", &self.wanted)

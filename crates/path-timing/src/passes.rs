@@ -6,7 +6,7 @@
 //! as each segment and what is left allow. Where a pair of speeds keeps the limits, each slower
 //! pair of the same ratio does, so the forward pass always finds one.
 
-use crate::knot::SegmentTool;
+use crate::knot::{SegmentTool, ToolTimes};
 use crate::number::{LARGEST, Real, cube_root, sqrt};
 use crate::reciprocals::{Reciprocals, margin};
 use crate::segment::Segment;
@@ -28,7 +28,7 @@ fn backward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>])
     to.speed = to.cap.min(LARGEST);
     for from in earlier {
         if to.ds > 0.0 {
-            let segment = Segment::new(limits, from, to, &to.tool);
+            let segment = Segment::new(limits, from, to, ToolTimes::ONE);
             let (w0, w1) = segment.begin(R::of(to.speed), R::of(from.cap));
             let ratio = if w0 > R::ZERO { w1 / w0 } else { R::ZERO };
             (from.speed, from.ratio) = (w0.into(), ratio.into());
@@ -47,7 +47,7 @@ fn forward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) 
     };
     for to in rest {
         to.speed = if to.ds > 0.0 {
-            let segment = Segment::new(limits, from, to, &to.tool);
+            let segment = Segment::new(limits, from, to, ToolTimes::ONE);
             let [w0, ceiling, ratio] = [from.speed, to.speed, from.ratio].map(R::of);
             segment.end(w0, ceiling, ratio).into()
         } else {

@@ -7,7 +7,7 @@ use core::convert::Infallible;
 use trig_kernels::SixDigits;
 
 use crate::feed_change::{At, Course, SmoothFeed};
-use crate::knot::SegmentTool;
+use crate::knot::ToolTimes;
 use crate::number::{LARGEST, SMALLEST, range};
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
@@ -59,6 +59,7 @@ pub struct Playback<'a, A: Axes> {
     limits: Reciprocals<A>,
     mode: Mode<'a>,
     max: f64,
+    tool_times: ToolTimes,
     wanted: f64,
     /// The knot handed out last, and the speed there; none before the first.
     at: Option<At>,
@@ -113,6 +114,7 @@ impl<'a, A: Axes> Table<'a, A> {
             limits: self.limits,
             mode,
             max,
+            tool_times: self.tool_times(max),
             wanted: max.min(1.0),
             at: None,
             time_s: 0.0,
@@ -165,16 +167,6 @@ impl<A: Axes> Playback<'_, A> {
         knot.map_or(0.0, |knot| knot.speed / self.stretch)
     }
 
-    /// How many times as fast as it was planned the motion may be.
-    fn override_times(&self) -> f64 {
-        self.max / self.stretch
-    }
-
-    /// The limits of the tool on the segment before a knot.
-    fn tool(&self, knot: &Knot<A>) -> SegmentTool {
-        knot.tool.overridden(self.override_times())
-    }
-
     /// The next row; `None` at the end and where the machine rests at a feed of zero, until
     /// another is wanted.
     pub fn next_row(&mut self) -> Option<Row<A>> {
@@ -198,7 +190,8 @@ impl<A: Axes> Playback<'_, A> {
         let duration_s = if is_jump || at.speed + speed > 0.0 {
             time_of(to.ds, [at.speed, speed])
         } else {
-            rest_to_rest_s(&self.limits, [from, to], &self.tool(to)) / self.wanted.min(1.0)
+            rest_to_rest_s(&self.limits, [from, to], &to.tool.times(self.tool_times))
+                / self.wanted.min(1.0)
         };
         self.time_s += duration_s;
         self.leg = self.leg.saturating_add(usize::from(from.ends_leg));
@@ -227,7 +220,7 @@ impl<A: Axes> Playback<'_, A> {
                     knots: self.knots,
                     limits: &self.limits,
                     stretch: self.stretch,
-                    override_times: self.override_times(),
+                    tool_times: self.tool_times,
                 };
                 let speed = feed.next_speed(&course, at, self.wanted.min(max));
                 self.mode = Mode::Smooth { max, feed };
@@ -239,10 +232,10 @@ impl<A: Axes> Playback<'_, A> {
     fn next_direct(&self, ceilings: &[FeedCeiling], at: At, [from, to]: [&Knot<A>; 2]) -> f64 {
         let next = at.index.saturating_add(1);
         let [here, there] = [at.index, next].map(|index| ceilings.get(index).copied());
-        let segment = Segment::new(&self.limits, from, to, &self.tool(to));
+        let segment = Segment::new(&self.limits, from, to, self.tool_times);
         let after = self.knots.get(next.saturating_add(1));
         let after = after.filter(|after| after.ds > 0.0);
-        let later = after.map(|after| Segment::new(&self.limits, to, after, &self.tool(after)));
+        let later = after.map(|after| Segment::new(&self.limits, to, after, self.tool_times));
         let ahead = Ahead {
             segment: &segment,
             later: later.as_ref(),

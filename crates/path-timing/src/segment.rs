@@ -1,6 +1,6 @@
 //! What a cubic segment asks of the axes, as a function of the path speeds at its ends.
 
-use crate::knot::SegmentTool;
+use crate::knot::ToolTimes;
 use crate::number::{Real, larger};
 use crate::reciprocals::{Reciprocal, Reciprocals, margin};
 use crate::{Axes, Knot, PathPoint};
@@ -101,7 +101,7 @@ impl<R: Real> AxisLoad<R> {
 }
 
 impl<A: Axes, R: Real> Segment<A, R> {
-    /// The segment between two knots.
+    /// The segment between two knots, with the limits of the tool multiplied.
     ///
     /// ```text
     /// tool: speeds w₀, w₁; where it goes r₀ and r₁ by the parameter, the acceleration
@@ -111,12 +111,13 @@ impl<A: Axes, R: Real> Segment<A, R> {
         limits: &Reciprocals<A, R>,
         from: &Knot<A>,
         to: &Knot<A>,
-        tool: &SegmentTool,
+        times: ToolTimes,
     ) -> Self {
         let mut segment = Self::of_axes(limits, &from.point, &to.point, to.ds);
-        if tool.is_none() {
+        if to.tool.is_none() {
             return segment;
         }
+        let tool = to.tool.times(times);
         let feed = margin::<R>() / R::of(tool.feed);
         for end in &mut segment.ends {
             *end = end.max(feed);

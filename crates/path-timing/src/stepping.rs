@@ -1,21 +1,118 @@
 //! From a knot to the next: what a [`LookAhead`](crate::LookAhead) and a
-//! [`Playback`](crate::Playback) do at each row.
+//! [`Playback`](crate::Playback) do at each row, whatever limits the speeds at both.
 
-use crate::Axes;
+use crate::knot::{SegmentTool, ToolTimes};
+use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
+use crate::{Axes, Knot, passes};
+
+/// The speeds that a segment can be run with, w₀ at its start and w₁ at its end. Where a pair
+/// holds, each slower one of the same ratio does.
+pub(crate) trait Pair {
+    /// The highest speed at the start, at most `cap`, from which the rest can be run, with the one
+    /// at the end that goes with it, at most `ceiling`.
+    fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64);
+    /// The highest speed at the end, at most `ceiling`, after `w0`, where w₀ times `ratio` holds.
+    fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64;
+    /// The speed at the end nearest to `wanted` after `w0`, where `known` holds.
+    fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64;
+    /// The lowest speed at the end after `w0`, where `known` holds.
+    fn slowest(&self, w0: f64, known: f64) -> f64;
+    fn holds(&self, w0: f64, w1: f64) -> bool;
+    /// The highest speed at the end after a rest.
+    fn speed_from_rest(&self) -> f64;
+    /// The highest speed at the start before a rest.
+    fn speed_to_rest(&self) -> f64;
+}
+
+/// What limits speeds besides the limits of axes and tool.
+pub(crate) trait Pairs<A: Axes> {
+    type Pair: Pair;
+
+    /// Of the segment between two knots.
+    fn of(
+        &self,
+        limits: &Reciprocals<A>,
+        knots: [&Knot<A>; 2],
+        tool_times: ToolTimes,
+    ) -> Self::Pair;
+
+    /// The shortest time from rest to rest between two knots.
+    fn rest_to_rest_s(
+        &self,
+        limits: &Reciprocals<A>,
+        knots: [&Knot<A>; 2],
+        tool: &SegmentTool,
+    ) -> f64;
+}
+
+/// Nothing.
+pub(crate) struct OfAxes;
+
+impl<A: Axes> Pairs<A> for OfAxes {
+    type Pair = Segment<A>;
+
+    fn of(
+        &self,
+        limits: &Reciprocals<A>,
+        [from, to]: [&Knot<A>; 2],
+        tool_times: ToolTimes,
+    ) -> Segment<A> {
+        Segment::new(limits, from, to, tool_times)
+    }
+
+    fn rest_to_rest_s(
+        &self,
+        limits: &Reciprocals<A>,
+        knots: [&Knot<A>; 2],
+        tool: &SegmentTool,
+    ) -> f64 {
+        passes::rest_to_rest_s(limits, knots, tool)
+    }
+}
+
+impl<A: Axes> Pair for Segment<A> {
+    fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
+        Self::begin(self, ceiling, cap)
+    }
+
+    fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
+        Self::end(self, w0, ceiling, ratio)
+    }
+
+    fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
+        Self::toward(self, w0, wanted, known)
+    }
+
+    fn slowest(&self, w0: f64, known: f64) -> f64 {
+        Self::slowest(self, w0, known)
+    }
+
+    fn holds(&self, w0: f64, w1: f64) -> bool {
+        Self::holds(self, w0, w1)
+    }
+
+    fn speed_from_rest(&self) -> f64 {
+        Self::speed_from_rest(self)
+    }
+
+    fn speed_to_rest(&self) -> f64 {
+        Self::speed_to_rest(self)
+    }
+}
 
 /// The segment to the next knot and the one after that.
-pub(crate) struct Ahead<'a, A: Axes> {
-    pub(crate) segment: &'a Segment<A>,
+pub(crate) struct Ahead<'a, S> {
+    pub(crate) segment: &'a S,
     /// From the next knot on, unless the machine rests there.
-    pub(crate) later: Option<&'a Segment<A>>,
+    pub(crate) later: Option<&'a S>,
     /// The highest speed at the next knot.
     pub(crate) ceiling: f64,
     /// A speed at the next knot that holds, as a ratio to the one here.
     pub(crate) ratio: f64,
 }
 
-impl<A: Axes> Ahead<'_, A> {
+impl<S: Pair> Ahead<'_, S> {
     /// The speed at the next knot that is nearest to the wanted one.
     pub(crate) fn toward(&self, speed: f64, wanted: f64) -> f64 {
         if self.ceiling <= 0.0 {
@@ -36,7 +133,7 @@ impl<A: Axes> Ahead<'_, A> {
         let known = speed * self.ratio;
         let nearest = self.segment.slowest(speed, known);
         // Braking as hard as it can before, it would crawl to the knot after it.
-        let rest = self.later.map_or(0.0, Segment::speed_to_rest);
+        let rest = self.later.map_or(0.0, Pair::speed_to_rest);
         let highest = rest.min(speed).min(self.ceiling);
         if highest > nearest && self.segment.holds(speed, highest) {
             highest

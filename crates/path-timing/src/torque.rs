@@ -6,14 +6,18 @@
 //! bounded all along it, and the whole is slowed by the little that is missing.
 
 mod curve;
+mod laden;
 mod load;
+mod look_ahead;
 mod passes;
 mod table;
 mod utilisation;
 
 pub use curve::{TorqueCurve, TorqueCurveError};
+pub use look_ahead::TorqueLookAhead;
 pub use table::TorqueTable;
 
+use crate::number::sqrt;
 use crate::{Axes, Cubic, Span};
 
 /// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians
@@ -96,6 +100,39 @@ impl<D: Dynamics> TorqueLimits<D> {
             torques
         })
     }
+}
+
+/// By how much more than inertia asks for a motion is slowed: enough at once where friction and
+/// gravity take up to a fifth of a torque, and in each further round of what they take more.
+const MORE: f64 = 1.25;
+
+/// Rounds of slowing a motion by the little that its cubics ask for between the ends of segments.
+const ROUNDS: u32 = 40;
+
+/// Why no part of a speed was found that asks for no more than a motor has.
+enum Lack {
+    /// Nothing is known of the torques between the ends of segments: they are too long.
+    Unknown,
+    /// There is none.
+    Torque,
+}
+
+/// A speed, as a part of the planned one, at which no more than 1 is `asked` of a motor.
+fn slowed(mut asked: impl FnMut(f64) -> f64) -> Result<f64, Lack> {
+    let (mut speed, mut more) = (1.0, MORE);
+    for _ in 0..ROUNDS {
+        let most = asked(speed);
+        if most <= 1.0 {
+            return Ok(speed);
+        }
+        if most == f64::INFINITY {
+            return Err(Lack::Unknown);
+        }
+        // Inertia asks for the square of the speed; friction and gravity do not.
+        speed /= sqrt(1.0 + (most - 1.0) * more + f64::EPSILON);
+        more *= MORE;
+    }
+    Err(Lack::Torque)
 }
 
 /// The sign of a speed, or at rest that of the speed at the other end of a segment.

@@ -1,6 +1,7 @@
 //! What is passed at a feed, and where on it the machine is.
 
 use super::braking::State;
+use crate::knot::ToolTimes;
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot};
@@ -12,8 +13,7 @@ pub(crate) struct Course<'a, A: Axes> {
     pub(crate) limits: &'a Reciprocals<A>,
     /// By what all times are multiplied.
     pub(crate) stretch: f64,
-    /// By what the limits of the tool are overridden.
-    pub(crate) override_times: f64,
+    pub(crate) tool_times: ToolTimes,
 }
 
 /// Where the machine is on a course.

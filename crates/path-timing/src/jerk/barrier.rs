@@ -1,5 +1,6 @@
 //! What the speeds at the knots ask of each limit, with derivatives by these speeds.
 
+use crate::knot::ToolTimes;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::{Axes, Knot};
@@ -103,8 +104,7 @@ const LEAST_LIMIT: f64 = 0.5;
 
 /// The segments one after the other, at speeds that the caller says.
 pub(crate) struct Walk<A: Axes> {
-    /// By what the limits of the tool are overridden.
-    times: f64,
+    tool_times: ToolTimes,
     /// The knot where the next segment begins, and the speed there.
     index: usize,
     speed: f64,
@@ -116,7 +116,7 @@ impl<A: Axes> Walk<A> {
     /// From the knot of a number, passed at a speed.
     pub(crate) const fn new(index: usize, speed: f64) -> Self {
         Self {
-            times: 1.0,
+            tool_times: ToolTimes::ONE,
             index,
             speed,
             before: None,
@@ -124,9 +124,9 @@ impl<A: Axes> Walk<A> {
         }
     }
 
-    /// Where the motion may be so many times as fast.
-    pub(crate) fn overridden(self, times: f64) -> Self {
-        Self { times, ..self }
+    /// With the limits of the tool multiplied.
+    pub(crate) fn with_tool_times(self, tool_times: ToolTimes) -> Self {
+        Self { tool_times, ..self }
     }
 
     /// The number of the knot where the next segment ends.
@@ -149,7 +149,7 @@ impl<A: Axes> Walk<A> {
         let from_jump = is_jump(knots, index);
         let node = index.saturating_sub(usize::from(from_jump));
         let (from, to) = (knots.get(index)?, knots.get(next)?);
-        let segment = Segment::new(limits, from, to, &to.tool.overridden(self.times));
+        let segment = Segment::new(limits, from, to, self.tool_times);
         let moving = Moving {
             limits,
             segment,

@@ -1,19 +1,22 @@
 //! The knots in the window: how fast each may be passed, and the speed at the next.
 
 use crate::feed_change::{At, Course, SmoothFeed};
+use crate::knot::ToolTimes;
 use crate::number::LARGEST;
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
-use crate::segment::Segment;
-use crate::stepping::Ahead;
-use crate::{Axes, Knot, jerk};
+use crate::stepping::{Ahead, Pair, Pairs};
+use crate::{Axes, Knot, PlanError, jerk};
+
+/// Smallest window: a knot between two at rest, and one behind a jump.
+const MIN_KNOTS: usize = 4;
 
 /// Feeds, 1 for 100 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Feed {
-    pub(super) max: f64,
+pub(crate) struct Feed {
+    pub(crate) max: f64,
     /// 0 holds.
-    pub(super) wanted: f64,
+    pub(crate) wanted: f64,
 }
 
 impl Feed {
@@ -25,16 +28,16 @@ impl Feed {
 
 /// What the next row is made of.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step<A: Axes> {
-    pub(super) knot: Knot<A>,
-    pub(super) speed: f64,
-    pub(super) duration_s: f64,
+pub(crate) struct Step<A: Axes> {
+    pub(crate) knot: Knot<A>,
+    pub(crate) speed: f64,
+    pub(crate) duration_s: f64,
     /// Whether the knot before was the last of its path.
-    pub(super) begins_leg: bool,
+    pub(crate) begins_leg: bool,
 }
 
 /// Knots in their order, the one handed out last first.
-pub(super) struct Window<'w, A: Axes> {
+pub(crate) struct Window<'w, A: Axes> {
     knots: &'w mut [Knot<A>],
     first: usize,
     end: usize,
@@ -47,38 +50,45 @@ pub(super) struct Window<'w, A: Axes> {
 }
 
 impl<'w, A: Axes> Window<'w, A> {
-    pub(super) const fn new(knots: &'w mut [Knot<A>]) -> Self {
-        Self {
+    /// An empty one in this memory.
+    pub(crate) fn checked<E>(knots: &'w mut [Knot<A>]) -> Result<Self, PlanError<E>> {
+        if knots.len() < MIN_KNOTS {
+            return Err(PlanError::Memory {
+                needed: MIN_KNOTS,
+                available: knots.len(),
+            });
+        }
+        Ok(Self {
             knots,
             first: 0,
             end: 0,
             new: 0,
             feed: None,
             is_open: false,
-        }
+        })
     }
 
     fn knots(&self) -> &[Knot<A>] {
         self.knots.get(self.first..self.end).unwrap_or_default()
     }
 
-    pub(super) fn first(&self) -> Option<&Knot<A>> {
+    pub(crate) fn first(&self) -> Option<&Knot<A>> {
         self.knots().first()
     }
 
     /// Whether there is a knot after the first.
-    pub(super) fn goes_on(&self) -> bool {
+    pub(crate) fn goes_on(&self) -> bool {
         self.knots().len() > 1
     }
 
-    pub(super) fn last_mut(&mut self) -> Option<&mut Knot<A>> {
+    pub(crate) fn last_mut(&mut self) -> Option<&mut Knot<A>> {
         let knots = self.knots.get_mut(self.first..self.end);
         knots.and_then(|knots| knots.last_mut())
     }
 
     /// Where at most half of the memory holds knots: moves these to the beginning. With a limit of
     /// jerk the one before the first is kept.
-    pub(super) fn make_room(&mut self, has_jerk: bool) -> bool {
+    pub(crate) fn make_room(&mut self, has_jerk: bool) -> bool {
         let kept = self.first.saturating_sub(usize::from(has_jerk));
         let count = self.end.saturating_sub(kept);
         if count > self.knots.len().midpoint(1) {
@@ -97,12 +107,12 @@ impl<'w, A: Axes> Window<'w, A> {
     }
 
     /// Whether there is room for a knot and one behind a jump.
-    pub(super) const fn has_room(&self) -> bool {
+    pub(crate) const fn has_room(&self) -> bool {
         self.end.saturating_add(1) < self.knots.len()
     }
 
     /// Appends a knot.
-    pub(super) fn push(&mut self, knot: Knot<A>) {
+    pub(crate) fn push(&mut self, knot: Knot<A>) {
         if let Some(slot) = self.knots.get_mut(self.end) {
             *slot = knot;
             self.end = self.end.saturating_add(1);
@@ -114,7 +124,7 @@ impl<'w, A: Axes> Window<'w, A> {
     /// be run, until knots are met for which nothing has changed.
     ///
     /// A speed that was allowed before stays so, since no later knot has become slower.
-    pub(super) fn look_back(&mut self, limits: &Reciprocals<A>, feed: Feed) {
+    pub(crate) fn look_back(&mut self, pairs: &impl Pairs<A>, limits: &Reciprocals<A>, feed: Feed) {
         let is_same_feed = self.feed == Some(feed);
         if self.new == 0 && is_same_feed {
             return;
@@ -129,12 +139,12 @@ impl<'w, A: Axes> Window<'w, A> {
         let first_new = index.saturating_add(1).saturating_sub(self.new);
         for (number, knot) in earlier {
             let before = (knot.speed, knot.ratio, knot.wanted);
-            raise(knot, next, &limits, feed.max);
+            raise(knot, next, pairs, &limits, feed.max);
             knot.wanted = knot.speed;
             if feed.is_lower() {
                 knot.wanted = if next.ds > 0.0 {
-                    let segment =
-                        Segment::new(&slower, knot, next, &next.tool.at_feed(feed.wanted));
+                    let times = ToolTimes::of_feed(feed.wanted);
+                    let segment = pairs.of(&slower, [knot, next], times);
                     segment.begin(next.wanted, LARGEST).0.min(knot.speed)
                 } else {
                     next.wanted.min(knot.speed)
@@ -151,7 +161,7 @@ impl<'w, A: Axes> Window<'w, A> {
 
     /// With a limit of jerk: plans the new knots, and those before them that change. Where there is
     /// room nothing follows for now.
-    pub(super) fn look_through(&mut self, limits: &Reciprocals<A>) {
+    pub(crate) fn look_through(&mut self, limits: &Reciprocals<A>) {
         let has_ended = self.has_room();
         if self.new == 0 && !(self.is_open && has_ended) {
             return;
@@ -171,8 +181,8 @@ impl<'w, A: Axes> Window<'w, A> {
     }
 
     /// With a limit of jerk: the same as [`step`](Self::step), towards a wanted feed of at most 1.
-    pub(super) fn step_smoothly(
-        &mut self,
+    pub(crate) fn step_smoothly(
+        &self,
         limits: &Reciprocals<A>,
         feed: &mut SmoothFeed,
         wanted: f64,
@@ -189,7 +199,7 @@ impl<'w, A: Axes> Window<'w, A> {
             knots: self.knots.get(begin..self.end).unwrap_or_default(),
             limits,
             stretch: 1.0,
-            override_times: 1.0,
+            tool_times: ToolTimes::ONE,
         };
         let at = At {
             index: self.first.saturating_sub(begin),
@@ -206,13 +216,14 @@ impl<'w, A: Axes> Window<'w, A> {
         } else {
             rest_to_rest_s(limits, [from, to], &to.tool) / wanted
         };
-        self.hand_out(next, duration_s)
+        self.to_next(next, duration_s)
     }
 
     /// The knot after the first and the speed there, coming from the first at `speed`; none where
     /// the machine stays at rest.
-    pub(super) fn step(
-        &mut self,
+    pub(crate) fn step<Q: Pairs<A>>(
+        &self,
+        pairs: &Q,
         limits: &Reciprocals<A>,
         feed: Feed,
         speed: f64,
@@ -221,11 +232,11 @@ impl<'w, A: Axes> Window<'w, A> {
         let [from, to, later @ ..] = self.knots() else {
             return None;
         };
+        let times = ToolTimes::of_feed(feed.max);
         let next = if to.ds > 0.0 {
-            let tool = |knot: &Knot<A>| knot.tool.at_feed(feed.max);
-            let segment = Segment::new(limits, from, to, &tool(to));
+            let segment = pairs.of(limits, [from, to], times);
             let later = later.first().filter(|later| later.ds > 0.0);
-            let later = later.map(|later| Segment::new(limits, to, later, &tool(later)));
+            let later = later.map(|later| pairs.of(limits, [to, later], times));
             let ahead = Ahead {
                 segment: &segment,
                 later: later.as_ref(),
@@ -243,36 +254,45 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else if feed.wanted > 0.0 {
-            rest_to_rest_s(limits, [from, to], &to.tool.at_feed(feed.max)) / feed.wanted.min(1.0)
+            pairs.rest_to_rest_s(limits, [from, to], &to.tool.times(times)) / feed.wanted.min(1.0)
         } else {
             return None;
         };
-        self.hand_out(next, duration_s)
+        self.to_next(next, duration_s)
     }
 
-    /// The knot after the first, which is the first from now on.
-    fn hand_out(&mut self, speed: f64, duration_s: f64) -> Option<Step<A>> {
+    /// What is made of the knot after the first.
+    fn to_next(&self, speed: f64, duration_s: f64) -> Option<Step<A>> {
         let [from, to, ..] = self.knots() else {
             return None;
         };
-        let step = Step {
+        Some(Step {
             knot: *to,
             speed,
             duration_s,
             begins_leg: from.ends_leg,
-        };
+        })
+    }
+
+    /// The knot after the first is handed out.
+    pub(crate) const fn advance(&mut self) {
         self.first = self.first.saturating_add(1);
-        Some(step)
     }
 }
 
 /// Gives a knot the highest speed from which the rest can be run, if that is higher than before.
-fn raise<A: Axes>(knot: &mut Knot<A>, next: &Knot<A>, limits: &Reciprocals<A>, feed: f64) {
+fn raise<A: Axes>(
+    knot: &mut Knot<A>,
+    next: &Knot<A>,
+    pairs: &impl Pairs<A>,
+    limits: &Reciprocals<A>,
+    feed: f64,
+) {
     if next.ds <= 0.0 {
         (knot.speed, knot.ratio) = (next.speed.min(knot.cap), 1.0);
         return;
     }
-    let segment = Segment::new(limits, knot, next, &next.tool.at_feed(feed));
+    let segment = pairs.of(limits, [knot, next], ToolTimes::of_feed(feed));
     let (start, end) = segment.begin(next.speed, knot.cap);
     if start >= knot.speed {
         (knot.speed, knot.ratio) = (start, if start > 0.0 { end / start } else { 0.0 });

@@ -1,5 +1,6 @@
 //! How fast each knot of a table may be passed at a feed above 1, looked at from its end.
 
+use crate::knot::ToolTimes;
 use crate::number::sqrt;
 use crate::segment::Segment;
 use crate::{Axes, Knot, Table, jerk};
@@ -15,9 +16,15 @@ pub struct FeedCeiling {
 }
 
 impl<A: Axes> Table<'_, A> {
+    /// What is asked of the tool at feeds of up to `max`.
+    pub(super) fn tool_times(&self, max: f64) -> ToolTimes {
+        ToolTimes::of_motion(max / self.stretch)
+    }
+
     /// From the end: the highest speed at each row, up to `max` times that of the table. Never
     /// below the table's own: it is a motion that holds.
     pub(super) fn find_ceilings(&self, max: f64, ceilings: &mut [FeedCeiling]) {
+        let tool_times = self.tool_times(max);
         let mut later: Option<(&Knot<A>, FeedCeiling)> = None;
         for (knot, slot) in self.knots.iter().zip(ceilings).rev() {
             let planned = knot.speed / self.stretch;
@@ -35,12 +42,7 @@ impl<A: Axes> Table<'_, A> {
                         ratio: 1.0,
                     }
                 } else {
-                    let segment = Segment::new(
-                        &self.limits,
-                        knot,
-                        to,
-                        &to.tool.overridden(max / self.stretch),
-                    );
+                    let segment = Segment::new(&self.limits, knot, to, tool_times);
                     let ends = [planned, to.speed / self.stretch];
                     look_back(&segment, ends, after.speed, most)
                 };
@@ -52,7 +54,7 @@ impl<A: Axes> Table<'_, A> {
     /// The highest constant feed, up to `max`, that the axes allow from end to end.
     pub(super) fn full_feed(&self, max: f64) -> f64 {
         let mut most = jerk::Most::default();
-        let mut walk = jerk::Walk::new(0, 0.0).overridden(max / self.stretch);
+        let mut walk = jerk::Walk::new(0, 0.0).with_tool_times(self.tool_times(max));
         while let Some(next) = walk.next_knot(self.knots) {
             let speed = self.knots.get(next).map_or(0.0, |knot| knot.speed);
             if let Some(segment) = walk.advance(&self.limits, self.knots, speed) {

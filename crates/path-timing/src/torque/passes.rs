@@ -7,6 +7,7 @@
 
 use super::load::Load;
 use super::{Dynamics, TorqueLimits};
+use crate::knot::ToolTimes;
 use crate::number::{LARGEST, larger_or_nan, sqrt};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
@@ -31,27 +32,37 @@ const CUTS: u32 = 24;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// A segment with the limits of its axes and motors.
-struct Pair<'a, A: Axes> {
+pub(super) struct Pair<'a, A: Axes> {
     axes: Segment<A>,
     load: Load<'a, A>,
 }
 
 impl<'a, A: Axes> Pair<'a, A> {
-    fn new<D: Dynamics<Axes = A>>(
+    pub(super) fn new<D: Dynamics<Axes = A>>(
         torque: &'a TorqueLimits<D>,
         limits: &Reciprocals<A>,
-        from: &Knot<A>,
-        to: &Knot<A>,
+        [from, to]: [&Knot<A>; 2],
+        tool_times: ToolTimes,
     ) -> Self {
         Self {
-            axes: Segment::new(limits, from, to, &to.tool),
+            axes: Segment::new(limits, from, to, tool_times),
             load: Load::new(torque, from, to),
         }
     }
 
     /// The largest part of a limit that a pair of speeds takes.
-    fn used(&self, w0: f64, w1: f64) -> f64 {
+    pub(super) fn used(&self, w0: f64, w1: f64) -> f64 {
         larger_or_nan(self.axes.load(w0, w1), self.load.used(w0, w1))
+    }
+
+    /// The highest speed at the end after a rest.
+    pub(super) fn speed_from_rest(&self) -> f64 {
+        self.widest(1.0).1
+    }
+
+    /// The highest speed at the start before a rest.
+    pub(super) fn speed_to_rest(&self) -> f64 {
+        self.widest(-1.0).0
     }
 
     /// The pair on the ray of r that takes the least time.
@@ -69,12 +80,12 @@ impl<'a, A: Axes> Pair<'a, A> {
     }
 
     /// The pair of speeds at the start and at the end with which the rest is run in the least time.
-    fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
+    pub(super) fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
         if cap <= 0.0 {
-            return (0.0, self.widest(1.0).1.min(ceiling));
+            return (0.0, self.speed_from_rest().min(ceiling));
         }
         if ceiling <= 0.0 {
-            return (self.widest(-1.0).0.min(cap), 0.0);
+            return (self.speed_to_rest().min(cap), 0.0);
         }
         if cap >= ceiling && self.used(ceiling, ceiling) <= 1.0 {
             // As fast at the start as it can brake from.
@@ -112,9 +123,9 @@ impl<'a, A: Axes> Pair<'a, A> {
 
     /// The highest speed at the end, at most `ceiling`, after the speed `w0`; with w₀ times `ratio`
     /// the segment holds.
-    fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
+    pub(super) fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
         if w0 <= 0.0 {
-            return self.widest(1.0).1.min(ceiling);
+            return self.speed_from_rest().min(ceiling);
         }
         if ceiling <= 0.0 {
             return 0.0;
@@ -128,9 +139,9 @@ impl<'a, A: Axes> Pair<'a, A> {
     }
 }
 
-/// The ray nearest to `wanted` on which no limit is passed, from one on which none is: by regula
-/// falsi, with the value of an end that stays halved (Illinois).
-fn farthest(known: f64, wanted: f64, used: impl Fn(f64) -> f64) -> f64 {
+/// The ray, or the speed, nearest to `wanted` with which no limit is passed, from one with which none
+/// is: by regula falsi, with the value of an end that stays halved (Illinois).
+pub(super) fn farthest(known: f64, wanted: f64, used: impl Fn(f64) -> f64) -> f64 {
     let over = |r: f64| used(r) - 1.0;
     let mut bad = (wanted, over(wanted));
     if bad.1 <= 0.0 {
@@ -175,7 +186,8 @@ pub(super) fn fastest<D: Dynamics>(
     to.speed = to.cap.min(LARGEST);
     for from in earlier {
         (from.speed, from.ratio) = if to.ds > 0.0 {
-            let (w0, w1) = Pair::new(torque, limits, from, to).begin(to.speed, from.cap);
+            let (w0, w1) =
+                Pair::new(torque, limits, [from, to], ToolTimes::ONE).begin(to.speed, from.cap);
             (w0, if w0 > 0.0 { w1 / w0 } else { 0.0 })
         } else {
             (to.speed.min(from.cap), 1.0)
@@ -188,7 +200,8 @@ pub(super) fn fastest<D: Dynamics>(
     };
     for to in rest {
         to.speed = if to.ds > 0.0 {
-            Pair::new(torque, limits, from, to).end(from.speed, to.speed, from.ratio)
+            let pair = Pair::new(torque, limits, [from, to], ToolTimes::ONE);
+            pair.end(from.speed, to.speed, from.ratio)
         } else {
             from.speed
         };

@@ -2,9 +2,9 @@
 
 use core::cell::Cell;
 
-use super::{Dynamics, TorqueLimits, passes};
+use super::{Dynamics, Lack, TorqueLimits, passes, slowed};
 use crate::departure::{Speeds, Within};
-use crate::number::{larger_or_nan, sqrt};
+use crate::number::larger_or_nan;
 use crate::passes::segment_s;
 use crate::place::Place;
 use crate::planner::lay_all;
@@ -38,14 +38,6 @@ impl<'a, A: Axes> TorqueTable<'a, A> {
         self.table.duration_s()
     }
 }
-
-/// By how much more than inertia asks for a table is slowed: enough at once where friction and
-/// gravity take up to a fifth of a torque, and in each further round of what they take more.
-const MORE: f64 = 1.25;
-
-/// Rounds of slowing a table by the little that its cubics ask for between the ends of its
-/// segments.
-const ROUNDS: u32 = 40;
 
 impl<D: Dynamics> TorqueLimits<D> {
     /// Plans the fastest table along paths, as [`Table::plan`] does, that keeps the limits of the
@@ -139,26 +131,19 @@ impl<D: Dynamics> TorqueLimits<D> {
     ) -> Result<Option<[f64; 2]>, PlanError<E>> {
         passes::fastest(self, limits, knots);
         let duration_s = check_moves(knots)?;
-        let mut table = Table::new(knots, *limits, duration_s);
-        let mut more = MORE;
-        for _ in 0..ROUNDS {
-            let spans = table.spans().map(|span| self.utilisation(&span));
-            let most = spans.fold(0.0, larger_or_nan);
-            if most <= 1.0 {
-                return Ok(Some([table.stretch, table.duration_s()]));
-            }
-            if most == f64::INFINITY {
-                return Ok(None);
-            }
-            // Inertia asks for the square of the speed; friction and gravity do not.
-            let scale = 1.0 / sqrt(1.0 + (most - 1.0) * more + f64::EPSILON);
-            more *= MORE;
-            let Ok(slower) = table.at_speed(scale) else {
-                break;
-            };
-            table = slower;
+        let table = Table::new(knots, *limits, duration_s);
+        let found = slowed(|speed| {
+            let slower = table.at_speed(speed);
+            slower.map_or(f64::NAN, |table| {
+                let spans = table.spans().map(|span| self.utilisation(&span));
+                spans.fold(0.0, larger_or_nan)
+            })
+        });
+        match found.map(|speed| table.at_speed(speed)) {
+            Ok(Ok(table)) => Ok(Some([table.stretch, table.duration_s()])),
+            Err(Lack::Unknown) => Ok(None),
+            _ => Err(overload(knots)),
         }
-        Err(overload(knots))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Limits of torque: curves of motors, the tables of an arm against other derivations.
 
+mod streams;
+
 use core::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path as File;

@@ -1,0 +1,155 @@
+//! Pairs of speeds with which no motor gives more torque than it has, all along a segment.
+//!
+//! Goal: what a stream may be promised segment by segment. Method: the pairs of `passes`, whose
+//! torques are within the limits at both ends; where the cubic between them asks for more, the pair
+//! is slowed, or the speed at the end brought nearer to one that is known to hold.
+
+use super::passes::{Pair as Ends, farthest};
+use super::{Dynamics, TorqueLimits, slowed};
+use crate::knot::{SegmentTool, ToolTimes};
+use crate::number::larger_or_nan;
+use crate::reciprocals::Reciprocals;
+use crate::stepping::{Pair, Pairs};
+use crate::{Axes, Knot, Row, Span, passes};
+
+/// By what one speed of a pair that is chosen for the least time alone may be above the other.
+const GROWTH: f64 = 8.0;
+
+/// What motors carry.
+pub(super) struct Laden<'a, D: Dynamics>(pub(super) &'a TorqueLimits<D>);
+
+impl<D: Dynamics> Laden<'_, D> {
+    /// Whether torques between two knots can be bounded.
+    pub(super) fn is_known(
+        &self,
+        limits: &Reciprocals<D::Axes>,
+        knots: [&Knot<D::Axes>; 2],
+    ) -> bool {
+        let slow = passes::rest_to_rest_s(limits, knots, &SegmentTool::NONE);
+        let bend = self.0.dynamics.bend(&resting(knots, slow));
+        bend.as_slice().iter().all(|bend| bend.is_finite())
+    }
+}
+
+/// From rest to rest in a time.
+fn resting<A: Axes>([from, to]: [&Knot<A>; 2], duration_s: f64) -> Span<A> {
+    let to = Row {
+        duration_s,
+        ..to.row(0.0)
+    };
+    Span {
+        s: [from.next_start(), to.s],
+        rows: [from.row(0.0), to],
+    }
+}
+
+impl<'a, D: Dynamics> Pairs<D::Axes> for Laden<'a, D> {
+    type Pair = LadenPair<'a, D>;
+
+    fn of(
+        &self,
+        limits: &Reciprocals<D::Axes>,
+        [from, to]: [&Knot<D::Axes>; 2],
+        tool_times: ToolTimes,
+    ) -> LadenPair<'a, D> {
+        LadenPair {
+            ends: Ends::new(self.0, limits, [from, to], tool_times),
+            torque: self.0,
+            knots: [*from, *to],
+        }
+    }
+
+    fn rest_to_rest_s(
+        &self,
+        limits: &Reciprocals<D::Axes>,
+        knots: [&Knot<D::Axes>; 2],
+        tool: &SegmentTool,
+    ) -> f64 {
+        let own = passes::rest_to_rest_s(limits, knots, tool);
+        let asked = |slowness: f64| self.0.utilisation(&resting(knots, own * slowness));
+        let speed = slowed(|speed| asked(1.0 / speed));
+        speed.map_or(f64::INFINITY, |speed| own / speed)
+    }
+}
+
+/// A segment with the limits of its axes and motors.
+pub(super) struct LadenPair<'a, D: Dynamics> {
+    ends: Ends<'a, D::Axes>,
+    torque: &'a TorqueLimits<D>,
+    knots: [Knot<D::Axes>; 2],
+}
+
+impl<D: Dynamics> LadenPair<'_, D> {
+    /// The largest part of a motor's torque on the cubic.
+    fn asked(&self, [w0, w1]: [f64; 2]) -> f64 {
+        let [from, to] = &self.knots;
+        let to = Row {
+            duration_s: passes::time_of(to.ds, [w0, w1]),
+            ..to.row(w1)
+        };
+        self.torque.utilisation(&Span {
+            s: [from.next_start(), to.s],
+            rows: [from.row(w0), to],
+        })
+    }
+
+    /// The pair, or the fastest slower one of the same ratio that is found; at rest where there is
+    /// none.
+    fn whole(&self, (w0, w1): (f64, f64)) -> (f64, f64) {
+        let asked = |speed: f64| {
+            if w0 + w1 > 0.0 {
+                self.asked([w0 * speed, w1 * speed])
+            } else {
+                0.0
+            }
+        };
+        let speed = slowed(asked).unwrap_or(0.0);
+        (w0 * speed, w1 * speed)
+    }
+
+    /// The largest part of a limit that a pair takes anywhere on the segment.
+    fn used(&self, w0: f64, w1: f64) -> f64 {
+        larger_or_nan(self.ends.used(w0, w1), self.asked([w0, w1]))
+    }
+
+    /// The speed at the end nearest to `wanted` that is found, from one that holds.
+    fn nearest(&self, w0: f64, wanted: f64, known: f64) -> f64 {
+        farthest(known, wanted, |w1| self.used(w0, w1))
+    }
+}
+
+impl<D: Dynamics> Pair for LadenPair<'_, D> {
+    fn begin(&self, ceiling: f64, cap: f64) -> (f64, f64) {
+        let (w0, w1) = self.ends.begin(ceiling, cap);
+        // What brakes as hard as it can brakes a little less, and is not slower as a whole.
+        if w0 > w1 && w1 > 0.0 && self.used(w1, w1) <= 1.0 {
+            return (farthest(w1, w0, |w0| self.used(w0, w1)), w1);
+        }
+        self.whole((w0, w1))
+    }
+
+    fn end(&self, w0: f64, ceiling: f64, ratio: f64) -> f64 {
+        let highest = self.ends.end(w0, ceiling, ratio);
+        self.nearest(w0, highest, (w0 * ratio).min(ceiling))
+    }
+
+    fn toward(&self, w0: f64, wanted: f64, known: f64) -> f64 {
+        self.nearest(w0, wanted, known)
+    }
+
+    fn slowest(&self, w0: f64, known: f64) -> f64 {
+        self.nearest(w0, (w0 / GROWTH).min(known), known)
+    }
+
+    fn holds(&self, w0: f64, w1: f64) -> bool {
+        self.used(w0, w1) <= 1.0
+    }
+
+    fn speed_from_rest(&self) -> f64 {
+        self.whole((0.0, self.ends.speed_from_rest())).1
+    }
+
+    fn speed_to_rest(&self) -> f64 {
+        self.whole((self.ends.speed_to_rest(), 0.0)).0
+    }
+}

@@ -1,0 +1,169 @@
+//! Streams whose motors keep their torque: as fast as tables, at any feed, held at any time.
+
+use path_timing::{Curve, Knot, PlanError, Row, Span, TorqueCurve, TorqueLimits};
+use proptest::prelude::*;
+use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow};
+
+use super::{FREE, LINES, WITHIN, arm, constant, limits, line, masses, planned, sampled, stepper};
+
+type Limits = TorqueLimits<ArmDynamics>;
+
+/// All rows, with feeds that are wanted after some of them; at the end the whole feed.
+fn streamed(
+    limits: &Limits,
+    paths: &[ArmPath],
+    segments: u32,
+    window: usize,
+    feeds: &[(usize, f64)],
+) -> Vec<Row<[f64; 2]>> {
+    let mut window = vec![Knot::default(); window];
+    let mut motion = limits
+        .look_ahead(paths, [FREE; 2], |_| Ok(segments), &mut window)
+        .unwrap();
+    let mut rows = Vec::new();
+    for (count, feed) in feeds.iter().chain([&(usize::MAX, 1.0)]) {
+        rows.extend(motion.by_ref().map(Result::unwrap).take(*count));
+        motion.set_feed(*feed).unwrap();
+    }
+    rows.extend(motion.by_ref().map(Result::unwrap));
+    assert!(motion.is_finished());
+    rows
+}
+
+/// The largest part of its torque that a motor is asked for.
+fn most(limits: &Limits, rows: &[Row<[f64; 2]>]) -> f64 {
+    let spans = rows.windows(2).map(|pair| Span {
+        s: [0.0; 2],
+        rows: [pair[0], pair[1]],
+    });
+    let used = spans.map(|span| limits.utilisation(&span));
+    used.fold(0.0, |most, used| if used <= most { most } else { used })
+}
+
+fn end_s(rows: &[Row<[f64; 2]>]) -> f64 {
+    rows.last().unwrap().time_s
+}
+
+/// By what a stream of these segments may be slower than a table: their knots stand elsewhere.
+const SLOWER: f64 = 1.001;
+
+#[test]
+fn a_stream_is_as_fast_as_a_table() {
+    for motors in [constant(), stepper()] {
+        for payload_kg in [0.0, 3.0] {
+            let limits = limits(payload_kg, motors);
+            for ends in LINES {
+                let (_, table_s) = planned(&limits, line(ends), 400);
+                let rows = streamed(&limits, &[line(ends)], 400, 512, &[]);
+                let used = most(&limits, &rows);
+                println!(
+                    "{:.5} of {table_s:.4} s, {used:.5} used",
+                    end_s(&rows) / table_s
+                );
+                assert!(used <= WITHIN && end_s(&rows) <= table_s * SLOWER);
+                let exact = sampled(&limits, &rows, 20);
+                assert!(exact <= WITHIN && exact > 0.99, "{exact}");
+            }
+        }
+    }
+}
+
+/// Braking takes no more than the second half of a motion from rest to rest, and two segments.
+#[test]
+fn a_hold_rests_as_soon_as_the_motors_can_brake() {
+    let limits = limits(1.0, constant());
+    let rows = streamed(&limits, &[line(LINES[0])], 100, 256, &[]);
+    let fastest =
+        (1..rows.len()).min_by(|a, b| rows[*a].duration_s.total_cmp(&rows[*b].duration_s));
+    let peak = fastest.unwrap();
+    let braking_s = end_s(&rows) - rows[peak].time_s;
+    for held in [10, 30, peak - 5] {
+        let stopped = streamed(&limits, &[line(LINES[0])], 100, 256, &[(held, 0.0)]);
+        assert!(most(&limits, &stopped) <= WITHIN);
+        let rest = stopped
+            .iter()
+            .skip(held)
+            .find(|row| row.is_at_rest())
+            .unwrap();
+        let rest_s = rest.time_s - stopped[held - 1].time_s;
+        println!("held at row {held}: rests after {rest_s:.4} s, {braking_s:.4} s at most");
+        assert!(rest_s <= braking_s + 2.0 * stopped[held - 1].duration_s);
+        assert!(end_s(&stopped) > end_s(&rows));
+    }
+}
+
+#[test]
+fn a_segment_that_no_motor_can_bear_is_refused_at_rest() {
+    let upright = ArmMasses {
+        gravity_m_s2: 9.806_65,
+        ..masses(3.0)
+    };
+    let dynamics = arm().dynamics(1e-3, upright).unwrap();
+    // Stretched out to the side it needs 32 Nm and more.
+    let motors = [28.0, 25.0].map(|torque| TorqueCurve::constant(torque, 20.0).unwrap());
+    let weak = TorqueLimits { dynamics, motors };
+    let path = line([[60.0, 300.0], [520.0, 200.0]]);
+    let mut window = [Knot::default(); 64];
+    let mut motion = weak
+        .look_ahead([path], [FREE; 2], |_| Ok(80), &mut window)
+        .unwrap();
+    let (mut rows, mut refused) = (Vec::new(), None);
+    while refused.is_none() {
+        match motion.next_row() {
+            Ok(row) => rows.push(row.unwrap()),
+            Err(error) => refused = Some(error),
+        }
+    }
+    let last = rows.last().unwrap();
+    assert!(last.is_at_rest() && rows.len() > 10 && most(&weak, &rows) <= WITHIN);
+    let Some(PlanError::Overload { leg: 0, s }) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!((s - last.s).abs() <= 0.0);
+    assert!(!motion.is_finished() && motion.next_row().is_err());
+}
+
+fn gravity(g: f64, payload_kg: f64, motors: [TorqueCurve; 2]) -> Limits {
+    let masses = ArmMasses {
+        gravity_m_s2: g,
+        ..masses(payload_kg)
+    };
+    let dynamics = arm().dynamics(1e-3, masses).unwrap();
+    TorqueLimits { dynamics, motors }
+}
+
+fn places() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    let place = (150.0..560.0_f64, -1.2..1.2_f64);
+    let place = place.prop_map(|(reach, angle)| [reach * angle.cos(), reach * angle.sin()]);
+    prop::collection::vec(place, 2..6)
+}
+
+fn paths(places: &[[f64; 2]]) -> Vec<ArmPath> {
+    let lines = places.windows(2).map_while(|pair| {
+        let curve = Curve::line(pair[0], pair[1]).ok()?;
+        arm().path(curve, Elbow::Right).ok()
+    });
+    lines.collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn no_feed_and_no_hold_takes_more_torque_than_there_is(
+        places in places(), segments in 6..60_u32, window in 8..200_usize,
+        payload_kg in 0.0..3.0_f64, falls in any::<bool>(), is_upright in any::<bool>(),
+        feeds in prop::collection::vec((0..40_usize, prop_oneof![Just(0.0), 0.05..1.0_f64]), 0..6),
+    ) {
+        let paths = paths(&places);
+        prop_assume!(!paths.is_empty());
+        let motors = if falls { stepper() } else { constant() };
+        let strong = [90.0, 40.0].map(|torque| TorqueCurve::holding(torque, 3.0, 30.0).unwrap());
+        let limits = if is_upright { gravity(9.806_65, payload_kg, strong) } else { gravity(0.0, payload_kg, motors) };
+        let rows = streamed(&limits, &paths, segments, window, &feeds);
+        let last = rows.last().unwrap();
+        prop_assert!(last.leg + 1 == paths.len() && last.is_at_rest());
+        let used = most(&limits, &rows);
+        prop_assert!(used <= WITHIN, "{used}");
+    }
+}
