@@ -212,7 +212,7 @@ impl<A: Axes> Course<'_, A> {
         let slope = self.knots.get(at.index)?.point.slope;
         let ahead = self.knots.get(at.index.saturating_add(1))?;
         let axes = self.limits.axes().iter().zip(slope.as_slice());
-        let tool = ahead.tool.times(self.tool_times);
+        let tool = ahead.tool.times(self.tool_times());
         let of_tool = [1.0 / tool.acceleration, 0.0];
         let inverse = axes.fold(of_tool, |[acceleration, jerk], (limits, slope)| {
             let slope = slope.abs();
@@ -328,7 +328,7 @@ impl<A: Axes> Course<'_, A> {
     /// Whether the cubics of a change, and the first after it, keep all limits.
     fn holds(&self, at: At, mut change: Change) -> bool {
         let is_jump = self.knots.get(at.index).is_some_and(|knot| knot.ds <= 0.0);
-        let from = |index, speed| Walk::new(index, speed).with_tool_times(self.tool_times);
+        let from = |index, speed| Walk::new(index, speed).with_tool_times(self.tool_times());
         let mut walk = if at.speed > 0.0 && !is_jump {
             // From the segment before, whose acceleration it goes on from.
             let mut walk = from(at.index.saturating_sub(1), at.before);

@@ -44,9 +44,9 @@ pub struct FeedError {
 /// ```
 ///
 /// The tool's feed along a path is what is overridden: above 1 it goes beyond that of the path, its
-/// acceleration to the square of the highest feed times what it may be, and only the axes limit both.
-/// Up to 1 the tool's own limits are kept, through all changes. Where the departure was planned at any feed
-/// ([`Table::plan_within_at_any_feed`]), it is kept through all changes.
+/// acceleration to the square of the highest feed times what it may be, and only the axes limit
+/// both. Up to 1 the tool's own limits are kept, through all changes. Where the departure was
+/// planned at any feed ([`Table::plan_within_at_any_feed`]), it is kept through all changes.
 ///
 /// With a limit of jerk a change is smooth and takes as many rows as it needs: the fewest found
 /// whose cubics keep speed, acceleration and jerk of all axes, and that leave a constant feed
@@ -59,7 +59,6 @@ pub struct Playback<'a, A: Axes> {
     limits: Reciprocals<A>,
     mode: Mode<'a>,
     max: f64,
-    tool_times: ToolTimes,
     wanted: f64,
     /// The knot handed out last, and the speed there; none before the first.
     at: Option<At>,
@@ -71,7 +70,7 @@ pub struct Playback<'a, A: Axes> {
 #[derive(Debug, Clone)]
 enum Mode<'a> {
     /// At each knot up to a ceiling.
-    Direct(&'a [FeedCeiling]),
+    Direct(&'a [FeedCeiling], ToolTimes),
     /// The same for all knots, up to `max`.
     Smooth { max: f64, feed: SmoothFeed },
 }
@@ -106,7 +105,7 @@ impl<'a, A: Axes> Table<'a, A> {
                 .get_mut(..needed)
                 .ok_or(PlanError::Memory { needed, available })?;
             self.find_ceilings(max, ceilings);
-            Mode::Direct(ceilings)
+            Mode::Direct(ceilings, self.tool_times(max))
         };
         Ok(Playback {
             knots: self.knots,
@@ -114,7 +113,6 @@ impl<'a, A: Axes> Table<'a, A> {
             limits: self.limits,
             mode,
             max,
-            tool_times: self.tool_times(max),
             wanted: max.min(1.0),
             at: None,
             time_s: 0.0,
@@ -190,8 +188,8 @@ impl<A: Axes> Playback<'_, A> {
         let duration_s = if is_jump || at.speed + speed > 0.0 {
             time_of(to.ds, [at.speed, speed])
         } else {
-            rest_to_rest_s(&self.limits, [from, to], &to.tool.times(self.tool_times))
-                / self.wanted.min(1.0)
+            let times = ToolTimes::of_motion(self.max / self.stretch);
+            rest_to_rest_s(&self.limits, [from, to], &to.tool.times(times)) / self.wanted.min(1.0)
         };
         self.time_s += duration_s;
         self.leg = self.leg.saturating_add(usize::from(from.ends_leg));
@@ -214,13 +212,13 @@ impl<A: Axes> Playback<'_, A> {
             return None;
         }
         match self.mode {
-            Mode::Direct(ceilings) => Some(self.next_direct(ceilings, at, knots)),
+            Mode::Direct(ceilings, times) => Some(self.next_direct(ceilings, times, at, knots)),
             Mode::Smooth { max, mut feed } => {
                 let course = Course {
                     knots: self.knots,
                     limits: &self.limits,
                     stretch: self.stretch,
-                    tool_times: self.tool_times,
+                    max_feed: self.max,
                 };
                 let speed = feed.next_speed(&course, at, self.wanted.min(max));
                 self.mode = Mode::Smooth { max, feed };
@@ -229,13 +227,19 @@ impl<A: Axes> Playback<'_, A> {
         }
     }
 
-    fn next_direct(&self, ceilings: &[FeedCeiling], at: At, [from, to]: [&Knot<A>; 2]) -> f64 {
+    fn next_direct(
+        &self,
+        ceilings: &[FeedCeiling],
+        times: ToolTimes,
+        at: At,
+        [from, to]: [&Knot<A>; 2],
+    ) -> f64 {
         let next = at.index.saturating_add(1);
         let [here, there] = [at.index, next].map(|index| ceilings.get(index).copied());
-        let segment = Segment::new(&self.limits, from, to, self.tool_times);
+        let segment = Segment::new(&self.limits, from, to, times);
         let after = self.knots.get(next.saturating_add(1));
         let after = after.filter(|after| after.ds > 0.0);
-        let later = after.map(|after| Segment::new(&self.limits, to, after, self.tool_times));
+        let later = after.map(|after| Segment::new(&self.limits, to, after, times));
         let ahead = Ahead {
             segment: &segment,
             later: later.as_ref(),

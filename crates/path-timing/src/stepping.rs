@@ -46,7 +46,7 @@ pub(crate) trait Pairs<A: Axes> {
     ) -> f64;
 }
 
-/// Nothing.
+/// The limits of axes and tool alone.
 pub(crate) struct OfAxes;
 
 impl<A: Axes> Pairs<A> for OfAxes {

@@ -13,7 +13,8 @@ pub(crate) struct Course<'a, A: Axes> {
     pub(crate) limits: &'a Reciprocals<A>,
     /// By what all times are multiplied.
     pub(crate) stretch: f64,
-    pub(crate) tool_times: ToolTimes,
+    /// The highest feed that there may be.
+    pub(crate) max_feed: f64,
 }
 
 /// Where the machine is on a course.
@@ -27,6 +28,11 @@ pub(crate) struct At {
 }
 
 impl<A: Axes> Course<'_, A> {
+    /// What is asked of the tool at the highest feed.
+    pub(super) fn tool_times(&self) -> ToolTimes {
+        ToolTimes::of_motion(self.max_feed / self.stretch)
+    }
+
     /// The speed at a knot at a feed of 1.
     pub(super) fn planned(&self, index: usize) -> f64 {
         let knot = self.knots.get(index);

@@ -199,7 +199,7 @@ impl<'w, A: Axes> Window<'w, A> {
             knots: self.knots.get(begin..self.end).unwrap_or_default(),
             limits,
             stretch: 1.0,
-            tool_times: ToolTimes::ONE,
+            max_feed: 1.0,
         };
         let at = At {
             index: self.first.saturating_sub(begin),
