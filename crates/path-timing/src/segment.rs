@@ -425,7 +425,7 @@ impl<A: Axes, R: Real> Segment<A, R> {
 
 /// By what one speed of a pair that is chosen for the least time alone may be above the other: what
 /// constant acceleration makes of it on knots as dense as those at a rest.
-const GROWTH: f64 = 8.0;
+pub(crate) const GROWTH: f64 = 8.0;
 
 /// The r of that growth.
 const STEEPEST: f64 = (GROWTH - 1.0) / (GROWTH + 1.0);

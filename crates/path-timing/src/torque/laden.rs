@@ -9,11 +9,9 @@ use super::{Dynamics, TorqueLimits, slowed};
 use crate::knot::{SegmentTool, ToolTimes};
 use crate::number::larger_or_nan;
 use crate::reciprocals::Reciprocals;
+use crate::segment::GROWTH;
 use crate::stepping::{Pair, Pairs};
 use crate::{Axes, Knot, Row, Span, passes};
-
-/// By what one speed of a pair that is chosen for the least time alone may be above the other.
-const GROWTH: f64 = 8.0;
 
 /// What motors carry.
 pub(super) struct Laden<'a, D: Dynamics>(pub(super) &'a TorqueLimits<D>);

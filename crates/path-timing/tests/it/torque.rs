@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::path::Path as File;
 use std::process::{Command, Stdio};
 
-use delta_kin::{Delta, DeltaMasses, Dimensions};
+use delta_kin::{Delta, DeltaDynamics, DeltaMasses, Dimensions};
 use path_timing::{
     Accuracy, AxisLimits, Cubic, Curve, Knot, PlanError, Row, Span, Table, TorqueCurve,
     TorqueCurveError, TorqueLimits,
@@ -412,8 +412,8 @@ fn curves_of_motors() {
 }
 
 /// The same arms as in the examples, each with a stepper behind a gear.
-#[test]
-fn a_delta_keeps_the_torque_of_its_motors() {
+/// A Delta that carries 0.3 kg, in mm.
+fn delta() -> (Delta, TorqueLimits<DeltaDynamics>) {
     let delta = Delta::new(Dimensions {
         base: 42.0,
         platform: 18.0,
@@ -433,7 +433,13 @@ fn a_delta_keeps_the_torque_of_its_motors() {
     };
     let dynamics = delta.dynamics(1e-3, masses).unwrap();
     let motors = [TorqueCurve::holding(4.0, 4.0, 40.0).unwrap(); 3];
-    let limits = TorqueLimits { dynamics, motors };
+    (delta, TorqueLimits { dynamics, motors })
+}
+
+#[test]
+fn a_delta_keeps_the_torque_of_its_motors() {
+    let (delta, limits) = delta();
+    let (dynamics, motors) = (&limits.dynamics, limits.motors);
     for (from, to) in [
         ([-60.0, 20.0, -280.0], [60.0, -10.0, -280.0]),
         ([0.0, 0.0, -310.0], [0.0, 0.0, -230.0]),

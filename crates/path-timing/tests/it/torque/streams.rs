@@ -1,24 +1,33 @@
 //! Streams whose motors keep their torque: as fast as tables, at any feed, held at any time.
 
-use path_timing::{Curve, Knot, PlanError, Row, Span, TorqueCurve, TorqueLimits};
+use core::fmt::Debug;
+
+use path_timing::{
+    Axes, Curve, Dynamics, Knot, Path, PlanError, Row, Span, TorqueCurve, TorqueLimits,
+};
 use proptest::prelude::*;
 use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow};
 
-use super::{FREE, LINES, WITHIN, arm, constant, limits, line, masses, planned, sampled, stepper};
-
-type Limits = TorqueLimits<ArmDynamics>;
+use super::{
+    FREE, LINES, WITHIN, arm, constant, delta, limits, line, masses, planned, sampled, stepper,
+};
 
 /// All rows, with feeds that are wanted after some of them; at the end the whole feed.
-fn streamed(
-    limits: &Limits,
-    paths: &[ArmPath],
+fn streamed<D, P>(
+    limits: &TorqueLimits<D>,
+    paths: &[P],
     segments: u32,
     window: usize,
     feeds: &[(usize, f64)],
-) -> Vec<Row<[f64; 2]>> {
+) -> Vec<Row<D::Axes>>
+where
+    D: Dynamics + Copy,
+    P: Path<Axes = D::Axes, Error: Debug>,
+{
     let mut window = vec![Knot::default(); window];
+    let free = D::Axes::filled(FREE);
     let mut motion = limits
-        .look_ahead(paths, [FREE; 2], |_| Ok(segments), &mut window)
+        .look_ahead(paths, free, |_| Ok(segments), &mut window)
         .unwrap();
     let mut rows = Vec::new();
     for (count, feed) in feeds.iter().chain([&(usize::MAX, 1.0)]) {
@@ -31,7 +40,7 @@ fn streamed(
 }
 
 /// The largest part of its torque that a motor is asked for.
-fn most(limits: &Limits, rows: &[Row<[f64; 2]>]) -> f64 {
+fn most<D: Dynamics>(limits: &TorqueLimits<D>, rows: &[Row<D::Axes>]) -> f64 {
     let spans = rows.windows(2).map(|pair| Span {
         s: [0.0; 2],
         rows: [pair[0], pair[1]],
@@ -40,7 +49,7 @@ fn most(limits: &Limits, rows: &[Row<[f64; 2]>]) -> f64 {
     used.fold(0.0, |most, used| if used <= most { most } else { used })
 }
 
-fn end_s(rows: &[Row<[f64; 2]>]) -> f64 {
+fn end_s<A: Axes>(rows: &[Row<A>]) -> f64 {
     rows.last().unwrap().time_s
 }
 
@@ -123,7 +132,7 @@ fn a_segment_that_no_motor_can_bear_is_refused_at_rest() {
     assert!(!motion.is_finished() && motion.next_row().is_err());
 }
 
-fn gravity(g: f64, payload_kg: f64, motors: [TorqueCurve; 2]) -> Limits {
+fn gravity(g: f64, payload_kg: f64, motors: [TorqueCurve; 2]) -> TorqueLimits<ArmDynamics> {
     let masses = ArmMasses {
         gravity_m_s2: g,
         ..masses(payload_kg)
@@ -160,6 +169,26 @@ proptest! {
         let motors = if falls { stepper() } else { constant() };
         let strong = [90.0, 40.0].map(|torque| TorqueCurve::holding(torque, 3.0, 30.0).unwrap());
         let limits = if is_upright { gravity(9.806_65, payload_kg, strong) } else { gravity(0.0, payload_kg, motors) };
+        let rows = streamed(&limits, &paths, segments, window, &feeds);
+        let last = rows.last().unwrap();
+        prop_assert!(last.leg + 1 == paths.len() && last.is_at_rest());
+        let used = most(&limits, &rows);
+        prop_assert!(used <= WITHIN, "{used}");
+    }
+
+    #[test]
+    fn nor_does_a_delta_take_more(
+        places in prop::collection::vec((-60.0..60.0_f64, -60.0..60.0_f64, -310.0..-240.0_f64), 2..5),
+        segments in 6..80_u32, window in 8..200_usize,
+        feeds in prop::collection::vec((0..40_usize, prop_oneof![Just(0.0), 0.05..1.0_f64]), 0..6),
+    ) {
+        let (delta, limits) = delta();
+        let lines = places.windows(2).map_while(|pair| {
+            let [from, to] = [pair[0], pair[1]].map(|(x, y, z)| [x, y, z]);
+            delta.path(Curve::line(from, to).ok()?).ok()
+        });
+        let paths: Vec<_> = lines.collect();
+        prop_assume!(!paths.is_empty());
         let rows = streamed(&limits, &paths, segments, window, &feeds);
         let last = rows.last().unwrap();
         prop_assert!(last.leg + 1 == paths.len() && last.is_at_rest());
