@@ -13,9 +13,14 @@ use crate::{Axes, AxisLimits, FeedError, Knot, Path, PlanError, Row};
 /// with which no motor gives more torque than it has: at any feed up to 1, while it changes, and on
 /// the way to a rest at any time.
 ///
-/// Each segment is proven by [`TorqueLimits::utilisation`] before its row is handed out. Where that
-/// leaves less between the ends of a segment than at them, this segment alone is slower; a
+/// The speeds at both ends of a segment are chosen by [`TorqueLimits::utilisation`]. Where that leaves
+/// less between the ends than at them, this segment alone is slower; a
 /// [`TorqueTable`](super::TorqueTable) is so as a whole. It is work for a PC.
+///
+/// A segment that is run slower than the fastest that was found, at the same ratio of speeds, asks
+/// for no more where each motor has, at each speed up to that one, what friction and gravity take
+/// there. A motor that only brakes against viscous friction at a speed that it could not hold may be
+/// asked for more on the way down: ask `utilisation` of the rows where that can be.
 pub struct TorqueLookAhead<'w, P: Path, I, F, D: Dynamics<Axes = P::Axes>> {
     torque: TorqueLimits<D>,
     feeder: Feeder<P, I, F>,
