@@ -195,4 +195,30 @@ proptest! {
         let used = most(&limits, &rows);
         prop_assert!(used <= WITHIN, "{used}");
     }
+
+    #[test]
+    fn nor_does_friction_that_is_nearly_all(
+        places in places(), segments in 6..60_u32, viscous in 1.0..12.0_f64, torque in 20.0..60.0_f64,
+        feeds in prop::collection::vec((0..40_usize, prop_oneof![Just(0.0), 0.05..1.0_f64]), 0..6),
+    ) {
+        let paths = paths(&places);
+        prop_assume!(!paths.is_empty());
+        let mut masses = ArmMasses { gravity_m_s2: 9.806_65, ..masses(1.0) };
+        masses.shoulder.viscous_nm_s = viscous;
+        masses.elbow.viscous_nm_s = 0.4 * viscous;
+        let motors = [torque, 0.5 * torque].map(|t| TorqueCurve::holding(t, 1.0, 30.0).unwrap());
+        let limits = TorqueLimits { dynamics: arm().dynamics(1e-3, masses).unwrap(), motors };
+        let mut window = [Knot::default(); 100];
+        let mut motion = limits
+            .look_ahead(&paths, [FREE; 2], |_| Ok(segments), &mut window)
+            .unwrap();
+        let mut rows = Vec::new();
+        for (count, feed) in feeds.iter().chain([&(usize::MAX, 1.0)]) {
+            rows.extend(motion.by_ref().map_while(Result::ok).take(*count));
+            motion.set_feed(*feed).unwrap();
+        }
+        rows.extend(motion.by_ref().map_while(Result::ok));
+        let used = most(&limits, &rows);
+        prop_assert!(used <= WITHIN, "{used}");
+    }
 }
