@@ -127,12 +127,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// # Errors
     /// [`FeedError`]; the wanted feed stays.
     pub fn set_feed(&mut self, feed: f64) -> Result<(), FeedError> {
-        let (min, max) = (SMALLEST, self.max);
-        if feed == 0.0 || (feed >= min && feed <= max) {
-            self.wanted = feed;
-            return Ok(());
-        }
-        Err(FeedError { feed, min, max })
+        self.wanted = FeedError::checked(feed, self.max)?;
+        Ok(())
     }
 
     /// Holds: comes to rest at a knot as soon as the accelerations allow.

@@ -30,6 +30,17 @@ pub struct FeedError {
     pub max: f64,
 }
 
+impl FeedError {
+    /// A feed that is 0 or up to a highest.
+    pub(crate) fn checked(feed: f64, max: f64) -> Result<f64, Self> {
+        let min = SMALLEST;
+        if feed == 0.0 || (feed >= min && feed <= max) {
+            return Ok(feed);
+        }
+        Err(Self { feed, min, max })
+    }
+}
+
 /// A [`Table`] that is handed out row by row, at a feed that may change from row to row.
 ///
 /// At a feed f the machine passes each knot at f times the speed of the table, so that it stays on
@@ -127,12 +138,8 @@ impl<A: Axes> Playback<'_, A> {
     /// # Errors
     /// [`FeedError`]; the wanted feed stays.
     pub fn set_feed(&mut self, feed: f64) -> Result<(), FeedError> {
-        let (min, max) = (SMALLEST, self.max);
-        if feed == 0.0 || (feed >= min && feed <= max) {
-            self.wanted = feed;
-            return Ok(());
-        }
-        Err(FeedError { feed, min, max })
+        self.wanted = FeedError::checked(feed, self.max)?;
+        Ok(())
     }
 
     /// Stops as soon as the limits allow, on the path. [`set_feed`](Self::set_feed) goes on.

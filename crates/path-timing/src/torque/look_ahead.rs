@@ -5,7 +5,6 @@ use core::fmt::{self, Debug};
 use super::laden::Laden;
 use super::{Dynamics, TorqueLimits};
 use crate::look_ahead::{Feed, Feeder, Window};
-use crate::number::SMALLEST;
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, AxisLimits, FeedError, Knot, Path, PlanError, Row};
 
@@ -116,12 +115,8 @@ where
     /// # Errors
     /// [`FeedError`]; the wanted feed stays.
     pub fn set_feed(&mut self, feed: f64) -> Result<(), FeedError> {
-        let (min, max) = (SMALLEST, 1.0);
-        if feed == 0.0 || (feed >= min && feed <= max) {
-            self.wanted = feed;
-            return Ok(());
-        }
-        Err(FeedError { feed, min, max })
+        self.wanted = FeedError::checked(feed, 1.0)?;
+        Ok(())
     }
 
     /// Holds: comes to rest at a knot as soon as the torques allow. [`set_feed`](Self::set_feed) goes
