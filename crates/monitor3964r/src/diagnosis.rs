@@ -42,8 +42,8 @@ pub struct Diagnosis {
     pub or: Option<Verdict>,
     /// A second fault, which the first does not explain.
     pub also: Option<Verdict>,
-    /// What none of these explains goes wrong as well, in at least a third of the blocks or
-    /// requests of a side: there is another fault, without a name as long as these last.
+    /// What none of these explains goes wrong as well, more often than on a line with one fault
+    /// alone: there is another fault, without a name as long as these last.
     pub more: bool,
     /// Telegrams from A to B.
     pub a: Totals,

@@ -15,7 +15,7 @@ impl<'c> Case<'c> {
         Self::other_bcc,
         Self::no_receive_buffer,
         Self::good_blocks_rejected,
-        Self::gaps,
+        Self::mostly_gaps,
     ];
 
     /// A second fault besides this one, which does not explain it.

@@ -9,14 +9,23 @@ use crate::{
 impl Case<'_> {
     pub(super) fn without_bcc(&self, side: Side) -> Option<Verdict> {
         let own = self.side(side);
-        // An answer that is too late says nothing of the block before it.
-        if self.late(side.other()).is_some() {
-            return None;
-        }
-        let as_sender = most(own.without_bcc, own.blocks());
+        let as_sender = most(self.without_bcc_for_sure(side), own.blocks());
         let noticed = own.bcc_not_awaited.max(own.nak_after_dle);
-        let as_receiver = most(noticed, self.side(side.other()).blocks());
+        // An answer that is too late says nothing of the block before it.
+        let as_receiver =
+            self.late(side.other()).is_none() && most(noticed, self.side(side.other()).blocks());
         (as_sender || as_receiver).then_some(Verdict::WithoutBcc { side })
+    }
+
+    /// Blocks of this side without a BCC; none where the other is late and may do without one as
+    /// well: that shows in its own blocks alone.
+    pub(super) fn without_bcc_for_sure(&self, side: Side) -> u32 {
+        let is_known = self.late(side.other()).is_none() || self.side(side.other()).good > 0;
+        if is_known {
+            self.side(side).without_bcc
+        } else {
+            0
+        }
     }
 
     pub(super) fn other_bcc(&self, sender: Side) -> Option<Verdict> {
@@ -51,8 +60,9 @@ impl Case<'_> {
     }
 
     pub(super) fn own_echo(&self, side: Side) -> Option<Verdict> {
-        // A late side answers what was given up long ago.
-        if self.late(side).is_some() {
+        // A late side answers what was given up long ago; and where the other pauses, this one may
+        // do so too.
+        if self.late(side).is_some() || self.mostly_gaps(side.other()).is_some() {
             return None;
         }
         let own = self.side(side);
@@ -101,7 +111,12 @@ impl Case<'_> {
             longest_request_for_answer: delay,
             ..
         } = *self.side(side);
-        let blocks = self.side(side.other()).blocks();
+        let (own, blocks) = (self.side(side), self.side(side.other()).blocks());
+        // The STX of its own repeats, which come far more often.
+        let repeats = own.blocks().saturating_sub(own.accepted);
+        if most(repeats, own.blocks()) && repeats / 2 > blocks {
+            return None;
+        }
         most(requests_for_answers, blocks).then_some(Verdict::RequestForAnswer { side, delay })
     }
 
@@ -122,6 +137,12 @@ impl Case<'_> {
             sender,
             longest: own.longest_gap,
         })
+    }
+
+    /// Also beside another fault, which may have it pause now and then.
+    pub(super) fn mostly_gaps(&self, sender: Side) -> Option<Verdict> {
+        let own = self.side(sender);
+        self.gaps(sender).filter(|_| most(own.gaps, own.blocks()))
     }
 
     pub(super) fn bad_blocks(&self, sender: Side) -> Option<Verdict> {
