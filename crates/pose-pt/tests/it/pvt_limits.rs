@@ -37,9 +37,9 @@ fn limits_hold_to_the_last_digit() {
             &from_rest([0.01, 0.0, 0.0], [0.0; 3]),
             &[by(0.0), by(0.01), by(-0.03)],
         ] {
-            // The finest for one platform on one leg, for all where that is asked for.
-            let is_finest = are_all || name == "jerk" && poses.len() == 2;
-            let cuts = if is_finest { &cuts[..] } else { &cuts[..3] };
+            // The fine ones for one platform on one leg, for all where that is asked for.
+            let is_fine = are_all || name == "jerk" && poses.len() == 2;
+            let cuts = if is_fine { &cuts[..] } else { &cuts[..2] };
             for &(segments, kind) in cuts {
                 let path = PosePath::new(poses, ALL[kind]).unwrap();
                 let mut knots = vec![Knot::default(); 40_002];
