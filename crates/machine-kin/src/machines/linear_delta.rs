@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 use core::ops::RangeInclusive;
 
-use trig_kernels::sin_cos;
+use trig_kernels::{sin_cos, sqrt};
 
 use crate::machines::{GeometryError, check_lengths, check_reach};
 use crate::{Axis, Machine, Number, Refusal};
@@ -51,10 +51,31 @@ impl LinearDelta {
     }
 
     /// With each column where it was measured, less the platform's joint.
-    #[must_use]
-    pub const fn with_columns(mut self, columns: [[f64; 2]; 3]) -> Self {
+    ///
+    /// # Errors
+    /// [`GeometryError`] of columns in a line, which hold no platform, and of a rod that is not
+    /// longer than the radius of the smallest circle round the columns: no place is within reach of
+    /// all three.
+    pub fn with_columns(mut self, columns: [[f64; 2]; 3]) -> Result<Self, GeometryError> {
+        let [first, second, third] = columns;
+        let apart = |[from, to]: [[f64; 2]; 2]| [to[0] - from[0], to[1] - from[1]];
+        let sides = [[first, second], [second, third], [third, first]].map(apart);
+        let [[across, along], [aside, ahead], _] = sides;
+        let double_area = (across * ahead - along * aside).abs();
+        check_lengths([("the area between the columns", 0.5 * double_area)])?;
+
+        let mut squares = sides.map(|[x, y]| x * x + y * y);
+        squares.sort_by(f64::total_cmp);
+        let [short, middle, long] = squares;
+        let is_obtuse = long >= short + middle;
+        let radius = if is_obtuse {
+            0.5 * sqrt(long)
+        } else {
+            0.5 * sqrt(short) * sqrt(middle) * sqrt(long) / double_area
+        };
+        check_reach("rod", self.rod, radius)?;
         self.columns = columns;
-        self
+        Ok(self)
     }
 }
 

@@ -145,3 +145,33 @@ fn a_linear_delta_reaches_its_middle() {
     let machine = LinearDelta::new(150.5, 150.0, 0.0..=400.0).unwrap();
     assert!(machine.inverse([0.0, 0.0, 100.0], ()).is_ok());
 }
+
+/// Columns and the radius of the smallest circle round them: that through all three, or with two at
+/// its ends.
+const COLUMNS: [([[f64; 2]; 3], f64); 3] = [
+    ([[-87.0, -50.25], [87.0, -50.25], [0.0, 100.5]], 100.5),
+    ([[0.0, 0.0], [60.0, 0.0], [60.0, 80.0]], 50.0),
+    ([[-70.0, 0.0], [70.0, 0.0], [1.0, 5.0]], 70.0),
+];
+
+#[test]
+fn measured_columns_hold_the_platform_within_reach() {
+    let with = |rod, columns| {
+        let machine = LinearDelta::new(rod, 10.0, 0.0..=400.0).unwrap();
+        machine.with_columns(columns)
+    };
+    for (columns, radius) in COLUMNS {
+        assert!(with(radius + 0.1, columns).is_ok(), "{columns:?}");
+        let error = with(radius - 0.1, columns).unwrap_err();
+        assert!((error.above - radius).abs() < 0.05, "{error}");
+        assert_eq!((error.name, error.value), ("rod", radius - 0.1));
+    }
+    let in_line = [[0.0, 0.0], [10.0, 20.0], [-5.0, -10.0]];
+    assert_eq!(
+        with(100.0, in_line).unwrap_err().to_string(),
+        "the area between the columns 0 is not above 0 and at most 1e50"
+    );
+    for wrong in [f64::NAN, f64::INFINITY] {
+        assert!(with(100.0, [[0.0, 0.0], [10.0, wrong], [20.0, 5.0]]).is_err());
+    }
+}
