@@ -238,6 +238,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
     /// Its outcome is [`Event::Failed`] with [`Cause::Cancelled`] unless an error came before. A
     /// transmission under way ends with NAK, and the next one waits for ZVZ of silence, so that no
     /// answer to the one is taken for an answer to the other.
+    ///
+    /// Where that NAK comes in place of the BCC, a block that was damaged on its way may be taken
+    /// for a good one: its BCC is NAK in one of 256 cases.
     pub fn cancel(&mut self, now: Duration) -> bool {
         self.handle_timeout(now);
         let had_job = self.job.is_open();
