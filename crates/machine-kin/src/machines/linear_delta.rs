@@ -65,7 +65,7 @@ impl LinearDelta {
         check_lengths([("the area between the columns", 0.5 * double_area)])?;
 
         let mut squares = sides.map(|[x, y]| x * x + y * y);
-        squares.sort_by(f64::total_cmp);
+        squares.sort_unstable_by(f64::total_cmp);
         let [short, middle, long] = squares;
         let is_obtuse = long >= short + middle;
         let radius = if is_obtuse {

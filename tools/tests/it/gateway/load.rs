@@ -234,7 +234,12 @@ impl Heard {
         for (line, of_line) in &self.0 {
             let mut numbers: Vec<_> = of_line.values().copied().collect();
             numbers.dedup();
-            assert!(numbers.into_iter().eq(0..count), "{line}");
+            let other = (0..count).zip(&numbers).find(|(own, found)| own != *found);
+            assert_eq!(
+                (other, numbers.len()),
+                (None, usize::try_from(count).unwrap()),
+                "{line}"
+            );
             let sequence = of_line.keys().copied();
             assert!(
                 sequence.eq(1..=u64::try_from(of_line.len()).unwrap()),

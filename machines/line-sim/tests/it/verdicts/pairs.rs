@@ -222,7 +222,7 @@ fn long(seed: u64) -> Case {
     Case {
         sends: [true, true],
         longest: 12,
-        seconds: 40,
+        seconds: super::number("SECONDS", 40),
         ..Case::new(seed, Variation::ALL[0])
     }
 }
