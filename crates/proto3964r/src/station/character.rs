@@ -40,6 +40,9 @@ impl<const N: usize, const T: usize> Station<N, T> {
             (State::Receiving { .. } | State::Spoiled { .. }, _) => {
                 self.block_character(now, byte, damage);
             }
+            // A block whose end came too soon goes on, since the partner cannot have heard our NAK:
+            // an STX in its data is none.
+            (State::AwaitRepeat { goes_on: true, .. }, Stx) if !self.may_be_answer(now) => {}
             // The partner wants to send: DLE, or a wait for the receive buffer.
             (State::Idle | State::AwaitRepeat { .. } | State::Settling { .. }, Stx) => {
                 self.asked_to_receive(now);
@@ -59,7 +62,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
             // NAK has been sent for the block before. NAK is the partner's last word, STX must not
             // be missed because of noise before it.
             (State::AwaitRepeat { .. }, Nak) => self.abandon(now, Abandoned::ByPartner),
-            (State::AwaitRepeat { .. }, Dle | Other) => {}
+            (State::AwaitRepeat { .. }, Dle | Other) => self.goes_on(),
             // Another STX does not prolong the wait for a buffer, NAK ends it.
             (State::AwaitBuffer { .. }, Stx) => {}
             (State::AwaitBuffer { .. }, Nak) => self.go_idle(now),

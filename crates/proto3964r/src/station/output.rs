@@ -99,7 +99,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 *gap_at = end.saturating_add(self.zvz);
             }
             // BWZ runs from NAK.
-            (State::AwaitRepeat { give_up_at }, _) => {
+            (State::AwaitRepeat { give_up_at, .. }, _) => {
                 *give_up_at = end.saturating_add(self.config.bwz());
             }
             _ => {}

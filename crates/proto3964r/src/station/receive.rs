@@ -169,7 +169,17 @@ impl<const N: usize, const T: usize> Station<N, T> {
             self.abandon(now, Abandoned::TooMany(self.rejections));
         } else {
             let give_up_at = now.saturating_add(self.config.bwz());
-            self.state = State::AwaitRepeat { give_up_at };
+            self.state = State::AwaitRepeat {
+                give_up_at,
+                goes_on: false,
+            };
+        }
+    }
+
+    /// Characters came after the end of a bad block.
+    pub(super) const fn goes_on(&mut self) {
+        if let State::AwaitRepeat { goes_on, .. } = &mut self.state {
+            *goes_on = true;
         }
     }
 

@@ -56,7 +56,11 @@ pub(super) enum State {
     /// The block came in and is good; the user has yet to accept or refuse it.
     Held { refuse_at: Duration },
     /// NAK is queued or sent, the STX of the repeat is awaited.
-    AwaitRepeat { give_up_at: Duration },
+    AwaitRepeat {
+        give_up_at: Duration,
+        /// What came since is no repeat.
+        goes_on: bool,
+    },
     /// STX is next on the line.
     Request { stalled_at: Duration, burst: Burst },
     /// STX is sent, DLE is awaited.

@@ -41,7 +41,7 @@ impl<const N: usize, const T: usize> Station<N, T> {
                 noise_end_at,
                 ..
             } => gap_at.min(noise_end_at),
-            State::AwaitRepeat { give_up_at } => give_up_at,
+            State::AwaitRepeat { give_up_at, .. } => give_up_at,
             State::Request { stalled_at, .. } => stalled_at,
             State::AwaitDle { answer_at, .. } | State::AwaitAck { answer_at } => answer_at,
             State::Sending { begun_at, .. } => {

@@ -7,7 +7,10 @@ use core::{
 };
 use std::env;
 
-use proto3964r::tokio::{Link, SendError};
+use proto3964r::{
+    frame::{Check, encode},
+    tokio::{Link, SendError},
+};
 use rumqttc::v5::mqttbytes::QoS;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -39,18 +42,18 @@ fn telegrams() -> usize {
     number.unwrap_or(10_000)
 }
 
+/// Begins with its number; after it what looks like the end of a block and the begin of one.
+fn telegram(number: u32) -> Vec<u8> {
+    let filling = [0x10, 0x03, 0x02, 0xFF].into_iter().cycle();
+    let filling = filling.take(number as usize % 20);
+    number.to_be_bytes().into_iter().chain(filling).collect()
+}
+
 /// Sends telegrams with their numbers, each until it is acknowledged.
 async fn send_all(link: &Link, count: u32) {
     for number in 0..count {
-        let mut telegram = number.to_be_bytes().to_vec();
-        telegram.extend(
-            [0x10, 0x03, 0x02, 0xFF]
-                .iter()
-                .cycle()
-                .take(number as usize % 20),
-        );
         loop {
-            match link.send(&telegram).await {
+            match link.send(&telegram(number)).await {
                 Ok(()) => break,
                 Err(SendError::Failed(_)) => {}
                 Err(error) => panic!("{error}"),
@@ -121,7 +124,11 @@ async fn broker_stops_and_starts(protocol: &str) {
     is_over.store(true, Ordering::Relaxed);
     let _broker = stops.await.unwrap();
     gateway.ends();
-    heard.assert_complete(count);
+    let is_noisy = |line: &str| {
+        let index = line.trim_start_matches("line").parse::<usize>();
+        index.unwrap().is_multiple_of(NOISY)
+    };
+    heard.assert_complete(count, is_noisy);
 }
 
 /// What came of a serial port, through both ends of a pseudo-terminal, while the broker stops and
@@ -193,7 +200,7 @@ async fn serial_lines_lose_nothing_in_both_directions() {
     }
     partners.join_all().await;
     gateway.ends();
-    heard.assert_complete(TELEGRAMS);
+    heard.assert_complete(TELEGRAMS, |_| false);
     for of_line in outcomes.values() {
         assert!(
             of_line
@@ -204,47 +211,78 @@ async fn serial_lines_lose_nothing_in_both_directions() {
     }
 }
 
-/// By line, the numbers of its telegrams by `seq`: what comes twice under one is one telegram.
+/// By line, its telegrams by `seq`: what comes twice under one is one telegram.
 #[derive(Default)]
-struct Heard(BTreeMap<String, BTreeMap<u64, u32>>);
+struct Heard(BTreeMap<String, BTreeMap<u64, Vec<u8>>>);
 
 impl Heard {
     fn take(&mut self, (topic, payload): &(String, Vec<u8>)) {
         if !topic.ends_with("/telegram") {
             return;
         }
-        let telegram: Value = serde_json::from_slice(payload).unwrap();
-        let hex = telegram["hex"].as_str().unwrap().replace(' ', "");
-        let number = u32::from_str_radix(&hex[..8], 16).unwrap();
-        let line = telegram["line"].as_str().unwrap().to_owned();
+        let message: Value = serde_json::from_slice(payload).unwrap();
+        let hex = message["hex"].as_str().unwrap().split(' ');
+        let data: Vec<_> = hex
+            .map(|byte| u8::from_str_radix(byte, 16).unwrap())
+            .collect();
+        let line = message["line"].as_str().unwrap().to_owned();
         let of_line = self.0.entry(line).or_default();
-        let known = of_line.insert(telegram["seq"].as_u64().unwrap(), number);
-        assert!(known.is_none_or(|known| known == number));
+        let known = of_line.insert(message["seq"].as_u64().unwrap(), data.clone());
+        assert!(known.is_none_or(|known| known == data));
     }
 
     /// Whether the last telegram of every line has come.
     fn is_all(&self, lines: usize, count: u32) -> bool {
-        let is_full = |of_line: &&BTreeMap<_, u32>| of_line.values().any(|last| *last + 1 == count);
+        let last = telegram(count - 1);
+        let is_full = |of_line: &&BTreeMap<_, _>| of_line.values().any(|data| *data == last);
         self.0.values().filter(is_full).count() == lines
     }
 
-    /// All numbers, in the order of their line, whatever the broker did; repeats of the line are
-    /// neighbours.
-    fn assert_complete(&self, count: u32) {
+    /// All telegrams, in the order of their line, whatever the broker did; repeats of the line are
+    /// neighbours. On a noisy line one may have come damaged, or in part, where its BCC could not
+    /// tell.
+    fn assert_complete(&self, count: u32, is_noisy: impl Fn(&str) -> bool) {
+        let mut damaged = 0;
         for (line, of_line) in &self.0 {
-            let mut numbers: Vec<_> = of_line.values().copied().collect();
-            numbers.dedup();
-            let other = (0..count).zip(&numbers).find(|(own, found)| own != *found);
-            assert_eq!(
-                (other, numbers.len()),
-                (None, usize::try_from(count).unwrap()),
-                "{line}"
-            );
+            let mut next = 0;
+            let mut may_stand_for_next = false;
+            for data in of_line.values() {
+                let is = |number| *data == telegram(number);
+                if is(next) {
+                    next += 1;
+                } else if may_stand_for_next && is(next + 1) {
+                    next += 2;
+                } else if next == 0 || !is(next - 1) {
+                    let has_passed = is_noisy(line) && passes_as(data, &telegram(next));
+                    assert!(has_passed, "{line}, in place of {next}: {data:02X?}");
+                    damaged += 1;
+                    may_stand_for_next = true;
+                    continue;
+                }
+                may_stand_for_next = false;
+            }
+            assert_eq!(next, count, "{line}");
             let sequence = of_line.keys().copied();
             assert!(
                 sequence.eq(1..=u64::try_from(of_line.len()).unwrap()),
                 "{line}"
             );
         }
+        assert!(damaged <= MOST_DAMAGED, "{damaged} damaged ones passed");
     }
+}
+
+/// Two flips of one bit pass the BCC: 5 in a million telegrams of 19 characters, of which 25,000 are
+/// sent over noisy lines in the longest run.
+const MOST_DAMAGED: u32 = 3;
+
+/// Whether a telegram that was damaged on its way may come in as this one: with its BCC, in which
+/// one bit may be damaged too.
+fn passes_as(data: &[u8], sent: &[u8]) -> bool {
+    let bcc = |data: &[u8]| {
+        let mut block = [0; 128];
+        let len = encode(data, Check::Bcc, &mut block).unwrap();
+        block[len - 1]
+    };
+    (bcc(data) ^ bcc(sent)).count_ones() <= 1
 }

@@ -10,7 +10,7 @@ impl State {
             Self::Sending { begun_at, .. } => vec![begun_at],
             Self::AwaitBuffer { refuse_at } | Self::Held { refuse_at } => vec![refuse_at],
             Self::Invited { gap_at } | Self::Receiving { gap_at, .. } => vec![gap_at],
-            Self::AwaitRepeat { give_up_at } => vec![give_up_at],
+            Self::AwaitRepeat { give_up_at, .. } => vec![give_up_at],
             Self::AwaitAck { answer_at } => vec![answer_at],
             Self::Noise {
                 silent_at,

@@ -1,5 +1,10 @@
 //! Mistakes of a receiver.
 
+use proto3964r::{
+    Activity,
+    frame::{Check, encode},
+};
+
 use super::*;
 
 #[test]
@@ -117,6 +122,33 @@ fn m14_a_block_too_long_is_swallowed_to_its_end() {
         })))
     );
     assert_eq!(station.poll_event(), None);
+}
+
+/// What is left of a block, once a damaged character has made an end of its data, holds an STX, and
+/// the BCC happens to be that of the characters after it as well.
+#[test]
+fn the_rest_of_a_block_that_seemed_to_end_is_no_telegram() {
+    let data = [0x00, 0x0C, 0xF3, 0x10, 0x03, 0x02, 0xFF, 0x10, 0x03, 0x02];
+    let data = [&data[..], &[0xFF, 0x10, 0x03, 0x02]].concat();
+    let mut block = [0; 32];
+    let len = encode(&data, Check::Bcc, &mut block).unwrap();
+    let block = &mut block[..len];
+    let mut station = Station::<64>::new(low());
+    station.handle_byte(ms(0), STX);
+    assert_eq!(sent(&mut station, ms(0)), [DLE]);
+    block[3] = 0x00; // the first of a doubled DLE
+    assert_eq!(block[3..7], [0x00, 0x10, 0x03, STX]);
+    hear(&mut station, ms(0), block);
+    assert_eq!(sent(&mut station, ms(0)), [NAK]);
+    assert_eq!(station.activity(), Activity::AwaitRepeat);
+    assert!(matches!(station.poll_event(), Some(Event::Rejected(_))));
+    assert_eq!(station.poll_event(), None);
+
+    block[3] = DLE;
+    station.handle_byte(ms(0), STX);
+    assert_eq!(sent(&mut station, ms(0)), [DLE]);
+    hear(&mut station, ms(0), block);
+    assert_eq!(station.poll_event(), Some(Event::Received(&data[..])));
 }
 
 #[test]
