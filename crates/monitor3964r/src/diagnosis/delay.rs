@@ -70,8 +70,8 @@ impl Delay {
 }
 
 /// The delay at which most DLE of `by` follow a question of the other side, and half of them at
-/// least; among such as explain nearly as many the smallest, unless only a longer one answers the
-/// STX after silence. Never above `limit`.
+/// least; among such as explain as many the smallest, unless only a longer one answers the STX
+/// after silence. Never above `limit`.
 pub(super) fn delay_of(record: &[Character], by: Side, limit: Duration) -> Option<Delay> {
     let begin = answers(record, by).rev().nth(LAST).map_or(0, |(at, _)| at);
     let record = record.get(begin..).unwrap_or_default();
@@ -79,7 +79,7 @@ pub(super) fn delay_of(record: &[Character], by: Side, limit: Duration) -> Optio
         .map(|tried| tried.score())
         .max()?;
     let good = candidates(record, by, limit)
-        .filter(|tried| tried.score() * 8 >= most * 7 && tried.explained * 2 >= tried.answers);
+        .filter(|tried| tried.score() == most && tried.explained * 2 >= tried.answers);
     good.reduce(|best, tried| {
         if tried.is_better_than(&best) {
             tried
