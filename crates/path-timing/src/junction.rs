@@ -25,7 +25,9 @@ pub enum Corner<A> {
     /// ```
     ///
     /// w is the speed of the parameter, p₀ᵢ and p₁ᵢ are the slopes before and after the corner. An
-    /// axis with a limit of jerk has no acceleration on either side of the jump.
+    /// axis with a limit of jerk has no acceleration on either side of the jump: where its path
+    /// bends there, as an arm's does along a line, the jump is the slower the shorter the segments
+    /// beside it are.
     Jump(A),
 }
 
