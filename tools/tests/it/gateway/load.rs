@@ -242,8 +242,9 @@ impl Heard {
     /// neighbours. On a noisy line one may have come damaged, or in part, where its BCC could not
     /// tell.
     fn assert_complete(&self, count: u32, is_noisy: impl Fn(&str) -> bool) {
-        let mut damaged = 0;
+        let (mut damaged, mut over_noise) = (0, 0);
         for (line, of_line) in &self.0 {
+            over_noise += if is_noisy(line) { count } else { 0 };
             let mut next = 0;
             let mut may_stand_for_next = false;
             for data in of_line.values() {
@@ -268,13 +269,14 @@ impl Heard {
                 "{line}"
             );
         }
-        assert!(damaged <= MOST_DAMAGED, "{damaged} damaged ones passed");
+        let most = over_noise / ONE_IN;
+        assert!(damaged <= most, "{damaged} damaged of {over_noise} passed");
     }
 }
 
-/// Two flips of one bit pass the BCC: 5 in a million telegrams of 19 characters, of which 25,000 are
-/// sent over noisy lines in the longest run.
-const MOST_DAMAGED: u32 = 3;
+/// Two flips of one bit pass the BCC, in 5 of a million telegrams of 19 characters: none may in the
+/// usual run, which sends 2500 over noisy lines, and one of so many in long ones.
+const ONE_IN: u32 = 10_000;
 
 /// Whether a telegram that was damaged on its way may come in as this one: with its BCC, in which
 /// one bit may be damaged too.

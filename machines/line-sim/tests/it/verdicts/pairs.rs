@@ -233,7 +233,7 @@ const WITHOUT_A_NAME: [([Fault; 2], bool); 5] = [
 /// too few telegrams.
 const TOLD_AT_LEAST: usize = 7;
 
-/// A line on which all faults of a pair have time to show.
+/// A line on which all faults of a pair have time to show: `SECONDS`, 40 without.
 fn long(seed: u64) -> Case {
     Case {
         sends: [true, true],
