@@ -8,7 +8,7 @@ use std::{
     net::TcpStream,
     process::{Child, Command, ExitStatus, Stdio},
     sync::Mutex,
-    thread,
+    thread::{self, JoinHandle},
     time::Instant,
 };
 
@@ -25,6 +25,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_line3964r");
 pub(crate) struct Gateway {
     process: Child,
     log: Arc<Mutex<String>>,
+    /// What reads the log, to its end.
+    reader: Option<JoinHandle<()>>,
     folder: TempDir,
 }
 
@@ -78,7 +80,7 @@ impl Gateway {
             .unwrap();
         let log = Arc::new(Mutex::new(String::new()));
         let (lines, kept) = (process.stderr.take().unwrap(), Arc::clone(&log));
-        thread::spawn(move || {
+        let reader = thread::spawn(move || {
             for line in BufReader::new(lines).lines().map_while(Result::ok) {
                 let mut log = kept.lock().unwrap();
                 log.push_str(&line);
@@ -88,6 +90,7 @@ impl Gateway {
         Self {
             process,
             log,
+            reader: Some(reader),
             folder,
         }
     }
@@ -141,7 +144,8 @@ impl Gateway {
     pub(crate) fn stop(mut self) -> (ExitStatus, String) {
         terminate(&self.process);
         let status = self.process.wait().unwrap();
-        thread::sleep(Duration::from_millis(50)); // the last lines of the log
+        // Its pipe is closed.
+        self.reader.take().unwrap().join().unwrap();
         (status, self.log())
     }
 
