@@ -7,21 +7,24 @@
 //!
 //! Proof. Let D be the rods at that end, in shortest lower arms, B the matrix whose rows are D/La,
 //! c the columns of its inverse, m the ways of the elbows from there, at most μ = Lb δ where the
-//! arms turn by δ, and e that of the platform. The rods keep their lengths where
+//! arms turn by φ, at most δ, and e that of the platform. The rods keep their lengths where
 //!
 //! ```text
-//! B e = n - q    n = D · m / La ≤ |D · K'| δ / La + Lb δ²/2    q = |e - m|² / 2La ≤ (|e| + μ)²/2
+//! B e = n - q    n = D · m / La = l φ + r    l = D · K' / La    |r| ≤ μ δ/2
+//!                0 ≤ q = |e - m|² / 2La ≤ (|e| + μ)²/2
 //! ```
 //!
-//! with K' the way of an elbow by its angle. So |e|, which begins at zero and is continuous, stays
-//! below the smaller root of
+//! with K' the way of an elbow by its angle. The three φ together are always a mean of their
+//! control points, and 0, so that |Σ c l φ| is at most A, the largest of it at one of these; and
+//! |Σ c q| is at most C times the largest q, C the longest sum of some of the c. So |e|, which
+//! begins at zero and is continuous, stays below the smaller root of
 //!
 //! ```text
-//! E = N + M E + C E²/2    N = Σ |c| (n + μ²/2)    M = Σ |c| μ    C = Σ |c|
+//! E = N + M E + C E²/2    N = A + Σ |c| μ δ/2 + C μ²/2    M = C μ
 //! ```
 //!
-//! There M + C E < 1, so that the matrix stays invertible on the way, and the assembly mode the
-//! same.
+//! with the largest μ. Where Σ |c| (E + μ) < 1 the matrix stays invertible on the way, and the
+//! assembly mode the same.
 
 use nalgebra::Vector3;
 use path_timing::Cubic;
@@ -38,8 +41,8 @@ const MARGIN: f32 = 0.01;
 const LARGEST: f32 = 16.0;
 const MAX_INVERSE: f32 = 48.0;
 
-/// The least of (1 - M)² - 2 C N as a part of (1 - M)², and of 1 - M: nearer to 0 the root has no
-/// digits.
+/// The least of (1 - M)² - 2 C N as a part of (1 - M)², of 1 - M and of 1 - Σ |c| (E + μ): nearer
+/// to 0 the root has no digits.
 const LEAST: f32 = 0.05;
 
 /// One arm at an end of a segment, in single precision and in shortest lower arms.
@@ -47,9 +50,13 @@ const LEAST: f32 = 0.05;
 struct Side {
     /// A row of B.
     rod: Vector3<f32>,
-    /// μ and n: how far the elbow goes in half of the segment, at most, and how far along its rod.
+    /// The control points of φ.
+    turns: [f32; 3],
+    /// δ, and μ: how far the elbow goes in half of the segment, at most.
+    turn: f32,
     way: f32,
-    along: f32,
+    /// l
+    lever: f32,
     /// From the wrist to the plane of the arm, and the most of that.
     beside: f32,
     max_beside: f32,
@@ -110,8 +117,10 @@ impl Side {
         let way = if is_small { upper * turn } else { f32::NAN };
         Self {
             rod,
+            turns,
+            turn,
             way,
-            along: rod.dot(&tangent.map(scaled)).abs() * turn + way * turn * 0.5,
+            lever: rod.dot(&tangent.map(scaled)),
             beside: scaled(place.dot(&prepared.sideways()).abs()),
             max_beside: scaled(prepared.max_side),
         }
@@ -119,20 +128,37 @@ impl Side {
 }
 
 fn is_free(sides: &[Side; 3]) -> bool {
-    let (mut inverse, mut forth, mut beside) = (0.0, 0.0, 0.0);
-    for (column, side) in zip(invert_rods(&sides.map(|side| side.rod)), *sides) {
-        let column = column.norm();
-        inverse += column;
-        forth += column * (side.along + side.way * side.way * 0.5);
-        beside += column * side.way;
+    let columns = invert_rods(&sides.map(|side| side.rod));
+    let (mut inverse, mut bend, mut beside, mut way) = (0.0, 0.0, 0.0, 0.0_f32);
+    let mut moves = [Vector3::zeros(); 3];
+    for (column, side) in zip(columns, *sides) {
+        for (moved, turn) in moves.iter_mut().zip(side.turns) {
+            *moved += column * (side.lever * turn);
+        }
+        let length = column.norm();
+        inverse += length;
+        bend += length * side.way * side.turn * 0.5;
+        beside += length * side.way;
+        way = way.max(side.way);
     }
-    let rest = 1.0 - beside;
-    let square = rest * rest - 2.0 * inverse * forth;
+    let ahead = longest(&moves);
+    let [a, b, c] = columns;
+    let square = longest(&[a, b, c, a + b, b + c, c + a, a + b + c]);
+    let (forth, rest) = (ahead + bend + square * way * way * 0.5, 1.0 - square * way);
+    let left = rest * rest - 2.0 * square * forth;
+    let farthest = 2.0 * forth / (rest + sqrt(left));
     // Written so that NaN is not known.
-    let is_known = inverse <= MAX_INVERSE && rest >= LEAST && square >= LEAST * rest * rest;
-    let farthest = 2.0 * forth / (rest + sqrt(square));
+    let is_known = inverse <= MAX_INVERSE
+        && rest >= LEAST
+        && left >= LEAST * rest * rest
+        && inverse * farthest + beside <= 1.0 - LEAST;
     let more = farthest * (1.0 + MARGIN) + MARGIN;
     is_known && (sides.iter()).all(|side| side.beside + more <= side.max_beside)
+}
+
+fn longest(vectors: &[Vector3<f32>]) -> f32 {
+    let squares = vectors.iter().map(Vector3::norm_squared);
+    sqrt(squares.fold(0.0, f32::max))
 }
 
 #[cfg(test)]
