@@ -82,6 +82,15 @@ impl<A: Axes> Junction<A> {
         Self::Jump(speed)
     }
 
+    /// The highest speed at which it is passed, but for what the paths themselves allow.
+    pub(crate) const fn cap(&self) -> f64 {
+        match self {
+            Self::Stop => 0.0,
+            Self::Smooth(_) => f64::INFINITY,
+            Self::Jump(speed) => *speed,
+        }
+    }
+
     pub(crate) const fn is_stop(&self) -> bool {
         matches!(self, Self::Stop)
     }

@@ -112,11 +112,24 @@ impl Shares {
 /// Writes what each segment of the first `planned` knots leaves unused into its second knot, for
 /// [`spread`].
 pub(crate) fn note_unused<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], planned: usize) {
+    let mut time_s = 0.0;
+    each_segment(knots, planned, |from, to| time_s += segment_s(from, to));
+    let least_s = time_s / index_as_f64(planned.saturating_sub(1)) * SHORTEST;
     each_segment(knots, planned, |from, to| {
+        let own_s = segment_s(from, to);
         // The ratio is of the passes alone.
-        to.ratio = unused(limits, [from, to], segment_s(from, to));
+        to.ratio = if own_s > least_s {
+            unused(limits, [from, to], own_s)
+        } else {
+            0.0
+        };
     });
 }
+
+/// The shortest segment, in units of the mean time of one, that gets more knots for what it leaves
+/// unused: where one limit takes over from another that is always one of them, and knots would
+/// gather there until only rounding lies between them, which takes the limits for itself.
+const SHORTEST: f64 = 0.01;
 
 /// Where each knot of a leg has to stand for all segments to have the same share, and the speed
 /// there, written into the knots; the speeds of the first `planned` of them, which reach from its
@@ -222,11 +235,11 @@ fn within<A: Axes>(pair: &[Knot<A>], fraction: f64) -> (f64, f64) {
     (s, from.speed + rise + rise)
 }
 
-/// Where a knot stands on a leg, as a fraction: dense at an end where the machine rests, for there
+/// Where a knot stands on a leg, as a fraction: dense at an end where the machine is slow, for there
 /// the speed changes most from knot to knot, and with it the cubic's departure from the path.
-pub(crate) fn fraction(u: f64, rests: [bool; 2]) -> f64 {
+pub(crate) fn fraction(u: f64, is_slow: [bool; 2]) -> f64 {
     let from_rest = |u: f64| u * u * (3.0 - u) * 0.5;
-    match rests {
+    match is_slow {
         [true, true] => u * u * (3.0 - 2.0 * u),
         [true, false] => from_rest(u),
         [false, true] => 1.0 - from_rest(1.0 - u),

@@ -25,8 +25,8 @@ const SHORTEST: f64 = 1.0 / (1 << 20) as f64;
 pub(crate) struct Place<'p, P: Path> {
     pub(crate) leg: &'p Leg<P>,
     pub(crate) start: PathPoint<P::Axes>,
-    /// Whether the machine rests at its ends.
-    pub(crate) rests: [bool; 2],
+    /// The highest speeds at its ends: 0 where the machine stops, none where it goes on smoothly.
+    pub(crate) caps: [f64; 2],
     /// The fewest segments.
     pub(crate) fewest: u32,
     /// Whether it is the only one.
@@ -188,9 +188,11 @@ impl<P: Path> Place<'_, P> {
         let segments = u32::try_from(own.len().saturating_sub(1)).unwrap_or(MAX_SEGMENTS);
         let few = (segments / 2).max(segments.min(FEW));
         let (rough, _) = own.split_at_mut(knots_of(few).min(own.len()));
+        // Where velocities jump the machine may be nearly as slow as where it stops.
+        let is_slow = self.caps.map(f64::is_finite);
         for (index, knot) in (0..=few).zip(&mut *rough) {
             let u = f64::from(index) / f64::from(few);
-            knot.moved_s = length * fraction(u, self.rests);
+            knot.moved_s = length * fraction(u, is_slow);
         }
         self.lay_unchecked(rough, |_, _, _| 1.0)?;
         self.alone(limits, rough);
@@ -305,8 +307,7 @@ impl<P: Path> Place<'_, P> {
     /// Plans the leg for itself.
     fn alone<R: Real>(&self, limits: &Reciprocals<P::Axes, R>, knots: &mut [Knot<P::Axes>]) {
         let before = knots.first().copied();
-        let cap_of = |rests| if rests { 0.0 } else { f64::INFINITY };
-        let [start, end] = self.rests.map(cap_of);
+        let [start, end] = self.caps;
         if let Some(first) = knots.first_mut() {
             *first = Knot {
                 cap: start,

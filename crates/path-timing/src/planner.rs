@@ -82,7 +82,7 @@ pub(crate) fn lay_all<'k, P: Path>(
         let place = Place {
             leg: &leg,
             start,
-            rests: [before.0.is_stop(), junction.is_stop()],
+            caps: [before.0.cap(), junction.cap()],
             fewest: fewest(limits, &leg, &start, [&before, &after]),
             is_alone,
             used: last.len(),

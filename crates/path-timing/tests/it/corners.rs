@@ -19,7 +19,7 @@ fn planned(
     corner: Corner<[f64; 2]>,
     segments: u32,
 ) -> (f64, Vec<Row<[f64; 2]>>) {
-    let mut knots = vec![Knot::default(); 1000];
+    let mut knots = vec![Knot::default(); 4000];
     let legs = lines(points, corner, None);
     let table = Table::plan(&legs, LIMITS, |_| segments, &mut knots).unwrap();
     let rows: Vec<_> = table.rows().collect();
@@ -133,8 +133,28 @@ fn wrong_start_stop_speeds_are_named() {
     }
 }
 
+/// Knots gather where one limit takes over from another, but not until only rounding lies between
+/// them.
+#[test]
+fn more_segments_beside_jumps_take_no_longer() {
+    let points = [[1.0, 1.9], [0.1, 0.2], [0.3, 0.4], [1.7, 2.1], [0.6, 0.9]];
+    let timed_s = |segments| planned(&points, Corner::Jump([0.02, 3.0]), segments).0;
+    let few_s = timed_s(300);
+    for segments in [450, 600, 800] {
+        let ratio = timed_s(segments) / few_s;
+        assert!(ratio < MORE_SEGMENTS, "{segments} segments: {ratio}");
+    }
+}
+
+/// They stand elsewhere.
+const MORE_SEGMENTS: f64 = 1.0001;
+
 /// Knots, more than any of the polylines takes.
 const MOST: usize = 512;
+
+/// With 16 segments and more on each leg, which stand elsewhere, a jump next to rest takes up to
+/// 0.16 % longer than the stop.
+const ELSEWHERE: f64 = 1.003;
 
 /// One of the three corners, with start-stop speeds.
 fn corners() -> impl Strategy<Value = Corner<[f64; 2]>> {
@@ -177,5 +197,23 @@ proptest! {
         prop_assert_eq!(rows.len(), planned.len());
         let ends = |rows: &[Row<[f64; 2]>]| rows.last().map(|row| (row.position, row.velocity));
         prop_assert_eq!(ends(&rows), ends(&planned));
+    }
+
+    #[test]
+    fn jumps_take_no_longer_than_stops(
+        points in prop::collection::vec(prop::array::uniform2(-200.0..200.0_f64), 3..6),
+        jump in -7.0..0.0_f64,
+        segments in 16..200_u32,
+    ) {
+        let jump = [0.5, 80.0].map(|speed| speed * jump.exp());
+        let timed_s = |corner| {
+            let mut knots = [Knot::default(); 2 * MOST];
+            let table = Table::plan(lines(&points, corner, None), LIMITS, |_| segments, &mut knots);
+            table.map(|table| table.duration_s())
+        };
+        let times = [Corner::Jump(jump), Corner::Stop].map(timed_s);
+        prop_assume!(times.iter().all(Result::is_ok));
+        let [jumps_s, stops_s] = times.map(Result::unwrap);
+        prop_assert!(jumps_s <= stops_s * ELSEWHERE, "{}", jumps_s / stops_s);
     }
 }

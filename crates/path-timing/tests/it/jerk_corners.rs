@@ -165,6 +165,21 @@ proptest! {
         }
     }
 
+    #[test]
+    fn jumps_under_jerk_take_no_longer_than_stops(
+        points in points(), jump in 1.0..100.0_f64, jerk in 1e4..1e6_f64, segments in 16..60_u32,
+    ) {
+        let limits = [limits(300.0, 2000.0, Some(jerk)); 2];
+        let sides = |corner| {
+            let side = move |ends: &[[f64; 2]]| Curve::line(ends[0], ends[1]).unwrap().with_corner(corner);
+            points.windows(2).map(side).collect::<Vec<_>>()
+        };
+        let jumps = planned(&sides(Corner::Jump([jump; 2])), limits, segments);
+        check_jerk(&limits, Some(&[jump; 2]), &jumps);
+        let stops = planned(&sides(Corner::Stop), limits, segments);
+        prop_assert!(time_s(&jumps) <= time_s(&stops) * ROUNDING);
+    }
+
     /// The number of segments is chosen before the speeds are.
     #[test]
     fn departures_hold_with_jerk(
