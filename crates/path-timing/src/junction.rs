@@ -90,8 +90,4 @@ impl<A: Axes> Junction<A> {
             Self::Jump(speed) => *speed,
         }
     }
-
-    pub(crate) const fn is_stop(&self) -> bool {
-        matches!(self, Self::Stop)
-    }
 }

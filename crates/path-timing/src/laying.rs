@@ -130,7 +130,7 @@ const MOST_HALVINGS: u32 = 12;
 #[derive(Debug, Clone)]
 pub(crate) struct Cutting<P: Path> {
     pub(crate) laying: Laying<P>,
-    rests: [bool; 2],
+    is_slow: [bool; 2],
     /// Of the size of the next one.
     segments: u32,
     /// How often it has been halved.
@@ -140,11 +140,11 @@ pub(crate) struct Cutting<P: Path> {
 }
 
 impl<P: Path> Cutting<P> {
-    /// A leg with a number of segments, dense where it rests at an end.
-    pub(crate) const fn new(laying: Laying<P>, rests: [bool; 2], segments: u32) -> Self {
+    /// A leg with a number of segments, dense at an end where it is slow.
+    pub(crate) const fn new(laying: Laying<P>, is_slow: [bool; 2], segments: u32) -> Self {
         Self {
             laying,
-            rests,
+            is_slow,
             segments,
             halvings: 0,
             index: 0,
@@ -197,6 +197,6 @@ impl<P: Path> Cutting<P> {
             return length;
         }
         let u = f64::from(index) / f64::from(self.segments);
-        length * fraction(u, self.rests)
+        length * fraction(u, self.is_slow)
     }
 }

@@ -125,10 +125,11 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
         // A path that is refused is so when it begins: until then the machine is to rest before it.
         let next = self.following.as_ref();
         let junction = || junction_to(&leg, next, limits).ok();
-        let ends_at_rest = match leg.path().corner() {
-            Corner::Stop => true,
-            Corner::Jump(_) => next.is_none(),
-            Corner::Smooth => junction().is_some_and(|junction| junction.is_stop()),
+        let is_slow = |junction: Junction<P::Axes>| junction.cap().is_finite();
+        let ends_slowly = match leg.path().corner() {
+            Corner::Smooth => junction().is_some_and(is_slow),
+            // Most likely: to know it takes two places more.
+            Corner::Stop | Corner::Jump(_) => true,
         };
         let fewest = if segments == 1 {
             let after = junction().unwrap_or(Junction::Stop);
@@ -137,8 +138,8 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
         } else {
             1
         };
-        let rests = [before.0.is_stop(), ends_at_rest];
+        let ends = [is_slow(before.0), ends_slowly];
         let laying = Laying::new(leg, start);
-        Ok(Cutting::new(laying, rests, segments.max(fewest)))
+        Ok(Cutting::new(laying, ends, segments.max(fewest)))
     }
 }

@@ -1,7 +1,7 @@
 //! Corners between paths: stops, smooth joints, velocities that jump.
 
 use path_timing::{
-    AxisLimits, Corner, FeedCeiling, Knot, PathFn, PathPoint, PlanError, Row, Table,
+    AxisLimits, Corner, FeedCeiling, Knot, LookAhead, PathFn, PathPoint, PlanError, Row, Table,
 };
 use proptest::prelude::*;
 
@@ -206,14 +206,22 @@ proptest! {
         segments in 16..200_u32,
     ) {
         let jump = [0.5, 80.0].map(|speed| speed * jump.exp());
-        let timed_s = |corner| {
+        let table_s = |corner| {
             let mut knots = [Knot::default(); 2 * MOST];
             let table = Table::plan(lines(&points, corner, None), LIMITS, |_| segments, &mut knots);
             table.map(|table| table.duration_s())
         };
-        let times = [Corner::Jump(jump), Corner::Stop].map(timed_s);
-        prop_assume!(times.iter().all(Result::is_ok));
-        let [jumps_s, stops_s] = times.map(Result::unwrap);
-        prop_assert!(jumps_s <= stops_s * ELSEWHERE, "{}", jumps_s / stops_s);
+        let stream_s = |corner| {
+            let mut window = [Knot::default(); 2 * MOST];
+            let paths = lines(&points, corner, None);
+            let rows = LookAhead::new(paths, LIMITS, |_| Ok(segments), &mut window).unwrap();
+            rows.last().unwrap().map(|row| row.time_s)
+        };
+        let corners = [Corner::Jump(jump), Corner::Stop];
+        for times in [corners.map(table_s), corners.map(stream_s)] {
+            prop_assume!(times.iter().all(Result::is_ok));
+            let [jumps_s, stops_s] = times.map(Result::unwrap);
+            prop_assert!(jumps_s <= stops_s * ELSEWHERE, "{}", jumps_s / stops_s);
+        }
     }
 }
