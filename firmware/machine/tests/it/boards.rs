@@ -125,6 +125,9 @@ const STAGE_DAY: Day<XyStage, 2> = Day {
     has_scales: true,
 };
 
+/// Some of [`Day::lines`] are twice as long as what a day begins with.
+const LONGER: f64 = 1.4;
+
 /// A board with the same machine on this PC beside it.
 struct Pair<K: Kinematics<N> + 'static, const N: usize> {
     day: Day<K, N>,
@@ -375,6 +378,7 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
         for command in self.day.begin {
             self.moves_alike(command);
         }
+        self.most_until_edge_s *= LONGER;
         for line in 0..more_lines() {
             self.moves_alike(self.day.lines[line % self.day.lines.len()]);
         }
