@@ -7,7 +7,7 @@ use core::convert::Infallible;
 use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segments_within};
 use thiserror::Error;
 
-use self::fewest_segments::FewestSegments;
+use self::fewest_segments::{Counted, FewestSegments};
 use crate::{
     KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
 };
@@ -159,9 +159,10 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         departure: impl Fn(&P, &Span<[f64; N]>) -> f64,
     ) -> impl Iterator<Item = Result<Step, DriveError<P::Error>>> {
         let limits = self.limits_of_drivers();
-        let mut fewest = FewestSegments::new(limits);
-        let segments =
-            move |path: &P| segments_within(path, fewest.of(path), tolerance, &departure);
+        let paths = FewestSegments::new(limits, paths.into_iter());
+        let segments = move |Counted { path, fewest }: &Counted<P>| {
+            segments_within(path, *fewest, tolerance, &departure)
+        };
         let planned = LookAhead::new(paths, limits, segments, &mut self.window);
         let (rows, refused) = match planned {
             Ok(rows) => (Some(rows), None),

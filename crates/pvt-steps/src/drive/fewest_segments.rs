@@ -7,16 +7,23 @@
 //! n = max over axes of 48 |way| a / v^2 and 36 |turn of q'/v| / max |q'/v|
 //! ```
 //!
-//! from 2 to 64, from 8 on where it begins at rest under a limit of jerk.
+//! from 2 to 64. Where it begins or ends next to rest, at a stop or beside a sharp turn of another
+//! path, its speed rises or falls on it, however short it is: from 8 on, where both from 12 on.
 
-use path_timing::{AxisLimits, Corner, Path, PathPoint};
+use path_timing::{AxisLimits, Corner, Path, PathPoint, Span, ToolLimits};
 
 /// Fewest segments: one up, one down.
 const FEWEST: u32 = 2;
 
-/// Fewest from rest where jerk is limited: the acceleration comes and goes on the way up and on the
-/// way down, and may jump at the ends.
-const FEWEST_WITH_JERK: u32 = 8;
+/// Fewest from a slow end, or to one; where jerk is limited the acceleration comes and goes on the
+/// way.
+const FEWEST_AT_SLOW_END: u32 = 8;
+
+/// Fewest from one to the other.
+const FEWEST_BETWEEN_SLOW_ENDS: u32 = 12;
+
+/// Segments of a turn that is sharp: the path beside it ends slowly.
+const SHARP: f64 = 24.0;
 
 /// Difference of slopes that is rounding, as the planner has it: with more a corner is a stop.
 const SMOOTH: f64 = 1e-9;
@@ -34,28 +41,103 @@ const SEGMENTS_OF_A_TURN: f64 = 36.0;
 /// Places of a path that are looked at for its length and turns.
 const PLACES: usize = 5;
 
-/// Paths one after the other, and the segments that each is fast with: few where it is short and
-/// straight, so that the window sees far, and more where speeds change along it; as many up as
+/// Paths one after the other, each with the segments that it is fast with: few where it is short
+/// and straight, so that the window sees far, and more where speeds change along it; as many up as
 /// down, as a way from rest to rest is fastest in its middle.
-pub(super) struct FewestSegments<const N: usize> {
+pub(super) struct FewestSegments<I: Iterator, const N: usize> {
     limits: [AxisLimits; N],
-    /// The slope that the last path goes on with.
-    goes_on: Option<[f64; N]>,
+    paths: I,
+    before: Option<Shape<N>>,
+    next: Option<(I::Item, Shape<N>)>,
 }
 
-impl<const N: usize> FewestSegments<N> {
-    pub(super) const fn new(limits: [AxisLimits; N]) -> Self {
-        let goes_on = None;
-        Self { limits, goes_on }
+/// A path with the fewest segments that it is fast with.
+pub(super) struct Counted<P> {
+    pub(super) path: P,
+    pub(super) fewest: u32,
+}
+
+/// What is seen of a path.
+#[derive(Clone, Copy)]
+struct Shape<const N: usize> {
+    slopes: [[f64; N]; 2],
+    is_smooth: bool,
+    /// Speed of the fastest axis, relative to its limit, at unit speed of the path.
+    steepest: f64,
+    /// Segments for its turns, and for its ways as well.
+    of_turns: f64,
+    of_all: f64,
+}
+
+impl<P: Path<Axes = [f64; N]>, I: Iterator<Item = P>, const N: usize> FewestSegments<I, N> {
+    pub(super) fn new(limits: [AxisLimits; N], mut paths: I) -> Self {
+        let next = paths.next().map(|path| seen(&limits, path));
+        Self {
+            limits,
+            paths,
+            before: None,
+            next,
+        }
     }
 
-    /// The fewest segments of the next path.
-    pub(super) fn of<P: Path<Axes = [f64; N]>>(&mut self, path: &P) -> u32 {
-        let before = self.goes_on.take();
-        let Some(places) = places(path) else {
-            return FEWEST;
+    /// Whether the speed is low where a path goes on to the next one: it stops there, or the other
+    /// of them turns sharply.
+    fn is_slow(&self, from: &Shape<N>, to: &Shape<N>, other: &Shape<N>) -> bool {
+        let ([_, end], [start, _]) = (from.slopes, to.slopes);
+        let mut axes = self.limits.iter().zip(end.into_iter().zip(start));
+        let goes_on = from.is_smooth
+            && axes.all(|(limit, (p0, p1))| (p1 - p0).abs() <= SMOOTH * to.steepest * limit.speed);
+        !goes_on || other.of_turns >= SHARP
+    }
+}
+
+fn seen<P: Path<Axes = [f64; N]>, const N: usize>(
+    limits: &[AxisLimits; N],
+    path: P,
+) -> (P, Shape<N>) {
+    let shape = Shape::of(limits, &path);
+    (path, shape)
+}
+
+impl<P: Path<Axes = [f64; N]>, I: Iterator<Item = P>, const N: usize> Iterator
+    for FewestSegments<I, N>
+{
+    type Item = Counted<P>;
+
+    fn next(&mut self) -> Option<Counted<P>> {
+        let (path, shape) = self.next.take()?;
+        self.next = self.paths.next().map(|path| seen(&self.limits, path));
+        let begins_slowly =
+            (self.before).is_none_or(|before| self.is_slow(&before, &shape, &before));
+        let ends_slowly =
+            (self.next.as_ref()).is_none_or(|(_, next)| self.is_slow(&shape, next, next));
+        self.before = Some(shape);
+        let fewest = match [begins_slowly, ends_slowly] {
+            [true, true] => FEWEST_BETWEEN_SLOW_ENDS,
+            [false, false] => FEWEST,
+            _ => FEWEST_AT_SLOW_END,
         };
-        let mut axes = self.limits.map(AxisAlong::new);
+        let fewest = (fewest..MOST)
+            .step_by(2)
+            .find(|&segments| f64::from(segments) >= shape.of_all)
+            .unwrap_or(MOST);
+        Some(Counted { path, fewest })
+    }
+}
+
+impl<const N: usize> Shape<N> {
+    fn of<P: Path<Axes = [f64; N]>>(limits: &[AxisLimits; N], path: &P) -> Self {
+        let is_smooth = matches!(path.corner(), Corner::Smooth);
+        let Some(places) = places(path) else {
+            return Self {
+                slopes: [[0.0; N]; 2],
+                is_smooth,
+                steepest: 0.0,
+                of_turns: 0.0,
+                of_all: 0.0,
+            };
+        };
+        let mut axes = limits.map(AxisAlong::new);
         for place in places {
             let place = place.position.into_iter().zip(place.slope);
             for (axis, at) in axes.iter_mut().zip(place) {
@@ -65,24 +147,54 @@ impl<const N: usize> FewestSegments<N> {
         let [start, .., end] = places;
         // No number, where a limit is none or nothing moves, is passed over.
         let steepest = axes.iter().map(|axis| axis.steepest).fold(0.0, f64::max);
-        let is_passed = before.is_some_and(|slope| {
-            let slopes = slope.into_iter().zip(start.slope);
-            let mut apart = self.limits.iter().zip(slopes);
-            apart.all(|(limit, (p0, p1))| (p1 - p0).abs() <= SMOOTH * steepest * limit.speed)
-        });
-        self.goes_on = matches!(path.corner(), Corner::Smooth).then_some(end.slope);
-        let has_jerk = self.limits.iter().any(|limit| limit.jerk.is_some());
-        let fewest = if has_jerk && !is_passed {
-            FEWEST_WITH_JERK
-        } else {
-            FEWEST
-        };
-        let wanted = axes.iter().map(|axis| axis.segments(steepest));
-        let wanted = wanted.fold(0.0, f64::max);
-        (fewest..MOST)
-            .step_by(2)
-            .find(|&segments| f64::from(segments) >= wanted)
-            .unwrap_or(MOST)
+        let of_turns = axes
+            .iter()
+            .map(|axis| axis.segments_of_turns(steepest))
+            .fold(0.0, f64::max);
+        let of_ways = axes
+            .iter()
+            .map(AxisAlong::segments_of_way)
+            .fold(0.0, f64::max);
+        Self {
+            slopes: [start.slope, end.slope],
+            is_smooth,
+            steepest,
+            of_turns,
+            of_all: of_turns.max(of_ways),
+        }
+    }
+}
+
+impl<P: Path> Path for Counted<P> {
+    type Axes = P::Axes;
+    type Error = P::Error;
+
+    fn length(&self) -> f64 {
+        self.path.length()
+    }
+
+    fn point(&self, s: f64) -> Result<PathPoint<P::Axes>, P::Error> {
+        self.path.point(s)
+    }
+
+    fn tool(&self) -> Option<ToolLimits> {
+        self.path.tool()
+    }
+
+    fn tool_rate(&self, s: f64) -> f64 {
+        self.path.tool_rate(s)
+    }
+
+    fn corner(&self) -> Corner<P::Axes> {
+        self.path.corner()
+    }
+
+    fn check(&self, span: &Span<P::Axes>) -> Result<(), P::Error> {
+        self.path.check(span)
+    }
+
+    fn is_too_coarse(&self, reason: &P::Error) -> bool {
+        self.path.is_too_coarse(reason)
     }
 }
 
@@ -125,14 +237,16 @@ impl AxisAlong {
         self.steepest = self.steepest.max(speed.abs());
     }
 
-    /// The segments for its way and its turns, where the fastest axis has this speed.
-    fn segments(&self, steepest: f64) -> f64 {
+    fn segments_of_turns(&self, steepest: f64) -> f64 {
+        SEGMENTS_OF_A_TURN * self.turn / steepest
+    }
+
+    fn segments_of_way(&self) -> f64 {
         let AxisLimits {
             speed,
             acceleration,
             ..
         } = self.limit;
-        let of_way = SEGMENTS_OF_TWO_BRAKINGS * self.way * acceleration / (speed * speed);
-        of_way.max(SEGMENTS_OF_A_TURN * self.turn / steepest)
+        SEGMENTS_OF_TWO_BRAKINGS * self.way * acceleration / (speed * speed)
     }
 }

@@ -100,18 +100,19 @@ fn a_wider_window_is_no_slower() {
     assert!(many < few, "{many} {few}");
 }
 
+const JOINT: AxisLimits = AxisLimits {
+    speed: 3.0,
+    acceleration: 30.0,
+    jerk: None,
+};
+
 /// The ticks that an arm takes along curves on the plane.
 fn of_the_arm(
     curves: impl IntoIterator<Item = Curve<2>>,
     tolerance_mm: f64,
-    jerk: Option<f64>,
+    joint: AxisLimits,
 ) -> f64 {
     let arm = Arm::new(132.0, 132.0).unwrap();
-    let joint = AxisLimits {
-        speed: 3.0,
-        acceleration: 30.0,
-        jerk,
-    };
     let mut drive = Drive::new([joint; 2], [32_000.0 / TAU; 2], rate()).unwrap();
     let paths = curves
         .into_iter()
@@ -132,7 +133,8 @@ fn a_larger_tolerance_costs_no_time() {
         [[100.0, 100.0], [110.0, 102.0]],
     ];
     for [from, to] in lines {
-        let ticks = |tolerance_mm| of_the_arm([Curve::line(from, to).unwrap()], tolerance_mm, None);
+        let ticks =
+            |tolerance_mm| of_the_arm([Curve::line(from, to).unwrap()], tolerance_mm, JOINT);
         let least = ticks(0.01);
         for tolerance_mm in [0.1, 1.0] {
             let ratio = ticks(tolerance_mm) / least;
@@ -141,6 +143,42 @@ fn a_larger_tolerance_costs_no_time() {
                 "{from:?} {to:?} {tolerance_mm}: {ratio}"
             );
         }
+    }
+}
+
+/// Hairpins are passed next to rest: the paths beside them need segments to be fast between.
+#[test]
+fn a_larger_tolerance_costs_no_time_beside_hairpins() {
+    const MAX_RATIO: f64 = 1.01;
+    let hairpins = [
+        (
+            [[128.53, -25.48], [125.98, -28.05], [125.53, -25.48]],
+            7.12,
+            27.7,
+        ),
+        (
+            [[145.43, -11.63], [142.49, -6.16], [135.92, -8.01]],
+            6.48,
+            22.1,
+        ),
+        (
+            [[152.99, -33.56], [150.62, -31.27], [153.86, -30.65]],
+            4.94,
+            17.9,
+        ),
+    ];
+    for (points, speed, acceleration) in hairpins {
+        let joint = AxisLimits {
+            speed,
+            acceleration,
+            jerk: None,
+        };
+        let mut vertices = [Vertex::default(); 24];
+        let smoothed = Smoothed::new(points, 0.1, &mut vertices).unwrap();
+        let curves: Vec<_> = smoothed.map(Result::unwrap).collect();
+        let ticks = |tolerance_mm| of_the_arm(curves.iter().copied(), tolerance_mm, joint);
+        let ratio = ticks(0.05) / ticks(0.002);
+        assert!(ratio <= MAX_RATIO, "{points:?}: {ratio}");
     }
 }
 
@@ -159,8 +197,9 @@ fn dense_points_are_as_fast_as_the_arc() {
     let [start, centre] = [[100.0 + radius_mm, 100.0], [100.0, 100.0]];
     let arc = Curve::arc(start, centre, [0.0, 1.0], TAU / 4.0).unwrap();
     for (jerk, max_ratio) in [(None, 1.03), (Some(1200.0), 1.1)] {
-        let found = of_the_arm(smoothed.iter().copied(), TOLERANCE_MM, jerk);
-        let ratio = found / of_the_arm([arc], TOLERANCE_MM, jerk);
+        let joint = AxisLimits { jerk, ..JOINT };
+        let found = of_the_arm(smoothed.iter().copied(), TOLERANCE_MM, joint);
+        let ratio = found / of_the_arm([arc], TOLERANCE_MM, joint);
         assert!(ratio <= max_ratio, "{jerk:?}: {ratio}");
     }
 }
@@ -176,10 +215,13 @@ fn short_lines_with_stops_heed_jerk() {
         .windows(2)
         .map(|pair| Curve::line(pair[0], pair[1]).unwrap());
     let lines: Vec<_> = lines.collect();
-    let jerk = Some(1200.0);
-    let found = of_the_arm(lines.iter().copied(), TOLERANCE_MM, jerk);
+    let joint = AxisLimits {
+        jerk: Some(1200.0),
+        ..JOINT
+    };
+    let found = of_the_arm(lines.iter().copied(), TOLERANCE_MM, joint);
     // In as many segments as a small tolerance asks for.
-    let fine = of_the_arm(lines, 1e-6, jerk);
+    let fine = of_the_arm(lines, 1e-6, joint);
     let ratio = found / fine;
     assert!((MIN_RATIO..1.01).contains(&ratio), "{ratio}");
 }
