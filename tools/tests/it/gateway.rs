@@ -8,6 +8,7 @@ mod day;
 mod discovery;
 mod faults;
 mod health;
+mod listeners;
 mod load;
 mod nats;
 mod nats_server;

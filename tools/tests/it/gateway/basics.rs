@@ -9,8 +9,8 @@ use tokio::{
 };
 
 use super::{
-    broker::free_ports,
     broker_or_skip,
+    listeners::free_ports,
     partner::Partner,
     process::{Gateway, hall, line, metric, metrics, mqtt},
     subscriber::Subscriber,

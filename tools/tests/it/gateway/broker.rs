@@ -1,21 +1,18 @@
 //! A mosquitto of the test's own.
 
-use core::{
-    net::Ipv4Addr,
-    sync::atomic::{AtomicU16, Ordering},
-    time::Duration,
-};
+use core::{net::Ipv4Addr, time::Duration};
 use std::{
     env, fs,
-    net::{TcpListener, TcpStream},
+    net::TcpStream,
     path::PathBuf,
-    process::{self, Child, Command, Stdio},
-    sync::LazyLock,
+    process::{Child, Command, Stdio},
     thread,
 };
 
 use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
 use tempfile::TempDir;
+
+use super::listeners::free_ports;
 
 pub(crate) const USER: &str = "plant";
 pub(crate) const PASSWORD: &str = "not a secret";
@@ -161,25 +158,6 @@ fn program() -> Option<&'static str> {
             .status();
         asked.is_ok()
     })
-}
-
-/// Ports that nobody has right now, and that no system gives to whoever asks for any.
-pub(crate) fn free_ports<const N: usize>() -> [u16; N] {
-    const RANGE: (u16, u16) = (10_000, 32_000);
-    /// Other test programs begin elsewhere.
-    static NEXT: LazyLock<AtomicU16> = LazyLock::new(|| {
-        let id = process::id().wrapping_mul(2_654_435_761) >> 16;
-        AtomicU16::new(u16::try_from(id).unwrap())
-    });
-    let listeners = [(); N].map(|()| {
-        loop {
-            let port = RANGE.0 + NEXT.fetch_add(1, Ordering::Relaxed) % (RANGE.1 - RANGE.0);
-            if let Ok(listener) = TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
-                break listener;
-            }
-        }
-    });
-    listeners.map(|listener| listener.local_addr().unwrap().port())
 }
 
 /// An authority, the broker's certificate by it, and another authority.

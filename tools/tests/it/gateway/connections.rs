@@ -10,6 +10,7 @@ use tokio::{
 
 use super::{
     broker_or_skip,
+    listeners::listen,
     partner::Partner,
     process::{Gateway, line, mqtt},
     subscriber::Subscriber,
@@ -48,7 +49,7 @@ async fn a_stolen_identifier_is_named() {
     const ANSWERS: [u8; 9] = [0x20, 3, 0, 0, 0, 0xE0, 2, 0x8E, 0];
     /// Far below the 15 s for which the thief is left alone.
     const PEACE: Duration = Duration::from_secs(2);
-    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let listener = listen();
     let port = listener.local_addr().unwrap().port();
     let partner = Partner::new().await;
     let line = line("scale", partner.port);

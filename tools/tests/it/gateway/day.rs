@@ -22,6 +22,7 @@ use tokio::{
 
 use super::{
     broker::Broker,
+    listeners::listen,
     noise::{Noise, Random},
     process::{Gateway, line, mqtt},
     subscriber::Subscriber,
@@ -231,7 +232,7 @@ async fn a_day_of_load() {
     });
     let mut partners = Vec::new();
     for index in 0..lines {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         let port = listener.local_addr().unwrap().port();
         config += &line(&format!("line{index}"), port);
         let sending = send_numbers(listener, Arc::clone(&load), index + 1);

@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use tokio::task::spawn_blocking;
 
 use super::{
-    broker::free_ports,
     broker_or_skip,
+    listeners::free_ports,
     partner::Partner,
     process::{Gateway, hall, line, metrics, mqtt},
     subscriber::Subscriber,

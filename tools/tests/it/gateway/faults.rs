@@ -19,6 +19,7 @@ use tokio::{
 
 use super::{
     broker_or_skip,
+    listeners::listen,
     process::{Gateway, mqtt},
     subscriber::Subscriber,
 };
@@ -397,7 +398,7 @@ async fn faults_of_simulated_partners() {
     let kinds = Arc::new(kinds());
     let mut taps = Vec::new();
     for (seed, index) in (1..).zip(0..kinds.len()) {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         config += &kinds[index].line(listener.local_addr().unwrap().port());
         let (kinds, tap) = (Arc::clone(&kinds), Heard::default());
         taps.push(Arc::clone(&tap));

@@ -4,13 +4,13 @@ use core::time::Duration;
 
 use tokio::{
     io::{AsyncReadExt as _, AsyncWriteExt as _},
-    net::{TcpListener, TcpStream},
+    net::TcpStream,
     task::spawn_blocking,
 };
 
 use super::{
-    broker::free_ports,
     broker_or_skip,
+    listeners::{free_ports, listen},
     partner::Partner,
     process::{Gateway, hall, line, metric, metrics, mqtt},
     subscriber::Subscriber,
@@ -25,7 +25,7 @@ const NAK: u8 = 0x15;
 async fn blocks_that_are_answered_nak_are_counted_by_their_cause() {
     const BLOCKS: u64 = 10;
     let broker = broker_or_skip!();
-    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let listener = listen();
     let [port] = free_ports();
     let line = line("scale", listener.local_addr().unwrap().port());
     let config = hall(&[&mqtt(broker.port), &metrics(port), &line]);

@@ -14,10 +14,11 @@ use proto3964r::{
 use rumqttc::v5::mqttbytes::QoS;
 use serde_json::Value;
 use tempfile::TempDir;
-use tokio::{net::TcpListener, task::JoinSet, time::sleep};
+use tokio::{task::JoinSet, time::sleep};
 
 use super::{
     broker_or_skip,
+    listeners::listen,
     noise::Noise,
     partner::PARTNER,
     process::{Gateway, line, mqtt},
@@ -79,7 +80,7 @@ async fn broker_stops_and_starts(protocol: &str) {
     let mut config = format!("name = \"hall\"\nstop_s = 60\n{mqtt}protocol = \"{protocol}\"\n");
     let mut partners = Vec::new();
     for index in 0..LINES {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         let port = listener.local_addr().unwrap().port();
         config += &line(&format!("line{index}"), port);
         let seed = u32::try_from(index).unwrap() + 1;

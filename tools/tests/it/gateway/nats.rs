@@ -26,11 +26,11 @@ use tokio::{
 
 use super::{
     broker::{PASSWORD, USER},
+    listeners::{free_ports, listen},
     nats_server::Cluster,
     partner::{PARTNER, Partner},
     process::{Gateway, PATIENCE, hall, line, metric, metrics},
 };
-use crate::gateway::broker::free_ports;
 
 /// One area of the partner, two of the gateway's own.
 const AREAS: &str = "procedure = \"rk512\"
@@ -275,7 +275,7 @@ async fn servers_that_are_killed_in_turn_lose_and_double_nothing() {
     let is_over = Arc::new(AtomicBool::new(false));
     let mut partners = Vec::new();
     for index in 0..LINES {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         let port = listener.local_addr().unwrap().port();
         config += &line(&format!("line{index}"), port);
         partners.push(tokio::spawn(send_numbers(listener, Arc::clone(&is_over))));

@@ -11,7 +11,8 @@ use std::{
 use tempfile::TempDir;
 
 use super::{
-    broker::{PASSWORD, USER, free_ports},
+    broker::{PASSWORD, USER},
+    listeners::free_ports,
     process::PATIENCE,
 };
 

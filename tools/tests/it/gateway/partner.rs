@@ -1,5 +1,6 @@
 //! Partners of lines, over TCP.
 
+use crate::gateway::listeners::listen;
 use core::time::Duration;
 
 use proto3964r::{
@@ -23,7 +24,7 @@ pub(crate) struct Partner {
 
 impl Partner {
     pub(crate) async fn new() -> Self {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         let port = listener.local_addr().unwrap().port();
         Self { listener, port }
     }

@@ -8,8 +8,9 @@ use serde_json::json;
 use tokio::{net::TcpStream, task::spawn_blocking};
 
 use super::{
-    broker::{PASSWORD, USER, free_ports},
+    broker::{PASSWORD, USER},
     broker_or_skip,
+    listeners::free_ports,
     partner::Partner,
     process::{Gateway, hall, line, metric, mqtt},
     subscriber::Subscriber,

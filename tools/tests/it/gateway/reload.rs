@@ -11,7 +11,7 @@ use tokio::{
 };
 
 use super::{
-    broker::free_ports,
+    listeners::free_ports,
     partner::Partner,
     process::{Gateway, PATIENCE, line},
 };

@@ -24,8 +24,9 @@ use tokio::{
 };
 
 use super::{
-    broker::{Broker, free_ports},
+    broker::Broker,
     broker_or_skip,
+    listeners::{free_ports, listen},
     partner::{PARTNER, Partner},
     process::{Gateway, PATIENCE, hall, line, metric, mqtt},
     subscriber::Subscriber,
@@ -129,7 +130,7 @@ async fn a_killed_gateway_loses_nothing_that_it_acknowledged() {
     );
     let mut partners = Vec::new();
     for index in 0..LINES {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         let port = listener.local_addr().unwrap().port();
         config += &line(&format!("line{index}"), port);
         let sending = send_numbers(listener, Arc::clone(&is_over), Arc::clone(&sent));

@@ -12,7 +12,8 @@ use tokio::{
 };
 
 use super::{
-    broker::{Broker, free_ports},
+    broker::Broker,
+    listeners::free_ports,
     process::{Gateway, metric, mqtt},
     uart::{Answers, Pace, Uart},
 };

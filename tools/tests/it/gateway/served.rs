@@ -19,6 +19,7 @@ use tokio::{net::TcpListener, time::sleep};
 
 use super::{
     broker_or_skip,
+    listeners::listen,
     partner::{PARTNER, Partner},
     process::{Gateway, hall, line, mqtt},
     subscriber::Subscriber,
@@ -192,7 +193,7 @@ async fn a_killed_gateway_loses_nothing_that_its_reaction_has_taken() {
     let is_over = Arc::new(AtomicBool::new(false));
     let mut partners = Vec::new();
     for index in 0..LINES {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         let port = listener.local_addr().unwrap().port();
         config += &line(&format!("line{index}"), port);
         config += "procedure = \"rk512\"\n[[line.area]]\nname = \"order\"\nstart = \"DB 20.0\"\n\

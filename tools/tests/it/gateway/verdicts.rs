@@ -17,6 +17,7 @@ use tokio::{
 
 use super::{
     broker_or_skip,
+    listeners::listen,
     partner::PARTNER,
     process::{Gateway, PATIENCE, line, mqtt},
     subscriber::Subscriber,
@@ -220,7 +221,7 @@ async fn faults_of_partners_are_named() {
     let mut config = format!("name = \"hall\"\n{}", mqtt(broker.port));
     let (mut cases, mut partners) = (cases(), JoinSet::new());
     for case in &cases {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let listener = listen();
         config += &line(case.name, listener.local_addr().unwrap().port());
         partners.spawn(Case::partner(case.fault, case.partner_sends, listener));
     }

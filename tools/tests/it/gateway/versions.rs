@@ -12,13 +12,14 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::{
     io::{AsyncReadExt as _, AsyncWriteExt as _, copy_bidirectional},
-    net::{TcpListener, TcpStream},
+    net::TcpStream,
     time::{sleep, timeout},
 };
 
 use super::{
     broker::{Broker, PASSWORD, USER},
     broker_or_skip,
+    listeners::listen,
     nats_server::Cluster,
     partner::Partner,
     process::{Gateway, PATIENCE, hall, line, mqtt},
@@ -31,7 +32,7 @@ const LEVEL: usize = 9;
 /// A front of the broker that says this to a CONNECT of MQTT 5 and closes the connection, as often
 /// as it shall.
 async fn front(broker: u16, answer: &'static [u8], times: usize) -> (u16, Arc<AtomicUsize>) {
-    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let listener = listen();
     let port = listener.local_addr().unwrap().port();
     let refused = Arc::new(AtomicUsize::new(0));
     let counted = Arc::clone(&refused);
