@@ -37,6 +37,8 @@ struct Day<K: Kinematics<N> + 'static, const N: usize> {
     jogs: [&'static str; 2],
     /// From the end of a telegram to the first edge, on the Pico and on the Nucleo.
     most_until_edge_s: [f64; 2],
+    /// How many times as long it takes on [`lines`](Self::lines), some twice as far as the others.
+    longer: f64,
     /// Whether the Nucleo counts its scales.
     has_scales: bool,
 }
@@ -67,6 +69,7 @@ const ARM_DAY: Day<TwoLinkArm, 2> = Day {
     stopped: ([60.0, 150.0], "line 60 150"),
     jogs: ["jog shoulder 90", "jog elbow 5"],
     most_until_edge_s: [0.22, 0.1],
+    longer: 1.0,
     has_scales: false,
 };
 
@@ -94,6 +97,7 @@ const DELTA_DAY: Day<RotaryDelta, 3> = Day {
     stopped: ([90.0, -40.0, -260.0], "line 90 -40 -260 100"),
     jogs: ["jog arm1 -30", "jog arm1 5"],
     most_until_edge_s: [0.22, 0.1],
+    longer: 1.4,
     has_scales: false,
 };
 
@@ -122,11 +126,9 @@ const STAGE_DAY: Day<XyStage, 2> = Day {
     stopped: ([20.0, 50.0], "line 20 50"),
     jogs: ["jog x 20", "jog x 5"],
     most_until_edge_s: [0.2, 0.1],
+    longer: 1.0,
     has_scales: true,
 };
-
-/// Some of [`Day::lines`] are twice as long as what a day begins with.
-const LONGER: f64 = 1.4;
 
 /// A board with the same machine on this PC beside it.
 struct Pair<K: Kinematics<N> + 'static, const N: usize> {
@@ -159,7 +161,7 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
     }
 
     /// A motion by both: the same answers, the same levels at the same intervals.
-    fn moves_alike(&mut self, command: &str) {
+    fn moves_alike(&mut self, command: &str, most_until_edge_s: f64) {
         self.board.forget();
         self.rig.pins.forget();
         let begun = self.rig.ask(command);
@@ -171,7 +173,7 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
             .board
             .seconds(self.board.changes[0].0 - self.board.told);
         assert!(
-            until_edge <= self.most_until_edge_s,
+            until_edge <= most_until_edge_s,
             "{command}: the first edge comes after {until_edge} s"
         );
         eprintln!("{command}: first edge after {until_edge:.3} s, {ended}");
@@ -376,11 +378,12 @@ impl<K: Kinematics<N> + 'static, const N: usize> Pair<K, N> {
     fn run(mut self) {
         self.homes();
         for command in self.day.begin {
-            self.moves_alike(command);
+            self.moves_alike(command, self.most_until_edge_s);
         }
-        self.most_until_edge_s *= LONGER;
+        let most_until_edge_s = self.most_until_edge_s * self.day.longer;
         for line in 0..more_lines() {
-            self.moves_alike(self.day.lines[line % self.day.lines.len()]);
+            let command = self.day.lines[line % self.day.lines.len()];
+            self.moves_alike(command, most_until_edge_s);
         }
         self.refuses_alike();
         self.holds();
