@@ -143,7 +143,7 @@ impl<const N: usize, const W: usize> Drive<N, W> {
 
     /// The steps along `paths`, with ticks from 0 on: each path in as many segments as keep
     /// `departure`, a bound in the unit of `tolerance`, within it at any speeds, and in no fewer
-    /// than its length and its turns ask for, 2 to 64.
+    /// than its length, its turns and slow ends ask for, 2 to 64.
     ///
     /// The motors stand where the first path begins. No axis is faster than its driver takes steps,
     /// whatever its limit. After an error there are no steps, and the motors may be in motion:

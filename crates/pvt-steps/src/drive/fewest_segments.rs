@@ -22,7 +22,7 @@ const FEWEST_AT_SLOW_END: u32 = 8;
 /// Fewest from one to the other.
 const FEWEST_BETWEEN_SLOW_ENDS: u32 = 12;
 
-/// Segments of a turn that is sharp: the path beside it ends slowly.
+/// Segments of a turn that is sharp: a path beside it is slow where they meet.
 const SHARP: f64 = 24.0;
 
 /// Difference of slopes that is rounding, as the planner has it: with more a corner is a stop.
@@ -70,33 +70,31 @@ struct Shape<const N: usize> {
 }
 
 impl<P: Path<Axes = [f64; N]>, I: Iterator<Item = P>, const N: usize> FewestSegments<I, N> {
-    pub(super) fn new(limits: [AxisLimits; N], mut paths: I) -> Self {
-        let next = paths.next().map(|path| seen(&limits, path));
-        Self {
+    pub(super) fn new(limits: [AxisLimits; N], paths: I) -> Self {
+        let mut segments = Self {
             limits,
             paths,
             before: None,
-            next,
-        }
+            next: None,
+        };
+        segments.look_ahead();
+        segments
     }
 
-    /// Whether the speed is low where a path goes on to the next one: it stops there, or the other
-    /// of them turns sharply.
-    fn is_slow(&self, from: &Shape<N>, to: &Shape<N>, other: &Shape<N>) -> bool {
+    fn look_ahead(&mut self) {
+        self.next = self.paths.next().map(|path| {
+            let shape = Shape::of(&self.limits, &path);
+            (path, shape)
+        });
+    }
+
+    /// Whether a path goes on to the next one without a stop.
+    fn goes_on(&self, from: &Shape<N>, to: &Shape<N>) -> bool {
         let ([_, end], [start, _]) = (from.slopes, to.slopes);
         let mut axes = self.limits.iter().zip(end.into_iter().zip(start));
-        let goes_on = from.is_smooth
-            && axes.all(|(limit, (p0, p1))| (p1 - p0).abs() <= SMOOTH * to.steepest * limit.speed);
-        !goes_on || other.of_turns >= SHARP
+        from.is_smooth
+            && axes.all(|(limit, (p0, p1))| (p1 - p0).abs() <= SMOOTH * to.steepest * limit.speed)
     }
-}
-
-fn seen<P: Path<Axes = [f64; N]>, const N: usize>(
-    limits: &[AxisLimits; N],
-    path: P,
-) -> (P, Shape<N>) {
-    let shape = Shape::of(limits, &path);
-    (path, shape)
 }
 
 impl<P: Path<Axes = [f64; N]>, I: Iterator<Item = P>, const N: usize> Iterator
@@ -106,11 +104,11 @@ impl<P: Path<Axes = [f64; N]>, I: Iterator<Item = P>, const N: usize> Iterator
 
     fn next(&mut self) -> Option<Counted<P>> {
         let (path, shape) = self.next.take()?;
-        self.next = self.paths.next().map(|path| seen(&self.limits, path));
+        self.look_ahead();
         let begins_slowly =
-            (self.before).is_none_or(|before| self.is_slow(&before, &shape, &before));
-        let ends_slowly =
-            (self.next.as_ref()).is_none_or(|(_, next)| self.is_slow(&shape, next, next));
+            (self.before).is_none_or(|before| before.is_sharp() || !self.goes_on(&before, &shape));
+        let ends_slowly = (self.next.as_ref())
+            .is_none_or(|(_, next)| next.is_sharp() || !self.goes_on(&shape, next));
         self.before = Some(shape);
         let fewest = match [begins_slowly, ends_slowly] {
             [true, true] => FEWEST_BETWEEN_SLOW_ENDS,
@@ -162,6 +160,10 @@ impl<const N: usize> Shape<N> {
             of_turns,
             of_all: of_turns.max(of_ways),
         }
+    }
+
+    const fn is_sharp(&self) -> bool {
+        self.of_turns >= SHARP
     }
 }
 
