@@ -114,7 +114,7 @@ impl Shares {
 pub(crate) fn note_unused<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], planned: usize) {
     let mut time_s = 0.0;
     each_segment(knots, planned, |from, to| time_s += segment_s(from, to));
-    let least_s = time_s / index_as_f64(planned.saturating_sub(1)) * SHORTEST;
+    let least_s = time_s / index_as_f64(planned.saturating_sub(1)) * LEAST_TIME;
     each_segment(knots, planned, |from, to| {
         let own_s = segment_s(from, to);
         // The ratio is of the passes alone.
@@ -129,7 +129,7 @@ pub(crate) fn note_unused<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>
 /// The shortest segment, in units of the mean time of one, that gets more knots for what it leaves
 /// unused: where one limit takes over from another that is always one of them, and knots would
 /// gather there until only rounding lies between them, which takes the limits for itself.
-const SHORTEST: f64 = 0.01;
+const LEAST_TIME: f64 = 0.01;
 
 /// Where each knot of a leg has to stand for all segments to have the same share, and the speed
 /// there, written into the knots; the speeds of the first `planned` of them, which reach from its

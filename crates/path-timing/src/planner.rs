@@ -35,9 +35,8 @@ pub(crate) fn fewest<A: Axes, E>(
             [speed.max(v), acceleration.max(a)]
         });
     let speeds = ends.map(|(junction, length)| match junction {
-        Junction::Stop => 0.0,
         Junction::Smooth(_) => sqrt(length / (inertia + inertia)),
-        Junction::Jump(speed) => *speed,
+        Junction::Stop | Junction::Jump(_) => junction.cap(),
     });
     let length = leg.length();
     let with_stops_s = (1.5 * length * slowness).max(sqrt(6.0 * length * inertia));

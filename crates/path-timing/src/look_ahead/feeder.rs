@@ -128,7 +128,7 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
         let is_slow = |junction: Junction<P::Axes>| junction.cap().is_finite();
         let ends_slowly = match leg.path().corner() {
             Corner::Smooth => junction().is_some_and(is_slow),
-            // Most likely: to know it takes two places more.
+            // Whether a jump is a slow one, two more places of the paths would tell.
             Corner::Stop | Corner::Jump(_) => true,
         };
         let fewest = if segments == 1 {

@@ -1,6 +1,5 @@
 //! Partners of lines, over TCP.
 
-use crate::gateway::listeners::listen;
 use core::time::Duration;
 
 use proto3964r::{
@@ -9,6 +8,8 @@ use proto3964r::{
 };
 use rk512::{DataBlock, Memory, Server};
 use tokio::net::{TcpListener, TcpStream};
+
+use super::listeners::listen;
 
 /// What a partner runs on: it repeats soon.
 pub(crate) const PARTNER: Config = Config {
